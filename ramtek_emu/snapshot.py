@@ -203,7 +203,7 @@ def _restore_monitor_image(display: Ramtek9300, beam: Beam, state: dict[str, Any
 
 
 def _state(texts: dict[str, str], keyword: str, *names: str) -> dict[str, Any]:
-    """The JSON object of a text chunk; SnapshotError if there is none, or if its fields are not `names`."""
+    """The JSON object of a text chunk; SnapshotError if it is missing or its fields are not `names`."""
     try:
         state = json.loads(texts.get(keyword, "null"))
     except (ValueError, RecursionError):

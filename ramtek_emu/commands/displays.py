@@ -43,9 +43,9 @@ def display_options(function: Function) -> Function:
         click.option(
             "--start", type=click.Path(), metavar="SNAPSHOT", help="Go on with the display of a snapshot."
         ),
-        click.option("--record", type=click.Path(), metavar="OUT", help="Keep the words that are sent."),
+        click.option("--record", type=click.Path(), metavar="OUT", help="Record the words that are sent."),
         click.option(
-            "--snapshot", type=click.Path(), metavar="PNG", help="Keep the display: words, table, parameters."
+            "--snapshot", type=click.Path(), metavar="PNG", help="Save the display: words, table, parameters."
         ),
         click.option("-o", "--output", type=click.Path(), metavar="PNG", help="The picture at the end."),
     ):

@@ -86,10 +86,10 @@ def serve(
 ) -> None:
     """Run a display. Programs send and receive 16-bit words, low byte first.
 
-    With --port or --unix it serves one host after the other until Ctrl+C; others wait in line meanwhile. At a
-    Unix socket each write is rounded down to whole words by itself, as the drivers of the time did. With
-    --stdio it ends at the end of its input. Nobody is asked for a password: keep to the loopback address
-    unless everyone who reaches the port may draw; a Unix socket is for its owner only.
+    With --port or --unix it serves one host after the other until Ctrl+C; other hosts wait in line. At a Unix
+    socket every write is rounded down to whole words, as the drivers of the time did. With --stdio it ends at
+    the end of its input. There is no password: keep to the loopback address unless everyone who reaches the
+    port may draw. Only its owner may use a Unix socket.
     """
     if (port is not None) + (unix is not None) + stdio != 1:
         raise click.UsageError(

@@ -51,13 +51,13 @@ def tty(
     """Run PROGRAM with its device on the display that `ramtek serve --unix PATH` makes.
 
     The device is a pseudoterminal: the program finds its path in the environment as RAMTEK_DEVICE, and in
-    place of {} in its arguments. Each of its writes is rounded down to whole words by itself, as the drivers
-    of the time did, and the replies of the display can be read there. The exit code is the program's, or 128
-    and the number of the signal that ended it.
+    place of {} in its arguments. Every write is rounded down to whole words, as the drivers of the time did.
+    The program reads the replies of the display from the device. The exit code is the program's, or 128 plus
+    the number of the signal that ended it.
 
-    A program that draws with fwrite and putc needs --stream: for a terminal, C's stdio ends a write at each
-    byte 0A, wherever that is in a word. Where the system does not tell one write from the next (Linux 5.5 and
-    later does, unless a sandbox forbids it), nothing is run without --stream.
+    A program that draws with fwrite and putc needs --stream: for a terminal, C's stdio ends a write at every
+    byte 0A, even in the middle of a word. Without --stream, the system must separate the writes (Linux 5.5
+    and later does, unless a sandbox forbids it); otherwise the program is not run.
     """
     refuse_systems_without_pidfd()
     if shutil.which(program) is None:

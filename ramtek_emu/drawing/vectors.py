@@ -19,7 +19,7 @@ from ramtek_emu.memory.frame_buffer import FrameBuffer, WriteEnable
 from ramtek_emu.memory.scan_orders import Point, Window
 
 FEW_LINES: Final = 4
-"""Up to this number of lines, `write_line` for each of them is faster than all of them at once."""
+"""Up to this number of lines, calling `write_line` for each line is faster than array operations."""
 
 
 class Ink(NamedTuple):

@@ -86,7 +86,7 @@ class PolledPipe:
         return True
 
     def serve_for(self, seconds: float) -> None:
-        """Serve, without blocking, until nothing is left to do or the time is over."""
+        """Serve for up to `seconds`, or until no work is left, without blocking."""
         end = time.monotonic() + seconds
         while not self.ended and self.step() and time.monotonic() < end:
             pass

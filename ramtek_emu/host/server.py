@@ -328,7 +328,7 @@ class Server:
         return done
 
     def serve_for(self, seconds: float, wait: float = 0.0) -> None:
-        """Serve until nothing is left to do or the time is over; for a window's ticks.
+        """Serve for up to `seconds`, or until no work is left; for a window's ticks.
 
         If a host is connected, wait up to `wait` seconds for the first words; otherwise do not wait.
         """

@@ -233,8 +233,8 @@ UNIMPLEMENTED: Final = (
 )
 """Opcodes of the 9400 and 9460 of which only number and name are known: opcode, name, meaning.
 
-Hardware: NCAR, whose header lists them; no client that sends one of them was found. Names such as DL43 are
-ours: the header describes a whole range.
+Hardware: NCAR, whose header lists them; we found no client that sends them. Names such as DL43 are ours: the
+header describes a whole range.
 """
 
 FORMATS: Final = SUBSTANTIATED + tuple(
@@ -243,9 +243,9 @@ FORMATS: Final = SUBSTANTIATED + tuple(
 )
 """All rows of the instruction table.
 
-Assumed: an instruction known by its name only has the normal format. Its flag words, operands and data are
-consumed as its low byte says, so that the next instruction is found. The operands are set, since they are
-sticky; nothing else is done, and the illegal-instruction status is set.
+Assumed: an instruction known by its name only has the normal format. The decoder consumes the flag words,
+operands and data that its low byte announces, and so finds the next instruction. The operands are set, since
+they are sticky. The only other effect is the illegal-instruction status.
 """
 FLAG_NAMES: Final = {
     Flags.REVERSE_PACKING: "RP",

@@ -53,7 +53,7 @@ class Beam:
         self.nanoseconds += timing.instruction + words * timing.word + pixels * timing.pixel
 
     def wait_for_line(self, line: int) -> None:
-        """Advance the clock until the beam begins a line; do nothing if it is on that line now."""
+        """Advance the clock to the beginning of a line; if the beam is on that line, no time passes."""
         ahead = (line - self.line) % self.lines_per_field
         if ahead:
             self.nanoseconds = (self.lines_done + ahead) * self.timing.line

@@ -146,8 +146,8 @@ class ScanOut:
     def lines_changed_since(self, last: Stamp | None) -> tuple[Run, ...]:
         """The lines that may have changed since the field with the stamp `last`, as runs from the top.
 
-        After a load of entries, these are the lines that show the entries; after a cursor moved, the lines of
-        its old and its new place. In all other cases, and with None, they are all lines.
+        A load of entries changes the lines that show the entries, and a moved cursor the lines of its old and
+        its new place. Any other change, or None, returns all lines.
         """
         stamp = self.stamp
         if last is None or last.rest != stamp.rest or self._beam is not None:
