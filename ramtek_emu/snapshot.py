@@ -190,7 +190,7 @@ def _restore_cursors(display: Ramtek9300, state: dict[str, Any]) -> None:
     cursors.track = from_plain(False, state["track"], "track")
     cursors.enter_is_pressed = from_plain(False, state["enter_is_pressed"], "enter_is_pressed")
     cursors.driven = {device: mask for device, mask in listed((0, 0), state["driven"], "driven", 256)}
-    cursors.changed += 1
+    cursors.shape_changes += 1
 
 
 def _restore_monitor_image(display: Ramtek9300, beam: Beam, state: dict[str, Any]) -> None:

@@ -80,7 +80,7 @@ class Cursors:
         """Whether ENTER was pressed since the interface's status was last cleared."""
         self.driven = {0: 1}
         """The cursors that a tracking device drives, by the number of the device; bit n is cursor n."""
-        self.changed = 0
+        self.shape_changes = 0
         """The number of changes of shapes; it never decreases."""
 
     def __repr__(self) -> str:
@@ -115,7 +115,7 @@ class Cursors:
         dots = np.unpackbits(rows, axis=1).astype(np.bool_)
         self.all[number].shape = self.all[number].shape.copy()
         self.all[number].shape[: len(dots)] = dots
-        self.changed += 1
+        self.shape_changes += 1
 
     def forget_enter(self) -> None:
         """Clear the ENTER of every cursor."""

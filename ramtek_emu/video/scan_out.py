@@ -38,8 +38,8 @@ class Mark(NamedTuple):
     number: int
     element: int
     line: int
-    changed: int
-    """The number of changes of shapes so far, of all cursors."""
+    shape_changes: int
+    """The count `Cursors.shape_changes`; a new shape makes a new mark."""
 
     @property
     def lines(self) -> Run:
@@ -253,7 +253,7 @@ class ScanOut:
 def marks(cursors: Cursors, blink_is_on: bool) -> tuple[Mark, ...]:
     """The marks of the visible cursors; blinking cursors are left out unless `blink_is_on`."""
     return tuple([
-        Mark(number, cursor.element, cursor.line, cursors.changed)
+        Mark(number, cursor.element, cursor.line, cursors.shape_changes)
         for number, cursor in enumerate(cursors.all)
         if cursor.state & VISIBLE and (blink_is_on or not cursor.blinks)
     ])  # fmt: skip
