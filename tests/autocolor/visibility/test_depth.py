@@ -20,7 +20,7 @@ from autocolor.visibility.depth import (
     polygons_of_numbers,
     segments_of_polygons,
 )
-from autocolor.visibility.projection import MOST_OFF, Projection, projection
+from autocolor.visibility.projection import LARGEST_PLANE_ERROR, Projection, projection
 from autocolor.visibility.scan_lines import extents_of_polygons
 from autocolor.visibility.visible_surfaces import visible_surfaces
 from tests.autocolor.meshes import ROUNDINGS, decal_on_ground, grid
@@ -105,7 +105,7 @@ def test_the_depth_of_a_plane_is_that_of_the_corners_of_its_polygons(seed: int, 
         corners = projected.corners[:, scale.planes >= 0]
         x, y = projected.x[corners], projected.y[corners]
         depths = scale.depths_of_planes(np.zeros_like(corners), x, y)
-        assert depths == pytest.approx(projected.inverse_depth[corners], rel=1.1 * MOST_OFF)
+        assert depths == pytest.approx(projected.inverse_depth[corners], rel=1.1 * LARGEST_PLANE_ERROR)
 
 
 def test_a_plane_whose_depths_no_key_can_hold_leaves_its_polygons_their_own() -> None:
