@@ -201,6 +201,17 @@ def lengths(vectors: Floats) -> Floats:
     return np.sqrt(squares, out=squares)
 
 
+def normalized(vectors: Floats) -> Floats:
+    """The vectors, (3, ...), divided by their lengths; zero vectors stay zero.
+
+    >>> normalized(np.array([[2.0, 0.0], [3.0, 0.0], [6.0, 0.0]])).T.tolist()[1]
+    [0.0, 0.0, 0.0]
+    """
+    sizes = lengths(vectors)
+    sizes[sizes == 0] = 1.0
+    return vectors / sizes
+
+
 def power(cosines: Singles, exponent: float, out: Singles | None = None) -> Singles:
     """The cosines to a power, in [0, 1]; a negative cosine counts as 0, and anything to the power 0 is 1.
 

@@ -29,7 +29,7 @@ from autocolor.errors import UsageError
 from autocolor.lighting.illumination import Previous, illuminate
 from autocolor.lighting.picture import Picture
 from autocolor.logs import logger_of, timed
-from autocolor.scalars.values import scalar_values
+from autocolor.scalars.computed import scalar_values
 from autocolor.scene.columns import Tier, cost, with_values
 from autocolor.scene.scalar import Scalar
 from autocolor.scene.scene import NORMALS, Scene, check_scene, costs_at_least

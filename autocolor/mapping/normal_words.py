@@ -23,7 +23,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Bytes, Floats, Indices, Real, RealArray, Singles, Words, chunks, dot
+from autocolor.arrays import Bytes, Floats, Indices, Real, RealArray, Singles, Words, chunks, dot, normalized
 from autocolor.checks import Vector
 from autocolor.immutable import read_only
 from autocolor.lighting.illumination import illuminate
@@ -329,7 +329,7 @@ def cells_of(normals: Singles, most: int) -> Cells:
     bin_at = np.cumsum(counts > 0) - 1
     # Sum the normals of each bin once: what follows is done with bins, which are far fewer.
     sums = _sums(normals, places, BINS * BINS)[:, used]
-    middles = read_only(_normalized(sums))
+    middles = read_only(normalized(sums).astype(np.float32))
     if len(used) <= most:
         return Cells(middles, read_only(bin_at[places]), middles)
     weights = np.sqrt(counts[used])
@@ -337,7 +337,7 @@ def cells_of(normals: Singles, most: int) -> Cells:
     # What none of the bins is nearest to is no cell.
     is_cell = np.bincount(cell_of_bin) > 0
     cell_of_bin = (np.cumsum(is_cell) - 1)[cell_of_bin]
-    cells = _normalized(_sums(sums, cell_of_bin, int(np.count_nonzero(is_cell))))
+    cells = normalized(_sums(sums, cell_of_bin, int(np.count_nonzero(is_cell)))).astype(np.float32)
     return Cells(read_only(cells), read_only(cell_of_bin[bin_at[places]]), middles)
 
 
@@ -394,7 +394,7 @@ def _cell_of_bin(middles: Singles, seeds: Singles, weights: Floats) -> Indices:
     """The number of the seed that is nearest to each bin, after the seeds have moved."""
     weighted = middles * weights
     for _ in range(STEPS):
-        moved = _normalized(_sums(weighted, _nearest(middles, seeds), seeds.shape[1]))
+        moved = normalized(_sums(weighted, _nearest(middles, seeds), seeds.shape[1])).astype(np.float32)
         # A seed that is nearest to no bin stays.
         seeds = np.where(moved.any(axis=0), moved, seeds)
     return _nearest(middles, seeds)
@@ -411,11 +411,6 @@ def _nearest(normals: Singles, seeds: Singles) -> Indices:
 
 def _sums(vectors: RealArray[Real], numbers: Indices, count: int) -> Floats:
     """The sum of the vectors, (3, n), of each number below `count`, (3, count); zero for none."""
-    return np.stack([np.bincount(numbers, axis, minlength=count) for axis in vectors])
-
-
-def _normalized(sums: Floats) -> Singles:
-    """Vectors made as long as 1, (3, n) float32; zero vectors stay."""
-    lengths = np.sqrt((sums * sums).sum(axis=0))
-    normalized: Singles = (sums / np.where(lengths > 0, lengths, 1.0)).astype(np.float32)
-    return normalized
+    sums = [np.bincount(numbers, axis, minlength=count) for axis in vectors]
+    # Of no numbers, numpy counts in integers.
+    return np.stack(sums, dtype=np.float64)

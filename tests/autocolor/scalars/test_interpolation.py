@@ -26,7 +26,7 @@ def test_runs_are_the_polygons_of_the_points() -> None:
 def test_a_view_that_sees_nothing_has_no_runs() -> None:
     scene = wall_scene(wall()).with_view(target=(0.0, -9.0, 0.0))
     points = rendering(scene, 6, 8).points
-    assert len(polygon_runs(points).polygons) == 0
+    assert len(polygon_runs(points)[0]) == 0
     assert list(weighted_points(scene.mesh, points)) == []
 
 
