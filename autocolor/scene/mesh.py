@@ -1,8 +1,8 @@
 """The mesh: the node table and the polygon table.
 
 Paper: "Introduction". The shape of an object is a mesh of polygons with three or four sides, defined by two
-tables: nodes with their coordinates, and polygons with the numbers of their nodes. A `Mesh` checks both, and
-they never change afterwards.
+tables: nodes with their coordinates, and polygons with the numbers of their nodes. A `Mesh` checks both
+tables, and they never change afterwards.
 """
 
 from __future__ import annotations
@@ -126,7 +126,7 @@ class Mesh(Immutable):
 
     @cached_property
     def shared_planes(self) -> SharedPlanes | None:
-        """The planes in which polygons may overlap; None if there is none."""
+        """The planes in which polygons may overlap; None if there are none."""
         return shared_planes(self.coordinates, self.node_numbers)
 
     @property
@@ -154,7 +154,7 @@ class Mesh(Immutable):
 
     @cached_property
     def parts_in_use(self) -> tuple[int, ...]:
-        """The part numbers that have a polygon."""
+        """The numbers of the parts that have polygons."""
         used = used_rows(self.part_numbers[None], len(self.part_names))
         return tuple(np.flatnonzero(used).tolist())
 
@@ -182,7 +182,7 @@ class Mesh(Immutable):
     def of(
         cls, source: object, polygons: object = None, *, part: str = PART, crease_angle: float = CREASE_ANGLE
     ) -> Mesh:
-        """The mesh, of one part, of a mesh of trimesh, PyVista or meshio, or of nodes and polygons.
+        """A mesh of one part, from a mesh of trimesh, PyVista or meshio, or from nodes and polygons.
 
         Polygons may have any number of sides from three on; polygons of more than four are split. Data of one
         component at the points or the cells of PyVista and meshio become scalars. A Mesh is returned
@@ -211,8 +211,8 @@ class Mesh(Immutable):
     ) -> Mesh:
         """The mesh with these tables themselves, without checks or copies: they may be mapped files.
 
-        The tables must have the types of the fields, be stored by columns and read-only, and so must the
-        normals. Normals and planes that are given are not computed.
+        Tables and normals must have the types of their fields, and be stored by columns and read-only.
+        Normals and planes are computed if they are not given.
         """
         mesh = object.__new__(cls)
         vars(mesh).update(
@@ -271,7 +271,7 @@ class Mesh(Immutable):
 
 
 def _numbers(problems: list[str], what: str, value: object, dtype: type) -> AnyArray:
-    """The value as an array of the type, or an empty one after a problem was noted."""
+    """The value as an array of the type; if that is impossible, a problem is noted and the array is empty."""
     try:
         array = np.asarray(value)
     except (TypeError, ValueError, OverflowError):
@@ -285,7 +285,7 @@ def _numbers(problems: list[str], what: str, value: object, dtype: type) -> AnyA
 
 
 def _rows(problems: list[str], what: str, value: object, dtype: type, widths: tuple[int, ...]) -> AnyArray:
-    """A copy of the value, (rows, width), as contiguous (width, rows); empty after a problem was noted."""
+    """A copy of the value, (rows, width), as contiguous (width, rows); empty if a problem is noted."""
     array = _numbers(problems, what, value, dtype)
     if array.size == 0:
         array = array.reshape(0, widths[-1])
@@ -297,7 +297,7 @@ def _rows(problems: list[str], what: str, value: object, dtype: type, widths: tu
 
 
 def _check_rows(problems: list[str], what: str, numbers: Indices, count: int, table: str) -> None:
-    """Note the first number, or group of numbers in a column, that is no row of a table."""
+    """Note the first number, or the first column of numbers, that is no row of a table."""
     if not numbers.size or (numbers.min() >= 0 and numbers.max() < count):
         return
     missing = (numbers < 0) | (numbers >= count)
