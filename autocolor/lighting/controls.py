@@ -25,11 +25,11 @@ from typing import Final, Literal, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Booleans, Floats, PartNumbers, Singles, power
+from autocolor.arrays import Booleans, Floats, PartNumbers, Singles, power, unit_vector
 from autocolor.checks import Vector
 from autocolor.lighting.rays import FARTHEST, camera_light
 from autocolor.scene.following import detached
-from autocolor.scene.lights import Flap, Light, unit_vector
+from autocolor.scene.lights import Flap, Light
 from autocolor.visibility.visible_points import POINT, POINT_SQUARED, VisiblePoints
 
 ROUNDING: Final = float(np.finfo(np.float32).eps)

@@ -12,7 +12,7 @@ from typing import Final, Literal, NamedTuple, get_args
 
 import numpy as np
 
-from autocolor.arrays import Booleans, Bytes, Indices, Singles, chunks, dot
+from autocolor.arrays import Booleans, Bytes, Indices, Singles, chunks, dot, unit_vector
 from autocolor.checks import either, nearest, shown
 from autocolor.errors import UsageError
 from autocolor.lighting.controls import Axis, Cone, FlapEnd, flap_sides, flaps_of, half_space_sides, is_inside
@@ -26,7 +26,7 @@ from autocolor.lighting.rays import (
     rays_to,
 )
 from autocolor.scene.following import light_frame
-from autocolor.scene.lights import Flap, Light, unit_vector
+from autocolor.scene.lights import Flap, Light
 from autocolor.scene.scene import NORMALS, Scene
 from autocolor.visibility.projection import focal_length
 from autocolor.visibility.visible_points import (

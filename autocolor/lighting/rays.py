@@ -10,9 +10,9 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Floats, Indices, Singles
+from autocolor.arrays import Floats, Indices, Singles, unit_vector
 from autocolor.checks import Vector
-from autocolor.scene.lights import Light, middle_between, unit_vector
+from autocolor.scene.lights import Light, middle_between
 from autocolor.scene.scene import Scene
 from autocolor.visibility.visible_points import POINT, POINT_SQUARED, VisiblePoints, fill_point_products
 

@@ -14,11 +14,10 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from autocolor.arrays import Floats, Indices, Singles, chunks, lengths, used_rows
+from autocolor.arrays import Floats, Indices, Singles, chunks, lengths, unit_vector, used_rows
 from autocolor.immutable import read_only
 from autocolor.scalars.interpolation import interpolated, weighted_points
 from autocolor.scene.geometry.curvature import Curvatures
-from autocolor.scene.lights import unit_vector
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalar import LARGEST_SCALAR, POLYGON, MeshScalar, Scalar
 from autocolor.visibility.visible_points import PIXELS_AT_ONCE, POINT, REFLECTED_VIEW, VisiblePoints
