@@ -300,7 +300,7 @@ STEPS: Final = 3
 """How often the seeds move; measured: more change the mean error by less than a fiftieth."""
 
 RADIUS: Final = math.sqrt(2.0)
-"""The flat sphere is a disk of this radius; the half that is turned to the eye is one of radius 1."""
+"""The radius of the flat sphere. The half that is turned to the eye is a disk of radius 1."""
 
 BINS_AT_ONCE: Final = 1 << 11
 
