@@ -215,7 +215,7 @@ def words_at_levels(first: int, fractions: Singles, levels: int) -> Words:
     return read_only((first + order[nearest]).astype(np.uint16))
 
 
-# -------------------- The light at normals
+# The light at normals.
 #
 # Paper: reference 2: the light that is reflected is a function of the normal where light and eye are far from
 # the object. Assumed: the direction to a light, and to the eye, starts in the middle of the object; the
@@ -274,12 +274,10 @@ def far_light(light: Light, middle: Vector) -> Light:
     )
 
 
-# -------------------- Cells
-#
-# The visible normals of a surface are divided into few cells, each with one normal that stands for it. The
-# sphere of normals is laid out flat around the direction to the eye, by Lambert's azimuthal map, which keeps
-# areas, and divided into bins. Seeds are spread over the bins that are seen, along a curve that fills the
-# plane; each bin joins the nearest seed, and the seeds move to the middle of their bins a few times (S.
+# Cells. The visible normals of a surface are divided into few cells, each with one normal that stands for it.
+# The sphere of normals is laid out flat around the direction to the eye, by Lambert's azimuthal map, which
+# keeps areas, and divided into bins. Seeds are spread over the bins that are seen, along a curve that fills
+# the plane; each bin joins the nearest seed, and the seeds move to the middle of their bins a few times (S.
 # Lloyd, 1982, "Least squares quantization in PCM").
 #
 # Measured on a sphere, 1,007 normals, 126,000 pixels, N = 20: 12 ms; the mean error of the picture is 2.1

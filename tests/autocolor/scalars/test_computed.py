@@ -113,7 +113,7 @@ def test_a_share_of_the_values_can_be_cut_off() -> None:
     assert range_of(np.linspace(0, 100, 1001), 2) == pytest.approx((2, 98))
 
 
-def test_what_rounding_put_beyond_the_limits_is_put_on_them() -> None:
+def test_values_that_rounding_put_beyond_the_limits_are_clipped() -> None:
     values = np.array([-1e-9, 0.5, np.nan, 1 + 1e-6], np.float32)
     found = within(values, (0, 1))
     assert np.array_equal(found.values, np.array([0, 0.5, np.nan, 1], np.float32), equal_nan=True)
@@ -132,7 +132,7 @@ def test_a_range_is_computed_once_for_a_mesh_and_a_key() -> None:
     assert len(asked) == 3
 
 
-def test_few_ranges_are_kept_of_a_mesh() -> None:
+def test_a_mesh_has_a_bounded_number_of_cached_ranges() -> None:
     mesh = wall()
     for step in range(10 * MOST_RANGES):
         cached_range(mesh, step, lambda: (0.0, 1.0))
@@ -179,7 +179,7 @@ def test_the_slope_of_a_roof_is_its_pitch_from_above_and_from_below(eye: tuple[f
     assert limits == (0, 90)
 
 
-def test_the_slope_is_counted_from_what_is_across_the_direction() -> None:
+def test_the_slope_is_counted_from_the_plane_across_the_direction() -> None:
     values, _ = of_roof((0.5, -2.0, 6.0), (1.0, 0.0, 0.0))
     assert values == pytest.approx(90 - PITCH, abs=1e-4)
     along, _ = of_roof((0.5, -2.0, 6.0), (0.0, 5.0, 0.0))
@@ -188,7 +188,7 @@ def test_the_slope_is_counted_from_what_is_across_the_direction() -> None:
 
 @pytest.mark.parametrize("angle", [0.0, 3.0, 20.0])
 @pytest.mark.parametrize("pull", [1.0, -1.0])
-def test_the_draft_angle_of_a_cone_is_that_of_its_side(angle: float, pull: float) -> None:
+def test_the_draft_angle_of_a_cone_is_the_angle_of_its_side(angle: float, pull: float) -> None:
     mesh = cone(angle)
     for eye in ((0.0, -9.0, 2.0), (0.0, -9.0, 14.0)):
         # From the second place the inside is seen, too: the outside counts.
@@ -250,7 +250,7 @@ def test_the_range_leaves_a_few_sharp_bends_out() -> None:
     assert 0.4 < low < 1 < high < 2
 
 
-def test_what_is_flat_but_for_rounding_has_the_middle_of_the_range() -> None:
+def test_a_surface_that_is_flat_but_for_rounding_has_the_middle_of_the_range() -> None:
     mesh = grid(9, 9, (0.1, 0.2, 0.3), (3.0, 0.7, -0.2), (-0.3, 2.0, 1.1))
     mesh = Mesh(mesh.coordinates.astype(np.float32), mesh.node_numbers, part_names=("wall",))
     points = points_around(mesh)
@@ -272,7 +272,7 @@ def test_the_sides_of_a_box_are_flat() -> None:
 
 
 @pytest.mark.parametrize("axis", [0, 1, 2])
-def test_coordinates_are_those_of_the_points(axis: int) -> None:
+def test_coordinates_are_the_world_coordinates_of_the_points(axis: int) -> None:
     scene = wall_scene(sphere())
     points = rendering(scene, 24, 32).points
     values, limits = coordinate(axis, scene.mesh, Scalar("x"), points)
@@ -304,7 +304,7 @@ def test_the_height_of_a_level_plate_is_in_the_middle_of_its_range() -> None:
         assert np.abs((values - low) / (high - low) - 0.5).max() < 0.05
 
 
-def test_the_range_is_that_of_the_object_and_not_of_what_is_seen() -> None:
+def test_the_range_covers_the_object_and_not_only_its_visible_points() -> None:
     scene = wall_scene(sphere())
     near = rendering(scene.with_view(field_of_view=2), 12, 16).points
     values, limits = coordinate(0, scene.mesh, Scalar("x"), near)
@@ -434,7 +434,7 @@ def test_scalars_of_polygons_are_exact() -> None:
 
 
 @given(st.lists(numbers(-5, 5), min_size=96, max_size=96))
-def test_values_of_nodes_are_those_of_the_twin(at_nodes: list[float]) -> None:
+def test_values_of_nodes_agree_with_the_slow_twin(at_nodes: list[float]) -> None:
     mesh = sphere(12, 9).with_scalars(MeshScalar("stress", np.array([*at_nodes, 1.0, 2.0])))
     points = seen(mesh, lines=9, elements=12)
     values, _ = values_of(mesh, "stress", points)

@@ -67,7 +67,7 @@ def test_an_object_of_any_size_has_the_same_positions_in_its_unit(power: int) ->
     assert cameras[0].near == cameras[1].near
 
 
-def test_the_near_plane_of_what_reaches_behind_the_eye_is_a_millionth_of_its_farthest_depth() -> None:
+def test_the_near_plane_of_an_object_behind_the_eye_is_at_a_millionth_of_its_farthest_depth() -> None:
     camera = camera_space(cube(5.0), View((2.5, 1.0, 2.5), direction=(0, 1, 0)))
     assert camera.near * camera.unit == pytest.approx(4e-6)
     behind = camera_space(cube(), View((0.5, 3.0, 0.5), direction=(0, 1, 0)))
@@ -76,7 +76,7 @@ def test_the_near_plane_of_what_reaches_behind_the_eye_is_a_millionth_of_its_far
 
 @pytest.mark.parametrize("nearest", [1e-3, 1e-7, 1e-8])
 @pytest.mark.parametrize("stray", [(), ((0.5, -9.0, 0.0),)])
-def test_the_near_plane_clips_nothing_of_what_lies_wholly_before_the_eye(
+def test_the_near_plane_clips_nothing_of_an_object_before_the_eye(
     nearest: float, stray: tuple[Vector, ...]
 ) -> None:
     mesh = Mesh.joined([cube(), cube(nearest)])

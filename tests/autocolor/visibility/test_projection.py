@@ -93,7 +93,7 @@ def test_no_line_crosses_a_polygon_more_than_twice(mesh: Mesh, view: View, raste
 
 
 @given(meshes(), views(), rasters)
-def test_what_is_projected_is_before_the_eye_and_finite(
+def test_projected_corners_are_before_the_eye_and_finite(
     mesh: Mesh, view: View, raster: tuple[int, int]
 ) -> None:
     projected = projection(mesh, view, *raster)

@@ -215,7 +215,7 @@ def fans_one_by_one(mesh: Mesh) -> list[set[Side]]:
 
 
 @given(meshes())
-def test_the_corners_of_a_fan_are_those_found_one_by_one(mesh: Mesh) -> None:
+def test_the_corners_of_a_fan_agree_with_a_search_one_by_one(mesh: Mesh) -> None:
     slow = fans_one_by_one(mesh)
     for one, other in itertools.combinations(range(len(slow)), 2):
         assert (mesh.normals.numbers.flat[one] == mesh.normals.numbers.flat[other]) == (
@@ -224,7 +224,7 @@ def test_the_corners_of_a_fan_are_those_found_one_by_one(mesh: Mesh) -> None:
 
 
 @given(meshes())
-def test_fans_are_numbered_by_their_first_corners_and_those_of_opposite_winding_come_in_pairs(
+def test_fans_are_numbered_by_their_first_corners_and_paired_with_fans_of_opposite_winding(
     mesh: Mesh,
 ) -> None:
     places = places_of_corners(mesh.coordinates.T, mesh.node_numbers.T)
@@ -323,7 +323,7 @@ def test_a_long_chain_in_any_order_is_one_group(monkeypatch: pytest.MonkeyPatch)
     assert not group_numbers(parents).any()
 
 
-def test_united_items_are_those_that_are_not_the_root_of_their_group() -> None:
+def test_united_items_are_not_the_root_of_their_group() -> None:
     parents = np.arange(9)
     unite(parents, np.array([1, 4, 7]), np.array([5, 5, 2]))
     with pytest.MonkeyPatch.context() as patch:

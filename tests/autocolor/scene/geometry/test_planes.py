@@ -119,7 +119,7 @@ def test_a_decal_no_farther_from_its_ground_than_both_are_rounded_shares_its_pla
 
 
 @pytest.mark.parametrize("sides", [12, 100, 1000])
-def test_the_sides_of_a_cylinder_share_no_plane_even_if_the_cylinder_is_there_twice_turned_a_little(
+def test_the_sides_of_two_coincident_cylinders_turned_a_little_share_no_plane(
     sides: int,
 ) -> None:
     def around(turn: float) -> Mesh:
@@ -154,7 +154,7 @@ def test_a_smooth_mesh_of_many_facets_has_no_shared_planes() -> None:
 
 
 @given(meshes())
-def test_corners_are_as_near_to_their_plane_as_it_says(mesh: Mesh) -> None:
+def test_no_corner_is_farther_from_its_plane_than_the_distance_says(mesh: Mesh) -> None:
     shared = mesh.shared_planes
     if shared is not None:
         polygons = np.flatnonzero(shared.plane_of_polygon >= 0)
@@ -436,7 +436,7 @@ def test_polygons_that_are_all_alone_stay_alone() -> None:
 
 
 @given(st.integers(0, 1 << 32))
-def test_corners_are_those_of_nodes_that_are_moved_and_then_scaled(seed: int) -> None:
+def test_corners_are_moved_and_then_scaled(seed: int) -> None:
     random = np.random.default_rng(seed)
     rows, middle, extent = random.normal(size=(3, 9)), random.normal(size=3), float(random.uniform(1e-9, 1e9))
     numbers = random.integers(0, 9, (4, 5))
