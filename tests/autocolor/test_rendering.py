@@ -14,7 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Flap, Flaps, Light, Mesh, Scene, Surface, UsageError, View, render, scene_of
-from autocolor import rendering as room
+from autocolor import rendering as rendering_module
 from autocolor.lighting.shading import shade
 from autocolor.rendering import BLOCKS, PICTURE_SECONDS, Rendering, block_for, blocks_of, rendering
 from autocolor.visibility.visible_points import PointChunk
@@ -350,7 +350,7 @@ def test_a_picture_needs_no_glibc(problem: type[Exception], monkeypatch: pytest.
         raise problem
 
     monkeypatch.setattr(ctypes, "CDLL", fails)
-    room._keep_large_arrays.cache_clear()
+    rendering_module._keep_large_arrays.cache_clear()
     assert render(two_surfaces(), 6, 8).surface_number.any()
 
 

@@ -38,6 +38,10 @@ from tests.autocolor.reference import weights_in
 from tests.autocolor.strategies import numbers
 
 
+def seen(mesh: Mesh, view: View | None = None, lines: int = 30, elements: int = 40) -> VisiblePoints:
+    return rendering(wall_scene(mesh, view=view), lines, elements).points
+
+
 def test_each_name_has_a_function() -> None:
     assert tuple(COMPUTING) == COMPUTED
 
@@ -162,12 +166,8 @@ def cone(angle: float, columns: int = 180) -> Mesh:
     return Mesh(np.concatenate([lower, upper]), quads, part_names=("cone",))
 
 
-def points_of(mesh: Mesh, view: View) -> VisiblePoints:
-    return rendering(wall_scene(mesh, view=view), 30, 40).points
-
-
 def of_roof(eye: tuple[float, float, float], direction: tuple[float, float, float]) -> ScalarValues:
-    points = points_of(roof(), View(eye, target=(0.0, 0.0, 0.3)))
+    points = seen(roof(), View(eye, target=(0.0, 0.0, 0.3)))
     return slope(roof(), Scalar("slope", direction=direction), points)
 
 
@@ -192,7 +192,7 @@ def test_the_draft_angle_of_a_cone_is_the_angle_of_its_side(angle: float, pull: 
     mesh = cone(angle)
     for eye in ((0.0, -9.0, 2.0), (0.0, -9.0, 14.0)):
         # From the second place the inside is seen, too: the outside counts.
-        points = points_of(mesh, View(eye, target=(0.0, 0.0, 0.5)))
+        points = seen(mesh, View(eye, target=(0.0, 0.0, 0.5)))
         values, limits = draft_angle(mesh, Scalar("draft angle", direction=(0.0, 0.0, pull)), points)
         assert len(values) > 50
         assert values == pytest.approx(pull * angle, abs=0.01)
@@ -201,7 +201,7 @@ def test_the_draft_angle_of_a_cone_is_the_angle_of_its_side(angle: float, pull: 
 
 def test_the_sides_of_a_box_have_the_draft_angles_of_a_mold() -> None:
     mesh = cube()
-    points = points_of(mesh, View((2.0, -3.0, 2.5), target=(0.5, 0.5, 0.5)))
+    points = seen(mesh, View((2.0, -3.0, 2.5), target=(0.5, 0.5, 0.5)))
     values, _ = draft_angle(mesh, Scalar("draft angle"), points)
     of_polygon = {
         polygon: sorted(set(np.round(values[points.polygon_numbers == polygon], 3).tolist()))
@@ -213,13 +213,9 @@ def test_the_sides_of_a_box_have_the_draft_angles_of_a_mold() -> None:
 ANY = Scalar("mean curvature")
 
 
-def points_around(mesh: Mesh) -> VisiblePoints:
-    return rendering(wall_scene(mesh), 30, 40).points
-
-
 def test_a_ball_has_one_curvature_at_every_pixel() -> None:
     mesh = sphere(120, 60, radius=2.0)
-    points = points_around(mesh)
+    points = seen(mesh)
     for found, wanted in (
         (mean_curvature, 0.5),
         (gaussian_curvature, 0.25),
@@ -235,7 +231,7 @@ def test_a_ball_has_one_curvature_at_every_pixel() -> None:
 
 def test_a_cylinder_bends_one_way() -> None:
     mesh = cone(0.0)
-    points = points_around(mesh)
+    points = seen(mesh)
     wanted = {mean_curvature: 0.25, gaussian_curvature: 0.0, largest_curvature: 0.5, smallest_curvature: 0.0}
     for found, number in wanted.items():
         assert found(mesh, ANY, points).values == pytest.approx(number, abs=1e-3)
@@ -245,7 +241,7 @@ def test_the_range_leaves_a_few_sharp_bends_out() -> None:
     ball, needle = sphere(120, 60), sphere(12, 8, radius=0.01)
     moved = Mesh(needle.coordinates + np.array([3.0, 0.0, 0.0]), needle.node_numbers, part_names=("needle",))
     mesh = Mesh.joined([ball, moved])
-    _, (low, high) = mean_curvature(mesh, ANY, points_around(ball))
+    _, (low, high) = mean_curvature(mesh, ANY, seen(ball))
     assert mesh.curvatures.mean.max() > 50
     assert 0.4 < low < 1 < high < 2
 
@@ -253,7 +249,7 @@ def test_the_range_leaves_a_few_sharp_bends_out() -> None:
 def test_a_surface_that_is_flat_but_for_rounding_has_the_middle_of_the_range() -> None:
     mesh = grid(9, 9, (0.1, 0.2, 0.3), (3.0, 0.7, -0.2), (-0.3, 2.0, 1.1))
     mesh = Mesh(mesh.coordinates.astype(np.float32), mesh.node_numbers, part_names=("wall",))
-    points = points_around(mesh)
+    points = seen(mesh)
     assert mesh.curvatures.mean.any()
     for found in (mean_curvature, gaussian_curvature, largest_curvature, smallest_curvature):
         values, (low, high) = found(mesh, ANY, points)
@@ -373,10 +369,6 @@ def test_a_ray_along_the_lamps_has_a_phase(direction: tuple[float, float, float]
     assert np.isfinite(values).all()
     assert values.min() >= 0
     assert values.max() < 1
-
-
-def seen(mesh: Mesh, view: View | None = None, lines: int = 24, elements: int = 32) -> VisiblePoints:
-    return rendering(wall_scene(mesh, view=view), lines, elements).points
 
 
 def values_of(mesh: Mesh, name: str, points: VisiblePoints) -> ScalarValues:
