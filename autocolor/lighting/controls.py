@@ -371,7 +371,7 @@ class LinkedParts(LightControl):
 
     @classmethod
     def of(cls, light: Light, points: VisiblePoints) -> LinkedParts | None:
-        """The parts that the light is linked to, if it is."""
+        """The links to parts, if the light has any."""
         if not light.links.depend_on_parts:
             return None
         names = points.parts.names

@@ -116,7 +116,7 @@ def _reusable_planes(lights: Mapping[str, Light], previous: Previous | None) -> 
 
 
 class _PlaneUpdate(NamedTuple):
-    """The planes of a light that shines, and what to compute of them.
+    """The planes of a light that shines, and the computations that they need.
 
     If `light` is given, the values of the planes are computed on the surfaces `changed_surfaces`. If
     `to_mix`, the weighted sum of both planes is computed everywhere.

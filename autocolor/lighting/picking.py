@@ -203,8 +203,8 @@ def _on_surface(seen: Seen | None, what: str) -> Seen:
 def rims(sight: Sight, light: str) -> Mapping[Rim, Indices]:
     """The pixels at which the cone, the flaps and the half-spaces of a light end, (n, 2): line and element.
 
-    The cone, if any, has an array, and so has each finite end of the flaps that are on, and each half-space
-    that is on. An array is empty if the rim is not visible. A pixel of a rim is inside, and one of its four
+    There are arrays for the cone, for the finite ends of the flaps that are on, and for the half-spaces that
+    are on. An array is empty if the rim is not visible. A pixel of a rim is inside, and one of its four
     neighbors is outside on the same surface: so no silhouette is a rim. Every control has its own rim, even
     where another control leaves nothing of the light. The rim of a soft edge is its dark end.
 
@@ -236,7 +236,7 @@ def _pixels_of_rims(sight: Sight, inside: Mapping[Rim, Booleans]) -> dict[Rim, I
     is_near = _are_on_one_surface(points, places[before], places[after])
     before, after = before[is_near], after[is_near]
 
-    # Of each pair, take the pixel that is inside.
+    # Take the pixel of each pair that is inside.
     pixels_of: dict[Rim, Indices] = {}
     for bit, rim in enumerate(inside):
         flag = np.uint8(1 << bit)

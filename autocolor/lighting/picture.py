@@ -40,7 +40,7 @@ class PictureRanges:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class LightPlane(Immutable):
-    """The contribution of one light, (lines, elements) float32 each: without D, S and its intensity."""
+    """The planes of a light as rasters, (lines, elements) float32 each; see `LightPlanes`."""
 
     diffuse: Singles
     specular: Singles
@@ -52,7 +52,7 @@ class Picture(Immutable):
 
     The visible pixels are sorted by surface; `slices` has the slice of each surface. `pixels` are their flat
     places in the raster, `relative` the intensities in proportion to `scale`, both (n,). `light_planes` has
-    the planes of each light that was computed.
+    the computed planes by light.
 
     `scalar_values`, (n,) float32 in the order of `pixels`, are the values of the scalar that colors the
     scene, NaN where missing. `scalar_limits` are its own range. Both are None without a scalar.
@@ -175,7 +175,7 @@ class Picture(Immutable):
 
     @property
     def planes(self) -> Mapping[str, LightPlane]:
-        """The two planes of each light by its name, as rasters."""
+        """The two planes of the lights as rasters, by the name of the light."""
         return {
             name: LightPlane(self._raster(planes.values[DIFFUSE]), self._raster(planes.values[SPECULAR]))
             for name, planes in self.light_planes.items()

@@ -52,7 +52,7 @@ SPECULAR: Final = 1
 """The rows of the two planes."""
 
 FEW: Final = 0.3
-"""Below this fraction of lit points it takes less time to pick them than to compute them all."""
+"""The fraction of lit points below which it takes less time to pick them than to compute all points."""
 
 SurfaceWeights = Mapping[int, tuple[np.float32, np.float32]]
 """The weights of a light's diffuse and specular planes, by surface number."""
@@ -237,9 +237,8 @@ class LightMix(NamedTuple):
     """The weights of the ambient term and of the planes of each light that shines, relative to `scale`.
 
     The scale is the largest weight, and only the sum is multiplied by it. So lights k times as strong give
-    the same relative sum, and rounding changes no level. Departs: a light that is linked to other
-    surfaces has the weight 0. Its planes are computed on all surfaces, so that changing a link only costs the
-    sum.
+    the same relative sum, and rounding changes no level. Departs: on surfaces to which a light is not linked,
+    its weights are 0. Its planes are computed on all surfaces, so that changing a link only costs the sum.
     """
 
     scale: float

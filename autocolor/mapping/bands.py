@@ -148,7 +148,7 @@ def bands_by_surface(scene: Scene, picture: Picture) -> Mapping[str, Bands]:
         if np.isnan(values[each.pixels]).any()
     }
     rows = [surface for surface in scene.surfaces if surface.name in used]
-    # Nothing of the object is beyond the scalar's own range; the stage has the colors of its ends there.
+    # No value of the object is beyond the scalar's own range; stage values beyond it have the end colors.
     has_ends = scalar.limits is not None
     has_below, has_above = has_ends and scalar.below is not None, has_ends and scalar.above is not None
     bands = {

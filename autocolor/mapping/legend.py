@@ -100,7 +100,7 @@ class Legend:
 def legend(image: DisplayImage, end: int | None = None, at_left: bool | None = None) -> Legend | None:
     """The legend of an image; None without a scalar, if its legend is off, and if it would not fit.
 
-    Assumed: with `at_left` it is in the upper left or the upper right corner. If that is None, it is in the
+    Assumed: `at_left` puts the legend in the upper left or the upper right corner. With None it is in the
     corner where it hides the fewest pixels of the object; ties go to the upper right. With `end`, it is
     placed as if the picture ended before that element.
     """

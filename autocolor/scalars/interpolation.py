@@ -31,7 +31,7 @@ class WeightedPoints(NamedTuple):
     def interpolated(self, corner_values: Floats) -> Singles:
         """Values at the points, (n,), interpolated from the corners of the polygons, (4, polygons).
 
-        NaN is a missing value; it is missing at all points of its polygon.
+        NaN is a missing value. A polygon with a missing corner has no value at any point.
         """
         # The weights are rounded. Weigh the differences from the first corner: a constant stays constant.
         first = corner_values[0].astype(np.float32)

@@ -204,7 +204,7 @@ def followers_of(name: str, lights: Sequence[Light]) -> list[str]:
 
 
 def names_to_follow(light: Light, lights: Sequence[Light]) -> list[str]:
-    """The names of the other lights that a light can follow: those with an aim that do not follow it."""
+    """The names of the other lights that a light can follow: they have an aim and do not follow the light."""
     by_name = {each.name: each for each in lights}
     return [
         each.name

@@ -45,10 +45,11 @@ class Mesh(Immutable):
 
     `coordinates` is (nodes, 3) float64. `node_numbers` is (polygons, 4) intp, rows of the node table counted
     from 0; a triangle repeats its last node, and (polygons, 3) is accepted if all are triangles.
-    `part_numbers` is (polygons,) intp, rows of `part_names` counted from 0; without them all polygons are of
-    the first part. Polygons that meet at more than `crease_angle` degrees keep a sharp edge. The tables are
-    copied and stored by columns (Fortran order), so that `.T` is the contiguous array that the renderer works
-    on. `scalars` are numbers at the nodes or polygons. `Mesh.of` converts meshes of other programs.
+    `part_numbers` is (polygons,) intp, rows of `part_names` counted from 0; without part numbers all
+    polygons belong to the first part. Polygons that meet at more than `crease_angle` degrees keep a sharp
+    edge. The tables are copied and stored by columns (Fortran order), so that `.T` is the contiguous array
+    that the renderer works on. `scalars` are numbers at the nodes or polygons. `Mesh.of` converts meshes of
+    other programs.
     """
 
     coordinates: Floats

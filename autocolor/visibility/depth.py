@@ -13,8 +13,8 @@ A key is made in four steps:
    visible: a polygon that faces the eye if there is one, and of those the last in the polygon table, as a
    decal on its ground should be.
 
-Measured and rejected: keys from three nodes of each polygon, rounded once. They differed in 4 to 608 of 2,000
-pairs of coplanar polygons.
+Measured and rejected: keys from three nodes of each polygon, rounded once. The keys of 4 to 608 of
+2,000 pairs of coplanar polygons differed.
 """
 
 from __future__ import annotations

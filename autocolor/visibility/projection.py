@@ -76,7 +76,7 @@ class PlanesInView(NamedTuple):
 
     `normals`, (3, planes), are unit vectors. `distances`, (planes,), lead from the eye to the planes along
     the normals; the distance of a plane that is seen too nearly edge-on is infinite. `of_polygons`,
-    (polygons,) intp, is the plane of each polygon, -1 for none.
+    (polygons,) intp, is the plane of each polygon, -1 for a polygon without a plane.
     """
 
     normals: Floats

@@ -44,7 +44,7 @@ class VisiblePoints:
 
     `rows` is (12, n) float32: the point in camera space around `middle`, the unit normal, and the view
     direction reflected at the normal, each with its dot product with the point, so that every cosine to a
-    light is one matrix product. Lengths in camera space, such as those of `middle`, are in `unit`.
+    light is one matrix product. All lengths in camera space are in `unit`.
     """
 
     view: View
@@ -258,7 +258,7 @@ class Sight:
 def seen_at(sight: Sight, line: int, element: int) -> Seen | None:
     """The visible point at a pixel; None on the background. All pixels of a block see the same point.
 
-    It is called at each movement of the pointer. Measured on the coupe: 0.1 ms, most of it for finding the
+    Screens call it at each movement of the pointer. Measured on the coupe: 0.1 ms, most of it for finding the
     pixel among the visible points; a raster of their places would take 1.2 MB for each picture. Raises
     UsageError if there is no such line or element.
     """

@@ -478,7 +478,7 @@ DIRECTIONS: Final = 16
 """The number of directions in which patches may lie apart."""
 
 MOST_PATCHES: Final = 64
-"""The most patches of a plane that are compared; if there are more, some are assumed to overlap."""
+"""The most patches of a plane that are compared. Among more patches, overlaps are assumed."""
 
 
 def _firsts(groups: Indices) -> Indices:
@@ -662,7 +662,7 @@ HALF_SINGLE: Final = 2.0**-24
 """Half a unit in the last place of a 32-bit number, as a fraction of the number, at most."""
 
 LAST_BITS: Final = np.uint32(15)
-"""The last four bits of a 32-bit number. If one of them is 1, the number has at least 20 bits."""
+"""The last four bits of a 32-bit number. A number with a 1 among these bits has at least 20 bits."""
 
 MOST_DECIMALS: Final = 9
 
