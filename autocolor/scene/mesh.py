@@ -23,7 +23,7 @@ from autocolor.logs import logger_of, timed
 from autocolor.scene.columns import Problem
 from autocolor.scene.geometry.curvature import Curvatures, curvatures
 from autocolor.scene.geometry.foreign_meshes import foreign_tables
-from autocolor.scene.geometry.normals import CREASE_ANGLE, NodeNormals, node_normals
+from autocolor.scene.geometry.normals import CREASE_ANGLE, NodeNormals, edge_keys, node_normals
 from autocolor.scene.geometry.planes import SharedPlanes, shared_planes
 from autocolor.scene.kinds import Number
 from autocolor.scene.scalar import MeshScalar, joined_scalars, scalar_problems
@@ -165,13 +165,11 @@ class Mesh(Immutable):
         keys = np.empty((4, len(self.node_numbers)), np.int64)
         for chunk in chunks(keys.shape[1], POLYGONS_AT_ONCE):
             start = self.node_numbers.T[:, chunk]
-            end = np.roll(start, -1, axis=0)
-            keys[:, chunk] = np.minimum(start, end) * len(self.coordinates) + np.maximum(start, end)
-            # The edge from a node to itself in a triangle does not count.
-            keys[:, chunk][start == end] = -1
+            keys[:, chunk] = edge_keys(start, np.roll(start, -1, axis=0), len(self.coordinates))
         in_order = keys.ravel()
         in_order.sort()
         changes = np.count_nonzero(in_order[1:] != in_order[:-1])
+        # The edge from a node to itself in a triangle, with the key -1, does not count.
         return int(changes) + bool(len(in_order) and in_order[0] >= 0)
 
     @property

@@ -14,7 +14,7 @@ import numpy as np
 
 from autocolor.arrays import AnyArray, Booleans, Floats, Indices, chunks, cross, dot, lengths, runs, used_rows
 from autocolor.immutable import read_only
-from autocolor.scene.geometry.normals import MIXER, group_numbers, unite
+from autocolor.scene.geometry.normals import MIXER, edge_keys, group_numbers, unite
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalar import NODE, POLYGON, MeshScalar
 
@@ -125,7 +125,7 @@ def edge_faults(node_numbers: Indices, node_count: int) -> EdgeFaults:
     # An edge from a node to itself closes a triangle: leave it out.
     places = np.flatnonzero(starts.ravel() != ends.ravel())
     start, end = starts.ravel()[places], ends.ravel()[places]
-    keys = np.minimum(start, end) * node_count + np.maximum(start, end)
+    keys = edge_keys(start, end, node_count)
     order = np.argsort(keys)
     is_first = np.diff(keys[order], prepend=-1) != 0
     firsts = np.flatnonzero(is_first)

@@ -291,7 +291,7 @@ def _edges(places: Indices, scratch: Scratch) -> Iterator[tuple[Numbers, Indices
         all_keys = np.empty((places.shape[1], 4), np.int64)
         for chunk in chunks(len(all_keys), CORNERS_AT_ONCE):
             start = places[:, chunk]
-            all_keys[chunk] = _keys(start, np.roll(start, -1, axis=0), place_count).T
+            all_keys[chunk] = edge_keys(start, np.roll(start, -1, axis=0), place_count).T
         yield all_keys.ravel(), None
         return
     # Number the divisions by the lower place of an edge.
@@ -311,11 +311,11 @@ def _edges(places: Indices, scratch: Scratch) -> Iterator[tuple[Numbers, Indices
         for chunk in chunks(len(corners), CORNERS_AT_ONCE):
             some = corners[chunk]
             start, end = places[some & 3, some >> 2], places[(some + 1) & 3, some >> 2]
-            keys[chunk] = _keys(start, end, place_count)
+            keys[chunk] = edge_keys(start, end, place_count)
         yield keys, corners
 
 
-def _keys(start: Indices, end: Indices, place_count: int) -> Numbers:
+def edge_keys(start: Indices, end: Indices, place_count: int) -> Numbers:
     """The keys of edges between places, the same in both directions; -1 if start and end are the same."""
     keys: Numbers = np.minimum(start, end) * np.int64(place_count) + np.maximum(start, end)
     keys[start == end] = -1

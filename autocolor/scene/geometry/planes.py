@@ -33,6 +33,7 @@ import numpy as np
 from autocolor.arrays import Booleans, Floats, Indices, LowBits, chunks, cross, dot, lengths, used_bounds
 from autocolor.immutable import Immutable
 from autocolor.scene.geometry.normals import (
+    edge_keys,
     group_numbers,
     places_of_corners,
     roots_of,
@@ -517,9 +518,9 @@ def _patches(places: Indices, groups: Indices, turned: Booleans) -> tuple[Indice
     `places_of_corners`. Polygons on the same side of an edge overlap; such an edge joins no polygons.
     """
     start, end = places, np.roll(places, -1, axis=0)
-    keys = (np.minimum(start, end) * (int(places.max(initial=0)) + 1) + np.maximum(start, end)).T.ravel()
+    keys = edge_keys(start, end, int(places.max(initial=0)) + 1).T.ravel()
     forward = ((start < end) ^ turned).T.ravel()
-    edges = np.flatnonzero((start != end).T.ravel())
+    edges = np.flatnonzero(keys >= 0)
     # Edges are in the order of the groups; after a stable sort, so are equal edges.
     edges = edges[np.argsort(keys[edges], kind="stable")]
     keys, forward, polygon = keys[edges], forward[edges], edges >> 2
