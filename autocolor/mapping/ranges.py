@@ -84,9 +84,9 @@ def level_ranges(
     if asked > room or (sharing and (room - asked) // len(sharing) < FEWEST_LEVELS):
         largest = max(levels_of, key=lambda name: levels_of[name] or 0)
         raise InputError(
-            f"surface {largest!r}: the levels must be at most {room} in all, {FEWEST_LEVELS} of them for"
-            f" each surface that asks for none, not {asked} and {len(sharing)} such surfaces; ask for fewer"
-            " levels"
+            f"surface {largest!r}: the levels of all surfaces must be at most {room}, with {FEWEST_LEVELS}"
+            f" for every surface without a number, not {asked} and {len(sharing)} such surfaces; ask for"
+            " fewer levels"
         )
     if division == "equal":
         shares = [(room - asked) // len(sharing) for _ in sharing]

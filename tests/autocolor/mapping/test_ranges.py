@@ -70,7 +70,7 @@ def test_a_surface_that_asks_for_too_much_is_named() -> None:
     with pytest.raises(InputError) as refusal:
         level_ranges(rows([600, 500]), {"surface 0": 1, "surface 1": 1})
     assert str(refusal.value).startswith(
-        "surface 'surface 0': the levels must be at most 1007 in all, 2 of them"
+        "surface 'surface 0': the levels of all surfaces must be at most 1007, with 2"
     )
 
 
