@@ -201,6 +201,31 @@ def lengths(vectors: Floats) -> Floats:
     return np.sqrt(squares, out=squares)
 
 
+def unit_vector(direction: tuple[float, float, float]) -> tuple[float, float, float]:
+    """The unit vector of a direction, which must not be zero.
+
+    >>> unit_vector((0.0, 3e36, 4e36))
+    (0.0, 0.6, 0.8)
+    """
+    # Divide by the largest component first: the squares of very large or small components would over- or
+    # underflow.
+    largest = max(abs(component) for component in direction)
+    scaled = tuple(component / largest for component in direction)
+    length = math.hypot(*scaled)
+    return (scaled[0] / length, scaled[1] / length, scaled[2] / length)
+
+
+def normalized(vectors: Floats) -> Floats:
+    """The vectors, (3, ...), divided by their lengths; zero vectors stay zero.
+
+    >>> normalized(np.array([[2.0, 0.0], [3.0, 0.0], [6.0, 0.0]])).T.tolist()[1]
+    [0.0, 0.0, 0.0]
+    """
+    sizes = lengths(vectors)
+    sizes[sizes == 0] = 1.0
+    return vectors / sizes
+
+
 def power(cosines: Singles, exponent: float, out: Singles | None = None) -> Singles:
     """The cosines to a power, in [0, 1]; a negative cosine counts as 0, and anything to the power 0 is 1.
 

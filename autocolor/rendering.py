@@ -1,14 +1,14 @@
-"""Rendering a scene to a picture, and reusing from the previous picture all that did not change.
+"""Rendering a scene to a picture; everything that did not change is reused from the previous picture.
 
 | changed | recomputed |
 |---|---|
 | mesh, view, the surface of a part, two_sided | everything |
-| a light's position, aim, controls, links to parts | that light's two planes, the sum |
-| the aim of a light that others follow | the two planes of that light and of these, the sum |
+| a light's position, aim, controls, links to parts | the two planes of the light, the sum |
+| the aim of a light that others follow | the two planes of the light and of its followers, the sum |
 | a surface's reflection model | all lights, for the chunks of points that contain the surface; the sum |
 | a light's intensity, switch or links to surfaces, ambient, D, S | the sum |
 | the scalar's name, direction, stripes | its values |
-| what words stand for | nothing, but the picture has normals or not |
+| what words stand for | nothing, but the picture gains or loses its normals |
 | anything else | nothing |
 """
 
@@ -29,7 +29,7 @@ from autocolor.errors import UsageError
 from autocolor.lighting.illumination import Previous, illuminate
 from autocolor.lighting.picture import Picture
 from autocolor.logs import logger_of, timed
-from autocolor.scalars.values import scalar_values
+from autocolor.scalars.computed import scalar_values
 from autocolor.scene.columns import Tier, cost, with_values
 from autocolor.scene.scalar import Scalar
 from autocolor.scene.scene import NORMALS, Scene, check_scene, costs_at_least
@@ -145,7 +145,7 @@ def _with_scalar(picture: Picture, scene: Scene, points: VisiblePoints, before: 
 
 
 def _with_normals(picture: Picture, scene: Scene, points: VisiblePoints) -> Picture:
-    """The picture with the normals of its points if words stand for normals, else without."""
+    """The picture; it has the normals of its points if words stand for normals, else none."""
     normals = points.normals if scene.words == NORMALS else None
     if picture.normals is normals:
         return picture
@@ -153,7 +153,7 @@ def _with_normals(picture: Picture, scene: Scene, points: VisiblePoints) -> Pict
 
 
 def _stage(scene: Scene) -> list[bool]:
-    """Whether each part is stage: the range of a scalar does not include its coordinates."""
+    """Whether each part is stage. The range of a scalar does not include the coordinates of the stage."""
     return [part.stage for part in scene.parts]
 
 
@@ -189,7 +189,7 @@ def _keep_large_arrays() -> None:
     """Make glibc reuse the memory of larger arrays, too, for pictures of more than `LARGE` pixels.
 
     Without this, 2560 x 1920 takes 5,000 page faults for each picture, up to a fifth of its time. From then
-    on the whole process keeps up to `MOST_FREED` bytes that it freed, and returns only more than these.
+    on the process keeps up to `MOST_FREED` bytes that it freed, and returns only the excess.
     Measured and rejected: no mapping at all (M_MMAP_MAX), which saves as much and would never return any
     array.
     """
@@ -203,10 +203,9 @@ def _keep_large_arrays() -> None:
             process.mallopt(option, MOST_FREED)
 
 
-# -------------------- pacing
-# While a picture moves, it may be coarse, so that its fields follow each other fast enough. A coarse picture
-# is computed at a half or a quarter of the lines and elements; each of its pixels is shown as a block of
-# 2 x 2 or 4 x 4 pixels of the display.
+# Pacing. While a picture moves, it may be coarse, so that its fields follow each other fast enough. A coarse
+# picture has a half or a quarter of the lines and elements, and the display shows every pixel of it as a
+# block of 2 x 2 or 4 x 4 pixels.
 
 BLOCKS: Final = (1, 2, 4)
 """The lines and elements of a block; 1 is the whole picture."""
@@ -230,7 +229,7 @@ def blocks_of(lines: int, elements: int) -> tuple[int, ...]:
 
 
 def block_for(blocks: Sequence[int], block: int, seconds: float) -> int:
-    """The smallest block whose picture is expected to be fast enough, else the largest one.
+    """The smallest block whose picture is expected to be fast enough, else the largest block.
 
     `seconds` is the time that the last picture took, and `block` its block. Assumed: the time falls with the
     lines. Measured for blocks of 1, 2 and 4: 54, 28 and 13 ms for 87,000 polygons, 197, 90 and 52 ms for a

@@ -15,7 +15,7 @@ import numpy as np
 
 import autocolor
 from autocolor.rendering import rendering
-from autocolor.scalars.values import scalar_values
+from autocolor.scalars.computed import scalar_values
 from autocolor.scene.geometry.curvature import curvatures
 from benchmarks.cases import Case, ratios, spread, timed
 from benchmarks.points import QUANTITIES

@@ -1,4 +1,4 @@
-"""The light controls: the share of a light that reaches a point, from none to all of it.
+"""The light controls: the share of a light, 0 to 1, that reaches a point.
 
 Paper: "Light Controls". Controls modify the result of a reflection model at a point and know nothing of the
 model, so they work with any.
@@ -6,11 +6,11 @@ model, so they work with any.
 Each control is one class, named in `CONTROLS` at the foot. `shading` asks every control of a light the same
 three questions, each with a default that leaves the light as it is:
 
-- `lit_points`: which points may be lit, judged by the points alone. Asked first: if it leaves a chunk of
-  points dark, no ray is computed.
-- `least_cosine`: the least cos(L) that is lit. The largest of several controls counts.
-- `factor`: the share of the light that is left elsewhere, 0 to 1, as a function of cos(L), of the distance,
-  or of the positions of the points. Factors are multiplied.
+- `lit_points`: which points may be lit, judged by the points alone. This comes first: if a chunk of points
+  is dark, no ray is computed.
+- `least_cosine`: the least cos(L) that is lit. Of several controls the largest counts.
+- `factor`: the share of the light at these points, 0 to 1, as a function of cos(L), of the distance, or of
+  the positions of the points. Factors are multiplied.
 
 To add a control, give `Light` a field with its column, write its class here, and name it in `CONTROLS`.
 """
@@ -25,30 +25,30 @@ from typing import Final, Literal, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Booleans, Floats, PartNumbers, Singles, power
+from autocolor.arrays import Booleans, Floats, PartNumbers, Singles, power, unit_vector
 from autocolor.checks import Vector
 from autocolor.lighting.rays import FARTHEST, camera_light
 from autocolor.scene.following import detached
-from autocolor.scene.lights import Flap, Light, unit_vector
+from autocolor.scene.lights import Flap, Light
 from autocolor.visibility.visible_points import POINT, POINT_SQUARED, VisiblePoints
 
 ROUNDING: Final = float(np.finfo(np.float32).eps)
 
 ABOVE_ZERO: Final = float(np.finfo(np.float32).smallest_subnormal)
-"""The least positive float32."""
+"""The least positive float32: the least cos(L) in front of a light."""
 
 FARTHEST_PLANE: Final = 1e30
-"""In units; farther than any point, and float32 can hold it."""
+"""The largest distance of a plane, in units: farther than any point, and float32 can hold it."""
 
 LEAST_WIDTH: Final = 1e-8
-"""In units; far below the rounding of points. Float32 can hold the distance of any plane divided by it."""
+"""The least edge width, in units: far below the rounding of points, and float32 holds any quotient by it."""
 
 LEAST_REACH: Final = 1e-20
-"""In units; float32 can hold any distance as a multiple of it."""
+"""The least reach, in units: float32 can hold any distance as a multiple of it."""
 
 
 class LitPoints(NamedTuple):
-    """The points that may be lit, as a factor sees them.
+    """The points that may be lit: the arguments of a factor.
 
     `cos_light` is cos(L), (points,), or None if no control of the light is `directed`. `distance()` is the
     distance to the light, (points,); `positions()` are the points in camera space around
@@ -86,7 +86,7 @@ class LightControl(ABC):
         """The share of the light that is left at points that are lit, 0 to 1, written to `out`.
 
         It is also computed at points that are not lit, and must be finite there. `out` may be the array of
-        the cosines. A control without this method leaves all of the light.
+        the cosines. A control that does not override this method leaves all of the light.
         """
         raise NotImplementedError
 
@@ -101,8 +101,9 @@ def controls_of(light: Light, points: VisiblePoints) -> tuple[LightControl, ...]
 class Concentration(LightControl):
     """Concentration: cos^C(L) where cos(L) > 0.
 
-    Paper: "Light Direction and Concentration". Half is left at 60 degrees for C = 1, at 21.1 for C = 10 and
-    at 10.6 for C = 40. With C = 0 the light is a point source, and nothing is dark behind it.
+    Paper: "Light Direction and Concentration". Half of the light is left at 60 degrees for C = 1, at 21.1 for
+    C = 10 and at 10.6 for C = 40. With C = 0 the light is a point source, which also lights the points behind
+    it.
     """
 
     exponent: float
@@ -144,9 +145,9 @@ class Cone(LightControl):
 class SoftCone(LightControl):
     """All of the light up to the inner angle, and nothing from the cone angle on; see `soften`.
 
-    Departs: the paper's cones end at once. Assumed: between the angles the light goes with cos(L), not with
-    L. That takes no arc cosine at each pixel. It is smooth on the axis, too, where the inner angle is 0:
-    there cos(L) has a slope of 0, and L a corner.
+    Departs: the paper's cones have a sharp edge. Assumed: between the angles the share depends on cos(L), not
+    on L. So no pixel needs an arc cosine, and a share with an inner angle of 0 is smooth on the axis: there
+    cos(L) has a slope of 0, and L a corner.
     """
 
     rim: float
@@ -172,10 +173,11 @@ class SoftCone(LightControl):
 
 
 def soften(fraction: Singles) -> Singles:
-    """The share that a soft edge leaves at a fraction t of its width: none up to 0, all from 1 on.
+    """The share of the light at a fraction t of the width of a soft edge, in place.
 
-    Between these it is t^2 (3 - 2 t), in place. Assumed: of the polynomials that begin and end with a slope
-    of 0, so that neither end shows as a seam, this has the lowest degree. Infinite fractions are not allowed.
+    It is 0 up to t = 0, 1 from t = 1 on, and t^2 (3 - 2 t) between. Assumed: this is the polynomial of the
+    lowest degree that begins and ends with a slope of 0, so that neither end shows as a seam. Fractions must
+    be finite.
     """
     np.clip(fraction, 0, 1, out=fraction)
     rest = np.multiply(fraction, -2)
@@ -191,7 +193,7 @@ class Sides(LightControl):
     Paper: "Light Flaps and Cones": a flap is a range of an object coordinate, a box and no shadow. Departs:
     the paper has flaps along the axes alone. A point on a plane is lit.
 
-    `sides` is (sides, 4); see `Side.row`.
+    `sides` is (sides, 4); see `LitSide.row`.
     """
 
     sides: Singles
@@ -246,11 +248,11 @@ FlapEnd = Literal["minimum", "maximum"]
 """The fields of a flap that are coordinates."""
 
 
-class Side(NamedTuple):
+class LitSide(NamedTuple):
     """The lit side of a plane: the points P where the product of `row`, (4,), with (P, 1) is at least 0.
 
-    The product is the distance from the plane, and the light is whole at the distance `edge_width`; both are
-    in `VisiblePoints.unit`. An edge of the width 0 is sharp.
+    The product is the distance from the plane. From the distance `edge_width` on, all of the light is left.
+    Both are in `VisiblePoints.unit`. An edge of the width 0 is sharp.
     """
 
     row: Floats
@@ -264,7 +266,7 @@ def is_inside(row: Floats | Singles, rows: Singles) -> Booleans:
     return inside
 
 
-def sides_of(light: Light, points: VisiblePoints) -> list[Side]:
+def sides_of(light: Light, points: VisiblePoints) -> list[LitSide]:
     """The sides of the flaps and the half-spaces of a light that are on."""
     return [*flap_sides(light, points).values(), *half_space_sides(light, points).values()]
 
@@ -274,9 +276,9 @@ def flaps_of(light: Light) -> dict[Axis, Flap | None]:
     return {"x": light.flaps.x, "y": light.flaps.y, "z": light.flaps.z}
 
 
-def flap_sides(light: Light, points: VisiblePoints) -> dict[tuple[Axis, FlapEnd], Side]:
+def flap_sides(light: Light, points: VisiblePoints) -> dict[tuple[Axis, FlapEnd], LitSide]:
     """The sides of the flaps that are on, without ends at infinity."""
-    sides: dict[tuple[Axis, FlapEnd], Side] = {}
+    sides: dict[tuple[Axis, FlapEnd], LitSide] = {}
     for row, (axis, flap) in enumerate(flaps_of(light).items()):
         if flap is None or not flap.on:
             continue
@@ -291,9 +293,9 @@ def flap_sides(light: Light, points: VisiblePoints) -> dict[tuple[Axis, FlapEnd]
     return sides
 
 
-def half_space_sides(light: Light, points: VisiblePoints) -> dict[str, Side]:
+def half_space_sides(light: Light, points: VisiblePoints) -> dict[str, LitSide]:
     """The sides of the half-spaces that are on, by name; a carried half-space is placed with its light."""
-    sides: dict[str, Side] = {}
+    sides: dict[str, LitSide] = {}
     for half_space in light.half_spaces:
         if half_space.on:
             placed = detached(half_space, light)
@@ -303,17 +305,17 @@ def half_space_sides(light: Light, points: VisiblePoints) -> dict[str, Side]:
     return sides
 
 
-def side_of(points: VisiblePoints, direction: Vector, least: float, edge_width: float) -> Side:
-    """The points of the world whose product with a unit vector, their `direction`, is at least `least`.
+def side_of(points: VisiblePoints, direction: Vector, least: float, edge_width: float) -> LitSide:
+    """The side of a plane of the world whose points have a product of at least `least` with a unit vector.
 
-    `edge_width` is in units of the world.
+    The unit vector is the `direction` from the plane into the light. `edge_width` is in world units.
     """
     coordinates = np.array([points.world_coordinate(axis) for axis in range(3)])
     in_units = min(max(least / points.unit, -FARTHEST_PLANE), FARTHEST_PLANE)
     # A surface that lies on a sharp side is lit: allow for the rounding of its points to float32.
     slack = 0.0 if edge_width > 0 else 4 * ROUNDING * points.radius
     row = np.array(direction) @ coordinates - np.array([0, 0, 0, in_units - slack])
-    return Side(row, edge_width / points.unit)
+    return LitSide(row, edge_width / points.unit)
 
 
 @dataclass(frozen=True, eq=False)
@@ -321,8 +323,8 @@ class Falloff(LightControl):
     """Falloff: (1 - f)^n at the distance f as a fraction of the reach, n = 1 or 2, and 0 beyond it.
 
     Departs: the light of the paper does not depend on the distance, nor does a light without a falloff here.
-    1/d^2 has no upper limit: a point close to the light would take the whole range of levels and leave the
-    others black. This stays within 0 to 1, and ends.
+    Rejected: 1/d^2, which has no upper limit. A point close to the light would take the whole range of levels
+    and leave all others black. This falloff stays within 0 to 1, and ends.
     """
 
     reach: float
@@ -337,7 +339,7 @@ class Falloff(LightControl):
         reach = min(max(light.reach / points.unit, LEAST_REACH), FARTHEST)
         position = camera_light(light, points, directed=False).position
         square = float(position @ position)
-        # The factor leaves nothing of a point that is rounded beyond the reach.
+        # The factor is 0 at a point that is within reach only by this slack.
         slack = 8 * ROUNDING * (square + points.radius**2)
         sphere = np.array([*(-2 * position), 1, square - reach**2 - slack], np.float32)
         return cls(reach, 1 if light.falloff == "linear" else 2, sphere)
@@ -369,7 +371,7 @@ class LinkedParts(LightControl):
 
     @classmethod
     def of(cls, light: Light, points: VisiblePoints) -> LinkedParts | None:
-        """The parts that the light is linked to, if it is."""
+        """The links to parts, if the light has any."""
         if not light.links.depend_on_parts:
             return None
         names = points.parts.names

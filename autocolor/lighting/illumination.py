@@ -103,7 +103,7 @@ def _changed_surfaces(models: Mapping[int, ReflectionModel], previous: Previous 
 
 
 def _reusable_planes(lights: Mapping[str, Light], previous: Previous | None) -> dict[str, LightPlanes]:
-    """The planes of the previous picture that are still right, by light, on surfaces that did not change."""
+    """The planes of the previous picture that are still valid, by light, on surfaces that did not change."""
     if previous is None:
         return {}
     planes = previous.picture.light_planes
@@ -116,10 +116,10 @@ def _reusable_planes(lights: Mapping[str, Light], previous: Previous | None) -> 
 
 
 class _PlaneUpdate(NamedTuple):
-    """The planes of a light that shines, and the parts of them to compute.
+    """The planes of a light that shines, and the computations that they need.
 
-    If `light` is given, its values are computed on the surfaces `changed_surfaces`. If `to_mix`, the weighted
-    sum of both planes is computed everywhere.
+    If `light` is given, the values of the planes are computed on the surfaces `changed_surfaces`. If
+    `to_mix`, the weighted sum of both planes is computed everywhere.
     """
 
     planes: LightPlanes
@@ -146,7 +146,7 @@ def _plane_update(
             return _PlaneUpdate(LightPlanes(old.values, weights), None, changed, to_mix=True)
         if old.mixed is not None:
             return _PlaneUpdate(old, None, changed, to_mix=False)
-        # This light stays while another is edited: keep its mix for the edits to come.
+        # This light stays while another light is edited: keep its mix for further edits.
         planes = dataclasses.replace(old, mixed=np.empty(len(points.pixels), np.float32))
         return _PlaneUpdate(planes, None, changed, to_mix=True)
     planes = LightPlanes(old.values.copy(), weights)

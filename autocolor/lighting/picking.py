@@ -1,7 +1,7 @@
 """Where a light shows in the picture, and how a drag there changes it: highlights, cones, flaps, half-spaces.
 
 Paper: "Light Controls". The paper moves lights in three views; here they follow a point of the picture. The
-functions that place something take a scene and return a scene, for `Studio.edit`.
+functions that place a highlight or a rim take a scene and return a scene, for `Studio.edit`.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import Final, Literal, NamedTuple, get_args
 
 import numpy as np
 
-from autocolor.arrays import Booleans, Bytes, Indices, Singles, chunks, dot
+from autocolor.arrays import Booleans, Bytes, Indices, Singles, chunks, dot, unit_vector
 from autocolor.checks import either, nearest, shown
 from autocolor.errors import UsageError
 from autocolor.lighting.controls import Axis, Cone, FlapEnd, flap_sides, flaps_of, half_space_sides, is_inside
@@ -26,7 +26,7 @@ from autocolor.lighting.rays import (
     rays_to,
 )
 from autocolor.scene.following import light_frame
-from autocolor.scene.lights import Flap, Light, unit_vector
+from autocolor.scene.lights import Flap, Light
 from autocolor.scene.scene import NORMALS, Scene
 from autocolor.visibility.projection import focal_length
 from autocolor.visibility.visible_points import (
@@ -41,7 +41,7 @@ from autocolor.visibility.visible_points import (
 )
 
 ROUNDING: Final = np.float32(1e-5)
-"""Assumed: above the rounding of a cosine in float32; around a highlight many pixels may have the same."""
+"""Assumed: above the rounding of a cosine in float32, which many pixels around a highlight may share."""
 
 LEAST_CONE: Final = 0.03
 """Assumed: in degrees; float32 can't tell the cosine of a narrower cone from 1."""
@@ -97,7 +97,7 @@ def _brightest(points: VisiblePoints, light: CameraLight, slices: Sequence[Surfa
     places = np.concatenate([np.empty(0, np.intp), *nearly])
     if not len(places):
         return None
-    # Compare these in float64: cos(E) is largest where the unit vector to the light is closest to R.
+    # Compare these points in float64: cos(E) is largest where the unit vector to the light is closest to R.
     to_light = light.position[:, None] - points.rows[POINT].take(places, axis=1)
     to_light /= np.maximum(np.linalg.norm(to_light, axis=0), np.finfo(np.float64).tiny)
     to_light -= points.rows[REFLECTED_VIEW].take(places, axis=1)
@@ -186,7 +186,7 @@ def highlight_placed(scene: Scene, seen: Seen | None, light: str) -> Scene:
 
 
 def seen_from_afar(scene: Scene, seen: Seen) -> Seen:
-    """What is seen at a pixel, as if it were in the middle of the object, with the same normal."""
+    """The visible point at a pixel, moved to the middle of the object; the normal stays."""
     middle = middle_of(scene)
     to_eye = np.array(direction_between(middle, scene.view.eye))
     normal = np.array(seen.normal)
@@ -203,11 +203,10 @@ def _on_surface(seen: Seen | None, what: str) -> Seen:
 def rims(sight: Sight, light: str) -> Mapping[Rim, Indices]:
     """The pixels at which the cone, the flaps and the half-spaces of a light end, (n, 2): line and element.
 
-    There is one array for the cone, if any, one for each finite end of the flaps that are on, and one for
-    each half-space that is on. An array is empty if the end is not visible. A pixel of a rim is inside, and
-    one of its four neighbors is outside on the same surface: so no silhouette is a rim. Every control has its
-    own rim, even where another control leaves nothing of the light. The rim of a soft edge is where nothing
-    of the light is left.
+    There are arrays for the cone, for the finite ends of the flaps that are on, and for the half-spaces that
+    are on. An array is empty if the rim is not visible. A pixel of a rim is inside, and one of its four
+    neighbors is outside on the same surface: so no silhouette is a rim. Every control has its own rim, even
+    where another control leaves nothing of the light. The rim of a soft edge is its dark end.
 
     Measured on the coupe: a cone takes 2 ms, and all seven rims 4; beside another busy process up to 10.
     Raises UsageError for an unknown light.
@@ -237,7 +236,7 @@ def _pixels_of_rims(sight: Sight, inside: Mapping[Rim, Booleans]) -> dict[Rim, I
     is_near = _are_on_one_surface(points, places[before], places[after])
     before, after = before[is_near], after[is_near]
 
-    # Of each pair, take the pixel that is inside.
+    # Take the pixel of each pair that is inside.
     pixels_of: dict[Rim, Indices] = {}
     for bit, rim in enumerate(inside):
         flag = np.uint8(1 << bit)
@@ -353,9 +352,9 @@ def flap_placed(
 
 
 def half_space_placed(scene: Scene, seen: Seen | None, light: str, name: str) -> Scene:
-    """The scene with a light whose half-space of a name ends at a point: its plane moves along its direction.
+    """The scene with a light whose half-space ends at a visible point: its plane moves along its direction.
 
-    The half-space's own point moves no further than it must. Raises UsageError on the background, and for a
+    The half-space's own point moves by the least distance. Raises UsageError on the background, and for a
     light without this half-space.
     """
     seen = _on_surface(seen, "a half-space")

@@ -31,7 +31,7 @@ class IntensityRange(NamedTuple):
 class PictureRanges:
     """Minimum and maximum intensity of the whole picture and, by surface name, of each visible surface.
 
-    Both are 0 for a picture in which nothing is visible.
+    For a picture in which nothing is visible, minimum and maximum of the whole are 0.
     """
 
     whole: IntensityRange
@@ -40,7 +40,7 @@ class PictureRanges:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class LightPlane(Immutable):
-    """The contribution of one light, (lines, elements) float32 each: without D, S and its intensity."""
+    """The planes of a light as rasters, (lines, elements) float32 each; see `LightPlanes`."""
 
     diffuse: Singles
     specular: Singles
@@ -50,12 +50,12 @@ class LightPlane(Immutable):
 class Picture(Immutable):
     """The picture that the lighting model computes: intensities and surfaces, no colors.
 
-    The visible pixels are sorted by surface, as `slices` tells: `pixels` are their flat places in the raster,
-    `relative` the intensities in proportion to `scale`, both (n,). `light_planes` has the planes of each
-    light that was computed.
+    The visible pixels are sorted by surface; `slices` has the slice of each surface. `pixels` are their flat
+    places in the raster, `relative` the intensities in proportion to `scale`, both (n,). `light_planes` has
+    the computed planes by light.
 
-    `scalar_values`, (n,) float32 in the order of `pixels` with NaN for missing values, are the values of the
-    scalar that colors the scene, and `scalar_limits` are its own range; both are None without a scalar.
+    `scalar_values`, (n,) float32 in the order of `pixels`, are the values of the scalar that colors the
+    scene, NaN where missing. `scalar_limits` are its own range. Both are None without a scalar.
 
     `visible_parts` has the part at each of `pixels`. It is None in a picture of rasters without part numbers,
     or of a file that was written before version 4.
@@ -147,7 +147,7 @@ class Picture(Immutable):
 
     @cached_property
     def scalar(self) -> Singles | None:
-        """The scalar, (lines, elements) float32, NaN where no surface or no value is; read-only.
+        """The scalar, (lines, elements) float32, NaN on the background and for missing values; read-only.
 
         None for a picture whose scene shows no scalar.
         """
@@ -175,7 +175,7 @@ class Picture(Immutable):
 
     @property
     def planes(self) -> Mapping[str, LightPlane]:
-        """The two planes of each light by its name, as rasters."""
+        """The two planes of the lights as rasters, by the name of the light."""
         return {
             name: LightPlane(self._raster(planes.values[DIFFUSE]), self._raster(planes.values[SPECULAR]))
             for name, planes in self.light_planes.items()

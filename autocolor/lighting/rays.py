@@ -1,7 +1,8 @@
 """The rays from the visible points to a light: lengths, and cosines with normal and reflected view.
 
-Paper: Figures 1 and 3. All are products with `VisiblePoints.rows`, in camera space. The last functions take
-light and eye as far away, as words that stand for normals do: then a direction is the same at every point.
+Paper: Figures 1 and 3. Lengths and cosines are products with `VisiblePoints.rows`, in camera space. The last
+functions are for light and eye far away, as words that stand for normals assume them: then a direction is the
+same at every point.
 """
 
 from __future__ import annotations
@@ -10,24 +11,24 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Floats, Indices, Singles
+from autocolor.arrays import Floats, Indices, Singles, unit_vector
 from autocolor.checks import Vector
-from autocolor.scene.lights import Light, middle_between, unit_vector
+from autocolor.scene.lights import Light, middle_between
 from autocolor.scene.scene import Scene
 from autocolor.visibility.visible_points import POINT, POINT_SQUARED, VisiblePoints, fill_point_products
 
 CLOSE: Final = 0.02
-"""A point is close to a light if its squared distance is at most this fraction of the squares that it is the
-difference of. The positions of close points are subtracted before they are squared."""
+"""A point is close to a light if its squared distance is at most this fraction of the squares of the two
+positions. At close points the positions are subtracted before they are squared."""
 
 LEAST_SQUARE: Final = 1e-37
 """The least squared distance of a point from a light, so that no distance is 0."""
 
 FARTHEST: Final = 1e15
-"""In units; the rays to a farther light are parallel, and float32 can hold the square of this."""
+"""The largest distance of a light, in units: its rays are parallel, and float32 can hold its square."""
 
 GRAZING: Final = np.float32(5e-7)
-"""Above the rounding of a cosine. Parallel rays often run along a flat surface, and do not light it."""
+"""A cosine above its rounding. Parallel rays often run along a flat surface, which they do not light."""
 
 
 class CameraLight(NamedTuple):
@@ -62,7 +63,7 @@ class Rays(NamedTuple):
 
     `length` is never 0. `cos_light` is the cosine of L, between the light's direction and the ray from the
     light to the point, or None for a light without a direction. `rows` are the rows of the points. `close`
-    are the places of the points close to the light, and `close_rows` their rows relative to the light.
+    are the places of the points close to the light, and `close_rows` their rows around the light.
     """
 
     length: Singles
@@ -74,7 +75,7 @@ class Rays(NamedTuple):
     are_parallel: bool = False
 
     def cosines_with(self, vector: slice) -> Singles:
-        """The cosine between each ray and the unit vector v in three of the rows, which P.v follows."""
+        """The cosine between each ray and the unit vector v in three of the rows; the next row has P.v."""
         factors = np.array([*self.position, -1], np.float32)
         # p.v - P.v is the component of the ray along v.
         products: Singles = factors @ self.rows[vector.start : vector.stop + 1]
@@ -135,7 +136,7 @@ def _squares_and_ahead(
 
 
 def middle_of(scene: Scene) -> Vector:
-    """The middle of the object's bounds, from which directions to lights and eye far away are taken."""
+    """The middle of the object's bounds: directions to lights and eye far away start there."""
     return middle_between(*scene.object_bounds)
 
 

@@ -52,7 +52,7 @@ SPECULAR: Final = 1
 """The rows of the two planes."""
 
 FEW: Final = 0.3
-"""Below this fraction of lit points it takes less time to pick them than to compute them all."""
+"""The fraction of lit points below which it takes less time to pick them than to compute all points."""
 
 SurfaceWeights = Mapping[int, tuple[np.float32, np.float32]]
 """The weights of a light's diffuse and specular planes, by surface number."""
@@ -63,8 +63,8 @@ class LightPlanes(Immutable):
     """The contribution of one light to the visible points, in their order; read-only in a picture.
 
     `values` is (2, n) float32: the diffuse and the specular plane, without D, S and the light's intensity.
-    `weights` are their weights in the picture. `mixed`, (n,) float32, is their weighted sum, or None. A light
-    that stays while others are moved has it: then the sum need only be added.
+    `weights` are their weights in the picture. `mixed`, (n,) float32, is their weighted sum, or None. It is
+    cached for a light that stays while other lights are edited.
     """
 
     values: Singles
@@ -165,16 +165,13 @@ class _AtPoints(NamedTuple):
             incidence=self.incidence.take(places), eye=self.eye.take(places), light=light, places=places
         )
 
-    def lit(self) -> LitPoints:
-        """The points as a light control sees them."""
+    def distance(self) -> Singles:
+        """The distances to the light, (points,)."""
+        return self.length if self.places is None else self.length.take(self.places)
 
-        def distance() -> Singles:
-            return self.length if self.places is None else self.length.take(self.places)
-
-        def positions() -> Singles:
-            return self.rows[POINT] if self.places is None else self.rows[POINT].take(self.places, axis=1)
-
-        return LitPoints(self.light, distance, positions)
+    def positions(self) -> Singles:
+        """The points in camera space, (3, points)."""
+        return self.rows[POINT] if self.places is None else self.rows[POINT].take(self.places, axis=1)
 
     def cosines(self, start: int, end: int) -> Cosines:
         """The cosines for a reflection model at a slice of the points."""
@@ -216,9 +213,9 @@ def _reflect(
 
 
 def _multiplier(controls: Sequence[LightControl], at_points: _AtPoints) -> Singles | None:
-    """The product of the factors of all controls, or None if there is none; cos(L) may be overwritten."""
+    """The product of the factors of all controls; None if none has a factor. cos(L) may be overwritten."""
     shaping = [control for control in controls if type(control).factor is not LightControl.factor]
-    lit = at_points.lit()
+    lit = LitPoints(at_points.light, at_points.distance, at_points.positions)
     multiplier: Singles | None = None
     for control in shaping:
         # The last control may overwrite the cosines.
@@ -239,10 +236,9 @@ def mix(planes: LightPlanes, chunk: PointChunk, out: Singles) -> None:
 class LightMix(NamedTuple):
     """The weights of the ambient term and of the planes of each light that shines, relative to `scale`.
 
-    The scale is the largest of them, and only the sum is multiplied by it. So lights k times as strong give
-    the same relative sum, and levels that do not change by rounding. Departs: a light that is linked to other
-    surfaces has the weight 0. Its planes are computed on all surfaces, so another link costs no more than the
-    sum.
+    The scale is the largest weight, and only the sum is multiplied by it. So lights k times as strong give
+    the same relative sum, and rounding changes no level. Departs: on surfaces to which a light is not linked,
+    its weights are 0. Its planes are computed on all surfaces, so that changing a link only costs the sum.
     """
 
     scale: float

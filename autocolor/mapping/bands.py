@@ -5,9 +5,9 @@ of such a surface is divided into bands, one a color, and each band into shades 
 
     word = first + band * shades + shade
 
-So both can be read from a word, and another color scale changes entries alone. A scalar that is shown in flat
-color codes has one shade. Assumed: values beyond the limits have the first and the last band. If they have
-colors of their own, further bands follow for them, and another band for missing values.
+So band and shade can be read from a word, and another color scale changes entries alone. A scalar that is
+shown in flat color codes has one shade. Assumed: values beyond the limits have the first and the last band.
+If they have colors of their own, further bands follow for these values, and another band for missing values.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ MOST_SHADES: Final = 8
 class Bands(NamedTuple):
     """The division of a surface's levels: `bands` bands of `shades` levels from one limit to the other.
 
-    After them come the bands of values below, above and missing, if these have their own.
+    After them come the bands of values below, above and missing, as far as these have bands of their own.
     """
 
     low: float
@@ -121,7 +121,7 @@ def band_entries(
     """The entries of a surface with bands, (levels, 3) uint8, read-only.
 
     The bands have the colors of the scale; `ends` are the colors below and above the limits, or None. The
-    highest shade of a band has its color; `floor` is the brightness of the lowest as a fraction of that.
+    highest shade of a band has its color; `floor` is the brightness of the lowest shade as a fraction of it.
     """
     beyond = [color for color in ends if color is not None]
     colors = np.vstack([scale_colors(scale, bands.bands), *beyond, *[missing] * bands.has_missing])
@@ -148,7 +148,7 @@ def bands_by_surface(scene: Scene, picture: Picture) -> Mapping[str, Bands]:
         if np.isnan(values[each.pixels]).any()
     }
     rows = [surface for surface in scene.surfaces if surface.name in used]
-    # Nothing of the object is beyond the scalar's own range; the stage has the colors of its ends there.
+    # No value of the object is beyond the scalar's own range; stage values beyond it have the end colors.
     has_ends = scalar.limits is not None
     has_below, has_above = has_ends and scalar.below is not None, has_ends and scalar.above is not None
     bands = {
@@ -179,7 +179,7 @@ def own_limits(picture: Picture) -> tuple[float, float]:
 
 
 def _shades(scalar: Scalar, surfaces: Sequence[Surface], bands: Mapping[str, Bands]) -> int:
-    """The shades of each band: as many as are asked for, else as many as the words suffice for.
+    """The shades of each band: the scalar's number if it has any, else as many as the words suffice for.
 
     Assumed: the levels that a colored surface asks for are meant for its paint, and its bands take the levels
     that they need. The other surfaces have the levels that they ask for. A surface that asks for none has at

@@ -35,7 +35,7 @@ def blend_level(blend: float, levels: int) -> int:
 
 
 def blend_from(level: int, levels: int) -> float:
-    """The blend whose blend level is a level, in as few digits as that takes, from two on.
+    """The blend that has a given blend level, in as few digits as possible, but at least two.
 
     >>> blend_from(124, 249), blend_from(136, 249), blend_from(137, 249)
     (0.5, 0.55, 0.552)
@@ -62,9 +62,9 @@ def entries_of(paint: Paint, levels: int, floor: float = 0.0) -> Bytes:
 
 
 def entries_at(paint: Paint, fractions: Singles, levels: int, floor: float = 0.0) -> Bytes:
-    """The entries of a paint at fractions of a range of so many levels, (n, 3) uint8, read-only.
+    """The entries of a paint at fractions of a range of levels, (n, 3) uint8, read-only.
 
-    The fractions give levels between the whole levels of `entries_of`, and colors in the same way.
+    A fraction of the range is a level between the whole levels of `entries_of`; its color is computed alike.
     """
     level = fractions.astype(np.float64) * (levels - 1)
     return _blended(paint, _shares_at(level, paint.blend, paint.light_percentage, levels, floor))

@@ -87,7 +87,8 @@ class DisplayImage(ABC):
     def loads_after(self, before: DisplayImage) -> Iterator[tuple[int, Bytes]]:
         """The runs of entries to load after those of `before`, as (first entry, colors).
 
-        It is one run from the first to the last entry that differs, or none.
+        The only run leads from the first to the last entry that differs; if no entry differs, there is no
+        run.
         """
         differing = np.flatnonzero((before.entries != self.entries).any(axis=1))
         if len(differing):
@@ -97,7 +98,7 @@ class DisplayImage(ABC):
     def floor_of(self, name: str) -> float:
         """The brightness of a surface's lowest level as a fraction of its highest; see `entries_of`.
 
-        It is 0 where nothing of the surface is visible, and where the scene's lowest levels are black.
+        It is 0 for a surface that is not visible, and if the scene's lowest levels are black.
         """
         return self._floors.get(name, 0.0) if self.scene.contrast == "floor" else 0.0
 
@@ -161,9 +162,9 @@ class LevelImage(DisplayImage):
     def loads_after(self, before: DisplayImage) -> Iterator[tuple[int, Bytes]]:
         """The runs of entries to load after those of `before`, as (first entry, colors).
 
-        If the two images can differ in paints and color scales only, these are the ranges of the surfaces
-        whose paint or scale differs, and neither table is built. Otherwise it is one run from the first to
-        the last entry that differs.
+        If the two images can differ in paints and color scales only, the runs are the ranges of the surfaces
+        whose paint or scale differs, and neither table is built. Otherwise the only run leads from the first
+        to the last entry that differs.
         """
         if not (
             isinstance(before, LevelImage)
@@ -220,7 +221,7 @@ def image_ranges(
 ) -> Mapping[str, LevelRange]:
     """The ranges of an image by surface name; those of the earlier image `before` if they are the same.
 
-    They depend on the surfaces and on the visible pixels, not on the light. The words are divided by the
+    Ranges depend on the surfaces and on the visible pixels, not on the light. The words are divided by the
     `size_of` each visible surface. Larger blocks keep the ranges of the earlier image, because a coarse
     picture is soon followed by a finer picture.
     """

@@ -26,7 +26,7 @@ from autocolor.scene.scene import AUTO, OBJECT, Exposure
 from autocolor.visibility.visible_points import point_chunks
 
 WHOLE: Final = 0
-"""The number of the whole object's range, beside those of the surfaces."""
+"""The number of the whole object's range; surfaces have numbers from 1 on."""
 
 ROUNDING: Final = 2.0**-20
 """Assumed: eight units in the last place of float32, the rounding of a sum of lights."""
@@ -97,8 +97,8 @@ def words_of(
     """The words of a picture, (lines, elements) uint16, read-only; BACKGROUND where nothing is visible.
 
     The minimum and the maximum of the range that is mapped for a surface (see `mapped_ranges`) become its
-    lowest and its highest level; intensities beyond it become the nearest of these. If no range has an
-    extent, such as with all lights off, every pixel gets the middle level, which is neither black nor a
+    lowest and its highest level; intensities beyond the range become the nearer of the two. If no range has
+    an extent, such as with all lights off, every pixel gets the middle level, which is neither black nor a
     highlight. On a surface with `bands`, the intensity gives the shade and the scalar the band. Raises
     InputError if an intensity is not finite.
     """
@@ -170,8 +170,8 @@ def levels_of(fractions: Singles, levels: int, out: Singles | None = None) -> Si
 def dithered_levels(fractions: Singles, levels: int, thresholds: Singles) -> Singles:
     """The levels, 0 to levels - 1, for fractions from 0 to 1 and a threshold between 0 and 1 for each.
 
-    A fraction that lies between two levels gets the upper one where it exceeds the lower one by more than
-    the complement of the threshold. The lowest and the highest level stay whole.
+    A fraction between two levels gets the upper level if it exceeds the lower level by more than the
+    complement of the threshold. The lowest and the highest level stay whole.
     """
     scaled = fractions * np.float32(levels - 1)
     scaled += thresholds

@@ -60,7 +60,7 @@ MOST_SHARE: Final = 0.4
 """Assumed: the largest part of the width of the picture for a legend; a smaller picture has no legend."""
 
 MOST_DIGITS: Final = 6
-"""Assumed: numbers with more digits before or after the point have a power of ten."""
+"""Assumed: numbers with more digits before or after the point are written with a power of ten."""
 
 EXACT: Final = 1e-7
 """Assumed: the error of an exact number, as a fraction of the distance to the next; limits are float32."""
@@ -92,7 +92,7 @@ class Legend:
     labels: tuple[Label, ...]
 
     def has(self, element: int, line: int) -> bool:
-        """Whether it covers a pixel."""
+        """Whether the legend covers a pixel."""
         left, top, right, bottom, _ = self.swatches[0]
         return left <= element <= right and top <= line <= bottom
 
@@ -100,7 +100,7 @@ class Legend:
 def legend(image: DisplayImage, end: int | None = None, at_left: bool | None = None) -> Legend | None:
     """The legend of an image; None without a scalar, if its legend is off, and if it would not fit.
 
-    Assumed: with `at_left` it is in the upper left or the upper right corner. If that is None, it is in the
+    Assumed: `at_left` puts the legend in the upper left or the upper right corner. With None it is in the
     corner where it hides the fewest pixels of the object; ties go to the upper right. With `end`, it is
     placed as if the picture ended before that element.
     """
@@ -216,10 +216,10 @@ class PlacedNumbers(NamedTuple):
 
 
 def numbers_beside(low: float, high: float, bands: int, lines: int, least: int) -> PlacedNumbers:
-    """The numbers beside a bar of bands of so many lines each, from the lowest, `least` lines apart.
+    """The numbers beside a bar, from the lowest up, at least `least` lines apart; a band has `lines` lines.
 
-    They are limits of bands. But bands around whole numbers, such as kinds or counts, have the whole number
-    beside their middle, and these may be half as far apart, because each names its band.
+    Numbers are limits of bands. But bands around whole numbers, such as kinds or counts, have the whole
+    number beside their middle. Such numbers may be half as far apart, because each number names its band.
 
     >>> numbers_beside(0, 100, 4, 24, 22)
     PlacedNumbers(texts=['0', '25', '50', '75', '100'], exponent=0, places=[0, 24, 48, 72, 96])

@@ -45,7 +45,7 @@ def in_palette(colors: Bytes, most: int) -> tuple[Words, Bytes]:
 
 
 def _size(colors: Indices) -> int:
-    """The gain of cutting the box of some colors: its longest side, times their number."""
+    """The gain of cutting the box of some colors: its longest side, times the number of colors."""
     return int((colors.max(axis=0) - colors.min(axis=0)).max()) * len(colors)
 
 
@@ -63,8 +63,8 @@ def _halves(distinct: Indices, counts: Indices, box: Indices) -> list[Indices]:
 def thumbnail(image: DisplayImage, lines: int = LINES, elements: int = ELEMENTS) -> Bytes:
     """The colors of a display image, averaged over rectangles: (lines, elements, 3) uint8.
 
-    An image that has fewer lines or elements keeps those it has. An image of twice the size of the
-    thumbnail is enough, so that a scene that is not shown is soon rendered for one.
+    A smaller image keeps its lines or elements. An image of twice the size of the thumbnail suffices: a scene
+    that is not shown is rendered quickly for a thumbnail.
     """
     sums = image.colors.astype(np.int64)
     counts = np.ones((1, 1, 1), np.int64)

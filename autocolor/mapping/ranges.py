@@ -34,7 +34,7 @@ SCREEN_LEVELS: Final = 16
 FEWEST_LEVELS: Final = 2
 
 USEFUL_LEVELS: Final = 16
-"""Assumed: with fewer levels a surface shows visible steps; each gets as many while the words suffice."""
+"""Assumed: with fewer levels a surface shows visible steps. Every surface gets these if the words suffice."""
 
 
 class LevelRange(NamedTuple):
@@ -73,8 +73,8 @@ def level_ranges(
 
     `covered` has the number of pixels that each surface in use covers in the picture, 0 if it is not visible.
     A surface gets the number of levels that is `fixed` for it, such as by its bands, else the number that it
-    asks for. The other surfaces share the rest, equally or by the pixels that they cover. Raises InputError
-    if that would leave fewer than two levels for a surface.
+    asks for. Surfaces without a number share the rest, equally or by the pixels that they cover. Raises
+    InputError if that would leave fewer than two levels for a surface.
     """
     used = [surface for surface in surfaces if surface.name in covered]
     levels_of = {surface.name: fixed.get(surface.name, surface.levels) for surface in used}
@@ -84,9 +84,9 @@ def level_ranges(
     if asked > room or (sharing and (room - asked) // len(sharing) < FEWEST_LEVELS):
         largest = max(levels_of, key=lambda name: levels_of[name] or 0)
         raise InputError(
-            f"surface {largest!r}: the levels must be at most {room} in all, {FEWEST_LEVELS} of them for"
-            f" each surface that asks for none, not {asked} and {len(sharing)} such surfaces; ask for fewer"
-            " levels"
+            f"surface {largest!r}: the levels of all surfaces must be at most {room}, with {FEWEST_LEVELS}"
+            f" for every surface without a number, not {asked} and {len(sharing)} such surfaces; ask for"
+            " fewer levels"
         )
     if division == "equal":
         shares = [(room - asked) // len(sharing) for _ in sharing]
@@ -106,7 +106,7 @@ def shares_of_words(words: int, pixels: Sequence[int]) -> list[int]:
     """The words, divided in proportion to the square roots of some numbers of pixels.
 
     Each share is at least USEFUL_LEVELS, or an equal share if the words do not suffice for that. Shares are
-    rounded down; the words that are left go, one each, to the shares that lost most. Ties go to the first.
+    rounded down; the shares that lost most get a word more until none is left. Ties go to the first.
 
     >>> shares_of_words(1007, [160_000, 40_000, 100, 0])
     [650, 325, 16, 16]
@@ -169,7 +169,7 @@ def borrowed_words(ranges: Mapping[str, LevelRange], visible: Collection[str], c
 
 
 def without_words(words: Words, borrowed: Words, ranges: Mapping[str, LevelRange]) -> Words:
-    """The raster with each borrowed word replaced by the nearest word of the same surface that is not.
+    """The raster with each borrowed word replaced by the nearest word of the same surface that stays.
 
     Ties go to the lower word. `words` may have any shape; the result has the same shape and is read-only. The
     words of a surface that lent all its words stay, because such a surface is not visible.

@@ -1,7 +1,7 @@
-"""The scalars that are computed for any mesh: coordinates, angles, curvatures and stripes, and their ranges.
+"""The values of a scalar at the visible points, and its range: a scalar of the mesh, or a computed scalar.
 
-To add a scalar, write its function, add it to the table COMPUTING below, and its name to
-`scene.scalar.COMPUTED`.
+Coordinates, angles, curvatures and stripes are computed for any mesh. To add a scalar, write its function,
+add it to the table COMPUTING at the foot, and add its name to `scene.scalar.COMPUTED`.
 """
 
 from __future__ import annotations
@@ -14,24 +14,22 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from autocolor.arrays import Floats, Indices, Singles, chunks, lengths, used_rows
+from autocolor.arrays import Floats, Indices, Singles, chunks, lengths, unit_vector, used_rows
+from autocolor.immutable import read_only
 from autocolor.scalars.interpolation import interpolated, weighted_points
 from autocolor.scene.geometry.curvature import Curvatures
-from autocolor.scene.lights import unit_vector
 from autocolor.scene.mesh import Mesh
-from autocolor.scene.scalar import LARGEST_SCALAR, Scalar
+from autocolor.scene.scalar import LARGEST_SCALAR, POLYGON, MeshScalar, Scalar
 from autocolor.visibility.visible_points import PIXELS_AT_ONCE, POINT, REFLECTED_VIEW, VisiblePoints
 
-# -------------------- ranges
-# If the table `[scalar]` of a scene gives no limits, the range of the scalar itself is shown.
-
 Limits = tuple[float, float]
+"""A range: if the table `[scalar]` of a scene gives no limits, the range of the scalar itself is shown."""
 
 UNIT: Final = (0.0, 1.0)
 """Assumed: the range of a scalar without any value."""
 
 LEAST_EXTENT: Final = 1e-6
-"""Assumed: a range that is shorter than this fraction of its numbers is noise of float32."""
+"""Assumed: a range that is shorter than this fraction of its larger limit is noise of float32."""
 
 SMALLEST: Final = 1e-36
 """The least number whose half is exact enough in float32."""
@@ -53,17 +51,57 @@ class ScalarValues(NamedTuple):
     limits: Limits
 
 
+def scalar_values(
+    mesh: Mesh, scalar: Scalar, points: VisiblePoints, object_coordinates: Floats | None = None
+) -> ScalarValues:
+    """The values of a scalar at the visible points; a scalar of the mesh hides a computed one of its name.
+
+    If the object is a part of the mesh, `object_coordinates`, (nodes, 3), are its nodes. Then a coordinate or
+    a distance has their range: with the range of a wide floor the object would have few colors.
+    """
+    of_mesh = {each.name: each for each in mesh.scalars}.get(scalar.name)
+    if of_mesh is None:
+        values, limits = COMPUTING[scalar.name](mesh, scalar, points)
+        if object_coordinates is not None:
+            limits = limits_of_object(scalar, object_coordinates) or limits
+    else:
+        values, limits = (_of_polygons if of_mesh.of == POLYGON else _of_nodes)(mesh, of_mesh, points)
+    return ScalarValues(read_only(values), limits)
+
+
+def _of_polygons(mesh: Mesh, scalar: MeshScalar, points: VisiblePoints) -> ScalarValues:
+    """The values of the visible polygons, and the range of all polygons."""
+    values = scalar.values.take(points.span_polygons).astype(np.float32)
+    limits = cached_range(mesh, ("of mesh", scalar.name), partial(range_of, scalar.values))
+    return ScalarValues(np.repeat(values, points.span_lengths), limits)
+
+
+def _of_nodes(mesh: Mesh, scalar: MeshScalar, points: VisiblePoints) -> ScalarValues:
+    """The values interpolated between nodes, and the range of the nodes that polygons use."""
+    node_rows = mesh.node_numbers.T
+
+    def corner_values(polygons: Indices) -> Floats:
+        return scalar.values.take(np.take(node_rows, polygons, axis=1))
+
+    def range_of_nodes() -> Limits:
+        used = used_rows(node_rows, len(scalar.values))
+        return range_of(scalar.values if used.all() else scalar.values[used])
+
+    limits = cached_range(mesh, ("of mesh", scalar.name), range_of_nodes)
+    return within(interpolated(mesh, points, corner_values), limits)
+
+
 def within(values: Singles, limits: Limits) -> ScalarValues:
-    """The values, clipped in their own array: rounding may have put some beyond the limits."""
+    """The values, clipped in their own array: rounding may have put a value beyond the limits."""
     return ScalarValues(np.clip(values, *limits, out=values), limits)
 
 
 def widened(low: float, high: float, least: float = 0.0) -> Limits:
     """The range from `low` to `high` in float32, as the values at the pixels are.
 
-    Assumed: if the extent is at most `least`, as of a constant, the range is widened on both sides, so that
-    the value is in the middle of the colors: by half of its number, or by `least` if that is more, or by a
-    half if both are 0.
+    Assumed: if the extent is at most `least`, as for a constant, the range is widened on both sides, so that
+    the value is in the middle of the colors. It is widened by half of the value but at least by `least`; if
+    both are 0, by 0.5.
 
     >>> widened(1.0, 3.0), widened(8.0, 8.0), widened(0.0, 0.0)
     ((1.0, 3.0), (4.0, 12.0), (-0.5, 0.5))
@@ -80,7 +118,7 @@ def widened(low: float, high: float, least: float = 0.0) -> Limits:
 def range_of(values: Floats, cut: float = 0, least: float = 0.0) -> Limits:
     """The least and the largest value, `widened`; UNIT if all values are missing.
 
-    `cut` percent of the values are beyond either end.
+    `cut` percent of the values are left out at either end.
     """
     finite = values[np.isfinite(values)]
     if not len(finite):
@@ -95,7 +133,7 @@ _RANGES: Final[WeakKeyDictionary[Mesh, dict[Hashable, Limits]]] = WeakKeyDiction
 
 
 def cached_range(mesh: Mesh, key: Hashable, compute: Callable[[], Limits]) -> Limits:
-    """A range that depends on the mesh and the key alone, computed once and not for each picture."""
+    """The range for a mesh and a key, computed for the first picture and cached for the next."""
     ranges = _RANGES.setdefault(mesh, {})
     if key not in ranges:
         if len(ranges) >= MOST_RANGES:
@@ -104,10 +142,8 @@ def cached_range(mesh: Mesh, key: Hashable, compute: Callable[[], Limits]) -> Li
     return ranges[key]
 
 
-# -------------------- coordinates and distances
-
 LEAST_SIZE: Final = 1e-6
-"""Assumed: the fraction of an object's size that is rounding, as in the height of a level plate."""
+"""Assumed: the extent, as a fraction of the object's size, that is rounding, as in a level plate's height."""
 
 
 def coordinate(axis: int, mesh: Mesh, scalar: Scalar, points: VisiblePoints) -> ScalarValues:
@@ -118,7 +154,7 @@ def coordinate(axis: int, mesh: Mesh, scalar: Scalar, points: VisiblePoints) -> 
 
 
 def distance(mesh: Mesh, scalar: Scalar, points: VisiblePoints) -> ScalarValues:
-    """The distance from the origin along the scalar's direction; the range is that of the nodes in use."""
+    """The distance from the origin along the scalar's direction, and its range over the nodes in use."""
     direction = direction_of(scalar)
     key = ("distance", *direction.tolist())
     return within(_along(direction, points), cached_range(mesh, key, partial(_range_along, direction, mesh)))
@@ -165,10 +201,11 @@ def _range_along(direction: Floats, mesh: Mesh) -> Limits:
     return widened(min(low for low, _ in ends), max(high for _, high in ends), LEAST_SIZE * size_of(mesh))
 
 
-# -------------------- slope and draft angle
-# Assumed: the normal is that of the mesh, interpolated between the corners as scalars are. It is not turned
-# to the eye, so both are the same from every view: the front of a polygon, where its corners run
-# counterclockwise, is the outside.
+# Slope and draft angle.
+#
+# Assumed: the normal is the normal of the mesh, interpolated between the corners as scalars are. It is not
+# turned to the eye, so both angles are the same from every view: the front of a polygon, where its corners
+# run counterclockwise, is the outside.
 
 SLOPES: Final = (0.0, 90.0)
 DRAFT_ANGLES: Final = (-90.0, 90.0)
@@ -192,7 +229,10 @@ def draft_angle(mesh: Mesh, scalar: Scalar, points: VisiblePoints) -> ScalarValu
 
 
 def _elevations(mesh: Mesh, scalar: Scalar, points: VisiblePoints, *, of_surface: bool) -> Singles:
-    """The angle in degrees of the normal above the plane across the direction; 90 minus that `of_surface`."""
+    """The angle in degrees of the normal above the plane across the direction.
+
+    With `of_surface`, 90 minus its size: the angle of the surface above that plane.
+    """
     pull = direction_of(scalar)
     vectors, numbers = mesh.normals.vectors.T, mesh.normals.numbers.T
     values = np.empty(len(points.pixels), np.float32)
@@ -208,18 +248,17 @@ def _elevations(mesh: Mesh, scalar: Scalar, points: VisiblePoints, *, of_surface
     return values
 
 
-# -------------------- curvatures
-# The sign is that of `Mesh.curvatures`: positive where the surface bends away from its normal, as a ball
-# does. The largest and the smallest curvature are the principal ones.
+# Curvatures. They have the sign of `Mesh.curvatures`: positive where the surface bends away from its normal,
+# as a ball does. The largest and the smallest curvature are the principal curvatures.
 
 CUT: Final = 2.0
-"""Assumed: percent of the normals whose curvature is beyond either end of the range.
+"""Assumed: the percentage of normals whose curvature is left out at either end of the range.
 
-Without it a few sharp bends would take all of the colors.
+Otherwise a few sharp bends would take all of the colors.
 """
 
 LEAST_BEND: Final = 1e-2
-"""Assumed: curvatures up to this, in the inverse of the object's size, are rounding, as on a plate."""
+"""Assumed: curvatures up to this, times the inverse of the object's size, are rounding, as on a plate."""
 
 
 def mean_curvature(mesh: Mesh, scalar: Scalar, points: VisiblePoints) -> ScalarValues:
@@ -262,8 +301,7 @@ def _bending(
     return ScalarValues(interpolated(mesh, points, corner_values), limits)
 
 
-# -------------------- zebra stripes
-# The stripes are reflections of long lamps, which show where a surface is not smooth.
+# Zebra stripes. The stripes are reflections of long lamps, which show where a surface is not smooth.
 #
 # Assumed: the lamps are infinitely far, run along the scalar's direction and stand around it, as many in a
 # half turn as the scalar has stripes. The reflected ray meets a lamp and the gap after it at a phase from 0

@@ -7,28 +7,21 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Floats, Indices, Real, RealArray, Singles, chunks_of_runs, cross, lengths
+from autocolor.arrays import Floats, Indices, Real, RealArray, Singles, chunks_of_runs, cross, normalized
 from autocolor.scene.mesh import Mesh
 from autocolor.visibility.visible_points import POINT, VisiblePoints
 
 POINTS_AT_ONCE: Final = 1 << 14
 
 ROUNDING: Final = 1e-9
-"""How much a corner may turn inward, of the largest turn, and still be straight."""
-
-
-class PolygonRuns(NamedTuple):
-    """The polygons that the visible points see: rows of the polygon table, and how many points see each.
-
-    Both are (runs,) intp, in the order of the points; neighbors differ.
-    """
-
-    polygons: Indices
-    counts: Indices
+"""How much a straight corner may turn inward by rounding, as a fraction of the largest turn."""
 
 
 class WeightedPoints(NamedTuple):
-    """A chunk of the visible points, the slice `pixels`: its polygons, and the weights of corners, (4, n)."""
+    """A chunk of the visible points, the slice `pixels`, with the weights of the corners of their polygons.
+
+    `polygons` and `counts` are as in `polygon_runs`; `weights` is (4, n).
+    """
 
     pixels: slice
     polygons: Indices
@@ -38,9 +31,9 @@ class WeightedPoints(NamedTuple):
     def interpolated(self, corner_values: Floats) -> Singles:
         """Values at the points, (n,), interpolated from the corners of the polygons, (4, polygons).
 
-        NaN is a missing value. If a corner has no value, neither has its polygon.
+        NaN is a missing value. A polygon with a missing corner has no value at any point.
         """
-        # The weights are rounded: weigh differences from one corner, so that a constant stays constant.
+        # The weights are rounded. Weigh the differences from the first corner: a constant stays constant.
         first = corner_values[0].astype(np.float32)
         values = np.repeat(first, self.counts)
         for weight, difference in zip(self.weights[1:], corner_values[1:] - first, strict=True):
@@ -50,18 +43,21 @@ class WeightedPoints(NamedTuple):
         return values
 
 
-def polygon_runs(points: VisiblePoints) -> PolygonRuns:
-    """The runs of visible points that see the same polygon."""
+def polygon_runs(points: VisiblePoints) -> tuple[Indices, Indices]:
+    """The polygons of the runs of visible points that see the same polygon, and the points in each run.
+
+    Both are (runs,) intp, in the order of the points; polygons are rows of the polygon table.
+    """
     polygons = points.span_polygons
     heads = np.flatnonzero(np.diff(polygons, prepend=-1))
     counts = np.add.reduceat(points.span_lengths, heads) if len(heads) else heads
-    return PolygonRuns(polygons[heads], counts)
+    return polygons[heads], counts
 
 
 def weighted_points(mesh: Mesh, points: VisiblePoints) -> Iterator[WeightedPoints]:
     """The visible points in chunks, with the weights of the corners of their polygons.
 
-    Rather than all points to the world, the corners are transformed to camera space.
+    The corners are transformed to camera space, which is less work than all points to the world.
     """
     polygons, counts = polygon_runs(points)
     coordinate_rows, node_rows = mesh.coordinates.T, mesh.node_numbers.T
@@ -85,15 +81,16 @@ def interpolated(mesh: Mesh, points: VisiblePoints, corner_values: Callable[[Ind
     return values
 
 
-# -------------------- the weights of corners
+# The weights of corners.
+#
 # Assumed: in a triangle the weights are the barycentric coordinates, and in a convex quad the generalized
-# ones of Wachspress, which reproduce linear functions. Weights are divided by their sum alone and never
-# negative, so a value is never beyond those of the corners. A quad with a notch is split there into two
+# barycentric coordinates of Wachspress, which reproduce linear functions. Weights are never negative and add
+# up to 1, so a value is never beyond the values of the corners. A quad with a notch is split there into two
 # triangles. A warped quad counts as its projection along the normal of its diagonals. A quad that crosses
 # itself, or a polygon without area, has weights that are merely not negative.
 #
-# Numbers that all points of a polygon share are computed for the polygon, in float64, and repeated row by
-# row. Measured: a repetition of several rows at once takes three times as long.
+# Numbers that all points of a polygon share are computed once a polygon, in float64, and repeated row by row.
+# Measured: repeating several rows at once takes three times as long.
 
 
 def corner_weights(corners: Floats, counts: Indices, points: RealArray[Real]) -> RealArray[Real]:
@@ -107,7 +104,7 @@ def corner_weights(corners: Floats, counts: Indices, points: RealArray[Real]) ->
     no_side = (corners == np.roll(corners, -1, axis=1)).all(axis=0)
     if no_side[2].all():
         _weigh_in_triangles(corners[:, :3], counts, points, weights)
-        return _normalized(weights)
+        return _adding_up_to_1(weights)
     # Measured: if some are triangles, weighing them twice takes less time than dividing the polygons.
     _weigh_in_quads(corners, counts, points, weights)
     triangles = np.flatnonzero(no_side.any(axis=0))
@@ -119,11 +116,11 @@ def corner_weights(corners: Floats, counts: Indices, points: RealArray[Real]) ->
         _weigh_in_triangles(corners[:, three, triangles], counts, np.take(points, columns, axis=1), within)
         weights[:, columns] = 0
         weights[np.repeat(three, counts, axis=1), columns] = within
-    return _normalized(weights)
+    return _adding_up_to_1(weights)
 
 
-def _normalized(weights: RealArray[Real]) -> RealArray[Real]:
-    """The weights, in their own array, divided by their sums; equal ones where the sum is 0."""
+def _adding_up_to_1(weights: RealArray[Real]) -> RealArray[Real]:
+    """The weights, in their own array, divided by their sums; a quarter each where the sum is 0."""
     sums: RealArray[Real] = weights[0] + weights[1]
     for weight in weights[2:]:
         sums += weight
@@ -139,7 +136,8 @@ def _weigh_in_triangles(
 ) -> None:
     """Fill in the weights of the corners, (3, 3, triangles), at each point, up to a factor."""
     outline = _outline(corners, points.dtype)
-    normals = _unit(cross(outline.sides[:, 0], outline.sides[:, 1]))
+    # Normalize, so that the areas in a sliver are not too small for float32.
+    normals = normalized(cross(outline.sides[:, 0], outline.sides[:, 1]))
     # The weight of a corner is the area on the opposite side.
     weights[2], weights[0], weights[1] = _areas(outline, normals, counts, points)
 
@@ -150,7 +148,7 @@ def _weigh_in_quads(
     """Fill in the weights of the corners, (3, 4, quads), at each point, up to a factor."""
     outline = _outline(corners, points.dtype)
     sides = outline.sides
-    normals = _unit(cross(sides[:, 0] + sides[:, 1], sides[:, 1] + sides[:, 2]))
+    normals = normalized(cross(sides[:, 0] + sides[:, 1], sides[:, 1] + sides[:, 2]))
     areas = _areas(outline, normals, counts, points)
     # How much the outline turns at each corner: the area of the triangle with its two neighbors.
     turns = np.einsum("kp,kcp->cp", normals, cross(np.roll(sides, 1, axis=1), sides))
@@ -183,16 +181,8 @@ def _weights_at_notches(corners: Floats, notch: Indices, points: RealArray[Real]
     return weights
 
 
-def _unit(normals: Floats) -> Floats:
-    """The normals in unit length, so that areas in a sliver are not too small for float32; 0 stays 0."""
-    sizes = lengths(normals)
-    sizes[sizes == 0] = 1.0
-    normals /= sizes
-    return normals
-
-
 class _Outline(NamedTuple):
-    """The outlines of polygons: an origin near each polygon, its size, and corners and sides in sizes.
+    """The outlines of polygons: an origin near each polygon, its size, and corners and sides over the size.
 
     The origin has the type of the points, so that it is subtracted from them without rounding.
     """
@@ -214,7 +204,7 @@ def _outline(corners: Floats, dtype: np.dtype[Real]) -> _Outline:
 def _areas(
     outline: _Outline, normals: Floats, counts: Indices, points: RealArray[Real]
 ) -> list[RealArray[Real]]:
-    """The area between each side and each point, in some unit of the polygon; at least 0."""
+    """The area between each side and each point, at least 0, in a unit that all areas of a polygon share."""
     dtype = points.dtype
     relative = [
         row - np.repeat(origin.astype(dtype), counts)

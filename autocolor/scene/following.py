@@ -34,14 +34,14 @@ NEAREST_AIM: Final = 1e-9
 """Assumed: a fraction of the largest coordinate. A nearer aim has too few digits to give a direction."""
 
 LEAST_COORDINATE: Final = 1e-30
-"""Smaller coordinates count as this one, so that a fraction of them is not 0."""
+"""The least size of coordinates for NEAREST_AIM, so that a fraction of it is never 0."""
 
 MOST_NAMES: Final = 8
 """Limit: the names of a circle in a message."""
 
 
 class Frame(NamedTuple):
-    """A place and the directions of three axes there: coordinates that turn and move with something.
+    """A frame of coordinates, which turns and moves with the eye or a light: its origin and its three axes.
 
     `origin` is (3,) and `axes` (3, 3), whose rows are the unit vectors of x, y and z, in world coordinates.
     """
@@ -66,7 +66,7 @@ class Frame(NamedTuple):
         return _vector(self.axes @ np.array(direction))
 
     def to_world(self, row: Row) -> dict[str, Vector]:
-        """The points and directions of a row in world coordinates, by column; None values are left out."""
+        """The points and directions of a row of the frame in the world, by column, without None values."""
         return moved_vectors(row, self.point_to_world, self.direction_to_world)
 
     def from_world(self, row: Row) -> dict[str, Vector]:
@@ -77,7 +77,7 @@ class Frame(NamedTuple):
 def moved_vectors(
     row: Row, point: Callable[[Vector], Vector], direction: Callable[[Vector], Vector]
 ) -> dict[str, Vector]:
-    """The vectors of a row by column, its points and its directions moved; None values are left out."""
+    """The vectors of a row by column, converted by `point` or `direction`; None values are left out."""
     return {
         name: (direction if is_direction else point)(vars(row)[name])
         for name, is_direction in vector_columns(type(row)).items()
@@ -112,7 +112,7 @@ def light_frame(light: Light) -> Frame:
 def frame_of(light: Light, world: Mapping[str, Light], view: View) -> Frame | None:
     """The frame that a light of a scene follows; None for the world.
 
-    `world` has the light that it follows, if any, in world coordinates.
+    `world` must have the light that it follows, if any, in world coordinates.
     """
     if light.follows is None:
         return None
@@ -124,7 +124,7 @@ def frame_of(light: Light, world: Mapping[str, Light], view: View) -> Frame | No
 
 
 def in_world(light: Light, frame: Frame | None) -> Light:
-    """The light of a frame in world coordinates, where it follows nothing."""
+    """The light of a frame converted to world coordinates; it then follows nothing."""
     if frame is None:
         return light
     vectors = frame.to_world(light)
@@ -134,9 +134,9 @@ def in_world(light: Light, frame: Frame | None) -> Light:
 
 
 def _distant_aim(aim: Vector, position: Vector, light: Light, frame: Frame) -> Vector:
-    """The aim of a light of a frame, given in world coordinates with its position.
+    """The aim of a light of a frame; aim and position are in world coordinates.
 
-    An aim that rounding moves onto the position, or close to it, is moved ahead.
+    If rounding put the aim onto the position, or close to it, it is moved ahead.
     """
     nearest = NEAREST_AIM * max(*map(abs, position), LEAST_COORDINATE)
     if math.dist(aim, position) >= nearest or light.axis is None:
@@ -146,20 +146,20 @@ def _distant_aim(aim: Vector, position: Vector, light: Light, frame: Frame) -> V
 
 
 def in_frame(light: Light, frame: Frame | None, follows: str | None) -> Light:
-    """A light of the world in the frame that it is to follow; the inverse of `in_world`."""
+    """A light of the world converted to the frame that it shall follow; the inverse of `in_world`."""
     if frame is None:
         return light
     return with_values(light, {**frame.from_world(light), "follows": follows})
 
 
 def lights_in_world(lights: tuple[Light, ...], view: View) -> tuple[Light, ...]:
-    """The lights of a scene in world coordinates; the same ones where they follow nothing."""
+    """The lights of a scene in world coordinates. Lights that follow nothing are unchanged."""
     if all(light.follows is None for light in lights):
         return lights
     by_name = {light.name: light for light in lights}
     world: dict[str, Light] = {}
     for light in lights:
-        # Walk to a light whose frame is there, and come back.
+        # Walk to a light whose frame is computed, and convert the lights on the way back.
         chain = [light]
         while chain[-1].follows not in (None, EYE) and chain[-1].follows not in world:
             chain.append(by_name[str(chain[-1].follows)])
@@ -171,7 +171,7 @@ def lights_in_world(lights: tuple[Light, ...], view: View) -> tuple[Light, ...]:
 def changes_in_frame(changes: Mapping[str, Any], frame: Frame | None) -> dict[str, Any]:
     """Changes of a light whose points and directions are in world coordinates, as changes in a frame.
 
-    A value that is no vector stays, to be refused by the row.
+    A value that is no vector is left unchanged: the row refuses it.
     """
     turned = dict(changes)
     if frame is not None:
@@ -185,7 +185,7 @@ def changes_in_frame(changes: Mapping[str, Any], frame: Frame | None) -> dict[st
 
 
 def detached(half_space: HalfSpace, light: Light) -> HalfSpace:
-    """The half-space of a light of the world in world coordinates; the same if it is not carried."""
+    """The half-space of a light of the world in world coordinates; unchanged if it is not carried."""
     if not half_space.carried:
         return half_space
     return with_values(half_space, {**light_frame(light).to_world(half_space), "carried": False})
@@ -199,12 +199,12 @@ def attached(half_space: HalfSpace, light: Light) -> HalfSpace:
 
 
 def followers_of(name: str, lights: Sequence[Light]) -> list[str]:
-    """The names of the lights that follow the light of a name directly."""
+    """The names of the lights that directly follow a light, given by its name."""
     return [light.name for light in lights if light.follows == name != EYE]
 
 
 def names_to_follow(light: Light, lights: Sequence[Light]) -> list[str]:
-    """The names of the other lights that a light can follow: those with an aim that do not follow it."""
+    """The names of the other lights that a light can follow: they have an aim and do not follow the light."""
     by_name = {each.name: each for each in lights}
     return [
         each.name

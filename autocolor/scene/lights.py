@@ -18,7 +18,7 @@ from typing import Annotated, ClassVar, Final, Unpack
 
 import numpy as np
 
-from autocolor.arrays import Floats
+from autocolor.arrays import Floats, unit_vector
 from autocolor.checks import Vector
 from autocolor.errors import InputError
 from autocolor.scene.changes import FlapChanges, FlapsChanges, HalfSpaceChanges, LightChanges, LinksChanges
@@ -441,19 +441,6 @@ class Light(Row):
         Raises InputError for an unknown field or an invalid value.
         """
         return replaced(self, changes)
-
-
-def unit_vector(direction: Vector) -> Vector:
-    """The direction with the length 1; it must not be zero.
-
-    >>> unit_vector((0.0, 3e36, 4e36))
-    (0.0, 0.6, 0.8)
-    """
-    # Scale by the largest component first, as squares of very large or small ones over- or underflow.
-    largest = max(abs(component) for component in direction)
-    scaled = tuple(component / largest for component in direction)
-    length = math.hypot(*scaled)
-    return (scaled[0] / length, scaled[1] / length, scaled[2] / length)
 
 
 def middle_between(one: Vector, other: Vector) -> Vector:

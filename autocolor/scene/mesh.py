@@ -1,8 +1,8 @@
 """The mesh: the node table and the polygon table.
 
 Paper: "Introduction". The shape of an object is a mesh of polygons with three or four sides, defined by two
-tables: nodes with their coordinates, and polygons with the numbers of their nodes. A `Mesh` checks both, and
-they never change afterwards.
+tables: nodes with their coordinates, and polygons with the numbers of their nodes. A `Mesh` checks both
+tables, and they never change afterwards.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from autocolor.logs import logger_of, timed
 from autocolor.scene.columns import Problem
 from autocolor.scene.geometry.curvature import Curvatures, curvatures
 from autocolor.scene.geometry.foreign_meshes import foreign_tables
-from autocolor.scene.geometry.normals import CREASE_ANGLE, NodeNormals, node_normals
+from autocolor.scene.geometry.normals import CREASE_ANGLE, NodeNormals, edge_keys, node_normals
 from autocolor.scene.geometry.planes import SharedPlanes, shared_planes
 from autocolor.scene.kinds import Number
 from autocolor.scene.scalar import MeshScalar, joined_scalars, scalar_problems
@@ -45,10 +45,11 @@ class Mesh(Immutable):
 
     `coordinates` is (nodes, 3) float64. `node_numbers` is (polygons, 4) intp, rows of the node table counted
     from 0; a triangle repeats its last node, and (polygons, 3) is accepted if all are triangles.
-    `part_numbers` is (polygons,) intp, rows of `part_names` counted from 0; without them all polygons are of
-    the first part. Polygons that meet at more than `crease_angle` degrees keep a sharp edge. The tables are
-    copied and stored by columns (Fortran order), so that `.T` is the contiguous array that the renderer works
-    on. `scalars` are numbers at the nodes or polygons. `Mesh.of` converts meshes of other programs.
+    `part_numbers` is (polygons,) intp, rows of `part_names` counted from 0; without part numbers all
+    polygons belong to the first part. Polygons that meet at more than `crease_angle` degrees keep a sharp
+    edge. The tables are copied and stored by columns (Fortran order), so that `.T` is the contiguous array
+    that the renderer works on. `scalars` are numbers at the nodes or polygons. `Mesh.of` converts meshes of
+    other programs.
     """
 
     coordinates: Floats
@@ -126,7 +127,7 @@ class Mesh(Immutable):
 
     @cached_property
     def shared_planes(self) -> SharedPlanes | None:
-        """The planes in which polygons may overlap; None if there is none."""
+        """The planes in which polygons may overlap; None if there are none."""
         return shared_planes(self.coordinates, self.node_numbers)
 
     @property
@@ -154,7 +155,7 @@ class Mesh(Immutable):
 
     @cached_property
     def parts_in_use(self) -> tuple[int, ...]:
-        """The part numbers that have a polygon."""
+        """The numbers of the parts that have polygons."""
         used = used_rows(self.part_numbers[None], len(self.part_names))
         return tuple(np.flatnonzero(used).tolist())
 
@@ -164,13 +165,11 @@ class Mesh(Immutable):
         keys = np.empty((4, len(self.node_numbers)), np.int64)
         for chunk in chunks(keys.shape[1], POLYGONS_AT_ONCE):
             start = self.node_numbers.T[:, chunk]
-            end = np.roll(start, -1, axis=0)
-            keys[:, chunk] = np.minimum(start, end) * len(self.coordinates) + np.maximum(start, end)
-            # The edge from a node to itself in a triangle does not count.
-            keys[:, chunk][start == end] = -1
+            keys[:, chunk] = edge_keys(start, np.roll(start, -1, axis=0), len(self.coordinates))
         in_order = keys.ravel()
         in_order.sort()
         changes = np.count_nonzero(in_order[1:] != in_order[:-1])
+        # The edge from a node to itself in a triangle, with the key -1, does not count.
         return int(changes) + bool(len(in_order) and in_order[0] >= 0)
 
     @property
@@ -182,7 +181,7 @@ class Mesh(Immutable):
     def of(
         cls, source: object, polygons: object = None, *, part: str = PART, crease_angle: float = CREASE_ANGLE
     ) -> Mesh:
-        """The mesh, of one part, of a mesh of trimesh, PyVista or meshio, or of nodes and polygons.
+        """A mesh of one part, from a mesh of trimesh, PyVista or meshio, or from nodes and polygons.
 
         Polygons may have any number of sides from three on; polygons of more than four are split. Data of one
         component at the points or the cells of PyVista and meshio become scalars. A Mesh is returned
@@ -211,8 +210,8 @@ class Mesh(Immutable):
     ) -> Mesh:
         """The mesh with these tables themselves, without checks or copies: they may be mapped files.
 
-        The tables must have the types of the fields, be stored by columns and read-only, and so must the
-        normals. Normals and planes that are given are not computed.
+        Tables and normals must have the types of their fields, and be stored by columns and read-only.
+        Normals and planes are computed if they are not given.
         """
         mesh = object.__new__(cls)
         vars(mesh).update(
@@ -271,7 +270,7 @@ class Mesh(Immutable):
 
 
 def _numbers(problems: list[str], what: str, value: object, dtype: type) -> AnyArray:
-    """The value as an array of the type, or an empty one after a problem was noted."""
+    """The value as an array of the type; if that is impossible, a problem is noted and the array is empty."""
     try:
         array = np.asarray(value)
     except (TypeError, ValueError, OverflowError):
@@ -285,7 +284,7 @@ def _numbers(problems: list[str], what: str, value: object, dtype: type) -> AnyA
 
 
 def _rows(problems: list[str], what: str, value: object, dtype: type, widths: tuple[int, ...]) -> AnyArray:
-    """A copy of the value, (rows, width), as contiguous (width, rows); empty after a problem was noted."""
+    """A copy of the value, (rows, width), as contiguous (width, rows); empty if a problem is noted."""
     array = _numbers(problems, what, value, dtype)
     if array.size == 0:
         array = array.reshape(0, widths[-1])
@@ -297,7 +296,7 @@ def _rows(problems: list[str], what: str, value: object, dtype: type, widths: tu
 
 
 def _check_rows(problems: list[str], what: str, numbers: Indices, count: int, table: str) -> None:
-    """Note the first number, or group of numbers in a column, that is no row of a table."""
+    """Note the first number, or the first column of numbers, that is no row of a table."""
     if not numbers.size or (numbers.min() >= 0 and numbers.max() < count):
         return
     missing = (numbers < 0) | (numbers >= count)

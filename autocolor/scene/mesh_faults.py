@@ -1,6 +1,7 @@
-"""The faults of a mesh that can be rendered nevertheless, with the rows of the tables that have them.
+"""The faults of a mesh, with the rows of the nodes and polygons that have them.
 
-They matter to whoever made the mesh, and to programs that compute with it.
+A mesh with faults can be rendered. They matter to the author of the mesh, and to programs that compute with
+it.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ import numpy as np
 
 from autocolor.arrays import AnyArray, Booleans, Floats, Indices, chunks, cross, dot, lengths, runs, used_rows
 from autocolor.immutable import read_only
-from autocolor.scene.geometry.normals import MIXER, group_numbers, unite
+from autocolor.scene.geometry.normals import MIXER, edge_keys, group_numbers, unite
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalar import NODE, POLYGON, MeshScalar
 
@@ -31,10 +32,10 @@ KINDS: Final = {
     "crowded": "edges of more than two polygons",
     "without area": "polygons without area",
 }
-"""The kinds of faults and their descriptions, from the lightest to the gravest, which are numbered from 1."""
+"""The kinds of faults and their descriptions, from the lightest to the gravest; numbers count from 1."""
 
 FAULT: Final = "fault"
-"""The name of the scalar that has the number of the gravest fault of each polygon."""
+"""The name of the scalar whose values are the gravest faults of the polygons, by number."""
 
 WARPED: Final = 0.01
 """Assumed: a quad is warped if the distance of its diagonals exceeds this fraction of its size."""
@@ -42,7 +43,7 @@ WARPED: Final = 0.01
 FLAT: Final = 1e-12
 """Assumed: a polygon has no area if twice its area is below this fraction of its squared size."""
 
-AT_A_TIME: Final = 1 << 14
+POLYGONS_AT_ONCE: Final = 1 << 14
 """Polygons in a chunk, so that the arrays fit in the processor cache."""
 
 
@@ -51,7 +52,7 @@ class Fault:
     """All faults of one kind in a mesh.
 
     `of` is EDGE, NODE or POLYGON. `rows` are the rows of the nodes or polygons that have the fault, (rows,),
-    or of the two nodes of each edge, (edges, 2). `polygons` are the rows of the polygons concerned.
+    or the rows of the two nodes of each edge, (edges, 2). `polygons` are the rows of all polygons concerned.
     """
 
     kind: str
@@ -67,7 +68,7 @@ class Fault:
 
 
 def mesh_faults(mesh: Mesh) -> tuple[Fault, ...]:
-    """The faults of a mesh, in the order of KINDS, without kinds that the mesh does not have."""
+    """The faults of a mesh, in the order of KINDS, without the kinds that it does not have."""
     coordinates, node_numbers = mesh.coordinates, mesh.node_numbers
     edges = edge_faults(node_numbers, len(coordinates))
     shapes = polygon_shapes(coordinates, node_numbers)
@@ -76,27 +77,20 @@ def mesh_faults(mesh: Mesh) -> tuple[Fault, ...]:
     is_unwelded[unwelded] = True
     unused = np.flatnonzero(~used_rows(node_numbers.T, len(coordinates)))
     repeated = repeated_polygons(node_numbers)
-    faults = {
-        "border": Fault(
-            "border",
-            EDGE,
-            edges.borders,
-            edges.border_polygons,
-            tuple(holes_of(coordinates, edges.borders)),
-        ),
-        "unwelded": Fault(
-            "unwelded", NODE, unwelded, np.flatnonzero(is_unwelded[node_numbers.T].any(axis=0))
-        ),
-        "unused": Fault("unused", NODE, unused, np.empty(0, np.intp)),
-        "warped": Fault("warped", POLYGON, shapes.warped, shapes.warped),
-        "concave": Fault("concave", POLYGON, shapes.concave, shapes.concave),
-        "crossed": Fault("crossed", POLYGON, shapes.crossed, shapes.crossed),
-        "turned": Fault("turned", EDGE, edges.turned, edges.turned_polygons),
-        "repeated": Fault("repeated", POLYGON, repeated, repeated),
-        "crowded": Fault("crowded", EDGE, edges.crowded, edges.crowded_polygons),
-        "without area": Fault("without area", POLYGON, shapes.without_area, shapes.without_area),
-    }
-    return tuple(faults[kind] for kind in KINDS if len(faults[kind].rows))
+    holes = tuple(holes_of(coordinates, edges.borders))
+    faults = (
+        Fault("border", EDGE, edges.borders, edges.border_polygons, holes),
+        Fault("unwelded", NODE, unwelded, np.flatnonzero(is_unwelded[node_numbers.T].any(axis=0))),
+        Fault("unused", NODE, unused, np.empty(0, np.intp)),
+        Fault("warped", POLYGON, shapes.warped, shapes.warped),
+        Fault("concave", POLYGON, shapes.concave, shapes.concave),
+        Fault("crossed", POLYGON, shapes.crossed, shapes.crossed),
+        Fault("turned", EDGE, edges.turned, edges.turned_polygons),
+        Fault("repeated", POLYGON, repeated, repeated),
+        Fault("crowded", EDGE, edges.crowded, edges.crowded_polygons),
+        Fault("without area", POLYGON, shapes.without_area, shapes.without_area),
+    )
+    return tuple(fault for fault in faults if len(fault.rows))
 
 
 def fault_scalar(mesh: Mesh, faults: Sequence[Fault]) -> MeshScalar:
@@ -107,16 +101,13 @@ def fault_scalar(mesh: Mesh, faults: Sequence[Fault]) -> MeshScalar:
     return MeshScalar(FAULT, read_only(values), POLYGON)
 
 
-# -------------------- edges and holes
-
-
 @dataclass(frozen=True, eq=False)
 class EdgeFaults:
-    """Edges, each (edges, 2) rows of nodes, and the rows of the polygons that have them, ascending.
+    """Edges, (edges, 2) rows of nodes, and the rows of the polygons that have them, ascending.
 
-    A border has one polygon, a shared edge two, and a crowded edge three or more. If the polygons of a shared
-    edge face the same side, they run along it in opposite directions. Along a turned edge both run in the
-    same direction. Edges are compared by their nodes alone: two nodes at one place are not joined.
+    A border has one polygon, a shared edge two polygons, and a crowded edge three or more. If the polygons of
+    a shared edge face the same side, they run along it in opposite directions. Along a turned edge both run
+    in the same direction. Edges are compared by their nodes alone: nodes at the same place are not joined.
     """
 
     borders: Indices
@@ -134,7 +125,7 @@ def edge_faults(node_numbers: Indices, node_count: int) -> EdgeFaults:
     # An edge from a node to itself closes a triangle: leave it out.
     places = np.flatnonzero(starts.ravel() != ends.ravel())
     start, end = starts.ravel()[places], ends.ravel()[places]
-    keys = np.minimum(start, end) * node_count + np.maximum(start, end)
+    keys = edge_keys(start, end, node_count)
     order = np.argsort(keys)
     is_first = np.diff(keys[order], prepend=-1) != 0
     firsts = np.flatnonzero(is_first)
@@ -165,8 +156,8 @@ def edge_faults(node_numbers: Indices, node_count: int) -> EdgeFaults:
 class Hole:
     """A closed loop of border edges, or the rim of an open surface.
 
-    `edges` is their number and `length` their sum; `center` is the middle of the bounds, and `node` one of
-    the nodes. A loop that is not `is_closed` has branches, as where two holes share a node.
+    `edges` is the number of its edges and `length` their total length; `center` is the middle of its bounds,
+    and `node` its lowest node. A loop that is not `is_closed` has branches, as where two holes share a node.
     """
 
     edges: int
@@ -211,9 +202,6 @@ def holes_of(coordinates: Floats, borders: Indices) -> list[Hole]:
     ]
 
 
-# -------------------- the shapes of polygons
-
-
 @dataclass(frozen=True)
 class QuadShapes:
     """Counts of quads: all, quads that are not flat, quads with one reflex corner, and bow-ties."""
@@ -244,7 +232,7 @@ def quad_shapes(mesh: Mesh) -> QuadShapes:
 def polygon_shapes(coordinates: Floats, node_numbers: Indices) -> Shapes:
     """The rows of warped, concave and crossed quads, and of polygons without area."""
     rows_of_shapes: tuple[list[Indices], ...] = ([], [], [], [])
-    for chunk in chunks(len(node_numbers), AT_A_TIME):
+    for chunk in chunks(len(node_numbers), POLYGONS_AT_ONCE):
         rows = node_numbers[chunk]
         shapes = _shapes(np.ascontiguousarray(coordinates[rows].T), rows[:, 2] != rows[:, 3])
         for parts, mask in zip(rows_of_shapes, shapes, strict=True):
@@ -266,13 +254,13 @@ def _shapes(corners: Floats, is_quad: Booleans) -> tuple[Booleans, Booleans, Boo
     normals /= np.where(has_normal, length, 1.0)
     apart = np.abs(dot(corners[:, 1] - corners[:, 0], normals))
 
-    # A corner that turns against the normal is reflex; two of them make a bow-tie.
+    # A corner that turns against the normal is reflex; two reflex corners make a bow-tie.
     edges = np.roll(corners, -1, axis=1) - corners
     turned = np.zeros(corners.shape[2], np.intp)
     for corner in range(4):
         turned += dot(cross(edges[:, corner - 1], edges[:, corner]), normals) < -1e-9
 
-    # A polygon has no area if neither diagonal divides off a triangle that has some.
+    # A polygon has no area if neither diagonal divides off a triangle with area.
     halves = ((0, 1, 2), (0, 2, 3), (0, 1, 3), (1, 2, 3))
     has_area = np.zeros(corners.shape[2], np.bool_)
     for first, second, third in halves:
@@ -280,9 +268,6 @@ def _shapes(corners: Floats, is_quad: Booleans) -> tuple[Booleans, Booleans, Boo
         has_area |= lengths(cross(one, other)) >= FLAT
     quads = is_quad & has_area
     return quads & (apart > WARPED), quads & (turned == 1), quads & ((turned > 1) | ~has_normal), ~has_area
-
-
-# -------------------- rows that repeat
 
 
 def repeated_polygons(node_numbers: Indices) -> Indices:
@@ -307,7 +292,7 @@ def repeated_rows(table: AnyArray) -> Indices:
     """The rows of a table of whole numbers, (rows, columns), that equal another row, ascending."""
     if not len(table):
         return np.empty(0, np.intp)
-    # Rows that are equal have equal sums of their mixed columns: only those are compared.
+    # Equal rows have equal sums of their mixed columns: compare only the rows with equal sums.
     sums = np.zeros(len(table), np.uint64)
     for column in table.astype(np.int64, copy=False).T:
         sums = (sums ^ np.ascontiguousarray(column).view(np.uint64)) * MIXER

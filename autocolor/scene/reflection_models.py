@@ -63,10 +63,10 @@ LEAST_REFLECTANCE: Final = 0.001
 """Assumed: the least F(0) to divide by; a refractive index of 1.065 has it."""
 
 LEAST_INDEX: Final = 1.07
-"""The least refractive index, rounded to where F(0) is above the least."""
+"""The least refractive index, rounded up, so that F(0) is above LEAST_REFLECTANCE."""
 
 START_CURVE: Final = ((0.0, 0.04), (50.0, 0.06), (70.0, 0.17), (80.0, 0.39), (90.0, 1.0))
-"""The curve to begin with: that of glass, whose refractive index is 1.5."""
+"""The initial curve: the reflectance of glass, whose refractive index is 1.5."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -75,7 +75,7 @@ class SpecularGrowth(Row):
 
     Paper: "The Lighting Model". For a more accurate rendering, S should be a function of the angle of
     incidence as well as of the material. Departs: S is constant, as in Figure 2, unless a surface asks for
-    more. Then it is multiplied by F(I) / F(0), where F is a curve through points, or Schlick's F0 + (1 - F0)
+    more. Then S is multiplied by F(I) / F(0), where F is a curve through points, or Schlick's F0 + (1 - F0)
     (1 - cos(I))^5 (C. Schlick, Computer Graphics Forum, 1994). F0 is the share that the material reflects at
     normal incidence: given, or ((n - 1) / (n + 1))^2 for its refractive index n.
 
@@ -116,7 +116,7 @@ class SpecularGrowth(Row):
     ] = None
 
     def rules(self) -> Iterator[Problem]:
-        """At most one of the three is given."""
+        """At most one of the three columns is given."""
         given = [name for name in self.alternatives if vars(self)[name] is not None]
         for first, second in combinations(given, 2):
             yield Problem((second,), f"must stand without {first}, not beside it; leave one out")
@@ -220,7 +220,7 @@ class BlinnPhong(_PowerOfCosine):
 
 
 LEAST_FACING: Final = 0.3
-"""Assumed: the least N.V to divide by, so that no silhouette outshines its surface by far.
+"""Assumed: the least N.V to divide by; otherwise a silhouette would far outshine its surface.
 
 Measured on a sphere and on the coupe, roughness 0.3: with light from the front and from the side the largest
 factor is 1.0 and 2.8, at N.V above 0.5 whatever the bound. With light from behind to one side it is 47 at N.V
@@ -299,7 +299,7 @@ class CookTorrance(ReflectionModel):
 
 
 def _grown(factor: Singles, growth: Singles | None) -> Singles:
-    """A specular factor times the growth of S, in its own array; itself if S is constant."""
+    """A specular factor times the growth of S, in its own array; unchanged if S is constant."""
     if growth is None:
         return factor
     with np.errstate(under="ignore"):

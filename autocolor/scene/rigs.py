@@ -1,6 +1,6 @@
 """Lights moved as a whole: rigs, which light another object in the same way, and mirrored lights.
 
-A rig is the lights of a scene with the size of its object. Assumed: the lights keep their directions and
+A rig has the lights of a scene and the size of its object. Assumed: the lights keep their directions and
 their places relative to the object. They are moved with the middle of its box, and are nearer or farther as
 the diagonal of the box is shorter or longer. Lights that follow something keep their place relative to that,
 nearer or farther. Widths and reaches are scaled with the diagonal. Intensities stay, as the light at a point
@@ -53,8 +53,8 @@ class Rig(Row):
         """The lights fitted to an object with other least and largest coordinates.
 
         For the same object they are exactly the same lights. An object that is a point has no size: then
-        distances stay. Raises InputError if a coordinate would be too large, or a light and its aim too close
-        to each other.
+        distances stay. Raises InputError if a coordinate would be too large, or a light and its aim would be
+        too close to each other.
         """
         if (minimum, maximum) == (self.minimum, self.maximum):
             return self.lights
@@ -66,7 +66,7 @@ class Rig(Row):
 
 
 def _moved(light: Light, scale: float, old: Vector, new: Vector) -> Light:
-    """The light with each coordinate scaled about one point and moved with it to another.
+    """The light scaled about the point `old`, which moves to `new`.
 
     A light that follows something is scaled about the origin of its frame, and a carried half-space about its
     light.
@@ -109,7 +109,7 @@ def _same(direction: Vector) -> Vector:
 
 
 def _scaled_lengths(row: Row, scale: float) -> dict[str, float]:
-    """The numbers of a row that are in world units, by column, times a scale; None values are left out."""
+    """The lengths of a row, which are in world units, by column, times a scale; None values are left out."""
     return {
         name: scale * vars(row)[name]
         for name, (column, _, _) in fields_of(type(row)).items()
@@ -133,7 +133,7 @@ def mirrored(light: Light, name: str, axis: str, about: float) -> Light:
         return copy
     mirror = np.eye(3)
     mirror[number, number] = -1
-    # Mirrored axes are left-handed: the frame of the copy has the opposite of one of them.
+    # Mirrored axes are left-handed, and the frame of the copy is right-handed: one of its axes is reversed.
     turned = np.diag(light_frame(copy).axes @ mirror @ light_frame(light).axes.T) < 0
     half_spaces = []
     for row in light.half_spaces:
@@ -146,7 +146,7 @@ def mirrored(light: Light, name: str, axis: str, about: float) -> Light:
 
 
 def axis_number(axis: str) -> int:
-    """The number of an axis, 0 to 2. Raises UsageError if there is none of that name."""
+    """The number of an axis, 0 to 2. Raises UsageError for any other name than x, y and z."""
     if axis not in AXES:
         raise UsageError(f"an axis must be {either(AXES)}, not {axis!r}")
     return AXES.index(axis)

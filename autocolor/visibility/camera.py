@@ -32,7 +32,8 @@ be rounded by more than a thousandth of a pixel.
 """
 
 LEAST_UNIT: Final = 2.0**-800
-"""Assumed: far below the size of any object, and still a divisor for the farthest light."""
+"""Assumed: the least unit of a view, far below the size of any object. The coordinates of the farthest light
+stay finite in it."""
 
 POINTS_AT_ONCE: Final = 1 << 14
 
@@ -85,9 +86,9 @@ def unit_and_near(mesh: Mesh, view: View) -> tuple[float, float]:
 
 
 def near_of(near: float, nearest_corner: float) -> float:
-    """The depth of the near plane, given the depth of the nearest corner of a polygon.
+    """The depth of the near plane, given the depth of the nearest corner of all polygons.
 
-    If all corners lie before the eye, the near plane clips nothing beyond LEAST_NEAR.
+    If all corners lie before the eye, nothing beyond LEAST_NEAR is clipped.
     """
     return max(nearest_corner, LEAST_NEAR) if nearest_corner > 0 else near
 
@@ -110,7 +111,7 @@ def rotated(axes: Floats, points: RealArray[Real], origin: Vector = (0.0, 0.0, 0
 
 
 def clipped_at_near_plane(polygons: CameraPolygons) -> CameraPolygons:
-    """The polygons with no corner nearer than the near plane; clipping adds nodes and normals.
+    """The polygons clipped at the near plane. Clipping adds nodes and normals.
 
     Each edge is clipped once, from its lower to its higher node number. So polygons that share an edge share
     the clipped edge, too.
@@ -203,13 +204,13 @@ class _Clipped:
         return self._node_of_edge[low, high]
 
     def _normal_between(self, low: int, high: int, fraction: float) -> int:
-        """The number of a new normal, interpolated between two."""
+        """The number of a new normal, interpolated between the normals of two corners."""
         normals = self._polygons.normals
         self.new_normals.append(normals[:, low] + fraction * (normals[:, high] - normals[:, low]))
         return int(normals.shape[1]) + len(self.new_normals) - 1
 
 
 def _merged(table: Indices, beyond: Indices, clipped: list[list[int]], order: Indices) -> Indices:
-    """The columns `beyond` the near plane and the clipped columns, in an order."""
+    """The columns of a table `beyond` the near plane, and the clipped columns, in a given order."""
     columns = np.array(clipped, np.intp).reshape(-1, 4).T
     return np.take(np.concatenate([np.take(table, beyond, axis=1), columns], axis=1), order, axis=1)

@@ -8,13 +8,13 @@ A key is made in four steps:
    rounding: a running sum over all segments is exact, and the batch algorithm and the literal one find the
    same number at every pixel. A depth is off by at most half a unit for each pixel from the left end.
 3. If polygons share a plane, all use the start and the step of the plane, a linear function of the raster.
-   With depths of their own, now one polygon and now the other would be nearer.
+   With depths of their own, the polygons would be nearer by turns, from pixel to pixel.
 4. The low bits of a key hold the number of the polygon. So of equally near polygons the highest number is
    visible: a polygon that faces the eye if there is one, and of those the last in the polygon table, as a
    decal on its ground should be.
 
-Measured and rejected: keys from three nodes of each polygon, rounded once. They differed in 4 to 608 of 2,000
-pairs of coplanar polygons.
+Measured and rejected: keys from three nodes of each polygon, rounded once. The keys of 4 to 608 of
+2,000 pairs of coplanar polygons differed.
 """
 
 from __future__ import annotations
@@ -32,24 +32,25 @@ KEY_BITS: Final = 62
 """One less than the 63 bits of a positive number, because rounding may add to the nearest depth."""
 
 LEAST_NUMBER_BITS: Final = 16
-"""So many that float64 holds every depth, at most 46 bits, exactly, with some to spare."""
+"""The fewest bits for polygon numbers. Depths then have at most 46 bits, which float64 holds exactly."""
 
-MOST_ROUNDED: Final = 1 << 10
-"""In units: a plane's depth below 2^62 is exact to 2^9 of them in float64."""
+PLANE_DEPTH_ROUNDING: Final = 1 << 10
+"""In units of depth: twice the rounding in float64 of a plane's depth, which is below 2^62."""
 
 CLOSE: Final = 1024.0
-"""Corners of a larger inverse depth are close to the eye."""
+"""The inverse depth above which a corner is close to the eye."""
 
 EXTENTS_AT_ONCE: Final = 1 << 16
 
 
 @dataclass(frozen=True, eq=False)
 class DepthScale:
-    """How depths become keys: multiples of `number_limit`, of which the inverse depth 1 is `factor`.
+    """How inverse depths become keys: `factor` is the whole number for the inverse depth 1.
 
-    `number_limit` is a power of two above the numbers of all polygons. `planes`, (polygons,) intp, is the
-    shared plane that gives each polygon its depth, -1 for none; None if no polygon has one. The inverse depth
-    of a plane at x, y (pixels) is A x + B y + C of `linear`, (3, planes).
+    Keys are these whole numbers times `number_limit`, a power of two above the numbers of all polygons.
+    `planes`, (polygons,) intp, is the shared plane that gives a polygon its depth, -1 for a polygon with its
+    own depth; None if all have their own. `linear`, (3, planes), has A, B and C of each plane: its inverse
+    depth at x, y (pixels) is A x + B y + C.
     """
 
     number_limit: int
@@ -65,9 +66,10 @@ class DepthScale:
         return round(inverse_depth * self.factor) * self.number_limit
 
     def keys(self, inverse_depth: Floats) -> Numbers:
-        """The keys of inverse depths, or of their differences; the number of a polygon can be added.
+        """The keys of inverse depths, or of their differences, without the number of a polygon.
 
-        A difference beyond the largest key can only belong to a segment of one pixel, which takes no step.
+        A difference beyond the largest key is clipped: it belongs to a segment of one pixel, which takes no
+        step.
         """
         whole = np.rint(inverse_depth * self.factor)
         most = 2.0**KEY_BITS / self.number_limit
@@ -135,14 +137,14 @@ def plane_keys(
 
 
 def plane_rounding(projected: Projection) -> int:
-    """The most units by which the rounded depth of a shared plane is off: half a unit a pixel, and more."""
-    return projected.elements + MOST_ROUNDED
+    """The largest error of a shared plane's rounded depth: half a unit of depth a pixel, and more."""
+    return projected.elements + PLANE_DEPTH_ROUNDING
 
 
 def numbers_of_polygons(projected: Projection, polygons: Indices) -> Numbers:
-    """The numbers that keys have for some polygons of the projection.
+    """The numbers of some polygons of the projection in depth keys.
 
-    They are counted from 1; the polygons that face the eye come after all others.
+    They count from 1; the polygons that face the eye come after all others.
     """
     numbers: Numbers = polygons + np.where(
         projected.from_behind.take(polygons), 1, 1 + projected.corners.shape[1]
@@ -151,7 +153,7 @@ def numbers_of_polygons(projected: Projection, polygons: Indices) -> Numbers:
 
 
 def polygons_of_numbers(projected: Projection, numbers: Numbers) -> Indices:
-    """The polygons of the projection with these numbers, from 1 on."""
+    """The polygons of the projection with these numbers: the inverse of `numbers_of_polygons`."""
     polygons = numbers - 1
     polygons[polygons >= projected.corners.shape[1]] -= projected.corners.shape[1]
     return polygons
@@ -161,8 +163,8 @@ def polygons_of_numbers(projected: Projection, numbers: Numbers) -> Indices:
 class Segments:
     """Segments that cover the center of a pixel; every array is (segments,).
 
-    `number` is the polygon's, as in keys. A segment covers `count` pixels from `first_pixel` on, a flat place
-    in the raster. Its depth key is `start` + k `step` at its pixel k, int64.
+    `number` is the number of the polygon in depth keys. A segment covers `count` pixels from `first_pixel`
+    on, a flat place in the raster. Its depth key is `start` + k `step` at its pixel k, int64.
     """
 
     number: Numbers

@@ -1,8 +1,8 @@
 """The projection of polygons to the raster: polygons that may be visible, with the places of their nodes.
 
 Both hidden-surface algorithms start from a projection, so that they calculate with the same numbers. The
-paper does not describe its projection; this is a perspective one with square pixels whose centers are at
-half-integers, line 0 on top.
+paper does not describe its projection. This is a perspective projection onto square pixels, whose centers are
+at half-integers; line 0 is at the top.
 """
 
 from __future__ import annotations
@@ -43,20 +43,20 @@ ROUNDING: Final = 1e-6
 PLANE_ROUNDING: Final = 1e-12
 """In units, far above the rounding of the distance of a plane from the eye."""
 
-MOST_OFF: Final = 0.05
+LARGEST_PLANE_ERROR: Final = 0.05
 """Assumed: how far a shared plane may be from the corners of its polygons, as a fraction of the plane's
 distance from the eye.
 
-The polygons of a plane that is seen more nearly edge-on have depths of their own, so that a decal may be torn
-or hidden there: the eye is then within 20 times the rounding of the corners from the plane. Measured: from
+If a plane is seen more nearly edge-on, its polygons have depths of their own, so that a decal may be torn or
+hidden there. The eye is then within 20 times the rounding of the corners from the plane. Measured: from
 2e-6 to 2e-3 above a ground of size 1, 27 decals of 2,061 were torn with 0.001, and 10 of 2,031 with 0.05; by
 ray casting no more polygons were seen through others in front of them.
 """
 
 LARGE: Final = 1 << 21
-"""Polygons from which on a mesh is preselected, with a few bytes a node.
+"""The number of polygons from which on a mesh is preselected, with a few bytes a node.
 
-Measured: fewer are projected at once in two thirds of the time, for at most 150 MB.
+Measured: without preselection, a smaller mesh takes two thirds of the time and at most 150 MB.
 """
 
 POLYGONS_AT_ONCE: Final = 1 << 15
@@ -76,7 +76,7 @@ class PlanesInView(NamedTuple):
 
     `normals`, (3, planes), are unit vectors. `distances`, (planes,), lead from the eye to the planes along
     the normals; the distance of a plane that is seen too nearly edge-on is infinite. `of_polygons`,
-    (polygons,) intp, is the plane of each polygon, -1 for none.
+    (polygons,) intp, is the plane of each polygon, -1 for a polygon without a plane.
     """
 
     normals: Floats
@@ -141,7 +141,7 @@ def projection(mesh: Mesh, view: View, lines: int, elements: int) -> Projection:
     planes = None
     if mesh.shared_planes is not None:
         planes = _planes_in_view(mesh.shared_planes, view, camera.unit, polygons.polygon_numbers)
-        # Tell the side from the plane: at a grazing angle the polygons would be rounded to different sides.
+        # Take the side from the plane: at a grazing angle rounding would give its polygons different sides.
         rows = np.flatnonzero(planes.of_polygons >= 0)
         turned = mesh.shared_planes.turned[polygons.polygon_numbers[rows]]
         polygons.from_behind[rows] = (planes.distances[planes.of_polygons[rows]] > 0) ^ turned
@@ -178,11 +178,8 @@ def focal_length(lines: int, field_of_view: float) -> float:
     return lines / 2 / math.tan(math.radians(field_of_view) / 2)
 
 
-# -------------------- nodes on the raster
-
-
 class OnRaster(NamedTuple):
-    """Where nodes lie on a raster, each (nodes,): as in `Projection`."""
+    """The places of nodes on a raster: the arrays of `Projection`, each (nodes,)."""
 
     x: Floats
     y: Floats
@@ -191,7 +188,7 @@ class OnRaster(NamedTuple):
 
 
 def on_raster(positions: Floats, near: float, raster: Raster) -> OnRaster:
-    """Where nodes lie on the raster; nodes nearer than the near plane are put on it.
+    """The places of nodes on the raster; nodes nearer than the near plane are put on the near plane.
 
     `positions`, (3, nodes), are in camera space.
     """
@@ -216,9 +213,6 @@ def left_center(x: Floats) -> Floats:
 def right_center(x: Floats) -> Floats:
     """The first element whose center is right of x, if a crossing is rounded to the right."""
     return np.ceil(x - (0.5 - ROUNDING))
-
-
-# -------------------- polygons on the raster
 
 
 class PolygonsOnRaster(NamedTuple):
@@ -300,7 +294,7 @@ def split_quads(
         np.concatenate([[~first], (diagonals[:, :1] ** 2).sum(axis=0), *ends[:, :, 0]]),
         np.concatenate([[~second], (diagonals[:, 1:] ** 2).sum(axis=0), *ends[:, :, 1]]),
     )
-    # Let the triangle whose own corner is before that of the other come first.
+    # Put the triangle first whose own corner is lexicographically lower.
     off = np.where(along_first, [[1], [3]], [[2], [0]])
     column = np.arange(len(quads))
     own, other = (places[:, corner, column] for corner in off)
@@ -338,26 +332,26 @@ def _planes_in_view(shared: SharedPlanes, view: View, unit: float, polygon_numbe
     """The shared planes in the camera space of a view, for these rows of the polygon table."""
     normals = rotated(view.axes, shared.normals)
     distances = (normals * rotated(view.axes / unit, shared.points, view.eye)).sum(axis=0)
-    in_use = np.abs(distances) * MOST_OFF > np.maximum(shared.distances / unit, PLANE_ROUNDING)
+    in_use = np.abs(distances) * LARGEST_PLANE_ERROR > np.maximum(shared.distances / unit, PLANE_ROUNDING)
     planes = shared.plane_of_polygon.take(polygon_numbers)
     planes[~np.append(in_use, False)[planes]] = -1
     return PlanesInView(normals, np.where(in_use, distances, np.inf), planes)
 
 
-# -------------------- preselection
-# Of ten million polygons a picture shows a few hundred thousand; most others lie between two lines or
-# between two pixel centers. So the nodes of a large mesh are first put on the raster in small whole numbers.
-# Only the nodes of the polygons that may be visible are then put into camera space, to the same bits.
+# Preselection. Of ten million polygons a picture shows a few hundred thousand; most others lie between two
+# lines or between two pixel centers. So the nodes of a large mesh are first put on the raster in small whole
+# numbers. Only the nodes of the polygons that may be visible are then put into camera space, to the same
+# bits.
 #
 # Measured: ten million quads take 60 MB for a moment instead of 760, and less time, too.
 
 
 class NodePlaces(NamedTuple):
-    """Where the nodes of a mesh lie among the lines and the pixel centers, each (nodes,).
+    """The places of the nodes of a mesh among the lines and the pixel centers; every array is (nodes,).
 
     A polygon crosses a line if its corners differ in `line`. It may cover a pixel center if the least `left`
-    is below the most `right`. `before` tells which nodes are nearer than the near plane; None if none is.
-    `nearest` is the least depth.
+    is below the most `right`. `before` tells which nodes are nearer than the near plane; None if all lie
+    beyond. `nearest` is the least depth.
     """
 
     line: RasterPlaces
@@ -370,7 +364,7 @@ class NodePlaces(NamedTuple):
 def preselected(mesh: Mesh, view: View, raster: Raster) -> CameraPolygons:
     """The polygons of a mesh that may be visible or cross the near plane, in camera space.
 
-    Their nodes and normals are renumbered in the order of the mesh's. No other polygon can be seen.
+    Their nodes and normals are renumbered in the order of the mesh. No other polygon can be visible.
     """
     unit, near = unit_and_near(mesh, view)
     places = _node_places(mesh, view, raster, unit, near)
@@ -400,7 +394,7 @@ def preselected(mesh: Mesh, view: View, raster: Raster) -> CameraPolygons:
 
 
 def _node_places(mesh: Mesh, view: View, raster: Raster, unit: float, near: float) -> NodePlaces:
-    """Where the nodes lie, chunk by chunk."""
+    """The places of the nodes, computed in chunks."""
     count = len(mesh.coordinates)
     line, left, right = np.empty(count, np.int16), np.empty(count, np.int16), np.empty(count, np.int16)
     before, nearest = np.zeros(count, np.bool_), np.inf
@@ -440,7 +434,7 @@ def _may_be_visible(places: NodePlaces, corners: Indices) -> Indices:
 
 
 def _renumbered(numbers: Indices, count: int) -> tuple[Indices, Indices]:
-    """Which of `count` rows some numbers use, ascending, and the numbers counted among those alone."""
+    """The rows, of `count`, that some numbers use, ascending, and the numbers counted among these rows."""
     used = used_rows(numbers, count)
     places = np.cumsum(used, dtype=np.int32 if count < 1 << 31 else np.int64)
     renumbered = places.take(numbers).astype(np.intp)

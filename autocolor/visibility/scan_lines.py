@@ -30,7 +30,7 @@ TOP_CORNERS: Final = {
     )
     for side in (DOWN_SIDE, UP_SIDE)
 }
-"""The top corner of the edge of a side that a line crosses.
+"""The top corner of the edge that a line crosses, for each side of a polygon.
 
 The index is the sum of 2^c over the corners c that lie at or above the line.
 """
@@ -41,8 +41,8 @@ class Edges:
     """Edges and how to step them from line to line; every array is (edges,).
 
     An edge crosses the `count` lines from `first_line`; `x` (pixels) and `inverse_depth` are its values at
-    the center of the first, and the steps are what each further line adds. `top` and `bottom` are corners,
-    `top_node` and `bottom_node` the nodes there.
+    the center of the first line, and the steps are added for each further line. `top` and `bottom` are
+    corners, `top_node` and `bottom_node` the nodes there.
     """
 
     top: Indices
@@ -129,11 +129,11 @@ def edges_on_lines(
 
 @dataclass(frozen=True, eq=False)
 class Extents:
-    """Extents of polygons on lines, each with the center of a pixel; every array is (extents,).
+    """Extents of polygons on lines; every array is (extents,), and every extent covers the center of a pixel.
 
-    `row` is the place of the polygon among the given ones. An extent covers `count` elements of its `line`
-    from `first` on. The inverse depth is `start` at the center of the first, and changes by `step` to the
-    next.
+    `row` is the place of the polygon among the given polygons. An extent covers `count` elements of its
+    `line` from `first` on. The inverse depth is `start` at the center of the first element, and changes by
+    `step` to the next.
     """
 
     row: Indices
@@ -170,7 +170,7 @@ def extents_of_polygons(projected: Projection, polygons: Indices) -> Extents:
 
 
 def _crossings(edges: Edges) -> tuple[Floats, Floats]:
-    """Where the lines cross the edges of one side: the screen x and the inverse depth."""
+    """The screen x and the inverse depth where lines cross the edges of a side, (crossings,) each."""
     lines_below = runs(np.zeros_like(edges.count), edges.count).astype(np.float64)
     x = lines_below * np.repeat(edges.x_step, edges.count)
     x += np.repeat(edges.x, edges.count)

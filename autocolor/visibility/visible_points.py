@@ -24,7 +24,7 @@ from autocolor.scene.scene import Scene
 from autocolor.scene.view import View
 
 PIXELS_AT_ONCE: Final = 1 << 17
-"""As many as the processor's caches hold of the arrays that one step needs."""
+"""The pixels of a chunk: as many as fit into the processor's caches with the arrays of a step."""
 
 # Rows of `VisiblePoints.rows`: point P, normal N and reflected view R, each before its dot product with P.
 POINT: Final = slice(0, 3)
@@ -36,7 +36,7 @@ ROW_COUNT: Final = 12
 
 @dataclass(frozen=True, eq=False)
 class VisiblePoints:
-    """The visible points of a view, one for each pixel that sees a polygon, sorted by surface.
+    """The visible points of a view: a point for each pixel that sees a polygon, sorted by surface.
 
     `pixels`, (n,) intp, are their flat places in the raster. They come in spans of neighbors that see the
     same polygon, and the spans of a polygon mostly follow each other: `span_polygons` are rows of the polygon
@@ -44,7 +44,7 @@ class VisiblePoints:
 
     `rows` is (12, n) float32: the point in camera space around `middle`, the unit normal, and the view
     direction reflected at the normal, each with its dot product with the point, so that every cosine to a
-    light is one matrix product. Lengths in camera space, those of `middle` included, are in `unit`.
+    light is one matrix product. All lengths in camera space are in `unit`.
     """
 
     view: View
@@ -145,9 +145,6 @@ class VisibleParts(Immutable):
         return read_only(np.repeat(of_spans, self.span_lengths))
 
 
-# -------------------- points by surface, and in chunks
-
-
 @dataclass(frozen=True, eq=False)
 class SurfaceSlice:
     """The pixels of a surface, from `start` to before `stop`."""
@@ -180,9 +177,9 @@ def surface_slices(counts: Numbers) -> tuple[SurfaceSlice, ...]:
 
 
 def point_chunks(slices: Sequence[SurfaceSlice]) -> tuple[PointChunk, ...]:
-    """All pixels in chunks of about the same size, which end between two surfaces where that fits.
+    """All pixels in chunks of about the same size. If possible, a chunk ends between two surfaces.
 
-    The chunks depend only on the slices: so an edit computes a plane in the same steps as a fresh picture,
+    The chunks depend only on the slices. So an edit computes a plane in the same steps as a fresh picture,
     and to the same bits.
     """
     total = slices[-1].stop if slices else 0
@@ -200,7 +197,7 @@ def point_chunks(slices: Sequence[SurfaceSlice]) -> tuple[PointChunk, ...]:
 
 
 def _within(slices: Sequence[SurfaceSlice], start: int, stop: int) -> tuple[SurfaceSlice, ...]:
-    """The parts of slices from `start` to `stop`, counted from there."""
+    """The slices between `start` and `stop`, cut at both and counted from `start`."""
     return tuple(
         SurfaceSlice(each.surface_number, max(each.start, start) - start, min(each.stop, stop) - start)
         for each in slices
@@ -208,13 +205,8 @@ def _within(slices: Sequence[SurfaceSlice], start: int, stop: int) -> tuple[Surf
     )
 
 
-# -------------------- the sight of a display
-# `seen_at` is called at each movement of the pointer. Measured on the coupe: 0.1 ms, most of it for finding
-# the pixel among the visible points; a raster of their places would take 1.2 MB for each picture.
-
-
 class Seen(NamedTuple):
-    """The visible point at a pixel, in the words of the scene.
+    """The visible point at a pixel, in names and coordinates of the scene.
 
     `surface` and `part` are names, and `polygon` is a row of the polygon table. `point` is P, in object
     coordinates; `normal` is the unit normal N that is used for shading, turned to the eye where the surface
@@ -232,7 +224,7 @@ class Seen(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Sight:
-    """The visible points of a scene, each of which a display shows as a block of `block` x `block` pixels."""
+    """The visible points of a scene on a display, which shows each of them as `block` x `block` pixels."""
 
     scene: Scene
     points: VisiblePoints
@@ -266,7 +258,9 @@ class Sight:
 def seen_at(sight: Sight, line: int, element: int) -> Seen | None:
     """The visible point at a pixel; None on the background. All pixels of a block see the same point.
 
-    Raises UsageError if there is no such line or element.
+    Screens call it at each movement of the pointer. Measured on the coupe: 0.1 ms, most of it for finding the
+    pixel among the visible points; a raster of their places would take 1.2 MB for each picture. Raises
+    UsageError if there is no such line or element.
     """
     place = sight.place_at(line, element)
     if place is None:
@@ -276,12 +270,12 @@ def seen_at(sight: Sight, line: int, element: int) -> Seen | None:
     polygon = int(points.span_polygons[span])
     part = scene.parts[scene.mesh.part_numbers[polygon]]
 
-    # Turn point and normal to the axes of the world.
+    # Convert the point and the normal to world axes.
     axes = points.view.axes
     from_eye = (points.rows[POINT, place] + points.middle) @ axes
     point = from_eye * points.unit + np.array(points.view.eye)
     normal = points.rows[NORMAL, place].astype(np.float64) @ axes
-    # Normalize it in float64, unless it is zero.
+    # Normalize the normal in float64, unless it is zero.
     normal /= np.linalg.norm(normal) or 1.0
     # Reflect the view direction at the normal.
     ray = from_eye / np.linalg.norm(from_eye)

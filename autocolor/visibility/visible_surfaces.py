@@ -56,14 +56,14 @@ from autocolor.visibility.visible_points import (
     surface_slices,
 )
 
-# As many as the processor's caches hold, in each step.
+# As many as the processor's caches hold in each step.
 SEGMENTS_AT_ONCE: Final = 1 << 16
 FRAGMENTS_AT_ONCE: Final = 1 << 16
 SPANS_AT_ONCE: Final = 1 << 14
 PIXELS_AT_ONCE: Final = 1 << 14
 
 FITTING: Final = 0.9
-"""The fraction of the polygons that are to be no larger than a tile of the occlusion culling."""
+"""The fraction of the polygons that fit into a tile of the occlusion culling."""
 
 # Rows of the quantities that are stepped along a visible span: the point, the normal, the inverse depth, the
 # ray.
@@ -117,18 +117,17 @@ def depth_test(depth_buffer: Numbers, projected: Projection, scale: DepthScale, 
             np.maximum.at(depth_buffer, pixel, runs(keys[part], count, segments.step[part]))
 
 
-# -------------------- occlusion culling
-# The raster is divided into tiles, each with the depth key of its farthest pixel. A polygon that fits into
-# two by two tiles, and is farther than all four everywhere, can't be seen.
-#
-# Measured: half of the coupe's polygons that are seen from behind are culled, and the visible surfaces of
-# five meshes take a twenty-fifth to a twelfth less time. Tiles of several sizes cull no more.
-
-
 def not_occluded(
     depth_buffer: Numbers, projected: Projection, scale: DepthScale, polygons: Indices
 ) -> Indices:
-    """The polygons of these that may be nearer than the depths in the depth buffer."""
+    """The given polygons that may be nearer than the depth buffer at some pixel: occlusion culling.
+
+    The raster is divided into tiles, each with the depth key of its farthest pixel. A polygon that fits into
+    two by two tiles, and is farther than all four everywhere, can't be seen.
+
+    Measured: half of the coupe's polygons that are seen from behind are culled, and the visible surfaces of
+    five meshes take a twenty-fifth to a twelfth less time. Tiles of several sizes cull no more.
+    """
     if not len(polygons):
         return polygons
     # Find the bounding box of each polygon in pixels.
@@ -149,8 +148,8 @@ def not_occluded(
         [farthest[first, above], farthest[last, above], farthest[first, below], farthest[last, below]]
     )
 
-    # Compare with the nearest corner. Because the step of a segment is rounded, each pixel may come half
-    # a unit nearer.
+    # Compare with the nearest corner. The step of a segment is rounded, so each pixel may bring the polygon
+    # half a unit nearer.
     nearest = scale.keys(most_of_four(projected.inverse_depth[corners]))
     nearest += (extent // 2 + 2) * scale.number_limit
     if scale.planes is not None:
@@ -164,17 +163,18 @@ def not_occluded(
 
 
 def _least_of_rows(keys: Numbers, size: int) -> Numbers:
-    """The least key of each `size` rows, and of the fewer rows at the end."""
+    """The least keys of every `size` rows; at the end there may be fewer rows."""
     whole = len(keys) // size * size
     least: Numbers = keys[:whole].reshape(-1, size, keys.shape[1]).min(axis=1)
     return least if whole == len(keys) else np.concatenate([least, keys[whole:].min(axis=0, keepdims=True)])
 
 
-# -------------------- interpolation along visible spans
+# Interpolation along visible spans.
+#
 # Paper: "The Lighting Model": the direction of the normal is computed from the node normals by bilinear
 # interpolation, along the edges and then along the span. Departs: on the screens of 1983 that was linear in
-# the picture; here it is perspective-correct: the normal is halfway between those of two nodes where the
-# point is halfway between them on the surface, not in the picture.
+# the picture; here it is perspective-correct: the normal is halfway between the normals of two
+# nodes where the point is halfway between the nodes on the surface, not in the picture.
 
 
 def interpolated_points(
@@ -183,7 +183,7 @@ def interpolated_points(
     surface_numbers: tuple[int, ...],
     one_sided: frozenset[int],
 ) -> VisiblePoints:
-    """The visible points, given the number of the polygon at each pixel as in `visible_spans`.
+    """The visible points, given the number of the visible polygon at each pixel, as in `visible_spans`.
 
     `surface_numbers` and `one_sided` are as in `visible_surfaces`.
     """
@@ -233,7 +233,7 @@ def _fill(rows: Singles, start: Singles, step: Singles, along: Singles, ray_step
         np.add(start[linear], step[linear], out=out)
     # Normalize the normal.
     length = np.sqrt(dot(normal, normal))
-    # A polygon without area has a normal of 0, and keeps it.
+    # Prevent a division by 0: a polygon without area has a normal of 0.
     length += np.float32(1e-30)
     normal /= length
     # Normalize the ray.
@@ -251,10 +251,10 @@ def _fill(rows: Singles, start: Singles, step: Singles, along: Singles, ray_step
 
 @dataclass(frozen=True, eq=False)
 class VisibleSpans:
-    """Neighboring pixels of a line at which the same polygon is visible, sorted by surface.
+    """Spans of pixels of a line at which the same polygon is visible, sorted by surface.
 
-    Within a surface the spans are in the order of the polygons' numbers, so that neighbors look up
-    neighboring data, and within a polygon in the order of the pixels.
+    Within a surface the spans are in the order of the polygons' numbers, so that neighboring spans look up
+    neighboring data. Within a polygon they are in the order of the pixels.
 
     A span has `count` pixels from `first_pixel` on, a flat place in the raster. `polygon` is the polygon's
     column in the projection, `polygon_number` its row in the mesh's polygon table, `surface` its surface
@@ -269,7 +269,7 @@ class VisibleSpans:
 
 
 class Crossing(NamedTuple):
-    """Where edges cross lines: screen x in pixels, inverse depth, and normal, (3, edges) float32."""
+    """The crossings of edges and lines: screen x in pixels, inverse depth, and normal, (3, edges) float32."""
 
     x: Floats
     inverse_depth: Floats
@@ -281,8 +281,8 @@ def visible_spans(
 ) -> VisibleSpans:
     """The visible spans of a projection.
 
-    `number_at_pixel`, (lines * elements,), has the number of the polygon that is visible at each pixel, as in
-    depth keys, 0 for none.
+    `number_at_pixel`, (lines * elements,), has the number, as in depth keys, of the polygon that is visible
+    at each pixel, 0 for none.
     """
     # A span begins where the polygon changes, and with each line.
     head = np.ones(len(number_at_pixel), np.bool_)
@@ -369,9 +369,9 @@ def _fill_along(
 
 
 def _crossing(projected: Projection, top: Indices, bottom: Indices, line: Indices) -> Crossing:
-    """Where each edge crosses its line."""
+    """The crossing of each edge with its line."""
     edge = edges(projected, top, bottom)
-    # Same arithmetic as the segments, so that edge-on polygons stay segments.
+    # Use the arithmetic of the segments, so that edge-on polygons stay segments.
     lines_below = line - edge.first_line
     x = edge.x + lines_below * edge.x_step
     inverse_depth = edge.inverse_depth + lines_below * edge.inverse_depth_step

@@ -33,7 +33,7 @@ from autocolor.visibility.visible_surfaces import interpolated_points
 class Edge:
     """An active edge: its values at the first line that it crosses, and their steps from line to line.
 
-    `number` is its polygon's, as in depth keys.
+    `number` is the number of its polygon in depth keys.
     """
 
     number: int
@@ -55,8 +55,8 @@ class Edge:
 class Segment:
     """The extent of a polygon on a line: its pixels from `first` to before `end`.
 
-    The depth key is `start` at the first pixel and changes by `step` to the next. `number` is the polygon's,
-    as in depth keys.
+    The depth key is `start` at the first pixel and changes by `step` to the next. `number` is the number of
+    the polygon in depth keys.
     """
 
     number: int
@@ -104,7 +104,7 @@ def numbers_by_line(projected: Projection) -> Iterator[Numbers]:
 def edges_by_line(projected: Projection) -> Iterator[list[Edge]]:
     """For each line, from the top, the edges that begin there: Watkins' y-buckets.
 
-    The edges of a line are made when it is asked for, so that the first line does not wait for all of them.
+    The edges of a line are listed only when the line is asked for: the first line does not wait for the rest.
     """
     first_lines = projected.first_line[projected.corners]
     polygons = projected.corners.shape[1]
@@ -155,7 +155,7 @@ def segments_of_line(
 def key_of_plane(
     projected: Projection, scale: DepthScale, number: int, line: int, element: int
 ) -> tuple[int, int] | None:
-    """The depth key at a pixel and its step, if the polygon has those of a shared plane."""
+    """The depth key at a pixel and its step, from the shared plane of a polygon; None if it has none."""
     if scale.planes is None:
         return None
     plane = scale.planes[polygons_of_numbers(projected, np.array([number]))]

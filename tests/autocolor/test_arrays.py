@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import math
 from fractions import Fraction
 
 import numpy as np
@@ -18,11 +19,14 @@ from autocolor.arrays import (
     least_of_four,
     lengths,
     most_of_four,
+    normalized,
     power,
     runs,
+    unit_vector,
     used_bounds,
     used_rows,
 )
+from tests.autocolor.strategies import Vector, directions, numbers
 
 whole = st.integers(-(2**63), 2**63 - 1)
 
@@ -143,3 +147,23 @@ def test_bounds_leave_out_what_no_number_uses() -> None:
     assert (low.tolist(), high.tolist()) == ([1.0, 4.0], [3.0, 5.0])
     low, high = used_bounds(rows, np.empty((1, 0), np.intp))
     assert (low.tolist(), high.tolist()) == ([np.inf] * 2, [-np.inf] * 2)
+
+
+@given(directions, numbers(1e-30, 1e30))
+def test_a_unit_vector_has_the_direction_of_a_vector_of_any_length(direction: Vector, length: float) -> None:
+    x, y, z = direction
+    unit = unit_vector((x * length, y * length, z * length))
+    assert math.hypot(*unit) == pytest.approx(1, rel=1e-15)
+    assert unit == pytest.approx([each / math.hypot(x, y, z) for each in direction], rel=1e-12)
+
+
+@pytest.mark.parametrize("size", [5e-324, 1e-300, 1e300])
+def test_a_unit_vector_of_very_small_or_large_components_is_exact(size: float) -> None:
+    assert unit_vector((size, 0.0, -size)) == pytest.approx((math.sqrt(0.5), 0, -math.sqrt(0.5)))
+
+
+def test_vectors_are_divided_by_their_lengths_and_zero_stays_zero() -> None:
+    assert normalized(np.array([[3.0, 0.0], [0.0, 0.0], [4.0, 0.0]])).T.tolist() == [
+        [0.6, 0.0, 0.8],
+        [0, 0, 0],
+    ]

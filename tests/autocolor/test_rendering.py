@@ -14,7 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Flap, Flaps, Light, Mesh, Scene, Surface, UsageError, View, render, scene_of
-from autocolor import rendering as room
+from autocolor import rendering as rendering_module
 from autocolor.lighting.shading import shade
 from autocolor.rendering import BLOCKS, PICTURE_SECONDS, Rendering, block_for, blocks_of, rendering
 from autocolor.visibility.visible_points import PointChunk
@@ -82,7 +82,7 @@ EVERYTHING = [
 
 
 @pytest.mark.parametrize("edit", RECOLORINGS)
-def test_what_only_colors_computes_no_picture_again(edit: Any) -> None:
+def test_an_edit_of_colors_computes_no_picture_again(edit: Any) -> None:
     before, after = edited(two_surfaces(), edit)
     assert after.picture is before.picture
 
@@ -136,7 +136,7 @@ def test_a_scalar_that_comes_and_goes_leaves_the_light() -> None:
 
 
 @pytest.mark.parametrize("edit", [*SCALARS, *SCALAR_COLORS, *MIXES, *KEY_LIGHT, *EVERYTHING])
-def test_a_scalar_that_is_kept_is_that_of_a_fresh_picture(edit: Any) -> None:
+def test_a_reused_scalar_equals_the_scalar_of_a_fresh_picture(edit: Any) -> None:
     _, after = edited(in_color(two_surfaces()), edit)
     fresh = render(edit(in_color(two_surfaces())), 24, 32)
     assert after.picture.scalar is not None
@@ -153,7 +153,7 @@ def test_a_coarse_picture_has_its_own_scalar() -> None:
 
 
 @pytest.mark.parametrize("edit", MIXES)
-def test_what_only_mixes_the_lights_keeps_their_planes(edit: Any) -> None:
+def test_an_edit_of_the_mix_reuses_the_planes(edit: Any) -> None:
     before, after = edited(two_surfaces(), edit)
     assert after.points is before.points
     assert after.picture is not before.picture
@@ -171,7 +171,7 @@ def test_one_light_moved_computes_its_planes_alone(edit: Any) -> None:
         assert (old is not None and new.values is old.values) == (light.name not in ("key", "lamp"))
 
 
-def test_the_mix_of_lights_that_stay_is_kept_while_a_light_is_dragged() -> None:
+def test_the_mix_of_lights_that_stay_is_reused_while_a_light_is_dragged() -> None:
     first = rendering(two_surfaces(), 24, 32)
     dragged = [first]
     for step in (1, 2, 3):
@@ -236,7 +236,7 @@ def test_an_exponent_computes_its_own_surface_again_and_no_other() -> None:
 
 
 @pytest.mark.parametrize("edit", [*RECOLORINGS, *MIXES, *KEY_LIGHT, *EVERYTHING])
-def test_what_is_kept_gives_the_same_picture_as_a_fresh_one(edit: Any) -> None:
+def test_reuse_gives_the_same_picture_as_a_fresh_rendering(edit: Any) -> None:
     _, after = edited(two_surfaces(), edit)
     fresh = render(edit(two_surfaces()), 24, 32)
     assert after.picture.intensity.tobytes() == fresh.intensity.tobytes()
@@ -248,7 +248,7 @@ EXPONENT = [lambda scene: scene.with_surface("sphere", exponent=3)]
 
 
 @pytest.mark.parametrize("edit", [*RECOLORINGS, *MIXES, *KEY_LIGHT, *EXPONENT])
-def test_a_picture_in_many_chunks_is_kept_and_computed_as_in_one(
+def test_a_picture_in_many_chunks_is_reused_and_computed_as_in_one_chunk(
     edit: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     in_one = edited(two_surfaces(), edit)[1].picture
@@ -319,7 +319,7 @@ def test_flaps_cut_only_their_own_light() -> None:
 
 @pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="needs glibc")
 @pytest.mark.skipif(platform.libc_ver()[1] < "2.35", reason="older glibc keeps no more than 32 MB")
-def test_the_memory_of_large_arrays_is_kept_from_picture_to_picture() -> None:
+def test_the_memory_of_large_arrays_is_reused_from_picture_to_picture() -> None:
     code = """
 import resource
 import numpy
@@ -350,7 +350,7 @@ def test_a_picture_needs_no_glibc(problem: type[Exception], monkeypatch: pytest.
         raise problem
 
     monkeypatch.setattr(ctypes, "CDLL", fails)
-    room._keep_large_arrays.cache_clear()
+    rendering_module._keep_large_arrays.cache_clear()
     assert render(two_surfaces(), 6, 8).surface_number.any()
 
 

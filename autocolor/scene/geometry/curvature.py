@@ -30,10 +30,10 @@ from autocolor.scene.geometry.normals import NodeNormals
 CORNERS_AT_ONCE: Final = 1 << 14
 
 NORMAL_WEIGHT: Final = 0.01
-"""Assumed: the weight of a neighbor's normal in proportion to that of its place."""
+"""Assumed: the weight of a neighbor's normal, where its place has the weight 1."""
 
 RIDGE: Final = 1e-9
-"""Added to the diagonal of the equations, so that an unknown that no neighbor decides becomes 0."""
+"""Added to the diagonal of the equations, so that an unknown becomes 0 if no neighbor decides it."""
 
 UNKNOWNS: Final = 5
 """The slopes p and q, and a, b and c."""
@@ -82,7 +82,7 @@ class Corners(NamedTuple):
 
     `rows` are these normals, and `counts` the number of corners of each. `own`, (corners,), has the normal at
     each corner, and `neighbors`, (3, corners), the normals at the corners after, across and before. `nodes`,
-    (4, corners), has the columns of the nodes at these four.
+    (4, corners), has the columns of the nodes at the corner and at these three.
     """
 
     rows: slice
@@ -151,7 +151,7 @@ def _solved(sums: Floats) -> Floats:
     for place, (row, column) in enumerate(zip(*np.triu_indices(UNKNOWNS), strict=True)):
         matrix[row, column] = matrix[column, row] = sums[place]
     matrix[:, UNKNOWNS] = sums[-UNKNOWNS:]
-    # Measure each unknown so that the diagonal is 1: then the size of the mesh does not matter.
+    # Scale each unknown so that the diagonal is 1: then the size of the mesh does not matter.
     scale = np.sqrt(np.einsum("kkn->kn", matrix[:, :UNKNOWNS]))
     scale[scale == 0] = 1.0
     matrix /= scale[:, None]
@@ -179,14 +179,14 @@ def _take_from_closed(values: Floats, inner: Floats, closed: Booleans, corners: 
     """Give each normal of a fan with a rim the mean of the `inner` values of neighbors with closed fans."""
     count = len(corners.counts)
     local = np.repeat(np.arange(count), corners.counts)
-    having, sums = np.zeros(count), np.zeros((2, count))
+    counts, sums = np.zeros(count), np.zeros((2, count))
     for neighbor in corners.neighbors:
         weight = closed[neighbor].astype(np.float64)
-        having += np.bincount(local, weight, count)
+        counts += np.bincount(local, weight, count)
         for sum_row, row in zip(sums, inner, strict=True):
             sum_row += np.bincount(local, weight * row[neighbor], count)
-    rims = np.flatnonzero(~closed[corners.rows] & (having > 0))
-    values[:, rims + corners.rows.start] = sums[:, rims] / having[rims]
+    rims = np.flatnonzero(~closed[corners.rows] & (counts > 0))
+    values[:, rims + corners.rows.start] = sums[:, rims] / counts[rims]
 
 
 def _tangents(normals: Floats) -> tuple[Floats, Floats]:

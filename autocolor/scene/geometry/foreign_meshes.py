@@ -1,7 +1,7 @@
 """Meshes of other programs: nodes and polygons in arrays, and the meshes of trimesh, PyVista and meshio.
 
-None of these libraries is imported: a mesh is recognized by its attributes. Nodes, polygons and their scalars
-are taken, and no colors, normals or groups. A polygon of more than four sides is split, as in files.
+These libraries are not imported: a mesh is recognized by its attributes. Its nodes, polygons and scalars are
+taken, but no colors, normals or groups. A polygon of more than four sides is split, as in files.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ def foreign_tables(source: object, polygons: object = None) -> ForeignTables:
 
 
 def _polygon_table(nodes: object, polygons: Any) -> tuple[AnyArray, Indices]:
-    """The polygon table, and for each row the number of the polygon that it is, or is a piece of."""
+    """The polygon table, and the number of the source polygon of each row."""
     try:
         table = np.asarray(polygons)
     except ValueError:
@@ -88,14 +88,14 @@ def _nodes_and_polygons(source: Any) -> tuple[Any, Any]:
 
 
 def _polygons_of_counted(faces: AnyArray) -> object:
-    """The polygons of PyVista's faces: a count and so many node numbers, again and again.
+    """The polygons of PyVista's faces, in which a count precedes the node numbers of each polygon.
 
-    Raises InputError if the counts do not lead to the end.
+    Raises InputError if the counts do not add up to the length.
     """
     if faces.ndim == 2:
         return faces
     if faces.ndim != 1 or (faces.size and faces.dtype.kind not in "iu"):
-        raise InputError("faces must be whole numbers in one row, each polygon after its count; give them so")
+        raise InputError("faces must be whole numbers in one row, a count before each polygon; convert them")
     if not faces.size:
         return []
     width = int(faces[0]) + 1
@@ -116,7 +116,7 @@ def _polygons_of_counted(faces: AnyArray) -> object:
 
 
 def _flat_blocks(cells: Sequence[Any]) -> list[int]:
-    """Which blocks of cells of meshio are polygons."""
+    """The places of the blocks that are polygons, among the cells of meshio."""
     kinds = [str(block.type) for block in cells]
     return [
         place
@@ -126,12 +126,12 @@ def _flat_blocks(cells: Sequence[Any]) -> list[int]:
 
 
 def _polygons_of_cells(cells: Sequence[Any]) -> object:
-    """The polygons among the cells of meshio; all others are left out. Raises InputError if there is none."""
+    """The polygons among the cells of meshio, without other cells. Raises InputError if there are none."""
     for block in cells:
         if not (hasattr(block, "type") and hasattr(block, "data")):
             raise InputError(
-                f"cells must have a type and data, as those of meshio, not be {shown(block)}; make them cell"
-                " blocks"
+                f"cells must be cell blocks with a type and data, as in meshio, not {shown(block)}; convert"
+                " them"
             )
     places = _flat_blocks(cells)
     flat = [cells[place] for place in places]
@@ -170,13 +170,13 @@ def _row(number: int, row: object) -> AnyArray:
 
 
 def _split(nodes: object, corners: Indices, counts: Indices) -> tuple[Indices, Indices]:
-    """The polygon table of polygons with any number of corners, and the polygon of each of its rows.
+    """The polygon table of polygons with any number of corners, and the source polygon of each row.
 
     Raises InputError.
     """
     coordinates = np.asarray(nodes)
     if coordinates.ndim != 2 or coordinates.shape[1] != 3 or coordinates.dtype.kind not in "iuf":
-        raise InputError(f"nodes must be numbers of shape (nodes, 3), not {coordinates.shape}; give them so")
+        raise InputError(f"nodes must be numbers of shape (nodes, 3), not {coordinates.shape}; convert them")
     outside = np.flatnonzero((corners < 0) | (corners >= len(coordinates)))
     if len(outside):
         row = int(np.searchsorted(np.cumsum(counts), outside[0], side="right"))
@@ -190,17 +190,14 @@ def _split(nodes: object, corners: Indices, counts: Indices) -> tuple[Indices, I
     return table, owners
 
 
-# -------------------- scalars
-
-
 def foreign_scalars(
     source: object, nodes: object, owners: Indices, blocks: Sequence[int] | None
 ) -> tuple[MeshScalar, ...]:
     """The scalars in `point_data` and `cell_data` of a mesh, if it has them.
 
     Arrays of several components are left out. A number that is infinite or above 1e30 in size becomes
-    missing. `owners` has the source's polygon for each row of the polygon table, and every polygon at least
-    once. If the data of cells are lists with an array for each block, `blocks` are the blocks of polygons.
+    missing. `owners` has the source polygon of each row of the polygon table; every source polygon has a row.
+    If the data of cells are lists with an array for each block, `blocks` are the blocks of polygons.
     """
     scalars: dict[str, MeshScalar] = {}
     of_polygons = (
@@ -235,7 +232,7 @@ def _items(source: Any, data: str) -> Iterator[tuple[str, Any]]:
 
 
 def _row_count(table: object) -> int:
-    """How many rows a table has; for a table that the checks of `Mesh` will refuse -1, which fits no data."""
+    """The number of rows of a table; -1, which fits no data, if `Mesh` will refuse the table."""
     try:
         return len(np.asarray(table))
     except (TypeError, ValueError):

@@ -24,7 +24,8 @@ CREASE_ANGLE: Final = 40.0
 POLYGONS_AT_ONCE: Final = 1 << 13
 """Few enough for their corners to stay in the processor's cache."""
 
-AT_ONCE: Final = 1 << 15
+CORNERS_AT_ONCE: Final = 1 << 15
+"""The polygons, corners or items of a chunk in the search for fans."""
 
 EDGES_AT_ONCE: Final = 1 << 22
 """Edges that are sorted at once; more edges are divided by the lower of their places."""
@@ -32,7 +33,7 @@ EDGES_AT_ONCE: Final = 1 << 22
 MOST_DIVISIONS: Final = 200
 
 LARGE: Final = 1 << 23
-"""Corners of which the numbers are held in 32 bits."""
+"""The number of corners from which on their numbers take 32 bits instead of 64."""
 
 MIXER: Final = np.uint64(0x9E3779B97F4A7C15)
 """An odd number with well-spread bits, so that every bit of a factor changes the high bits of the product."""
@@ -123,10 +124,10 @@ def _weighted_sums(
 
 
 def _united_with_opposite(sums: Floats, opposite: list[Indices]) -> tuple[Floats, Indices]:
-    """The sums of fans, (3, fans), united with the fans of opposite winding next to them; each fan's column.
+    """The sums of fans united with neighboring fans of opposite winding, and the column of each fan in them.
 
-    Every fan has two sides, numbered `fan` and `fan + count`. The front of one is united with the back of a
-    fan of opposite winding, so that a normal is never added to its own reverse.
+    Every fan has two sides, numbered `fan` and `fan + count`. The front of a fan is united with the back of a
+    neighboring fan of opposite winding, so that a normal is never added to its own reverse.
     """
     count = sums.shape[1]
     sides = np.arange(2 * count)
@@ -173,9 +174,8 @@ def _corner_angles(corners: Floats) -> Floats:
     return angles
 
 
-# -------------------- fans
-# Two corners at the same place share a normal where their polygons meet in an edge that is no crease, and
-# so on from polygon to polygon around the place. Corner 4 p + c is corner c of polygon p. Corners are
+# Fans. Two corners at the same place share a normal where their polygons meet in an edge that is no crease,
+# and so on from polygon to polygon around the place. Corner 4 p + c is corner c of polygon p. Corners are
 # worked on in chunks, so that a large mesh needs no more than a few numbers a corner.
 
 
@@ -193,7 +193,7 @@ def places_of_corners(coordinate_rows: Floats, node_rows: Indices, scratch: Scra
     places = np.empty(len(order), np.intp)
     places[order] = np.cumsum(moved)
     of_corners: Indices = scratch(node_rows.shape, np.intp)
-    for chunk in chunks(node_rows.shape[1], AT_ONCE):
+    for chunk in chunks(node_rows.shape[1], CORNERS_AT_ONCE):
         of_corners[:, chunk] = places.take(node_rows[:, chunk])
     return of_corners
 
@@ -204,7 +204,7 @@ def _some_share_a_place(coordinate_rows: Floats, scratch: Scratch) -> bool:
     Measured: it takes a fifth of the time of sorting the nodes.
     """
     hashes = scratch(coordinate_rows.shape[1:], np.uint64)
-    for chunk in chunks(len(hashes), AT_ONCE):
+    for chunk in chunks(len(hashes), CORNERS_AT_ONCE):
         part = np.zeros(chunk.stop - chunk.start, np.uint64)
         for row in coordinate_rows:
             # Add 0 to turn -0 into 0, which is the same place.
@@ -229,7 +229,7 @@ def fans_of_corners(
     zeros. Fans are numbered from 0 in the order of their first corners.
     """
     parents = scratch((places.size,), np.intp if places.size < LARGE else np.int32)
-    for chunk in chunks(places.shape[1], AT_ONCE):
+    for chunk in chunks(places.shape[1], CORNERS_AT_ONCE):
         corners = np.arange(4 * chunk.start, 4 * chunk.stop)
         # Unite the last two corners of a triangle, which repeats its last node.
         corners[3::4] -= places[2, chunk] == places[3, chunk]
@@ -237,8 +237,8 @@ def fans_of_corners(
     least_cosine = np.cos(np.radians(crease_angle)) - 1e-9
     opposite_corners = []
     for one, other in _corners_at_shared_edges(places, part_numbers, scratch):
-        # Two polygons have opposite winding where both run along the shared edge in the same direction; then
-        # compare one normal with the reverse of the other.
+        # Two polygons have opposite winding if both run along the shared edge in the same direction. Compare
+        # the normal of the first then with the reversed normal of the second.
         opposite = places[one & 3, one >> 2] == places[other & 3, other >> 2]
         cosine = (np.take(normals, one >> 2, axis=1) * np.take(normals, other >> 2, axis=1)).sum(axis=0)
         np.negative(cosine, out=cosine, where=opposite)
@@ -268,8 +268,8 @@ def _corners_at_shared_edges(
             order = np.lexsort((part_numbers[polygons], keys))
         else:
             order = np.argsort(keys, kind="stable")
-        for first in range(int(np.count_nonzero(keys < 0)), len(order), AT_ONCE):
-            rows = order[first : first + AT_ONCE + 1]
+        for first in range(int(np.count_nonzero(keys < 0)), len(order), CORNERS_AT_ONCE):
+            rows = order[first : first + CORNERS_AT_ONCE + 1]
             key, corners = keys[rows], rows if edges is None else edges[rows]
             shared = key[1:] == key[:-1]
             if several_parts:
@@ -282,21 +282,21 @@ def _corners_at_shared_edges(
 def _edges(places: Indices, scratch: Scratch) -> Iterator[tuple[Numbers, Indices | None]]:
     """The edges in divisions: a key that does not depend on their direction, and their first corners.
 
-    Edges without length have the key -1. The corners of a division are in order, and no key is in two
-    divisions. A single division has None for its corners: key k belongs to corner k.
+    Edges without length have the key -1. The corners of a division ascend, and equal keys are in the same
+    division. The corners of a single division are None: key k belongs to corner k.
     """
     place_count = int(places.max(initial=-1)) + 1
     count = min(-(-places.size // EDGES_AT_ONCE), MOST_DIVISIONS)
     if count <= 1:
         all_keys = np.empty((places.shape[1], 4), np.int64)
-        for chunk in chunks(len(all_keys), AT_ONCE):
+        for chunk in chunks(len(all_keys), CORNERS_AT_ONCE):
             start = places[:, chunk]
-            all_keys[chunk] = _keys(start, np.roll(start, -1, axis=0), place_count).T
+            all_keys[chunk] = edge_keys(start, np.roll(start, -1, axis=0), place_count).T
         yield all_keys.ravel(), None
         return
     # Number the divisions by the lower place of an edge.
     divisions = scratch((places.size,), np.uint8)
-    for chunk in chunks(places.shape[1], AT_ONCE):
+    for chunk in chunks(places.shape[1], CORNERS_AT_ONCE):
         start = places[:, chunk]
         lower = np.minimum(start, np.roll(start, -1, axis=0))
         divisions[4 * chunk.start : 4 * chunk.stop] = (lower * count // place_count).T.ravel()
@@ -308,15 +308,15 @@ def _edges(places: Indices, scratch: Scratch) -> Iterator[tuple[Numbers, Indices
             ]
         )
         keys = np.empty(len(corners), np.int64)
-        for chunk in chunks(len(corners), AT_ONCE):
+        for chunk in chunks(len(corners), CORNERS_AT_ONCE):
             some = corners[chunk]
             start, end = places[some & 3, some >> 2], places[(some + 1) & 3, some >> 2]
-            keys[chunk] = _keys(start, end, place_count)
+            keys[chunk] = edge_keys(start, end, place_count)
         yield keys, corners
 
 
-def _keys(start: Indices, end: Indices, place_count: int) -> Numbers:
-    """A key for each edge from one place to another, the same both ways; -1 where they are the same."""
+def edge_keys(start: Indices, end: Indices, place_count: int) -> Numbers:
+    """The keys of edges between places, the same in both directions; -1 if start and end are the same."""
     keys: Numbers = np.minimum(start, end) * np.int64(place_count) + np.maximum(start, end)
     keys[start == end] = -1
     return keys
@@ -327,9 +327,8 @@ def _next_corner(corners: Indices) -> Indices:
     return (corners & ~3) | ((corners + 1) & 3)
 
 
-# -------------------- union-find
-# Every item has a parent, a lower item of its group; the root of a group is its lowest item and its own
-# parent. At first every item is a root, as in `np.arange`. All functions work on many items at once.
+# Union-find. Every item has a parent, a lower item of its group; the root of a group is its lowest item and
+# its own parent. At first every item is a root, as in `np.arange`. All functions work on many items at once.
 
 
 def unite(parents: Indices, one: Indices, other: Indices) -> None:
@@ -339,8 +338,8 @@ def unite(parents: Indices, one: Indices, other: Indices) -> None:
         one, other = roots_of(parents, np.concatenate([one, other])).reshape(2, -1)
         apart = np.flatnonzero(one != other)
         one, other = np.take(one, apart), np.take(other, apart)
-        # Make the lower root the parent of the higher one. Where several pairs share the higher root, the
-        # lowest parent is taken and the other pairs try again.
+        # Make the lower root the parent of the higher root. If several pairs share the higher root, the
+        # lowest parent is taken, and the other pairs try again.
         np.minimum.at(parents, np.maximum(one, other), np.minimum(one, other))
 
 
@@ -348,7 +347,7 @@ def group_numbers(parents: Indices, scratch: Scratch = np.empty) -> Indices:
     """The group of each item; groups are numbered from 0 in the order of their roots."""
     groups: Indices = scratch(parents.shape, parents.dtype.type)
     count = 0
-    for chunk in chunks(len(parents), AT_ONCE):
+    for chunk in chunks(len(parents), CORNERS_AT_ONCE):
         items = np.arange(chunk.start, chunk.stop)
         is_root = parents[chunk] == items
         numbers = np.cumsum(is_root)
@@ -364,7 +363,7 @@ def united_items(parents: Indices) -> Indices:
     """The items that are not the root of their group, ascending."""
     parts = [
         np.flatnonzero(parents[chunk] != np.arange(chunk.start, chunk.stop)) + chunk.start
-        for chunk in chunks(len(parents), AT_ONCE)
+        for chunk in chunks(len(parents), CORNERS_AT_ONCE)
     ]
     return np.concatenate([np.empty(0, np.intp), *parts])
 

@@ -15,8 +15,8 @@ Assumed: polygons lie in one plane if no corner is farther from it than two mill
 This is more than float32, or six decimals, round the corners of a mesh of a unit or more. A patch is really
 in front if its corners are all on one side of the plane of the others, on average by more than four times
 their scatter and four times the rounding of a coordinate. The rounding is measured at the coordinates: half a
-unit in the last place of float32, or of the decimals they have, or a few of float64. Patches exactly along an
-axis are rounded alike, so that any difference is real.
+unit in the last place of float32 or of their decimals, or a few units of float64. The corners of patches
+exactly across an axis are rounded alike, so that any difference is real.
 
 What is missed: a polygon narrower than a five-hundredth of the mesh may be rounded to too different a plane;
 it is then left out. Of more than 16,384 polygons, at least one polygon of a plane must be among the 16,384
@@ -33,6 +33,7 @@ import numpy as np
 from autocolor.arrays import Booleans, Floats, Indices, LowBits, chunks, cross, dot, lengths, used_bounds
 from autocolor.immutable import Immutable
 from autocolor.scene.geometry.normals import (
+    edge_keys,
     group_numbers,
     places_of_corners,
     roots_of,
@@ -54,11 +55,11 @@ POLYGONS_AT_ONCE: Final = 1 << 13
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SharedPlanes(Immutable):
-    """Planes, each of several polygons.
+    """The planes that several polygons share.
 
-    `normals` and `points` are (3, planes): a unit normal and a point of each. No corner is farther from its
-    plane than `distances`, (planes,). `plane_of_polygon`, (polygons,) intp, is a column of them, -1 for none;
-    `turned`, (polygons,), tells which polygons have a normal against that of their plane.
+    `normals` and `points` are (3, planes): a unit normal and a point of each plane. No corner is farther from
+    its plane than `distances`, (planes,). `plane_of_polygon`, (polygons,) intp, is a column of these, -1 for
+    none; `turned`, (polygons,), tells which polygons have a normal against that of their plane.
     """
 
     normals: Floats
@@ -69,7 +70,7 @@ class SharedPlanes(Immutable):
 
 
 def shared_planes(coordinates: Floats, node_numbers: Indices) -> SharedPlanes | None:
-    """The planes in which polygons may overlap; None if there is none."""
+    """The planes in which polygons may overlap; None if there are no such planes."""
     coordinate_rows, node_rows = coordinates.T, node_numbers.T
     low, high = used_bounds(coordinate_rows, node_rows)
     extent = float((high - low).max())
@@ -134,9 +135,6 @@ def shared_planes(coordinates: Floats, node_numbers: Indices) -> SharedPlanes | 
     )
 
 
-# -------------------- polygons as flat pieces
-
-
 class Facets(NamedTuple):
     """Polygons as flat pieces.
 
@@ -195,10 +193,10 @@ class ScaledPolygons(NamedTuple):
         return normals
 
 
-# -------------------- cells
-# Three numbers characterize a plane, the same whichever way its normal points. Polygons whose numbers lie in
-# one cell are compared with the largest polygon there, corner by corner; the rest of them with the largest of
-# the rest, and so on. So a chain of small differences, such as around a cylinder, unites no polygons.
+# Cells. Three numbers characterize a plane, the same whichever way its normal points. Polygons whose numbers
+# lie in one cell are compared with the largest polygon there, corner by corner; the rest of them with the
+# largest of the rest, and so on. So a chain of small differences, such as around a cylinder, unites no
+# polygons.
 
 CELL: Final = 1 / 256
 """The size of a cell; measured: with a fourth of it, and with four times as much, random scenes have the same
@@ -211,7 +209,7 @@ MOST_PLANES: Final = 8
 """The most planes that are found in a cell."""
 
 MOST_GROUNDS: Final = 1 << 14
-"""Assumed: so many polygons of a mesh, the widest, are compared with all others in their cells."""
+"""Assumed: how many polygons of a mesh, the widest, are compared with all others in their cells."""
 
 FORMS: Final = np.random.default_rng(1983).uniform(-1, 1, (3, 3, 4))
 """Three bilinear forms of n and (n, d), which are the same for the plane (-n, -d)."""
@@ -318,7 +316,7 @@ def _in_plane_of_largest(facets: Facets, cells: Indices, tolerance: float) -> tu
         rows, seed = rows[several], rows[first[cell[several]]]
         if not len(rows):
             break
-        # The plane of the seed is as inexact as its corners, and more so beside them.
+        # The error of the seed's plane grows with the distance from its corners.
         away = facets.corners[:, :, rows] - facets.centers[:, None, seed]
         off = np.abs(np.einsum("in,ijn->jn", facets.normals[:, seed], away)).max(axis=0)
         reach = np.sqrt(np.einsum("ijn,ijn->jn", away, away).max(axis=0))
@@ -330,16 +328,15 @@ def _in_plane_of_largest(facets: Facets, cells: Indices, tolerance: float) -> tu
     return np.concatenate(seeds), np.concatenate(members)
 
 
-# -------------------- fitted planes
-# A small polygon tells little of the plane it lies in, so that the polygons of a large and finely divided
-# ground may be united to several groups. The planes that are fitted to many polygons are far more exact.
+# Fitted planes. The plane of a small polygon is inexact, so that the polygons of a large and finely divided
+# ground may be united to several groups. A plane fitted to many polygons is far more exact.
 
 MOST_SAMPLES: Final = 256
 """The most polygons of a group to which a plane is fitted when groups are united."""
 
 LEAST_UNITING: Final = 8
-"""Assumed: the plane of a group of fewer polygons is no more exact than the plane of the widest of them, with
-which all have been compared before."""
+"""Assumed: the fewest polygons of a group that unites others. The fitted plane of a smaller group is no more
+exact than the plane of its widest polygon, with which all polygons were compared before."""
 
 
 class Fits(NamedTuple):
@@ -353,7 +350,7 @@ class Fits(NamedTuple):
     widths: Floats
 
     def off(self, corners: Floats, groups: Indices) -> Floats:
-        """How far corners, (3, 4, n), are from the planes of `groups`, (n,), on their signed side: (4, n)."""
+        """The signed distances of corners, (3, 4, n), from the planes of `groups`, (n,): (4, n)."""
         off: Floats = np.einsum(
             "in,icn->cn",
             np.take(self.normals, groups, axis=1),
@@ -363,7 +360,7 @@ class Fits(NamedTuple):
 
 
 def fitted(facets: Facets, groups: Indices) -> Fits:
-    """The planes from which the corners are least far; `groups` are sorted, and numbered without gaps."""
+    """The planes that fit the corners best; `groups` are sorted, and numbered without gaps."""
     if not len(groups):
         return Fits(np.empty((3, 0)), np.empty((3, 0)), np.empty(0))
     first = _firsts(groups)
@@ -377,11 +374,11 @@ def fitted(facets: Facets, groups: Indices) -> Fits:
 
 
 class GroupPlanes(NamedTuple):
-    """Planes fitted to groups of several polygons, and the cells in and beside which they lie.
+    """Planes fitted to groups of several polygons, with the cells in and beside which the planes lie.
 
-    `polygons` are samples of the groups, and `groups` the group of each. `first` has the first polygon of
-    each group. `cells` are sorted hashes in the first grid; `planes` has the group whose plane lies in or
-    beside each, the widest first. Only the planes of large groups have cells.
+    `polygons` are samples of the groups, and `groups` the group of each sample. `first` has the first polygon
+    of each group. `cells` are sorted hashes in the first grid. `planes` has the group whose plane lies in or
+    beside each cell, the widest group first. Only the planes of large groups have cells.
     """
 
     polygons: Indices
@@ -408,7 +405,7 @@ def unite_in_fitted_planes(
         parents, planes, samples, planes.groups, planes.first, hashes, fits.widths, tolerance
     ):
         planes = _planes_of_groups(mesh, parents)
-    # Unite the polygons that are alone. Of a group only the first polygon is its own parent.
+    # Unite the polygons that are alone. In a group, only the first polygon is its own parent.
     alone = cells.widths > 0
     alone[united_items(parents)] = False
     alone[planes.first] = False
@@ -425,7 +422,7 @@ def _planes_of_groups(mesh: ScaledPolygons, parents: Indices) -> GroupPlanes:
     polygons, groups = _in_groups(parents)
     starts, sizes = _firsts(groups), np.bincount(groups)
     first = polygons[starts]
-    # Take every so many polygons of a group, as polygons with neighboring numbers may lie close together.
+    # Sample every k-th polygon of a group, because polygons with neighboring numbers may lie close together.
     place = np.arange(len(polygons)) - starts[groups]
     samples = place % (-(-sizes // MOST_SAMPLES))[groups] == 0
     polygons, groups = polygons[samples], groups[samples]
@@ -452,10 +449,11 @@ def _unite_with_planes(
     widths: Floats,
     tolerance: float,
 ) -> bool:
-    """Unite items with the widest group in whose plane all of their samples lie; whether any was united.
+    """Unite each item with the widest group whose plane holds all samples of the item.
 
-    An item is a group or a single polygon. `items` has the item of each sample; the others are (items,): the
-    `first` polygon, the hash of the cell, and the width, which must be less than the group's.
+    An item is a group or a single polygon. `items` has the item of each sample. `first` has the first polygon
+    of each item, `hashes` its cell, and `widths` its width, which must be less than the group's. Returns
+    whether any item was united.
     """
     start, stop = np.searchsorted(planes.cells, hashes), np.searchsorted(planes.cells, hashes, "right")
     limits = np.minimum(tolerance, SHARPEST * samples.widths)
@@ -477,13 +475,11 @@ def _unite_with_planes(
     return any_united
 
 
-# -------------------- groups and patches
-
 DIRECTIONS: Final = 16
 """The number of directions in which patches may lie apart."""
 
 MOST_PATCHES: Final = 64
-"""The most patches of a plane that are compared; of more it is assumed that some overlap."""
+"""The most patches of a plane that are compared. Among more patches, overlaps are assumed."""
 
 
 def _firsts(groups: Indices) -> Indices:
@@ -509,7 +505,7 @@ def _in_groups(parents: Indices) -> tuple[Indices, Indices]:
 
 
 def _fitted_and_off(facets: Facets, groups: Indices) -> tuple[Indices, Fits, Floats]:
-    """The groups numbered without gaps, the planes fitted to them, and how far each facet is off its own."""
+    """The groups numbered without gaps, their fitted planes, and how far each facet is off its plane."""
     groups = renumbered(groups)
     fits = fitted(facets, groups)
     return groups, fits, np.abs(fits.off(facets.corners, groups)).max(axis=0)
@@ -519,13 +515,13 @@ def _patches(places: Indices, groups: Indices, turned: Booleans) -> tuple[Indice
     """The patch of each polygon, and whether its group is more than one simple patch.
 
     A patch is simple if at most two polygons meet at each edge, one on either side. `places` is as from
-    `places_of_corners`. An edge with two polygons on one side, which overlap, joins none.
+    `places_of_corners`. Polygons on the same side of an edge overlap; such an edge joins no polygons.
     """
     start, end = places, np.roll(places, -1, axis=0)
-    keys = (np.minimum(start, end) * (int(places.max(initial=0)) + 1) + np.maximum(start, end)).T.ravel()
+    keys = edge_keys(start, end, int(places.max(initial=0)) + 1).T.ravel()
     forward = ((start < end) ^ turned).T.ravel()
-    edges = np.flatnonzero((start != end).T.ravel())
-    # Edges are in the order of the groups, and so are equal ones after a stable sort.
+    edges = np.flatnonzero(keys >= 0)
+    # Edges are in the order of the groups; after a stable sort, so are equal edges.
     edges = edges[np.argsort(keys[edges], kind="stable")]
     keys, forward, polygon = keys[edges], forward[edges], edges >> 2
     shared = (keys[1:] == keys[:-1]) & (groups[polygon[1:]] == groups[polygon[:-1]])
@@ -541,7 +537,7 @@ def _patches(places: Indices, groups: Indices, turned: Booleans) -> tuple[Indice
 
 
 def _lie_apart(patches: Indices, groups: Indices, corners: Floats, normals: Floats) -> Booleans:
-    """For each group whether no two of its patches overlap as seen along every direction of the plane."""
+    """Whether every two patches of a group are apart along some direction of the plane, (groups,)."""
     order = np.argsort(patches, kind="stable")
     first = _firsts(patches[order])
     group = groups[order[first]]
@@ -569,21 +565,21 @@ def _lie_apart(patches: Indices, groups: Indices, corners: Floats, normals: Floa
     return lie_apart
 
 
-# -------------------- levels
-# Rounding scatters corners to both sides of their plane. If all corners of a patch are on one side, by more
-# than their scatter, the patch lies in front of the others or behind them and has a level of its own.
+# Levels. Rounding scatters corners to both sides of their plane. If all corners of a patch are on one side,
+# by more than their scatter, the patch lies in front of the others or behind them and has a level of its own.
 
 MOST_LEVELS: Final = 8
-"""The most levels of a plane that are found; all other patches are one more."""
+"""The most levels of a plane that are told apart; all further patches are another level."""
 
 PASSES: Final = 3
 """How often a plane is fitted to a level: first to its largest patch, then to all patches near the plane."""
 
 FACTOR: Final = 4.0
-"""Assumed: the distance of a patch is real if it is so many times its scatter and a corner's rounding."""
+"""Assumed: a patch is really in front if its distance is above this multiple of its scatter plus this
+multiple of the rounding of a corner."""
 
-UNKNOWN: Final = 32.0
-"""Assumed: so many times its scatter, if it is not known how corners are rounded.
+UNKNOWN_ROUNDING_FACTOR: Final = 32.0
+"""Assumed: the multiple of the scatter if the rounding of the corners is not known.
 
 Measured: with 4, in some planes of a few triangles that were rounded and then moved, a decal was apart.
 """
@@ -593,10 +589,11 @@ EXACT: Final = 2.0**-46
 
 
 class Rounding(NamedTuple):
-    """The most by which a coordinate may be rounded, and the same as a fraction of each coordinate.
+    """How far rounding may have moved a coordinate: at most by `most`, and by a `fraction` of the coordinate.
 
-    Rounding to decimals leaves equal coordinates equal, so that the fraction is that of 64-bit numbers. If no
-    rounding is `known`, as of a mesh that was turned after it was rounded, both are those of 64-bit numbers.
+    Rounding to decimals leaves equal coordinates equal: then `fraction` is the rounding of 64-bit numbers. If
+    the rounding is not `known`, as in a mesh that was turned after it was rounded, both are the rounding of
+    64-bit numbers.
     """
 
     most: float
@@ -605,10 +602,10 @@ class Rounding(NamedTuple):
 
 
 def levels(facets: Facets, groups: Indices, patches: Indices, rounding: Rounding, middle: Floats) -> Indices:
-    """The level of each polygon in its group, 0 for that of the largest patch.
+    """The level of each polygon in its group; the largest patch has level 0.
 
-    `groups` are sorted; `patches` are numbers of patches, none in two groups. The coordinates of `facets`
-    plus `middle`, (3,), have this `rounding`.
+    `groups` are sorted; `patches` are numbers of patches, and no patch is in two groups. The coordinates of
+    `facets` plus `middle`, (3,), have this `rounding`.
     """
     result = np.full(len(groups), MOST_LEVELS, np.intp)
     left = np.arange(len(groups))
@@ -643,10 +640,10 @@ def _near_largest(
         scattered = scatter + np.sqrt(square / np.bincount(groups[core]) / 4)[group]
         away = facets.centers - fits.points[:, groups]
         reach = np.sqrt(np.bincount(patches, (away**2).sum(axis=0)) * 4 / corners)
-        # The plane is as inexact as its corners, and more so beside them.
+        # The error of the plane grows with the distance from the corners that it was fitted to.
         beside = 1 + 2 * reach / np.where(fits.widths > 0, fits.widths, np.inf)[group]
         least = np.full(len(group), rounding.most)
-        # Along an axis all corners of a plane are rounded alike.
+        # In a plane across an axis, all corners are rounded alike.
         at = np.abs(fits.normals).argmax(axis=0)
         along = np.abs(fits.normals).sum(axis=0) < 1 + 1e-9
         distances = np.abs(fits.points[at, np.arange(len(at))] + middle[at])
@@ -654,24 +651,21 @@ def _near_largest(
         alike = along[group] & (scattered <= exact)
         least[alike] = np.maximum(rounding.fraction * distances[group[alike]], exact)
         before = near
-        near = np.abs(mean) <= (FACTOR if rounding.known else UNKNOWN) * scattered + FACTOR * least * beside
+        factor = FACTOR if rounding.known else UNKNOWN_ROUNDING_FACTOR
+        near = np.abs(mean) <= factor * scattered + FACTOR * least * beside
         near[largest] = True
         if (near == before).all():
             break
     return near[patches]
 
 
-# -------------------- the rounding of coordinates
-
 HALF_SINGLE: Final = 2.0**-24
 """Half a unit in the last place of a 32-bit number, as a fraction of the number, at most."""
 
 LAST_BITS: Final = np.uint32(15)
-"""The last four bits of a 32-bit number. If one of them is 1, the number has at least 20 bits."""
+"""The last four bits of a 32-bit number. A number with a 1 among these bits has at least 20 bits."""
 
 MOST_DECIMALS: Final = 9
-
-FIRST_TESTED: Final = 64
 
 
 def coordinate_rounding(coordinate_rows: Floats) -> Rounding:
@@ -687,7 +681,7 @@ def coordinate_rounding(coordinate_rows: Floats) -> Rounding:
     with np.errstate(over="ignore", under="ignore"):
         singles = coordinate_rows.astype(np.float32)
     same = singles == coordinate_rows
-    # Perhaps only some were rounded. A number of few bits proves nothing.
+    # Perhaps only some coordinates were rounded. A number of few bits proves nothing.
     if same.all() or (same & ((singles.view(np.uint32) & LAST_BITS) > 0)).any():
         return Rounding(HALF_SINGLE * largest, HALF_SINGLE)
     moved = coordinate_rows - coordinate_rows[:, :1]
@@ -698,10 +692,11 @@ def coordinate_rounding(coordinate_rows: Floats) -> Rounding:
 
 
 def _have_decimals(coordinates: Floats, decimals: int, largest: float) -> bool:
-    """Whether all coordinates have so many decimals, but for the rounding of 64-bit numbers."""
+    """Whether all coordinates have so many decimals, up to the rounding of 64-bit numbers."""
     within = 4 * float(np.spacing(largest))
     # At most one random number in sixteen passes the test below by chance.
     if not 64 * within < 10.0**-decimals < np.inf:
         return False
-    few = coordinates.ravel()[:FIRST_TESTED]
+    # Test few coordinates first: most often they decide.
+    few = coordinates.ravel()[:64]
     return all(bool((np.abs(part.round(decimals) - part) <= within).all()) for part in (few, coordinates))

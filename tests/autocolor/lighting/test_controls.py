@@ -316,7 +316,7 @@ def test_half_spaces_that_are_off_are_no_control() -> None:
 
 
 @given(vectors(), directions, vectors(numbers(-0.5, 0.5)), directions)
-def test_what_a_light_carries_is_in_its_own_frame(
+def test_a_carried_half_space_is_in_the_frame_of_its_light(
     position: Vector, toward: Vector, point: Vector, direction: Vector
 ) -> None:
     light = Light("light", position, direction=toward)
@@ -430,7 +430,7 @@ def test_a_soft_edge_is_smooth_at_both_ends_and_grows_between_them() -> None:
         assert abs(slope[np.argmin(np.abs(at - end))]) < 0.05
 
 
-def test_several_soft_edges_leave_the_product_of_what_each_leaves() -> None:
+def test_the_shares_of_several_soft_edges_are_multiplied() -> None:
     planes = (
         HalfSpace("a", (-0.3, 0, 0), (1, 0, 0.4), 0.7),
         HalfSpace("b", (0.4, 0, 0), (-1, 0, 0.2), 0.9),
@@ -595,7 +595,7 @@ def test_a_cone_without_an_inner_angle_or_with_that_of_the_cone_is_sharp() -> No
 
 
 @pytest.mark.parametrize(("outer", "inner"), [(1e-6, 0.0), (180.0, math.nextafter(180.0, 0.0)), (30.0, 0.0)])
-def test_what_is_left_stays_within_0_and_1_however_narrow_the_edge(outer: float, inner: float) -> None:
+def test_the_share_stays_within_0_and_1_however_narrow_the_edge(outer: float, inner: float) -> None:
     control = SoftCone.of(spot(outer, inner), wall_points())
     assert control is not None
     cosines = np.linspace(-1.0000002, 1.0000002, 1001).astype(np.float32)

@@ -218,7 +218,7 @@ def test_any_light_on_the_coupe_gets_its_highlight_where_it_is_wanted_and_is_fou
     assert found == (line, element) or dot(toward, there.reflected_view) > 1 - 1e-6
 
 
-def test_a_cone_and_a_flap_of_a_light_at_the_eye_end_at_what_is_seen() -> None:
+def test_a_cone_and_a_flap_of_a_light_at_the_eye_end_at_the_visible_point() -> None:
     lamp = Light("lamp", (0, 0, 0), direction=(0, 1, 0), cone_angle=5, follows="eye")
     scene = CAR.scene.replace(lights=(*CAR.scene.lights, lamp))
     seen = seen_at(Sight(scene, CAR.points), 24, 20)
@@ -462,7 +462,7 @@ def test_the_highlight_on_a_wall_is_where_the_mirror_image_of_the_light_is_seen(
 
 
 @given(lights())
-def test_it_is_the_pixel_with_the_largest_cosine_of_all_and_of_each_surface(light: Light) -> None:
+def test_the_highlight_is_at_the_largest_cosine_of_all_surfaces_or_of_a_surface(light: Light) -> None:
     # With an exponent of 1, Phong's specular plane is cos(E), where cos(I) is above 0.
     scene = car()
     for surface in scene.surfaces:
@@ -527,7 +527,7 @@ def ball(kind: dict[str, Any]) -> Scene:
     return wall_scene(sphere(96, 48), view=VIEW, lights=lights).replace(words="normals")
 
 
-def test_what_is_seen_from_afar_is_in_the_middle_with_its_own_normal() -> None:
+def test_a_point_seen_from_afar_is_in_the_middle_with_its_own_normal() -> None:
     studio = Studio(ball({}), Ramtek9300())
     seen = studio.seen_at(220, 300)
     assert seen is not None
@@ -539,7 +539,7 @@ def test_what_is_seen_from_afar_is_in_the_middle_with_its_own_normal() -> None:
     assert far.reflected_view == pytest.approx(expected)
 
 
-def test_the_cosines_are_those_of_reflected_view_and_light_far_away() -> None:
+def test_the_cosines_from_afar_are_between_reflected_view_and_light() -> None:
     scene = ball({})
     rendered = rendering(scene, 48, 64)
     (surface,) = rendered.points.slices
@@ -671,7 +671,7 @@ def test_the_rim_of_a_flap_is_where_the_light_ends(rim: Rim, flaps: Flaps, view:
     assert found[rim].tolist() == twin
 
 
-def test_the_rims_of_all_controls_are_found_by_themselves() -> None:
+def test_every_control_has_a_rim_of_its_own() -> None:
     flaps = Flaps(Flap(-0.5, 0.5), Flap(-0.4, 0.4), Flap(-0.3, 0.3))
     light = Light("light", (0.2, -6.0, 0.1), aim=(0.0, 0.0, 0.0), cone_angle=6, flaps=flaps)
     scene = wall_scene(sphere(64, 32), view=WALL_VIEWS[1], lights=[light])
@@ -713,7 +713,7 @@ def test_the_end_of_a_line_is_no_neighbor_of_the_next() -> None:
     ]
 
 
-def test_only_what_ends_has_a_rim() -> None:
+def test_only_controls_that_end_have_a_rim() -> None:
     for light in (
         Light("light", (0.0, -9.0, 0.0)),
         Light("light", (0.0, -9.0, 0.0), aim=(0, 0, 0), concentration=5),

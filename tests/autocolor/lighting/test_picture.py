@@ -19,7 +19,7 @@ def close_to(expected: object, largest: float) -> object:
 
 
 @given(scenes())
-def test_minimum_and_maximum_are_those_of_the_arrays(scene: Scene) -> None:
+def test_ranges_are_the_minima_and_maxima_of_the_arrays(scene: Scene) -> None:
     picture = render(scene, 12, 16)
     on_object = picture.surface_number > 0
     points = {picture.surfaces[number - 1] for number in np.unique(picture.surface_number[on_object])}

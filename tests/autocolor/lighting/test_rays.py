@@ -31,7 +31,7 @@ def points_of(view: View) -> VisiblePoints:
 
 
 @given(outside_views(), vectors(numbers(-3, 3)), directions)
-def test_lengths_and_cosines_are_those_of_the_rays(view: View, position: Vector, direction: Vector) -> None:
+def test_lengths_and_cosines_agree_with_the_rays(view: View, position: Vector, direction: Vector) -> None:
     points = points_of(view)
     light = Light("light", position, direction=direction)
     rays = rays_to(camera_light(light, points, directed=True), points.rows)
@@ -111,7 +111,7 @@ def test_parallel_rays_do_not_light_the_faces_that_they_run_along(view: View, di
     assert (np.sign(cosines) == np.sign(expected)).all()
 
 
-def test_a_light_has_a_direction_only_where_one_is_asked_for() -> None:
+def test_a_camera_light_has_a_direction_only_if_a_control_needs_it() -> None:
     points = points_of(View((1, -5, 2), target=(0, 0, 0)))
     light = Light("light", (3, -3, 3), direction=(0, 2, 0))
     assert camera_light(light, points, directed=False).direction is None

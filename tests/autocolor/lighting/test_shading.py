@@ -468,7 +468,7 @@ def test_under_every_model_the_controls_leave_their_multiple_of_the_light(
     place=st.tuples(numbers(-3, 3), numbers(-4, -1), numbers(-3, 3)),
     cone_angle=st.none() | st.sampled_from([3.0, 20.0]),
 )
-def test_under_every_model_both_planes_are_those_of_the_slow_twin(
+def test_under_every_model_both_planes_agree_with_the_slow_twin(
     model: ReflectionModel, place: tuple[float, float, float], cone_angle: float | None
 ) -> None:
     # A narrow cone lights few points, which are then picked and computed alone.
@@ -532,7 +532,7 @@ def test_no_ray_is_computed_where_flaps_leave_everything_dark(monkeypatch: pytes
 
 
 @given(light=lights(on=True, intensity=1.0, direction=(1.0, 2.0, -0.5)), view=wall_views())
-def test_a_light_at_infinity_gives_what_it_gives_a_million_times_as_far_away(
+def test_a_light_at_infinity_lights_like_a_light_a_million_times_as_far_away(
     light: Light, view: View
 ) -> None:
     # What narrows a light is without effect at infinity, and what it carries would be moved.
@@ -671,7 +671,7 @@ def test_nothing_at_all_has_a_scale_of_1() -> None:
     assert light_mix({}, (), (), 0.0, ()) == (1.0, np.float32(0), {})
 
 
-def test_what_a_model_may_add_counts_against_the_range_of_float32() -> None:
+def test_the_largest_factor_of_a_model_counts_against_the_range_of_float32() -> None:
     both = (Surface("one", Reflectance(0.0, 1.0, 20.0)), Surface("other"))
     lights = [Light("key", (0, 0, 0), 1e37)]
     light_mix({1: Phong()}, both, lights, 0.0, ())

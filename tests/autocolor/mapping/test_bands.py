@@ -154,7 +154,7 @@ def test_as_many_shades_are_made_as_are_asked_for() -> None:
     assert (bands.bands, bands.shades) == (30, 16)
 
 
-def test_too_many_are_refused_by_name_with_what_there_is_and_what_to_do() -> None:
+def test_too_many_bands_are_refused_with_the_words_left_and_a_remedy() -> None:
     with pytest.raises(InputError) as refusal:
         bands_of(panes(2, bands=64, shades=8))
     assert str(refusal.value) == (
@@ -213,7 +213,7 @@ def test_values_beyond_the_limits_have_bands_where_there_are_limits_and_colors()
         ((np.nan, np.nan), (0.0, 1.0)),
     ],
 )
-def test_the_own_limits_are_those_of_the_values_or_around_the_only_one(
+def test_the_own_limits_are_the_range_of_the_values_or_around_a_constant(
     values: tuple[float, ...], limits: tuple[float, float]
 ) -> None:
     assert own_limits(render(panes(2, *values), 48, 64)) == limits

@@ -13,7 +13,7 @@ from tests.autocolor.strategies import numbers, paints
 
 
 @given(paints, st.integers(2, 300), st.just(0.0) | numbers(0, 1))
-def test_every_entry_is_the_one_of_the_slow_twin(paint: Paint, levels: int, floor: float) -> None:
+def test_every_entry_agrees_with_the_slow_twin(paint: Paint, levels: int, floor: float) -> None:
     entries = entries_of(paint, levels, floor)
     expected = [entry_of(paint, levels, level, floor) for level in range(levels)]
     assert np.abs(entries.astype(int) - np.array(expected)).max() <= (0 if floor == 0 else 1)

@@ -181,7 +181,7 @@ def test_nothing_is_loaded_for_an_image_of_the_same_colors(scene: Scene, edit: E
 
 
 @given(scenes(), of_scene(background=colors) | of_scene(contrast=st.sampled_from(["stretch", "floor"])))
-def test_where_more_than_paints_differ_one_load_reaches_from_the_first_to_the_last_that_does(
+def test_if_more_than_paints_differ_one_load_reaches_from_the_first_to_the_last_changed_entry(
     scene: Scene, edit: Edit
 ) -> None:
     session = Session(scene)
@@ -334,7 +334,7 @@ def test_the_lines_have_the_levels_of_a_held_exposure() -> None:
     assert all_lines(image) == image.words.tolist() != free.words.tolist()
 
 
-def test_what_is_visible_is_found_by_the_literal_algorithm(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_lines_come_from_the_literal_algorithm(monkeypatch: pytest.MonkeyPatch) -> None:
     def numbers_by_line(projected: Projection) -> Iterator[Numbers]:
         for line in range(projected.lines):
             yield np.full(projected.elements, line % 2, np.int64)

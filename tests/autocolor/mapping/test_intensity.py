@@ -66,7 +66,7 @@ def shown_by(mapping: Any, fraction: float) -> float:
     st.sampled_from([mapping for mapping in MAPPINGS if mapping != "equalize"]),
     st.integers(2, 1007),
 )
-def test_every_level_is_the_one_of_the_slow_twin(steps: list[int], mapping: Any, levels: int) -> None:
+def test_every_level_agrees_with_the_slow_twin(steps: list[int], mapping: Any, levels: int) -> None:
     intensities = np.array(steps, np.float32) * np.float32(1.7)
     least, most = float(intensities.min()), float(intensities.max())
     extent = IntensityRange(least, most)
@@ -132,7 +132,7 @@ def test_a_held_range_of_the_object_maps_every_surface(mapping: Any) -> None:
     assert 12 <= words[4] < words[5] == 112
 
 
-def test_a_held_range_is_one_of_intensities_and_not_of_the_scale_of_the_picture() -> None:
+def test_a_held_range_is_in_intensities_and_not_in_the_scale_of_the_picture() -> None:
     relative = picture_of([1, 2, 3])
     doubled = dataclasses.replace(relative, relative=relative.relative / np.float32(2), scale=2.0)
     held = (("a", (0.0, 4.0)),)
@@ -223,7 +223,7 @@ def test_a_surface_named_object_has_no_held_range_of_its_own() -> None:
     assert held.tolist() == words_of(picture, ranges).tolist()
 
 
-def test_dithering_leaves_what_has_no_extent_alone() -> None:
+def test_dithering_leaves_a_range_without_extent_alone() -> None:
     words = words_of(picture_of([3.0] * 30), {"a": LevelRange(1, 10)}, dither="ordered")
     assert set(words.ravel().tolist()) == {0, 6}
 
@@ -258,7 +258,7 @@ def test_holding_the_exposure_of_a_picture_changes_no_word(scene: Scene) -> None
 
 
 @given(scenes())
-def test_every_range_that_is_mapped_is_held_or_found_in_the_picture(scene: Scene) -> None:
+def test_every_mapped_range_is_held_or_comes_from_the_picture(scene: Scene) -> None:
     picture = render(scene, 9, 12)
     ranges = mapped_ranges(picture, scene.scaling, scene.exposure)
     held = {} if isinstance(scene.exposure, str) else dict(scene.exposure)
@@ -295,7 +295,7 @@ def test_half_the_light_is_half_as_bright_where_the_exposure_is_held() -> None:
     assert np.abs(dark[seen] * 2 - bright[seen]).max() <= 1
 
 
-def test_nothing_is_held_where_nothing_has_an_extent() -> None:
+def test_no_range_is_held_if_no_range_has_an_extent() -> None:
     scene = wall_scene(lights=())
     assert held_exposure(render(scene, 9, 12), scene.scaling) == "auto"
 
@@ -308,7 +308,7 @@ def test_an_extent_of_a_few_units_in_the_last_place_is_none() -> None:
 
 
 @given(scenes())
-def test_what_is_held_already_stays_held_as_it_is(scene: Scene) -> None:
+def test_a_held_range_stays_held_unchanged(scene: Scene) -> None:
     exposure = held_exposure(render(scene, 9, 12), scene.scaling, scene.exposure)
     if not isinstance(scene.exposure, str):
         held = dict(scene.exposure)

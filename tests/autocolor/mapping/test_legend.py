@@ -66,12 +66,12 @@ def test_it_tells_the_name_and_the_limits_beside_the_ends_of_the_bar() -> None:
         assert abs(number.top + LETTER_LINES // 2 - end) <= 1
 
 
-def test_large_numbers_are_told_in_millions() -> None:
+def test_large_numbers_are_written_in_millions() -> None:
     labels = legend_of(shown(ball(limits=[0, 8e6], bands=2))).labels
     assert [each.text for each in labels] == ["z", "x 1e6", "0", "4", "8"]
 
 
-def test_colors_beyond_the_limits_are_told_where_they_are_used() -> None:
+def test_the_legend_names_the_colors_beyond_the_limits_if_they_are_used() -> None:
     texts = [each.text for each in legend_of(shown(ball(limits=[-1, 1], below="red", above="blue"))).labels]
     assert {"above", "below"} <= set(texts)
     assert not {"above", "below", "missing"} & {each.text for each in legend_of(shown(ball())).labels}
@@ -147,7 +147,7 @@ def test_it_hides_as_little_of_the_object_as_it_can(
 
 
 @pytest.mark.parametrize("is_stage", [False, True])
-def test_it_may_hide_what_is_on_the_stage(is_stage: bool) -> None:
+def test_the_legend_may_hide_the_stage(is_stage: bool) -> None:
     one = sphere(12, 8)
     coordinates = np.vstack([one.coordinates, one.coordinates + np.array([3.0, 0.0, 2.0])])
     polygons = np.vstack([one.node_numbers, one.node_numbers + len(one.coordinates)])
@@ -219,7 +219,7 @@ def test_numbers_are_at_limits_of_bands_and_far_enough_apart_or_at_the_ends_alon
         (1e30, 3e30, 2, ["1", "2", "3"], 30),
     ],
 )
-def test_numbers_are_told_in_few_digits(
+def test_numbers_are_written_in_few_digits(
     low: float, high: float, count: int, told: list[str], exponent: int
 ) -> None:
     assert numbers_between(low, high, count) == (told, exponent)
@@ -229,7 +229,7 @@ numbers = st.floats(-1e9, 1e9).filter(lambda value: value == 0 or abs(value) > 1
 
 
 @given(numbers, st.floats(1e-6, 1e9), st.integers(1, 16))
-def test_each_number_is_that_of_its_limit_to_a_twentieth_of_the_distance(
+def test_every_number_is_its_limit_to_a_twentieth_of_the_distance(
     low: float, extent: float, count: int
 ) -> None:
     high = low + extent

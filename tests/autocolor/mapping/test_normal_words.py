@@ -145,7 +145,7 @@ def test_where_words_are_in_use_they_are_those_of_the_pixels_and_each_surface_ha
     assert (image.words == 0).tolist() == (image.picture.surface_number == 0).tolist()
 
 
-def test_the_normal_of_a_word_is_near_that_of_each_of_its_pixels() -> None:
+def test_the_normal_of_a_word_is_near_the_normals_of_its_pixels() -> None:
     image = image_of(ball_scene(20), 240, 320)
     assert image.picture.normals is not None
     normals = np.zeros((1024, 3), np.float32)
@@ -381,7 +381,7 @@ def test_a_light_that_follows_the_eye_shines_from_there() -> None:
     )
 
 
-def test_what_depends_on_places_is_left_out() -> None:
+def test_controls_and_links_that_depend_on_places_are_left_out() -> None:
     plain = Light("key", (4, -3, 2), 1.5)
     shaped = plain.replace(
         aim=(9, 9, 9), concentration=40, cone_angle=5, flaps=Flaps(x=Flap(8, 9)), reach=0.1, falloff="linear"
@@ -397,7 +397,7 @@ def test_a_far_light_keeps_every_column_but_those_of_its_place() -> None:
     assert differing == {"position", "at_infinity", "links"}
 
 
-def test_links_to_surfaces_stay_and_those_to_parts_are_left_out() -> None:
+def test_links_to_surfaces_stay_and_links_to_parts_are_left_out() -> None:
     light = Light("key", (4, -3, 2), on=False).replace(only_parts=("sphere",), except_surfaces=("shell",))
     far = far_light(light, (0, 0, 0))
     assert far.links.except_surfaces == ("shell",)

@@ -70,7 +70,7 @@ def test_a_surface_that_asks_for_too_much_is_named() -> None:
     with pytest.raises(InputError) as refusal:
         level_ranges(rows([600, 500]), {"surface 0": 1, "surface 1": 1})
     assert str(refusal.value).startswith(
-        "surface 'surface 0': the levels must be at most 1007 in all, 2 of them"
+        "surface 'surface 0': the levels of all surfaces must be at most 1007, with 2"
     )
 
 
@@ -79,7 +79,7 @@ def test_a_surface_that_is_not_in_use_has_no_words() -> None:
 
 
 @given(st.integers(2, 1007), st.lists(st.integers(0, 300_000), min_size=1, max_size=60))
-def test_words_are_shared_by_the_square_root_of_what_is_covered(words: int, pixels: list[int]) -> None:
+def test_words_are_shared_by_the_square_root_of_the_covered_pixels(words: int, pixels: list[int]) -> None:
     words = max(words, 2 * len(pixels))
     shares = shares_of_words(words, pixels)
     fewest = min(USEFUL_LEVELS, words // len(pixels))
@@ -196,7 +196,7 @@ def test_no_pixel_moves_by_more_than_a_level_unless_more_than_half_are_borrowed(
 
 
 @given(some_ranges(), st.integers(1, 400))
-def test_what_is_lent_is_spread_evenly(ranges: Ranges, count: int) -> None:
+def test_borrowed_words_are_spread_evenly(ranges: Ranges, count: int) -> None:
     name = max(ranges, key=lambda each: ranges[each].levels)
     levels = ranges[name].levels
     borrowed = borrowed_words(ranges, [name], SCREENS.first - 1 - levels + min(count, levels - 1))

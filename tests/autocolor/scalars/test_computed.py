@@ -3,6 +3,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -23,15 +24,22 @@ from autocolor.scalars.computed import (
     largest_curvature,
     mean_curvature,
     range_of,
+    scalar_values,
     slope,
     smallest_curvature,
     widened,
     within,
     zebra,
 )
-from autocolor.scene.scalar import COMPUTED, Scalar
+from autocolor.scene.scalar import COMPUTED, MeshScalar, Scalar
 from autocolor.visibility.visible_points import VisiblePoints
 from tests.autocolor.meshes import cube, grid, sphere, wall, wall_scene
+from tests.autocolor.reference import weights_in
+from tests.autocolor.strategies import numbers
+
+
+def seen(mesh: Mesh, view: View | None = None, lines: int = 30, elements: int = 40) -> VisiblePoints:
+    return rendering(wall_scene(mesh, view=view), lines, elements).points
 
 
 def test_each_name_has_a_function() -> None:
@@ -96,10 +104,7 @@ def test_noise_counts_as_a_constant() -> None:
     assert high - low == pytest.approx(1000, rel=1e-3)
 
 
-values = st.floats(-1e30, 1e30)
-
-
-@given(st.lists(values, min_size=1))
+@given(st.lists(st.floats(-1e30, 1e30), min_size=1))
 def test_every_value_is_in_the_range_also_as_a_single(numbers: list[float]) -> None:
     low, high = range_of(np.array(numbers))
     assert low < high
@@ -112,7 +117,7 @@ def test_a_share_of_the_values_can_be_cut_off() -> None:
     assert range_of(np.linspace(0, 100, 1001), 2) == pytest.approx((2, 98))
 
 
-def test_what_rounding_put_beyond_the_limits_is_put_on_them() -> None:
+def test_values_that_rounding_put_beyond_the_limits_are_clipped() -> None:
     values = np.array([-1e-9, 0.5, np.nan, 1 + 1e-6], np.float32)
     found = within(values, (0, 1))
     assert np.array_equal(found.values, np.array([0, 0.5, np.nan, 1], np.float32), equal_nan=True)
@@ -131,7 +136,7 @@ def test_a_range_is_computed_once_for_a_mesh_and_a_key() -> None:
     assert len(asked) == 3
 
 
-def test_few_ranges_are_kept_of_a_mesh() -> None:
+def test_a_mesh_has_a_bounded_number_of_cached_ranges() -> None:
     mesh = wall()
     for step in range(10 * MOST_RANGES):
         cached_range(mesh, step, lambda: (0.0, 1.0))
@@ -161,12 +166,8 @@ def cone(angle: float, columns: int = 180) -> Mesh:
     return Mesh(np.concatenate([lower, upper]), quads, part_names=("cone",))
 
 
-def points_of(mesh: Mesh, view: View) -> VisiblePoints:
-    return rendering(wall_scene(mesh, view=view), 30, 40).points
-
-
 def of_roof(eye: tuple[float, float, float], direction: tuple[float, float, float]) -> ScalarValues:
-    points = points_of(roof(), View(eye, target=(0.0, 0.0, 0.3)))
+    points = seen(roof(), View(eye, target=(0.0, 0.0, 0.3)))
     return slope(roof(), Scalar("slope", direction=direction), points)
 
 
@@ -178,7 +179,7 @@ def test_the_slope_of_a_roof_is_its_pitch_from_above_and_from_below(eye: tuple[f
     assert limits == (0, 90)
 
 
-def test_the_slope_is_counted_from_what_is_across_the_direction() -> None:
+def test_the_slope_is_counted_from_the_plane_across_the_direction() -> None:
     values, _ = of_roof((0.5, -2.0, 6.0), (1.0, 0.0, 0.0))
     assert values == pytest.approx(90 - PITCH, abs=1e-4)
     along, _ = of_roof((0.5, -2.0, 6.0), (0.0, 5.0, 0.0))
@@ -187,11 +188,11 @@ def test_the_slope_is_counted_from_what_is_across_the_direction() -> None:
 
 @pytest.mark.parametrize("angle", [0.0, 3.0, 20.0])
 @pytest.mark.parametrize("pull", [1.0, -1.0])
-def test_the_draft_angle_of_a_cone_is_that_of_its_side(angle: float, pull: float) -> None:
+def test_the_draft_angle_of_a_cone_is_the_angle_of_its_side(angle: float, pull: float) -> None:
     mesh = cone(angle)
     for eye in ((0.0, -9.0, 2.0), (0.0, -9.0, 14.0)):
         # From the second place the inside is seen, too: the outside counts.
-        points = points_of(mesh, View(eye, target=(0.0, 0.0, 0.5)))
+        points = seen(mesh, View(eye, target=(0.0, 0.0, 0.5)))
         values, limits = draft_angle(mesh, Scalar("draft angle", direction=(0.0, 0.0, pull)), points)
         assert len(values) > 50
         assert values == pytest.approx(pull * angle, abs=0.01)
@@ -200,7 +201,7 @@ def test_the_draft_angle_of_a_cone_is_that_of_its_side(angle: float, pull: float
 
 def test_the_sides_of_a_box_have_the_draft_angles_of_a_mold() -> None:
     mesh = cube()
-    points = points_of(mesh, View((2.0, -3.0, 2.5), target=(0.5, 0.5, 0.5)))
+    points = seen(mesh, View((2.0, -3.0, 2.5), target=(0.5, 0.5, 0.5)))
     values, _ = draft_angle(mesh, Scalar("draft angle"), points)
     of_polygon = {
         polygon: sorted(set(np.round(values[points.polygon_numbers == polygon], 3).tolist()))
@@ -212,13 +213,9 @@ def test_the_sides_of_a_box_have_the_draft_angles_of_a_mold() -> None:
 ANY = Scalar("mean curvature")
 
 
-def points_around(mesh: Mesh) -> VisiblePoints:
-    return rendering(wall_scene(mesh), 30, 40).points
-
-
 def test_a_ball_has_one_curvature_at_every_pixel() -> None:
     mesh = sphere(120, 60, radius=2.0)
-    points = points_around(mesh)
+    points = seen(mesh)
     for found, wanted in (
         (mean_curvature, 0.5),
         (gaussian_curvature, 0.25),
@@ -234,7 +231,7 @@ def test_a_ball_has_one_curvature_at_every_pixel() -> None:
 
 def test_a_cylinder_bends_one_way() -> None:
     mesh = cone(0.0)
-    points = points_around(mesh)
+    points = seen(mesh)
     wanted = {mean_curvature: 0.25, gaussian_curvature: 0.0, largest_curvature: 0.5, smallest_curvature: 0.0}
     for found, number in wanted.items():
         assert found(mesh, ANY, points).values == pytest.approx(number, abs=1e-3)
@@ -244,15 +241,15 @@ def test_the_range_leaves_a_few_sharp_bends_out() -> None:
     ball, needle = sphere(120, 60), sphere(12, 8, radius=0.01)
     moved = Mesh(needle.coordinates + np.array([3.0, 0.0, 0.0]), needle.node_numbers, part_names=("needle",))
     mesh = Mesh.joined([ball, moved])
-    _, (low, high) = mean_curvature(mesh, ANY, points_around(ball))
+    _, (low, high) = mean_curvature(mesh, ANY, seen(ball))
     assert mesh.curvatures.mean.max() > 50
     assert 0.4 < low < 1 < high < 2
 
 
-def test_what_is_flat_but_for_rounding_has_the_middle_of_the_range() -> None:
+def test_a_surface_that_is_flat_but_for_rounding_has_the_middle_of_the_range() -> None:
     mesh = grid(9, 9, (0.1, 0.2, 0.3), (3.0, 0.7, -0.2), (-0.3, 2.0, 1.1))
     mesh = Mesh(mesh.coordinates.astype(np.float32), mesh.node_numbers, part_names=("wall",))
-    points = points_around(mesh)
+    points = seen(mesh)
     assert mesh.curvatures.mean.any()
     for found in (mean_curvature, gaussian_curvature, largest_curvature, smallest_curvature):
         values, (low, high) = found(mesh, ANY, points)
@@ -271,7 +268,7 @@ def test_the_sides_of_a_box_are_flat() -> None:
 
 
 @pytest.mark.parametrize("axis", [0, 1, 2])
-def test_coordinates_are_those_of_the_points(axis: int) -> None:
+def test_coordinates_are_the_world_coordinates_of_the_points(axis: int) -> None:
     scene = wall_scene(sphere())
     points = rendering(scene, 24, 32).points
     values, limits = coordinate(axis, scene.mesh, Scalar("x"), points)
@@ -303,7 +300,7 @@ def test_the_height_of_a_level_plate_is_in_the_middle_of_its_range() -> None:
         assert np.abs((values - low) / (high - low) - 0.5).max() < 0.05
 
 
-def test_the_range_is_that_of_the_object_and_not_of_what_is_seen() -> None:
+def test_the_range_covers_the_object_and_not_only_its_visible_points() -> None:
     scene = wall_scene(sphere())
     near = rendering(scene.with_view(field_of_view=2), 12, 16).points
     values, limits = coordinate(0, scene.mesh, Scalar("x"), near)
@@ -372,3 +369,102 @@ def test_a_ray_along_the_lamps_has_a_phase(direction: tuple[float, float, float]
     assert np.isfinite(values).all()
     assert values.min() >= 0
     assert values.max() < 1
+
+
+def values_of(mesh: Mesh, name: str, points: VisiblePoints) -> ScalarValues:
+    return scalar_values(mesh, Scalar(name), points)
+
+
+def linear(mesh: Mesh) -> npt.NDArray[np.float64]:
+    """A linear field at the nodes of a mesh."""
+    field: npt.NDArray[np.float64] = mesh.coordinates @ (3.0, -2.0, 0.5) + 100
+    return field
+
+
+@pytest.mark.parametrize("as_triangles", [False, True])
+def test_a_linear_field_on_a_plane_in_perspective_is_right_at_every_pixel(as_triangles: bool) -> None:
+    flat = grid(7, 5, (-1.0, -2.0, 0.0), (3.0, 1.0, 0.5), (-0.5, 2.0, 1.0))
+    quads = flat.node_numbers
+    # Nodes within the plane, moved so that no quad is a parallelogram.
+    random = np.random.default_rng(1)
+    moves = random.uniform(-0.05, 0.05, (len(flat.coordinates), 2))
+    coordinates = flat.coordinates + moves @ np.array([(3.0, 1.0, 0.5), (-0.5, 2.0, 1.0)])
+    if as_triangles:
+        quads = np.concatenate([quads[:, [0, 1, 2, 2]], quads[:, [0, 2, 3, 3]]])
+    mesh = Mesh(coordinates, quads, part_names=("wall",))
+    field = linear(mesh)
+    mesh = mesh.with_scalars(MeshScalar("field", field))
+    view = View((2.0, -4.0, 3.0), target=(0.5, -0.5, 0.7), field_of_view=50)
+    points = seen(mesh, view, 120, 160)
+    values, limits = values_of(mesh, "field", points)
+    assert len(values) > 2000
+    assert values.dtype == np.float32
+    # The point where the ray through the pixel meets the plane, from the view alone.
+    lines, elements = np.divmod(points.pixels, 160)
+    focal = 60 / np.tan(np.radians(25))
+    rays = np.stack([(elements + 0.5 - 80) / focal, (lines + 0.5 - 60) / focal, np.ones(len(lines))])
+    directions = rays.T @ view.axes
+    normal = np.cross((3.0, 1.0, 0.5), (-0.5, 2.0, 1.0))
+    eye = np.array(view.eye)
+    depth = ((-1.0, -2.0, 0.0) - eye) @ normal / (directions @ normal)
+    exact = (eye + depth[:, None] * directions) @ (3.0, -2.0, 0.5) + 100
+    assert np.abs(values - exact).max() < 1e-5 * (limits[1] - limits[0])
+    assert limits == pytest.approx((field.min(), field.max()))
+
+
+def test_scalars_of_polygons_are_exact() -> None:
+    mesh = wall(5, 3)
+    numbers_of = np.linspace(-1, 1, 15) / 3
+    numbers_of[4] = np.nan
+    mesh = mesh.with_scalars(MeshScalar("load", numbers_of, "polygon"))
+    points = seen(mesh)
+    values, limits = values_of(mesh, "load", points)
+    wanted = numbers_of.astype(np.float32)[points.polygon_numbers]
+    assert np.array_equal(values, wanted, equal_nan=True)
+    assert np.isnan(values).any()
+    assert limits == (np.float32(-1 / 3).item(), np.float32(1 / 3).item())
+
+
+@given(st.lists(numbers(-5, 5), min_size=96, max_size=96))
+def test_values_of_nodes_agree_with_the_slow_twin(at_nodes: list[float]) -> None:
+    mesh = sphere(12, 9).with_scalars(MeshScalar("stress", np.array([*at_nodes, 1.0, 2.0])))
+    points = seen(mesh, lines=9, elements=12)
+    values, _ = values_of(mesh, "stress", points)
+    for value, point, polygon in zip(values, points.world_points, points.polygon_numbers, strict=True):
+        nodes = list(dict.fromkeys(mesh.node_numbers[polygon].tolist()))
+        weights = weights_in(mesh.coordinates[nodes].tolist(), point.tolist())
+        expected = np.dot(weights, mesh.scalars[0].values[nodes])
+        assert value == pytest.approx(expected, abs=2e-4)
+
+
+def test_values_never_leave_the_range() -> None:
+    random = np.random.default_rng(3)
+    mesh = sphere(20, 12)
+    mesh = mesh.with_scalars(MeshScalar("steps", random.choice([0.1, 0.7], len(mesh.coordinates))))
+    values, limits = values_of(mesh, "steps", seen(mesh, None, 60, 80))
+    assert limits == (np.float32(0.1).item(), np.float32(0.7).item())
+    assert values.min() == limits[0]
+    assert values.max() == limits[1]
+
+
+def test_a_polygon_with_a_missing_corner_is_missing_and_no_other() -> None:
+    mesh = wall(4, 4)
+    at_nodes = np.arange(25.0)
+    at_nodes[0] = np.nan
+    mesh = mesh.with_scalars(MeshScalar("stress", at_nodes))
+    points = seen(mesh)
+    values, limits = values_of(mesh, "stress", points)
+    assert np.array_equal(np.isnan(values), points.polygon_numbers == 0)
+    assert limits == (1, 24)
+
+
+def test_nodes_that_no_polygon_uses_are_not_in_the_range() -> None:
+    one = wall()
+    mesh = Mesh(np.vstack([one.coordinates, [(9.0, 9.0, 9.0)]]), one.node_numbers, part_names=("wall",))
+    mesh = mesh.with_scalars(MeshScalar("stress", np.array([1.0, 2.0, 3.0, 4.0, 1000.0])))
+    assert values_of(mesh, "stress", seen(mesh)).limits == (1, 4)
+
+
+def test_a_scalar_of_the_mesh_comes_before_a_computed_one() -> None:
+    mesh = wall().with_scalars(MeshScalar("z", np.full(4, 7.0)))
+    assert set(values_of(mesh, "z", seen(mesh)).values.tolist()) == {7.0}

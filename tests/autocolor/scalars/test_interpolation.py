@@ -26,7 +26,7 @@ def test_runs_are_the_polygons_of_the_points() -> None:
 def test_a_view_that_sees_nothing_has_no_runs() -> None:
     scene = wall_scene(wall()).with_view(target=(0.0, -9.0, 0.0))
     points = rendering(scene, 6, 8).points
-    assert len(polygon_runs(points).polygons) == 0
+    assert len(polygon_runs(points)[0]) == 0
     assert list(weighted_points(scene.mesh, points)) == []
 
 
@@ -73,7 +73,7 @@ turns = shares.map(lambda gaps: [2 * math.pi * sum(gaps[:count]) / sum(gaps) for
 
 
 @given(turns, shares)
-def test_weights_in_a_convex_quad_are_those_of_wachspress(around: list[float], share: list[float]) -> None:
+def test_weights_in_a_convex_quad_are_wachspress_coordinates(around: list[float], share: list[float]) -> None:
     corners = on_a_circle(around)
     point = np.array(share) @ corners / sum(share)
     assert weights_at(corners, [point])[0] == pytest.approx(
@@ -82,7 +82,7 @@ def test_weights_in_a_convex_quad_are_those_of_wachspress(around: list[float], s
 
 
 @given(turns, shares)
-def test_what_is_linear_stays_so_in_a_convex_quad(around: list[float], share: list[float]) -> None:
+def test_a_linear_function_stays_linear_in_a_convex_quad(around: list[float], share: list[float]) -> None:
     corners = on_a_circle(around)
     point = np.array(share) @ corners / sum(share)
     assert weights_at(corners, [point])[0] @ corners == pytest.approx(point, abs=1e-9)

@@ -75,7 +75,7 @@ def test_the_frame_of_the_eye_is_that_of_the_picture(view: View) -> None:
 
 
 @given(views(), vectors(), vectors(), directions)
-def test_what_is_told_in_a_frame_is_found_there_again(
+def test_a_frame_converts_to_the_world_and_back(
     view: View, position: Vector, point: Vector, direction: Vector
 ) -> None:
     for frame in (eye_frame(view), light_frame(Light("light", position, direction=direction))):
@@ -163,7 +163,7 @@ def test_a_chain_of_thousands_is_followed() -> None:
 
 
 @given(vectors(), vectors().filter(any), st.sampled_from(["fill", "lamp"]))
-def test_a_light_is_put_where_it_is_wanted_in_the_world_whatever_it_follows(
+def test_a_light_is_placed_in_the_world_whatever_it_follows(
     position: Vector, away: Vector, name: str
 ) -> None:
     scene = followed_car().with_view(eye=(3, -2, 1), angle=20)
@@ -189,7 +189,7 @@ def test_a_light_is_put_in_the_world_and_follows_something_else_at_once() -> Non
 
 
 @pytest.mark.parametrize("position", ["abc", (1, 2), ("x", 1, 2), None, (math.nan, 0, 0)])
-def test_what_is_no_place_is_refused_of_a_light_that_follows_as_of_any_other(position: Any) -> None:
+def test_an_invalid_place_of_a_light_that_follows_is_refused_as_of_any_light(position: Any) -> None:
     told = []
     for follows in (None, "eye"):
         scene = car().with_light("fill", follows=follows)
@@ -323,7 +323,7 @@ def test_moving_an_aim_computes_that_light_and_its_followers_and_nothing_else() 
         assert (planes["key"].values is before.picture.light_planes["key"].values) == expected
 
 
-def test_edits_of_what_is_followed_show_what_a_fresh_picture_shows() -> None:
+def test_an_edit_of_the_eye_or_a_followed_light_gives_the_fresh_picture() -> None:
     studio, display = opened(followed_car())
     for edit in (
         lambda: studio.light("key", aim=(0.3, 0.1, 0.2)),
@@ -340,7 +340,7 @@ def test_edits_of_what_is_followed_show_what_a_fresh_picture_shows() -> None:
 
 
 @given(outside_views(), lights("key", aim=(0.1, 0.2, 0.3), direction=None), vectors())
-def test_a_follower_lights_what_a_light_placed_there_lights(view: View, key: Light, position: Vector) -> None:
+def test_a_follower_lights_like_a_light_at_its_place(view: View, key: Light, position: Vector) -> None:
     scene = wall_scene(view=view, lights=[key, Light("b", position, aim=(9, 9, 9), follows="key")])
     placed = scene.replace(lights=scene.lights_in_world)
     assert render(scene, 8, 8).intensity.tobytes() == render(placed, 8, 8).intensity.tobytes()
@@ -385,7 +385,7 @@ def test_the_mirrored_copy_of_a_follower_is_mirrored_in_the_world_and_follows(
 LEFT = HalfSpace("left", (0.5, 2.0, 0.25), (1.0, 0.0, 0.0), edge_width=0.1, carried=True)
 
 
-def test_what_a_light_carries_is_told_to_its_right_along_it_and_up() -> None:
+def test_a_carried_half_space_is_given_to_the_right_of_its_light_along_it_and_up() -> None:
     light = Light("light", (1.0, 2.0, 3.0), direction=(1.0, 0.0, 0.0))
     placed = detached(LEFT, light)
     assert placed.point == pytest.approx((3.0, 1.5, 3.25))
@@ -400,7 +400,7 @@ def test_a_point_source_carries_along_the_axes_of_the_world() -> None:
 
 
 @given(vectors(), directions, vectors(), directions)
-def test_what_is_attached_and_detached_again_is_where_it_was(
+def test_a_half_space_attached_and_detached_again_is_where_it_was(
     position: Vector, toward: Vector, point: Vector, direction: Vector
 ) -> None:
     light = Light("light", position, direction=toward)
@@ -413,7 +413,7 @@ def test_what_is_attached_and_detached_again_is_where_it_was(
     assert not back.carried
 
 
-def test_what_is_carried_already_or_not_stays_as_it_is() -> None:
+def test_attaching_or_detaching_twice_changes_nothing() -> None:
     light = Light("light", (1.0, 2.0, 3.0), direction=(1.0, 0.0, 0.0))
     placed = detached(LEFT, light)
     assert detached(placed, light) is placed

@@ -31,7 +31,7 @@ from autocolor import (
 from autocolor.journal.history import History
 from autocolor.journal.places import Source, place_of
 from autocolor.scene.columns import Tier
-from autocolor.scene.lights import Links, free_name, middle_between, unit_vector
+from autocolor.scene.lights import Links, free_name, middle_between
 from autocolor.scene.scene import cost_of_edit
 from ramtek_emu import Ramtek9300
 from tests.autocolor.journal.random_steps import journal_of
@@ -405,19 +405,6 @@ def test_links_are_undone_and_told_by_the_journal(tmp_path: Path) -> None:
     assert studio.scene.light("key").links == Links(only_surfaces=("glass",))
     studio.undo()
     assert (studio.words == before).all()
-
-
-@given(directions, numbers(1e-30, 1e30))
-def test_a_unit_vector_has_the_direction_of_any_longer_one(direction: Vector, length: float) -> None:
-    x, y, z = direction
-    found = unit_vector((x * length, y * length, z * length))
-    assert math.hypot(*found) == pytest.approx(1, rel=1e-15)
-    assert found == pytest.approx([each / math.hypot(x, y, z) for each in direction], rel=1e-12)
-
-
-@pytest.mark.parametrize("size", [5e-324, 1e-300, 1e300])
-def test_squares_of_very_small_or_large_ones_do_not_matter(size: float) -> None:
-    assert unit_vector((size, 0.0, -size)) == pytest.approx((math.sqrt(0.5), 0, -math.sqrt(0.5)))
 
 
 def test_the_middle_of_two_points_is_halfway_also_between_the_largest() -> None:

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import InputError, Mesh
-from autocolor.scene import mesh as room
+from autocolor.scene import mesh as mesh_module
 from autocolor.scene.mesh import has_same_tables
 from autocolor.scene.scalar import MeshScalar
 from tests.autocolor.meshes import cube, grid, sphere
@@ -127,7 +127,7 @@ def test_a_mesh_that_breaks_a_rule_is_refused(fields: dict[str, Any], sentence: 
     assert sentence in refusal.value.problems
 
 
-def test_what_is_wrong_with_the_nodes_is_not_said_of_the_polygons_again() -> None:
+def test_a_fault_of_the_nodes_is_not_repeated_for_the_polygons() -> None:
     with pytest.raises(InputError) as refusal:
         mesh_of(coordinates=np.eye(3)[:, :2])
     assert refusal.value.problems == ("node table: its shape must be (rows, 3), not (3, 2)",)
@@ -156,9 +156,7 @@ def test_the_parts_in_use_have_a_polygon() -> None:
 
 
 @given(meshes(parts=3), st.sets(st.integers(0, 2)))
-def test_the_coordinates_of_parts_are_those_of_the_nodes_of_their_polygons(
-    mesh: Mesh, chosen: set[int]
-) -> None:
+def test_the_coordinates_of_parts_are_the_coordinates_of_their_nodes(mesh: Mesh, chosen: set[int]) -> None:
     nodes = sorted(
         {
             int(node)
@@ -198,7 +196,7 @@ def test_a_mesh_without_part_numbers_is_one_part() -> None:
 
 
 @given(meshes())
-def test_a_mesh_of_tables_holds_them_themselves_and_what_was_computed_of_them(mesh: Mesh) -> None:
+def test_a_mesh_of_tables_copies_nothing_and_has_the_given_normals_and_planes(mesh: Mesh) -> None:
     tables = (mesh.coordinates, mesh.node_numbers, mesh.part_numbers)
     held = Mesh.of_tables(*tables, mesh.part_names, 25.0, normals=mesh.normals, shared_planes=None)
     assert held.coordinates is mesh.coordinates
@@ -215,7 +213,7 @@ def test_a_mesh_of_tables_holds_them_themselves_and_what_was_computed_of_them(me
 @pytest.mark.parametrize("at_once", [1, 3, 1000])
 def test_edges_are_counted_alike_in_chunks_of_any_size(at_once: int) -> None:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(room, "POLYGONS_AT_ONCE", at_once)
+        patch.setattr(mesh_module, "POLYGONS_AT_ONCE", at_once)
         assert cube().edge_count == 12
         assert grid(3, 2, (0, 0, 0), (3, 0, 0), (0, 2, 0)).edge_count == 17
         assert mesh_of(node_numbers=np.array([[0, 1, 2], [2, 1, 0]]), part_numbers=[0, 0]).edge_count == 3

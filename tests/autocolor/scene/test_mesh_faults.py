@@ -81,7 +81,7 @@ polygons = st.lists(st.lists(st.integers(0, 6), min_size=3, max_size=4, unique=T
 
 
 @given(polygons)
-def test_the_edges_are_those_that_a_count_in_a_table_finds(rows: list[list[int]]) -> None:
+def test_the_edges_agree_with_a_count_in_a_table(rows: list[list[int]]) -> None:
     directed: Counter[tuple[int, int]] = Counter()
     owners: dict[frozenset[int], list[int]] = defaultdict(list)
     for number, row in enumerate(rows):
@@ -131,7 +131,7 @@ def test_a_box_without_two_of_its_sides_has_two_holes() -> None:
         assert hole.node in {*box[0].tolist(), *box[opposite].tolist()}, row
 
 
-def test_holes_that_share_a_node_are_one_that_branches_and_longer_ones_come_first() -> None:
+def test_holes_that_share_a_node_are_one_branching_hole_and_longer_holes_come_first() -> None:
     places = np.array(
         [[0, 0, 0], [1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0], [9, 0, 0], [19, 0, 0], [9, 10, 0.0]]
     )
@@ -158,7 +158,7 @@ def test_no_border_is_no_hole() -> None:
     ids=["square", "warped", "concave", "bow-tie that cancels", "bow-tie"],
 )
 @pytest.mark.parametrize("scale", [1e-20, 1.0, 1e20])
-def test_a_quad_is_told_by_its_shape_at_any_size(
+def test_the_shape_of_a_quad_does_not_depend_on_its_size(
     corners: list[list[float]], shapes: QuadShapes, scale: float
 ) -> None:
     for first in range(4):
@@ -185,7 +185,7 @@ rows = st.lists(st.tuples(*[st.integers(-2, 2)] * 3), max_size=30)
 
 
 @given(rows)
-def test_the_rows_that_equal_another_are_found(table: list[tuple[int, int, int]]) -> None:
+def test_repeated_rows_agree_with_a_count(table: list[tuple[int, int, int]]) -> None:
     expected = [row for row, values in enumerate(table) if table.count(values) > 1]
     assert repeated_rows(np.array(table, np.int64).reshape(-1, 3)).tolist() == expected
 

@@ -377,13 +377,13 @@ def test_without_a_material_there_is_nothing_to_multiply_by() -> None:
 
 @pytest.mark.parametrize("model", ["phong", "blinn"])
 @pytest.mark.parametrize("way", WAYS)
-def test_each_way_to_tell_it_is_a_key_of_the_surface(model: str, way: dict[str, Any]) -> None:
+def test_every_column_of_the_growth_is_a_key_of_the_surface(model: str, way: dict[str, Any]) -> None:
     surface = Surface("body").replace(model=model, exponent=9, **way)
     assert to_plain(surface).items() >= way.items()
     assert surface.reflectance.model == MODELS[model](9, SpecularGrowth(**way))  # type: ignore[call-arg]
 
 
-def test_telling_it_in_another_way_takes_the_first_one_back() -> None:
+def test_another_column_of_the_growth_removes_the_first() -> None:
     surface = Surface("body")
     for way in WAYS:
         before, surface = surface, surface.replace(**way)
@@ -392,7 +392,7 @@ def test_telling_it_in_another_way_takes_the_first_one_back() -> None:
     assert surface.replace(fresnel_curve=None) == Surface("body")
 
 
-def test_an_edit_of_it_costs_the_lights_on_its_surface_and_one_of_s_a_sum() -> None:
+def test_an_edit_of_the_growth_costs_the_lights_on_its_surface_and_an_edit_of_s_a_sum() -> None:
     surface = Surface("body")
     for way in WAYS:
         assert cost(surface, surface.replace(**way)) == Tier.LIGHT
@@ -432,7 +432,7 @@ def test_an_edit_of_it_costs_the_lights_on_its_surface_and_one_of_s_a_sum() -> N
         ),
     ],
 )
-def test_what_tells_no_growth_is_refused_in_a_sentence(changes: dict[str, Any], problem: str) -> None:
+def test_an_invalid_growth_is_refused_in_a_sentence(changes: dict[str, Any], problem: str) -> None:
     with pytest.raises(InputError) as refusal:
         Surface("body").replace(**changes)
     assert refusal.value.problems == (f"surface 'body': {problem}",)

@@ -92,7 +92,7 @@ def test_a_rig_whose_minimum_is_above_its_maximum_is_refused_by_its_axis() -> No
         Rig(3, (1, 1, 1))  # type: ignore[arg-type]
 
 
-def test_lights_that_follow_keep_their_place_beside_what_they_follow_and_are_as_many_sizes_from_it() -> None:
+def test_lights_that_follow_keep_their_place_in_sizes_of_the_object() -> None:
     rig = Rig(
         (0, 0, 0),
         (1, 1, 1),

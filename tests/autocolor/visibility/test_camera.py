@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from autocolor import Mesh, View
 from autocolor.arrays import Floats
-from autocolor.visibility import camera as room
+from autocolor.visibility import camera as camera_module
 from autocolor.visibility.camera import (
     CameraPolygons,
     camera_space,
@@ -67,16 +67,16 @@ def test_an_object_of_any_size_has_the_same_positions_in_its_unit(power: int) ->
     assert cameras[0].near == cameras[1].near
 
 
-def test_the_near_plane_of_what_reaches_behind_the_eye_is_a_millionth_of_its_farthest_depth() -> None:
+def test_the_near_plane_of_an_object_behind_the_eye_is_at_a_millionth_of_its_farthest_depth() -> None:
     camera = camera_space(cube(5.0), View((2.5, 1.0, 2.5), direction=(0, 1, 0)))
     assert camera.near * camera.unit == pytest.approx(4e-6)
     behind = camera_space(cube(), View((0.5, 3.0, 0.5), direction=(0, 1, 0)))
-    assert behind.near == room.LEAST_NEAR
+    assert behind.near == camera_module.LEAST_NEAR
 
 
 @pytest.mark.parametrize("nearest", [1e-3, 1e-7, 1e-8])
 @pytest.mark.parametrize("stray", [(), ((0.5, -9.0, 0.0),)])
-def test_the_near_plane_clips_nothing_of_what_lies_wholly_before_the_eye(
+def test_the_near_plane_clips_nothing_of_an_object_before_the_eye(
     nearest: float, stray: tuple[Vector, ...]
 ) -> None:
     mesh = Mesh.joined([cube(), cube(nearest)])
@@ -94,7 +94,7 @@ def test_the_near_plane_clips_nothing_of_what_lies_wholly_before_the_eye(
 
 def test_the_near_plane_is_never_nearer_than_the_rounding_of_crossings_allows() -> None:
     camera = camera_space(cube(), View((0.5, -1e-12, 0.5), direction=(0, 1, 0)))
-    assert camera.near == room.LEAST_NEAR
+    assert camera.near == camera_module.LEAST_NEAR
 
 
 @given(vectors(), st.sampled_from([1, 7, 1000]))
@@ -105,7 +105,7 @@ def test_points_are_rotated_alike_in_chunks_of_any_size(
     points = sphere().coordinates.T
     whole = rotated(axes, points, origin)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(room, "POINTS_AT_ONCE", at_once)
+        patch.setattr(camera_module, "POINTS_AT_ONCE", at_once)
         assert rotated(axes, points, origin).tobytes() == whole.tobytes()
     assert whole == pytest.approx(axes @ (points - np.array(origin)[:, None]), abs=1e-12)
 

@@ -20,7 +20,7 @@ from autocolor.visibility.depth import (
     polygons_of_numbers,
     segments_of_polygons,
 )
-from autocolor.visibility.projection import MOST_OFF, Projection, projection
+from autocolor.visibility.projection import LARGEST_PLANE_ERROR, Projection, projection
 from autocolor.visibility.scan_lines import extents_of_polygons
 from autocolor.visibility.visible_surfaces import visible_surfaces
 from tests.autocolor.meshes import ROUNDINGS, decal_on_ground, grid
@@ -44,7 +44,7 @@ def test_the_nearest_node_and_the_number_of_any_polygon_fit_in_a_key(
 
 
 @given(meshes(), views() | outside_views(), rasters)
-def test_of_the_numbers_those_that_face_the_eye_are_the_highest_and_each_tells_its_polygon(
+def test_polygons_that_face_the_eye_have_the_highest_numbers_and_every_number_leads_to_its_polygon(
     mesh: Mesh, view: View, raster: tuple[int, int]
 ) -> None:
     projected = projection(mesh, view, *raster)
@@ -56,7 +56,7 @@ def test_of_the_numbers_those_that_face_the_eye_are_the_highest_and_each_tells_i
 
 
 @given(st.integers(1, 24), depths, depths)
-def test_the_nearer_has_the_larger_key_whatever_the_numbers_of_the_polygons_are(
+def test_the_nearer_polygon_has_the_larger_key_whatever_its_number(
     bits: int, one: float, other: float
 ) -> None:
     scale = DepthScale(1 << bits, 2.0 ** (62 - bits))
@@ -67,7 +67,7 @@ def test_the_nearer_has_the_larger_key_whatever_the_numbers_of_the_polygons_are(
 
 
 @given(st.lists(st.floats(-1, 1)))
-def test_one_key_is_the_same_as_many(inverse_depths: list[float]) -> None:
+def test_a_single_key_equals_the_key_in_an_array(inverse_depths: list[float]) -> None:
     scale = DepthScale(1 << 16, 2.0**46)
     keys = scale.keys(np.array(inverse_depths, np.float64)).tolist()
     assert keys == [scale.key(each) for each in inverse_depths]
@@ -97,7 +97,7 @@ def test_the_key_of_a_shared_plane_is_the_same_wherever_its_steps_begin(seed: in
 
 
 @given(st.integers(0, 1 << 32), st.sampled_from(ROUNDINGS))
-def test_the_depth_of_a_plane_is_that_of_the_corners_of_its_polygons(seed: int, rounding: str) -> None:
+def test_the_depth_of_a_plane_is_the_depth_of_the_corners_of_its_polygons(seed: int, rounding: str) -> None:
     mesh, view = decal_on_ground(seed, rounding)
     projected = projection(mesh, view, 48, 64)
     scale = depth_scale(projected)
@@ -105,7 +105,7 @@ def test_the_depth_of_a_plane_is_that_of_the_corners_of_its_polygons(seed: int, 
         corners = projected.corners[:, scale.planes >= 0]
         x, y = projected.x[corners], projected.y[corners]
         depths = scale.depths_of_planes(np.zeros_like(corners), x, y)
-        assert depths == pytest.approx(projected.inverse_depth[corners], rel=1.1 * MOST_OFF)
+        assert depths == pytest.approx(projected.inverse_depth[corners], rel=1.1 * LARGEST_PLANE_ERROR)
 
 
 def test_a_plane_whose_depths_no_key_can_hold_leaves_its_polygons_their_own() -> None:
@@ -177,7 +177,7 @@ def test_the_keys_step_along_the_inverse_depth(mesh: Mesh, view: View, raster: t
 
 
 @given(meshes(), views(), rasters)
-def test_the_segments_of_some_polygons_are_among_those_of_all(
+def test_the_segments_of_some_polygons_are_among_the_segments_of_all_polygons(
     mesh: Mesh, view: View, raster: tuple[int, int]
 ) -> None:
     projected, scale, segments = all_segments(mesh, view, raster)

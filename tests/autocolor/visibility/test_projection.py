@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Mesh, View, render, scene_of
-from autocolor.visibility import projection as room
+from autocolor.visibility import projection as projection_module
 from autocolor.visibility.projection import (
     Projection,
     Raster,
@@ -71,7 +71,7 @@ def test_nodes_lie_alike_in_chunks_of_any_size() -> None:
     positions = np.random.default_rng(1).uniform(-1, 1, (3, 50))
     whole = on_raster(positions, 0.1, RASTER)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(room, "NODES_AT_ONCE", 7)
+        patch.setattr(projection_module, "NODES_AT_ONCE", 7)
         for one, other in zip(on_raster(positions, 0.1, RASTER), whole, strict=True):
             assert one.tobytes() == other.tobytes()
 
@@ -93,7 +93,7 @@ def test_no_line_crosses_a_polygon_more_than_twice(mesh: Mesh, view: View, raste
 
 
 @given(meshes(), views(), rasters)
-def test_what_is_projected_is_before_the_eye_and_finite(
+def test_projected_corners_are_before_the_eye_and_finite(
     mesh: Mesh, view: View, raster: tuple[int, int]
 ) -> None:
     projected = projection(mesh, view, *raster)
@@ -203,9 +203,9 @@ def test_a_mesh_without_shared_planes_has_none_on_the_raster() -> None:
 def in_two_steps(mesh: Mesh, view: View, lines: int, elements: int) -> Projection:
     """The projection as that of a large mesh, in chunks of a few polygons and nodes."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(room, "LARGE", 0)
-        patch.setattr(room, "POLYGONS_AT_ONCE", 3)
-        patch.setattr(room, "NODES_AT_ONCE", 5)
+        patch.setattr(projection_module, "LARGE", 0)
+        patch.setattr(projection_module, "POLYGONS_AT_ONCE", 3)
+        patch.setattr(projection_module, "NODES_AT_ONCE", 5)
         return projection(mesh, view, lines, elements)
 
 

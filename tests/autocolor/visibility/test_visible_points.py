@@ -78,7 +78,7 @@ def test_each_vector_is_followed_by_its_dot_product_with_the_point(count: int, s
 
 
 @given(outside_views(), vectors())
-def test_camera_points_and_directions_are_those_of_the_rows(view: View, direction: Vector) -> None:
+def test_camera_points_and_directions_agree_with_the_rows(view: View, direction: Vector) -> None:
     points = visible_surfaces(sphere(12, 8), view, (1,), 9, 12)
     for number, (point, normal) in enumerate(zip(points.world_points, points.world_normals, strict=True)):
         assert points.camera_point(tuple(point.tolist())) == pytest.approx(
@@ -125,7 +125,7 @@ def in_parts(mesh: Mesh, count: int) -> Mesh:
 
 
 @given(soups(), outside_views(), st.integers(1, 4))
-def test_the_part_at_a_pixel_is_that_of_the_polygon_that_a_ray_meets_first(
+def test_the_part_at_a_pixel_belongs_to_the_polygon_that_a_ray_meets_first(
     soup: Mesh, view: View, count: int
 ) -> None:
     mesh = in_parts(soup, count)
@@ -164,7 +164,7 @@ def test_a_mesh_may_have_more_parts_than_16_bits_can_count() -> None:
 
 
 @given(st.lists(st.integers(1, 3)))
-def test_parts_of_points_are_the_numbers_that_they_were_made_of(numbers: list[int]) -> None:
+def test_parts_of_points_keep_the_given_numbers(numbers: list[int]) -> None:
     parts = VisibleParts.of_points(("a", "b", "c"), np.array(numbers, np.int32))
     assert parts.numbers.tolist() == numbers
 

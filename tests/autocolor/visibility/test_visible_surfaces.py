@@ -57,7 +57,7 @@ def assert_as_ray_casting(mesh: Mesh, view: View, lines: int, elements: int) -> 
 
 
 @given(soups(), outside_views() | views(), rasters)
-def test_the_polygon_at_a_pixel_is_the_one_that_a_ray_meets_first(
+def test_the_polygon_at_a_pixel_is_the_first_that_a_ray_meets(
     mesh: Mesh, view: View, raster: tuple[int, int]
 ) -> None:
     assert_as_ray_casting(mesh, view, *raster)
@@ -89,14 +89,14 @@ def test_polygons_that_pass_through_each_other_cross_where_they_should(seed: int
     assert {1, 2} <= set(number.tolist())
 
 
-def test_of_two_coincident_polygons_the_later_one_is_visible() -> None:
+def test_the_later_of_two_coincident_polygons_is_visible() -> None:
     twice = Mesh.joined([grid(1, 1, (-1, 0, -1), (2, 0, 0), (0, 0, 2), name) for name in ("a", "b")])
     view = View((0.3, -3.0, 0.2), target=(0.0, 0.0, 0.0))
     points = visible_surfaces(twice, view, (1, 2), 12, 12)
     assert set(points.polygon_numbers.tolist()) == {1}
 
 
-def test_what_is_behind_the_eye_is_not_visible() -> None:
+def test_polygons_behind_the_eye_are_not_visible() -> None:
     behind = grid(3, 3, (-1, -9, -1), (2, 0, 0), (0, 0, 2))
     view = View((0.0, -5.0, 0.0), target=(0.0, 0.0, 0.0))
     assert len(visible_surfaces(behind, view, (1,), 12, 12).pixels) == 0
@@ -198,7 +198,7 @@ def test_twice_as_many_polygons_as_high_as_the_picture_take_hardly_more_memory()
 
 
 @pytest.mark.parametrize("size", [1e-3, 1e-6, 1e-8])
-def test_a_thing_wholly_before_the_eye_is_visible_however_small_it_is_before_a_plate(size: float) -> None:
+def test_an_object_of_any_size_before_the_eye_is_visible_in_front_of_a_plate(size: float) -> None:
     plate = grid(1, 1, (-1, 1, -1), (2, 0, 0), (0, 0, 2), "plate")
     thing = grid(1, 1, (-size / 8, 0, -size / 8), (size / 4, 0, 0), (0, 0, size / 4), "thing")
     view = View((0.0, -size, 0.0), direction=(0.0, 1.0, 0.0), field_of_view=30.0)
@@ -313,7 +313,7 @@ def test_of_two_thousand_decals_none_is_torn(seed: int) -> None:
 
 
 @given(seed=st.integers(0, 1 << 32))
-def test_of_polygons_in_a_plane_those_that_face_the_eye_hide_the_others(seed: int) -> None:
+def test_in_a_plane_polygons_that_face_the_eye_hide_the_others(seed: int) -> None:
     mesh, view = decal_on_ground(seed)
     raster = (60, 80)
     numbers = mesh.node_numbers.copy()
@@ -408,7 +408,7 @@ def test_a_flat_wall_close_beside_the_eye_keeps_its_normal(beside: float, turn: 
 
 
 @given(numbers(-1, 1), numbers(0.1, 1), numbers(-1, 1), numbers(-0.5, 0.5), st.integers(0, 3))
-def test_of_coincident_polygons_of_opposite_winding_the_one_that_faces_the_eye_is_visible(
+def test_of_coincident_polygons_with_opposite_winding_the_front_is_visible(
     left: float, width: float, slope: float, twist: float, first: int
 ) -> None:
     corners = [
@@ -476,7 +476,7 @@ def test_a_segment_that_another_divides_is_visible_in_two_spans() -> None:
 
 
 @given(meshes(), views(), rasters)
-def test_no_row_is_ever_other_than_a_finite_number(mesh: Mesh, view: View, raster: tuple[int, int]) -> None:
+def test_all_rows_are_finite(mesh: Mesh, view: View, raster: tuple[int, int]) -> None:
     points = visible_surfaces(mesh, view, (1, 2), *raster)
     assert np.isfinite(points.rows).all()
     assert len(np.unique(points.pixels)) == len(points.pixels)

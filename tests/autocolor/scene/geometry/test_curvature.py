@@ -101,7 +101,7 @@ def test_a_surface_that_faces_inward_has_the_opposite_mean_curvature() -> None:
     assert inward.curvatures.gaussian == pytest.approx(1, abs=0.04)
 
 
-def test_what_is_flat_has_no_curvature() -> None:
+def test_a_flat_surface_has_no_curvature() -> None:
     for mesh in (cube(), wall(5, 3), grid(4, 4, (1.0, 2.0, 3.0), (1.0, 5.0, 2.0), (-3.0, 0.0, 1.0))):
         assert mesh.curvatures.mean == pytest.approx(0, abs=1e-6)
         assert mesh.curvatures.gaussian == pytest.approx(0, abs=1e-9)
@@ -170,7 +170,7 @@ def test_a_crease_has_no_curvature_across_it() -> None:
     assert mesh.curvatures.mean == pytest.approx(0.25, rel=0.05)
 
 
-def test_the_rim_of_a_patch_is_like_what_is_next_to_it() -> None:
+def test_the_rim_of_a_patch_has_the_curvature_next_to_it() -> None:
     def cap(across: Array, upward: Array) -> Array:
         flat = np.cos(upward - 0.5)
         return np.stack([flat * np.cos(2 * across), flat * np.sin(2 * across), np.sin(upward - 0.5)], axis=1)

@@ -135,12 +135,12 @@ def test_a_file_is_sent_to_read_scene(source: object) -> None:
     )
 
 
-def test_cells_that_are_not_those_of_meshio_are_refused_in_a_sentence() -> None:
+def test_cells_that_are_no_cell_blocks_are_refused() -> None:
     with pytest.raises(InputError) as refusal:
         scene_of(SimpleNamespace(points=POINTS, cells=[("triangle", [[0, 1, 2]])]))
     assert str(refusal.value) == (
-        "cells must have a type and data, as those of meshio, not be ('triangle', [[0, 1, 2]]); make them"
-        " cell blocks"
+        "cells must be cell blocks with a type and data, as in meshio, not ('triangle', [[0, 1, 2]]);"
+        " convert them"
     )
 
 
@@ -187,7 +187,7 @@ def test_cells_that_are_not_those_of_meshio_are_refused_in_a_sentence() -> None:
         ),
         (
             (SimpleNamespace(points=POINTS, faces=np.array([3.0, 0, 1, 2])),),
-            "faces must be whole numbers in one row, each polygon after its count; give them so",
+            "faces must be whole numbers in one row, a count before each polygon; convert them",
         ),
         (
             (meshio(tetra=[[0, 1, 2, 4]] * 1000),),

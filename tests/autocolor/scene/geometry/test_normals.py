@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from autocolor import Mesh
 from autocolor.arrays import Singles
-from autocolor.scene.geometry import normals as room
+from autocolor.scene.geometry import normals as normals_module
 from autocolor.scene.geometry.normals import (
     fans_of_corners,
     group_numbers,
@@ -215,7 +215,7 @@ def fans_one_by_one(mesh: Mesh) -> list[set[Side]]:
 
 
 @given(meshes())
-def test_the_corners_of_a_fan_are_those_found_one_by_one(mesh: Mesh) -> None:
+def test_the_corners_of_a_fan_agree_with_a_search_one_by_one(mesh: Mesh) -> None:
     slow = fans_one_by_one(mesh)
     for one, other in itertools.combinations(range(len(slow)), 2):
         assert (mesh.normals.numbers.flat[one] == mesh.normals.numbers.flat[other]) == (
@@ -224,7 +224,7 @@ def test_the_corners_of_a_fan_are_those_found_one_by_one(mesh: Mesh) -> None:
 
 
 @given(meshes())
-def test_fans_are_numbered_by_their_first_corners_and_those_of_opposite_winding_come_in_pairs(
+def test_fans_are_numbered_by_their_first_corners_and_paired_with_fans_of_opposite_winding(
     mesh: Mesh,
 ) -> None:
     places = places_of_corners(mesh.coordinates.T, mesh.node_numbers.T)
@@ -264,8 +264,8 @@ def test_the_normals_do_not_depend_on_how_many_corners_are_worked_on_at_once(
         return [mesh.normals.vectors[mesh.normals.numbers] for mesh in both]
 
     whole = normals()
-    monkeypatch.setattr(room, "AT_ONCE", at_once)
-    monkeypatch.setattr(room, "POLYGONS_AT_ONCE", at_once)
+    monkeypatch.setattr(normals_module, "CORNERS_AT_ONCE", at_once)
+    monkeypatch.setattr(normals_module, "POLYGONS_AT_ONCE", at_once)
     for one, other in zip(whole, normals(), strict=True):
         assert one == pytest.approx(other, abs=1.2e-7)
 
@@ -314,7 +314,7 @@ def test_items_are_in_one_group_when_pairs_lead_from_one_to_the_other(
 
 
 def test_a_long_chain_in_any_order_is_one_group(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(room, "AT_ONCE", 100)
+    monkeypatch.setattr(normals_module, "CORNERS_AT_ONCE", 100)
     chain = np.random.default_rng(7).permutation(10_000)
     parents = np.arange(len(chain))
     links = np.random.default_rng(8).permutation(len(chain) - 1)
@@ -323,10 +323,10 @@ def test_a_long_chain_in_any_order_is_one_group(monkeypatch: pytest.MonkeyPatch)
     assert not group_numbers(parents).any()
 
 
-def test_united_items_are_those_that_are_not_the_root_of_their_group() -> None:
+def test_united_items_are_not_the_root_of_their_group() -> None:
     parents = np.arange(9)
     unite(parents, np.array([1, 4, 7]), np.array([5, 5, 2]))
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(room, "AT_ONCE", 4)
+        patch.setattr(normals_module, "CORNERS_AT_ONCE", 4)
         assert united_items(parents).tolist() == [4, 5, 7]
     assert united_items(np.arange(0)).tolist() == []

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Mesh
-from autocolor.scene.geometry import planes as room
+from autocolor.scene.geometry import planes
 from autocolor.scene.geometry.normals import group_numbers
 from autocolor.scene.geometry.planes import (
     EXACT,
@@ -119,7 +119,7 @@ def test_a_decal_no_farther_from_its_ground_than_both_are_rounded_shares_its_pla
 
 
 @pytest.mark.parametrize("sides", [12, 100, 1000])
-def test_the_sides_of_a_cylinder_share_no_plane_even_if_the_cylinder_is_there_twice_turned_a_little(
+def test_the_sides_of_two_coincident_cylinders_turned_a_little_share_no_plane(
     sides: int,
 ) -> None:
     def around(turn: float) -> Mesh:
@@ -154,7 +154,7 @@ def test_a_smooth_mesh_of_many_facets_has_no_shared_planes() -> None:
 
 
 @given(meshes())
-def test_corners_are_as_near_to_their_plane_as_it_says(mesh: Mesh) -> None:
+def test_no_corner_is_farther_from_its_plane_than_the_distance_says(mesh: Mesh) -> None:
     shared = mesh.shared_planes
     if shared is not None:
         polygons = np.flatnonzero(shared.plane_of_polygon >= 0)
@@ -295,7 +295,7 @@ def test_parallel_planes_in_one_cell_are_told_apart(seed: int, at_once: int) -> 
     nodes, count = rows.shape[1], len(mesh.node_numbers)
     numbers = np.concatenate([mesh.node_numbers + layer * nodes for layer in range(len(heights))])
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(room, "POLYGONS_AT_ONCE", at_once)
+        patch.setattr(planes, "POLYGONS_AT_ONCE", at_once)
         groups = groups_of(layers, numbers.T, 2e-6)
     assert groups.tolist() == np.repeat([0, 1, 2], count).tolist()
 
@@ -309,7 +309,7 @@ def test_polygons_without_area_and_warped_ones_stay_alone() -> None:
 def test_only_the_widest_polygons_are_grounds() -> None:
     mesh, _ = decal_on_ground(3)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(room, "MOST_GROUNDS", 1)
+        patch.setattr(planes, "MOST_GROUNDS", 1)
         groups = groups_of((mesh.coordinates / 8).T, mesh.node_numbers.T, 2e-6)
     # All lie in the plane of the widest.
     assert groups.tolist() == [0] * len(groups)
@@ -397,7 +397,7 @@ def test_less_than_the_rounding_of_a_corner_is_no_distance_unless_along_an_axis(
 
 def test_more_levels_than_are_looked_for_are_one() -> None:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(room, "MOST_LEVELS", 2)
+        patch.setattr(planes, "MOST_LEVELS", 2)
         assert levels_of([1e-3, 2e-3, 3e-3], 0.0, np.eye(3)) == [1, 2, 2]
 
 
@@ -436,7 +436,7 @@ def test_polygons_that_are_all_alone_stay_alone() -> None:
 
 
 @given(st.integers(0, 1 << 32))
-def test_corners_are_those_of_nodes_that_are_moved_and_then_scaled(seed: int) -> None:
+def test_corners_are_moved_and_then_scaled(seed: int) -> None:
     random = np.random.default_rng(seed)
     rows, middle, extent = random.normal(size=(3, 9)), random.normal(size=3), float(random.uniform(1e-9, 1e9))
     numbers = random.integers(0, 9, (4, 5))

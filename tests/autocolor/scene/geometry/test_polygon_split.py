@@ -19,7 +19,7 @@ def area(points: np.ndarray, rows: object) -> float:
     return float((x * np.roll(y, -1) - y * np.roll(x, -1)).sum())
 
 
-def test_triangles_and_quads_stay_what_they_are_in_their_order() -> None:
+def test_triangles_and_quads_are_not_split() -> None:
     coordinates = np.random.default_rng(1).uniform(size=(5, 3))
     pieces, owners = split_polygons(coordinates, np.array([0, 1, 2, 3, 2, 1, 0]), np.array([4, 3]))
     assert pieces.tolist() == [[0, 1, 2, 3], [2, 1, 0, 0]]
@@ -42,7 +42,7 @@ def test_a_convex_polygon_becomes_quads_and_at_most_one_triangle(count: int) -> 
     assert sum(area(points, piece) for piece in pieces) == pytest.approx(area(points, range(count)))
 
 
-def test_pieces_stand_where_their_polygon_stood() -> None:
+def test_pieces_take_the_place_of_their_polygon() -> None:
     turns = np.arange(6) * math.pi / 3
     points = np.stack([np.cos(turns), np.sin(turns), 0 * turns], axis=1)
     corners = [0, 1, 2, 0, 1, 2, 3, 4, 5, 3, 4, 5]
