@@ -33,9 +33,10 @@ from typing import TYPE_CHECKING, NoReturn, Unpack
 from autocolor.arrays import Bytes, Words
 from autocolor.checks import nearest
 from autocolor.errors import UsageError
+from autocolor.files.paths import PICTURE_SUFFIX
 from autocolor.images import display_image
 from autocolor.journal.history import History
-from autocolor.journal.places import PICTURE_SUFFIX, Source, file_of, opened, opened_again
+from autocolor.journal.places import Source, file_of, opened, opened_again
 from autocolor.lighting.picking import highlight_of, highlight_placed
 from autocolor.lighting.picture import Picture
 from autocolor.mapping.display_image import DisplayImage, words_by_line

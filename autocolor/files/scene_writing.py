@@ -15,7 +15,7 @@ from typing import Final
 
 from autocolor.errors import InputError, OutputError, UsageError, reason_of
 from autocolor.files.formats import mesh_suffixes, suffixes_of
-from autocolor.files.paths import SCENE_FILE
+from autocolor.files.paths import SCENE_FILE, STORE_SUFFIXES
 from autocolor.files.reading import read_bytes
 from autocolor.files.scene_sources import SCENE_FORMATS
 from autocolor.files.scene_toml.scene_file import report_of_text
@@ -36,7 +36,7 @@ from autocolor.files.scene_toml.scene_text import (
     without_parts,
 )
 from autocolor.files.scene_toml.toml_text import LARGEST_TEXT, parsed_toml
-from autocolor.files.store.store_file import STORE_SUFFIXES, write_store
+from autocolor.files.store.store_file import write_store
 from autocolor.files.writing import refuse_output, write_atomically
 from autocolor.logs import logger_of
 from autocolor.scene.columns import Row, row_label, to_plain

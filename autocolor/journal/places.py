@@ -17,18 +17,15 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from autocolor.errors import InputError
-from autocolor.files.paths import SCENE_FILE
+from autocolor.files.paths import PICTURE_SUFFIX, SCENE_FILE, STORE_SUFFIXES
 from autocolor.files.picture_file import plain_scene
 from autocolor.files.scene_sources import read_scene
-from autocolor.files.store.store_file import STORE_SUFFIXES
 from autocolor.scene.creation import SurfaceSource
 from autocolor.scene.mesh import has_same_tables
 from autocolor.scene.scene import Scene
 
 PACKAGE: Final = Path(__file__).resolve().parents[1]
 """The folder of this package, with the built-in demo; nothing is saved there."""
-
-PICTURE_SUFFIX: Final = ".npz"
 
 
 class Source(NamedTuple):

@@ -14,12 +14,12 @@ from itertools import count
 from pathlib import Path
 from typing import NamedTuple
 
-from autocolor.files.paths import SCENE_FILE
+from autocolor.files.paths import PICTURE_SUFFIX, SCENE_FILE, file_stem, free_path
 from autocolor.files.picture_file import write_picture
 from autocolor.files.scene_writing import write_scene
-from autocolor.files.writing import file_stem, free_path, write_atomically
+from autocolor.files.writing import write_atomically
 from autocolor.journal.history import History
-from autocolor.journal.places import PICTURE_SUFFIX, file_of, stamp_of
+from autocolor.journal.places import file_of, stamp_of
 from autocolor.lighting.picture import Picture
 
 

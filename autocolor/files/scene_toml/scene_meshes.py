@@ -19,10 +19,10 @@ from autocolor.files.formats import format_of_files, read_mesh
 from autocolor.files.meshes.obj import obj_text
 from autocolor.files.meshes.repair import SCALES, UPS, MeshReport, Placement
 from autocolor.files.meshes.table_file import SUFFIX, table_file_bytes
-from autocolor.files.paths import path_within
+from autocolor.files.paths import free_path, path_within
 from autocolor.files.reading import LARGEST_MESH_FILE
 from autocolor.files.scene_toml.toml_text import KeyPath, SceneProblems, parsed_toml
-from autocolor.files.writing import free_path, write_atomically
+from autocolor.files.writing import write_atomically
 from autocolor.scene.columns import BarRange, Column, Problem, Row, RowError, Tier, from_plain
 from autocolor.scene.kinds import OneOf, Text
 from autocolor.scene.mesh import CREASE_ANGLES, Mesh, has_same_tables

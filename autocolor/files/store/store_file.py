@@ -16,6 +16,7 @@ from typing import Final
 
 from autocolor.checks import shown
 from autocolor.errors import InputError, OutputError, UsageError, WriteError
+from autocolor.files.paths import STORE_SUFFIXES
 from autocolor.files.scene_report import SceneReport
 from autocolor.files.store.connections import (
     DAMAGE_ERRORS,
@@ -46,8 +47,6 @@ from autocolor.scene.creation import MATERIALS, SurfaceSource
 from autocolor.scene.scene import Scene, check_scene
 
 LOG: Final = logger_of(__name__)
-
-STORE_SUFFIXES: Final = (".sqlite", ".db")
 
 
 def read_store(path: str | os.PathLike[str], *, surfaces: SurfaceSource = MATERIALS) -> SceneReport:
