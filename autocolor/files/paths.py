@@ -1,4 +1,4 @@
-"""Names and paths of files: fixed names and endings, files that a scene file names, and names for new files."""
+"""Names and paths of files: fixed names and endings, the files that a scene file names, and new files."""
 
 from __future__ import annotations
 
