@@ -35,6 +35,7 @@ from autocolor.files.array_file import (
     scalar_rows,
     scalars_of,
 )
+from autocolor.files.paths import PICTURE_SUFFIX
 from autocolor.files.writing import check_suffix, write_atomically
 from autocolor.lighting.picture import Picture
 from autocolor.scene.columns import Problem, RowError, from_plain, to_plain
@@ -86,7 +87,7 @@ def write_picture(
     Raises UsageError for a name that does not end in .npz, or if only one of the picture and the scene has a
     scalar; OutputError or WriteError if it cannot be written.
     """
-    check_suffix(path, ".npz", "a picture with its scene")
+    check_suffix(path, PICTURE_SUFFIX, "a picture with its scene")
     if (picture.scalar_values is None) != (scene.scalar is None):
         raise UsageError(
             "a picture and its scene must both have a scalar or neither, not one alone; render the scene"

@@ -133,7 +133,7 @@ BINARY = MeshFormat(
     (".bin",),
     read_nothing,
     PAIR,
-    ("nodes.bin", "polygons.bin", "more.bin"),
+    in_folder=("nodes.bin", "polygons.bin", "more.bin"),
     begins=lambda head: head == b"BIN",
 )
 FOLDER = MeshFormat("FOLDER", (), read_nothing, in_folder=("index",))
