@@ -482,7 +482,7 @@ def sentence_of(error: Exception) -> str:
     if code in PLACE_ERRORS:
         return (
             f"the store cannot be opened or changed where it is ({text}): a change of it was interrupted, or"
-            " it is not to be written; open it once with the program that wrote it, or use another file"
+            " it is write-protected; open it once with the program that wrote it, or use another file"
         )
     if code in DISK_ERRORS:
         return f"the disk must hold the store, and is full or fails ({text}); make room, and try again"
