@@ -9,9 +9,9 @@
     {"step": "undo"}
 
 The other steps are `show` and `drop`, with the name of a variant, and `redo`. An edit is the call of a method
-of the scene; its columns have the plain values of scene files. `mesh` is null if the mesh stays, empty for the
-mesh of the first scene, and otherwise the name of a folder beside the journal that has the mesh in a scene.
-The line of an opened scene has all its tables, so that only the mesh must still be in the files.
+of the scene; its columns have the plain values of scene files. `mesh` is null if the mesh stays, empty for
+the mesh of the first scene, else the name of a folder beside the journal that has the mesh in a scene. The
+line of an opened scene has all its tables, so that only the mesh must still be in the files.
 
 A line counts once its newline is written. If the program was killed during a line, its part is ignored.
 """
