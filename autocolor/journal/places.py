@@ -1,7 +1,7 @@
 """Places: the files that scenes are opened from, and whether a scene may be saved to its file again.
 
-A place is one opening of a file; edits belong to the place that was opened last. Opening a file twice makes
-two places. A place has the stamp of its file, so a file that another program changed since is never saved over.
+A place is one opening of a file: opening a file twice makes two places. Edits belong to the place that was
+opened last. A place has the stamp of its file, so a file that another program changed is never saved over.
 """
 
 from __future__ import annotations
