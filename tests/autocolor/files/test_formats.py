@@ -127,7 +127,7 @@ def read_nothing(*_: object) -> MeshReport:
 
 
 PAIR = ("nodes", "polygons")
-LOOSE = MeshFormat("LOOSE", (), read_nothing, PAIR, ("nodes.csv", "polygons.csv"))
+LOOSE = MeshFormat("LOOSE", (), read_nothing, PAIR, in_folder=("nodes.csv", "polygons.csv"))
 BINARY = MeshFormat(
     "BINARY",
     (".bin",),
