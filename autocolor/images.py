@@ -26,8 +26,8 @@ def display_image(
     """The display image of a scene and its picture, each pixel of which is shown as a block of words.
 
     Its words stand for levels or for normals, as the scene asks. The words of a picture without normals,
-    such as a picture of a file, stand for levels in every scene. Whatever did not change is shared with the
-    earlier image `before`. Raises InputError if an intensity is not finite.
+    such as a picture of a file, stand for levels in every scene. Words and entries that did not change are
+    shared with the earlier image `before`. Raises InputError if an intensity is not finite.
     """
     kind = NormalImage if scene.words == NORMALS and picture.normals is not None else LevelImage
     return kind.of(scene, picture, before, block)

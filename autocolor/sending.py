@@ -1,4 +1,4 @@
-"""Sending: the instructions that show a display image, or what differs from the one before, on a display."""
+"""Sending: the instructions that show a display image, or its differences from the image before."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from autocolor.mapping.ranges import WORDS
 from ramtek_emu import GMR_9300, Configuration, EntryFormat, HostPort, Ramtek9300, instructions
 
 EntryEncoder = Callable[[int, Bytes], Words]
-"""Makes the instruction that loads entries, (n, 3) uint8, from a first entry on."""
+"""Encodes the instruction that loads entries, (n, 3) uint8, from a first entry on."""
 
 
 def configuration_of(display: HostPort) -> Configuration:
-    """The configuration of a display; GMR_9300, the paper's display, if the host port does not tell it.
+    """The configuration of a display; GMR_9300, the paper's display, for a host port without a configuration.
 
     Raises UsageError for a value that is no host port, and for a display with too few words or entries for
     the level ranges.
@@ -47,7 +47,7 @@ def encoder_of_entries(display: HostPort) -> EntryEncoder:
 
 
 def send_image(display: HostPort, image: DisplayImage, before: DisplayImage | None = None) -> None:
-    """Send the entries and words that differ from `before`; without that, a reset and everything.
+    """Send the entries and words that differ from `before`; without `before`, a reset and everything.
 
     The legend is drawn over the words. If the legend changes, the words are sent again, too.
     """

@@ -33,9 +33,10 @@ from typing import TYPE_CHECKING, NoReturn, Unpack
 from autocolor.arrays import Bytes, Words
 from autocolor.checks import nearest
 from autocolor.errors import UsageError
+from autocolor.files.paths import PICTURE_SUFFIX
 from autocolor.images import display_image
 from autocolor.journal.history import History
-from autocolor.journal.places import PICTURE_SUFFIX, Source, file_of, opened, opened_again
+from autocolor.journal.places import Source, file_of, opened, opened_again
 from autocolor.lighting.picking import highlight_of, highlight_placed
 from autocolor.lighting.picture import Picture
 from autocolor.mapping.display_image import DisplayImage, words_by_line
@@ -96,7 +97,7 @@ class Studio:
     def picture(self) -> Picture:
         """The current picture; while `is_coarse`, it has a half or a quarter of the lines and elements."""
         if not self._shown.has_light_in_words:
-            self._light_picture()
+            self._render_lights()
         return self._shown.picture
 
     @property
@@ -138,7 +139,7 @@ class Studio:
         return seen_at(self.sight, line, element)
 
     def highlight_of(self, light: str, surface: str | None = None) -> tuple[int, int] | None:
-        """The line and element of a light's highlight, on one surface or on all; None if it has none.
+        """The line and element of a light's highlight, on one surface or on all; None without a highlight.
 
         This is the pixel with the largest cos(E). The light may follow the eye or another light, or be at
         infinity. Raises UsageError for an unknown light or surface.
@@ -253,16 +254,16 @@ class Studio:
             self._show(self.scene, Tier.FRAME)
 
     def undo(self) -> bool:
-        """Undo the last step; returns False if there is none."""
+        """Undo the last step; returns False if there is no step."""
         return self._step(self._history.to_undo, self._history.undo)
 
     def redo(self) -> bool:
-        """Redo the last undone step; returns False if there is none."""
+        """Redo the last undone step; returns False if there is no step."""
         return self._step(self._history.to_redo, self._history.redo)
 
     @property
     def is_changed(self) -> bool:
-        """Whether the scene differs from the one that was opened or saved last.
+        """Whether the scene differs from the scene that was opened or saved last.
 
         `history.left_unsaved` names other scenes of the session with unsaved changes.
         """
@@ -290,7 +291,7 @@ class Studio:
             self._history.show(name)
 
     def drop_variant(self, name: str) -> None:
-        """Drop a variant. Raises UsageError if there is none of that name."""
+        """Drop a variant. Raises UsageError for an unknown name."""
         self._history.drop(name)
 
     def open(
@@ -316,7 +317,7 @@ class Studio:
 
     @property
     def file(self) -> Path | None:
-        """The scene file or the store that the scene is saved to; None if there is none yet."""
+        """The scene file or the store that the scene is saved to; None before the first save."""
         saved = [Path(path) for path in self._history.saved.files]
         place = self._history.place
         if not saved and place.source is not None and place.stamp is not None:
@@ -355,9 +356,9 @@ class Studio:
         self.mark_saved()
 
     def save_session(self, folder: str | PathLike[str] = ".") -> SavedFiles:
-        """Save scene and picture to their files, or to new files in the folder; returns the files.
+        """Save the scene and the picture to their files, or to new files in the folder; returns the files.
 
-        No file of others is lost (see `journal.saving`).
+        No file of another program is lost (see `journal.saving`).
         """
         from autocolor.journal.saving import save_session
 
@@ -383,8 +384,8 @@ class Studio:
         """The session as a Python script, one line a step, which gives the same scenes when it is run.
 
         `path` is the file that the first scene was read from; `up`, `scale` and `surfaces` are the keywords
-        with which it was read. A session that was recovered or opened by a command knows them. A mesh that an
-        edit changed is saved in a folder in the folder `beside`; without `beside`, InputError is raised.
+        with which it was read. They are not needed for a session that was recovered or opened by a command. A
+        mesh that an edit changed is saved in a folder in `beside`; without `beside`, InputError is raised.
         """
         from autocolor.journal.journal import MeshesBeside
         from autocolor.journal.script import script_of
@@ -448,7 +449,7 @@ class Studio:
         if costs == Tier.FRAME:
             self._pace = block, perf_counter() - begun
 
-    def _light_picture(self) -> None:
+    def _render_lights(self) -> None:
         """Render the edits of lights since words stand for normals; nothing is sent."""
         shown = self._shown
         lines, elements = (size // shown.block for size in self._size)

@@ -21,7 +21,7 @@ import numpy as np
 
 from autocolor import Mesh, scene_of
 from autocolor.errors import InputError
-from autocolor.files.conversion import Output, outputs
+from autocolor.files.conversion import OutputFormat, outputs
 from autocolor.files.formats import MESH_FORMATS
 from autocolor.files.scene_sources import read_scene_with_report
 from autocolor.scene.scalar import MeshScalar
@@ -296,7 +296,7 @@ BY_HAND = (
 """Samples of what is only read, and of kinds of files that are read and not written."""
 
 
-def written_seed(output: Output) -> Seed:
+def written_seed(output: OutputFormat) -> Seed:
     """A small mesh as a format writes it."""
     with tempfile.TemporaryDirectory() as name:
         suffix = output.suffixes[0] if output.suffixes else ""

@@ -64,7 +64,7 @@ READING_FOR_US = {"meshio", "trimesh"}
 """The packages of the extra `meshes`."""
 
 
-STILL_TWINS = {"Output", "Side", "Source"}
+STILL_TWINS = {"Side"}
 """Names that await another one."""
 
 

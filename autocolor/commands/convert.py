@@ -83,14 +83,9 @@ def format_lines() -> list[str]:
     from autocolor.files.scene_sources import SCENE_FORMATS
 
     rows: dict[str, tuple[str, str]] = {}
-    for each in SCENE_FORMATS:
-        rows[each.name.removesuffix(" file")] = (
-            " ".join([*each.suffixes, *([f"a folder of {each.in_folder}"] if each.in_folder else [])]),
-            "read",
-        )
-    for mesh_format in MESH_FORMATS:
-        folder = [f"a folder of {', '.join(mesh_format.in_folder)}"] if mesh_format.in_folder else []
-        rows[mesh_format.name] = (" ".join([*mesh_format.suffixes, *folder]), "read")
+    for source in (*SCENE_FORMATS, *MESH_FORMATS):
+        folder = [f"a folder of {', '.join(source.in_folder)}"] if source.in_folder else []
+        rows[source.name.removesuffix(" file")] = (" ".join([*source.suffixes, *folder]), "read")
     for output in outputs():
         endings, _ = rows.get(output.name, (" ".join(output.suffixes), ""))
         rows[output.name] = (endings, "read, written")

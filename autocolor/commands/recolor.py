@@ -95,7 +95,7 @@ def recolor(
     given = {name: value for name, value in changes.items() if value is not None}
     check_what_is_recolored(surface, given, settings)
     if output is None and save is None:
-        from autocolor.files.writing import file_stem
+        from autocolor.files.paths import file_stem
 
         output = f"{Path(picture).stem}-{file_stem(surface or 'recolored')}.png"
     refuse_outputs(output, save, force)

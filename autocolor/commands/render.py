@@ -96,7 +96,7 @@ def render(
     if lights:
         edited = edited.only_lights(*lights)
     if output is None and save is None:
-        from autocolor.files.writing import file_stem
+        from autocolor.files.paths import file_stem
 
         output = f"{file_stem(edited.name)}.png"
     refuse_outputs(output, save, force)

@@ -47,7 +47,7 @@ LONGEST_REASON: Final = 300
 
 @dataclass(frozen=True)
 class Series:
-    """Arrays of one type, one for each row of a list in the header. The first member is named "scalar_0"."""
+    """Arrays of the same type, for the rows of a list in the header: members `member`_0, `member`_1 ..."""
 
     member: str
     type: ArrayType
@@ -58,10 +58,10 @@ class Series:
 class ArrayFileKind:
     """One kind of array file.
 
-    `noun` is its name in messages, and `advice` says there what to do about a damaged file. `formats` are the
-    values of `format` in the header that can be read; the first is written. `keys` are the other keys of the
-    header. `arrays` has the types of the members by name, and `series` the series by the key of their list in
-    the header. The `plain` formats have no series. `added` are the arrays that only the first format has.
+    Messages use `noun`, and `advice` for damaged files. `formats` are the readable values of `format` in the
+    header; the first is written. `keys` are the other keys of the header. `arrays` has the types of the
+    members by name, and `series` the series by the key of their list in the header. The `plain` formats have
+    no series. Only the first format has the arrays `added`.
     """
 
     noun: str
@@ -77,7 +77,7 @@ class ArrayFileKind:
     def types(self, header: Mapping[str, Any]) -> dict[str, ArrayType]:
         """The types of all members but the header, for a file with this header."""
         is_older = header.get("format", self.formats[0]) != self.formats[0]
-        types = {name: each for name, each in self.arrays.items() if not (is_older and name in self.added)}
+        types = {name: type_ for name, type_ in self.arrays.items() if not (is_older and name in self.added)}
         for key, series in self.series.items():
             for number in range(len(header.get(key, ()))):
                 types[f"{series.member}_{number}"] = series.type
@@ -190,16 +190,16 @@ def _header(kind: ArrayFileKind, source: Path, data: AnyArray) -> dict[str, Any]
     series = {} if header["format"] in kind.plain else kind.series
     if set(header) != {"format", *kind.keys, *series}:
         raise InputError(f"{place}: it must have exactly the keys of its format; {kind.advice}")
-    for key, each in series.items():
-        if not isinstance(header[key], list) or len(header[key]) > each.most:
+    for key, rows in series.items():
+        if not isinstance(header[key], list) or len(header[key]) > rows.most:
             raise InputError(
-                f"{place}: {key} must be a list of at most {each.most:,} rows, not"
+                f"{place}: {key} must be a list of at most {rows.most:,} rows, not"
                 f" {shown(header[key])}; {kind.advice}"
             )
     return header
 
 
-# The scalars of a mesh: a row of the header and a member for each.
+# The scalars of a mesh: rows of the header, and members.
 
 KEY: Final = "mesh_scalars"
 """The key of the list in the header whose rows are tables of `name` and `of`."""
@@ -218,7 +218,7 @@ def scalar_members(scalars: Sequence[MeshScalar]) -> dict[str, AnyArray]:
 
 
 def scalars_of(header: Mapping[str, Any], arrays: Mapping[str, AnyArray]) -> tuple[MeshScalar, ...]:
-    """The scalars of a header and its arrays, none of a header without them. Raises InputError."""
+    """The scalars of a header and its arrays; old formats have no scalars. Raises InputError."""
     scalars = []
     for number, row in enumerate(header.get(KEY, ())):
         if not isinstance(row, Mapping) or row.keys() != {"name", "of"}:

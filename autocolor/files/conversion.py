@@ -1,4 +1,4 @@
-"""Writing a scene in any format: the formats, the parts of a scene that each can hold, and the writers.
+"""Writing a scene in any format: the formats, which parts of a scene they can hold, and the writers.
 
 A format is recognized by the name of the file or folder that is written, or chosen by its own name.
 """
@@ -19,7 +19,7 @@ from typing import Final
 from autocolor.checks import shown
 from autocolor.errors import OutputError, UsageError, WriteError, reason_of
 from autocolor.files.formats import (
-    HELD,
+    MESH_EXTRAS,
     MESH_FORMATS,
     NODE_SCALARS,
     PARTS,
@@ -36,6 +36,7 @@ from autocolor.files.meshes.repair import name_of
 from autocolor.files.paths import SCENE_FILE
 from autocolor.files.scene_sources import STORE
 from autocolor.files.scene_writing import write_scene_with_tables
+from autocolor.files.store.store_file import write_store
 from autocolor.files.writing import refuse_output, write_atomically
 from autocolor.scene.columns import fields_of
 from autocolor.scene.creation import SHARED
@@ -49,7 +50,7 @@ SURFACES: Final = "surfaces"
 LIGHTS: Final = "lights"
 VIEW: Final = "view"
 SETTINGS: Final = "settings"
-WHOLE_SCENE: Final = frozenset((*HELD, SURFACES, LIGHTS, VIEW, SETTINGS))
+WHOLE_SCENE: Final = frozenset((*MESH_EXTRAS, SURFACES, LIGHTS, VIEW, SETTINGS))
 """The parts of a scene, beside nodes and polygons, that a format may hold."""
 
 SceneWriter = Callable[[Path, Scene, bool], list[Path]]
@@ -59,37 +60,34 @@ It returns the files that it wrote. It raises OutputError or WriteError, and lea
 
 
 @dataclass(frozen=True)
-class Output(Format):
-    """One format that a scene is written in.
+class OutputFormat(Format):
+    """A format that a scene can be written in.
 
-    `suffixes` are for its file or folder; `in_folder` are the names of the files in a folder. The parts of a
-    scene that the format `holds`, of WHOLE_SCENE, can be read back.
+    Its suffixes are for a file or a folder. `holds` are the parts of WHOLE_SCENE that can be read back.
     """
 
     write: SceneWriter
     holds: frozenset[str] = WHOLE_SCENE
-    in_folder: tuple[str, ...] = ()
 
 
-def outputs() -> tuple[Output, ...]:
+def outputs() -> tuple[OutputFormat, ...]:
     """All formats that a scene can be written in, sorted by name without regard to capitals."""
     meshes = [_mesh_output(each) for each in MESH_FORMATS if each.written or each.write]
     return tuple(sorted([*meshes, SCENE, STORE_OUTPUT], key=lambda each: each.name.casefold()))
 
 
-def _mesh_output(mesh_format: MeshFormat) -> Output:
+def _mesh_output(mesh_format: MeshFormat) -> OutputFormat:
     name, suffixes = mesh_format.name, mesh_format.suffixes
     if mesh_format.written is obj_text:
-        return Output(name, suffixes, write_obj, mesh_format.holds | {SURFACES})
+        return OutputFormat(name, suffixes, write_obj, mesh_format.holds | {SURFACES})
     if mesh_format.written is not None:
-        return Output(name, suffixes, partial(_write_file, mesh_format), mesh_format.holds)
-    return Output(
-        name, suffixes, partial(_write_files, mesh_format), mesh_format.holds, mesh_format.in_folder
-    )
+        return OutputFormat(name, suffixes, partial(_write_file, mesh_format), mesh_format.holds)
+    write = partial(_write_files, mesh_format)
+    return OutputFormat(name, suffixes, write, mesh_format.holds, in_folder=mesh_format.in_folder)
 
 
-def output_named(name: str) -> Output:
-    """The format of a name, in any capitals. Raises UsageError if there is none."""
+def output_named(name: str) -> OutputFormat:
+    """The format with this name, in any capitals. Raises UsageError if no format has it."""
     formats = {output.name.casefold(): output for output in outputs()}
     if name.casefold() in formats:
         return formats[name.casefold()]
@@ -101,12 +99,12 @@ def output_named(name: str) -> Output:
     )
 
 
-def output_of(path: Path) -> Output:
+def output_of(path: Path) -> OutputFormat:
     """The format for a path that is written.
 
-    An existing folder keeps its format; an empty folder gets a scene. A file has the format of its suffix, or
-    of its name if it is one of the files of a folder. A path without a suffix becomes the folder of a scene.
-    Raises UsageError for any other suffix.
+    An existing folder keeps its format; an empty folder gets a scene. The name of a file decides if it is the
+    name of a file in a mesh folder, such as nodes.csv; otherwise the suffix decides. A path without a suffix
+    becomes the folder of a scene. Raises UsageError for an unknown suffix.
     """
     formats = outputs()
     # Unlike `Path.is_dir`, it never raises for a name that is too long.
@@ -133,7 +131,7 @@ def output_of(path: Path) -> Output:
 MOST_NAMED: Final = 5
 
 
-def left_out(scene: Scene, output: Output, *, is_bare: bool) -> list[str]:
+def left_out(scene: Scene, output: OutputFormat, *, is_bare: bool) -> list[str]:
     """A phrase for each part of a scene that a format cannot hold: "2 node scalars ('stress', 'u')".
 
     If the source `is_bare`, a mesh without a scene, only parts of the mesh count: all else was created.
@@ -144,19 +142,19 @@ def left_out(scene: Scene, output: Output, *, is_bare: bool) -> list[str]:
     return phrases
 
 
-def _of_mesh(scene: Scene, output: Output) -> Iterator[str]:
+def _of_mesh(scene: Scene, output: OutputFormat) -> Iterator[str]:
     mesh = scene.mesh
     if PARTS not in output.holds and len(mesh.part_names) > 1:
         yield f"{len(mesh.part_names):,} parts ({_named(mesh.part_names)})"
-    for held, noun in ((NODE_SCALARS, "node scalar"), (POLYGON_SCALARS, "polygon scalar")):
-        names = [each.name for each in mesh.scalars if (each.of == NODE) == (held == NODE_SCALARS)]
-        if held not in output.holds and names:
+    for extra, noun in ((NODE_SCALARS, "node scalar"), (POLYGON_SCALARS, "polygon scalar")):
+        names = [each.name for each in mesh.scalars if (each.of == NODE) == (extra == NODE_SCALARS)]
+        if extra not in output.holds and names:
             yield f"{len(names):,} {noun}{'s' if len(names) > 1 else ''} ({_named(names)})"
     if SETTINGS not in output.holds and mesh.crease_angle != CREASE_ANGLE:
         yield f"the crease angle of {mesh.crease_angle:g} degrees"
 
 
-def _of_scene(scene: Scene, output: Output) -> Iterator[str]:
+def _of_scene(scene: Scene, output: OutputFormat) -> Iterator[str]:
     count = len(scene.surfaces)
     if SURFACES not in output.holds and count:
         named = _named([each.name for each in scene.surfaces])
@@ -196,8 +194,6 @@ def _write_scene(path: Path, scene: Scene, overwrite: bool) -> list[Path]:
 
 
 def _write_store(path: Path, scene: Scene, overwrite: bool) -> list[Path]:
-    from autocolor.files.store.store_file import write_store
-
     write_store(path, scene, overwrite=overwrite)
     return [path]
 
@@ -244,7 +240,7 @@ def write_obj(path: Path, scene: Scene, overwrite: bool) -> list[Path]:
 
 
 def material_names(surfaces: Iterable[str]) -> dict[str, str]:
-    """Unique names of materials for surfaces: the surface's name, as far as it can be read back."""
+    """Unique material names for surfaces: their own names, without characters that MTL cannot hold."""
     names: dict[str, str] = {}
     for surface in surfaces:
         name = stem = name_of(surface.encode("utf-8", "replace")) or "surface"
@@ -319,5 +315,5 @@ def write_folder(
     return [path / name for name in names]
 
 
-STORE_OUTPUT: Final = Output(STORE.name, STORE.suffixes, _write_store)
-SCENE: Final = Output("scene", (".toml",), _write_scene, in_folder=(SCENE_FILE,))
+STORE_OUTPUT: Final = OutputFormat(STORE.name, STORE.suffixes, _write_store)
+SCENE: Final = OutputFormat("scene", (".toml",), _write_scene, in_folder=(SCENE_FILE,))

@@ -39,13 +39,14 @@ LOG: Final = logger_of(__name__)
 class Format:
     """A file format: its name in messages, and the suffixes of its files, in lower case.
 
-    `begins` tells from the first bytes of a file whether it may have this format; None if nothing can be
-    told.
+    `begins` is whether a file with these first bytes may have this format; None if first bytes tell nothing.
+    A folder that has all the files `in_folder` has this format.
     """
 
     name: str
     suffixes: tuple[str, ...]
     begins: Callable[[bytes], bool] | None = field(default=None, kw_only=True)
+    in_folder: tuple[str, ...] = field(default=(), kw_only=True)
 
 
 SomeFormat = TypeVar("SomeFormat", bound=Format)
@@ -63,9 +64,9 @@ def format_named(path: Path, formats: Iterable[SomeFormat]) -> SomeFormat | None
 
 
 def recognized(path: Path, formats: Sequence[SomeFormat]) -> SomeFormat | None:
-    """The format of a file by its suffix, or another format if only that agrees with its first bytes.
+    """The format of a file: by its suffix, unless the file begins as another format does.
 
-    None if neither the suffix nor the first bytes are those of a format.
+    None if no format has the suffix or begins so.
     """
     named = format_named(path, formats)
     if named is not None and named.begins is None:
@@ -98,8 +99,8 @@ NODES_AND_POLYGONS: Final = ("nodes", "polygons")
 PARTS: Final = "parts"
 NODE_SCALARS: Final = "node scalars"
 POLYGON_SCALARS: Final = "polygon scalars"
-HELD: Final = (PARTS, NODE_SCALARS, POLYGON_SCALARS)
-"""What a mesh may have beside nodes and polygons, and not every format holds."""
+MESH_EXTRAS: Final = (PARTS, NODE_SCALARS, POLYGON_SCALARS)
+"""Contents of a mesh, beside nodes and polygons, that some formats cannot hold."""
 
 MeshReader = Callable[..., MeshReport]
 """A function that reads a mesh. Its positional arguments are the paths of the files, in the order of the
@@ -111,20 +112,19 @@ class MeshFormat(Format):
     """A mesh file format.
 
     `keys` are the keys of a `[[mesh]]` table that name its files; suffixes and first bytes are those of the
-    first file. A folder that contains all the files `in_folder` is a mesh of this format: the first of them
-    are the files of the keys, or, if the only key is "file", the folder itself is the file.
+    first file. In a folder of this format, the first files `in_folder` are the files of the keys. If the only
+    key is "file", the folder itself is the file.
 
-    `written` makes the content of a single file; `write` writes the files of a format of several into an
-    empty folder. `holds` are the things beside nodes and polygons that are read back then, of HELD. Files
-    that are `mapped` into memory are read page by page, so that their size has no limit.
+    `written` returns the content of a single file; `write` writes several files into an empty folder. `holds`
+    are the MESH_EXTRAS that a written mesh keeps. Files that are `mapped` into memory are read page by page,
+    so their size has no limit.
     """
 
     read: MeshReader
     keys: tuple[str, ...] = FILE
-    in_folder: tuple[str, ...] = ()
     written: Callable[[Mesh], bytes] | None = None
     write: Callable[[Path, Mesh], object] | None = None
-    holds: frozenset[str] = frozenset(HELD)
+    holds: frozenset[str] = frozenset(MESH_EXTRAS)
     mapped: bool = False
 
 
@@ -151,7 +151,7 @@ MESH_FORMATS: Final = (
     MeshFormat("VTK", (".vtk",), read_vtk, begins=begins_as_vtk),
     *(MeshFormat(each.name, each.suffixes, partial(read_foreign, each)) for each in FOREIGN),
 )
-"""All mesh formats. Of several formats that begin alike, a file has the first."""
+"""All mesh formats. If several formats accept the first bytes of a file, the first format is used."""
 
 
 def file_formats() -> tuple[MeshFormat, ...]:
@@ -170,22 +170,19 @@ def format_of(path: Path) -> MeshFormat | None:
 
 
 def format_of_folder(folder: Path) -> MeshFormat | None:
-    """The format of the mesh in a folder; None if the folder is no mesh."""
-    return next(
-        (
-            each
-            for each in MESH_FORMATS
-            if each.in_folder and all((folder / name).exists() for name in each.in_folder)
-        ),
-        None,
-    )
+    """The format of the mesh in a folder; None if the folder has no mesh."""
+    for mesh_format in MESH_FORMATS:
+        names = mesh_format.in_folder
+        if names and all((folder / name).exists() for name in names):
+            return mesh_format
+    return None
 
 
 def format_of_files(files: Mapping[str, Path]) -> MeshFormat | None:
-    """The format of some files, given by their keys in `[[mesh]]`; None if it is unknown.
+    """The format of the files with these keys in `[[mesh]]`; None if it is unknown.
 
     Several files are recognized by the first: by its suffix, else by its first bytes. If neither is known,
-    they are CSV tables, the format of several files that has no first bytes of its own.
+    they are CSV tables, because CSV has no first bytes of its own.
     """
     first = next(iter(files.values()))
     if tuple(files) == FILE:

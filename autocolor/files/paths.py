@@ -1,4 +1,4 @@
-"""Paths of files that a scene file names: within the scene's folder, and never from a network."""
+"""Names and paths of files: fixed names and endings, the files that a scene file names, and new files."""
 
 from __future__ import annotations
 
@@ -11,11 +11,19 @@ from autocolor.files.reading import shown
 SCENE_FILE: Final = "scene.toml"
 """The name of the scene file in a scene's folder."""
 
+STORE_SUFFIXES: Final = (".sqlite", ".db")
+PICTURE_SUFFIX: Final = ".npz"
+
+LONGEST_STEM: Final = 100
+REFUSED: Final = frozenset('/\\:*?"<>|')
+"""Characters with a special meaning in the paths of some system."""
+
 
 def path_within(problems: list[str], folder: Path, name: str, *, outside: bool = False) -> Path | None:
-    """The path of a file named in a scene file; None if it is refused, with the reason added to `problems`.
+    """The path of a file that a scene file names; None if it is refused, with the reason added to `problems`.
 
-    The path must be within the folder, also after symbolic links are resolved, unless `outside` is true.
+    Network addresses are refused. Unless `outside` is true, the path must be within the folder, also after
+    symbolic links are resolved.
     """
     if not name or not name.isprintable():
         problems.append(f"must be the name of a file, not {shown(name)}; correct it")
@@ -47,3 +55,23 @@ def _is_within(folder: Path, path: Path) -> bool:
         return os.path.commonpath([real_folder, real]) == real_folder
     except (OSError, ValueError):
         return False
+
+
+def file_stem(name: str) -> str:
+    """The name of a scene or a surface, which may have any characters, as a file name without an ending.
+
+    >>> file_stem("scenes/coupe"), file_stem("a: b"), file_stem("..")
+    ('coupe', 'a_ b', 'scene')
+    """
+    stem = "".join("_" if letter in REFUSED or ord(letter) < 32 else letter for letter in Path(name).name)
+    stem = stem.strip()[:LONGEST_STEM].strip()
+    return stem if stem.strip(" .") else "scene"
+
+
+def free_path(path: Path) -> Path:
+    """The path if no file has it; otherwise the path with the lowest free number from 2: "rig-2.toml"."""
+    stem, number, free = path.stem, 1, path
+    while os.path.lexists(free):
+        number += 1
+        free = path.with_name(f"{stem}-{number}{path.suffix}")
+    return free

@@ -2,10 +2,10 @@
 
 The members are `header` (the scene without its mesh, as JSON in UTF-8), `relative_intensity` (lines,
 elements) float32, to be multiplied by the header's scale, `surface_number` (lines, elements) uint8,
-`part_number` (lines, elements) int32, whose number k is the row k - 1 of the part table, and the mesh:
+`part_number` (lines, elements) int32, where k means row k - 1 of the part table, and the mesh:
 `coordinates` (nodes, 3) float64, `node_numbers` (polygons, 4) and `part_numbers` (polygons,) int32, and
-`mesh_scalar_0` and so on, the values of each of its scalars, float64. If the scene shows a scalar, its values
-at the pixels are `scalar_0`, (lines, elements) float32; NaN is a missing one.
+`mesh_scalar_0` and so on, the values of its scalars, float64. If the scene shows a scalar, its values
+at the pixels are `scalar_0`, (lines, elements) float32; NaN is a missing value.
 
 Before version 4 there were no part numbers: the picture of such a file does not know its parts. Written
 again, its part numbers are all 0. `array_file` reads and writes the members.
@@ -35,6 +35,7 @@ from autocolor.files.array_file import (
     scalar_rows,
     scalars_of,
 )
+from autocolor.files.paths import PICTURE_SUFFIX
 from autocolor.files.writing import check_suffix, write_atomically
 from autocolor.lighting.picture import Picture
 from autocolor.scene.columns import Problem, RowError, from_plain, to_plain
@@ -86,7 +87,7 @@ def write_picture(
     Raises UsageError for a name that does not end in .npz, or if only one of the picture and the scene has a
     scalar; OutputError or WriteError if it cannot be written.
     """
-    check_suffix(path, ".npz", "a picture with its scene")
+    check_suffix(path, PICTURE_SUFFIX, "a picture with its scene")
     if (picture.scalar_values is None) != (scene.scalar is None):
         raise UsageError(
             "a picture and its scene must both have a scalar or neither, not one alone; render the scene"
@@ -203,11 +204,11 @@ def _shown_scalar(
     if not rows:
         return None, None
     row, values = rows[0], arrays["scalar_0"]
-    found: list[Problem] = []
+    problems: list[Problem] = []
     given = row["limits"] if isinstance(row, Mapping) and row.keys() == {"limits"} else row
-    limits: Any = LimitsKind().validated(given, (SHOWN, 0, "limits"), found)
-    if found:
-        raise RowError(found)
+    limits: Any = LimitsKind().validated(given, (SHOWN, 0, "limits"), problems)
+    if problems:
+        raise RowError(problems)
     if values.shape != arrays["surface_number"].shape or np.isinf(values).any():
         raise InputError(
             f"a scalar must have a finite number or NaN at each of {arrays['surface_number'].shape} pixels,"

@@ -85,7 +85,7 @@ def read_head(path: Path) -> bytes:
 
 
 def refuse_irregular(path: Path, status: os.stat_result) -> None:
-    """Raise InputError if the status is not that of a regular file."""
+    """Raise InputError unless the status is of a regular file."""
     if stat.S_ISREG(status.st_mode):
         return
     kinds = ((stat.S_ISDIR, "a folder"), (stat.S_ISFIFO, "a pipe"), (stat.S_ISSOCK, "a socket"))

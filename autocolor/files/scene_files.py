@@ -1,6 +1,6 @@
 """The files of a folder that can be opened: scenes, stores, meshes, pictures, and further folders.
 
-They are listed by their names alone, which is quick; a file is read when it is opened.
+Kinds are recognized by names alone, which is quick: listing a folder opens no file.
 """
 
 from __future__ import annotations
@@ -13,13 +13,14 @@ from typing import Final, NamedTuple
 
 from autocolor.errors import InputError, reason_of
 from autocolor.files.formats import format_named, format_of_folder, mesh_suffixes
+from autocolor.files.paths import SCENE_FILE
 from autocolor.files.scene_sources import SCENE_FORMATS
 
 FOLDER: Final = "folder"
 MESH: Final = "mesh"
 
 MOST_LISTED: Final = 1000
-"""Limit: the names of a folder that are listed; more cannot be pointed at."""
+"""Limit: the names that are listed of a folder; nobody finds a file in a longer list."""
 
 
 class Openable(NamedTuple):
@@ -51,7 +52,7 @@ def kind_of(path: Path) -> str:
     """The kind of a path, as in `Openable`; empty if it cannot be opened, or does not exist."""
     try:
         if path.is_dir():
-            if _scene_file_in(path) is not None:
+            if (path / SCENE_FILE).is_file():
                 return "scene"
             return FOLDER if format_of_folder(path) is None else MESH
         if not path.is_file():
@@ -70,19 +71,12 @@ def stays_within(path: Path, folder: Path) -> bool:
     read = [path]
     if path.is_dir():
         mesh_format = format_of_folder(path)
-        names = [each.in_folder for each in SCENE_FORMATS if each.in_folder]
-        names += mesh_format.in_folder if mesh_format is not None else ()
-        read += [path / name for name in names]
+        names = () if mesh_format is None else mesh_format.in_folder
+        read += [path / name for name in (SCENE_FILE, *names)]
     return all(Path(os.path.realpath(file)).is_relative_to(real) for file in read)
 
 
-def _scene_file_in(folder: Path) -> str | None:
-    """The name of the scene file in a folder; None if there is none."""
-    names = (each.in_folder for each in SCENE_FORMATS)
-    return next((name for name in names if name and (folder / name).is_file()), None)
-
-
 def _in_order(name: str) -> list[tuple[int, str]]:
-    """The key to sort names by, so that car2 stands before car10."""
+    """The sort key of a name: car2 comes before car10."""
     parts = re.split(r"(\d+)", name.casefold())
     return [(int(part), "") if part.isdecimal() and part.isascii() else (0, part) for part in parts]

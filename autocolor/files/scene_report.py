@@ -28,7 +28,7 @@ class SceneReport:
     """A scene, with messages about repairs and skipped parts of its files, and about what was created.
 
     `mesh_files` are the `[[mesh]]` tables with which a scene file can name the same mesh (see `scene_text`).
-    `is_view_created` and `are_lights_created` tell whether the source gave none.
+    `is_view_created` and `are_lights_created` are true if the source has no view, and no lights.
     """
 
     scene: Scene
@@ -85,7 +85,7 @@ def _joined_materials(
     """The materials of parts, the surfaces of materials, and a message for each conflict of several meshes.
 
     If two files describe a material of the same name differently, the material of the later file is renamed.
-    A part that several meshes have is one part, with the first material that a mesh gives it.
+    A part that is in several meshes has the material of the first mesh that gives it a material.
     """
     material_of_part: dict[str, str] = {}
     materials: dict[str, Surface] = {}

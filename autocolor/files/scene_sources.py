@@ -26,6 +26,7 @@ from autocolor.files.formats import (
     suffixes_of,
 )
 from autocolor.files.meshes.repair import SCALES, UPS, Placement
+from autocolor.files.paths import PICTURE_SUFFIX, SCENE_FILE, STORE_SUFFIXES
 from autocolor.files.picture_file import read_picture
 from autocolor.files.reading import status_of
 from autocolor.files.scene_report import SceneReport, scene_report
@@ -39,17 +40,16 @@ PathLike = str | os.PathLike[str]
 SceneReader = Callable[..., SceneReport]
 """A function that reads the scene of a path. It raises InputError.
 
-With `outside`, the scene may name files outside its folder. `surfaces` tells where the surfaces of parts come
-from that the scene gives none.
+With `outside`, the scene may name files outside its folder. Parts without a surface get the surfaces of their
+materials or their own surfaces, as `surfaces` says.
 """
 
 
 @dataclass(frozen=True)
 class SceneFormat(Format):
-    """A file format that holds a whole scene. A folder that contains `in_folder` is a scene of it."""
+    """A file format that holds a whole scene."""
 
     read: SceneReader
-    in_folder: str | None = None
 
 
 def _read_picture_scene(path: Path, **_: object) -> SceneReport:
@@ -65,21 +65,23 @@ def _read_store(path: Path, *, outside: bool, surfaces: SurfaceSource) -> SceneR
     return read_store(path, surfaces=surfaces)
 
 
+SCENE_FILE_FORMAT: Final = SceneFormat("scene file", (".toml",), read_scene_file, in_folder=(SCENE_FILE,))
+
 STORE: Final = SceneFormat(
-    "store", (".sqlite", ".db"), _read_store, begins=lambda head: head.startswith(b"SQLite format 3\0")
+    "store", STORE_SUFFIXES, _read_store, begins=lambda head: head.startswith(b"SQLite format 3\0")
 )
 
 SCENE_FORMATS: Final = (
     SceneFormat(
         "picture file",
-        (".npz",),
+        (PICTURE_SUFFIX,),
         _read_picture_scene,
         begins=lambda head: head.startswith(b"PK\x03\x04"),
     ),
-    SceneFormat("scene file", (".toml",), read_scene_file, in_folder="scene.toml"),
+    SCENE_FILE_FORMAT,
     STORE,
 )
-"""All formats of whole scenes, in the order in which a folder is searched for a scene."""
+"""All formats of whole scenes."""
 
 
 def read_scene(
@@ -146,7 +148,7 @@ def read_scene_with_report(
 
 
 def _with_source(report: SceneReport, folder: Path, scene_file: Path | None = None) -> SceneReport:
-    """The report, after the files of its mesh were remembered."""
+    """Remember the files of the mesh of a report; returns the report."""
     if report.mesh_files:
         path = None if scene_file is None else scene_file.resolve()
         keep_source(report.scene.mesh, MeshSource(folder.resolve(), report.mesh_files, path))
@@ -160,14 +162,15 @@ def source_format(path: Path) -> tuple[Path, SceneFormat | MeshFormat]:
     folder, the path of the folder. Raises InputError if the format is unknown.
     """
     if path.is_dir():
-        for each in SCENE_FORMATS:
-            if each.in_folder is not None and (path / each.in_folder).exists():
-                return path / each.in_folder, each
+        if (path / SCENE_FILE).exists():
+            return path / SCENE_FILE, SCENE_FILE_FORMAT
         mesh_format = format_of_folder(path)
         if mesh_format is None:
+            folder_formats: list[Format] = [SCENE_FILE_FORMAT, *MESH_FORMATS]
+            contents = [" and ".join(each.in_folder) for each in folder_formats if each.in_folder]
             raise InputError(
-                f"{path}: a scene's folder must contain {' or '.join(folder_contents())}, and this one does"
-                " not; name a mesh file to read it alone"
+                f"{path}: a scene's folder must contain a {' or '.join(contents)}, and this one does not;"
+                " name a mesh file to read it alone"
             )
         return path, mesh_format
     formats: tuple[SceneFormat | MeshFormat, ...] = (*SCENE_FORMATS, *file_formats())
@@ -186,12 +189,6 @@ def source_format(path: Path) -> tuple[Path, SceneFormat | MeshFormat]:
 def scene_and_mesh_suffixes() -> tuple[str, ...]:
     """The suffixes of all files that are scenes or meshes, sorted."""
     return suffixes_of((*SCENE_FORMATS, *file_formats()))
-
-
-def folder_contents() -> tuple[str, ...]:
-    """The files that make a folder a scene or a mesh, for a message."""
-    scenes = [f"a {each.in_folder}" for each in SCENE_FORMATS if each.in_folder]
-    return (*scenes, *(" and ".join(each.in_folder) for each in MESH_FORMATS if each.in_folder))
 
 
 def _bare_mesh(

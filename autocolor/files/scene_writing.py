@@ -15,7 +15,7 @@ from typing import Final
 
 from autocolor.errors import InputError, OutputError, UsageError, reason_of
 from autocolor.files.formats import mesh_suffixes, suffixes_of
-from autocolor.files.paths import SCENE_FILE
+from autocolor.files.paths import SCENE_FILE, STORE_SUFFIXES
 from autocolor.files.reading import read_bytes
 from autocolor.files.scene_sources import SCENE_FORMATS
 from autocolor.files.scene_toml.scene_file import report_of_text
@@ -36,7 +36,7 @@ from autocolor.files.scene_toml.scene_text import (
     without_parts,
 )
 from autocolor.files.scene_toml.toml_text import LARGEST_TEXT, parsed_toml
-from autocolor.files.store.store_file import STORE_SUFFIXES, write_store
+from autocolor.files.store.store_file import write_store
 from autocolor.files.writing import refuse_output, write_atomically
 from autocolor.logs import logger_of
 from autocolor.scene.columns import Row, row_label, to_plain
@@ -76,7 +76,7 @@ def write_scene_with_tables(
     target = _target(path)
     check_scene(scene)
     refuse_names((*scene.parts, *scene.surfaces, *scene.lights))
-    with _folder_made(target.parent), _removed_on_failure() as written:
+    with _new_folder(target.parent), _removed_on_failure() as written:
         refuse_output(target, overwrite=overwrite)
         old = _existing(target)
         meshes = meshes_there(target.parent, scene.mesh, old)
@@ -112,14 +112,14 @@ def _target(path: str | os.PathLike[str]) -> Path:
 
 
 def refuse_names(rows: Iterable[Row]) -> None:
-    """Raise InputError if a name in a row, its own or another, has a character that UTF-8 lacks."""
+    """Raise InputError if a text in a row has a character that UTF-8 lacks."""
     for row in rows:
         if any(0xD800 <= ord(letter) < 0xE000 for text in _texts_in(to_plain(row)) for letter in text):
             raise InputError(f"{row_label(row)}: a name in a file must be text in UTF-8; rename it")
 
 
 def _texts_in(value: object) -> Iterator[str]:
-    """The texts in a plain value, also those inside, and the keys of tables."""
+    """All texts in a plain value, with the keys of its tables."""
     if isinstance(value, str):
         yield value
     elif isinstance(value, (list, tuple, Mapping)):
@@ -130,7 +130,7 @@ def _texts_in(value: object) -> Iterator[str]:
 
 
 @contextmanager
-def _folder_made(folder: Path) -> Iterator[None]:
+def _new_folder(folder: Path) -> Iterator[None]:
     """Create a missing folder; remove it again if the body fails. Raises OutputError."""
     try:
         os.mkdir(folder)
@@ -164,7 +164,7 @@ def _removed_on_failure() -> Iterator[list[Path]]:
 
 
 def _existing(target: Path) -> bytes | None:
-    """The text of the existing scene file; None if it is missing, or not valid TOML."""
+    """The text of the existing scene file; None if the file is missing or no valid TOML."""
     try:
         data = read_bytes(target, LARGEST_TEXT)
         parsed_toml(data, target.name)
@@ -174,7 +174,7 @@ def _existing(target: Path) -> bytes | None:
 
 
 def _edited(old: bytes, target: Path, scene: Scene, meshes: Meshes, complete: bool) -> bytes | None:
-    """The old text, edited to give the scene; None if it is of another object, or cannot be edited so."""
+    """The old text, edited until it gives the scene; None if it has another object, or no edit succeeds."""
     mesh, document = scene.mesh, parsed_toml(old, target.name)
     given = document.get("parts")
     parts = set(given) if isinstance(given, dict) else set()
@@ -197,7 +197,7 @@ def _edited(old: bytes, target: Path, scene: Scene, meshes: Meshes, complete: bo
 
 
 def _fresh(target: Path, scene: Scene, meshes: Meshes, complete: bool) -> bytes:
-    """A new text that gives the scene. Raises OutputError if no text does."""
+    """A new text that gives the scene. Raises OutputError if the text would be too long, or give another."""
     entries = [{key: entry[key] for key in entry if key != "crease_angle"} for entry in meshes.entries]
     text = scene_text(scene, entries, without_defaults=not complete).encode()
     data = _giving(text, target, scene, meshes)

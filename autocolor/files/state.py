@@ -1,7 +1,7 @@
 """The state folder of the program, the locks in it, and the lists of recent colors and files.
 
 Each list is a JSON file, the newest entry first. The lists are a convenience: a list that is damaged, or that
-cannot be read or written, is empty, and never an error. Programs that run at the same time share the lists.
+cannot be read or written, is empty and no error. Programs that run at the same time share the lists.
 """
 
 from __future__ import annotations
@@ -123,7 +123,7 @@ def _entries(name: str, most: int, is_valid: Callable[[str], bool]) -> list[str]
         return []
     if not isinstance(entries, list):
         return []
-    valid = [each for each in entries if isinstance(each, str) and is_valid(each)]
+    valid = [entry for entry in entries if isinstance(entry, str) and is_valid(entry)]
     return list(dict.fromkeys(valid))[:most]
 
 
@@ -135,7 +135,7 @@ def _note(name: str, entry: str, most: int, is_valid: Callable[[str], bool]) -> 
         folder = state_folder()
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         with _lists_locked(folder):
-            others = [each for each in _entries(name, most, is_valid) if each != entry]
+            others = [other for other in _entries(name, most, is_valid) if other != entry]
             data = json.dumps([entry, *others][:most], indent=1).encode()
             write_atomically(folder / name, data, overwrite=True)
 

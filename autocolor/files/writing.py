@@ -1,7 +1,6 @@
-"""Writing files atomically, and naming new files.
+"""Writing files atomically: after any failure, either the old or the new file is there, complete.
 
-After any failure, either the old or the new file is there, complete. `ramtek_emu.writing` does the work; its
-errors are raised as errors of this package.
+`ramtek_emu.writing` does the work. Its errors become errors of this package.
 """
 
 from __future__ import annotations
@@ -10,7 +9,6 @@ import os
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from typing import Final
 
 import ramtek_emu
 from autocolor.errors import OutputError, UsageError, WriteError
@@ -68,30 +66,3 @@ def _refusals_of_this_package() -> Iterator[None]:
         raise OutputError(str(refusal)) from None
     except ramtek_emu.WriteError as refusal:
         raise WriteError(str(refusal)) from None
-
-
-# Safe file names from the names of scenes and surfaces, which may contain any characters.
-
-LONGEST_STEM: Final = 100
-REFUSED: Final = frozenset('/\\:*?"<>|')
-"""Characters with a special meaning in the paths of some system."""
-
-
-def file_stem(name: str) -> str:
-    """The name as a file name without an ending, free of folders and special characters.
-
-    >>> file_stem("scenes/coupe"), file_stem("a: b"), file_stem("..")
-    ('coupe', 'a_ b', 'scene')
-    """
-    stem = "".join("_" if letter in REFUSED or ord(letter) < 32 else letter for letter in Path(name).name)
-    stem = stem.strip()[:LONGEST_STEM].strip()
-    return stem if stem.strip(" .") else "scene"
-
-
-def free_path(path: Path) -> Path:
-    """The path, if there is no such file; else with the lowest number from 2 that is free: "rig-2.toml"."""
-    stem, number, free = path.stem, 1, path
-    while os.path.lexists(free):
-        number += 1
-        free = path.with_name(f"{stem}-{number}{path.suffix}")
-    return free

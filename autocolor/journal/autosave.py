@@ -1,8 +1,8 @@
 """Autosaving: the journal of a session stays in the state folder until the session ends in order.
 
-Each session has a folder of its own there. It has the journal, a lock, the first scene if that is in no file,
-and the meshes that edits changed. However the program ends, its lock ends with it. A session whose lock is
-free did not end in order: it was left, and can be recovered or forgotten.
+Each session has its own folder there, with the journal, a lock, the meshes that edits changed, and the first
+scene if no file has it. However the program ends, its lock ends with it. A session whose lock is free did not
+end in order: it was left, and can be recovered or forgotten.
 
 Versions before the journal left a Python script. It is listed and can be forgotten, but not recovered.
 """
@@ -54,7 +54,7 @@ class Autosave:
     def update(self, history: History, at_once: bool = False) -> None:
         """Append the steps since the last update to the journal, at most once a second unless `at_once`.
 
-        The history is always that of the same session. Raises AutocolorError if the journal cannot be
+        Give the history of the same session every time. Raises AutocolorError if the journal cannot be
         written; the session goes on, and the next update writes the whole journal.
         """
         steps, count, last = history.steps, self._count, self._last
@@ -63,7 +63,7 @@ class Autosave:
         if is_written or not is_due:
             return
         self._written_at = time.monotonic()
-        # Until writing succeeds, nothing is taken as written.
+        # If writing fails, the next update writes the whole file.
         self._count, self._last = 0, None
         with _write_errors():
             folder = self._own_folder()
@@ -92,7 +92,7 @@ class Autosave:
             shutil.rmtree(folder, ignore_errors=True)
 
     def _own_folder(self) -> Path:
-        """The folder of this session, which is created if there is none. Raises OSError."""
+        """The folder of this session; the first call creates it. Raises OSError."""
         if self._folder is None:
             sessions = state_folder() / SESSIONS
             sessions.mkdir(mode=0o700, parents=True, exist_ok=True)
@@ -104,7 +104,7 @@ class Autosave:
 
 
 def _append(path: Path, data: bytes) -> None:
-    """Append bytes to a file, which must be there, and sync it. Raises OSError."""
+    """Append bytes to an existing file, and sync it. Raises OSError."""
     with open(path, "r+b") as file:
         file.seek(0, os.SEEK_END)
         file.write(data)
@@ -113,7 +113,7 @@ def _append(path: Path, data: bytes) -> None:
 
 
 def _source_of(history: History, folder: Path) -> Source:
-    """The source of the first scene, which is saved beside the journal if it has none."""
+    """The source of the first scene. A scene without a source is saved beside the journal."""
     source = history.first_place.source
     if source is None:
         source = Source(str(folder / FIRST_SCENE))

@@ -96,14 +96,14 @@ class History:
 
     @property
     def is_changed(self) -> bool:
-        """Whether the current scene differs from the one of its place that was opened or saved last."""
+        """Whether the current scene differs from the scene of its place that was opened or saved last."""
         return not self.saved.scene.equals(self.scene)
 
     @property
     def left_unsaved(self) -> tuple[str, ...]:
-        """The names of scenes with unsaved changes from which the session went on to other scenes."""
-        past = pairwise([*self._undo_stack, self._present])
-        last = {one.place: one.scene for one, following in past if one.place is not following.place}
+        """The names of scenes with unsaved changes that the session left for other scenes."""
+        steps = pairwise([*self._undo_stack, self._present])
+        last = {before.place: before.scene for before, after in steps if before.place is not after.place}
         return tuple(
             scene.name
             for place, scene in last.items()
@@ -224,7 +224,7 @@ class Variants(Mapping[str, Opened]):
         return name in self._variants
 
     def with_variant(self, name: str, opened: Opened) -> Variants:
-        """These and another variant. Raises UsageError for a name that is in use, empty or too long."""
+        """These variants and a new one. Raises UsageError for a name that is in use, empty or too long."""
         if not isinstance(name, str) or not 0 < len(name) <= LONGEST_NAME:
             raise UsageError(
                 f"a variant must have a name of 1 to {LONGEST_NAME} characters, not {shown(name)};"

@@ -9,9 +9,9 @@
     {"step": "undo"}
 
 The other steps are `show` and `drop`, with the name of a variant, and `redo`. An edit is the call of a method
-of the scene; its columns have the plain values of scene files. `mesh` is null if the mesh stays, else the
-name of a folder beside the journal that has the mesh in a scene, or empty for the mesh of the first scene.
-All tables of an opened scene are in its line, so that only the mesh must still be in the files.
+of the scene; its columns have the plain values of scene files. `mesh` is null if the mesh stays, empty for
+the mesh of the first scene, else the name of a folder beside the journal that has the mesh in a scene. The
+line of an opened scene has all its tables, so that only the mesh must still be in the files.
 
 A line counts once its newline is written. If the program was killed during a line, its part is ignored.
 """
@@ -113,7 +113,7 @@ def step_line(step: Step, start: Scene, meshes: MeshesBeside) -> str:
 
 
 def _line(record: Mapping[str, object]) -> str:
-    # ASCII holds every file name: its bytes that are not UTF-8 are escaped as surrogates.
+    # In ASCII, a file name that is not UTF-8 can be written, with escapes for its surrogates.
     return f"{json.dumps(record, ensure_ascii=True)}\n"
 
 
@@ -188,9 +188,9 @@ def _light_added_or_removed(lights: tuple[Any, ...], others: tuple[Any, ...]) ->
 
 
 class MeshesBeside:
-    """The meshes that a session changed, each in a folder with a scene, in the folder of the journal.
+    """The meshes that a session changed. Each mesh is saved with its scene, in a folder beside the journal.
 
-    `folder` is None if nothing may be written.
+    `folder` is the folder of the journal; None if nothing may be written.
     """
 
     def __init__(self, folder: Path | None = None) -> None:
@@ -198,7 +198,7 @@ class MeshesBeside:
         self._folders: dict[Mesh, Path] = {}
 
     def folder_of(self, scene: Scene) -> Path:
-        """The folder with the mesh of a scene, which is written if it is not there.
+        """The folder with the mesh of a scene; the first call for a mesh writes it.
 
         Raises InputError if nothing may be written; OutputError or WriteError if writing fails.
         """
@@ -208,12 +208,14 @@ class MeshesBeside:
                 " it; name one with beside="
             )
         if scene.mesh not in self._folders:
-            self._folders[scene.mesh] = _read_from(self._folder, scene.mesh) or _written(self._folder, scene)
+            self._folders[scene.mesh] = _folder_beside(self._folder, scene.mesh) or _written(
+                self._folder, scene
+            )
         return self._folders[scene.mesh]
 
 
-def _read_from(folder: Path, mesh: Mesh) -> Path | None:
-    """The folder beside the journal from which a mesh was read; None if it was read from elsewhere."""
+def _folder_beside(folder: Path, mesh: Mesh) -> Path | None:
+    """The folder beside the journal that a mesh was read from; None if it was read elsewhere."""
     source = source_of(mesh)
     if source is None or source.scene_file is None or source.folder.parent != folder.resolve():
         return None
@@ -221,7 +223,7 @@ def _read_from(folder: Path, mesh: Mesh) -> Path | None:
 
 
 def _written(folder: Path, scene: Scene) -> Path:
-    """Write a scene to a folder of a free name; returns that folder."""
+    """Write a scene to a new folder; returns the folder."""
     os.makedirs(folder, exist_ok=True)
     for number in count(2):
         path = folder / f"scene-{number}"
@@ -258,7 +260,7 @@ STEPS: Final[Mapping[str, Mapping[str, tuple[type, ...]]]] = {
     "undo": {},
     "redo": {},
 }
-"""The fields of each kind of step, all of which must be there, with the types of their values."""
+"""The required fields of the kinds of steps, with the types of their values."""
 
 Record = dict[str, Any]
 """The fields of a step with values of the right types."""
@@ -272,7 +274,7 @@ def _record_of(line: bytes) -> Record:
         record = json.loads(line.decode())
     except (ValueError, RecursionError):
         record = None
-    if not isinstance(record, dict) or not _is_known(record):
+    if not isinstance(record, dict) or not _is_step(record):
         text = shown(line.decode(errors="replace"))
         raise InputError(
             f"it must be a step that this version of autocolor writes, not {text}; recover the session with"
@@ -281,7 +283,7 @@ def _record_of(line: bytes) -> Record:
     return record
 
 
-def _is_known(record: Record) -> bool:
+def _is_step(record: Record) -> bool:
     """Whether a record is a step with all of its fields and no others."""
     kind = record.get("step")
     fields = STEPS.get(kind) if isinstance(kind, str) else None
@@ -302,9 +304,9 @@ def _is_known(record: Record) -> bool:
 
 
 def _take(record: Record, history: History, meshes: dict[str, Mesh], folder: Path) -> None:
-    """Take a step in a history. `meshes` has the meshes that were read from beside the journal, by folder.
+    """Take a step in a history. Raises AutocolorError if the step is refused.
 
-    `folder` is the folder of the journal. Raises AutocolorError if the step is refused.
+    `folder` is the folder of the journal. `meshes` caches the meshes of the folders beside the journal.
     """
     kind = record["step"]
     match kind:

@@ -1,7 +1,7 @@
 """Places: the files that scenes are opened from, and whether a scene may be saved to its file again.
 
-The edits of a scene belong to the place that was opened before them. Two openings of one file are two places.
-A place has the stamp of its file, so that a file that another program changed since is never saved over.
+A place is one opening of a file: opening a file twice makes two places. Edits belong to the place that was
+opened last. A place has the stamp of its file, so a file that another program changed is never saved over.
 """
 
 from __future__ import annotations
@@ -17,18 +17,15 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from autocolor.errors import InputError
-from autocolor.files.paths import SCENE_FILE
+from autocolor.files.paths import PICTURE_SUFFIX, SCENE_FILE, STORE_SUFFIXES
 from autocolor.files.picture_file import plain_scene
 from autocolor.files.scene_sources import read_scene
-from autocolor.files.store.store_file import STORE_SUFFIXES
 from autocolor.scene.creation import SurfaceSource
 from autocolor.scene.mesh import has_same_tables
 from autocolor.scene.scene import Scene
 
 PACKAGE: Final = Path(__file__).resolve().parents[1]
 """The folder of this package, with the built-in demo; nothing is saved there."""
-
-PICTURE_SUFFIX: Final = ".npz"
 
 
 class Source(NamedTuple):
@@ -42,10 +39,10 @@ class Source(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class ScenePlace:
-    """The source of a scene; None for a scene that was made in memory.
+    """The place of a scene; `source` is None for a scene that was made in memory.
 
-    `stamp` is the stamp of the file when the scene was opened (see `stamp_of`). It is None if the scene is
-    never saved to that file.
+    `stamp` is the stamp of the file when the scene was opened (see `stamp_of`). Without a stamp, the scene is
+    never saved to the file.
     """
 
     source: Source | None = None
@@ -63,8 +60,8 @@ def opened(source: Source, tables: Mapping[str, Any] | None = None, checksum: st
     """The scene of a source and its place.
 
     A journal gives the `tables` that the scene had when it was opened, because the file may have been saved
-    over since. Only the mesh must still be the same. If other tables are in the file now, the scene is not
-    saved to that file. Raises InputError if the scene does not have the checksum, and as `read_scene`.
+    over since. Only the mesh must still be the same. If the file has other tables now, the scene will not be
+    saved to it. Raises InputError if the scene does not have the checksum, and as `read_scene`.
     """
     place = place_of(source)
     present = read_scene(source.path, up=source.up, scale=source.scale, surfaces=source.surfaces)
@@ -78,7 +75,7 @@ def opened(source: Source, tables: Mapping[str, Any] | None = None, checksum: st
 
 
 def opened_again(source: Source, present: Scene) -> Opened:
-    """The scene that its source holds now, and its place; an equal mesh is shared with the present scene.
+    """The scene of a source as it is now, and its place. An equal mesh is shared with the present scene.
 
     Raises InputError as `read_scene`.
     """

@@ -14,19 +14,19 @@ from itertools import count
 from pathlib import Path
 from typing import NamedTuple
 
-from autocolor.files.paths import SCENE_FILE
+from autocolor.files.paths import PICTURE_SUFFIX, SCENE_FILE, file_stem, free_path
 from autocolor.files.picture_file import write_picture
 from autocolor.files.scene_writing import write_scene
-from autocolor.files.writing import file_stem, free_path, write_atomically
+from autocolor.files.writing import write_atomically
 from autocolor.journal.history import History
-from autocolor.journal.places import PICTURE_SUFFIX, file_of, stamp_of
+from autocolor.journal.places import file_of, stamp_of
 from autocolor.lighting.picture import Picture
 
 
 class SavedFiles(NamedTuple):
-    """The scene file and the picture file that were saved, and the `backups` of what they held before.
+    """The scene file and the picture file that were saved, and the `backups` of their old contents.
 
-    `changed` are files that another program changed, so that new names were chosen.
+    `changed` are files that another program changed: they were left alone, and new names were chosen.
     """
 
     scene: Path
@@ -52,7 +52,7 @@ class SavedFiles(NamedTuple):
 
 
 class _Targets(NamedTuple):
-    """The files to save to with the stamps that they must have; the stamp of a new file is None."""
+    """The files to save to, with the stamps that they must still have. A new file has the stamp None."""
 
     scene: tuple[Path, str | None]
     picture: tuple[Path, str | None]
@@ -73,7 +73,7 @@ def save_session(history: History, picture: Picture, folder: Path) -> SavedFiles
                 backups.append(_backup_of(path))
         write_picture(picture_file, picture, history.scene, overwrite=picture_stamp is not None)
     except BaseException:
-        # The files are as they were.
+        # No file was written yet, so backups are not needed.
         for path in backups:
             path.unlink(missing_ok=True)
         raise
@@ -102,7 +102,7 @@ def _targets(history: History, folder: Path) -> _Targets:
 
 
 def _new_names(name: str, folder: Path, has_scene: bool, has_picture: bool) -> tuple[Path, Path]:
-    """A scene file and a picture file of one name. A file that is had already need not be free."""
+    """A scene file and a picture file with the same name, which is free for the files that are needed."""
     stem = file_stem(name)
     for number in count(1):
         path = Path(os.path.abspath(folder)) / (stem if number == 1 else f"{stem}-{number}")

@@ -13,13 +13,11 @@ from typing import Final, NamedTuple, Unpack
 
 from autocolor.checks import printable
 from autocolor.errors import InputError, UsageError
-from autocolor.files.paths import SCENE_FILE
+from autocolor.files.paths import SCENE_FILE, STORE_SUFFIXES, file_stem, free_path
 from autocolor.files.rig_file import RIG_SUFFIX, is_rig, read_rig, write_rig
 from autocolor.files.scene_files import MESH, kind_of
 from autocolor.files.state import note_file
 from autocolor.files.store.connections import FileChanges
-from autocolor.files.store.store_file import STORE_SUFFIXES
-from autocolor.files.writing import file_stem, free_path
 from autocolor.mapping.display_image import DisplayImage
 from autocolor.scene.changes import LightChanges, PaintChanges, SurfaceChanges
 from autocolor.scene.lights import Light

@@ -40,7 +40,7 @@ FILE_KEYS: Final = tuple(key for key in keys_of(Scene) if key != "name")
 """The keys of a scene file; the scene's name is that of its folder or file."""
 
 TABLES: Final = ("mesh", "parts", "surfaces")
-"""The keys that cannot be read one by one, as they refer to each other."""
+"""The keys whose tables refer to each other, and are read together."""
 
 
 def read_scene_file(path: Path, *, outside: bool = False, surfaces: SurfaceSource = MATERIALS) -> SceneReport:
@@ -63,7 +63,7 @@ def report_of_text(
 ) -> SceneReport:
     """The scene that a file with this text would give at a path; see `read_scene_file`.
 
-    With `meshes`, those that it names, these are not read again.
+    `meshes` are the meshes that the text names, if they were read before.
     """
     document = parsed_toml(data, path.name)
     problems = SceneProblems(path.name, data, document)
@@ -99,18 +99,18 @@ def report_of_text(
 def _fields(problems: SceneProblems, document: Mapping[str, Any]) -> dict[str, Any]:
     """The valid values of the keys that are not in TABLES, by key."""
     fields = {}
-    found: list[Problem] = []
+    refused: list[Problem] = []
     for key, value in document.items():
         if key not in FILE_KEYS:
-            found.append(unknown_key(key, FILE_KEYS))
+            refused.append(unknown_key(key, FILE_KEYS))
         elif key not in TABLES:
-            fields[key] = keys_of(Scene)[key].column.kind.validated(value, (key,), found)
-    problems.note_all(found)
+            fields[key] = keys_of(Scene)[key].column.kind.validated(value, (key,), refused)
+    problems.note_all(refused)
     return {key: value for key, value in fields.items() if value is not REFUSED}
 
 
 def _surfaces(problems: SceneProblems, document: Mapping[str, Any]) -> dict[str, Surface | None]:
-    """The given surfaces by name, None for one with problems; omitted keys have their defaults."""
+    """The surfaces of the file by name, None for a surface with problems; omitted keys have defaults."""
     tables = _named_tables(problems, document, "surfaces")
     if len(tables) > MOST_SURFACES:
         problems.note(
@@ -137,11 +137,11 @@ def _parts(
     reports: list[MeshReport] | None,
     surface_names: tuple[str, ...],
 ) -> dict[str, PartChanges]:
-    """The fields that the file gives for parts, by name; names are not checked if `reports` is None."""
+    """The fields of the parts in the file, by name. Without `reports`, names are not checked."""
     fields: dict[str, PartChanges] = {}
-    known_parts = dict.fromkeys(name for report in reports or () for name in report.mesh.part_names)
+    part_names = dict.fromkeys(name for report in reports or () for name in report.mesh.part_names)
     materials = (name for report in reports or () for name in report.material_of_part.values())
-    known_surfaces = dict.fromkeys((*surface_names, *known_parts, *materials))
+    names_of_surfaces = dict.fromkeys((*surface_names, *part_names, *materials))
     for name, table in _named_tables(problems, document, "parts").items():
         if problems.full:
             break
@@ -149,18 +149,18 @@ def _parts(
         part = _row(problems, path, table, partial(_part, name))
         if reports is None:
             continue
-        if name not in known_parts:
-            problems.note(path, "no mesh has a part of this name", (name, known_parts))
-        if part is not None and part.surface not in known_surfaces and "surface" in table:
+        if name not in part_names:
+            problems.note(path, "no mesh has a part of this name", (name, part_names))
+        if part is not None and part.surface not in names_of_surfaces and "surface" in table:
             rule = f"must be a surface, a part or a material of the scene, not {shown(part.surface)}"
-            problems.note((*path, "surface"), rule, (part.surface, known_surfaces))
+            problems.note((*path, "surface"), rule, (part.surface, names_of_surfaces))
         elif part is not None:
             fields[name] = table
     return fields
 
 
 def _with_own_surfaces(parts: Mapping[str, PartChanges], reports: list[MeshReport]) -> dict[str, PartChanges]:
-    """The fields of all parts; those that the file names no surface for have that of their own name."""
+    """The fields of all parts. A part whose surface the file does not name has a surface of its own name."""
     names = [name for report in reports for name in report.mesh.part_names]
     return {name: {"surface": name, **parts.get(name, {})} for name in names}
 
@@ -177,7 +177,7 @@ def _named_tables(problems: SceneProblems, document: Mapping[str, Any], key: str
 def _row(
     problems: SceneProblems, path: tuple[str, str], table: Any, make: Callable[[Mapping[str, Any]], SomeRow]
 ) -> SomeRow | None:
-    """The row that `make` returns for a table [key.NAME]; None, with its problems added, if it is invalid."""
+    """The row that `make` returns for a table [key.NAME]; an invalid table gives None and adds problems."""
     if not isinstance(table, dict):
         problems.note(path, f"it must be a table, not {shown(table)}; write keys and values")
         return None
@@ -187,6 +187,6 @@ def _row(
         problems.note_all(error.row_problems, path)
         return None
     if "name" in table:
-        known = [key for key in keys_of(type(row)) if key != "name"]
-        problems.note_all([unknown_key("name", known)], path)
+        keys = [key for key in keys_of(type(row)) if key != "name"]
+        problems.note_all([unknown_key("name", keys)], path)
     return row

@@ -1,8 +1,8 @@
 """The `[[mesh]]` tables of a scene file: reading their files, remembering them, and writing a mesh for them.
 
-A mesh knows nothing of files. The files that it was read from are remembered beside it, so that a scene that
-is written can name them again, and are forgotten with it. A file may have been changed since, so its mesh is
-compared before it is named.
+A mesh has no file names. A table beside the meshes remembers the files of each mesh while the mesh exists, so
+that a scene file can name these files again. A file may have been changed since, so it is read and compared
+before a scene file names it.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ from autocolor.files.formats import format_of_files, read_mesh
 from autocolor.files.meshes.obj import obj_text
 from autocolor.files.meshes.repair import SCALES, UPS, MeshReport, Placement
 from autocolor.files.meshes.table_file import SUFFIX, table_file_bytes
-from autocolor.files.paths import path_within
+from autocolor.files.paths import free_path, path_within
 from autocolor.files.reading import LARGEST_MESH_FILE
 from autocolor.files.scene_toml.toml_text import KeyPath, SceneProblems, parsed_toml
-from autocolor.files.writing import free_path, write_atomically
+from autocolor.files.writing import write_atomically
 from autocolor.scene.columns import BarRange, Column, Problem, Row, RowError, Tier, from_plain
 from autocolor.scene.kinds import OneOf, Text
 from autocolor.scene.mesh import CREASE_ANGLES, Mesh, has_same_tables
@@ -64,11 +64,11 @@ class MeshEntry(Row):
     ] = None
 
     def placement(self, crease_angle: float | None) -> Placement:
-        """How the mesh is placed; the crease angle is that of all meshes of the scene."""
+        """The placement of the mesh; all meshes of a scene have the same crease angle."""
         return Placement(self.up, self.scale, crease_angle)
 
     def rules(self) -> Iterator[Problem]:
-        """The given keys name either one file or two tables."""
+        """The keys must name either one file or two tables."""
         given = tuple(key for keys in FILE_KEYS for key in keys if vars(self)[key] is not None)
         if given not in FILE_KEYS:
             listed = " and ".join(given) or "none of them"
@@ -153,7 +153,7 @@ def _entry(problems: SceneProblems, path: KeyPath, table: object) -> MeshEntry |
 
 
 def _crease_angle(problems: SceneProblems, sources: list[MeshFiles]) -> float | None:
-    """The crease angle of the tables; None if no table gives it."""
+    """The crease angle that the tables give; None if no table gives an angle."""
     given = [
         (source.entry.crease_angle, source) for source in sources if source.entry.crease_angle is not None
     ]
@@ -167,7 +167,7 @@ def _crease_angle(problems: SceneProblems, sources: list[MeshFiles]) -> float | 
 
 
 def _read_whole(files: Mapping[str, Path]) -> Iterable[Path]:
-    """The files of a mesh that are read whole, and not mapped into memory."""
+    """The files of a mesh that are read whole; mapped files are not."""
     mesh_format = format_of_files(files)
     return () if mesh_format is not None and mesh_format.mapped else files.values()
 
@@ -205,19 +205,22 @@ def keep_source(mesh: Mesh, source: MeshSource) -> None:
 
 
 def source_of(mesh: Mesh) -> MeshSource | None:
-    """The files that a mesh was read from; None if it was made in memory, or is that of a picture file."""
+    """The files that a mesh was read from; None for a mesh of a picture, a store or a program."""
     return _SOURCES.get(mesh)
 
 
 class Meshes(NamedTuple):
-    """`[[mesh]]` tables that give the mesh of a scene, and the reports of reading them."""
+    """The `[[mesh]]` tables for the mesh of a scene, and the reports of reading their files."""
 
     entries: Entries
     reports: list[MeshReport]
 
 
 def meshes_there(folder: Path, mesh: Mesh, old: bytes | None) -> Meshes | None:
-    """The files in a folder that hold a mesh: those of an old scene file, or those that it was read from."""
+    """The files in a folder that hold a mesh; None if no files do.
+
+    Candidates are the files that the old scene file names, and the files that the mesh was read from.
+    """
     candidates = [] if old is None else [entries_of(old)]
     source = source_of(mesh)
     if source is not None:
@@ -250,10 +253,10 @@ def _relative(entries: Entries, source: Path, folder: Path) -> Entries:
 
 
 def reports_of(folder: Path, entries: Entries) -> list[MeshReport]:
-    """The meshes of the files that tables name; empty if anything is wrong with them."""
+    """The reports of reading the files that tables name; empty if a file or a table has a problem."""
     problems = SceneProblems("scene.toml", b"", {})
     reports = meshes_of(problems, list(entries), folder, outside=False)
-    return [] if problems.found else reports
+    return [] if problems.messages else reports
 
 
 def written_mesh(folder: Path, mesh: Mesh, written: list[Path]) -> Meshes:

@@ -117,15 +117,15 @@ def _rows(name: str, kind: RowList, rows: Any) -> Iterator[str]:
 # Editing a text.
 
 MOST_ROUNDS: Final = 6
-"""Limit: three rounds are enough if any number is: for given keys, for their order, for created keys."""
+"""Limit: a text needs at most three rounds: for written keys, for their order, for created keys."""
 
 NEW_ROW: Final = 1 << 20
-"""The number of the first row that is added to `[[lights]]` or `[[mesh]]`; the text has fewer."""
+"""The number of the first new row of `[[lights]]` or `[[mesh]]`; larger than any row of the text."""
 
 ORDERED: Final = tuple(
     (name,) for name, field in fields_of(Scene).items() if isinstance(field.column.kind, RangesByName)
 )
-"""The paths of tables whose keys have an order: a new key can be added as the last one only."""
+"""The paths of tables whose keys have an order, so that a new key must be the last key."""
 
 ReadText = Callable[[bytes], Scene]
 """Reads the text of a scene file for a given mesh; raises InputError."""
@@ -134,7 +134,7 @@ Tables = Mapping[str, Any]
 
 
 def edited_to(data: bytes, scene: Scene, read: ReadText) -> bytes | None:
-    """The text of a scene file, edited until it gives the scene, besides its mesh and its name.
+    """The text of a scene file, edited until it gives the scene; its mesh and its name may differ.
 
     None if the text cannot be read, or if no edit makes it give the scene.
     """
@@ -183,7 +183,7 @@ def with_meshes(data: bytes, entries: tuple[Mapping[str, Any], ...]) -> bytes:
     """The text of a scene file with other `[[mesh]]` tables."""
     text = TomlText(data.decode(), FILE_TABLES)
     if not text.has(("mesh", 0)):
-        # The tables are one inline array, or there are none.
+        # Remove an inline array of tables.
         text.remove(("mesh",))
     for row, entry in enumerate(entries):
         for key, value in sparse_entry(entry).items():
@@ -196,7 +196,7 @@ def with_meshes(data: bytes, entries: tuple[Mapping[str, Any], ...]) -> bytes:
 
 
 def with_crease_angle(data: bytes, angle: float) -> bytes:
-    """The text of a scene file with a crease angle, in each `[[mesh]]` that gives one, else in the first."""
+    """The text of a scene file with a crease angle: in every `[[mesh]]` with the key, else in the first."""
     text = TomlText(data.decode(), FILE_TABLES)
     tables = parsed_toml(data, "scene.toml")["mesh"]
     rows = [row for row, table in enumerate(tables) if "crease_angle" in table] or [0]
@@ -220,7 +220,7 @@ def without_parts(data: bytes, names: set[str]) -> bytes:
 
 
 def _edited(data: bytes, old: Scene, new: Scene) -> bytes:
-    """The text with the differences between the scene that it gives and another one changed."""
+    """The text of the old scene, with all values that differ in the new scene changed."""
     document = parsed_toml(data, "scene.toml")
     text = TomlText(data.decode(), FILE_TABLES)
     before: dict[str, Any] = to_plain(old)
@@ -247,7 +247,7 @@ def _edited(data: bytes, old: Scene, new: Scene) -> bytes:
 
 
 def _change(text: TomlText, path: KeyPath, before: Tables, after: Tables, sparse: Tables) -> None:
-    """Change the differences between two tables. A new key is written if it is in the sparse table."""
+    """Change the values that differ between two tables. New keys are written if the sparse table has them."""
     for key in before:
         if key not in after:
             text.remove((*path, key))
@@ -274,7 +274,7 @@ def _change_named(
     after: list[dict[str, Any]],
     sparse: list[dict[str, Any]],
 ) -> None:
-    """Change the differences of a table of rows by name; surfaces are in the order of the scene."""
+    """Change the rows that differ in a table of rows by name; surfaces get the order of the scene."""
     written = document.get(table, {})
     olds = {row["name"]: row for row in before}
     names = [row["name"] for row in after]
@@ -304,7 +304,7 @@ def _change_lights(
     after: list[dict[str, Any]],
     sparse: list[dict[str, Any]],
 ) -> None:
-    """Change the differences of the table of lights; if the text has none, all lights are written."""
+    """Change the lights that differ; if the text has no lights, all lights are written."""
     written = document.get("lights", [])
     if not after or not text.has(("lights", 0)):
         text.remove(("lights",))

@@ -1,8 +1,8 @@
 """Editing values in the text of a TOML file; everything else stays as it is written.
 
-A changed value takes the place of the old one, also inside an inline table. A new key goes below the others
-of its table, or into a new table after tables of the same kind. With a removed key goes the rest of its line.
-The comments above a removed key stay; the comments above the header of a removed table go with it.
+A changed value replaces the old value in its place, also inside an inline table. A new key is written below
+the other keys of its table, or into a new table after tables of the same kind. Removing a key removes the
+rest of its line, but not the comments above it. Removing a table removes the comments above its header.
 
 The text is split into blocks of statements; joined again they are the same text. A block is a header and the
 statements below it; the first block has no header. Comments directly above a header, with no empty line
@@ -17,11 +17,19 @@ megabyte; with repairs for the first fault, there is as much code as here.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final, NamedTuple
 
-from autocolor.files.scene_toml.toml_text import TOKEN, KeyPath, only_path, toml_key, toml_value
+from autocolor.files.scene_toml.toml_text import (
+    TOKEN,
+    KeyPath,
+    key_path,
+    resolved_path,
+    statements_of,
+    toml_key,
+    toml_value,
+)
 
 EMPTY_LINE: Final = re.compile(r"^[ \t\r]*\n", re.MULTILINE)
 
@@ -65,7 +73,7 @@ def blocks_of(text: str) -> list[Block]:
     """The blocks of a valid TOML text, whose lines end with line feeds."""
     blocks = [Block((), "")]
     rows: dict[KeyPath, int] = {}
-    for lead, statement, equals, after in _pieces(text):
+    for lead, statement, equals, after in statements_of(text):
         if not statement:
             blocks[-1].tail = lead
         elif statement.startswith("["):
@@ -75,52 +83,15 @@ def blocks_of(text: str) -> list[Block]:
             if len(blocks) == 1 and not blocks[0].statements and not above:
                 above = len(lead)
             blocks[-1].tail, comment = lead[:above], lead[above:]
-            path = _resolved((), only_path(statement, statement), rows, array)
+            path = resolved_path((), key_path(statement), rows, array)
             blocks.append(Block(path, comment + statement + after))
         else:
             key = statement[:equals].rstrip()
             value = statement[equals + 1 :].lstrip()
-            path = _resolved(blocks[-1].path, only_path(f"{key} = 0", statement), rows, False)
+            path = resolved_path(blocks[-1].path, key_path(f"{key} = 0"), rows, False)
             between = statement[len(key) : len(statement) - len(value)]
             blocks[-1].statements.append(Statement(path, lead, key, between, value, after))
     return blocks
-
-
-def _resolved(table: KeyPath, parts: tuple[str, ...], rows: dict[KeyPath, int], array: bool) -> KeyPath:
-    """The path of a header or key in a table, with row numbers; a header of an array begins a row."""
-    path = table
-    for depth, part in enumerate(parts):
-        path = (*path, part)
-        if array and depth == len(parts) - 1:
-            rows[path] = rows.get(path, -1) + 1
-        if path in rows:
-            path = (*path, rows[path])
-    return path
-
-
-def _pieces(text: str) -> Iterator[tuple[str, str, int, str]]:
-    """Each statement: the lines above, its text, the place of its = in it, and the rest of its line.
-
-    The last one is empty, with the lines above the end of the file.
-    """
-    start, first, stop, equals, nested = 0, -1, 0, 0, 0
-    for token in TOKEN.finditer(text):
-        kind = token.lastgroup
-        nested += (kind == "open") - (kind == "close")
-        if kind == "newline" and nested <= 0:
-            if first >= 0:
-                yield text[start:first], text[first:stop], equals, text[stop : token.end()]
-                start, first, equals = token.end(), -1, 0
-            nested = 0
-        elif kind not in ("comment", "space", "newline"):
-            first = token.start() if first < 0 else first
-            stop = token.end()
-            if kind == "equals" and not equals:
-                equals = token.start() - first
-    if first >= 0:
-        yield text[start:first], text[first:stop], equals, text[stop:]
-        start = len(text)
-    yield text[start:], "", 0, ""
 
 
 class InlineItem(NamedTuple):
@@ -143,7 +114,7 @@ def inline_items(text: str) -> list[InlineItem]:
             if equals:
                 key = text[first : equals - 1].strip()
                 start = equals + len(text[equals:stop]) - len(text[equals:stop].lstrip())
-                items.append(InlineItem(only_path(f"{key} = 0", f"{key} = 0"), key, start, stop))
+                items.append(InlineItem(key_path(f"{key} = 0"), key, start, stop))
             first, equals = token.end(), 0
         elif kind == "equals" and nested == 1 and not equals:
             equals = token.end()
@@ -157,8 +128,8 @@ class TomlText:
 
     `tables` are the names of the tables that get headers of their own, in the order of new ones.
 
-    A path leads from the root to a value. A row of an array of tables has the number that it had in the text
-    at first; a new row has any other number.
+    A path leads from the root to a value. A row of an array of tables keeps the number that it has in the
+    original text; a new row has any other number.
     """
 
     def __init__(self, text: str, tables: Sequence[str]) -> None:
@@ -171,15 +142,15 @@ class TomlText:
 
     @property
     def text(self) -> str:
-        """The text as it is now."""
+        """The edited text."""
         return "".join(block.text for block in self._blocks).replace("\n", self._ends)
 
     def has(self, path: KeyPath) -> bool:
-        """Whether the text has something at a path or below it, not counting what is in inline tables."""
+        """Whether the text has a key or a table at a path or below it; inline tables are not searched."""
         return path in self._paths
 
     def set(self, path: KeyPath, value: Any) -> None:
-        """Give the value at a path, which may be new."""
+        """Set the value at a path. A missing key is added."""
         for end in range(1, len(path) + 1):
             statement = self._statement_at.get(path[:end])
             if statement is not None:
@@ -190,7 +161,7 @@ class TomlText:
         self._add(path, value)
 
     def remove(self, path: KeyPath) -> None:
-        """Remove what is at a path and below it, if anything."""
+        """Remove the keys and tables at a path and below it, if any."""
         for end in range(1, len(path)):
             statement = self._statement_at.get(path[:end])
             if statement is not None:
@@ -214,7 +185,7 @@ class TomlText:
         self._index()
 
     def arrange(self, table: str, keys: Sequence[str | int]) -> bool:
-        """Put the rows of a table in the order of their names or numbers; whether each has a header."""
+        """Sort the rows of a table by these names or numbers; returns whether every row has a header."""
         rows = [block for block in self._blocks if len(block.path) > 1 and block.path[0] == table]
         ordered = [block for key in keys for block in rows if block.path[1] == key]
         if len(ordered) == len(rows) and ordered != rows:
@@ -225,7 +196,7 @@ class TomlText:
         return {block.path[1] for block in rows} == set(keys)
 
     def _index(self) -> None:
-        """Note where everything is, so that an edit of many keys does not look at each for each."""
+        """Note the place of every path. Without this, editing many keys takes the square of their number."""
         self._paths: set[KeyPath] = {()}
         self._statement_at: dict[KeyPath, Statement] = {}
         self._block_at: dict[KeyPath, Block] = {}
@@ -244,13 +215,13 @@ class TomlText:
         table = path[:-1]
         block = self._block_at.get(table)
         if block is None and table in self._paths:
-            # Next to others of the same table that are written with dotted keys.
+            # Insert the key next to dotted keys of the same table.
             for block in self._blocks:
                 beside = [row for row, each in enumerate(block.statements) if _is_below(each.path, table)]
                 if beside and _is_below(table, block.path):
                     self._insert(block, beside[-1] + 1, path, value)
                     return
-            # There are only headers of tables inside it.
+            # The text has only headers of tables inside this table.
             block = self._new_block(table)
         if block is None:
             above = (self._block_at.get(table[:end]) for end in range(len(table) - 1, 0, -1))
@@ -275,6 +246,8 @@ class TomlText:
         elif not block.statements:
             # Below the comment at the top of the file.
             before, block.tail = block.tail, "\n"
+            if before and not before.endswith("\n"):
+                before += "\n"
         key = ".".join(toml_key(part) for part in path[len(block.path) :] if isinstance(part, str))
         statement = Statement(path, before, key, " = ", toml_value(value), "\n")
         block.statements.insert(row, statement)
@@ -294,9 +267,10 @@ class TomlText:
         return block
 
     def _place_before(self, path: KeyPath, table: str) -> int:
-        """The row of the block after which a new one goes: the last that is most like it.
+        """The row of the block after which a new block goes.
 
-        Without one like it, that is the last block of a table that is to be written before this one.
+        This is the last block whose path begins as the new path does, for as many parts as possible. If no
+        block begins so, it is the last block of a table that is written before this table.
         """
         starts = [path[:end] for end in range(len(path), 0, -1) if path[:end] in self._paths]
         earlier = self._tables[: self._tables.index(table)]
@@ -307,7 +281,7 @@ class TomlText:
         return 0
 
     def _end_with_empty_lines(self, first: int, last: int) -> None:
-        """Let an empty line follow each of some blocks, unless the next is of the same row."""
+        """End some blocks with an empty line, unless the next block belongs to the same row."""
         rows = self._blocks[first : last + 1]
         for block, following in zip(rows, self._blocks[first + 1 : last + 2], strict=False):
             is_same_row = len(block.path) > 1 and block.path[:2] == following.path[:2]
@@ -319,12 +293,12 @@ class TomlText:
 
 
 def _is_below(path: KeyPath, above: KeyPath) -> bool:
-    """Whether a path is another one, or leads on from it."""
+    """Whether a path is equal to another path, or below it."""
     return path[: len(above)] == above
 
 
 def _inline(text: str, path: KeyPath, value: Any) -> str:
-    """An inline table with another value at a path inside it, which may be new."""
+    """The text of an inline table after a value inside it was set. A missing key is added."""
     items = inline_items(text)
     for item in items:
         if _is_below(path, item.path):
@@ -338,7 +312,7 @@ def _inline(text: str, path: KeyPath, value: Any) -> str:
 
 
 def _inline_without(text: str, path: KeyPath) -> str:
-    """An inline table without what is at a path inside it and below, if anything."""
+    """The text of an inline table without the keys at a path inside it and below, if any."""
     items = inline_items(text)
     others = []
     for item in items:

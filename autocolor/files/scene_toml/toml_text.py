@@ -67,10 +67,10 @@ def parsed_toml(data: bytes, place: str, what: str = "a scene file") -> dict[str
 
 def _syntax_problem(message: str, text: str, place: str) -> str:
     """The parser's error message as one of ours, with file and line."""
-    place_of_error = re.search(r" \(at line (\d+), column (\d+)\)$", message)
-    if place_of_error:
-        line, column = place_of_error[1], f"column {place_of_error[2]}"
-        message = message[: place_of_error.start()]
+    location = re.search(r" \(at line (\d+), column (\d+)\)$", message)
+    if location:
+        line, column = location[1], f"column {location[2]}"
+        message = message[: location.start()]
     else:
         line, column = str(text.rstrip("\n").count("\n") + 1), "the end of the file"
         message = message.removesuffix(" (at end of document)")
@@ -110,35 +110,49 @@ def key_lines(data: bytes) -> dict[KeyPath, int]:
     lines: dict[KeyPath, int] = {}
     rows: dict[KeyPath, int] = {}
     table: KeyPath = ()
-    for line, statement in _statements(data.decode("utf-8", "replace").replace("\r\n", "\n")):
-        array = statement.startswith("[[")
-        header = statement.startswith("[")
-        # Let the parser itself read the header or the key.
-        path = only_path(statement if header else statement.split("=", 1)[0] + "= 0", statement)
-        resolved: KeyPath = () if header else table
-        for depth, part in enumerate(path):
-            resolved = (*resolved, part)
-            if array and depth == len(path) - 1:
-                rows[resolved] = rows.get(resolved, -1) + 1
-            if resolved in rows:
-                lines.setdefault(resolved, line)
-                resolved = (*resolved, rows[resolved])
-            lines.setdefault(resolved, line)
-        if header:
-            table = resolved
+    line = 1
+    for above, statement, equals, after in statements_of(data.decode().replace("\r\n", "\n")):
+        line += above.count("\n")
+        if not statement:
+            break
+        if statement.startswith("["):
+            path = table = resolved_path((), key_path(statement), rows, statement.startswith("[["))
+        else:
+            path = resolved_path(table, key_path(f"{statement[:equals]} = 0"), rows, False)
+        for end in range(1, len(path) + 1):
+            lines.setdefault(path[:end], line)
+        line += statement.count("\n") + after.count("\n")
     return lines
 
 
-def only_path(text: str, statement: str) -> tuple[str, ...]:
-    """The path of keys in a header, or in a statement whose value was removed."""
-    try:
-        value: Any = tomllib.loads(text)
-    except tomllib.TOMLDecodeError:
-        # An equals sign in a quoted key: parse the whole statement.
-        try:
-            value = tomllib.loads(statement)
-        except tomllib.TOMLDecodeError:
-            return ()
+def statements_of(text: str) -> Iterator[tuple[str, str, int, str]]:
+    """For each statement: the lines above, its text, the place of its = in it, and the rest of its line.
+
+    Last come the lines above the end of the text, with an empty statement.
+    """
+    start, first, stop, equals, nested = 0, -1, 0, 0, 0
+    for token in TOKEN.finditer(text):
+        kind = token.lastgroup
+        nested += (kind == "open") - (kind == "close")
+        if kind == "newline" and nested <= 0:
+            if first >= 0:
+                yield text[start:first], text[first:stop], equals, text[stop : token.end()]
+                start, first, equals = token.end(), -1, 0
+            nested = 0
+        elif kind not in ("comment", "space", "newline"):
+            first = token.start() if first < 0 else first
+            stop = token.end()
+            if kind == "equals" and not equals:
+                equals = token.start() - first
+    if first >= 0:
+        yield text[start:first], text[first:stop], equals, text[stop:]
+        start = len(text)
+    yield text[start:], "", 0, ""
+
+
+def key_path(text: str) -> tuple[str, ...]:
+    """The keys of a header, or of a statement with the value 0; the parser itself reads them."""
+    value: Any = tomllib.loads(text)
     path: list[str] = []
     while isinstance(value, (dict, list)) and value and len(path) < MOST_KEY_PARTS:
         if isinstance(value, list):
@@ -150,21 +164,19 @@ def only_path(text: str, statement: str) -> tuple[str, ...]:
     return tuple(path)
 
 
-def _statements(text: str) -> Iterator[tuple[int, str]]:
-    """Each header, and each key with its value, with the number of its first line."""
-    line, first, nested = 1, 1, 0
-    words: list[str] = []
-    for token in TOKEN.finditer(text + "\n"):
-        kind = token.lastgroup
-        nested += (kind == "open") - (kind == "close")
-        if kind == "newline" and nested <= 0:
-            if words:
-                yield first, "".join(words)
-            words, nested = [], 0
-        elif kind != "comment" and not (kind == "space" and not words):
-            first = first if words else line
-            words.append(token[0])
-        line += token[0].count("\n")
+def resolved_path(table: KeyPath, keys: tuple[str, ...], rows: dict[KeyPath, int], array: bool) -> KeyPath:
+    """The path of a header or key in a table, with row numbers; a header of an array begins a row.
+
+    `rows` has the number of the last row of each array of tables.
+    """
+    path = table
+    for depth, key in enumerate(keys):
+        path = (*path, key)
+        if array and depth == len(keys) - 1:
+            rows[path] = rows.get(path, -1) + 1
+        if path in rows:
+            path = (*path, rows[path])
+    return path
 
 
 # Writing.
@@ -202,7 +214,7 @@ def toml_value(value: object) -> str:
     return repr(value)
 
 
-# The problems of a file, each with its line, table and key.
+# The problems of a file, with their lines, tables and keys.
 
 MOST_PROBLEMS: Final = 100
 
@@ -217,14 +229,14 @@ class SceneProblems:
         self.data = data
         self.document = document
         self.lines: dict[KeyPath, int] | None = None
-        self.found: list[tuple[int, str]] = []
+        self.messages: list[tuple[int, str]] = []
         self.count = 0
         self.all_missing = True
 
     def note(self, path: KeyPath, text: str, names: tuple[str, Iterable[str]] | None = None) -> None:
         """Add a problem of the value at a path.
 
-        With `names`, a wrong name and the valid ones, the message suggests the closest valid name.
+        `names` are a wrong name and the valid names: the message suggests the closest valid name.
         """
         self.note_all([Problem(path, text + (nearest(*names) if names else ""))])
 
@@ -246,15 +258,15 @@ class SceneProblems:
             sentence = sentence[:LONGEST_SENTENCE] + "..."
         line = self._line(problem.path)
         at = f", line {line}" if line else ""
-        self.found.append((line or 0, f"{self.place}{at}, {where}{sentence}"))
+        self.messages.append((line or 0, f"{self.place}{at}, {where}{sentence}"))
 
     @property
     def full(self) -> bool:
         """Whether the report has reached its largest number of problems."""
-        return len(self.found) >= MOST_PROBLEMS
+        return len(self.messages) >= MOST_PROBLEMS
 
     def note_file(self, path: KeyPath, error: InputError) -> None:
-        """Add the problems of a mesh file, which state their own places; `path` is the key that names it."""
+        """Add the problems of a mesh file; their messages name the file. `path` is the key that names it."""
         if isinstance(error, MissingInputError):
             for sentence in error.problems:
                 self._note(Problem(path, sentence, names_key=True))
@@ -262,13 +274,15 @@ class SceneProblems:
         self.all_missing = False
         self.count += len(error.problems)
         line = self._line(path) or 0
-        self.found.extend((line, problem) for problem in error.problems[: MOST_PROBLEMS - len(self.found)])
+        self.messages.extend(
+            (line, problem) for problem in error.problems[: MOST_PROBLEMS - len(self.messages)]
+        )
 
     def raise_any(self) -> None:
-        """Raise InputError with all problems, if any; MissingInputError if they are missing files only."""
-        if not self.found:
+        """Raise InputError with all problems, if any; MissingInputError if only files are missing."""
+        if not self.messages:
             return
-        sentences = [sentence for _, sentence in sorted(self.found, key=lambda found: found[0])]
+        sentences = [sentence for _, sentence in sorted(self.messages, key=lambda message: message[0])]
         if self.full:
             sentences.append(f"{self.place}: there may be more problems; correct these first")
         raise MissingInputError(sentences) if self.all_missing else InputError(sentences)
@@ -281,7 +295,7 @@ class SceneProblems:
         )
 
     def _table_of(self, path: KeyPath) -> tuple[str, int]:
-        """The table that a path is in, as in "lights[1] 'key': ", and how many parts of the path name it.
+        """The label of a path's table, as in "lights[1] 'key': ", and how many parts of the path it names.
 
         Rows are counted from 1.
         """

@@ -3,8 +3,8 @@
 - The schema of a file may call only functions that compute (`trusted_schema`). Nothing can be attached or
   loaded, no statement can set a pragma (see `authorizer`), sizes are limited, and a statement that takes too
   long is ended. Python 3.11 cannot set SQLite's defensive mode; later versions do.
-- A `-journal` beside a store may name any file as its super-journal, which SQLite deletes after it rolled
-  the journal back. So a store is always opened read-only first, and no journal is ever rolled back.
+- A `-journal` beside a store may name any file as its super-journal. SQLite deletes that file after it
+  rolled the journal back. So a store is always opened read-only first, and no journal is ever rolled back.
 """
 
 from __future__ import annotations
@@ -76,8 +76,8 @@ def in_memory() -> sqlite3.Connection:
 def connected(path: Path) -> sqlite3.Connection:
     """A read-only connection to the store at a path.
 
-    Changes of another program that are still in the store's `-wal` are read with it. Nothing is rolled back
-    and no file appears beside the store. Raises InputError, MissingInputError.
+    It also reads changes of another program that are still in the store's `-wal`. It rolls no journal back,
+    and creates no file. Raises InputError, MissingInputError.
     """
     _refuse_unsafe(path)
     mode = _reading_mode(path)
@@ -131,7 +131,7 @@ def _begun(path: Path, checks_references: bool) -> sqlite3.Connection | None:
 
 @contextmanager
 def transaction(connection: sqlite3.Connection, name: str) -> Iterator[None]:
-    """A transaction, begun unless the connection is in it, that is rolled back whole if anything in it fails.
+    """A transaction, which begins here unless the connection has begun it. After any error it is rolled back.
 
     Raises WriteError if another program is writing to the store, if writing fails, or if a table of another
     program then refers to a missing row.
@@ -215,9 +215,9 @@ UNSAFE_FUNCTIONS: Final = frozenset(
 )  # fmt: skip
 """The functions that do more than compute with their arguments.
 
-The first functions run other code or open files. Most builds lack them, but Debian's has `fts3_tokenizer`,
-which gives and takes addresses of memory. The others read the inner tables of full-text and R-tree indexes,
-which a file may have damaged.
+The functions up to `edit` run other code or open files. Most builds lack them, but Debian's has
+`fts3_tokenizer`, which gives and takes addresses of memory. The functions from `match` on read the inner
+tables of full-text and R-tree indexes, which may be damaged.
 """
 
 READS: Final = (
@@ -233,9 +233,9 @@ Authorizer = Callable[[int, str | None, str | None, str | None, str | None], int
 
 
 def authorizer(may_change: bool) -> Authorizer:
-    """The permissions of a statement: to read, to compute and, if it `may_change`, to change rows itself.
+    """The permissions of a statement: it may read, compute and, with `may_change`, change rows itself.
 
-    What a trigger of the file changes is refused.
+    A change by a trigger of the file is refused.
     """
 
     def permission(
@@ -256,7 +256,7 @@ def authorizer(may_change: bool) -> Authorizer:
 
 
 class Clock:
-    """Ends statements of a connection that take longer than some seconds; `ended` tells that it did."""
+    """Ends statements of a connection that take longer than some seconds; `ended` is true afterwards."""
 
     def __init__(
         self, connection: sqlite3.Connection, seconds: float = READING_SECONDS, steps: int = STEPS
@@ -291,9 +291,9 @@ JOURNAL_LEFT: Final = (
 
 
 def _refuse_unsafe(path: Path) -> None:
-    """Raise InputError if a store is no regular file, too large, or beside files that are not to be opened.
+    """Raise InputError if a store is no regular file, is too large, or has unsafe files beside it.
 
-    It opens no file that SQLite locks: to close one would end the locks of this process on it.
+    It opens no file that SQLite locks, because closing the file would end the locks of this process on it.
     """
     refuse_old_sqlite()
     status = status_of(path)
@@ -304,7 +304,7 @@ def _refuse_unsafe(path: Path) -> None:
         )
     _, wal, shm = (_size_beside(path, ending) for ending in ("-journal", "-wal", "-shm"))
     if os.path.islink(path):
-        # SQLite looks beside the file that the link leads to only; a copy of the link's folder changes that.
+        # SQLite ignores a journal beside the link, but would find it if the folder were copied without links.
         refuse_journal(path)
     if wal and shm is None:
         raise InputError(
@@ -316,7 +316,7 @@ def _refuse_unsafe(path: Path) -> None:
 def store_head(path: Path) -> bytes:
     """The first bytes of a store. Raises InputError if a file does not begin as a store.
 
-    To close the file ends the locks of SQLite in this process on it: call this before a store is opened.
+    Call it before SQLite opens the store: closing the file ends the locks of this process on it.
     """
     head = read_head(path)
     if head[: len(BEGINS)] != BEGINS:
@@ -389,10 +389,10 @@ CHANGE_COUNTER: Final = slice(24, 28)
 
 
 class FileChanges:
-    """Tells whether another program changed a file since it was `seen` last.
+    """Detects changes of a file by other programs since it was `seen` last.
 
-    A file is compared by its place, time and size, a store also by its count of changes and its `-wal`. A
-    comparison takes a few system calls, so it can be made often. It opens no store with SQLite.
+    A file is compared by its inode, time and size, a store also by its count of changes and its `-wal`. A
+    comparison takes a few system calls, so call it often. It opens no store with SQLite.
     """
 
     def __init__(self, path: Path, is_store: bool) -> None:
@@ -447,8 +447,8 @@ def primary_code(error: BaseException) -> int:
 
 
 @contextmanager
-def refusals(name: str, clock: Clock | None = None) -> Iterator[None]:
-    """Raise errors of SQLite as InputError, with what to do about a damaged or unreadable store."""
+def refusals(name: str = "", clock: Clock | None = None) -> Iterator[None]:
+    """Raise errors of SQLite as InputError, with advice; `name` is the file's name in the message."""
     try:
         yield
     except (sqlite3.Error, sqlite3.Warning, UnicodeError, OverflowError) as error:
@@ -456,7 +456,7 @@ def refusals(name: str, clock: Clock | None = None) -> Iterator[None]:
             reason = f"a store must be read within {clock.seconds:g} seconds, not longer; leave rows out"
         else:
             reason = sentence_of(error)
-        raise InputError(f"{name}: {reason}") from None
+        raise InputError(f"{name}: {reason}" if name else reason) from None
 
 
 @contextmanager
@@ -482,7 +482,7 @@ def sentence_of(error: Exception) -> str:
     if code in PLACE_ERRORS:
         return (
             f"the store cannot be opened or changed where it is ({text}): a change of it was interrupted, or"
-            " it is not to be written; open it once with the program that wrote it, or use another file"
+            " it is write-protected; open it once with the program that wrote it, or use another file"
         )
     if code in DISK_ERRORS:
         return f"the disk must hold the store, and is full or fails ({text}); make room, and try again"

@@ -1,9 +1,9 @@
 """The rows of a store as a scene, and a scene as rows.
 
 Measured, for a million nodes and a million quads: `np.fromiter` over the chained rows reads them in 1.4 s;
-`fetchall` and `np.array` take 3.6 s, chunks of `fetchmany` 3 s. To skip the numbers of rows without gaps, and
-the types of tables that check them, saves 1 s. Two node numbers packed in one integer would save a tenth, and
-a number in place of a part's name a tenth; neither is worth it. `executemany` of zipped columns writes the
+`fetchall` and `np.array` take 3.6 s, chunks of `fetchmany` 3 s. Not reading row numbers without gaps, and not
+checking the types of STRICT tables, saves 1 s. Two node numbers packed in one integer would save a tenth, and
+numbers in place of part names another tenth; neither is worth it. `executemany` of zipped columns writes the
 rows in 2.6 s, fifty rows a statement in 2.2 s, and `ignore_check_constraints` gains nothing.
 """
 
@@ -54,6 +54,9 @@ from autocolor.scene.surfaces import Part, Surface
 MOST_MESH_ROWS: Final = 32_000_000
 """Limit: the nodes, and the polygons, of a store."""
 
+PYTHON_TYPES: Final = {"integer": int, "real": float, "text": str, "null": type(None)}
+"""The types of values in Python, by their names in SQLite."""
+
 MOST_PROBLEMS: Final = 100
 MOST_MESH_PROBLEMS: Final = 20
 """Limit: the problems of one kind in the tables of the mesh."""
@@ -64,9 +67,9 @@ CORNERS: Final = ("node1", "node2", "node3", "node4")
 def report_of(
     connection: sqlite3.Connection, tables: StoredTables, name: str, surfaces: SurfaceSource
 ) -> SceneReport:
-    """The scene of the tables that a store has; what it lacks is created.
+    """The scene of the tables of a store. Missing tables and rows are created.
 
-    A scene without a name in its table gets `name`. Raises InputError with what is wrong.
+    `name` is for a scene whose table gives no name. Raises InputError with every problem.
     """
     rows_of = {
         table: rows_of_table(connection, table, tables[table].columns, NUMBER)
@@ -133,7 +136,7 @@ def _report(
 
 
 def _validated(table: RowTable, rows: list[dict[str, SqlValue]], problems: list[str]) -> tuple[Row, ...]:
-    """The rows of a table; what is wrong with a row is added to the problems, with its place."""
+    """The valid rows of a table. The problems of other rows are added to `problems`, with their places."""
     validated: list[Row] = []
     for number, row in enumerate(rows, 1):
         values = plain_row(table.columns, row)
@@ -156,20 +159,20 @@ def _validated(table: RowTable, rows: list[dict[str, SqlValue]], problems: list[
 
 
 def mesh_of(connection: sqlite3.Connection, tables: StoredTables, part_names: tuple[str, ...] | None) -> Mesh:
-    """The mesh of a store. Without `part_names`, its parts are those that the polygons name.
+    """The mesh of a store. Without `part_names`, the polygons name the parts.
 
-    Raises InputError with what is wrong, row by row.
+    Raises InputError with the problems, row by row.
     """
     nodes, coordinates = _nodes(connection, tables[NODES])
     polygons, corners = _polygons(connection, tables[POLYGONS])
     problems: list[str] = []
-    rows = [_rows_of(numbers, nodes) for numbers in corners]
+    rows = [_rows_of(corner, nodes) for corner in corners]
     for corner, node_rows in enumerate(rows):
         for row in np.flatnonzero(node_rows < 0)[:MOST_MESH_PROBLEMS].tolist():
-            known = f"({nodes[0]} to {nodes[-1]})" if len(nodes) else "(which is empty)"
+            numbers = f"({nodes[0]} to {nodes[-1]})" if len(nodes) else "(which is empty)"
             problems.append(
                 f"{POLYGONS}, row {polygons[row]}: node {corners[corner][row]} is not in the node table"
-                f" {known}; correct it"
+                f" {numbers}; correct it"
             )
     _raise_any(problems)
     part_numbers, names = _parts(connection, tables[POLYGONS], polygons, part_names)
@@ -341,9 +344,9 @@ def _rows_of(wanted: Numbers, numbers: Numbers) -> Indices:
 def _keys(
     connection: sqlite3.Connection, name: str, key: str, table: StoredTable, check: Callable[[], None]
 ) -> Numbers:
-    """The numbers of the rows of a table, rising. Only the ends of a key without gaps are read.
+    """The numbers of the rows of a table, rising. If they have no gaps, only the first and last are read.
 
-    No query of the mesh uses an index of the file, as a damaged index could have other rows than its table.
+    NOT INDEXED: a damaged index could have other rows than its table.
     """
     if not table.is_strict:
         check()
@@ -388,18 +391,12 @@ def _refuse_types(
     problems = []
     for number, *values in connection.execute(query).fetchall():
         for column, value in zip(columns, values, strict=True):
-            if _type_of(value) not in types:
+            if not isinstance(value, tuple(PYTHON_TYPES[name] for name in types)):
                 text = "missing" if value is None else shown(value)
                 problems.append(
                     f"{table}, row {shown(number)}: {column} must be {rule}, not {text}; correct it"
                 )
     _raise_any(problems)
-
-
-def _type_of(value: object) -> str:
-    if value is None:
-        return "null"
-    return {int: "integer", float: "real", str: "text"}.get(type(value), "blob")
 
 
 # Inserting the rows of a scene.
@@ -458,7 +455,7 @@ def _inserting(table: str, columns: tuple[str, ...]) -> str:
 def _insert(
     connection: sqlite3.Connection, table: str, columns: tuple[str, ...], values: Floats, *same: str
 ) -> None:
-    """Insert rows of their number from 1, of values, (columns, rows), NaN as NULL, and of the same text."""
+    """Insert rows of a number from 1, values, (columns, rows), and the same texts; NaN becomes NULL."""
 
     def rows() -> Iterator[tuple[Any, ...]]:
         for first in range(0, values.shape[1], CHUNK):

@@ -45,7 +45,7 @@ LARGEST_FLOAT: Final = 1.7976931348623157e308
 
 TEXT_KINDS: Final = (Text, OneOf, ColorKind, Reference, OneRowOf)
 JSON_BEGINS: Final = ("[", "{", '"')
-"""A text that begins with one of these is JSON."""
+"""A text with such a beginning is JSON."""
 
 SqlValue = None | int | float | str
 """A value of a table; a store has no bytes."""
@@ -53,10 +53,10 @@ SqlValue = None | int | float | str
 
 @dataclass(frozen=True)
 class SqlColumn:
-    """A column of an SQL table: the value at `path` in a row's keys and plain values.
+    """A column of an SQL table, for the value at `path` in a row's keys and plain values.
 
-    A column for a vector holds the `component` of that number. The values of a column that `references` a
-    table are values of that table's column `name`.
+    A vector has three columns; `component` is 0, 1 or 2. If `references` is the name of a table, the values
+    of the column are values of that table's column `name`.
     """
 
     name: str
@@ -79,7 +79,7 @@ class SqlColumn:
 
     @property
     def checks(self) -> Iterator[str]:
-        """The conditions for the values, as SQL; a condition that is NULL holds."""
+        """The SQL conditions that the values must meet; NULL meets every condition."""
         name, kind = quoted(self.name), self.kind
         if isinstance(kind, VectorKind):
             yield f"abs({name}) <= {LARGEST_PLACE!r}"
@@ -144,7 +144,7 @@ def literal(value: SqlValue) -> str:
 
 
 def columns_of(row_class: type[Row]) -> tuple[SqlColumn, ...]:
-    """The columns for the fields of a row class; a mesh and whole tables have none."""
+    """The columns for the fields of a row class, except fields with meshes and lists of rows."""
     return tuple(
         column
         for name, field in fields_of(row_class).items()
@@ -153,7 +153,7 @@ def columns_of(row_class: type[Row]) -> tuple[SqlColumn, ...]:
 
 
 def _columns(name: str, field: Field, prefix: tuple[str, ...], is_given: bool) -> Iterator[SqlColumn]:
-    """The columns of a field; unless the row around it `is_given`, all of them may be NULL."""
+    """The columns of a field. All of them may be NULL if the row around the field may be absent."""
     column, is_optional, default = field
     kind, path = column.kind, (*prefix, name)
     if isinstance(kind, (Instance, RowList)):
@@ -169,7 +169,7 @@ def _columns(name: str, field: Field, prefix: tuple[str, ...], is_given: bool) -
     defaults: dict[str, Any] = {} if start is None else dict(kind.to_plain(name, start))
     keys = kind.keys(name, column)
     for key, inner_column in keys.items():
-        # The other keys of a variant belong to its classes, and each class has only some of them.
+        # The other keys belong to the classes of a variant; a class has only some of the keys.
         is_own = key == name
         inner_kind, text = inner_column.kind, inner_column.help
         nullable = may_be_null or not is_own
@@ -194,7 +194,7 @@ def _columns(name: str, field: Field, prefix: tuple[str, ...], is_given: bool) -
 
 
 def _has_required_column(row_class: type[Row]) -> bool:
-    """Whether a row of the class always has a column that is not NULL, which shows that the row is there."""
+    """Whether a row of the class always has a value that is not NULL, so that an absent row is all NULL."""
     return any(
         not field.is_optional
         and getattr(field.column.kind, "endless", None) is None
@@ -228,9 +228,9 @@ def _within(table: Mapping[str, Any], column: SqlColumn) -> object:
 
 
 def plain_row(columns: Iterable[SqlColumn], values: Mapping[str, SqlValue]) -> dict[str, Any]:
-    """The keys and plain values of a row, not yet validated, from its values by the names of its columns.
+    """The keys and plain values of a row, not yet validated; `values` are by the names of columns.
 
-    NULL is left out, except for infinite limits of a row that is there.
+    NULL is left out, or becomes an infinite limit if its row has other values.
     """
     table: dict[str, Any] = {}
     vectors: dict[tuple[str, ...], list[SqlValue]] = {}
@@ -255,7 +255,7 @@ def plain_row(columns: Iterable[SqlColumn], values: Mapping[str, SqlValue]) -> d
 
 
 def _from_sql(kind: Kind, value: SqlValue) -> object:
-    """A value of a table as a plain value. A value that its kind will refuse is returned as it is."""
+    """A value of a table as a plain value. An invalid value is returned as it is, and refused later."""
     if isinstance(kind, Boolean) and value in (0, 1):
         return bool(value)
     if isinstance(value, str) and value.startswith(JSON_BEGINS):
@@ -295,9 +295,9 @@ SINGLE_ROW: Final = checked(f"{NUMBER} must be 1", f"{quoted(NUMBER)} = 1")
 
 @dataclass(frozen=True)
 class RowTable:
-    """A table for the rows of a class, in their order; it has at most one row if it `is_single`.
+    """A table for the rows of a class, in their order. With `is_single` it has at most one row.
 
-    `columns` are the columns for the class, without NUMBER.
+    `columns` lacks the column NUMBER, which every such table has.
     """
 
     name: str
@@ -307,7 +307,7 @@ class RowTable:
 
     @property
     def definition(self) -> str:
-        """The statement that makes the table."""
+        """The statement that creates the table."""
         key = f"{quoted(NUMBER)} INTEGER PRIMARY KEY"
         if self.is_single:
             key += f" DEFAULT 1 {SINGLE_ROW}"
@@ -409,7 +409,7 @@ DEFINITIONS: Final[Mapping[str, str]] = {
     VALUES[NODE]: _values(NODE, NODES),
     VALUES[POLYGON]: _values(POLYGON, POLYGONS),
 }
-"""The statements that make all tables of a store, by name."""
+"""The statements that create all tables of a store, by name."""
 
 INDEXES: Final[Mapping[str, str]] = {
     f"{table}_{column}": f"CREATE INDEX {quoted(f'{table}_{column}')} ON {quoted(table)} ({quoted(column)})"
@@ -424,16 +424,16 @@ INDEXES: Final[Mapping[str, str]] = {
     }.items()
     for column in columns
 }
-"""The statements that make the indexes, by name: an index for each column that refers to another table, so
-that joins and changes of the other table are fast. They are created after the rows are inserted."""
+"""The statements that create the indexes, by name. A column that refers to another table has an index, which
+makes joins and changes of the other table fast. Indexes are created after the rows are inserted."""
 
 MESH_TABLES: Final = (NODES, POLYGONS, MESH, SCALARS, *VALUES.values())
 
 
-# The tables that a file really has: only plain tables with plain columns are read.
+# The tables of a file. Only plain tables with plain columns are read.
 #
-# To read a view, a virtual table or a computed column would run code of the file. They are refused if they
-# have the name of a table that is read, and ignored otherwise.
+# Reading a view, a virtual table or a computed column would run code of the file. A view or a virtual table
+# with the name of a table of ours is refused; others are ignored.
 
 MOST_TABLES: Final = 10_000
 MOST_ROWS: Final = 100_000

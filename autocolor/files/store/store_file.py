@@ -1,8 +1,8 @@
 """Reading a scene from a store, and writing a scene to a store.
 
-A new store is created in memory and written as one file, whole or not at all. A store that exists is changed
-in place by one transaction, so that programs which have it open notice, and other tables in it stay. If it
-has triggers, views or indexes of others, it is not written over: they could run, or no longer fit.
+A new store is created in memory and written as one file, whole or not at all. An existing store is changed in
+place by one transaction: programs that have it open notice, and tables of other programs stay. A store with
+triggers, views or indexes of other programs is not written over, because these could run, or no longer fit.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from typing import Final
 
 from autocolor.checks import shown
 from autocolor.errors import InputError, OutputError, UsageError, WriteError
+from autocolor.files.paths import STORE_SUFFIXES
 from autocolor.files.scene_report import SceneReport
 from autocolor.files.store.connections import (
     DAMAGE_ERRORS,
@@ -47,14 +48,12 @@ from autocolor.scene.scene import Scene, check_scene
 
 LOG: Final = logger_of(__name__)
 
-STORE_SUFFIXES: Final = (".sqlite", ".db")
-
 
 def read_store(path: str | os.PathLike[str], *, surfaces: SurfaceSource = MATERIALS) -> SceneReport:
-    """The scene of a store, and what was created for it; only nodes and polygons must be there.
+    """The scene of a store, and messages about rows that were created for it.
 
-    Nothing is repaired. Other tables, views and triggers are ignored, and no view or trigger is run. Raises
-    InputError with what is wrong, MissingInputError if there is no such file.
+    A store needs only nodes and polygons. Nothing is repaired. Tables of other programs are ignored, and no
+    view or trigger is run. Raises InputError with every problem, MissingInputError if there is no such file.
     """
     path = Path(path)
     with closing(connected(path)) as connection, timed(LOG, f"read {path.name}"):
@@ -64,18 +63,14 @@ def read_store(path: str | os.PathLike[str], *, surfaces: SurfaceSource = MATERI
 def report_in(
     connection: sqlite3.Connection, file: str, name: str, surfaces: SurfaceSource = MATERIALS
 ) -> SceneReport:
-    """The scene in the tables of a connection; messages call it `file`. Raises InputError."""
+    """The scene in the tables of a connection. Raises InputError; messages begin with `file`."""
     connection.set_authorizer(authorizer(may_change=False))
     clock = Clock(connection)
     try:
-        with refusals(file, clock):
-            tables = stored_tables(connection)
-            return report_of(connection, tables, name or "scene", surfaces)
+        with refusals(clock=clock):
+            return report_of(connection, stored_tables(connection), name or "scene", surfaces)
     except InputError as error:
-        prefix = f"{file}: "
-        raise InputError(
-            problem if problem.startswith(prefix) else f"{prefix}{problem}" for problem in error.problems
-        ) from None
+        raise InputError(f"{file}: {problem}" for problem in error.problems) from None
     finally:
         connection.set_authorizer(None)
         connection.set_progress_handler(None, 0)
@@ -85,7 +80,7 @@ def report_in(
 
 
 def store_of(scene: Scene) -> sqlite3.Connection:
-    """A store in memory that holds a scene. Raises InputError for a text that is not UTF-8."""
+    """A store in memory with the tables of a scene. Raises InputError for a text that is not UTF-8."""
     check_scene(scene)
     connection = in_memory()
     connection.execute("PRAGMA journal_mode = OFF")
@@ -99,7 +94,7 @@ def store_of(scene: Scene) -> sqlite3.Connection:
 
 
 def store_bytes(scene: Scene) -> bytes:
-    """The content of a store with a scene; the same for the same scene. Raises InputError."""
+    """The bytes of a store with a scene; equal scenes give equal bytes. Raises InputError."""
     with closing(store_of(scene)) as connection:
         return connection.serialize()
 
@@ -132,7 +127,7 @@ def write_store(path: str | os.PathLike[str], scene: Scene, *, overwrite: bool =
 
 
 def _is_rewritten(path: Path, scene: Scene) -> bool:
-    """Change a store that exists; False if the file is no store that can be changed."""
+    """Change a store that exists; returns False, without a change, if the file is no readable store."""
     if not os.access(path, os.W_OK):
         raise OutputError(f"an output must be a file that can be written, not {path}; change its permissions")
     try:
@@ -180,8 +175,8 @@ def refuse_additions(connection: sqlite3.Connection, kinds: Sequence[str], rule:
 def _fill(connection: sqlite3.Connection, scene: Scene) -> None:
     """Create the tables, insert the rows of a scene, and create the indexes.
 
-    Measured, for a million nodes and a million quads: 2.4 s without indexes, and 3.9 s with them. To insert
-    the rows into tables that have indexes takes 5.3 s.
+    Measured, for a million nodes and a million quads: 2.4 s without indexes, and 3.9 s with them. Inserting
+    the rows into tables that already have indexes takes 5.3 s.
     """
     for definition in DEFINITIONS.values():
         connection.execute(definition)

@@ -1,4 +1,4 @@
-"""The tables of a scene, to select from, to join and to change with SQL, in Python and by `autocolor sql`."""
+"""The tables of a scene, read and changed with SQL, in Python and by `autocolor sql`."""
 
 from __future__ import annotations
 
@@ -35,17 +35,17 @@ from autocolor.scene.scalar import NODE, POLYGON
 from autocolor.scene.scene import Scene
 
 DEPENDENT: Final = {POLYGONS: (VALUES[POLYGON], POLYGON), NODES: (VALUES[NODE], NODE)}
-"""The tables whose rows are removed with rows of other tables, and the column that refers to these."""
+"""For each table: the table of values that are removed with its rows, and the column that refers to it."""
 
 SECONDS: Final = 30.0
-"""Limit: how long a statement may take unless more is allowed."""
+"""Limit: how long a statement may take, unless the user allows more."""
 
 Parameters = Sequence[object] | Mapping[str, object]
 Value = None | int | float | str | bytes
 
 
 class Answer(NamedTuple):
-    """The names of the columns of an answer, which differ, and its rows, fetched as they are asked for."""
+    """The different names of the columns of an answer, and its rows, which are fetched in chunks."""
 
     columns: tuple[str, ...]
     rows: Iterator[tuple[Value, ...]]
@@ -82,9 +82,9 @@ def tables_of(scene: Scene) -> Tables:
 class Tables:
     """The tables of one scene.
 
-    A change is checked as a scene file is, and saved or refused as a whole. Changes of a store are saved to
-    its file at once. Changes of another scene stay in memory: `write_scene` writes `scene()`. A statement may
-    take so many `seconds`.
+    The changed scene is checked as a scene file is; a change is saved or refused as a whole. Changes of a
+    store are saved to its file at once. Changes of another scene stay in memory: `write_scene` writes
+    `scene()`. A statement that takes longer than `seconds` is ended.
     """
 
     def __init__(self, connection: sqlite3.Connection, name: str, store: Path | None = None) -> None:
@@ -95,25 +95,26 @@ class Tables:
 
     @property
     def names(self) -> list[str]:
-        """The names of the tables."""
-        return names_of_tables(self._connection)
+        """The names of all tables and views, also of other programs."""
+        query = "SELECT name FROM sqlite_master WHERE type IN ('table', 'view') AND name NOT LIKE 'sqlite_%'"
+        return [name for (name,) in self._connection.execute(f"{query} ORDER BY rowid LIMIT 1000")]
 
     def columns(self, table: str) -> list[str]:
-        """The names of the columns of a table. Raises UsageError, with the nearest name, if there is none."""
+        """The names of the columns of a table. Raises UsageError for an unknown table."""
         require_name(table, self.names, "table")
         return columns_in(self._connection, table)
 
     def select(self, statement: str, parameters: Parameters = ()) -> list[dict[str, Value]]:
         """The rows that a SELECT gives, as dictionaries by the names of columns.
 
-        `parameters` stand for ? or :name in it. Raises UsageError for a statement that is wrong, takes too
-        long or would change something.
+        `parameters` are the values for ? or :name. Raises UsageError for a statement that is wrong, takes too
+        long or would change rows.
         """
         columns, rows = self.answer(statement, parameters)
         return [dict(zip(columns, row, strict=True)) for row in rows]
 
     def answer(self, statement: str, parameters: Parameters = ()) -> Answer:
-        """Like `select`, with rows that are fetched as they are asked for."""
+        """Like `select`, but rows are fetched in chunks, so that an answer may be larger than memory."""
         return answer_of(self._connection, statement, parameters, self.seconds)
 
     def table(self, name: str) -> list[dict[str, Value]]:
@@ -122,7 +123,7 @@ class Tables:
         return self.select(f"SELECT * FROM {quoted(name)}")
 
     def update(self, table: str, key: str | int, /, **values: object) -> None:
-        """Change columns of the row of a table that has a key: its name, or its number.
+        """Change columns of the row with this key, which is a name or a number.
 
         Raises UsageError for an unknown table, key or column, InputError if the scene would be wrong.
         """
@@ -140,23 +141,23 @@ class Tables:
 
     @property
     def is_in_a_file(self) -> bool:
-        """Whether changes are in the file of a store at once."""
+        """Whether a change is saved to the file of a store at once."""
         return self._store is not None
 
     def would_change(self, statement: str, parameters: Parameters = ()) -> bool:
-        """Whether a statement changes rows; it is not run. Raises UsageError for a wrong one."""
+        """Whether a statement changes rows; it is not run. Raises UsageError for a wrong statement."""
         return bool(changes_of(self._connection, statement, parameters))
 
     def change(self, statement: str, parameters: Parameters = ()) -> int:
         """Run one INSERT, UPDATE or DELETE, check the scene, and save it; returns how many rows it changed.
 
-        A part or a surface that is renamed is renamed where it is referred to. Values of scalars are removed
-        with their node or polygon. Raises UsageError for a wrong statement, InputError with every problem of
-        the changed scene, WriteError if the store has triggers, or cannot be written; nothing is changed
-        then.
+        A new name of a part or a surface replaces the old name everywhere. Removing a node or a polygon
+        removes its scalar values. Raises UsageError for a wrong statement, InputError with every problem of
+        the changed scene, WriteError if the store has triggers, or cannot be written. After any error,
+        nothing is changed.
         """
         tables = changes_of(self._connection, statement, parameters)
-        # Without indexes, to look for references to each removed node takes the square of their number.
+        # Without indexes, checking references to removed nodes takes the square of their number.
         checks_references = not tables.keys() & {*MESH_TABLES}
         if self._store is None:
             self._connection.execute(f"PRAGMA foreign_keys = {'ON' if checks_references else 'OFF'}")
@@ -166,7 +167,7 @@ class Tables:
             count = self._changed(connection, tables, statement, parameters)
             is_outdated = journal_mode(connection) != journal_mode(self._connection)
         if is_outdated:
-            # The store is in WAL mode, and was opened as a file that does not change.
+            # The store is in WAL mode, and was opened as a file that never changes.
             self._connection.close()
             self._connection = connected(self._store)
         return count
@@ -206,7 +207,7 @@ class Tables:
         return report_in(self._connection, self._name, self._scene_name).scene
 
     def definition(self, table: str) -> str:
-        """The statement that makes a table."""
+        """The statement that creates a table."""
         require_name(table, self.names, "table")
         query = "SELECT sql FROM sqlite_master WHERE name = ?"
         (text,) = self._connection.execute(query, (table,)).fetchone()
@@ -236,7 +237,7 @@ ROWS_AT_ONCE: Final = 1000
 """Rows that are fetched at once, unless they are long."""
 
 STATEMENT_STEPS: Final = 1000
-"""Steps of SQLite's machine between two looks at the clock: a function may take long for one step."""
+"""Steps of SQLite's machine between two looks at the clock; one step can be a slow function."""
 
 
 def answer_of(
@@ -268,7 +269,7 @@ def answer_of(
 
 
 def _some_of(cursor: sqlite3.Cursor) -> list[tuple[Value, ...]]:
-    """The next ROWS_AT_ONCE rows; fewer if their texts are LONGEST_TEXT letters together."""
+    """The next ROWS_AT_ONCE rows; fewer if their texts have more than LONGEST_TEXT letters together."""
     rows: list[tuple[Value, ...]] = []
     letters = 0
     while len(rows) < ROWS_AT_ONCE and letters < LONGEST_TEXT:
@@ -296,11 +297,14 @@ def change(
 def changes_of(
     connection: sqlite3.Connection, statement: str, parameters: Parameters = ()
 ) -> Mapping[str, set[int]]:
-    """The tables that a statement would change, and how; it is not run. Raises UsageError for a wrong one."""
+    """The tables that a statement would change, and how. It is not run.
+
+    Raises UsageError for a wrong statement.
+    """
     changes: dict[str, set[int]] = {}
     permission = authorizer(may_change=True)
 
-    def note(
+    def note_change(
         action: int, first: str | None, second: str | None, database: str | None, inner: str | None
     ) -> int:
         if action in CHANGES and first is not None and inner is None:
@@ -312,7 +316,7 @@ def changes_of(
         raise UsageError("a statement must not be empty; write one, as in SELECT * FROM lights")
     is_pragma = statement.lstrip().lower().startswith(("pragma", "explain"))
     with _limited(connection, Clock(connection, SECONDS, STATEMENT_STEPS), may_change=True):
-        connection.set_authorizer(note)
+        connection.set_authorizer(note_change)
         connection.execute(statement if is_pragma else f"EXPLAIN {statement}", parameters).fetchall()
     return changes
 
@@ -366,12 +370,6 @@ def _sentence(error: Exception, clock: Clock) -> str:
     return f"a statement must be one that SQLite can run, and this one is not ({text}); correct it"
 
 
-def names_of_tables(connection: sqlite3.Connection) -> list[str]:
-    """The names of all tables and views of a store, also of other programs."""
-    query = "SELECT name FROM sqlite_master WHERE type IN ('table', 'view') AND name NOT LIKE 'sqlite_%'"
-    return [name for (name,) in connection.execute(f"{query} ORDER BY rowid LIMIT 1000")]
-
-
 def columns_in(connection: sqlite3.Connection, table: str) -> list[str]:
     """The names of the columns of a table; empty if there is no such table."""
     try:
@@ -382,6 +380,6 @@ def columns_in(connection: sqlite3.Connection, table: str) -> list[str]:
 
 
 def require_name(name: str, names: Sequence[str], noun: str) -> None:
-    """Raise UsageError, with the nearest name, if a name is not among these."""
+    """Raise UsageError, with the nearest name, unless the names include a name."""
     if name not in names:
         raise UsageError(f"there is no {noun} {shown(name)}{nearest(name, names)}")

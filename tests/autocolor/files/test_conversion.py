@@ -11,7 +11,7 @@ from autocolor.errors import OutputError, UsageError, WriteError
 from autocolor.files.conversion import (
     SCENE,
     WHOLE_SCENE,
-    Output,
+    OutputFormat,
     beyond_materials,
     left_out,
     material_names,
@@ -21,7 +21,7 @@ from autocolor.files.conversion import (
     write_folder,
     write_obj,
 )
-from autocolor.files.formats import HELD, MESH_FORMATS, NODE_SCALARS, PARTS, POLYGON_SCALARS
+from autocolor.files.formats import MESH_EXTRAS, MESH_FORMATS, NODE_SCALARS, PARTS, POLYGON_SCALARS
 from autocolor.scene.scalar import NODE, MeshScalar
 from autocolor.scene.surfaces import Surface
 from tests.autocolor.meshes import cube, wall_scene
@@ -43,7 +43,7 @@ def full_mesh() -> Mesh:
     )
 
 
-def written(output: Output, folder: Path, overwrite: bool = False) -> Path:
+def written(output: OutputFormat, folder: Path, overwrite: bool = False) -> Path:
     suffix = output.suffixes[0] if output.suffixes else ""
     path = folder / f"out{suffix}"
     files = output.write(path, scene_of(full_mesh(), surfaces="parts"), overwrite)
@@ -52,7 +52,7 @@ def written(output: Output, folder: Path, overwrite: bool = False) -> Path:
 
 
 @pytest.mark.parametrize("output", outputs(), ids=lambda output: output.name)
-def test_what_is_written_reads_back_with_all_that_the_format_holds(output: Output, tmp_path: Path) -> None:
+def test_a_scene_reads_back_with_all_that_the_format_holds(output: OutputFormat, tmp_path: Path) -> None:
     mesh, again = full_mesh(), read_scene(written(output, tmp_path), strict=True).mesh
     assert np.array_equal(again.coordinates, mesh.coordinates)
     assert np.array_equal(again.node_numbers, mesh.node_numbers)
@@ -66,7 +66,7 @@ def test_what_is_written_reads_back_with_all_that_the_format_holds(output: Outpu
 
 
 @pytest.mark.parametrize("output", outputs(), ids=lambda output: output.name)
-def test_each_format_is_that_of_what_it_writes(output: Output, tmp_path: Path) -> None:
+def test_each_format_is_that_of_what_it_writes(output: OutputFormat, tmp_path: Path) -> None:
     path = written(output, tmp_path)
     assert output_of(path).name == output.name
     assert output_named(output.name.upper()).name == output.name
@@ -101,7 +101,7 @@ def test_a_scene_file_holds_everything_and_a_mesh_no_lights() -> None:
     of_meshes = [each for each in outputs() if each.name in meshes]
     assert of_meshes
     for each in of_meshes:
-        assert each.holds <= {*HELD, "surfaces"}
+        assert each.holds <= {*MESH_EXTRAS, "surfaces"}
 
 
 def write_two(folder: Path, mesh: Mesh) -> None:
@@ -225,7 +225,7 @@ def test_what_a_library_does_not_hold_is_found_by_reading_it() -> None:
     assert beyond_materials(read_back.surfaces) == [each.name for each in scene.surfaces]
 
 
-NOTHING = Output("NOTHING", (), lambda path, scene, overwrite: [], frozenset())
+NOTHING = OutputFormat("NOTHING", (), lambda path, scene, overwrite: [], frozenset())
 MESH = cube().with_scalars(
     MeshScalar("stress", np.zeros(8)),
     MeshScalar("u", np.zeros(8)),

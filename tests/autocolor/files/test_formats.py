@@ -127,13 +127,13 @@ def read_nothing(*_: object) -> MeshReport:
 
 
 PAIR = ("nodes", "polygons")
-LOOSE = MeshFormat("LOOSE", (), read_nothing, PAIR, ("nodes.csv", "polygons.csv"))
+LOOSE = MeshFormat("LOOSE", (), read_nothing, PAIR, in_folder=("nodes.csv", "polygons.csv"))
 BINARY = MeshFormat(
     "BINARY",
     (".bin",),
     read_nothing,
     PAIR,
-    ("nodes.bin", "polygons.bin", "more.bin"),
+    in_folder=("nodes.bin", "polygons.bin", "more.bin"),
     begins=lambda head: head == b"BIN",
 )
 FOLDER = MeshFormat("FOLDER", (), read_nothing, in_folder=("index",))

@@ -96,6 +96,13 @@ def test_what_a_text_says_after_an_edit_is_what_a_document_says(data: st.DataObj
         assert pruned(tomllib.loads(edited.text)) == pruned(expected)
 
 
+def test_a_new_key_is_not_swallowed_by_a_comment_at_the_end_of_the_file() -> None:
+    edited = TomlText("a = 0\n# a note", TABLES)
+    edited.remove(("a",))
+    edited.set(("b",), 1)
+    assert edited.text == "# a note\nb = 1\n\n"
+
+
 def after_setting(text: str, path: KeyPath, value: object) -> str:
     edited = TomlText(text, TABLES)
     edited.set(path, value)
