@@ -39,7 +39,7 @@ class BlendingScreen(OverPicture):
     has_menu = False
 
     def items(self) -> Sequence[Item]:
-        # Its bar stands where the legend would.
+        # The bar takes the legend's place.
         return ()
 
     def rows(self) -> Sequence[Widget]:
@@ -50,7 +50,7 @@ class BlendingScreen(OverPicture):
         return [
             surface_row(self.session, "The surface whose colors blend; a click in the picture chooses, too."),
             Gap("blend gap"),
-            # The names of the columns, such that they fit beside their numbers.
+            # Shorten labels so that they fit beside their numbers.
             *(replace(row, label=row.label.replace("percentage", "percent")) for row in rows),
         ]
 

@@ -56,7 +56,7 @@ def _characters(cells: int) -> int:
 
 
 class EntriesScreen(Screen):
-    """The lookup table as it is now; later changes of the entries are seen at once."""
+    """The present lookup table; changes of the entries show at once."""
 
     name = "entries"
     title = "entries"

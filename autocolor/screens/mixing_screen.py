@@ -1,8 +1,8 @@
 """The color mixing screen: the two colors of a surface, and the blend bar between them.
 
 Paper: Figure 13. The light source color is above, the object color below, each with all its intensities at
-the left of its bars; in the horizontal bar between them, intensity rises to the right. What is mixed is seen
-at once: only entries change, and the words of the small picture stay. "This array is simply retransmitted to
+the left of its bars; in the horizontal bar between them, intensity rises to the right. Mixing shows its
+result at once: only entries change, and the words of the small picture stay. "This array is simply retransmitted to
 the display after color mixing is completed."
 """
 
@@ -119,7 +119,7 @@ class MixingScreen(Screen):
     def leave(self) -> None:
         self.choices.end()
 
-    # What is seen.
+    # Widgets and items.
 
     def rows(self) -> Sequence[Widget]:
         surface = self.session.chosen_surface
@@ -132,7 +132,7 @@ class MixingScreen(Screen):
             Gap("colors gap"),
             self.light.row(surface.paint),
             self.object.row(surface.paint),
-            # The names of the columns, such that they fit beside their numbers.
+            # Shorten labels so that they fit beside their numbers.
             *(replace(row, label=row.label.replace("percentage", "percent")) for row in rows),
         ]
 
@@ -215,7 +215,7 @@ class MixingScreen(Screen):
         levels = self._levels.levels
         return f"{paint.blend:.2f}, from level {blend_level(paint.blend, levels)} of {levels - 1}"
 
-    # What is done.
+    # Actions.
 
     def pick(self, gesture: Gesture) -> None:
         for section in (self.light, self.object):
@@ -259,7 +259,7 @@ class Raised(NamedTuple):
 
 
 class ColorSection:
-    """One color of a paint, by its title, and where it stands from a line on.
+    """The ramp and the bars of one color of a paint. `top` is the first line, `title` names the color.
 
     `give` gives the chosen surface another color, `choose` makes this the section that swatches are for.
     """
@@ -337,7 +337,7 @@ class ColorSection:
     def _put_white(self, value: float) -> None:
         """Raise or lower the color, again from the color with which the bar was first moved.
 
-        Assumed: so the bar comes back to a color whose components were at their ends meanwhile.
+        Assumed: so the bar brings back a color even if some components have reached 0 or 255 on the way.
         """
         surface, color = self.session.surface_name, self._present
         if (surface, color) != (self._raised.surface, self._raised.to):
@@ -354,7 +354,7 @@ class ColorSection:
 
 @dataclass(frozen=True)
 class SectionHeading(Button):
-    """The heading of a section. A row of the menu may have the same label, so its key differs."""
+    """The heading of a section. Its key differs from the key of a menu row with the same label."""
 
     @property
     def key(self) -> str:
@@ -437,7 +437,7 @@ class PaintChoices:
         self._recent = recent_colors()
 
     def end(self) -> None:
-        """Mixing ends: the colors that surfaces were given are recent ones."""
+        """Mixing ends: note the new colors of the surfaces as recent colors."""
         for surface in self.session.scene.surfaces:
             before, now = self._before.get(surface.name, surface.paint), surface.paint
             if before.light_color != now.light_color:
@@ -498,8 +498,8 @@ GROUT: Final = 1
 class SwatchField(Widget):
     """Cells, each filled with a word of its own, row by row from the upper left corner of the area.
 
-    `take` is called with the number of the cell that is picked, and of each cell that a drag comes to. The
-    cells may be fewer than fit.
+    `take` is called with the number of a cell that is picked, or that a drag reaches. There may be fewer
+    cells than fit.
     """
 
     words: Words = field(default_factory=lambda: np.empty(0, np.uint16))
@@ -546,10 +546,9 @@ def _cells(data: bytes, area: Area, across: int, width: int, height: int) -> tup
     return (image(cells, area.left, area.top),)
 
 
-# The words that the screen borrows for the ramps of the two colors and for swatches. A surface may own nearly
-# all words, so there are none for these colors between the surfaces; see `borrowed_words`. The chosen surface
-# stays visible: where it has to lend words, too, they are spread so that each lent level is shown by its
-# neighbor.
+# The words that the screen borrows for the ramps of the two colors and for swatches. The surfaces may own
+# nearly all words, so the screen borrows words of surfaces; see `borrowed_words`. If the chosen surface must
+# lend words, too, they are spread over its levels, and the level beside each lent level is shown instead.
 
 RAMP_STEPS: Final = 64
 """The intensities of a ramp, from black to the color itself."""

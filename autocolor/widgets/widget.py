@@ -1,4 +1,4 @@
-"""Widgets: values that stand for what a user can point at on a screen, in a menu or beside it.
+"""Widgets: the things that a user can point at on a screen, in a menu or beside it, as values.
 
 A widget knows its area, how it looks, and what a pick or a drag on it does. A widget holds no state of its
 own: screens make their widgets from the scene, once for an event.
@@ -95,7 +95,7 @@ class Widget:
         raise NotImplementedError
 
     def pick(self, place: Place) -> object:
-        """Do what a click or ENTER asks for."""
+        """Handle a click or ENTER."""
 
     def drag(self, start: Place, last: Place, place: Place) -> object:
         """Follow the pointer from `last` to `place`, in a drag that began at `start`."""
@@ -315,7 +315,7 @@ VOWELS: Final = "aeiou"
 
 
 def short_label(label: str, most: int) -> str:
-    """A label with its longest words shortened, as far as needed for `most` characters, if that is possible.
+    """A label whose longest words are shortened until it has at most `most` characters, if possible.
 
     A shortened word ends in a consonant and a period.
 
@@ -339,7 +339,7 @@ def short_label(label: str, most: int) -> str:
 
 
 def short_name(name: str, most: int) -> str:
-    """A name of at most so many characters; of a longer one the middle is left out, as ends differ.
+    """A name of at most `most` characters. Longer names lose their middle, because their ends differ.
 
     >>> short_name("fender of the left door 12.obj", 16)
     'fender .. 12.obj'

@@ -1,7 +1,7 @@
-"""Screens over the picture: pointing names what is seen and chooses it, dragging turns around the object.
+"""Screens over the picture: pointing names a surface and a part, a click chooses them, a drag orbits.
 
-The word that is read back from the display tells the surface and its level, as it did then; the polygon that
-is seen there tells the part.
+As in 1983, the word that is read back from the display gives the surface and its level; the polygon at the
+pixel gives the part.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from autocolor.widgets.widget import Choice
 
 
 class OverPicture(Screen):
-    """A screen whose base is the picture at full size, or another one that is compared with it."""
+    """A screen whose base is the picture at full size, or the picture of the state to compare with."""
 
     shows_picture = True
     has_room_at_left: ClassVar[bool] = True
@@ -86,7 +86,7 @@ class OverPicture(Screen):
         self.edits.move(wheel_ratio(gesture.steps))
 
     def _pointed(self, element: int, line: int) -> Pointed | None:
-        """What is seen at a place; None on the background, and where something else than the picture is."""
+        """The surface and part at a place; None on the background, and where an item covers the picture."""
         session = self.session
         studio, word = session.studio, session.word_at(element, line)
         name = session.surface_of(word)
@@ -106,7 +106,7 @@ class OverPicture(Screen):
 
 
 class Pointed(NamedTuple):
-    """A surface and a part that are pointed at, and what is read from the word there."""
+    """The surface and the part under the pointer, and the value of the word there, as text."""
 
     surface: str
     part: str
@@ -114,7 +114,7 @@ class Pointed(NamedTuple):
 
     @property
     def message(self) -> str:
-        """The same, as the message line says it."""
+        """The text for the message line."""
         names = " - ".join(dict.fromkeys(name for name in (self.part, self.surface) if name))
         return f"{names}, {self.read}"
 
@@ -128,7 +128,7 @@ def legend_items(legend: Legend | None) -> Sequence[Item]:
 
 
 def surface_row(session: Session, help: str, choose: Callable[[str], object] | None = None) -> Choice:
-    """A row with the surfaces in use; `choose` is the session's own unless another is given."""
+    """A row with the surfaces in use; a choice goes to `choose`, or else to the session."""
     return Choice(
         "surface",
         help,

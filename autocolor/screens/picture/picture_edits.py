@@ -1,4 +1,4 @@
-"""Edits of the picture: what keys and the mouse change of the view, the lights and the paint of a surface."""
+"""Edits of the picture by keys and the mouse: of the view, the lights and the paint of a surface."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from autocolor.scene.scene import Exposure, Scene
 from autocolor.scene.view import View
 from autocolor.screens.session import Session
 
-# The object colors that a key goes through: those that surfaces are given in turn, and a surface's own.
+# The object colors that a key steps through: the default colors of new surfaces, and a surface's own color.
 
 
 def color_after(present: str, own: str, step: int) -> str:
     """The color that is `step` positions further than the present one.
 
-    The colors are OBJECT_COLORS, and before them the surface's own if it is none of these. A color that is
-    not among them is followed by the first one.
+    The colors are OBJECT_COLORS, after the surface's own color if that is not among them. The first color
+    follows a present color that is not among them.
 
     >>> color_after("#ff0000", "#ff0000", 1), color_after("#b3202c", "#ff0000", -1)
     ('#b3202c', '#ff0000')
@@ -46,7 +46,7 @@ SIDES: Final[dict[str, Vector | None]] = {
     "top": (0.0, 0.0, 1.0),
     "three quarters": None,
 }
-"""The directions toward the eye of the named views; that of three quarters is the one of a created view.
+"""The directions toward the eye of the named views. Three quarters is the direction of a created view.
 
 Assumed: as on an engineering drawing, x is to the right and z up in the front view, y to the right and z up
 in the side view, x to the right and y up in the top view.
@@ -87,7 +87,7 @@ def moved(scene: Scene, ratio: float) -> View:
 
 
 def panned(scene: Scene, right: float, down: float, lines: int) -> View:
-    """The view moved sideways, so that what is at the target moves by elements and lines in the picture.
+    """The view moved sideways, so that the target point moves by elements and lines in the picture.
 
     `lines` is the number of lines of the picture.
     """
@@ -101,7 +101,7 @@ def panned(scene: Scene, right: float, down: float, lines: int) -> View:
 
 
 def seen_from(scene: Scene, side: str) -> View:
-    """A view of the object from one of `SIDES`, in which it fills the picture."""
+    """The upright view of the object from a side of `SIDES`, in which it fills the picture."""
     toward_eye = SIDES[side]
     if toward_eye is None:
         toward_eye = default_view(scene.object_coordinates).axes[2] * -1
@@ -110,7 +110,7 @@ def seen_from(scene: Scene, side: str) -> View:
 
 
 def target_of(scene: Scene) -> Floats:
-    """The point to orbit: the view's target, else the point of the line of sight as deep as the object."""
+    """The point to orbit: the view's target, else the point on the line of sight at the object's depth."""
     view = scene.view
     if view.target is not None:
         return np.array(view.target)
@@ -140,7 +140,7 @@ class PictureEdits:
         self.session = session
         self._hold: Hold | None = None
         self._own_colors: dict[str, str] = {}
-        """The object colors that surfaces had before they got others by a key, by the surface's name."""
+        """The object colors of surfaces before a key changed them, by the surface's name."""
 
     def look(self, view: View) -> None:
         """Change the view."""
@@ -159,7 +159,7 @@ class PictureEdits:
         self.look(panned(self.session.scene, right, down, len(self.session.studio.words)))
 
     def see_from(self, number: int) -> None:
-        """Look at the object from one of the sides that have names, counted from 0."""
+        """Look at the object from a side of `SIDES`."""
         side = list(SIDES)[number]
         view = seen_from(self.session.scene, side)
         self.look(view)
@@ -216,7 +216,7 @@ class PictureEdits:
         self.session.tell(f"light {light.name} {'off' if light.on else 'on'}")
 
     def switch_exposure(self) -> None:
-        """Hold the intensity ranges of the picture; if they were held by this, hold what was held before."""
+        """Hold the intensity ranges of the picture; if this method held them, restore the exposure before."""
         present = self.session.scene.exposure
         if self._hold is not None and present == self._hold.held:
             self.session.edit(self.session.scene.replace(exposure=self._hold.before))
