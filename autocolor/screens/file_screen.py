@@ -30,6 +30,7 @@ from autocolor.widgets.widget import (
     Gap,
     Pair,
     Widget,
+    page_choice,
     short_name,
 )
 
@@ -126,16 +127,8 @@ class FileScreen(Screen):
         page = min(self._page, len(pages) - 1)
         rows += [self._row(each) for each in pages[page]] if pages else []
         if len(pages) > 1:
-            names = tuple(f"{number} of {len(pages)}" for number in range(1, len(pages) + 1))
-            rows.append(
-                Choice(
-                    "page",
-                    "A click turns to the next page of files; at the left end, to the page before.",
-                    names=names,
-                    present=names[page],
-                    choose=lambda name: setattr(self, "_page", names.index(name)),
-                )
-            )
+            help = "A click turns to the next page of files; at the left end, to the page before."
+            rows.append(page_choice(help, page, len(pages), partial(setattr, self, "_page")))
         recent = [self._row(each, key="recent ") for each in self._recent]
         return [*_placed(rows, LEFT), *_placed(recent, RIGHT)]
 

@@ -294,9 +294,7 @@ def _rows_of(session: Session, light: Light, half_space: HalfSpace) -> list[Widg
             f"{name} width",
             helps["edge_width"],
             value=half_space.edge_width,
-            low=usual.low,
-            high=usual.high,
-            step=usual.step,
+            **usual._asdict(),
             put=lambda width: put(edge_width=width),
         ),
         Switch(

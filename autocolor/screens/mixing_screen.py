@@ -2,16 +2,16 @@
 
 Paper: Figure 13. The light source color is above, the object color below, each with all its intensities at
 the left of its bars; in the horizontal bar between them, intensity rises to the right. Mixing shows its
-result at once: only entries change, and the words of the small picture stay. "This array is simply retransmitted to
-the display after color mixing is completed."
+result at once: only entries change, and the words of the small picture stay. "This array is simply
+retransmitted to the display after color mixing is completed."
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 from functools import lru_cache, partial
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -27,8 +27,8 @@ from autocolor.scene.kinds import in_digits
 from autocolor.scene.surfaces import Paint, Surface
 from autocolor.scene.swatches import COLUMNS, FINISHES, ROWS, finished, swatches
 from autocolor.screens.input import Gesture
-from autocolor.screens.picture.over_picture import surface_row
-from autocolor.screens.screen import Screen
+from autocolor.screens.picture.over_picture import paint_rows, surface_row
+from autocolor.screens.screen import Cached, Screen
 from autocolor.screens.session import Session
 from autocolor.widgets.bars import ComponentBar, LevelBar, level_strip
 from autocolor.widgets.items import (
@@ -47,7 +47,6 @@ from autocolor.widgets.items import (
     image,
     text,
 )
-from autocolor.widgets.rows import rows_of
 from autocolor.widgets.widget import MARGIN, ROW_LINES, TEXT_DOWN, Button, Entry, Gap, Place, Widget
 
 LEFT: Final = 8
@@ -111,7 +110,7 @@ class MixingScreen(Screen):
         self._chosen = self.object
         """The section of the color that swatches are for."""
         self.choices = PaintChoices(session, self._take)
-        self._small: tuple[Words, Words, Item] | None = None
+        self._small: Cached[Item] = Cached()
 
     def enter(self) -> None:
         self.choices.begin()
@@ -125,15 +124,12 @@ class MixingScreen(Screen):
         surface = self.session.chosen_surface
         if surface is None:
             return []
-        colors = ("object_color", "light_color")
-        rows = rows_of(surface.paint, self._put, self.session.world, leave_out=colors)
         return [
             surface_row(self.session, "The surface whose colors you mix.", self._choose_surface),
             Gap("colors gap"),
             self.light.row(surface.paint),
             self.object.row(surface.paint),
-            # Shorten labels so that they fit beside their numbers.
-            *(replace(row, label=row.label.replace("percentage", "percent")) for row in rows),
+            *paint_rows(self.session, surface.paint),
         ]
 
     def widgets(self) -> Sequence[Widget]:
@@ -206,10 +202,12 @@ class MixingScreen(Screen):
     def _small_picture(self) -> Item:
         """The chosen surface in the picture, at a quarter of its size; the same item until it changes."""
         words, stand_ins = self.session.studio.words, self._palette.shown
-        if self._small is None or self._small[0] is not words or self._small[1] is not stand_ins:
+
+        def draw() -> Item:
             small = stand_ins[words[::SCALE, ::SCALE][: SMALL.height, : SMALL.width]]
-            self._small = words, stand_ins, image(small, SMALL.left, SMALL.top)
-        return self._small[2]
+            return image(small, SMALL.left, SMALL.top)
+
+        return self._small.of(draw, words, stand_ins)
 
     def _blend_text(self, paint: Paint) -> str:
         levels = self._levels.levels
@@ -234,10 +232,7 @@ class MixingScreen(Screen):
     def _paint(self, section: ColorSection, color: Sequence[int] | str) -> None:
         """Give the chosen surface a color."""
         self._chosen = section
-        self._put(section.change(color))
-
-    def _put(self, changes: Mapping[str, Any]) -> None:
-        self.session.edit(self.session.scene.with_paint(self.session.surface_name, **changes))
+        self.session.paint(**section.change(color))
 
     def _put_level(self, level: int) -> None:
         self.session.paint(blend=blend_from(level, self._levels.levels))

@@ -40,12 +40,12 @@ from autocolor.widgets.widget import (
     ROW_LINES,
     TEXT_DOWN,
     Button,
-    Choice,
     Entry,
     Gap,
     Pair,
     Place,
     Widget,
+    page_choice,
     short_name,
 )
 
@@ -206,16 +206,9 @@ class VariantsScreen(Screen):
         ]
         pages = len(self._pages)
         if pages > 1:
-            names = tuple(f"{number} of {pages}" for number in range(1, pages + 1))
-            rows.append(
-                Choice(
-                    "page",
-                    "The next page of variants; at the left end, the page before.",
-                    names=names,
-                    present=names[min(self._page, pages - 1)],
-                    choose=lambda name: setattr(self, "_page", names.index(name)),
-                )
-            )
+            help = "The next page of variants; at the left end, the page before."
+            page = min(self._page, pages - 1)
+            rows.append(page_choice(help, page, pages, partial(setattr, self, "_page")))
         return rows
 
     def _choose(self, name: str) -> None:

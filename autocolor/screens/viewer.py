@@ -27,7 +27,7 @@ from autocolor.screens.light_and_view.light_and_view_screen import LightAndViewS
 from autocolor.screens.lights_screen import LightsScreen
 from autocolor.screens.mapping_screen import MappingScreen
 from autocolor.screens.mixing_screen import MixingScreen
-from autocolor.screens.picture.picture_edits import PictureEdits
+from autocolor.screens.picture.picture_edits import SIDES, PictureEdits
 from autocolor.screens.picture.picture_screen import PictureScreen
 from autocolor.screens.picture.watching import ENDING, MESSAGE, Watching
 from autocolor.screens.reflectance_screen import ReflectanceScreen
@@ -354,10 +354,6 @@ class Viewer:
         """Turn to a screen, or back to the picture if it is shown."""
         self.session.turn_to(PICTURE if self.session.screen == screen else screen)
 
-    def toggle_menu(self) -> None:
-        """Bring the menu and give it the keys, or take it away."""
-        self.board.toggle_menu()
-
     def watch(self) -> None:
         """Blank the picture and let it come in line by line as it is computed; any key shows it at once."""
         self.session.watches = False
@@ -415,10 +411,6 @@ class Viewer:
         if not self.board.screen.shows_scene:
             self.session.turn_to(PICTURE)
 
-    def save(self) -> None:
-        """Save the scene and the picture."""
-        self.session.save()
-
     def reopen(self) -> None:
         """Read the scene's file again, as one step to undo."""
         self._show_scene()
@@ -472,7 +464,7 @@ BINDINGS: Final[tuple[Binding[Viewer], ...]] = (
     Binding(
         (Chord("tab"),),
         "the menu (or the right edge); its keys: arrows, Return",
-        lambda viewer, _: viewer.toggle_menu(),
+        lambda viewer, _: viewer.board.toggle_menu(),
     ),
     Binding(
         (Chord("left"), Chord("right"), Chord("left", shift=True), Chord("right", shift=True)),
@@ -505,7 +497,7 @@ BINDINGS: Final[tuple[Binding[Viewer], ...]] = (
     Binding(
         tuple(Chord(f"f{number}") for number in range(5, 10)),
         "view from the front, side, back, top, three quarters",
-        lambda viewer, number: viewer.edits.see_from(number),
+        lambda viewer, number: viewer.edits.see_from(tuple(SIDES)[number]),
         label="F5 to F9",
     ),
     Binding(
@@ -561,7 +553,11 @@ BINDINGS: Final[tuple[Binding[Viewer], ...]] = (
         lambda viewer, _: viewer.redo(),
         repeats=True,
     ),
-    Binding((Chord("s", control=True),), "save the picture with its scene", lambda viewer, _: viewer.save()),
+    Binding(
+        (Chord("s", control=True),),
+        "save the picture with its scene",
+        lambda viewer, _: viewer.session.save(),
+    ),
     Binding((Chord("r", control=True),), "read the scene's file again", lambda viewer, _: viewer.reopen()),
     Binding(
         (Chord("escape"),),

@@ -271,7 +271,7 @@ def outline(area: Area, word: int) -> Item:
 
 
 def lines(polylines: Iterable[Sequence[tuple[float, float]] | Floats], word: int, area: Area) -> Item:
-    """Polylines, each of (n, 2) elements and lines, clipped at an area; strokes that are not finite are left out."""
+    """Polylines, each of (n, 2) elements and lines, clipped at an area, without infinite strokes."""
     parts = []
     for each in polylines:
         pixels = pixels_inside(joined(each), area)

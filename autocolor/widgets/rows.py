@@ -191,9 +191,7 @@ def _bar(menu: _Menu, label: str, name: str, field: Field, value: float | None) 
         label,
         _help(column),
         value=present,
-        low=usual.low,
-        high=usual.high,
-        step=usual.step,
+        **usual._asdict(),
         unit=column.unit if len(column.unit) < 8 else "",
         put=partial(_put_number, put, name, isinstance(kind, Whole)),
         flip=flip,
@@ -208,9 +206,7 @@ def _vector_rows(menu: _Menu, label: str, name: str, column: Column, value: Vect
             f"{label} {axis}",
             _help(column),
             value=value[number],
-            low=usual.low,
-            high=usual.high,
-            step=usual.step,
+            **usual._asdict(),
             put=partial(_put_component, menu.put, name, value, number),
         )
 
@@ -229,9 +225,7 @@ def _curve_rows(
             f"at {angle:g} degrees",
             help,
             value=share,
-            low=usual.low,
-            high=usual.high,
-            step=usual.step,
+            **usual._asdict(),
             put=partial(_put_share, menu.put, name, curve, number),
         )
 

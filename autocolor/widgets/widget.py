@@ -265,6 +265,12 @@ class Choice(Widget):
         return self.choose(names[(names.index(self.present) + step) % len(names)])
 
 
+def page_choice(help: str, page: int, pages: int, turn: Callable[[int], object]) -> Choice:
+    """A row that turns pages, counted from 0; `turn` is called with the number of another page."""
+    names = [f"{number} of {pages}" for number in range(1, pages + 1)]
+    return Choice("page", help, names=names, present=names[page], choose=lambda name: turn(names.index(name)))
+
+
 @dataclass(frozen=True)
 class Entry(Widget):
     """A text that can be typed over, where there is a keyboard."""

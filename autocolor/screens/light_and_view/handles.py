@@ -52,7 +52,7 @@ class MovablePoint(NamedTuple):
         if self.what == EYE:
             return scene.view.eye
         if self.what == TARGET:
-            return target_in(scene)
+            return target_of(scene)
         light = next((each for each in scene.lights_in_world if each.name == self.light), None)
         if light is None or self.what == LIGHT:
             return None if light is None else light.position
@@ -136,12 +136,6 @@ def point_text(point: Vector) -> str:
     'x 4.02  y -6.1  z 5'
     """
     return "  ".join(f"{axis} {value:.6g}" for axis, value in zip(AXES, point, strict=True))
-
-
-def target_in(scene: Scene) -> Vector:
-    """The target of the view; without a target, the point of the line of sight as deep as the object."""
-    x, y, z = target_of(scene).tolist()
-    return x, y, z
 
 
 def _step(start: Vector, end: Vector) -> Vector:

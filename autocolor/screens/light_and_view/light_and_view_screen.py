@@ -17,9 +17,9 @@ from autocolor.checks import Vector
 from autocolor.errors import UsageError
 from autocolor.scene.lights import Light
 from autocolor.screens.input import Gesture, turn_between, wheel_ratio
-from autocolor.screens.light_and_view.handles import FLAP, handles_in, movable_of, point_text, target_in
+from autocolor.screens.light_and_view.handles import FLAP, handles_in, movable_of, point_text
 from autocolor.screens.light_and_view.marks import SideItems, drawn_items, flap_marks
-from autocolor.screens.light_and_view.object_lines import Cached, ObjectLines, ObjectStrokes, visible_depths
+from autocolor.screens.light_and_view.object_lines import ObjectLines, ObjectStrokes, visible_depths
 from autocolor.screens.light_and_view.orthographic_views import (
     AXES,
     PICTURE_AREA,
@@ -31,8 +31,8 @@ from autocolor.screens.light_and_view.orthographic_views import (
     side_at,
 )
 from autocolor.screens.light_parameters import parameter_rows, put_light
-from autocolor.screens.picture.picture_edits import PictureEdits
-from autocolor.screens.screen import Handle, Screen
+from autocolor.screens.picture.picture_edits import PictureEdits, target_of
+from autocolor.screens.screen import Cached, Handle, Screen
 from autocolor.screens.session import Session
 from autocolor.visibility.visible_points import VisiblePoints
 from autocolor.widgets.items import (
@@ -110,7 +110,7 @@ class LightAndViewScreen(Screen):
 
     def items(self) -> Sequence[Item]:
         scene, views, chosen = self.session.scene, self.views, self.chosen
-        target, moved = target_in(scene), self._moved if self._has_lines else None
+        target, moved = target_of(scene), self._moved if self._has_lines else None
         items = [*(filled(area, SLATE) for area in LINES_BETWEEN), *self._display.items()]
         for side, side_items in self._sides.items():
             strokes = self._lines.of_side(scene, views, side)

@@ -18,13 +18,14 @@ from autocolor.checks import Vector
 from autocolor.scene.lights import Light
 from autocolor.scene.scene import Scene
 from autocolor.scene.view import View
-from autocolor.screens.light_and_view.object_lines import Cached, ObjectStrokes
+from autocolor.screens.light_and_view.object_lines import ObjectStrokes
 from autocolor.screens.light_and_view.orthographic_views import (
     AXES,
     PICTURE_ASPECT,
     OrthographicViews,
     ViewSide,
 )
+from autocolor.screens.screen import Cached
 from autocolor.widgets.items import (
     BLUE,
     CHARACTER,
@@ -36,6 +37,7 @@ from autocolor.widgets.items import (
     YELLOW,
     Area,
     Item,
+    area_of,
     between,
     clipped,
     joined,
@@ -158,8 +160,10 @@ def cone_outline(views: OrthographicViews, side: ViewSide, light: Light, end: Ve
     distance, half = height * sine, radius * cosine
     if abs(distance) <= half:
         turns = np.linspace(0, 2 * math.pi, RIM_SIDES + 1)
-        one, other = _perpendicular(axis)
-        rim = np.cos(turns)[:, None] * one + np.sin(turns)[:, None] * other
+        # Two unit vectors that are perpendicular to the axis and to each other.
+        first = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
+        first /= np.linalg.norm(first)
+        rim = np.cos(turns)[:, None] * first + np.sin(turns)[:, None] * np.cross(axis, first)
         return (views.positions(side, position + height * axis + radius * rim),)
 
     # The tangents touch the ellipse on the polar line of the light.
@@ -174,13 +178,6 @@ def cone_outline(views: OrthographicViews, side: ViewSide, light: Light, end: Ve
         point[[side.right, side.up]] += flat
         lines.append(views.positions(side, np.stack([position, point])))
     return tuple(lines)
-
-
-def _perpendicular(axis: Floats) -> tuple[Floats, Floats]:
-    """Two unit vectors that are perpendicular to a unit vector and to each other."""
-    one = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
-    one /= np.linalg.norm(one)
-    return one, np.cross(axis, one)
 
 
 # The marks of a light in the three views: its cross, the arrow to its aim, its cone and its flaps.
@@ -309,7 +306,7 @@ class Numeral(NamedTuple):
 
 
 def numerals(crosses: Sequence[Cross], area: Area, taken: Sequence[Area]) -> list[Numeral]:
-    """The numerals of the crosses within an area, in their order. `taken` areas should stay free, if possible."""
+    """The numerals of the crosses within an area, in order; `taken` areas stay free if possible."""
     seen = [cross for cross in crosses if area.has(cross.element, cross.line)]
     filled = [*taken, *[cross.area for cross in seen]]
     placed = []
@@ -374,7 +371,8 @@ class SideItems:
             return still_items(views, side, eye, strokes, tables, bool(ours))
 
         def above() -> list[Item]:
-            return [item for _, light in ours for item in chosen_items(views, side, light)] or eye_items(eye)
+            light_items = [item for _, light in ours for item in chosen_items(views, side, light)]
+            return light_items or drawn_items({YELLOW: [eye.direction, eye.eye]})
 
         return [
             self._label,
@@ -389,7 +387,7 @@ class SideItems:
     ) -> list[Item]:
         """The numerals of the lights. The chosen light's makes way for the others, which stay in place."""
         side = self._side
-        taken = [self._label.area, area_around(joined(LIDS + views.position(side, view.eye)))]
+        taken = [self._label.area, area_of(LIDS + views.position(side, view.eye))]
 
         def compute() -> list[Numeral]:
             return numerals([cross_of(views, side, *each) for each in others], side.area, taken)
@@ -426,11 +424,6 @@ def still_items(
         layers[LIGHT_GRAY if light.on else GRAY].append(marks.arrow)
         layers[WHITE if light.on else GRAY].append(marks.cross)
     return drawn_items(layers)
-
-
-def eye_items(eye: EyeMarks) -> list[Item]:
-    """The eye that is chosen, and its direction."""
-    return drawn_items({YELLOW: [eye.direction, eye.eye]})
 
 
 def chosen_items(views: OrthographicViews, side: ViewSide, light: Light) -> list[Item]:
@@ -477,11 +470,5 @@ def drawn_items(layers: Mapping[int, Sequence[Floats]]) -> list[Item]:
         strokes = together(parts)
         if len(strokes):
             stream = instructions.write_segments(rounded(strokes), word).tobytes()
-            items.append(Item(area_around(strokes), stream))
+            items.append(Item(area_of(strokes.reshape(-1, 2)), stream))
     return items
-
-
-def area_around(strokes: Floats) -> Area:
-    """The pixels around some strokes, at least one."""
-    low, high = rounded(strokes.min(axis=0)).tolist(), rounded(strokes.max(axis=0)).tolist()
-    return Area(min(low[0], low[2]), min(low[1], low[3]), max(high[0], high[2]), max(high[1], high[3]))

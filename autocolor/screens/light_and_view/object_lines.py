@@ -6,10 +6,9 @@ than a page should. A stage, such as a floor, is drawn by its features alone.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from operator import is_
-from typing import Final, Generic, NamedTuple, TypeVar
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -23,6 +22,7 @@ from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Part
 from autocolor.scene.view import View
 from autocolor.screens.light_and_view.orthographic_views import SIDES, OrthographicViews, ViewSide
+from autocolor.screens.screen import Cached
 from autocolor.visibility.camera import NEAR, rotated
 from autocolor.visibility.projection import focal_length
 from autocolor.visibility.visible_points import POINT, VisiblePoints
@@ -325,28 +325,6 @@ def _between(edges: MeshEdges, facing: Booleans) -> Indices:
     differs = facing.take(one) ^ facing.take(other)
     differs ^= edges.same_direction
     return np.take(edges.smooth, np.flatnonzero(differs), axis=0)
-
-
-Value = TypeVar("Value")
-
-
-class Cached(Generic[Value]):
-    """The last computed value, for as long as its sources are the same objects.
-
-    Sources are compared by identity: an edited scene shares all unchanged objects with the scene before.
-    """
-
-    def __init__(self) -> None:
-        self._sources: tuple[object, ...] | None = None
-        self._value: Value
-
-    def of(self, compute: Callable[[], Value], *sources: object) -> Value:
-        """The value of some sources, computed if one of them is another object than before."""
-        cached = self._sources
-        if cached is None or len(cached) != len(sources) or not all(map(is_, cached, sources)):
-            self._value = compute()
-            self._sources = sources
-        return self._value
 
 
 class ObjectStrokes(NamedTuple):

@@ -199,7 +199,7 @@ def shown_points(scene: Scene) -> Floats:
     Lights that are switched off count, too. A stage, such as a floor, does not: it would make the object
     small, and is drawn as far as it is within the views.
     """
-    points = [*object_bounds(scene.mesh, scene.parts), np.array(scene.view.eye), target_of(scene)]
+    points = [*object_bounds(scene.mesh, scene.parts), np.array(scene.view.eye), np.array(target_of(scene))]
     for light in scene.lights_in_world:
         points.append(np.array(light.position))
         if light.aim is not None:

@@ -156,7 +156,7 @@ class LightHandles:
 
 
 def rim_handles(light: str, rim: Rim, pixels: Indices) -> list[Handle]:
-    """The handles along the pixels of a rim, (n, 2) line and element: a handle in each cell that it crosses."""
+    """The handles along the pixels of a rim, (n, 2) line and element: a handle in each cell."""
     lines, elements = (pixels // CELL).T
     _, chosen = np.unique(lines * SCREEN.width + elements, return_index=True)
     label = f"end of the {name_of(rim)} of {light}"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 
@@ -55,7 +55,7 @@ in the side view, x to the right and y up in the top view.
 
 def turned(scene: Scene, right: float, up: float) -> View:
     """The view with the eye moved around the target by degrees to the right and up, at the same distance."""
-    target = target_of(scene)
+    target = np.array(target_of(scene))
     away = np.array(scene.view.eye) - target
     distance = float(np.linalg.norm(away)) or 1.0
     azimuth = _azimuth(scene.view, away) + math.radians(right)
@@ -82,7 +82,7 @@ def _azimuth(view: View, away: Floats) -> float:
 
 def moved(scene: Scene, ratio: float) -> View:
     """The view with the distance of the eye from the target multiplied by a ratio."""
-    target = target_of(scene)
+    target = np.array(target_of(scene))
     return scene.view.replace(eye=_vector(target + (np.array(scene.view.eye) - target) * ratio))
 
 
@@ -91,7 +91,7 @@ def panned(scene: Scene, right: float, down: float, lines: int) -> View:
 
     `lines` is the number of lines of the picture.
     """
-    view, target = scene.view, target_of(scene)
+    view, target = scene.view, np.array(target_of(scene))
     eye = np.array(view.eye)
     axes = view.axes
     depth = float((target - eye) @ axes[2])
@@ -105,32 +105,27 @@ def seen_from(scene: Scene, side: str) -> View:
     toward_eye = SIDES[side]
     if toward_eye is None:
         toward_eye = default_view(scene.object_coordinates).axes[2] * -1
-    view = View(_vector(np.array(toward_eye)), target=(0.0, 0.0, 0.0), field_of_view=scene.view.field_of_view)
+    eye, target = _vector(toward_eye), (0.0, 0.0, 0.0)
+    # A picture plane that was rotated is upright again: so the named views are those of a drawing.
+    view = scene.view.replace(eye=eye, direction=None, target=target, angle=0.0)
     return framed(view, scene.object_coordinates)
 
 
-def target_of(scene: Scene) -> Floats:
+def target_of(scene: Scene) -> Vector:
     """The point to orbit: the view's target, else the point on the line of sight at the object's depth."""
     view = scene.view
     if view.target is not None:
-        return np.array(view.target)
+        return view.target
     low, high = object_bounds(scene.mesh, scene.parts)
     eye = np.array(view.eye)
     forward = view.axes[2]
     depth = float(((low + high) / 2 - eye) @ forward)
     least = float(np.linalg.norm(high - low)) / 2 or 1.0
-    return np.asarray(eye + forward * max(depth, least))
+    return _vector(eye + forward * max(depth, least))
 
 
-def _vector(values: Floats) -> Vector:
+def _vector(values: Floats | Vector) -> Vector:
     return (float(values[0]), float(values[1]), float(values[2]))
-
-
-class Hold(NamedTuple):
-    """The exposure before it was held, and the one that holds it."""
-
-    before: Exposure
-    held: Exposure
 
 
 class PictureEdits:
@@ -138,7 +133,8 @@ class PictureEdits:
 
     def __init__(self, session: Session) -> None:
         self.session = session
-        self._hold: Hold | None = None
+        self._exposures: tuple[Exposure, Exposure] | None = None
+        """The exposure before `switch_exposure` held it, and the exposure that holds."""
         self._own_colors: dict[str, str] = {}
         """The object colors of surfaces before a key changed them, by the surface's name."""
 
@@ -158,9 +154,8 @@ class PictureEdits:
         """Move the picture by elements and lines."""
         self.look(panned(self.session.scene, right, down, len(self.session.studio.words)))
 
-    def see_from(self, number: int) -> None:
+    def see_from(self, side: str) -> None:
         """Look at the object from a side of `SIDES`."""
-        side = list(SIDES)[number]
         view = seen_from(self.session.scene, side)
         self.look(view)
         self.session.named_view = view, side
@@ -218,14 +213,14 @@ class PictureEdits:
     def switch_exposure(self) -> None:
         """Hold the intensity ranges of the picture; if this method held them, restore the exposure before."""
         present = self.session.scene.exposure
-        if self._hold is not None and present == self._hold.held:
-            self.session.edit(self.session.scene.replace(exposure=self._hold.before))
+        if self._exposures is not None and present == self._exposures[1]:
+            self.session.edit(self.session.scene.replace(exposure=self._exposures[0]))
             self.session.tell("exposure released")
             return
         self.session.studio.hold_exposure()
         held = self.session.scene.exposure
         if held != present:
-            self._hold = Hold(present, held)
+            self._exposures = present, held
         self.session.tell("exposure held" if held != present else "there is nothing more to hold")
 
     def choose_surface(self, step: int) -> None:

@@ -462,7 +462,7 @@ def test_changes_of_a_scene_that_another_was_opened_after_are_not_lost_by_closin
     assert viewer.message == "box is not saved: undo goes back to it, close again to discard the changes"
     assert viewer.on_close()
     control(viewer, "z")
-    viewer.save()
+    viewer.session.save()
     control(viewer, "y")
     assert viewer.on_close()
 

@@ -10,7 +10,6 @@ from hypothesis import strategies as st
 from autocolor import Mesh, Scene, View, scene_of
 from autocolor.screens.light_and_view import object_lines as module
 from autocolor.screens.light_and_view.object_lines import (
-    Cached,
     MeshEdges,
     ObjectLines,
     depths_toward,
@@ -471,31 +470,3 @@ def test_looking_along_a_cylinder_shows_no_lines_along_it() -> None:
     edges = mesh_edges(Mesh(np.concatenate([rim, rim + np.array([0, 0, 1])]), np.array(quads)))
     assert len(silhouette_toward(edges, (0.0, 0.0, 1.0))) == 0
     assert len(silhouette_toward(edges, (0.6, 0.8, 0.0))) == 2
-
-
-def test_a_value_is_made_once_for_the_same_sources() -> None:
-    kept: Cached[list[int]] = Cached()
-    source = [1]
-    first = kept.of(lambda: [2], source, "a")
-    assert first == [2]
-    assert kept.of(lambda: [3], source, "a") is first
-
-
-def test_a_value_is_made_anew_for_another_source_even_an_equal_one() -> None:
-    kept: Cached[list[int]] = Cached()
-    source = [1]
-    kept.of(lambda: [2], source)
-    assert kept.of(lambda: [3], [1]) == [3]
-    assert kept.of(lambda: [4], [1], source) == [4]
-    assert kept.of(lambda: [5]) == [5]
-
-
-def test_what_fails_is_tried_again() -> None:
-    kept: Cached[float] = Cached()
-    for _ in range(2):
-        try:
-            kept.of(lambda: 1 / 0, "a")
-        except ZeroDivisionError:
-            continue
-        raise AssertionError
-    assert kept.of(lambda: 1.0, "a") == 1.0

@@ -138,7 +138,7 @@ def test_the_eye_goes_around_the_object_and_not_around_its_stage() -> None:
     floor = grid(1, 1, (-50, -50, 0), (100, 0, 0), (0, 100, 0), "floor")
     alone = scene_of(cube(), view=view)
     scene = scene_of(Mesh.joined([cube(), floor]), view=view, parts={"floor": {"stage": True}})
-    assert target_of(scene).tolist() == target_of(alone).tolist() == [0.5, 0.5, 0.5]
+    assert target_of(scene) == target_of(alone) == (0.5, 0.5, 0.5)
     assert target_of(scene.with_part("floor", stage=False))[1] > 1
 
 
