@@ -558,7 +558,7 @@ class Palette(NamedTuple):
     borrowed: Words
     """The words for colors, rising: two ramps of RAMP_STEPS each, then the swatches."""
     runs: tuple[slice, ...]
-    """The parts of `borrowed` whose words follow each other."""
+    """The runs of consecutive words in `borrowed`."""
     shown: Words
     """The word that stands for each word of the picture, (1024,): NIGHT for words of other surfaces."""
 

@@ -438,7 +438,7 @@ class FileOnDisk:
         return self._changes is not None and self._changes.have_come()
 
     def seen(self) -> None:
-        """Take note of the file as it is now, as after it was saved or opened."""
+        """Note the present file as seen, after the session saved or opened it."""
         self._bind()
         if self._changes is not None:
             self._changes.seen()

@@ -44,7 +44,7 @@ class Work(NamedTuple):
 
 
 class Lesson(NamedTuple):
-    """A task: its name, what to do in two lines, and whether it was done between two moments."""
+    """A task: its name, two lines of instructions, and a function that sees whether it was done."""
 
     name: str
     lines: tuple[str, str]

@@ -87,7 +87,7 @@ class Action:
         return True
 
     def do(self, source: object, run: Callable[[], object], continues: bool, moving: bool) -> bool:
-        """Run the action of a key or a gesture. If `run` returns False, nothing was done, and so does this.
+        """Run the action of a key or a gesture; returns False if `run` does, which then did nothing.
 
         With `continues`, edits of the same source are one step to undo.
         """

@@ -50,7 +50,7 @@ BESIDE_BOX: Final = "  "
 class Bar(Widget):
     """A number with a bar over its usual range, `low` to `high`; the number may lie beyond.
 
-    `value` is None while the number is switched off. `flip` switches it; it is None for a number that is
+    `value` is None while the number is switched off. `flip` switches the number; None for a number that is
     always on. In a menu, a thin bar is drawn below the number; a wide bar has its number beside it.
     """
 

@@ -91,7 +91,7 @@ class Widget:
         return placed
 
     def items(self, lit: bool) -> list[Item]:
-        """The items that draw it; it is lit while the pointer is over it."""
+        """The items of the widget. With `lit`, the pointer is over it."""
         raise NotImplementedError
 
     def pick(self, place: Place) -> object:
@@ -178,7 +178,7 @@ class Button(Widget):
 
 @dataclass(frozen=True)
 class Switch(Widget):
-    """A box that is full when something is on. Beside the box, a pick calls `choose`, if it is given."""
+    """A box that is full while `is_on`. Beside the box, a pick calls `choose`, if given."""
 
     is_on: bool = False
     flip: Callable[[], object] = lambda: None

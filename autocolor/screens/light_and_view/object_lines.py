@@ -135,7 +135,7 @@ def _are_visible(points: Floats, depths: VisibleDepths) -> Booleans:
 # The edges of a mesh: features, which every view shows, and smooth edges, which may be a silhouette.
 #
 # They are computed once for a mesh. Nodes at the same place count as one node, so that parts which repeat
-# their nodes still meet. An edge is a pair of nodes, as numbered by one of its polygons.
+# their nodes still meet. An edge is a pair of node numbers of its first polygon.
 
 DRAWN_CREASE: Final = 30.0
 """Assumed: degrees; a larger angle between polygons is drawn as a crease.

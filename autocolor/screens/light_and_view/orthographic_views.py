@@ -54,7 +54,7 @@ FILLED: Final = 0.84
 """Assumed: the fraction of an area that the coordinates fill, with 16 elements or more left on all sides."""
 
 POINT: Final = 1e-9
-"""Assumed: coordinates that differ by less than this fraction of the largest are one point."""
+"""Assumed: points closer than this fraction of the largest coordinate are the same point."""
 
 FINEST: Final = 1e-11
 """Assumed: the least size of a pixel, as a fraction of the largest coordinate; 64 bits hold a hundredth."""

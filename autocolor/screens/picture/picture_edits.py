@@ -106,7 +106,7 @@ def seen_from(scene: Scene, side: str) -> View:
     if toward_eye is None:
         toward_eye = default_view(scene.object_coordinates).axes[2] * -1
     eye, target = _vector(toward_eye), (0.0, 0.0, 0.0)
-    # A picture plane that was rotated is upright again: so the named views are those of a drawing.
+    # The angle is 0, so that the view is upright, as on a drawing.
     view = scene.view.replace(eye=eye, direction=None, target=target, angle=0.0)
     return framed(view, scene.object_coordinates)
 

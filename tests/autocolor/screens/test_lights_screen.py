@@ -242,7 +242,7 @@ def test_a_name_that_is_taken_is_refused(hand: Hand) -> None:
     assert light_of(hand) == KEY
 
 
-def test_a_rig_is_saved_beside_the_one_before(hand: Hand, tmp_path: Path) -> None:
+def test_a_rig_is_saved_beside_the_rig_before(hand: Hand, tmp_path: Path) -> None:
     hand.pick("save the rig")
     assert told(hand) == ("saved boxes-rig.toml", False)
     hand.pick("save the rig")
@@ -282,7 +282,7 @@ def test_a_light_is_linked_to_surfaces_by_pointing(hand: Hand) -> None:
     assert words_are_those_of_the_scene(hand)
 
 
-def test_a_light_is_kept_off_a_part_by_pointing(hand: Hand) -> None:
+def test_pointing_excludes_a_part_from_a_light(hand: Hand) -> None:
     hand.pick("except parts", BOX)
     hand.pick("  low", BOX)
     assert light_of(hand).links == Links(except_parts=("low",))
@@ -345,7 +345,7 @@ def test_turn_lights_the_other_side(hand_2: Hand) -> None:
     assert words_are_those_of_the_scene(hand_2)
 
 
-def test_remove_takes_one_away_and_says_so(hand_2: Hand) -> None:
+def test_remove_takes_a_half_space_away_and_says_so(hand_2: Hand) -> None:
     before = hand_2.viewer.studio.scene
     hand_2.pick("turn", 0.75)
     assert hand_2.viewer.studio.scene.light("key").half_spaces == (TOP,)
@@ -354,14 +354,14 @@ def test_remove_takes_one_away_and_says_so(hand_2: Hand) -> None:
     assert hand_2.viewer.studio.scene is before
 
 
-def test_the_verbs_of_two_half_spaces_are_told_apart(hand_2: Hand) -> None:
+def test_the_buttons_of_two_half_spaces_have_different_keys(hand_2: Hand) -> None:
     hand_2.widget("turn")
     keys = [each.key for each in hand_2.viewer.board.widgets()]
     assert {"turn left", "turn top"} <= set(keys)
     assert len(set(keys)) == len(keys)
 
 
-def test_the_message_line_says_what_a_row_does(hand_2: Hand) -> None:
+def test_the_message_line_explains_a_row(hand_2: Hand) -> None:
     assert hint_of(hand_2, "left carried") == "Whether it moves and turns with the light, as barn doors do."
     assert hint_of(hand_2, "turn") == "Light the other side of left; or remove left."
 
@@ -425,13 +425,13 @@ def test_the_side_of_the_light_is_lit_in_whatever_order_the_points_are_picked(
     assert (np.array(light.position) - plane.point) @ plane.direction > 0
 
 
-def test_a_second_one_gets_another_name(hand: Hand) -> None:
+def test_a_second_half_space_gets_another_name(hand: Hand) -> None:
     pick_points(hand)
     pick_points(hand)
     assert [plane.name for plane in planes_of(hand)] == ["plane", "plane 2"]
 
 
-def test_the_background_is_no_point_and_the_next_one_is_asked_for_again(hand: Hand) -> None:
+def test_the_background_is_no_point_and_the_prompt_is_repeated(hand: Hand) -> None:
     hand.pick("half spaces")
     hand.click(5, 5)
     message = "no point is seen there; pick the first point of the plane on the object; Esc ends"
@@ -497,7 +497,7 @@ def test_points_behind_the_eye_have_no_place() -> None:
     assert places_of(points, view).tolist() == [[SCREEN.width / 2 - 0.5, SCREEN.height / 2 - 0.5]]
 
 
-def test_the_lit_side_is_that_of_the_light_else_that_of_the_eye() -> None:
+def test_the_lit_side_faces_the_light_or_else_the_eye() -> None:
     view = View((0.0, -4.0, 0.0), direction=(0.0, 1.0, 0.0))
     plane = HalfSpace("plane", (0.0, 0.0, 0.0), (0.0, -1.0, 0.0))
     for light, lit in (

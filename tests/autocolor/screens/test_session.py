@@ -53,7 +53,7 @@ def test_a_message_stands_for_some_seconds(session: Session, monkeypatch: pytest
     assert not session.has_news
 
 
-def test_a_message_that_stands_does_so_until_the_next_one(
+def test_a_persistent_message_stays_until_the_next_message(
     session: Session, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     now = 100.0
@@ -85,7 +85,7 @@ def test_a_message_is_one_line_that_can_be_printed(session: Session) -> None:
     assert session.message == "opened a?b?[31m ??.obj"
 
 
-def test_what_is_chosen_is_always_there(session: Session) -> None:
+def test_a_chosen_surface_or_light_is_always_in_the_scene(session: Session) -> None:
     session.choose_light("fill")
     session.choose_surface("high")
     session.choose_surface("nowhere")
@@ -145,7 +145,7 @@ def test_the_world_knows_the_names_in_the_tables_as_they_are_now(session: Sessio
     assert of("lights")[-1] == "another"
 
 
-def test_the_world_is_that_of_the_object(session: Session) -> None:
+def test_the_world_has_the_bounds_of_the_object(session: Session) -> None:
     assert session.world.low == (0, 0, 0)
     assert session.world.high == (1, 1, 1)
     assert session.world is session.world
@@ -174,9 +174,7 @@ def test_a_rig_in_a_scene_file_of_any_other_name_is_put_on_the_scene(
     assert recent_files() == ()
 
 
-def test_a_rig_whose_lights_are_linked_to_what_is_not_there_is_put_on_the_scene_and_says_so(
-    session: Session, tmp_path: Path
-) -> None:
+def test_a_rig_loses_links_to_absent_rows_and_says_so(session: Session, tmp_path: Path) -> None:
     lamp = Light("lamp", (0, -2, 1), links=Links(only_surfaces=("wall",)))
     write_rig(tmp_path / "lamps.toml", wall_scene(lights=[lamp]))
     session.open(tmp_path / "lamps.toml")
@@ -218,19 +216,19 @@ def test_rigs_and_images_get_free_names(session: Session, tmp_path: Path) -> Non
         assert image.size == (640, 480)
 
 
-def test_what_cannot_be_saved_is_refused(session: Session) -> None:
+def test_saving_into_an_unwritable_place_is_refused(session: Session) -> None:
     session.folder = session.folder / "gone"
     for save in (session.save_rig, session.save_image):
         with pytest.raises(OutputError):
             save()
 
 
-def test_a_pointer_is_from_elsewhere_unless_told(session: Session) -> None:
+def test_a_pointer_is_from_elsewhere_by_default(session: Session) -> None:
     assert not session.is_at_hand
     assert session.screen == PICTURE
 
 
-def test_leaving_tells_first_what_it_would_lose(session: Session, tmp_path: Path) -> None:
+def test_leaving_first_names_the_changes_that_it_would_lose(session: Session, tmp_path: Path) -> None:
     def asked() -> str:
         session.leave()
         assert not session.leaves
@@ -394,7 +392,7 @@ def test_where_colors_alone_differ_no_word_does(hand: Hand) -> None:
     assert (image.entries != hand.viewer.studio.entries).any()
 
 
-def test_each_other_state_is_computed_once(hand: Hand, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_image_of_another_state_is_computed_once(hand: Hand, monkeypatch: pytest.MonkeyPatch) -> None:
     computed: list[Scene] = []
     image_of = Studio.image_of
 
@@ -458,7 +456,7 @@ def kept(hand: Hand) -> Hand:
     return hand
 
 
-def test_a_kept_variant_is_compared_until_it_is_not_any_more(kept: Hand) -> None:
+def test_a_variant_is_compared_until_comparing_ends(kept: Hand) -> None:
     hand, now = kept, shown(kept)
     variant = hand.viewer.studio.variants["A"].scene
     go_to_kept(hand)
@@ -531,7 +529,7 @@ def test_a_change_of_another_program_is_shown_as_one_step_to_undo(store: Path) -
     assert viewer.studio.scene is before
 
 
-def test_a_change_of_lights_keeps_what_was_computed_of_the_mesh(store: Path) -> None:
+def test_a_change_of_lights_reuses_the_visible_points_of_the_mesh(store: Path) -> None:
     viewer = shown_2(store)
     mesh = viewer.studio.scene.mesh
     run(store, BRIGHTER)
@@ -589,7 +587,7 @@ def test_ctrl_s_saves_to_the_store_and_that_is_no_change_of_another(store: Path)
     assert viewer.studio.scene.light("key").intensity == 3
 
 
-def test_a_store_that_is_wrong_for_a_while_is_told_and_the_scene_stays(store: Path) -> None:
+def test_an_error_in_the_store_shows_a_message_and_the_scene_stays(store: Path) -> None:
     viewer = shown_2(store)
     before = viewer.studio.scene
     run(store, "UPDATE polygons SET node3 = 40 WHERE polygon = 2")

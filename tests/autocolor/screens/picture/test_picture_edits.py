@@ -181,7 +181,7 @@ def test_a_named_view_has_the_axes_of_a_drawing_and_the_object_fills_it(
     assert np.abs(places).max() == pytest.approx(0.86 * 240)
 
 
-def test_the_view_of_three_quarters_is_the_one_that_is_created() -> None:
+def test_three_quarters_is_the_direction_of_a_created_view() -> None:
     scene = scene_of(cube())
     turned_away = scene.replace(view=turned(scene, 50, 10))
     assert seen_from(turned_away, "three quarters").eye == pytest.approx(scene.view.eye)
