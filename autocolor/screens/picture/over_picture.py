@@ -7,9 +7,9 @@ pixel gives the part.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from typing import ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 from autocolor.arrays import Bytes, Words
 from autocolor.mapping.legend import GROUND, INK, Legend, legend
@@ -133,8 +133,11 @@ def legend_items(legend: Legend | None) -> Sequence[Item]:
 
 def paint_rows(session: Session, paint: Paint) -> list[Widget]:
     """The rows of the chosen surface's paint, without its two colors."""
-    colors = ("object_color", "light_color")
-    rows = rows_of(paint, lambda changes: session.paint(**changes), session.world, colors)
+
+    def put(changes: Mapping[str, Any]) -> None:
+        session.paint(**changes)
+
+    rows = rows_of(paint, put, session.world, leave_out=("object_color", "light_color"))
     # Shorten labels so that they fit beside their numbers.
     return [replace(row, label=row.label.replace("percentage", "percent")) for row in rows]
 

@@ -362,7 +362,7 @@ COLORS = st.tuples(COMPONENTS, COMPONENTS, COMPONENTS)
 
 ALONE: Ranges = (("body", LevelRange(1, 1007)),)
 LARGE: Ranges = (("body", LevelRange(1, 1000)), ("glass", LevelRange(1001, 7)))
-SMALL_2: Ranges = (("glass", LevelRange(1, 600)), ("body", LevelRange(601, 407)))
+TWO_RANGES: Ranges = (("glass", LevelRange(1, 600)), ("body", LevelRange(601, 407)))
 
 
 @given(COLORS)
@@ -371,7 +371,7 @@ def test_step_k_of_a_ramp_is_k_of_63_parts_of_the_color_rounded_half_up(color: C
     assert ramp_of(color).tolist() == expected
 
 
-@pytest.mark.parametrize("ranges", [ALONE, LARGE, SMALL_2])
+@pytest.mark.parametrize("ranges", [ALONE, LARGE, TWO_RANGES])
 @pytest.mark.parametrize("swatches", [0, 12, 200])
 def test_all_words_differ_and_none_is_of_the_background_of_the_screens_or_shown(
     ranges: Ranges, swatches: int
@@ -387,7 +387,7 @@ def test_all_words_differ_and_none_is_of_the_background_of_the_screens_or_shown(
     assert not np.isin(words, palette.shown[own.first : own.last + 1]).any()
 
 
-@pytest.mark.parametrize("ranges", [ALONE, LARGE, SMALL_2])
+@pytest.mark.parametrize("ranges", [ALONE, LARGE, TWO_RANGES])
 def test_the_surface_is_shown_by_its_own_words_or_their_neighbors_and_the_others_by_the_ground(
     ranges: Ranges,
 ) -> None:
@@ -395,11 +395,11 @@ def test_the_surface_is_shown_by_its_own_words_or_their_neighbors_and_the_others
     levels = dict(ranges)["body"]
     own = np.arange(levels.first, levels.last + 1)
     off = np.abs(palette.shown[levels.first : levels.last + 1].astype(int) - own)
-    assert off.max() == (0 if ranges is SMALL_2 else 1)
+    assert off.max() == (0 if ranges is TWO_RANGES else 1)
     assert (np.delete(palette.shown, own) == NIGHT).all()
 
 
-@pytest.mark.parametrize("ranges", [ALONE, LARGE, SMALL_2])
+@pytest.mark.parametrize("ranges", [ALONE, LARGE, TWO_RANGES])
 def test_loads_put_each_color_into_its_word(ranges: Ranges) -> None:
     palette = palette_of(ranges, "body", 12)
     swatches = np.random.default_rng(1).integers(0, 256, (12, 3)).astype(np.uint8)
@@ -413,14 +413,14 @@ def test_loads_put_each_color_into_its_word(ranges: Ranges) -> None:
 
 
 def test_words_that_follow_each_other_are_one_load() -> None:
-    palette = palette_of(SMALL_2, "body", 12)
+    palette = palette_of(TWO_RANGES, "body", 12)
     assert len(palette.loads((0, 0, 0), (0, 0, 0), np.zeros((12, 3), np.uint8))) == 1
 
 
 def test_equal_surfaces_have_the_same_palette() -> None:
-    palette = palette_of(SMALL_2, "body", 12)
+    palette = palette_of(TWO_RANGES, "body", 12)
     assert isinstance(palette, Palette)
-    assert palette_of(tuple(SMALL_2), "body", 12) is palette
+    assert palette_of(tuple(TWO_RANGES), "body", 12) is palette
 
 
 def test_a_swatch_is_a_paint_for_the_chosen_color(hand: PaintingHand) -> None:

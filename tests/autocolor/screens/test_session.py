@@ -498,7 +498,7 @@ def store(tmp_path: Path) -> Path:
     return path
 
 
-def shown_2(path: Path) -> Viewer:
+def viewer_of(path: Path) -> Viewer:
     """A viewer of the scene of a file, as `autocolor view` shows it."""
     place = place_of(Source(str(path)))
     return Viewer(History(read_scene(path), place), Ramtek9300(), folder=path.parent)
@@ -511,7 +511,7 @@ def tick(viewer: Viewer) -> None:
 
 
 def test_a_change_of_another_program_is_shown_as_one_step_to_undo(store: Path) -> None:
-    viewer = shown_2(store)
+    viewer = viewer_of(store)
     before = viewer.studio.scene
     tick(viewer)
     assert viewer.message.startswith("F1")
@@ -530,7 +530,7 @@ def test_a_change_of_another_program_is_shown_as_one_step_to_undo(store: Path) -
 
 
 def test_a_change_of_lights_reuses_the_visible_points_of_the_mesh(store: Path) -> None:
-    viewer = shown_2(store)
+    viewer = viewer_of(store)
     mesh = viewer.studio.scene.mesh
     run(store, BRIGHTER)
     tick(viewer)
@@ -541,7 +541,7 @@ def test_a_change_of_lights_reuses_the_visible_points_of_the_mesh(store: Path) -
 
 
 def test_with_unsaved_edits_the_user_is_asked(store: Path) -> None:
-    viewer = shown_2(store)
+    viewer = viewer_of(store)
     viewer.studio.light("rim", intensity=0.25)
     mine = viewer.studio.scene
     run(store, BRIGHTER)
@@ -558,7 +558,7 @@ def test_with_unsaved_edits_the_user_is_asked(store: Path) -> None:
 
 
 def test_edits_that_are_saved_instead_leave_the_change_of_the_other_program(store: Path) -> None:
-    viewer = shown_2(store)
+    viewer = viewer_of(store)
     viewer.studio.light("rim", intensity=0.25)
     run(store, BRIGHTER)
     tick(viewer)
@@ -569,10 +569,10 @@ def test_edits_that_are_saved_instead_leave_the_change_of_the_other_program(stor
 
 
 def test_ctrl_s_saves_to_the_store_and_that_is_no_change_of_another(store: Path) -> None:
-    viewer = shown_2(store)
+    viewer = viewer_of(store)
     run(store, "CREATE TABLE notes (text)")
     tick(viewer)
-    viewer = shown_2(store)
+    viewer = viewer_of(store)
     viewer.studio.light("rim", intensity=0.25)
     control(viewer, "s")
     assert viewer.message.startswith("saved small.sqlite and small.npz")
@@ -588,7 +588,7 @@ def test_ctrl_s_saves_to_the_store_and_that_is_no_change_of_another(store: Path)
 
 
 def test_an_error_in_the_store_shows_a_message_and_the_scene_stays(store: Path) -> None:
-    viewer = shown_2(store)
+    viewer = viewer_of(store)
     before = viewer.studio.scene
     run(store, "UPDATE polygons SET node3 = 40 WHERE polygon = 2")
     tick(viewer)
@@ -607,7 +607,7 @@ def test_an_error_in_the_store_shows_a_message_and_the_scene_stays(store: Path) 
 def test_a_scene_file_is_looked_at_as_well(tmp_path: Path) -> None:
     folder = tmp_path / "small"
     write_scene(folder, small_scene().replace(mesh=small_scene().mesh.with_scalars()))
-    viewer = shown_2(folder)
+    viewer = viewer_of(folder)
     file = folder / "scene.toml"
     file.write_text(file.read_text() + '\n[[lights]]\nname = "third"\nposition = [1, 2, 3]\n')
     tick(viewer)
@@ -619,7 +619,7 @@ def test_a_scene_file_is_looked_at_as_well(tmp_path: Path) -> None:
 
 
 def test_a_file_that_only_looks_changed_is_no_step(store: Path) -> None:
-    viewer = shown_2(store)
+    viewer = viewer_of(store)
     run(store, "CREATE TABLE notes (text)")
     before, news = viewer.studio.scene, viewer.session.news
     tick(viewer)
@@ -636,7 +636,7 @@ def test_a_scene_in_no_file_has_nothing_to_read_again(tmp_path: Path) -> None:
 
 
 def test_a_look_takes_no_time(store: Path) -> None:
-    viewer = shown_2(store)
+    viewer = viewer_of(store)
     disk = viewer.session.disk
     seconds = []
     for _ in range(20):
