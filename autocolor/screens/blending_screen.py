@@ -8,16 +8,14 @@ intensity".
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
-from typing import Any, Final
+from collections.abc import Sequence
+from typing import Final
 
 from autocolor.mapping.colors import blend_from, blend_level
-from autocolor.screens.picture.over_picture import OverPicture, surface_row
+from autocolor.screens.picture.over_picture import OverPicture, paint_rows, surface_row
 from autocolor.widgets.bars import LANE, LevelBar, PercentBar
 from autocolor.widgets.items import WIDTH, Area, Item
 from autocolor.widgets.menu import MENU
-from autocolor.widgets.rows import rows_of
 from autocolor.widgets.widget import Gap, Widget
 
 TOP: Final = 24
@@ -26,8 +24,6 @@ BAR_ELEMENTS: Final = 24
 PERCENT_ELEMENTS: Final = 36
 BESIDE: Final = 5
 """Elements from the numbers to the menu, or to the right edge, where the pointer brings it."""
-
-COLORS: Final = ("object_color", "light_color")
 
 
 class BlendingScreen(OverPicture):
@@ -39,19 +35,17 @@ class BlendingScreen(OverPicture):
     has_menu = False
 
     def items(self) -> Sequence[Item]:
-        # Its bar stands where the legend would.
+        # The bar takes the legend's place.
         return ()
 
     def rows(self) -> Sequence[Widget]:
         surface = self.session.chosen_surface
         if surface is None:
             return []
-        rows = rows_of(surface.paint, self._put, self.session.world, leave_out=COLORS)
         return [
             surface_row(self.session, "The surface whose colors blend; a click in the picture chooses, too."),
             Gap("blend gap"),
-            # The names of the columns, such that they fit beside their numbers.
-            *(replace(row, label=row.label.replace("percentage", "percent")) for row in rows),
+            *paint_rows(self.session, surface.paint),
         ]
 
     def widgets(self) -> Sequence[Widget]:
@@ -70,7 +64,7 @@ class BlendingScreen(OverPicture):
                 area=Area(between - BAR_ELEMENTS - LANE, TOP, between - 1, BOTTOM),
                 words=self.session.studio.image.words_at_levels(surface.name),
                 level=blend_level(paint.blend, levels),
-                put=lambda level: self._put({"blend": blend_from(level, levels)}),
+                put=lambda level: self.session.paint(blend=blend_from(level, levels)),
                 number=f"{paint.blend:.2f}",
                 upright=True,
             ),
@@ -79,9 +73,6 @@ class BlendingScreen(OverPicture):
                 "The percentage of the light color at the highest level.",
                 area=Area(between, TOP, right - 1, BOTTOM),
                 value=paint.light_percentage,
-                put=lambda value: self._put({"light_percentage": value}),
+                put=lambda value: self.session.paint(light_percentage=value),
             ),
         ]
-
-    def _put(self, changes: Mapping[str, Any]) -> None:
-        self.session.paint(**changes)

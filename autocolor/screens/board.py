@@ -1,8 +1,8 @@
-"""The board: the screen that is shown with its menu and the message line, and what is pointed at on it.
+"""The board: the screen that is shown, its menu, the message line, and the pointer over them.
 
-What can be pointed at is one `Layout`: it is made once for an event, drawn, and asked by the next event what
-is under the pointer. The board hands each gesture to the widget, the handle or the screen at its place. It
-knows screens by their interface alone.
+A `Layout` has everything that can be pointed at: it is made once for an event, drawn, and the next event
+finds the widget under the pointer in it. The board hands each gesture to the widget, the handle or the screen
+at its place. It knows screens by their interface alone.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ REACH: Final = 7
 
 @dataclass(frozen=True)
 class Layout:
-    """What can be pointed at on a screen at one moment. The screen is asked only for what is needed."""
+    """Everything that can be pointed at on a screen at one moment, computed on demand."""
 
     screen: Screen
     rows: Sequence[Widget] = ()
@@ -92,7 +92,7 @@ class Layout:
 
     @cached_property
     def handles(self) -> Sequence[Handle]:
-        """The handles of the screen, also where something covers them."""
+        """The handles of the screen, including covered handles."""
         return self.screen.handles()
 
     @cached_property
@@ -127,7 +127,7 @@ class Layout:
         return None
 
     def lit(self, key: str, area: Area) -> Widget | None:
-        """The row or widget that has a key; of several, the one at an area. A wide bar lights its row."""
+        """The row or widget that has a key, preferably at this area. A wide bar lights its row."""
         widgets = [widget for widget in self.by_key.get(key, ()) if widget is not self.wide]
         return next((widget for widget in widgets if widget.area == area), widgets[0] if widgets else None)
 
@@ -140,7 +140,7 @@ class Layout:
 
 
 def handles_near(handles: Sequence[Handle], element: int, line: int) -> list[Handle]:
-    """The handles within reach of a place, the nearest first; of several at one distance, the last first."""
+    """The handles within reach of a place, the nearest first; at equal distances, the last first."""
     near = []
     for handle in handles:
         distance = max(abs(handle.element - element), abs(handle.line - line))
@@ -150,20 +150,20 @@ def handles_near(handles: Sequence[Handle], element: int, line: int) -> list[Han
 
 
 class Board:
-    """What is on the display, and what is pointed at. `screens` are those that can be shown, by name."""
+    """The page on the display, and the pointer on it. `screens` has every screen by its name."""
 
     def __init__(self, session: Session, screens: Mapping[str, Screen]) -> None:
         self.session = session
         self.screens = screens
         self.typing = TypingLine(session)
         self.over: Callable[[], Sequence[Widget]] = tuple
-        """What stands over every screen, the topmost first: a panel that is there for a while."""
+        """Gives the widgets over every screen, the topmost first, such as the tutorial's panel."""
         self.is_pinned = False
         """Whether the menu was asked for; else it goes when the pointer leaves it."""
         self.has_focus = False
         """Whether keys go to the menu."""
         self.held: Handle | None = None
-        """The handle that was picked, and goes where the next pick is."""
+        """The handle that was picked; the next pick places it."""
         self._shown = session.screen
         self._is_open = False
         self._lit, self._lit_area = "", NOWHERE
@@ -174,7 +174,7 @@ class Board:
         self._has_message = False
         """Whether the message line covers the screen below it."""
         self._grabbed: Widget | Handle | Screen | None = None
-        """What is dragged, from the grab to the drop."""
+        """The thing that is dragged, from the grab to the drop."""
         self._start = self._last = Gesture("grab", -1, -1)
         """The gesture that began the drag, and the last one."""
         self._pointer = Place(-1, -1)
@@ -205,7 +205,7 @@ class Board:
 
     @property
     def layout(self) -> Layout:
-        """What can be pointed at: the layout that is shown, until `forget` or another state of the board."""
+        """The layout that is shown, until `forget` or another state of the board."""
         session, has_menu = self.session, self.has_menu
         state = session.screen, session.moving, has_menu, self._menu_page, self._wide, self.over
         if self._layout is None or self._layout[0] != state:
@@ -249,7 +249,7 @@ class Board:
         self._light(None)
         self.close()
         self.screens[wanted].enter()
-        # Beside this screen no menu stands, which would tell what to do, and the way back.
+        # Without a menu beside it, the screen itself must say what to do, and the way back.
         screen = self.screen
         is_reached_by_menu = screen.is_in_menu and screen.name != PICTURE
         if is_reached_by_menu and not screen.has_menu and not self.session.has_news:
@@ -259,7 +259,7 @@ class Board:
     # Gestures.
 
     def take(self, gesture: Gesture) -> None:
-        """Do what a gesture asks for."""
+        """Handle a gesture."""
         self._pointer = Place(gesture.element, gesture.line)
         getattr(self, f"_{gesture.kind}")(gesture)
 
@@ -269,7 +269,7 @@ class Board:
         self._hover(gesture)
 
     def release(self) -> None:
-        """Let go of what is grabbed, held or typed."""
+        """Let go of a grabbed or picked thing, and end typing."""
         self._let_go()
         self.typing.end()
 
@@ -309,7 +309,7 @@ class Board:
         elif self.is_covered(element, line):
             return
         elif self.held is not None:
-            # A handle whose place is refused is still held.
+            # If the place is refused, the handle stays picked.
             self.screen.place(self.held, element, line)
             self._let_go()
         else:
@@ -393,7 +393,7 @@ class Board:
             self._move_light(1)
 
     def escape(self) -> bool:
-        """Let go of what is held, or close what is open; returns False if there is nothing."""
+        """Let go of a picked handle, or close the wide bar or the menu; returns False if there is none."""
         comes_and_goes = not self.screen.has_menu
         if self.held is not None:
             self._let_go()
@@ -430,11 +430,11 @@ class Board:
             start = next((n for n, each in enumerate(rows) if each is lit), -1 if step > 0 else 0)
             self._light(rows[(start + step) % len(rows)])
 
-    # What is shown.
+    # The page.
 
     @property
     def mark(self) -> tuple[int, int] | None:
-        """The place of the handle that is held, or can be grabbed where the pointer is."""
+        """The place of the picked handle, or of the handle under the pointer."""
         handle = self.held
         if handle is not None:
             key = handle.key
@@ -442,7 +442,7 @@ class Board:
         elif self._grabbed is None and self.layout.widget_at(*self._pointer) is None:
             handle = self.handle_at(*self._pointer)
         place = None if handle is None else Place(handle.element, handle.line)
-        # Cursors invert what is below them: of two at one place nothing would be seen.
+        # Cursors invert the pixels below them: two at one place would be invisible.
         return None if place == self._pointer else place
 
     def page(self) -> Page:
@@ -465,7 +465,7 @@ class Board:
 
     @property
     def message(self) -> tuple[str, int]:
-        """What the message line says, and the word it is written with."""
+        """The text of the message line, and the word of its color."""
         session = self.session
         has_news = session.has_news
         is_warned = has_news and session.news.is_warning
@@ -504,7 +504,7 @@ MOST_CHARACTERS: Final = (WIDTH - 16) // CHARACTER
 
 
 def message_items(line: str, ink: int, ends: bool = False) -> list[Item]:
-    """A message, or an empty line. One that is too long is cut; with `ends`, so that its end is seen."""
+    """A message, or an empty line. A long message is cut at its end, or with `ends` at its beginning."""
     items = [filled(MESSAGE, BLACK)]
     if ends and len(line) > MOST_CHARACTERS:
         line = f"..{line[2 - MOST_CHARACTERS :]}"
@@ -514,7 +514,7 @@ def message_items(line: str, ink: int, ends: bool = False) -> list[Item]:
 
 
 NUMBERS: Final = "0123456789.-+"
-"""What begins a number."""
+"""The characters that begin a number."""
 
 
 class TypingLine:
@@ -534,7 +534,7 @@ class TypingLine:
 
     @property
     def shown(self) -> str:
-        """What the message line says."""
+        """The text for the message line."""
         return f"{self._label}: {self._text}_"
 
     def would_begin(self, widget: Widget, typed: str) -> bool:
@@ -552,17 +552,17 @@ class TypingLine:
         self._is_fresh = not typed
 
     def end(self) -> None:
-        """Type no more, and take nothing."""
+        """End typing without taking the text."""
         self._typed = None
 
     def take(self) -> None:
-        """Take the text if it was changed. One that is refused, with an error, stays to be mended."""
+        """Take the text if it was changed. A refused text raises an error and stays, to be corrected."""
         if self._typed is not None and self._text != self._typed.text:
             self._typed.take(self._text)
         self.end()
 
     def key(self, name: str, typed: str) -> None:
-        """Take a key. Raises the errors of what takes the text."""
+        """Take a key. Raises the errors of the function that takes the text."""
         if name == "escape":
             self.end()
         elif name in ("return", "enter", "tab"):
@@ -573,14 +573,14 @@ class TypingLine:
             self._text, self._is_fresh = (typed if self._is_fresh else self._text + typed), False
 
 
-# The main menu: the rows that every menu has beside those of its screen.
+# The main menu: the rows that stand in every menu before and after the rows of its screen.
 
 
 @dataclass(frozen=True)
 class UndoRow(Steps):
-    """Undo at the left and redo at the right, each dim where there is no step for it.
+    """Undo at the left and redo at the right; a word is dim while there is no step for it.
 
-    It takes picks alone, since each is a step of its own.
+    It takes picks alone, and no drags: every pick is a step.
     """
 
     signs: tuple[str, str] = ("undo", "redo")
@@ -603,7 +603,7 @@ class UndoRow(Steps):
 
 
 def rows_of_menu(session: Session, screen: Screen, screens: Iterable[Screen]) -> list[Widget]:
-    """The rows of the menu of a screen: on the picture the ways to the others, on the others the way back."""
+    """The rows of a screen's menu: on the picture the ways to other screens, elsewhere the way back."""
     if screen.name == PICTURE:
         ways: list[Widget] = [
             Button(each.title, each.help, run=partial(session.turn_to, each.name))

@@ -19,11 +19,12 @@ CELL_HEIGHT: Final = HEIGHT // SIDE
 MARGIN: Final = 3
 
 
-def cell_words(ranges: Mapping[str, LevelRange]) -> Words:
-    """The page as words, (480, 640) uint16: each cell is filled with its own word."""
+@lru_cache(maxsize=1)
+def cell_words(ranges: tuple[LevelRange, ...]) -> Words:
+    """The page, (480, 640) uint16: a cell is filled with its word. Equal ranges give the same array."""
     words = np.arange(WORDS, dtype=np.uint16).reshape(SIDE, SIDE)
     owners = np.zeros(WORDS, np.intp)
-    for number, (first, levels) in enumerate([*ranges.values(), SCREENS, LevelRange(BACKGROUND, 1)], start=1):
+    for number, (first, levels) in enumerate([*ranges, SCREENS, LevelRange(BACKGROUND, 1)], start=1):
         owners[first : first + levels] = number
     owner = owners.reshape(SIDE, SIDE)
     page = words.repeat(CELL_HEIGHT, axis=0).repeat(CELL_WIDTH, axis=1)
@@ -56,7 +57,7 @@ def _characters(cells: int) -> int:
 
 
 class EntriesScreen(Screen):
-    """The lookup table as it is now; later changes of the entries are seen at once."""
+    """The present lookup table; changes of the entries show at once."""
 
     name = "entries"
     title = "entries"
@@ -66,16 +67,10 @@ class EntriesScreen(Screen):
     is_in_menu = False
 
     def base(self) -> Words:
-        return cells_of(tuple(self.session.studio.level_ranges.items()))
+        return cell_words(tuple(self.session.studio.level_ranges.values()))
 
     def items(self) -> Sequence[Item]:
         return entries_items(self.session.studio.level_ranges)
-
-
-@lru_cache(maxsize=1)
-def cells_of(ranges: tuple[tuple[str, LevelRange], ...]) -> Words:
-    """The page as words, the same array for equal ranges."""
-    return cell_words(dict(ranges))
 
 
 def entries_items(ranges: Mapping[str, LevelRange]) -> list[Item]:

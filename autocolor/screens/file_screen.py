@@ -1,7 +1,7 @@
 """The file screen: scenes, meshes, pictures and rigs to open, recent files, and saving.
 
 A pointer opens what is in the session's folder and below, links resolved; on the machine of the window, also
-everything else. Opening is one step to undo, so nothing is lost by it.
+everything else. Opening is one step to undo, so the scene before is not lost.
 """
 
 from __future__ import annotations
@@ -30,6 +30,7 @@ from autocolor.widgets.widget import (
     Gap,
     Pair,
     Widget,
+    page_choice,
     short_name,
 )
 
@@ -49,7 +50,7 @@ RIG: Final = "rig"
 
 
 class FileScreen(Screen):
-    """Files to open, and what to save."""
+    """Files to open, and buttons that save."""
 
     name = "file"
     title = "file"
@@ -87,13 +88,13 @@ class FileScreen(Screen):
         return self.session.is_at_hand or stays_within(path, self._root)
 
     def _shown_path(self, path: Path) -> str:
-        """A path as text; without the folders above the session's where the user is elsewhere."""
+        """A path as text. Users of another machine do not see the folders above the session's."""
         if self.session.is_at_hand:
             return str(path)
         below = path.relative_to(self._root) if path.is_relative_to(self._root) else path.name
         return str(Path(self._root.name or "/", below))
 
-    # What is seen.
+    # Items and widgets.
 
     def items(self) -> Sequence[Item]:
         down, left = LEFT.top + TEXT_DOWN, LEFT.left + MARGIN
@@ -126,16 +127,8 @@ class FileScreen(Screen):
         page = min(self._page, len(pages) - 1)
         rows += [self._row(each) for each in pages[page]] if pages else []
         if len(pages) > 1:
-            names = tuple(f"{number} of {len(pages)}" for number in range(1, len(pages) + 1))
-            rows.append(
-                Choice(
-                    "page",
-                    "A click turns to the next page of files; at the left end, to the page before.",
-                    names=names,
-                    present=names[page],
-                    choose=lambda name: setattr(self, "_page", names.index(name)),
-                )
-            )
+            help = "A click turns to the next page of files; at the left end, to the page before."
+            rows.append(page_choice(help, page, len(pages), partial(setattr, self, "_page")))
         recent = [self._row(each, key="recent ") for each in self._recent]
         return [*_placed(rows, LEFT), *_placed(recent, RIGHT)]
 
@@ -150,7 +143,7 @@ class FileScreen(Screen):
                 self._rigs[path] = is_rig(path)
             kind = RIG if self._rigs[path] else kind
         if not shown:
-            # Every scene has a file of this name: its folder tells which it is.
+            # Every scene file has this name: show its folder, too.
             shown = f"{path.parent.name}/{path.name}" if key and path.name == SCENE_FILE else path.name
         return FileRow(f"{key}{path}", help, run=run, value=kind, shown=shown)
 
@@ -200,7 +193,7 @@ class FileScreen(Screen):
             ),
         ]
 
-    # What that does.
+    # The actions of the rows.
 
     def _go_to(self, folder: Path) -> None:
         self._check(folder)
@@ -212,7 +205,7 @@ class FileScreen(Screen):
         self.session.turn_to(PICTURE)
 
     def _check(self, path: Path) -> None:
-        """Raise UsageError for what the pointer of this session may not open."""
+        """Raise UsageError if the pointer of this session may not open a path."""
         if not self._may_open(path):
             raise UsageError(
                 f"{path.name}: a file to open must be in the folder {self._root.name}, and not a link to"
@@ -226,7 +219,7 @@ class FileScreen(Screen):
 
 
 def _placed(rows: Sequence[Widget], area: Area) -> list[Widget]:
-    """Rows one below the other, as far as they fit."""
+    """The rows with their areas, from the top; rows that do not fit are left out."""
     placed = []
     for number, row in enumerate(rows[:MOST_ROWS]):
         top = area.top + ROW_LINES * number

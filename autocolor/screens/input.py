@@ -1,8 +1,8 @@
-"""Input: the gestures of the pointer, which the mouse and the joystick unit both make, and key bindings.
+"""Input: key bindings, and the gestures of the pointer, which the mouse and the joystick unit both make.
 
-A hover is a movement, a pick a click or ENTER. A drag begins with a grab, and ends with a drop. The unit has
-a place, ENTER and TRACK alone; TRACK is held for a drag. The mouse also has other buttons, a wheel and
-modifiers.
+A hover is a movement; a pick is a click or ENTER. A drag begins with a grab, and ends with a drop. The unit
+has a place, ENTER and TRACK alone; TRACK stays on during a drag. The mouse also has other buttons, a wheel
+and modifiers.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from ramtek_emu import HostPort, instructions
 LEFT: Final = 1
 MIDDLE: Final = 2
 RIGHT: Final = 3
-"""The buttons of the mouse; the right one is TRACK."""
+"""The buttons of the mouse; the right button is TRACK."""
 
 SLOP: Final = 2
 """Assumed: elements or lines that the mouse may move while its button is down for a click."""
@@ -44,7 +44,7 @@ class Gesture(NamedTuple):
 
 
 class Mouse:
-    """The mouse, whose actions become gestures: a click a pick, a movement with a button down a drag."""
+    """The mouse. A click becomes a pick, and a movement with a button down becomes a drag."""
 
     def __init__(self) -> None:
         self._pressed: Gesture | None = None
@@ -178,9 +178,9 @@ def bound_to(
     return next(((binding, number) for binding, number, _ in by_sign or by_name), None)
 
 
-# The joystick unit of the display, as a host uses it: the host reads the cursor and makes gestures of it.
+# The joystick unit of the display, as a host uses it: the host reads the cursor and turns it into gestures.
 #
-# Hardware: the cursor's words have its place, TRACK while that switch is on, and ENTER once for each press;
+# Hardware: the cursor's words have its place, TRACK while the switch is on, and ENTER once for each press;
 # there is no other input. So ENTER is a pick, and a drag lasts as long as TRACK. The cursor is the pointer; a
 # second cursor marks what the pointer can grab.
 
@@ -195,7 +195,7 @@ ELEMENT_BITS: Final = 0x7FF
 LINE_BITS: Final = 0x3FF
 TRACK: Final = 1 << 12
 ENTER: Final = 1 << 13
-"""Hardware: LIN, the bits of an element, and those of the second word."""
+"""Hardware: LIN, the bits of an element, of a line, and of the switches in the second word."""
 
 
 class Unit:

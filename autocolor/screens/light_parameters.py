@@ -22,7 +22,7 @@ AIM: Final = "aim"
 """The kinds of lights: those with an axis have a direction, or an aim."""
 
 WORLD: Final = "world"
-"""The choice of following nothing."""
+"""The choice for a light that follows nothing."""
 
 AXIS_COLUMNS: Final = ("direction", "aim", "concentration", "cone_angle", "inner_angle", "at_infinity")
 """The columns of lights with an axis."""
@@ -33,7 +33,7 @@ EXCLUDING: Final = (
     ("only_parts", "except_parts"),
     ("except_parts", "only_parts"),
 )
-"""Pairs of columns of which a light has one or the other."""
+"""Pairs of columns that exclude each other: a column, and the column that it removes."""
 
 DOWN: Final = (0.0, 0.0, -1.0)
 """The direction of a light that had none."""
@@ -47,9 +47,9 @@ def kind_of(light: Light) -> str:
 
 
 def parameter_rows(session: Session, light: Light, leave_out: Sequence[str] = ()) -> list[Widget]:
-    """The rows of a light's columns but `leave_out`, with its kind before the columns that a kind has."""
+    """The rows of a light's columns without `leave_out`, and its kind before the columns of that kind."""
     rows = rows_of(light, partial(_put_with_reach, session, light), session.world, leave_out)
-    # A light can follow only some lights, and stays where it is when it follows another.
+    # A light can follow only some lights, and keeps its place when it begins to follow.
     rows = [_follows_row(session, light) if row.label == "follows" else row for row in rows]
     # A point source has no axis: rows that need an axis cannot be used, and say so.
     if kind_of(light) == POINT:
@@ -68,10 +68,10 @@ def parameter_rows(session: Session, light: Light, leave_out: Sequence[str] = ()
 
 
 def put_light(session: Session, name: str, changes: Mapping[str, Any]) -> None:
-    """Change fields of a light; with another name it stays chosen.
+    """Change fields of a light. A light that is renamed stays chosen.
 
-    The inner angle is lowered or removed with the cone angle. Names that the light shines on only take the
-    place of names that it leaves out, and vice versa.
+    The inner angle is lowered or removed with the cone angle. A list of the only surfaces or parts to light
+    removes the list of exceptions, and vice versa.
     """
     for chosen, other in EXCLUDING:
         if changes.get(chosen) is not None:
@@ -136,7 +136,7 @@ def _follows_row(session: Session, light: Light) -> Choice:
 
 
 def _put_with_reach(session: Session, light: Light, changes: Mapping[str, Any]) -> None:
-    """Change fields of a light; with a falloff, it gets a reach if it has none: the size of the object."""
+    """Change fields of a light. A light with a falloff but no reach gets the object's size as its reach."""
     if changes.get("falloff", "none") != "none" and light.reach is None:
         changes = {**changes, "reach": session.world.size}
     put_light(session, light.name, changes)

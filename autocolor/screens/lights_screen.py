@@ -124,7 +124,7 @@ class LightsScreen(OverPicture):
         self._append(self.session.scene.with_copied_light(self.session.light_name).lights, "copied")
 
     def _mirror(self) -> None:
-        # The sides of a product are those of its shorter horizontal extent.
+        # The two sides of a product are at the ends of its shorter horizontal extent.
         (x, y, _), (to_x, to_y, _) = self.session.scene.object_bounds
         axis = "x" if to_x - x <= to_y - y else "y"
         lights = self.session.scene.with_mirrored_light(self.session.light_name, axis).lights
@@ -150,7 +150,7 @@ ORDINALS: Final = ("first", "second", "third")
 
 
 class PlanePicking:
-    """The points of a plane that were picked so far; `is_on` while more are to come."""
+    """The picked points of a plane. `is_on` while the user picks."""
 
     def __init__(self, session: Session, area: Area) -> None:
         self.session = session
@@ -165,7 +165,7 @@ class PlanePicking:
 
     @property
     def prompt(self) -> str:
-        """What the message line says: which point is next."""
+        """The message that asks for the next point."""
         return f"pick the {ORDINALS[self.count]} point of the plane on the object; Esc ends"
 
     def begin(self) -> None:
@@ -174,7 +174,7 @@ class PlanePicking:
         self.session.tell(self.prompt, persistent=True)
 
     def end(self) -> bool:
-        """Ask for no more points; returns False if none was asked for."""
+        """End picking; returns False if the user did not pick."""
         was_on, self.is_on, self._points = self.is_on, False, []
         if was_on:
             self.session.tell("")
@@ -183,7 +183,7 @@ class PlanePicking:
     def pick(self, element: int, line: int) -> None:
         """Take the point that is seen at a place; the third one makes the half-space of the chosen light.
 
-        Raises InputError for a third point in one line with the others: it is to be picked again.
+        Raises InputError if the three points are in one line; the third must then be picked again.
         """
         session, seen = self.session, self.session.studio.seen_at(line, element)
         if seen is None:
@@ -239,7 +239,7 @@ def is_lit_side(half_space: HalfSpace, light: Light, view: View) -> bool:
 
 
 def places_of(points: Floats, view: View) -> Floats:
-    """Where the points, (n, 3), are seen at full size, (n, 2) element and line; those behind are left out."""
+    """The elements and lines, (n, 2), of points, (n, 3), in the picture, without points behind the eye."""
     camera = (points - np.array(view.eye)) @ view.axes.T
     camera = camera[camera[:, 2] > 0]
     focal = focal_length(SCREEN.height, view.field_of_view)
@@ -248,12 +248,12 @@ def places_of(points: Floats, view: View) -> Floats:
     return places
 
 
-# The rows of a light's half-spaces: the switch, the edge width, carried, turn and remove of each.
+# The rows of a light's half-spaces: for each half-space its switch, edge width, carried, turn and remove.
 
 
 @dataclass(frozen=True)
 class VerbsOf(Pair):
-    """Two buttons for a thing `of` which there may be others on the screen."""
+    """Two buttons for the thing named `of`; other things on the screen have buttons of the same labels."""
 
     of: str = ""
 
@@ -263,7 +263,7 @@ class VerbsOf(Pair):
 
 
 def half_space_rows(session: Session, light: Light, picking: PlanePicking) -> list[Widget]:
-    """The rows of all half-spaces of a light, after the one that adds another."""
+    """The row that adds a half-space, and the rows of all half-spaces of a light."""
     rows: list[Widget] = [
         Button(
             "half spaces",
@@ -294,9 +294,7 @@ def _rows_of(session: Session, light: Light, half_space: HalfSpace) -> list[Widg
             f"{name} width",
             helps["edge_width"],
             value=half_space.edge_width,
-            low=usual.low,
-            high=usual.high,
-            step=usual.step,
+            **usual._asdict(),
             put=lambda width: put(edge_width=width),
         ),
         Switch(
@@ -317,7 +315,7 @@ def _rows_of(session: Session, light: Light, half_space: HalfSpace) -> list[Widg
 
 
 def _carry(session: Session, light: Light, half_space: HalfSpace) -> None:
-    """Let a light carry a half-space, or no more; its plane stays where it is."""
+    """Attach a half-space to a light, or detach it; its plane stays where it is."""
     there = session.scene.light_in_world(light.name)
     carry = detached if half_space.carried else attached
     _put_row(session, light, carry(half_space, there))

@@ -1,7 +1,7 @@
 """The mapping screen: how intensities become levels, with the curve, whose points can be dragged.
 
 Paper: "The Lighting Model": intensities are mapped by the range of each surface or of the object; nonlinear
-mappings can be tried. Nothing of this renders again.
+mappings can be tried. No mapping renders the picture again.
 """
 
 from __future__ import annotations
@@ -137,7 +137,7 @@ class MappingScreen(OverPicture):
         self._put_points(points)
 
     def drag(self, start: Gesture, last: Gesture, now: Gesture) -> None:
-        # What is dragged on the panel beside its points does not turn the object behind it.
+        # A drag on the panel beside its points does not turn the object behind it.
         if not PANEL.has(start.element, start.line):
             super().drag(start, last, now)
 
@@ -174,7 +174,7 @@ class MappingScreen(OverPicture):
         levels, shares = (ACROSS, np.zeros_like(ACROSS)) if curve is None else curve
         return Curve(session.surface_name, levels, shares, self._points(), self._touched)
 
-    # What the rows do.
+    # The actions of the rows.
 
     def _choose(self, name: str) -> None:
         if name != POINTS:
@@ -231,14 +231,14 @@ def _shares(picture: Picture, number: int, low: float, high: float) -> Singles:
     return shares_of(picture.relative[seen.pixels], low, high)
 
 
-# The panel of the curve: intensity rises to the right, the level upward. Behind the curve stands how often
-# each intensity is seen, and on the curve its points.
+# The panel of the curve: intensity rises to the right, the level upward. Behind the curve are the
+# shares of the intensities, and on the curve its points.
 
 PANEL: Final = Area(8, WORK.bottom - 215, 223, WORK.bottom - 8)
 """The panel, at the lower left of the picture."""
 
 CURVE: Final = Area(PANEL.left + 8, PANEL.top + 16, PANEL.right - 8, PANEL.bottom - 8)
-"""The area of the curve."""
+"""The area of the curve on the panel."""
 
 ACROSS: Final = np.linspace(0, 1, CURVE.width, dtype=np.float32)
 """The fraction of the intensities at each element of the curve."""
@@ -312,7 +312,7 @@ def _share_item(shares: Singles) -> Item:
 def shares_of(intensities: Singles, low: float, high: float) -> Singles:
     """How often the intensities from low to high are seen at ACROSS, in proportion to the most frequent.
 
-    Assumed: the square root, so that rare ones are seen beside a background that is everywhere.
+    Assumed: the square root, so that rare intensities are visible beside a frequent background.
     """
     some = intensities[:: max(1, len(intensities) // MOST_COUNTED)]
     counts, _ = np.histogram(some, bins=len(ACROSS), range=(low, high) if low < high else (low, low + 1))
@@ -332,7 +332,7 @@ DIGITS: Final = 4
 
 
 def moved(points: CurvePoints, number: int, x: float, y: float) -> CurvePoints:
-    """The points with one moved to fractions of intensity and level, or as near as its neighbors allow."""
+    """The points with point `number` moved to fractions of intensity and level, as far as neighbors allow."""
     last = len(points) - 1
     low = points[number - 1][1] if number else 0.0
     high = points[number + 1][1] if number < last else 1.0
@@ -346,7 +346,7 @@ def moved(points: CurvePoints, number: int, x: float, y: float) -> CurvePoints:
 
 
 def added(points: CurvePoints, x: float, y: float) -> tuple[CurvePoints, int]:
-    """The points with one more at fractions of intensity and level, and its number.
+    """The points with a new point at fractions of intensity and level, and its number.
 
     Its level is kept between the levels of its neighbors. If another point is closer than LEAST_APART, no
     point is added, and the number of the other point is returned.
@@ -361,7 +361,7 @@ def added(points: CurvePoints, x: float, y: float) -> tuple[CurvePoints, int]:
 
 
 def removed(points: CurvePoints, number: int) -> CurvePoints:
-    """The points without one of them; the ends stay."""
+    """The points without point `number`; the ends stay."""
     return (*points[:number], *points[number + 1 :]) if 0 < number < len(points) - 1 else points
 
 
@@ -381,7 +381,7 @@ def held_rows(session: Session, put: Callable[[Mapping[str, object]], object]) -
     if isinstance(exposure, str) or not name:
         return []
     low, high = dict(exposure)[name]
-    # The held range may lie beyond: a bar whose range followed it would run away from a drag.
+    # The held range may exceed the bar: if the bar's range followed it, a drag would never reach its end.
     usual = bar_within(0.0, BEYOND * (session.studio.image.mapped.ranges.whole.maximum or 1.0))
     least = LEAST_SHARE * usual.high
 
@@ -395,18 +395,14 @@ def held_rows(session: Session, put: Callable[[Mapping[str, object]], object]) -
             "minimum",
             f"The intensity of {of} that is shown by the lowest level.",
             value=low,
-            low=usual.low,
-            high=usual.high,
-            step=usual.step,
+            **usual._asdict(),
             put=lambda value: hold(max(0.0, min(value, high - least)), high),
         ),
         Bar(
             "maximum",
             f"The intensity of {of} that is shown by the highest level.",
             value=high,
-            low=usual.low,
-            high=usual.high,
-            step=usual.step,
+            **usual._asdict(),
             put=lambda value: hold(low, max(value, low + least)),
         ),
     ]

@@ -1,17 +1,17 @@
 """The color mixing screen: the two colors of a surface, and the blend bar between them.
 
 Paper: Figure 13. The light source color is above, the object color below, each with all its intensities at
-the left of its bars; in the horizontal bar between them, intensity rises to the right. What is mixed is seen
-at once: only entries change, and the words of the small picture stay. "This array is simply retransmitted to
-the display after color mixing is completed."
+the left of its bars; in the horizontal bar between them, intensity rises to the right. Mixing shows its
+result at once: only entries change, and the words of the small picture stay. "This array is simply
+retransmitted to the display after color mixing is completed."
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 from functools import lru_cache, partial
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -27,8 +27,8 @@ from autocolor.scene.kinds import in_digits
 from autocolor.scene.surfaces import Paint, Surface
 from autocolor.scene.swatches import COLUMNS, FINISHES, ROWS, finished, swatches
 from autocolor.screens.input import Gesture
-from autocolor.screens.picture.over_picture import surface_row
-from autocolor.screens.screen import Screen
+from autocolor.screens.picture.over_picture import paint_rows, surface_row
+from autocolor.screens.screen import Cached, Screen
 from autocolor.screens.session import Session
 from autocolor.widgets.bars import ComponentBar, LevelBar, level_strip
 from autocolor.widgets.items import (
@@ -47,7 +47,6 @@ from autocolor.widgets.items import (
     image,
     text,
 )
-from autocolor.widgets.rows import rows_of
 from autocolor.widgets.widget import MARGIN, ROW_LINES, TEXT_DOWN, Button, Entry, Gap, Place, Widget
 
 LEFT: Final = 8
@@ -111,7 +110,7 @@ class MixingScreen(Screen):
         self._chosen = self.object
         """The section of the color that swatches are for."""
         self.choices = PaintChoices(session, self._take)
-        self._small: tuple[Words, Words, Item] | None = None
+        self._small: Cached[Item] = Cached()
 
     def enter(self) -> None:
         self.choices.begin()
@@ -119,21 +118,18 @@ class MixingScreen(Screen):
     def leave(self) -> None:
         self.choices.end()
 
-    # What is seen.
+    # Widgets and items.
 
     def rows(self) -> Sequence[Widget]:
         surface = self.session.chosen_surface
         if surface is None:
             return []
-        colors = ("object_color", "light_color")
-        rows = rows_of(surface.paint, self._put, self.session.world, leave_out=colors)
         return [
             surface_row(self.session, "The surface whose colors you mix.", self._choose_surface),
             Gap("colors gap"),
             self.light.row(surface.paint),
             self.object.row(surface.paint),
-            # The names of the columns, such that they fit beside their numbers.
-            *(replace(row, label=row.label.replace("percentage", "percent")) for row in rows),
+            *paint_rows(self.session, surface.paint),
         ]
 
     def widgets(self) -> Sequence[Widget]:
@@ -206,16 +202,18 @@ class MixingScreen(Screen):
     def _small_picture(self) -> Item:
         """The chosen surface in the picture, at a quarter of its size; the same item until it changes."""
         words, stand_ins = self.session.studio.words, self._palette.shown
-        if self._small is None or self._small[0] is not words or self._small[1] is not stand_ins:
+
+        def draw() -> Item:
             small = stand_ins[words[::SCALE, ::SCALE][: SMALL.height, : SMALL.width]]
-            self._small = words, stand_ins, image(small, SMALL.left, SMALL.top)
-        return self._small[2]
+            return image(small, SMALL.left, SMALL.top)
+
+        return self._small.of(draw, words, stand_ins)
 
     def _blend_text(self, paint: Paint) -> str:
         levels = self._levels.levels
         return f"{paint.blend:.2f}, from level {blend_level(paint.blend, levels)} of {levels - 1}"
 
-    # What is done.
+    # Actions.
 
     def pick(self, gesture: Gesture) -> None:
         for section in (self.light, self.object):
@@ -234,10 +232,7 @@ class MixingScreen(Screen):
     def _paint(self, section: ColorSection, color: Sequence[int] | str) -> None:
         """Give the chosen surface a color."""
         self._chosen = section
-        self._put(section.change(color))
-
-    def _put(self, changes: Mapping[str, Any]) -> None:
-        self.session.edit(self.session.scene.with_paint(self.session.surface_name, **changes))
+        self.session.paint(**section.change(color))
 
     def _put_level(self, level: int) -> None:
         self.session.paint(blend=blend_from(level, self._levels.levels))
@@ -259,7 +254,7 @@ class Raised(NamedTuple):
 
 
 class ColorSection:
-    """One color of a paint, by its title, and where it stands from a line on.
+    """The ramp and the bars of one color of a paint. `top` is the first line, `title` names the color.
 
     `give` gives the chosen surface another color, `choose` makes this the section that swatches are for.
     """
@@ -337,7 +332,7 @@ class ColorSection:
     def _put_white(self, value: float) -> None:
         """Raise or lower the color, again from the color with which the bar was first moved.
 
-        Assumed: so the bar comes back to a color whose components were at their ends meanwhile.
+        Assumed: so the bar brings back a color even if some components have reached 0 or 255 on the way.
         """
         surface, color = self.session.surface_name, self._present
         if (surface, color) != (self._raised.surface, self._raised.to):
@@ -354,7 +349,7 @@ class ColorSection:
 
 @dataclass(frozen=True)
 class SectionHeading(Button):
-    """The heading of a section. A row of the menu may have the same label, so its key differs."""
+    """The heading of a section. Its key differs from the key of a menu row with the same label."""
 
     @property
     def key(self) -> str:
@@ -437,7 +432,7 @@ class PaintChoices:
         self._recent = recent_colors()
 
     def end(self) -> None:
-        """Mixing ends: the colors that surfaces were given are recent ones."""
+        """Mixing ends: note the new colors of the surfaces as recent colors."""
         for surface in self.session.scene.surfaces:
             before, now = self._before.get(surface.name, surface.paint), surface.paint
             if before.light_color != now.light_color:
@@ -498,8 +493,8 @@ GROUT: Final = 1
 class SwatchField(Widget):
     """Cells, each filled with a word of its own, row by row from the upper left corner of the area.
 
-    `take` is called with the number of the cell that is picked, and of each cell that a drag comes to. The
-    cells may be fewer than fit.
+    `take` is called with the number of a cell that is picked, or that a drag reaches. There may be fewer
+    cells than fit.
     """
 
     words: Words = field(default_factory=lambda: np.empty(0, np.uint16))
@@ -546,10 +541,9 @@ def _cells(data: bytes, area: Area, across: int, width: int, height: int) -> tup
     return (image(cells, area.left, area.top),)
 
 
-# The words that the screen borrows for the ramps of the two colors and for swatches. A surface may own nearly
-# all words, so there are none for these colors between the surfaces; see `borrowed_words`. The chosen surface
-# stays visible: where it has to lend words, too, they are spread so that each lent level is shown by its
-# neighbor.
+# The words that the screen borrows for the ramps of the two colors and for swatches. The surfaces may own
+# nearly all words, so the screen borrows words of surfaces; see `borrowed_words`. If the chosen surface must
+# lend words, too, they are spread over its levels, and the level beside each lent level is shown instead.
 
 RAMP_STEPS: Final = 64
 """The intensities of a ramp, from black to the color itself."""
@@ -564,7 +558,7 @@ class Palette(NamedTuple):
     borrowed: Words
     """The words for colors, rising: two ramps of RAMP_STEPS each, then the swatches."""
     runs: tuple[slice, ...]
-    """The parts of `borrowed` whose words follow each other."""
+    """The runs of consecutive words in `borrowed`."""
     shown: Words
     """The word that stands for each word of the picture, (1024,): NIGHT for words of other surfaces."""
 

@@ -32,7 +32,7 @@ COMPUTED_WITH: Final[Mapping[str, Sequence[str]]] = {
     "direction": ("distance", "slope", "draft angle", "zebra"),
     "stripes": ("zebra",),
 }
-"""The columns that some computed scalars are computed with, and these scalars."""
+"""The columns that only some computed scalars use, and the names of these scalars."""
 
 WITH_ROWS: Final = ("name", "limits", "scale", "below", "above", "missing", "surfaces")
 """The columns that have rows of their own here."""
@@ -95,7 +95,7 @@ class ScalarScreen(OverPicture):
         ]
 
     def _color_rows(self, scalar: Scalar) -> list[Widget]:
-        """The colors beyond the limits, and where there is no value."""
+        """The colors beyond the limits, and the color of missing values."""
         help = "The color of values {} the limits; none: the color of the {} band."
         return [
             color_choice(
@@ -142,7 +142,7 @@ class ScalarScreen(OverPicture):
         ]
 
     def _choose(self, name: str) -> None:
-        """Show another scalar, in its own range, or none; zebra stripes come and go with their colors."""
+        """Show another scalar in its own range, or none. Zebra stripes bring and take their own colors."""
         scene = self.session.scene
         if name == NO_SCALAR:
             self.session.edit(scene.without_scalar())
@@ -185,18 +185,14 @@ def limit_rows(session: Session, scalar: Scalar, put: PutLimits) -> list[Widget]
             "low limit",
             "Where the first band begins.",
             value=low,
-            low=usual.low,
-            high=usual.high,
-            step=usual.step,
+            **usual._asdict(),
             put=lambda value: put((min(value, high - least), high)),
         ),
         Bar(
             "high limit",
             "Where the last band ends.",
             value=high,
-            low=usual.low,
-            high=usual.high,
-            step=usual.step,
+            **usual._asdict(),
             put=lambda value: put((low, max(value, low + least))),
         ),
         Button(
@@ -226,7 +222,7 @@ NO_COLOR: Final = "none"
 def color_choice(
     label: str, help: str, color: Color | None, put: Callable[[Color | None], object], has_none: bool
 ) -> Choice:
-    """A row that chooses one of the colors, or none if `has_none`. Another color is shown in digits."""
+    """A row that chooses a color of `NAMED`, or no color if `has_none`. Other colors are shown in digits."""
     names = (*([NO_COLOR] if has_none else []), *NAMED)
     name_of = {each: name for name, each in NAMED.items()}
     present = NO_COLOR if color is None else name_of.get(color, in_digits(color))

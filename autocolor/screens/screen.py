@@ -1,13 +1,14 @@
 """Screen: the interface of an interactive screen of the paper. Screens know the session, but not each other.
 
-A screen says how it looks now, what can be pointed at, and what a gesture there does. It does not know when
-it is drawn, nor whether the mouse, the joystick unit or a key points.
+A screen says how it looks now, which widgets and handles it has, and what a gesture does. It does not know
+when it is drawn, nor whether the mouse, the joystick unit or a key points.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import ClassVar, NamedTuple
+from collections.abc import Callable, Sequence
+from operator import is_
+from typing import ClassVar, Generic, NamedTuple, TypeVar
 
 from autocolor.arrays import Bytes, Words
 from autocolor.screens.input import Gesture
@@ -36,7 +37,7 @@ class Screen:
     help: ClassVar[str] = ""
     """What to do on the screen, for the message line."""
     has_menu: ClassVar[bool] = True
-    """Whether the menu always stands beside it; else the menu comes on demand."""
+    """Whether the menu is always shown beside it; else the menu comes on demand."""
     shows_picture: ClassVar[bool] = False
     """Whether its base is the picture at full size."""
     shows_scene: ClassVar[bool] = True
@@ -47,12 +48,12 @@ class Screen:
     def __init__(self, session: Session) -> None:
         self.session = session
         self.is_under_menu = False
-        """Whether the menu, which was asked for, stands over its right part."""
+        """Whether the menu covers its right part, because the user asked for the menu."""
 
     # How it looks.
 
     def base(self) -> Words | int:
-        """The base below everything: one word, or the words of a picture, the same array until it changes."""
+        """The base below all items: one word, or the words of a picture, the same array until it changes."""
         return NIGHT
 
     def items(self) -> Sequence[Item]:
@@ -60,10 +61,10 @@ class Screen:
         return ()
 
     def loads(self) -> Sequence[tuple[int, Bytes]]:
-        """The entries that it borrows: a first entry, and the colors from there on, (n, 3)."""
+        """The runs of entries that it borrows: the first entry, and the colors, (n, 3)."""
         return ()
 
-    # What can be pointed at.
+    # Widgets and handles.
 
     def rows(self) -> Sequence[Widget]:
         """The rows of its menu."""
@@ -81,10 +82,10 @@ class Screen:
         """The text of the message line for a place without widget and handle."""
         return self.help
 
-    # What gestures and keys do.
+    # Gestures and keys.
 
     def hold(self, handle: Handle) -> None:
-        """Take note of a handle that was picked or grabbed, and will be placed."""
+        """Note the handle that was picked or grabbed; `place` will move it."""
 
     def place(self, handle: Handle, element: int, line: int) -> None:
         """Put a handle at a place: once after a pick, at each movement of a drag."""
@@ -93,24 +94,24 @@ class Screen:
         """Let go of the handle."""
 
     def pick(self, gesture: Gesture) -> None:
-        """Do what a click or ENTER asks for at a place without widget and handle."""
+        """Handle a click or ENTER at a place without widget and handle."""
 
     def drag(self, start: Gesture, last: Gesture, now: Gesture) -> None:
         """Follow a drag that began at a place without widget and handle."""
 
     def wheel(self, gesture: Gesture) -> None:
-        """Do what the wheel asks for at a place without widget."""
+        """Handle a turn of the wheel at a place without widget."""
 
     def key(self, name: str, typed: str) -> bool:
-        """Do what a key asks for; returns False if it does nothing here."""
+        """Handle a key; returns False if it does nothing here."""
         return False
 
     def escape(self) -> bool:
-        """Give up what was begun here; returns False if there is nothing, and then the screen is left."""
+        """Cancel an action that was begun; returns False if there is none, and the screen is left."""
         return False
 
     def idle(self) -> bool:
-        """Do a part of the work that can wait until nothing moves; returns whether the screen changed."""
+        """Do a part of the work that waits until nothing moves; returns whether the screen changed."""
         return False
 
     def enter(self) -> None:
@@ -118,3 +119,25 @@ class Screen:
 
     def leave(self) -> None:
         """Clean up after being shown."""
+
+
+Value = TypeVar("Value")
+
+
+class Cached(Generic[Value]):
+    """The last computed value, for as long as its sources are the same objects.
+
+    Sources are compared by identity: an edited scene shares all unchanged objects with the scene before.
+    """
+
+    def __init__(self) -> None:
+        self._sources: tuple[object, ...] | None = None
+        self._value: Value
+
+    def of(self, compute: Callable[[], Value], *sources: object) -> Value:
+        """The value of some sources, computed if one of them is another object than before."""
+        cached = self._sources
+        if cached is None or len(cached) != len(sources) or not all(map(is_, cached, sources)):
+            self._value = compute()
+            self._sources = sources
+        return self._value

@@ -1,7 +1,7 @@
 """The session on the screens: the studio, what is chosen, which screen is shown, and the message.
 
-Every screen edits the scene through `edit`, so that a gesture is one step to undo, and its pictures may be
-coarse while it moves. At the foot are the state to compare with and the file on the disk.
+Every screen edits the scene through `edit`: so a gesture is one step to undo, and its pictures may be coarse
+until it ends. At the foot are the comparison with another state, and the file on the disk.
 """
 
 from __future__ import annotations
@@ -149,14 +149,14 @@ class Session:
         self.news = Message(line, is_warning, time.monotonic(), persistent)
 
     def warn(self, message: object) -> None:
-        """Show an error in one line; of several problems, the first one and how many others there are."""
+        """Show an error in one line; of several problems, the first and the number of the others."""
         more = ""
         if isinstance(message, InputError) and len(message.problems) > 1:
             first, *others = message.problems
             message, more = first, f" (and {len(others)} more)"
         self.tell(str(message).replace("\n", "; ") + more, is_warning=True)
 
-    # What is chosen.
+    # The chosen surface and light.
 
     @property
     def surface_name(self) -> str:
@@ -209,10 +209,10 @@ class Session:
     # Edits.
 
     def edit(self, scene: Scene) -> None:
-        """Make a scene the current one; the edits of one gesture are one step to undo."""
+        """Make a scene the current scene. All edits of a gesture are undone as one step."""
         before = self.studio.scene
         self.studio.edit(scene, same_step=self.same_step, moving=self.moving)
-        # Further edits of the same gesture belong to its step; one that changed nothing has none.
+        # Further edits of the same gesture belong to its step; an edit without a change makes no step.
         self.same_step = self.same_step or self.studio.scene is not before
 
     def change_light(self, name: str, /, **changes: Unpack[LightChanges]) -> None:
@@ -338,7 +338,7 @@ class Session:
 
 BEFORE: Final = "the state before the last step"
 NOW: Final = "the present state"
-"""How the message line calls the state that is shown."""
+"""The names of the two states in the message line."""
 
 
 class NamedScene(NamedTuple):
@@ -355,7 +355,7 @@ class Comparing:
         self._studio = studio
         self._chosen: NamedScene | None = None
         self._cached: tuple[Scene, Scene, DisplayImage] | None = None
-        """The present scene, the scene that it was compared with last, and the image of the latter."""
+        """The present scene, the scene that it was last compared with, and the image of that other scene."""
         self._shown: DisplayImage | None = None
 
     @property
@@ -376,7 +376,7 @@ class Comparing:
 
     @property
     def image(self) -> DisplayImage | None:
-        """The image that is shown in place of the present state; None while that is shown."""
+        """The image that is shown in place of the present state; None while comparing is off."""
         return self._shown
 
     @property
@@ -436,7 +436,7 @@ class FileOnDisk:
         return self._changes is not None and self._changes.have_come()
 
     def seen(self) -> None:
-        """Take note of the file as it is now, as after it was saved or opened."""
+        """Note the present file as seen, after the session saved or opened it."""
         self._bind()
         if self._changes is not None:
             self._changes.seen()
@@ -459,7 +459,7 @@ class FileOnDisk:
         return f"{name} was changed elsewhere; undo goes back" if is_other else ""
 
     def _bind(self) -> None:
-        """Watch the file that the scene is in now, which may be another than before."""
+        """Watch the scene's present file, which may differ from the file before."""
         path = self._studio.file
         if path is None:
             self._changes = None

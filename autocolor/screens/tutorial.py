@@ -1,7 +1,7 @@
-"""The tutorial: a panel over every screen that says what to do next, and sees when it is done.
+"""The tutorial: a panel over every screen that gives the next task, and sees when the task is done.
 
-It knows no screen: it compares scenes to see what a person did. The panel can be moved out of the way,
-folded, skipped step by step, and ended; all by the joystick unit alone.
+It knows no screen: it compares scenes to see the user's edits. The panel can be moved out of the way, folded,
+skipped task by task, and ended; the joystick unit alone can do all of this.
 """
 
 from __future__ import annotations
@@ -32,8 +32,8 @@ from autocolor.widgets.items import (
 from autocolor.widgets.menu import WIDE_BAR, WORK
 from autocolor.widgets.widget import MARGIN, Button, Place, Widget
 
-# The lessons: each has a function that compares two scenes, and so sees whether the task was done, be it by a
-# screen, a bar, a key or in the picture itself.
+# The lessons. A function compares two scenes to see whether the task was done: by a screen, a bar, a key,
+# or in the picture itself.
 
 
 class Work(NamedTuple):
@@ -44,7 +44,7 @@ class Work(NamedTuple):
 
 
 class Lesson(NamedTuple):
-    """A task: its name, what to do in two lines, and whether it was done between two moments."""
+    """A task: its name, two lines of instructions, and a function that sees whether it was done."""
 
     name: str
     lines: tuple[str, str]
@@ -88,7 +88,7 @@ def _blended(before: Work, now: Work) -> bool:
 
 
 def _saved(before: Work, now: Work) -> bool:
-    # A scene that was just opened has no files that it was saved to.
+    # An opened scene was not saved yet: it has no saved files.
     return now.saved is not before.saved and bool(now.saved.files)
 
 
@@ -97,7 +97,7 @@ def _flaps(light: Light) -> tuple[Flap | None, Flap | None, Flap | None]:
 
 
 def _cuts(flap: Flap) -> bool:
-    """Whether a flap keeps light away from anything."""
+    """Whether a flap cuts off light anywhere."""
     return flap.on and (flap.minimum > -math.inf or flap.maximum < math.inf)
 
 
@@ -182,7 +182,7 @@ END: Final = (
 
 
 class Tutorial:
-    """The lessons of a session. `widgets` are those of its panel; none when it was ended."""
+    """The lessons of a session, with a panel that shows them until the tutorial has ended."""
 
     def __init__(self, session: Session, lessons: Sequence[Lesson] = LESSONS) -> None:
         self._session = session

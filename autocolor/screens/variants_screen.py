@@ -1,7 +1,7 @@
-"""The screen of the variants: small pictures, to come back to a variant, or to compare with it.
+"""The variants screen: small pictures; the user comes back to a variant, or compares with it.
 
-Nothing else is shown there, so the small pictures borrow the words of all surfaces: each picture has a share
-of the words, for the colors that it needs most.
+The screen shows no surface, so the small pictures borrow the words of all surfaces: every picture has an
+equal share of the words, for the colors that it needs most.
 """
 
 from __future__ import annotations
@@ -40,12 +40,12 @@ from autocolor.widgets.widget import (
     ROW_LINES,
     TEXT_DOWN,
     Button,
-    Choice,
     Entry,
     Gap,
     Pair,
     Place,
     Widget,
+    page_choice,
     short_name,
 )
 
@@ -73,7 +73,7 @@ MOST_COLORS: Final = 200
 
 
 class VariantsScreen(Screen):
-    """The variants as small pictures, which are computed one by one while nothing moves."""
+    """The variants as small pictures. While nothing moves, the missing pictures are computed in turn."""
 
     name = "kept"
     title = "kept"
@@ -88,7 +88,7 @@ class VariantsScreen(Screen):
         """The rendering of the last small picture; the next rendering reuses what did not change."""
         self._small: dict[Scene, SmallPicture] = {}
 
-    # What is seen.
+    # The small pictures.
 
     @property
     def _pages(self) -> list[list[str]]:
@@ -126,7 +126,9 @@ class VariantsScreen(Screen):
         if not self.session.studio.variants:
             return [
                 text("no variant is kept yet", 16, TEXT_DOWN, LIGHT_GRAY),
-                text("keep: the scene as it is now, to come back to it", 16, ROW_LINES + TEXT_DOWN, GRAY),
+                text(
+                    "keep the scene as it is now, and come back to it later", 16, ROW_LINES + TEXT_DOWN, GRAY
+                ),
             ]
         return [small.item(first, area) for area, first, small in self._shown()]
 
@@ -158,7 +160,7 @@ class VariantsScreen(Screen):
             self._last = rendering(scene, 2 * LINES, 2 * ELEMENTS, self._last)
             return thumbnail(display_image(scene, self._last.picture), LINES, ELEMENTS)
         except InputError:
-            # At this size a surface may be seen that is hidden in the whole picture, and be too bright.
+            # At this size a surface that the whole picture hides may be visible, and too bright.
             return np.zeros((LINES, ELEMENTS, 3), np.uint8)
 
     def enter(self) -> None:
@@ -170,7 +172,7 @@ class VariantsScreen(Screen):
         self._small = {scene: small for scene, small in self._small.items() if scene in scenes}
         self._last = None
 
-    # What is done.
+    # The menu.
 
     @property
     def _present(self) -> str:
@@ -204,16 +206,9 @@ class VariantsScreen(Screen):
         ]
         pages = len(self._pages)
         if pages > 1:
-            names = tuple(f"{number} of {pages}" for number in range(1, pages + 1))
-            rows.append(
-                Choice(
-                    "page",
-                    "The next page of variants; at the left end, the page before.",
-                    names=names,
-                    present=names[min(self._page, pages - 1)],
-                    choose=lambda name: setattr(self, "_page", names.index(name)),
-                )
-            )
+            help = "The next page of variants; at the left end, the page before."
+            page = min(self._page, pages - 1)
+            rows.append(page_choice(help, page, pages, partial(setattr, self, "_page")))
         return rows
 
     def _choose(self, name: str) -> None:

@@ -1,8 +1,8 @@
 """The viewer: the interactive system on a display, driven by keys, the mouse and the joystick unit.
 
-It gets what was done as plain values, and draws by display instructions, so that it runs with a window or
-without. While something moves, the picture may be coarse; `on_tick` refines it when the movement rests. The
-tables of the screens and of the keys are at the foot.
+Input comes as values, and the viewer draws by display instructions, so it runs with a window or without.
+While something moves, the picture may be coarse; `on_tick` refines it when the movement rests. The tables of
+the screens and of the keys are at the foot.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from autocolor.screens.light_and_view.light_and_view_screen import LightAndViewS
 from autocolor.screens.lights_screen import LightsScreen
 from autocolor.screens.mapping_screen import MappingScreen
 from autocolor.screens.mixing_screen import MixingScreen
-from autocolor.screens.picture.picture_edits import PictureEdits
+from autocolor.screens.picture.picture_edits import SIDES, PictureEdits
 from autocolor.screens.picture.picture_screen import PictureScreen
 from autocolor.screens.picture.watching import ENDING, MESSAGE, Watching
 from autocolor.screens.reflectance_screen import ReflectanceScreen
@@ -87,7 +87,7 @@ class Action:
         return True
 
     def do(self, source: object, run: Callable[[], object], continues: bool, moving: bool) -> bool:
-        """Run what a key or a gesture of a source asks for; returns False if `run` does, having done nothing.
+        """Run the action of a key or a gesture; returns False if `run` does, which then did nothing.
 
         With `continues`, edits of the same source are one step to undo.
         """
@@ -147,7 +147,7 @@ class Viewer:
         """How many drags and picks there were."""
         self._had_news = True
         self._base: Words | int | None = None
-        """What was below everything when it was shown last."""
+        """The base of the page that was shown last."""
         self._mouse.forget()
         self._sheet.forget()
         self._unit.show()
@@ -173,7 +173,7 @@ class Viewer:
         message = MESSAGE if self._watching.is_on else self.message
         return " - ".join(part for part in ("autocolor", name, surface, message) if part)
 
-    # What is done.
+    # Input.
 
     def on_key(
         self, name: str, control: bool = False, shift: bool = False, typed: str = "", repeated: bool = False
@@ -194,7 +194,7 @@ class Viewer:
         return taken
 
     def _press(self, name: str, control: bool, shift: bool, typed: str, repeated: bool) -> bool:
-        """Let the typed text, the menu, the screen or the binding of a key take it, in this order."""
+        """Offer a key to the typed text, the menu, the screen and the key bindings, in this order."""
         if not control and self._type(name, typed, repeated):
             return True
         chosen = bound_to(BINDINGS, name, control, shift, typed)
@@ -207,7 +207,7 @@ class Viewer:
         return self._do(chosen, lambda: binding.run(self, number), repeated and binding.held, binding.held)
 
     def _type(self, name: str, typed: str, repeated: bool) -> bool:
-        """Let the text that is being typed, the menu or the screen take a key."""
+        """Offer a key to the text that is being typed, the menu and the screen."""
         board, source = self.board, ("key", name)
         if board.typing.is_on:
             return self._do(None, lambda: board.typing.key(name, typed))
@@ -216,7 +216,7 @@ class Viewer:
         )
 
     def on_release(self, name: str) -> None:
-        """Handle that a key was let go."""
+        """Handle the release of a key."""
         for binding in BINDINGS:
             if binding.release is not None and name in [chord.name for chord in binding.chords]:
                 binding.release(self)
@@ -232,8 +232,8 @@ class Viewer:
         shift: bool = False,
         control: bool = False,
     ) -> None:
-        """Handle what the mouse does over an element and a line."""
-        # Where there is a mouse, there is a keyboard.
+        """Handle an action of the mouse at an element and a line."""
+        # A user with a mouse has a keyboard, too.
         self._has_keyboard = self.session.has_keyboard = True
         if action == "press" and self._watching.end():
             self._update()
@@ -241,7 +241,7 @@ class Viewer:
             self.point(gesture)
 
     def poll(self) -> None:
-        """Handle what was done with the joystick unit since the last poll."""
+        """Handle the gestures of the joystick unit since the last poll."""
         for gesture in self._unit.poll():
             self.point(gesture)
 
@@ -263,7 +263,7 @@ class Viewer:
         self._update()
 
     def _has_taken_text(self) -> bool:
-        """Take the text that is being typed, if any; False if it is refused, and stays to be corrected."""
+        """Take the text that is being typed, if any; returns False if the text is refused and stays open."""
         if self.board.typing.is_on:
             self._do(None, self.board.typing.take)
         return not self.board.typing.is_on
@@ -271,7 +271,7 @@ class Viewer:
     def on_tick(self, is_at_rest: bool = True) -> None:
         """Refine a coarse picture when the movement rests, and take a message away when its time has passed.
 
-        A picture that is watched comes in by some lines.
+        A picture that comes in line by line gets its next lines.
         """
         self._watching.advance()
         if is_at_rest and not (self.board.is_dragging or self._watching.is_on):
@@ -286,22 +286,22 @@ class Viewer:
             self._update()
 
     def _take_changes(self) -> None:
-        """Show what another program changed in the scene's file."""
+        """Show the changes that another program made to the scene's file."""
         if self.session.disk.was_changed() and self._do(None, self.session.take_changes):
             self._update()
 
     def tell(self, message: str, persistent: bool = False) -> None:
         """Show a message of the window; an empty one takes the last one away at once.
 
-        One that `stands` does so until something is done.
+        With `persistent`, the message stays until the next action.
         """
         self.session.tell(message, persistent=persistent)
         self._update()
 
     def _update(self) -> None:
-        """Show what is to be seen now."""
+        """Show the present page."""
         if self._watching.is_on:
-            # The lines come in over everything, and what stands over the picture is drawn when all are there.
+            # The lines come in over the whole page. Its items are drawn after the last line.
             return
         if self.session.watches:
             self.watch()
@@ -313,7 +313,7 @@ class Viewer:
         page = self.board.page()
         self._sheet.show(page)
         if page.base is not self._base and not self.board.is_dragging:
-            # What is pointed at is read back from the display, where it is only now.
+            # The hint for the pointer reads a word back from the display, which has the new base only now.
             self._sheet.show(self.board.page())
         self._base = page.base
         self._unit.mark(self.board.mark)
@@ -322,14 +322,14 @@ class Viewer:
         try:
             self.studio.refine()
         except (AutocolorError, RamtekError) as error:
-            # The picture was refused only at its full size: take the movement back, as any refused edit.
+            # The coarse picture was accepted, but its full size is refused: take the edit back.
             self.studio.undo()
             self.session.warn(error)
 
     def _do(
         self, source: object, run: Callable[[], object], continues: bool = False, moving: bool = False
     ) -> bool:
-        """Do what a key or a gesture asks for; returns False if that does nothing here."""
+        """Run the action of a key or a gesture; returns False if it does nothing here."""
         self._watching.end()
         taken = self._action.do(source, run, continues, moving)
         self.board.forget()
@@ -348,15 +348,11 @@ class Viewer:
         self._update()
         return may_close
 
-    # What keys are bound to.
+    # The actions of keys.
 
     def toggle(self, screen: str) -> None:
         """Turn to a screen, or back to the picture if it is shown."""
         self.session.turn_to(PICTURE if self.session.screen == screen else screen)
-
-    def toggle_menu(self) -> None:
-        """Bring the menu and give it the keys, or take it away."""
-        self.board.toggle_menu()
 
     def watch(self) -> None:
         """Blank the picture and let it come in line by line as it is computed; any key shows it at once."""
@@ -378,7 +374,7 @@ class Viewer:
     def escape(self) -> bool:
         """Take a drag back, close what is open, or return to the picture.
 
-        If there is nothing of that, and nothing is unsaved, returns False.
+        Returns False if there is nothing to take back, close or leave, and nothing is unsaved.
         """
         board, session = self.board, self.session
         if board.is_dragging:
@@ -409,15 +405,11 @@ class Viewer:
         self.session.redo()
 
     def _show_scene(self) -> None:
-        # What is dragged or typed may be gone with the step.
+        # The step may remove the thing that is dragged or typed into.
         self._mouse.forget()
         self.board.release()
         if not self.board.screen.shows_scene:
             self.session.turn_to(PICTURE)
-
-    def save(self) -> None:
-        """Save the scene and the picture."""
-        self.session.save()
 
     def reopen(self) -> None:
         """Read the scene's file again, as one step to undo."""
@@ -472,7 +464,7 @@ BINDINGS: Final[tuple[Binding[Viewer], ...]] = (
     Binding(
         (Chord("tab"),),
         "the menu (or the right edge); its keys: arrows, Return",
-        lambda viewer, _: viewer.toggle_menu(),
+        lambda viewer, _: viewer.board.toggle_menu(),
     ),
     Binding(
         (Chord("left"), Chord("right"), Chord("left", shift=True), Chord("right", shift=True)),
@@ -505,7 +497,7 @@ BINDINGS: Final[tuple[Binding[Viewer], ...]] = (
     Binding(
         tuple(Chord(f"f{number}") for number in range(5, 10)),
         "view from the front, side, back, top, three quarters",
-        lambda viewer, number: viewer.edits.see_from(number),
+        lambda viewer, number: viewer.edits.see_from(tuple(SIDES)[number]),
         label="F5 to F9",
     ),
     Binding(
@@ -561,7 +553,11 @@ BINDINGS: Final[tuple[Binding[Viewer], ...]] = (
         lambda viewer, _: viewer.redo(),
         repeats=True,
     ),
-    Binding((Chord("s", control=True),), "save the picture with its scene", lambda viewer, _: viewer.save()),
+    Binding(
+        (Chord("s", control=True),),
+        "save the picture with its scene",
+        lambda viewer, _: viewer.session.save(),
+    ),
     Binding((Chord("r", control=True),), "read the scene's file again", lambda viewer, _: viewer.reopen()),
     Binding(
         (Chord("escape"),),

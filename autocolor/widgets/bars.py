@@ -50,8 +50,8 @@ BESIDE_BOX: Final = "  "
 class Bar(Widget):
     """A number with a bar over its usual range, `low` to `high`; the number may lie beyond.
 
-    `value` is None while the number is switched off. `flip` switches it; a number that is always on has none.
-    In a menu, a thin bar is drawn below the number; a wide bar has its number beside it.
+    `value` is None while the number is switched off. `flip` switches the number; None for a number that is
+    always on. In a menu, a thin bar is drawn below the number; a wide bar has its number beside it.
     """
 
     value: float | None = 0.0
@@ -77,7 +77,7 @@ class Bar(Widget):
 
     @property
     def number(self) -> str:
-        """The value as text; nothing where it is switched off."""
+        """The value as text; empty while it is switched off."""
         return "" if self.value is None else number_text(self.value, self.step)
 
     @property
@@ -218,7 +218,7 @@ def digits_of(step: float) -> int:
 # Paper: Figure 13, the color bars.
 
 STEPS: Final = 256
-"""The values of a component; the track has as many elements, so that each can be pointed at."""
+"""The values of a component. The track has one element for each value, so you can point at every value."""
 
 LETTER: Final = 16
 """Elements from the left edge to the track, where the letter stands."""
@@ -392,7 +392,7 @@ _POINTERS: Final = (_RIGHT, _RIGHT.T, _RIGHT[:, ::-1], _RIGHT.T[::-1])
 
 @lru_cache(maxsize=16)
 def level_strip(data: bytes, area: Area, upright: bool = False) -> Item:
-    """Levels in their words, given as the bytes of `Words`: the last one is at the right, or at the top."""
+    """Levels in their words, given as the bytes of `Words`; the last level is at the right, or at the top."""
     words = np.frombuffer(data, np.uint16)
     along = words[levels_along(area.height if upright else area.width, len(words))]
     filling = np.broadcast_to(along[::-1, None] if upright else along, (area.height, area.width))

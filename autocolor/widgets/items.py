@@ -53,8 +53,8 @@ ORANGE: Final = SCREENS.first + 7
 RED: Final = SCREENS.first + 8
 GREEN: Final = SCREENS.first + 9
 BLUE: Final = SCREENS.first + 10
-"""White is for text, light gray for what is dim, yellow for what is chosen, orange for warnings; red, green
-and blue for axes and for components of colors."""
+"""White is for text, light gray for dim text, yellow for the chosen thing, orange for warnings; red, green
+and blue are for axes and for components of colors."""
 
 
 # Positions are an element and a line. Whole numbers are the centers of pixels, line 0 on top.
@@ -111,7 +111,7 @@ class Area(NamedTuple):
         )
 
     def within(self, other: Area) -> Area:
-        """The pixels that both have."""
+        """The pixels that both areas have."""
         return Area(
             max(self.left, other.left),
             max(self.top, other.top),
@@ -149,8 +149,8 @@ def clipped(strokes: Floats, area: Area) -> Floats:
     low = np.array([[area.left], [area.top]], np.float64)
     high = np.array([[area.right], [area.bottom]], np.float64)
 
-    # Find the fractions at which each stroke enters and leaves between two borders. One that runs along a
-    # pair of borders is between them all the way, or never.
+    # Find the fractions of each stroke at which it enters and leaves between two borders. A stroke parallel
+    # to both borders is between them over its whole length, or never.
     along = step == 0
     divisor = np.where(along, 1.0, step)
     with np.errstate(over="ignore"):
@@ -191,9 +191,9 @@ def together(strokes: Sequence[Floats]) -> Floats:
 def drawn(strokes: Floats, most: int = MOST_STROKES) -> Numbers:
     """The strokes from pixel to pixel, (n, 4) int64, none twice; the `most` longest if there are more.
 
-    The nearest pixel is taken, half up. What is shorter than a pixel is left out: without it the details of
-    a mesh are less of a blot, and the ends of longer strokes cover most of it. If all are as short as that,
-    a point of them is left.
+    Ends are rounded to pixels, half up. Strokes shorter than a pixel are left out: they would turn the
+    details of a mesh into a blot, and the ends of longer strokes cover most of them. If all strokes are that
+    short, the first is drawn as a point.
     """
     pixels = np.floor(strokes + 0.5).astype(np.int64)
     # Write each stroke from its upper or left end.
@@ -228,13 +228,13 @@ CHARACTER_LINES: Final = 9
 
 
 DRAWABLE: Final = Area(-0x8000, -0x8000, 0x7FFF, 0x7FFF)
-"""Hardware: what the sixteen bits of an element and a line can tell."""
+"""Hardware: the range of the sixteen bits of an element and a line."""
 
 
 class Item(NamedTuple):
     """A part of a page: its area, and the words of its instructions in bytes, as in an array of `Words`.
 
-    A solid item draws every pixel of its area, whatever was there.
+    A solid item draws every pixel of its area, whatever is below it.
     """
 
     area: Area
@@ -271,11 +271,11 @@ def outline(area: Area, word: int) -> Item:
 
 
 def lines(polylines: Iterable[Sequence[tuple[float, float]] | Floats], word: int, area: Area) -> Item:
-    """Polylines, each of (n, 2) elements and lines, clipped at an area; what is not finite is left out."""
+    """Polylines, each of (n, 2) elements and lines, clipped at an area, without infinite strokes."""
     parts = []
     for each in polylines:
         pixels = pixels_inside(joined(each), area)
-        # What is still linked after the clipping goes into one instruction.
+        # Write the strokes that are still linked after clipping by one instruction.
         breaks = np.flatnonzero((pixels[1:, :2] != pixels[:-1, 2:]).any(axis=1)) + 1
         for chain in np.split(pixels, breaks):
             if len(chain):
@@ -290,7 +290,7 @@ def segments(strokes: Floats, word: int, area: Area) -> Item:
 
 
 def pixels_inside(strokes: Floats, area: Area) -> Numbers:
-    """The pixels at both ends, (kept, 4), of what is inside an area of finite strokes, (n, 4).
+    """The end pixels, (inside, 4), of the parts of finite strokes, (n, 4), that are inside an area.
 
     Hardware: the 9300 clips lines at its memory alone; the write window is of later models.
     """
@@ -320,7 +320,7 @@ def area_of(points: Floats, margin: int = 0, limit: Area = SCREEN) -> Area:
 
 
 def rounded(places: Floats) -> Numbers:
-    """Places as whole elements and lines, half up, within what a vertex can be."""
+    """Places as whole elements and lines, half up, within `DRAWABLE`."""
     return np.clip(np.floor(places + 0.5), DRAWABLE.left, DRAWABLE.right).astype(np.int64)
 
 

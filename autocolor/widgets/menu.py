@@ -29,7 +29,7 @@ def lines_of(rows: Sequence[Widget]) -> int:
 
 
 def laid_out(rows: Sequence[Widget], area: Area = MENU) -> list[Widget]:
-    """The rows with their areas, from the top; those that do not fit are left out."""
+    """The rows with their areas, from the top; rows that do not fit are left out."""
     placed: list[Widget] = []
     top = area.top
     for row in rows:
@@ -41,7 +41,7 @@ def laid_out(rows: Sequence[Widget], area: Area = MENU) -> list[Widget]:
 
 
 def menu_items(rows: Sequence[Widget], lit: Widget | None, area: Area = MENU) -> list[Item]:
-    """The items of a menu: its ground, and its rows, of which `lit` is lit."""
+    """The items of a menu: its ground and its rows. The row `lit` is lit."""
     items = [filled(area, NIGHT), filled(area._replace(right=area.left), SLATE)]
     for row in rows:
         items += row.items(row is lit and not row.why_not)
@@ -71,7 +71,7 @@ def page_of_menu(
     """The rows of a page of the menu, counted from 0, laid out; the last page if there are not so many.
 
     Each page ends with the `last` rows. If there are several, the row before them calls `turn` with the
-    number of the next one.
+    number of the next page.
     """
     pages = pages_of(rows, MOST_LINES - lines_of(last))
     number = min(number, len(pages) - 1)

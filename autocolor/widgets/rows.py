@@ -1,9 +1,9 @@
 """The rows of a menu for a row of a table, derived from the descriptions of its columns.
 
-So a column that is added to a table appears on the screens by itself. A number is a bar, a switch a box, a
-vector three bars; a choice and a text are rows of their own. A row within a row has its name before the names
-of its columns. A list of names has a switch that gives the list, and a box for each name of a table; many
-names come in pages, so that they do not fill the menu.
+So a new column of a table appears on the screens by itself. A number is a bar, a switch a box, a vector three
+bars; a choice and a text are rows of their own. The name of a nested row stands before the names of its
+columns. A list of names has a switch for the whole list, and a box for each name of a table; many names come
+in pages, so that they do not fill the menu.
 """
 
 from __future__ import annotations
@@ -72,9 +72,9 @@ class World(NamedTuple):
         return math.dist(self.low, self.high) or 1.0
 
     def range_of(self, axis: str) -> BarRange:
-        """The usual range of a coordinate: that of the object and its whole size around.
+        """The usual range of a coordinate: the object's extent, widened by its whole size on both sides.
 
-        Without an axis, it is that of all three.
+        Without an axis, the range covers the extents along all three axes.
         """
         low, high = min(self.low), max(self.high)
         if axis:
@@ -141,7 +141,7 @@ def _rows_of_field(menu: _Menu, name: str, field: Field, value: Any) -> Iterator
         yield from _rows_in(menu, value)
     elif isinstance(kind, Nested):
         axis = name if name in AXES else ""
-        # In a narrow menu the name of the row itself is enough before those of its fields.
+        # The menu is narrow: put only the row's own name before the names of its fields.
         inside = _Menu(put, menu.world, f"{name} ", axis)
         yield from _rows_of_row(inside, shown, help, value)
     elif isinstance(kind, NamedRows):
@@ -150,14 +150,14 @@ def _rows_of_field(menu: _Menu, name: str, field: Field, value: Any) -> Iterator
         for row in value:
             inside = _Menu(partial(_put, put, row.name), menu.world, INDENT)
             for each in _rows_of_row(inside, row.name, help, row, ("name",)):
-                # Others have rows of the same labels.
+                # Other named rows have the same labels.
                 yield replace(each, within=f"{name}.{row.name}", help=f"{row.name}: {each.help}")
 
 
 def _rows_of_row(
     menu: _Menu, label: str, help: str, row: Row | None, leave_out: Sequence[str] = ()
 ) -> Iterator[Widget]:
-    """The rows of a row within a row, after its own switch if it has one. An absent row is a switch alone."""
+    """The rows of a nested row, after its own switch if it has one. An absent row is a switch alone."""
     if row is None:
         yield Switch(label, help, is_on=False, flip=partial(menu.put, {}))
         return
@@ -191,9 +191,7 @@ def _bar(menu: _Menu, label: str, name: str, field: Field, value: float | None) 
         label,
         _help(column),
         value=present,
-        low=usual.low,
-        high=usual.high,
-        step=usual.step,
+        **usual._asdict(),
         unit=column.unit if len(column.unit) < 8 else "",
         put=partial(_put_number, put, name, isinstance(kind, Whole)),
         flip=flip,
@@ -208,9 +206,7 @@ def _vector_rows(menu: _Menu, label: str, name: str, column: Column, value: Vect
             f"{label} {axis}",
             _help(column),
             value=value[number],
-            low=usual.low,
-            high=usual.high,
-            step=usual.step,
+            **usual._asdict(),
             put=partial(_put_component, menu.put, name, value, number),
         )
 
@@ -229,9 +225,7 @@ def _curve_rows(
             f"at {angle:g} degrees",
             help,
             value=share,
-            low=usual.low,
-            high=usual.high,
-            step=usual.step,
+            **usual._asdict(),
             put=partial(_put_share, menu.put, name, curve, number),
         )
 
@@ -263,7 +257,7 @@ def _list_rows(
     pages: dict[str, int],
     table: tuple[str, Sequence[str]],
 ) -> Iterator[Widget]:
-    """A switch that gives a list, without a name at first; below it one for each name of a page."""
+    """A switch that gives an empty list; below it a switch for each name of a page."""
     what, names = table
     is_given = value is not None
     short = short_label(label, LONGEST_LABEL)

@@ -1,9 +1,9 @@
 """The sheet: shows pages on a display, and sends only what differs from the page before.
 
-A page is a value: what is below everything, the items over it from the lowest to the highest, and the lookup
-table. So a screen only tells what it looks like now. What an item covered is drawn again when it goes: the
-base by ERS, or by WI from the host's copy of a picture, and the items that it overlapped. Each change is one
-transfer to the display.
+A page is a value: a base, the items over it from the lowest to the highest, and the lookup table. So a screen
+only says how it looks now. When an item goes, the sheet draws the pixels below it again: the base by ERS, or
+by WI from the host's copy of a picture, and the items that overlapped it. Each change is one transfer to the
+display.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ from ramtek_emu import HostPort, instructions
 
 
 class Page(NamedTuple):
-    """What a display shows: a base, which is one word or the words of a picture, items, and entries.
+    """The contents of a display: a base, which is one word or the words of a picture, items, and entries.
 
-    `base` has (lines, elements); two pages have the same one only if it is the same array. `entries` are
+    Words of a base are (lines, elements); two pages share a base only if it is the same array. `entries` is
     (1024, 3).
     """
 
@@ -34,9 +34,9 @@ class Page(NamedTuple):
 
 
 class Sheet:
-    """Shows pages on a display, which nothing else may draw on meanwhile.
+    """Shows pages on a display, on which nothing else may draw meanwhile.
 
-    The base fills all that the display shows, which may be more than the screens are laid out for.
+    The base fills the whole display, which may be larger than the screens.
     """
 
     def __init__(self, display: HostPort) -> None:
@@ -47,7 +47,7 @@ class Sheet:
         self._page: Page | None = None
 
     def forget(self) -> None:
-        """Take nothing for granted: the next page is drawn whole."""
+        """Forget the page that is shown: the next page is drawn whole."""
         self._page = None
 
     def show(self, page: Page) -> None:
@@ -59,7 +59,7 @@ class Sheet:
         self._page = page
 
     def _changes(self, page: Page) -> list[Words]:
-        """The instructions that turn what is shown into a page."""
+        """The instructions that change the display from the page before to this page."""
         before = self._page
         parts: list[Words] = []
         if before is None:
@@ -85,16 +85,16 @@ class Sheet:
 def changed_items(
     before: Sequence[Item], now: Sequence[Item], drawn: Sequence[Area] = ()
 ) -> tuple[list[Area], list[Item]]:
-    """The areas whose base must be drawn again, and the items to draw again after that, lowest first.
+    """The areas whose base must be drawn again, and then the items to draw again, lowest first.
 
-    Where an item goes that stood on an item of one word, that much of the lower item is drawn, and not all of
-    it. `drawn` are areas whose base is drawn again anyhow.
+    When an item over an item of one word goes, only its area of the lower item is drawn again. `drawn` are
+    areas whose base is drawn again anyhow.
     """
     if not drawn and list(before) == list(now):
         return [], []
     old, new = set(before), set(now)
     if [item for item in before if item in new] != [item for item in now if item in old]:
-        # What was above something may be below it now.
+        # The order changed: an item that was above another may be below it now. Draw all items again.
         old = set()
     stays = [item in old for item in now]
     # Hundreds of items are compared at each movement: all at once, by the columns of their areas.
@@ -188,7 +188,7 @@ def _restored(base: Words | int, area: Area) -> list[Words]:
 
 
 def uncovered(area: Area, items: Sequence[Item]) -> Area:
-    """An area without what solid items cover along its whole right or lower edge."""
+    """An area without the strips along its whole right or lower edge that solid items cover."""
     for _ in range(2):
         for item in items:
             edge = item.area

@@ -1,4 +1,4 @@
-"""Widgets: values that stand for what a user can point at on a screen, in a menu or beside it.
+"""Widgets: the things that a user can point at on a screen, in a menu or beside it, as values.
 
 A widget knows its area, how it looks, and what a pick or a drag on it does. A widget holds no state of its
 own: screens make their widgets from the scene, once for an event.
@@ -91,11 +91,11 @@ class Widget:
         return placed
 
     def items(self, lit: bool) -> list[Item]:
-        """The items that draw it; it is lit while the pointer is over it."""
+        """The items of the widget. With `lit`, the pointer is over it."""
         raise NotImplementedError
 
     def pick(self, place: Place) -> object:
-        """Do what a click or ENTER asks for."""
+        """Handle a click or ENTER."""
 
     def drag(self, start: Place, last: Place, place: Place) -> object:
         """Follow the pointer from `last` to `place`, in a drag that began at `start`."""
@@ -178,7 +178,7 @@ class Button(Widget):
 
 @dataclass(frozen=True)
 class Switch(Widget):
-    """A box that is full when something is on. Beside the box, a pick calls `choose`, if it is given."""
+    """A box that is full while `is_on`. Beside the box, a pick calls `choose`, if given."""
 
     is_on: bool = False
     flip: Callable[[], object] = lambda: None
@@ -265,6 +265,12 @@ class Choice(Widget):
         return self.choose(names[(names.index(self.present) + step) % len(names)])
 
 
+def page_choice(help: str, page: int, pages: int, turn: Callable[[int], object]) -> Choice:
+    """A row that turns pages, counted from 0; `turn` is called with the number of another page."""
+    names = [f"{number} of {pages}" for number in range(1, pages + 1)]
+    return Choice("page", help, names=names, present=names[page], choose=lambda name: turn(names.index(name)))
+
+
 @dataclass(frozen=True)
 class Entry(Widget):
     """A text that can be typed over, where there is a keyboard."""
@@ -315,7 +321,7 @@ VOWELS: Final = "aeiou"
 
 
 def short_label(label: str, most: int) -> str:
-    """A label with its longest words shortened, as far as needed for `most` characters, if that is possible.
+    """A label whose longest words are shortened until it has at most `most` characters, if possible.
 
     A shortened word ends in a consonant and a period.
 
@@ -339,7 +345,7 @@ def short_label(label: str, most: int) -> str:
 
 
 def short_name(name: str, most: int) -> str:
-    """A name of at most so many characters; of a longer one the middle is left out, as ends differ.
+    """A name of at most `most` characters. Longer names lose their middle, because their ends differ.
 
     >>> short_name("fender of the left door 12.obj", 16)
     'fender .. 12.obj'

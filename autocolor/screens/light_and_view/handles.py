@@ -40,7 +40,7 @@ class MovablePoint(NamedTuple):
 
     @property
     def label(self) -> str:
-        """Its name in the message line."""
+        """The name of the point in the message line."""
         if not self.light:
             return self.what
         if self.what == FLAP:
@@ -48,11 +48,11 @@ class MovablePoint(NamedTuple):
         return self.light if self.what == LIGHT else f"{self.light}: {self.what}"
 
     def point_in(self, scene: Scene, views: OrthographicViews) -> Vector | None:
-        """Where it is in a scene; None if the scene does not have it."""
+        """The place of the point in a scene; None if the scene does not have the point."""
         if self.what == EYE:
             return scene.view.eye
         if self.what == TARGET:
-            return target_in(scene)
+            return target_of(scene)
         light = next((each for each in scene.lights_in_world if each.name == self.light), None)
         if light is None or self.what == LIGHT:
             return None if light is None else light.position
@@ -63,7 +63,7 @@ class MovablePoint(NamedTuple):
         return arrow_end(views, light)
 
     def put(self, scene: Scene, point: Vector) -> Scene:
-        """The scene with it moved to a point. An end of a flap does not pass the other end."""
+        """The scene with the movable point at `point`. An end of a flap does not pass the other end."""
         if self.what == EYE:
             return scene.with_view(eye=point)
         if self.what == TARGET and scene.view.target is not None:
@@ -90,7 +90,7 @@ def movable_of(handle: Handle) -> MovablePoint:
 
 
 def handles_in(scene: Scene, views: OrthographicViews, chosen: str) -> list[Handle]:
-    """All handles. The chosen light or eye comes last: of handles at one place, the last is grabbed.
+    """All handles. The chosen light or eye is last: of handles at one place, the last is grabbed.
 
     `chosen` is the name of a light, or empty for the eye.
     """
@@ -136,12 +136,6 @@ def point_text(point: Vector) -> str:
     'x 4.02  y -6.1  z 5'
     """
     return "  ".join(f"{axis} {value:.6g}" for axis, value in zip(AXES, point, strict=True))
-
-
-def target_in(scene: Scene) -> Vector:
-    """The target of the view; without a target, the point of the line of sight as deep as the object."""
-    x, y, z = target_of(scene).tolist()
-    return x, y, z
 
 
 def _step(start: Vector, end: Vector) -> Vector:

@@ -1,7 +1,7 @@
 """The items of one of the three views: the object, the eye, and the lights with their numbers.
 
-Lines of one color are drawn together, and those that did not change are kept: what takes time is the number
-of instructions. What is chosen is yellow and lies over all others, the numbers over all lines.
+The number of instructions takes the time: so lines of one color are drawn together, and unchanged items are
+cached. The chosen eye or light is yellow and above all others; the numbers are above all lines.
 """
 
 from __future__ import annotations
@@ -18,13 +18,14 @@ from autocolor.checks import Vector
 from autocolor.scene.lights import Light
 from autocolor.scene.scene import Scene
 from autocolor.scene.view import View
-from autocolor.screens.light_and_view.object_lines import Cached, ObjectStrokes
+from autocolor.screens.light_and_view.object_lines import ObjectStrokes
 from autocolor.screens.light_and_view.orthographic_views import (
     AXES,
     PICTURE_ASPECT,
     OrthographicViews,
     ViewSide,
 )
+from autocolor.screens.screen import Cached
 from autocolor.widgets.items import (
     BLUE,
     CHARACTER,
@@ -36,6 +37,7 @@ from autocolor.widgets.items import (
     YELLOW,
     Area,
     Item,
+    area_of,
     between,
     clipped,
     joined,
@@ -46,7 +48,7 @@ from autocolor.widgets.items import (
 )
 from ramtek_emu import instructions
 
-# Arrows on the screen: a shaft and a head that is the same size however long the shaft is.
+# Arrows on the screen: a shaft, and a head whose size does not depend on the shaft.
 
 HEAD: Final = 7.0
 """Assumed: the length of the head in elements; at most half of the arrow."""
@@ -55,7 +57,7 @@ HALF_WIDTH: Final = 0.45
 """Assumed: how far the head opens to each side, as a fraction of its length."""
 
 SHORTEST: Final = 3.0
-"""Assumed: an arrow that is shorter, in elements, has no head: it points at the viewer or away."""
+"""Assumed: a shorter arrow, in elements, has no head: it points at the viewer or away."""
 
 
 def arrow(start: tuple[float, float], end: tuple[float, float]) -> Floats:
@@ -83,7 +85,7 @@ def arrow(start: tuple[float, float], end: tuple[float, float]) -> Floats:
 
 LIDS: Final = np.array([(-7, 0), (-3, -3), (3, -3), (7, 0), (3, 3), (-3, 3), (-7, 0)], np.float64)
 PUPIL: Final = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1), (-1, -1)], np.float64)
-"""The eye: positions relative to its own, joined by strokes."""
+"""The eye: positions relative to the eye's position, joined by strokes."""
 
 
 class EyeMarks(NamedTuple):
@@ -97,11 +99,11 @@ class EyeMarks(NamedTuple):
 def eye_marks(
     views: OrthographicViews, side: ViewSide, view: View, target: Vector, aspect: float = PICTURE_ASPECT
 ) -> EyeMarks:
-    """The marks of a view in one of the three, clipped by its area.
+    """The marks of the eye and its view in one of the three views, clipped by its area.
 
-    `target` is the point at which the arrow ends: that of the view, or one in its direction. `aspect` is the
-    width of the picture over its height. The picture is drawn as deep as the target: a pyramid with the eye
-    as its top.
+    The arrow ends at `target`: the view's target, or a point in its direction. `aspect` is the width of the
+    picture over its height. The picture is drawn at the depth of the target, as the base of a pyramid with
+    the eye at its top.
     """
     at = views.position(side, view.eye)
     corners = views.positions(side, picture_corners(view, target, aspect))
@@ -112,7 +114,7 @@ def eye_marks(
 
 
 def picture_corners(view: View, target: Vector, aspect: float = PICTURE_ASPECT) -> Floats:
-    """The points that are seen at the corners of the picture, (4, 3), as deep as a point before the eye.
+    """The points at the corners of the picture, (4, 3), at the depth of the target.
 
     They run around the picture from the upper left corner.
     """
@@ -126,23 +128,23 @@ def picture_corners(view: View, target: Vector, aspect: float = PICTURE_ASPECT) 
 # The outline of a light's cone as it is seen in one of the three views.
 #
 # The cone is drawn as far as the end of the arrow: its rim is a circle of points at that distance from the
-# light. Seen from the side its outline is two lines, from the light to where they touch the rim; seen along
-# the axis, from within the cone, it is the rim alone, an ellipse.
+# light. Seen from the side, the outline is two lines from the light that touch the rim; seen along the axis,
+# from within the cone, it is the rim alone, an ellipse.
 
 RIM_SIDES: Final = 36
 """Assumed: strokes of an ellipse."""
 
 
 def cone_outline(views: OrthographicViews, side: ViewSide, light: Light, end: Vector) -> tuple[Floats, ...]:
-    """The outline of the cone of a light that has one, as polylines, each (positions, 2).
+    """The outline of the cone of a light, as polylines, each (positions, 2). The light must have a cone.
 
-    `end` is the end of its arrow. A cone of more than 90 degrees opens behind the light, and one of 180 holds
-    everything and has no outline.
+    `end` is the end of its arrow. A cone of more than 90 degrees opens behind the light. A cone of 180
+    degrees contains all points and has no outline.
 
     In the view, the rim is an ellipse whose half axes are r |cos F| along the axis of the cone and r across
     it, at the distance l sin F from the light: F is the angle between the axis and the direction of looking,
-    l and r are the height of the cone and the radius of its rim. The tangents from the light to it exist
-    where F is larger than the cone angle.
+    l and r are the height of the cone and the radius of its rim. Tangents from the light to the ellipse exist
+    if F is larger than the cone angle.
     """
     assert light.cone_angle is not None
     assert light.axis is not None
@@ -158,8 +160,10 @@ def cone_outline(views: OrthographicViews, side: ViewSide, light: Light, end: Ve
     distance, half = height * sine, radius * cosine
     if abs(distance) <= half:
         turns = np.linspace(0, 2 * math.pi, RIM_SIDES + 1)
-        one, other = _perpendicular(axis)
-        rim = np.cos(turns)[:, None] * one + np.sin(turns)[:, None] * other
+        # Two unit vectors that are perpendicular to the axis and to each other.
+        first = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
+        first /= np.linalg.norm(first)
+        rim = np.cos(turns)[:, None] * first + np.sin(turns)[:, None] * np.cross(axis, first)
         return (views.positions(side, position + height * axis + radius * rim),)
 
     # The tangents touch the ellipse on the polar line of the light.
@@ -176,27 +180,20 @@ def cone_outline(views: OrthographicViews, side: ViewSide, light: Light, end: Ve
     return tuple(lines)
 
 
-def _perpendicular(axis: Floats) -> tuple[Floats, Floats]:
-    """Two unit vectors that are perpendicular to a unit vector and to each other."""
-    one = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
-    one /= np.linalg.norm(one)
-    return one, np.cross(axis, one)
-
-
 # The marks of a light in the three views: its cross, the arrow to its aim, its cone and its flaps.
 #
 # Paper: Figure 5, "the position and direction of each light. Point source lights would be shown with only a
 # cross at the light position".
 
 CROSS: Final = np.array([(-4, 0, 4, 0), (0, -4, 0, 4)], np.float64)
-"""The cross: strokes relative to its position."""
+"""The cross: strokes relative to the light's position."""
 
 DIRECTION_LENGTH: Final = 40.0
-"""Assumed: how long the arrow of a light with a direction and no aim is, in elements."""
+"""Assumed: the length of the arrow of a light with a direction and no aim, in elements."""
 
 
 class LightMarks(NamedTuple):
-    """The strokes of the cross, the arrow and the cone of a light, each (n, 4); n = 0 for what it lacks."""
+    """The strokes of the cross, the arrow and the cone of a light, each (n, 4); n is 0 if there is none."""
 
     cross: Floats
     arrow: Floats
@@ -204,7 +201,7 @@ class LightMarks(NamedTuple):
 
 
 class FlapMark(NamedTuple):
-    """The line of one end of a flap: its axis, 0 to 2, its end, whether it is on, and its stroke, (1, 4)."""
+    """The line of an end of a flap. `axis` is 0 to 2, `on` is the flap's switch, `stroke` is (1, 4)."""
 
     axis: int
     end: str
@@ -213,7 +210,7 @@ class FlapMark(NamedTuple):
 
 
 def arrow_end(views: OrthographicViews, light: Light) -> Vector | None:
-    """The point at which the arrow of a light ends: its aim, or one in its direction; None without either."""
+    """The end of a light's arrow: its aim, or a point in its direction; None without either."""
     if light.aim is not None or light.axis is None:
         return light.aim
     x, y, z = light.position
@@ -222,7 +219,7 @@ def arrow_end(views: OrthographicViews, light: Light) -> Vector | None:
 
 
 def light_marks(views: OrthographicViews, side: ViewSide, light: Light) -> LightMarks:
-    """The marks of a light in one of the views, clipped by its area; the flaps are marked on their own."""
+    """The marks of a light in one of the views, clipped by its area, without its flaps."""
     at = views.position(side, light.position)
     end = arrow_end(views, light)
     shaft = cone = np.empty((0, 4))
@@ -237,8 +234,8 @@ def light_marks(views: OrthographicViews, side: ViewSide, light: Light) -> Light
 def flap_marks(views: OrthographicViews, side: ViewSide, light: Light) -> tuple[FlapMark, ...]:
     """The ends of a light's flaps that one of the views shows, as lines across its area.
 
-    A view shows the flaps of the two coordinates that it shows. An end at infinity has no line, nor has one
-    outside of the area. Paper: Figure 9.
+    A view shows the flaps of its two coordinates. An end at infinity or outside of the area has no line.
+    Paper: Figure 9.
     """
     area, marks = side.area, []
     for axis in (side.right, side.up):
@@ -259,7 +256,7 @@ def flap_marks(views: OrthographicViews, side: ViewSide, light: Light) -> tuple[
     return tuple(marks)
 
 
-# The numerals beside the lights in the three views, each where it hides as little as can be.
+# The numerals beside the lights in the three views, at the places where they hide least.
 
 REACH: Final = 4
 """The elements or lines from the middle of a cross to its ends."""
@@ -268,10 +265,10 @@ AWAY: Final = 2
 """Assumed: the elements or lines between a cross and its numeral."""
 
 NEAR_ARROW: Final = math.cos(math.radians(50))
-"""Assumed: a place within 50 degrees of the arrow of its light is taken only if the others are worse."""
+"""Assumed: a place within 50 degrees of the light's arrow is taken only if all other places are worse."""
 
 PLACES: Final = ((1, -1), (-1, -1), (1, 1), (-1, 1), (1, 0), (-1, 0), (0, -1), (0, 1))
-"""The places around a cross, to the right and down, from the one that is preferred."""
+"""The places around a cross, to the right and down, in order of preference."""
 
 
 class Cross(NamedTuple):
@@ -302,17 +299,14 @@ class Cross(NamedTuple):
 
 
 class Numeral(NamedTuple):
-    """A cross in an area, and where its numeral stands."""
+    """A cross, and the area of its numeral."""
 
     cross: Cross
     area: Area
 
 
 def numerals(crosses: Sequence[Cross], area: Area, taken: Sequence[Area]) -> list[Numeral]:
-    """The numerals of the crosses that are within an area, in their order.
-
-    `taken` are areas that should stay free, as far as can be.
-    """
+    """The numerals of the crosses within an area, in order; `taken` areas stay free if possible."""
     seen = [cross for cross in crosses if area.has(cross.element, cross.line)]
     filled = [*taken, *[cross.area for cross in seen]]
     placed = []
@@ -339,7 +333,7 @@ Numbered = tuple[int, Light]
 
 
 class SideItems:
-    """The items of one of the views, which are made anew as far as something changed."""
+    """The items of one of the views. Unchanged items are cached."""
 
     def __init__(self, side: ViewSide) -> None:
         self._side = side
@@ -362,8 +356,8 @@ class SideItems:
     ) -> list[Item]:
         """The items of a scene, from the lowest to the highest.
 
-        `target` is that of the view, `chosen` the name of a light, empty for the eye, and `moved` a point
-        that is being placed, through which lines run across the views.
+        `target` is the view's target, `chosen` the name of a light, or empty for the eye. Lines run across
+        the views through `moved`, a point that is being placed.
         """
         side, view = self._side, scene.view
         in_world = self._lights.of(lambda: scene.lights_in_world, scene.lights, scene.view)
@@ -377,7 +371,8 @@ class SideItems:
             return still_items(views, side, eye, strokes, tables, bool(ours))
 
         def above() -> list[Item]:
-            return [item for _, light in ours for item in chosen_items(views, side, light)] or eye_items(eye)
+            light_items = [item for _, light in ours for item in chosen_items(views, side, light)]
+            return light_items or drawn_items({YELLOW: [eye.direction, eye.eye]})
 
         return [
             self._label,
@@ -390,9 +385,9 @@ class SideItems:
     def _numeral_items(
         self, views: OrthographicViews, view: View, others: Sequence[Numbered], ours: Sequence[Numbered]
     ) -> list[Item]:
-        """The numbers of the lights. That of the chosen one makes way for the others, which stay in place."""
+        """The numerals of the lights. The chosen light's makes way for the others, which stay in place."""
         side = self._side
-        taken = [self._label.area, area_around(joined(LIDS + views.position(side, view.eye)))]
+        taken = [self._label.area, area_of(LIDS + views.position(side, view.eye))]
 
         def compute() -> list[Numeral]:
             return numerals([cross_of(views, side, *each) for each in others], side.area, taken)
@@ -415,7 +410,7 @@ def still_items(
     lights: Sequence[Light],
     has_eye: bool,
 ) -> list[Item]:
-    """The object, the edges of the picture, and what is not chosen: some lights, and maybe the eye."""
+    """The object, the edges of the picture, and the lights and the eye that are not chosen."""
     layers: dict[int, list[Floats]] = {
         SLATE: [strokes.stage, eye.picture],
         GRAY: [strokes.features],
@@ -431,13 +426,8 @@ def still_items(
     return drawn_items(layers)
 
 
-def eye_items(eye: EyeMarks) -> list[Item]:
-    """The eye that is chosen, and its direction."""
-    return drawn_items({YELLOW: [eye.direction, eye.eye]})
-
-
 def chosen_items(views: OrthographicViews, side: ViewSide, light: Light) -> list[Item]:
-    """The light that is chosen, with its flaps."""
+    """The chosen light, with its flaps."""
     layers: dict[int, list[Floats]] = {GRAY: [], YELLOW: []}
     for mark in flap_marks(views, side, light):
         layers[YELLOW if mark.on else GRAY].append(mark.stroke)
@@ -451,21 +441,21 @@ def numeral_item(numeral: Numeral, word: int) -> Item:
 
 
 def cross_of(views: OrthographicViews, side: ViewSide, number: int, light: Light) -> Cross:
-    """Where a light is in one of the views, and where its arrow points."""
+    """The cross of a light in one of the views, with the direction of its arrow."""
     element, line = views.position(side, light.position)
     end, arrow = arrow_end(views, light), (0.0, 0.0)
     if end is not None:
         to_element, to_line = views.position(side, end)
         right, down = to_element - element, to_line - line
         length = math.hypot(right, down)
-        # An arrow that points at the viewer or away is in no place's way.
+        # An arrow that points at the viewer or away covers no place.
         if length > SHORTEST:
             arrow = right / length, down / length
     return Cross(number, round(element), round(line), arrow)
 
 
 def lines_across(views: OrthographicViews, side: ViewSide, point: Vector) -> Item:
-    """Thin lines through a point, which run on in the view beside or above."""
+    """Thin lines through a point, which continue in the views beside and above."""
     area = side.area
     element, line = views.position(side, point)
     upright = joined([(element, area.top), (element, area.bottom)])
@@ -474,17 +464,11 @@ def lines_across(views: OrthographicViews, side: ViewSide, point: Vector) -> Ite
 
 
 def drawn_items(layers: Mapping[int, Sequence[Floats]]) -> list[Item]:
-    """Strokes that are clipped already, by their words, each with the area that they need."""
+    """The items of clipped strokes, by their words."""
     items = []
     for word, parts in layers.items():
         strokes = together(parts)
         if len(strokes):
             stream = instructions.write_segments(rounded(strokes), word).tobytes()
-            items.append(Item(area_around(strokes), stream))
+            items.append(Item(area_of(strokes.reshape(-1, 2)), stream))
     return items
-
-
-def area_around(strokes: Floats) -> Area:
-    """The pixels around some strokes, at least one."""
-    low, high = rounded(strokes.min(axis=0)).tolist(), rounded(strokes.max(axis=0)).tolist()
-    return Area(min(low[0], low[2]), min(low[1], low[3]), max(high[0], high[2]), max(high[1], high[3]))

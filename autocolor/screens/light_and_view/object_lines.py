@@ -1,15 +1,14 @@
-"""The lines of the object in the views of the light and view screen; what is costly is kept.
+"""The lines of the object in the views of the light and view screen, computed once for a mesh.
 
-The edges are drawn at once, and those that are hidden left out later, when there is time: that takes longer
-than a page should. Of a stage, such as a floor, the features alone are drawn.
+All edges are drawn at once. Hidden edges are left out later, when there is time: finding them takes longer
+than a page should. A stage, such as a floor, is drawn by its features alone.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from operator import is_
-from typing import Final, Generic, NamedTuple, TypeVar
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -23,43 +22,43 @@ from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Part
 from autocolor.scene.view import View
 from autocolor.screens.light_and_view.orthographic_views import SIDES, OrthographicViews, ViewSide
+from autocolor.screens.screen import Cached
 from autocolor.visibility.camera import NEAR, rotated
 from autocolor.visibility.projection import focal_length
 from autocolor.visibility.visible_points import POINT, VisiblePoints
 from autocolor.visibility.visible_surfaces import visible_surfaces
 from autocolor.widgets.items import Area, between, clipped, drawn
 
-# Leaving out the edges that are hidden, by the depths of what is visible in a picture.
+# Leaving out hidden edges, by the depths of the visible points of a picture.
 #
-# An edge of the object belongs to what is visible, or lies behind it: three points of it are compared with
-# the farthest that is visible at the pixels around them. Assumed: an edge is drawn as a whole or not at
-# all.
+# Three points of an edge are compared with the farthest visible point at the pixels around them. Assumed: an
+# edge is drawn as a whole or not at all.
 
 FAR_FIELD: Final = 0.5
 """Assumed: degrees of view of an eye so far away that it sees the object as an orthographic view shows it."""
 
 FINER: Final = 2
-"""Assumed: pixels to an element of a view in the raster that tells what is visible there."""
+"""Assumed: pixels to an element of a view in the raster that finds its visible points."""
 
 DEPTH: Final = POINT.start + 2
-"""The row of visible points that has their depth."""
+"""The row of the visible points' depths."""
 
 TESTED: Final = (0.2, 0.5, 0.8)
-"""Assumed: the points of an edge that are looked at, as fractions of it; two of them must be visible."""
+"""Assumed: fractions of an edge at which its points are tested. Two of three points must be visible."""
 
 BEHIND: Final = 4e-3
-"""Assumed: how far behind what is visible a point still belongs to it, as a fraction of the object's radius.
+"""Assumed: how far behind a visible point another point still counts as visible, in radii of the object.
 
-Looked at on two cars: a fourth of it and four times as much draw nearly the same edges.
+Looked at on two cars: a fourth of this and four times as much draw nearly the same edges.
 """
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class VisibleDepths(Immutable):
-    """The depths of what is visible in a picture: for each pixel, the farthest of the nine around it.
+    """The depths of a picture's visible points: at each pixel, the farthest of the nine pixels around it.
 
     `farthest` is (lines, elements) float32, relative to `middle` in camera space and in `unit`; it is
-    infinite at and beside the background. A point that is `behind` by less counts as visible.
+    infinite at and beside the background. A point at most `behind` farther away counts as visible.
     """
 
     view: View
@@ -89,10 +88,10 @@ def visible_depths(visible: VisiblePoints) -> VisibleDepths:
 def depths_toward(
     mesh: Mesh, side: ViewSide, part_numbers: Sequence[int] | None = None
 ) -> VisibleDepths | None:
-    """The depths of what one of the three views shows; None if there is nothing.
+    """The depths of the visible points in one of the three views; None without polygons.
 
-    The object fills the picture of an eye far away. With `part_numbers`, only these parts are there, so that
-    a stage hides nothing.
+    The object fills the picture of an eye far away. `part_numbers` leaves out all other parts, so that a
+    stage hides nothing.
     """
     alone = mesh
     if part_numbers is not None:
@@ -111,7 +110,7 @@ def depths_toward(
 
 
 def without_hidden(edges: Indices, coordinates: Floats, depths: VisibleDepths) -> Indices:
-    """Those of some edges, (n, 2) nodes, that are not hidden; `coordinates` is (nodes, 3)."""
+    """The edges that are not hidden. `edges` is (n, 2) nodes, `coordinates` (nodes, 3)."""
     starts, ends = (np.take(coordinates.T, nodes, axis=1) for nodes in edges.T)
     visible = [_are_visible(starts + at * (ends - starts), depths) for at in TESTED]
     visible_edges: Indices = edges[np.sum(visible, axis=0) >= 2]
@@ -133,11 +132,10 @@ def _are_visible(points: Floats, depths: VisibleDepths) -> Booleans:
     return visible
 
 
-# The edges of a mesh that are drawn for it: those that every view shows, and those that may be a
-# silhouette.
+# The edges of a mesh: features, which every view shows, and smooth edges, which may be a silhouette.
 #
-# Found once for a mesh. Nodes at the same place count as one, so that parts which repeat their nodes still
-# meet. An edge is given by two nodes, as one of its polygons numbers them.
+# They are computed once for a mesh. Nodes at the same place count as one node, so that parts which repeat
+# their nodes still meet. An edge is a pair of node numbers of its first polygon.
 
 DRAWN_CREASE: Final = 30.0
 """Assumed: degrees; a larger angle between polygons is drawn as a crease.
@@ -147,19 +145,19 @@ car of one part are in pieces, and with 60 gone. A cylinder of 12 sides has no l
 """
 
 MOST_FEATURES: Final = 1 << 15
-"""Assumed: of a mesh that is all creases, such as a noisy scan, only the longest edges are drawn."""
+"""Assumed: a mesh with more features, such as a noisy scan, is drawn by its longest features alone."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class MeshEdges(Immutable):
     """The edges of some polygons of a mesh, and the planes of these polygons.
 
-    `coordinates`, (nodes, 3), are those of the mesh, and polygons are rows of its polygon table. `features`,
-    (features, 2) intp, are the nodes of open edges, of creases and of edges between parts, and `smooth`,
-    (edges, 2), those of all other edges. `polygons`, (2, edges), are those at both sides of a smooth edge,
-    and `same_direction`, (edges,), tells where both run along it in the same direction, and so have opposite
-    winding. A point lies in the plane of a polygon where its dot product with the normal, (3, polygons), is
-    the offset, (polygons,).
+    `coordinates`, (nodes, 3), is the mesh's, and polygons are rows of its polygon table. `features`,
+    (features, 2) intp, has the nodes of open edges, of creases and of edges between parts; `smooth`,
+    (edges, 2), has the nodes of all other edges. `polygons`, (2, edges), are the two polygons at a smooth
+    edge. `same_direction`, (edges,), is whether both run along the edge in the same direction, and so have
+    opposite winding. A point is in the plane of a polygon if its dot product with the normal, (3, polygons),
+    is the offset, (polygons,).
     """
 
     coordinates: Floats
@@ -172,7 +170,7 @@ class MeshEdges(Immutable):
 
 
 class _Sides(NamedTuple):
-    """The sides of polygons, sorted so that those of an edge are neighbors.
+    """The sides of polygons, sorted so that all sides of an edge follow each other.
 
     Corner c of polygon p is c * polygons + p. `corners` and `forward` are (sides,): the corner that a side
     begins at, and whether it runs to a higher place. `starts` and `counts` are (edges,): the first side of
@@ -188,12 +186,12 @@ class _Sides(NamedTuple):
 def mesh_edges(
     mesh: Mesh, part_numbers: Sequence[int] | None = None, crease_angle: float = DRAWN_CREASE
 ) -> MeshEdges:
-    """The edges of the polygons of some parts of the mesh, or of all.
+    """The edges of the polygons of some parts of the mesh, or of all parts.
 
-    An edge where polygons meet at more than `crease_angle`, 0 to 90 degrees, is a crease. Which way the
-    polygons run does not matter. Where more than two meet, they are smooth if they lie in two planes that
-    continue each other, as those of a sheet whose polygons are there twice, once for each face. Polygons
-    without area have no edges. The lines of a stage are drawn apart: the features alone of its parts.
+    An edge where polygons meet at more than `crease_angle`, 0 to 90 degrees, is a crease. The winding
+    of polygons does not matter. An edge of more than two polygons is smooth if they lie in two planes that
+    continue each other, as in a sheet with two polygons at every place, one for each face. Polygons without
+    area have no edges.
     """
     parts, coordinate_rows, node_rows = mesh.part_numbers, mesh.coordinates.T, mesh.node_numbers.T
     normals = ScaledPolygons(coordinate_rows, node_rows).normals(np.arange(node_rows.shape[1]))
@@ -204,8 +202,8 @@ def mesh_edges(
     polygons = sides.corners % max(len(parts), 1)
     first = np.repeat(sides.starts, sides.counts)
 
-    # Compare each polygon of an edge with the first one: the cosine is 1 where it folds back onto the first,
-    # and -1 where it continues it, whatever their winding.
+    # Compare each polygon of an edge with the edge's first polygon: the cosine is 1 where it folds back onto
+    # the first, and -1 where it continues the first, whatever their winding.
     cosines = dot(np.take(normals, polygons.take(first), axis=1), np.take(normals, polygons, axis=1))
     np.negative(cosines, out=cosines, where=sides.forward != sides.forward.take(first))
     least_cosine = np.cos(np.radians(crease_angle)) - 1e-9
@@ -217,7 +215,7 @@ def mesh_edges(
     else:
         smooth = np.zeros(0, np.bool_)
 
-    # Of each smooth edge, take the first polygon and one that continues it.
+    # Take the first polygon of each smooth edge, and a polygon that continues it.
     edge = np.repeat(np.arange(len(sides.starts)), sides.counts)
     other = sides.starts.copy()
     other[edge[continues]] = np.flatnonzero(continues)
@@ -247,7 +245,7 @@ def _sides(places: Indices, has_edges: Booleans) -> _Sides:
 
 
 def _longest(edges: Indices, coordinates: Floats) -> Indices:
-    """The MOST_FEATURES longest of edges, (n, 2), in their order."""
+    """The longest edges of (n, 2), at most MOST_FEATURES, in their order."""
     if len(edges) <= MOST_FEATURES:
         return edges
     steps = np.abs(coordinates[edges[:, 0]] - coordinates[edges[:, 1]]).max(axis=1)
@@ -277,7 +275,7 @@ def perspective_strokes(coordinates: Floats, edges: Indices, view: View, area: A
 
 
 def _beyond(near: float, starts: Floats, ends: Floats) -> tuple[Floats, Floats]:
-    """What of each line from start to end, (3, n) in camera space, lies beyond the near plane."""
+    """The parts beyond the near plane of lines from starts to ends, (3, n) in camera space."""
     before = np.flatnonzero((starts[2] >= near) | (ends[2] >= near))
     starts, ends = starts[:, before], ends[:, before]
     step = ends - starts
@@ -287,19 +285,19 @@ def _beyond(near: float, starts: Floats, ends: Floats) -> tuple[Floats, Floats]:
     return np.where(starts[2] < near, crossings, starts), np.where(ends[2] < near, crossings, ends)
 
 
-# Silhouettes: the smooth edges of a mesh between a polygon that faces the viewer and one that does not.
+# Silhouettes: the smooth edges of a mesh between a polygon that faces the viewer and a polygon that does not.
 #
 # The viewer is far away in a direction, as in the three views, or an eye.
 
 EDGE_ON: Final = 1e-9
 """Assumed: a polygon seen under a smaller sine than this is edge-on, and does not face the viewer.
 
-Rounding would decide about the sides of a cylinder that is looked at along its axis.
+Otherwise rounding would decide about the sides of a cylinder seen along its axis.
 """
 
 
 def silhouette_toward(edges: MeshEdges, toward: Sequence[float]) -> Indices:
-    """The nodes of the silhouette for a viewer far away, (n, 2); `toward` is the unit vector to that."""
+    """The nodes of the silhouette for a viewer far away, (n, 2); `toward` is the unit vector to it."""
     return _between(edges, _heights(edges.normals, toward) > EDGE_ON)
 
 
@@ -318,10 +316,10 @@ def _heights(normals: Floats, vector: Sequence[float]) -> Floats:
 
 
 def _between(edges: MeshEdges, facing: Booleans) -> Indices:
-    """The smooth edges between a polygon that faces the viewer and one that does not.
+    """The smooth edges between a polygon that faces the viewer and a polygon that does not.
 
-    The front of one of two polygons of opposite winding continues the back of the other: a silhouette passes
-    between them where both face the viewer, or neither does.
+    If two polygons have opposite winding, the front of one continues the back of the other: a silhouette
+    passes between them if both face the viewer, or neither does.
     """
     one, other = edges.polygons
     differs = facing.take(one) ^ facing.take(other)
@@ -329,33 +327,10 @@ def _between(edges: MeshEdges, facing: Booleans) -> Indices:
     return np.take(edges.smooth, np.flatnonzero(differs), axis=0)
 
 
-Value = TypeVar("Value")
-
-
-class Cached(Generic[Value]):
-    """The last computed value, for as long as its sources are the same objects.
-
-    A scene shares with the scene before the edit all that the edit did not change, so nothing is compared by
-    value. A movement computes again only what moved.
-    """
-
-    def __init__(self) -> None:
-        self._sources: tuple[object, ...] | None = None
-        self._value: Value
-
-    def of(self, compute: Callable[[], Value], *sources: object) -> Value:
-        """The value of some sources, computed if one of them is another object than before."""
-        cached = self._sources
-        if cached is None or len(cached) != len(sources) or not all(map(is_, cached, sources)):
-            self._value = compute()
-            self._sources = sources
-        return self._value
-
-
 class ObjectStrokes(NamedTuple):
     """The strokes of an object in a view from pixel to pixel, each (n, 4).
 
-    They are those of the features of its stage, of its own features, and of its silhouette.
+    `stage` are the features of the stage's parts; features and silhouette are the object's own.
     """
 
     stage: Floats
@@ -364,7 +339,7 @@ class ObjectStrokes(NamedTuple):
 
 
 class _MeshLines(NamedTuple):
-    """The edges of a mesh with its parts; of each view, by its name, the features and the silhouette."""
+    """The edges of a mesh with its parts; `of_side` has the features and the silhouette in each view."""
 
     mesh: Mesh
     parts: tuple[Part, ...]
@@ -393,7 +368,7 @@ class ObjectLines:
         return self._strokes[side.name].of(strokes, edges, views)
 
     def leave_out_hidden(self, scene: Scene) -> bool:
-        """Leave out what is hidden in one view where that was not done; returns False if there is none."""
+        """Leave out the hidden edges of the next view; returns False if all views are done."""
         lines = self._of(scene)
         left = [side for side in SIDES if side.name not in lines.is_without_hidden]
         if not left:
@@ -412,7 +387,7 @@ class ObjectLines:
     def of_eye(self, scene: Scene, area: Area, visible: VisibleDepths | None = None) -> ObjectStrokes:
         """The lines as the eye sees them, in an area of the shape of the picture.
 
-        With the depths of what is visible in the picture, those that are hidden are left out.
+        Given the visible depths of the picture, hidden lines are left out.
         """
         lines = self._of(scene)
         coordinates, view = scene.mesh.coordinates, scene.view

@@ -1,8 +1,8 @@
-"""The top, front and side view of the light and view screen: which coordinates are at which position.
+"""The top, front and side view of the light and view screen: from coordinates to positions, and back.
 
 Paper: Figure 5, "By changing a position or direction in two of the three views, all three coordinates can be
-quickly changed without having to enter numeric coordinate values". The three views are a value with one
-scale, so that a point stands on the same column or line in two of them.
+quickly changed without having to enter numeric coordinate values". The three views share one scale, so that a
+point has the same column or line in two of them.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from autocolor.scene.scene import Scene
 from autocolor.screens.picture.picture_edits import target_of
 from autocolor.widgets.items import Area, between, clipped
 
-# Where the views of the light and view screen stand.
+# The areas of the views on the light and view screen.
 
 PICTURE_ASPECT: Final = 640 / 480
 """The width of a picture over its height. Paper: Figure 11, 640 x 480."""
@@ -33,8 +33,8 @@ FRONT_AREA: Final = Area(0, 232, 247, 455)
 SIDE_AREA: Final = Area(256, 232, 503, 455)
 """The quarters of a work area of 504 x 464, on a grid of 8.
 
-Assumed: the top view is above the front view, and the side view beside it, as on an engineering drawing; the
-fourth quarter is that of DISPLAY VIEW. Eight lines are left free at the bottom.
+Assumed: as on an engineering drawing, the top view is above the front view, and the side view beside it. The
+fourth quarter is for DISPLAY VIEW. Eight lines are left free at the bottom.
 """
 
 
@@ -54,13 +54,13 @@ FILLED: Final = 0.84
 """Assumed: the fraction of an area that the coordinates fill, with 16 elements or more left on all sides."""
 
 POINT: Final = 1e-9
-"""Assumed: coordinates that differ by less than this fraction of the largest are one point."""
+"""Assumed: points closer than this fraction of the largest coordinate are the same point."""
 
 FINEST: Final = 1e-11
 """Assumed: the least size of a pixel, as a fraction of the largest coordinate; 64 bits hold a hundredth."""
 
 COARSEST: Final = 1e30
-"""Assumed: the largest size of a pixel, in units: that of the largest coordinate."""
+"""Assumed: the largest size of a pixel, in units: the size of the largest coordinate."""
 
 SMALLEST: Final = 1e-30
 """Assumed: the least size of a pixel, in units."""
@@ -98,7 +98,7 @@ def side_at(element: float, line: float) -> ViewSide | None:
 
 @dataclass(frozen=True)
 class OrthographicViews:
-    """The coordinates in the middle of every area, and the one scale of all, in elements for each unit."""
+    """The coordinates in the middle of every area, and the scale of all views, in elements for each unit."""
 
     center: Vector
     scale: float
@@ -122,7 +122,7 @@ class OrthographicViews:
     def placed(self, side: ViewSide, point: Vector, element: int, line: int) -> Vector:
         """The point moved to a pixel of a view, which gives it the two coordinates that the view shows.
 
-        The third one is kept exactly, and so is one that is at this element or line already.
+        The third coordinate stays exactly, and so does a coordinate already at this element or line.
         Assumed: the coordinates are rounded to decimals that place them within a tenth of a pixel.
         """
         middle = side.area.middle
@@ -137,7 +137,7 @@ class OrthographicViews:
         return (moved[0], moved[1], moved[2])
 
     def _rounded(self, coordinate: float) -> float:
-        """The coordinate with as many decimals as tell tenths of a pixel, none too large; 0 has no sign."""
+        """The coordinate, bounded and rounded to decimals that tell tenths of a pixel; 0 has no sign."""
         rounded = round(coordinate, math.ceil(math.log10(5 * self.scale))) + 0.0
         return max(-LARGEST_COORDINATE, min(LARGEST_COORDINATE, rounded))
 
@@ -185,21 +185,21 @@ def fitted_views(points: Floats) -> OrthographicViews:
 
 
 def _scale_within(scale: float, center: Vector) -> float:
-    """The scale, but no pixel so small that coordinates can't tell it from the next, and none too large."""
+    """The scale within bounds: pixels are not too large, nor too small for coordinates to tell apart."""
     finest = max(SMALLEST, FINEST * max(map(abs, center)))
     return min(max(scale, 1 / COARSEST), 1 / finest)
 
 
-# The points of a scene that the three views show when they are scaled to all of it.
+# The points of a scene that the three views show when they are fitted to the whole scene.
 
 
 def shown_points(scene: Scene) -> Floats:
     """The ends of the object's bounding box, the eye and its target, and the lights and aims, (n, 3).
 
-    Lights that are switched off are among them. A stage, such as a floor, is not: it would make the object
-    small, and is drawn as far as it is in the views.
+    Lights that are switched off count, too. A stage, such as a floor, does not: it would make the object
+    small, and is drawn as far as it is within the views.
     """
-    points = [*object_bounds(scene.mesh, scene.parts), np.array(scene.view.eye), target_of(scene)]
+    points = [*object_bounds(scene.mesh, scene.parts), np.array(scene.view.eye), np.array(target_of(scene))]
     for light in scene.lights_in_world:
         points.append(np.array(light.position))
         if light.aim is not None:

@@ -1,7 +1,7 @@
-"""Direct handling of the chosen light in the picture: its highlight, and where its controls end.
+"""Handles of the chosen light in the picture: at its highlight, and along the rims of its controls.
 
-The highlight is dragged to the pixel where it is to be, and a rim to a pixel through which it is to go. The
-light follows; see `lighting.light_drags`.
+The user drags a highlight or a rim to a pixel, and the light is placed so that it goes there; see
+`lighting.picking`.
 """
 
 from __future__ import annotations
@@ -34,19 +34,19 @@ from autocolor.widgets.items import BLACK, SCREEN, YELLOW, Area, Item, area_of, 
 HIGHLIGHT: Final = "highlight"
 
 CELL: Final = 6
-"""Assumed: elements and lines of a cell in which a rim has one handle at most. So each place on a rim is
-within reach of one, and the rims of a light have some hundred."""
+"""Assumed: elements and lines of a cell, in which a rim has at most one handle. So every place on a rim is
+within reach of a handle, and the rims of a light have some hundred handles."""
 
 ARM: Final = 5
 """Elements or lines from the middle of the cross at a highlight to its ends."""
 
 DOTS: Final = 3
 PERIOD: Final = 5
-"""Of so many neighboring pixels of a rim, so many are drawn."""
+"""DOTS of PERIOD neighboring pixels of a rim are drawn."""
 
 
 class HandleKey(NamedTuple):
-    """What a handle moves of a light. The handles of a rim differ by line and element."""
+    """The part of a light that a handle moves. The handles of a rim differ by line and element."""
 
     light: str
     what: Literal["highlight"] | Rim
@@ -54,7 +54,7 @@ class HandleKey(NamedTuple):
 
 
 Source = tuple[Vector, Vector | None]
-"""Where the rays of a light come from: its position and, of one at infinity, its direction."""
+"""The source of a light's rays: its position, and the direction of a light at infinity."""
 
 
 class LightHandles:
@@ -65,9 +65,8 @@ class LightHandles:
         self._area = area
         self._has_rims = has_rims
         self._highlight: tuple[Source, VisiblePoints, str, tuple[int, int] | None] | None = None
-        """Where the rays of a light come from, the visible points, the chosen surface, and the line and
-        element of its highlight: those that it was placed at, which need not be searched and may be one of
-        several."""
+        """The source of a light, the visible points, the chosen surface, and the line and element of the
+        highlight. A placed highlight is at its pixel without a search: other pixels may be as bright."""
         self._rims: tuple[Light, VisiblePoints, Sequence[Handle], Sequence[Item]] | None = None
         """A light, the visible points, and the handles and marks at its rims."""
 
@@ -76,15 +75,15 @@ class LightHandles:
         light = self._seen_light()
         if light is None or self.session.moving:
             return ()
-        # Of several at the same distance the last one is taken.
+        # Of several handles at the same distance, the last is grabbed.
         return [*self._at_rims(light)[0], *self._at_highlight(light)]
 
     def items(self) -> Sequence[Item]:
         """The marks at the handles: dotted lines along the rims, and a cross at the highlight.
 
-        While something moves, the rims are left out, and a highlight that is not the one that is dragged: the
-        light itself shows where it is and ends, and the picture is not kept waiting. Measured on the coupe:
-        five rims take 8 of 20 ms, and a highlight a third of a light's drag.
+        While something moves, only a dragged highlight is marked: the light in the picture itself shows the
+        rest, and the picture comes sooner. Measured on the coupe: five rims take 8 of 20 ms, and a highlight
+        a third of a light's drag.
         """
         light = self._seen_light()
         if light is None:
@@ -97,7 +96,7 @@ class LightHandles:
         """Let the light follow a handle to a place. Raises UsageError on the background."""
         key, session = handle.key, self.session
         assert isinstance(key, HandleKey)
-        # What is beside the area is covered by the menu.
+        # The menu covers the places beside the area.
         element, line = min(element, self._area.right), min(line, self._area.bottom)
         scene, seen = session.scene, session.studio.seen_at(line, element)
         if key.what == HIGHLIGHT:
@@ -116,14 +115,14 @@ class LightHandles:
         session.tell(message_of(light, key.what))
 
     def _seen_light(self) -> Light | None:
-        """The chosen light where it is, if it is on and the finished picture of the scene is shown."""
+        """The chosen light in world coordinates, if it is on and the finished picture is shown."""
         session, light = self.session, self.session.chosen_light
         if light is None or not light.on or session.studio.is_coarse or session.comparing.is_on:
             return None
         return session.scene.light_in_world(light.name)
 
     def _at_highlight(self, light: Light) -> list[Handle]:
-        """The handle at the highlight on the chosen surface, else on any other, if it is in the area."""
+        """The handle at the highlight on the chosen surface, else on any surface, if it is in the area."""
         studio, surface = self.session.studio, self.session.surface_name
         points = studio.sight.points
         cached = self._highlight
@@ -157,7 +156,7 @@ class LightHandles:
 
 
 def rim_handles(light: str, rim: Rim, pixels: Indices) -> list[Handle]:
-    """Handles along the pixels of a rim, (n, 2) line and element, one in each cell that it runs through."""
+    """The handles along the pixels of a rim, (n, 2) line and element: a handle in each cell."""
     lines, elements = (pixels // CELL).T
     _, chosen = np.unique(lines * SCREEN.width + elements, return_index=True)
     label = f"end of the {name_of(rim)} of {light}"
@@ -192,14 +191,14 @@ def _source_of(light: Light) -> Source:
 
 
 def name_of(rim: Rim) -> str:
-    """What the message line calls what ends at a rim."""
+    """The name of a rim's control in the message line."""
     if rim == CONE:
         return "cone"
     return f"half-space {rim.half_space}" if isinstance(rim, Plane) else f"flap {rim[0]}, {rim[1]},"
 
 
 def message_of(light: Light, what: Literal["highlight"] | Rim) -> str:
-    """What the message line says of a light while something of it is placed."""
+    """The message while a part of a light is placed."""
     if what == HIGHLIGHT:
         places = zip("xyz", light.position, strict=True)
         return f"{light.name}: " + "  ".join(f"{axis} {place:.2f}" for axis, place in places)

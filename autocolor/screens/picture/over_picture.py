@@ -1,29 +1,31 @@
-"""Screens over the picture: pointing names what is seen and chooses it, dragging turns around the object.
+"""Screens over the picture: pointing names a surface and a part, a click chooses them, a drag orbits.
 
-The word that is read back from the display tells the surface and its level, as it did then; the polygon that
-is seen there tells the part.
+As in 1983, the word that is read back from the display gives the surface and its level; the polygon at the
+pixel gives the part.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from typing import ClassVar, NamedTuple
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from typing import Any, ClassVar, NamedTuple
 
 from autocolor.arrays import Bytes, Words
-from autocolor.mapping.display_image import DisplayImage
 from autocolor.mapping.legend import GROUND, INK, Legend, legend
+from autocolor.scene.surfaces import Paint
 from autocolor.screens.input import MIDDLE, Gesture, turn_between, wheel_ratio
 from autocolor.screens.picture.picture_edits import PictureEdits
-from autocolor.screens.screen import Screen
+from autocolor.screens.screen import Cached, Screen
 from autocolor.screens.session import Session
 from autocolor.widgets.items import Area, Item, filled, text
 from autocolor.widgets.menu import MENU
-from autocolor.widgets.widget import Choice
+from autocolor.widgets.rows import rows_of
+from autocolor.widgets.widget import Choice, Widget
 
 
 class OverPicture(Screen):
-    """A screen whose base is the picture at full size, or another one that is compared with it."""
+    """A screen whose base is the picture at full size, or the picture of the state to compare with."""
 
     shows_picture = True
     has_room_at_left: ClassVar[bool] = True
@@ -32,8 +34,9 @@ class OverPicture(Screen):
     def __init__(self, session: Session) -> None:
         super().__init__(session)
         self.edits = PictureEdits(session)
-        self._legend: tuple[DisplayImage, bool, Legend | None, Sequence[Item]] | None = None
-        """An image, whether its legend is beside the menu, that legend, and its items."""
+        self._items: Cached[Sequence[Item]] = Cached()
+        self._legend: Legend | None = None
+        """The legend that is shown."""
 
     def base(self) -> Words:
         image = self.session.comparing.image
@@ -43,11 +46,13 @@ class OverPicture(Screen):
         """The legend of a scalar."""
         image = self.session.comparing.image or self.session.studio.image
         is_beside_menu = self.has_menu or self.is_under_menu
-        if self._legend is None or self._legend[:2] != (image, is_beside_menu):
+
+        def draw() -> Sequence[Item]:
             end, at_left = (MENU.left, self.has_room_at_left) if is_beside_menu else (None, False)
-            drawn = legend(image, end, at_left)
-            self._legend = image, is_beside_menu, drawn, legend_items(drawn)
-        return self._legend[3]
+            self._legend = legend(image, end, at_left)
+            return legend_items(self._legend)
+
+        return self._items.of(draw, image, is_beside_menu)
 
     def loads(self) -> Sequence[tuple[int, Bytes]]:
         image = self.session.comparing.image
@@ -71,8 +76,7 @@ class OverPicture(Screen):
         session.tell(pointed.message)
 
     def _is_on_legend(self, gesture: Gesture) -> bool:
-        drawn = None if self._legend is None else self._legend[2]
-        return drawn is not None and drawn.has(gesture.element, gesture.line)
+        return self._legend is not None and self._legend.has(gesture.element, gesture.line)
 
     def drag(self, start: Gesture, last: Gesture, now: Gesture) -> None:
         if start.button == MIDDLE or start.shift:
@@ -86,7 +90,7 @@ class OverPicture(Screen):
         self.edits.move(wheel_ratio(gesture.steps))
 
     def _pointed(self, element: int, line: int) -> Pointed | None:
-        """What is seen at a place; None on the background, and where something else than the picture is."""
+        """The surface and part at a place; None on the background, and where an item covers the picture."""
         session = self.session
         studio, word = session.studio, session.word_at(element, line)
         name = session.surface_of(word)
@@ -106,7 +110,7 @@ class OverPicture(Screen):
 
 
 class Pointed(NamedTuple):
-    """A surface and a part that are pointed at, and what is read from the word there."""
+    """The surface and the part under the pointer, and the value of the word there, as text."""
 
     surface: str
     part: str
@@ -114,7 +118,7 @@ class Pointed(NamedTuple):
 
     @property
     def message(self) -> str:
-        """The same, as the message line says it."""
+        """The text for the message line."""
         names = " - ".join(dict.fromkeys(name for name in (self.part, self.surface) if name))
         return f"{names}, {self.read}"
 
@@ -127,8 +131,19 @@ def legend_items(legend: Legend | None) -> Sequence[Item]:
     return [*areas, *(text(each.text, each.left, each.top, INK, GROUND) for each in legend.labels)]
 
 
+def paint_rows(session: Session, paint: Paint) -> list[Widget]:
+    """The rows of the chosen surface's paint, without its two colors."""
+
+    def put(changes: Mapping[str, Any]) -> None:
+        session.paint(**changes)
+
+    rows = rows_of(paint, put, session.world, leave_out=("object_color", "light_color"))
+    # Shorten labels so that they fit beside their numbers.
+    return [replace(row, label=row.label.replace("percentage", "percent")) for row in rows]
+
+
 def surface_row(session: Session, help: str, choose: Callable[[str], object] | None = None) -> Choice:
-    """A row with the surfaces in use; `choose` is the session's own unless another is given."""
+    """A row with the surfaces in use; a choice goes to `choose`, or else to the session."""
     return Choice(
         "surface",
         help,

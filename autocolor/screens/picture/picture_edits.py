@@ -1,10 +1,10 @@
-"""Edits of the picture: what keys and the mouse change of the view, the lights and the paint of a surface."""
+"""Edits of the picture by keys and the mouse: of the view, the lights and the paint of a surface."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 
@@ -15,14 +15,14 @@ from autocolor.scene.scene import Exposure, Scene
 from autocolor.scene.view import View
 from autocolor.screens.session import Session
 
-# The object colors that a key goes through: those that surfaces are given in turn, and a surface's own.
+# The object colors that a key steps through: the default colors of new surfaces, and a surface's own color.
 
 
 def color_after(present: str, own: str, step: int) -> str:
     """The color that is `step` positions further than the present one.
 
-    The colors are OBJECT_COLORS, and before them the surface's own if it is none of these. A color that is
-    not among them is followed by the first one.
+    The colors are OBJECT_COLORS, after the surface's own color if that is not among them. The first color
+    follows a present color that is not among them.
 
     >>> color_after("#ff0000", "#ff0000", 1), color_after("#b3202c", "#ff0000", -1)
     ('#b3202c', '#ff0000')
@@ -46,7 +46,7 @@ SIDES: Final[dict[str, Vector | None]] = {
     "top": (0.0, 0.0, 1.0),
     "three quarters": None,
 }
-"""The directions toward the eye of the named views; that of three quarters is the one of a created view.
+"""The directions toward the eye of the named views. Three quarters is the direction of a created view.
 
 Assumed: as on an engineering drawing, x is to the right and z up in the front view, y to the right and z up
 in the side view, x to the right and y up in the top view.
@@ -55,7 +55,7 @@ in the side view, x to the right and y up in the top view.
 
 def turned(scene: Scene, right: float, up: float) -> View:
     """The view with the eye moved around the target by degrees to the right and up, at the same distance."""
-    target = target_of(scene)
+    target = np.array(target_of(scene))
     away = np.array(scene.view.eye) - target
     distance = float(np.linalg.norm(away)) or 1.0
     azimuth = _azimuth(scene.view, away) + math.radians(right)
@@ -82,16 +82,16 @@ def _azimuth(view: View, away: Floats) -> float:
 
 def moved(scene: Scene, ratio: float) -> View:
     """The view with the distance of the eye from the target multiplied by a ratio."""
-    target = target_of(scene)
+    target = np.array(target_of(scene))
     return scene.view.replace(eye=_vector(target + (np.array(scene.view.eye) - target) * ratio))
 
 
 def panned(scene: Scene, right: float, down: float, lines: int) -> View:
-    """The view moved sideways, so that what is at the target moves by elements and lines in the picture.
+    """The view moved sideways, so that the target point moves by elements and lines in the picture.
 
     `lines` is the number of lines of the picture.
     """
-    view, target = scene.view, target_of(scene)
+    view, target = scene.view, np.array(target_of(scene))
     eye = np.array(view.eye)
     axes = view.axes
     depth = float((target - eye) @ axes[2])
@@ -101,36 +101,31 @@ def panned(scene: Scene, right: float, down: float, lines: int) -> View:
 
 
 def seen_from(scene: Scene, side: str) -> View:
-    """A view of the object from one of `SIDES`, in which it fills the picture."""
+    """The upright view of the object from a side of `SIDES`, in which it fills the picture."""
     toward_eye = SIDES[side]
     if toward_eye is None:
         toward_eye = default_view(scene.object_coordinates).axes[2] * -1
-    view = View(_vector(np.array(toward_eye)), target=(0.0, 0.0, 0.0), field_of_view=scene.view.field_of_view)
+    eye, target = _vector(toward_eye), (0.0, 0.0, 0.0)
+    # The angle is 0, so that the view is upright, as on a drawing.
+    view = scene.view.replace(eye=eye, direction=None, target=target, angle=0.0)
     return framed(view, scene.object_coordinates)
 
 
-def target_of(scene: Scene) -> Floats:
-    """The point to orbit: the view's target, else the point of the line of sight as deep as the object."""
+def target_of(scene: Scene) -> Vector:
+    """The point to orbit: the view's target, else the point on the line of sight at the object's depth."""
     view = scene.view
     if view.target is not None:
-        return np.array(view.target)
+        return view.target
     low, high = object_bounds(scene.mesh, scene.parts)
     eye = np.array(view.eye)
     forward = view.axes[2]
     depth = float(((low + high) / 2 - eye) @ forward)
     least = float(np.linalg.norm(high - low)) / 2 or 1.0
-    return np.asarray(eye + forward * max(depth, least))
+    return _vector(eye + forward * max(depth, least))
 
 
-def _vector(values: Floats) -> Vector:
+def _vector(values: Floats | Vector) -> Vector:
     return (float(values[0]), float(values[1]), float(values[2]))
-
-
-class Hold(NamedTuple):
-    """The exposure before it was held, and the one that holds it."""
-
-    before: Exposure
-    held: Exposure
 
 
 class PictureEdits:
@@ -138,9 +133,10 @@ class PictureEdits:
 
     def __init__(self, session: Session) -> None:
         self.session = session
-        self._hold: Hold | None = None
+        self._exposures: tuple[Exposure, Exposure] | None = None
+        """The exposure before `switch_exposure` held it, and the exposure that holds."""
         self._own_colors: dict[str, str] = {}
-        """The object colors that surfaces had before they got others by a key, by the surface's name."""
+        """The object colors of surfaces before a key changed them, by the surface's name."""
 
     def look(self, view: View) -> None:
         """Change the view."""
@@ -158,9 +154,8 @@ class PictureEdits:
         """Move the picture by elements and lines."""
         self.look(panned(self.session.scene, right, down, len(self.session.studio.words)))
 
-    def see_from(self, number: int) -> None:
-        """Look at the object from one of the sides that have names, counted from 0."""
-        side = list(SIDES)[number]
+    def see_from(self, side: str) -> None:
+        """Look at the object from a side of `SIDES`."""
         view = seen_from(self.session.scene, side)
         self.look(view)
         self.session.named_view = view, side
@@ -216,16 +211,16 @@ class PictureEdits:
         self.session.tell(f"light {light.name} {'off' if light.on else 'on'}")
 
     def switch_exposure(self) -> None:
-        """Hold the intensity ranges of the picture; if they were held by this, hold what was held before."""
+        """Hold the intensity ranges of the picture; if this method held them, restore the exposure before."""
         present = self.session.scene.exposure
-        if self._hold is not None and present == self._hold.held:
-            self.session.edit(self.session.scene.replace(exposure=self._hold.before))
+        if self._exposures is not None and present == self._exposures[1]:
+            self.session.edit(self.session.scene.replace(exposure=self._exposures[0]))
             self.session.tell("exposure released")
             return
         self.session.studio.hold_exposure()
         held = self.session.scene.exposure
         if held != present:
-            self._hold = Hold(present, held)
+            self._exposures = present, held
         self.session.tell("exposure held" if held != present else "there is nothing more to hold")
 
     def choose_surface(self, step: int) -> None:

@@ -60,7 +60,7 @@ class PictureScreen(OverPicture):
                 "A click looks from the next side; at the left end, from the side before.",
                 names=tuple(SIDES),
                 present=edits.side,
-                choose=self._see_from,
+                choose=edits.see_from,
             ),
             Steps(
                 "turn", "Turn around the object.", step=lambda n: edits.turn(n * TURN, 0), signs=("<", ">")
@@ -87,7 +87,11 @@ class PictureScreen(OverPicture):
                 "" if edits.chosen_parts else "click at a part in the picture first",
                 run=edits.rescale_part,
             ),
-            Button("watch", "Let the picture come in line by line, as in 1983.", run=self._watch),
+            Button(
+                "watch",
+                "Let the picture come in line by line, as in 1983.",
+                run=partial(setattr, session, "watches", True),
+            ),
             Gap("leave gap"),
             Button(
                 "leave", "Leave the program; you are asked first about unsaved changes.", run=session.leave
@@ -122,9 +126,3 @@ class PictureScreen(OverPicture):
     def _choose_light(self, name: str) -> None:
         self.session.choose_light(name)
         self.session.tell(f"light {name}")
-
-    def _watch(self) -> None:
-        self.session.watches = True
-
-    def _see_from(self, side: str) -> None:
-        self.edits.see_from(list(SIDES).index(side))

@@ -15,8 +15,8 @@ from autocolor.studio import Studio
 from ramtek_emu import HostPort, instructions
 
 PICTURE_SECONDS: Final = 6.0
-"""Assumed: how long a whole picture takes to come in; the paper tells no times. Long enough to see in which
-order lines are found, and short enough to wait for. A picture whose lines take longer comes in as fast as
+"""Assumed: how long a whole picture takes to come in; the paper gives no times. Long enough to see the order
+of the lines, and short enough to wait for. A picture whose lines take longer comes in as fast as
 they are computed: the coupe's 480 take a third of a second."""
 
 TICK_SECONDS: Final = 0.01
@@ -27,7 +27,7 @@ line waits for the projection, 3 and 34 ms; an edit of the view takes at least t
 MESSAGE: Final = "line by line; any key shows the whole picture"
 
 ENDING: Final = ("w", "escape")
-"""Keys that do nothing else while a picture comes in than to end that."""
+"""Keys that only show the whole picture at once while it comes in."""
 
 
 class Watching:

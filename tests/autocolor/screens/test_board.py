@@ -239,7 +239,7 @@ def test_a_number_is_typed_over_its_bar(viewer: Viewer, board: Board) -> None:
     assert viewer.studio.scene.ambient == 0.0
 
 
-def test_a_number_that_is_none_is_told_in_one_sentence_and_can_be_mended(
+def test_a_text_that_is_no_number_is_refused_and_can_be_corrected(
     viewer: Viewer, board: Board, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     before = viewer.studio.scene
@@ -259,7 +259,7 @@ def test_a_number_that_is_none_is_told_in_one_sentence_and_can_be_mended(
     assert not board.typing.is_on
 
 
-def test_a_click_elsewhere_takes_what_was_typed_unless_it_is_refused(viewer: Viewer, board: Board) -> None:
+def test_a_click_elsewhere_takes_the_typed_text_unless_it_is_refused(viewer: Viewer, board: Board) -> None:
     point(viewer, "hover", *middle_of(board, "ambient"))
     viewer.on_key("1", typed="1")
     point(viewer, "pick", 100, 100)

@@ -95,7 +95,7 @@ def test_a_rig_is_put_on_the_scene_and_fitted(hand: Hand) -> None:
     assert scene_of(hand) is before
 
 
-def test_what_cannot_be_read_is_refused_in_one_orange_sentence(hand: Hand) -> None:
+def test_an_unreadable_file_is_refused_in_an_orange_sentence(hand: Hand) -> None:
     before = scene_of(hand)
     pick(hand, "broken.obj")
     message, is_warning = told(hand)
@@ -151,7 +151,7 @@ def test_a_pointer_from_elsewhere_keeps_to_the_folder(hand: Hand, folder: Path) 
     assert list(rows_of(hand, recent=True)) == ["wall/scene.toml"]
 
 
-def test_what_became_a_link_out_after_it_was_listed_is_refused(hand: Hand, folder: Path) -> None:
+def test_a_listed_file_that_became_a_link_out_is_refused(hand: Hand, folder: Path) -> None:
     before = scene_of(hand)
     (folder / "broken.obj").unlink()
     (folder / "broken.obj").symlink_to(folder.parent / "outside" / "scene.toml")
@@ -171,13 +171,13 @@ def test_what_became_a_link_out_after_it_was_listed_is_refused(hand: Hand, folde
     assert scene_of(hand) is before
 
 
-def test_no_path_of_the_machine_is_told_elsewhere(hand: Hand, folder: Path) -> None:
+def test_a_user_elsewhere_sees_no_path_of_the_machine(hand: Hand, folder: Path) -> None:
     pick(hand, "deeper")
     shown = [row.help for row in rows_of(hand).values()]
     assert shown == ["Look into inside", "Open inside/deeper/triangle.obj"]
 
 
-def test_the_user_of_the_machine_goes_up_and_opens_what_was_opened_before(folder: Path) -> None:
+def test_the_user_of_the_machine_goes_up_and_opens_recent_files(folder: Path) -> None:
     note_file(folder.parent / "outside")
     note_file(folder / "gone")
     hand = hand_at(folder, "kept")
@@ -198,7 +198,7 @@ def test_home_is_the_folder_of_the_session(hand: Hand) -> None:
     assert "wall" in rows_of(hand)
 
 
-def test_saving_is_told_and_what_was_saved_is_listed(hand: Hand, folder: Path) -> None:
+def test_saving_shows_a_message_and_lists_the_saved_files(hand: Hand, folder: Path) -> None:
     hand.pick("save")
     message, is_warning = told(hand)
     assert not is_warning
@@ -215,13 +215,13 @@ def test_saving_is_told_and_what_was_saved_is_listed(hand: Hand, folder: Path) -
     assert (folder / "boxes-2.png").read_bytes() == (folder / "boxes.png").read_bytes()
 
 
-def test_what_is_saved_is_among_the_recent_files_at_once(hand: Hand, folder: Path) -> None:
+def test_a_saved_scene_is_a_recent_file_at_once(hand: Hand, folder: Path) -> None:
     before = set(rows_of(hand, recent=True))
     hand.pick("save")
     assert set(rows_of(hand, recent=True)) - before
 
 
-def test_what_is_saved_can_be_opened_again(hand: Hand, folder: Path) -> None:
+def test_a_saved_scene_can_be_opened_again(hand: Hand, folder: Path) -> None:
     hand.viewer.studio.recolor("low", object_color="#123456")
     hand.pick("save")
     opened = []
@@ -236,7 +236,7 @@ def test_what_is_saved_can_be_opened_again(hand: Hand, folder: Path) -> None:
 
 
 @pytest.mark.parametrize("number", [MOST_ROWS, MOST_ROWS + 1, 200])
-def test_a_folder_of_many_files_has_pages_that_show_each_of_them(tmp_path: Path, number: int) -> None:
+def test_the_pages_of_a_large_folder_show_all_files(tmp_path: Path, number: int) -> None:
     for each in range(number):
         (tmp_path / f"{each}.obj").touch()
     hand = hand_at(tmp_path, "file")
@@ -302,7 +302,7 @@ def test_the_scale_of_a_mesh_is_chosen_before_it_is_opened(hand: Hand) -> None:
     assert scene_of(hand).mesh.coordinates.max() == 100
 
 
-def test_the_scale_of_the_command_line_is_among_those_that_can_be_pointed_at(hand: Hand) -> None:
+def test_the_scale_of_the_command_line_can_be_pointed_at(hand: Hand) -> None:
     hand.viewer.session.place_meshes("y", 25.4)
     row = next(each for each in hand.viewer.board.layout.rows if each.label == "mesh scale")
     hand.click(row.area.right - 8, row.area.top + 8)

@@ -247,15 +247,6 @@ def moving(display: Ramtek9300) -> Callable[[Step], None]:
     return move
 
 
-@pytest.fixture
-def at_rest(monkeypatch: pytest.MonkeyPatch) -> None:
-    """No message passes while a session goes on."""
-    monkeypatch.setattr("autocolor.screens.session.MESSAGE_SECONDS", 1e9)
-    # No picture is coarse, however slow the machine is.
-    monkeypatch.setattr("autocolor.studio.perf_counter", lambda: 0.0)
-
-
-@pytest.mark.usefixtures("at_rest")
 @settings(max_examples=8, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(session=steps)
 def test_the_same_gestures_in_process_and_over_tcp_give_the_same_words(

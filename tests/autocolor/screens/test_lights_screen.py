@@ -242,7 +242,7 @@ def test_a_name_that_is_taken_is_refused(hand: Hand) -> None:
     assert light_of(hand) == KEY
 
 
-def test_a_rig_is_saved_beside_the_one_before(hand: Hand, tmp_path: Path) -> None:
+def test_a_rig_is_saved_beside_the_rig_before(hand: Hand, tmp_path: Path) -> None:
     hand.pick("save the rig")
     assert told(hand) == ("saved boxes-rig.toml", False)
     hand.pick("save the rig")
@@ -282,7 +282,7 @@ def test_a_light_is_linked_to_surfaces_by_pointing(hand: Hand) -> None:
     assert words_are_those_of_the_scene(hand)
 
 
-def test_a_light_is_kept_off_a_part_by_pointing(hand: Hand) -> None:
+def test_pointing_excludes_a_part_from_a_light(hand: Hand) -> None:
     hand.pick("except parts", BOX)
     hand.pick("  low", BOX)
     assert light_of(hand).links == Links(except_parts=("low",))
@@ -298,84 +298,84 @@ TOP = HalfSpace("top", (0.0, 0.0, 0.8), (0.0, 0.0, -1.0), edge_width=0.2)
 
 
 @pytest.fixture
-def hand_2(tmp_path: Path) -> Hand:
+def cut_hand(tmp_path: Path) -> Hand:
     return hand_at(tmp_path, "lights", boxes().with_light("key", half_spaces=(LEFT, TOP)))
 
 
-def plane(hand_2: Hand, name: str = "left") -> HalfSpace:
-    (found,) = (each for each in hand_2.viewer.studio.scene.light("key").half_spaces if each.name == name)
+def plane(cut_hand: Hand, name: str = "left") -> HalfSpace:
+    (found,) = (each for each in cut_hand.viewer.studio.scene.light("key").half_spaces if each.name == name)
     return found
 
 
-def test_each_half_space_has_a_switch_of_its_own(hand_2: Hand) -> None:
-    hand_2.pick("left", BOX)
-    assert plane(hand_2) == LEFT.replace(on=False)
-    assert plane(hand_2, "top") == TOP
-    assert words_are_those_of_the_scene(hand_2)
-    hand_2.pick("left", BOX)
-    assert plane(hand_2) == LEFT
+def test_each_half_space_has_a_switch_of_its_own(cut_hand: Hand) -> None:
+    cut_hand.pick("left", BOX)
+    assert plane(cut_hand) == LEFT.replace(on=False)
+    assert plane(cut_hand, "top") == TOP
+    assert words_are_those_of_the_scene(cut_hand)
+    cut_hand.pick("left", BOX)
+    assert plane(cut_hand) == LEFT
 
 
-def test_the_width_of_the_edge_is_set_along_a_bar(hand_2: Hand) -> None:
-    before = hand_2.viewer.studio.scene
-    hand_2.pull("left width", 0.0, 0.3)
-    assert 0 < plane(hand_2).edge_width < 1
-    assert plane(hand_2) == LEFT.replace(edge_width=plane(hand_2).edge_width)
-    assert words_are_those_of_the_scene(hand_2)
-    undo(hand_2)
-    assert hand_2.viewer.studio.scene is before
+def test_the_width_of_the_edge_is_set_along_a_bar(cut_hand: Hand) -> None:
+    before = cut_hand.viewer.studio.scene
+    cut_hand.pull("left width", 0.0, 0.3)
+    assert 0 < plane(cut_hand).edge_width < 1
+    assert plane(cut_hand) == LEFT.replace(edge_width=plane(cut_hand).edge_width)
+    assert words_are_those_of_the_scene(cut_hand)
+    undo(cut_hand)
+    assert cut_hand.viewer.studio.scene is before
 
 
-def test_a_half_space_that_is_carried_from_now_on_stays_where_it_is(hand_2: Hand) -> None:
-    words = hand_2.viewer.studio.words.copy()
-    hand_2.pick("left carried", BOX)
-    assert plane(hand_2).carried
-    placed = detached(plane(hand_2), hand_2.viewer.studio.scene.light("key"))
+def test_a_half_space_that_is_carried_from_now_on_stays_where_it_is(cut_hand: Hand) -> None:
+    words = cut_hand.viewer.studio.words.copy()
+    cut_hand.pick("left carried", BOX)
+    assert plane(cut_hand).carried
+    placed = detached(plane(cut_hand), cut_hand.viewer.studio.scene.light("key"))
     assert placed.point == pytest.approx(LEFT.point)
     assert placed.direction == pytest.approx(LEFT.direction)
-    assert (hand_2.viewer.studio.words != words).mean() < 1e-3
-    hand_2.pick("left carried", BOX)
-    assert not plane(hand_2).carried
-    assert plane(hand_2).point == pytest.approx(LEFT.point)
+    assert (cut_hand.viewer.studio.words != words).mean() < 1e-3
+    cut_hand.pick("left carried", BOX)
+    assert not plane(cut_hand).carried
+    assert plane(cut_hand).point == pytest.approx(LEFT.point)
 
 
-def test_turn_lights_the_other_side(hand_2: Hand) -> None:
-    hand_2.pick("turn")
-    assert plane(hand_2) == LEFT.replace(direction=(-1.0, 0.0, -0.2))
-    assert words_are_those_of_the_scene(hand_2)
+def test_turn_lights_the_other_side(cut_hand: Hand) -> None:
+    cut_hand.pick("turn")
+    assert plane(cut_hand) == LEFT.replace(direction=(-1.0, 0.0, -0.2))
+    assert words_are_those_of_the_scene(cut_hand)
 
 
-def test_remove_takes_one_away_and_says_so(hand_2: Hand) -> None:
-    before = hand_2.viewer.studio.scene
-    hand_2.pick("turn", 0.75)
-    assert hand_2.viewer.studio.scene.light("key").half_spaces == (TOP,)
-    assert told(hand_2) == ("half-space left removed; undo brings it back", False)
-    undo(hand_2)
-    assert hand_2.viewer.studio.scene is before
+def test_remove_takes_a_half_space_away_and_says_so(cut_hand: Hand) -> None:
+    before = cut_hand.viewer.studio.scene
+    cut_hand.pick("turn", 0.75)
+    assert cut_hand.viewer.studio.scene.light("key").half_spaces == (TOP,)
+    assert told(cut_hand) == ("half-space left removed; undo brings it back", False)
+    undo(cut_hand)
+    assert cut_hand.viewer.studio.scene is before
 
 
-def test_the_verbs_of_two_half_spaces_are_told_apart(hand_2: Hand) -> None:
-    hand_2.widget("turn")
-    keys = [each.key for each in hand_2.viewer.board.widgets()]
+def test_the_buttons_of_two_half_spaces_have_different_keys(cut_hand: Hand) -> None:
+    cut_hand.widget("turn")
+    keys = [each.key for each in cut_hand.viewer.board.widgets()]
     assert {"turn left", "turn top"} <= set(keys)
     assert len(set(keys)) == len(keys)
 
 
-def test_the_message_line_says_what_a_row_does(hand_2: Hand) -> None:
-    assert hint_of(hand_2, "left carried") == "Whether it moves and turns with the light, as barn doors do."
-    assert hint_of(hand_2, "turn") == "Light the other side of left; or remove left."
+def test_the_message_line_explains_a_row(cut_hand: Hand) -> None:
+    assert hint_of(cut_hand, "left carried") == "Whether it moves and turns with the light, as barn doors do."
+    assert hint_of(cut_hand, "turn") == "Light the other side of left; or remove left."
 
 
-def test_the_edge_of_a_half_space_is_dragged_in_the_picture(hand_2: Hand) -> None:
-    element, line = hand_2.handle("end of the half-space left of key")
-    seen = hand_2.viewer.studio.seen_at(line, element + 30)
+def test_the_edge_of_a_half_space_is_dragged_in_the_picture(cut_hand: Hand) -> None:
+    element, line = cut_hand.handle("end of the half-space left of key")
+    seen = cut_hand.viewer.studio.seen_at(line, element + 30)
     assert seen is not None
-    hand_2.drag((element, line), (element + 15, line), (element + 30, line))
-    moved = plane(hand_2)
+    cut_hand.drag((element, line), (element + 15, line), (element + 30, line))
+    moved = plane(cut_hand)
     assert moved.direction == LEFT.direction
     away = [a - b for a, b in zip(seen.point, moved.point, strict=True)]
     assert sum(a * b for a, b in zip(away, moved.direction, strict=True)) == pytest.approx(0, abs=1e-6)
-    assert told(hand_2)[0].startswith("left: x ")
+    assert told(cut_hand)[0].startswith("left: x ")
 
 
 PLACES = [(300, 300), (340, 330), (320, 200)]
@@ -425,13 +425,13 @@ def test_the_side_of_the_light_is_lit_in_whatever_order_the_points_are_picked(
     assert (np.array(light.position) - plane.point) @ plane.direction > 0
 
 
-def test_a_second_one_gets_another_name(hand: Hand) -> None:
+def test_a_second_half_space_gets_another_name(hand: Hand) -> None:
     pick_points(hand)
     pick_points(hand)
     assert [plane.name for plane in planes_of(hand)] == ["plane", "plane 2"]
 
 
-def test_the_background_is_no_point_and_the_next_one_is_asked_for_again(hand: Hand) -> None:
+def test_the_background_is_no_point_and_the_prompt_is_repeated(hand: Hand) -> None:
     hand.pick("half spaces")
     hand.click(5, 5)
     message = "no point is seen there; pick the first point of the plane on the object; Esc ends"
@@ -497,7 +497,7 @@ def test_points_behind_the_eye_have_no_place() -> None:
     assert places_of(points, view).tolist() == [[SCREEN.width / 2 - 0.5, SCREEN.height / 2 - 0.5]]
 
 
-def test_the_lit_side_is_that_of_the_light_else_that_of_the_eye() -> None:
+def test_the_lit_side_faces_the_light_or_else_the_eye() -> None:
     view = View((0.0, -4.0, 0.0), direction=(0.0, 1.0, 0.0))
     plane = HalfSpace("plane", (0.0, 0.0, 0.0), (0.0, -1.0, 0.0))
     for light, lit in (

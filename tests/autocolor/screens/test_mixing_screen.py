@@ -83,7 +83,7 @@ def test_the_small_picture_shows_the_chosen_surface_alone_in_its_words(hand: Pai
 
 
 @pytest.mark.parametrize("bar", BARS)
-def test_each_bar_sets_its_component_by_one_an_element(hand: PaintingHand, bar: str) -> None:
+def test_an_element_of_a_bar_is_one_value_of_its_component(hand: PaintingHand, bar: str) -> None:
     field, number = BARS[bar]
     for value in (0, 1, 143, 254, 255):
         hand.click(ZERO + value, line_of(hand, bar))
@@ -203,7 +203,7 @@ def test_a_surface_that_owns_nearly_all_words_is_at_most_a_level_off(
         assert bar_is_right(hand, most_off=1)
 
 
-def test_sixty_surfaces_are_chosen_one_after_the_other(tmp_path: Path) -> None:
+def test_sixty_surfaces_are_chosen_in_turn(tmp_path: Path) -> None:
     hand = mixing(boxes_scene(60), tmp_path)
     for number in range(1, 61):
         hand.pick("surface")
@@ -323,14 +323,14 @@ def test_a_pick_on_the_heading_chooses_the_color(viewer: Viewer) -> None:
     assert given == [OBJECT]
 
 
-def test_the_key_of_the_heading_is_not_that_of_the_row(viewer: Viewer) -> None:
+def test_the_heading_and_the_row_have_different_keys(viewer: Viewer) -> None:
     for title in (OBJECT, LIGHT_SOURCE):
         section = section_of(viewer, title, [])
         keys = [each.key for each in (*section.widgets(PAINT, is_chosen=False), section.row(PAINT))]
         assert len(set(keys)) == len(keys)
 
 
-def test_the_row_takes_what_is_typed_as_it_is(viewer: Viewer) -> None:
+def test_the_row_takes_the_typed_text_unchanged(viewer: Viewer) -> None:
     given: list[object] = []
     row = section_of(viewer, LIGHT_SOURCE, given).row(PAINT)
     assert (row.label, row.value) == ("light", "#ff0000")
@@ -351,7 +351,7 @@ def test_the_ramp_rises_to_the_right_from_the_first_step_to_the_last(viewer: Vie
 
 
 @pytest.mark.parametrize("value", [-1, 256, 0.5, float("inf"), float("nan")])
-def test_what_is_no_component_is_refused(value: float) -> None:
+def test_a_value_that_is_no_component_is_refused(value: float) -> None:
     with pytest.raises(UsageError) as told:
         whole("green", value)
     assert str(told.value) == f"green must be a whole number from 0 to 255, not {value:g}; type another"
@@ -362,7 +362,7 @@ COLORS = st.tuples(COMPONENTS, COMPONENTS, COMPONENTS)
 
 ALONE: Ranges = (("body", LevelRange(1, 1007)),)
 LARGE: Ranges = (("body", LevelRange(1, 1000)), ("glass", LevelRange(1001, 7)))
-SMALL_2: Ranges = (("glass", LevelRange(1, 600)), ("body", LevelRange(601, 407)))
+TWO_RANGES: Ranges = (("glass", LevelRange(1, 600)), ("body", LevelRange(601, 407)))
 
 
 @given(COLORS)
@@ -371,7 +371,7 @@ def test_step_k_of_a_ramp_is_k_of_63_parts_of_the_color_rounded_half_up(color: C
     assert ramp_of(color).tolist() == expected
 
 
-@pytest.mark.parametrize("ranges", [ALONE, LARGE, SMALL_2])
+@pytest.mark.parametrize("ranges", [ALONE, LARGE, TWO_RANGES])
 @pytest.mark.parametrize("swatches", [0, 12, 200])
 def test_all_words_differ_and_none_is_of_the_background_of_the_screens_or_shown(
     ranges: Ranges, swatches: int
@@ -387,7 +387,7 @@ def test_all_words_differ_and_none_is_of_the_background_of_the_screens_or_shown(
     assert not np.isin(words, palette.shown[own.first : own.last + 1]).any()
 
 
-@pytest.mark.parametrize("ranges", [ALONE, LARGE, SMALL_2])
+@pytest.mark.parametrize("ranges", [ALONE, LARGE, TWO_RANGES])
 def test_the_surface_is_shown_by_its_own_words_or_their_neighbors_and_the_others_by_the_ground(
     ranges: Ranges,
 ) -> None:
@@ -395,11 +395,11 @@ def test_the_surface_is_shown_by_its_own_words_or_their_neighbors_and_the_others
     levels = dict(ranges)["body"]
     own = np.arange(levels.first, levels.last + 1)
     off = np.abs(palette.shown[levels.first : levels.last + 1].astype(int) - own)
-    assert off.max() == (0 if ranges is SMALL_2 else 1)
+    assert off.max() == (0 if ranges is TWO_RANGES else 1)
     assert (np.delete(palette.shown, own) == NIGHT).all()
 
 
-@pytest.mark.parametrize("ranges", [ALONE, LARGE, SMALL_2])
+@pytest.mark.parametrize("ranges", [ALONE, LARGE, TWO_RANGES])
 def test_loads_put_each_color_into_its_word(ranges: Ranges) -> None:
     palette = palette_of(ranges, "body", 12)
     swatches = np.random.default_rng(1).integers(0, 256, (12, 3)).astype(np.uint8)
@@ -413,14 +413,14 @@ def test_loads_put_each_color_into_its_word(ranges: Ranges) -> None:
 
 
 def test_words_that_follow_each_other_are_one_load() -> None:
-    palette = palette_of(SMALL_2, "body", 12)
+    palette = palette_of(TWO_RANGES, "body", 12)
     assert len(palette.loads((0, 0, 0), (0, 0, 0), np.zeros((12, 3), np.uint8))) == 1
 
 
 def test_equal_surfaces_have_the_same_palette() -> None:
-    palette = palette_of(SMALL_2, "body", 12)
+    palette = palette_of(TWO_RANGES, "body", 12)
     assert isinstance(palette, Palette)
-    assert palette_of(tuple(SMALL_2), "body", 12) is palette
+    assert palette_of(tuple(TWO_RANGES), "body", 12) is palette
 
 
 def test_a_swatch_is_a_paint_for_the_chosen_color(hand: PaintingHand) -> None:
@@ -458,7 +458,7 @@ def test_a_finish_keeps_the_object_color(hand: PaintingHand, name: str) -> None:
     assert bar_is_right(hand)
 
 
-def test_what_was_mixed_is_among_the_recent_colors_when_the_mixing_ends(hand: PaintingHand) -> None:
+def test_mixed_colors_are_recent_colors_when_the_mixing_ends(hand: PaintingHand) -> None:
     hand.click(ZERO + 99, line_of(hand, "object, green"))
     hand.click(ZERO + 100, line_of(hand, "object, green"))
     assert recent_colors() == ()
@@ -474,14 +474,14 @@ def test_what_was_mixed_is_among_the_recent_colors_when_the_mixing_ends(hand: Pa
     assert hand.paint.object_color == (176, 100, 32)
 
 
-def test_a_color_that_was_undone_is_not_a_recent_one(hand: PaintingHand) -> None:
+def test_an_undone_color_is_no_recent_color(hand: PaintingHand) -> None:
     hand.click(ZERO + 99, line_of(hand, "object, green"))
     hand.pick(" ", 0.1)
     hand.leave()
     assert recent_colors() == ()
 
 
-def test_choosing_another_surface_ends_the_mixing_of_one(hand: PaintingHand) -> None:
+def test_choosing_another_surface_ends_the_mixing(hand: PaintingHand) -> None:
     hand.click(ZERO + 99, line_of(hand, "light source, green"))
     hand.pick("surface")
     assert recent_colors() == ((255, 99, 240),)
@@ -529,7 +529,7 @@ def test_nothing_is_drawn_or_taken_beyond_the_cells() -> None:
     assert found == []
 
 
-def test_a_drag_takes_each_cell_that_it_comes_to() -> None:
+def test_a_drag_takes_every_cell_that_it_reaches() -> None:
     found: list[int] = []
     field = field_of(20, found)
     for element in (180, 200, 220):

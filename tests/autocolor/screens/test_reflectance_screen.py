@@ -135,7 +135,7 @@ def test_colors_are_not_among_the_properties(hand: Hand) -> None:
     assert labels.isdisjoint(name.replace("_", " ") for name in vars(surface_of(hand).paint))
 
 
-def test_what_is_refused_is_told_and_changes_nothing(hand: Hand) -> None:
+def test_a_refused_edit_shows_a_message_and_changes_nothing(hand: Hand) -> None:
     hand.viewer.session.has_keyboard = True
     before = hand.viewer.studio.scene
     hand.move(560, hand.widget("diffuse").area.top + 4)

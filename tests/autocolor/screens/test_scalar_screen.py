@@ -165,51 +165,51 @@ def test_all_colors_and_none_are_reached_by_clicks() -> None:
 
 
 @pytest.fixture
-def hand_2(tmp_path: Path) -> Hand:
+def colored_hand(tmp_path: Path) -> Hand:
     return hand_at(tmp_path, "scalar", boxes().with_scalar(name="z", legend=False))
 
 
-def test_a_limit_is_set_along_the_own_range_in_one_step_without_rendering(hand_2: Hand) -> None:
-    before, picture = hand_2.viewer.studio.scene, hand_2.viewer.studio.picture
-    hand_2.pull("high limit", 0.9, 0.5)
-    limits = scalar_of(hand_2).limits
+def test_a_limit_is_set_along_the_own_range_in_one_step_without_rendering(colored_hand: Hand) -> None:
+    before, picture = colored_hand.viewer.studio.scene, colored_hand.viewer.studio.picture
+    colored_hand.pull("high limit", 0.9, 0.5)
+    limits = scalar_of(colored_hand).limits
     assert limits is not None
     assert limits[0] == 0.0
     assert limits[1] == pytest.approx(0.5, abs=0.02)
-    assert hand_2.viewer.studio.picture is picture
-    assert words_are_those_of_the_scene(hand_2)
-    undo(hand_2)
-    assert hand_2.viewer.studio.scene is before
+    assert colored_hand.viewer.studio.picture is picture
+    assert words_are_those_of_the_scene(colored_hand)
+    undo(colored_hand)
+    assert colored_hand.viewer.studio.scene is before
 
 
-def test_the_limits_do_not_cross(hand_2: Hand) -> None:
-    hand_2.pull("high limit", 0.9, 0.3)
-    hand_2.pull("low limit", 0.1, 0.9)
-    low, high = scalar_of(hand_2).limits or (0, 0)
+def test_the_limits_do_not_cross(colored_hand: Hand) -> None:
+    colored_hand.pull("high limit", 0.9, 0.3)
+    colored_hand.pull("low limit", 0.1, 0.9)
+    low, high = scalar_of(colored_hand).limits or (0, 0)
     assert low < high < low + 0.01
-    hand_2.pull("high limit", 0.5, 0.0)
-    low, high = scalar_of(hand_2).limits or (0, 0)
+    colored_hand.pull("high limit", 0.5, 0.0)
+    low, high = scalar_of(colored_hand).limits or (0, 0)
     assert low < high
 
 
-def test_the_own_range_is_held_and_followed_again(hand_2: Hand) -> None:
-    hand_2.pick("own range")
-    assert scalar_of(hand_2).limits == (0.0, 1.0)
-    hand_2.pull("low limit", 0.1, 0.5)
-    hand_2.pick("own range")
-    assert scalar_of(hand_2).limits is None
+def test_the_own_range_is_held_and_followed_again(colored_hand: Hand) -> None:
+    colored_hand.pick("own range")
+    assert scalar_of(colored_hand).limits == (0.0, 1.0)
+    colored_hand.pull("low limit", 0.1, 0.5)
+    colored_hand.pick("own range")
+    assert scalar_of(colored_hand).limits is None
 
 
-def test_limits_around_zero_are_as_far_as_the_farther_one(hand_2: Hand) -> None:
-    hand_2.pick("around zero")
-    assert scalar_of(hand_2).limits == (-1.0, 1.0)
+def test_limits_around_zero_are_as_far_as_the_farther_one(colored_hand: Hand) -> None:
+    colored_hand.pick("around zero")
+    assert scalar_of(colored_hand).limits == (-1.0, 1.0)
 
 
 def test_a_held_range_has_the_fewest_digits(tmp_path: Path) -> None:
     mesh = boxes().mesh
     tenths = Mesh(mesh.coordinates * 0.1, mesh.node_numbers)
-    hand_2 = hand_at(tmp_path, "scalar", scene_of(tenths).with_scalar(name="z", legend=False))
-    assert hand_2.viewer.studio.picture.scalar_limits == (0.0, float(np.float32(0.1)))
-    hand_2.pick("own range")
-    assert scalar_of(hand_2).limits == (0.0, 0.1)
-    assert words_are_those_of_the_scene(hand_2)
+    colored_hand = hand_at(tmp_path, "scalar", scene_of(tenths).with_scalar(name="z", legend=False))
+    assert colored_hand.viewer.studio.picture.scalar_limits == (0.0, float(np.float32(0.1)))
+    colored_hand.pick("own range")
+    assert scalar_of(colored_hand).limits == (0.0, 0.1)
+    assert words_are_those_of_the_scene(colored_hand)

@@ -3,7 +3,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from autocolor.screens.input import Gesture
-from autocolor.screens.screen import Handle, Screen
+from autocolor.screens.screen import Cached, Handle, Screen
 from tests.autocolor.screens.boards import desk_viewer
 
 
@@ -25,3 +25,31 @@ def test_a_plain_screen_shows_nothing_and_does_nothing(tmp_path: Path) -> None:
     assert not screen.key("a", "a")
     assert not screen.idle()
     assert session.scene is scene
+
+
+def test_a_cached_value_is_computed_once_for_the_same_sources() -> None:
+    cached: Cached[list[int]] = Cached()
+    source = [1]
+    first = cached.of(lambda: [2], source, "a")
+    assert first == [2]
+    assert cached.of(lambda: [3], source, "a") is first
+
+
+def test_another_source_computes_a_cached_value_again_even_if_it_is_equal() -> None:
+    cached: Cached[list[int]] = Cached()
+    source = [1]
+    cached.of(lambda: [2], source)
+    assert cached.of(lambda: [3], [1]) == [3]
+    assert cached.of(lambda: [4], [1], source) == [4]
+    assert cached.of(lambda: [5]) == [5]
+
+
+def test_a_failed_computation_is_not_cached() -> None:
+    cached: Cached[float] = Cached()
+    for _ in range(2):
+        try:
+            cached.of(lambda: 1 / 0, "a")
+        except ZeroDivisionError:
+            continue
+        raise AssertionError
+    assert cached.of(lambda: 1.0, "a") == 1.0

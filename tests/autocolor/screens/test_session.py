@@ -53,7 +53,7 @@ def test_a_message_stands_for_some_seconds(session: Session, monkeypatch: pytest
     assert not session.has_news
 
 
-def test_a_message_that_stands_does_so_until_the_next_one(
+def test_a_persistent_message_stays_until_the_next_message(
     session: Session, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     now = 100.0
@@ -85,7 +85,7 @@ def test_a_message_is_one_line_that_can_be_printed(session: Session) -> None:
     assert session.message == "opened a?b?[31m ??.obj"
 
 
-def test_what_is_chosen_is_always_there(session: Session) -> None:
+def test_a_chosen_surface_or_light_is_always_in_the_scene(session: Session) -> None:
     session.choose_light("fill")
     session.choose_surface("high")
     session.choose_surface("nowhere")
@@ -145,7 +145,7 @@ def test_the_world_knows_the_names_in_the_tables_as_they_are_now(session: Sessio
     assert of("lights")[-1] == "another"
 
 
-def test_the_world_is_that_of_the_object(session: Session) -> None:
+def test_the_world_has_the_bounds_of_the_object(session: Session) -> None:
     assert session.world.low == (0, 0, 0)
     assert session.world.high == (1, 1, 1)
     assert session.world is session.world
@@ -174,9 +174,7 @@ def test_a_rig_in_a_scene_file_of_any_other_name_is_put_on_the_scene(
     assert recent_files() == ()
 
 
-def test_a_rig_whose_lights_are_linked_to_what_is_not_there_is_put_on_the_scene_and_says_so(
-    session: Session, tmp_path: Path
-) -> None:
+def test_a_rig_loses_links_to_absent_rows_and_says_so(session: Session, tmp_path: Path) -> None:
     lamp = Light("lamp", (0, -2, 1), links=Links(only_surfaces=("wall",)))
     write_rig(tmp_path / "lamps.toml", wall_scene(lights=[lamp]))
     session.open(tmp_path / "lamps.toml")
@@ -218,19 +216,19 @@ def test_rigs_and_images_get_free_names(session: Session, tmp_path: Path) -> Non
         assert image.size == (640, 480)
 
 
-def test_what_cannot_be_saved_is_refused(session: Session) -> None:
+def test_saving_into_an_unwritable_place_is_refused(session: Session) -> None:
     session.folder = session.folder / "gone"
     for save in (session.save_rig, session.save_image):
         with pytest.raises(OutputError):
             save()
 
 
-def test_a_pointer_is_from_elsewhere_unless_told(session: Session) -> None:
+def test_a_pointer_is_from_elsewhere_by_default(session: Session) -> None:
     assert not session.is_at_hand
     assert session.screen == PICTURE
 
 
-def test_leaving_tells_first_what_it_would_lose(session: Session, tmp_path: Path) -> None:
+def test_leaving_first_names_the_changes_that_it_would_lose(session: Session, tmp_path: Path) -> None:
     def asked() -> str:
         session.leave()
         assert not session.leaves
@@ -394,7 +392,7 @@ def test_where_colors_alone_differ_no_word_does(hand: Hand) -> None:
     assert (image.entries != hand.viewer.studio.entries).any()
 
 
-def test_each_other_state_is_computed_once(hand: Hand, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_image_of_another_state_is_computed_once(hand: Hand, monkeypatch: pytest.MonkeyPatch) -> None:
     computed: list[Scene] = []
     image_of = Studio.image_of
 
@@ -458,7 +456,7 @@ def kept(hand: Hand) -> Hand:
     return hand
 
 
-def test_a_kept_variant_is_compared_until_it_is_not_any_more(kept: Hand) -> None:
+def test_a_variant_is_compared_until_comparing_ends(kept: Hand) -> None:
     hand, now = kept, shown(kept)
     variant = hand.viewer.studio.variants["A"].scene
     go_to_kept(hand)
@@ -500,7 +498,7 @@ def store(tmp_path: Path) -> Path:
     return path
 
 
-def shown_2(path: Path) -> Viewer:
+def viewer_of(path: Path) -> Viewer:
     """A viewer of the scene of a file, as `autocolor view` shows it."""
     place = place_of(Source(str(path)))
     return Viewer(History(read_scene(path), place), Ramtek9300(), folder=path.parent)
@@ -513,7 +511,7 @@ def tick(viewer: Viewer) -> None:
 
 
 def test_a_change_of_another_program_is_shown_as_one_step_to_undo(store: Path) -> None:
-    viewer = shown_2(store)
+    viewer = viewer_of(store)
     before = viewer.studio.scene
     tick(viewer)
     assert viewer.message.startswith("F1")
@@ -531,8 +529,8 @@ def test_a_change_of_another_program_is_shown_as_one_step_to_undo(store: Path) -
     assert viewer.studio.scene is before
 
 
-def test_a_change_of_lights_keeps_what_was_computed_of_the_mesh(store: Path) -> None:
-    viewer = shown_2(store)
+def test_a_change_of_lights_reuses_the_visible_points_of_the_mesh(store: Path) -> None:
+    viewer = viewer_of(store)
     mesh = viewer.studio.scene.mesh
     run(store, BRIGHTER)
     tick(viewer)
@@ -543,7 +541,7 @@ def test_a_change_of_lights_keeps_what_was_computed_of_the_mesh(store: Path) -> 
 
 
 def test_with_unsaved_edits_the_user_is_asked(store: Path) -> None:
-    viewer = shown_2(store)
+    viewer = viewer_of(store)
     viewer.studio.light("rim", intensity=0.25)
     mine = viewer.studio.scene
     run(store, BRIGHTER)
@@ -560,7 +558,7 @@ def test_with_unsaved_edits_the_user_is_asked(store: Path) -> None:
 
 
 def test_edits_that_are_saved_instead_leave_the_change_of_the_other_program(store: Path) -> None:
-    viewer = shown_2(store)
+    viewer = viewer_of(store)
     viewer.studio.light("rim", intensity=0.25)
     run(store, BRIGHTER)
     tick(viewer)
@@ -571,10 +569,10 @@ def test_edits_that_are_saved_instead_leave_the_change_of_the_other_program(stor
 
 
 def test_ctrl_s_saves_to_the_store_and_that_is_no_change_of_another(store: Path) -> None:
-    viewer = shown_2(store)
+    viewer = viewer_of(store)
     run(store, "CREATE TABLE notes (text)")
     tick(viewer)
-    viewer = shown_2(store)
+    viewer = viewer_of(store)
     viewer.studio.light("rim", intensity=0.25)
     control(viewer, "s")
     assert viewer.message.startswith("saved small.sqlite and small.npz")
@@ -589,8 +587,8 @@ def test_ctrl_s_saves_to_the_store_and_that_is_no_change_of_another(store: Path)
     assert viewer.studio.scene.light("key").intensity == 3
 
 
-def test_a_store_that_is_wrong_for_a_while_is_told_and_the_scene_stays(store: Path) -> None:
-    viewer = shown_2(store)
+def test_an_error_in_the_store_shows_a_message_and_the_scene_stays(store: Path) -> None:
+    viewer = viewer_of(store)
     before = viewer.studio.scene
     run(store, "UPDATE polygons SET node3 = 40 WHERE polygon = 2")
     tick(viewer)
@@ -609,7 +607,7 @@ def test_a_store_that_is_wrong_for_a_while_is_told_and_the_scene_stays(store: Pa
 def test_a_scene_file_is_looked_at_as_well(tmp_path: Path) -> None:
     folder = tmp_path / "small"
     write_scene(folder, small_scene().replace(mesh=small_scene().mesh.with_scalars()))
-    viewer = shown_2(folder)
+    viewer = viewer_of(folder)
     file = folder / "scene.toml"
     file.write_text(file.read_text() + '\n[[lights]]\nname = "third"\nposition = [1, 2, 3]\n')
     tick(viewer)
@@ -621,7 +619,7 @@ def test_a_scene_file_is_looked_at_as_well(tmp_path: Path) -> None:
 
 
 def test_a_file_that_only_looks_changed_is_no_step(store: Path) -> None:
-    viewer = shown_2(store)
+    viewer = viewer_of(store)
     run(store, "CREATE TABLE notes (text)")
     before, news = viewer.studio.scene, viewer.session.news
     tick(viewer)
@@ -638,7 +636,7 @@ def test_a_scene_in_no_file_has_nothing_to_read_again(tmp_path: Path) -> None:
 
 
 def test_a_look_takes_no_time(store: Path) -> None:
-    viewer = shown_2(store)
+    viewer = viewer_of(store)
     disk = viewer.session.disk
     seconds = []
     for _ in range(20):

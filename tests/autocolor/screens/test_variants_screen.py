@@ -110,7 +110,7 @@ def test_small_pictures_have_true_colors_all_at_once(hand: Hand, number: int) ->
         assert np.percentile(errors, 99) <= 16
 
 
-def test_small_pictures_come_while_nothing_moves_and_one_by_one(hand: Hand) -> None:
+def test_small_pictures_come_in_turn_while_nothing_moves(hand: Hand) -> None:
     keep(hand, 3)
     assert len(hand.viewer.board.screen.items()) == 0
     for number in (1, 2, 3, 3):
@@ -152,7 +152,7 @@ def test_many_variants_have_pages(hand: Hand) -> None:
     assert "page" not in [row.label for row in hand.viewer.board.screen.rows()]
 
 
-def test_it_opens_at_the_page_of_the_last_one_kept(hand: Hand) -> None:
+def test_it_opens_at_the_page_of_the_last_variant(hand: Hand) -> None:
     for _ in range(ON_PAGE + 1):
         hand.viewer.studio.keep_variant()
     hand.pick("< picture")

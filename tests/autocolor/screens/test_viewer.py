@@ -120,7 +120,7 @@ def test_each_edit_is_shown_undone_and_done_again(viewer: Viewer, name: str) -> 
     assert is_true_to(viewer, after)
 
 
-def test_keys_do_what_they_say(viewer: Viewer) -> None:
+def test_keys_do_what_the_help_page_says(viewer: Viewer) -> None:
     def scene() -> Scene:
         return viewer.studio.scene
 
@@ -174,7 +174,7 @@ def test_without_a_step_there_is_nothing_to_undo_or_to_do_again(viewer: Viewer) 
     assert viewer.message == "nothing to redo"
 
 
-def test_a_light_that_is_not_there_is_told(viewer: Viewer) -> None:
+def test_a_key_of_an_absent_light_shows_a_message(viewer: Viewer) -> None:
     before = viewer.studio.scene
     viewer.on_key("9", typed="9")
     assert viewer.message == "the scene has no light 9"
@@ -242,7 +242,7 @@ def test_a_key_held_down_after_another_is_not_mixed_into_its_step(viewer: Viewer
     assert viewer.studio.scene is before
 
 
-def test_what_changes_nothing_is_no_step(viewer: Viewer) -> None:
+def test_an_edit_that_changes_nothing_is_no_step(viewer: Viewer) -> None:
     for _ in range(30):
         viewer.on_key("]", typed="]")
         viewer.on_key("up")
@@ -275,7 +275,7 @@ def test_a_page_and_back_gives_the_words_byte_for_byte(viewer: Viewer, page: str
     assert viewer.page == "picture"
 
 
-def test_one_page_leads_to_the_other_and_back_to_the_picture(viewer: Viewer) -> None:
+def test_help_and_entries_lead_to_each_other_and_back_to_the_picture(viewer: Viewer) -> None:
     display = display_of(viewer)
     viewer.tell("")
     words = display.words.copy()
@@ -331,7 +331,7 @@ def test_the_message_names_the_surface_that_was_chosen(viewer: Viewer) -> None:
     assert viewer.message == f"surface {viewer.session.surface_name}"
 
 
-def test_the_chosen_surface_is_the_one_that_is_recolored(viewer: Viewer) -> None:
+def test_the_chosen_surface_is_recolored(viewer: Viewer) -> None:
     names = ["low", "high"]
     seen = []
     for _ in names:
@@ -362,7 +362,7 @@ def test_the_colors_come_round_in_both_directions(viewer: Viewer) -> None:
     assert color() == first
 
 
-def test_an_edit_that_is_refused_is_told_and_changes_nothing(viewer: Viewer) -> None:
+def test_a_refused_edit_shows_a_message_and_changes_nothing(viewer: Viewer) -> None:
     far = View((0, -9.9e35, 0), target=(0, 0, 0))
     viewer.studio.edit(viewer.studio.scene.replace(view=far))
     before = viewer.studio.scene
@@ -387,7 +387,7 @@ def test_a_mesh_without_anything_can_be_looked_at(tmp_path: Path) -> None:
 # Saving, leaving, opening.
 
 
-def test_the_caption_marks_what_is_not_saved(viewer: Viewer) -> None:
+def test_the_caption_marks_unsaved_changes(viewer: Viewer) -> None:
     assert viewer.caption == "autocolor - box - [low] - F1: help; Tab or the right edge: the menu"
     press_c(viewer)
     assert viewer.caption.startswith("autocolor - box* - [low]")
@@ -395,7 +395,7 @@ def test_the_caption_marks_what_is_not_saved(viewer: Viewer) -> None:
     assert viewer.caption == "autocolor - box - [low] - undone"
 
 
-def test_saving_tells_where_and_leaves_what_was_there(viewer: Viewer, tmp_path: Path) -> None:
+def test_saving_names_its_files_and_overwrites_none(viewer: Viewer, tmp_path: Path) -> None:
     (tmp_path / "box.npz").write_bytes(b"mine")
     press_c(viewer)
     control(viewer, "s")
@@ -417,7 +417,7 @@ def test_a_scene_of_any_name_can_be_saved(name: str, tmp_path: Path) -> None:
     assert os.listdir(tmp_path)
 
 
-def test_what_cannot_be_saved_is_told_and_stays_unsaved(viewer: Viewer, tmp_path: Path) -> None:
+def test_a_refused_save_shows_a_message_and_stays_unsaved(viewer: Viewer, tmp_path: Path) -> None:
     viewer.session.folder = tmp_path / "none"
     press_c(viewer)
     control(viewer, "s")
@@ -462,7 +462,7 @@ def test_changes_of_a_scene_that_another_was_opened_after_are_not_lost_by_closin
     assert viewer.message == "box is not saved: undo goes back to it, close again to discard the changes"
     assert viewer.on_close()
     control(viewer, "z")
-    viewer.save()
+    viewer.session.save()
     control(viewer, "y")
     assert viewer.on_close()
 
@@ -489,7 +489,7 @@ def test_a_dropped_mesh_is_opened(viewer: Viewer, tmp_path: Path) -> None:
     assert viewer.studio.scene.name == "box"
 
 
-def test_a_dropped_file_that_is_none_of_ours_is_told_and_changes_nothing(
+def test_a_dropped_file_of_another_kind_shows_a_message_and_changes_nothing(
     viewer: Viewer, tmp_path: Path
 ) -> None:
     display = display_of(viewer)
@@ -585,7 +585,7 @@ def test_between_steps_of_the_wheel_a_picture_stays_coarse(
 
 @pytest.mark.usefixtures("slow")
 @pytest.mark.parametrize("name", ["r", "1", "e"])
-def test_what_is_no_movement_is_fine_at_once(viewer: Viewer, name: str) -> None:
+def test_an_edit_without_a_movement_is_fine_at_once(viewer: Viewer, name: str) -> None:
     viewer.on_key("left")
     viewer.on_key(name, typed=name)
     assert is_true_to(viewer, viewer.studio.scene)
@@ -786,7 +786,7 @@ def test_a_light_switched_off_and_on_leaves_nothing_to_save(viewer: Viewer) -> N
     assert not viewer.on_key("escape")
 
 
-def test_the_next_color_and_the_one_before_is_the_surfaces_own(viewer: Viewer) -> None:
+def test_the_color_before_the_next_color_is_the_surfaces_own(viewer: Viewer) -> None:
     viewer.studio.recolor("low", object_color="#123456")
     for there, back in ((False, True), (True, False)):
         for shift in (there, back):
@@ -820,7 +820,7 @@ def test_closing_asks_also_for_a_scene_with_changes_that_was_open_before(
     assert viewer.on_close()
 
 
-def test_what_is_left_on_the_display_is_the_present_state_though_another_was_compared(viewer: Viewer) -> None:
+def test_the_display_ends_with_the_present_state_though_another_was_compared(viewer: Viewer) -> None:
     viewer.on_key("left")
     viewer.compare()
     assert not is_true_to(viewer, viewer.studio.scene)
@@ -925,7 +925,7 @@ def session(tmp_path: Path) -> Session:
     return desk_viewer(tmp_path).session
 
 
-def test_what_continues_is_one_step_and_what_does_not_another(session: Session) -> None:
+def test_continued_edits_are_one_step_and_other_edits_another(session: Session) -> None:
     action, before = Action(session), session.scene
     for value, source, continues in ((0.1, "a", True), (0.2, "a", True), (0.3, "b", True), (0.4, "b", False)):
         change = partial(session.edit, session.scene.replace(ambient=value))

@@ -27,7 +27,7 @@ from autocolor.widgets.bars import (
 )
 from autocolor.widgets.items import GRAY, RED, SLATE, WHITE, YELLOW, Area, Item
 from autocolor.widgets.menu import WIDE_BAR
-from autocolor.widgets.widget import Place
+from autocolor.widgets.widget import Place, Widget
 from ramtek_emu import Ramtek9300
 
 STEPS = (0.001, 0.01, 0.05, 0.1, 0.125, 0.25, 0.5, 1.0, 2.5, 5.0, 10.0)
@@ -153,12 +153,12 @@ AREA = Area(176, 24, 495, 47)
 FIRST = 192
 
 
-def bar_of(value: int, found: list[float] | None = None) -> ComponentBar:
+def component_bar(value: int, found: list[float] | None = None) -> ComponentBar:
     found = [] if found is None else found
     return ComponentBar("object, red", value=value, word=RED, letter="R", put=found.append, area=AREA)
 
 
-def drawn(bar: ComponentBar, lit: bool = False) -> Ramtek9300:
+def drawn(bar: Widget, lit: bool = False) -> Ramtek9300:
     display = Ramtek9300()
     for item in bar.items(lit):
         display.send(np.frombuffer(item.stream, np.uint16))
@@ -168,17 +168,17 @@ def drawn(bar: ComponentBar, lit: bool = False) -> Ramtek9300:
 def test_each_element_is_a_value() -> None:
     found: list[float] = []
     for element in range(FIRST, FIRST + 256):
-        bar_of(0, found).pick(Place(element, 30))
+        component_bar(0, found).pick(Place(element, 30))
     assert found == list(range(256))
-    bar_of(0, found).drag(Place(0, 0), Place(0, 0), Place(0, 0))
-    bar_of(0, found).drag(Place(0, 0), Place(0, 0), Place(600, 0))
+    component_bar(0, found).drag(Place(0, 0), Place(0, 0), Place(0, 0))
+    component_bar(0, found).drag(Place(0, 0), Place(0, 0), Place(600, 0))
     assert found[-2:] == [0, 255]
 
 
 @pytest.mark.parametrize("value", [0, 1, 143, 255])
 @pytest.mark.parametrize("lit", [False, True])
 def test_the_bar_is_as_long_as_its_component_lit_or_not(value: int, lit: bool) -> None:
-    line = drawn(bar_of(value), lit).words[36]
+    line = drawn(component_bar(value), lit).words[36]
     track = line[FIRST : FIRST + 256]
     assert (track[:value] == RED).all()
     assert track[value] == WHITE
@@ -188,7 +188,7 @@ def test_the_bar_is_as_long_as_its_component_lit_or_not(value: int, lit: bool) -
 @pytest.mark.parametrize("value", [0, 16, 255])
 def test_letter_and_number_stand_inside_the_area_and_are_lit(value: int) -> None:
     for lit, ink in ((False, WHITE), (True, YELLOW)):
-        words = drawn(bar_of(value), lit).words
+        words = drawn(component_bar(value), lit).words
         lines, elements = np.nonzero(words)
         assert AREA.covers(Area(elements.min(), lines.min(), elements.max(), lines.max()))
         assert (words[:, : FIRST - 1] == ink).any()
@@ -197,8 +197,8 @@ def test_letter_and_number_stand_inside_the_area_and_are_lit(value: int) -> None
 
 def test_a_step_is_one() -> None:
     found: list[float] = []
-    bar_of(100, found).nudge(1)
-    bar_of(100, found).nudge(-3)
+    component_bar(100, found).nudge(1)
+    component_bar(100, found).nudge(-3)
     assert found == [101, 97]
 
 
@@ -206,7 +206,7 @@ LYING = Area(8, 100, 495, 139)
 STANDING = Area(500, 24, 531, 439)
 
 
-def bar_of_2(levels: int, level: int = 0, upright: bool = False, found: list[int] | None = None) -> LevelBar:
+def level_bar(levels: int, level: int = 0, upright: bool = False, found: list[int] | None = None) -> LevelBar:
     found = [] if found is None else found
     return LevelBar(
         "bar",
@@ -219,13 +219,6 @@ def bar_of_2(levels: int, level: int = 0, upright: bool = False, found: list[int
     )
 
 
-def drawn_2(bar: LevelBar | PercentBar, lit: bool = False) -> Ramtek9300:
-    display = Ramtek9300()
-    for item in bar.items(lit):
-        display.send(np.frombuffer(item.stream, np.uint16))
-    return display
-
-
 @given(length=st.integers(2, 640), levels=st.integers(2, 1007))
 def test_levels_rise_evenly_from_end_to_end(length: int, levels: int) -> None:
     found = levels_along(length, levels)
@@ -235,27 +228,27 @@ def test_levels_rise_evenly_from_end_to_end(length: int, levels: int) -> None:
 
 @pytest.mark.parametrize("levels", [2, 40, 488, 800])
 def test_a_lying_bar_shows_the_levels_from_the_left(levels: int) -> None:
-    bar = bar_of_2(levels)
+    bar = level_bar(levels)
     strip = bar.strip
     assert strip == Area(8, 100 + LANE, 495, 139 - LANE)
-    words = drawn_2(bar).words[strip.top : strip.bottom + 1, strip.left : strip.right + 1]
+    words = drawn(bar).words[strip.top : strip.bottom + 1, strip.left : strip.right + 1]
     assert np.array_equal(words, np.broadcast_to(200 + levels_along(488, levels), words.shape))
 
 
 @pytest.mark.parametrize("levels", [2, 40, 416, 800])
 def test_an_upright_bar_shows_the_levels_from_below(levels: int) -> None:
-    bar = bar_of_2(levels, upright=True)
+    bar = level_bar(levels, upright=True)
     strip = bar.strip
     assert strip == Area(500 + LANE, 24, 531, 439)
-    words = drawn_2(bar).words[strip.top : strip.bottom + 1, strip.left : strip.right + 1]
+    words = drawn(bar).words[strip.top : strip.bottom + 1, strip.left : strip.right + 1]
     assert np.array_equal(words, np.broadcast_to(200 + levels_along(416, levels)[::-1, None], words.shape))
 
 
 @pytest.mark.parametrize("upright", [False, True])
 def test_a_pick_selects_the_level_that_is_shown_there_and_beyond_the_ends_the_last_one(upright: bool) -> None:
     found: list[int] = []
-    bar = bar_of_2(60, upright=upright, found=found)
-    words = drawn_2(bar).words
+    bar = level_bar(60, upright=upright, found=found)
+    words = drawn(bar).words
     strip = bar.strip
     for share in (0, 0.3, 0.77, 1):
         element = strip.left + int(share * (strip.width - 1))
@@ -271,7 +264,7 @@ def test_a_pick_selects_the_level_that_is_shown_there_and_beyond_the_ends_the_la
 @pytest.mark.parametrize(("level", "steps", "to"), [(5, 1, 6), (5, -1, 4), (0, -1, 0), (59, 3, 59)])
 def test_a_step_is_a_level(level: int, steps: float, to: int) -> None:
     found: list[int] = []
-    bar_of_2(60, level, found=found).nudge(steps)
+    level_bar(60, level, found=found).nudge(steps)
     assert found == [to]
 
 
@@ -281,8 +274,8 @@ def test_a_step_is_a_level(level: int, steps: float, to: int) -> None:
 def test_the_handle_points_at_its_level_and_leaves_the_levels_uncovered(
     upright: bool, level: int, lit: bool
 ) -> None:
-    bar = bar_of_2(60, level, upright)
-    words = drawn_2(bar, lit).words
+    bar = level_bar(60, level, upright)
+    words = drawn(bar, lit).words
     strip, ink = bar.strip, YELLOW if lit else WHITE
     if upright:
         (line,) = np.flatnonzero(words[:, strip.left - 2] == ink)
@@ -321,14 +314,14 @@ def test_a_percentage_is_a_share_of_the_height() -> None:
     bar.nudge(1)
     bar.nudge(-200)
     assert found == [75, 26, 0]
-    words = drawn_2(bar).words
+    words = drawn(bar).words
     assert np.flatnonzero(words[:, 602] == WHITE).tolist() == [150]
 
 
 @pytest.mark.parametrize("upright", [False, True])
 def test_a_bar_is_framed_so_that_its_ends_are_seen_on_a_dark_picture(upright: bool) -> None:
-    bar = bar_of_2(40, level=20, upright=upright)
-    words = drawn_2(bar).words
+    bar = level_bar(40, level=20, upright=upright)
+    words = drawn(bar).words
     left, top, right, bottom = bar.strip
     assert (words[[top - 1, bottom + 1], left - 1] == GRAY).all()
     assert (words[[top - 1, bottom + 1], right + 1] == GRAY).all()

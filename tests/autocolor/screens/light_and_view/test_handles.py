@@ -18,9 +18,9 @@ from autocolor.screens.light_and_view.handles import (
     MovablePoint,
     handles_in,
     movable_of,
-    target_in,
 )
 from autocolor.screens.light_and_view.orthographic_views import SIDES, TOP, OrthographicViews
+from autocolor.screens.picture.picture_edits import target_of
 from tests.autocolor.screens.light_and_view.pointing import FILL, KEY, boxed
 
 VIEWS = OrthographicViews((0.0, 0.0, 0.0), 10.0)
@@ -57,9 +57,9 @@ def test_a_direction_points_to_where_its_end_is_put() -> None:
     assert math.dist(end, light.position) == pytest.approx(4.0)
 
 
-def test_the_target_of_a_view_without_one_is_put_by_its_direction() -> None:
+def test_a_view_without_a_target_is_aimed_by_its_direction() -> None:
     scene = boxed().replace(view=View((0.0, -5.0, 0.5), direction=(0.0, 1.0, 0.0)))
-    assert target_in(scene) == pytest.approx((0.0, 0.5, 0.5))
+    assert target_of(scene) == pytest.approx((0.0, 0.5, 0.5))
     after = MovablePoint(TARGET).put(scene, (5.0, 0.0, 0.5)).view
     assert after.target is None
     assert after.eye == (0.0, -5.0, 0.5)

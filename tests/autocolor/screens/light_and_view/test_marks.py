@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 from autocolor import Flap, Flaps, Light, Scene, View
 from autocolor.arrays import Floats
 from autocolor.checks import Vector
-from autocolor.screens.light_and_view.handles import target_in
 from autocolor.screens.light_and_view.marks import (
     DIRECTION_LENGTH,
     HEAD,
@@ -22,7 +21,6 @@ from autocolor.screens.light_and_view.marks import (
     Cross,
     Numeral,
     SideItems,
-    area_around,
     arrow,
     arrow_end,
     chosen_items,
@@ -48,8 +46,21 @@ from autocolor.screens.light_and_view.orthographic_views import (
     fitted_views,
     shown_points,
 )
+from autocolor.screens.picture.picture_edits import target_of
 from autocolor.visibility.projection import focal_length
-from autocolor.widgets.items import BLUE, GRAY, LIGHT_GRAY, NIGHT, SLATE, WHITE, YELLOW, Area, Item, text
+from autocolor.widgets.items import (
+    BLUE,
+    GRAY,
+    LIGHT_GRAY,
+    NIGHT,
+    SLATE,
+    WHITE,
+    YELLOW,
+    Area,
+    Item,
+    area_of,
+    text,
+)
 from ramtek_emu import Ramtek9300, instructions
 from tests.autocolor.screens.light_and_view.pointing import FILL, KEY, boxed
 from tests.autocolor.strategies import directions, lights, numbers, vectors, views
@@ -82,7 +93,7 @@ class Drawn:
 
     def items(self, scene: Scene, chosen: str = "key", moved: Vector | None = None) -> list[Item]:
         strokes = self.lines.of_side(scene, self.views, TOP)
-        return self.sides[TOP].items(self.views, scene, target_in(scene), strokes, chosen, moved)
+        return self.sides[TOP].items(self.views, scene, target_of(scene), strokes, chosen, moved)
 
 
 def test_a_chosen_point_source_is_a_yellow_cross_alone() -> None:
@@ -185,7 +196,7 @@ def test_strokes_are_drawn_within_their_area_and_layers_without_strokes_are_left
     strokes = np.array([(10.0, 30.0, 20.0, 12.0), (15.0, 15.0, 5.0, 15.0)])
     (item,) = drawn_items({WHITE: [strokes], GRAY: [np.empty((0, 4))]})
     lines, elements = np.nonzero(drawn([item]).words == WHITE)
-    assert item.area == area_around(strokes)
+    assert item.area == area_of(strokes.reshape(-1, 2))
     assert item.area == (elements.min(), lines.min(), elements.max(), lines.max())
 
 

@@ -10,7 +10,6 @@ from hypothesis import strategies as st
 from autocolor import Mesh, Scene, View, scene_of
 from autocolor.screens.light_and_view import object_lines as module
 from autocolor.screens.light_and_view.object_lines import (
-    Cached,
     MeshEdges,
     ObjectLines,
     depths_toward,
@@ -354,16 +353,13 @@ def test_of_too_many_features_the_longest_are_kept(monkeypatch: pytest.MonkeyPat
     assert np.abs(np.diff(box.coordinates[edges.features], axis=1)).reshape(4, 3).tolist() == [[0, 0, 3]] * 4
 
 
-AREA_2 = area_of_picture(Area(256, 0, 503, 223))
-
-
 def test_edges_are_where_the_renderer_has_their_pixels() -> None:
     view = View((4.0, 5.0, 6.0), target=(0.5, 0.5, 0.5), angle=20.0)
     edges = mesh_edges(cube())
-    projected = projection(cube(), view, AREA_2.height, AREA_2.width)
+    projected = projection(cube(), view, AREA.height, AREA.width)
     # The renderer has the centers of pixels at halves.
-    places = np.stack([projected.x - 0.5 + AREA_2.left, projected.y - 0.5 + AREA_2.top], axis=1)
-    found = perspective_strokes(edges.coordinates, edges.features, view, AREA_2)
+    places = np.stack([projected.x - 0.5 + AREA.left, projected.y - 0.5 + AREA.top], axis=1)
+    found = perspective_strokes(edges.coordinates, edges.features, view, AREA)
     assert found == pytest.approx(places[edges.features].reshape(-1, 4))
 
 
@@ -379,35 +375,35 @@ def test_the_height_of_the_area_is_the_field_of_view() -> None:
 def test_what_is_behind_the_eye_is_left_out_and_what_passes_it_is_cut_off() -> None:
     view = View((0.0, 0.0, 0.0), direction=(0.0, 1.0, 0.0), field_of_view=90.0)
     points = np.array([(0.5, 1, 0), (0.5, -1, 0), (0, -1, 0), (0, -2, 0)], np.float64)
-    middle = AREA_2.middle[0]
-    found = perspective_strokes(points, np.array([(0, 1), (1, 0), (2, 3)]), view, AREA_2)
-    one = [middle + AREA_2.height / 4, AREA_2.middle[1]]
-    end = [AREA_2.right, AREA_2.middle[1]]
+    middle = AREA.middle[0]
+    found = perspective_strokes(points, np.array([(0, 1), (1, 0), (2, 3)]), view, AREA)
+    one = [middle + AREA.height / 4, AREA.middle[1]]
+    end = [AREA.right, AREA.middle[1]]
     assert found.tolist() == [[*one, *end], [*end, *one]]
 
 
 def test_an_eye_within_the_object_sees_its_edges() -> None:
     view = View((0.5, 0.5, 0.5), direction=(0.3, 1.0, 0.1), field_of_view=120.0)
     edges = mesh_edges(cube())
-    found = perspective_strokes(edges.coordinates, edges.features, view, AREA_2)
+    found = perspective_strokes(edges.coordinates, edges.features, view, AREA)
     assert 4 <= len(found) < 12
 
 
 @given(meshes(), views())
 def test_all_strokes_are_within_the_area(mesh: Mesh, view: View) -> None:
     edges = mesh_edges(mesh)
-    found = perspective_strokes(edges.coordinates, edges.features, view, AREA_2)
-    assert (found >= [AREA_2.left, AREA_2.top] * 2).all()
-    assert (found <= [AREA_2.right, AREA_2.bottom] * 2).all()
+    found = perspective_strokes(edges.coordinates, edges.features, view, AREA)
+    assert (found >= [AREA.left, AREA.top] * 2).all()
+    assert (found <= [AREA.right, AREA.bottom] * 2).all()
 
 
 def test_no_size_of_the_object_makes_a_difference() -> None:
     edges = mesh_edges(sphere(8, 5), crease_angle=1)
     view = View((3.0, 4.0, 1.0), target=(0.0, 0.0, 0.0))
-    expected = perspective_strokes(edges.coordinates, edges.features, view, AREA_2)
+    expected = perspective_strokes(edges.coordinates, edges.features, view, AREA)
     for size in (2.0**-60, 2.0**60):
         scaled = View((3 * size, 4 * size, size), target=(0.0, 0.0, 0.0))
-        found = perspective_strokes(edges.coordinates * size, edges.features, scaled, AREA_2)
+        found = perspective_strokes(edges.coordinates * size, edges.features, scaled, AREA)
         assert found == pytest.approx(expected)
 
 
@@ -471,31 +467,3 @@ def test_looking_along_a_cylinder_shows_no_lines_along_it() -> None:
     edges = mesh_edges(Mesh(np.concatenate([rim, rim + np.array([0, 0, 1])]), np.array(quads)))
     assert len(silhouette_toward(edges, (0.0, 0.0, 1.0))) == 0
     assert len(silhouette_toward(edges, (0.6, 0.8, 0.0))) == 2
-
-
-def test_a_value_is_made_once_for_the_same_sources() -> None:
-    kept: Cached[list[int]] = Cached()
-    source = [1]
-    first = kept.of(lambda: [2], source, "a")
-    assert first == [2]
-    assert kept.of(lambda: [3], source, "a") is first
-
-
-def test_a_value_is_made_anew_for_another_source_even_an_equal_one() -> None:
-    kept: Cached[list[int]] = Cached()
-    source = [1]
-    kept.of(lambda: [2], source)
-    assert kept.of(lambda: [3], [1]) == [3]
-    assert kept.of(lambda: [4], [1], source) == [4]
-    assert kept.of(lambda: [5]) == [5]
-
-
-def test_what_fails_is_tried_again() -> None:
-    kept: Cached[float] = Cached()
-    for _ in range(2):
-        try:
-            kept.of(lambda: 1 / 0, "a")
-        except ZeroDivisionError:
-            continue
-        raise AssertionError
-    assert kept.of(lambda: 1.0, "a") == 1.0

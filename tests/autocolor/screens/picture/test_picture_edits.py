@@ -138,7 +138,7 @@ def test_the_eye_goes_around_the_object_and_not_around_its_stage() -> None:
     floor = grid(1, 1, (-50, -50, 0), (100, 0, 0), (0, 100, 0), "floor")
     alone = scene_of(cube(), view=view)
     scene = scene_of(Mesh.joined([cube(), floor]), view=view, parts={"floor": {"stage": True}})
-    assert target_of(scene).tolist() == target_of(alone).tolist() == [0.5, 0.5, 0.5]
+    assert target_of(scene) == target_of(alone) == (0.5, 0.5, 0.5)
     assert target_of(scene.with_part("floor", stage=False))[1] > 1
 
 
@@ -181,7 +181,7 @@ def test_a_named_view_has_the_axes_of_a_drawing_and_the_object_fills_it(
     assert np.abs(places).max() == pytest.approx(0.86 * 240)
 
 
-def test_the_view_of_three_quarters_is_the_one_that_is_created() -> None:
+def test_three_quarters_is_the_direction_of_a_created_view() -> None:
     scene = scene_of(cube())
     turned_away = scene.replace(view=turned(scene, 50, 10))
     assert seen_from(turned_away, "three quarters").eye == pytest.approx(scene.view.eye)
