@@ -32,15 +32,12 @@ def refusal(path: Path) -> str:
 
 
 @pytest.mark.parametrize("suffix", SUFFIXES)
-@pytest.mark.parametrize(
-    "data",
-    [b"", b"\0" * 5000, b"\n" * 5000, b"\r", b" ", b"\xff\xfe\0v\0 ", b"\xef\xbb\xbf", b"0", b"-1 " * 3000],
-    ids=["empty", "NUL", "empty lines", "CR", "space", "UTF-16", "mark alone", "digit", "numbers"],
-)
-def test_a_file_of_nothing_is_refused(tmp_path: Path, suffix: str, data: bytes) -> None:
+def test_a_file_of_nothing_is_refused(tmp_path: Path, suffix: str) -> None:
     path = tmp_path / f"car{suffix}"
-    path.write_bytes(data)
-    assert "car" in refusal(path)
+    empty = (b"", b"\0" * 5000, b"\n" * 5000, b"\r", b" ", b"\xff\xfe\0v\0 ", b"\xef\xbb\xbf")
+    for data in (*empty, b"0", b"-1 " * 3000):
+        path.write_bytes(data)
+        assert "car" in refusal(path), data[:8]
 
 
 @pytest.mark.parametrize("suffix", SUFFIXES)

@@ -1,7 +1,6 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -9,7 +8,7 @@ from ramtek_emu import PRINCETON_9300, Ramtek9300, instructions
 from ramtek_emu.instruction_set.table import FORMATS, OPERANDS
 from ramtek_emu.processor.processor import Status
 from tests.ramtek_emu.displays import sent
-from tests.ramtek_emu.strategies import quick, sent_words
+from tests.ramtek_emu.strategies import SMALL, quick, sent_words
 
 
 @quick
@@ -67,29 +66,25 @@ def test_the_error_status_is_read_and_cleared() -> None:
     assert display.status == Status.READY
 
 
-@pytest.mark.parametrize(
-    "format", [format for format in FORMATS if format.unimplemented], ids=lambda format: format.name
-)
-def test_instructions_known_by_name_only_are_consumed_and_flagged(format: object) -> None:
-    display = Ramtek9300()
-    opcode = format.opcode  # type: ignore[attr-defined]
-    display.send(sent_words([opcode << 8 | 3, 2, 5, 4, 0x0500, 0x0600, 0x0902, 0x44, 3, 0, 0, 1, 1]))
-    assert display.status == Status.READY | Status.ILLEGAL
-    assert display.processor.unimplemented == 1
-    assert display.processor.parameters.foreground == 5
-    assert (display.words[:2, :2] == 3).all()
+def test_instructions_known_by_name_only_are_consumed_and_flagged() -> None:
+    for unimplemented in (row for row in FORMATS if row.unimplemented):
+        display = Ramtek9300(SMALL)
+        display.send(
+            sent_words([unimplemented.opcode << 8 | 3, 2, 5, 4, 0x0500, 0x0600, 0x0902, 0x44, 3, 0, 0, 1, 1])
+        )
+        assert display.status == Status.READY | Status.ILLEGAL, unimplemented.name
+        assert display.processor.unimplemented == 1
+        assert display.processor.parameters.foreground == 5
+        assert (display.words[:2, :2] == 3).all()
 
 
-@pytest.mark.parametrize(
-    "format", [format for format in FORMATS if format.extended], ids=lambda format: format.name
-)
-def test_instructions_of_the_9460_are_illegal_on_the_9300(format: object) -> None:
-    display = Ramtek9300(PRINCETON_9300)
-    opcode = format.opcode  # type: ignore[attr-defined]
-    display.send(sent_words([opcode << 8]))
-    assert display.status == Status.READY | Status.ILLEGAL
-    assert display.processor.illegal_words == 1
-    assert not display.decoder.pending_words
+def test_instructions_of_the_9460_are_illegal_on_the_9300() -> None:
+    for extended in (row for row in FORMATS if row.extended):
+        display = Ramtek9300(PRINCETON_9300)
+        display.send(sent_words([extended.opcode << 8]))
+        assert display.status == Status.READY | Status.ILLEGAL, extended.name
+        assert display.processor.illegal_words == 1
+        assert not display.decoder.pending_words
 
 
 def test_an_illegal_word_sets_the_status_and_reset_clears_it() -> None:
