@@ -237,6 +237,21 @@ def _meetings(
     return list(zip(*(row.tolist() for row in rows), strict=True))
 
 
+def mapped(mapping: str | Sequence[Vector], fraction: float) -> float:
+    """The fraction of the levels at a fraction of the range, under any mapping curve but "equalize"."""
+    if not isinstance(mapping, str):
+        for (x, y), (x_next, y_next) in pairwise(mapping):
+            if fraction <= x_next:
+                return y + (fraction - x) / (x_next - x) * (y_next - y)
+        raise AssertionError(f"beyond the curve: {fraction}")
+    curves = {
+        "linear": fraction,
+        "gamma": math.pow(fraction, 1 / 2.2),
+        "logarithm": math.log1p(15 * fraction) / math.log(16),
+    }
+    return curves[mapping]
+
+
 def specular_factor(model: ReflectionModel, light: Vector, normal: Vector, eye: Vector) -> float:
     """What stands in the place of cos^N(E) under a model, for unit vectors to the light and to the eye."""
     n_l, n_v = dot(normal, light), dot(normal, eye)

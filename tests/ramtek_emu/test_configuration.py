@@ -78,8 +78,7 @@ def test_an_unknown_configuration_is_answered_with_all_names_and_the_nearest(nam
     with pytest.raises(ConfigurationError) as refusal:
         Ramtek9300(name)
     assert str(refusal.value) == (
-        "a configuration must be one of GMR_9300, JPL_9460, NCAR_9460, PRINCETON_9300, "
-        f"not {name!r}; {advice}"
+        f"a configuration must be one of {', '.join(sorted(CONFIGURATIONS))}, not {name!r}; {advice}"
     )
 
 

@@ -1,7 +1,6 @@
 from __future__ import annotations
 
 import dataclasses
-import itertools
 import math
 import warnings
 from typing import Any
@@ -28,7 +27,7 @@ from autocolor.mapping.intensity import (
 from autocolor.mapping.ranges import level_ranges
 from autocolor.visibility.visible_points import SurfaceSlice
 from tests.autocolor.meshes import wall_scene
-from tests.autocolor.reference import level_of
+from tests.autocolor.reference import level_of, mapped
 from tests.autocolor.strategies import MAPPINGS, scenes
 
 
@@ -47,20 +46,6 @@ def picture_of(*intensities: list[float]) -> Picture:
 RANGES = {"a": LevelRange(1, 11), "b": LevelRange(12, 101)}
 
 
-def shown_by(mapping: Any, fraction: float) -> float:
-    """How far along the range a fraction is shown, by the slow twin."""
-    if mapping == "gamma":
-        return float(fraction ** (1 / 2.2))
-    if mapping == "logarithm":
-        return math.log1p(15 * fraction) / math.log(16)
-    if mapping == "linear":
-        return fraction
-    for (x, y), (x_next, y_next) in itertools.pairwise(mapping):
-        if fraction <= x_next:
-            return float(y + (fraction - x) / (x_next - x) * (y_next - y))
-    raise AssertionError
-
-
 @given(
     st.lists(st.integers(0, 1000), min_size=2, max_size=40),
     st.sampled_from([mapping for mapping in MAPPINGS if mapping != "equalize"]),
@@ -75,7 +60,7 @@ def test_every_level_agrees_with_the_slow_twin(steps: list[int], mapping: Any, l
         if least == most:
             assert level == levels // 2
             continue
-        exact = shown_by(mapping, (intensity - least) / (most - least)) * (levels - 1) + 0.5
+        exact = mapped(mapping, (intensity - least) / (most - least)) * (levels - 1) + 0.5
         if abs(exact - round(exact)) > 1e-3:
             assert level == level_of((exact - 0.5) / (levels - 1), levels)
 

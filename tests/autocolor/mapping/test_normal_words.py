@@ -26,7 +26,6 @@ from autocolor.mapping.normal_words import (
     words_of_normals,
 )
 from autocolor.scene.columns import fields_of
-from autocolor.scene.curves import GAMMA, LOGARITHM
 from autocolor.scene.scene import OBJECT
 from autocolor.visibility.visible_points import SurfaceSlice
 from tests.autocolor import reference
@@ -72,14 +71,7 @@ def fraction(scene: Scene, intensity: float, low: float, high: float) -> float:
     if high - low <= 2.0**-20 * high:
         return 0.5
     along = (min(max(intensity, low), high) - low) / (high - low)
-    if scene.mapping == "gamma":
-        return math.pow(along, 1 / GAMMA)
-    if scene.mapping == "logarithm":
-        return math.log1p(LOGARITHM * along) / math.log1p(LOGARITHM)
-    if scene.mapping == "linear":
-        return along
-    xs, ys = zip(*scene.mapping, strict=True)
-    return float(np.interp(along, xs, ys))
+    return reference.mapped(scene.mapping, along)
 
 
 def entries(image: NormalImage) -> dict[int, tuple[int, ...]]:

@@ -139,7 +139,7 @@ def test_a_class_that_derives_from_a_model_is_none_of_the_models() -> None:
     class Duller(Phong):
         pass
 
-    with pytest.raises(InputError, match="model must be 'phong', 'blinn' or 'cook-torrance', not"):
+    with pytest.raises(InputError, match=r"model must be 'phong', .* not Duller\(\)"):
         Reflectance(model=Duller())
 
 

@@ -10,6 +10,7 @@ import pytest
 
 from ramtek_emu.command_line import run_command
 from ramtek_emu.commands.ramtek import ramtek as ramtek_group
+from ramtek_emu.configuration import CONFIGURATIONS
 from tests.ramtek_emu.processes import ROOT
 
 
@@ -78,7 +79,7 @@ FOLDER = (
     "make it, or choose another place"
 )
 CONFIGURATION = (
-    "ramtek: a configuration must be one of GMR_9300, JPL_9460, NCAR_9460, PRINCETON_9300, not {!r}; "
+    f"ramtek: a configuration must be one of {', '.join(sorted(CONFIGURATIONS))}, not {{!r}}; "
     "did you mean GMR_9300?"
 )
 INPUT = "Error: an input must be the name of a file, not ''; give it one"
