@@ -39,7 +39,7 @@ def test_a_picture_is_shown_once_on_a_display_behind_a_port(tmp_path: Path, run:
             server.kill()
         assert (ran.code, ran.out) == (0, "")
         assert ran.err == f"shown on {address}\n"
-        server.communicate(timeout=30)
+        server.communicate(timeout=60)
         assert server.returncode == 0
     display = Ramtek9300()
     Studio(read_scene(mesh), display)
@@ -123,7 +123,7 @@ def test_a_session_that_is_ended_by_a_signal_is_recovered(
             process.send_signal(number)
             while process.poll() is None or server.busy:
                 server.step(0.01)
-            _, err = process.communicate(timeout=30)
+            _, err = process.communicate(timeout=60)
             assert process.returncode == code, err
     (left,) = left_sessions()
     history = read_journal(left / JOURNAL).history
