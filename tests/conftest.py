@@ -8,6 +8,7 @@ from __future__ import annotations
 import itertools
 import os
 import signal
+import sys
 from pathlib import Path
 
 import pytest
@@ -27,6 +28,14 @@ settings.load_profile(
 # A shell that starts a command in the background has it ignore interrupts, and so all that it starts in turn.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+# If Python may not write compiled modules beside the sources, each of the hundreds of processes that tests start
+# would compile all modules again. They share a folder of compiled modules instead.
+if sys.dont_write_bytecode and sys.pycache_prefix is None:
+    sys.dont_write_bytecode = False
+    sys.pycache_prefix = str(Path(__file__).parents[1] / ".pytest_cache" / "compiled")
+    os.environ["PYTHONPYCACHEPREFIX"] = sys.pycache_prefix
+    del os.environ["PYTHONDONTWRITEBYTECODE"]
 
 _NUMBERS = itertools.count()
 

@@ -76,7 +76,7 @@ def ended(process: subprocess.Popen[str], number: int, state: Path, journals: in
         lines.append(process.stdout.readline())
         assert lines[-1]
     process.send_signal(number)
-    out, err = process.communicate(timeout=30)
+    out, err = process.communicate(timeout=60)
     lines += out.splitlines(keepends=True)
     return max(int(line) for line in lines if line.endswith("\n")), err
 
@@ -109,7 +109,7 @@ def test_a_program_that_is_ended_from_outside_leaves_every_step_to_be_recovered(
     assert steps >= made > 0
 
     process = start("close", "view", "scene", folder=folder)
-    _, err = process.communicate(timeout=30)
+    _, err = process.communicate(timeout=60)
     assert process.returncode == 0
     assert err.startswith("autocolor: a session of 2")
     assert err.endswith(
@@ -118,7 +118,7 @@ def test_a_program_that_is_ended_from_outside_leaves_every_step_to_be_recovered(
     )
 
     process = start("close", "view", "--recover", folder=folder)
-    out, err = process.communicate(timeout=30)
+    out, err = process.communicate(timeout=60)
     assert (process.returncode, err) == (0, "")
     assert f"Studio('two', to undo {steps}, to redo 0)" in out
     assert list((state / "sessions").iterdir()) == []

@@ -146,7 +146,7 @@ def test_a_session_that_is_ended_by_a_signal_is_recovered(
             process.send_signal(number)
             while process.poll() is None or server.busy:
                 server.step(0.01)
-            _, err = process.communicate(timeout=30)
+            _, err = process.communicate(timeout=60)
             assert process.returncode == code, err
     (left,) = left_sessions()
     history = read_journal(left / JOURNAL).history
