@@ -29,8 +29,11 @@ BLOCK: Final = 1 << 17
 
 IN_DECIMALS: Final = b"0123456789+-.eE \t\n\r\f\v"
 IN_WHOLES: Final = b"0123456789+- \t\n\r\f\v"
-IN_VALUES: Final = IN_DECIMALS + b"nNaAiIfFtTyY"
-"""With the letters of nan, inf and infinity; no other word of these letters is a number."""
+IN_VALUES: Final = IN_DECIMALS + b"nNaAiIfF"
+"""With the letters of nan and inf; no other word of these letters is a number."""
+
+IN_PLY: Final = IN_VALUES + b"tTyY"
+"""With the letters of infinity, which C programs write in PLY files."""
 
 DIGITS: Final = b"0123456789 \t\n"
 MOST_DIGITS: Final = 18
@@ -125,9 +128,9 @@ class NumberText:
             raise self.wrong(first + int(large[0]), COORDINATE)
         return values
 
-    def values(self, first: int, count: int) -> Floats:
-        """The values of some words, which may be nan or inf. Raises InputError."""
-        return self._converted(first, count, IN_VALUES, "a value must be a decimal number, nan or inf", float)
+    def values(self, first: int, count: int, letters: bytes = IN_VALUES) -> Floats:
+        """The values of some words, which may be nan or inf. Raises InputError for other letters."""
+        return self._converted(first, count, letters, "a value must be a decimal number, nan or inf", float)
 
     def wholes(self, first: int, count: int, what: str) -> Numbers:
         """The whole numbers of some words, each within 18 digits; `what` they are. Raises InputError."""

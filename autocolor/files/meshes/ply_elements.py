@@ -18,7 +18,7 @@ import numpy as np
 from autocolor.arrays import AnyArray, Booleans, Floats, Indices, runs
 from autocolor.checks import either, nearest
 from autocolor.errors import InputError
-from autocolor.files.meshes.number_text import NumberText
+from autocolor.files.meshes.number_text import IN_PLY, NumberText
 from autocolor.files.meshes.repair import name_of
 from autocolor.files.reading import HEAD, shown, text_problem
 
@@ -456,7 +456,7 @@ def read_text(data: bytes, header: PlyHeader, place: str) -> tuple[dict[str, Ele
     firsts, longest = text.lines()
     if longest > LONGEST_TEXT_LINE:
         raise InputError(f"{place}: a line must have at most {LONGEST_TEXT_LINE:,} bytes, not more; split it")
-    numbers = text.values(0, len(text))
+    numbers = text.values(0, len(text), IN_PLY)
     ends = np.append(firsts[1:], len(text))
     elements: dict[str, ElementRows] = {}
     row = 0

@@ -1,11 +1,12 @@
 from __future__ import annotations
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor.errors import InputError
-from autocolor.files.meshes.number_text import NumberText, Problems
+from autocolor.files.meshes.number_text import IN_PLY, NumberText, Problems
 
 
 def test_numbers_are_found_between_any_white_space() -> None:
@@ -34,8 +35,10 @@ def test_whole_numbers_are_strict(word: str) -> None:
 
 def test_values_may_be_missing_or_infinite() -> None:
     assert str(NumberText(b"nan -INF 1e2 NaN", "").values(0, 4).tolist()) == "[nan, -inf, 100.0, nan]"
-    with pytest.raises(InputError, match="line 1: a value must be a decimal number, nan or inf, not 'fin'"):
-        NumberText(b"1 fin", "").values(0, 2)
+    assert NumberText(b"infinity", "").values(0, 1, IN_PLY).tolist() == [np.inf]
+    for word in ("fin", "infinity"):
+        with pytest.raises(InputError, match=f"a value must be a decimal number, nan or inf, not '{word}'"):
+            NumberText(f"1 {word}".encode(), "").values(0, 2)
 
 
 def test_too_few_numbers_are_refused_before_anything_is_made_of_them() -> None:
