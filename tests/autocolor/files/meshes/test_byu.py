@@ -124,9 +124,8 @@ def test_up_and_scale_place_the_mesh(tmp_path: Path) -> None:
         (
             "4 8 -6",
             "",
-            "cube.byu: there must be 56 numbers up to the end of the connectivity, not 53; the file is"
-            " cut short"
-            " or its counts are wrong",
+            "cube.byu: there must be 56 numbers up to the end of the connectivity, not 53; the file is cut"
+            " short or its counts are wrong",
         ),
         (
             "1 5 6 6",

@@ -87,8 +87,7 @@ def test_polygons_of_many_sides_are_split_and_what_follows_is_told(tmp_path: Pat
             "OFF\n",
             "4OFF\n",
             "cube.off: an OFF file must begin OFF, COFF, NOFF or STOFF, not '4OFF'; write it with three"
-            " coordinates,"
-            " as text",
+            " coordinates, as text",
         ),
         (
             "8 6 12",
@@ -105,15 +104,13 @@ def test_polygons_of_many_sides_are_split_and_what_follows_is_told(tmp_path: Pat
             "8 6 12",
             "20 6 12",
             "cube.off: there must be 63 numbers up to the end of the nodes, not 57; the file is cut short"
-            " or its"
-            " counts are wrong",
+            " or its counts are wrong",
         ),
         (
             "8 6 12",
             "8 7 12",
-            "cube.off: there must be 7 lines of polygons, as the header says, not 6; correct the header"
-            " or the"
-            " polygons",
+            "cube.off: there must be 7 lines of polygons, as the header says, not 6; correct the header or"
+            " the polygons",
         ),
         (
             "1 1 0\n",
@@ -140,8 +137,7 @@ def test_polygons_of_many_sides_are_split_and_what_follows_is_told(tmp_path: Pat
             "4 0 1 5 4",
             "5 0 1 5 4",
             "cube.off, line 14: a polygon must begin with the number of the corners on its line, not '5';"
-            " correct"
-            " it",
+            " correct it",
         ),
     ],
 )

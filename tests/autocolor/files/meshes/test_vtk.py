@@ -240,8 +240,7 @@ GOOD = VtkWriter("POLYDATA").points().cells("POLYGONS", [[0, 1, 2, 3]]).data
         (
             b"",
             "thing.vtk, line 1: a legacy VTK file must begin '# vtk DataFile Version 1.0' to 5.1, not '';"
-            " write it"
-            " as legacy VTK",
+            " write it as legacy VTK",
         ),
         (
             GOOD.replace(b"ASCII", b"UTF-8"),
@@ -264,8 +263,7 @@ GOOD = VtkWriter("POLYDATA").points().cells("POLYGONS", [[0, 1, 2, 3]]).data
         (
             GOOD.replace(b"POINTS 4", b"POINTS 400000000000"),
             "thing.vtk, line 5: the POINTS must have 1,200,000,000,000 numbers, not 20; the file is cut"
-            " short or its"
-            " counts are wrong",
+            " short or its counts are wrong",
         ),
         (
             GOOD.replace(b"POLYGONS", b"CELLS"),
@@ -357,8 +355,7 @@ def test_coordinates_are_finite_and_whole_numbers_whole() -> None:
         cursor.coordinates(2, b"float", "POINTS")
     assert str(caught.value) == (
         "a.vtk, byte 0: a coordinate must be finite and at most 1e30 in size, not inf (number 2 of the"
-        " POINTS);"
-        " correct it"
+        " POINTS); correct it"
     )
     with pytest.raises(InputError, match="the type of the CELLS must be one of whole numbers, not 'float'"):
         text(b"1 2").wholes(2, b"float", "CELLS")
@@ -443,8 +440,7 @@ def test_a_layer_may_lie_across_any_axis(tmp_path: Path) -> None:
             "STRUCTURED_POINTS",
             "DIMENSIONS 100000 100000 1",
             "layer.vtk: a STRUCTURED_POINTS must have at most as many nodes as the file has bytes, and"
-            " 4,000,000,"
-            " not 10,000,000,000; take fewer",
+            " 4,000,000, not 10,000,000,000; take fewer",
         ),
         (
             "STRUCTURED_POINTS",
@@ -500,15 +496,13 @@ def test_cells_are_the_same_in_both_forms(cells: list[list[int]]) -> None:
         ),
         (
             "CELLS 2 7\n3 0 1 2 3 1 2",
-            "a.vtk, CELLS: a cell must have as many nodes as its count says, not 2 after 3 (cell 1,"
-            " counted from"
-            " 0); correct it",
+            "a.vtk, CELLS: a cell must have as many nodes as its count says, not 2 after 3 (cell 1, counted"
+            " from 0); correct it",
         ),
         (
             "CELLS 1 4\n-3 0 1 2",
             "a.vtk, CELLS: a cell must have as many nodes as its count says, not 3 after -3 (cell 0,"
-            " counted from"
-            " 0); correct it",
+            " counted from 0); correct it",
         ),
         (
             "CELLS 1 5\n3 0 1 2 3",
@@ -672,8 +666,7 @@ def test_what_follows_an_unknown_keyword_is_skipped_and_told() -> None:
         (
             "CELL_DATA 3\nFIELD f 1\nname 1 3",
             "a.vtk, line 7: an array of a FIELD must have a name, two counts and a type, not 'name 1 3';"
-            " correct"
-            " it",
+            " correct it",
         ),
         (
             "CELL_DATA 3\nFIELD f 900000",
