@@ -36,7 +36,7 @@ from autocolor.errors import InputError
 from autocolor.files.meshes.file_scalars import FileScalars
 from autocolor.files.meshes.number_text import MOST_PROBLEMS, NUMBER, Problems
 from autocolor.files.meshes.repair import LONGEST_NAME, PLAIN, MeshReport, Placement, RawPolygons, repaired
-from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, shown, text_problem
+from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, shown, text_lines
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalar import MOST_SCALARS, NODE, POLYGON
 
@@ -151,22 +151,7 @@ class CsvRows:
 
     def __init__(self, path: Path) -> None:
         self.place = path.name
-        data = read_bytes(path, LARGEST_MESH_FILE)
-        if problem := text_problem(data):
-            raise InputError(f"{self.place}: a table {problem}")
-        if b"\r" in data:
-            data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
-        if not data.isascii():
-            self._require_utf_8(data)
-        lines = io.TextIOWrapper(io.BytesIO(data), "utf-8", newline="")
-        self._reader = csv.reader(lines, strict=True)
-        self.row = 0
-        header = self._next(1)
-        if not header:
-            raise InputError(f"{self.place}: a table must start with a row of column names, not be empty")
-        self.header = [cell.strip() for cell in header[0]]
-
-    def _require_utf_8(self, data: bytes) -> None:
+        data = text_lines(read_bytes(path, LARGEST_MESH_FILE), self.place, "a table")
         try:
             data.decode("utf-8")
         except UnicodeDecodeError as error:
@@ -174,6 +159,13 @@ class CsvRows:
             raise InputError(
                 f"{self.place}, row {line}: a table must be text in UTF-8; save it as UTF-8"
             ) from None
+        lines = io.TextIOWrapper(io.BytesIO(data), "utf-8", newline="")
+        self._reader = csv.reader(lines, strict=True)
+        self.row = 0
+        header = self._next(1)
+        if not header:
+            raise InputError(f"{self.place}: a table must start with a row of column names, not be empty")
+        self.header = [cell.strip() for cell in header[0]]
 
     def _next(self, count: int) -> list[list[str]]:
         """The next rows, fewer at the end of the file. Raises InputError."""

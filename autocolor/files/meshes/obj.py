@@ -33,7 +33,7 @@ from autocolor.errors import InputError
 from autocolor.files.meshes.number_text import MOST_PROBLEMS, NUMBER, Problems
 from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, RawPolygons, name_of, repaired
 from autocolor.files.paths import path_within
-from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, shown, text_problem
+from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, shown, text_lines
 from autocolor.scene.columns import replaced
 from autocolor.scene.defaults import COLORED_PAINT, created_surface
 from autocolor.scene.geometry.polygon_split import MOST_CORNERS
@@ -49,11 +49,7 @@ def read_obj(path: Path, placement: Placement = PLAIN) -> MeshReport:
 
     Raises InputError with every problem, each with its line, MissingInputError if the file does not exist.
     """
-    data = read_bytes(path, LARGEST_MESH_FILE)
-    if problem := text_problem(data):
-        raise InputError(f"{path.name}: an OBJ file {problem}")
-    if b"\r" in data:
-        data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    data = text_lines(read_bytes(path, LARGEST_MESH_FILE), path.name, "an OBJ file")
     statements = Statements(path.stem)
     tables = read_plain_obj(data, statements)
     if tables is None or (tables.rows < 0).any():
@@ -536,8 +532,7 @@ def read_materials(
         try:
             data = read_bytes(path, left)
             left -= len(data)
-            if problem := text_problem(data):
-                raise InputError(f"{path.name}: a material library {problem}")
+            data = text_lines(data, path.name, "a material library")
         except InputError as error:
             sentences.append(f"the materials have default colors: {error}")
             continue
@@ -598,8 +593,7 @@ def materials_of(data: bytes, place: str, wanted: set[str]) -> tuple[Mapping[str
     transparent: set[str] = set()
     tables: dict[str, dict[bytes, list[float]]] = {}
     name, table = "", dict[bytes, list[float]]()
-    lines = io.BytesIO(data.replace(b"\r\n", b"\n").replace(b"\r", b"\n"))
-    for number, line in enumerate(lines, start=1):
+    for number, line in enumerate(io.BytesIO(data), start=1):
         words = line.split(b"#", 1)[0].split(None, MOST_WORDS)
         if not words:
             continue

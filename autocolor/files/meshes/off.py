@@ -23,7 +23,7 @@ from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError
 from autocolor.files.meshes.number_text import NumberText
 from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, RawPolygons, repaired
-from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, shown, text_problem
+from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, shown, text_lines
 from autocolor.scene.geometry.polygon_split import MOST_CORNERS
 
 KEYWORD: Final = re.compile(rb"\s*([A-Za-z0-9]*OFF)\b")
@@ -33,10 +33,7 @@ COMMENT: Final = re.compile(rb"#[^\n]*")
 
 def read_off(path: Path, placement: Placement = PLAIN) -> MeshReport:
     """The mesh of an OFF file, and what was repaired. Raises InputError."""
-    data = read_bytes(path, LARGEST_MESH_FILE)
-    if problem := text_problem(data):
-        raise InputError(f"{path.name}: an OFF file {problem}")
-    data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    data = text_lines(read_bytes(path, LARGEST_MESH_FILE), path.name, "an OFF file")
     if b"#" in data:
         data = COMMENT.sub(b"", data)
     keyword = KEYWORD.match(data)

@@ -35,7 +35,7 @@ from autocolor.files.reading import (
     UTF_8_MARK,
     read_bytes,
     shown,
-    text_problem,
+    text_lines,
 )
 
 BEGINNING: Final = re.compile(rb"\s*solid\b", re.IGNORECASE)
@@ -68,16 +68,13 @@ def _triangles(path: Path) -> tuple[AnyArray, Indices, tuple[str, ...], tuple[st
     if has_binary_size(data) or not _is_text(data):
         corners, skipped = read_binary(data, path.name)
         return corners, np.zeros(len(corners) // 3, np.intp), (path.stem,), skipped
-    if problem := text_problem(data):
-        raise InputError(f"{path.name}: an ascii STL file {problem}")
+    text = text_lines(data, path.name, "an ascii STL file")
     if len(data) > LARGEST_MESH_FILE:
         raise InputError(
             f"{path.name}: an ascii STL file must have at most {LARGEST_MESH_FILE:,} bytes, not more;"
             " export it as binary"
         )
-    if b"\r" in data:
-        data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
-    triangles = read_text(data, path.name)
+    triangles = read_text(text, path.name)
     names = different([name_of(name) or path.stem for name in triangles.names])
     return triangles.corners, triangles.part_numbers, names, triangles.messages
 

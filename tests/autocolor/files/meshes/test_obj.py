@@ -476,12 +476,13 @@ def test_other_statements_are_ignored(statement: str) -> None:
 
 
 @pytest.mark.parametrize("ending", ["\n", "\r\n", "\r"])
-def test_lines_of_a_library_end_in_any_way(ending: str) -> None:
-    surfaces, sentences = described(f"newmtl red{ending}Kd 1 0 0{ending}Ks x{ending}")
-    assert surfaces["red"].paint.object_color == (255, 0, 0)
-    assert sentences == [
-        "car.mtl, line 3: Ks must have one number or three, from 0 to 1e+06, not 'x'; the default is used"
-    ]
+def test_lines_of_a_library_end_in_any_way(path: Path, ending: str) -> None:
+    path.with_suffix(".mtl").write_bytes(f"newmtl red{ending}Kd 1 0 0{ending}Ks x{ending}".encode())
+    surfaces, sentences = read_materials(path, (), ("red",))
+    assert surfaces[0].paint.object_color == (255, 0, 0)
+    assert sentences == (
+        "car.mtl, line 3: Ks must have one number or three, from 0 to 1e+06, not 'x'; the default is used",
+    )
 
 
 @pytest.mark.parametrize(
