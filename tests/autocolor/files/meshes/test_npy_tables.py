@@ -199,7 +199,7 @@ BAD: list[tuple[str, AnyArray, str]] = [
     (
         "nodes",
         np.zeros((8, 2)),
-        "nodes.npy: the shape of a node table must be (rows, 3), not (8, 2); write it again",
+        "nodes.npy: the shape of coordinates must be (rows, 3), not (8, 2); write it again",
     ),
     (
         "polygons",
