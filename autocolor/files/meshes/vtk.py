@@ -99,20 +99,20 @@ def _read_cells(cursor: VtkCursor, dataset: bytes) -> tuple[Floats, VtkCells]:
             coordinates = read_points(cursor, words)
         elif coordinates is None:
             raise cursor.error(f"there must be POINTS before {shown(words[0])}; correct the file")
-        elif keyword in (b"VERTICES", b"LINES"):
-            skipped = len(read_cell_lists(cursor, words, len(coordinates)).sizes)
-            cells.skipped[keyword.decode().lower()] += skipped
-            cells.count += skipped
-        elif keyword == b"POLYGONS":
-            add_polygons(cells, read_cell_lists(cursor, words, len(coordinates)))
-        elif keyword == b"TRIANGLE_STRIPS":
-            add_strips(cells, read_cell_lists(cursor, words, len(coordinates)))
+        elif keyword in IN_POLYDATA:
+            cell_lists = read_cell_lists(cursor, words, len(coordinates))
+            add_cells(cells, cursor, cell_lists, IN_POLYDATA[keyword])
         elif keyword == b"CELLS":
-            # The first count of version 5.1 is that of OFFSETS, one more than the cells.
             lists = read_cell_lists(cursor, words, len(coordinates))
         elif keyword == b"CELL_TYPES" and lists is not None:
             count = cursor.count(words[1] if len(words) > 1 else b"", "the count of CELL_TYPES")
-            add_typed(cells, cursor, lists, cursor.wholes(count, b"int", "CELL_TYPES"))
+            types = cursor.wholes(count, b"int", "CELL_TYPES")
+            if count != len(lists.sizes):
+                raise InputError(
+                    f"{cursor.name}: there must be as many CELL_TYPES as CELLS, {len(lists.sizes):,}, not"
+                    f" {count:,}; correct the file"
+                )
+            add_cells(cells, cursor, lists, types)
             lists = None
         else:
             raise cursor.error(f"there must be no {shown(words[0])} in {dataset.decode()}; correct the file")
@@ -144,29 +144,16 @@ LONGEST_METADATA: Final = 10_000
 SPACES: Final = b" \t\r\n\f\v"
 
 TYPES: Final = {
-    b"char": "i1",
-    b"unsigned_char": "u1",
-    b"short": ">i2",
-    b"unsigned_short": ">u2",
-    b"int": ">i4",
-    b"unsigned_int": ">u4",
-    b"long": ">i8",
-    b"unsigned_long": ">u8",
-    b"float": ">f4",
-    b"double": ">f8",
+    b"char": "i1", b"unsigned_char": "u1", b"short": ">i2", b"unsigned_short": ">u2",
+    b"int": ">i4", b"unsigned_int": ">u4", b"long": ">i8", b"unsigned_long": ">u8",
+    b"float": ">f4", b"double": ">f8",
+    b"vtktypeint8": "i1", b"vtktypeuint8": "u1", b"vtktypeint16": ">i2", b"vtktypeuint16": ">u2",
+    b"vtktypeint32": ">i4", b"vtktypeuint32": ">u4", b"vtktypeint64": ">i8", b"vtktypeuint64": ">u8",
+    b"vtktypefloat32": ">f4", b"vtktypefloat64": ">f8",
     # All versions that write this name write 32 bits.
     b"vtkidtype": ">i4",
-    b"vtktypeint8": "i1",
-    b"vtktypeuint8": "u1",
-    b"vtktypeint16": ">i2",
-    b"vtktypeuint16": ">u2",
-    b"vtktypeint32": ">i4",
-    b"vtktypeuint32": ">u4",
-    b"vtktypeint64": ">i8",
-    b"vtktypeuint64": ">u8",
-    b"vtktypefloat32": ">f4",
-    b"vtktypefloat64": ">f8",
-}
+}  # fmt: skip
+"""The types in a file, in lower case, as those of numpy."""
 
 
 class VtkCursor:
@@ -313,9 +300,17 @@ SHAPES: Final = {
     **dict.fromkeys((13, 26, 31, 32, 73), "wedge"),
     **dict.fromkeys((14, 27, 74), "pyramid"),
 }
-"""The shapes that types of cells are read as."""
+"""The shape that each type of cell becomes."""
 
 FIRST_ORDER: Final = frozenset(range(15))
+
+IN_POLYDATA: Final = {
+    b"VERTICES": 1,
+    b"LINES": 3,
+    b"TRIANGLE_STRIPS": STRIP_CELL,
+    b"POLYGONS": POLYGON_CELL,
+}
+"""The type of the cells in each section of POLYDATA."""
 
 SKIPPED: Final = {
     0: "empty cells",
@@ -435,24 +430,31 @@ def _counted_lists(cursor: VtkCursor, cells: int, size: int, what: str) -> CellL
     return CellLists(numbers[~is_count], np.concatenate([[0], np.cumsum(sizes)]))
 
 
-def add_polygons(cells: VtkCells, lists: CellLists) -> None:
-    """Add polygons of any number of corners."""
+def add_cells(cells: VtkCells, cursor: VtkCursor, lists: CellLists, types: Numbers | int) -> None:
+    """Add cells, all of one type or each of its own. Raises InputError for a wrong number of nodes."""
     sizes = lists.sizes
-    rows = cells.count + np.arange(len(sizes))
-    cells.flats.append(Flats(lists.numbers.astype(np.intp), sizes, rows))
-    cells.skipped["empty cells"] += int((sizes == 0).sum())
+    for kind in np.unique(types).tolist():
+        is_kind = np.broadcast_to(np.equal(types, kind), sizes.shape)
+        chosen = np.flatnonzero(is_kind)
+        rows = cells.count + chosen
+        if kind == POLYGON_CELL:
+            corners = lists.numbers if is_kind.all() else lists.numbers[np.repeat(is_kind, sizes)]
+            cells.flats.append(Flats(corners.astype(np.intp), sizes[chosen], rows))
+            cells.skipped["empty cells"] += int((sizes[chosen] == 0).sum())
+        elif kind == STRIP_CELL:
+            cells.flats.append(_triangles(lists, chosen, rows))
+        elif shape := SHAPES.get(kind):
+            _add_shaped(cells, cursor, lists, chosen, rows, kind, shape)
+        else:
+            cells.skipped[SKIPPED.get(kind, f"cells of type {kind}")] += len(rows)
     cells.count += len(sizes)
 
 
-def add_strips(cells: VtkCells, lists: CellLists) -> None:
-    """Add triangle strips: each node from the third on makes a triangle with the two before it."""
-    rows = cells.count + np.arange(len(lists.sizes))
-    cells.flats.append(_triangles(lists, np.arange(len(rows)), rows))
-    cells.count += len(rows)
-
-
 def _triangles(lists: CellLists, chosen: Indices, rows: Indices) -> Flats:
-    """The triangles of the strips that are chosen; `rows` are their rows among the cells."""
+    """The triangles of the chosen strips; `rows` are the strips' rows among the cells of the file.
+
+    Each node of a strip from the third on makes a triangle with the two nodes before it.
+    """
     enough = lists.sizes[chosen] >= 3
     chosen, rows = chosen[enough], rows[enough]
     count = lists.sizes[chosen] - 2
@@ -463,45 +465,30 @@ def _triangles(lists: CellLists, chosen: Indices, rows: Indices) -> Flats:
     return Flats.of(lists.numbers[table].astype(np.intp), np.repeat(rows, count))
 
 
-def add_typed(cells: VtkCells, cursor: VtkCursor, lists: CellLists, types: Numbers) -> None:
-    """Add the cells of an unstructured grid, each of its type. Raises InputError."""
-    sizes = lists.sizes
-    if len(types) != len(sizes):
-        raise InputError(
-            f"{cursor.name}: there must be as many CELL_TYPES as CELLS, {len(sizes):,}, not {len(types):,};"
-            " correct the file"
-        )
-    for kind in np.unique(types).tolist():
-        rows = np.flatnonzero(types == kind)
-        if kind == POLYGON_CELL:
-            corners = lists.numbers[np.repeat(types == kind, sizes)]
-            cells.flats.append(Flats(corners.astype(np.intp), sizes[rows], rows))
-            cells.skipped["empty cells"] += int((sizes[rows] == 0).sum())
-        elif kind == STRIP_CELL:
-            cells.flats.append(_triangles(lists, rows, rows))
-        elif shape := SHAPES.get(kind):
-            _add_shaped(cells, cursor, lists, rows, kind, shape)
-        else:
-            cells.skipped[SKIPPED.get(kind, f"cells of type {kind}")] += len(rows)
-    cells.count += len(sizes)
-
-
 def _add_shaped(
-    cells: VtkCells, cursor: VtkCursor, lists: CellLists, rows: Indices, kind: int, shape: str
+    cells: VtkCells,
+    cursor: VtkCursor,
+    lists: CellLists,
+    chosen: Indices,
+    rows: Indices,
+    kind: int,
+    shape: str,
 ) -> None:
+    """Add the chosen cells, of a shape with a fixed number of corners. Raises InputError."""
     corners = {"triangle": 3, "quad": 4, **CORNERS}[shape]
-    sizes = lists.sizes[rows]
-    wrong = (sizes != corners) if kind in FIRST_ORDER else (sizes < corners)
+    is_first_order = kind in FIRST_ORDER
+    sizes = lists.sizes[chosen]
+    wrong = (sizes != corners) if is_first_order else (sizes < corners)
     if wrong.any():
-        cell = int(rows[wrong.argmax()])
-        rule = f"{'' if kind in FIRST_ORDER else 'at least '}{corners}"
+        cell = int(chosen[wrong.argmax()])
+        rule = f"{'' if is_first_order else 'at least '}{corners}"
         raise InputError(
             f"{cursor.name}, CELLS: a cell of type {kind} must have {rule} nodes, not {lists.sizes[cell]}"
             f" (cell {cell:,}, counted from 0); correct it"
         )
     order = np.array(ORDERS.get(kind, range(corners)))
-    table = lists.numbers[lists.offsets[rows][:, None] + order].astype(np.intp)
-    if kind not in FIRST_ORDER:
+    table = lists.numbers[lists.offsets[chosen][:, None] + order].astype(np.intp)
+    if not is_first_order:
         cells.higher_order += len(rows)
     if shape in CORNERS:
         cells.volumes.append(Volumes(shape, table, rows))

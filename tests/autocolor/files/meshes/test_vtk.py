@@ -17,8 +17,7 @@ from autocolor.files.meshes.vtk import (
     CellLists,
     VtkCells,
     VtkCursor,
-    add_strips,
-    add_typed,
+    add_cells,
     read_cell_lists,
     read_vtk,
 )
@@ -279,6 +278,10 @@ GOOD = VtkWriter("POLYDATA").points().cells("POLYGONS", [[0, 1, 2, 3]]).data
             " correct it",
         ),
         (
+            VtkWriter("UNSTRUCTURED_GRID").points().cells("CELLS", []).line("CELL_TYPES 1\n5").data,
+            "thing.vtk: there must be as many CELL_TYPES as CELLS, 0, not 1; correct the file",
+        ),
+        (
             VtkWriter("UNSTRUCTURED_GRID").points().grid([(3, [0, 1])]).data,
             "thing.vtk: a mesh must have a polygon with area, not none; add polygons",
         ),
@@ -531,19 +534,10 @@ def test_wrong_lists_are_refused(text: str, sentence: str) -> None:
 
 def test_a_strip_turns_every_other_triangle_over() -> None:
     cells = VtkCells()
-    add_strips(cells, CellLists(np.array([4, 5, 6, 7, 8, 0, 1]), np.array([0, 5, 7])))
+    add_cells(cells, text(b""), CellLists(np.array([4, 5, 6, 7, 8, 0, 1]), np.array([0, 5, 7])), 6)
     assert cells.flats[0].corners.reshape(-1, 3).tolist() == [[4, 5, 6], [6, 5, 7], [6, 7, 8]]
     assert cells.flats[0].cells.tolist() == [0, 0, 0]
     assert cells.count == 2
-
-
-def test_there_are_as_many_types_as_cells() -> None:
-    lists = CellLists(np.zeros(0, np.int64), np.zeros(1, np.int64))
-    with pytest.raises(InputError) as caught:
-        add_typed(VtkCells(), cursor_of(""), lists, np.array([5]))
-    assert str(caught.value) == (
-        "a.vtk: there must be as many CELL_TYPES as CELLS, 0, not 1; correct the file"
-    )
 
 
 def read_data(writer: VtkWriter) -> Attributes:
