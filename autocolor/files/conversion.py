@@ -19,7 +19,7 @@ from typing import Final
 from autocolor.checks import shown
 from autocolor.errors import OutputError, UsageError, WriteError, reason_of
 from autocolor.files.formats import (
-    HELD,
+    EXTRAS,
     MESH_FORMATS,
     NODE_SCALARS,
     PARTS,
@@ -49,7 +49,7 @@ SURFACES: Final = "surfaces"
 LIGHTS: Final = "lights"
 VIEW: Final = "view"
 SETTINGS: Final = "settings"
-WHOLE_SCENE: Final = frozenset((*HELD, SURFACES, LIGHTS, VIEW, SETTINGS))
+WHOLE_SCENE: Final = frozenset((*EXTRAS, SURFACES, LIGHTS, VIEW, SETTINGS))
 """The parts of a scene, beside nodes and polygons, that a format may hold."""
 
 SceneWriter = Callable[[Path, Scene, bool], list[Path]]

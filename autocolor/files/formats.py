@@ -39,8 +39,8 @@ LOG: Final = logger_of(__name__)
 class Format:
     """A file format: its name in messages, and the suffixes of its files, in lower case.
 
-    `begins` tells from the first bytes of a file whether it may have this format; None if nothing can be
-    told.
+    `begins` returns whether a file with these first bytes may have this format. It is None if the first bytes
+    may be any.
     """
 
     name: str
@@ -63,9 +63,9 @@ def format_named(path: Path, formats: Iterable[SomeFormat]) -> SomeFormat | None
 
 
 def recognized(path: Path, formats: Sequence[SomeFormat]) -> SomeFormat | None:
-    """The format of a file by its suffix, or another format if only that agrees with its first bytes.
+    """The format of a file by its suffix, or by its first bytes if they contradict the suffix.
 
-    None if neither the suffix nor the first bytes are those of a format.
+    None if neither belongs to a format.
     """
     named = format_named(path, formats)
     if named is not None and named.begins is None:
@@ -90,16 +90,16 @@ def suffix_rule(path: Path, suffixes: Sequence[str]) -> str:
 
 
 FILE: Final = ("file",)
-"""The keys of a mesh that is one file."""
+"""The key of a mesh in a single file."""
 
 NODES_AND_POLYGONS: Final = ("nodes", "polygons")
-"""The keys of a mesh that is a node table and a polygon table."""
+"""The keys of a mesh in a node table and a polygon table."""
 
 PARTS: Final = "parts"
 NODE_SCALARS: Final = "node scalars"
 POLYGON_SCALARS: Final = "polygon scalars"
-HELD: Final = (PARTS, NODE_SCALARS, POLYGON_SCALARS)
-"""What a mesh may have beside nodes and polygons, and not every format holds."""
+EXTRAS: Final = (PARTS, NODE_SCALARS, POLYGON_SCALARS)
+"""The data of a mesh beside nodes and polygons, which some formats do not store."""
 
 MeshReader = Callable[..., MeshReport]
 """A function that reads a mesh. Its positional arguments are the paths of the files, in the order of the
@@ -111,12 +111,11 @@ class MeshFormat(Format):
     """A mesh file format.
 
     `keys` are the keys of a `[[mesh]]` table that name its files; suffixes and first bytes are those of the
-    first file. A folder that contains all the files `in_folder` is a mesh of this format: the first of them
-    are the files of the keys, or, if the only key is "file", the folder itself is the file.
+    first file. A folder that contains all the files `in_folder` is a mesh of this format. The first of these
+    files belong to the keys; if the only key is "file", the folder itself is read.
 
-    `written` makes the content of a single file; `write` writes the files of a format of several into an
-    empty folder. `holds` are the things beside nodes and polygons that are read back then, of HELD. Files
-    that are `mapped` into memory are read page by page, so that their size has no limit.
+    `written` returns the content of a single file; `write` writes several files into an empty folder. `holds`
+    are the EXTRAS that such files store. `mapped` files are read page by page, so their size has no limit.
     """
 
     read: MeshReader
@@ -124,7 +123,7 @@ class MeshFormat(Format):
     in_folder: tuple[str, ...] = ()
     written: Callable[[Mesh], bytes] | None = None
     write: Callable[[Path, Mesh], object] | None = None
-    holds: frozenset[str] = frozenset(HELD)
+    holds: frozenset[str] = frozenset(EXTRAS)
     mapped: bool = False
 
 
@@ -151,7 +150,7 @@ MESH_FORMATS: Final = (
     MeshFormat("VTK", (".vtk",), read_vtk, begins=begins_as_vtk),
     *(MeshFormat(each.name, each.suffixes, partial(read_foreign, each)) for each in FOREIGN),
 )
-"""All mesh formats. Of several formats that begin alike, a file has the first."""
+"""All mesh formats. If the first bytes suit several formats, the first of them is used."""
 
 
 def file_formats() -> tuple[MeshFormat, ...]:
@@ -185,7 +184,7 @@ def format_of_files(files: Mapping[str, Path]) -> MeshFormat | None:
     """The format of some files, given by their keys in `[[mesh]]`; None if it is unknown.
 
     Several files are recognized by the first: by its suffix, else by its first bytes. If neither is known,
-    they are CSV tables, the format of several files that has no first bytes of its own.
+    they are CSV tables, which may begin with any bytes.
     """
     first = next(iter(files.values()))
     if tuple(files) == FILE:

@@ -52,7 +52,7 @@ IN_NUMBERS: Final = b"0123456789+-.eE ,"
 IN_WHOLES: Final = b"0123456789+- ,"
 
 NOTHING: Final = -(1 << 63)
-"""What stands for an empty or a wrong cell among whole numbers, which have at most 18 digits."""
+"""The whole number for an empty or wrong cell; numbers in cells have at most 18 digits."""
 
 
 class CellKind(Protocol):
@@ -67,7 +67,7 @@ class CellKind(Protocol):
 
 @dataclass(frozen=True)
 class NumberCells:
-    """Decimal numbers of at most 1e30 in size; an empty cell is NaN where that is allowed."""
+    """Decimal numbers of at most 1e30 in size. With `may_be_empty`, an empty cell is NaN."""
 
     rule: str
     may_be_empty: bool = False
@@ -95,7 +95,7 @@ class NumberCells:
 
 @dataclass(frozen=True)
 class WholeCells:
-    """Whole numbers of at most 18 digits; NOTHING for a wrong one, and for an empty one if allowed."""
+    """Whole numbers of at most 18 digits. A wrong or empty cell is NOTHING."""
 
     what: str
     may_be_empty: bool = False
@@ -120,7 +120,7 @@ class WholeCells:
 
 
 class NameCells:
-    """Names, each converted to its row in the list of all names, `rows`; an empty one is `empty`."""
+    """Names, as their rows in the list of all names, `rows`; an empty cell has the name `empty`."""
 
     def __init__(self, empty: str) -> None:
         self.empty = empty
@@ -235,12 +235,12 @@ CORNERS: Final = ("node1", "node2", "node3", "node4")
 POLYGON_COLUMNS: Final = ("polygon", "part", *CORNERS)
 
 SCALAR: Final = "scalar "
-"""What a column's name begins with where the rest is the name of a scalar."""
+"""The prefix of a column for a scalar with the name of another column."""
 
 CORNER: Final = re.compile(r"node[0-9]+")
 
 ALIKE: Final = 0.8
-"""Limit: a name that is spelled so much like a missing column is a mistake, and no scalar."""
+"""Limit: an unknown column at least this similar to a missing column is a mistake, not a scalar."""
 
 COORDINATES: Final = NumberCells("a coordinate must be a decimal number of at most 1e30 in size")
 VALUES: Final = NumberCells(
@@ -275,7 +275,7 @@ class Table:
         self.problems.note(self.place, int(self.numbers[row]), sentence)
 
     def note_repeated(self, what: str, numbers: Numbers) -> None:
-        """Note the numbers that repeat one before them; NOTHING may be repeated."""
+        """Note the numbers that an earlier row has. NOTHING may repeat."""
         for row in _repeated(numbers)[:MOST_PROBLEMS].tolist():
             self.note(row, f"a {what} number must be unique, not repeated: {numbers[row]}; renumber it")
 
@@ -335,7 +335,7 @@ def read_csv_tables(nodes: Path, polygons: Path, placement: Placement = PLAIN) -
 
 
 def _repeated(numbers: Numbers) -> Indices:
-    """The rows of numbers that repeat one before them, in order; those of NOTHING are left out."""
+    """The rows whose number an earlier row has, in order. NOTHING may repeat."""
     if (np.diff(numbers) > 0).all():
         return np.empty(0, np.intp)
     order = np.argsort(numbers, kind="stable")
@@ -345,7 +345,7 @@ def _repeated(numbers: Numbers) -> Indices:
 
 
 def _rows_of(table: Table, corners: Numbers, numbers: Numbers) -> Indices:
-    """The rows of the nodes of some numbers, 0 for NOTHING; a number that no node has is noted."""
+    """The row of the node with each number, 0 for NOTHING. Numbers without a node are noted."""
     if not len(numbers):
         missing = corners != NOTHING
         rows = np.zeros(corners.shape, np.intp)
@@ -402,7 +402,7 @@ def _check_header(place: str, cells: list[str], columns: tuple[str, ...], requir
 
 
 def _is_mistake(cell: str, columns: tuple[str, ...], missing: list[str]) -> bool:
-    """Whether the name of an unknown column is no scalar's: it is empty, a corner, or nearly a column."""
+    """Whether an unknown column is a mistake, not a scalar: it is empty, a corner, or nearly a column."""
     if not cell or cell.casefold() in columns or ("node1" in columns and CORNER.fullmatch(cell) is not None):
         return True
     return bool(difflib.get_close_matches(cell[:60], missing, n=1, cutoff=ALIKE))
@@ -467,14 +467,14 @@ def _header(mesh: Mesh, columns: tuple[str, ...], of: str) -> str:
 
 
 def _row(cells: list[str]) -> str:
-    """Cells as CSV, in quotes where that is needed."""
+    """The cells as CSV, quoted where necessary."""
     text = io.StringIO()
     csv.writer(text, lineterminator="").writerow(cells)
     return text.getvalue()
 
 
 def _cells(values: Floats) -> Iterator[str]:
-    """Values as cells; a missing one is empty."""
+    """Values as cells; a missing value is an empty cell."""
     return ("" if math.isnan(value) else repr(value) for value in values.tolist())
 
 

@@ -234,10 +234,10 @@ KEYS: Final = frozenset(("format", "part_names", "crease_angle", "scalars", "pla
 
 @dataclass(frozen=True)
 class TableNotes:
-    """What `tables.json` says.
+    """The content of `tables.json`.
 
     `scalars` are pairs of a name and "node" or "polygon", in the order of their files. `planes` is True if
-    files have the planes that polygons share, False if no polygons share a plane, None if that is not known.
+    files have the planes that polygons share, False if no polygons share a plane, None if unknown.
     """
 
     part_names: tuple[str, ...]
@@ -311,7 +311,7 @@ PLANE_SIDES: Final = "plane_sides.npy"
 SCALARS: Final = "scalars"
 
 MOST_PARTS: Final = 1 << 16
-"""Limit: parts that get names of their own where a folder names none."""
+"""Limit: parts in a folder that does not name its parts."""
 
 FINITE: Final = "coordinates must be finite and at most 1e30 in size"
 CORRECT: Final = "correct that row"
@@ -461,7 +461,7 @@ def _scalars(folder: Path, notes: TableNotes, counts: Mapping[str, int]) -> tupl
 NUMBERS_AT_ONCE: Final = 1 << 17
 
 LARGE: Final = 1 << 21
-"""Polygons whose normals are computed in files, for they would take 160 bytes of memory a polygon."""
+"""From this many polygons on, normals are computed in files: they take 160 bytes a polygon."""
 
 
 def write_npy_tables(folder: Path, mesh: Mesh, *, overwrite: bool = False) -> None:
@@ -502,7 +502,7 @@ def _named_tables(folder: Path, mesh: Mesh) -> Iterator[tuple[str, AnyArray]]:
 
 
 def _normals_of(folder: Path, mesh: Mesh) -> NodeNormals:
-    """The normals of a mesh: its own, or those of a large one computed in files that have no name."""
+    """The normals of a mesh; for a large mesh they are computed in nameless files."""
     if len(mesh.node_numbers) < LARGE or "normals" in vars(mesh):
         return mesh.normals
     with timed(LOG, "node normals, in files"):
@@ -516,9 +516,9 @@ def _normals_of(folder: Path, mesh: Mesh) -> NodeNormals:
 
 
 def scratch_array(folder: Path, shape: tuple[int, ...], dtype: type[Any]) -> AnyArray:
-    """An array to work in, backed by a file without a name in a folder, which is gone with the array.
+    """A working array in a nameless file in a folder; the file is gone with the array.
 
-    Raises WriteError if there is no room for it: the room is taken at once, for nobody could be told later.
+    All room is reserved at once, since a lack of room could not be reported later. Raises WriteError.
     """
     count = math.prod(shape)
     size = max(count * np.dtype(dtype).itemsize, 1)
@@ -548,7 +548,7 @@ def _make(folder: Path) -> None:
 
 
 def _remove_notes(folder: Path) -> None:
-    """Remove the notes of an older mesh, and what its normals and planes were, before files are replaced."""
+    """Remove the notes, normals and planes of an older mesh before its files are replaced."""
     others = (PLANES, PLANE_NUMBERS, PLANE_SIDES, NORMALS, NORMAL_NUMBERS)
     for path in (folder / NOTES, *(folder / name for name in others)):
         try:

@@ -196,7 +196,7 @@ class VtkCursor:
         return line.rstrip()
 
     def words(self) -> list[bytes]:
-        """The words of the next line that has any; none at the end of the file. Raises InputError."""
+        """The words of the next line with words; none at the end of the file. Raises InputError."""
         while self.at < len(self.data) and self.data[self.at] in SPACES:
             self.at += 1
         self.begun = self.at
@@ -223,10 +223,7 @@ class VtkCursor:
         return int(word)
 
     def array(self, count: int, kind: bytes, what: str) -> AnyArray:
-        """The next numbers: floating-point for `float`, `double` and all text, else whole. Raises InputError.
-
-        Of a text file, whole numbers are those of whole types.
-        """
+        """The next numbers, floating-point or whole as their type, `kind`. Raises InputError."""
         dtype = np.dtype(TYPES.get(kind.lower(), "V"))
         if dtype.kind == "V":
             raise self.error(
@@ -264,7 +261,7 @@ class VtkCursor:
         return values
 
     def wholes(self, count: int, kind: bytes, what: str) -> Numbers:
-        """The next whole numbers, int64. Raises InputError, for a type that is not whole, too."""
+        """The next whole numbers, int64. Raises InputError, also for a floating-point type."""
         array = self.array(count, kind, what)
         if array.dtype.kind not in "iu":
             raise self.error(
@@ -336,7 +333,7 @@ class CellLists(NamedTuple):
 
 @dataclass
 class VtkCells:
-    """Polygons and volume cells of a file, sentences about cells, and how many cells there are."""
+    """The polygons and volume cells of a file, and counts of its cells."""
 
     flats: list[Flats] = field(default_factory=list)
     volumes: list[Volumes] = field(default_factory=list)
@@ -346,7 +343,7 @@ class VtkCells:
 
     @property
     def sentences(self) -> tuple[str, ...]:
-        """What was skipped, and of how many cells the corners were taken."""
+        """Messages about skipped cells, and about cells that are read by their corners alone."""
         sentences = [f"skipped {what}: {count:,}" for what, count in self.skipped.items() if count]
         if self.higher_order:
             sentences.append(f"took the corners alone of cells of higher order: {self.higher_order:,}")
@@ -356,7 +353,7 @@ class VtkCells:
 def read_cell_lists(cursor: VtkCursor, words: list[bytes], nodes: int) -> CellLists:
     """The node lists after a line such as `POLYGONS cells size`. Raises InputError.
 
-    Up to version 5.0 each list is its length and its nodes; from 5.1 on there are OFFSETS and CONNECTIVITY.
+    Up to version 5.0 each cell is its number of nodes and its nodes; from 5.1 on, OFFSETS and CONNECTIVITY.
     """
     what = words[0].decode("latin-1")
     if len(words) < 3:
@@ -376,7 +373,7 @@ def read_cell_lists(cursor: VtkCursor, words: list[bytes], nodes: int) -> CellLi
 
 def _offset_lists(cursor: VtkCursor, count: int, size: int, what: str) -> CellLists:
     if not count:
-        # Some versions write no offset at all where there is no cell.
+        # If there are no cells, some versions write no offsets.
         return CellLists(np.empty(0, np.int64), np.zeros(1, np.int64))
     offsets = cursor.wholes(count, _kind_of(cursor, what), f"OFFSETS of {what}")
     if cursor.peek() != b"CONNECTIVITY":
@@ -503,7 +500,7 @@ LAYERS: Final = (b"STRUCTURED_GRID", b"RECTILINEAR_GRID", b"STRUCTURED_POINTS")
 
 AXES: Final = (b"X_COORDINATES", b"Y_COORDINATES", b"Z_COORDINATES")
 MOST_NODES: Final = 4_000_000
-"""Limit: nodes of one layer. Where only its axes are written, a small file has many."""
+"""Limit: nodes of one layer. A small file that gives only its axes can have many nodes."""
 
 VECTORS: Final = (b"ORIGIN", b"SPACING", b"ASPECT_RATIO")
 
@@ -559,7 +556,7 @@ def read_layer(cursor: VtkCursor, dataset: bytes) -> tuple[Floats, VtkCells]:
 
 
 def _dimensions(cursor: VtkCursor, words: list[bytes], dataset: bytes) -> tuple[int, ...]:
-    """The three numbers of nodes along the axes, of which one at least is 1. Raises InputError."""
+    """The numbers of nodes along the three axes, at least one of them 1. Raises InputError."""
     sizes = tuple(cursor.count(word, "a number of DIMENSIONS") for word in words[1:])
     if len(sizes) != 3 or 0 in sizes or 1 not in sizes:
         raise cursor.error(
@@ -601,7 +598,7 @@ def _points(
     return np.stack([x.ravel(), y.ravel(), z.ravel()], axis=1)
 
 
-# The data of nodes and cells. Scalars, vectors, tensors and the arrays of fields are scalars of the mesh.
+# The data of nodes and cells. Scalars, vectors, tensors and the arrays of fields become scalars of the mesh.
 # Normals, texture coordinates, colors, numbers for identification, bits and texts are skipped and counted.
 
 TABLES: Final = {b"POINT_DATA": NODE, b"CELL_DATA": POLYGON}
@@ -615,7 +612,7 @@ MOST_ARRAYS: Final = 100_000
 
 
 class Attributes:
-    """Reads the data; `rows` are the rows of the nodes and of the polygons that are kept."""
+    """Collects the scalars of a file; `rows` are the rows in the file of the mesh's nodes and polygons."""
 
     def __init__(self, cursor: VtkCursor, counts: Mapping[str, int], rows: Mapping[str, Indices]) -> None:
         self.cursor = cursor
@@ -626,10 +623,7 @@ class Attributes:
         self.skipped: Counter[str] = Counter()
 
     def read(self) -> None:
-        """Read all data to the end of the file. Raises InputError.
-
-        What follows an unknown keyword is skipped, since its size is not known.
-        """
+        """Read all data up to the end of the file, or up to an unknown keyword. Raises InputError."""
         while words := self.cursor.words():
             keyword = words[0].upper()
             if keyword in TABLES:
@@ -649,7 +643,7 @@ class Attributes:
         return (*self.scalars.messages, *skipped)
 
     def _begin(self, of: str, words: list[bytes]) -> None:
-        """Begin the data of a table, whose count must be that of its rows."""
+        """Begin the data of nodes or cells; the count must be their number in the file."""
         what = words[0].decode("latin-1").upper()
         count = self.cursor.count(words[1] if len(words) > 1 else b"", f"the count of {what}")
         if count != self.counts[of]:
@@ -691,7 +685,7 @@ class Attributes:
         return True
 
     def field(self, words: list[bytes]) -> None:
-        """Read the arrays of a field; those that do not belong to nodes or cells are skipped."""
+        """Read the arrays of a FIELD. Arrays that belong to no node or cell are skipped."""
         cursor = self.cursor
         arrays = cursor.count(words[2] if len(words) > 2 else b"", "the number of arrays of a FIELD")
         if arrays > MOST_ARRAYS:
@@ -713,7 +707,7 @@ class Attributes:
             arrays -= 1
 
     def _array(self, name: bytes, rows: int, width: int, kind: bytes, ignored: str = "") -> None:
-        """Read one array, which is a scalar unless it is `ignored` or of another size."""
+        """Add an array as a scalar, or skip it if it is `ignored` or of another size."""
         cursor, kind = self.cursor, kind.lower()
         if kind == b"bit":
             ignored = "arrays of bits"
@@ -740,7 +734,7 @@ class Attributes:
         self.skipped[what] += 1
 
     def _skip_texts(self, count: int) -> None:
-        """Go past texts: lines, or in binary each after its length, of which two bits tell the size."""
+        """Go past texts: lines, or in binary a length and a text. A length's first two bits give its size."""
         cursor = self.cursor
         for _ in range(count):
             if cursor.at >= len(cursor.data):

@@ -21,7 +21,7 @@ from autocolor.files.conversion import (
     write_folder,
     write_obj,
 )
-from autocolor.files.formats import HELD, MESH_FORMATS, NODE_SCALARS, PARTS, POLYGON_SCALARS
+from autocolor.files.formats import EXTRAS, MESH_FORMATS, NODE_SCALARS, PARTS, POLYGON_SCALARS
 from autocolor.scene.scalar import NODE, MeshScalar
 from autocolor.scene.surfaces import Surface
 from tests.autocolor.meshes import cube, wall_scene
@@ -101,7 +101,7 @@ def test_a_scene_file_holds_everything_and_a_mesh_no_lights() -> None:
     of_meshes = [each for each in outputs() if each.name in meshes]
     assert of_meshes
     for each in of_meshes:
-        assert each.holds <= {*HELD, "surfaces"}
+        assert each.holds <= {*EXTRAS, "surfaces"}
 
 
 def write_two(folder: Path, mesh: Mesh) -> None:

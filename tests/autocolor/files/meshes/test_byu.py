@@ -112,7 +112,7 @@ def test_up_and_scale_place_the_mesh(tmp_path: Path) -> None:
         (
             "2 8 6",
             "2 9000000000 6",
-            "cube.byu, line 1: a count must be at most that of the numbers in the file, 56, not '9000000000';"
+            "cube.byu, line 1: a count must be at most 56, the count of words in the file, not '9000000000';"
             " correct it",
         ),
         (

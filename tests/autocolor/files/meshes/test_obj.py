@@ -330,14 +330,13 @@ def test_a_polygon_of_too_many_corners_is_refused() -> None:
 @pytest.mark.parametrize("word", ["nan", "x", "1_0", "0x1"])
 def test_what_follows_the_coordinates_must_be_numbers_too(word: str) -> None:
     assert refusal_of_lines(f"v 0 0 0 1 {word}\n") == (
-        f"car.obj, line 1: what follows x y z must be decimal numbers, not {word!r}; correct it"
+        f"car.obj, line 1: weights and colors of nodes must be decimal numbers, not {word!r}; correct it"
     )
 
 
 def test_a_corner_in_a_file_without_nodes_is_refused() -> None:
     assert refusal_of_lines("f 1\n") == (
-        "car.obj, line 1: a corner must be a node number of a node in the file, which has none, not 1;"
-        " correct it"
+        "car.obj, line 1: a corner must be a node number of the file, which has no nodes, not 1; correct it"
     )
 
 

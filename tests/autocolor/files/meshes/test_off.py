@@ -97,8 +97,8 @@ def test_polygons_of_many_sides_are_split_and_what_follows_is_told(tmp_path: Pat
         (
             "8 6 12",
             "8000000000 6 12",
-            "cube.off, line 3: a count must be from 1 to that of the words in the file, 57, not '8000000000';"
-            " correct it",
+            "cube.off, line 3: a count must be from 1 to 57, the count of words in the file, not"
+            " '8000000000'; correct it",
         ),
         (
             "8 6 12",
