@@ -26,7 +26,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
-from typing import Final, Protocol
+from typing import Final
 
 import numpy as np
 
@@ -53,16 +53,6 @@ IN_WHOLES: Final = b"0123456789+- ,"
 
 NOTHING: Final = -(1 << 63)
 """The whole number for an empty or wrong cell; numbers in cells have at most 18 digits."""
-
-
-class CellKind(Protocol):
-    """How the cells of one column are converted."""
-
-    def at_once(self, cells: Sequence[str]) -> AnyArray:
-        """The values of many cells. Raises ValueError if any might be wrong."""
-
-    def one(self, cell: str, note: Callable[[str], None]) -> float | int:
-        """The value of one cell, without spaces around; a problem is noted."""
 
 
 @dataclass(frozen=True)
@@ -138,6 +128,11 @@ class NameCells:
         """The row of the name, which is made printable and cut to LONGEST_NAME letters."""
         name = printable((cell or self.empty)[:LONGEST_NAME])
         return self.rows.setdefault(name, len(self.rows))
+
+
+CellKind = NumberCells | WholeCells | NameCells
+"""The kinds of columns. `at_once` converts many cells, or raises ValueError if any might be wrong. `one`
+converts a cell without spaces around it, and notes a problem."""
 
 
 def _require_letters(cells: Sequence[str], letters: bytes) -> None:
@@ -356,11 +351,11 @@ def _rows_of(table: Table, corners: Numbers, numbers: Numbers) -> Indices:
         missing = (in_order[at] != corners) & (corners != NOTHING)
         rows = order[at]
     for row, column in np.argwhere(missing)[:MOST_PROBLEMS].tolist():
-        table.note(row, f"node {corners[row, column]} is not in the node table ({_known(numbers)})")
+        table.note(row, f"node {corners[row, column]} is not in the node table ({_range_of(numbers)})")
     return rows
 
 
-def _known(numbers: Numbers) -> str:
+def _range_of(numbers: Numbers) -> str:
     """The range of the node numbers, for a message; it says if there are gaps."""
     different_numbers = np.unique(numbers[numbers != NOTHING])
     if not len(different_numbers):

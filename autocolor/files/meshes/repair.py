@@ -97,9 +97,9 @@ AT_A_TIME: Final = 1 << 14
 FLAT: Final = 1e-12
 """Assumed: a triangle has no area if twice its area is below this fraction of the squared polygon size."""
 
-SURE: Final = 16 * (10 * FLAT) ** 2
-"""A triangle has area if its cross product, squared, exceeds this fraction of its squared edges, squared: the
-size of a polygon is at most twice the longest way from its first corner to another."""
+LEAST_AREA: Final = 16 * (10 * FLAT) ** 2
+"""A triangle surely has area if its cross product, squared, exceeds this fraction of the fourth power of its
+longer edge. The size of a polygon is at most twice the distance from its first corner to another."""
 
 LEAST_SQUARE: Final = 1e-250
 """Squares below have lost digits."""
@@ -215,7 +215,7 @@ def _far_from_flat(one: Floats, other: Floats, squares: Floats) -> Booleans:
     """Whether the triangles of two edges, (3, n), have area for sure; `squares` are at least the other's."""
     normals = cross(one, other)
     sizes = np.maximum(dot(one, one), squares)
-    are_far: Booleans = dot(normals, normals) > np.maximum(SURE * sizes * sizes, LEAST_SQUARE)
+    are_far: Booleans = dot(normals, normals) > np.maximum(LEAST_AREA * sizes * sizes, LEAST_SQUARE)
     return are_far
 
 
