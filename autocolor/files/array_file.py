@@ -189,7 +189,7 @@ def _header(kind: ArrayFileKind, source: Path, data: AnyArray) -> dict[str, Any]
         raise InputError(f"{place}: its format must be {kind.formats[0]!r}; {kind.advice}")
     series = {} if header["format"] in kind.plain else kind.series
     if set(header) != {"format", *kind.keys, *series}:
-        raise InputError(f"{place}: it must have exactly the keys of its format; {kind.advice}")
+        raise InputError(f"{place}: its keys must be exactly the keys of its format; {kind.advice}")
     for key, each in series.items():
         if not isinstance(header[key], list) or len(header[key]) > each.most:
             raise InputError(

@@ -39,8 +39,7 @@ LOG: Final = logger_of(__name__)
 class Format:
     """A file format: its name in messages, and the suffixes of its files, in lower case.
 
-    `begins` returns whether a file with these first bytes may have this format. It is None if the first bytes
-    may be any.
+    `begins` returns whether a file with these first bytes may have this format; None: any bytes may be first.
     """
 
     name: str

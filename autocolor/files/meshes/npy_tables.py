@@ -194,7 +194,7 @@ def parsed_header(name: str, head: bytes) -> NpyHeader:
     dtype = np.dtype(described[1].decode())
     if shape[0] > MOST_ROWS:
         raise InputError(f"{name}: a table must have at most {MOST_ROWS:,} rows, not {shape[0]:,}; divide it")
-    # A table of one row or one column has both orders.
+    # A table with one row or one column is stored by rows and by columns alike.
     by_columns = described[2] == b"True" or len(shape) == 1 or min(shape) <= 1
     return NpyHeader(dtype, by_columns, shape, start)
 

@@ -428,7 +428,7 @@ def _counted_lists(cursor: VtkCursor, cells: int, size: int, what: str) -> CellL
 
 
 def add_cells(cells: VtkCells, cursor: VtkCursor, lists: CellLists, types: Numbers | int) -> None:
-    """Add cells, all of one type or each of its own. Raises InputError for a wrong number of nodes."""
+    """Add cells; `types` are the type of all cells or the types, cell by cell. Raises InputError."""
     sizes = lists.sizes
     for kind in np.unique(types).tolist():
         is_kind = np.broadcast_to(np.equal(types, kind), sizes.shape)
