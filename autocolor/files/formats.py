@@ -91,10 +91,10 @@ def suffix_rule(path: Path, suffixes: Sequence[str]) -> str:
 
 
 FILE: Final = ("file",)
-"""The keys of a mesh that is one file."""
+"""The key of a mesh in a single file."""
 
 NODES_AND_POLYGONS: Final = ("nodes", "polygons")
-"""The keys of a mesh that is a node table and a polygon table."""
+"""The keys of a mesh in a node table and a polygon table."""
 
 PARTS: Final = "parts"
 NODE_SCALARS: Final = "node scalars"

@@ -133,6 +133,13 @@ def text_problem(data: bytes) -> str | None:
     return None
 
 
+def text_lines(data: bytes, place: str, thing: str) -> bytes:
+    """The text of `thing`, with lines that end with LF. Raises InputError for UTF-16 and NUL bytes."""
+    if problem := text_problem(data):
+        raise InputError(f"{place}: {thing} {problem}")
+    return data.replace(b"\r\n", b"\n").replace(b"\r", b"\n") if b"\r" in data else data
+
+
 def shown(value: str | bytes, most: int = 40) -> str:
     """The text in quotes for a message, cut to `most` characters."""
     if isinstance(value, bytes):

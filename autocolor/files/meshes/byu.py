@@ -23,7 +23,7 @@ from autocolor.arrays import Indices, Numbers
 from autocolor.errors import InputError
 from autocolor.files.meshes.number_text import NumberText
 from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, RawPolygons, repaired
-from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, text_problem
+from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, text_lines
 
 TOUCHING: Final = re.compile(rb"(?<=[0-9.])(?=[+-])")
 """Where a number with a sign begins right after another; the sign of an exponent follows a letter."""
@@ -36,15 +36,12 @@ COORDINATE_WIDTH: Final = 12
 EXPONENTS: Final = bytes.maketrans(b"dD", b"EE")
 
 MOST_OVERLAP: Final = 100
-"""Assumed: parts that a polygon is in on average; each takes time."""
+"""Limit: part ranges that contain a polygon, on average; each takes time."""
 
 
 def read_byu(path: Path, placement: Placement = PLAIN) -> MeshReport:
     """The mesh of a Movie.BYU file, and what was repaired. Raises InputError."""
-    data = read_bytes(path, LARGEST_MESH_FILE)
-    if problem := text_problem(data):
-        raise InputError(f"{path.name}: a Movie.BYU file {problem}")
-    data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    data = text_lines(read_bytes(path, LARGEST_MESH_FILE), path.name, "a Movie.BYU file")
     text = _text_with_spaces(data, path.name)
     text.require(4, "header")
     parts, nodes, polygons, connectivity = _counts(text)
@@ -92,17 +89,17 @@ def _is_enough(text: NumberText, in_first_line: int) -> bool:
 
 
 def _counts(text: NumberText) -> tuple[int, int, int, int]:
-    """The four counts of the header. Raises InputError for one below 1, or 0 for parts."""
+    """The four counts of the header. Raises InputError if a count is too small or too large."""
     parts, nodes, polygons, connectivity = text.wholes(0, 4, "a count in the header").tolist()
     for at, (count, least) in enumerate(((parts, 0), (nodes, 1), (polygons, 1), (connectivity, 1))):
         if count < least:
             raise text.wrong(at, f"a count in the header must be at least {least}")
     if polygons > connectivity:
         raise text.wrong(2, f"the polygons must be at most as many as their corners, {connectivity:,}")
-    # Each count stands for at least as many numbers in the file.
+    # The file has at least as many words as each count.
     for at, count in enumerate((parts, nodes, polygons, connectivity)):
         if count > len(text):
-            raise text.wrong(at, f"a count must be at most that of the numbers in the file, {len(text):,}")
+            raise text.wrong(at, f"a count must be at most {len(text):,}, the count of words in the file")
     return parts, nodes, polygons, connectivity
 
 

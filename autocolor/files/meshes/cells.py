@@ -54,7 +54,7 @@ class Flats:
 
     @staticmethod
     def joined(several: Sequence[Flats]) -> Flats:
-        """Those of several, in the order of their rows; polygons without corners are left out."""
+        """The polygons of several, in the order of their rows; polygons without corners are left out."""
         counts = np.concatenate([np.empty(0, np.intp), *(each.corner_counts for each in several)])
         corners = np.concatenate([np.empty(0, np.intp), *(each.corners for each in several)])
         cells = np.concatenate([np.empty(0, np.intp), *(each.cells for each in several)])
@@ -65,7 +65,7 @@ class Flats:
 
     @staticmethod
     def of(table: Indices, cells: Indices) -> Flats:
-        """Those of a table whose polygons have the same number of corners; four may repeat the last."""
+        """The polygons of a table, (polygons, corners). A quad that repeats its last corner is a triangle."""
         counts = np.full(len(table), table.shape[1], np.intp)
         if table.shape[1] != 4:
             return Flats(table.ravel(), counts, cells)
@@ -122,7 +122,7 @@ def cell_surface(
 
 
 def _faces(coordinates: Floats, volumes: Sequence[Volumes]) -> tuple[Indices, Indices]:
-    """All faces of the cells, (faces, 4), turned outward, and the row of the cell of each."""
+    """All faces of the cells, (faces, 4), turned outward, and the row of each face's cell."""
     faces, owners = [], []
     for each in volumes:
         template = np.array(FACES[each.shape])
@@ -130,7 +130,7 @@ def _faces(coordinates: Floats, volumes: Sequence[Volumes]) -> tuple[Indices, In
         for chunk in chunks(len(each.corners), AT_A_TIME):
             faces_of_cells = each.corners[chunk][:, template]
             inward = _volumes(coordinates[each.corners[chunk]], template) < 0
-            # A triangle's last two corners are the same: turning the first two turns it, too.
+            # A triangle repeats its last corner: swapping the first two turns it.
             triangles = template[:, 2] == template[:, 3]
             turned = np.where(
                 triangles[:, None], faces_of_cells[..., [1, 0, 2, 3]], faces_of_cells[..., ::-1]
@@ -152,9 +152,9 @@ def _volumes(corners: Floats, template: Indices) -> Floats:
 
 
 def _keys(faces: Indices, nodes: int) -> tuple[Numbers, Numbers]:
-    """Two numbers that are the same for faces of the same corners, in whatever order."""
+    """Two numbers for each face, equal for faces with the same corners in any order."""
     corners = np.sort(faces, axis=1).astype(np.int64)
-    # A triangle has two corners that are the same: which of them it repeats must not count.
+    # Which corner a triangle repeats must not matter.
     is_triangle = faces[:, 2] == faces[:, 3]
     corners[is_triangle, :3] = np.sort(faces[is_triangle, :3], axis=1)
     corners[is_triangle, 3] = nodes

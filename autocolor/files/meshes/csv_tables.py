@@ -26,7 +26,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
-from typing import Final, Protocol
+from typing import Final
 
 import numpy as np
 
@@ -36,7 +36,7 @@ from autocolor.errors import InputError
 from autocolor.files.meshes.file_scalars import FileScalars
 from autocolor.files.meshes.number_text import MOST_PROBLEMS, NUMBER, Problems
 from autocolor.files.meshes.repair import LONGEST_NAME, PLAIN, MeshReport, Placement, RawPolygons, repaired
-from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, shown, text_problem
+from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, shown, text_lines
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalar import MOST_SCALARS, NODE, POLYGON
 
@@ -52,22 +52,12 @@ IN_NUMBERS: Final = b"0123456789+-.eE ,"
 IN_WHOLES: Final = b"0123456789+- ,"
 
 NOTHING: Final = -(1 << 63)
-"""What stands for an empty or a wrong cell among whole numbers, which have at most 18 digits."""
-
-
-class CellKind(Protocol):
-    """How the cells of one column are converted."""
-
-    def at_once(self, cells: Sequence[str]) -> AnyArray:
-        """The values of many cells. Raises ValueError if any might be wrong."""
-
-    def one(self, cell: str, note: Callable[[str], None]) -> float | int:
-        """The value of one cell, without spaces around; a problem is noted."""
+"""The whole number for an empty or wrong cell; numbers in cells have at most 18 digits."""
 
 
 @dataclass(frozen=True)
 class NumberCells:
-    """Decimal numbers of at most 1e30 in size; an empty cell is NaN where that is allowed."""
+    """Decimal numbers of at most 1e30 in size. With `may_be_empty`, an empty cell is NaN."""
 
     rule: str
     may_be_empty: bool = False
@@ -95,7 +85,7 @@ class NumberCells:
 
 @dataclass(frozen=True)
 class WholeCells:
-    """Whole numbers of at most 18 digits; NOTHING for a wrong one, and for an empty one if allowed."""
+    """Whole numbers of at most 18 digits. A wrong or empty cell is NOTHING."""
 
     what: str
     may_be_empty: bool = False
@@ -120,7 +110,7 @@ class WholeCells:
 
 
 class NameCells:
-    """Names, each converted to its row in the list of all names, `rows`; an empty one is `empty`."""
+    """Names, as their rows in the list of all names, `rows`; an empty cell has the name `empty`."""
 
     def __init__(self, empty: str) -> None:
         self.empty = empty
@@ -140,6 +130,11 @@ class NameCells:
         return self.rows.setdefault(name, len(self.rows))
 
 
+CellKind = NumberCells | WholeCells | NameCells
+"""The kinds of columns. `at_once` converts many cells, or raises ValueError if any might be wrong. `one`
+converts a cell without spaces around it, and notes a problem."""
+
+
 def _require_letters(cells: Sequence[str], letters: bytes) -> None:
     """Raise ValueError if cells have other letters."""
     if ",".join(cells).encode("ascii").translate(None, letters):
@@ -151,22 +146,7 @@ class CsvRows:
 
     def __init__(self, path: Path) -> None:
         self.place = path.name
-        data = read_bytes(path, LARGEST_MESH_FILE)
-        if problem := text_problem(data):
-            raise InputError(f"{self.place}: a table {problem}")
-        if b"\r" in data:
-            data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
-        if not data.isascii():
-            self._require_utf_8(data)
-        lines = io.TextIOWrapper(io.BytesIO(data), "utf-8", newline="")
-        self._reader = csv.reader(lines, strict=True)
-        self.row = 0
-        header = self._next(1)
-        if not header:
-            raise InputError(f"{self.place}: a table must start with a row of column names, not be empty")
-        self.header = [cell.strip() for cell in header[0]]
-
-    def _require_utf_8(self, data: bytes) -> None:
+        data = text_lines(read_bytes(path, LARGEST_MESH_FILE), self.place, "a table")
         try:
             data.decode("utf-8")
         except UnicodeDecodeError as error:
@@ -174,6 +154,13 @@ class CsvRows:
             raise InputError(
                 f"{self.place}, row {line}: a table must be text in UTF-8; save it as UTF-8"
             ) from None
+        lines = io.TextIOWrapper(io.BytesIO(data), "utf-8", newline="")
+        self._reader = csv.reader(lines, strict=True)
+        self.row = 0
+        header = self._next(1)
+        if not header:
+            raise InputError(f"{self.place}: a table must start with a row of column names, not be empty")
+        self.header = [cell.strip() for cell in header[0]]
 
     def _next(self, count: int) -> list[list[str]]:
         """The next rows, fewer at the end of the file. Raises InputError."""
@@ -243,12 +230,12 @@ CORNERS: Final = ("node1", "node2", "node3", "node4")
 POLYGON_COLUMNS: Final = ("polygon", "part", *CORNERS)
 
 SCALAR: Final = "scalar "
-"""What a column's name begins with where the rest is the name of a scalar."""
+"""The prefix of a column for a scalar with the name of another column."""
 
 CORNER: Final = re.compile(r"node[0-9]+")
 
 ALIKE: Final = 0.8
-"""Limit: a name that is spelled so much like a missing column is a mistake, and no scalar."""
+"""Limit: an unknown column at least this similar to a missing column is a mistake, not a scalar."""
 
 COORDINATES: Final = NumberCells("a coordinate must be a decimal number of at most 1e30 in size")
 VALUES: Final = NumberCells(
@@ -283,7 +270,7 @@ class Table:
         self.problems.note(self.place, int(self.numbers[row]), sentence)
 
     def note_repeated(self, what: str, numbers: Numbers) -> None:
-        """Note the numbers that repeat one before them; NOTHING may be repeated."""
+        """Note the numbers that an earlier row has. NOTHING may repeat."""
         for row in _repeated(numbers)[:MOST_PROBLEMS].tolist():
             self.note(row, f"a {what} number must be unique, not repeated: {numbers[row]}; renumber it")
 
@@ -343,7 +330,7 @@ def read_csv_tables(nodes: Path, polygons: Path, placement: Placement = PLAIN) -
 
 
 def _repeated(numbers: Numbers) -> Indices:
-    """The rows of numbers that repeat one before them, in order; those of NOTHING are left out."""
+    """The rows whose number an earlier row has, in order. NOTHING may repeat."""
     if (np.diff(numbers) > 0).all():
         return np.empty(0, np.intp)
     order = np.argsort(numbers, kind="stable")
@@ -353,7 +340,7 @@ def _repeated(numbers: Numbers) -> Indices:
 
 
 def _rows_of(table: Table, corners: Numbers, numbers: Numbers) -> Indices:
-    """The rows of the nodes of some numbers, 0 for NOTHING; a number that no node has is noted."""
+    """The row of the node with each number, 0 for NOTHING. Numbers without a node are noted."""
     if not len(numbers):
         missing = corners != NOTHING
         rows = np.zeros(corners.shape, np.intp)
@@ -364,11 +351,11 @@ def _rows_of(table: Table, corners: Numbers, numbers: Numbers) -> Indices:
         missing = (in_order[at] != corners) & (corners != NOTHING)
         rows = order[at]
     for row, column in np.argwhere(missing)[:MOST_PROBLEMS].tolist():
-        table.note(row, f"node {corners[row, column]} is not in the node table ({_known(numbers)})")
+        table.note(row, f"node {corners[row, column]} is not in the node table ({_range_of(numbers)})")
     return rows
 
 
-def _known(numbers: Numbers) -> str:
+def _range_of(numbers: Numbers) -> str:
     """The range of the node numbers, for a message; it says if there are gaps."""
     different_numbers = np.unique(numbers[numbers != NOTHING])
     if not len(different_numbers):
@@ -410,7 +397,7 @@ def _check_header(place: str, cells: list[str], columns: tuple[str, ...], requir
 
 
 def _is_mistake(cell: str, columns: tuple[str, ...], missing: list[str]) -> bool:
-    """Whether the name of an unknown column is no scalar's: it is empty, a corner, or nearly a column."""
+    """Whether an unknown column is a mistake, not a scalar: it is empty, a corner, or nearly a column."""
     if not cell or cell.casefold() in columns or ("node1" in columns and CORNER.fullmatch(cell) is not None):
         return True
     return bool(difflib.get_close_matches(cell[:60], missing, n=1, cutoff=ALIKE))
@@ -475,14 +462,14 @@ def _header(mesh: Mesh, columns: tuple[str, ...], of: str) -> str:
 
 
 def _row(cells: list[str]) -> str:
-    """Cells as CSV, in quotes where that is needed."""
+    """The cells as CSV, quoted where necessary."""
     text = io.StringIO()
     csv.writer(text, lineterminator="").writerow(cells)
     return text.getvalue()
 
 
 def _cells(values: Floats) -> Iterator[str]:
-    """Values as cells; a missing one is empty."""
+    """Values as cells; a missing value is an empty cell."""
     return ("" if math.isnan(value) else repr(value) for value in values.tolist())
 
 

@@ -1,6 +1,6 @@
 """Scalars of a mesh from the arrays of a file: of one or several components, with any values.
 
-- An array of one component is a scalar of its name.
+- An array of one component becomes a scalar with its name.
 - A vector (two or three components) becomes its length, as in "velocity magnitude".
 - A tensor (six components in the order xx, yy, zz, xy, yz, xz, or nine) becomes von Mises' stress, as in
   "stress von Mises".
@@ -21,7 +21,7 @@ from autocolor.immutable import read_only
 from autocolor.scene.scalar import LARGEST_SCALAR, MOST_SCALARS, NODE, MeshScalar
 
 SYMMETRIC: Final = (0, 3, 5, 3, 1, 4, 5, 4, 2)
-"""Where the nine components of a tensor stand among six."""
+"""The place of each of the nine components of a tensor among six."""
 
 
 class FileScalars:
@@ -33,7 +33,7 @@ class FileScalars:
         self._skipped = 0
 
     def add(self, name: str, values: AnyArray, of: str, rows: Indices | None = None) -> None:
-        """Add an array, (rows,) or (rows, components); `rows` are those to take, in this order."""
+        """Add an array, (rows,) or (rows, components), or the given `rows` of it, in their order."""
         if len(self._by_name) >= MOST_SCALARS:
             self._skipped += 1
             return
@@ -58,7 +58,7 @@ class FileScalars:
         self._by_name[name] = MeshScalar(name, read_only(np.array(numbers, np.float64)), of)
 
     def _unique(self, name: str, of: str) -> str:
-        """The name, or one with an ending where another scalar has it."""
+        """The name, with an ending if another scalar has it."""
         if name not in self._by_name:
             return name
         stem = name if self._by_name[name].of == of else f"{name} of {of}s"
@@ -81,7 +81,7 @@ class FileScalars:
 
 
 def _one_component(values: AnyArray) -> tuple[str, Floats | None]:
-    """What is put after the name of an array, and the number of each of its rows; None for other sizes."""
+    """The ending of a scalar's name, and its values, (rows,); None for other numbers of components."""
     components = values.shape[1]
     values = values.astype(np.float64, copy=False)
     with np.errstate(over="ignore", invalid="ignore"):

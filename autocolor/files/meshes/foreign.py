@@ -55,7 +55,7 @@ MEGABYTE: Final = 1 << 20
 
 REMEDY: Final = "correct the file, or write it as OBJ or PLY"
 
-# The size of a file and of the files that it names, known before a library reads them.
+# The size of a file and of the files that it names, checked before a library reads them.
 
 MOST_VALUES: Final = 2_000_000
 """Limit: values in the JSON of a glTF file; numbers of meshes are in its buffers."""
@@ -246,7 +246,7 @@ def read_foreign_mesh(path: Path, largest: int, place: str, library: str) -> For
 
 
 def _problem(arrays: Mapping[str, AnyArray], parts: int) -> str | None:
-    """What is wrong with the arrays of a mesh of so many parts, as the object of a sentence, or None."""
+    """The fault of a mesh with `parts` parts, as the object of a sentence; None if there is none."""
     nodes, corners, counts = arrays["coordinates"], arrays["corners"], arrays["corner_counts"]
     part_numbers = arrays["part_numbers"]
     if nodes.shape[1] != 3:
@@ -265,7 +265,7 @@ def _problem(arrays: Mapping[str, AnyArray], parts: int) -> str | None:
     return None
 
 
-# The other process, and its limits in proportion to the bytes that it has to read.
+# The other process. Its limits grow with the size of the file.
 
 STARTING_SECONDS: Final = 30.0
 """Limit: of time to load a library on a busy machine, in addition to twice the time of computing."""
@@ -281,17 +281,17 @@ OUT_OF_TIME: Final = -int(getattr(signal, "SIGXCPU", 24))
 
 
 def most_seconds(size: int) -> float:
-    """Limit: seconds of computing for so many bytes. Measured: text takes 0.1 to 0.5 a megabyte."""
+    """Limit: seconds of computing for a file of `size` bytes. Measured: text takes 0.1 to 0.5 a megabyte."""
     return 2 + size / MEGABYTE
 
 
 def most_memory(size: int) -> int:
-    """Limit: bytes of addresses. The libraries alone take half a gigabyte; text takes 40 times its size."""
+    """Limit: bytes of address space. The libraries take half a gigabyte; text takes 40 times its size."""
     return (1 << 30) + 60 * size
 
 
 def largest_result(size: int) -> int:
-    """Limit: bytes of the mesh that comes back for so many bytes."""
+    """Limit: bytes of the result for a file of `size` bytes."""
     return 16 * MEGABYTE + 30 * size
 
 
@@ -326,7 +326,7 @@ def read_in_own_process(
 
 
 def _exit_code(command: Sequence[str], seconds: float) -> int | None:
-    """The exit code of a process whose output goes nowhere; None if it was ended after so many seconds."""
+    """The exit code of a command, whose output is dropped; None if it took longer than `seconds`."""
     root = str(Path(autocolor.files.__path__[0]).parents[1])
     inherited = os.environ.get("PYTHONPATH")
     environment = {

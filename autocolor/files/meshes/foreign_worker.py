@@ -42,13 +42,13 @@ FORBIDDEN: Final = (
     "ctypes.dlopen", "urllib.", "http.", "ftplib.", "smtplib.", "os.remove", "os.rename", "os.rmdir",
     "os.mkdir", "os.link", "os.symlink", "os.truncate", "os.kill", "shutil.",
 )  # fmt: skip
-"""How the names of audit events begin that no reader of a mesh needs."""
+"""The beginnings of the names of audit events that no mesh reader needs."""
 
 WRITING: Final = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND
 
 
 def main(arguments: list[str]) -> int:
-    """Read a file and write its mesh, or why there is none. Returns the exit code."""
+    """Read a file and write its mesh, or the reason of a failure. Returns the exit code."""
     library, kind, mesh, result, size = arguments
     warnings.simplefilter("ignore")
     code = 0
@@ -65,7 +65,7 @@ def main(arguments: list[str]) -> int:
 
 
 def sentence_of(error: BaseException) -> str:
-    """What an exception says, in one line of at most LONGEST_SENTENCE letters."""
+    """The message of an exception, in one line of at most LONGEST_SENTENCE letters."""
     if isinstance(error, MemoryError):
         return "it needs more memory than its size allows"
     if isinstance(error, SystemExit):
@@ -76,7 +76,7 @@ def sentence_of(error: BaseException) -> str:
 
 
 def limit(size: int) -> None:
-    """Limit the time, the memory and the result of this process, for a file of so many bytes."""
+    """Limit the time, the memory and the result of this process for a file of `size` bytes."""
     try:
         import resource
     except ImportError:
@@ -124,15 +124,15 @@ def guard(folder: Path, result: Path) -> Callable[[str, tuple[Any, ...]], None]:
 # transform.
 #
 # Nodes of a part with equal coordinates and scalars are welded: glTF writes a corner again for each normal
-# and texture coordinate that it has. Points and paths are skipped and counted. Of materials the name and
-# the base color are taken, of textures nothing. Nothing of trimesh is imported here.
+# and texture coordinate. Points and paths are skipped and counted. Materials have their name and base color;
+# textures are left out.
 
 MOST_PLACED: Final = 100_000
 """Limit: parts of a scene, of which many may be the same mesh."""
 
 
 def polygons_of_trimesh(scene: Any, stem: str) -> ForeignMesh:
-    """The triangles of a scene of trimesh; a part without a name has that of the file, `stem`."""
+    """The triangles of a scene of trimesh; a part without a name is named `stem`."""
     order = {name: at for at, name in enumerate(scene.geometry)}
     placed = [(str(node), *scene.graph[node]) for node in scene.graph.nodes_geometry]
     if len(placed) > MOST_PLACED:
@@ -217,7 +217,7 @@ def _scalars_of(mesh: Any) -> dict[str, Floats]:
 
 
 def _welded(places: Floats, scalars: dict[str, Floats]) -> tuple[Floats, tuple[Indices, Indices]]:
-    """The coordinates without doubles, the row of each in the given ones, and the new row of each given."""
+    """The different coordinates; their rows in `places`; and the new row of each row of `places`."""
     columns = np.column_stack([places, *scalars.values()]) + 0.0
     _, first, rows = np.unique(columns, axis=0, return_index=True, return_inverse=True)
     # Keep the order of the file.
@@ -247,22 +247,21 @@ def _material_of(mesh: Any) -> tuple[tuple[str, Color | None], bool]:
 #
 # Of cells of higher order the corners are taken. Vertices, lines and cells of other kinds are skipped and
 # counted. Parts are the physical groups of Gmsh, the sets of cells of Abaqus and others, or the numbers
-# with which Medit, Nastran and SU2 tell cells apart; a cell in several sets is of the first, and one in
-# none of the part named after the file. Nothing of meshio is imported here: its mesh is known by what it
-# has.
+# with which Medit, Nastran and SU2 tell cells apart. A cell in several sets belongs to the first set, and a
+# cell in no set to the part named after the file.
 
 SHAPE: Final = re.compile(r"(triangle|quad|tetra|hexahedron|wedge|pyramid)([0-9]*)")
 POLYGONS: Final = re.compile(r"polygon[0-9]*")
 ALL_CORNERS: Final = {"triangle": 3, "quad": 4, **CORNERS}
 
 GROUPS: Final = ("gmsh:physical", "medit:ref", "nastran:ref", "su2:tag", "ugrid:ref", "cell_tags")
-"""The data of cells that number their groups, the first that a file has."""
+"""The cell data with group numbers, in order of preference."""
 
 INTERNAL: Final = re.compile(r"(gmsh|medit|nastran|su2|ugrid|abaqus):")
 
 
 def polygons_of_meshio(mesh: Any, stem: str) -> ForeignMesh:
-    """The surface of a mesh of meshio; `stem` is the name of the part of what is in no group."""
+    """The surface of a mesh of meshio; cells in no group are the part `stem`."""
     points = np.asarray(mesh.points, np.float64)
     if points.ndim != 2 or points.shape[1] > 3:
         raise ValueError(f"nodes of shape {points.shape}")
@@ -317,7 +316,7 @@ def polygons_of_meshio(mesh: Any, stem: str) -> ForeignMesh:
 
 
 def _rows(numbers: AnyArray) -> Indices:
-    """Node numbers as rows. Raises ValueError for those that are not whole."""
+    """Node numbers as rows. Raises ValueError if a number is not whole."""
     with np.errstate(invalid="ignore"):
         rows = numbers.astype(np.intp)
     if not np.array_equal(rows, numbers):
@@ -364,7 +363,7 @@ def _joined(blocks: Any, count: int) -> AnyArray | None:
 
 
 def _scalars(mesh: Any, nodes: Indices, cells: Indices) -> FileScalars:
-    """The scalars of nodes and cells, at the rows that are kept."""
+    """The scalars of nodes and cells at the given rows."""
     scalars = FileScalars()
     count = sum(len(block.data) for block in mesh.cells)
     of_nodes = {name: np.asarray(each) for name, each in (mesh.point_data or {}).items()}
@@ -399,7 +398,7 @@ def trimesh_reader(kind: str) -> Callable[[str], ForeignMesh]:
     """The function that reads a file of a format with trimesh, which is loaded."""
     import trimesh
 
-    # Load now what would be loaded from outside of Python's folders later on.
+    # mimetypes reads files outside of Python's folders, which `guard` forbids later.
     mimetypes.init()
 
     def read(path: str) -> ForeignMesh:

@@ -14,9 +14,9 @@
 | `tables.json` | | | names of parts and scalars, crease angle |
 
 All are stored by columns (Fortran order), so that `.T` is contiguous, in the byte order of the machine. Only
-the first two are needed. Tables of other types, orders and shapes that numpy saves are read, too: triangles
-alone as (polygons, 3), float32, int32, rows; these are copied, and the log says so. Nodes that are turned
-(`up`) or scaled are copied. Normals and planes are used where the nodes are as in the file and the crease
+the first two are needed. Tables of other types, orders and shapes that numpy saves are read by copying them,
+and the log says so: triangles alone as (polygons, 3), float32, int32, tables by rows. If the nodes are turned
+(`up`) or scaled, they are copied. Normals and planes are used if the nodes stay as in the file and the crease
 angle is the file's; otherwise they are computed. If you change nodes or polygons, delete the files of normals
 and planes, or convert the folder again. Nothing is ever repaired.
 
@@ -31,14 +31,14 @@ import mmap
 import os
 import re
 import tempfile
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final, NamedTuple, NoReturn
 
 import numpy as np
 
-from autocolor.arrays import AnyArray, Booleans, Floats, Indices, chunks
+from autocolor.arrays import AnyArray, Booleans, Indices, chunks
 from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError, OutputError, WriteError, reason_of
 from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, placed
@@ -52,8 +52,8 @@ from autocolor.scene.geometry.planes import SharedPlanes
 from autocolor.scene.mesh import CREASE_ANGLES, PART, Mesh
 from autocolor.scene.scalar import LARGEST_SCALAR, MOST_SCALARS, NODE, POLYGON, MeshScalar
 
-# Tables are checked in chunks, and converted where rendering does not read them as they are. Rows are counted
-# from 0, as numpy does.
+# Tables are checked in chunks, and copied in chunks if rendering needs another type or order. Messages count
+# rows from 0, as numpy does.
 
 LOG: Final = logger_of(__name__)
 
@@ -63,13 +63,13 @@ UNIT: Final = 1e-3
 """Limit: how far the length of a unit vector may be from 1."""
 
 Rule = Callable[[AnyArray], Booleans]
-"""Which of some rows, (columns, rows), are right."""
+"""A function from rows, (columns, rows), to whether each row is right."""
 
 
 def checked(name: str, table: AnyArray, thing: str, rule: Rule, remedy: str) -> None:
-    """Raise InputError for the first row of a table, (rows,) or (rows, columns), that is not right.
+    """Raise InputError for the first row of a table, (rows,) or (rows, columns), that breaks a rule.
 
-    `thing` says what must be, in the words of the refusal.
+    `thing` is the rule in words.
     """
     rows = table.T if table.ndim > 1 else table[None]
     for chunk in chunks(rows.shape[1], ROWS_AT_ONCE):
@@ -98,7 +98,7 @@ def is_of(name: str, table: AnyArray, what: str, kinds: str) -> None:
 
 
 def within(count: int) -> Rule:
-    """The rule that all are from 0 to below `count`; numbers of any integer type are compared exactly."""
+    """The rule that numbers are from 0 to `count` - 1, compared exactly in any integer type."""
 
     def rule(rows: AnyArray) -> Booleans:
         right: Booleans = np.asarray(((rows >= 0) & (rows < count)).all(axis=0))
@@ -116,38 +116,40 @@ def are_coordinates(rows: AnyArray) -> Booleans:
 
 
 def are_unit_vectors(rows: AnyArray) -> Booleans:
-    """Which rows, each a vector, have the length 1 within `UNIT`."""
+    """Which vectors have the length 1 within UNIT."""
     with np.errstate(over="ignore", invalid="ignore"):
         lengths = np.sqrt((rows.astype(np.float64) ** 2).sum(axis=0))
     right: Booleans = np.abs(lengths - 1) <= UNIT
     return right
 
 
-def as_read(name: str, table: AnyArray, dtype: type[Any]) -> AnyArray:
-    """The table itself, or its copy in this type and by columns; the log tells of a copy."""
-    rows = table.T
-    if table.dtype == dtype and rows.flags.c_contiguous and rows.flags.aligned:
+def as_read(name: str, table: AnyArray, dtype: type[Any], width: int = 0) -> AnyArray:
+    """The table itself, or a copy in this type and by columns, which the log mentions.
+
+    A copy has at least `width` columns: further columns repeat the last.
+    """
+    rows = np.atleast_2d(table.T)
+    is_narrow = len(rows) < width
+    if table.dtype == dtype and rows.flags.c_contiguous and rows.flags.aligned and not is_narrow:
         return table
-    LOG.info(
-        "%s: copied, for it is not %s stored by columns, but %s stored %s",
-        name,
-        np.dtype(dtype),
-        table.dtype,
-        "by columns" if rows.flags.c_contiguous else "by rows",
-    )
-    copy = np.empty(rows.shape, dtype)
-    for chunk in chunks(rows.shape[-1], ROWS_AT_ONCE):
-        copy[..., chunk] = rows[..., chunk]
-    return read_only(copy).T
+    reason = f"it is not {np.dtype(dtype)} stored by columns, but {table.dtype} stored by"
+    reason += " columns" if rows.flags.c_contiguous else " rows"
+    if is_narrow:
+        reason = "its triangles do not repeat their last node"
+    LOG.info("%s: copied, for %s", name, reason)
+    copy = np.empty((max(len(rows), width), len(table)), dtype)
+    for chunk in chunks(len(table), ROWS_AT_ONCE):
+        copy[: len(rows), chunk] = rows[:, chunk]
+        copy[len(rows) :, chunk] = rows[-1, chunk]
+    return read_only(copy).T if table.ndim > 1 else read_only(copy)[0]
 
 
 # A .npy file is mapped into memory: read page by page, and never copied whole. The header is matched, never
-# evaluated. The size of the file is compared with its header before it is mapped. If another program cuts off
-# the file later, the system ends the process that reads it (SIGBUS). So write such files anew, and rename
-# them.
+# evaluated, and the size of the file is compared with it. If another program shortens the file later, the
+# system ends the process that reads it (SIGBUS). So write a new file and rename it.
 
 MOST_ROWS: Final = 200_000_000
-"""Limit: rows of a table, so that looking at all of them takes seconds."""
+"""Limit: rows of a table. To check this many takes seconds."""
 
 LARGEST_HEADER: Final = 1024
 """Bytes; numpy writes 128 for a table."""
@@ -158,13 +160,13 @@ HEADER: Final = re.compile(
     rb"\{'descr': '([<>|](?:f[248]|[iu][1248]))', 'fortran_order': (True|False),"
     rb" 'shape': \((\d{1,12}), ?(\d{1,2})?\), \} *\n"
 )
-"""The header exactly as numpy writes that of a table of numbers."""
+"""The header of a table of numbers exactly as numpy writes it."""
 
 
 class NpyHeader(NamedTuple):
-    """What the header of a file says, and where the numbers begin.
+    """The header of a file, and the byte where the numbers begin.
 
-    `shape` is (rows,) or (rows, columns); `by_columns` tells that the numbers of a column follow each other.
+    `shape` is (rows,) or (rows, columns). With `by_columns` the numbers of a column follow each other.
     """
 
     dtype: np.dtype[np.generic]
@@ -179,7 +181,7 @@ class NpyHeader(NamedTuple):
 
 
 def parsed_header(name: str, head: bytes) -> NpyHeader:
-    """The header at the beginning of a file of this name. Raises InputError."""
+    """The header at the start of a file with this name. Raises InputError."""
     width = {b"\x01\x00": 2, b"\x02\x00": 4}.get(head[6:8], 0)
     start = 8 + width + int.from_bytes(head[8 : 8 + width], "little")
     described = HEADER.fullmatch(head[8 + width : start]) if start <= LARGEST_HEADER else None
@@ -192,7 +194,7 @@ def parsed_header(name: str, head: bytes) -> NpyHeader:
     dtype = np.dtype(described[1].decode())
     if shape[0] > MOST_ROWS:
         raise InputError(f"{name}: a table must have at most {MOST_ROWS:,} rows, not {shape[0]:,}; divide it")
-    # A table of one row or one column has both orders.
+    # A table with one row or one column is stored by rows and by columns alike.
     by_columns = described[2] == b"True" or len(shape) == 1 or min(shape) <= 1
     return NpyHeader(dtype, by_columns, shape, start)
 
@@ -212,13 +214,13 @@ def mapped(path: Path) -> AnyArray:
         try:
             pages = mmap.mmap(file.fileno(), header.size, access=mmap.ACCESS_READ)
         except ValueError as error:
-            # Another program cut it off meanwhile.
+            # Another program shortened the file meanwhile.
             raise InputError(f"{path.name}: a table must stay whole ({error}); write it again") from None
     numbers: AnyArray = np.frombuffer(pages, header.dtype, math.prod(header.shape), header.start)
     return read_only(numbers.reshape(header.shape, order="F" if header.by_columns else "C"))
 
 
-# The notes beside the tables: names of parts, crease angle, scalars, and whether there are planes.
+# The notes: names of parts and scalars, crease angle, and whether polygons share planes.
 
 NOTES: Final = "tables.json"
 
@@ -232,10 +234,10 @@ KEYS: Final = frozenset(("format", "part_names", "crease_angle", "scalars", "pla
 
 @dataclass(frozen=True)
 class TableNotes:
-    """What `tables.json` says.
+    """The content of `tables.json`.
 
     `scalars` are pairs of a name and "node" or "polygon", in the order of their files. `planes` is True if
-    files have the planes that polygons share, False if no polygons share a plane, None if that is not known.
+    files have the planes that polygons share, False if no polygons share a plane, None if unknown.
     """
 
     part_names: tuple[str, ...]
@@ -309,184 +311,148 @@ PLANE_SIDES: Final = "plane_sides.npy"
 SCALARS: Final = "scalars"
 
 MOST_PARTS: Final = 1 << 16
-"""Limit: parts that get names of their own where a folder names none."""
+"""Limit: parts in a folder that does not name its parts."""
 
+FINITE: Final = "coordinates must be finite and at most 1e30 in size"
 CORRECT: Final = "correct that row"
 
 
-class MappedTables(NamedTuple):
-    """The node table and the polygon table, and how many rows they have."""
-
-    coordinates: Floats
-    node_numbers: Indices
-
-    @property
-    def node_count(self) -> int:
-        """How many nodes there are."""
-        return len(self.coordinates)
-
-    @property
-    def polygon_count(self) -> int:
-        """How many polygons there are."""
-        return len(self.node_numbers)
-
-
 def read_npy_tables(nodes: Path, polygons: Path, placement: Placement = PLAIN) -> MeshReport:
-    """The mesh of .npy tables; those beside `nodes.npy` and `polygons.npy` of one folder belong to it.
+    """The mesh of .npy tables. The tables beside `nodes.npy` and `polygons.npy` in their folder are read too.
 
     Raises InputError that names table, row and remedy.
     """
-    tables = _tables(nodes, polygons)
+    coordinates = _table(nodes, "coordinates", None, (3,), np.float64, are_coordinates, FINITE)
+    corners = _numbers(polygons, "node numbers", None, (4, 3), "node table", len(coordinates))
+    count = len(corners)
+    is_plain = placement.up == "z" and placement.scale == 1
+    if not is_plain:
+        coordinates = np.asfortranarray(placed(coordinates.copy(order="F"), placement))
+        thing = "scaled coordinates must be at most 1e30 in size"
+        checked(NODES, coordinates, thing, are_coordinates, "give a smaller scale")
+        read_only(coordinates)
     folder = nodes.parent
     is_folder = (nodes.name, polygons.name) == (NODES, POLYGONS) and polygons.parent == folder
     notes = read_notes(folder / NOTES) if is_folder and (folder / NOTES).exists() else None
     angle = CREASE_ANGLE if notes is None else notes.crease_angle
     wanted = angle if placement.crease_angle is None else placement.crease_angle
+    # Part 0 for all polygons takes the memory of one number.
+    part_numbers: Indices = np.broadcast_to(np.zeros(1, np.intp), count)
     if not is_folder:
-        one_part = _of_one_part(tables.polygon_count)
-        return MeshReport(Mesh.of_tables(*_placed(tables, placement), one_part, (PART,), wanted))
-    part_numbers, names = _parts(folder, tables.polygon_count, notes)
-    is_plain = placement.up == "z" and placement.scale == 1
-    normals = _normals(folder, tables.polygon_count) if is_plain and wanted == angle else None
-    has_planes = None if notes is None or not is_plain else notes.planes
+        return MeshReport(Mesh.of_tables(coordinates, corners, part_numbers, (PART,), wanted))
+    names = () if notes is None else notes.part_names
+    if (folder / PARTS).exists():
+        most = len(names) or MOST_PARTS
+        part_numbers = _numbers(folder / PARTS, "part numbers", count, (0,), "part table", most)
+        names = names or tuple(f"part {number}" for number in range(int(part_numbers.max(initial=0)) + 1))
+    normals = _normals(folder, count) if is_plain and wanted == angle else None
     planes: Any = ...
-    if has_planes is not None:
-        planes = _planes(folder, tables.polygon_count) if has_planes else None
+    if notes is not None and notes.planes is not None and is_plain:
+        planes = _planes(folder, count) if notes.planes else None
     mesh = Mesh.of_tables(
-        *_placed(tables, placement),
+        coordinates,
+        corners,
         part_numbers,
-        names,
+        names or (PART,),
         wanted,
-        () if notes is None else _scalars(folder, notes, tables),
+        () if notes is None else _scalars(folder, notes, {NODE: len(coordinates), POLYGON: count}),
         normals=normals,
         shared_planes=planes,
     )
     return MeshReport(mesh)
 
 
-def _tables(nodes: Path, polygons: Path) -> MappedTables:
-    """The two tables that there must be, checked."""
-    coordinates, corners = mapped(nodes), mapped(polygons)
-    is_shaped(nodes.name, coordinates, "a node table", None, (3,))
-    is_of(nodes.name, coordinates, "coordinates", "iuf")
-    checked(
-        nodes.name,
-        coordinates,
-        "coordinates must be finite and at most 1e30 in size",
-        are_coordinates,
-        CORRECT,
-    )
-    is_shaped(polygons.name, corners, "a polygon table", None, (4, 3))
-    _check_numbers(polygons.name, corners, "node numbers", len(coordinates), "node table")
-    if corners.shape[1] == 3:
-        LOG.info("%s: copied, for its triangles do not repeat their last node", polygons.name)
-        four = np.empty((4, len(corners)), np.intp)
-        four[:3] = corners.T
-        four[3] = four[2]
-        corners = read_only(four).T
-    return MappedTables(
-        as_read(nodes.name, coordinates, np.float64), as_read(polygons.name, corners, np.intp)
-    )
+def _table(
+    path: Path,
+    what: str,
+    rows: int | None,
+    widths: tuple[int, ...],
+    dtype: type[Any],
+    rule: Rule,
+    thing: str,
+    kinds: str = "iuf",
+) -> AnyArray:
+    """The checked table of a file, of the first of the widths. Raises InputError.
+
+    `what` names the table, and `thing` the rule, in messages.
+    """
+    table = mapped(path)
+    place = f"{SCALARS}/{path.name}" if path.parent.name == SCALARS else path.name
+    is_shaped(place, table, what, rows, widths)
+    is_of(place, table, what, kinds)
+    checked(place, table, thing, rule, CORRECT)
+    return as_read(place, table, dtype, widths[0])
 
 
-def _check_numbers(name: str, numbers: Indices, what: str, count: int, table: str) -> None:
-    """Raise InputError unless all are rows of a table of so many."""
-    is_of(name, numbers, what, "iu")
-    thing = f"{what} must be rows of the {table} (0 to {count - 1})"
-    checked(name, numbers, thing, within(count), CORRECT)
-
-
-def _placed(tables: MappedTables, placement: Placement) -> MappedTables:
-    """The tables with their nodes in the world: copied, and checked again, unless they are there already."""
-    if placement.up == "z" and placement.scale == 1:
-        return tables
-    turned = np.asfortranarray(placed(tables.coordinates.copy(order="F"), placement))
-    thing = "scaled coordinates must be at most 1e30 in size"
-    checked(NODES, turned, thing, are_coordinates, "give a smaller scale")
-    return tables._replace(coordinates=read_only(turned))
-
-
-def _of_one_part(polygons: int) -> Indices:
-    """The part numbers where all are 0, in the memory of one."""
-    return np.broadcast_to(np.zeros(1, np.intp), polygons)
-
-
-def _parts(folder: Path, polygons: int, notes: TableNotes | None) -> tuple[Indices, tuple[str, ...]]:
-    """The part of each polygon, and the names of the parts."""
-    named = () if notes is None else notes.part_names
-    if not (folder / PARTS).exists():
-        return _of_one_part(polygons), named or (PART,)
-    parts = mapped(folder / PARTS)
-    is_shaped(PARTS, parts, "part numbers", polygons, (0,))
-    _check_numbers(PARTS, parts, "part numbers", len(named) or MOST_PARTS, "part table")
-    count = int(parts.max(initial=0)) + 1
-    return as_read(PARTS, parts, np.intp), named or tuple(f"part {number}" for number in range(count))
+def _numbers(
+    path: Path, what: str, rows: int | None, widths: tuple[int, ...], target: str, count: int
+) -> Indices:
+    """The checked numbers in a file, each a row of another table, `target`, of `count` rows."""
+    thing = f"{what} must be rows of the {target} (0 to {count - 1})"
+    return _table(path, what, rows, widths, np.intp, within(count), thing, "iu")
 
 
 def _normals(folder: Path, polygons: int) -> NodeNormals | None:
     """The normals of the files; None if there are none."""
-    there = [name for name in (NORMALS, NORMAL_NUMBERS) if (folder / name).exists()]
-    if not there:
+    names = [name for name in (NORMALS, NORMAL_NUMBERS) if (folder / name).exists()]
+    if not names:
         return None
-    if len(there) == 1:
+    if len(names) == 1:
         raise InputError(
-            f"{there[0]}: {NORMALS} and {NORMAL_NUMBERS} must be in the folder together; delete it"
+            f"{names[0]}: {NORMALS} and {NORMAL_NUMBERS} must be in the folder together; delete it"
         )
-    vectors, numbers = mapped(folder / NORMALS), mapped(folder / NORMAL_NUMBERS)
-    is_shaped(NORMALS, vectors, "normals", None, (3,))
-    is_of(NORMALS, vectors, "normals", "iuf")
-    checked(NORMALS, vectors, "a normal must be a unit vector", are_unit_vectors, CORRECT)
-    is_shaped(NORMAL_NUMBERS, numbers, "normal numbers", polygons, (4,))
-    _check_numbers(NORMAL_NUMBERS, numbers, "normal numbers", len(vectors), "normals")
-    return NodeNormals(as_read(NORMALS, vectors, np.float32), as_read(NORMAL_NUMBERS, numbers, np.intp))
+    thing = "a normal must be a unit vector"
+    vectors = _table(folder / NORMALS, "normals", None, (3,), np.float32, are_unit_vectors, thing)
+    path = folder / NORMAL_NUMBERS
+    return NodeNormals(vectors, _numbers(path, "normal numbers", polygons, (4,), "normals", len(vectors)))
 
 
 def _planes(folder: Path, polygons: int) -> SharedPlanes:
     """The planes of the files that the notes promise."""
-    planes, numbers = mapped(folder / PLANES), mapped(folder / PLANE_NUMBERS)
-    sides = mapped(folder / PLANE_SIDES)
-    is_shaped(PLANES, planes, "planes", None, (7,))
-    checked(PLANES, planes, "numbers must be finite and at most 1e30 in size", are_coordinates, CORRECT)
+    thing = "numbers must be finite and at most 1e30 in size"
+    planes = _table(folder / PLANES, "planes", None, (7,), np.float64, are_coordinates, thing)
     checked(PLANES, planes[:, :3], "the normal of a plane must be a unit vector", are_unit_vectors, CORRECT)
-    is_shaped(PLANE_NUMBERS, numbers, "plane numbers", polygons, (0,))
-    is_of(PLANE_NUMBERS, numbers, "plane numbers", "i")
-    thing = f"plane numbers must be -1 or rows of the planes (0 to {len(planes) - 1})"
-    checked(PLANE_NUMBERS, numbers, thing, lambda row: ((row >= -1) & (row < len(planes)))[0], CORRECT)
-    is_shaped(PLANE_SIDES, sides, "sides", polygons, (0,))
-    checked(PLANE_SIDES, sides, "a side must be 0 or 1", lambda row: ((row == 0) | (row == 1))[0], CORRECT)
-    columns = read_only(np.array(planes.T, np.float64, order="C"))
-    return SharedPlanes(
-        columns[:3],
-        columns[3:6],
-        columns[6],
-        as_read(PLANE_NUMBERS, numbers, np.intp),
-        as_read(PLANE_SIDES, sides, np.uint8).view(np.bool_),
+    columns = np.ascontiguousarray(planes.T)
+    numbers = _table(
+        folder / PLANE_NUMBERS,
+        "plane numbers",
+        polygons,
+        (0,),
+        np.intp,
+        lambda row: ((row >= -1) & (row < len(planes)))[0],
+        f"plane numbers must be -1 or rows of the planes (0 to {len(planes) - 1})",
+        "i",
     )
+    sides = _table(
+        folder / PLANE_SIDES,
+        "sides",
+        polygons,
+        (0,),
+        np.uint8,
+        lambda row: ((row == 0) | (row == 1))[0],
+        "a side must be 0 or 1",
+    )
+    return SharedPlanes(columns[:3], columns[3:6], columns[6], numbers, sides.view(np.bool_))
 
 
-def _scalars(folder: Path, notes: TableNotes, tables: MappedTables) -> tuple[MeshScalar, ...]:
-    """The scalars that the notes name."""
-    scalars = []
-    for number, (name, of) in enumerate(notes.scalars, 1):
-        path = folder / SCALARS / f"{number}.npy"
-        place, values = f"{SCALARS}/{path.name}", mapped(path)
-        is_shaped(
-            place,
-            values,
-            f"a scalar of each {of}",
-            tables.node_count if of == NODE else tables.polygon_count,
-            (0,),
+def _scalars(folder: Path, notes: TableNotes, counts: Mapping[str, int]) -> tuple[MeshScalar, ...]:
+    """The scalars that the notes name, for this many nodes and polygons."""
+    return tuple(
+        MeshScalar(
+            name,
+            _table(
+                folder / SCALARS / f"{number}.npy",
+                f"a scalar of each {of}",
+                counts[of],
+                (0,),
+                np.float64,
+                lambda row: (np.isnan(row) | (np.abs(row) <= LARGEST_SCALAR))[0],
+                "a value must be at most 1e30 in size, or NaN if it is missing",
+            ),
+            of,
         )
-        is_of(place, values, "values", "iuf")
-        checked(
-            place,
-            values,
-            "a value must be at most 1e30 in size, or NaN if it is missing",
-            lambda row: (np.isnan(row) | (np.abs(row) <= LARGEST_SCALAR))[0],
-            CORRECT,
-        )
-        scalars.append(MeshScalar(name, as_read(place, values, np.float64), of))
-    return tuple(scalars)
+        for number, (name, of) in enumerate(notes.scalars, 1)
+    )
 
 
 # Writing goes in chunks: no table is copied whole. Each file is written beside its place, synced and renamed.
@@ -495,7 +461,7 @@ def _scalars(folder: Path, notes: TableNotes, tables: MappedTables) -> tuple[Mes
 NUMBERS_AT_ONCE: Final = 1 << 17
 
 LARGE: Final = 1 << 21
-"""Polygons whose normals are computed in files, for they would take 160 bytes of memory a polygon."""
+"""From this many polygons on, normals are computed in files: they take 160 bytes a polygon."""
 
 
 def write_npy_tables(folder: Path, mesh: Mesh, *, overwrite: bool = False) -> None:
@@ -536,7 +502,7 @@ def _named_tables(folder: Path, mesh: Mesh) -> Iterator[tuple[str, AnyArray]]:
 
 
 def _normals_of(folder: Path, mesh: Mesh) -> NodeNormals:
-    """The normals of a mesh: its own, or those of a large one computed in files that have no name."""
+    """The normals of a mesh; for a large mesh they are computed in nameless files."""
     if len(mesh.node_numbers) < LARGE or "normals" in vars(mesh):
         return mesh.normals
     with timed(LOG, "node normals, in files"):
@@ -550,9 +516,9 @@ def _normals_of(folder: Path, mesh: Mesh) -> NodeNormals:
 
 
 def scratch_array(folder: Path, shape: tuple[int, ...], dtype: type[Any]) -> AnyArray:
-    """An array to work in, backed by a file without a name in a folder, which is gone with the array.
+    """A working array in a nameless file in a folder; the file is gone with the array.
 
-    Raises WriteError if there is no room for it: the room is taken at once, for nobody could be told later.
+    All room is reserved at once, since a lack of room could not be reported later. Raises WriteError.
     """
     count = math.prod(shape)
     size = max(count * np.dtype(dtype).itemsize, 1)
@@ -582,7 +548,7 @@ def _make(folder: Path) -> None:
 
 
 def _remove_notes(folder: Path) -> None:
-    """Remove the notes of an older mesh, and what its normals and planes were, before files are replaced."""
+    """Remove the notes, normals and planes of an older mesh before its files are replaced."""
     others = (PLANES, PLANE_NUMBERS, PLANE_SIDES, NORMALS, NORMAL_NUMBERS)
     for path in (folder / NOTES, *(folder / name for name in others)):
         try:

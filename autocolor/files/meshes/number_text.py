@@ -1,8 +1,8 @@
 """Numbers in the text of mesh files, and the problems of their lines.
 
-`NumberText` is for formats that are numbers separated by white space. It finds at once where each number
-begins. So any run of numbers can be converted, counts are compared with the file before memory is allocated,
-and a wrong number is refused with its line.
+`NumberText` is for formats of numbers separated by white space. It first finds where each number begins. Then
+any run of numbers can be converted, counts are compared with the file before memory is allocated, and a wrong
+number is refused with its line.
 """
 
 from __future__ import annotations
@@ -22,19 +22,22 @@ MOST_PROBLEMS: Final = 20
 """Limit: problems reported for one mesh file; a file with more usually repeats the same one."""
 
 NUMBER: Final = re.compile(rb"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
-"""A decimal number; `float` takes more, such as digits of other scripts."""
+"""A decimal number. `float` would accept more, such as digits of other scripts."""
 
 BLOCK: Final = 1 << 17
 """Numbers to convert at once, so that there are few Python values at a time."""
 
 IN_DECIMALS: Final = b"0123456789+-.eE \t\n\r\f\v"
 IN_WHOLES: Final = b"0123456789+- \t\n\r\f\v"
-IN_VALUES: Final = IN_DECIMALS + b"nNaAiIfFtTyY"
-"""With the letters of nan, inf and infinity; no other word of these letters is a number."""
+IN_VALUES: Final = IN_DECIMALS + b"nNaAiIfF"
+"""With the letters of nan and inf; `float` accepts no other word of these letters."""
+
+IN_PLY: Final = IN_VALUES + b"tTyY"
+"""With the letters of infinity, which C programs write in PLY files."""
 
 DIGITS: Final = b"0123456789 \t\n"
 MOST_DIGITS: Final = 18
-"""The digits of a whole number that surely has 64 bits."""
+"""Any whole number with this many digits fits in 64 bits."""
 
 COORDINATE: Final = "a coordinate must be a decimal number of at most 1e30 in size"
 
@@ -101,7 +104,7 @@ class NumberText:
         longest = int(np.diff(ends, prepend=-1, append=len(self.data)).max())
         begins = letters[np.minimum(ends + 1, max(len(letters) - 1, 0))]
         if ((begins > ord(" ")) | (begins == ord("\n"))).all() and len(self):
-            # Measured: where no line is indented, a third of the time of what follows.
+            # Measured: if no line is indented, this takes a third of the time of the general case below.
             is_first = letters[self.starts - 1] == ord("\n")
             is_first[0] = True
             return np.flatnonzero(is_first), longest
@@ -110,7 +113,7 @@ class NumberText:
         return firsts[(np.diff(firsts, prepend=-1) > 0) & (firsts < len(self))], longest
 
     def require(self, end: int, what: str) -> None:
-        """Raise InputError unless there are `end` words, of which the last are `what`."""
+        """Raise InputError if there are fewer than `end` words; `what` names the last of them."""
         if end > len(self):
             raise InputError(
                 f"{self.place}: there must be {end:,} numbers up to the end of the {what}, not {len(self):,};"
@@ -125,18 +128,18 @@ class NumberText:
             raise self.wrong(first + int(large[0]), COORDINATE)
         return values
 
-    def values(self, first: int, count: int) -> Floats:
-        """The values of some words, which may be nan or inf. Raises InputError."""
-        return self._converted(first, count, IN_VALUES, "a value must be a decimal number, nan or inf", float)
+    def values(self, first: int, count: int, letters: bytes = IN_VALUES) -> Floats:
+        """The values of some words, which may be nan or inf. Raises InputError for other letters."""
+        return self._converted(first, count, letters, "a value must be a decimal number, nan or inf", float)
 
     def wholes(self, first: int, count: int, what: str) -> Numbers:
-        """The whole numbers of some words, each within 18 digits; `what` they are. Raises InputError."""
+        """The whole numbers of some words, below 2^63; `what` names them in messages. Raises InputError."""
         return self._converted(first, count, IN_WHOLES, f"{what} must be a whole number", int)
 
     def _converted(
         self, first: int, count: int, letters: bytes, rule: str, convert: type[float] | type[int]
     ) -> AnyArray:
-        """Some words as float64 or int64. Raises InputError for other letters, and for no number."""
+        """Some words as float64 or int64. Raises InputError for other letters or words."""
         values = np.empty(count, np.float64 if convert is float else np.int64)
         for chunk in chunks(first + count, BLOCK, first):
             end = int(self.starts[chunk.stop]) if chunk.stop < len(self) else len(self.data)
@@ -159,7 +162,7 @@ class NumberText:
         return values
 
     def _first_wrong(self, chunk: slice, letters: bytes) -> int:
-        """The first word of a chunk that is no number of these letters."""
+        """The first word of a chunk that is not a number of these letters."""
         for at in range(chunk.start, chunk.stop):
             word = self.word(at)
             try:
@@ -168,7 +171,7 @@ class NumberText:
                     return at
             except ValueError:
                 return at
-        # A word that is longer than the longest is no number either.
+        # The words are numbers as far as `word` shows them: the longest is too long.
         lengths = np.diff(self.starts[chunk], append=math.inf)
         start: int = chunk.start
         return start + int(lengths.argmax())

@@ -33,7 +33,7 @@ from autocolor.errors import InputError
 from autocolor.files.meshes.number_text import MOST_PROBLEMS, NUMBER, Problems
 from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, RawPolygons, name_of, repaired
 from autocolor.files.paths import path_within
-from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, shown, text_problem
+from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, shown, text_lines
 from autocolor.scene.columns import replaced
 from autocolor.scene.defaults import COLORED_PAINT, created_surface
 from autocolor.scene.geometry.polygon_split import MOST_CORNERS
@@ -49,11 +49,7 @@ def read_obj(path: Path, placement: Placement = PLAIN) -> MeshReport:
 
     Raises InputError with every problem, each with its line, MissingInputError if the file does not exist.
     """
-    data = read_bytes(path, LARGEST_MESH_FILE)
-    if problem := text_problem(data):
-        raise InputError(f"{path.name}: an OBJ file {problem}")
-    if b"\r" in data:
-        data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    data = text_lines(read_bytes(path, LARGEST_MESH_FILE), path.name, "an OBJ file")
     statements = Statements(path.stem)
     tables = read_plain_obj(data, statements)
     if tables is None or (tables.rows < 0).any():
@@ -118,9 +114,9 @@ class ObjTables:
 
 # The fast reader converts large blocks of plain lines to arrays at once.
 #
-# `read_plain_obj` returns the same tables as `read_obj_lines`. It returns None for a file that is not
-# plain: one with an indented statement, a comment after numbers, nodes both with and without colors, or any
-# error. Measured: it reads one million quads in 1.3 s, the line-by-line reader in 7 s.
+# `read_plain_obj` returns the same tables as `read_obj_lines`. It returns None if the file has an indented
+# statement, a comment after numbers, nodes both with and without colors, or any error. Measured: it reads one
+# million quads in 1.3 s, the line-by-line reader in 7 s.
 
 BLOCK: Final = 1 << 21
 """Bytes converted at a time: enough for numpy to be efficient, and few enough to save memory."""
@@ -296,7 +292,9 @@ class ObjLines:
                 rule = "a coordinate must be a decimal number of at most 1e30 in size"
                 self.problem(f"{rule}, not {shown(word)}; correct it")
             elif math.isnan(number):
-                self.problem(f"what follows x y z must be decimal numbers, not {shown(word)}; correct it")
+                self.problem(
+                    f"weights and colors of nodes must be decimal numbers, not {shown(word)}; correct it"
+                )
             if row < 3:
                 self.coordinates.append(number)
 
@@ -336,7 +334,7 @@ class ObjLines:
         polygons, first = np.unique(polygons, return_index=True)
         for corner, polygon in zip(missing[first].tolist(), polygons.tolist(), strict=True):
             self.line = self.polygon_lines[polygon]
-            rule = f"from 1 to {count}" if count else "of a node in the file, which has none"
+            rule = f"from 1 to {count}" if count else "of the file, which has no nodes"
             if before := self.nodes_before[polygon]:
                 rule += f" or from -{before} to -1"
             self.problem(f"a corner must be a node number {rule}, not {self.numbers[corner]}; correct it")
@@ -385,10 +383,9 @@ def _statements(data: bytes, reader: ObjLines) -> Iterator[tuple[int, bytes]]:
 # Statements other than nodes and polygons: names of parts, materials, and statements that are skipped.
 #
 # A polygon belongs to the group of the latest `g` or `o` name before it; of several names after `g`, the
-# first counts. `g` or `o` without a name ends the group. A group is a part; where its polygons have several
-# materials, it is a part for each of them, and all but the first add the material to their name: "hood",
-# "hood chrome". Without a group the part has the name of the material, and without that the file's own
-# name.
+# first counts. `g` or `o` without a name ends the group. A group is a part. If its polygons have several
+# materials, each material is a part, and all but the first add the material to the name: "hood", "hood
+# chrome". Without a group the part has the name of the material, and without a material the file's name.
 
 UNUSED: Final = frozenset(
     b"vt vn s mg maplib usemap lod bevel c_interp d_interp shadow_obj trace_obj".split()
@@ -419,15 +416,12 @@ class Statements:
 
     @property
     def part_number(self) -> int:
-        """The part number of a polygon at the current position: that of its group and material.
-
-        A new pair of them gets the next number.
-        """
+        """The part number of the current group and material; a new pair gets the next number."""
         return self.numbers.setdefault((self.group, self.material), len(self.numbers))
 
     def parts(self) -> dict[str, str | None]:
         """The names of the parts in the order of their numbers, and the material of each, if any."""
-        # First name those that have a name of their own, so that no part with an added name takes it.
+        # First give out the names in the file, so that no extended name takes them.
         names: dict[tuple[str | None, str | None], str] = {}
         taken: set[str] = set()
         added = []
@@ -485,12 +479,12 @@ class Statements:
 # level. D stays the default, because `Kd` is a color and no intensity. Textures and transparency are left
 # out, and the report says so. Everything else is ignored.
 #
-# A library must be in the folder of the OBJ file, or below it. One that is named elsewhere, as by an
-# absolute path, is looked for there by its file name. Problems in a library are reported, and do not keep
-# the mesh from being read.
+# A library must be in the folder of the OBJ file, or below it. A library with another path, such as an
+# absolute path, is looked for in the folder by its file name. The mesh is read despite problems in a library,
+# and the report mentions them.
 
 LARGEST_LIBRARIES: Final = 4 * 1024 * 1024
-"""Limit: bytes of all libraries of a file, those of some ten thousand materials."""
+"""Limit: bytes of all libraries of a file, enough for ten thousand materials."""
 
 MOST_LIBRARIES: Final = 100
 MOST_LIBRARY_PROBLEMS: Final = 5
@@ -504,7 +498,7 @@ LARGEST: Final = 1e6
 
 TEXTURES: Final = re.compile(rb"map_\w+|bump|disp|decal|refl|norm", re.IGNORECASE)
 TRANSPARENCY: Final = {b"d": 1.0, b"Tr": 0.0}
-"""The statements of transparency, and their values for what is not transparent."""
+"""The statements of transparency, and their values for an opaque material."""
 
 USED: Final = (b"Kd", b"Ks", b"Ns", b"illum")
 
@@ -536,8 +530,7 @@ def read_materials(
         try:
             data = read_bytes(path, left)
             left -= len(data)
-            if problem := text_problem(data):
-                raise InputError(f"{path.name}: a material library {problem}")
+            data = text_lines(data, path.name, "a material library")
         except InputError as error:
             sentences.append(f"the materials have default colors: {error}")
             continue
@@ -571,7 +564,7 @@ def _paths(obj: Path, libraries: Sequence[bytes], missing: list[bytes]) -> list[
     if not paths:
         beside = _path(folder, os.fsencode(f"{obj.stem}.mtl"))
         paths = {} if beside is None else {"": beside}
-        # What is named may have been renamed together with the OBJ file.
+        # The library may have been renamed together with the OBJ file.
         if beside is not None:
             missing.clear()
     return list(paths.values())[:MOST_LIBRARIES]
@@ -598,8 +591,7 @@ def materials_of(data: bytes, place: str, wanted: set[str]) -> tuple[Mapping[str
     transparent: set[str] = set()
     tables: dict[str, dict[bytes, list[float]]] = {}
     name, table = "", dict[bytes, list[float]]()
-    lines = io.BytesIO(data.replace(b"\r\n", b"\n").replace(b"\r", b"\n"))
-    for number, line in enumerate(lines, start=1):
+    for number, line in enumerate(io.BytesIO(data), start=1):
         words = line.split(b"#", 1)[0].split(None, MOST_WORDS)
         if not words:
             continue
@@ -644,7 +636,7 @@ def _numbers(words: list[bytes], most: float) -> list[float] | None:
 
 
 def _surface(name: str, values: Mapping[bytes, list[float]]) -> Surface:
-    """The surface of one material; what it does not define has its default."""
+    """The surface of a material; properties that it does not define have their defaults."""
     changes: dict[str, Any] = {}
     if b"Kd" in values:
         parts = [min(half_up(255 * min(part, 1.0)), 255) for part in values[b"Kd"]]
@@ -665,7 +657,7 @@ ROWS_AT_ONCE: Final = 1 << 16
 def obj_text(mesh: Mesh, materials: Sequence[str] = (), library: str = "") -> bytes:
     """The mesh as an OBJ file in UTF-8, with an `o` for each part; its numbers read back equal.
 
-    `materials` are the names of the materials of the parts, if any, and `library` that of their file.
+    `materials` are the names of the materials of the parts, if any, and `library` is the file of materials.
     Reading it back gives the same mesh unless the reader repairs it: a polygon without area is dropped, parts
     are those of polygons and in their order, and names are printable, with no spaces around them.
     """

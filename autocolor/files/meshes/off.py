@@ -2,11 +2,11 @@
 
     OFF
     nodes polygons edges
-    x y z ...               each node on a line; what follows (normals, colors) is skipped
+    x y z ...               each node on a line; its normal and color are skipped
     4 0 1 2 3 ...           each polygon: its number of corners, its nodes from 0; colors are skipped
 
 The first word may be OFF, COFF, NOFF, CNOFF or one of these with ST before it, or be left out. Comments begin
-with `#`. Files of four coordinates or in binary are refused. It is read here, not by trimesh, since that
+with `#`. Files of four coordinates or in binary are refused. trimesh is not used: it
 splits all quads.
 """
 
@@ -23,7 +23,7 @@ from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError
 from autocolor.files.meshes.number_text import NumberText
 from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, RawPolygons, repaired
-from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, shown, text_problem
+from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, shown, text_lines
 from autocolor.scene.geometry.polygon_split import MOST_CORNERS
 
 KEYWORD: Final = re.compile(rb"\s*([A-Za-z0-9]*OFF)\b")
@@ -33,10 +33,7 @@ COMMENT: Final = re.compile(rb"#[^\n]*")
 
 def read_off(path: Path, placement: Placement = PLAIN) -> MeshReport:
     """The mesh of an OFF file, and what was repaired. Raises InputError."""
-    data = read_bytes(path, LARGEST_MESH_FILE)
-    if problem := text_problem(data):
-        raise InputError(f"{path.name}: an OFF file {problem}")
-    data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    data = text_lines(read_bytes(path, LARGEST_MESH_FILE), path.name, "an OFF file")
     if b"#" in data:
         data = COMMENT.sub(b"", data)
     keyword = KEYWORD.match(data)
@@ -46,14 +43,14 @@ def read_off(path: Path, placement: Placement = PLAIN) -> MeshReport:
                 f"{path.name}: an OFF file must begin OFF, COFF, NOFF or STOFF, not {shown(keyword[1])};"
                 " write it with three coordinates, as text"
             )
-        # Spaces keep the lines and the places of what follows.
+        # Spaces keep the places of the other words.
         data = b" " * keyword.end(1) + data[keyword.end(1) :]
     text = NumberText(data, path.name)
     text.require(3, "header")
     nodes, polygons = text.wholes(0, 2, "a count in the header").tolist()
     for at, count in enumerate((nodes, polygons)):
         if not 1 <= count <= len(text):
-            raise text.wrong(at, f"a count must be from 1 to that of the words in the file, {len(text):,}")
+            raise text.wrong(at, f"a count must be from 1 to {len(text):,}, the count of words in the file")
     lines, _ = text.lines()
     coordinates, first = _coordinates(text, lines, nodes)
     corners, counts, end = _polygons(text, lines, first, polygons, nodes)
@@ -72,7 +69,7 @@ def _coordinates(text: NumberText, lines: Indices, nodes: int) -> tuple[Floats, 
     if width <= 3 or not np.array_equal(rows, first + width * np.arange(nodes + 1)):
         return text.coordinates(first, 3 * nodes).reshape(-1, 3), first + 3 * nodes
     end = first + nodes * width
-    # As many words follow each node: convert those before them, line by line.
+    # Each node has equally many further words: convert whole lines.
     table = text.values(first, nodes * width).reshape(nodes, width)
     for at in range(3):
         wrong = np.flatnonzero(~(np.abs(table[:, at]) <= LARGEST_COORDINATE))
@@ -85,7 +82,7 @@ def _polygons(
     text: NumberText, lines: Indices, first: int, polygons: int, nodes: int
 ) -> tuple[Indices, Indices, int]:
     """The corners, their number in each polygon, and the word after the last. Raises InputError."""
-    # Each polygon begins a line, so that what follows its corners need not be known.
+    # Each polygon begins a line, so words after its corners may be anything.
     lines = np.concatenate([[first], lines[lines > first]])
     if first >= len(text) or len(lines) < polygons:
         raise InputError(

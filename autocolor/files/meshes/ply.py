@@ -72,7 +72,7 @@ NOT_SCALARS: Final = frozenset(
         ),
     )
 )
-"""Normals, colors and texture coordinates, ignored as those of OBJ files are, and flags of other programs."""
+"""Properties that are not scalars: normals, colors, texture coordinates, and flags of other programs."""
 
 NAMED_PART: Final = re.compile(r"part (\d{1,9}) (.+)")
 NAMED_SCALAR: Final = re.compile(r"scalar (\S+) (.+)")
@@ -99,12 +99,12 @@ def named_in(comments: Sequence[str]) -> Comments:
 
 
 def is_scalar(name: str, comments: Comments) -> bool:
-    """Whether a property of a vertex or a face, which is a number, is a scalar of the mesh."""
+    """Whether a number of vertices or faces is a scalar of the mesh."""
     return name in comments.scalars or (name not in NOT_SCALARS and name not in AXES)
 
 
 def property_of(scalar: str, number: int) -> str:
-    """The property that a scalar is written as; where that is not its name, a comment must give it."""
+    """The property for a scalar: its name, or `value_N` if that is no plain word or has another meaning."""
     is_free = scalar not in NOT_SCALARS and scalar not in (*AXES, *PARTS, *CORNERS)
     is_free = is_free and not scalar.startswith("value_")
     return scalar if is_free and PLAIN_NAME.fullmatch(scalar) else f"value_{number}"
@@ -120,7 +120,7 @@ def read_ply(path: Path, placement: Placement = PLAIN) -> MeshReport:
 
 
 def _read(path: Path) -> tuple[RawPolygons, list[str]]:
-    """The polygons of a file, and what was skipped; its bytes are given up before the mesh is made."""
+    """The polygons of a file, and messages about skipped data. Returning frees the bytes of the file."""
     is_text = b"format ascii" in read_head(path)
     data = read_bytes(path, LARGEST_MESH_FILE if is_text else LARGEST_BINARY_MESH_FILE)
     header = parsed_header(data, path.name)
@@ -136,7 +136,7 @@ def _read(path: Path) -> tuple[RawPolygons, list[str]]:
 
 
 LARGEST_INDEX: Final = 1 << 53
-"""A number from here on is that of no node, and may not be exact."""
+"""Part numbers below this are exact in floating point."""
 
 
 def ply_polygons(
@@ -152,7 +152,7 @@ def ply_polygons(
     has_strips = strips is not None and strips.count > 0 and not (faces and faces.count)
     if has_strips:
         corners, counts = triangles_of_strips(*_corners(strips, len(coordinates), place, STRIPS))
-        # Nothing but corners is read of strips.
+        # Strips have corners alone: no parts and no scalars.
         faces = None
     else:
         corners, counts = _corners(faces, len(coordinates), place, FACE)
@@ -236,7 +236,7 @@ def _refuse_corners(rows: ElementRows, values: AnyArray, counts: Indices, nodes:
         is_node &= values == np.floor(values)
     wrong = np.flatnonzero(~is_node)
     owners, first = np.unique(np.searchsorted(np.cumsum(counts), wrong, side="right"), return_index=True)
-    rule = f"from {least} to {nodes - 1:,}" if nodes else "of a node in the file, which has none"
+    rule = f"from {least} to {nodes - 1:,}" if nodes else "of the file, which has no nodes"
     raise InputError(
         f"{rows.place_of(row)}: a corner must be a node number {rule}, not {values[corner]:.15g}; correct it"
         for row, corner in list(zip(owners.tolist(), wrong[first].tolist(), strict=True))[:MOST_PROBLEMS]
@@ -244,7 +244,7 @@ def _refuse_corners(rows: ElementRows, values: AnyArray, counts: Indices, nodes:
 
 
 def _part_property(faces: ElementRows | None, comments: Comments) -> str | None:
-    """The property of faces that divides them into parts; None if there is none."""
+    """The face property that assigns parts; None if there is none."""
     for name in PARTS:
         column = None if faces is None else faces.columns.get(name)
         if column is None or isinstance(column, Lists) or name in comments.scalars or not len(column):
@@ -311,9 +311,9 @@ Fields = list[tuple[str, str]]
 def ply_bytes(mesh: Mesh) -> bytes:
     """The mesh as a binary PLY file, little endian, with its parts and scalars; its numbers read back equal.
 
-    Coordinates and scalars are of type double. Each part is named in a comment, and each face has the number
-    of its part where there are several. A scalar whose name is no word, or that of something else in PLY, is
-    a property `value_N` with its name in a comment.
+    Coordinates and scalars are of type double. A comment names each part. With several parts, each face
+    has its part number. A scalar whose name is no plain word or has another meaning in PLY is a property
+    `value_N`, and a comment gives its name.
 
     Reading it back gives the same mesh unless the reader repairs it: a polygon without area is dropped, and
     names of parts and scalars are printable, of at most 200 letters, with no spaces around them.
@@ -360,7 +360,7 @@ def _faces(mesh: Mesh, chunk: slice, scalars: list[tuple[str, MeshScalar]], has_
     """The rows of some polygons."""
     corners = mesh.node_numbers[chunk]
     is_triangle = corners[:, 2] == corners[:, 3]
-    # Every row is made as long as that of a quad, and the last corner of a triangle cut out.
+    # Rows begin as quads; then the last corner of each triangle is cut out.
     fields: Fields = [("count", "u1"), *((f"corner {at}", "<i4") for at in range(4))]
     rows = np.empty(len(corners), _dtype([*fields, *([(PART, "<i4")] if has_parts else [])], scalars))
     rows["count"] = np.where(is_triangle, 3, 4)

@@ -18,7 +18,7 @@ import numpy as np
 from autocolor.arrays import AnyArray, Booleans, Floats, Indices, runs
 from autocolor.checks import either, nearest
 from autocolor.errors import InputError
-from autocolor.files.meshes.number_text import NumberText
+from autocolor.files.meshes.number_text import IN_PLY, NumberText
 from autocolor.files.meshes.repair import name_of
 from autocolor.files.reading import HEAD, shown, text_problem
 
@@ -43,8 +43,7 @@ TYPES: Final = {
     "int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2", "int32": "i4", "uint32": "u4",
     "float32": "f4", "float64": "f8", "int64": "i8", "uint64": "u8",
 }  # fmt: skip
-"""The types that a header names, as those of numpy. Integers of 64 bits are no PLY, but there are
-files with them."""
+"""The types in a header, as numpy's. PLY has no integers of 64 bits, but some files do."""
 
 FIRST_LINE: Final = re.compile(rb"ply[ \t]*(\r?\n|\r)")
 COUNT: Final = re.compile(rb"[0-9]{1,18}")
@@ -59,7 +58,7 @@ class Property(NamedTuple):
 
     @property
     def size(self) -> int:
-        """The bytes of a value in a binary file; of a list, those of its count."""
+        """The bytes in a binary file of a value, or of the count of a list."""
         return np.dtype(self.count_type or self.type).itemsize
 
 
@@ -78,15 +77,12 @@ class Element:
 
     @property
     def least_corners(self) -> int:
-        """Limit: how many corners its lists must have together at least: one for each face.
-
-        So a file of empty faces cannot take much memory.
-        """
+        """Limit: the least number of corners, one for each face, so that empty faces take little memory."""
         return self.count if self.name == FACE and any(each.count_type for each in self.properties) else 0
 
 
 class PlyHeader(NamedTuple):
-    """What a header says: the byte order, empty for text; the elements; the comments; its length in bytes."""
+    """A header: the byte order, empty for text; the elements; the comments; its length in bytes and lines."""
 
     order: str
     elements: tuple[Element, ...]
@@ -149,7 +145,7 @@ def parsed_header(data: bytes, place: str) -> PlyHeader:
 
 
 def _lines(data: bytes, place: str) -> Iterator[tuple[bytes, int]]:
-    """Each line of the header, and where the next begins. Raises InputError where the header does not end."""
+    """Each line of the header, and the place after it. Raises InputError if the header does not end."""
     # A line that ends with CR may be followed by binary data that begins with LF.
     first = FIRST_LINE.match(data)
     feed = b"\r" if first is not None and first[1] == b"\r" else b"\n"
@@ -226,7 +222,7 @@ def _property(words: list[bytes], where: str, before: list[Property]) -> Propert
 
 
 class Lists(NamedTuple):
-    """Lists, one a row: all their values, one list after the other, and how many each has."""
+    """The lists of all rows: their values, list after list, and the number of values in each list."""
 
     values: AnyArray
     counts: Indices
@@ -244,20 +240,20 @@ class ElementRows:
     place_of: Callable[[int], str]
 
 
-# Binary: elements whose rows all have the same size are looked at as arrays. Only where lists differ in their
-# counts, as in a mesh of triangles and quads, does each row tell where the next begins.
+# Binary: if all rows of an element have the same size, they are one numpy array. If lists differ in length,
+# as in a mesh of triangles and quads, the rows are walked to find where each row begins.
 
 ROWS_AT_ONCE: Final = 1 << 16
 """Rows that are walked at once, so that there are few Python values at a time."""
 
 LONGEST_ROW: Final = 1 << 20
-"""Bytes of a row that numpy is given as one type."""
+"""Limit: bytes of a row that becomes one numpy type."""
 
 CODES: Final = {"i1": "b", "u1": "B", "i2": "h", "u2": "H", "i4": "i", "u4": "I", "i8": "q", "u8": "Q"}
 """The types of counts as `struct` has them."""
 
 Step = tuple[int, str, int]
-"""Of a list in a row: the bytes before its count, the type of the count, and the bytes of a value."""
+"""A list in a row: the bytes before its count, the type of the count, and the bytes of a value."""
 
 
 def read_binary(data: bytes, header: PlyHeader, place: str) -> tuple[dict[str, ElementRows], tuple[str, ...]]:
@@ -290,7 +286,7 @@ def _columns(data: bytes, at: int, element: Element, order: str, place: str) -> 
     lists = [each for each in element.properties if each.count_type]
     counts = [0] * len(lists)
     if lists and element.count:
-        # Try whether all rows have lists as long as those of the first.
+        # Suppose that all rows have lists as long as the first row; this is checked below.
         first, _ = _walk(data, at, replace(element, count=1), order, place)
         counts = [int(count[0]) for count in first]
     fields: list[tuple[str, str] | tuple[str, str, tuple[int]]] = []
@@ -361,7 +357,7 @@ def _gathered(data: bytes, places: Indices, code: str) -> AnyArray:
 def _walk(data: bytes, at: int, element: Element, order: str, place: str) -> tuple[list[Indices], int]:
     """The counts of each list of the rows of an element that begins at a byte, and where it ends.
 
-    Of an element that is not used, the counts are those of the last rows.
+    For an unused element, only the counts of the last rows are returned.
 
     Measured: a million triangles and quads, in any order, in a fifth of a second.
     """
@@ -404,7 +400,7 @@ def _steps(properties: tuple[Property, ...]) -> tuple[list[Step], int]:
 
 
 def _walk_short_lists(data: bytes, at: int, rows: int, step: Step, tail: int, counts: list[int]) -> int:
-    """Append the count of the one list of each row, which is a byte; returns where the rows end."""
+    """Append the count of the list in each row, a byte. Returns the place where the rows end."""
     before, _, size = step
     fixed = 1 + tail + before
     at += before
@@ -419,7 +415,7 @@ def _walk_short_lists(data: bytes, at: int, rows: int, step: Step, tail: int, co
 def _walk_lists(
     data: bytes, at: int, rows: int, steps: list[Step], tail: int, order: str, counts: list[int]
 ) -> int:
-    """Append the counts of the lists of each row, up to a negative one; returns where the rows end."""
+    """Append the counts of the lists in each row, up to a negative count. Returns the end of the rows."""
     unpackers = [
         (before, struct.Struct(order + CODES[code]).unpack_from, np.dtype(code).itemsize, size)
         for before, code, size in steps
@@ -456,7 +452,7 @@ def read_text(data: bytes, header: PlyHeader, place: str) -> tuple[dict[str, Ele
     firsts, longest = text.lines()
     if longest > LONGEST_TEXT_LINE:
         raise InputError(f"{place}: a line must have at most {LONGEST_TEXT_LINE:,} bytes, not more; split it")
-    numbers = text.values(0, len(text))
+    numbers = text.values(0, len(text), IN_PLY)
     ends = np.append(firsts[1:], len(text))
     elements: dict[str, ElementRows] = {}
     row = 0

@@ -43,7 +43,7 @@ class Placement:
 
 
 PLAIN: Final = Placement()
-"""The placement of a file whose coordinates are those of the world."""
+"""The placement of a file in world coordinates."""
 
 
 def placed(coordinates: Floats, placement: Placement) -> Floats:
@@ -66,7 +66,7 @@ class RawPolygons:
 
     `coordinates` is (nodes, 3) float64. `corners` holds the rows in `coordinates` of all corners, polygon
     after polygon; they must be valid. `corner_counts` and `part_numbers`, indices of `part_names`, have one
-    element for each polygon. `scalars` are those of the nodes and of the polygons.
+    element for each polygon. `scalars` belong to nodes or polygons.
     """
 
     coordinates: Floats
@@ -97,9 +97,9 @@ AT_A_TIME: Final = 1 << 14
 FLAT: Final = 1e-12
 """Assumed: a triangle has no area if twice its area is below this fraction of the squared polygon size."""
 
-SURE: Final = 16 * (10 * FLAT) ** 2
-"""A triangle has area if its cross product, squared, exceeds this fraction of its squared edges, squared: the
-size of a polygon is at most twice the longest way from its first corner to another."""
+LEAST_AREA: Final = 16 * (10 * FLAT) ** 2
+"""A triangle surely has area if its cross product, squared, exceeds this fraction of the fourth power of its
+longer edge. The size of a polygon is at most twice the distance from its first corner to another."""
 
 LEAST_SQUARE: Final = 1e-250
 """Squares below have lost digits."""
@@ -126,7 +126,7 @@ def repaired(
     except InputError as error:
         raise InputError(f"{place}: {error}") from None
 
-    # Drop pieces without area, and so the polygons of which no piece is left.
+    # Drop pieces without area.
     has_area = np.concatenate(
         [
             _have_area(coordinates, node_numbers[first : first + AT_A_TIME])
@@ -169,7 +169,7 @@ def _without_repeats(corners: Indices, counts: Indices) -> tuple[Indices, Indice
     """The corners and counts without corners that equal the next one, and which polygons had such corners."""
     sides = int(counts[0]) if len(counts) else 0
     if sides > 0 and (counts == sides).all():
-        # Measured: where all polygons have the same number of sides, a fifth of the time of what follows.
+        # Measured: polygons with equally many sides take a fifth of the time of the general case below.
         table = corners.reshape(-1, sides).T
         if not any((table[at] == table[at - 1]).any() for at in range(sides)):
             return corners, counts, np.zeros(len(counts), np.bool_)
@@ -189,8 +189,8 @@ def _have_area(coordinates: Floats, node_numbers: Indices) -> Booleans:
     """Whether each polygon of (n, 4) has area: neither diagonal splits it into two flat triangles.
 
     A bow-tie whose halves cancel has area; a polygon that runs forth and back along one path has none.
-    Measured: to look closely only at those that are not sure to have area takes a third of the time of
-    triangles, and two thirds of that of quads.
+    Measured: a quick test first, and a close look at the polygons that it leaves, take a third of the time
+    for triangles and two thirds for quads.
     """
     have_area = _surely_have_area(coordinates, node_numbers.T)
     others = np.flatnonzero(~have_area)
@@ -200,7 +200,7 @@ def _have_area(coordinates: Floats, node_numbers: Indices) -> Booleans:
 
 
 def _surely_have_area(coordinates: Floats, corners: Indices) -> Booleans:
-    """Which polygons, given by (4, n), are far from flat, whichever diagonal splits them."""
+    """Which polygons of (4, n) are far from flat, for both diagonals."""
     first = coordinates.take(corners[0], axis=0).T
     one, two = (coordinates.take(row, axis=0).T - first for row in corners[1:3])
     with np.errstate(over="ignore", under="ignore", invalid="ignore"):
@@ -215,7 +215,7 @@ def _far_from_flat(one: Floats, other: Floats, squares: Floats) -> Booleans:
     """Whether the triangles of two edges, (3, n), have area for sure; `squares` are at least the other's."""
     normals = cross(one, other)
     sizes = np.maximum(dot(one, one), squares)
-    are_far: Booleans = dot(normals, normals) > np.maximum(SURE * sizes * sizes, LEAST_SQUARE)
+    are_far: Booleans = dot(normals, normals) > np.maximum(LEAST_AREA * sizes * sizes, LEAST_SQUARE)
     return are_far
 
 
@@ -244,7 +244,7 @@ def name_of(data: bytes) -> str:
     data = data.strip()
     start = data[: 4 * LONGEST_NAME]
     try:
-        # What is cut may end within a letter.
+        # The cut may be within a letter.
         text = codecs.getincrementaldecoder("utf-8")().decode(start, final=start == data)
     except UnicodeDecodeError:
         text = start.decode("latin-1")
@@ -257,7 +257,7 @@ def printable_name(text: str) -> str:
 
 
 def different(names: Sequence[str], addition: str = "") -> tuple[str, ...]:
-    """The names, each that was there before with an addition or a number.
+    """The names, made different: a repeated name gets an addition or a number.
 
     >>> different(["hood", "hood", "hood"])
     ('hood', 'hood 2', 'hood 3')

@@ -1,7 +1,7 @@
 """Reading a mesh from an STL file, binary or text, welded.
 
-A binary file may begin with `solid`, as text does. It is recognized by its size, which follows from its count
-of triangles. Each solid of a text is a part with its name; a binary file is one part, named after the file.
+A binary file may begin with `solid`, as text does. A file is binary if its count of triangles gives its size.
+Each solid of a text is a part with its name; a binary file is one part, named after the file.
 Normals, attributes and the text before binary triangles are ignored. Corners at the same place become one
 node; then triangles without area are dropped and counted.
 """
@@ -35,7 +35,7 @@ from autocolor.files.reading import (
     UTF_8_MARK,
     read_bytes,
     shown,
-    text_problem,
+    text_lines,
 )
 
 BEGINNING: Final = re.compile(rb"\s*solid\b", re.IGNORECASE)
@@ -68,27 +68,24 @@ def _triangles(path: Path) -> tuple[AnyArray, Indices, tuple[str, ...], tuple[st
     if has_binary_size(data) or not _is_text(data):
         corners, skipped = read_binary(data, path.name)
         return corners, np.zeros(len(corners) // 3, np.intp), (path.stem,), skipped
-    if problem := text_problem(data):
-        raise InputError(f"{path.name}: an ascii STL file {problem}")
+    text = text_lines(data, path.name, "an ascii STL file")
     if len(data) > LARGEST_MESH_FILE:
         raise InputError(
             f"{path.name}: an ascii STL file must have at most {LARGEST_MESH_FILE:,} bytes, not more;"
             " export it as binary"
         )
-    if b"\r" in data:
-        data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
-    triangles = read_text(data, path.name)
+    triangles = read_text(text, path.name)
     names = different([name_of(name) or path.stem for name in triangles.names])
     return triangles.corners, triangles.part_numbers, names, triangles.messages
 
 
 def _is_text(data: bytes) -> bool:
-    """Whether a file that has not the size of a binary one is to be read as text."""
+    """Whether a file is text; its size must not be a binary file's."""
     return data[:2] in IN_UTF_16 or (BEGINNING.match(data) is not None and b"\0" not in data[:84])
 
 
 def begins_as_stl(head: bytes) -> bool:
-    """Whether a file begins as a text of solids does; binary files are only known by their names."""
+    """Whether a file begins with a solid in text. Binary files are recognized by their suffix alone."""
     return FIRST_FACET.match(head.removeprefix(UTF_8_MARK)) is not None
 
 
@@ -99,7 +96,7 @@ TRIANGLE: Final = np.dtype([("normal", "<f4", (3,)), ("corners", "<f4", (3, 3)),
 
 
 def has_binary_size(data: bytes) -> bool:
-    """Whether a file has just as many bytes as its count of triangles says, if it is binary."""
+    """Whether a file has exactly the size of a binary file with its count of triangles."""
     return len(data) >= BEFORE_TRIANGLES and len(data) == BEFORE_TRIANGLES + TRIANGLE.itemsize * _count(data)
 
 
@@ -214,7 +211,7 @@ def read_text(data: bytes, place: str) -> TextTriangles:
 
 
 def _blocks(data: bytes, begin: int, end: int, place: str) -> Iterator[tuple[int, int]]:
-    """The facets between two places, in blocks of about BLOCK bytes, by where these begin and end."""
+    """The beginnings and ends of blocks of whole facets, of about BLOCK bytes, between two places."""
     while begin < end:
         most = min(begin + BLOCK, end)
         end_of_facet = ENDFACET.search(data, most, min(most + LONGEST_FACET, end))
@@ -279,7 +276,7 @@ def _refuse_words(data: bytes, begin: int, end: int, place: str) -> NoReturn:
 
 
 def _refuse(data: bytes, at: int, place: str, sentence: str) -> NoReturn:
-    """Raise InputError about what stands at a byte."""
+    """Raise InputError about the word at a byte."""
     # Spaces before it may be lines of their own.
     at += len(data[at : at + LONGEST_FACET]) - len(data[at : at + LONGEST_FACET].lstrip())
     line = data.count(b"\n", 0, min(at, max(len(data) - 1, 0))) + 1
@@ -320,21 +317,21 @@ def welded(corners: AnyArray) -> tuple[AnyArray, Indices]:
     first = np.arange(len(points))
     left = first.copy()
     for factors in FACTORS:
-        those = columns if len(left) == len(points) else columns[:, left]
-        slots = _slots(those, factors)
+        others = columns if len(left) == len(points) else columns[:, left]
+        slots = _slots(others, factors)
         table = np.empty(int(slots.max(initial=0)) + 1, np.intp)
         # The last corner that is written to a slot stays there.
         table[slots[::-1]] = left[::-1]
         leaders = table.take(slots)
         same = np.ones(len(left), np.bool_)
-        for column, values in zip(columns, those, strict=True):
+        for column, values in zip(columns, others, strict=True):
             same &= column.take(leaders) == values
         first[left[same]] = leaders[same]
         left = left[~same]
         if not len(left):
             break
     if len(left):
-        # Only points that were made to share their slots come here.
+        # Only points that someone chose to share slots in every table remain.
         _, leaders, rows = np.unique(points[left], axis=0, return_index=True, return_inverse=True)
         first[left] = left[leaders[rows.ravel()]]
     is_first = first == np.arange(len(points))

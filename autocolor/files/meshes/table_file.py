@@ -1,9 +1,9 @@
-"""A mesh as arrays, an .npz archive that numpy can open, for meshes that no text format holds as they are.
+"""A mesh as arrays in an .npz archive, which numpy can open.
 
 The members are `header` (the part names and what the scalars are, as JSON in UTF-8), `coordinates` (nodes, 3)
 float64, `node_numbers` (polygons, 4) and `part_numbers` (polygons,) int32, and `mesh_scalar_0` and so on, the
-values of each scalar, (nodes,) or (polygons,) float64. What the other formats repair, drop or rename is kept:
-polygons without area, parts without polygons, and names of any characters.
+values of each scalar, (nodes,) or (polygons,) float64. Nothing is lost: polygons without area, parts without
+polygons and names of any characters stay.
 """
 
 from __future__ import annotations

@@ -99,20 +99,20 @@ def _read_cells(cursor: VtkCursor, dataset: bytes) -> tuple[Floats, VtkCells]:
             coordinates = read_points(cursor, words)
         elif coordinates is None:
             raise cursor.error(f"there must be POINTS before {shown(words[0])}; correct the file")
-        elif keyword in (b"VERTICES", b"LINES"):
-            skipped = len(read_cell_lists(cursor, words, len(coordinates)).sizes)
-            cells.skipped[keyword.decode().lower()] += skipped
-            cells.count += skipped
-        elif keyword == b"POLYGONS":
-            add_polygons(cells, read_cell_lists(cursor, words, len(coordinates)))
-        elif keyword == b"TRIANGLE_STRIPS":
-            add_strips(cells, read_cell_lists(cursor, words, len(coordinates)))
+        elif keyword in IN_POLYDATA:
+            cell_lists = read_cell_lists(cursor, words, len(coordinates))
+            add_cells(cells, cursor, cell_lists, IN_POLYDATA[keyword])
         elif keyword == b"CELLS":
-            # The first count of version 5.1 is that of OFFSETS, one more than the cells.
             lists = read_cell_lists(cursor, words, len(coordinates))
         elif keyword == b"CELL_TYPES" and lists is not None:
             count = cursor.count(words[1] if len(words) > 1 else b"", "the count of CELL_TYPES")
-            add_typed(cells, cursor, lists, cursor.wholes(count, b"int", "CELL_TYPES"))
+            types = cursor.wholes(count, b"int", "CELL_TYPES")
+            if count != len(lists.sizes):
+                raise InputError(
+                    f"{cursor.name}: there must be as many CELL_TYPES as CELLS, {len(lists.sizes):,}, not"
+                    f" {count:,}; correct the file"
+                )
+            add_cells(cells, cursor, lists, types)
             lists = None
         else:
             raise cursor.error(f"there must be no {shown(words[0])} in {dataset.decode()}; correct the file")
@@ -144,29 +144,16 @@ LONGEST_METADATA: Final = 10_000
 SPACES: Final = b" \t\r\n\f\v"
 
 TYPES: Final = {
-    b"char": "i1",
-    b"unsigned_char": "u1",
-    b"short": ">i2",
-    b"unsigned_short": ">u2",
-    b"int": ">i4",
-    b"unsigned_int": ">u4",
-    b"long": ">i8",
-    b"unsigned_long": ">u8",
-    b"float": ">f4",
-    b"double": ">f8",
+    b"char": "i1", b"unsigned_char": "u1", b"short": ">i2", b"unsigned_short": ">u2",
+    b"int": ">i4", b"unsigned_int": ">u4", b"long": ">i8", b"unsigned_long": ">u8",
+    b"float": ">f4", b"double": ">f8",
+    b"vtktypeint8": "i1", b"vtktypeuint8": "u1", b"vtktypeint16": ">i2", b"vtktypeuint16": ">u2",
+    b"vtktypeint32": ">i4", b"vtktypeuint32": ">u4", b"vtktypeint64": ">i8", b"vtktypeuint64": ">u8",
+    b"vtktypefloat32": ">f4", b"vtktypefloat64": ">f8",
     # All versions that write this name write 32 bits.
     b"vtkidtype": ">i4",
-    b"vtktypeint8": "i1",
-    b"vtktypeuint8": "u1",
-    b"vtktypeint16": ">i2",
-    b"vtktypeuint16": ">u2",
-    b"vtktypeint32": ">i4",
-    b"vtktypeuint32": ">u4",
-    b"vtktypeint64": ">i8",
-    b"vtktypeuint64": ">u8",
-    b"vtktypefloat32": ">f4",
-    b"vtktypefloat64": ">f8",
-}
+}  # fmt: skip
+"""The types in a file, in lower case, as those of numpy."""
 
 
 class VtkCursor:
@@ -209,7 +196,7 @@ class VtkCursor:
         return line.rstrip()
 
     def words(self) -> list[bytes]:
-        """The words of the next line that has any; none at the end of the file. Raises InputError."""
+        """The words of the next line with words; none at the end of the file. Raises InputError."""
         while self.at < len(self.data) and self.data[self.at] in SPACES:
             self.at += 1
         self.begun = self.at
@@ -236,10 +223,7 @@ class VtkCursor:
         return int(word)
 
     def array(self, count: int, kind: bytes, what: str) -> AnyArray:
-        """The next numbers: floating-point for `float`, `double` and all text, else whole. Raises InputError.
-
-        Of a text file, whole numbers are those of whole types.
-        """
+        """The next numbers, floating-point or whole as their type, `kind`. Raises InputError."""
         dtype = np.dtype(TYPES.get(kind.lower(), "V"))
         if dtype.kind == "V":
             raise self.error(
@@ -277,7 +261,7 @@ class VtkCursor:
         return values
 
     def wholes(self, count: int, kind: bytes, what: str) -> Numbers:
-        """The next whole numbers, int64. Raises InputError, for a type that is not whole, too."""
+        """The next whole numbers, int64. Raises InputError, also for a floating-point type."""
         array = self.array(count, kind, what)
         if array.dtype.kind not in "iu":
             raise self.error(
@@ -313,9 +297,17 @@ SHAPES: Final = {
     **dict.fromkeys((13, 26, 31, 32, 73), "wedge"),
     **dict.fromkeys((14, 27, 74), "pyramid"),
 }
-"""The shapes that types of cells are read as."""
+"""The shape that each type of cell becomes."""
 
 FIRST_ORDER: Final = frozenset(range(15))
+
+IN_POLYDATA: Final = {
+    b"VERTICES": 1,
+    b"LINES": 3,
+    b"TRIANGLE_STRIPS": STRIP_CELL,
+    b"POLYGONS": POLYGON_CELL,
+}
+"""The type of the cells in each section of POLYDATA."""
 
 SKIPPED: Final = {
     0: "empty cells",
@@ -341,7 +333,7 @@ class CellLists(NamedTuple):
 
 @dataclass
 class VtkCells:
-    """Polygons and volume cells of a file, sentences about cells, and how many cells there are."""
+    """The polygons and volume cells of a file, and counts of its cells."""
 
     flats: list[Flats] = field(default_factory=list)
     volumes: list[Volumes] = field(default_factory=list)
@@ -351,7 +343,7 @@ class VtkCells:
 
     @property
     def sentences(self) -> tuple[str, ...]:
-        """What was skipped, and of how many cells the corners were taken."""
+        """Messages about skipped cells, and about cells that are read by their corners alone."""
         sentences = [f"skipped {what}: {count:,}" for what, count in self.skipped.items() if count]
         if self.higher_order:
             sentences.append(f"took the corners alone of cells of higher order: {self.higher_order:,}")
@@ -361,7 +353,7 @@ class VtkCells:
 def read_cell_lists(cursor: VtkCursor, words: list[bytes], nodes: int) -> CellLists:
     """The node lists after a line such as `POLYGONS cells size`. Raises InputError.
 
-    Up to version 5.0 each list is its length and its nodes; from 5.1 on there are OFFSETS and CONNECTIVITY.
+    Up to version 5.0 each cell is its number of nodes and its nodes; from 5.1 on, OFFSETS and CONNECTIVITY.
     """
     what = words[0].decode("latin-1")
     if len(words) < 3:
@@ -381,7 +373,7 @@ def read_cell_lists(cursor: VtkCursor, words: list[bytes], nodes: int) -> CellLi
 
 def _offset_lists(cursor: VtkCursor, count: int, size: int, what: str) -> CellLists:
     if not count:
-        # Some versions write no offset at all where there is no cell.
+        # If there are no cells, some versions write no offsets.
         return CellLists(np.empty(0, np.int64), np.zeros(1, np.int64))
     offsets = cursor.wholes(count, _kind_of(cursor, what), f"OFFSETS of {what}")
     if cursor.peek() != b"CONNECTIVITY":
@@ -435,24 +427,31 @@ def _counted_lists(cursor: VtkCursor, cells: int, size: int, what: str) -> CellL
     return CellLists(numbers[~is_count], np.concatenate([[0], np.cumsum(sizes)]))
 
 
-def add_polygons(cells: VtkCells, lists: CellLists) -> None:
-    """Add polygons of any number of corners."""
+def add_cells(cells: VtkCells, cursor: VtkCursor, lists: CellLists, types: Numbers | int) -> None:
+    """Add cells; `types` are the type of all cells or the types, cell by cell. Raises InputError."""
     sizes = lists.sizes
-    rows = cells.count + np.arange(len(sizes))
-    cells.flats.append(Flats(lists.numbers.astype(np.intp), sizes, rows))
-    cells.skipped["empty cells"] += int((sizes == 0).sum())
+    for kind in np.unique(types).tolist():
+        is_kind = np.broadcast_to(np.equal(types, kind), sizes.shape)
+        chosen = np.flatnonzero(is_kind)
+        rows = cells.count + chosen
+        if kind == POLYGON_CELL:
+            corners = lists.numbers if is_kind.all() else lists.numbers[np.repeat(is_kind, sizes)]
+            cells.flats.append(Flats(corners.astype(np.intp), sizes[chosen], rows))
+            cells.skipped["empty cells"] += int((sizes[chosen] == 0).sum())
+        elif kind == STRIP_CELL:
+            cells.flats.append(_triangles(lists, chosen, rows))
+        elif shape := SHAPES.get(kind):
+            _add_shaped(cells, cursor, lists, chosen, rows, kind, shape)
+        else:
+            cells.skipped[SKIPPED.get(kind, f"cells of type {kind}")] += len(rows)
     cells.count += len(sizes)
 
 
-def add_strips(cells: VtkCells, lists: CellLists) -> None:
-    """Add triangle strips: each node from the third on makes a triangle with the two before it."""
-    rows = cells.count + np.arange(len(lists.sizes))
-    cells.flats.append(_triangles(lists, np.arange(len(rows)), rows))
-    cells.count += len(rows)
-
-
 def _triangles(lists: CellLists, chosen: Indices, rows: Indices) -> Flats:
-    """The triangles of the strips that are chosen; `rows` are their rows among the cells."""
+    """The triangles of the chosen strips; `rows` are the strips' rows among the cells of the file.
+
+    Each node of a strip from the third on makes a triangle with the two nodes before it.
+    """
     enough = lists.sizes[chosen] >= 3
     chosen, rows = chosen[enough], rows[enough]
     count = lists.sizes[chosen] - 2
@@ -463,45 +462,30 @@ def _triangles(lists: CellLists, chosen: Indices, rows: Indices) -> Flats:
     return Flats.of(lists.numbers[table].astype(np.intp), np.repeat(rows, count))
 
 
-def add_typed(cells: VtkCells, cursor: VtkCursor, lists: CellLists, types: Numbers) -> None:
-    """Add the cells of an unstructured grid, each of its type. Raises InputError."""
-    sizes = lists.sizes
-    if len(types) != len(sizes):
-        raise InputError(
-            f"{cursor.name}: there must be as many CELL_TYPES as CELLS, {len(sizes):,}, not {len(types):,};"
-            " correct the file"
-        )
-    for kind in np.unique(types).tolist():
-        rows = np.flatnonzero(types == kind)
-        if kind == POLYGON_CELL:
-            corners = lists.numbers[np.repeat(types == kind, sizes)]
-            cells.flats.append(Flats(corners.astype(np.intp), sizes[rows], rows))
-            cells.skipped["empty cells"] += int((sizes[rows] == 0).sum())
-        elif kind == STRIP_CELL:
-            cells.flats.append(_triangles(lists, rows, rows))
-        elif shape := SHAPES.get(kind):
-            _add_shaped(cells, cursor, lists, rows, kind, shape)
-        else:
-            cells.skipped[SKIPPED.get(kind, f"cells of type {kind}")] += len(rows)
-    cells.count += len(sizes)
-
-
 def _add_shaped(
-    cells: VtkCells, cursor: VtkCursor, lists: CellLists, rows: Indices, kind: int, shape: str
+    cells: VtkCells,
+    cursor: VtkCursor,
+    lists: CellLists,
+    chosen: Indices,
+    rows: Indices,
+    kind: int,
+    shape: str,
 ) -> None:
+    """Add the chosen cells, of a shape with a fixed number of corners. Raises InputError."""
     corners = {"triangle": 3, "quad": 4, **CORNERS}[shape]
-    sizes = lists.sizes[rows]
-    wrong = (sizes != corners) if kind in FIRST_ORDER else (sizes < corners)
+    is_first_order = kind in FIRST_ORDER
+    sizes = lists.sizes[chosen]
+    wrong = (sizes != corners) if is_first_order else (sizes < corners)
     if wrong.any():
-        cell = int(rows[wrong.argmax()])
-        rule = f"{'' if kind in FIRST_ORDER else 'at least '}{corners}"
+        cell = int(chosen[wrong.argmax()])
+        rule = f"{'' if is_first_order else 'at least '}{corners}"
         raise InputError(
             f"{cursor.name}, CELLS: a cell of type {kind} must have {rule} nodes, not {lists.sizes[cell]}"
             f" (cell {cell:,}, counted from 0); correct it"
         )
     order = np.array(ORDERS.get(kind, range(corners)))
-    table = lists.numbers[lists.offsets[rows][:, None] + order].astype(np.intp)
-    if kind not in FIRST_ORDER:
+    table = lists.numbers[lists.offsets[chosen][:, None] + order].astype(np.intp)
+    if not is_first_order:
         cells.higher_order += len(rows)
     if shape in CORNERS:
         cells.volumes.append(Volumes(shape, table, rows))
@@ -516,7 +500,7 @@ LAYERS: Final = (b"STRUCTURED_GRID", b"RECTILINEAR_GRID", b"STRUCTURED_POINTS")
 
 AXES: Final = (b"X_COORDINATES", b"Y_COORDINATES", b"Z_COORDINATES")
 MOST_NODES: Final = 4_000_000
-"""Limit: nodes of one layer. Where only its axes are written, a small file has many."""
+"""Limit: nodes of one layer. A small file that gives only its axes can have many nodes."""
 
 VECTORS: Final = (b"ORIGIN", b"SPACING", b"ASPECT_RATIO")
 
@@ -572,7 +556,7 @@ def read_layer(cursor: VtkCursor, dataset: bytes) -> tuple[Floats, VtkCells]:
 
 
 def _dimensions(cursor: VtkCursor, words: list[bytes], dataset: bytes) -> tuple[int, ...]:
-    """The three numbers of nodes along the axes, of which one at least is 1. Raises InputError."""
+    """The numbers of nodes along the three axes, at least one of them 1. Raises InputError."""
     sizes = tuple(cursor.count(word, "a number of DIMENSIONS") for word in words[1:])
     if len(sizes) != 3 or 0 in sizes or 1 not in sizes:
         raise cursor.error(
@@ -614,7 +598,7 @@ def _points(
     return np.stack([x.ravel(), y.ravel(), z.ravel()], axis=1)
 
 
-# The data of nodes and cells. Scalars, vectors, tensors and the arrays of fields are scalars of the mesh.
+# The data of nodes and cells. Scalars, vectors, tensors and the arrays of fields become scalars of the mesh.
 # Normals, texture coordinates, colors, numbers for identification, bits and texts are skipped and counted.
 
 TABLES: Final = {b"POINT_DATA": NODE, b"CELL_DATA": POLYGON}
@@ -628,7 +612,7 @@ MOST_ARRAYS: Final = 100_000
 
 
 class Attributes:
-    """Reads the data; `rows` are the rows of the nodes and of the polygons that are kept."""
+    """Collects the scalars of a file; `rows` are the rows in the file of the mesh's nodes and polygons."""
 
     def __init__(self, cursor: VtkCursor, counts: Mapping[str, int], rows: Mapping[str, Indices]) -> None:
         self.cursor = cursor
@@ -639,10 +623,7 @@ class Attributes:
         self.skipped: Counter[str] = Counter()
 
     def read(self) -> None:
-        """Read all data to the end of the file. Raises InputError.
-
-        What follows an unknown keyword is skipped, since its size is not known.
-        """
+        """Read all data up to the end of the file, or up to an unknown keyword. Raises InputError."""
         while words := self.cursor.words():
             keyword = words[0].upper()
             if keyword in TABLES:
@@ -662,7 +643,7 @@ class Attributes:
         return (*self.scalars.messages, *skipped)
 
     def _begin(self, of: str, words: list[bytes]) -> None:
-        """Begin the data of a table, whose count must be that of its rows."""
+        """Begin the data of nodes or cells; the count must be their number in the file."""
         what = words[0].decode("latin-1").upper()
         count = self.cursor.count(words[1] if len(words) > 1 else b"", f"the count of {what}")
         if count != self.counts[of]:
@@ -704,7 +685,7 @@ class Attributes:
         return True
 
     def field(self, words: list[bytes]) -> None:
-        """Read the arrays of a field; those that do not belong to nodes or cells are skipped."""
+        """Read the arrays of a FIELD. Arrays that belong to no node or cell are skipped."""
         cursor = self.cursor
         arrays = cursor.count(words[2] if len(words) > 2 else b"", "the number of arrays of a FIELD")
         if arrays > MOST_ARRAYS:
@@ -726,7 +707,7 @@ class Attributes:
             arrays -= 1
 
     def _array(self, name: bytes, rows: int, width: int, kind: bytes, ignored: str = "") -> None:
-        """Read one array, which is a scalar unless it is `ignored` or of another size."""
+        """Add an array as a scalar, or skip it if it is `ignored` or of another size."""
         cursor, kind = self.cursor, kind.lower()
         if kind == b"bit":
             ignored = "arrays of bits"
@@ -753,7 +734,7 @@ class Attributes:
         self.skipped[what] += 1
 
     def _skip_texts(self, count: int) -> None:
-        """Go past texts: lines, or in binary each after its length, of which two bits tell the size."""
+        """Go past texts: lines, or in binary a length and a text. A length's first two bits give its size."""
         cursor = self.cursor
         for _ in range(count):
             if cursor.at >= len(cursor.data):

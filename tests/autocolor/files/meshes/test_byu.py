@@ -4,10 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from autocolor.errors import InputError
 from autocolor.files.formats import format_of
 from autocolor.files.meshes.byu import read_byu
 from autocolor.files.meshes.repair import MeshReport, Placement
+from tests.autocolor.files.refusals import refusal, refused, swapped
 
 CUBE = [[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)]
 
@@ -34,12 +34,6 @@ def read(folder: Path, text: str | bytes, placement: Placement | None = None) ->
     path = folder / "cube.byu"
     path.write_bytes(text if isinstance(text, bytes) else text.encode())
     return read_byu(path, placement or Placement())
-
-
-def refusal(folder: Path, text: str | bytes) -> str:
-    with pytest.raises(InputError) as caught:
-        read(folder, text)
-    return str(caught.value)
 
 
 def test_a_cube_keeps_its_quads_nodes_and_parts(tmp_path: Path) -> None:
@@ -100,80 +94,76 @@ def test_up_and_scale_place_the_mesh(tmp_path: Path) -> None:
     assert mesh.coordinates[7].tolist() == [2, -2, 2]
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "sentence"),
-    [
-        (
-            "2 8 6",
-            "2 8.5 6",
-            "cube.byu, line 1: a count in the header must be a whole number, not '8.5'; correct it",
-        ),
-        ("2 8 6", "2 0 6", "cube.byu, line 1: a count in the header must be at least 1, not '0'; correct it"),
-        (
-            "2 8 6",
-            "2 9000000000 6",
-            "cube.byu, line 1: a count must be at most that of the numbers in the file, 56, not '9000000000';"
-            " correct it",
-        ),
-        (
-            "6 24",
-            "25 24",
-            "cube.byu, line 1: the polygons must be at most as many as their corners, 24, not '25';"
-            " correct it",
-        ),
-        (
-            "4 8 -6",
-            "",
-            "cube.byu: there must be 56 numbers up to the end of the connectivity, not 53; the file is"
-            " cut short"
-            " or its counts are wrong",
-        ),
-        (
-            "1 5 6 6",
-            "1 5 6 7",
-            "cube.byu, line 2: part 2 must have polygons of 1 to 6, in order, not 6 to 7; correct its range",
-        ),
-        (
-            "0 0 1 1 0",
-            "0 0 1 nan 0",
-            "cube.byu, line 4: a coordinate must be a decimal number of at most 1e30 in size, not 'nan';"
-            " correct it",
-        ),
-        (
-            "1 3 4 -2",
-            "1 3 9 -2",
-            "cube.byu, line 5: a corner must be a node number of 1 to 8, or minus one, not '9'; correct it",
-        ),
-        (
-            "8 -6",
-            "8 6",
-            "cube.byu, line 6: the last corner of the last polygon must be negative, not '6'; correct it",
-        ),
-        (
-            "3 4 -2",
-            "3 4 2",
-            "cube.byu: there must be 6 polygons, as the header says, not 5, each ended by a negative corner;"
-            " correct the header or the connectivity",
-        ),
-    ],
-)  # fmt: skip
-def test_a_wrong_number_is_refused_with_its_line(tmp_path: Path, old: str, new: str, sentence: str) -> None:
-    assert FREE.count(old) == 1
-    assert refusal(tmp_path, FREE.replace(old, new)) == sentence
+WRONG = [
+    (
+        "2 8 6",
+        "2 8.5 6",
+        "cube.byu, line 1: a count in the header must be a whole number, not '8.5'; correct it",
+    ),
+    ("2 8 6", "2 0 6", "cube.byu, line 1: a count in the header must be at least 1, not '0'; correct it"),
+    (
+        "2 8 6",
+        "2 9000000000 6",
+        "cube.byu, line 1: a count must be at most 56, the count of words in the file, not '9000000000';"
+        " correct it",
+    ),
+    (
+        "6 24",
+        "25 24",
+        "cube.byu, line 1: the polygons must be at most as many as their corners, 24, not '25'; correct it",
+    ),
+    (
+        "4 8 -6",
+        "",
+        "cube.byu: there must be 56 numbers up to the end of the connectivity, not 53; the file is cut"
+        " short or its counts are wrong",
+    ),
+    (
+        "1 5 6 6",
+        "1 5 6 7",
+        "cube.byu, line 2: part 2 must have polygons of 1 to 6, in order, not 6 to 7; correct its range",
+    ),
+    (
+        "0 0 1 1 0",
+        "0 0 1 nan 0",
+        "cube.byu, line 4: a coordinate must be a decimal number of at most 1e30 in size, not 'nan';"
+        " correct it",
+    ),
+    (
+        "1 3 4 -2",
+        "1 3 9 -2",
+        "cube.byu, line 5: a corner must be a node number of 1 to 8, or minus one, not '9'; correct it",
+    ),
+    (
+        "8 -6",
+        "8 6",
+        "cube.byu, line 6: the last corner of the last polygon must be negative, not '6'; correct it",
+    ),
+    (
+        "3 4 -2",
+        "3 4 2",
+        "cube.byu: there must be 6 polygons, as the header says, not 5, each ended by a negative corner;"
+        " correct the header or the connectivity",
+    ),
+]
+
+test_a_wrong_number_is_refused_with_its_line = refused(
+    "cube.byu", [(swapped(FREE, old, new), sentence) for old, new, sentence in WRONG]
+)
 
 
 def test_parts_that_overlap_too_often_are_refused(tmp_path: Path) -> None:
     text = "102 3 1 3\n" + "1 1\n" * 102 + "0 0 0 1 0 0 0 1 0\n1 2 -3\n"
-    assert refusal(tmp_path, text) == (
+    assert refusal(read, tmp_path, text) == (
         "cube.byu: the ranges of 102 parts must overlap less; give each polygon one part"
     )
 
 
 def test_what_is_no_text_is_refused(tmp_path: Path) -> None:
-    assert refusal(tmp_path, b"CDF\0") == (
+    assert refusal(read, tmp_path, b"CDF\0") == (
         "cube.byu: a Movie.BYU file must be text, not hold a NUL byte (line 1); save it as UTF-8 text"
     )
-    assert refusal(tmp_path, b"") == (
+    assert refusal(read, tmp_path, b"") == (
         "cube.byu: there must be 4 numbers up to the end of the header, not 0; the file is cut short or its"
         " counts are wrong"
     )

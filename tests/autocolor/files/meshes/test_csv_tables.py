@@ -176,8 +176,7 @@ def test_further_columns_are_scalars_and_empty_cells_missing_values(tmp_path: Pa
 def test_the_values_of_scalars_are_strict(tmp_path: Path, value: str) -> None:
     assert refusal(tmp_path, NODES.replace("z\n", "z,s\n").replace("2,1,0,0", f"2,1,0,0,{value}")) == [
         "nodes.csv, row 3: a value must be a decimal number of at most 1e30 in size, or empty if it is"
-        " missing,"
-        f" not {value!r}; correct it"
+        f" missing, not {value!r}; correct it"
     ]
 
 

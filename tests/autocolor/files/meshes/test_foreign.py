@@ -229,8 +229,7 @@ def test_a_file_that_includes_one_outside_its_folder_does_not_reach_it(tmp_path:
         read_mesh({"file": path})
     assert str(caught.value) == (
         f"a.inp: meshio must be able to read it, and cannot (PermissionError: the file names '{outside}',"
-        f" which"
-        " is not in its folder); correct the file, or write it as OBJ or PLY"
+        " which is not in its folder); correct the file, or write it as OBJ or PLY"
     )
 
 
@@ -400,8 +399,7 @@ def test_a_binary_file_has_its_json_first(tmp_path: Path) -> None:
     for data in (head[:19], head, head.replace(b"JSON", b"BIN\0") + text, b"glTF" + bytes(40)):
         assert refusal(write(tmp_path, data, "a.glb")) == (
             "a.glb: a binary glTF file must have version 2, its own length and a chunk of JSON first; the"
-            " file is"
-            " cut short or damaged"
+            " file is cut short or damaged"
         )
 
 

@@ -32,6 +32,7 @@ from autocolor.files.meshes.npy_tables import (
 from autocolor.files.meshes.repair import Placement
 from autocolor.scene.scalar import MeshScalar
 from autocolor.visibility import projection as projection_room
+from tests.autocolor.files.refusals import refusal
 from tests.autocolor.meshes import cube, decal_on_ground, grid
 from tests.autocolor.strategies import meshes, outside_views, rasters, views
 
@@ -47,12 +48,6 @@ def folder_of(folder: Path, **tables: AnyArray) -> Path:
 def read(folder: Path, placement: Placement | None = None) -> Mesh:
     files = {"nodes": folder / "nodes.npy", "polygons": folder / "polygons.npy"}
     return read_mesh(files, placement or Placement()).mesh
-
-
-def refusal_of(folder: Path) -> str:
-    with pytest.raises(InputError) as refusal:
-        read(folder)
-    return str(refusal.value)
 
 
 @given(meshes(), views() | outside_views(), rasters, st.booleans())
@@ -199,7 +194,7 @@ BAD: list[tuple[str, AnyArray, str]] = [
     (
         "nodes",
         np.zeros((8, 2)),
-        "nodes.npy: the shape of a node table must be (rows, 3), not (8, 2); write it again",
+        "nodes.npy: the shape of coordinates must be (rows, 3), not (8, 2); write it again",
     ),
     (
         "polygons",
@@ -266,7 +261,7 @@ def test_a_bad_table_is_refused_with_its_name_its_row_and_the_remedy(
 ) -> None:
     write_npy_tables(tmp_path, cube().with_scalars(MeshScalar("stress", np.zeros(8))))
     np.save(tmp_path / f"{name}.npy", table)
-    assert refusal_of(tmp_path) == sentence
+    assert refusal(read, tmp_path) == sentence
 
 
 @pytest.mark.parametrize(
@@ -284,13 +279,13 @@ def test_bad_planes_are_refused(tmp_path: Path, name: str, table: AnyArray | str
     if isinstance(table, str):
         table = np.full(len(mesh.node_numbers), 9, np.uint8 if name == "plane_sides" else np.intp)
     np.save(tmp_path / f"{name}.npy", table)
-    assert refusal_of(tmp_path).startswith(rule)
+    assert refusal(read, tmp_path).startswith(rule)
 
 
 def test_normals_without_their_numbers_are_refused(tmp_path: Path) -> None:
     write_npy_tables(tmp_path, cube())
     (tmp_path / "normal_numbers.npy").unlink()
-    assert refusal_of(tmp_path) == (
+    assert refusal(read, tmp_path) == (
         "normals.npy: normals.npy and normal_numbers.npy must be in the folder together; delete it"
     )
     (tmp_path / "normals.npy").unlink()
@@ -336,9 +331,8 @@ def test_the_first_wrong_row_is_named_in_whichever_chunk_it_lies(
     monkeypatch.setattr(room, "ROWS_AT_ONCE", 3)
     table = np.zeros((9, 3), order=order)
     table[row:, 1] = np.nan
-    with pytest.raises(InputError) as refusal:
-        room.checked("nodes.npy", table, "coordinates must be finite", room.are_coordinates, "correct it")
-    assert str(refusal.value) == (
+    arguments = ("nodes.npy", table, "coordinates must be finite", room.are_coordinates, "correct it")
+    assert refusal(room.checked, *arguments) == (
         f"nodes.npy: coordinates must be finite, not [0.0, nan, 0.0] (row {row}, counted from 0); correct it"
     )
 
@@ -391,16 +385,14 @@ def test_only_what_rendering_does_not_read_as_it_is_is_copied(
 
 
 def test_a_table_of_another_shape_or_kind_is_refused() -> None:
-    with pytest.raises(InputError) as refusal:
-        room.is_shaped("parts.npy", np.zeros((4, 2)), "part numbers", 4, (0,))
-    assert str(refusal.value) == (
+    assert refusal(room.is_shaped, "parts.npy", np.zeros((4, 2)), "part numbers", 4, (0,)) == (
         "parts.npy: the shape of part numbers must be (4,), not (4, 2); write it again"
     )
     with pytest.raises(InputError, match=r"must be \(rows, 4\) or \(rows, 3\), not \(2, 5\)"):
         room.is_shaped("polygons.npy", np.zeros((2, 5)), "a polygon table", None, (4, 3))
-    with pytest.raises(InputError) as refusal:
-        room.is_of("parts.npy", np.zeros(4), "part numbers", "iu")
-    assert str(refusal.value) == "parts.npy: part numbers must be whole numbers, not float64; convert them"
+    assert refusal(room.is_of, "parts.npy", np.zeros(4), "part numbers", "iu") == (
+        "parts.npy: part numbers must be whole numbers, not float64; convert them"
+    )
 
 
 @pytest.mark.parametrize("dtype", [np.float16, ">f2", np.float32, np.float64])

@@ -1,11 +1,13 @@
 from __future__ import annotations
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor.errors import InputError
-from autocolor.files.meshes.number_text import NumberText, Problems
+from autocolor.files.meshes.number_text import IN_PLY, NumberText, Problems
+from tests.autocolor.files.refusals import refusal
 
 
 def test_numbers_are_found_between_any_white_space() -> None:
@@ -18,9 +20,7 @@ def test_numbers_are_found_between_any_white_space() -> None:
 
 @pytest.mark.parametrize("word", ["1_0", "0x1", "\u0661", "nan", "inf", "1d2", "1,5", "1e31", "e", "--1"])
 def test_coordinates_are_strict_and_a_wrong_one_is_told_with_its_line(word: str) -> None:
-    with pytest.raises(InputError) as caught:
-        NumberText(f"1 2\n3 {word} 4".encode(), "a.txt").coordinates(0, 5)
-    assert str(caught.value) == (
+    assert refusal(NumberText(f"1 2\n3 {word} 4".encode(), "a.txt").coordinates, 0, 5) == (
         "a.txt, line 2: a coordinate must be a decimal number of at most 1e30 in size, not"
         f" {word!r}; correct it"
     )
@@ -34,14 +34,14 @@ def test_whole_numbers_are_strict(word: str) -> None:
 
 def test_values_may_be_missing_or_infinite() -> None:
     assert str(NumberText(b"nan -INF 1e2 NaN", "").values(0, 4).tolist()) == "[nan, -inf, 100.0, nan]"
-    with pytest.raises(InputError, match="line 1: a value must be a decimal number, nan or inf, not 'fin'"):
-        NumberText(b"1 fin", "").values(0, 2)
+    assert NumberText(b"infinity", "").values(0, 1, IN_PLY).tolist() == [np.inf]
+    for word in ("fin", "infinity"):
+        with pytest.raises(InputError, match=f"a value must be a decimal number, nan or inf, not '{word}'"):
+            NumberText(f"1 {word}".encode(), "").values(0, 2)
 
 
 def test_too_few_numbers_are_refused_before_anything_is_made_of_them() -> None:
-    with pytest.raises(InputError) as caught:
-        NumberText(b"1 2 3", "a.txt").require(10**12, "nodes")
-    assert str(caught.value) == (
+    assert refusal(NumberText(b"1 2 3", "a.txt").require, 10**12, "nodes") == (
         "a.txt: there must be 1,000,000,000,000 numbers up to the end of the nodes, not 3; the file is cut"
         " short or its counts are wrong"
     )

@@ -34,6 +34,7 @@ from autocolor.files.meshes.obj import (
 from autocolor.files.meshes.repair import MeshReport, Placement
 from autocolor.files.reading import read_bytes
 from autocolor.scene.defaults import COLORED_PAINT, created_surface
+from tests.autocolor.files.refusals import refusal
 from tests.autocolor.meshes import cube, sphere
 
 SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
@@ -47,12 +48,6 @@ def path(tmp_path: Path) -> Path:
 def read(path: Path, text: str | bytes, up: str = "z") -> MeshReport:
     path.write_bytes(text if isinstance(text, bytes) else text.encode())
     return read_obj(path, Placement(up))
-
-
-def refusal(path: Path, text: str | bytes) -> str:
-    with pytest.raises(InputError) as caught:
-        read(path, text)
-    return str(caught.value)
 
 
 def is_read_or_refused(path: Path, data: bytes) -> bool:
@@ -176,7 +171,7 @@ def test_decimal_numbers_are_taken(path: Path, number: str) -> None:
 
 @pytest.mark.parametrize("number", ["40", "0", "-5", "999999999999999999"])
 def test_a_node_that_is_not_there_is_refused(path: Path, number: str) -> None:
-    assert refusal(path, f"{SQUARE}\nf 1 2 {number}\n") == (
+    assert refusal(read, path, f"{SQUARE}\nf 1 2 {number}\n") == (
         "car.obj, line 6: a corner must be a node number from 1 to 4 or from -4 to -1,"
         f" not {number}; correct it"
     )
@@ -184,15 +179,15 @@ def test_a_node_that_is_not_there_is_refused(path: Path, number: str) -> None:
 
 def test_a_file_without_polygons_is_refused(path: Path) -> None:
     for text in ("", "\n", "# nothing\n", SQUARE, "solid cube\n  facet normal 0 0 1\n", SQUARE + "f 1 2\n"):
-        assert refusal(path, text) == "car.obj: a mesh must have a polygon with area, not none; add polygons"
+        assert refusal(read, path, text).endswith("must have a polygon with area, not none; add polygons")
 
 
 def test_other_encodings_are_refused(path: Path) -> None:
     text = SQUARE + "f 1 2 3\n"
-    assert refusal(path, text.encode("utf-16")) == (
+    assert refusal(read, path, text.encode("utf-16")) == (
         "car.obj: an OBJ file must be text in UTF-8, not UTF-16; save it as UTF-8"
     )
-    assert refusal(path, text.encode() + b"\0") == (
+    assert refusal(read, path, text.encode() + b"\0") == (
         "car.obj: an OBJ file must be text, not hold a NUL byte (line 6); save it as UTF-8 text"
     )
 
@@ -219,12 +214,6 @@ def test_any_bytes_are_read_or_refused(data: bytes, tmp_path_factory: pytest.Tem
 def lines_read(text: str | bytes) -> ObjTables:
     data = text if isinstance(text, bytes) else text.encode()
     return read_obj_lines(data, "car.obj", Statements("car"))
-
-
-def refusal_of_lines(text: str | bytes) -> str:
-    with pytest.raises(InputError) as caught:
-        lines_read(text)
-    return str(caught.value)
 
 
 coordinates = st.floats(-1e30, 1e30).map(lambda number: number + 0.0)
@@ -270,7 +259,7 @@ def test_what_is_written_is_read_to_the_last_bit(
     ],
 )
 def test_numbers_are_strict(number: str) -> None:
-    assert refusal_of_lines(f"{SQUARE}v 0 {number} 0\nf 1 2 3\n") == (
+    assert refusal(lines_read, f"{SQUARE}v 0 {number} 0\nf 1 2 3\n") == (
         "car.obj, line 5: a coordinate must be a decimal number of at most 1e30 in size,"
         f" not {number!r}; correct it"
     )
@@ -281,7 +270,7 @@ def test_numbers_are_strict(number: str) -> None:
     ["1.5", "1.0", "x", "/1", "1/x", "1/2/3/4", "1e2", "\u0663", "9" * 19, "9" * 100_000, "1_0", "--1"],
 )
 def test_a_corner_that_is_no_node_number_is_refused(corner: str) -> None:
-    sentence = refusal_of_lines(f"{SQUARE}f 1 2 {corner}\n")
+    sentence = refusal(lines_read, f"{SQUARE}f 1 2 {corner}\n")
     assert sentence.startswith(
         "car.obj, line 5: a corner must be a node number, alone or with texture and normal numbers as in"
         " 7/1/3, not "
@@ -290,7 +279,7 @@ def test_a_corner_that_is_no_node_number_is_refused(corner: str) -> None:
 
 
 def test_a_node_with_too_few_coordinates_is_refused() -> None:
-    assert refusal_of_lines(SQUARE + "v 1 2\nf 1 2 3\n") == (
+    assert refusal(lines_read, SQUARE + "v 1 2\nf 1 2 3\n") == (
         "car.obj, line 5: a node must have three coordinates x y z, not 2; add what is missing"
     )
 
@@ -307,42 +296,41 @@ def test_every_problem_is_named_with_the_first_line_of_its_statement() -> None:
 
 
 def test_a_file_of_faults_has_a_short_report() -> None:
-    assert len(refusal_of_lines("v x\n" * 100_000)) < 5000
+    assert len(refusal(lines_read, "v x\n" * 100_000)) < 5000
 
 
 @pytest.mark.parametrize("letter", [b"a", b"v 1 ", b"# ", b"f 1 2 3 "])
 def test_an_endless_line_is_refused(letter: bytes) -> None:
-    sentence = refusal_of_lines(SQUARE.encode() + letter * (2_000_000 // len(letter)))
+    sentence = refusal(lines_read, SQUARE.encode() + letter * (2_000_000 // len(letter)))
     assert sentence == "car.obj, line 5: a line must have at most 1,048,576 bytes, not 2,000,000; split it"
 
 
 def test_an_endless_continuation_is_refused() -> None:
-    sentence = refusal_of_lines(SQUARE + "f 1 2 3 " + "\\\n1 " * 1_000_000)
+    sentence = refusal(lines_read, SQUARE + "f 1 2 3 " + "\\\n1 " * 1_000_000)
     assert sentence.startswith("car.obj, line 5: a line must have at most 1,048,576 bytes, not ")
 
 
 def test_a_polygon_of_too_many_corners_is_refused() -> None:
-    assert refusal_of_lines(SQUARE + "f" + " 1 2 3" * 400) == (
+    assert refusal(lines_read, SQUARE + "f" + " 1 2 3" * 400) == (
         "car.obj, line 5: a polygon must have at most 1,000 corners, not 1,200; split it"
     )
 
 
 @pytest.mark.parametrize("word", ["nan", "x", "1_0", "0x1"])
 def test_what_follows_the_coordinates_must_be_numbers_too(word: str) -> None:
-    assert refusal_of_lines(f"v 0 0 0 1 {word}\n") == (
-        f"car.obj, line 1: what follows x y z must be decimal numbers, not {word!r}; correct it"
+    assert refusal(lines_read, f"v 0 0 0 1 {word}\n") == (
+        f"car.obj, line 1: weights and colors of nodes must be decimal numbers, not {word!r}; correct it"
     )
 
 
 def test_a_corner_in_a_file_without_nodes_is_refused() -> None:
-    assert refusal_of_lines("f 1\n") == (
-        "car.obj, line 1: a corner must be a node number of a node in the file, which has none, not 1;"
-        " correct it"
+    assert refusal(lines_read, "f 1\n") == (
+        "car.obj, line 1: a corner must be a node number of the file, which has no nodes, not 1; correct it"
     )
 
 
 def test_a_polygon_names_its_first_corner_without_a_node_alone() -> None:
-    assert refusal_of_lines("f 7 8\n" + SQUARE + "f 1 9 10\n").splitlines() == [
+    assert refusal(lines_read, "f 7 8\n" + SQUARE + "f 1 9 10\n").splitlines() == [
         "car.obj, line 1: a corner must be a node number from 1 to 4, not 7; correct it",
         "car.obj, line 6: a corner must be a node number from 1 to 4 or from -4 to -1, not 9; correct it",
     ]
@@ -355,7 +343,7 @@ def test_faults_stand_in_the_order_of_their_lines_up_to_a_number(faults: list[bo
     if not wrong:
         assert len(lines_read(text).coordinates) == len(faults)
         return
-    lines = refusal_of_lines(text).splitlines()
+    lines = refusal(lines_read, text).splitlines()
     assert [line.split(":")[0] for line in lines] == [f"car.obj, line {line}" for line in wrong]
 
 
@@ -383,7 +371,7 @@ def test_a_statement_may_be_continued_between_any_two_words(cut: int) -> None:
 def test_the_size_of_a_coordinate_has_a_bound_on_both_sides() -> None:
     assert lines_read("v 1e30 -1e30 0\n").coordinates.tolist() == [[1e30, -1e30, 0]]
     for number in (math.nextafter(1e30, math.inf), -math.nextafter(1e30, math.inf)):
-        assert "must be a decimal number of at most 1e30 in size" in refusal_of_lines(f"v {number!r} 0 0\n")
+        assert "number of at most 1e30 in size" in refusal(lines_read, f"v {number!r} 0 0\n")
 
 
 RED = b"newmtl red\nKd 1 0 0\n"
@@ -476,12 +464,13 @@ def test_other_statements_are_ignored(statement: str) -> None:
 
 
 @pytest.mark.parametrize("ending", ["\n", "\r\n", "\r"])
-def test_lines_of_a_library_end_in_any_way(ending: str) -> None:
-    surfaces, sentences = described(f"newmtl red{ending}Kd 1 0 0{ending}Ks x{ending}")
-    assert surfaces["red"].paint.object_color == (255, 0, 0)
-    assert sentences == [
-        "car.mtl, line 3: Ks must have one number or three, from 0 to 1e+06, not 'x'; the default is used"
-    ]
+def test_lines_of_a_library_end_in_any_way(path: Path, ending: str) -> None:
+    path.with_suffix(".mtl").write_bytes(f"newmtl red{ending}Kd 1 0 0{ending}Ks x{ending}".encode())
+    surfaces, sentences = read_materials(path, (), ("red",))
+    assert surfaces[0].paint.object_color == (255, 0, 0)
+    assert sentences == (
+        "car.mtl, line 3: Ks must have one number or three, from 0 to 1e+06, not 'x'; the default is used",
+    )
 
 
 @pytest.mark.parametrize(

@@ -4,10 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from autocolor.errors import InputError
 from autocolor.files.formats import format_of
 from autocolor.files.meshes.off import read_off
 from autocolor.files.meshes.repair import MeshReport
+from tests.autocolor.files.refusals import refusal, refused, swapped
 
 CUBE = """OFF
 # a cube
@@ -33,12 +33,6 @@ def read(folder: Path, text: str | bytes) -> MeshReport:
     path = folder / "cube.off"
     path.write_bytes(text if isinstance(text, bytes) else text.encode())
     return read_off(path)
-
-
-def refusal(folder: Path, text: str | bytes) -> str:
-    with pytest.raises(InputError) as caught:
-        read(folder, text)
-    return str(caught.value)
 
 
 def test_a_cube_keeps_its_quads_and_nodes(tmp_path: Path) -> None:
@@ -80,81 +74,75 @@ def test_polygons_of_many_sides_are_split_and_what_follows_is_told(tmp_path: Pat
     )
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "sentence"),
-    [
-        (
-            "OFF\n",
-            "4OFF\n",
-            "cube.off: an OFF file must begin OFF, COFF, NOFF or STOFF, not '4OFF'; write it with three"
-            " coordinates,"
-            " as text",
-        ),
-        (
-            "8 6 12",
-            "x 6 12",
-            "cube.off, line 3: a count in the header must be a whole number, not 'x'; correct it",
-        ),
-        (
-            "8 6 12",
-            "8000000000 6 12",
-            "cube.off, line 3: a count must be from 1 to that of the words in the file, 57, not '8000000000';"
-            " correct it",
-        ),
-        (
-            "8 6 12",
-            "20 6 12",
-            "cube.off: there must be 63 numbers up to the end of the nodes, not 57; the file is cut short"
-            " or its"
-            " counts are wrong",
-        ),
-        (
-            "8 6 12",
-            "8 7 12",
-            "cube.off: there must be 7 lines of polygons, as the header says, not 6; correct the header"
-            " or the"
-            " polygons",
-        ),
-        (
-            "1 1 0\n",
-            "1 inf 0\n",
-            "cube.off, line 6: a coordinate must be a decimal number of at most 1e30 in size, not 'inf';"
-            " correct it",
-        ),
-        (
-            "4 0 1 5 4",
-            "4 0 1 5 8",
-            "cube.off, line 14: a corner must be a node number from 0 to 7, not '8'; correct it",
-        ),
-        (
-            "4 0 1 5 4",
-            "4 0 1 5.5 4",
-            "cube.off, line 14: a corner must be a node number from 0 to 7, not '5.5'; correct it",
-        ),
-        (
-            "4 0 1 5 4",
-            "4 0 1 inf 4",
-            "cube.off, line 14: a corner must be a node number from 0 to 7, not 'inf'; correct it",
-        ),
-        (
-            "4 0 1 5 4",
-            "5 0 1 5 4",
-            "cube.off, line 14: a polygon must begin with the number of the corners on its line, not '5';"
-            " correct"
-            " it",
-        ),
-    ],
+WRONG = [
+    (
+        "OFF\n",
+        "4OFF\n",
+        "cube.off: an OFF file must begin OFF, COFF, NOFF or STOFF, not '4OFF'; write it with three"
+        " coordinates, as text",
+    ),
+    (
+        "8 6 12",
+        "x 6 12",
+        "cube.off, line 3: a count in the header must be a whole number, not 'x'; correct it",
+    ),
+    (
+        "8 6 12",
+        "8000000000 6 12",
+        "cube.off, line 3: a count must be from 1 to 57, the count of words in the file, not"
+        " '8000000000'; correct it",
+    ),
+    (
+        "8 6 12",
+        "20 6 12",
+        "cube.off: there must be 63 numbers up to the end of the nodes, not 57; the file is cut short"
+        " or its counts are wrong",
+    ),
+    (
+        "8 6 12",
+        "8 7 12",
+        "cube.off: there must be 7 lines of polygons, as the header says, not 6; correct the header or"
+        " the polygons",
+    ),
+    (
+        "1 1 0\n",
+        "1 inf 0\n",
+        "cube.off, line 6: a coordinate must be a decimal number of at most 1e30 in size, not 'inf';"
+        " correct it",
+    ),
+    (
+        "4 0 1 5 4",
+        "4 0 1 5 8",
+        "cube.off, line 14: a corner must be a node number from 0 to 7, not '8'; correct it",
+    ),
+    (
+        "4 0 1 5 4",
+        "4 0 1 5.5 4",
+        "cube.off, line 14: a corner must be a node number from 0 to 7, not '5.5'; correct it",
+    ),
+    (
+        "4 0 1 5 4",
+        "4 0 1 inf 4",
+        "cube.off, line 14: a corner must be a node number from 0 to 7, not 'inf'; correct it",
+    ),
+    (
+        "4 0 1 5 4",
+        "5 0 1 5 4",
+        "cube.off, line 14: a polygon must begin with the number of the corners on its line, not '5';"
+        " correct it",
+    ),
+]
+
+test_a_wrong_number_is_refused_with_its_line = refused(
+    "cube.off", [(swapped(CUBE, old, new), sentence) for old, new, sentence in WRONG]
 )
-def test_a_wrong_number_is_refused_with_its_line(tmp_path: Path, old: str, new: str, sentence: str) -> None:
-    assert CUBE.count(old) == 1
-    assert refusal(tmp_path, CUBE.replace(old, new)) == sentence
 
 
 def test_binary_and_empty_files_are_refused(tmp_path: Path) -> None:
-    assert refusal(tmp_path, b"OFF BINARY\n\0\0\0\1").startswith(
+    assert refusal(read, tmp_path, b"OFF BINARY\n\0\0\0\1").startswith(
         "cube.off: an OFF file must be text, not hold a NUL"
     )
-    assert refusal(tmp_path, b"").startswith(
+    assert refusal(read, tmp_path, b"").startswith(
         "cube.off: there must be 3 numbers up to the end of the header, not 0"
     )
 

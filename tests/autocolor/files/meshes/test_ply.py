@@ -352,7 +352,7 @@ def test_numbers_that_are_no_parts_are_scalars(monkeypatch: pytest.MonkeyPatch) 
         ),
         (
             {"vertex": {"x": [], "y": [], "z": []}, "face": {"vertex_indices": lists([0, 1, 2])}},
-            "a.ply, face 0: a corner must be a node number of a node in the file, which has none, not 0;"
+            "a.ply, face 0: a corner must be a node number of the file, which has no nodes, not 0;"
             " correct it",
         ),
         (

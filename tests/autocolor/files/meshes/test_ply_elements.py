@@ -22,6 +22,7 @@ from autocolor.files.meshes.ply_elements import (
     read_binary,
     read_text,
 )
+from tests.autocolor.files.refusals import refusal, refused
 
 LINES = (
     "ply",
@@ -38,12 +39,6 @@ LINES = (
 
 def text(*lines: str, feed: str = "\n") -> bytes:
     return "".join(line + feed for line in lines).encode()
-
-
-def refusal(data: bytes) -> str:
-    with pytest.raises(InputError) as caught:
-        parsed_header(data, "a.ply")
-    return str(caught.value)
 
 
 @pytest.mark.parametrize("feed", ["\n", "\r\n", "\r"])
@@ -83,8 +78,8 @@ def test_a_header_without_a_line_at_its_end_is_read_where_there_are_no_data() ->
     assert parsed_header(data, "a.ply").length == len(data)
 
 
-@pytest.mark.parametrize(
-    ("data", "sentence"),
+test_a_wrong_header_is_refused = refused(
+    "a.ply",
     [
         (b"", "a.ply: a PLY file must begin with a line 'ply', not ''; export it again"),
         (b"solid a\n", "a.ply: a PLY file must begin with a line 'ply', not 'solid a'; export it again"),
@@ -164,16 +159,14 @@ def test_a_header_without_a_line_at_its_end_is_read_where_there_are_no_data() ->
             " needed",
         ),
     ],
-)  # fmt: skip
-def test_a_wrong_header_is_refused(data: bytes, sentence: str) -> None:
-    assert refusal(data) == sentence
+)
 
 
 def test_a_header_without_an_end_is_not_searched_to_the_end_of_the_file(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(ply_elements, "LARGEST_HEADER", 100)
-    assert refusal(text("ply", *["comment a"] * 100)) == (
+    assert refusal(parsed_header, text("ply", *["comment a"] * 100), "a.ply") == (
         "a.ply: a header must have a line 'end_header' within 100 bytes; export it again"
     )
 
@@ -259,9 +252,7 @@ def test_rows_of_several_elements_follow_each_other() -> None:
 
 def test_a_count_that_the_file_has_no_room_for_is_refused_before_anything_is_made() -> None:
     element = Element("vertex", 10**17, (Property("x", "f4"), Property("of_it", "i4", "u1")))
-    with pytest.raises(InputError) as refusal:
-        table(element, bytes(20))
-    assert str(refusal.value) == (
+    assert refusal(table, element, bytes(20)) == (
         "a.ply: 100,000,000,000,000,000 elements 'vertex' must have at least 500,000,000,000,000,000 bytes,"
         f" not 20; {ENDING}"
     )
@@ -273,9 +264,7 @@ def test_a_count_that_the_file_has_no_room_for_is_refused_before_anything_is_mad
 )
 def test_lists_that_the_file_has_no_room_for_are_refused(code: str, data: bytes) -> None:
     element = Element("vertex", 2, (Property("of_it", "u1", code),))
-    with pytest.raises(InputError) as refusal:
-        table(element, data)
-    assert str(refusal.value) == (
+    assert refusal(table, element, data) == (
         f"a.ply: 2 elements 'vertex' must have all their lists before the end, not after it; {ENDING}"
     )
 
@@ -284,9 +273,7 @@ def test_lists_that_the_file_has_no_room_for_are_refused(code: str, data: bytes)
 @pytest.mark.parametrize("first", [True, False])
 def test_a_negative_count_is_refused(code: str, count: bytes, first: bool) -> None:
     data = count + bytes(20) if first else bytes(len(count)) + count + bytes(20)
-    with pytest.raises(InputError) as refusal:
-        table(Element("face", 2, (Property("of_it", "u1", code),)), data)
-    assert str(refusal.value) == (
+    assert refusal(table, Element("face", 2, (Property("of_it", "u1", code),)), data) == (
         f"a.ply, face {0 if first else 1}: the count of a list must be 0 or more, not less; export it again"
     )
 
@@ -311,9 +298,8 @@ def test_lists_of_an_element_that_is_not_used_are_passed_over(monkeypatch: pytes
 def test_faces_without_corners_on_the_average_are_refused() -> None:
     face = Element("face", 5, (Property("vertex_indices", "u1", "u1"),))
     assert len(values(table(face, b"\0\0\0\0\5\0\1\2\3\4")[0]["face"].columns["vertex_indices"])[1]) == 5
-    with pytest.raises(InputError) as refusal:
-        table(face, b"\0\0\0\0\4\0\1\2\3")
-    assert str(refusal.value) == f"a.ply: 5 elements 'face' must have at least 10 bytes, not 9; {ENDING}"
+    sentence = refusal(table, face, b"\0\0\0\0\4\0\1\2\3")
+    assert sentence == f"a.ply: 5 elements 'face' must have at least 10 bytes, not 9; {ENDING}"
 
 
 HEAD = "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty list uchar int of_it\n"
@@ -324,12 +310,6 @@ HEAD += "end_header\n"
 def tables(text: str | bytes) -> tuple[dict[str, ElementRows], tuple[str, ...]]:
     data = text if isinstance(text, bytes) else text.encode()
     return read_text(data, parsed_header(data, "a.ply"), "a.ply")
-
-
-def text_refusal(text: str | bytes) -> str:
-    with pytest.raises(InputError) as caught:
-        tables(text)
-    return str(caught.value)
 
 
 @pytest.mark.parametrize("feed", ["\n", "\r\n", "\r"])
@@ -404,28 +384,28 @@ def test_a_wrong_line_is_refused(
     rows: str, sentence: str, block: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(number_text, "BLOCK", block)
-    assert text_refusal(HEAD + rows) == f"a.ply, {sentence}"
+    assert refusal(tables, HEAD + rows) == f"a.ply, {sentence}"
 
 
 @pytest.mark.parametrize(("count", "shown"), [("2", "2"), ("999999999999", "999,999,999,999")])
 def test_a_count_that_the_file_has_no_lines_for_is_refused(count: str, shown: str) -> None:
-    assert text_refusal(HEAD.replace("vertex 2", f"vertex {count}") + "1 0\n") == (
+    assert refusal(tables, HEAD.replace("vertex 2", f"vertex {count}") + "1 0\n") == (
         f"a.ply: there must be {shown} elements 'vertex', not 1; {ENDING}"
     )
 
 
 def test_an_element_must_have_properties() -> None:
-    assert text_refusal("ply\nformat ascii 1.0\nelement vertex 1\nend_header\n1\n") == (
+    assert refusal(tables, "ply\nformat ascii 1.0\nelement vertex 1\nend_header\n1\n") == (
         "a.ply: an element must have a property, not none: 'vertex'; export it again"
     )
 
 
 def test_zeros_and_endless_lines_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert text_refusal(HEAD + "1 0\n\0 0\n") == (
+    assert refusal(tables, HEAD + "1 0\n\0 0\n") == (
         "a.ply: an ascii PLY file must be text, not hold a NUL byte (line 8); save it as UTF-8 text"
     )
     monkeypatch.setattr(ply_elements, "LONGEST_TEXT_LINE", 20)
-    assert text_refusal(HEAD + "1 0\n2 0" + " " * 30 + "\n") == (
+    assert refusal(tables, HEAD + "1 0\n2 0" + " " * 30 + "\n") == (
         "a.ply: a line must have at most 20 bytes, not more; split it"
     )
 
@@ -450,6 +430,6 @@ def test_faces_in_text_without_corners_on_the_average_are_refused() -> None:
     header = "ply\nformat ascii 1.0\nelement face 4\nproperty list uchar int vertex_indices\nend_header\n"
     column = tables(header + "0\n0\n0\n4 0 1 2 3\n")[0]["face"].columns["vertex_indices"]
     assert values(column)[1] == [0, 0, 0, 4]
-    assert text_refusal(header + "0\n0\n0\n2 0 1") == (
+    assert refusal(tables, header + "0\n0\n0\n2 0 1") == (
         f"a.ply: 4 elements 'face' must have at least as many corners, not 2; {ENDING}"
     )

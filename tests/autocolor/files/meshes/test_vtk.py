@@ -17,11 +17,11 @@ from autocolor.files.meshes.vtk import (
     CellLists,
     VtkCells,
     VtkCursor,
-    add_strips,
-    add_typed,
+    add_cells,
     read_cell_lists,
     read_vtk,
 )
+from tests.autocolor.files.refusals import refusal, refused
 
 WRITTEN_TYPES = {
     "int": ">i4", "float": ">f4", "double": ">f8", "vtktypeint64": ">i8", "unsigned_char": "u1",
@@ -83,12 +83,6 @@ def read(folder: Path, data: bytes, placement: Placement | None = None) -> MeshR
     path = folder / "thing.vtk"
     path.write_bytes(data)
     return read_vtk(path, placement or Placement())
-
-
-def refusal(folder: Path, data: bytes) -> str:
-    with pytest.raises(InputError) as caught:
-        read(folder, data)
-    return str(caught.value)
 
 
 @pytest.mark.parametrize(("binary", "version"), FORMS)
@@ -234,14 +228,13 @@ def test_up_scale_metadata_fields_and_line_ends_are_understood(tmp_path: Path, e
 GOOD = VtkWriter("POLYDATA").points().cells("POLYGONS", [[0, 1, 2, 3]]).data
 
 
-@pytest.mark.parametrize(
-    ("data", "sentence"),
+test_a_wrong_file_is_refused_with_its_place = refused(
+    "thing.vtk",
     [
         (
             b"",
             "thing.vtk, line 1: a legacy VTK file must begin '# vtk DataFile Version 1.0' to 5.1, not '';"
-            " write it"
-            " as legacy VTK",
+            " write it as legacy VTK",
         ),
         (
             GOOD.replace(b"ASCII", b"UTF-8"),
@@ -264,8 +257,7 @@ GOOD = VtkWriter("POLYDATA").points().cells("POLYGONS", [[0, 1, 2, 3]]).data
         (
             GOOD.replace(b"POINTS 4", b"POINTS 400000000000"),
             "thing.vtk, line 5: the POINTS must have 1,200,000,000,000 numbers, not 20; the file is cut"
-            " short or its"
-            " counts are wrong",
+            " short or its counts are wrong",
         ),
         (
             GOOD.replace(b"POLYGONS", b"CELLS"),
@@ -281,13 +273,15 @@ GOOD = VtkWriter("POLYDATA").points().cells("POLYGONS", [[0, 1, 2, 3]]).data
             " correct it",
         ),
         (
+            VtkWriter("UNSTRUCTURED_GRID").points().cells("CELLS", []).line("CELL_TYPES 1\n5").data,
+            "thing.vtk: there must be as many CELL_TYPES as CELLS, 0, not 1; correct the file",
+        ),
+        (
             VtkWriter("UNSTRUCTURED_GRID").points().grid([(3, [0, 1])]).data,
             "thing.vtk: a mesh must have a polygon with area, not none; add polygons",
         ),
     ],
-)  # fmt: skip
-def test_a_wrong_file_is_refused_with_its_place(tmp_path: Path, data: bytes, sentence: str) -> None:
-    assert refusal(tmp_path, data) == sentence
+)
 
 
 def test_it_is_known_by_its_suffix_and_its_first_line(tmp_path: Path) -> None:
@@ -353,12 +347,9 @@ def test_what_is_no_number_is_refused_with_its_line() -> None:
 
 def test_coordinates_are_finite_and_whole_numbers_whole() -> None:
     cursor = VtkCursor(np.array([1, np.inf], ">f4").tobytes(), "a.vtk")
-    with pytest.raises(InputError) as caught:
-        cursor.coordinates(2, b"float", "POINTS")
-    assert str(caught.value) == (
+    assert refusal(cursor.coordinates, 2, b"float", "POINTS") == (
         "a.vtk, byte 0: a coordinate must be finite and at most 1e30 in size, not inf (number 2 of the"
-        " POINTS);"
-        " correct it"
+        " POINTS); correct it"
     )
     with pytest.raises(InputError, match="the type of the CELLS must be one of whole numbers, not 'float'"):
         text(b"1 2").wholes(2, b"float", "CELLS")
@@ -379,9 +370,7 @@ def test_metadata_ends_with_an_empty_line() -> None:
 
 
 def test_an_endless_line_is_refused() -> None:
-    with pytest.raises(InputError) as caught:
-        VtkCursor(b"x" * 10_000, "a.vtk").words()
-    assert str(caught.value) == (
+    assert refusal(VtkCursor(b"x" * 10_000, "a.vtk").words) == (
         "a.vtk, byte 0: a line of keywords must have less than 4,096 bytes; correct it"
     )
 
@@ -418,50 +407,46 @@ def test_a_layer_may_lie_across_any_axis(tmp_path: Path) -> None:
     assert mesh.node_numbers.tolist() == [[0, 1, 3, 2], [2, 3, 5, 4]]
 
 
-@pytest.mark.parametrize(
-    ("dataset", "lines", "sentence"),
-    [
-        (
-            "STRUCTURED_GRID",
-            "DIMENSIONS 3 3 3",
-            "layer.vtk, line 5: a STRUCTURED_GRID must be one layer of nodes, as in DIMENSIONS 5 4 1, not"
-            " 'DIMENSIONS 3 3 3'; take its surface",
-        ),
-        ("STRUCTURED_GRID", "", "layer.vtk: a STRUCTURED_GRID must have DIMENSIONS, not none; add them"),
-        ("STRUCTURED_GRID", "DIMENSIONS 3 3 1", "layer.vtk: a STRUCTURED_GRID must have POINTS; add them"),
-        (
-            "STRUCTURED_GRID",
-            "DIMENSIONS 3 3 1\nPOINTS 1 int\n0 0 0",
-            "layer.vtk: a STRUCTURED_GRID must have the 9 nodes of its DIMENSIONS, not 1; correct them",
-        ),
-        (
-            "RECTILINEAR_GRID",
-            "DIMENSIONS 2 2 1\nX_COORDINATES 2 int\n0 1",
-            "layer.vtk: a RECTILINEAR_GRID must have coordinates of each of its DIMENSIONS; add them",
-        ),
-        (
-            "STRUCTURED_POINTS",
-            "DIMENSIONS 100000 100000 1",
-            "layer.vtk: a STRUCTURED_POINTS must have at most as many nodes as the file has bytes, and"
-            " 4,000,000,"
-            " not 10,000,000,000; take fewer",
-        ),
-        (
-            "STRUCTURED_POINTS",
-            "DIMENSIONS 9 9 1\nSPACING 1e30 1 1",
-            "layer.vtk: coordinates must be at most 1e30 in size; correct ORIGIN and SPACING",
-        ),
-        (
-            "STRUCTURED_POINTS",
-            "DIMENSIONS 2 2 1\nSPACE 1 1 1",
-            "layer.vtk, line 6: there must be no 'SPACE 1 1 1' in STRUCTURED_POINTS; correct the file",
-        ),
-    ],
-)  # fmt: skip
-def test_other_grids_are_refused_by_name(tmp_path: Path, dataset: str, lines: str, sentence: str) -> None:
-    with pytest.raises(InputError) as caught:
-        read_written(tmp_path, VtkWriter(dataset).line(lines))
-    assert str(caught.value) == sentence
+OTHER_GRIDS = [
+    (
+        "STRUCTURED_GRID",
+        "DIMENSIONS 3 3 3",
+        "layer.vtk, line 5: a STRUCTURED_GRID must be one layer of nodes, as in DIMENSIONS 5 4 1, not"
+        " 'DIMENSIONS 3 3 3'; take its surface",
+    ),
+    ("STRUCTURED_GRID", "", "layer.vtk: a STRUCTURED_GRID must have DIMENSIONS, not none; add them"),
+    ("STRUCTURED_GRID", "DIMENSIONS 3 3 1", "layer.vtk: a STRUCTURED_GRID must have POINTS; add them"),
+    (
+        "STRUCTURED_GRID",
+        "DIMENSIONS 3 3 1\nPOINTS 1 int\n0 0 0",
+        "layer.vtk: a STRUCTURED_GRID must have the 9 nodes of its DIMENSIONS, not 1; correct them",
+    ),
+    (
+        "RECTILINEAR_GRID",
+        "DIMENSIONS 2 2 1\nX_COORDINATES 2 int\n0 1",
+        "layer.vtk: a RECTILINEAR_GRID must have coordinates of each of its DIMENSIONS; add them",
+    ),
+    (
+        "STRUCTURED_POINTS",
+        "DIMENSIONS 100000 100000 1",
+        "layer.vtk: a STRUCTURED_POINTS must have at most as many nodes as the file has bytes, and"
+        " 4,000,000, not 10,000,000,000; take fewer",
+    ),
+    (
+        "STRUCTURED_POINTS",
+        "DIMENSIONS 9 9 1\nSPACING 1e30 1 1",
+        "layer.vtk: coordinates must be at most 1e30 in size; correct ORIGIN and SPACING",
+    ),
+    (
+        "STRUCTURED_POINTS",
+        "DIMENSIONS 2 2 1\nSPACE 1 1 1",
+        "layer.vtk, line 6: there must be no 'SPACE 1 1 1' in STRUCTURED_POINTS; correct the file",
+    ),
+]
+
+test_other_grids_are_refused_by_name = refused(
+    "layer.vtk", [(VtkWriter(dataset).line(lines).data, sentence) for dataset, lines, sentence in OTHER_GRIDS]
+)
 
 
 def cursor_of(text: str) -> VtkCursor:
@@ -500,15 +485,13 @@ def test_cells_are_the_same_in_both_forms(cells: list[list[int]]) -> None:
         ),
         (
             "CELLS 2 7\n3 0 1 2 3 1 2",
-            "a.vtk, CELLS: a cell must have as many nodes as its count says, not 2 after 3 (cell 1,"
-            " counted from"
-            " 0); correct it",
+            "a.vtk, CELLS: a cell must have as many nodes as its count says, not 2 after 3 (cell 1, counted"
+            " from 0); correct it",
         ),
         (
             "CELLS 1 4\n-3 0 1 2",
             "a.vtk, CELLS: a cell must have as many nodes as its count says, not 3 after -3 (cell 0,"
-            " counted from"
-            " 0); correct it",
+            " counted from 0); correct it",
         ),
         (
             "CELLS 1 5\n3 0 1 2 3",
@@ -530,26 +513,15 @@ def test_cells_are_the_same_in_both_forms(cells: list[list[int]]) -> None:
     ],
 )  # fmt: skip
 def test_wrong_lists_are_refused(text: str, sentence: str) -> None:
-    with pytest.raises(InputError) as caught:
-        lists_of(text)
-    assert str(caught.value) == sentence
+    assert refusal(lists_of, text) == sentence
 
 
 def test_a_strip_turns_every_other_triangle_over() -> None:
     cells = VtkCells()
-    add_strips(cells, CellLists(np.array([4, 5, 6, 7, 8, 0, 1]), np.array([0, 5, 7])))
+    add_cells(cells, text(b""), CellLists(np.array([4, 5, 6, 7, 8, 0, 1]), np.array([0, 5, 7])), 6)
     assert cells.flats[0].corners.reshape(-1, 3).tolist() == [[4, 5, 6], [6, 5, 7], [6, 7, 8]]
     assert cells.flats[0].cells.tolist() == [0, 0, 0]
     assert cells.count == 2
-
-
-def test_there_are_as_many_types_as_cells() -> None:
-    lists = CellLists(np.zeros(0, np.int64), np.zeros(1, np.int64))
-    with pytest.raises(InputError) as caught:
-        add_typed(VtkCells(), cursor_of(""), lists, np.array([5]))
-    assert str(caught.value) == (
-        "a.vtk: there must be as many CELL_TYPES as CELLS, 0, not 1; correct the file"
-    )
 
 
 def read_data(writer: VtkWriter) -> Attributes:
@@ -672,8 +644,7 @@ def test_what_follows_an_unknown_keyword_is_skipped_and_told() -> None:
         (
             "CELL_DATA 3\nFIELD f 1\nname 1 3",
             "a.vtk, line 7: an array of a FIELD must have a name, two counts and a type, not 'name 1 3';"
-            " correct"
-            " it",
+            " correct it",
         ),
         (
             "CELL_DATA 3\nFIELD f 900000",
@@ -686,6 +657,4 @@ def test_what_follows_an_unknown_keyword_is_skipped_and_told() -> None:
     ],
 )  # fmt: skip
 def test_wrong_data_are_refused_with_their_place(lines: str, sentence: str) -> None:
-    with pytest.raises(InputError) as caught:
-        read_data(VtkWriter("POLYDATA").line(lines))
-    assert str(caught.value) == sentence
+    assert refusal(read_data, VtkWriter("POLYDATA").line(lines)) == sentence
