@@ -258,7 +258,7 @@ def test_ctrl_c_takes_back_what_was_typed_and_errors_are_told(
         "SELECT 2;",
     ]
     told = capsys.readouterr().err
-    assert "taken back; Ctrl+D ends" in told
+    assert "canceled; Ctrl+D ends" in told
     assert "autocolor: it is wrong; correct it" in told
 
 
@@ -291,7 +291,7 @@ def test_text_without_an_end_is_not_collected_for_ever(monkeypatch: pytest.Monke
 
 @pytest.mark.parametrize("text", ["SELECT '\udcff';", "SELECT '\0';"])
 def test_what_is_not_text_is_refused(text: str) -> None:
-    with pytest.raises(UsageError, match="must be text in UTF-8 without NUL; save them so"):
+    with pytest.raises(UsageError, match="must be text in UTF-8 without NUL; save them"):
         list(statements_in([text]))
 
 

@@ -574,7 +574,7 @@ def change_rows(table: str, **fields: Any) -> Callable[[dict[str, Any]], None]:
         (change_rows("shown_scalars", limits=3), "shown_scalars[1].limits must be two finite numbers"),
         (change_rows("shown_scalars", more=3), "shown_scalars[1].limits must be two finite numbers"),
         (change(shown_scalars=[3]), "shown_scalars[1].limits must be two finite numbers"),
-        (change_scene("scalar", name="strain"), "scalar.name must be a scalar of the mesh or a computed one"),
+        (change_scene("scalar", name="strain"), "scalar.name must be a scalar of the mesh"),
     ],
 )
 def test_a_header_with_wrong_scalars_is_refused_in_a_sentence(

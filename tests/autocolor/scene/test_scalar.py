@@ -48,7 +48,7 @@ def test_a_color_beyond_a_limit_has_words_of_its_own() -> None:
 
 
 def test_all_color_scales_are_named_where_none_is_near() -> None:
-    with pytest.raises(InputError, match=r"not 'jet'; known are 'viridis', .*'coolwarm'") as refusal:
+    with pytest.raises(InputError, match=r"not 'jet'; choose 'viridis', .*'coolwarm'") as refusal:
         Scalar("stress", scale="jet")
     assert "_r'" not in str(refusal.value)
 
@@ -75,7 +75,7 @@ def test_an_unknown_scalar_is_refused_with_the_nearest_of_both() -> None:
     with pytest.raises(InputError) as refused:
         scene.replace(scalar={"name": "strss"})
     assert refused.value.problems == (
-        "scalar.name must be a scalar of the mesh or a computed one, not 'strss'; did you mean 'stress'?",
+        "scalar.name must be a scalar of the mesh or a computed scalar, not 'strss'; did you mean 'stress'?",
     )
     with pytest.raises(InputError, match="not 'Z'; did you mean 'z'"):
         scene.replace(scalar={"name": "Z"})
