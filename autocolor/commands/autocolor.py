@@ -31,7 +31,7 @@ class AutocolorGroup(CommandGroup):
         "convert": "write a mesh or a scene in another format",
         "show": "show a scene on another display, and work there with its joystick",
         "tutorial": "learn the interactive system step by step, on the built-in demo",
-        "tables": "print or write a complete scene file, with the tables created for it",
+        "tables": "print or write a complete scene file for a mesh or a scene",
         "sql": "query and change the tables of a scene with SQL",
     }
 

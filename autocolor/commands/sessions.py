@@ -83,8 +83,8 @@ def _mention_left_sessions(viewer: Viewer) -> None:
         return
     count = f"{len(folders)} sessions were" if len(folders) > 1 else "a session was"
     click.echo(
-        f"autocolor: {count} not closed, the last on {_time_of(folders[0])}; `autocolor view --recover` opens"
-        " the last session, `--sessions` lists them, `--forget SESSION` removes a session",
+        f"autocolor: {count} not closed, last written {_time_of(folders[0])}; `autocolor view --recover`"
+        " opens the last session, `--sessions` lists them, `--forget SESSION` removes a session",
         err=True,
     )
     viewer.tell(

@@ -171,11 +171,11 @@ def test_of_two_names_the_longer_is_meant(scene: Scene) -> None:
         ("lights.kye.on=true", "--set lights.kye.on: there is no light 'kye'; did you mean 'key'?"),
         ("surfaces.sid.blend=1", "--set surfaces.sid.blend: there is no surface 'sid'; did you mean 'side'?"),
         ("parts.sid.surface=x", "--set parts.sid.surface: there is no part 'sid'; did you mean 'side'?"),
-        ("lights=1", "--set lights: it must name one field; write it as in lights.key.intensity=2"),
-        ("lights.key=1", "--set lights.key: it must name one field; write it as in lights.key.intensity=2"),
-        ("scalar.=1", "--set scalar.: it must name one field; write it as in scalar.name=z"),
-        ("view=1", "--set view: it must name one field; write it as in view.angle=10"),
-        ("view.=1", "--set view.: it must name one field; write it as in view.angle=10"),
+        ("lights=1", "--set lights: it must name a field; write it as in lights.key.intensity=2"),
+        ("lights.key=1", "--set lights.key: it must name a field; write it as in lights.key.intensity=2"),
+        ("scalar.=1", "--set scalar.: it must name a field; write it as in scalar.name=z"),
+        ("view=1", "--set view: it must name a field; write it as in view.angle=10"),
+        ("view.=1", "--set view.: it must name a field; write it as in view.angle=10"),
         ("ambient.x=1", "--set ambient.x: there is no field 'ambient.x'; did you mean 'ambient'?"),
         ("lights.key.name=a", "--set lights.key.name: a name cannot be set; change it in the scene file"),
         (
@@ -282,13 +282,12 @@ def test_what_is_named_none_stays_a_name(scene: Scene) -> None:
     [
         (
             "ambient=none",
-            "--set ambient: it must be a finite number of at least 0, not none; only a field that may be"
-            " absent can be unset",
+            "--set ambient: it must be a finite number of at least 0, not none; only an optional"
+            " field can be unset",
         ),
         (
             "dither=none",
-            "--set dither: it must be 'off' or 'ordered', not none; only a field that may be absent can"
-            " be unset",
+            "--set dither: it must be 'off' or 'ordered', not none; only an optional field can be unset",
         ),
         ("view.target=none", "--set: view: it must have either a direction or a target; give one of them"),
         ("lights.key.concentration=none", "--set lights.key.concentration: it must be a finite number"),
@@ -388,8 +387,8 @@ def test_a_light_follows_a_word_a_name_or_nothing(scene: Scene) -> None:
         ),
         (
             "lights.key.2.half_spaces.left.on=false",
-            "--set lights.key.2.half_spaces.left.on: there is no half-space 'left'; give a new one whole, as"
-            " a table",
+            "--set lights.key.2.half_spaces.left.on: there is no half-space 'left'; add a half-space"
+            " with all its keys in a table",
         ),
         (
             "lights.key.half_spaces.lft=none",

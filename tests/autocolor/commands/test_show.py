@@ -81,8 +81,8 @@ def test_what_is_no_address_is_refused_in_a_sentence(address: str, tmp_path: Pat
 @pytest.mark.parametrize(
     ("arguments", "rule"),
     [
-        ((), "show must have SCENE or --recover, one of them; name a scene"),
-        (("scene", "--recover", "newest"), "show must have SCENE or --recover, one of them; name a scene"),
+        ((), "show must have either SCENE or --recover; name a scene"),
+        (("scene", "--recover", "newest"), "show must have either SCENE or --recover; name a scene"),
         (("--recover", "--once"), "--set and --once are for SCENE, not for sessions; leave them out"),
     ],
 )

@@ -53,7 +53,7 @@ def test_rows_are_a_table_csv_or_json(tmp_path: Path) -> None:
     rows = [{"name": "key", "intensity": 1.0}, {"name": "rim", "intensity": 1.0}]
     assert json.loads(asked(path, LIGHTS, "--json").stdout) == rows
     assert json.loads(asked(path, LIGHTS, "--format", "json").stdout) == rows
-    assert "leave one of the options" in str(refused(path, LIGHTS, "--json", "--csv"))
+    assert "give one of --format, --csv and --json" in str(refused(path, LIGHTS, "--json", "--csv"))
 
 
 def test_a_folder_and_a_picture_file_are_asked_as_a_store_is(folder: Path, tmp_path: Path) -> None:
