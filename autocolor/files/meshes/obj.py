@@ -3,8 +3,7 @@
 These statements are used: `v` (a weight or color after x y z is ignored); `f`, with node numbers that count
 from 1 or, if negative, back from the latest node (texture and normal numbers are ignored); `g`, `o` and
 `usemtl`, which name the parts and their materials; and `mtllib`, which names the libraries of materials. A
-polygon may name nodes that are defined later. Quads stay quads, and
-shared nodes stay shared.
+polygon may name nodes that are defined later. Quads stay quads, and shared nodes stay shared.
 
 Texture coordinates and normals are ignored. Points, lines, curves and unknown statements are skipped and
 counted. Lines may end with LF, CR LF or CR, may be continued with a backslash, and may start with spaces or
