@@ -213,7 +213,7 @@ def test_the_newest_that_can_be_read_is_chosen(sessions: Path, capsys: pytest.Ca
 
 def test_a_session_is_named_by_the_beginning_of_its_name(sessions: Path) -> None:
     assert chosen_session("2026-01-01")[1].history.scene.ambient == 0.3
-    for name, count in (("2026-01", 2), ("x", 0), ("", 0)):
+    for name, count in (("2026-01", 3), ("x", 0), ("", 0)):
         with pytest.raises(UsageError) as refusal:
             chosen_session(name)
         assert str(refusal.value) == (
@@ -258,7 +258,7 @@ def test_a_session_is_forgotten_and_no_other(sessions: Path, run: Run) -> None:
 
 
 def test_without_any_a_scene_is_asked_for() -> None:
-    with pytest.raises(MissingInputError, match="--recover: there must be a session that did not end"):
+    with pytest.raises(MissingInputError, match="--recover: there must be a session that was not closed"):
         chosen_session(NEWEST)
 
 

@@ -408,8 +408,8 @@ def test_a_light_follows_a_word_a_name_or_nothing(scene: Scene) -> None:
         ),
         (
             "lights.key.half_spaces.left.on=none",
-            "--set lights.key.half_spaces.left.on: it must be true or false, not none; only a field that may"
-            " be absent can be unset",
+            "--set lights.key.half_spaces.left.on: it must be true or false, not none; only an optional"
+            " field can be unset",
         ),
         (
             "lights.key.half_spaces=left",

@@ -149,7 +149,7 @@ def test_half_spaces_and_names_that_are_wrong_are_told_and_not_saved(
     assert str(error).splitlines() == ["nothing was changed", f"small.sqlite: {told}"]
     assert tables_of(path) == before
     empty = refused(path, "UPDATE lights SET follows = ''", "--write")
-    assert "follows must be 'eye' or the name of one of the lights, and a changed row breaks" in str(empty)
+    assert "follows must be 'eye' or the name of a light, and a changed row breaks" in str(empty)
 
 
 @pytest.mark.parametrize(
