@@ -560,8 +560,8 @@ def change_rows(table: str, **fields: Any) -> Callable[[dict[str, Any]], None]:
 @pytest.mark.parametrize(
     ("edit", "sentence"),
     [
-        (change_rows("mesh_scalars", name=""), "a scalar must have a name, not ''; give it one"),
-        (change_rows("mesh_scalars", name=3), "a scalar must have a name, not 3; give it one"),
+        (change_rows("mesh_scalars", name=""), "a scalar must have a name, not ''; give it a name"),
+        (change_rows("mesh_scalars", name=3), "a scalar must have a name, not 3; give it a name"),
         (change_rows("mesh_scalars", name="load"), "scalar 'load': its name must be unique"),
         (change_rows("mesh_scalars", of="part"), "it must be of 'node' or 'polygon', not 'part'"),
         (change_rows("mesh_scalars", of="polygon"), "there must be one value a polygon (6), not 12"),
