@@ -1,7 +1,7 @@
-"""Array types, each with one meaning, and the array operations that several wings use.
+"""Array types, named by their meaning, and the array operations that several wings use.
 
 A run is an arithmetic series of whole numbers: the lines of an edge, or the pixels of a segment. Arrays of
-vectors are (3, n), with one row for each axis, so that numpy works on long rows.
+vectors are (3, n), a row for each axis, because numpy is fast on long rows.
 """
 
 from __future__ import annotations
@@ -17,25 +17,25 @@ Singles = NDArray[np.float32]
 """Intensities, cosines, and everything else that is stored for each pixel."""
 
 Floats = NDArray[np.float64]
-"""Coordinates, and the numbers that are computed from them before pixels store them."""
+"""Coordinates, and numbers computed from them that are not yet stored for pixels."""
 
 Indices = NDArray[np.intp]
-"""Row numbers of tables, counts of rows, and places in a raster: numpy indexes with these."""
+"""Row numbers of tables, counts of rows, and places in a raster; the type of numpy's indices."""
 
 Numbers = NDArray[np.int64]
 """Whole numbers to calculate with: depth keys, runs."""
 
 Booleans = NDArray[np.bool_]
-"""Whether something is true of each row, pixel or polygon."""
+"""Truth values of rows, pixels or polygons."""
 
 Bytes = NDArray[np.uint8]
 """Surface numbers, components of colors, bytes of files."""
 
 RasterPlaces = NDArray[np.int16]
-"""Lines and elements of a raster, which has at most 16,384 of both."""
+"""Lines and elements of a raster, numbered below 16,384."""
 
 PartNumbers = NDArray[np.int32]
-"""Numbers of parts, of which a mesh may have any count."""
+"""Part numbers. A mesh may have more than 65,536 parts."""
 
 LowBits = NDArray[np.uint32]
 """The low bits of hashes."""
@@ -47,7 +47,7 @@ AnyArray = NDArray[Any]
 """An array whose element type is not known, or is checked elsewhere."""
 
 Scratch = Callable[[tuple[int, ...], type[Any]], AnyArray]
-"""Makes an array of a shape and a type to work in: `np.empty`, or a function whose arrays files back."""
+"""A function that makes an array to work in, of a shape and a type: `np.empty`, or one with mapped files."""
 
 Real = TypeVar("Real", np.float32, np.float64)
 
@@ -66,17 +66,17 @@ NUMBERS_AT_ONCE: Final = 1 << 16
 
 
 def runs(first: Numbers, count: Numbers, step: Numbers | None = None) -> Numbers:
-    """The runs `first`, `first` + `step`, ... of `count` numbers each, as one array, (numbers,) int64.
+    """The runs `first`, `first` + `step`, ... of `count` numbers, joined to an array, (numbers,) int64.
 
-    The arguments are (runs,) int64, each count at least 1; without `step` it is 1. All runs come from one
-    cumulative sum. It is exact, because int64 wraps around: a sum that overflows on the way comes back.
+    The arguments are (runs,) int64. A count is at least 1, and `step` is 1 by default. A single cumulative
+    sum gives all runs. It is exact, because int64 wraps around: an overflow is undone by a later jump.
 
     >>> runs(np.array([5, 1]), np.array([3, 2])).tolist()
     [5, 6, 7, 1, 2]
     """
     heads = np.cumsum(count) - count
     total = int(heads[-1] + count[-1]) if len(count) else 0
-    # From the last number of a run to the first of the next the sum must jump.
+    # The sum jumps from the last number of a run to the first number of the next run.
     jump = first.copy()
     if step is None:
         numbers = np.ones(total, np.int64)
@@ -99,7 +99,7 @@ def chunks(end: int, most: int, start: int = 0) -> Iterator[slice]:
 
 
 def chunks_of_runs(count: Numbers, most: int) -> Iterator[tuple[slice, slice]]:
-    """Runs in chunks of about `most` numbers: a slice of the runs, and a slice of all their numbers.
+    """Chunks of whole runs with about `most` numbers: a slice of the runs, and a slice of their numbers.
 
     >>> list(chunks_of_runs(np.array([3, 2, 4]), 5))
     [(slice(0, 2, None), slice(0, 5, None)), (slice(2, 3, None), slice(5, 9, None))]
@@ -114,7 +114,7 @@ def chunks_of_runs(count: Numbers, most: int) -> Iterator[tuple[slice, slice]]:
 
 
 def least_of_four(rows: AnyArray | Sequence[AnyArray]) -> AnyArray:
-    """The least of four rows; measured: a tenth of the time of a reduction over the short axis."""
+    """The least of four rows. Measured: a reduction over the short axis takes ten times as long."""
     least: AnyArray = np.minimum(np.minimum(rows[0], rows[1]), np.minimum(rows[2], rows[3]))
     return least
 
@@ -126,7 +126,7 @@ def most_of_four(rows: AnyArray) -> AnyArray:
 
 
 def dot(one: RealArray[Real], other: RealArray[Real]) -> RealArray[Real]:
-    """The dot product of each vector with its counterpart; both are (3, n).
+    """The dot products of the vectors in two arrays, both (3, n).
 
     >>> dot(np.array([[2.0], [3.0], [6.0]]), np.array([[1.0], [0.0], [0.5]])).tolist()
     [5.0]
@@ -136,7 +136,7 @@ def dot(one: RealArray[Real], other: RealArray[Real]) -> RealArray[Real]:
 
 
 def cross(one: Floats, other: Floats) -> Floats:
-    """The cross product of each vector with its counterpart; both are (3, ...).
+    """The cross products of the vectors in two arrays, both (3, ...).
 
     Measured: `np.cross` and `np.linalg.norm` of a million rows of three numbers take five times as long.
 
@@ -165,7 +165,7 @@ def bounds_of(points: Floats) -> tuple[Floats, Floats]:
 
 
 def used_rows(numbers: Indices, count: int) -> Booleans:
-    """Which of `count` rows appear in the numbers, (k, n). No table is copied whole.
+    """Whether each of `count` rows is in `numbers`, (k, n). The numbers are not copied as a whole.
 
     >>> used_rows(np.array([[0, 3], [1, 3]]), 5).tolist()
     [True, True, False, True, False]
@@ -177,9 +177,9 @@ def used_rows(numbers: Indices, count: int) -> Booleans:
 
 
 def used_bounds(rows: Floats, numbers: Indices) -> tuple[Floats, Floats]:
-    """The least and the largest number of each row of (k, count) in the columns in use; infinite if none is.
+    """The least and the largest value of each row, (k, count), in some columns; infinite without columns.
 
-    A column is in use if `numbers` has its number.
+    `numbers` has the numbers of the columns.
 
     >>> low, high = used_bounds(np.array([[5.0, 2.0, 3.0]]), np.array([[0, 2]]))
     >>> low.tolist(), high.tolist()
@@ -227,24 +227,23 @@ def normalized(vectors: Floats) -> Floats:
 
 
 def power(cosines: Singles, exponent: float, out: Singles | None = None) -> Singles:
-    """The cosines to a power, in [0, 1]; a negative cosine counts as 0, and anything to the power 0 is 1.
+    """The cosines to a power, in [0, 1]; negative cosines count as 0, and every cosine to the power 0 is 1.
 
-    `out` may be the array of the cosines itself.
+    `out` may be `cosines`.
 
     >>> power(np.array([0.5, -1.0, 1.0], np.float32), 2).tolist()
     [0.25, 0.0, 1.0]
 
-    Measured: the exponential of a logarithm takes half the time of a power, and a fifth of the time that it
-    takes to find the cosines which are not negligible and to raise those alone; repeated squaring takes half
-    of that again, and in place two thirds of it; a clip takes a quarter of the time of a minimum and a
-    maximum.
+    Measured, with the exponential of a logarithm as the unit: `np.power` takes 2; selecting the cosines that
+    are not negligible and raising only these takes 5; repeated squaring takes 0.5, and in place 0.33. A clip
+    takes a quarter of the time of a minimum and a maximum.
     """
     out = np.empty_like(cosines) if out is None else out
     single = np.float32(min(exponent, LARGEST_SINGLE))
     if single == 0:
         out[:] = 1
         return out
-    # Rounding may leave a cosine above 1, which a large exponent would make a light of its own.
+    # Rounding may leave a cosine above 1. A large exponent would make it very bright.
     np.clip(cosines, np.float32(0), np.float32(1), out=out)
     if exponent <= MOST_MULTIPLIED and exponent == int(exponent):
         return _multiplied(out, int(exponent))
@@ -255,7 +254,7 @@ def power(cosines: Singles, exponent: float, out: Singles | None = None) -> Sing
 
 
 def _multiplied(out: Singles, exponent: int) -> Singles:
-    """The numbers to a whole power from 1 on, in their own array, by repeated squaring."""
+    """The numbers to a whole power of at least 1, in place, by repeated squaring."""
     powers: Singles | None = None
     with np.errstate(under="ignore"):
         while exponent > 1:

@@ -1,4 +1,4 @@
-"""Parts of messages about invalid input: values, lists of names, and the name that was probably meant."""
+"""Parts of messages about invalid input: a value, a list of names, the name that was probably meant."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ def shown(value: object, most: int = 60) -> str:
     try:
         text = repr(value)
     except (ValueError, RecursionError):
-        # A whole number of thousands of digits, or a list in lists in lists.
+        # A whole number of thousands of digits, or deeply nested lists.
         text = f"a very large {type(value).__name__}"
     return text if len(text) <= most else f"{text[:most]}..."
 
 
 def printable(text: str) -> str:
-    """The text with a question mark for each letter that cannot be printed, such as the end of a line."""
+    """The text with a question mark instead of each unprintable character, such as a line break."""
     return "".join(letter if letter.isprintable() else "?" for letter in text)
 
 
@@ -50,7 +50,7 @@ def listed(names: Iterable[str]) -> str:
 
 
 def either(names: Iterable[str]) -> str:
-    """The names as alternatives, as in a sentence.
+    """The names, quoted, as alternatives in English.
 
     >>> either(["x", "y", "z"])
     "'x', 'y' or 'z'"
@@ -72,20 +72,32 @@ OTHER_WORDS: Final = {
     "fov": "field_of_view",
     "shininess": "exponent",
 }
-"""Our names for symbols of the paper and for words of other programs."""
+"""The field names for symbols of the paper and for words of other programs."""
 
 
 def nearest(name: object, names: Iterable[object]) -> str:
-    """A clause for a message: the closest of `names`, else all of them if they are few, else nothing.
+    """The end of a message about an unknown name: the closest of `names`, else all of them if they are few.
 
-    These are tried in turn: our name for another program's word; a name that differs in capitals only; one
-    that begins with the given name; one that has it as a word between underscores; the most similar spelling.
-    Only text is a name: anything else among `names` is left out.
+    Values in `names` that are not text are ignored.
 
-    >>> nearest("color", ["blend", "object_color"]), nearest("N", ["exponent"])
+    >>> nearest("x", ["blend", "levels"])
+    "; choose 'blend' or 'levels'"
+    """
+    texts = [text for text in names if isinstance(text, str)]
+    return closest(name, texts) or (f"; choose {either(texts)}" if 0 < len(texts) <= FEW else "")
+
+
+def closest(name: object, names: Iterable[str]) -> str:
+    """The end of a message about an unknown name: the closest of `names`; empty if none is close.
+
+    The order of preference: our name for another program's word; a name that differs in capitals only; a name
+    that begins with the given name; a name with the given name between underscores; the most similar
+    spelling.
+
+    >>> closest("color", ["blend", "object_color"]), closest("N", ["exponent"])
     ("; did you mean 'object_color'?", "; did you mean 'exponent'?")
     """
-    texts = [each for each in names if isinstance(each, str)]
+    texts = list(names)
     name = (name if isinstance(name, str) else shown(name))[:LONGEST_NAME]
     other = OTHER_WORDS.get(name)
     close = (
@@ -95,8 +107,4 @@ def nearest(name: object, names: Iterable[object]) -> str:
         or [text for text in texts if name in text.split("_")]
         or difflib.get_close_matches(name, texts, n=1)
     )
-    if close:
-        return f"; did you mean {close[0]!r}?"
-    if 0 < len(texts) <= FEW:
-        return f"; known are {', '.join(map(repr, texts))}"
-    return ""
+    return f"; did you mean {close[0]!r}?" if close else ""

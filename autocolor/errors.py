@@ -1,6 +1,6 @@
-"""The exceptions of autocolor, each with the exit code of a command that fails with it.
+"""The exceptions of autocolor, with the exit codes of commands.
 
-A message names the thing, the rule it breaks, its value, its place, and what to do about it.
+A message names the thing, the rule that it breaks, its value, its place, and what to do.
 """
 
 from __future__ import annotations
@@ -9,13 +9,13 @@ from collections.abc import Iterable
 
 
 class AutocolorError(Exception):
-    """Base class of all errors of this package; `exit_code` is the exit code of the command."""
+    """Base class of all errors of this package. `exit_code` is the exit code of a command that fails."""
 
     exit_code = 70
 
 
 class UsageError(AutocolorError, ValueError):
-    """A call or a command line that is wrong, such as a name that does not exist."""
+    """A wrong call or command line, such as an unknown name."""
 
     exit_code = 2
 
@@ -37,7 +37,7 @@ class MissingInputError(InputError):
 
 
 class UnavailableError(AutocolorError):
-    """Something that this machine lacks: a screen, or an optional package."""
+    """A screen or an optional package that this machine lacks, or a display that does not answer."""
 
     exit_code = 69
 
@@ -55,7 +55,7 @@ class WriteError(AutocolorError):
 
 
 def reason_of(cause: Exception) -> str:
-    """Why a system call failed, as a message tells it in parentheses.
+    """The reason of a failed system call, for the parentheses of a message.
 
     >>> reason_of(PermissionError(13, "Permission denied"))
     'permission denied'

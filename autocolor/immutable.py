@@ -27,8 +27,8 @@ def read_only(array: SomeArray) -> SomeArray:
 class Immutable:
     """A base class of frozen dataclasses, some of whose fields may be arrays.
 
-    A pickle forgets that an array is read-only: `__setstate__` makes it read-only again. A `repr` shows the
-    shape and the type of an array, if the dataclass has `repr=False`.
+    Unpickled arrays are writable, so `__setstate__` makes them read-only again. With `repr=False` in the
+    dataclass, a `repr` shows only the shape and the type of an array.
     """
 
     def __copy__(self: Self) -> Self:
@@ -38,7 +38,7 @@ class Immutable:
         return self
 
     def __setstate__(self, state: Mapping[str, Any]) -> None:
-        # Cached properties stay: they were computed from the fields alone.
+        # Keep cached properties: they depend only on the fields.
         vars(self).update(state)
         for value in state.values():
             for item in value if isinstance(value, tuple) else (value,):

@@ -1,7 +1,7 @@
-"""The loggers of the library, `autocolor` and one below it for each module: silent unless somebody listens.
+"""The loggers of the library: `autocolor`, and a logger below it for each module. They are silent by default.
 
-A program listens by `logging.getLogger("autocolor")`, and a command with `-v`. What was read, created and
-rendered is at the level INFO.
+A program listens with `logging.getLogger("autocolor")`, and a command with `-v`. The level of records about
+reading, creating and rendering is INFO.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ def logger_of(module: str) -> logging.Logger:
 
 @contextmanager
 def timed(logger: logging.Logger, stage: str) -> Iterator[None]:
-    """Log how long a stage takes, at the level INFO; no time is taken if nobody listens."""
+    """Log the duration of a stage at the level INFO. Without a listener, the time is not measured."""
     if not logger.isEnabledFor(logging.INFO):
         yield
         return

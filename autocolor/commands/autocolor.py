@@ -1,4 +1,4 @@
-"""The `autocolor` command group; commands are imported when they are used, so that help is fast."""
+"""The `autocolor` command group. It imports a command only when it is used, so that help is fast."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Examples:
 
 
 class AutocolorGroup(CommandGroup):
-    """The group of all commands."""
+    """The group of all commands, with a line of help for each of them."""
 
     package = "autocolor.commands"
     table: ClassVar[dict[str, str]] = {
@@ -27,12 +27,12 @@ class AutocolorGroup(CommandGroup):
         "recolor": "change the colors of a saved picture, without rendering it again",
         "view": "show a scene in an interactive window",
         "info": "print the counts, sizes and ranges of a scene",
-        "validate": "list every problem of a scene",
+        "validate": "list every problem of a scene and every fault of its mesh",
         "convert": "write a mesh or a scene in another format",
-        "show": "show a scene in the interactive system on another display",
-        "tutorial": "learn the interactive system step by step on the built-in demo",
-        "tables": "print or write the tables of a scene, including created ones",
-        "sql": "query and change the tables of a scene as a relational data base",
+        "show": "show a scene on another display, and work there with its joystick",
+        "tutorial": "learn the interactive system step by step, on the built-in demo",
+        "tables": "print or write a complete scene file for a mesh or a scene",
+        "sql": "query and change the tables of a scene with SQL",
     }
 
 
@@ -42,7 +42,7 @@ class AutocolorGroup(CommandGroup):
     epilog=EXAMPLES,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-@click.option("--debug", is_flag=True, help="Show a traceback when something fails.")
+@click.option("--debug", is_flag=True, help="Show the traceback of an error.")
 @verbose_option
 @version_option
 @click.pass_context

@@ -1,7 +1,7 @@
-"""Completion in a shell: scene and picture files, and the names and keys of the scene on the line.
+"""Completion in a shell: scene and picture files, and the names and keys in the scene of the command line.
 
-A shell asks at each press of Tab, so only small scenes are read. A scene that cannot be read completes to
-nothing, without a message.
+A shell asks at each press of Tab, so large scenes are not read. If the scene cannot be read, nothing is
+completed, without a message.
 """
 
 from __future__ import annotations
@@ -29,14 +29,14 @@ Complete = Callable[[click.Context, click.Parameter, str], list[str]]
 
 
 def _silent(complete: Complete) -> Complete:
-    """The function; if it fails, it completes nothing."""
+    """The function, but if it fails, it completes nothing."""
 
     @wraps(complete)
     def completed(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[str]:
         try:
             return complete(context, parameter, incomplete)
         except Exception:
-            # The command itself will report the error; here a message would spoil the line.
+            # The command itself will report the error. A message here would garble the command line.
             return []
 
     return completed
@@ -67,19 +67,19 @@ def complete_pictures(context: click.Context, parameter: click.Parameter, incomp
 
 @_silent
 def complete_lights(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[str]:
-    """The names of the lights of the scene on the line."""
+    """The names of the lights of the scene on the command line."""
     return [light.name for light in _scene(context).lights if light.name.startswith(incomplete)]
 
 
 @_silent
 def complete_surfaces(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[str]:
-    """The names of the surfaces of the scene or picture on the line."""
+    """The names of the surfaces of the scene or picture on the command line."""
     return [surface.name for surface in _scene(context).surfaces if surface.name.startswith(incomplete)]
 
 
 @_silent
 def complete_settings(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[str]:
-    """The keys of `--set` for the scene on the line, and the values of a whole key."""
+    """The keys of `--set` for the scene on the command line, or the values of a whole key."""
     from autocolor.commands.settings import keys_after
 
     scene = _scene(context)
@@ -99,60 +99,59 @@ def complete_colors(context: click.Context, parameter: click.Parameter, incomple
 
 
 def narrowed(incomplete: str, start: str, after: Callable[[str], Sequence[str]]) -> list[str]:
-    """The candidates after a start that begin with the incomplete word.
+    """The candidates that begin with the incomplete word, among those that `after` returns for a start.
 
-    `after` returns the candidates that follow a start. A candidate that ends in "/", "." or "=" is a start
-    itself. If it is the only one, the candidates after it take its place, because a shell puts a space after
-    an only candidate.
+    A candidate that ends in "/", "." or "=" is a start itself. A shell puts a space after a single candidate,
+    so a single start is replaced by the candidates after it.
 
     >>> narrowed("a", "", lambda start: ["a.", "b="] if start == "" else ["a.x=", "a.y="])
     ['a.x=', 'a.y=']
     """
-    found = [each for each in after(start) if each.startswith(incomplete)]
-    while len(found) == 1 and found[0][-1] in "/.=" and (inside := after(found[0])):
-        if found[0].endswith("="):
-            return [*found, *inside]
-        found = list(inside)
-    return found
+    candidates = [candidate for candidate in after(start) if candidate.startswith(incomplete)]
+    while len(candidates) == 1 and candidates[0][-1] in "/.=" and (inside := after(candidates[0])):
+        if candidates[0].endswith("="):
+            return [*candidates, *inside]
+        candidates = list(inside)
+    return candidates
 
 
 def _start_of_key(incomplete: str, after: Callable[[str], Sequence[str]]) -> str:
-    """The longest start of a key that an incomplete key begins with. Names in it may contain periods."""
+    """The longest start that an incomplete key begins with. Names in a key may contain periods."""
     start, longer = "", [""]
     while longer:
         start = max(longer, key=len)
-        longer = [each for each in after(start) if each[-1] in ".=" and incomplete.startswith(each)]
+        longer = [key for key in after(start) if key[-1] in ".=" and incomplete.startswith(key)]
     return start
 
 
 def _folder_of(incomplete: str) -> str:
-    """The folder in an incomplete path, with its slash; "" for the current one."""
+    """The folder in an incomplete path, with its slash; "" for the current folder."""
     return incomplete[: incomplete.rfind("/") + 1]
 
 
 def _entries(start: str, suffixes: tuple[str, ...], is_scene: Callable[[str], bool]) -> list[str]:
-    """The files with one of the suffixes in a folder, and its folders: scenes, and others that end in "/"."""
-    found = []
+    """The files with a suffix in a folder, and its folders; a folder that is not a scene ends in "/"."""
+    paths = []
     with os.scandir(start or ".") as entries:
         for entry in islice(entries, MOST_ENTRIES):
             if entry.name.startswith("."):
                 continue
             if entry.is_dir():
-                found.append(f"{start}{entry.name}{'' if is_scene(entry.path) else '/'}")
+                paths.append(f"{start}{entry.name}{'' if is_scene(entry.path) else '/'}")
             elif entry.name.lower().endswith(suffixes):
-                found.append(f"{start}{entry.name}")
-    return sorted(found)
+                paths.append(f"{start}{entry.name}")
+    return sorted(paths)
 
 
 def _scene(context: click.Context) -> Scene:
-    """The scene that the line names. Raises ValueError if it names none, or one of large files."""
+    """The scene on the command line. Raises an exception if it is missing or its files are too large."""
     from autocolor.files.scene_sources import read_scene_with_report
 
     given = context.params
     # While the value of an option is incomplete, click has not assigned the arguments.
     path = Path(given.get("scene") or given.get("picture") or context.args[0])
-    files = [each for each in path.iterdir() if each.is_file()] if path.is_dir() else [path]
-    if sum(each.stat().st_size for each in files) > LARGEST_SCENE:
+    files = [file for file in path.iterdir() if file.is_file()] if path.is_dir() else [path]
+    if sum(file.stat().st_size for file in files) > LARGEST_SCENE:
         raise ValueError
     options = {name: given[name] for name in ("up", "scale", "surfaces") if given.get(name)}
     return read_scene_with_report(path, **options).scene

@@ -19,15 +19,14 @@ Examples:
                                                     a scene, in the folder car
   autocolor convert scenes/coupe coupe.csv          tables, in the folder coupe.csv
   autocolor convert car.obj tables --to npy         tables that are mapped into memory, not read
-  autocolor convert --formats                       list what can be read and written
+  autocolor convert --formats                       list the formats
 """
 
 
-def _show_formats(context: click.Context, _: click.Parameter, asked: bool) -> None:
-    if not asked or context.resilient_parsing:
-        return
-    click.echo("\n".join(format_lines()))
-    context.exit()
+def _show_formats(context: click.Context, _: click.Parameter, is_given: bool) -> None:
+    if is_given and not context.resilient_parsing:
+        click.echo("\n".join(format_lines()))
+        context.exit()
 
 
 @click.command(epilog=EXAMPLES)
@@ -36,7 +35,7 @@ def _show_formats(context: click.Context, _: click.Parameter, asked: bool) -> No
 @click.option(
     "--to",
     metavar="FORMAT",
-    help="Format of OUT, if its ending does not determine it: csv, npy, obj, ply, scene and others.",
+    help="Format of OUT, instead of the format of its ending; --formats lists the names.",
 )
 @click.option("--force", is_flag=True, help="Overwrite existing files.")
 @click.option(
@@ -45,14 +44,14 @@ def _show_formats(context: click.Context, _: click.Parameter, asked: bool) -> No
     is_eager=True,
     expose_value=False,
     callback=_show_formats,
-    help="List the formats that are read and written.",
+    help="List the formats that are read and written, and exit.",
 )
 @click.pass_context
 def convert(context: click.Context, source: SceneSource, out: str, to: str | None, force: bool) -> None:
     """Write SCENE, a mesh or a whole scene, to OUT; the ending of OUT determines the format.
 
-    Without an ending, OUT becomes the folder of a scene. Anything that OUT's format cannot hold is listed;
-    with --strict the exit code is then 1.
+    Without an ending, OUT becomes a scene folder. Anything that OUT's format cannot hold is left out and
+    listed; with --strict the exit code is then 1.
     """
     if out in ("", "-"):
         raise UsageError(f"OUT must be a file or a folder, not {out!r}; give it a name")
@@ -64,14 +63,14 @@ def convert(context: click.Context, source: SceneSource, out: str, to: str | Non
     path = Path(out)
     output = output_of(path) if to is None else output_named(to)
     if not output.in_folder:
-        # Fail before reading if it cannot be written.
+        # Fail before reading if OUT cannot be written.
         refuse_output(path, overwrite=force)
     report = read(source)
     is_bare = isinstance(source_format(Path(source.path))[1], MeshFormat)
     written = output.write(path, report.scene, force)
     lost = left_out(report.scene, output, is_bare=is_bare)
     for phrase in lost:
-        click.echo(f"autocolor: {path.name}: left out, as {output.name} does not hold it: {phrase}", err=True)
+        click.echo(f"autocolor: {path.name}: left out, as {output.name} cannot hold it: {phrase}", err=True)
     tell_written(*map(str, written))
     context.exit(REPAIRED if source.strict and lost else ended(report, source))
 
@@ -91,6 +90,6 @@ def format_lines() -> list[str]:
         rows[output.name] = (endings, "read, written")
     name_width, ending_width = (max(map(len, column)) for column in (rows, [row[0] for row in rows.values()]))
     return [
-        f"{name:{name_width}}  {endings:{ending_width}}  {done}"
-        for name, (endings, done) in sorted(rows.items(), key=lambda row: row[0].casefold())
+        f"{name:{name_width}}  {endings:{ending_width}}  {uses}"
+        for name, (endings, uses) in sorted(rows.items(), key=lambda row: row[0].casefold())
     ]

@@ -1,4 +1,4 @@
-"""The built-in demo, the coupe: inside the installed package, or in `scenes` of a checkout."""
+"""The built-in demo, the coupe. It is inside the installed package, or in `scenes` of a checkout."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def demo_folder() -> Path:
         if (place / "scene.toml").is_file():
             return place
     raise MissingInputError(
-        f"the built-in demo must be at {PLACES[0]}, but nothing is there; install autocolor again"
+        f"the built-in demo must be at {PLACES[0]}, but no scene is there; install autocolor again"
     )
 
 
@@ -39,5 +39,5 @@ def demo_session() -> History:
     from autocolor.journal.places import ScenePlace, Source
 
     folder = demo_folder()
-    # The demo was not named by the user: it is saved to new files, wherever it is.
+    # The user has not named the demo's files, so saving makes new files.
     return History(read_scene(folder), ScenePlace(Source(str(folder))))

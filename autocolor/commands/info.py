@@ -39,7 +39,7 @@ def info(context: click.Context, source: SceneSource, as_json: bool) -> None:
 
 
 def facts_of(report: SceneReport) -> dict[str, Any]:
-    """The facts about a scene, as values that JSON can hold; the scene is rendered for them."""
+    """The facts about a scene, as values that JSON can hold. To find them, the scene is rendered."""
     from autocolor.images import display_image
     from autocolor.rendering import render
     from autocolor.scene.mesh_faults import quad_shapes
@@ -78,15 +78,15 @@ def facts_of(report: SceneReport) -> dict[str, Any]:
 
 
 def scalar_facts(scalar: MeshScalar) -> dict[str, Any]:
-    """The facts about a scalar of the mesh; its range is None if all of its values are missing."""
+    """The facts about a scalar of the mesh. The range is None if all values are missing."""
     import numpy as np
 
-    there = scalar.values[~np.isnan(scalar.values)]
+    present = scalar.values[~np.isnan(scalar.values)]
     return {
         "name": scalar.name,
         "of": scalar.of,
-        "range": [float(there.min()), float(there.max())] if len(there) else None,
-        "missing": len(scalar.values) - len(there),
+        "range": [float(present.min()), float(present.max())] if len(present) else None,
+        "missing": len(scalar.values) - len(present),
     }
 
 
@@ -97,7 +97,7 @@ def lines_of(facts: dict[str, Any]) -> list[str]:
     lines = [
         f"{facts['name']}: nodes {facts['nodes']:,}, polygons {facts['polygons']:,}"
         f" (three-sided {facts['triangles']:,}), edges {facts['edges']:,}",
-        "quads kept as they are: "
+        "quads that are not flat and convex: "
         + ", ".join(f"{shape} {facts['quads'][shape]:,}" for shape in ("warped", "concave", "crossed")),
         f"size {size}, pixels {facts['pixels']:,},"
         f" intensities {facts['intensities'].minimum:.4g} to {facts['intensities'].maximum:.4g}",
@@ -116,8 +116,8 @@ def lines_of(facts: dict[str, Any]) -> list[str]:
     for scalar in facts["scalars"]:
         extent, missing = scalar["range"], scalar["missing"]
         values = f"{extent[0]:.4g} to {extent[1]:.4g}" if extent else "no values"
-        told = f", missing {missing:,}" if missing else ""
-        lines.append(f"  {printable(scalar['name'])}: of {scalar['of']}s, {values}{told}")
+        gaps = f", missing {missing:,}" if missing else ""
+        lines.append(f"  {printable(scalar['name'])}: of {scalar['of']}s, {values}{gaps}")
     if facts["created"]:
         lines.append(f"created: {', '.join(facts['created'])}")
     return lines

@@ -1,6 +1,6 @@
-"""Options that several commands share: `--normals`, `--size` and `-v`; and mistakes in options.
+"""Options that several commands share: `--normals`, `--size` and `-v`.
 
-An invalid value of an option is wrong usage, not invalid input.
+An invalid value of an option is a UsageError, not an InputError.
 """
 
 from __future__ import annotations
@@ -22,10 +22,7 @@ if TYPE_CHECKING:
 
 @contextmanager
 def as_usage(place: str = "") -> Iterator[None]:
-    """Raise an InputError about values from the command line as a UsageError.
-
-    Each problem is on a line of its own, after the `place`.
-    """
+    """Raise a UsageError instead of an InputError; the lines of its message begin with `place`."""
     try:
         yield
     except InputError as error:
@@ -35,12 +32,12 @@ def as_usage(place: str = "") -> Iterator[None]:
 normals_option = click.option(
     "--normals",
     is_flag=True,
-    help="Let words stand for normals: lights then change entries only. Lights and eye count as far away.",
+    help="Let words stand for normals: changing a light is then fast. Lights and eye count as far away.",
 )
 
 
 def with_normals(scene: Scene, normals: bool) -> Scene:
-    """The scene; with `normals`, its words stand for normals.
+    """The scene, in which words stand for normals if `normals`.
 
     Raises UsageError if a scalar colors its surfaces.
     """
@@ -51,11 +48,11 @@ def with_normals(scene: Scene, normals: bool) -> Scene:
 
 
 LARGEST: Final = 4096
-"""The most elements and lines of a display: the largest picture is as large as the largest memory."""
+"""The most elements and lines of a picture: the size of the largest display memory."""
 
 
 def size_of(text: str) -> tuple[int, int]:
-    """The elements and lines of a size. Raises click.BadParameter.
+    """The elements and the lines in the text of a size. Raises click.BadParameter.
 
     >>> size_of("1280x960")
     (1280, 960)
@@ -76,21 +73,21 @@ size_option = click.option(
     default="640x480",
     show_default=True,
     callback=lambda _context, _parameter, text: size_of(text),
-    help="Size of the picture, up to 4096x4096.",
+    help="Width and height of the picture, up to 4096x4096.",
 )
 
 VERBOSITY: Final = "autocolor.verbosity"
-"""The key of the number of `-v` in the contexts of a command."""
+"""The key of a click context for the number of `-v`."""
 
 
 def _listen(context: click.Context, _: click.Parameter, count: int) -> None:
-    """Print log records until the command has ended; nothing changes without the option."""
+    """Print log records until the command ends, if `-v` was given."""
     if not count or context.resilient_parsing:
         return
     import logging
 
     logger = logging.getLogger("autocolor")
-    # The option may stand before the command and after it.
+    # `-v` is allowed before the command and after it.
     is_first = VERBOSITY not in context.meta
     context.meta[VERBOSITY] = context.meta.get(VERBOSITY, 0) + count
     logger.setLevel(logging.INFO if context.meta[VERBOSITY] == 1 else logging.DEBUG)
@@ -98,7 +95,7 @@ def _listen(context: click.Context, _: click.Parameter, count: int) -> None:
         return
 
     class Printer(logging.Handler):
-        """Prints each record on stderr, as all messages of a command."""
+        """Prints records on stderr, like all messages of a command."""
 
         def emit(self, record: LogRecord) -> None:
             click.echo(f"autocolor: {self.format(record)}", err=True)
@@ -120,6 +117,6 @@ verbose_option = click.option(
     expose_value=False,
     is_eager=True,
     callback=_listen,
-    help="Print each step of reading, creating and computing, and its time; -vv prints more.",
+    help="Print the steps of the command with their times; -vv prints more.",
 )
-"""`-v` of the group and of each command."""
+"""`-v` of the group and of its commands."""

@@ -1,4 +1,4 @@
-"""Output files of the commands: checking their paths before anything is computed, and writing them."""
+"""Output files of the commands: checks of their paths before any work, and writing."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ if TYPE_CHECKING:
 
 
 def refuse_outputs(output: str | None, save: str | None, force: bool) -> None:
-    """Check the paths of a PNG (`-o`) and a picture file (`--save`), where they are not None.
+    """Check the paths of a PNG (`-o`) and a picture file (`--save`), unless they are None.
 
-    Raises UsageError for a wrong suffix, OutputError if the file exists and `force` is false, or if it cannot
-    be created.
+    Raises UsageError for a wrong suffix. Raises OutputError if the file exists and `force` is false, or if it
+    cannot be created.
     """
     if output is not None:
         _refuse(output, force)
@@ -32,9 +32,9 @@ def refuse_outputs(output: str | None, save: str | None, force: bool) -> None:
 
 def _refuse(path: str, force: bool) -> None:
     if not path:
-        raise UsageError("an output must have a name, not an empty one; give it one")
+        raise UsageError("an output must have a name, not an empty name; name a file")
     if path == "-":
-        raise UsageError("an output must be a file, not stdout; give it a name")
+        raise UsageError("an output must be a file, not stdout; name a file")
     from autocolor.files.writing import refuse_output
 
     folder = Path(path).parent
@@ -48,7 +48,7 @@ def _refuse(path: str, force: bool) -> None:
 
 
 def write_png(path: str, display: Ramtek9300, force: bool) -> None:
-    """Write what the display shows to a PNG file, atomically."""
+    """Write the field of a display to a PNG file, atomically."""
     from autocolor.files.writing import write_atomically
     from ramtek_emu.png import png_bytes
 
@@ -56,7 +56,7 @@ def write_png(path: str, display: Ramtek9300, force: bool) -> None:
 
 
 def tell_written(*paths: str | None) -> None:
-    """Print a line on stderr for each path that is not None."""
+    """Print on stderr that these files were written; None is skipped."""
     for path in paths:
         if path is not None:
             click.echo(f"wrote {path}", err=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -48,7 +48,7 @@ Examples:
     "--blend",
     type=float,
     metavar="FRACTION",
-    help="Level above which the light color begins, 0 to 1; 1 for never.",
+    help="Level above which the light color blends in, 0 to 1; 1 for no blending.",
 )
 @click.option(
     "--percentage",
@@ -62,7 +62,7 @@ Examples:
     "--output",
     type=click.Path(),
     metavar="PNG",
-    help="PNG file to write; without -o and --save, PICTURE-SURFACE.png.",
+    help="PNG file to write. Default, without --save: PICTURE-SURFACE.png.",
 )
 @click.option(
     "--save", type=click.Path(), metavar="PICTURE.npz", help="Save the picture with the new colors."
@@ -83,8 +83,8 @@ def recolor(
 ) -> None:
     """Change the colors of SURFACE in PICTURE, a picture file, without rendering it again.
 
-    --set takes fields that need no rendering: paints, the mapping, and the color scale, limits and bands of a
-    scalar.
+    --set changes any field that needs no rendering: paints, the mapping, and the color scale, limits and
+    bands of a scalar.
     """
     changes: dict[str, Any] = {
         "object_color": object_color,
@@ -93,7 +93,11 @@ def recolor(
         "light_percentage": percentage,
     }
     given = {name: value for name, value in changes.items() if value is not None}
-    check_what_is_recolored(surface, given, settings)
+    if surface is None and (given or not settings):
+        raise UsageError(
+            "recolor must have a SURFACE, or --set KEY=VALUE without colors; write it as in recolor PICTURE"
+            " body --object navy"
+        )
     if output is None and save is None:
         from autocolor.files.paths import file_stem
 
@@ -121,15 +125,6 @@ def recolor(
     tell_written(output, save)
 
 
-def check_what_is_recolored(surface: str | None, colors: Mapping[str, Any], settings: Sequence[str]) -> None:
-    """Raise UsageError for colors without a surface, and for neither a surface nor a setting."""
-    if surface is None and (colors or not settings):
-        raise UsageError(
-            "recolor needs a SURFACE for its colors, or --set KEY=VALUE; write it as in recolor PICTURE body"
-            " --object navy"
-        )
-
-
 def recolored(
     scene: Scene, surface: str | None, colors: Mapping[str, Any], settings: tuple[str, ...]
 ) -> Scene:
@@ -141,8 +136,8 @@ def recolored(
     edited = with_settings(scene, settings)
     if costs_at_least(scene, edited, Tier.MIX):
         raise UsageError(
-            "--set: what is set in a picture must render nothing, such as colors, the mapping, or limits and"
-            " bands of a scalar; render the scene with it instead"
+            "--set: a setting of a picture must need no rendering, such as colors, the mapping, or limits and"
+            " bands of a scalar; use it with `autocolor render`"
         )
     with as_usage():
         return edited if surface is None else edited.with_surface(surface, **colors)

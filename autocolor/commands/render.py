@@ -41,7 +41,7 @@ Examples:
     "--output",
     type=click.Path(),
     metavar="PNG",
-    help="PNG file to write; without -o and --save, SCENE.png.",
+    help="PNG file to write. Default, without --save: SCENE.png.",
 )
 @click.option(
     "--save",
@@ -55,7 +55,7 @@ Examples:
     multiple=True,
     metavar="NAME",
     shell_complete=complete_lights,
-    help="Use only this light; repeatable.",
+    help="Switch off all lights but this one; repeatable.",
 )
 @set_option
 @normals_option
@@ -63,7 +63,7 @@ Examples:
 @click.option(
     "--hold-exposure",
     is_flag=True,
-    help="Keep the exposure of the scene without --light and --set, so that less light is darker.",
+    help="Use the exposure that the scene has without --light and --set, so that less light is darker.",
 )
 @click.option("--force", is_flag=True, help="Overwrite existing files.")
 @click.pass_context
@@ -123,7 +123,7 @@ def render(
 
 @contextmanager
 def progress(steps: int) -> Iterator[Callable[[], None]]:
-    """A progress bar on stderr if that is a terminal; call the function it yields after each step."""
+    """A progress bar on stderr, if stderr is a terminal. Call the yielded function after each step."""
     if sys.stderr is None or not sys.stderr.isatty():
         yield lambda: None
         return

@@ -1,4 +1,4 @@
-"""Reading a scene for a command: its options, messages about repairs, created views and lights, exit code."""
+"""Scenes of commands: options for reading, messages about repairs, created views and lights, exit codes."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from autocolor.scene.scene import Scene
 
 REPAIRED: Final = 1
-"""The exit code of a command that succeeds with --strict although something was skipped or repaired."""
+"""The exit code with --strict of a command that succeeds, if input was skipped or repaired."""
 
 
 class SceneSource(NamedTuple):
@@ -34,8 +34,8 @@ class SceneSource(NamedTuple):
 def scene_options(command: Callable[..., Any], required: bool = True) -> Callable[..., Any]:
     """A decorator that adds the argument and options of commands that read a scene.
 
-    The command gets them as one value, `source`, a SceneSource. It is None if the line names no scene and
-    none is `required`.
+    The command gets them as its argument `source`, a SceneSource. It is None if the command line has no
+    scene, which is an error if `required`.
     """
 
     @wraps(command)
@@ -54,13 +54,13 @@ def scene_options(command: Callable[..., Any], required: bool = True) -> Callabl
     decorated: Callable[..., Any] = with_source
     for decorate in (
         verbose_option,
-        click.option("--strict", is_flag=True, help="Exit with code 1 if anything was repaired or skipped."),
+        click.option("--strict", is_flag=True, help="Exit with code 1 if input was repaired or skipped."),
         click.option(
             "--up",
             type=click.Choice(["x", "y", "z"]),
             default="z",
             show_default=True,
-            help="Up axis of a mesh file; scene files give their own.",
+            help="Up axis of a mesh file; a scene file has its own.",
         ),
         click.option(
             "--scale",
@@ -74,7 +74,7 @@ def scene_options(command: Callable[..., Any], required: bool = True) -> Callabl
             type=click.Choice(["materials", "parts"]),
             default="materials",
             show_default=True,
-            help="Create missing surfaces from the materials of the mesh, or one for each part.",
+            help="Create a missing surface for each material of the mesh, or for each part.",
         ),
         click.argument("scene", type=click.Path(), required=required, shell_complete=complete_scenes),
     ):
@@ -88,7 +88,8 @@ set_option = click.option(
     multiple=True,
     metavar="KEY=VALUE",
     shell_complete=complete_settings,
-    help="Set a field of the scene, as in scene.toml; none unsets it; repeatable.",
+    help="Set a field of the scene, such as lights.key.intensity=2, with the names of scene.toml; the value"
+    " none unsets a field; repeatable.",
 )
 
 
@@ -108,10 +109,7 @@ def ended(report: SceneReport, source: SceneSource) -> int:
 
 
 def reframed(report: SceneReport, aspect: float) -> SceneReport:
-    """The report; if its view was created, the view frames the object for a picture of an aspect.
-
-    The aspect is the width over the height.
-    """
+    """The report; a created view frames the object for a picture of an aspect, its width over its height."""
     from autocolor.scene.defaults import ASPECT, framed
 
     scene = report.scene
@@ -122,10 +120,10 @@ def reframed(report: SceneReport, aspect: float) -> SceneReport:
 
 
 def created_again(report: SceneReport, edited: Scene, aspect: float | None = None) -> Scene:
-    """The edited scene of a report, with its view and lights as they would be created for the edits.
+    """The edited scene of a report; if the edits affect its created view or lights, they are created again.
 
-    A created view frames the object again, unless an edit placed it, if any other field of the view or the
-    stage of a part was edited. Created lights are created again if the stage of a part was edited. `aspect`
+    An edit of the view or of `stage` of a part makes a created view frame the object again, unless it sets
+    the eye, the direction or the target. An edit of `stage` makes created lights be created again. `aspect`
     is the aspect of the picture, by default the display's.
     """
     from autocolor.scene.defaults import ASPECT, default_lights, framed

@@ -1,4 +1,7 @@
-"""Sessions of a window: autosaved while it is open; listed, recovered or forgotten if they were left."""
+"""Sessions: autosaved while a viewer runs. An abandoned session can be listed, recovered or removed.
+
+A session is abandoned if its program ended without closing it, for example by a signal.
+"""
 
 from __future__ import annotations
 
@@ -32,16 +35,16 @@ ENDING: Final = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if
 """The signals that end a program from outside."""
 
 BY_SIGNAL: Final = 128
-"""What a shell adds to the number of the signal that ended a program."""
+"""The exit code of a program that a signal ended, minus the number of the signal, as in a shell."""
 
 
 @contextmanager
 def autosaved_session(viewer: Viewer, folder: Path | None = None) -> Iterator[Callable[[], None]]:
-    """Autosave the session of a viewer; yields a function to call often.
+    """Autosave the session of a viewer. Yields a function that the caller calls often.
 
-    `folder` is the folder of a left session that goes on. A journal that cannot be written is told once in
-    the viewer, and left sessions are told on stderr. SIGTERM and SIGHUP end the program at once, and leave
-    the journal.
+    `folder` is the folder of a recovered session. If the journal cannot be written, the viewer shows a
+    message once. Messages on stderr and in the viewer mention abandoned sessions. SIGTERM and SIGHUP end the
+    program at once, and the journal remains.
     """
     autosave = Autosave(folder)
     _mention_left_sessions(viewer)
@@ -64,7 +67,7 @@ def autosaved_session(viewer: Viewer, folder: Path | None = None) -> Iterator[Ca
         raise
     finally:
         for number, handler in before.items():
-            # None is a handler that is not Python's.
+            # None means a handler that Python has not installed.
             signal.signal(number, signal.SIG_DFL if handler is None else handler)
     autosave.end()
 
@@ -74,24 +77,24 @@ def _end(number: int, _: FrameType | None) -> NoReturn:
 
 
 def _mention_left_sessions(viewer: Viewer) -> None:
-    """Mention sessions that were left, on stderr and in the viewer."""
-    left = left_sessions()
-    if not left:
+    """Mention abandoned sessions on stderr and in the viewer."""
+    folders = left_sessions()
+    if not folders:
         return
-    many = len(left) > 1
-    sessions = f"{len(left)} sessions, the last one" if many else "a session"
+    count = f"{len(folders)} sessions were" if len(folders) > 1 else "a session was"
     click.echo(
-        f"autocolor: {sessions} of {_time_of(left[0])}, did not end orderly; `autocolor view --recover` opens"
-        f" it, `--sessions` lists {'them' if many else 'it'}, `--forget` removes {'one' if many else 'it'}",
+        f"autocolor: {count} not closed, last written {_time_of(folders[0])}; `autocolor view --recover`"
+        " opens the last session, `--sessions` lists them, `--forget SESSION` removes a session",
         err=True,
     )
     viewer.tell(
-        "a session was left: autocolor view --recover opens it; the right edge: the menu", persistent=True
+        "a session was not closed: autocolor view --recover opens it; the right edge: the menu",
+        persistent=True,
     )
 
 
 def list_sessions() -> None:
-    """Print a line for each session that was left, the newest first: its name, its time and its steps."""
+    """Print a line for each abandoned session, the newest first: its name, time, source and steps."""
     for folder in left_sessions():
         try:
             session = _session_in(folder)
@@ -104,17 +107,17 @@ def list_sessions() -> None:
 
 
 def forget_session(name: str) -> None:
-    """Remove a session that was left, by the beginning of its name, and say so on stderr."""
+    """Remove an abandoned session, by the beginning of its name, and say so on stderr."""
     folder = _folder_named(name)
     forget(folder)
     click.echo(f"autocolor: {folder.name} is removed", err=True)
 
 
 def chosen_session(name: str) -> tuple[Path, JournalSession]:
-    """A left session and its folder, by the beginning of its name; NEWEST is the newest that can be read.
+    """The folder of an abandoned session and the session, by the beginning of its name.
 
-    Raises UsageError if none or several have the name, InputError if the session cannot be read,
-    MissingInputError if there is no session.
+    NEWEST is the newest session that can be read. Raises UsageError unless exactly one session has the name,
+    InputError if the session cannot be read, MissingInputError for NEWEST if no session can be read.
     """
     if name != NEWEST:
         folder = _folder_named(name)
@@ -125,13 +128,13 @@ def chosen_session(name: str) -> tuple[Path, JournalSession]:
         except InputError as error:
             click.echo(f"autocolor: {folder}: {error}", err=True)
     raise MissingInputError(
-        "--recover: there must be a session that did not end orderly and can be read, and there is none;"
-        " name a scene"
+        "--recover: there must be a session that was not closed and can be read, and there is none; name a"
+        " scene instead"
     )
 
 
 def _session_in(folder: Path) -> JournalSession:
-    """The session in a folder. Raises InputError if an older version left it, and as `read_journal`."""
+    """The session in a folder. Raises InputError if it is invalid or from an older version."""
     journal = journal_in(folder)
     if journal.name == OLD_SCRIPT:
         raise InputError(OLD)
@@ -139,17 +142,16 @@ def _session_in(folder: Path) -> JournalSession:
 
 
 def _folder_named(name: str) -> Path:
-    """The folder of the only left session whose name begins with `name`. Raises UsageError."""
+    """The folder of the only abandoned session whose name begins with `name`. Raises UsageError."""
     folders = [folder for folder in left_sessions() if name and folder.name.startswith(name)]
     if len(folders) != 1:
-        matches = "several of these" if folders else "none of these"
         raise UsageError(
-            f"a session must be named by the beginning of its name and no other's, and {name!r} is {matches};"
-            " `autocolor view --sessions` lists them"
+            f"SESSION must begin the name of one session, and {name!r} begins {len(folders)}; choose a name"
+            " from `autocolor view --sessions`"
         )
     return folders[0]
 
 
 def _time_of(folder: Path) -> str:
-    """When the journal of a session was written last, in local time."""
+    """The time of the last write to the journal of a session, in local time."""
     return time.strftime("%Y-%m-%d %H:%M", time.localtime(journal_in(folder).stat().st_mtime))

@@ -1,4 +1,4 @@
-"""`--set KEY=VALUE`: setting fields of a scene by the names that they have in a scene file.
+"""`--set KEY=VALUE`: setting fields of a scene by their names in a scene file.
 
 A key is the path of a field, such as `lights.key.intensity`. A value is written as in a scene file, but needs
 no quotes, and a list of names needs no brackets. `keys_after` lists keys and values for completion.
@@ -6,7 +6,8 @@ no quotes, and a list of names needs no brackets. `keys_after` lists keys and va
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
 from typing import Any, Final, NamedTuple
 
 from autocolor.checks import nearest
@@ -35,15 +36,15 @@ Changes = dict[str, Any]
 
 
 class FieldsInside(dict[str, Any]):
-    """Fields that are set one by one inside a field, unlike a table that is its value."""
+    """Settings of fields inside a field; a plain dict is a table that sets the whole field."""
 
 
 def with_settings(scene: Scene, settings: tuple[str, ...]) -> Scene:
-    """The scene with each KEY=VALUE set, such as `lights.key.intensity=2` or `lights.key.only_parts=hood`.
+    """The scene with settings KEY=VALUE, such as `lights.key.intensity=2` or `lights.key.only_parts=hood`.
 
-    `none` unsets a field that may be absent, such as `view.target`. The settings of one row are applied
-    together, so that their order does not matter. If a field is set twice, the last value counts. Raises
-    UsageError for an unknown key or an invalid value.
+    `none` unsets an optional field, such as `view.target`. All settings of a row are applied together, so
+    their order does not matter. If a field is set twice, the last value counts. Raises UsageError for an
+    unknown key or an invalid value.
     """
     changes: dict[tuple[str, str], Changes] = {}
     for setting in settings:
@@ -63,45 +64,43 @@ def with_settings(scene: Scene, settings: tuple[str, ...]) -> Scene:
 
 
 def _replaced(scene: Scene, table: str, name: str, fields: Changes) -> Scene:
-    """The scene with other values in some of its own fields, or in fields of one row."""
-    if table == "":
-        return scene.replace(**fields)
-    if table == "lights":
-        return scene.with_light(name, **fields)
-    if table == "surfaces":
-        return scene.with_surface(name, **fields)
-    if table == "parts":
-        return scene.with_part(name, **fields)
-    if table == "scalar":
-        return scene.with_scalar(**fields)
-    return scene.with_view(**fields)
+    """The scene with some fields of a row changed; the table "" is the scene itself."""
+    edits: dict[str, Callable[..., Scene]] = {
+        "": scene.replace,
+        "scalar": scene.with_scalar,
+        "view": scene.with_view,
+        "lights": partial(scene.with_light, name),
+        "surfaces": partial(scene.with_surface, name),
+        "parts": partial(scene.with_part, name),
+    }
+    return edits[table](**fields)
 
 
 def _value_at(scene: Scene, field: Field | None, key: str, text: str) -> object:
-    """The value for a field. Raises UsageError if the field must have a value and the text unsets it."""
+    """The value of a text for a field. Raises UsageError if it unsets a field that must have a value."""
     kind = None if field is None else field.column.kind
     names = [row.name for row in vars(scene)[kind.table]] if isinstance(kind, Referring) else []
     if text.lower() == UNSET:
-        is_absent = field is not None and field.is_optional and isinstance(kind, Referring)
-        return None if is_absent and text not in names else _unset(field, key, text)
+        refers = field is not None and field.is_optional and isinstance(kind, Referring)
+        return None if refers and text not in names else _unset(field, key, text)
     value = value_of(text)
     return _names_of(value, names) if isinstance(kind, References) and isinstance(value, str) else value
 
 
-def _names_of(text: str, known: Sequence[str]) -> list[str]:
-    """The names in a text: the whole text if it is a known name, else names between commas.
+def _names_of(text: str, existing: Sequence[str]) -> list[str]:
+    """The names in a text: the whole text if a row has this name, else the names between commas.
 
     >>> _names_of("body", []), _names_of("[body, glass]", []), _names_of("a, b", ["a, b"])
     (['body'], ['body', 'glass'], ['a, b'])
     """
-    if text in known:
+    if text in existing:
         return [text]
     listed = text[1:-1] if text.startswith("[") and text.endswith("]") else text
     return [name.strip().strip("\"'") for name in listed.split(",") if name.strip()]
 
 
 def _unset(field: Field | None, key: str, text: str) -> object:
-    """The value of a field that the text "none" unsets; the text itself if the field may have it as a value.
+    """The value of a field that the text "none" unsets, or the text itself if it is a valid value.
 
     Raises UsageError if the field must have a value.
     """
@@ -110,15 +109,15 @@ def _unset(field: Field | None, key: str, text: str) -> object:
     if field.is_optional:
         return None
     default = None if field.default is None else field.default()
-    # An unset value is left out of a scene file: no limit of a flap, no flaps.
+    # The default unsets a field if scene files leave it out: no limit of a flap, no flaps.
     if default is not None and field.column.kind.to_plain(key, default).get(key) in (None, {}):
         return default
     rule = field.column.kind.rule()
-    raise UsageError(f"--set {key}: it {rule}, not none; only a field that may be absent can be unset")
+    raise UsageError(f"--set {key}: it {rule}, not none; only an optional field can be unset")
 
 
 def value_of(text: str) -> Any:
-    """The text parsed as a TOML value, or the text itself if it is none.
+    """The text parsed as a TOML value, or the text itself if it is not TOML.
 
     >>> value_of("2.5"), value_of("[1, 2]"), value_of("true"), value_of("#b01020")
     (2.5, [1, 2], True, '#b01020')
@@ -135,7 +134,7 @@ def value_of(text: str) -> Any:
 def _put(fields: Changes, path: tuple[str, ...], value: Any, key: str) -> None:
     """Put a value at a path of nested dictionaries, which are created as needed.
 
-    Raises UsageError where both a table and a field of it are set, because the result would depend on their
+    Raises UsageError if both a whole table and a field inside it are set: the result would depend on their
     order.
     """
     for name in path[:-1]:
@@ -156,11 +155,11 @@ EXAMPLES: Final = {
 }
 
 MOST_PARTS: Final = 4
-"""Limit: names in a field's path within its row."""
+"""Limit: names in the path from a row to a field."""
 
 
 class SettingPlace(NamedTuple):
-    """The place of a field: its table ("" for the scene itself), the name of its row, its path in the row."""
+    """The place of a field: its table ("" for the scene itself), its row's name, the path in the row."""
 
     table: str
     name: str
@@ -173,12 +172,13 @@ def place_of(scene: Scene, key: str) -> SettingPlace:
     table, _, rest = key.partition(".")
     kind = kinds.get(table)
     if kind is None or (rest and not isinstance(kind, (Nested, RowList))):
-        raise UsageError(f"--set {key}: there is no field of this name{nearest(table, kinds)}")
+        wrong = table if kind is None else key
+        raise UsageError(f"--set {key}: there is no field {wrong!r}{nearest(table, kinds)}")
     if not isinstance(kind, (Nested, RowList)):
         return SettingPlace("", "", (table,))
     row: Row | None = None
     if isinstance(kind, RowList):
-        rows = {each.name: each for each in vars(scene)[table]}
+        rows = {row.name: row for row in vars(scene)[table]}
         name, field = _name_and_rest(rest, rows)
         if name is None and "." in rest:
             wrong = rest.partition(".")[0]
@@ -187,10 +187,10 @@ def place_of(scene: Scene, key: str) -> SettingPlace:
     else:
         name, field = "", rest
     if key == table and fields_of(Scene)[table].is_optional:
-        # The whole row, which can be unset.
+        # The key is a whole row, which can be unset.
         return SettingPlace("", "", (table,))
     if name is None or not field:
-        raise UsageError(f"--set {key}: it must name one field; write it as in {EXAMPLES[table]}")
+        raise UsageError(f"--set {key}: it must name a field; write it as in {EXAMPLES[table]}")
     if field == "name" and isinstance(kind, RowList):
         raise UsageError(f"--set {key}: a name cannot be set; change it in the scene file")
     path = _path_in(row, field, key)
@@ -200,22 +200,22 @@ def place_of(scene: Scene, key: str) -> SettingPlace:
 
 
 def _name_and_rest(text: str, names: Iterable[str]) -> tuple[str | None, str]:
-    """The name that a text begins with, or None, and the text after it and a period.
+    """The longest name that a text begins with, or None, and the text after the name and a period.
 
-    A name may contain periods and may be quoted: the longest name that matches is taken.
+    A name may contain periods, and may be quoted in the text.
     """
-    written = {each: name for name in names for each in (name, f'"{name}"', f"'{name}'")}
-    start = max((each for each in written if f"{text}.".startswith(f"{each}.")), key=len, default=None)
+    written = {form: name for name in names for form in (name, f'"{name}"', f"'{name}'")}
+    start = max((form for form in written if f"{text}.".startswith(f"{form}.")), key=len, default=None)
     return (None, "") if start is None else (written[start], text[len(start) + 1 :])
 
 
 def _path_in(row: Row | None, field: str, key: str) -> tuple[str, ...]:
-    """The path of a field in a row. Raises UsageError if a row by name on it does not exist."""
+    """The path of a field in a row. Raises UsageError if a row of NamedRows on it does not exist."""
     outer, _, rest = field.partition(".")
-    of_row = None if row is None else fields_of(type(row)).get(outer)
-    if row is None or of_row is None or not isinstance(of_row.column.kind, NamedRows) or not rest:
+    outer_field = None if row is None else fields_of(type(row)).get(outer)
+    if row is None or outer_field is None or not isinstance(outer_field.column.kind, NamedRows) or not rest:
         return tuple(field.split("."))
-    names = [each.name for each in vars(row)[outer]]
+    names = [inner_row.name for inner_row in vars(row)[outer]]
     name, inner = _name_and_rest(rest, names)
     if inner == "name":
         raise UsageError(f"--set {key}: a name cannot be set; change it in the scene file")
@@ -225,8 +225,8 @@ def _path_in(row: Row | None, field: str, key: str) -> tuple[str, ...]:
         return outer, rest[1:-1]
     wrong, _, inner = rest.partition(".")
     if inner:
-        advice = nearest(wrong, names) or "; give a new one whole, as a table"
-        noun = of_row.column.kind.row_class.noun
+        noun = outer_field.column.kind.row_class.noun
+        advice = nearest(wrong, names) or f"; add a {noun} with all its keys in a table"
         raise UsageError(f"--set {key}: there is no {noun} {wrong!r}{advice}")
     return outer, wrong
 
@@ -238,7 +238,7 @@ def field_of(place: SettingPlace) -> Field | None:
 
 
 def _settable() -> Mapping[str, Kind]:
-    """The kinds of the fields of a scene that can be set, by name."""
+    """The kinds of the fields of a scene that `--set` can change, by name."""
     kinds = {name: field.column.kind for name, field in fields_of(Scene).items() if name != "name"}
     return {name: kind for name, kind in kinds.items() if not isinstance(kind, Instance)}
 
@@ -251,24 +251,23 @@ def _field_at(cls: type[Row], path: Sequence[str]) -> Field | None:
     field = fields_of(cls)[key.field]
     kind = field.column.kind
     if isinstance(kind, OneRowOf) and path[0] != key.field:
-        inside = next(each for each in kind.classes.values() if path[0] in keys_of(each))
-        return _field_at(inside, path)
+        return _field_at(next(cls for cls in kind.classes.values() if path[0] in keys_of(cls)), path)
     if isinstance(kind, Nested) and kind.inline:
         return _field_at(kind.row_class, path)
     if len(path) == 1:
         return field
     if isinstance(kind, NamedRows):
-        # A row by name may be absent.
+        # The row itself is optional.
         whole = Field(Column(Nested(kind.row_class), field.column.tier, field.column.help), True, None)
         return whole if len(path) == 2 else _field_at(kind.row_class, path[2:])
     return _field_at(kind.row_class, path[1:]) if isinstance(kind, Nested) else None
 
 
 def keys_after(scene: Scene, start: str) -> list[str]:
-    """The keys that begin with `start`: keys of tables and rows end in ".", all others in "=".
+    """The keys that begin with `start`, which is empty or such a key itself.
 
-    `start` is empty or such a key itself. A whole key is followed by its values: the choices of its field, or
-    its present value.
+    Keys of tables and rows end in ".", keys of fields in "=". After a field's key come its values: its
+    choices, or its present value.
     """
     if start.endswith("="):
         return [f"{start}{value}" for value in _values(scene, start[:-1])]
@@ -298,16 +297,15 @@ def keys_after(scene: Scene, start: str) -> list[str]:
 
 
 def _fields_after(start: str, cls: type[Row], row: Row | None = None) -> list[str]:
-    """The keys of a class after a start; the key of rows by name ends in "." if the row has any."""
-    keys = {key: _field_at(cls, (key,)) for key in keys_of(cls)}
-    found = []
-    for key, field in keys.items():
+    """The keys of a class after a start; the key of NamedRows ends in "." if there are such rows."""
+    keys = []
+    for key in keys_of(cls):
+        field = _field_at(cls, (key,))
         if field is None or (key == "name" and cls is not Scalar):
             continue
-        goes_on = isinstance(field.column.kind, Nested)
-        goes_on |= isinstance(field.column.kind, NamedRows) and row is not None and bool(vars(row)[key])
-        found.append(f"{start}{key}{'.' if goes_on else '='}")
-    return found
+        has_rows = isinstance(field.column.kind, NamedRows) and row is not None and bool(vars(row)[key])
+        keys.append(f"{start}{key}{'.' if has_rows or isinstance(field.column.kind, Nested) else '='}")
+    return keys
 
 
 def _row_at(scene: Scene, place: SettingPlace) -> Any:
@@ -315,11 +313,11 @@ def _row_at(scene: Scene, place: SettingPlace) -> Any:
     if not place.table:
         return scene
     rows = vars(scene)[place.table]
-    return next((each for each in rows if each.name == place.name), None) if place.name else rows
+    return next((row for row in rows if row.name == place.name), None) if place.name else rows
 
 
 def _values(scene: Scene, key: str) -> list[str]:
-    """The values to offer for a field: its choices, or its present value and the names of colors."""
+    """The completions of a field's value: its choices, or its present value and the names of colors."""
     place = place_of(scene, key)
     field = field_of(place)
     if field is None:
@@ -334,7 +332,7 @@ def _values(scene: Scene, key: str) -> list[str]:
     if (place.table, place.path) == ("scalar", ("name",)):
         return list(scene.scalar_names)
     if isinstance(kind, Referring) and not isinstance(kind, RangesByName):
-        return [*kind.words, *(each.name for each in vars(scene)[kind.table])]
+        return [*kind.words, *(row.name for row in vars(scene)[kind.table])]
     row = _row_at(scene, place)
     value: Any = {} if row is None else to_plain(row)
     for part in place.path:

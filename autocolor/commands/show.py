@@ -1,4 +1,4 @@
-"""`autocolor show`: the interactive system with a scene, on a display elsewhere."""
+"""`autocolor show`: the interactive system with a scene, on another display."""
 
 from __future__ import annotations
 
@@ -45,9 +45,9 @@ Examples:
     is_flag=False,
     flag_value="newest",
     metavar="[SESSION]",
-    help="Continue the newest session that did not end orderly, or another; without SCENE.",
+    help="Instead of SCENE, continue the newest session that was not closed, or the session of a name.",
 )
-@click.option("--once", is_flag=True, help="Show the picture, and leave the display at once.")
+@click.option("--once", is_flag=True, help="Send the picture and exit; the display keeps showing it.")
 @click.pass_context
 def show(
     context: click.Context,
@@ -57,15 +57,15 @@ def show(
     recover: str | None,
     once: bool,
 ) -> None:
-    """Show SCENE on the display that listens at an address, such as `ramtek serve`, and obey its joystick.
+    """Show SCENE on another display, such as `ramtek serve`, and follow its joystick.
 
-    You can do everything there that `view` does, by pointing: ENTER picks, TRACK drags, and the right edge
-    brings the menu. Files are opened and saved only in the folder of the scene. `leave` in the menu ends the
-    command, and so does Ctrl+C.
+    All functions of `view` are available by pointing: ENTER picks, TRACK drags, and the right edge opens the
+    menu. Files are opened and saved only in the folder of the scene. To end the command, pick `leave` in the
+    menu, or press Ctrl+C.
     """
     refuse_address(address)
     if (source is None) == (recover is None):
-        raise UsageError("show must have SCENE or --recover, one of them; name a scene")
+        raise UsageError("show must have either SCENE or --recover; name a scene")
     if recover is not None and (settings or once):
         raise UsageError("--set and --once are for SCENE, not for sessions; leave them out")
     if recover is not None:
@@ -90,13 +90,13 @@ def show(
 
 
 def show_once(scene: Scene, address: str) -> None:
-    """Show a scene on the display at an address, and leave the display to other hosts."""
+    """Send the picture of a scene to the display at an address, and wait until it is complete."""
     from autocolor.studio import Studio
     from ramtek_emu import instructions
 
     with port_to(address) as port:
         Studio(scene, port)
-        # The reply to this read arrives only after everything sent before it was executed.
+        # The display replies only after it has executed all earlier instructions.
         port.send(instructions.read_entries(0, 2))
         port.receive(2)
     click.echo(f"shown on {address}", err=True)
@@ -118,11 +118,10 @@ def session_elsewhere(
 ) -> None:
     """Run the interactive system with a session on the display at an address, until its user leaves.
 
-    Files are opened and saved in the folder. Until then the state folder has the journal; `left` is its
-    folder there if the session was left before. `prepare` is called with the viewer at the beginning.
-
-    The unit is polled for the only input: a place, ENTER and TRACK. Everything else is a row of a menu.
-    Raises UnavailableError if the display goes away or does not answer, PortError if it is not reached.
+    Files are opened and saved in `folder`. `left` is the folder of a recovered session's journal. `prepare`
+    is called with the viewer at the beginning. The only input is polled: the cursor, ENTER and TRACK. All
+    other input goes through menus. Raises UnavailableError if the display does not answer or disconnects,
+    PortError if it cannot be reached.
     """
     from autocolor.commands.sessions import autosaved_session
     from autocolor.screens.viewer import Viewer
@@ -138,19 +137,19 @@ def session_elsewhere(
                 attend(viewer, update)
             viewer.clear()
         except (PortError, ReplyError) as error:
-            told = str(error)
+            message = str(error)
             if isinstance(error, ReplyError):
-                told = (
+                message = (
                     f"a display must answer within {port.timeout:g} seconds, and {address} does not; it may"
                     " be serving another host first"
                 )
             if history.steps:
-                told += "; `autocolor show --recover --to ADDRESS` goes on with the session"
-            raise UnavailableError(told) from None
+                message += "; `autocolor show --recover --to ADDRESS` continues the session"
+            raise UnavailableError(message) from None
 
 
 def attend(viewer: Viewer, update: Callable[[], object]) -> None:
-    """Poll the unit until the user leaves; call `update` after each poll, and sleep between the polls."""
+    """Poll the display until the user leaves; after each poll, call `update` and sleep."""
     from autocolor.screens.input import POLL_SECONDS
 
     due = time.monotonic()
@@ -158,16 +157,13 @@ def attend(viewer: Viewer, update: Callable[[], object]) -> None:
         viewer.poll()
         viewer.on_tick()
         update()
-        # After a late poll, the next one is no sooner than usual.
+        # A late poll does not shorten the time until the next poll.
         due = max(due + POLL_SECONDS, time.monotonic())
         time.sleep(max(0.0, due - time.monotonic()))
 
 
 def refuse_address(address: str) -> None:
-    """Check an address: tcp://host:port, or the path of a Unix socket, which has a slash.
-
-    Raises UsageError for any other.
-    """
+    """Raise UsageError unless an address is tcp://host:port, or the path of a Unix socket with a slash."""
     from ramtek_emu import PortError
     from ramtek_emu.host.port import host_and_port
 

@@ -1,4 +1,4 @@
-"""`autocolor sql`: the tables of a scene as a relational data base."""
+"""`autocolor sql`: query and change the tables of a scene with SQL."""
 
 from __future__ import annotations
 
@@ -42,18 +42,16 @@ Examples:
 @click.command(epilog=EXAMPLES)
 @scene_options
 @click.argument("statement", required=False)
-@click.option("--write", is_flag=True, help="Let INSERT, UPDATE and DELETE through, and save SCENE.")
-@click.option(
-    "--format", "form", type=click.Choice(FORMATS), help="How to print rows: as a table by default."
-)
-@click.option("--csv", "as_csv", is_flag=True, help="Print CSV.")
-@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+@click.option("--write", is_flag=True, help="Allow INSERT, UPDATE and DELETE, and save SCENE.")
+@click.option("--format", "form", type=click.Choice(FORMATS), help="Format of printed rows; default: table.")
+@click.option("--csv", "as_csv", is_flag=True, help="Print CSV, as --format csv does.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON, as --format json does.")
 @click.option(
     "--seconds",
     type=click.FloatRange(0.001, 86400),
     default=30.0,
     show_default=True,
-    help="How long a statement may take.",
+    help="Longest time of a statement.",
 )
 @click.pass_context
 def sql(
@@ -66,18 +64,18 @@ def sql(
     as_json: bool,
     seconds: float,
 ) -> None:
-    """Ask the tables of SCENE with a statement of SQL; without one, at a prompt or from stdin.
+    """Run SQL on the tables of SCENE: STATEMENT, or else statements from a prompt or stdin.
 
-    SCENE is a store (.sqlite), or any other scene, which is read into memory for it. `.schema` at the prompt
-    shows the tables; docs/STORE.md describes them. A change is checked as a scene file is, and refused as a
-    whole if anything would be wrong.
+    SCENE is a store (.sqlite) or any other scene. `.schema` at the prompt shows the tables; docs/STORE.md
+    describes them. A change is checked like a scene file; if it breaks a rule, nothing is changed.
     """
-    asked = [each for each, is_asked in zip(FORMATS, (False, as_csv, as_json), strict=True) if is_asked]
-    if len(asked) + (form is not None) > 1:
-        raise UsageError("rows must be printed in one way, not several; leave one of the options")
+    forms = [form] if form is not None else []
+    forms += [name for name, is_given in (("csv", as_csv), ("json", as_json)) if is_given]
+    if len(forms) > 1:
+        raise UsageError("rows must have one format, not several; give one of --format, --csv and --json")
     tables, report = _opened(source, write)
     tables.seconds = seconds
-    run = partial(_run, tables, source, write, form or next(iter(asked), "table"))
+    run = partial(_run, tables, source, write, forms[0] if forms else "table")
 
     with tables:
         if statement is not None:
@@ -85,13 +83,13 @@ def sql(
         elif reads_from_a_terminal():
             prompt(tables, run)
         else:
-            for each in statements_in(sys.stdin):
-                run(each)
+            for line in statements_in(sys.stdin):
+                run(line)
     context.exit(0 if report is None else ended(report, source))
 
 
 def _opened(source: SceneSource, write: bool) -> tuple[Tables, SceneReport | None]:
-    """The tables of a scene, and the report of what was read; None for a store, which needs no repair."""
+    """The tables of a scene, and the report of its reading; None for a store, which is never repaired."""
     from autocolor.files.store.tables import is_store, open_tables, tables_of
 
     path = Path(source.path)
@@ -104,7 +102,7 @@ def _opened(source: SceneSource, write: bool) -> tuple[Tables, SceneReport | Non
 
 
 def _refuse_write(path: Path) -> None:
-    """Raise UsageError for a file that a scene cannot be saved to."""
+    """Raise UsageError unless a scene can be saved at the path."""
     if path.is_dir() or path.suffix.lower() == ".toml":
         return
     advice = "take its scene out with `autocolor tables --write`"
@@ -114,7 +112,7 @@ def _refuse_write(path: Path) -> None:
 
 
 def _run(tables: Tables, source: SceneSource, write: bool, form: str, statement: str) -> None:
-    """Run one statement, and print its rows, or how many it changed."""
+    """Run a statement, and print its rows, or the number of changed rows."""
     if not (write and tables.would_change(statement)):
         for line in lines_of(tables.answer(statement), form):
             click.echo(line)
@@ -132,10 +130,8 @@ def _run(tables: Tables, source: SceneSource, write: bool, form: str, statement:
         tell_written(*map(str, write_scene_with_tables(path, tables.scene(), overwrite=True, complete=False)))
 
 
-# Printing the rows of an answer as an aligned table, as CSV, or as JSON.
-
 MEASURED: Final = 1000
-"""Rows that decide the widths of the columns; later rows are printed as they come."""
+"""The number of rows that determine the widths of columns; wider cells in later rows are not aligned."""
 
 WIDEST: Final = 60
 """Limit: letters of a cell of a table; longer text is cut."""
@@ -144,14 +140,14 @@ ABSENT: Final = "NULL"
 
 
 def lines_of(answer: Answer, form: str) -> Iterator[str]:
-    """The lines of an answer in one of FORMATS, printed as its rows come."""
+    """The lines of an answer in one of FORMATS. Rows are read as the lines are asked for."""
     if form == "csv":
         return _csv(answer)
     return _json(answer) if form == "json" else _table(answer)
 
 
 def _table(answer: Answer) -> Iterator[str]:
-    """The columns and the rows, aligned; numbers are aligned to the right."""
+    """The columns and the rows, aligned, with numbers at the right."""
     rows = iter(answer.rows)
     cells = []
     has_number = [False] * len(answer.columns)
@@ -168,7 +164,7 @@ def _table(answer: Answer) -> Iterator[str]:
     is_number = [number and not other for number, other in zip(has_number, has_other, strict=True)]
     yield _line(header, widths, is_number)
     yield "  ".join("-" * width for width in widths)
-    for row in chain(cells, ([_cell(value) for value in each] for each in rows)):
+    for row in chain(cells, ([_cell(value) for value in values] for values in rows)):
         yield _line(row, widths, is_number)
 
 
@@ -201,7 +197,7 @@ def _csv_line(cells: Sequence[object]) -> str:
 
 
 def _json(answer: Answer) -> Iterator[str]:
-    """A list of objects by the names of columns, an object a line."""
+    """A list of objects, whose keys are the names of columns; a line has an object."""
     opening = "["
     for row in answer.rows:
         values = dict(zip(answer.columns, map(_plain, row), strict=True))
@@ -211,7 +207,7 @@ def _json(answer: Answer) -> Iterator[str]:
 
 
 def _plain(value: Value) -> object:
-    """A value that JSON and CSV can hold: infinite numbers and bytes as text."""
+    """The value for JSON and CSV: infinite numbers and bytes become text."""
     if isinstance(value, bytes):
         return value.hex()
     if isinstance(value, float) and value - value != 0:
@@ -219,25 +215,23 @@ def _plain(value: Value) -> object:
     return value
 
 
-# The prompt: statements that end with a semicolon, and words that begin with a dot.
-
 GREETING: Final = "statements end with ;   .tables   .schema [TABLE]   .help   .quit, or Ctrl+D"
 FIRST: Final = "sql> "
 NEXT: Final = "...> "
 
 MOST_LETTERS: Final = 1 << 20
-"""Limit: letters of one statement."""
+"""Limit: letters of a statement."""
 
 _PIECES: Final = re.compile(
     r"""'[^']*(?:'|\Z)|"[^"]*(?:"|\Z)|`[^`]*(?:`|\Z)|\[[^]]*(?:]|\Z)|--[^\n]*|/\*.*?(?:\*/|\Z)|;""", re.DOTALL
 )
-"""Texts, names and comments, which may hold semicolons, and semicolons."""
+"""Semicolons, and strings, names and comments, which may contain semicolons."""
 
 
 def prompt(tables: Tables, run: Callable[[str], None]) -> None:
-    """Ask for statements until Ctrl+D or `.quit`; Ctrl+C deletes the typed text, or ends a statement."""
+    """Run typed statements until Ctrl+D or `.quit`; Ctrl+C deletes the typed text or stops a statement."""
     with suppress(ImportError):
-        # Lines can be edited, and come back with the arrow keys.
+        # With readline the user can edit lines, and the arrow keys bring earlier lines back.
         import readline  # noqa: F401
     click.echo(GREETING, err=True)
     text = ""
@@ -254,7 +248,7 @@ def prompt(tables: Tables, run: Callable[[str], None]) -> None:
             return
         except KeyboardInterrupt:
             text = ""
-            click.echo("taken back; Ctrl+D ends", err=True)
+            click.echo("canceled; Ctrl+D ends", err=True)
         except AutocolorError as error:
             click.echo(f"autocolor: {error}", err=True)
         except _Quit:
@@ -266,7 +260,7 @@ class _Quit(Exception):  # noqa: N818
 
 
 def _dotted(line: str, tables: Tables) -> bool:
-    """Run a line that is a command with a dot; False for any other line."""
+    """Run a command that begins with a dot; returns False for a line of SQL."""
     words = line.split()
     if not words:
         return True
@@ -285,7 +279,7 @@ def _dotted(line: str, tables: Tables) -> bool:
 
 
 def statements_in(lines: Iterable[str]) -> Iterator[str]:
-    """The statements of some lines; the last one may lack its semicolon."""
+    """The statements in some lines. The last statement may lack its semicolon."""
     text = ""
     for line in _readable(lines):
         text += line
@@ -307,11 +301,11 @@ def _readable(lines: Iterable[str]) -> Iterator[str]:
 
 
 def _not_text() -> UsageError:
-    return UsageError("statements must be text in UTF-8 without NUL; save them so")
+    return UsageError("statements must be text in UTF-8 without NUL; save them in this encoding")
 
 
 def split(text: str) -> tuple[list[str], str]:
-    """The whole statements of a text, with their semicolons, and the rest of the text.
+    """The complete statements of a text, with their semicolons, and the rest of the text.
 
     Raises UsageError if it is not text in UTF-8.
 
@@ -320,16 +314,16 @@ def split(text: str) -> tuple[list[str], str]:
     """
     whole = []
     begin = 0
-    for found in _PIECES.finditer(text):
-        if found[0] == ";" and _is_complete(text[begin : found.end()]):
-            whole.append(text[begin : found.end()])
-            begin = found.end()
+    for piece in _PIECES.finditer(text):
+        if piece[0] == ";" and _is_complete(text[begin : piece.end()]):
+            whole.append(text[begin : piece.end()])
+            begin = piece.end()
     rest = text[begin:]
     return whole, rest if rest.strip() else ""
 
 
 def _is_complete(text: str) -> bool:
-    """Whether a text is a whole statement; a semicolon inside a trigger does not end it."""
+    """Whether a text is a complete statement. A semicolon inside a trigger does not end a statement."""
     try:
         return sqlite3.complete_statement(text)
     except ValueError:
@@ -337,5 +331,5 @@ def _is_complete(text: str) -> bool:
 
 
 def reads_from_a_terminal() -> bool:
-    """Whether a user types the statements."""
+    """Whether stdin is a terminal, where a user types the statements."""
     return sys.stdin is not None and sys.stdin.isatty()

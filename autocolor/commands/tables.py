@@ -1,19 +1,15 @@
-"""`autocolor tables`: print or write the tables of a scene, including those created from defaults."""
+"""`autocolor tables`: print or write a complete scene file, with the tables created for the scene."""
 
 from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import click
 
 from autocolor.commands.outputs import tell_written
 from autocolor.commands.scenes import SceneSource, ended, read, scene_options
-
-if TYPE_CHECKING:
-    from autocolor.files.scene_report import SceneReport
-
 
 EXAMPLES: Final = """\b
 Examples:
@@ -36,31 +32,23 @@ def tables(
     force: bool,
     as_json: bool,
 ) -> None:
-    """Print the parts, surfaces, lights and view of SCENE as a scene file, including those created for it."""
+    """Print a complete scene file of SCENE, with the parts, surfaces, lights and view created for it."""
     report = read(source)
     if write:
-        *meshes, path = written(report, Path(source.path), force)
+        from autocolor.files.scene_writing import write_scene_with_tables
+
+        path = Path(source.path)
+        folder = path if path.is_dir() else path.parent
+        *meshes, scene_file = write_scene_with_tables(folder, report.scene, overwrite=force)
         tell_written(*map(str, meshes))
-        click.echo(f"wrote {path}; render it by naming its folder or itself, not the mesh", err=True)
+        click.echo(f"wrote {scene_file}; to render it, name it or its folder, not the mesh", err=True)
     elif as_json:
         from autocolor.files.picture_file import plain_scene
 
         click.echo(json.dumps(plain_scene(report.scene), indent=2))
     else:
-        click.echo(text_of(report), nl=False)
+        from autocolor.files.scene_toml.scene_text import scene_text
+
+        # The scene of a picture file has no mesh files.
+        click.echo(scene_text(report.scene, report.mesh_files), nl=False)
     context.exit(ended(report, source))
-
-
-def text_of(report: SceneReport) -> str:
-    """The text of a scene file; without a mesh if the scene is from a picture file."""
-    from autocolor.files.scene_toml.scene_text import scene_text
-
-    return scene_text(report.scene, report.mesh_files)
-
-
-def written(report: SceneReport, source: Path, force: bool) -> list[Path]:
-    """Write the scene.toml beside the mesh, and the mesh if it has no file there; returns the files."""
-    from autocolor.files.scene_writing import write_scene_with_tables
-
-    folder = source if source.is_dir() else source.parent
-    return write_scene_with_tables(folder, report.scene, overwrite=force)

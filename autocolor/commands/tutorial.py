@@ -24,13 +24,13 @@ Examples:
     "--to",
     "address",
     metavar="tcp://HOST:PORT",
-    help="Address of a display elsewhere, or the path of its Unix socket, instead of a window.",
+    help="Address of another display, or the path of its Unix socket, to use instead of a window.",
 )
 @click.option("--full-screen", is_flag=True, help="Open the window in full screen.")
 @click.option("--fit", is_flag=True, help="Scale the picture to fill the window; pixels may become uneven.")
 @verbose_option
 def tutorial(address: str | None, full_screen: bool, fit: bool) -> None:
-    """Light and paint a car step by step: a panel says what to do, and notices when you have done it.
+    """Light and paint a car step by step. A panel shows the next step, and goes on when you have done it.
 
     Files are saved in the current folder.
     """
@@ -47,7 +47,7 @@ def tutorial(address: str | None, full_screen: bool, fit: bool) -> None:
 
 
 def teach(viewer: Viewer) -> None:
-    """Put the panel of the tutorial over the screens of a viewer."""
+    """Add the panel of the tutorial to all screens of a viewer."""
     from autocolor.screens.tutorial import Tutorial
 
     viewer.board.over = Tutorial(viewer.session).widgets

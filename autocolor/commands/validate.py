@@ -41,13 +41,13 @@ def validate(
     output: str | None,
     force: bool,
 ) -> None:
-    """List every problem and every repair of SCENE, and every fault of its mesh. Rows are counted from 1.
+    """List every problem and every repair of SCENE, and every fault of its mesh.
 
-    The exit code is 65 if there is a problem. A scene with faults can be rendered; with --strict, a fault or
-    a repair makes the exit code 1.
+    A scene with a problem cannot be rendered: the exit code is 65. A scene with faults or repairs can; with
+    --strict the exit code is then 1. Rows are counted from 1.
     """
     if output is not None and not shows:
-        raise UsageError("-o is for --show; add that")
+        raise UsageError("-o must come with --show, not alone; add --show")
     refuse_outputs(output, None, force)
     try:
         report = read(source)
@@ -63,15 +63,15 @@ def validate(
         click.echo(json.dumps(answer, indent=2))
     else:
         kinds = f"{len(faults)} kind{'s' if len(faults) > 1 else ''} of faults in its mesh"
-        found = f"it can be rendered, with {kinds}" if faults else "no problem"
-        click.echo("\n".join([f"{source.path}: {found}", *fault_lines(faults)]))
+        verdict = f"it can be rendered, with {kinds}" if faults else "no problem"
+        click.echo("\n".join([f"{source.path}: {verdict}", *fault_lines(faults)]))
     if shows:
         show_scene(fault_scene(report.scene, faults), output, force)
     context.exit(REPAIRED if source.strict and faults else ended(report, source))
 
 
 def show_scene(scene: Scene, output: str | None, force: bool) -> None:
-    """Show a scene in a window, or write what the display shows to a PNG file. Nothing is saved to it."""
+    """Show a scene in a window, or write its picture to a PNG file. The scene has no file to save to."""
     if output is None:
         from autocolor.commands.view import show
         from autocolor.journal.history import History
@@ -88,16 +88,16 @@ def show_scene(scene: Scene, output: str | None, force: bool) -> None:
 
 
 FIRST_ROWS: Final = 5
-"""The most rows, and the most loops of edges, that a message names."""
+"""The most rows that a line names, and the most lines about loops of edges."""
 
 MOST_ROWS: Final = 10_000
 """Limit: rows of one kind in JSON; nobody reads more."""
 
 
 def fault_lines(faults: Sequence[Fault]) -> Iterator[str]:
-    """A line for each kind of faults, with its number and first rows, and a line for each of the first loops.
+    """A line for each kind of faults, with its number and first rows, and lines for its first loops of edges.
 
-    Rows are counted from 1, as in a table store, an OBJ file or CSV tables without numbers of their own.
+    Rows are counted from 1, as in a table store, an OBJ file, or CSV tables without row numbers.
     """
     from autocolor.scene.mesh_faults import EDGE, KINDS
 
@@ -113,7 +113,7 @@ def fault_lines(faults: Sequence[Fault]) -> Iterator[str]:
             yield f"     {_hole_line(hole)}"
         more_holes = len(fault.holes) - FIRST_ROWS
         if more_holes > 0:
-            yield f"     and {more_holes:,} shorter {'one' if more_holes == 1 else 'ones'}"
+            yield f"     and {more_holes:,} shorter {'loop' if more_holes == 1 else 'loops'}"
 
 
 def _hole_line(hole: Hole) -> str:
@@ -125,7 +125,7 @@ def _hole_line(hole: Hole) -> str:
 
 
 def fault_values(faults: Sequence[Fault]) -> list[dict[str, Any]]:
-    """The faults as values that JSON can hold; of each kind at most MOST_ROWS rows."""
+    """The faults as values that JSON can hold, with at most MOST_ROWS rows of a kind."""
     return [
         {
             "kind": fault.kind,
@@ -162,16 +162,16 @@ COLORS: Final[tuple[Color, ...]] = (
     (150, 40, 160),
     (220, 20, 40),
 )
-"""The color of each kind of faults, in the order of their numbers; graver faults are redder and darker."""
+"""The colors of the kinds of faults, in the order of their numbers; graver faults are redder and darker."""
 
 WITHOUT_FAULT: Final[Color] = (200, 200, 200)
 
 SURFACE: Final = "mesh"
-"""The surface of all parts in a picture of faults, so that there are levels for all kinds."""
+"""The surface of all parts in a picture of faults, so that the levels suffice for all kinds."""
 
 
 def fault_scene(scene: Scene, faults: Sequence[Fault]) -> Scene:
-    """The scene, colored by the faults of its mesh: a color for each kind, light gray elsewhere."""
+    """The scene colored by the faults of its mesh: a color for each kind, and light gray without fault."""
     from autocolor.scene.mesh_faults import FAULT, KINDS, fault_scalar
     from autocolor.scene.scalar import Scalar
     from autocolor.scene.scene import AUTO

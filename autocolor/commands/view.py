@@ -38,10 +38,10 @@ Examples:
     is_flag=False,
     flag_value="newest",
     metavar="[SESSION]",
-    help="Continue the newest session that did not end orderly, or another; without SCENE.",
+    help="Instead of SCENE, continue the newest session that was not closed, or the session of a name.",
 )
-@click.option("--sessions", is_flag=True, help="List the sessions that did not end orderly.")
-@click.option("--forget", metavar="SESSION", help="Remove a session that did not end orderly.")
+@click.option("--sessions", is_flag=True, help="List the sessions that were not closed, and exit.")
+@click.option("--forget", metavar="SESSION", help="Remove a session that was not closed, and exit.")
 @normals_option
 @click.option("--full-screen", is_flag=True, help="Open the window in full screen.")
 @click.option("--fit", is_flag=True, help="Scale the picture to fill the window; pixels may become uneven.")
@@ -85,7 +85,7 @@ def view(
         report = read(source)
         edited = created_again(report, with_normals(with_settings(report.scene, settings), normals))
         note_file(source.path)
-        # Meshes that are opened later get the same up axis and scale.
+        # Meshes that the user opens later get the same up axis and scale.
         show(
             History(edited, place),
             full_screen,
@@ -109,11 +109,10 @@ def show(
     left: Path | None = None,
     prepare: Callable[[Viewer], object] = lambda _: None,
 ) -> None:
-    """Show the scene of a session in a window until that is closed.
+    """Show the scene of a session in a window, until the window is closed.
 
-    Until then the state folder has the journal of the session; `left` is its folder there if the session was
-    left before. `prepare` is called with the viewer at the beginning. Raises UnavailableError if there is no
-    screen.
+    `left` is the folder of a recovered session's journal. `prepare` is called with the viewer at the
+    beginning. Raises UnavailableError without a screen.
     """
     from autocolor.commands.sessions import autosaved_session
     from autocolor.errors import UnavailableError
@@ -141,9 +140,9 @@ def monitor_of(
     fit: bool = False,
     update: Callable[[], None] = lambda: None,
 ) -> Monitor:
-    """A window, not yet open, that shows the display of a viewer and hands keys and the mouse to it.
+    """A window, not yet open, that shows the display of a viewer and passes keys and the mouse to the viewer.
 
-    `update` is called after each change, and often.
+    `update` is called at every tick.
     """
     from ramtek_emu.monitor.window import Key, Monitor, Pointer
 

@@ -1,14 +1,13 @@
 """Color scales: the colors from the lowest to the highest value of a scalar.
 
 viridis, plasma, inferno, magma and cividis are perceptually uniform: equal steps of the value look equally
-large, and stay in order in a print without colors. turbo and rainbow have more colors that can be told
-apart, and steps that mislead. coolwarm and RdBu diverge from a light middle, for values around a zero.
-zebra is black and white in turn, for lines of equal value, and shows how smooth a surface is.
+large, and stay in order in a print without colors. turbo and rainbow have more distinguishable colors, but
+misleading steps. coolwarm and RdBu diverge from a light middle, for values around zero. zebra is black and
+white in turn, for lines of equal value, and shows how smooth a surface is.
 
-Measured and rejected: the `cmap` library, which knows several hundred scales. A scene must have the same
-colors everywhere, and one that names a scale of an optional package could be read only where that is
-installed. The scales here take 2 kB, `cmap` 7.3 MB; any other scale is given as a list of
-colors, up to one for each band.
+Measured and rejected: the `cmap` library, which has several hundred scales. Scenes must have the same colors
+everywhere, also where an optional package is not installed. The scales here take 2 kB, `cmap` 7.3 MB. A scene
+can have any other scale as a list of colors.
 """
 
 from __future__ import annotations
@@ -24,13 +23,13 @@ from autocolor.checks import Color
 from autocolor.immutable import read_only
 from autocolor.scene.kinds import ColorKind
 
-# The perceptually uniform scales are those of matplotlib: viridis, plasma, inferno and magma by N. Smith,
-# S. van der Walt and E. Firing, 2015; cividis by J. Nuñez, C. Anderton and R. Renslow, 2018, "Optimizing
-# colormaps with consideration for color vision deficiency". Turbo is by A. Mikhailov, 2019, coolwarm by K.
-# Moreland, 2009, "Diverging color maps for scientific visualization", and RdBu by C. Brewer.
+# The perceptually uniform scales come from matplotlib: viridis, plasma, inferno and magma by N. Smith, S. van
+# der Walt and E. Firing, 2015; cividis by J. Nuñez, C. Anderton and R. Renslow, 2018, "Optimizing colormaps
+# with consideration for color vision deficiency". Turbo is by A. Mikhailov, 2019, coolwarm by K. Moreland,
+# 2009, "Diverging color maps for scientific visualization", and RdBu by C. Brewer.
 #
-# Measured: colors between the 33 of a scale are within 5 of 255 of the originals, which have 256; between
-# the 11 of RdBu, the original has no others.
+# Measured: a mixed color between two of the 33 colors is within 5 of 255 of the original, which has 256
+# colors. RdBu has 11 colors in the original, too.
 
 SCALE_TABLES: Final[Mapping[str, str]] = {
     "viridis": """

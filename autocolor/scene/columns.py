@@ -8,13 +8,13 @@
             float, Column(Number(at_least=0), Tier.LIGHT, "How narrow the light is.")
         ] = 0.0
 
-The checks at construction, scene files, `--set`, `--json`, the table store, the journal, the rows of menus
-and the documents derive from it. A row of a table is a frozen dataclass that derives from `Row`. `replaced`,
-`from_plain`, `to_plain`, `difference` and `cost` work for any row. The `Kind` of a column says which values
-it may have: see `kinds` for values without fields and `row_kinds` for rows inside rows.
+The checks at construction, scene files, `--set`, `--json`, the table store, the journal, menus and documents
+are made from it. A row of a table is a frozen dataclass that derives from `Row`. `replaced`, `from_plain`,
+`to_plain`, `difference` and `cost` work for any row. The `Kind` of a column says which values it may have:
+see `kinds` for values without fields and `row_kinds` for rows inside rows.
 
-A key is the name of a column in a file. It is the name of the field, except for a nested row that is
-`inline`: it has no key of its own, and its keys are among those of the row that contains it.
+A key is the name of a column in a file, and usually the name of its field. The field of an `inline` row has
+no key: the file writes the keys of that row among the keys of the containing row.
 """
 
 from __future__ import annotations
@@ -37,9 +37,9 @@ WORLD_UNITS: Final = "world units"
 
 @dataclasses.dataclass(frozen=True)
 class Column:
-    """One column: its kind, the cost of an edit, one line of help, and its unit.
+    """A column: its kind, the cost of an edit, a line of help, and its unit.
 
-    `bar` is its usual range and step, where the kind's own limits do not give them (see `bar_of`). `start` is
+    `bar` is the usual range and the step, unless the limits of the kind give them (see `bar_of`). `start` is
     the first value of an absent number that is switched on.
     """
 
@@ -54,7 +54,8 @@ class Column:
 class Tier(IntEnum):
     """What an edit of a column costs, in increasing order.
 
-    `computed` is computed again, with all that the lower tiers compute; `sent` is sent to the display.
+    `computed` names what the edit computes again; every lower tier follows. `sent` names what it sends to the
+    display.
     """
 
     NOTHING = 0, "nothing", "nothing"
@@ -68,7 +69,7 @@ class Tier(IntEnum):
     sent: str
 
     def __new__(cls, value: int, computed: str, sent: str) -> Tier:
-        """A member, which is its number, with its two phrases."""
+        """A member: a number with two phrases."""
         tier = int.__new__(cls, value)
         tier._value_ = value
         tier.computed, tier.sent = computed, sent
@@ -82,8 +83,8 @@ Path = tuple[str | int, ...]
 class Kind:
     """The kind of values in a column: how they are checked, replaced, written and compared.
 
-    A kind of values without fields answers `rule`, `accepts` and `accepted`, and may give `advice`. A kind of
-    rows validates them itself.
+    A kind of values without fields defines `rule`, `accepts` and `accepted`, and may define `advice`. A kind
+    of rows defines `validated` instead of `accepted`.
     """
 
     @property
@@ -104,7 +105,7 @@ class Kind:
         raise NotImplementedError
 
     def advice(self, value: object) -> str:
-        """The end of the message about an invalid value: what to do."""
+        """The end of the message about an invalid value, which says how to correct it."""
         return ""
 
     def validated(self, value: object, path: Path, problems: list[Problem]) -> object:
@@ -116,7 +117,7 @@ class Kind:
             return REFUSED
 
     def keys(self, name: str, column: Column) -> Mapping[str, Column]:
-        """The keys that a field of this name has in a file."""
+        """The keys in a file, with their columns, for a field of this name."""
         return {name: column}
 
     def replaced(self, present: object, table: Mapping[str, Any], path: Path, problems: list[Problem]) -> Any:
@@ -143,8 +144,8 @@ class Kind:
 class Row(Immutable):
     """A row of a table: a frozen dataclass whose fields are columns, checked at construction.
 
-    `noun` is what messages call it, before its name if it has one. At most one of the fields in
-    `alternatives` has a value; a change that sets one resets the others.
+    Messages name a row by its `noun` and its name, if it has a name. At most one of the fields in
+    `alternatives` has a value: a change that sets one of them resets the others.
     """
 
     noun: ClassVar[str] = ""
@@ -154,7 +155,7 @@ class Row(Immutable):
         check(self, fields_of(type(self)))
 
     def rules(self) -> Iterator[Problem]:
-        """The rules between columns that the row breaks; invalid values are REFUSED."""
+        """The problems of rules between columns. A column with an invalid value is REFUSED."""
         return iter(())
 
     def __repr__(self) -> str:
@@ -169,13 +170,11 @@ class Row(Immutable):
 
 
 SomeRow = TypeVar("SomeRow", bound=Row)
-
-
 Result = TypeVar("Result")
 
 
 def cached_by_class(function: Callable[[type[Row]], Result]) -> Callable[[type[Row]], Result]:
-    """The function with its results cached. A type checker does not take row classes for hashable values."""
+    """The function with its results cached. A type checker does not accept row classes as hashable."""
     return cast(Callable[[type[Row]], Result], cache(function))
 
 
@@ -193,7 +192,7 @@ def fields_of(cls: type[Row]) -> Mapping[str, Field]:
     hints = get_type_hints(cls, include_extras=True)
     fields = {}
     for field in dataclasses.fields(cls):  # type: ignore[arg-type]
-        (column,) = (each for each in hints[field.name].__metadata__ if isinstance(each, Column))
+        (column,) = (mark for mark in hints[field.name].__metadata__ if isinstance(mark, Column))
         default: Callable[[], object] | None = None
         if field.default_factory is not dataclasses.MISSING:
             default = field.default_factory
@@ -204,7 +203,7 @@ def fields_of(cls: type[Row]) -> Mapping[str, Field]:
 
 
 class RowKey(NamedTuple):
-    """A key of a row in a file: its column, the field that contains it, whether it is inside the value."""
+    """A key of a row in a file: its column, its field, and whether it is a key inside the field's value."""
 
     column: Column
     field: str
@@ -227,13 +226,11 @@ def row_label(row: Row) -> str:
     return f"{row.noun} {shown(name)}" if row.noun and isinstance(name, str) and name else row.noun
 
 
-# Rows of any class: to and from keys and plain values, and from one row to another.
-
 MOST_KEYS: Final = 64
 """Limit: keys of a table."""
 
 PLAIN_TYPES: Final = frozenset((float, int, bool, str, tuple, list))
-"""Types of most values, none of them a table; asking for `Mapping` takes several times as long."""
+"""Types of most values, and not of tables. Measured: testing for `Mapping` takes several times as long."""
 
 
 def replaced(row: SomeRow, changes: Mapping[str, Any]) -> SomeRow:
@@ -241,7 +238,7 @@ def replaced(row: SomeRow, changes: Mapping[str, Any]) -> SomeRow:
 
     Raises RowError with every problem.
 
-    Measured: with cold caches a function call costs more than its work, so this function calls few.
+    Measured: with cold caches a function call takes longer than its work, so this function calls few.
     """
     fields = fields_of(type(row))
     problems: list[Problem] = []
@@ -266,9 +263,9 @@ def replaced(row: SomeRow, changes: Mapping[str, Any]) -> SomeRow:
 
 
 def with_values(row: SomeRow, values: Mapping[str, object]) -> SomeRow:
-    """The row with other values in some fields, which were checked already.
+    """The row with other values in some fields, without any check.
 
-    Cached properties are copied, too: none may depend on these fields.
+    Cached properties are copied: they must not depend on these fields.
     """
     copy = object.__new__(type(row))
     fresh = vars(copy)
@@ -280,9 +277,9 @@ def with_values(row: SomeRow, values: Mapping[str, object]) -> SomeRow:
 def _values_by_field(
     row: Row, changes: Mapping[str, Any], problems: list[Problem]
 ) -> tuple[dict[str, Any], dict[str, dict[str, Any]]]:
-    """The new values of fields, and the tables of keys for the rows inside others.
+    """The new values of fields, and for each field with a row inside, the new values of that row's keys.
 
-    Problems are appended, and unknown names left out.
+    An unknown name is left out, and a problem appended.
     """
     if len(changes) > MOST_KEYS:
         text = f"it must be a table of at most {MOST_KEYS} keys, not {len(changes):,}"
@@ -350,9 +347,9 @@ def to_plain(row: Row) -> dict[str, object]:
 
 
 def difference(one: Row, other: Row) -> dict[str, object]:
-    """The keys and plain values by which `replaced` makes one row equal to another of its class.
+    """The keys and plain values with which `replaced` makes one row equal to another row of its class.
 
-    A value that is taken away is None; an infinite one is written as it is. Meshes are left out.
+    None removes a value. An infinite value is written, too. Meshes are left out.
     """
     ones, others = vars(one), vars(other)
     changes: dict[str, object] = {}
@@ -370,7 +367,7 @@ def difference(one: Row, other: Row) -> dict[str, object]:
 
 
 def cost(one: Row, other: Row, own: Tier = Tier.FRAME) -> Tier | None:
-    """The cost of an edit from one row to another: the largest of its columns; None if all are equal.
+    """The cost of an edit from one row to another: the largest cost of a column; None if the rows are equal.
 
     For rows of different classes it is `own`.
     """
@@ -386,16 +383,14 @@ def cost(one: Row, other: Row, own: Tier = Tier.FRAME) -> Tier | None:
     return most
 
 
-# The problems of rows.
-
 BARE: Final = re.compile(r"[\w-]{1,100}")
 """Names in a path that need no quotes."""
 
 
 class Problem(NamedTuple):
-    """A problem of the value at a path; the path () is the row as a whole.
+    """A problem of the value at a path; the path () means the whole row.
 
-    `text` is the end of a message. If `names_key`, it already contains the last key of the path.
+    `text` is the end of a message. With `names_key=True` it contains the last key of the path already.
     """
 
     path: Path
@@ -418,23 +413,24 @@ class Problem(NamedTuple):
         return f"{key}{'' if self.text.startswith('must ') else ':'} {self.text}" if key else self.text
 
     def under(self, path: Path) -> Problem:
-        """The same problem with a path that starts at a row around it."""
+        """The problem with a longer path, from a row that contains this row at `path`."""
         return self._replace(path=(*path, *self.path))
 
 
 def unknown_key(name: object, keys: Iterable[str]) -> Problem:
-    """The problem of an unknown key, with the closest of the keys that exist."""
+    """The problem of an unknown key, with the closest of `keys`."""
     text = name if isinstance(name, str) else shown(name)
-    return Problem((text,), f"there is no {shown(name)}{nearest(text, keys)}", names_key=True)
+    return Problem((text,), f"there is no field {shown(name)}{nearest(text, keys)}", names_key=True)
 
 
 class RowError(InputError):
-    """An invalid row: its problems with their paths, and its noun and name, as in "light 'key'", or ""."""
+    """An invalid row: its problems with their paths, and its label, as in "light 'key'", or ""."""
 
     def __init__(self, row_problems: Iterable[Problem], row: str = "") -> None:
         self.row_problems = tuple(row_problems)
         self.row = row
-        super().__init__(f"{row}: {each.sentence}" if row else each.sentence for each in self.row_problems)
+        sentences = [problem.sentence for problem in self.row_problems]
+        super().__init__(f"{row}: {sentence}" if row else sentence for sentence in sentences)
 
     def __reduce__(self) -> tuple[type[RowError], tuple[object, ...]]:
         return RowError, (self.row_problems, self.row)
@@ -443,7 +439,7 @@ class RowError(InputError):
 class Refused:
     """The placeholder for an invalid value while the rules between columns are checked.
 
-    It is not None, and all its comparisons are false, so that it breaks no further rule.
+    All its comparisons are false, so that these rules report no further problem of the value.
     """
 
     def __eq__(self, other: object) -> bool:
@@ -478,24 +474,25 @@ def check(row: Row, fields: Mapping[str, Field]) -> None:
         raise RowError(problems, row_label(row))
 
 
-# Bars: the usual range of a number, set by pointing. The limits of a column are those of its kind.
-
 STEPS: Final = 100
-"""Assumed: the least number of steps of a bar, so that one step is a small change."""
+"""Assumed: the least number of steps of a bar, so that a step is a small change."""
 
 DIGITS: Final = 12
 """Digits of a rounded value: enough for any step, and few enough to write 0.3 as 0.3."""
 
 
 class BarRange(NamedTuple):
-    """A usual range, `low` to `high`, and a step; values on it are multiples of the step, or its ends."""
+    """The usual range of a number that is set by pointing: multiples of `step` between `low` and `high`.
+
+    Typed numbers may be any that the kind of the column accepts.
+    """
 
     low: float
     high: float
     step: float
 
     def rounded(self, value: float) -> float:
-        """The nearest value on the bar; halves are rounded up, and values beyond an end become that end.
+        """The nearest value on the bar, with halves rounded up; a value beyond an end becomes the end.
 
         >>> BarRange(0, 2, 0.01).rounded(0.2987), BarRange(1, 90, 1).rounded(0)
         (0.3, 1.0)
@@ -509,7 +506,7 @@ class BarRange(NamedTuple):
         return (min(max(value, self.low), self.high) - self.low) / (self.high - self.low)
 
     def at(self, fraction: float) -> float:
-        """The value on the bar at a fraction of its length; below 0 and above 1 the value of the end.
+        """The value on the bar at a fraction of its length; fractions beyond 0 and 1 give the ends.
 
         >>> BarRange(-180, 180, 1).at(0.5)
         0.0
@@ -518,7 +515,7 @@ class BarRange(NamedTuple):
 
 
 def bar_within(low: float, high: float) -> BarRange:
-    """The bar of a range, low < high, with at least STEPS steps of 1, 2 or 5 times a power of ten.
+    """The bar from `low` to a larger `high`, with at least STEPS steps of 1, 2 or 5 times a power of ten.
 
     >>> bar_within(0, 180)
     BarRange(low=0, high=180, step=1.0)
@@ -526,10 +523,11 @@ def bar_within(low: float, high: float) -> BarRange:
     most = (high - low) / STEPS
     power = 10.0 ** math.floor(math.log10(most))
     # A step may exceed its bound by no more than rounding: 0.01 is a hundredth of 1.
-    step = max((each * power for each in (1, 2, 5, 10) if each * power <= most * (1 + 1e-9)), default=power)
+    steps = [factor * power for factor in (1, 2, 5, 10)]
+    step = max((step for step in steps if step <= most * (1 + 1e-9)), default=power)
     return BarRange(low, high, float(f"{step:.{DIGITS}g}"))
 
 
 def bar_of(column: Column) -> BarRange | None:
-    """The bar of a column; None if it has no numbers, or WORLD_UNITS. Whole numbers have whole steps."""
+    """The bar of a column; None unless it has numbers with a usual range. Whole numbers have whole steps."""
     return column.bar if column.bar is not None else column.kind.bar()

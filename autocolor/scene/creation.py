@@ -1,4 +1,4 @@
-"""Making a scene of a mesh, whose missing tables are created, and a light at a free place.
+"""Scenes of bare meshes, whose missing tables are created, and new lights at free places.
 
 Paper: "Introduction": tables with the part, surface and lighting parameters can be supplied as input or
 created automatically by the system as they are needed.
@@ -9,8 +9,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from typing import Any, Final, Literal, Unpack
-
-import numpy as np
 
 from autocolor.checks import nearest, shown
 from autocolor.errors import InputError, UsageError
@@ -36,10 +34,10 @@ from autocolor.scene.surfaces import MOST_SURFACES, Part, Surface
 LOG: Final = logger_of(__name__)
 
 SHARED: Final = "surface"
-"""The name of the created surface of all parts without another."""
+"""The name of the created surface that all parts without a surface share."""
 
 UNASSIGNED: Final = "\0"
-"""The surface of a part that has none yet; no name has this character."""
+"""The surface of a part without a surface. No name contains this character."""
 
 SurfaceSource = Literal["materials", "parts"]
 """The source of missing surfaces: the materials of the mesh, or one surface for each part."""
@@ -64,16 +62,16 @@ def scene_of(
     `mesh` is anything that `Mesh.of` takes: a Mesh, a mesh of trimesh, PyVista or meshio, or an array of
     nodes with an array of `polygons`.
 
-    A part has the first of these surfaces that exists: the surface that `parts` or `surface_of_part` names
-    for it; the given surface of its own name; with `surfaces="parts"`, a new surface like that of its
-    material; the surface of its material, from `materials` or created; a created surface that all other
-    parts share. Beyond MOST_SURFACES, the remaining parts share the last surface.
+    A part gets the first of these surfaces that exists: the surface that `parts` or `surface_of_part` names;
+    the given surface with the part's name; with `surfaces="parts"`, a new surface like its material; the
+    surface of its material, from `materials` or created; a created surface that all other parts share. Beyond
+    MOST_SURFACES, the remaining parts share the last surface.
 
-    `parts` has fields of the parts by name, such as `{"floor": {"stage": True}}`; `fields` are the other
-    fields of Scene. Raises InputError, or UsageError for any word but "materials" and "parts".
+    `parts` has fields of parts by name, such as `{"floor": {"stage": True}}`; `fields` are the other fields
+    of Scene. Raises InputError, or UsageError for any word but "materials" and "parts".
 
-    Assumed: the mapping belongs to the lights. If the lights are created, so are ambient, scaling, mapping
-    and contrast, chosen so that the mesh keeps its form; with given lights they have the defaults of Scene.
+    Assumed: the mapping belongs to the lights. If the lights are created, then ambient, scaling, mapping and
+    contrast are chosen so that the form of the mesh is visible. With given lights they have Scene's defaults.
     """
     mesh = Mesh.of(mesh, polygons)
     if isinstance(surfaces, str) and surfaces not in (MATERIALS, PARTS):
@@ -82,7 +80,7 @@ def scene_of(
     given = () if isinstance(surfaces, str) else _validated("surfaces", surfaces, problems)
     rows = _part_rows(mesh, parts or {}, surface_of_part or {}, problems)
     tables: dict[str, Any] = {**(MAPPING_FIELDS if fields.get("lights") is None else {}), **fields}
-    # The view is checked here, because the lights that are created depend on it.
+    # Check the view here, because created lights depend on it.
     view, lights = tables.pop("view", None), tables.pop("lights", None)
     view = None if view is None else _validated("view", view, problems)
     if problems:
@@ -133,9 +131,8 @@ def _part_rows(
     problems: list[Problem],
 ) -> tuple[Part, ...]:
     """The part table; the surface of a part is UNASSIGNED unless it is given."""
-    known = set(mesh.part_names)
-    missing = [name for name in (*parts, *surface_of_part) if name not in known]
-    if missing:
+    names = set(mesh.part_names)
+    if missing := [name for name in (*parts, *surface_of_part) if name not in names]:
         raise InputError(
             f"there is no part {shown(name)}{nearest(name, mesh.part_names)}" for name in missing
         )
@@ -158,7 +155,7 @@ def _with_created(
     names: set[str],
     shared: str,
 ) -> tuple[tuple[Part, ...], tuple[Surface, ...]]:
-    """The parts, and the given surfaces with those created for the parts, up to MOST_SURFACES.
+    """The parts, and the surface table: the given surfaces and created surfaces, up to MOST_SURFACES.
 
     Surfaces are created for `names`, the names of parts and materials, and for `shared`. The checks of Scene
     refuse other names.
@@ -186,10 +183,10 @@ DISTANCE: Final = 4.0
 """Assumed: distance of a new light from the middle of the object, in radii of the sphere around it."""
 
 ELEVATION: Final = 40.0
-"""Assumed: degrees of a new light above the level of the middle, so that its light falls from above."""
+"""Assumed: the elevation of a new light, in degrees as seen from the middle of the object."""
 
 TURNS: Final = (0, 35, -35, 70, -70, 105, -105, 140, -140, 180)
-"""Assumed: degrees of a new light around the object, from the side of the eye; the first free place wins."""
+"""Assumed: angles of a new light around the object, in degrees from the side of the eye, by preference."""
 
 NAME: Final = "light"
 
@@ -197,8 +194,8 @@ NAME: Final = "light"
 def new_light_of(scene: Scene) -> Light:
     """A light to add to a scene: above the side of the eye, and aimed at the middle of the object.
 
-    Its name is free, and so is its place: no other light is closer to it than the radius of the object,
-    unless there are lights all around.
+    Its name is not taken. No other light is closer to it than the radius of the object, unless every place
+    around the object is taken.
     """
     center, radius = sphere_around(*object_bounds(scene.mesh, scene.parts))
     right, up, away = studio_axes(scene.view)
@@ -208,7 +205,7 @@ def new_light_of(scene: Scene) -> Light:
         outward = math.sin(turn) * right - math.cos(turn) * away
         toward = math.cos(elevation) * outward + math.sin(elevation) * up
         places.append(center + DISTANCE * radius * toward)
-    taken = [np.array(light.position) for light in scene.lights_in_world]
+    taken = [light.position for light in scene.lights_in_world]
     free = [place for place in places if all(math.dist(place, other) >= radius for other in taken)]
     return Light(
         free_name(NAME, [light.name for light in scene.lights]),

@@ -1,11 +1,11 @@
 """Mapping curves: the functions from intensities to fractions of the range of levels.
 
-Paper: "The Lighting Model": nonlinear mappings of intensities can be tried. A mapping curve is called with
-the minimum and the maximum of a range and the array of all intensities to map. It returns a nondecreasing
-function from intensities to fractions of the range, 0 to 1.
+Paper: "The Lighting Model": nonlinear mappings of intensities can be tried. A mapping curve is a function of
+the minimum and the maximum of a range and of all intensities to map. It returns a nondecreasing function from
+intensities to fractions of the range, 0 to 1.
 
-To add a curve, define it here and name it in `CURVES` at the foot: a function of the linear fraction of the
-range goes through `along_range`, any other is a mapping curve itself.
+To add a curve, define it here and name it in `CURVES` at the foot. `along_range` makes a mapping curve of a
+function of the linear fraction of the range.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ Fractions = Callable[[Singles], Singles]
 """A function of a float32 array. It may work in place and return its argument, or return a new array."""
 
 MappingCurve = Callable[[np.float32, np.float32, Singles], Fractions]
-"""A function of the minimum, the maximum and all intensities that returns the function to fractions."""
+"""A function of the minimum, the maximum and all intensities. It returns the function to fractions."""
 
 CurvePoints = tuple[tuple[float, float], ...]
 """Points (x, y) of a nondecreasing curve, from x = 0 to x = 1."""
@@ -66,7 +66,7 @@ def gamma(fractions: Singles) -> Singles:
 
 
 def logarithm(fractions: Singles) -> Singles:
-    """Dark intensities spread out and bright ones compressed, logarithmically."""
+    """Dark intensities spread out and bright intensities compressed, logarithmically."""
     mapped: Singles = np.log1p(fractions * np.float32(LOGARITHM)) / np.float32(np.log1p(LOGARITHM))
     return mapped
 
@@ -81,8 +81,8 @@ def equalize(minimum: np.float32, maximum: np.float32, intensities: Singles) -> 
     """Histogram equalization: levels become equally frequent.
 
     The fraction of an intensity is its cumulative share of all intensities above the minimum. It is 0 at the
-    minimum and 1 at the maximum, even if no intensity reaches them. Intensities within a held range are
-    spread evenly too, so that less light hardly looks darker.
+    minimum and 1 at the maximum, even if no intensity reaches them. With a fixed range, intensities are
+    spread evenly, too, so that less light hardly looks darker.
     """
     pairs = ((minimum, intensities.min()), (maximum, intensities.max()))
     ends = [end for end, reached in pairs if end != reached]

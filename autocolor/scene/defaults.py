@@ -23,19 +23,19 @@ FILLED: Final = 0.86
 """Assumed: the fraction of the width or height of the picture that a framed object fills."""
 
 ASPECT: Final = 640 / 480
-"""Assumed: the width over the height of the paper's display. A picture of another shape has its own."""
+"""Assumed: the width over the height of the paper's display."""
 
 POINT: Final = 1e-12
 """Assumed: an object smaller than this fraction of its distance from the origin is treated as a point."""
 
 LEAST_EXTENT: Final = 1e-290
-"""Assumed: a smaller object is a point, as the reciprocals of its distances are too large for numbers."""
+"""Assumed: a smaller object is treated as a point, because the reciprocals of its distances overflow."""
 
 MOST_STEPS: Final = 8
 """Steps to center an object; three are usually enough."""
 
 POINTS_AT_ONCE: Final = 1 << 14
-"""Few enough that numpy multiplies in one thread; waiting for threads is slow on shared processors."""
+"""Few enough that numpy multiplies in a single thread. Waiting for threads is slow on shared processors."""
 
 OBJECT_COLORS: Final = (
     "#b3202c", "#2f5fa8", "#c9a227", "#3f7f4f", "#7d4a94", "#c8642c",
@@ -47,15 +47,14 @@ CREATED_REFLECTANCE: Final = Reflectance(0.7, 0.63, exponent=32.0)
 """Assumed: the reflectance of the surfaces of a bare mesh."""
 
 PLAIN_PAINT: Final = Paint((176, 202, 232), blend=0.8)
-"""Assumed: a light steel blue, for the shared surface of all parts without another."""
+"""Assumed: a light steel blue, for the surface that all parts without a surface share."""
 
 COLORED_PAINT: Final = Paint(PLAIN_PAINT.object_color, blend=0.88, light_percentage=60.0)
 """Assumed: the blending of all other surfaces of a bare mesh.
 
-A side that is lit evenly may be the brightest of the object, and should still have its color: with the light
-color from 0.8 of the range on, the top of a red box is pink.
+An evenly lit side may be the brightest of the object, and should still have its color. If the light color
+began at 0.8 of the range, the top of a red box would be pink.
 """
-
 
 MAPPING_FIELDS: Final = {
     "scaling": "object",
@@ -65,33 +64,37 @@ MAPPING_FIELDS: Final = {
 }
 """Assumed: the mapping and the ambient light of a bare mesh.
 
-Measured with the lights and the reflectance below: `python -m benchmarks.form` says of 24 meshes, seen from
-three sides each, how much of them is too dark or too bright, and whether the two sides of an edge differ. The
-curve ends below 1 because a face that is lit evenly would be white all over, and starts steep because the
-unlit side would be black. With a straight line eight of the meshes break a bound, with gamma eleven.
+Measured with the lights and the reflectance of this module: `python -m benchmarks.form` renders 24 meshes
+from three sides, and bounds the share of a picture that is too dark or too bright, and the difference between
+the two sides of an edge. The curve ends below 1, or an evenly lit face would be white all over. It starts
+steep, or the unlit side would be black. With a straight line eight of the meshes break a bound, with gamma
+eleven.
 """
 
 
 def object_coordinates(mesh: Mesh, parts: Sequence[Part]) -> Floats:
-    """The coordinates of the nodes of the object, (nodes, 3): of all parts that are not stage, if any."""
+    """The coordinates of the nodes of the object, (nodes, 3).
+
+    The object is all parts that are not stage; if all parts are stage, it is the whole mesh.
+    """
     numbers = _object_parts(mesh, parts)
     return mesh.used_coordinates if numbers is None else mesh.coordinates_of_parts(numbers)
 
 
 def object_bounds(mesh: Mesh, parts: Sequence[Part]) -> tuple[Floats, Floats]:
-    """The least and the largest coordinates of the object, (3,) each; those of all parts are cached."""
+    """The least and the largest coordinates of the object, (3,) each; for the whole mesh they are cached."""
     numbers = _object_parts(mesh, parts)
     return mesh.bounds if numbers is None else bounds_of(mesh.coordinates_of_parts(numbers))
 
 
 def _object_parts(mesh: Mesh, parts: Sequence[Part]) -> Sequence[int] | None:
-    """The part numbers of the object; None for all."""
+    """The part numbers of the object; None for the whole mesh."""
     numbers = [number for number in mesh.parts_in_use if not parts[number].stage]
     return numbers if 0 < len(numbers) < len(mesh.parts_in_use) else None
 
 
 def default_surface(name: str, number: int) -> Surface:
-    """The surface for a table without keys; its number, counted from 0, determines its object color."""
+    """The surface of an empty table in a scene file; its number, from 0, determines its object color."""
     return Surface(name).replace(object_color=color_in_turn(number))
 
 
@@ -101,7 +104,7 @@ def color_in_turn(number: int) -> str:
 
 
 def created_surface(name: str, object_color: str | Color | None = None) -> Surface:
-    """A glossy surface for parts without one; without an object color it has PLAIN_PAINT."""
+    """A glossy surface for parts without a surface; without an object color it has PLAIN_PAINT."""
     if object_color is None:
         return Surface(name, CREATED_REFLECTANCE, PLAIN_PAINT)
     return Surface(name, CREATED_REFLECTANCE, COLORED_PAINT.replace(object_color=object_color))
@@ -110,7 +113,7 @@ def created_surface(name: str, object_color: str | Color | None = None) -> Surfa
 def default_view(coordinates: Floats) -> View:
     """A view from the front left and slightly above, at the distance that frames the whole object.
 
-    `coordinates`, here and below, are those of the nodes of the object, (nodes, 3).
+    `coordinates`, here and below, are the coordinates of the object's nodes, (nodes, 3).
     """
     azimuth, elevation = math.radians(-125.0), math.radians(18.0)
     toward_eye = (
@@ -133,9 +136,9 @@ def framed(view: View, coordinates: Floats, aspect: float = ASPECT) -> View:
     if _is_a_point(low, high):
         points = center[:, None] + radius * np.array([[-0.5, 0.5]] * 3)
 
-    # For an eye moved by `shift` and moved back by `distance`, a point is within the picture if
+    # If the eye moves sideways by `shift` and back by `distance`, a point is within the picture if
     # |x - shift| <= slope * (depth + distance), and likewise for y. The two extreme points of an axis give
-    # its shift and its least distance; the larger of the two distances is taken.
+    # its shift and its least distance. Use the larger of the two distances.
     slope_y = FILLED * math.tan(math.radians(view.field_of_view) / 2)
     slopes = np.array([slope_y * aspect, slope_y])
     least, most, nearest, size = np.full(2, np.inf), np.full(2, -np.inf), np.inf, 0.0
@@ -157,12 +160,12 @@ def framed(view: View, coordinates: Floats, aspect: float = ASPECT) -> View:
 def _centering_shifts(
     axes: Floats, points: Floats, center: Floats, distance: float, shifts: Floats
 ) -> Floats:
-    """The shifts of the eye, right and down, for which the object is in the middle of the picture.
+    """The shifts of the eye, right and down, that put the object into the middle of the picture.
 
-    Each step solves for the two points that are then at the borders; no more than a few are needed.
+    A step finds the two points at opposite borders, and centers them. A few steps are enough.
     """
     for _ in range(MOST_STEPS):
-        # Find the points at the four borders of each chunk, and those that are at the borders of all.
+        # Find the points at the four borders of each chunk, then among them the points at the borders of all.
         places = []
         for chunk in chunks(points.shape[1], POINTS_AT_ONCE):
             camera_points = axes @ (points[:, chunk] - center[:, None])
@@ -171,7 +174,7 @@ def _centering_shifts(
             )
         camera_points = np.concatenate(places, axis=1)
         at_borders = _at_borders(camera_points, distance, shifts)
-        # Of both points of an axis the screen coordinates shall be opposite.
+        # Make the screen coordinates of both points of an axis opposite.
         weights = 1 / (camera_points[2].take(at_borders) + distance)
         across = camera_points[[[0], [1]], at_borders]
         centered = (across * weights).sum(axis=1) / weights.sum(axis=1)
@@ -188,12 +191,12 @@ def _at_borders(camera_points: Floats, distance: float, shifts: Floats) -> Indic
 
 
 def _is_a_point(low: Floats, high: Floats) -> bool:
-    """Whether an object is so small, or so small for its distance from the origin, that it is a point."""
+    """Whether an object is treated as a point: it is tiny, or tiny for its distance from the origin."""
     return float((high - low).max()) <= max(POINT * float(np.abs([low, high]).max()), LEAST_EXTENT)
 
 
 def sphere_around(low: Floats, high: Floats) -> tuple[Floats, float]:
-    """The center and radius of a sphere around an object; one treated as a point gets some room."""
+    """The center and the radius of a sphere around an object. An object treated as a point gets some room."""
     if _is_a_point(low, high):
         return (low + high) / 2, max(1.0, 1e3 * POINT * float(np.abs([low, high]).max()))
     # Scale by the largest extent first, as the squares of very small extents underflow.
@@ -202,9 +205,9 @@ def sphere_around(low: Floats, high: Floats) -> tuple[Floats, float]:
 
 
 def studio_axes(view: View) -> tuple[Floats, Floats, Floats]:
-    """The unit vectors to the right, up, and away from the eye, as seen from it; level with the world.
+    """The unit vectors to the right, up and away, as seen from the eye; up is the world's up.
 
-    Where the view is close to vertical, up is that of the picture.
+    If the view is almost vertical, up is the picture's up.
     """
     right, down, forward = view.axes
     if abs(forward[2]) > 0.99:

@@ -1,6 +1,6 @@
 """The kinds of columns whose values have no fields: numbers, strings, vectors, curves, colors and others.
 
-`Kind` in `columns` says what each method answers.
+The methods are described in `columns.Kind`.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from autocolor.checks import Color, either, nearest, shown
+from autocolor.checks import Color, closest, either, shown
 from autocolor.scene.columns import REFUSED, BarRange, Kind, Path, Problem, Tier, bar_within
 
 LARGEST_PLACE: Final = 1e36
@@ -26,7 +26,7 @@ NO_NUMBERS: Final = (bool, np.bool_, str, bytes, bytearray)
 """Types that Python converts to numbers, but that a column of numbers refuses."""
 
 UNORDERED: Final = (str, bytes, bytearray, Mapping, Set)
-"""Types with elements that a column of components refuses, as they have no order or are text."""
+"""Types that a column of components refuses although they have elements: text, and types without an order."""
 
 
 def require(condition: bool) -> None:
@@ -39,8 +39,8 @@ def require(condition: bool) -> None:
 class Number(Kind):
     """A finite number within bounds, converted to float.
 
-    With `above`, the lower bound is excluded. `endless` is an infinite value that is accepted, too. It means
-    no limit and is not written.
+    With `above`, the lower bound is excluded. The infinite value `endless` is accepted, too: it means "no
+    limit", and files leave it out.
     """
 
     at_least: float = -math.inf
@@ -57,17 +57,14 @@ class Number(Kind):
             return f"must be a number above {self.at_least:g}{end}"
         if self.at_least > -math.inf and self.at_most < math.inf:
             return f"must be a number from {self.at_least:g} to {self.at_most:g}"
-        return "must be a finite number" + (
-            f" of at least {self.at_least:g}" if self.at_least > -math.inf else ""
-        )
+        least = f" of at least {self.at_least:g}" if self.at_least > -math.inf else ""
+        return f"must be a finite number{least}"
 
     def accepted(self, value: Any) -> float:
-        if isinstance(value, NO_NUMBERS):
-            raise TypeError
+        require(not isinstance(value, NO_NUMBERS))
         number = float(value)
         is_within = self.at_least <= number <= self.at_most and not (self.above and number == self.at_least)
-        if number != self.endless and not (is_within and -math.inf < number < math.inf):
-            raise ValueError
+        require(number == self.endless or (is_within and -math.inf < number < math.inf))
         return number
 
     def bar(self) -> BarRange | None:
@@ -78,7 +75,7 @@ class Number(Kind):
         return {name: None if value == self.endless else value}
 
     def difference(self, name: str, one: float, other: float) -> Mapping[str, object]:
-        # Write an infinite value, too: a key that is left out would keep its value.
+        # Write an infinite value, too: a change without the key would not change the value.
         return {} if repr(one) == repr(other) else {name: other}
 
 
@@ -122,7 +119,7 @@ class Boolean(Kind):
 
 @dataclass(frozen=True)
 class Text(Kind):
-    """A string, which must not be empty unless `may_be_empty`."""
+    """A string, not empty unless `may_be_empty`."""
 
     may_be_empty: bool = False
 
@@ -164,7 +161,7 @@ class VectorKind(Kind):
     def validated(self, value: object, path: Path, problems: list[Problem]) -> object:
         vector = super().validated(value, path, problems)
         if self.has_length and vector == (0.0, 0.0, 0.0):
-            problems.append(Problem(path, f"must not be zero, not {shown(value)}; give it a length"))
+            problems.append(Problem(path, f"must have a length above 0, not {shown(value)}; change it"))
             return REFUSED
         return vector
 
@@ -187,13 +184,12 @@ class OneOf(Kind):
         return name
 
     def advice(self, value: object) -> str:
-        close = nearest(value, self.names) if isinstance(value, str) else ""
-        return close if "did you mean" in close else ""
+        return closest(value, self.names) if isinstance(value, str) else ""
 
 
 @dataclass(frozen=True, eq=False)
 class CurveKind(Kind):
-    """The name of a curve, or points (x, y) of a nondecreasing one from x = 0 to x = 1."""
+    """The name of a curve, or points (x, y) of a nondecreasing curve from x = 0 to x = 1."""
 
     names: Mapping[str, object]
 
@@ -218,12 +214,12 @@ class CurveKind(Kind):
         return points
 
     def advice(self, value: object) -> str:
-        return nearest(value, self.names) if isinstance(value, str) else ""
+        return closest(value, self.names) if isinstance(value, str) else ""
 
 
 @dataclass(frozen=True, eq=False)
 class Instance(Kind):
-    """An instance of a class, such as the mesh. It is compared by identity and not written."""
+    """An instance of a class, such as the mesh. It is compared by identity, and scene files leave it out."""
 
     value_class: type
 
@@ -253,15 +249,14 @@ MOST_POINTS: Final = 91
 """Limit: points of a curve, one for each degree."""
 
 AngleCurve = tuple[tuple[float, float], ...]
-"""Points (angle in degrees, value), with rising angles from 0 to 90; between them the curve is linear."""
+"""Points (angle in degrees, value), with rising angles from 0 to 90, of a piecewise linear curve."""
 
 
 @dataclass(frozen=True)
 class AngleCurveKind(Kind):
     """Points (angle, share) of a curve from 0 to 90 degrees, with shares from 0 to 1.
 
-    `least` is the least share at 0 degrees. `start` is the first curve when an absent one is
-    switched on.
+    `least` is the least share at 0 degrees. `start` is the first value when an absent curve is switched on.
     """
 
     least: float
@@ -292,12 +287,12 @@ class AngleCurveKind(Kind):
         return points
 
     def share_kind(self, number: int) -> Number:
-        """The kind of the share of a point, by its number from 0."""
+        """The kind of a point's share; the number of the point counts from 0."""
         return Number(0 if number else self.least, 1)
 
 
 LONGEST_COLOR: Final = 100
-"""Limit: letters of a color; Pillow takes no more either."""
+"""Limit: letters of a color; Pillow has the same limit."""
 
 SIX_DIGITS: Final = re.compile("#[0-9a-fA-F]{6}")
 
@@ -306,9 +301,9 @@ SIX_DIGITS: Final = re.compile("#[0-9a-fA-F]{6}")
 class ColorKind(Kind):
     """A color: red, green and blue from 0 to 255, written as "#rrggbb".
 
-    Three whole numbers are accepted, and any text without transparency that Pillow's `ImageColor` knows: a
-    name of CSS, "#rgb", "rgb(10%, 20%, 30%)", "hsl(0, 100%, 50%)". Pillow takes time to load, so "#rrggbb" is
-    read without it.
+    Three whole numbers are accepted, and every text that Pillow's `ImageColor` knows, unless it has
+    transparency: a name of CSS, "#rgb", "rgb(10%, 20%, 30%)", "hsl(0, 100%, 50%)". Pillow is slow to load, so
+    "#rrggbb" is read without it.
     """
 
     def rule(self) -> str:
@@ -322,7 +317,7 @@ class ColorKind(Kind):
             return _color_of_text(value)
         require(not isinstance(value, UNORDERED))
         given = list(value)
-        # A float is refused even if it is whole: (1.0, 0, 0) is red elsewhere, and nearly black here.
+        # Refuse even whole floats: (1.0, 0, 0) is red in other programs, and nearly black here.
         require(all(isinstance(part, Integral) and not isinstance(part, NO_NUMBERS) for part in given))
         return _within_range(tuple(int(part) for part in given))
 
@@ -350,7 +345,7 @@ def color_names() -> tuple[str, ...]:
 
 
 def _color_of_text(text: str) -> Color:
-    """The color that a text means. Raises ValueError if it means none, or one with transparency."""
+    """The color that a text describes. Raises ValueError if it describes none, or has transparency."""
     if SIX_DIGITS.fullmatch(text):
         red, green, blue = bytes.fromhex(text[1:])
         return red, green, blue
@@ -358,7 +353,7 @@ def _color_of_text(text: str) -> Color:
 
 
 def _components(text: str) -> tuple[int, ...]:
-    """The three or four components of a text that Pillow knows, of any size. Raises ValueError."""
+    """The three or four components, of any size, of a text that Pillow knows. Raises ValueError."""
     # Pillow would also accept a line break at the end, and digits of other alphabets.
     require(len(text) <= LONGEST_COLOR and text.isascii() and text.isprintable())
     from PIL import ImageColor
@@ -373,7 +368,7 @@ def _within_range(components: tuple[int, ...]) -> Color:
 
 
 def _advice_on_text(text: str) -> str:
-    """What to do about a text that means no color."""
+    """The end of the message about a text that is no color: how to correct it."""
     try:
         components = _components(text)
     except ValueError:
@@ -386,12 +381,12 @@ def _advice_on_text(text: str) -> str:
     if re.fullmatch("#[0-9a-fA-F]*", text):
         return "; write three or six hexadecimal digits after the #"
     if re.fullmatch("[A-Za-z]{2,}", text):
-        return nearest(text.lower(), color_names()) or '; write it as in "#b01020"'
+        return closest(text.lower(), color_names()) or '; write it as in "#b01020"'
     return '; write it as in "#b01020"'
 
 
 def _advice_on_floats(value: object) -> str:
-    """What to write instead of three numbers that are not all whole; nothing for anything else."""
+    """The color to write instead of three numbers of which some are floats; empty for any other value."""
     try:
         parts = list(value)  # type: ignore[call-overload]
         if len(parts) != 3 or all(isinstance(part, (Integral, *NO_NUMBERS)) for part in parts):
@@ -403,5 +398,5 @@ def _advice_on_floats(value: object) -> str:
         color = _within_range((red, green, blue))
     except (TypeError, ValueError, OverflowError):
         return ""
-    # A list is one in Python, in scene files and after --set.
+    # Python, scene files and --set all write a color as a list.
     return f"; write {list(color)} or {in_digits(color)!r}"

@@ -2,8 +2,8 @@
 
 Paper: "Light Controls". A light has a position and an intensity. With a direction or an aim it is a directed
 light, which concentration and a cone can narrow. Flaps, half-spaces and links to surfaces and parts can
-restrict any light. The effect of these controls is computed in `lighting.controls`, and the place of a light
-that follows something in `following`.
+restrict any light. `lighting.controls` computes the effect of these controls, and `following` the position
+of a light that follows something.
 
 To add a light control, give `Light` a field with its column, and write its formula in `lighting.controls`.
 """
@@ -23,7 +23,6 @@ from autocolor.checks import Vector
 from autocolor.errors import InputError
 from autocolor.scene.changes import FlapChanges, FlapsChanges, HalfSpaceChanges, LightChanges, LinksChanges
 from autocolor.scene.columns import (
-    REFUSED,
     WORLD_UNITS,
     BarRange,
     Column,
@@ -41,13 +40,13 @@ AXES: Final = ("x", "y", "z")
 """The axes of the world in the order of coordinates."""
 
 FALLOFFS: Final = ("none", "linear", "quadratic")
-"""The part of a light that is left at a fraction f of its reach: all of it, 1 - f, or (1 - f)^2."""
+"""The factor of a light at a fraction f of its reach: 1, 1 - f, or (1 - f)^2."""
 
 EYE: Final = "eye"
 """The value of `follows` of a light that is fixed to the eye."""
 
 LEAST_TURN: Final = 1e-9
-"""Assumed: the least sine of the angle between two sides of a triangle; below it, rounding would decide."""
+"""Assumed: the least sine of the angle between two sides of a triangle. Below it, rounding would decide."""
 
 NUMBER_AT_END: Final = re.compile(r" [0-9]{1,9}\Z")
 
@@ -59,7 +58,7 @@ class Flap(Row):
     """A range of one object coordinate outside of which a light has no effect, and a switch.
 
     Paper: "Light Flaps and Cones", Figure 9. A point at the minimum or the maximum is lit. Departs: with an
-    edge width, the light goes from nothing at an end to all of it at this distance inside.
+    edge width, the light rises from nothing at an end to full light at this distance inside.
     """
 
     noun: ClassVar[str] = "flap"
@@ -84,10 +83,10 @@ class Flap(Row):
     ] = 0.0
 
     def rules(self) -> Iterator[Problem]:
-        """The minimum must not be above the maximum."""
+        """The minimum is at most the maximum."""
         if self.minimum > self.maximum:
             ends = f"{self.minimum:g} to {self.maximum:g}"
-            yield Problem((), f"the minimum must not be above the maximum, not {ends}; exchange them")
+            yield Problem((), f"the minimum must be at most the maximum, not {ends}; exchange them")
 
     def replace(self, /, **changes: Unpack[FlapChanges]) -> Flap:
         """The flap with some fields changed."""
@@ -96,7 +95,7 @@ class Flap(Row):
 
 @dataclass(frozen=True, repr=False)
 class Flaps(Row):
-    """The flaps of one light in the X, Y and Z directions; None where there is no flap."""
+    """The flaps of a light in the X, Y and Z directions; None for no flap."""
 
     noun: ClassVar[str] = "flaps"
 
@@ -105,7 +104,7 @@ class Flaps(Row):
     z: Annotated[Flap | None, Column(Nested(Flap), Tier.LIGHT, "The range of Z that is lit.")] = None
 
     def replace(self, /, **changes: Unpack[FlapsChanges]) -> Flaps:
-        """The flaps with some changed; a table of fields changes only these fields of a flap."""
+        """The flaps with some of them changed; a table of fields changes only these fields of a flap."""
         return replaced(self, changes)
 
 
@@ -114,7 +113,7 @@ class HalfSpace(Row):
     """The points on one side of a plane, outside of which a light has no effect, and a switch.
 
     Paper: "Light Flaps and Cones" names flaps that are not parallel to the axes as an addition. A point of
-    the plane is lit. With an edge width, the light goes from nothing at the plane to all of it at this
+    the plane is lit. With an edge width, the light rises from nothing at the plane to full light at this
     distance inside. A carried half-space moves and turns with its light, like a barn door: its point and its
     direction are coordinates of `following.light_frame`.
     """
@@ -157,8 +156,8 @@ class HalfSpace(Row):
     ) -> HalfSpace:
         """The half-space whose plane goes through three points, (3,) each; `a` becomes its point.
 
-        The lit side is the one from which a, b and c turn counterclockwise. `changes` are further fields.
-        Raises InputError for an invalid point, and for three points in one line.
+        From the lit side, a, b and c turn counterclockwise. `changes` are further fields. Raises InputError
+        for an invalid point, and for three points in a line.
 
         >>> HalfSpace.through("left", (0, 0, 0), (1, 0, 0), (0, 2, 0)).direction
         (0.0, 0.0, 1.0)
@@ -169,9 +168,9 @@ class HalfSpace(Row):
         across = np.cross(to_b, to_c)
         length = float(np.linalg.norm(across))
         if length <= LEAST_TURN * float(np.linalg.norm(to_b) * np.linalg.norm(to_c)):
+            given = ", ".join(str(tuple(point)) for point in points.tolist())
             raise InputError(
-                f"half-space {name!r}: its three points must not be in one line, not"
-                f" {', '.join(str(tuple(each)) for each in points.tolist())}; move one of them"
+                f"half-space {name!r}: its three points must not be in a line, not {given}; move one of them"
             )
         point, direction = tuple(points[0].tolist()), tuple((across / length).tolist())
         return cls(name, point, direction).replace(**changes)
@@ -182,10 +181,10 @@ class HalfSpace(Row):
 
 
 def _checked_points(name: str, *points: Sequence[float]) -> Floats:
-    """Three points that are finite, (3, 3)."""
+    """The three points, (3, 3). Raises RowError unless they are finite."""
     kind, problems = VectorKind(), list[Problem]()
     vectors = [kind.validated(point, (key,), problems) for key, point in zip("abc", points, strict=True)]
-    if any(each is REFUSED for each in vectors):
+    if problems:
         raise RowError(problems, f"half-space {name!r}")
     return np.array(vectors, np.float64)
 
@@ -198,7 +197,7 @@ def _scaled(vector: Floats) -> Floats:
 
 @dataclass(frozen=True, repr=False)
 class Links(Row):
-    """The surfaces and parts that a light shines on, by name; None for all.
+    """The surfaces and parts that a light shines on, by name; without names, it shines on everything.
 
     Departs: the paper's lights shine on everything. A point is lit if the light shines on its surface and on
     its part.
@@ -224,13 +223,12 @@ class Links(Row):
     ] = None
 
     def rules(self) -> Iterator[Problem]:
-        """Surfaces are named or excepted, not both, and parts as well."""
-        for what in ("surfaces", "parts"):
-            only, excepted = (vars(self)[f"{which}_{what}"] for which in ("only", "except"))
+        """Surfaces are listed either to shine on or to except, and likewise parts."""
+        for table in ("surfaces", "parts"):
+            only, excepted = vars(self)[f"only_{table}"], vars(self)[f"except_{table}"]
             if only is not None and excepted is not None:
-                yield Problem(
-                    (f"except_{what}",), f"must not come with only_{what}, not with both; leave one out"
-                )
+                rule = f"must be absent where only_{table} is given; leave one out"
+                yield Problem((f"except_{table}",), rule)
 
     def replace(self, /, **changes: Unpack[LinksChanges]) -> Links:
         """The links with some fields changed."""
@@ -238,7 +236,7 @@ class Links(Row):
 
     @property
     def depend_on_parts(self) -> bool:
-        """Whether the part of a point decides whether it is lit."""
+        """Whether some parts are not lit."""
         return self.only_parts is not None or self.except_parts is not None
 
     def shines_on_surface(self, surface: str) -> bool:
@@ -246,27 +244,26 @@ class Links(Row):
         return bool(_selected([surface], self.only_surfaces, self.except_surfaces))
 
     def lit_parts(self, parts: Iterable[str]) -> set[str]:
-        """The names of the parts that the light shines on, if it shines on their surfaces."""
+        """The names among `parts` that the light shines on, without regard to their surfaces."""
         return _selected(parts, self.only_parts, self.except_parts)
 
     def within(self, surfaces: Collection[str], parts: Collection[str]) -> Links:
-        """The links without names that are not among some surfaces and parts.
+        """The links without names that are not in `surfaces` or `parts`.
 
-        Assumed: a list of which no name is left is removed, so that the light shines on everything. No
-        picture would show a light that shines on nothing.
+        Assumed: a list that becomes empty is removed, so that the light shines on everything. No picture
+        would show a light that shines on nothing.
         """
         remaining = {}
-        for name, (column, _, _) in fields_of(Links).items():
+        for field_name, (column, _, _) in fields_of(Links).items():
             existing = surfaces if column.kind == References("surfaces") else parts
-            if vars(self)[name]:
-                remaining[name] = tuple(each for each in vars(self)[name] if each in existing) or None
-        is_same = all(remaining[name] == vars(self)[name] for name in remaining)
-        return self if is_same else replaced(self, remaining)
+            if names := vars(self)[field_name]:
+                remaining[field_name] = tuple(name for name in names if name in existing) or None
+        return replaced(self, remaining)
 
 
 def _selected(names: Iterable[str], only: Names | None, excepted: Names | None) -> set[str]:
-    """The names that are among `only`, if that is given, and not among the excepted names."""
-    # A mesh may have many thousands of parts: search no list for a name.
+    """The names that are in `only`, if that is given, and not excepted."""
+    # A mesh may have many thousands of parts, so use sets.
     return (set(names) if only is None else set(names).intersection(only)).difference(excepted or ())
 
 
@@ -276,11 +273,12 @@ AXIS_CONTROLS: Final = ("concentration", "cone_angle", "inner_angle", "at_infini
 
 @dataclass(frozen=True, repr=False)
 class Light(Row):
-    """One light.
+    """A light.
 
-    It has a direction, or an aim (its direction is then from the position to the aim), or neither; then it is
-    a point source. Paper: "Light Direction and Concentration", "Light Flaps and Cones". The rays of a light
-    at infinity all have its direction: its concentration and its cone have no effect, its flaps still have.
+    With a direction or an aim, it is a directed light; an aim means the direction from the position to the
+    aim. Without both, it is a point source. Paper: "Light Direction and Concentration", "Light Flaps and
+    Cones". All rays of a light at infinity have its direction, so concentration and cone have no effect;
+    flaps do.
     """
 
     noun: ClassVar[str] = "light"
@@ -370,16 +368,14 @@ class Light(Row):
     ] = None
     at_infinity: Annotated[
         bool,
-        Column(
-            Boolean(), Tier.LIGHT, "Whether its rays are parallel, as if the position were endlessly far."
-        ),
+        Column(Boolean(), Tier.LIGHT, "Whether its rays are parallel, as if it were infinitely far away."),
     ] = False
     follows: Annotated[
         str | None,
         Column(
             Reference("lights", EYE),
             Tier.LIGHT,
-            "The frame that it moves with: 'eye', or another light's name for the aim of that light.",
+            "What it moves with: 'eye', or another light's name for the aim of that light.",
         ),
     ] = None
     links: Annotated[
@@ -387,14 +383,14 @@ class Light(Row):
     ] = field(default_factory=Links)
 
     def rules(self) -> Iterator[Problem]:
-        """At most one of direction and aim is given; without both, none of AXIS_CONTROLS is given.
+        """At most one of direction and aim is given; without both, no control in AXIS_CONTROLS.
 
-        An inner angle comes with a cone that is not narrower, and a falloff with a reach.
+        The inner angle is at most the cone angle. A falloff needs a reach.
         """
         if self.direction is not None and self.aim is not None:
             yield Problem((), "it must have a direction or an aim, not both; leave one out")
         if self.aim is not None and self.aim == self.position:
-            yield Problem((), f"the aim must not be the position, not both {self.aim}; move one of them")
+            yield Problem((), f"the aim must differ from the position, {self.aim}; move one of them")
         if self.direction is None and self.aim is None:
             for name, is_given in (
                 ("concentration", self.concentration > 0),
@@ -411,7 +407,7 @@ class Light(Row):
         if inner is not None and outer is None:
             yield Problem(("inner_angle",), "must come with a cone, not without one; add a cone_angle")
         elif inner is not None and outer is not None and inner > outer:
-            rule = f"must not be above the cone_angle, not {inner:g} and {outer:g}; exchange them"
+            rule = f"must be at most the cone_angle, {outer:g}, not {inner:g}; exchange them"
             yield Problem(("inner_angle",), rule)
         if self.falloff in FALLOFFS[1:] and self.reach is None:
             yield Problem(("falloff",), f"must come with a reach, not {self.falloff!r} alone; add a reach")
@@ -450,7 +446,7 @@ def middle_between(one: Vector, other: Vector) -> Vector:
 
 
 def free_name(name: str, taken: Collection[str]) -> str:
-    """The name if it is free, else with the lowest number from 2 that makes it free.
+    """The name if it is not taken; otherwise the name with the lowest number from 2 that is not taken.
 
     >>> free_name("key", ["key", "key 2"]), free_name("key 2", ["key", "key 2"]), free_name("rim", ["key"])
     ('key 3', 'key 3', 'rim')

@@ -46,7 +46,7 @@ class Rig(Row):
                 if low > high:
                     ends = f"{low:g} to {high:g}"
                     yield Problem(
-                        (), f"the minimum of {axis} must not be above the maximum, not {ends}; exchange them"
+                        (), f"the minimum of {axis} must be at most the maximum, not {ends}; exchange them"
                     )
 
     def fitted(self, minimum: Vector, maximum: Vector) -> tuple[Light, ...]:

@@ -1,7 +1,8 @@
 """The kinds of columns whose values are rows, and of columns that refer to rows by name.
 
-A row inside a row is `Nested`, or `OneRowOf` several classes. Tables of rows are a `RowList` or, inside
-another row, `NamedRows`. Names of rows of other tables are a `Reference`, `References` or `RangesByName`.
+A row inside a row is `Nested`, or `OneRowOf` several classes. A table of rows is a `RowList` or, inside
+another row, `NamedRows`. A column refers to rows of other tables by a `Reference`, `References` or
+`RangesByName`.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from itertools import pairwise
 from typing import Any, Final, NamedTuple
 
 from autocolor.arrays import LARGEST_SINGLE
-from autocolor.checks import either, listed, nearest, shown
+from autocolor.checks import closest, either, listed, nearest, shown
 from autocolor.scene.columns import (
     REFUSED,
     Column,
@@ -31,7 +32,7 @@ from autocolor.scene.columns import (
     replaced,
     to_plain,
 )
-from autocolor.scene.kinds import Number, Text
+from autocolor.scene.kinds import Number, Text, require
 
 MOST_ROWS: Final = 1_000_000
 """Limit: rows of a table."""
@@ -39,7 +40,7 @@ MOST_ROWS: Final = 1_000_000
 
 @dataclass(frozen=True)
 class Nested(Kind):
-    """A row of another class; if it is `inline`, its keys are among those of the containing row."""
+    """A row of another class. With `inline`, files write its keys among the keys of the containing row."""
 
     row_class: type[Row]
     inline: bool = False
@@ -77,7 +78,7 @@ class Nested(Kind):
                 return replaced(present, table)
             except RowError as error:
                 return _refused(error, self._path(path), problems)
-        # Make a new row if there was none or an invalid one; `validated` refuses anything else later.
+        # Make a new row in place of an absent or an invalid row; `validated` refuses any other value later.
         is_new = present is REFUSED or (present is None and not self.inline)
         return self.validated(table, path, problems) if is_new else present
 
@@ -97,7 +98,7 @@ class Nested(Kind):
 
 @dataclass(frozen=True, eq=False)
 class OneRowOf(Kind):
-    """A row of one of several classes, chosen by name; the name and its keys are in the containing row."""
+    """A row of one of several classes, chosen by name; files write the name and the keys inline."""
 
     classes: Mapping[str, type[Row]]
 
@@ -116,17 +117,18 @@ class OneRowOf(Kind):
         return next(name for name, cls in self.classes.items() if type(value) is cls)
 
     def keys(self, name: str, column: Column) -> Mapping[str, Column]:
-        inner = {key: each.column for cls in self.classes.values() for key, each in keys_of(cls).items()}
+        inner = {key: at.column for cls in self.classes.values() for key, at in keys_of(cls).items()}
         return {name: column, **inner}
 
-    def validated(self, value: object, path: Path, problems: list[Problem]) -> object:
+    def accepted(self, value: Any) -> Row:
         if type(value) in self.classes.values():
-            return value
-        if isinstance(value, str) and value in self.classes:
-            return self.classes[value]()
-        clause = nearest(value, self.classes) if isinstance(value, str) else ""
-        problems.append(Problem(path, f"{self.rule()}, not {shown(value)}{clause}"))
-        return REFUSED
+            row: Row = value
+            return row
+        require(isinstance(value, str) and value in self.classes)
+        return self.classes[value]()
+
+    def advice(self, value: object) -> str:
+        return closest(value, self.classes) if isinstance(value, str) else ""
 
     def replaced(self, present: object, table: Mapping[str, Any], path: Path, problems: list[Problem]) -> Any:
         name = path[-1]
@@ -141,7 +143,7 @@ class OneRowOf(Kind):
                 Problem(
                     (*path[:-1], key),
                     f"must go with {name} = {' or '.join(owners)}, not with {self.name_of(value)!r};"
-                    " leave it out, or change the other",
+                    f" leave it out, or change the {name}",
                 )
             )
             del keys[key]
@@ -194,15 +196,18 @@ class RowList(Kind):
         return {name: [to_plain(row) for row in value]}
 
     def cost(self, one: Any, other: Any, own: Tier) -> Tier | None:
-        if len(one) != len(other):
-            return own
-        pairs = zip(one, other, strict=True)
-        costs = [cost(a, b) for a, b in pairs if a is not b]
-        return max((each for each in costs if each is not None), default=None)
+        return _cost_of_rows(one, other) if len(one) == len(other) else own
+
+
+def _cost_of_rows(ones: Sequence[Row], others: Sequence[Row]) -> Tier | None:
+    """The largest cost of an edit from a row to its counterpart; None if all rows are equal."""
+    pairs = zip(ones, others, strict=True)
+    costs = [cost(one, other) for one, other in pairs if one is not other]
+    return max((tier for tier in costs if tier is not None), default=None)
 
 
 def _refused(error: RowError, path: Path, problems: list[Problem]) -> Any:
-    """Append the problems of a nested row, with its path before theirs, and return REFUSED."""
+    """Append the problems of a row inside another, with the path to that row, and return REFUSED."""
     problems.extend(problem.under(path) for problem in error.row_problems)
     return REFUSED
 
@@ -212,13 +217,13 @@ def _refused(error: RowError, path: Path, problems: list[Problem]) -> Any:
 
 @dataclass(frozen=True)
 class Referring(Kind):
-    """References to rows of another table by name; the scene checks that these rows exist."""
+    """References to rows of another table, by name. The scene checks that these rows exist."""
 
     table: str
 
     @property
     def words(self) -> tuple[str, ...]:
-        """The words that may stand in place of a name."""
+        """The words that are valid instead of a name."""
         return ()
 
     def names_in(self, value: Any) -> Sequence[str]:
@@ -228,7 +233,7 @@ class Referring(Kind):
 
 @dataclass(frozen=True)
 class Reference(Referring):
-    """The name of a row of another table, or a `word` that means the same in every scene, if there is one."""
+    """The name of a row of another table, or `word`, if that is not empty."""
 
     word: str = ""
 
@@ -237,7 +242,8 @@ class Reference(Referring):
         return (self.word,) if self.word else ()
 
     def rule(self) -> str:
-        return f"must be {self.word!r} or the name of one of the {self.table}" if self.word else Text().rule()
+        noun = self.table.removesuffix("s")
+        return f"must be {self.word!r} or the name of a {noun}" if self.word else Text().rule()
 
     def accepts(self) -> str:
         return "str"
@@ -260,8 +266,7 @@ class References(Referring):
         return "Sequence[str]"
 
     def accepted(self, value: Any) -> tuple[str, ...]:
-        if not isinstance(value, (list, tuple)):
-            raise TypeError
+        require(isinstance(value, (list, tuple)))
         return tuple(Text().accepted(name) for name in value)
 
     def names_in(self, value: Any) -> Sequence[str]:
@@ -270,9 +275,9 @@ class References(Referring):
 
 @dataclass(frozen=True)
 class RangesByName(Referring):
-    """The word `none`, or ranges [minimum, maximum] by the name of a row, or by the name `others`.
+    """The word `none`, or ranges [minimum, maximum] by the names of rows; `others` names all further rows.
 
-    The value is pairs of a name and a range. Numbers are at least 0, and each maximum is above its minimum.
+    The value is the word, or pairs (name, range). 0 <= minimum < maximum.
     """
 
     none: str
@@ -293,8 +298,7 @@ class RangesByName(Referring):
 
     def accepted(self, value: Any) -> str | tuple[tuple[str, tuple[float, float]], ...]:
         if isinstance(value, str):
-            if value != self.none:
-                raise ValueError
+            require(value == self.none)
             return self.none
         pairs = list(value.items()) if isinstance(value, Mapping) else list(value)
         intensity = Number(at_least=0, at_most=LARGEST_SINGLE).accepted
@@ -303,8 +307,8 @@ class RangesByName(Referring):
             for name, (minimum, maximum) in pairs
         )
         names = [name for name, _ in ranges]
-        if not ranges or len(set(names)) < len(names) or not all(low < high for _, (low, high) in ranges):
-            raise ValueError
+        require(len(ranges) > 0 and len(set(names)) == len(names))
+        require(all(low < high for _, (low, high) in ranges))
         return ranges
 
     def names_in(self, value: Any) -> Sequence[str]:
@@ -315,7 +319,7 @@ class RangesByName(Referring):
 
 
 class ReferenceAt(NamedTuple):
-    """A column that refers to other rows: its kind, and the fields that lead to it from the row."""
+    """A column that refers to other rows: its kind, and the names of the fields from a row to its value."""
 
     kind: Referring
     path: tuple[str, ...]
@@ -338,22 +342,22 @@ def references_of(cls: type[Row]) -> Mapping[str, ReferenceAt]:
             references[name] = ReferenceAt(kind, (name,))
         elif isinstance(kind, Nested) and kind.inline:
             inner = references_of(kind.row_class)
-            references |= {key: each._replace(path=(name, *each.path)) for key, each in inner.items()}
+            references |= {key: at._replace(path=(name, *at.path)) for key, at in inner.items()}
     return references
 
 
 # Rows by name inside another row.
 
 MOST_NAMED_ROWS: Final = 64
-"""Limit: rows inside another row; a screen hardly has room for more."""
+"""Limit: rows inside another row. A screen hardly has room for more."""
 
 
 @dataclass(frozen=True)
 class NamedRows(Kind):
-    """Rows of a class with unique names, inside another row; they are sorted by name.
+    """Rows of a class with unique names, inside another row, sorted by name.
 
-    Files write a table of tables by name. A change is such a table, too. The keys of a row that exists are
-    replaced, and the key `name` renames it; a name that does not exist adds a row; None removes a row.
+    Files and changes write a table of tables by name. A change replaces keys of an existing row, which the
+    key `name` renames; an unknown name adds a row; None removes a row.
     """
 
     row_class: type[Row]
@@ -374,15 +378,14 @@ class NamedRows(Kind):
         if not self._are_few(len(value), MOST_NAMED_ROWS, path, problems):
             return REFUSED
         rows: list[Any] = sorted(value, key=lambda row: row.name)
-        taken = {one.name: None for one, other in pairwise(rows) if one.name == other.name}
-        for name in taken:
-            text = "must have a name of its own, not that of another; rename one of them"
-            problems.append(Problem((*path, name), text))
-        return REFUSED if taken else tuple(rows)
+        repeated = dict.fromkeys(one.name for one, other in pairwise(rows) if one.name == other.name)
+        for name in repeated:
+            problems.append(Problem((*path, name), "must be unique, not repeated; rename one of them"))
+        return REFUSED if repeated else tuple(rows)
 
     def replaced(self, present: object, table: Mapping[str, Any], path: Path, problems: list[Problem]) -> Any:
         rows = {row.name: row for row in present} if isinstance(present, tuple) else {}
-        # All of them may be removed, and as many added.
+        # A change may replace every row: remove MOST_NAMED_ROWS, and add as many.
         if not self._are_few(len(table), 2 * MOST_NAMED_ROWS, path, problems):
             return REFUSED
         for name, given in table.items():
@@ -406,21 +409,21 @@ class NamedRows(Kind):
         return self.validated(tuple(rows.values()), path, problems)
 
     def _new(self, name: str, given: object, path: Path, problems: list[Problem]) -> object:
-        """The row of a name, of keys or as a row; REFUSED if it is invalid, or has another name."""
+        """The row for a table of keys, or a row itself; REFUSED if it is invalid or has another name."""
         if not isinstance(given, (Mapping, self.row_class)):
             keys = [key for key in keys_of(self.row_class) if key != "name"]
             problems.append(Problem(path, f"must be a table of {listed(keys)}, not {shown(given)}"))
             return REFUSED
         own = given.get("name", name) if isinstance(given, Mapping) else vars(given)["name"]
         if own != name:
-            text = f"must be that of the table, {shown(name)}, not {shown(own)}; leave it out"
+            text = f"must be the name of its table, {shown(name)}, not {shown(own)}; leave it out"
             problems.append(Problem((*path, "name"), text))
             return REFUSED
         new = {**given, "name": name} if isinstance(given, Mapping) else given
         return Nested(self.row_class).validated(new, path, problems)
 
     def _are_few(self, count: int, most: int, path: Path, problems: list[Problem]) -> bool:
-        """Whether rows or changes are not too many; else that is a problem."""
+        """Whether a number of rows is within a limit; if not, a problem is appended."""
         if count > most:
             problems.append(
                 Problem(path, f"must be at most {MOST_NAMED_ROWS}, not {count:,}; leave some out")
@@ -432,7 +435,7 @@ class NamedRows(Kind):
 
     def difference(self, name: str, one: Any, other: Any) -> Mapping[str, object]:
         before, after = ({row.name: row for row in rows} for rows in (one, other))
-        changes: dict[str, object] = {gone: None for gone in before if gone not in after}
+        changes: dict[str, object] = {key: None for key in before if key not in after}
         for key, row in after.items():
             if key not in before:
                 changes[key] = without_name(to_plain(row))
@@ -441,12 +444,10 @@ class NamedRows(Kind):
         return {name: changes} if changes else {}
 
     def cost(self, one: Any, other: Any, own: Tier) -> Tier | None:
-        if [row.name for row in one] != [row.name for row in other]:
-            return own
-        costs = [cost(a, b) for a, b in zip(one, other, strict=True) if a is not b]
-        return max((each for each in costs if each is not None), default=None)
+        has_same_names = [row.name for row in one] == [row.name for row in other]
+        return _cost_of_rows(one, other) if has_same_names else own
 
 
 def without_name(keys: Mapping[str, object]) -> dict[str, object]:
-    """The keys of a row without its name, which its table has already."""
+    """The keys of a row without `name`, which is the key of the row's table."""
     return {key: value for key, value in keys.items() if key != "name"}

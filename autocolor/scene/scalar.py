@@ -1,4 +1,4 @@
-"""Scalars: the numbers of a mesh, such as stress, and the row that says how one of them is shown in color.
+"""Scalars: the numbers of a mesh, such as stress, and the row that says how a scalar colors the surfaces.
 
 Paper: "Introduction": scalar variables such as stress on the surface of an object are shown in color.
 """
@@ -36,7 +36,7 @@ MOST_COLORS: Final = 256
 
 @dataclass(frozen=True)
 class LimitsKind(Kind):
-    """Two numbers of float32, the second above the first."""
+    """Two numbers within the range of float32, the second above the first."""
 
     def rule(self) -> str:
         return "must be two finite numbers, the second above the first"
@@ -56,7 +56,7 @@ class LimitsKind(Kind):
 
 @dataclass(frozen=True)
 class EndColor(ColorKind):
-    """The color of values beyond a limit. It is a band of its own: with it, or without it, levels change."""
+    """The color of values beyond a limit. It has its own band, so adding or removing it changes levels."""
 
     def cost(self, one: Any, other: Any, own: Tier) -> Tier | None:
         return Tier.LEVELS if one is None or other is None else super().cost(one, other, own)
@@ -77,7 +77,7 @@ class ScaleKind(Kind):
             require(value in COLOR_SCALES)
             return value
         require(not isinstance(value, UNORDERED))
-        colors = tuple(ColorKind().accepted(each) for each in value)
+        colors = tuple(ColorKind().accepted(color) for color in value)
         require(2 <= len(colors) <= MOST_COLORS)
         return colors
 
@@ -159,7 +159,7 @@ class Scalar(Row):
         Column(
             References("surfaces"),
             Tier.LEVELS,
-            "The surfaces that it colors; if absent, all surfaces that are not only of stage parts.",
+            "The surfaces that it colors; if absent, all surfaces that some part has which is not stage.",
         ),
     ] = None
     direction: Annotated[
@@ -167,7 +167,7 @@ class Scalar(Row):
         Column(
             VectorKind(has_length=True),
             Tier.MIX,
-            "The direction of a distance, of a draft angle's pull, of up for a slope, or of stripes.",
+            "The direction of distances, of the pull for draft angles, of up for slopes, or of stripes.",
         ),
     ] = UP
     stripes: Annotated[
@@ -194,8 +194,8 @@ LARGEST_SCALAR: Final = LARGEST_COORDINATE
 class MeshScalar(Immutable):
     """A scalar of a mesh: `values`, (n,) float64, for the rows of the table `of`, "node" or "polygon".
 
-    NaN is a missing value; all others are at most 1e30 in size. The values are copied unless they are a
-    read-only array of this type. Raises InputError.
+    NaN is a missing value; the size of all other values is at most 1e30. The values are copied unless they
+    are a read-only array of this type. Raises InputError.
     """
 
     name: str
@@ -205,7 +205,7 @@ class MeshScalar(Immutable):
     def __post_init__(self) -> None:
         problems = []
         if not isinstance(self.name, str) or not self.name:
-            problems.append(f"a scalar must have a name, not {shown(self.name)}; give it one")
+            problems.append(f"a scalar must have a name, not {shown(self.name)}; give it a name")
         label = f"scalar {shown(self.name)}"
         if self.of not in (NODE, POLYGON):
             problems.append(f"{label}: it must be of 'node' or 'polygon', not {shown(self.of)}; choose one")
@@ -216,8 +216,8 @@ class MeshScalar(Immutable):
                 f" {values.shape}; convert them"
             )
         else:
-            is_kept = values.dtype == np.float64 and not values.flags.writeable
-            values = values if is_kept else read_only(np.array(values, np.float64))
+            if values.dtype != np.float64 or values.flags.writeable:
+                values = read_only(np.array(values, np.float64))
             if problem := _endless(values):
                 problems.append(f"{label}: {problem}")
         if problems:
@@ -226,17 +226,17 @@ class MeshScalar(Immutable):
 
 
 def _endless(values: Floats) -> str | None:
-    """The problem of the first value that is infinite or too large, or None."""
-    # A comparison with NaN is false, and warns of nothing.
+    """The problem of the first value that is infinite or too large; None if there is no such value."""
+    # Comparisons with NaN are false, without a warning.
     rows = np.flatnonzero((values > LARGEST_SCALAR) | (values < -LARGEST_SCALAR))
     if not len(rows):
         return None
-    found = values[rows[0]]
-    return f"a value must be at most 1e30 in size, or NaN if it is missing, not {found:g} (row {rows[0]})"
+    row = rows[0]
+    return f"a value must be at most 1e30 in size, or NaN if it is missing, not {values[row]:g} (row {row})"
 
 
 def scalar_problems(scalars: Sequence[MeshScalar], nodes: int, polygons: int) -> Iterator[str]:
-    """The problems of the scalars of a mesh with these numbers of nodes and polygons."""
+    """The problems of the scalars of a mesh; `nodes` and `polygons` are its counts."""
     names: set[str] = set()
     counts = {NODE: nodes, POLYGON: polygons}
     for scalar in scalars:
@@ -253,23 +253,22 @@ def scalar_problems(scalars: Sequence[MeshScalar], nodes: int, polygons: int) ->
 def joined_scalars(
     scalars: Sequence[Sequence[MeshScalar]], nodes: Sequence[int], polygons: Sequence[int]
 ) -> tuple[MeshScalar, ...]:
-    """The scalars of several meshes that are joined to one; `nodes` and `polygons` are their counts.
+    """The scalars of a mesh that is joined of several meshes; `nodes` and `polygons` are the meshes' counts.
 
-    A mesh without a scalar of some name has missing values. If a name is of nodes in one mesh and of polygons
-    in another, the second scalar gets another name, as in "stress of polygons".
+    If a mesh lacks a scalar, its values are missing. If a scalar belongs to the nodes of a mesh, and a scalar
+    of the same name to the polygons of another mesh, the second gets a name like "stress of polygons".
     """
-    kinds = dict.fromkeys((scalar.name, scalar.of) for each in scalars for scalar in each)
+    kinds = dict.fromkeys((scalar.name, scalar.of) for of_mesh in scalars for scalar in of_mesh)
     names: dict[str, tuple[str, str]] = {}
     for name, of in kinds:
         names[name if name not in names else f"{name} of {of}s"] = (name, of)
     joined = []
     for name, key in names.items():
         counts = nodes if key[1] == NODE else polygons
-        found = [{(each.name, each.of): each.values for each in of_mesh}.get(key) for of_mesh in scalars]
-        values = [
-            np.full(count, np.nan) if each is None else each
-            for count, each in zip(counts, found, strict=True)
-        ]
+        values = []
+        for count, of_mesh in zip(counts, scalars, strict=True):
+            present = {(scalar.name, scalar.of): scalar.values for scalar in of_mesh}
+            values.append(present[key] if key in present else np.full(count, np.nan))
         joined.append(MeshScalar(name, read_only(np.concatenate(values)), key[1]))
     return tuple(joined)
 
@@ -289,14 +288,14 @@ COMPUTED: Final = (
 )
 """The names of the scalars that `autocolor.scalars` computes for any mesh.
 
-Assumed: a scalar of the mesh hides a computed scalar of the same name, since the user means the numbers of
-the file.
+Assumed: a scalar of the mesh hides a computed scalar of the same name, because a user who names it means the
+numbers of the file.
 """
 
 
 def name_problems(name: str, scalars: Iterable[MeshScalar]) -> Iterator[Problem]:
-    """The problem of the name of the scalar to show, given the scalars of the mesh."""
-    known = [*(scalar.name for scalar in scalars), *COMPUTED]
-    if name not in known:
-        rule = "must be a scalar of the mesh or a computed one"
-        yield Problem(("scalar", "name"), f"{rule}, not {shown(name)}{nearest(name, known)}")
+    """The problem of a scalar's name that neither the mesh has nor `autocolor.scalars` computes."""
+    names = [*(scalar.name for scalar in scalars), *COMPUTED]
+    if name not in names:
+        rule = "must be a scalar of the mesh or a computed scalar"
+        yield Problem(("scalar", "name"), f"{rule}, not {shown(name)}{nearest(name, names)}")

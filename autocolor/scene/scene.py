@@ -1,7 +1,7 @@
 """The scene: mesh, parts, surfaces, lights and view, and how intensities are shown.
 
-Scenes are immutable. An edit makes a new scene that shares every unchanged table with the old scene, so that
-a comparison of two scenes gives the cost of the edit (see `Tier`).
+Scenes are immutable. An edit makes a new scene, which shares every unchanged table with the old scene. The
+cost of the edit is found by comparing the two scenes (see `Tier`).
 """
 
 from __future__ import annotations
@@ -72,20 +72,20 @@ NORMALS: Final = "normals"
 
 AUTO: Final = "auto"
 OBJECT: Final = "object"
-"""In `exposure`, the name of the range of the whole object; a surface of this name has no fixed range."""
+"""In `exposure`, the name of the range of the whole object. A surface of this name has no fixed range."""
 
 Exposure = str | tuple[tuple[str, tuple[float, float]], ...]
-"""AUTO, or fixed ranges: pairs of a name, OBJECT or a surface's, and its minimum and maximum."""
+"""AUTO, or fixed ranges: pairs (name, (minimum, maximum)), where a name is OBJECT or a surface's."""
 
 MOST_PROBLEMS: Final = 100
-"""Limit: problems of references, and of lights that follow each other, in a message."""
+"""Limit: problems of references in a message, and of lights that follow each other."""
 
 
 @dataclass(frozen=True, eq=False)
 class Scene(Row):
     """Everything needed to render and color a picture. `scene_of` makes a scene of a mesh.
 
-    There is one part for each part name of the mesh, in the same order, and every part's surface is in the
+    The part table has the part names of the mesh in the same order, and every part's surface is in the
     surface table. Paper: "The Lighting Model" (ambient; mapping by surface or by object; nonlinear mappings).
     """
 
@@ -133,7 +133,7 @@ class Scene(Row):
         Column(
             RangesByName("surfaces", AUTO, OBJECT),
             Tier.LEVELS,
-            "Whether intensity ranges are automatic, or fixed: by surface, or of the object for all others.",
+            "Whether intensity ranges are automatic, or fixed: by surface, and for all other surfaces.",
             "intensity",
         ),
     ] = AUTO
@@ -176,9 +176,10 @@ class Scene(Row):
     ] = "scene"
 
     def rules(self) -> Iterator[Problem]:
-        """The parts are those of the mesh, all references are valid, and there are at most MOST_SURFACES.
+        """The parts match the mesh, all references are valid, and there are at most MOST_SURFACES surfaces.
 
-        Words do not stand for normals if a scalar colors surfaces: a band depends on the place of a point.
+        If a scalar colors surfaces, words cannot stand for normals: the color of a point depends on its
+        position, too.
         """
         if self.mesh is not REFUSED and self.parts is not REFUSED:
             names = [part.name for part in self.parts]
@@ -188,8 +189,8 @@ class Scene(Row):
         if self.mesh is not REFUSED and isinstance(self.scalar, Scalar):
             yield from name_problems(self.scalar.name, self.mesh.scalars)
         if self.words == NORMALS and self.scalar is not None:
-            rule = "must be 'levels' where a scalar colors surfaces, not 'normals'; change it, or take the"
-            yield Problem(("words",), f"{rule} scalar away")
+            rule = "must be 'levels' where a scalar colors surfaces, not 'normals'; change it, or remove the"
+            yield Problem(("words",), f"{rule} scalar")
         # Finding the closest valid name is slow, and a file may contain many invalid names.
         yield from islice(self._reference_problems(), MOST_PROBLEMS)
         if self.lights is not REFUSED:
@@ -201,7 +202,7 @@ class Scene(Row):
             )
 
     def _reference_problems(self) -> Iterator[Problem]:
-        """The problems of references to rows of other tables that do not exist."""
+        """The problems of references to rows that are not in their tables."""
         tables: list[tuple[type[Row], Sequence[Row]]] = [(Scene, (self,))]
         for table, field in fields_of(Scene).items():
             kind, rows = field.column.kind, vars(self)[table]
@@ -220,11 +221,11 @@ class Scene(Row):
         return replaced(self, changes)
 
     def equals(self, other: Scene) -> bool:
-        """Whether all columns are equal; meshes are compared by identity."""
+        """Whether all columns are equal. Meshes are compared by identity."""
         return cost_of_edit(other, self) is None
 
     def light(self, name: str) -> Light:
-        """The light of that name. Raises UsageError, with the closest valid name, if there is none."""
+        """The light of that name. Raises UsageError, with the closest name, if it does not exist."""
         return self.lights[_place("light", self.lights, name)]
 
     @property
@@ -233,13 +234,13 @@ class Scene(Row):
         return lights_in_world(self.lights, self.view)
 
     def light_in_world(self, name: str) -> Light:
-        """The light of that name in object coordinates. Raises UsageError if there is none."""
+        """The light of that name in object coordinates. Raises UsageError if it does not exist."""
         return self.lights_in_world[_place("light", self.lights, name)]
 
     def with_light_in_world(self, name: str, /, **changes: Unpack[LightChanges]) -> Scene:
-        """The scene with some fields of one light changed; places and directions are in object coordinates.
+        """The scene with some fields of a light changed; positions and directions are in object coordinates.
 
-        They are converted to the frame that the light follows. A change of `follows` alone leaves the light
+        They are converted to the frame that the light follows. Changing `follows` alone leaves the light
         where it is in the object. Raises UsageError or InputError.
         """
         if "follows" in changes:
@@ -248,37 +249,37 @@ class Scene(Row):
         return self.with_light(name, **changes_in_frame(changes, self._frame_of(name)))
 
     def with_light_following(self, name: str, follows: str | None) -> Scene:
-        """The scene with a light that follows "eye", another light or nothing, and stays where it is now.
+        """The scene in which a light follows "eye", another light or nothing, and stays where it is now.
 
         Raises UsageError if no light has that name, InputError if the light cannot follow `follows`.
         """
         world = self.light_in_world(name)
-        places = {each: vars(world)[each] for each in vector_columns(Light)}
+        places = {column: vars(world)[column] for column in vector_columns(Light)}
         followed = self.with_light(name, follows=follows)
         return followed.with_light(name, **changes_in_frame(places, followed._frame_of(name)))
 
     def _frame_of(self, name: str) -> Frame | None:
-        world = {each.name: each for each in self.lights_in_world}
+        world = {light.name: light for light in self.lights_in_world}
         return frame_of(self.light(name), world, self.view)
 
     def surface(self, name: str) -> Surface:
-        """The surface of that name. Raises UsageError, with the closest valid name, if there is none."""
+        """The surface of that name. Raises UsageError, with the closest name, if it does not exist."""
         return self.surfaces[_place("surface", self.surfaces, name)]
 
     def part(self, name: str) -> Part:
-        """The part of that name. Raises UsageError, with the closest valid name, if there is none."""
+        """The part of that name. Raises UsageError, with the closest name, if it does not exist."""
         return self.parts[_place("part", self.parts, name)]
 
     def with_light(self, name: str, /, **changes: Unpack[LightChanges]) -> Scene:
-        """The scene with some fields of one light changed."""
+        """The scene with some fields of a light changed."""
         return self._with_row("lights", _place("light", self.lights, name), changes)
 
     def with_surface(self, name: str, /, **changes: Unpack[SurfaceChanges]) -> Scene:
-        """The scene with some fields of one surface changed, including those of its reflectance and paint."""
+        """The scene with some fields of a surface changed, also fields of its reflectance and its paint."""
         return self._with_row("surfaces", _place("surface", self.surfaces, name), changes)
 
     def with_paint(self, name: str, /, **changes: Unpack[PaintChanges]) -> Scene:
-        """The scene with some colors of one surface changed; the same scene if no color differs."""
+        """The scene with some fields of a surface's paint changed; the same scene if all values are equal."""
         place = _place("surface", self.surfaces, name)
         surface = self.surfaces[place]
         try:
@@ -291,7 +292,7 @@ class Scene(Row):
         return with_values(self, {"surfaces": (*self.surfaces[:place], row, *self.surfaces[place + 1 :])})
 
     def with_part(self, name: str, /, **changes: Unpack[PartChanges]) -> Scene:
-        """The scene with some fields of one part changed."""
+        """The scene with some fields of a part changed."""
         return self._with_row("parts", _place("part", self.parts, name), changes)
 
     def with_view(self, /, **changes: Unpack[ViewChanges]) -> Scene:
@@ -303,11 +304,11 @@ class Scene(Row):
         return replaced(self, {"scalar": changes})
 
     def without_scalar(self) -> Scene:
-        """The scene in the colors of its surfaces."""
+        """The scene without its scalar, in the colors of its surfaces."""
         return with_values(self, {"scalar": None})
 
     def with_new_light(self, name: str, /, **fields: Unpack[LightChanges]) -> Scene:
-        """The scene with another light after the others; it must have a position.
+        """The scene with a new light at the end of its lights; `fields` must have a position.
 
         Raises InputError if a field is invalid or a light has that name already.
         """
@@ -315,22 +316,22 @@ class Scene(Row):
         return replaced(self, {"lights": (*self.lights, new)})
 
     def without_light(self, name: str) -> Scene:
-        """The scene without one light.
+        """The scene without a light.
 
-        Raises UsageError if there is none of that name, InputError if another light follows it.
+        Raises UsageError if the light does not exist, InputError if another light follows it.
         """
         place = _place("light", self.lights, name)
-        followers = followers_of(name, self.lights)
-        if followers:
+        if followers := followers_of(name, self.lights):
+            first = repr(followers[0])
             raise InputError(
-                f"light {name!r} must stay while {followers[0]!r} follows it; let that follow something else"
+                f"light {name!r} must stay while {first} follows it; let {first} follow something else"
             )
         return replaced(self, {"lights": (*self.lights[:place], *self.lights[place + 1 :])})
 
     def with_copied_light(self, name: str, new_name: str | None = None) -> Scene:
-        """The scene with a copy of one light after the others, named like "key 2" unless a name is given.
+        """The scene with a copy of a light at the end of its lights, named like "key 2" without `new_name`.
 
-        Raises UsageError if there is no light of that name, InputError if the new name is taken.
+        Raises UsageError if the light does not exist, InputError if the new name is taken.
         """
         light = self.light(name)
         if new_name is None:
@@ -340,13 +341,13 @@ class Scene(Row):
     def with_mirrored_light(
         self, name: str, axis: str = "x", about: float | None = None, new_name: str | None = None
     ) -> Scene:
-        """The scene with a mirrored copy of one light after the others; the light itself stays.
+        """The scene with a mirrored copy of a light at the end of its lights.
 
-        It is mirrored in the plane where the coordinate of the axis, "x", "y" or "z", is `about`, by default
-        in the middle of the object: position, aim or direction, half-spaces, and the flap of that axis. A
-        light that follows something is mirrored where it is now, and its copy follows it, too. The name of
-        the copy is like "key mirrored" unless `new_name` is given. Raises UsageError for an unknown light or
-        axis, InputError if the new name is taken.
+        The mirror is the plane where the coordinate of `axis`, "x", "y" or "z", is `about`; by default it
+        goes through the middle of the object. Position, aim or direction, half-spaces, and the flap of that
+        axis are mirrored in object coordinates. The copy follows the same thing as the light. Without
+        `new_name` its name is like "key mirrored". Raises UsageError for an unknown light or axis, InputError
+        if the new name is taken.
         """
         light, number = self.light_in_world(name), axis_number(axis)
         if about is None:
@@ -359,14 +360,14 @@ class Scene(Row):
         return replaced(self, {"lights": (*self.lights, copy)})
 
     def with_all_lights_on(self) -> Scene:
-        """The scene with all lights switched on, as before `only_lights`."""
+        """The scene with all lights switched on."""
         return self.replace(lights=tuple(light.replace(on=True) for light in self.lights))
 
     def with_rig(self, rig: Rig) -> Scene:
         """The scene with the lights of a rig instead of its own, fitted to the size of its object.
 
-        Links to surfaces and parts that the scene does not have are left out (see `Links.within`). Raises
-        InputError if the lights cannot be fitted (see `Rig.fitted`).
+        Links to unknown surfaces and parts are left out (see `Links.within`). Raises InputError if the lights
+        cannot be fitted (see `Rig.fitted`).
         """
         surfaces, parts = ({row.name for row in rows} for rows in (self.surfaces, self.parts))
         lights = [
@@ -392,8 +393,8 @@ class Scene(Row):
         rows = vars(self)[table]
         row = rows[place]
         rows = (*rows[:place], replaced(row, changes), *rows[place + 1 :])
-        # Tables refer to each other by name only: if no name changes, references stay valid, except that a
-        # light must keep the aim that another light follows. Cached properties depend on the parts.
+        # Tables refer to each other by name, so references stay valid unless a name or a reference changes.
+        # A light must keep the aim that another light follows. Cached properties depend on the parts.
         is_followed = table == "lights" and any(light.follows is not None for light in self.lights)
         is_referring = any(
             key in changes or reference.path[0] in changes
@@ -411,12 +412,12 @@ class Scene(Row):
 
     @cached_property
     def object_coordinates(self) -> Floats:
-        """The coordinates of the nodes of the object, (nodes, 3): of all parts that are not stage."""
+        """The coordinates of the nodes of all parts that are not stage, (nodes, 3)."""
         return read_only(object_coordinates(self.mesh, self.parts))
 
     @property
     def scalar_names(self) -> tuple[str, ...]:
-        """The names of the scalars that can color it: those of its mesh, then the computed ones."""
+        """The names of the scalars that can color surfaces: the mesh's, then the computed scalars."""
         return tuple(dict.fromkeys([*(scalar.name for scalar in self.mesh.scalars), *COMPUTED]))
 
     @cached_property
@@ -426,48 +427,47 @@ class Scene(Row):
         return low, high
 
     def __repr__(self) -> str:
-        return (
-            f"Scene({self.name!r}: {self.mesh!r}, surfaces {len(self.surfaces)}, lights {len(self.lights)})"
-        )  # fmt: skip
+        counts = f"surfaces {len(self.surfaces)}, lights {len(self.lights)}"
+        return f"Scene({self.name!r}: {self.mesh!r}, {counts})"
 
 
 def _missing_names(
-    rows: Sequence[Row], key: str, reference: ReferenceAt, known: Sequence[str]
+    rows: Sequence[Row], key: str, reference: ReferenceAt, names: Sequence[str]
 ) -> Iterator[Problem]:
-    """The problems of rows whose column `key` refers to names that are not in `known`."""
-    found = set(known)
+    """The problems of rows whose column `key` refers to a name that is not in `names`."""
+    existing = set(names)
     for row in rows:
         value = reference.value_in(row)
-        for wanted in () if value is REFUSED or value is None else reference.kind.names_in(value):
-            if wanted not in found:
+        for name in () if value is REFUSED or value is None else reference.kind.names_in(value):
+            if name not in existing:
                 table = f"the {reference.kind.table.removesuffix('s')} table"
                 label = f"{row_label(row)}: " if row_label(row) else ""
-                close = nearest(wanted, [*reference.kind.words, *known])
-                yield Problem((), f"{label}{key} {shown(wanted)} is not in {table}{close}")
+                close = nearest(name, [*reference.kind.words, *names])
+                yield Problem((), f"{label}{key} {shown(name)} is not in {table}{close}")
 
 
 def check_scene(value: object) -> None:
     """Raise UsageError if a value is no Scene."""
     if not isinstance(value, Scene):
         raise UsageError(
-            f"a scene must be a Scene, not {shown(value)}; `read_scene` reads one from files, and `scene_of`"
-            " makes one of a mesh"
+            f"a scene must be a Scene, not {shown(value)}; read a scene from files with `read_scene`, or make"
+            " a scene of a mesh with `scene_of`"
         )
 
 
 def cost_of_edit(old: Scene, new: Scene) -> Tier | None:
-    """The cost of an edit from one scene to another, None where they are equal."""
+    """The cost of an edit from one scene to another; None if they are equal."""
     return cost(old, new)
 
 
 def costs_at_least(old: Scene, new: Scene, tier: Tier) -> bool:
-    """Whether the cost of an edit from one scene to another is at least a tier."""
-    costs = cost_of_edit(old, new)
-    return costs is not None and costs >= tier
+    """Whether an edit from one scene to another costs at least a tier."""
+    edit_cost = cost(old, new)
+    return edit_cost is not None and edit_cost >= tier
 
 
 def _place(kind: str, rows: Sequence[SomeTableRow], name: str) -> int:
-    """The index of the row of that name. Raises UsageError if there is none."""
+    """The index of the row of that name. Raises UsageError, with the closest name, if it does not exist."""
     for place, row in enumerate(rows):
         if row.name == name:
             return place

@@ -37,7 +37,7 @@ class Part(Row):
     surface: Annotated[str, Column(Reference("surfaces"), Tier.FRAME, "The name of the part's surface.")]
     stage: Annotated[
         bool,
-        Column(Boolean(), Tier.MIX, "Whether the part is scenery: views are framed without it."),
+        Column(Boolean(), Tier.MIX, "Whether the part is scenery; a new view frames the other parts."),
     ] = False
 
     def replace(self, /, **changes: Unpack[PartChanges]) -> Part:
@@ -71,9 +71,9 @@ class Reflectance(Row):
         *,
         exponent: float | None = None,
     ) -> None:
-        """Set D, S and the model, a row or a name; a number, or `exponent`, is N of Phong's model.
+        """Set D, S and the model: a row, a name, or N of Phong's model as a number.
 
-        Raises InputError.
+        `exponent` sets N of any model that has it. Raises InputError.
         """
         if isinstance(model, Real) and not isinstance(model, bool):
             if exponent is not None:
@@ -118,7 +118,7 @@ class Paint(Row):
         Column(
             Number(at_least=0, at_most=1),
             Tier.ENTRIES,
-            "The level above which the light color blends in, from 0 to 1; 1 for no blending.",
+            "The level above which the light color blends in; 1 for no blending.",
             "fraction of the range of levels",
         ),
     ] = 0.6
@@ -139,7 +139,7 @@ class Paint(Row):
 
 @dataclass(frozen=True, repr=False)
 class Surface(Row):
-    """A surface type, which several parts can share."""
+    """A surface type. Several parts can share it."""
 
     noun: ClassVar[str] = "surface"
 
@@ -153,7 +153,7 @@ class Surface(Row):
     ] = field(default_factory=Paint)
     two_sided: Annotated[
         bool,
-        Column(Boolean(), Tier.FRAME, "Whether normals of polygons seen from behind turn to the eye."),
+        Column(Boolean(), Tier.FRAME, "Whether normals of polygons seen from behind are turned to the eye."),
     ] = True
     levels: Annotated[
         int | None,
@@ -167,5 +167,5 @@ class Surface(Row):
     ] = None
 
     def replace(self, /, **changes: Unpack[SurfaceChanges]) -> Surface:
-        """The surface with some fields changed, including those of its reflectance and its paint."""
+        """The surface with some fields changed, also fields of its reflectance and its paint."""
         return replaced(self, changes)

@@ -1,10 +1,10 @@
 """Paints to pick from: swatches, a field of colors, and finishes, which look like plastic, metal or glass.
 
-Swatches stand in an order that the eye follows. Columns are hues, rows go from light to dark and then to
-muted paints; grays stand at the left, and the paints of cars of the time at the right. Lightness and hue
-are those of Oklab (B. Ottosson, 2020, "A perceptual color space for image processing"), in which equal
-steps look about equal; a hue is as strong as it can be on a monitor at its lightness, up to a limit.
-Assumed: the rows, the limits and the paints of cars.
+The columns of swatches are hues. The rows go from light to dark, and then to muted paints. Grays are at the
+left, and paints of cars of the time at the right. Lightness and hue are coordinates of Oklab (B. Ottosson,
+2020, "A perceptual color space for image processing"), in which equal steps look about equal. The chroma of a
+hue is a share of the largest that a monitor can show at its lightness, up to a limit. Assumed: the rows, the
+limits and the paints of cars.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from autocolor.scene.changes import SurfaceChanges
 from autocolor.scene.surfaces import Surface
 
 FIRST_HUE: Final = 20.0
-"""Degrees in Oklab: red stands first."""
+"""The angle of the first hue in Oklab, in degrees: red."""
 
 HUES: Final = 18
 
@@ -48,7 +48,7 @@ SHADES: Final = (
     Shade(0.72, 0.40, 0.06),
     Shade(0.48, 0.40, 0.06),
 )
-"""Light paints, full ones, dark ones, and two rows of muted ones."""
+"""Rows of light, full and dark paints, and two rows of muted paints."""
 
 GRAYS: Final = (1.0, 0.92, 0.84, 0.75, 0.66, 0.57, 0.48, 0.38, 0.28, 0.0)
 """The lightness of the grays, from white to black."""
@@ -65,7 +65,7 @@ COLUMNS: Final = HUES + 2
 
 @cache
 def swatches() -> Bytes:
-    """The colors of the field, (ROWS * COLUMNS, 3) uint8, read-only: row by row, each from left to right."""
+    """The colors of the field, (ROWS * COLUMNS, 3) uint8, read-only, row by row from left to right."""
     field = np.empty((ROWS, COLUMNS, 3), np.uint8)
     hues = np.radians(FIRST_HUE + np.arange(HUES) * 360 / HUES)
     around = np.stack([np.cos(hues), np.sin(hues)], axis=1)
@@ -83,7 +83,7 @@ def _oklab(lightness: float | Floats, around: Floats, chroma: Floats) -> Floats:
 
 
 def _strongest(lightness: float, around: Floats) -> Floats:
-    """The largest chroma that a monitor can show of each hue, (n,), found by halving."""
+    """The largest chroma of each hue that a monitor can show, (n,), found by bisection."""
     low, high = np.zeros(len(around)), np.full(len(around), 0.5)
     for _ in range(24):
         middle = (low + high) / 2
@@ -111,7 +111,7 @@ LINEAR: Final = np.array(
 
 
 def _linear(oklab: Floats) -> Floats:
-    """Linear red, green and blue, (n, 3), of colors in Oklab; beyond 0 to 1 where no monitor shows them."""
+    """Linear red, green and blue, (n, 3), of colors in Oklab; beyond 0 to 1 if no monitor can show them."""
     linear: Floats = (oklab @ CONES.T) ** 3 @ LINEAR.T
     return linear
 
@@ -131,11 +131,11 @@ DULL: Final = (96, 96, 100)
 
 @dataclass(frozen=True)
 class Finish:
-    """The reflectance and the blending of a finish, which keeps the object color of its surface.
+    """The reflectance and the blending of a finish. A surface with a finish keeps its object color.
 
-    The light color is the object color, brought toward `light` by `share`, from 0 to 1. The surface of
-    plastic or glass reflects the color of the light; a metal colors it. Paper: "Light Source Color
-    Blending", Figure 15C: blending from the lowest level on looks like metallic paint.
+    The light color is a mix of the object color and `light`, with the share `share` of `light`. Plastic and
+    glass reflect light in its own color; a metal colors it. Paper: "Light Source Color Blending", Figure 15C:
+    blending from the lowest level on looks like metallic paint.
     """
 
     diffuse: float
@@ -155,14 +155,14 @@ FINISHES: Final[dict[str, Finish]] = {
     "rubber": Finish(0.8, 0.15, 4, share=0.65, blend=0.1, light=DULL),
     "glass": Finish(0.2, 1.0, 110, share=1.0, blend=0.3),
 }
-"""Assumed: all the numbers, chosen by looking at the coupe in its studio lights. Menus keep the order."""
+"""Assumed: all the numbers, chosen by looking at the coupe in its studio lights. Menus have this order."""
 
 
 def finished(surface: Surface, name: str) -> SurfaceChanges:
     """The changes that give a surface a finish, for `scene.with_surface(surface.name, **changes)`.
 
-    Its object color, its levels and its sides stay. Raises UsageError, with the closest name, for an unknown
-    finish.
+    They leave its object color, `levels` and `two_sided`. Raises UsageError, with the closest name, for an
+    unknown finish.
     """
     if name not in FINISHES:
         raise UsageError(f"there is no finish {shown(name)}{nearest(name, FINISHES)}")
@@ -179,7 +179,7 @@ def finished(surface: Surface, name: str) -> SurfaceChanges:
 
 
 def mixed(color: Color, other: Color, share: float) -> Color:
-    """The color, brought toward another by a share from 0 to 1; each component is rounded half up.
+    """A mix of two colors with a share of the second, from 0 to 1; components are rounded half up.
 
     >>> mixed((176, 16, 33), (255, 255, 255), 0.5)
     (216, 136, 144)

@@ -23,7 +23,7 @@ from autocolor.scene.kinds import Number, VectorKind
 
 @dataclass(frozen=True, repr=False)
 class View(Row):
-    """An eye position, and either a view direction or a target. The world's z axis points up."""
+    """An eye position, and a view direction or a target. The world's z axis points up."""
 
     noun: ClassVar[str] = "view"
     alternatives: ClassVar[tuple[str, ...]] = ("direction", "target")
@@ -46,7 +46,7 @@ class View(Row):
         Column(
             Number(),
             Tier.FRAME,
-            "Rotates the horizontal axis of the picture plane.",
+            "The rotation of the horizontal axis of the picture plane.",
             "degrees",
             bar=BarRange(-180, 180, 1),
         ),
@@ -67,14 +67,14 @@ class View(Row):
         if (self.direction is None) == (self.target is None):
             yield Problem((), "it must have either a direction or a target; give one of them")
         elif self.target is not None and self.target == self.eye:
-            yield Problem((), f"the target must not be the eye, not both {self.eye}; move one of them")
+            yield Problem((), f"the target must differ from the eye, {self.eye}; move one of them")
 
     @cached_property
     def axes(self) -> Floats:
         """The axes of camera space, right, down and forward, as the rows of a (3, 3) rotation matrix.
 
-        The camera coordinates of a point are axes @ (point - eye): x to the right, as elements; y down, as
-        lines; and the depth along the view direction.
+        The camera coordinates of a point are axes @ (point - eye): x to the right, like elements; y down,
+        like lines; and the depth along the view direction.
         Assumed: if the view direction is vertical, the top of the picture is +y.
         """
         if self.direction is not None:
@@ -85,7 +85,7 @@ class View(Row):
         x, y, z = (toward / np.abs(toward).max()).tolist()
         length = math.hypot(x, y, z)
         x, y, z = x / length, y / length, z / length
-        # Right is forward x up, and down is forward x right; measured: a tenth of the time of np.cross.
+        # Right is forward x up, and down is forward x right. Measured: np.cross takes ten times as long.
         right, flat = (y, -x, 0.0), math.hypot(x, y)
         # Closer to the vertical than this, rounding errors would determine the rotation of the picture.
         if flat < 1e-9:

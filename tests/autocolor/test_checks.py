@@ -10,7 +10,7 @@ from autocolor.checks import listed, nearest, printable, shown
 def test_the_nearest_right_name_is_told() -> None:
     assert nearest("boddy", ["body", "glass"]) == "; did you mean 'body'?"
     assert nearest("gl", ["body", "glass"]) == "; did you mean 'glass'?"
-    assert nearest("xyz", ["body", "glass"]) == "; known are 'body', 'glass'"
+    assert nearest("xyz", ["body", "glass"]) == "; choose 'body' or 'glass'"
     assert nearest("xyz", []) == ""
 
 
@@ -20,7 +20,7 @@ def test_a_key_that_is_no_text_is_not_the_nearest_name() -> None:
 
 
 def test_a_name_of_a_million_letters_is_compared_by_its_first() -> None:
-    assert nearest("b" * 1_000_000, ["body", "glass"]) == "; known are 'body', 'glass'"
+    assert nearest("b" * 1_000_000, ["body", "glass"]) == "; choose 'body' or 'glass'"
 
 
 @given(st.text(), st.lists(st.text()))

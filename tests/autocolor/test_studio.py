@@ -229,7 +229,7 @@ def test_a_scalar_is_chosen_by_its_name_first_and_left_by_none() -> None:
     with pytest.raises(InputError, match="scalar: name must be a string"):
         studio.scalar(bands=8)
     with pytest.raises(
-        InputError, match="must be a scalar of the mesh or a computed one, not 'stres'; did you"
+        InputError, match="must be a scalar of the mesh or a computed scalar, not 'stres'; did you"
     ):
         studio.scalar(name="stres")
     with pytest.raises(UsageError, match="scalar takes fields of a Scalar, or None alone"):

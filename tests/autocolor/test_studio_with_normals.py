@@ -191,8 +191,8 @@ def test_a_scene_that_a_scalar_colors_keeps_its_levels() -> None:
     with pytest.raises(InputError) as error:
         studio.normals()
     assert str(error.value) == (
-        "words must be 'levels' where a scalar colors surfaces, not 'normals'; change it, or take the scalar"
-        " away"
+        "words must be 'levels' where a scalar colors surfaces, not 'normals'; change it, or remove the"
+        " scalar"
     )
     assert held(display) == before
     studio.scalar(None)

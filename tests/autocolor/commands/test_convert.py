@@ -15,7 +15,7 @@ def test_a_mesh_becomes_a_scene_and_that_a_mesh_again(run: Run, folder: Path) ->
     assert to_scene.err.splitlines()[-1] == "wrote made/scene.toml"
     back = run("convert", "made", "back.obj")
     assert back.code == 0
-    assert back.err.splitlines()[0].startswith("autocolor: back.obj: left out, as OBJ does not hold it: ")
+    assert back.err.splitlines()[0].startswith("autocolor: back.obj: left out, as OBJ cannot hold it: ")
     one, other = read_scene("two.obj").mesh, read_scene("back.obj").mesh
     assert (one.coordinates == other.coordinates).all()
     assert one.part_names == other.part_names

@@ -17,7 +17,7 @@ def test_the_facts_stand_on_stdout_and_nothing_on_stderr(folder: Path, run: Run)
     ran = run("info", "two.obj")
     assert (ran.code, ran.err) == (0, "")
     assert ran.out.splitlines()[0] == "two: nodes 6, polygons 2 (three-sided 0), edges 7"
-    assert ran.out.splitlines()[1] == "quads kept as they are: warped 0, concave 0, crossed 0"
+    assert ran.out.splitlines()[1] == "quads that are not flat and convex: warped 0, concave 0, crossed 0"
     assert "parts: front.low (surface), side (surface)" in ran.out
     assert "lights: key, fill, top, rim" in ran.out
     assert "parts: front.low (front.low), side (side)" in run("info", "two.obj", "--surfaces", "parts").out

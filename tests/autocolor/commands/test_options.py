@@ -37,8 +37,8 @@ def test_a_scene_that_a_scalar_colors_is_refused_by_the_name_of_the_option() -> 
     with pytest.raises(UsageError) as error:
         with_normals(car().with_scalar(name="z"), normals=True)
     assert str(error.value) == (
-        "--normals: words must be 'levels' where a scalar colors surfaces, not 'normals'; change it, or take"
-        " the scalar away"
+        "--normals: words must be 'levels' where a scalar colors surfaces, not 'normals'; change it, or"
+        " remove the scalar"
     )
 
 

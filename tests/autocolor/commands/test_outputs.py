@@ -19,8 +19,8 @@ def test_new_names_of_the_right_kind_are_taken(folder: Path) -> None:
 @pytest.mark.parametrize(
     ("output", "sentence"),
     [
-        ("", "an output must have a name, not an empty one; give it one"),
-        ("-", "an output must be a file, not stdout; give it a name"),
+        ("", "an output must have a name, not an empty name; name a file"),
+        ("-", "an output must be a file, not stdout; name a file"),
         ("a.jpg", "-o must be the name of a PNG, not 'a.jpg'; end it in .png"),
     ],
 )

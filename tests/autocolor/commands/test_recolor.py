@@ -103,7 +103,7 @@ def test_pictures_of_another_size_keep_it(folder: Path, run: Run) -> None:
         (("scene.npz", "side", "--blend", "nan"), 2, "blend must be a number from 0 to 1, not nan"),
         (("scene.npz", "side", "--blend", "much"), 2, "'much' is not a valid float"),
         (("scene.npz", "side", "--percentage", "101"), 2, "light_percentage must be a number from 0 to 100"),
-        (("scene.npz",), 2, "recolor needs a SURFACE for its colors"),
+        (("scene.npz",), 2, "recolor must have a SURFACE"),
         (("none.npz", "side"), 66, "none.npz: there is no such file or folder"),
         (("two.obj", "side"), 65, "two.obj: a picture file must be whole and as autocolor wrote it"),
         (("scene", "side"), 65, "scene: it must be a regular file, not a folder"),
@@ -162,11 +162,11 @@ def test_the_scale_limits_and_bands_of_a_scalar_are_set_in_a_saved_picture(saved
 def test_what_would_render_again_is_refused(saved: Path, run: Run, setting: str) -> None:
     result = run("recolor", "scene.npz", "--set", setting)
     assert result.code == 2
-    assert "what is set in a picture must render nothing" in result.err
+    assert "a setting of a picture must need no rendering" in result.err
 
 
 def test_colors_need_a_surface_and_nothing_at_all_is_refused(saved: Path, run: Run) -> None:
     for options in ((), ("--object", "navy"), ("--object", "navy", "--set", "mapping=gamma")):
         result = run("recolor", "scene.npz", *options)
         assert result.code == 2
-        assert "recolor needs a SURFACE for its colors, or --set KEY=VALUE" in result.err
+        assert "recolor must have a SURFACE, or --set KEY=VALUE without colors" in result.err

@@ -111,10 +111,10 @@ def test_a_program_that_is_ended_from_outside_leaves_every_step_to_be_recovered(
     process = start("close", "view", "scene", folder=folder)
     _, err = process.communicate(timeout=60)
     assert process.returncode == 0
-    assert err.startswith("autocolor: a session of 2")
+    assert err.startswith("autocolor: a session was not closed, last written 2")
     assert err.endswith(
-        ", did not end orderly; `autocolor view --recover` opens it, `--sessions` lists it, `--forget`"
-        " removes it\n"
+        "; `autocolor view --recover` opens the last session, `--sessions` lists them, `--forget SESSION`"
+        " removes a session\n"
     )
 
     process = start("close", "view", "--recover", folder=folder)
@@ -128,8 +128,8 @@ def test_without_a_session_that_was_left_a_scene_is_asked_for(folder: Path, run:
     assert run("view", "--recover") == (
         66,
         "",
-        "autocolor: --recover: there must be a session that did not end orderly and can be read, and there is"
-        " none; name a scene\n",
+        "autocolor: --recover: there must be a session that was not closed and can be read, and there is"
+        " none; name a scene instead\n",
     )
 
 
@@ -146,8 +146,8 @@ def test_a_session_that_cannot_be_read_is_reported_and_the_session_before_is_tri
         "",
         f"autocolor: {state / 'sessions' / 'newer'}: {NO_JOURNAL}\n"
         f"autocolor: {state / 'sessions' / 'older'}: {NO_JOURNAL}\n"
-        "autocolor: --recover: there must be a session that did not end orderly and can be read, and there is"
-        " none; name a scene\n",
+        "autocolor: --recover: there must be a session that was not closed and can be read, and there is"
+        " none; name a scene instead\n",
     )
     assert len(left(state)) == 2
 
@@ -213,12 +213,12 @@ def test_the_newest_that_can_be_read_is_chosen(sessions: Path, capsys: pytest.Ca
 
 def test_a_session_is_named_by_the_beginning_of_its_name(sessions: Path) -> None:
     assert chosen_session("2026-01-01")[1].history.scene.ambient == 0.3
-    for name, found in (("2026-01", "several of these"), ("x", "none of these"), ("", "none of these")):
+    for name, count in (("2026-01", 3), ("x", 0), ("", 0)):
         with pytest.raises(UsageError) as refusal:
             chosen_session(name)
         assert str(refusal.value) == (
-            f"a session must be named by the beginning of its name and no other's, and {name!r} is {found};"
-            " `autocolor view --sessions` lists them"
+            f"SESSION must begin the name of one session, and {name!r} begins {count}; choose a name from"
+            " `autocolor view --sessions`"
         )
 
 
@@ -258,7 +258,7 @@ def test_a_session_is_forgotten_and_no_other(sessions: Path, run: Run) -> None:
 
 
 def test_without_any_a_scene_is_asked_for() -> None:
-    with pytest.raises(MissingInputError, match="--recover: there must be a session that did not end"):
+    with pytest.raises(MissingInputError, match="--recover: there must be a session that was not closed"):
         chosen_session(NEWEST)
 
 

@@ -100,7 +100,7 @@ def test_the_growth_of_s_is_set_in_any_way_unset_and_refused_beside_cook_and_tor
         with_settings(scene, (f"surfaces.side.{setting}", "surfaces.side.model=cook-torrance"))
     assert str(refusal.value) == (
         f"--set: surface 'side': {key} must go with model = 'phong' or 'blinn', not with 'cook-torrance';"
-        " leave it out, or change the other"
+        " leave it out, or change the model"
     )
 
 
@@ -166,17 +166,17 @@ def test_of_two_names_the_longer_is_meant(scene: Scene) -> None:
 @pytest.mark.parametrize(
     ("setting", "sentence"),
     [
-        ("ambiet=1", "--set ambiet: there is no field of this name; did you mean 'ambient'?"),
-        ("light.k.on=true", "--set light.k.on: there is no field of this name; did you mean 'lights'?"),
+        ("ambiet=1", "--set ambiet: there is no field 'ambiet'; did you mean 'ambient'?"),
+        ("light.k.on=true", "--set light.k.on: there is no field 'light'; did you mean 'lights'?"),
         ("lights.kye.on=true", "--set lights.kye.on: there is no light 'kye'; did you mean 'key'?"),
         ("surfaces.sid.blend=1", "--set surfaces.sid.blend: there is no surface 'sid'; did you mean 'side'?"),
         ("parts.sid.surface=x", "--set parts.sid.surface: there is no part 'sid'; did you mean 'side'?"),
-        ("lights=1", "--set lights: it must name one field; write it as in lights.key.intensity=2"),
-        ("lights.key=1", "--set lights.key: it must name one field; write it as in lights.key.intensity=2"),
-        ("scalar.=1", "--set scalar.: it must name one field; write it as in scalar.name=z"),
-        ("view=1", "--set view: it must name one field; write it as in view.angle=10"),
-        ("view.=1", "--set view.: it must name one field; write it as in view.angle=10"),
-        ("ambient.x=1", "--set ambient.x: there is no field of this name; did you mean 'ambient'?"),
+        ("lights=1", "--set lights: it must name a field; write it as in lights.key.intensity=2"),
+        ("lights.key=1", "--set lights.key: it must name a field; write it as in lights.key.intensity=2"),
+        ("scalar.=1", "--set scalar.: it must name a field; write it as in scalar.name=z"),
+        ("view=1", "--set view: it must name a field; write it as in view.angle=10"),
+        ("view.=1", "--set view.: it must name a field; write it as in view.angle=10"),
+        ("ambient.x=1", "--set ambient.x: there is no field 'ambient.x'; did you mean 'ambient'?"),
         ("lights.key.name=a", "--set lights.key.name: a name cannot be set; change it in the scene file"),
         (
             "surfaces.side.name=a",
@@ -197,13 +197,13 @@ def test_a_key_that_names_nothing_is_refused(scene: Scene, setting: str, sentenc
 @pytest.mark.parametrize(
     ("setting", "sentence"),
     [
-        ("view.angel=1", "view: there is no 'angel'; did you mean 'angle'?"),
-        ("lights.key.intesity=1", "light 'key': there is no 'intesity'; did you mean 'intensity'?"),
-        ("lights.key.a.x=1", "light 'key': there is no 'a'; did you mean 'aim'?"),
+        ("view.angel=1", "view: there is no field 'angel'; did you mean 'angle'?"),
+        ("lights.key.intesity=1", "light 'key': there is no field 'intesity'; did you mean 'intensity'?"),
+        ("lights.key.a.x=1", "light 'key': there is no field 'a'; did you mean 'aim'?"),
         ("lights.key.on.x=1", "light 'key': on must be true or false, not {'x': 1}"),
-        ("lights.key.flaps.z.min=1", "there is no 'min'; did you mean 'minimum'?"),
-        ("lights.key.flaps.w.minimum=1", "there is no 'w'; known are 'x', 'y', 'z'"),
-        ("surfaces.side.difuse=1", "surface 'side': there is no 'difuse'; did you mean 'diffuse'?"),
+        ("lights.key.flaps.z.min=1", "there is no field 'min'; did you mean 'minimum'?"),
+        ("lights.key.flaps.w.minimum=1", "there is no field 'w'; choose 'x', 'y' or 'z'"),
+        ("surfaces.side.difuse=1", "surface 'side': there is no field 'difuse'; did you mean 'diffuse'?"),
         ("mapping=gama", "not 'gama'; did you mean 'gamma'?"),
         ("scalar.bands=8", "scalar: name must be a string of at least one character, not missing; add it"),
         ("scalar=z", "scalar must be a table of name, limits, scale"),
@@ -282,18 +282,17 @@ def test_what_is_named_none_stays_a_name(scene: Scene) -> None:
     [
         (
             "ambient=none",
-            "--set ambient: it must be a finite number of at least 0, not none; only a field that may be"
-            " absent can be unset",
+            "--set ambient: it must be a finite number of at least 0, not none; only an optional"
+            " field can be unset",
         ),
         (
             "dither=none",
-            "--set dither: it must be 'off' or 'ordered', not none; only a field that may be absent can"
-            " be unset",
+            "--set dither: it must be 'off' or 'ordered', not none; only an optional field can be unset",
         ),
         ("view.target=none", "--set: view: it must have either a direction or a target; give one of them"),
         ("lights.key.concentration=none", "--set lights.key.concentration: it must be a finite number"),
         ("surfaces.side.exponent=none", "--set surfaces.side.exponent: it must be a finite number"),
-        ("view.angel=none", "--set: view: there is no 'angel'; did you mean 'angle'?"),
+        ("view.angel=none", "--set: view: there is no field 'angel'; did you mean 'angle'?"),
         ('lights.key.cone_angle="none"', "cone_angle must be a number above 0 and at most 180, not 'none'"),
     ],
 )
@@ -388,8 +387,8 @@ def test_a_light_follows_a_word_a_name_or_nothing(scene: Scene) -> None:
         ),
         (
             "lights.key.2.half_spaces.left.on=false",
-            "--set lights.key.2.half_spaces.left.on: there is no half-space 'left'; give a new one whole, as"
-            " a table",
+            "--set lights.key.2.half_spaces.left.on: there is no half-space 'left'; add a half-space"
+            " with all its keys in a table",
         ),
         (
             "lights.key.half_spaces.lft=none",
@@ -401,7 +400,7 @@ def test_a_light_follows_a_word_a_name_or_nothing(scene: Scene) -> None:
         ),
         (
             "lights.key.half_spaces.left.width=1",
-            "--set: light 'key': half_spaces.left: there is no 'width'; did you mean 'edge_width'?",
+            "--set: light 'key': half_spaces.left: there is no field 'width'; did you mean 'edge_width'?",
         ),
         (
             "lights.key.half_spaces.left.name=right",
@@ -409,8 +408,8 @@ def test_a_light_follows_a_word_a_name_or_nothing(scene: Scene) -> None:
         ),
         (
             "lights.key.half_spaces.left.on=none",
-            "--set lights.key.half_spaces.left.on: it must be true or false, not none; only a field that may"
-            " be absent can be unset",
+            "--set lights.key.half_spaces.left.on: it must be true or false, not none; only an optional"
+            " field can be unset",
         ),
         (
             "lights.key.half_spaces=left",

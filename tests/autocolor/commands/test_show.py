@@ -81,8 +81,8 @@ def test_what_is_no_address_is_refused_in_a_sentence(address: str, tmp_path: Pat
 @pytest.mark.parametrize(
     ("arguments", "rule"),
     [
-        ((), "show must have SCENE or --recover, one of them; name a scene"),
-        (("scene", "--recover", "newest"), "show must have SCENE or --recover, one of them; name a scene"),
+        ((), "show must have either SCENE or --recover; name a scene"),
+        (("scene", "--recover", "newest"), "show must have either SCENE or --recover; name a scene"),
         (("--recover", "--once"), "--set and --once are for SCENE, not for sessions; leave them out"),
     ],
 )
@@ -320,7 +320,7 @@ def test_a_display_that_goes_away_leaves_the_session_to_be_recovered(
     with pytest.raises(UnavailableError) as told:
         session_elsewhere(History(car()), server.address, tmp_path, None, prepare)
     assert str(told.value).startswith(f"a display must stay at {server.address}, and it left (")
-    assert str(told.value).endswith("; `autocolor show --recover --to ADDRESS` goes on with the session")
+    assert str(told.value).endswith("; `autocolor show --recover --to ADDRESS` continues the session")
     (path,) = state.glob(f"sessions/*/{JOURNAL}")
     assert read_journal(path).history.scene.view == seen[0].studio.scene.view != car().view
 

@@ -53,7 +53,7 @@ def test_rows_are_a_table_csv_or_json(tmp_path: Path) -> None:
     rows = [{"name": "key", "intensity": 1.0}, {"name": "rim", "intensity": 1.0}]
     assert json.loads(asked(path, LIGHTS, "--json").stdout) == rows
     assert json.loads(asked(path, LIGHTS, "--format", "json").stdout) == rows
-    assert "leave one of the options" in str(refused(path, LIGHTS, "--json", "--csv"))
+    assert "give one of --format, --csv and --json" in str(refused(path, LIGHTS, "--json", "--csv"))
 
 
 def test_a_folder_and_a_picture_file_are_asked_as_a_store_is(folder: Path, tmp_path: Path) -> None:
@@ -149,7 +149,7 @@ def test_half_spaces_and_names_that_are_wrong_are_told_and_not_saved(
     assert str(error).splitlines() == ["nothing was changed", f"small.sqlite: {told}"]
     assert tables_of(path) == before
     empty = refused(path, "UPDATE lights SET follows = ''", "--write")
-    assert "follows must be 'eye' or the name of one of the lights, and a changed row breaks" in str(empty)
+    assert "follows must be 'eye' or the name of a light, and a changed row breaks" in str(empty)
 
 
 @pytest.mark.parametrize(
@@ -258,7 +258,7 @@ def test_ctrl_c_takes_back_what_was_typed_and_errors_are_told(
         "SELECT 2;",
     ]
     told = capsys.readouterr().err
-    assert "taken back; Ctrl+D ends" in told
+    assert "canceled; Ctrl+D ends" in told
     assert "autocolor: it is wrong; correct it" in told
 
 
@@ -291,7 +291,7 @@ def test_text_without_an_end_is_not_collected_for_ever(monkeypatch: pytest.Monke
 
 @pytest.mark.parametrize("text", ["SELECT '\udcff';", "SELECT '\0';"])
 def test_what_is_not_text_is_refused(text: str) -> None:
-    with pytest.raises(UsageError, match="must be text in UTF-8 without NUL; save them so"):
+    with pytest.raises(UsageError, match="must be text in UTF-8 without NUL; save them"):
         list(statements_in([text]))
 
 

@@ -69,7 +69,9 @@ def test_the_tables_of_a_picture_file_are_written_with_its_mesh_beside(mesh: Pat
     autocolor.write_picture(path, autocolor.render(scene, 24, 32), scene)
     result = CliRunner().invoke(tables, [str(path), "--write"])
     assert result.exit_code == 0, result.output
-    assert f"wrote {path.parent / 'mesh.obj'}\nwrote {path.parent / 'scene.toml'}; render it" in result.stderr
+    assert (
+        f"wrote {path.parent / 'mesh.obj'}\nwrote {path.parent / 'scene.toml'}; to render it" in result.stderr
+    )
     again = autocolor.read_scene(path.parent)
     assert again.replace(mesh=scene.mesh, name=scene.name).equals(scene)
     assert (again.mesh.coordinates == scene.mesh.coordinates).all()

@@ -116,7 +116,7 @@ def test_many_rows_are_cut_in_a_line_and_whole_in_json() -> None:
     assert values[0]["polygons"] == [1]
 
 
-@pytest.mark.parametrize(("sheets", "told"), [(6, "and 1 shorter one"), (7, "and 2 shorter ones")])
+@pytest.mark.parametrize(("sheets", "told"), [(6, "and 1 shorter loop"), (7, "and 2 shorter loops")])
 def test_loops_that_are_not_told_are_counted(sheets: int, told: str) -> None:
     square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.0]])
     apart = np.arange(sheets)[:, None, None] * np.array([3.0, 0, 0])

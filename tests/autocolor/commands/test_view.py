@@ -63,7 +63,7 @@ def test_what_is_set_is_shown(folder: Path, run: Run, monitors: list[Any]) -> No
     ran = run("view", "scene", "--set", "backgruond=red")
     assert (ran.code, ran.err) == (
         2,
-        "autocolor: --set backgruond: there is no field of this name; did you mean 'background'?\n",
+        "autocolor: --set backgruond: there is no field 'backgruond'; did you mean 'background'?\n",
     )
 
 

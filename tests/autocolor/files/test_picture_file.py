@@ -560,8 +560,8 @@ def change_rows(table: str, **fields: Any) -> Callable[[dict[str, Any]], None]:
 @pytest.mark.parametrize(
     ("edit", "sentence"),
     [
-        (change_rows("mesh_scalars", name=""), "a scalar must have a name, not ''; give it one"),
-        (change_rows("mesh_scalars", name=3), "a scalar must have a name, not 3; give it one"),
+        (change_rows("mesh_scalars", name=""), "a scalar must have a name, not ''; give it a name"),
+        (change_rows("mesh_scalars", name=3), "a scalar must have a name, not 3; give it a name"),
         (change_rows("mesh_scalars", name="load"), "scalar 'load': its name must be unique"),
         (change_rows("mesh_scalars", of="part"), "it must be of 'node' or 'polygon', not 'part'"),
         (change_rows("mesh_scalars", of="polygon"), "there must be one value a polygon (6), not 12"),
@@ -574,7 +574,7 @@ def change_rows(table: str, **fields: Any) -> Callable[[dict[str, Any]], None]:
         (change_rows("shown_scalars", limits=3), "shown_scalars[1].limits must be two finite numbers"),
         (change_rows("shown_scalars", more=3), "shown_scalars[1].limits must be two finite numbers"),
         (change(shown_scalars=[3]), "shown_scalars[1].limits must be two finite numbers"),
-        (change_scene("scalar", name="strain"), "scalar.name must be a scalar of the mesh or a computed one"),
+        (change_scene("scalar", name="strain"), "scalar.name must be a scalar of the mesh"),
     ],
 )
 def test_a_header_with_wrong_scalars_is_refused_in_a_sentence(

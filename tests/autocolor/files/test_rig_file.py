@@ -95,16 +95,17 @@ def test_a_file_that_is_there_is_kept_unless_told_otherwise(tmp_path: Path) -> N
             [
                 "rig.toml, line 5, lights[1] 'k': position must be three finite numbers of at most 1e36, not"
                 " [1, 2]",
-                "rig.toml, line 6, lights[1] 'k': there is no 'concentraton'; did you mean 'concentration'?",
+                "rig.toml, line 6, lights[1] 'k': there is no field 'concentraton'; did you mean"
+                " 'concentration'?",
             ],
         ),
         (
             BOUNDS + '[[mesh]]\nfile = "a.obj"\n',
-            ["rig.toml, line 3, there is no 'mesh'; known are 'minimum', 'maximum', 'lights'"],
+            ["rig.toml, line 3, there is no field 'mesh'; choose 'minimum', 'maximum' or 'lights'"],
         ),
         (
             "minimum = [0, 0, 5]\nmaximum = [1, 1, 1]\n",
-            ["rig.toml, the minimum of z must not be above the maximum, not 5 to 1; exchange them"],
+            ["rig.toml, the minimum of z must be at most the maximum, not 5 to 1; exchange them"],
         ),
         (BOUNDS + "lights = 3", ["rig.toml, line 3, lights must be a list of Light rows, not 3"]),
         (

@@ -492,9 +492,7 @@ def test_an_empty_path_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 
 
 def test_a_value_that_is_no_scene_is_refused_in_words(tmp_path: Path) -> None:
-    with pytest.raises(
-        UsageError, match=r"a scene must be a Scene, not '.*'; `read_scene` reads one from files"
-    ):
+    with pytest.raises(UsageError, match=r"a scene must be a Scene, not '.*'; read a scene from files"):
         write_scene(tmp_path / "new", "scenes/coupe")  # type: ignore[arg-type]
     assert list(tmp_path.iterdir()) == []
 

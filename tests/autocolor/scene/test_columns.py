@@ -191,8 +191,8 @@ def test_giving_one_alternative_drops_the_others() -> None:
 
 def test_an_unknown_key_is_told_with_the_nearest_right_one() -> None:
     assert sentences(lambda: replaced(Span("a"), {"beginn": 3, "x": 1})) == (
-        "span 'a': there is no 'beginn'; did you mean 'begin'?",
-        "span 'a': there is no 'x'; known are 'name', 'begin', 'end', 'length'",
+        "span 'a': there is no field 'beginn'; did you mean 'begin'?",
+        "span 'a': there is no field 'x'; choose 'name', 'begin', 'end' or 'length'",
     )
 
 
@@ -210,7 +210,7 @@ def test_a_row_of_a_table_has_defaults_for_what_is_left_out() -> None:
 
 def test_what_is_missing_is_told_beside_what_is_wrong() -> None:
     assert sentences(lambda: from_plain(Span, {"begin": "x", "z": 1})) == (
-        "span: there is no 'z'; known are 'name', 'begin', 'end', 'length'",
+        "span: there is no field 'z'; choose 'name', 'begin', 'end' or 'length'",
         "span: name must be a string of at least one character, not missing; add it",
         "span: begin must be a finite number, not 'x'",
     )

@@ -369,7 +369,7 @@ def test_a_word_for_surfaces_that_is_none_of_the_two_is_refused() -> None:
 def test_a_field_that_a_scene_does_not_have_is_refused_with_the_nearest_one() -> None:
     with pytest.raises(InputError) as refusal:
         scene_of(cube(), backgroud="navy")  # type: ignore[call-arg]
-    assert str(refusal.value) == "there is no 'backgroud'; did you mean 'background'?"
+    assert str(refusal.value) == "there is no field 'backgroud'; did you mean 'background'?"
 
 
 def test_problems_of_the_view_and_of_the_surfaces_are_told_together() -> None:

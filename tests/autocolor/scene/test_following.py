@@ -263,7 +263,7 @@ CIRCLE = "light 'a': follows must not lead back to it, as 'a' to 'b' to 'a' does
             "light '0': follows must not lead back to it, as '0' to '1' to '2' to '3' to '4' to '5' to ... to"
             " '0' does; change one of them",
         ),
-        ({"a": "bb"}, "light 'a': follows 'bb' is not in the light table; known are 'eye', 'lamp', 'a'"),
+        ({"a": "bb"}, "light 'a': follows 'bb' is not in the light table; choose 'eye', 'lamp' or 'a'"),
     ],
 )
 def test_circles_and_lights_without_an_aim_are_refused(rows: dict[str, str], sentence: str) -> None:
@@ -283,7 +283,7 @@ def test_a_followed_light_keeps_its_aim_its_name_and_its_place_in_the_scene() ->
         "light 'fill': follows 'key' is not in the light table; did you mean 'eye'?"
     )
     assert refused(lambda: scene.without_light("key")) == (
-        "light 'key' must stay while 'fill' follows it; let that follow something else"
+        "light 'key' must stay while 'fill' follows it; let 'fill' follow something else"
     )
     assert refused(lambda: scene.with_light("key", follows="fill")) == (
         "light 'key': follows must not lead back to it, as 'key' to 'fill' to 'key' does; change one of them"

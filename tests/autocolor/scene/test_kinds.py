@@ -81,11 +81,11 @@ def test_what_is_no_finite_number_is_refused(value: object) -> None:
         (Text(may_be_empty=True), 3, "it must be a string, not 3"),
         (OneOf(("on", "off")), "of", "it must be 'on' or 'off', not 'of'; did you mean 'off'?"),
         (OneOf(("surface", "object")), 3, "it must be 'surface' or 'object', not 3"),
-        (VectorKind(has_length=True), (0, 0, 0), "it must not be zero, not (0, 0, 0); give it a length"),
+        (VectorKind(has_length=True), (0, 0, 0), "it must have a length above 0, not (0, 0, 0); change it"),
         (Reference("surfaces"), 3, "it must be a string of at least one character, not 3"),
         (References("lights"), "key", "it must be a list of names, not 'key'"),
         (References("lights"), ["key", 3], "it must be a list of names, not ['key', 3]"),
-        (Reference("lights", "eye"), 3, "it must be 'eye' or the name of one of the lights, not 3"),
+        (Reference("lights", "eye"), 3, "it must be 'eye' or the name of a light, not 3"),
         (Instance(dict), [], "it must be a dict, not []"),
         (
             CurveKind({"linear": 1, "gamma": 2}),

@@ -428,7 +428,7 @@ def test_an_edit_of_the_growth_costs_the_lights_on_its_surface_and_an_edit_of_s_
         (
             {"model": "cook-torrance", "base_reflectance": 0.04},
             "base_reflectance must go with model = 'phong' or 'blinn', not with"
-            " 'cook-torrance'; leave it out, or change the other",
+            " 'cook-torrance'; leave it out, or change the model",
         ),
     ],
 )
@@ -449,5 +449,5 @@ def test_cook_and_torrance_have_a_fresnel_term_and_refuse_a_second(way: dict[str
             surface.replace(**changes)
         assert refusal.value.problems == (
             f"surface 'body': {key} must go with model = 'phong' or 'blinn', not with 'cook-torrance'; leave"
-            " it out, or change the other",
+            " it out, or change the model",
         )

@@ -86,7 +86,7 @@ def test_a_rig_whose_minimum_is_above_its_maximum_is_refused_by_its_axis() -> No
     with pytest.raises(InputError) as refusal:
         Rig((0, 2, 0), (1, 1, 1))
     assert (
-        str(refusal.value) == "rig: the minimum of y must not be above the maximum, not 2 to 1; exchange them"
+        str(refusal.value) == "rig: the minimum of y must be at most the maximum, not 2 to 1; exchange them"
     )
     with pytest.raises(InputError, match="rig: minimum must be three finite numbers of at most 1e36, not 3"):
         Rig(3, (1, 1, 1))  # type: ignore[arg-type]

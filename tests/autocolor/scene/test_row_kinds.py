@@ -115,7 +115,7 @@ def test_another_variant_begins_with_its_own_defaults() -> None:
 
 def test_a_key_of_another_variant_is_refused_by_name() -> None:
     assert sentences(lambda: replaced(Box("a"), {"turn": 5})) == (
-        "box 'a': turn must go with model = 'square', not with 'round'; leave it out, or change the other",
+        "box 'a': turn must go with model = 'square', not with 'round'; leave it out, or change the model",
     )
     assert sentences(lambda: replaced(Box("a"), {"model": "squar"})) == (
         "box 'a': model must be 'round' or 'square', not 'squar'; did you mean 'square'?",
@@ -128,7 +128,7 @@ def test_problems_inside_are_told_with_the_keys_that_lead_there() -> None:
     ) == (
         "box 'a': radius must be a finite number of at least 0, not 'x'",
         "box 'a': weight must be a finite number of at least 0, not -1",
-        "box 'a': lid: there is no 'opn'; did you mean 'open'?",
+        "box 'a': lid: there is no field 'opn'; did you mean 'open'?",
         "box 'a': lid.open must be true or false, not 1",
     )
 
@@ -297,11 +297,11 @@ def test_an_edit_costs_the_planes_of_its_light() -> None:
     [
         ({"left": {"edge_width": -1}}, ".left.edge_width must be a finite number of at least 0, not -1"),
         ({"left": {"on": 1}}, ".left.on must be true or false, not 1"),
-        ({"left": {"edge_widt": 1}}, ".left: there is no 'edge_widt'; did you mean 'edge_width'?"),
+        ({"left": {"edge_widt": 1}}, ".left: there is no field 'edge_widt'; did you mean 'edge_width'?"),
         ({"left": {"name": ""}}, ".left.name must be a string of at least one character, not ''"),
         (
             {"left": {"name": "right"}},
-            ".right must have a name of its own, not that of another; rename one of them",
+            ".right must be unique, not repeated; rename one of them",
         ),
         (
             {"top": {"point": (0, 0, 0)}},
@@ -309,9 +309,9 @@ def test_an_edit_costs_the_planes_of_its_light() -> None:
         ),
         (
             {"top": {**PLANE, "name": "roof"}},
-            ".top.name must be that of the table, 'top', not 'roof'; leave it out",
+            ".top.name must be the name of its table, 'top', not 'roof'; leave it out",
         ),
-        ({"top": LEFT}, ".top.name must be that of the table, 'top', not 'left'; leave it out"),
+        ({"top": LEFT}, ".top.name must be the name of its table, 'top', not 'left'; leave it out"),
         ({"top": 3}, ".top must be a table of point, direction, edge_width, carried and on, not 3"),
         ({"left": "off"}, ".left must be a table of point, direction, edge_width, carried and on, not 'off'"),
         ({"lift": None}, ".lift: there is no half-space of this name; did you mean 'left'?"),
@@ -319,12 +319,12 @@ def test_an_edit_costs_the_planes_of_its_light() -> None:
         ({"": None}, " must be a table of half-spaces by name, not by ''; name it by at least one character"),
         (
             {"left\ndoor": {**PLANE, "direction": (0, 0, 0)}},
-            ".'left\\ndoor'.direction must not be zero, not (0, 0, 0); give it a length",
+            ".'left\\ndoor'.direction must have a length above 0, not (0, 0, 0); change it",
         ),
         (
             {0: None, "a": None},
             " must be a table of half-spaces by name, not by 0; name it by at least one character\n"
-            "light 'key': half_spaces.a: there is no half-space of this name; known are 'left', 'right'",
+            "light 'key': half_spaces.a: there is no half-space of this name; choose 'left' or 'right'",
         ),
         (None, " must be a table of half-spaces by name, not None"),
         ("left", " must be a table of half-spaces by name, not 'left'"),
@@ -332,7 +332,7 @@ def test_an_edit_costs_the_planes_of_its_light() -> None:
             [PLANE],
             " must be a table of half-spaces by name, not [{'point': (0, 0, 0), 'direction': (0, 0, 1)}]",
         ),
-        ([LEFT, LEFT], ".left must have a name of its own, not that of another; rename one of them"),
+        ([LEFT, LEFT], ".left must be unique, not repeated; rename one of them"),
         (
             {"left": dict.fromkeys(map(str, range(65)))},
             ".left: it must be a table of at most 64 keys, not 65",

@@ -48,7 +48,7 @@ def test_a_color_beyond_a_limit_has_words_of_its_own() -> None:
 
 
 def test_all_color_scales_are_named_where_none_is_near() -> None:
-    with pytest.raises(InputError, match=r"not 'jet'; known are 'viridis', .*'coolwarm'") as refusal:
+    with pytest.raises(InputError, match=r"not 'jet'; choose 'viridis', .*'coolwarm'") as refusal:
         Scalar("stress", scale="jet")
     assert "_r'" not in str(refusal.value)
 
@@ -75,7 +75,7 @@ def test_an_unknown_scalar_is_refused_with_the_nearest_of_both() -> None:
     with pytest.raises(InputError) as refused:
         scene.replace(scalar={"name": "strss"})
     assert refused.value.problems == (
-        "scalar.name must be a scalar of the mesh or a computed one, not 'strss'; did you mean 'stress'?",
+        "scalar.name must be a scalar of the mesh or a computed scalar, not 'strss'; did you mean 'stress'?",
     )
     with pytest.raises(InputError, match="not 'Z'; did you mean 'z'"):
         scene.replace(scalar={"name": "Z"})
@@ -84,7 +84,7 @@ def test_an_unknown_scalar_is_refused_with_the_nearest_of_both() -> None:
 def test_a_mesh_without_the_scalar_that_is_shown_is_refused() -> None:
     mesh = cube().with_scalars(MeshScalar("stress", np.arange(8.0)))
     scene = scene_of(mesh, scalar={"name": "stress"})
-    with pytest.raises(InputError, match="a computed one, not 'stress'"):
+    with pytest.raises(InputError, match="a computed scalar, not 'stress'"):
         scene.replace(mesh=cube())
 
 
@@ -107,7 +107,7 @@ def test_values_are_float64_and_a_copy_unless_they_are_read_only() -> None:
 @pytest.mark.parametrize(
     ("fields", "sentence"),
     [
-        ({"name": ""}, "a scalar must have a name, not ''; give it one"),
+        ({"name": ""}, "a scalar must have a name, not ''; give it a name"),
         ({"of": "part"}, "scalar 'stress': it must be of 'node' or 'polygon', not 'part'; choose one"),
         (
             {"values": [1.0, np.inf]},

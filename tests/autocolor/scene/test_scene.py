@@ -112,7 +112,7 @@ def test_every_row_is_changed_by_its_name() -> None:
     [
         (lambda scene: scene.light("keys"), "there is no light 'keys'; did you mean 'key'?"),
         (lambda scene: scene.surface("dor"), "there is no surface 'dor'; did you mean 'door'?"),
-        (lambda scene: scene.part("x"), "there is no part 'x'; known are 'door', 'hood', 'pane'"),
+        (lambda scene: scene.part("x"), "there is no part 'x'; choose 'door', 'hood' or 'pane'"),
         (lambda scene: scene.only_lights("kee"), "there is no light 'kee'; did you mean 'key'?"),
         (lambda scene: scene.without_light("kee"), "there is no light 'kee'; did you mean 'key'?"),
     ],
@@ -191,7 +191,7 @@ def test_scenes_are_equal_where_every_column_is_and_the_mesh_is_the_same() -> No
 
 
 def test_an_unknown_field_of_a_scene_is_refused() -> None:
-    with pytest.raises(InputError, match=r"there is no 'ambiant'; did you mean 'ambient'\?"):
+    with pytest.raises(InputError, match=r"there is no field 'ambiant'; did you mean 'ambient'\?"):
         scene_of(cube()).replace(ambiant=1)  # type: ignore[call-arg]
 
 
@@ -209,7 +209,7 @@ def test_a_change_of_paint_is_that_of_the_surface_and_the_same_paint_is_the_same
 
 def test_self_is_no_field() -> None:
     fields: dict[str, Any] = {"self": 1}
-    with pytest.raises(InputError, match="view: there is no 'self'"):
+    with pytest.raises(InputError, match="view: there is no field 'self'"):
         scene_of(cube()).with_view(**fields)
 
 

@@ -87,9 +87,9 @@ def test_giving_a_direction_drops_the_target_and_the_other_way_round() -> None:
         ),
         (
             {"target": (0, 0, 0)},
-            "view: the target must not be the eye, not both (0.0, 0.0, 0.0); move one of them",
+            "view: the target must differ from the eye, (0.0, 0.0, 0.0); move one of them",
         ),
-        ({"direction": (0, 0, 0)}, "view: direction must not be zero, not (0, 0, 0); give it a length"),
+        ({"direction": (0, 0, 0)}, "view: direction must have a length above 0, not (0, 0, 0); change it"),
         ({"target": (1, 0, 0), "angle": math.inf}, "view: angle must be a finite number, not inf"),
         (
             {"target": (1, 0, 0), "field_of_view": 180},

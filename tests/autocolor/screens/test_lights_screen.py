@@ -443,7 +443,7 @@ def test_the_background_is_no_point_and_the_prompt_is_repeated(hand: Hand) -> No
 def test_a_third_point_in_one_line_is_refused_and_picked_again(hand: Hand) -> None:
     pick_points(hand, [PLACES[0], PLACES[1], PLACES[0]])
     message, is_warning = told(hand)
-    assert message.startswith("half-space 'plane': its three points must not be in one line")
+    assert message.startswith("half-space 'plane': its three points must not be in a line")
     assert is_warning
     assert planes_of(hand) == ()
     hand.click(*PLACES[2])

@@ -107,7 +107,7 @@ def test_numbers_are_strict(tmp_path: Path, number: str) -> None:
 @pytest.mark.parametrize(
     ("header", "sentence"),
     [
-        ("node;x;y;z", "nodes.csv, row 1: there is no column 'node;x;y;z'; known are 'node', 'x', 'y', 'z'"),
+        ("node;x;y;z", "nodes.csv, row 1: there is no column 'node;x;y;z'; choose 'node', 'x', 'y' or 'z'"),
         ("nod,x,y,z", "nodes.csv, row 1: there is no column 'nod'; did you mean 'node'?"),
         ("x,y,z,x", "nodes.csv, row 1: a column name must be unique, not repeated: 'x'; remove one"),
         ("x,y", "nodes.csv, row 1: there must be a column 'z', not only x, y; add it"),

@@ -208,14 +208,14 @@ concentration = -1
         f"{place} 2, scaling must be 'surface' or 'object', not 'surfac'; did you mean 'surface'?",
         f"{place} 3, mapping must be {', '.join(map(repr, CURVES))}, or rising points [x, y] from"
         " x = 0 to x = 1, not 'linea'; did you mean 'linear'?",
-        f"{place} 4, there is no 'colour'; known are 'mesh', 'parts', 'surfaces', 'lights', 'view',"
+        f"{place} 4, there is no field 'colour'; choose 'mesh', 'parts', 'surfaces', 'lights', 'view',"
         " 'ambient', 'scaling', 'mapping', 'contrast', 'exposure', 'dither', 'division', 'words',"
-        " 'background', 'scalar'",
+        " 'background' or 'scalar'",
         f'{place} 5, background must be "#rrggbb", a name such as "red", or three whole numbers from 0 to'
         " 255, not '#12'; write three or six hexadecimal digits after the #",
         f"{place} 7, [view]: eye must be three finite numbers of at most 1e36, not [0, 0]",
-        f"{place} 8, [view]: direction must not be zero, not [0.0, 0, 0]; give it a length",
-        f"{place} 9, [view]: there is no 'angl'; did you mean 'angle'?",
+        f"{place} 8, [view]: direction must have a length above 0, not [0.0, 0, 0]; change it",
+        f"{place} 9, [view]: there is no field 'angl'; did you mean 'angle'?",
         "bad.obj, line 9: a corner must be a node number from 1 to 4 or from -4 to -1, not 9; correct it",
         "bad.obj, line 10: a corner must be a node number, alone or with texture and normal numbers as in"
         " 7/1/3, not 'x'; correct it",
@@ -228,14 +228,14 @@ concentration = -1
         f"{place} 20, mesh[5]: it must have a file, or nodes and polygons, not nodes; correct it",
         f"{place} 23, [surfaces.body]: exponent must be a finite number of at least 0, not -1",
         f"{place} 24, [surfaces.body]: diffuse must be a finite number of at least 0, not '1.0'",
-        f"{place} 25, [surfaces.body]: there is no 'two_side'; did you mean 'two_sided'?",
+        f"{place} 25, [surfaces.body]: there is no field 'two_side'; did you mean 'two_sided'?",
         f"{place} 26, lights[1] 'key': position must be three finite numbers of at most 1e36, not missing;"
         " add it",
-        f"{place} 28, lights[1] 'key': there is no 'positon'; did you mean 'position'?",
+        f"{place} 28, lights[1] 'key': there is no field 'positon'; did you mean 'position'?",
         f"{place} 29, lights[1] 'key': intensity must be a finite number of at least 0, not inf",
         f"{place} 31, lights[2] 'key': name must be unique, not the same as lights[1]; rename it",
-        f"{place} 33, lights[2] 'key': direction must not be zero, not [0, 0, 0]; give it a length",
-        f"{place} 34, lights[2] 'key': flaps.z: the minimum must not be above the maximum, not 3 to 2;"
+        f"{place} 33, lights[2] 'key': direction must have a length above 0, not [0, 0, 0]; change it",
+        f"{place} 34, lights[2] 'key': flaps.z: the minimum must be at most the maximum, not 3 to 2;"
         " exchange them",
         f"{place} 36, lights[3] '': name must be a string of at least one character, not ''",
         f"{place} 38, lights[3] '': concentration must be a finite number of at least 0, not -1",
@@ -260,8 +260,7 @@ def test_rules_between_keys_are_checked(folder: Path) -> None:
         + '[[lights]]\nname = "b"\nposition = [0, 0, 0]\naim = [1, 0, 0]\ndirection = [1, 0, 0]\n'
     )
     assert refusal(folder, text) == [
-        "scene.toml, line 1, [view]: the target must not be the eye, not both (0.0, 0.0, 1.0); move one of"
-        " them",
+        "scene.toml, line 1, [view]: the target must differ from the eye, (0.0, 0.0, 1.0); move one of them",
         "scene.toml, line 9, lights[1] 'a': concentration must come with a direction or an aim, not with a"
         " point source; add an aim",
         "scene.toml, line 10, lights[2] 'b': it must have a direction or an aim, not both; leave one out",
@@ -289,7 +288,7 @@ def test_s_grows_by_a_key_of_the_surface_with_the_models_that_have_no_fresnel_te
     assert blinn.reflectance.model == BlinnPhong(growth=growth)
     assert refusal(folder, MESH + f'[surfaces.hood]\n{line}\nmodel = "cook-torrance"\n') == [
         f"scene.toml, line 4, [surfaces.hood]: {line.partition(' ')[0]} must go with model = 'phong' or"
-        " 'blinn', not with 'cook-torrance'; leave it out, or change the other"
+        " 'blinn', not with 'cook-torrance'; leave it out, or change the model"
     ]
 
 
@@ -368,8 +367,8 @@ def test_a_scene_file_of_more_than_a_mebibyte_is_refused(folder: Path) -> None:
 def test_windows_line_ends_and_a_byte_order_mark_are_no_matter(folder: Path) -> None:
     assert read(folder, b"\xef\xbb\xbf" + MESH.replace("\n", "\r\n").encode()).repairs == ()
     assert refusal(folder, b"\xef\xbb\xbf" + MESH.replace("\n", "\r\n").encode() + b"uq = 1\r\n") == [
-        "scene.toml, line 3, mesh[1]: there is no 'uq'; known are 'file', 'nodes', 'polygons', 'up',"
-        " 'scale', 'crease_angle'"
+        "scene.toml, line 3, mesh[1]: there is no field 'uq'; choose 'file', 'nodes', 'polygons', 'up',"
+        " 'scale' or 'crease_angle'"
     ]
 
 
@@ -505,12 +504,12 @@ def test_what_is_wrong_in_half_spaces_and_links_is_told_with_its_line(folder: Pa
     key = "lights[1] 'key': half_spaces"
     first = text.splitlines().index("position = [0, 0, 1]") + 1
     lines = [
-        "left: there is no 'edge'; did you mean 'edge_width'?",
+        "left: there is no field 'edge'; did you mean 'edge_width'?",
         "'my door'.point must be three finite numbers of at most 1e36, not [0, 0]",
-        "'my door'.direction must not be zero, not [0, 0, 0]; give it a length",
+        "'my door'.direction must have a length above 0, not [0, 0, 0]; change it",
         "new: direction must be three finite numbers of at most 1e36, not missing; add it",
         "roof must be a table of point, direction, edge_width, carried and on, not 3",
-        "top.name must be that of the table, 'top', not 'floor'; leave it out",
+        "top.name must be the name of its table, 'top', not 'floor'; leave it out",
         "only_parts must be a list of names, not 'hood'",
         "below.edge_width must be a finite number of at least 0, not -1",
     ]
@@ -536,7 +535,7 @@ def test_names_that_no_table_has_are_refused_in_links(folder: Path) -> None:
         'follows = "rim"\n'
     )
     assert refusal(folder, text) == [
-        "scene.toml, light 'key': follows 'rim' is not in the light table; known are 'eye', 'key'",
-        "scene.toml, light 'key': except_surfaces 'bdy' is not in the surface table; known are 'surface'",
+        "scene.toml, light 'key': follows 'rim' is not in the light table; choose 'eye' or 'key'",
+        "scene.toml, light 'key': except_surfaces 'bdy' is not in the surface table; choose 'surface'",
         "scene.toml, light 'key': only_parts 'hod' is not in the part table; did you mean 'hood'?",
     ]

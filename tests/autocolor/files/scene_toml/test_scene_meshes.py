@@ -102,8 +102,8 @@ def test_a_wrong_key_does_not_keep_the_file_from_being_read(folder: Path) -> Non
     assert refusal(folder, MESH + 'up = "w"\ncolor = 3\n') == [
         "car.obj, line 1: a node must have three coordinates x y z, not 2; add what is missing",
         "scene.toml, line 3, mesh[1]: up must be 'x', 'y' or 'z', not 'w'",
-        "scene.toml, line 4, mesh[1]: there is no 'color'; known are 'file', 'nodes', 'polygons', 'up',"
-        " 'scale', 'crease_angle'",
+        "scene.toml, line 4, mesh[1]: there is no field 'color'; choose 'file', 'nodes', 'polygons', 'up',"
+        " 'scale' or 'crease_angle'",
     ]
 
 

@@ -43,7 +43,7 @@ def test_the_growth_of_s_is_set_by_sql_as_in_a_scene_file(tmp_path: Path) -> Non
         read_store(path)
     assert refused.value.problems == (
         "small.sqlite: surfaces, row 1: refractive_index must go with model = 'phong' or 'blinn', not with"
-        " 'cook-torrance'; leave it out, or change the other",
+        " 'cook-torrance'; leave it out, or change the model",
     )
 
 

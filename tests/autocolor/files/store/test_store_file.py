@@ -147,7 +147,7 @@ REFUSALS = (
         ),
         (
             "surfaces, row 2: exponent must go with model = 'phong' or 'blinn', not with 'cook-torrance';"
-            " leave it out, or change the other",
+            " leave it out, or change the model",
             "lights, row 2: concentration must come with a direction or an aim, not with a point source; add"
             " an aim",
         ),

@@ -67,7 +67,7 @@ def test_a_view_without_a_target_is_aimed_by_its_direction() -> None:
 
 
 def test_an_aim_at_the_place_of_its_light_is_refused() -> None:
-    with pytest.raises(InputError, match="the aim must not be the position"):
+    with pytest.raises(InputError, match="the aim must differ from the position"):
         MovablePoint(AIM, light="key").put(boxed(KEY), KEY.position)
 
 

@@ -233,7 +233,7 @@ def test_a_place_that_the_scene_refuses_is_told_and_the_drag_goes_on() -> None:
     hand.move(60, 70)
     assert scene_of_hand(hand) is near
     assert hand.viewer.session.news.is_warning
-    assert "the aim must not be the position" in hand.viewer.message
+    assert "the aim must differ from the position" in hand.viewer.message
     hand.move(50, 90)
     assert where(hand, TOP) == pytest.approx((50, 90), abs=0.6)
     assert not hand.viewer.session.news.is_warning
