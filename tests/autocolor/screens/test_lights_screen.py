@@ -362,7 +362,7 @@ def test_the_buttons_of_two_half_spaces_have_different_keys(cut_hand: Hand) -> N
 
 
 def test_the_message_line_explains_a_row(cut_hand: Hand) -> None:
-    assert hint_of(cut_hand, "left carried") == "Whether it moves and turns with the light, as barn doors do."
+    assert hint_of(cut_hand, "left carried") == "Whether it moves and turns with the light, like a barn door."
     assert hint_of(cut_hand, "turn") == "Light the other side of left; or remove left."
 
 
