@@ -29,8 +29,8 @@ settings.load_profile(
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
-# If Python may not write compiled modules beside the sources, every process of a test would compile all modules
-# again. The processes share a folder of compiled modules instead.
+# If Python may not write compiled modules beside the sources, every process of a test would compile them again.
+# The processes share a folder of compiled modules instead.
 if sys.dont_write_bytecode and sys.pycache_prefix is None:
     sys.dont_write_bytecode = False
     sys.pycache_prefix = str(Path(__file__).parents[1] / ".pytest_cache" / "compiled")
