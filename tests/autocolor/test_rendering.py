@@ -20,6 +20,7 @@ from autocolor.rendering import BLOCKS, PICTURE_SECONDS, Rendering, block_for, b
 from autocolor.visibility.visible_points import PointChunk
 from tests.autocolor.meshes import cube, grid, sphere
 from tests.autocolor.strategies import scenes
+from tests.closeness import all_close
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -256,7 +257,7 @@ def test_a_picture_in_many_chunks_is_reused_and_computed_as_in_one_chunk(
     _, after = edited(two_surfaces(), edit)
     assert len(after.points.chunks) > 3
     assert after.picture.intensity.tobytes() == render(edit(two_surfaces()), 24, 32).intensity.tobytes()
-    assert after.picture.intensity == pytest.approx(in_one.intensity, rel=1e-5)
+    assert all_close(after.picture.intensity, in_one.intensity, rel=1e-5)
 
 
 @given(scenes(), scenes())

@@ -539,11 +539,11 @@ def test_a_folder_that_cannot_be_written_to_is_told(tmp_path: Path, monkeypatch:
 def test_a_scene_of_too_many_parts_is_refused_and_nothing_is_left(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("autocolor.files.scene_writing.LARGEST_TEXT", 10_000)
-    count = 400
+    monkeypatch.setattr("autocolor.files.scene_writing.LARGEST_TEXT", 1_000)
+    count = 40
     names = tuple(f"part {number}" for number in range(count))
     mesh = Mesh(cube().coordinates, np.tile([[0, 2, 3, 1]], (count, 1)), np.arange(count), names)
-    with pytest.raises(OutputError, match=r"a scene file must have at most 10,000 bytes"):
+    with pytest.raises(OutputError, match=r"a scene file must have at most 1,000 bytes"):
         write_scene(tmp_path, scene_of(mesh))
     assert list(tmp_path.iterdir()) == []
 

@@ -12,6 +12,7 @@ from autocolor.mapping.intensity import words_of
 from autocolor.mapping.ranges import level_ranges
 from tests.autocolor.meshes import sphere, wall_scene
 from tests.autocolor.strategies import lights, scenes
+from tests.closeness import all_close
 
 
 def close_to(expected: object, largest: float) -> object:
@@ -169,7 +170,7 @@ def test_strong_and_weak_lights_are_no_different(intensity: float) -> None:
         for strength in (1.0, intensity)
     )
     assert one.relative.tobytes() == other.relative.tobytes()
-    assert other.intensity == pytest.approx(one.intensity * np.float32(intensity), rel=1e-6)
+    assert all_close(other.intensity, one.intensity * np.float32(intensity), rel=1e-6)
 
 
 def test_a_picture_shows_itself_and_tells_about_itself() -> None:
