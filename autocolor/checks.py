@@ -1,4 +1,4 @@
-"""What input checks share: how messages show values and lists, and which name was probably meant."""
+"""Parts of messages about invalid input: values, lists of names, and the name that was probably meant."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ Vector = tuple[float, float, float]
 Color = tuple[int, int, int]
 
 LONGEST_NAME: Final = 200
-"""Assumed: letters of a name that are compared; the time to compare names grows with their lengths."""
+"""Limit: letters of a name that are compared; the time to compare names grows with their lengths."""
 
 LARGEST_COORDINATE: Final = 1e30
-"""Assumed: far larger than any object; its square is still well within the float64 range."""
+"""Limit: a coordinate. Its square is still well within the float64 range."""
 
 
 def shown(value: object, most: int = 60) -> str:
@@ -60,8 +60,7 @@ def either(names: Iterable[str]) -> str:
 
 
 FEW: Final = 16
-"""Assumed: as many names can be listed in a message."""
-
+"""Limit: names that a message lists."""
 
 OTHER_WORDS: Final = {
     "A": "cone_angle",
@@ -73,31 +72,31 @@ OTHER_WORDS: Final = {
     "fov": "field_of_view",
     "shininess": "exponent",
 }
-"""The symbols of the paper, and words of other programs, with ours."""
+"""Our names for symbols of the paper and for words of other programs."""
 
 
-def nearest(name: object, names: Iterable[str]) -> str:
+def nearest(name: object, names: Iterable[object]) -> str:
     """A clause for a message: the closest of `names`, else all of them if they are few, else nothing.
 
-    Closest is one that another word stands for, then one that differs in capitals alone, then one that begins
-    with the name, then one of whose words, between underscores, the name is one, and then the one that is
-    spelled most alike.
+    These are tried in turn: our name for another program's word; a name that differs in capitals only; one
+    that begins with the given name; one that has it as a word between underscores; the most similar spelling.
+    Only text is a name: anything else among `names` is left out.
 
     >>> nearest("color", ["blend", "object_color"]), nearest("N", ["exponent"])
     ("; did you mean 'object_color'?", "; did you mean 'exponent'?")
     """
-    names = list(names)
+    texts = [each for each in names if isinstance(each, str)]
     name = (name if isinstance(name, str) else shown(name))[:LONGEST_NAME]
     other = OTHER_WORDS.get(name)
     close = (
-        [known for known in names if known == other]
-        or [known for known in names if known.casefold() == name.casefold()]
-        or [known for known in names if known.startswith(name)]
-        or [known for known in names if name in known.split("_")]
-        or difflib.get_close_matches(name, names, n=1)
+        [text for text in texts if text == other]
+        or [text for text in texts if text.casefold() == name.casefold()]
+        or [text for text in texts if text.startswith(name)]
+        or [text for text in texts if name in text.split("_")]
+        or difflib.get_close_matches(name, texts, n=1)
     )
     if close:
         return f"; did you mean {close[0]!r}?"
-    if 0 < len(names) <= FEW:
-        return f"; known are {', '.join(map(repr, names))}"
+    if 0 < len(texts) <= FEW:
+        return f"; known are {', '.join(map(repr, texts))}"
     return ""

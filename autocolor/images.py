@@ -1,8 +1,7 @@
-"""Images of a picture in the colors of a scene, without a studio.
+"""A picture in the colors of a scene, without a studio: on a display, as an array, or as a PNG file.
 
-A picture contains intensities but no colors; the colors come from the lookup table that a display holds. So
-an image of it is words and entries (`display_image`), and from these a field of a display, an array or a PNG
-file.
+A picture contains intensities but no colors. The colors come from the words and entries of a display image,
+which `display_image` makes.
 """
 
 from __future__ import annotations
@@ -26,7 +25,7 @@ def display_image(
 ) -> DisplayImage:
     """The display image of a scene and its picture, each pixel of which is shown as a block of words.
 
-    Its words stand for levels or for normals, as the scene tells. The words of a picture without normals,
+    Its words stand for levels or for normals, as the scene asks. The words of a picture without normals,
     such as a picture of a file, stand for levels in every scene. Whatever did not change is shared with the
     earlier image `before`. Raises InputError if an intensity is not finite.
     """
@@ -66,7 +65,7 @@ def image(scene: Scene, picture: Picture) -> Bytes:
 def save_image(path: str | PathLike[str], scene: Scene, picture: Picture, *, overwrite: bool = False) -> None:
     """Write the picture as a display shows it to a PNG file, atomically, with the legend of a scalar.
 
-    Without a legend the colors are those of `image`.
+    Without a legend it has the colors of `image`.
 
     Raises UsageError for a name that ends as another kind of file does; OutputError if the file exists and
     `overwrite` is false, or if it cannot be created; WriteError if writing fails.

@@ -2,11 +2,11 @@
 
 What is modeled
     the instruction stream: one continuous stream of words, cut anywhere, with its sticky operands
-    the instructions: instruction_set names their sources; those known by name only are consumed and flagged
+    the instructions: instruction_set names their sources; if only a name is known, the words are skipped
     the frame buffer: planes behind a write mask, a write window, image windows, scan orders, bytes or words
     drawing: text, rasters, vectors with texture, points, conics, circles, areas, copies
     the video lookup table: 1024 parallel entries of 24 bits, or of 12; the section that is shown
-    the characters: cells of 7 x 9 with dots that were drawn for this emulator, and those that a host loads
+    the characters: cells of 7 x 9 with dots that were drawn for this emulator; a host can load others
     cursors and the joystick unit: positions, shapes, blinking, TRACK and ENTER, over the field, not in memory
     scan-out: words through the table to a field of colors, with display origin and zoom; also black and white
     time, if the configuration has it: a beam, retrace, waiting (timing holds every rate; all are assumed)
@@ -107,9 +107,9 @@ __all__ = list(_HOME)
 
 
 def __getattr__(name: str) -> object:
-    """A public name from the module that defines it, which is loaded when the name is first used.
+    """A public name; its module is loaded when the name is first used.
 
-    `__version__` is that of the installed package, `0+unknown` in a checkout that was never installed.
+    `__version__` is the version of the installed package, or `0+unknown` in a checkout that is not installed.
     """
     if name == "__version__":
         from importlib.metadata import PackageNotFoundError, version

@@ -12,22 +12,22 @@ Scalar = TypeVar("Scalar", bound=np.generic)
 Words = NDArray[np.uint16]
 """16-bit words: a stream, or a picture as (lines, elements)."""
 Dots = NDArray[np.bool_]
-"""Whether each pixel, or each dot of a character or a cursor, is meant."""
+"""A truth value for each pixel of a raster, or for each dot of a character or a cursor."""
 Booleans = NDArray[np.bool_]
 """One truth value for each row of a table."""
 Numbers = NDArray[np.int64]
 """Signed numbers: coordinates and distances."""
 Indices = NDArray[np.intp]
-"""Places in another array."""
+"""Indices into another array."""
 WholeNumbers = NDArray[np.integer]
-"""Whole numbers of a size that has not been checked yet."""
+"""Whole numbers whose range has not been checked yet."""
 Colors = NDArray[np.uint8]
-"""Red, green and blue along the last axis, 0 to 255: of entries, or of the pixels of a field."""
+"""The colors of entries or pixels: red, green and blue along the last axis, 0 to 255."""
 PackedColors = NDArray[np.uint32]
-"""The same packed, 0x00RRGGBB: one number for an entry or a pixel."""
+"""The colors of entries or pixels as numbers 0x00RRGGBB."""
 Bytes = NDArray[np.uint8]
 """Bytes of memory."""
 Raster = NDArray[Scalar]
-"""Anything as [line, element]; `Raster[np.uint16]` is a raster of words."""
+"""An array indexed by [line, element]; `Raster[np.uint16]` is a raster of words."""
 AnyArray = NDArray[Any]
 """An array of any kind."""

@@ -1,4 +1,4 @@
-"""Checks of what Python callers pass in: numbers, words, streams and colors.
+"""Checks of the arguments of Python callers: numbers, words, streams and colors.
 
 The hardware drops bits that do not fit. For a Python program an error names the wrong number instead.
 """
@@ -17,15 +17,15 @@ BYTE: Final = np.dtype(np.uint8)
 
 
 def is_whole(value: object) -> bool:
-    """Whether a value is one whole number, of Python or of numpy; True and False are not."""
-    # Most are plain; of the others the types are looked at.
+    """Whether a value is a whole number of Python or numpy; True and False are not."""
+    # Test for a plain int first: most values are.
     return type(value) is int or (isinstance(value, int | np.integer) and not isinstance(value, bool))
 
 
 def checked_number(
     value: object, thing: str, least: int, most: int, advice: str, error: type[RamtekError]
 ) -> int:
-    """The value as an int; `error` if it is no whole number, or not from `least` to `most`.
+    """The value as an int; raises `error` unless it is a whole number from `least` to `most`.
 
     >>> checked_number(np.int64(3), "a factor", 1, 16, "choose a smaller one", WordsError)
     3
@@ -39,34 +39,34 @@ def checked_number(
 
 
 def checked_coordinate(value: object, thing: str) -> int:
-    """An element or a line, of the memory or outside of it; InstructionError if no word holds it."""
+    """The value as an element or a line, perhaps outside the memory; InstructionError if no word holds it."""
     return checked_number(value, thing, -0x8000, 0xFFFF, "round or clip it", InstructionError)
 
 
 def checked_cursor(number: object) -> int:
-    """The number of a cursor, 0 to 255; InstructionError if it is none."""
+    """The value as a cursor number, 0 to 255; InstructionError if it is not."""
     return checked_number(number, "a cursor's number", 0, 255, "choose one there is", InstructionError)
 
 
 def checked_table_address(address: object) -> int:
-    """A word address of the lookup table; InstructionError if no word holds it."""
+    """The value as a word address of the lookup table; InstructionError if no word holds it."""
     return checked_number(address, "a table's address", 0, 0xFFFF, "count in words", InstructionError)
 
 
 def checked_size(size: object) -> tuple[int, int]:
-    """The size factors of text across and down, from one number or from two; InstructionError otherwise."""
+    """The size factors of text, across and down, from one or two numbers; InstructionError otherwise."""
     factors = tuple(size) if isinstance(size, Sequence) else (size, size)
     if len(factors) != 2:
         raise InstructionError(f"the size of text must be one number or two, not {size!r}; give both")
     across, down = (
-        checked_number(each, "the size of text", 1, 16, "write it smaller", InstructionError)
-        for each in factors
+        checked_number(factor, "the size of text", 1, 16, "write it smaller", InstructionError)
+        for factor in factors
     )
     return across, down
 
 
 def whole_numbers(values: object, thing: str, error: type[WordsError] | type[ColorsError]) -> WholeNumbers:
-    """The values as an array of whole numbers; `error` when they are anything else."""
+    """The values as an array of whole numbers; raises `error` if they are anything else."""
     try:
         array = np.asarray(values)
     except (ValueError, TypeError, OverflowError) as cause:
@@ -87,7 +87,7 @@ def whole_numbers(values: object, thing: str, error: type[WordsError] | type[Col
 
 
 def checked_words(words: object, planes: int = 10) -> Words:
-    """The words as a (lines, elements) uint16 array; WordsError if one has more bits than there are planes.
+    """The words as a (lines, elements) uint16 array; WordsError if a word has more bits than `planes`.
 
     >>> checked_words([[1024]])
     Traceback (most recent call last):
@@ -96,7 +96,7 @@ def checked_words(words: object, planes: int = 10) -> Words:
     array = whole_numbers(words, "words", WordsError)
     if array.ndim != 2 or 0 in array.shape:
         raise WordsError(
-            f"words must be a (lines, elements) array with at least one of each, not of shape {array.shape}; "
+            f"words must be a (lines, elements) array with at least one word, not of shape {array.shape}; "
             "pass words[np.newaxis] for one line"
         )
     largest = (1 << planes) - 1
@@ -132,7 +132,7 @@ def checked_stream(words: object) -> Words:
 
 
 def checked_colors(first: int, colors: object, entries: int = 1024) -> Colors:
-    """The (n, 3) colors as uint8; ColorsError if one does not fit, or the table ends before the last."""
+    """The (n, 3) colors as uint8; ColorsError if a number is not 0 to 255 or a color has no entry."""
     array = whole_numbers(colors, "colors", ColorsError)
     if array.shape == (0,):
         array = array.reshape(0, 3)

@@ -25,11 +25,11 @@ FAULT: Final = 70
 WRITING_FAILED: Final = 74
 INTERRUPTED: Final = 130
 READER_LEFT: Final = 141
-"""The exit code that a shell gives a program that the signal of a broken pipe ended."""
+"""The exit code in a shell of a program that SIGPIPE ended."""
 WINDOW: Final = "ramtek_emu.monitor.window"
 """The module that imports pygame."""
 PYGAME: Final = "pygame" if sys.version_info < (3, 14) else "pygame-ce"
-"""The package to install for it, as in pyproject.toml: pygame has no wheels from Python 3.14 on."""
+"""The package that provides pygame, as in pyproject.toml: pygame has no wheels from Python 3.14 on."""
 
 
 def _show_version(context: click.Context, _: click.Parameter, asked: bool) -> None:
@@ -56,16 +56,16 @@ version_option = click.option(
 
 
 class CommandGroup(click.Group):
-    """A group of commands that are imported only when they are used, so that help is shown at once.
+    """A group of commands. A command is imported only when it is used, so that help is shown at once.
 
-    Each command is a function in a module, and both have the name of the command. Where that name is a
-    built-in of Python (`list`), the function's name ends in `_command`.
+    The module and the function of a command have the name of the command. If that name is a built-in of
+    Python (`list`), the function's name ends in `_command`.
     """
 
     package: ClassVar[str]
-    """The package that holds the modules of the commands."""
+    """The package of the commands' modules."""
     table: ClassVar[dict[str, str]]
-    """Each command and its line of help, in the order of the help."""
+    """The commands and their lines of help, in the order of the help."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """The names in the order of the table."""
@@ -82,9 +82,9 @@ class CommandGroup(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        """The command that the arguments name; for an unknown name the error suggests the nearest one.
+        """The command that the arguments name; the error for an unknown name suggests the nearest command.
 
-        For a file it shows where the name of a command belongs.
+        If the name is a file, the error shows where the command belongs.
         """
         if args and args[0] not in self.table and not args[0].startswith("-"):
             near = difflib.get_close_matches(args[0], self.table, n=1)
@@ -98,7 +98,7 @@ class CommandGroup(click.Group):
         return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write the table of commands; no command is imported for it."""
+        """Write the table of commands without importing them."""
         with formatter.section("Commands"):
             formatter.write_dl(list(self.table.items()))
 
@@ -107,9 +107,9 @@ def run_command(command: click.Command, name: str) -> None:
     """Run a command and end the process with its exit code.
 
     If an error has an attribute `exit_code`, the user can act on it: its message is shown, and the attribute
-    is the code. A reader of stdout that leaves ends the command in silence. An error while the module of the
-    window is loaded means that pygame is missing or broken. Any other error is a fault of the program. With
-    `--debug`, anywhere before a `--`, the traceback is shown.
+    is the code. If the reader of stdout leaves, the command ends in silence. An error while the module of the
+    window is loaded means that pygame is missing or broken. All other errors are faults of the program. With
+    `--debug` anywhere before a `--`, the traceback is shown.
     """
     debug, arguments = _without_debug(sys.argv[1:])
     had_stdout = sys.stdout is not None
@@ -187,7 +187,7 @@ def _without_debug(arguments: list[str]) -> tuple[bool, list[str]]:
 
 
 def _closed_pipe() -> TextIOWrapper:
-    """The write end of a pipe that nobody reads, for a process that was started without a stdout."""
+    """The write end of a pipe without a reader, for a process that was started without a stdout."""
     read_end, write_end = os.pipe()
     os.close(read_end)
     return open(write_end, "w", encoding="utf-8")
@@ -203,7 +203,7 @@ def _end(name: str, message: str, code: int) -> NoReturn:
 
 
 def _leave(code: int) -> NoReturn:
-    """End the process with the code; the rest of the buffers is written now, or dropped."""
+    """Flush the buffers, or drop them if that fails, and end the process with the code."""
     for stream in (sys.stdout, sys.stderr):
         try:
             if stream is not None:
@@ -236,25 +236,25 @@ SCRIPT: Final = """\
 
 complete -o nosort -F %(complete_func)s %(prog_name)s
 """
-"""The function that bash runs: a candidate that goes on after "=", "." or "/" gets no space."""
+"""The function that bash runs. It adds no space after a candidate that ends with "=", "." or "/"."""
 
 
 class WholeWords(BashComplete):
     """Click's completion for bash, with words as they are typed.
 
-    Bash takes a word apart at each "=": `ambient=0.2` comes as three words. Click takes them for three
-    arguments, so that nothing would be completed after `--set KEY=`. Here they are joined again. Bash keeps
-    the part of a word up to its last "=", so that candidates are given without it.
+    Bash splits words at "=": `ambient=0.2` becomes three words. Click would take them for three arguments and
+    complete nothing after `--set KEY=`, so they are joined again here. Bash keeps the start of a word up to
+    its last "=", so candidates are given without that start.
     """
 
     source_template: ClassVar[str] = SCRIPT
     _prefix: str = ""
-    """The start of all candidates that bash has already."""
+    """The start of the incomplete word that bash keeps; candidates are given without it."""
 
     def get_completion_args(self) -> tuple[list[str], str]:
-        """The whole words before the cursor, and the incomplete one there."""
+        """The whole words before the cursor, and the incomplete word at the cursor."""
         count = int(os.environ["COMP_CWORD"]) + 1
-        # An empty word at the cursor is not among them.
+        # Bash does not list an empty word at the cursor.
         words = split_arg_string(os.environ["COMP_WORDS"])[:count]
         typed = joined(words)
         incomplete = typed.pop() if len(words) == count else ""
@@ -262,7 +262,7 @@ class WholeWords(BashComplete):
         return typed[1:], incomplete
 
     def format_completion(self, item: CompletionItem[Any]) -> str:
-        """A candidate for the script, in quotes that bash takes off again."""
+        """A candidate for the script, escaped for bash."""
         value = str(item.value)
         if item.type == "plain":
             value = re.sub(r"([^\w@%+=:,./-])", r"\\\1", value.removeprefix(self._prefix))
@@ -270,7 +270,7 @@ class WholeWords(BashComplete):
 
 
 def joined(words: Sequence[str]) -> list[str]:
-    """The words as they were typed, from the parts that bash makes of them.
+    """The words as they were typed: the parts that bash split at "=" are joined again.
 
     >>> joined(["render", "--set", "ambient", "=", "0.2", "-o", "x.png"])
     ['render', '--set', 'ambient=0.2', '-o', 'x.png']
@@ -288,7 +288,7 @@ def joined(words: Sequence[str]) -> list[str]:
 
 
 def prefix_in_bash(word: str) -> str:
-    """The start of an incomplete word that bash keeps, up to its last "="; without the name of an option.
+    """The start of an incomplete word that bash keeps, up to its last "=", without an option's name.
 
     >>> prefix_in_bash("scaling=ob"), prefix_in_bash("--set=scaling=ob"), prefix_in_bash("--set=sc")
     ('scaling=', 'scaling=', '')

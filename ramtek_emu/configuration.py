@@ -39,7 +39,7 @@ KINDS: Final[dict[str, tuple[tuple[type, ...], str]]] = {
     "monochrome": ((bool,), "True or False"),
     "timing": ((Timing, type(None)), "a Timing or None"),
 }
-"""The types of the other fields, and how an error names them."""
+"""The types of the other fields, and the words for them in errors."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -106,7 +106,7 @@ class Configuration:
 
     @property
     def largest_word(self) -> int:
-        """The largest number that a pixel holds: a word with every plane set."""
+        """The largest word of a pixel: every plane is set."""
         return (1 << self.planes) - 1
 
 
@@ -148,7 +148,9 @@ Hardware: NCAR and LONG, 1280 x 1024, bytes for pixels, 24-bit entries; LONG, cu
 Assumed: eight planes, since its masks are FFh; four sections of 256 entries, as JPL's.
 """
 
-CONFIGURATIONS: Final = {each.name: each for each in (GMR_9300, PRINCETON_9300, JPL_9460, NCAR_9460)}
+CONFIGURATIONS: Final = {
+    configuration.name: configuration for configuration in (GMR_9300, PRINCETON_9300, JPL_9460, NCAR_9460)
+}
 """The four displays above, by name."""
 
 
@@ -160,7 +162,7 @@ def configuration_named(name: str) -> Configuration:
     """
     asked = name.upper().replace("-", "_")
     if asked not in CONFIGURATIONS:
-        near = [each for each in CONFIGURATIONS if each.startswith(asked)]
+        near = [candidate for candidate in CONFIGURATIONS if candidate.startswith(asked)]
         near = near or difflib.get_close_matches(asked, CONFIGURATIONS, n=1)
         advice = f"did you mean {near[0]}?" if asked and near else "choose one of them"
         raise ConfigurationError(
@@ -170,7 +172,7 @@ def configuration_named(name: str) -> Configuration:
 
 
 def checked_configuration(configuration: object) -> Configuration:
-    """A configuration, or the one of that name; ConfigurationError if it is anything else."""
+    """The configuration itself, or the display of that name; ConfigurationError otherwise."""
     if isinstance(configuration, str):
         return configuration_named(configuration)
     if not isinstance(configuration, Configuration):

@@ -28,8 +28,8 @@ from ramtek_emu.video.scan_out import ScanOut
 class Ramtek9300:
     """A display in this process. It is a host port: a host sends words to it and receives its replies.
 
-    The configuration may be one of the four by name, as in `Ramtek9300("NCAR_9460")`. A display can be copied
-    (`copy.deepcopy`) and pickled whole, with incomplete instructions and replies that nobody has read.
+    The configuration may be given by name, as in `Ramtek9300("NCAR_9460")`. A display can be copied
+    (`copy.deepcopy`) and pickled with its incomplete instruction and unread replies.
     """
 
     def __init__(self, configuration: Configuration | str = GMR_9300) -> None:
@@ -71,7 +71,7 @@ class Ramtek9300:
                 self._execute_in_time(instruction, self.beam)
 
     def _execute_in_time(self, instruction: Instruction, beam: Beam) -> None:
-        # Lines that the beam has passed show the state before the instruction, all others the state after.
+        # Lines that the beam has passed show the state before the instruction, all others the state after it.
         self.scan_out.follow_beam()
         written = self.frame_buffer.written
         execute(self.processor, instruction)
@@ -91,7 +91,7 @@ class Ramtek9300:
         self._take(np.array([FORMAT_OF_NAME["RSET"].opcode << 8], np.uint16))
 
     def receive(self, count: int) -> Words:
-        """The next `count` words of the replies, uint16; ReplyError when there are fewer."""
+        """The next `count` words of the replies, uint16; ReplyError if fewer are waiting."""
         return self.processor.take_reply(count)
 
     def field(self) -> Colors:

@@ -1,13 +1,13 @@
 """The errors of the display. A message says the rule, the wrong value, and what to do about it.
 
-They are raised to Python callers only. Words that a host sends never raise anything.
+Only Python callers get these errors: no word that a host sends raises an error.
 """
 
 from __future__ import annotations
 
 
 class RamtekError(Exception):
-    """The base of all errors of this package; a command that fails with one ends with its `exit_code`."""
+    """The base of all errors of this package; a command ends with the `exit_code` of its error."""
 
     exit_code = 70
 
@@ -37,13 +37,13 @@ class InstructionError(RamtekError, ValueError):
 
 
 class ReplyError(RamtekError, LookupError):
-    """A host asked for more words than the display has replied."""
+    """A host asked for more words of replies than are waiting."""
 
     exit_code = 65
 
 
 class NoScreenError(RamtekError, RuntimeError):
-    """There is no screen to open a window on."""
+    """A window cannot open because there is no screen."""
 
     exit_code = 69
 
@@ -67,7 +67,7 @@ class SnapshotError(RamtekError, ValueError):
 
 
 class PortError(RamtekError, ConnectionError):
-    """A display that cannot be reached, or whose connection was lost."""
+    """A display that cannot be reached, or a lost connection to a display."""
 
     exit_code = 69
 
@@ -91,5 +91,5 @@ class WriteError(RamtekError, OSError):
 
 
 def reason_of(cause: Exception) -> str:
-    """Why a system call failed, as an error's sentence tells it in parentheses."""
+    """The reason for a failed system call, in lower case, for the parentheses of an error's sentence."""
     return (getattr(cause, "strerror", None) or str(cause) or type(cause).__name__).lower()

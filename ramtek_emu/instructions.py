@@ -1,7 +1,7 @@
-"""Encoders: functions that return the words of instructions, for a host to send; one for each purpose.
+"""Encoders: functions that return the words of instructions, for a host to send.
 
 They set up the display, write and read images, draw circles, areas, lines and text, place cursors, and load
-and read the lookup table. Operands that are left out stay as earlier instructions set them.
+and read the lookup table. An operand that is left out keeps the value that an earlier instruction set.
 
 >>> " ".join(f"{word:04X}" for word in set_parameters(foreground=1))
 '0802 0002 0001'
@@ -42,7 +42,7 @@ from ramtek_emu.instruction_set.table import FORMAT_OF_NAME, Flags
 
 
 def concatenate(*parts: Words) -> Words:
-    """Several streams, one after the other, as one."""
+    """Several streams joined into one stream."""
     return np.concatenate([checked_stream(part) for part in parts]) if parts else NO_WORDS
 
 
@@ -67,27 +67,27 @@ def set_parameters(**operands: OperandValue | None) -> Words:
 
 
 def zoom(across: int = 1, down: int | None = None) -> Words:
-    """ZOOM: show each pixel `across` elements wide and `down` lines high, 1 to 16; `down` may be left out."""
+    """ZOOM: show each pixel `across` elements wide and `down` lines high (1 to 16; None is `across`)."""
     factors = (across, across if down is None else down)
-    if not all(is_whole(each) and 1 <= each <= 16 for each in factors):
+    if not all(is_whole(factor) and 1 <= factor <= 16 for factor in factors):
         raise InstructionError(f"zoom factors must be 1 to 16, not {factors}; choose smaller ones")
     word = int(factors[1]) - 1 << 8 | int(factors[0]) - 1
     return np.array((FORMAT_OF_NAME["ZOOM"].opcode << 8, word), np.uint16)
 
 
 def erase(window: Sequence[int] | None = None, word: int | None = None) -> Words:
-    """ERS: fill a window with a word. Both stay set, the word as the background."""
+    """ERS: fill a window with a word. The window stays set, and the word stays set as the background."""
     return encode(normal("ERS", {"window": window, "background": word}))
 
 
 def write_image(words: object, left: int = 0, top: int = 0, planes: int = 10) -> Words:
     """WI: write a (lines, elements) array of words with its top-left corner at (left, top).
 
-    The first instruction sets the window. An image that is too long for one instruction goes on in further
-    ones. WordsError names the first word that has more bits than there are planes.
+    The first instruction sets the window. An image that is too long for one instruction continues in further
+    instructions. WordsError names the first word with more bits than `planes`.
     """
     planes = checked_number(planes, "the number of planes", 1, 16, "choose that of the display", WordsError)
-    left, top = (checked_coordinate(each, "the words' corner") for each in (left, top))
+    left, top = (checked_coordinate(place, "the words' corner") for place in (left, top))
     image = checked_words(words, planes)
     lines, elements = image.shape
     flat = np.ascontiguousarray(image).reshape(-1)
@@ -117,11 +117,11 @@ def image_head(left: int, top: int, right: int, bottom: int, length: int) -> Wor
 
 
 def read_image(left: int, top: int, elements: int, lines: int) -> Iterator[tuple[Words, int]]:
-    """RI: read a window, in as many instructions as needed, each with the number of words to receive."""
-    left, top = (checked_coordinate(each, "the corner of the words to read") for each in (left, top))
+    """RI: read a window. Yields the instructions, with the number of words to receive after each of them."""
+    left, top = (checked_coordinate(place, "the corner of the words to read") for place in (left, top))
     elements, lines = (
-        checked_number(each, f"the {name} to read", 1, 0x10000, "read one at least", InstructionError)
-        for each, name in ((elements, "elements"), (lines, "lines"))
+        checked_number(count, f"the {name} to read", 1, 0x10000, "read one at least", InstructionError)
+        for count, name in ((elements, "elements"), (lines, "lines"))
     )
     most = MOST_BYTES // 2
     if elements <= most:
@@ -134,7 +134,7 @@ def read_image(left: int, top: int, elements: int, lines: int) -> Iterator[tuple
 
 
 def write_circles(circles: Sequence[Sequence[int]], word: int | None = None) -> Words:
-    """CIRC: draw the outlines of (n, 3) circles: element and line of the center, and radius."""
+    """CIRC: draw the outlines of (n, 3) circles (element and line of the center, radius)."""
     numbers = whole_numbers(circles, "circles", WordsError)
     if numbers.ndim != 2 or numbers.shape[1] != 3 or not 0 < len(numbers) <= MOST_BYTES // 6:
         raise WordsError(
@@ -165,11 +165,11 @@ def write_vectors(
 ) -> Words:
     """WVL: draw the lines that link (n, 2) vertices (element, line), from `start` or the first vertex on.
 
-    Vertices that do not fit in one instruction go on in the next. The word stays set as the foreground.
-    Lines are clipped at the write window, never at the window of images and text, and are drawn with the
-    texture. Where other programs drew before, give `window` (left, top, right, bottom): it sets the write
-    window, which stays and clips images and text too, and a texture without gaps. Only the 9400 and the 9460
-    have both. The mask is never set. WordsError if the vertices are not such an array.
+    Vertices that do not fit in one instruction continue in the next. The word stays set as the foreground.
+    Lines are drawn with the texture, and are clipped at the write window, never at the window of images and
+    text. If other programs drew before, give `window` (left, top, right, bottom): it sets a texture without
+    gaps and the write window, which stays set and also clips images and text. Only the 9400 and the 9460 have
+    a texture and a write window. The mask is never set. WordsError if the vertices are not such an array.
     """
     words = checked_places(vertices, "vertices", "vertex", ("element", "line"))
     if start is None:
@@ -179,22 +179,22 @@ def write_vectors(
 
 
 def write_segments(segments: object, word: int | None = None, window: Sequence[int] | None = None) -> Words:
-    """WVU: draw a line for each of (n, 4) segments (element, line, element, line), from end to end.
+    """WVU: draw unlinked lines from (n, 4) segments (element, line of the start; element, line of the end).
 
-    Segments that do not fit in one instruction go on in the next. The word and the window stay set, as after
-    `write_vectors`. WordsError if the segments are not such an array.
+    Segments that do not fit in one instruction continue in the next. The word and the window stay set, as
+    after `write_vectors`. WordsError if the segments are not such an array.
     """
     words = checked_places(segments, "segments", "segment", ("element", "line", "element", "line"))
     return in_instructions("WVU", words, line_operands(word, window))
 
 
 def line_operands(word: int | None, window: Sequence[int] | None) -> dict[str, OperandValue | None]:
-    """The operands for lines of a word; with a window, the texture has no gaps."""
+    """The operands that lines need; with a window, the texture has no gaps."""
     return {"foreground": word, "write_window": window, "texture": None if window is None else (0xFFFF, 0)}
 
 
 def in_instructions(name: str, rows: Words, operands: dict[str, OperandValue | None]) -> Words:
-    """The instructions for rows of coordinates; the first sets the operands."""
+    """The instructions for rows of coordinates; the first instruction sets the operands."""
     most = MOST_BYTES // (2 * rows.shape[1])
     parts = []
     for first in range(0, len(rows), most):
@@ -204,7 +204,7 @@ def in_instructions(name: str, rows: Words, operands: dict[str, OperandValue | N
 
 
 def checked_places(values: object, things: str, thing: str, columns: tuple[str, ...]) -> Words:
-    """The values as rows of 16-bit words; WordsError unless they are at least one row of whole numbers."""
+    """The values as rows of 16-bit words; WordsError unless they are rows of whole numbers, at least one."""
     numbers = whole_numbers(values, things, WordsError)
     if numbers.ndim != 2 or numbers.shape[1] != len(columns) or not len(numbers):
         raise WordsError(
@@ -230,9 +230,9 @@ def write_text(
 ) -> Words:
     """WT: write text in cells of 7 x 9 dots, the top-left corner of the first cell at (left, top).
 
-    `size` repeats each dot, as one number or as (across, down); `transparent` leaves the pixels between the
-    dots unchanged. The window, the words and the size stay set. Characters that are not ASCII become question
-    marks.
+    Each dot is repeated `size` times, or (across, down) times. With `transparent=True` the pixels between the
+    dots stay unchanged. The window, the words and the size stay set. Characters that are not ASCII become
+    question marks.
     """
     if not isinstance(text, str | bytes | bytearray):
         raise InstructionError(
@@ -240,7 +240,7 @@ def write_text(
         )
     data = text.encode("ascii", "replace") if isinstance(text, str) else bytes(text)
     across, down = checked_size(size)
-    left, top = (checked_coordinate(each, "the corner of text") for each in (left, top))
+    left, top = (checked_coordinate(place, "the corner of text") for place in (left, top))
     window = (left, top, left + 7 * across * max(1, len(data)) - 1, top + 9 * down - 1)
     operands: dict[str, OperandValue | None] = {
         "foreground": word,
@@ -261,8 +261,8 @@ def write_cursor(
     """WCSS: place a cursor on the screen, and show or hide it."""
     number = checked_cursor(number)
     element, line = (
-        checked_number(each, f"a cursor's {name}", 0, most, "keep to the screen", InstructionError)
-        for each, name, most in ((element, "element", 0x7FF), (line, "line", 0x3FF))
+        checked_number(place, f"a cursor's {name}", 0, most, "keep to the screen", InstructionError)
+        for place, name, most in ((element, "element", 0x7FF), (line, "line", 0x3FF))
     )
     state = (0x0400 if visible else 0) | (0x0800 if blinking else 0)
     return np.array((FORMAT_OF_NAME["WCSS"].opcode << 8 | number, element, line | state), np.uint16)
@@ -310,7 +310,7 @@ def park_table(address: int = 0) -> Words:
 
 
 def read_entries(address: int = 0, words: int = 2048) -> Words:
-    """RAM: ask for words of the lookup table from a word address on; then receive that many words."""
+    """RAM: ask for `words` words of the lookup table from a word address on; then receive them."""
     words = checked_number(
         words, "the words to read", 0, MOST_BYTES // 2, "read the rest with another", InstructionError
     )

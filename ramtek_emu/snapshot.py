@@ -1,19 +1,18 @@
-"""Snapshots: a whole display in a 16-bit PNG file, its words as pixels, everything else in text chunks.
+"""Snapshots: a display in a 16-bit PNG file, with its words as pixels and all other state in text chunks.
 
-What is saved: the configuration, the words, the lookup table and its address counter, the parameters and
-those that PUSHE saved, loaded characters, cursors and switches, the status, the time and the image on the
-monitor. What is **not**: the words of an incomplete instruction, and replies that were not read; both belong
-to a host, which is not in the file.
+What is saved: the configuration, the words, the lookup table and its address counter, the current parameters
+and the saved ones, loaded characters, cursors and switches, the status, the time and the image on the
+monitor. What is **not**: the words of an incomplete instruction, and unread replies; both belong to a host,
+and the file has none.
 
 The pixels are the words themselves, so that any program for 16-bit gray pictures can read them. The picture
-looks dark, since only ten of sixteen bits are used. The texts are JSON. The same state of a display that was
-just switched on is the pattern for a value that is read: the value must have its type, its length and its
-fields, or the error names the place.
+looks dark, since only ten of sixteen bits are used. The texts are JSON. A value that is read must have the
+type, the length and the fields of the same value in a new display, or the error names the place.
 
 Snapshots may come from anywhere, so every size is checked before memory of that size is used: the file, the
-picture, each text and the unpacked pixels. Pillow is not used here: it raises a dozen kinds of errors for
-such files. The small part of the PNG format that is needed is written here, and the rest is refused: other
-depths, interlacing, filters, unknown critical chunks.
+picture, the texts and the unpacked pixels. Pillow is not used here: it raises a dozen kinds of errors for
+such files. This module reads and writes the small part of the PNG format that snapshots need, and refuses
+the rest: other depths, interlacing, filters, unknown critical chunks.
 """
 
 from __future__ import annotations
@@ -39,7 +38,7 @@ from ramtek_emu.display import Ramtek9300
 from ramtek_emu.errors import ConfigurationError, MissingInputError, SnapshotError, reason_of
 from ramtek_emu.memory.scan_orders import Point, Window
 from ramtek_emu.processor.environment_executors import MOST_SAVED
-from ramtek_emu.processor.processor import Status
+from ramtek_emu.processor.processor import Processor, Status
 from ramtek_emu.timing import Timing
 from ramtek_emu.video.beam import Beam
 from ramtek_emu.writing import write_atomically
@@ -65,9 +64,7 @@ def read_snapshot(path: str | PathLike[str]) -> Ramtek9300:
     """The display of a snapshot file; MissingInputError if it cannot be read, SnapshotError if not valid."""
     try:
         if not Path(path).is_file():
-            raise MissingInputError(
-                f"a snapshot must be a file, and {os.fspath(path)} is none; check the name"
-            )
+            raise MissingInputError(f"a snapshot must be a file, not {os.fspath(path)}; check the name")
         with open(path, "rb") as file:
             data = file.read(MOST_FILE + 1)
     except MissingInputError:
@@ -117,34 +114,21 @@ def display_of(data: bytes) -> Ramtek9300:
     """The display of a snapshot; SnapshotError if the bytes are no valid snapshot."""
     words, texts = picture_of(data)
     if texts.get("Software") != SOFTWARE:
-        raise SnapshotError(
-            f"a snapshot must be of the format {SOFTWARE!r}, not {texts.get('Software', 'unknown')[:40]!r}; "
-            "take a new one with --snapshot"
-        )
+        raise refusal(f"be of the format {SOFTWARE!r}", repr(texts.get("Software", "unknown")[:40]))
     configuration = configuration_of(_state(texts, "configuration"))
     if words.shape != (configuration.lines, configuration.elements):
-        raise SnapshotError(
-            f"a snapshot must have {configuration.elements} x {configuration.lines} words, as its "
-            f"configuration says, not {words.shape[1]} x {words.shape[0]}; take a new one with --snapshot"
+        raise refusal(
+            f"have {configuration.elements} x {configuration.lines} words, as its configuration says",
+            f"{words.shape[1]} x {words.shape[0]}",
         )
     if int(words.max()) > configuration.largest_word:
-        raise refusal("a word", f"0 to {configuration.largest_word}", int(words.max()))
+        raise value_refusal("a word", f"0 to {configuration.largest_word}", int(words.max()))
     display = Ramtek9300(configuration)
     display.frame_buffer.write(words)
     _restore_table(display, _state(texts, "lookup table", "address", "entries"))
-    _restore_processor(
-        display,
-        _state(texts, "parameters", "now", "saved"),
-        _state(
-            texts,
-            "processor",
-            "loaded_characters",
-            "illegal",
-            "illegal_words",
-            "named_only",
-            "nanoseconds",
-        ),
-    )
+    _restore_parameters(display.processor, _state(texts, "parameters", "now", "saved"))
+    names = ("loaded_characters", "illegal", "illegal_words", "named_only", "nanoseconds")
+    _restore_processor(display.processor, _state(texts, "processor", *names))
     _restore_cursors(display, _state(texts, "cursors", "all", "track", "enter_is_pressed", "driven"))
     if display.beam is not None:
         _restore_monitor_image(display, display.beam, _state(texts, "glass", "lines", "pixels"))
@@ -159,14 +143,14 @@ def configuration_of(state: dict[str, Any]) -> Configuration:
         visible_lines=None if state.get("visible_lines") is None else 1,
         timing=None if state.get("timing") is None else Timing(),
     )
-    names = [each.name for each in fields(pattern)]
+    names = [field.name for field in fields(pattern)]
     if set(state) != set(names):
-        raise refusal("the configuration", f"an object of {', '.join(names)}", state)
+        raise value_refusal("the configuration", f"an object of {', '.join(names)}", state)
     values = {
         name: from_plain(getattr(pattern, name), state[name], f"configuration.{name}") for name in names
     }
     if values["timing"] is not None and values["timing"].line < 1:
-        raise refusal("configuration.timing.line", "1 or more", values["timing"].line)
+        raise value_refusal("configuration.timing.line", "1 or more", values["timing"].line)
     try:
         return Configuration(**values)
     except ConfigurationError as cause:
@@ -180,17 +164,17 @@ def _restore_table(display: Ramtek9300, state: dict[str, Any]) -> None:
     table.address = whole_number(state["address"], (0, table.word_count - 1), "address")
 
 
-def _restore_processor(display: Ramtek9300, parameters: dict[str, Any], state: dict[str, Any]) -> None:
-    processor = display.processor
+def _restore_parameters(processor: Processor, state: dict[str, Any]) -> None:
     pattern = processor.parameters
-    processor.parameters = from_plain(pattern, parameters["now"], "parameters")
-    processor.saved[:] = listed(pattern, parameters["saved"], "saved", MOST_SAVED)
-    for name, attribute in (
-        ("loaded_characters", "loaded_characters"),
-        ("illegal_words", "illegal_words"),
-        ("named_only", "unimplemented"),
-    ):
-        setattr(processor, attribute, from_plain(getattr(processor, attribute), state[name], name))
+    processor.parameters = from_plain(pattern, state["now"], "parameters")
+    processor.saved[:] = listed(pattern, state["saved"], "saved", MOST_SAVED)
+
+
+def _restore_processor(processor: Processor, state: dict[str, Any]) -> None:
+    characters = processor.loaded_characters
+    processor.loaded_characters = from_plain(characters, state["loaded_characters"], "loaded_characters")
+    processor.illegal_words = from_plain(0, state["illegal_words"], "illegal_words")
+    processor.unimplemented = from_plain(0, state["named_only"], "named_only")
     if from_plain(False, state["illegal"], "illegal"):
         processor.flag_illegal()
     nanoseconds = from_plain(0, state["nanoseconds"], "nanoseconds")
@@ -201,8 +185,8 @@ def _restore_processor(display: Ramtek9300, parameters: dict[str, Any], state: d
 def _restore_cursors(display: Ramtek9300, state: dict[str, Any]) -> None:
     cursors = display.processor.cursors
     for cursor, saved in zip(cursors.all, from_plain(cursors.all, state["all"], "cursors"), strict=True):
-        for each in fields(cursor):
-            setattr(cursor, each.name, getattr(saved, each.name))
+        for attribute in fields(cursor):
+            setattr(cursor, attribute.name, getattr(saved, attribute.name))
     cursors.track = from_plain(False, state["track"], "track")
     cursors.enter_is_pressed = from_plain(False, state["enter_is_pressed"], "enter_is_pressed")
     cursors.driven = {device: mask for device, mask in listed((0, 0), state["driven"], "driven", 256)}
@@ -219,15 +203,15 @@ def _restore_monitor_image(display: Ramtek9300, beam: Beam, state: dict[str, Any
 
 
 def _state(texts: dict[str, str], keyword: str, *names: str) -> dict[str, Any]:
-    """A text chunk as an object; SnapshotError if it is none, or if its fields are not the given names."""
+    """The JSON object of a text chunk; SnapshotError if there is none, or if its fields are not `names`."""
     try:
         state = json.loads(texts.get(keyword, "null"))
     except (ValueError, RecursionError):
         state = None
     if not isinstance(state, dict) or (names and set(state) != set(names)):
-        raise SnapshotError(
-            f"a snapshot must have a text {keyword!r} that says {', '.join(names) or 'what it is'}, not "
-            f"{texts.get(keyword, 'none')[:40]!r}; take a new one with --snapshot"
+        raise refusal(
+            f"have a text {keyword!r} that says {', '.join(names) or 'what it is'}",
+            repr(texts.get(keyword, "none")[:40]),
         )
     return state
 
@@ -260,7 +244,7 @@ def to_plain(value: Any) -> Any:
         data = np.packbits(value) if value.dtype == np.bool_ else value.astype("<u2")
         return base64.b64encode(data.tobytes()).decode("ascii")
     if is_dataclass(value) and not isinstance(value, type):
-        return {each.name: to_plain(getattr(value, each.name)) for each in fields(value)}
+        return {field.name: to_plain(getattr(value, field.name)) for field in fields(value)}
     if isinstance(value, dict):
         return {str(key): to_plain(item) for key, item in value.items()}
     if isinstance(value, tuple | list):
@@ -269,73 +253,78 @@ def to_plain(value: Any) -> Any:
 
 
 def from_plain(pattern: Any, value: Any, place: str) -> Any:
-    """The value converted to the type of the pattern; SnapshotError names the place that does not fit."""
+    """The value converted to the type of the pattern; SnapshotError names the place of a wrong value."""
     if isinstance(pattern, Enum):
         return _named(pattern, value, place)
     if isinstance(pattern, np.ndarray):
         return _array(pattern, value, place)
     if isinstance(pattern, bool | str | None):
         if type(value) is not type(pattern) or (isinstance(value, str) and not _is_a_name(value)):
-            raise refusal(place, "a name" if isinstance(pattern, str) else "true or false", value)
+            raise value_refusal(place, "a name" if isinstance(pattern, str) else "true or false", value)
         return value
     if isinstance(pattern, int):
         return whole_number(value, LIMITS.get(place.rpartition(".")[2].partition("[")[0], WORD), place)
     if isinstance(pattern, Point | Window):
         if not isinstance(value, list) or len(value) != len(pattern):
-            raise refusal(place, f"{len(pattern)} numbers", value)
+            raise value_refusal(place, f"{len(pattern)} numbers", value)
         return type(pattern)(*(whole_number(number, COORDINATE, place) for number in value))
     if is_dataclass(pattern) and not isinstance(pattern, type):
-        names = [each.name for each in fields(pattern)]
+        names = [field.name for field in fields(pattern)]
         if not isinstance(value, dict) or set(value) != set(names):
-            raise refusal(place, f"an object of {', '.join(names)}", value)
+            raise value_refusal(place, f"an object of {', '.join(names)}", value)
         return replace(
             pattern,
             **{name: from_plain(getattr(pattern, name), value[name], f"{place}.{name}") for name in names},
         )
     if isinstance(pattern, tuple):
         if not isinstance(value, list) or len(value) != len(pattern):
-            raise refusal(place, f"{len(pattern)} items", value)
+            raise value_refusal(place, f"{len(pattern)} items", value)
         pairs = enumerate(zip(pattern, value, strict=True))
         return tuple(from_plain(kind, item, f"{place}[{number}]") for number, (kind, item) in pairs)
     raise TypeError(f"a state must be made of plain values, not {type(pattern).__name__} ({place})")
 
 
 def packed(data: bytes) -> str:
-    """Bytes as compressed text."""
+    """The bytes compressed, as base64 text."""
     return base64.b64encode(zlib.compress(data, 6)).decode("ascii")
 
 
 def unpacked(text: Any, size: int, place: str) -> bytes:
-    """The `size` bytes of a compressed text; SnapshotError otherwise. At most one byte more is unpacked."""
+    """The bytes of a compressed text; SnapshotError unless they are `size`. Unpacks at most one byte more."""
     unpacker = zlib.decompressobj()
     try:
         data = unpacker.decompress(base64.b64decode(text, validate=True), size + 1)
     except (binascii.Error, zlib.error, ValueError, TypeError):
         data = b""
     if len(data) != size or not unpacker.eof:
-        raise refusal(place, f"{size} packed bytes", text)
+        raise value_refusal(place, f"{size} packed bytes", text)
     return data
 
 
 def listed(pattern: Any, value: Any, place: str, most: int) -> list[Any]:
-    """A list of at most `most` items, each converted to the type of the pattern."""
+    """The items of a list, at most `most`, converted to the type of the pattern."""
     if not isinstance(value, list) or len(value) > most:
-        raise refusal(place, f"a list of at most {most}", value)
+        raise value_refusal(place, f"a list of at most {most}", value)
     return [from_plain(pattern, item, f"{place}[{number}]") for number, item in enumerate(value)]
 
 
 def whole_number(value: Any, limits: tuple[int, int], place: str) -> int:
-    """The value, if it is a whole number within the limits; SnapshotError if not."""
+    """The value; SnapshotError unless it is a whole number within the limits."""
     if isinstance(value, bool) or not isinstance(value, int) or not limits[0] <= value <= limits[1]:
-        raise refusal(place, f"a whole number from {limits[0]} to {limits[1]}", value)
+        raise value_refusal(place, f"a whole number from {limits[0]} to {limits[1]}", value)
     return value
 
 
-def refusal(place: str, rule: str, value: Any) -> SnapshotError:
-    """The error for a value that does not fit."""
+def value_refusal(place: str, rule: str, value: Any) -> SnapshotError:
+    """The error for a wrong value at a place of the state."""
     text = repr(value)
     text = text if len(text) <= 60 else f"{text[:60]}..."
-    return SnapshotError(f"{place} of a snapshot must be {rule}, not {text}; take a new one with --snapshot")
+    return refusal(f"be {rule}", text, f"{place} of a snapshot")
+
+
+def refusal(rule: str, value: str, thing: str = "a snapshot") -> SnapshotError:
+    """The error for a file that is no valid snapshot."""
+    return SnapshotError(f"{thing} must {rule}, not {value}; take a new one with --snapshot")
 
 
 def _is_a_name(text: str) -> bool:
@@ -345,7 +334,7 @@ def _is_a_name(text: str) -> bool:
 def _named(pattern: Enum, value: Any, place: str) -> Enum:
     kinds = type(pattern).__members__
     if not isinstance(value, str) or value not in kinds:
-        raise refusal(place, f"one of {', '.join(kinds)}", value)
+        raise value_refusal(place, f"one of {', '.join(kinds)}", value)
     return kinds[value]
 
 
@@ -357,7 +346,7 @@ def _array(pattern: AnyArray, value: Any, place: str) -> AnyArray:
     except (binascii.Error, ValueError):
         data = b""
     if len(data) != size:
-        raise refusal(place, f"{size} bytes in base64", value)
+        raise value_refusal(place, f"{size} bytes in base64", value)
     if dots:
         return (
             np.unpackbits(np.frombuffer(data, np.uint8), count=pattern.size)
@@ -381,7 +370,7 @@ MOST_CHUNKS: Final = 1 << 16
 def picture_bytes(words: Words, texts: Mapping[str, str]) -> bytes:
     """A PNG file of (lines, elements) words, 16 bits gray, and of ASCII texts by keyword."""
     lines, elements = words.shape
-    # Each line begins with the number of its filter; 0 is none.
+    # A line begins with the number of its filter; 0 means no filter.
     rows = np.zeros((lines, 1 + 2 * elements), np.uint8)
     rows[:, 1:] = words.astype(">u2").view(np.uint8).reshape(lines, -1)
     parts = [SIGNATURE, _chunk(b"IHDR", struct.pack(">IIBBBBB", elements, lines, 16, 0, 0, 0, 0))]
@@ -394,9 +383,9 @@ def picture_bytes(words: Words, texts: Mapping[str, str]) -> bytes:
 
 
 def picture_of(data: bytes) -> tuple[Words, dict[str, str]]:
-    """The words and the texts of such a file; SnapshotError if it is not valid."""
+    """The words and the texts of a PNG file of `picture_bytes`; SnapshotError if it is not valid."""
     if data[:8] != SIGNATURE:
-        raise _refusal("begin as a PNG file does", "as something else")
+        raise refusal("begin as a PNG file does", "as something else")
     size: tuple[int, int] | None = None
     texts: dict[str, str] = {}
     packed: list[bytes] = []
@@ -410,16 +399,16 @@ def picture_of(data: bytes) -> tuple[Words, dict[str, str]]:
         elif kind == b"tEXt":
             keyword, text = _text(content)
             if keyword in texts:
-                raise _refusal("have each text once", f"{keyword!r} twice")
+                raise refusal("have each text once", f"{keyword!r} twice")
             texts[keyword] = text
             if sum(map(len, texts.values())) > MOST_TEXT:
-                raise _refusal(f"have texts of at most {MOST_TEXT} bytes", "longer ones")
+                raise refusal(f"have texts of at most {MOST_TEXT} bytes", "longer texts")
         elif kind == b"IEND":
             break
         elif not kind[0] & 0x20:
-            raise _refusal("have chunks that are known", f"one called {kind.decode('latin-1')!r}")
+            raise refusal("have known chunks", f"a chunk {kind.decode('latin-1')!r}")
     if kind != b"IEND" or size is None:
-        raise _refusal(f"end within {MOST_CHUNKS} chunks", "go on")
+        raise refusal(f"end within {MOST_CHUNKS} chunks", "go on")
     return _words(packed, *size), texts
 
 
@@ -429,34 +418,34 @@ def _chunk(kind: bytes, content: bytes) -> bytes:
 
 
 def _next_chunk(data: bytes, place: int) -> tuple[bytes, bytes, int]:
-    """The kind and the content of a chunk, and where the next one begins."""
+    """The kind and the content of a chunk, and the place of the next chunk."""
     if len(data) < place + 12:
-        raise _refusal("have whole chunks", f"end in one, at byte {len(data)}")
+        raise refusal("have whole chunks", f"end in a chunk, at byte {len(data)}")
     length, kind = struct.unpack_from(">I4s", data, place)
     end = place + 12 + length
     if end > len(data):
-        raise _refusal("have whole chunks", f"one of {length} bytes at byte {place} of {len(data)}")
+        raise refusal("have whole chunks", f"a chunk of {length} bytes at byte {place} of {len(data)}")
     content = data[place + 8 : end - 4]
     if zlib.crc32(content, zlib.crc32(kind)) != struct.unpack_from(">I", data, end - 4)[0]:
-        raise _refusal("have chunks with a right checksum", f"a wrong one at byte {place}")
+        raise refusal("have chunks with a right checksum", f"a wrong checksum at byte {place}")
     return kind, content, end
 
 
 def _size(kind: bytes, content: bytes) -> tuple[int, int]:
     if kind != b"IHDR" or len(content) != 13:
-        raise _refusal("begin with its size", "with another chunk")
+        raise refusal("begin with its size", "with another chunk")
     elements, lines, *kind_of_pixels = struct.unpack(">IIBBBBB", content)
     if kind_of_pixels != [16, 0, 0, 0, 0]:
-        raise _refusal("be 16 bits gray, not interlaced", "another kind of picture")
+        raise refusal("be 16 bits gray, not interlaced", "another kind of picture")
     if not (1 <= elements <= MOST_SIDE and 1 <= lines <= MOST_SIDE):
-        raise _refusal(f"be 1 to {MOST_SIDE} elements and lines", f"{elements} x {lines}")
+        raise refusal(f"be 1 to {MOST_SIDE} elements and lines", f"{elements} x {lines}")
     return lines, elements
 
 
 def _text(content: bytes) -> tuple[str, str]:
     keyword, zero, text = content.partition(b"\0")
     if not zero or not 1 <= len(keyword) <= 79 or not content.isascii():
-        raise _refusal("have texts with a keyword, in ASCII", "other ones")
+        raise refusal("have texts with a keyword, in ASCII", "other texts")
     return keyword.decode("ascii"), text.decode("ascii")
 
 
@@ -466,14 +455,10 @@ def _words(packed: list[bytes], lines: int, elements: int) -> Words:
     try:
         unpacked = unpacker.decompress(b"".join(packed), expected + 1)
     except zlib.error as cause:
-        raise _refusal("have pixels that can be unpacked", f"broken ones ({cause})") from None
+        raise refusal("have pixels that can be unpacked", f"broken pixels ({cause})") from None
     if len(unpacked) != expected or not unpacker.eof:
-        raise _refusal(f"have {lines} lines of {elements} words", "more or fewer")
+        raise refusal(f"have {lines} lines of {elements} words", "more or fewer")
     rows = np.frombuffer(unpacked, np.uint8).reshape(lines, -1)
     if rows[:, 0].any():
-        raise _refusal("have unfiltered lines, as they were written", "filtered ones from another program")
+        raise refusal("have unfiltered lines, as they were written", "lines that another program filtered")
     return np.ascontiguousarray(rows[:, 1:]).view(">u2").astype(np.uint16)
-
-
-def _refusal(rule: str, value: str) -> SnapshotError:
-    return SnapshotError(f"a snapshot must {rule}, not {value}; take a new one with --snapshot")

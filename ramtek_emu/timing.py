@@ -1,4 +1,4 @@
-"""Timing: how long instructions and lines take. The clock that uses these rates is in video.beam.
+"""Timing: the times that instructions and lines take. The clock that uses these rates is in video.beam.
 
 Assumed: every rate here. The sources give none for any model, only that programs waited for the vertical
 retrace before they loaded the table (NCAR).
@@ -33,14 +33,14 @@ class Timing:
     pixel: int = 800
     """One word written to the frame buffer."""
     blink_fields: int = 15
-    """The number of fields for which a blinking cursor is shown, and then hidden."""
+    """The number of fields that a blinking cursor is shown, and the number that it is hidden."""
 
     def __post_init__(self) -> None:
-        for each in fields(self):
-            value = getattr(self, each.name)
-            least = 1 if each.name in ("line", "blink_fields") else 0
+        for rate in fields(self):
+            value = getattr(self, rate.name)
+            least = 1 if rate.name in ("line", "blink_fields") else 0
             if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= MOST:
                 raise ConfigurationError(
-                    f"{each.name} must be a whole number from {least} to {MOST}, not {value!r} (timing); "
+                    f"{rate.name} must be a whole number from {least} to {MOST}, not {value!r} (timing); "
                     "give nanoseconds, lines or fields"
                 )

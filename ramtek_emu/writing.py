@@ -24,17 +24,17 @@ NO_PLACE: Final = (
     errno.ENAMETOOLONG,
     errno.EISDIR,
 )
-"""Errors which mean that no file can be created there, rather than that writing failed midway."""
+"""Errors of a place where no file can be created; any other error means that writing failed midway."""
 
 NO_LINKS: Final = (errno.EPERM, errno.ENOSYS, errno.EOPNOTSUPP, errno.ENOTSUP, errno.EMLINK)
 """The errors of file systems without hard links."""
 
 
 class Output:
-    """A file that is written piece by piece under a temporary name, and gets its own name from `keep`."""
+    """A file that is written piece by piece under a temporary name; `keep` gives it its own name."""
 
     def __init__(self, path: str | os.PathLike[str], *, overwrite: bool) -> None:
-        """Create the temporary file; OutputExistsError or OutputError when the output cannot be there."""
+        """Create the temporary file; OutputExistsError or OutputError if the path cannot be written."""
         self.overwrite = overwrite
         refuse_output(path, overwrite)
         # Follow links: the file that a link names is replaced, and the link is kept.
@@ -81,8 +81,8 @@ class Output:
 def write_atomically(path: str | os.PathLike[str], data: bytes, *, overwrite: bool) -> None:
     """Write the bytes to the path, whole or not at all.
 
-    Raises OutputExistsError when the path exists and may not be overwritten, OutputError when no file can be
-    created there, and WriteError when writing failed.
+    Raises OutputExistsError if the path exists and may not be overwritten, OutputError if no file can be
+    created there, and WriteError if writing fails.
     """
     with Output(path, overwrite=overwrite) as output:
         output.write(data)
@@ -90,7 +90,7 @@ def write_atomically(path: str | os.PathLike[str], data: bytes, *, overwrite: bo
 
 
 def refuse_output(path: str | os.PathLike[str], overwrite: bool) -> None:
-    """Refuse a path that cannot be written; called before anything is computed for it."""
+    """Refuse a path that cannot be written; call it before computing anything for the file."""
     target = Path(path)
     try:
         if target.is_dir():
@@ -110,12 +110,12 @@ def refuse_output(path: str | os.PathLike[str], overwrite: bool) -> None:
         raise _refusal(target, error) from None
     except ValueError:
         raise OutputError(
-            f"a file name must be one that the system can hold, not {str(path)!r}; choose another name"
+            f"a file name must be valid on this system, not {str(path)!r}; choose another name"
         ) from None
 
 
 def _name(beside: Path, target: Path, overwrite: bool) -> None:
-    """Give the finished file its name. A hard link fails if a file of that name was created meanwhile."""
+    """Give the finished file its name. A hard link fails if someone created a file of that name meanwhile."""
     if overwrite:
         with suppress(OSError):
             os.chmod(beside, os.stat(target).st_mode & 0o777)

@@ -29,7 +29,7 @@ settings.load_profile(
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
-# If Python may not write compiled modules beside the sources, every process of a test would compile them again.
+# If Python may not write compiled modules beside the sources, every process of a test would compile them.
 # The processes share a folder of compiled modules instead.
 if sys.dont_write_bytecode and sys.pycache_prefix is None:
     sys.dont_write_bytecode = False

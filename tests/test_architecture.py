@@ -64,6 +64,10 @@ READING_FOR_US = {"meshio", "trimesh"}
 """The packages of the extra `meshes`."""
 
 
+STILL_TWINS = {"Output", "Side", "Source"}
+"""Names that await another one."""
+
+
 class Import(NamedTuple):
     """A module that another one imports, and whether it does so when it is loaded itself."""
 
@@ -129,6 +133,20 @@ def test_the_renderer_knows_the_display_only_where_they_meet_and_only_by_its_doo
             used = {i.target for i in IMPORTS[name] if top(i.target) == "ramtek_emu"}
             assert used <= DOORS_OF_THE_DISPLAY, name
             assert not used or name in KNOWING_THE_DISPLAY or name.startswith(WINGS_KNOWING_THE_DISPLAY), name
+
+
+def test_no_two_classes_share_a_name_and_no_two_modules_of_a_wing() -> None:
+    places: dict[str, set[str]] = {}
+    for name, path in MODULES.items():
+        wing, stem = ".".join(name.split(".")[:2]), name.rpartition(".")[2]
+        if path.stem != "__init__":
+            places.setdefault(f"{wing}: {stem}", set()).add(name)
+        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+            if isinstance(node, ast.ClassDef):
+                places.setdefault(node.name, set()).add(name)
+    both_publish = set.intersection(*map(set, PUBLIC_NAMES.values()))
+    twins = {name for name, modules in places.items() if len(modules) > 1}
+    assert twins - both_publish <= STILL_TWINS
 
 
 def test_pygame_is_in_one_file() -> None:

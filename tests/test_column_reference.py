@@ -4,12 +4,12 @@ import pytest
 
 from autocolor.scene.columns import Row, keys_of
 from autocolor.scene.surfaces import Surface
-from tests.column_reference import LEFT_OUT, ROOT, TABLES, document, lines_of
+from docs.generate.columns import LEFT_OUT, ROOT, TABLES, document, lines_of
 
 
 def test_the_document_is_up_to_date() -> None:
     is_up_to_date = (ROOT / "docs" / "COLUMNS.md").read_text("utf-8") == document()
-    assert is_up_to_date, "run: python -m tests.column_reference > docs/COLUMNS.md"
+    assert is_up_to_date, "run: python -m docs.generate.columns > docs/COLUMNS.md"
 
 
 @pytest.mark.parametrize(("title", "text", "cls"), TABLES)

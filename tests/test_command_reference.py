@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from autocolor import errors
-from tests.command_reference import COMMANDS, LEFT, LINES, MEANINGS, ROOT, document, folder, in_code, ran
+from docs.generate.commands import COMMANDS, LEFT, LINES, MEANINGS, ROOT, document, folder, in_code, ran
 
 LINUX = pytest.mark.skipif(
     not sys.platform.startswith("linux") or not os.path.exists("/dev/full"),
@@ -18,7 +18,7 @@ LINUX = pytest.mark.skipif(
 @LINUX
 def test_the_document_is_up_to_date() -> None:
     is_up_to_date = (ROOT / "docs" / "COMMANDS.md").read_text("utf-8") == document()
-    assert is_up_to_date, "run: python -m tests.command_reference > docs/COMMANDS.md"
+    assert is_up_to_date, "run: python -m docs.generate.commands > docs/COMMANDS.md"
 
 
 def test_every_exit_code_of_an_error_has_a_meaning_and_nearly_all_a_command() -> None:

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.fidelity_ledger import (
+from docs.generate.fidelity import (
     KINDS,
     ROOT,
     THE_PAPER,
@@ -61,7 +61,7 @@ def test_the_modules_and_tests_of_the_paper_are_there() -> None:
 
 def test_the_document_is_up_to_date() -> None:
     is_up_to_date = (ROOT / "docs" / "FIDELITY.md").read_text("utf-8") == document()
-    assert is_up_to_date, "run: python -m tests.fidelity_ledger > docs/FIDELITY.md"
+    assert is_up_to_date, "run: python -m docs.generate.fidelity > docs/FIDELITY.md"
 
 
 def test_every_line_says_something() -> None:

@@ -1,12 +1,12 @@
 from __future__ import annotations
 
 from autocolor.files.store.schema import DEFINITIONS, ROW_TABLES
-from tests.store_reference import ROOT, document, lines_of
+from docs.generate.store import ROOT, document, lines_of
 
 
 def test_the_document_is_up_to_date() -> None:
     is_up_to_date = (ROOT / "docs" / "STORE.md").read_text("utf-8") == document()
-    assert is_up_to_date, "run: python -m tests.store_reference > docs/STORE.md"
+    assert is_up_to_date, "run: python -m docs.generate.store > docs/STORE.md"
 
 
 def test_every_table_and_every_column_is_described() -> None:

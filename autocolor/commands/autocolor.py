@@ -29,10 +29,10 @@ class AutocolorGroup(CommandGroup):
         "info": "print the counts, sizes and ranges of a scene",
         "validate": "list every problem of a scene",
         "convert": "write a mesh or a scene in another format",
-        "show": "show a scene in the interactive system on a display elsewhere",
+        "show": "show a scene in the interactive system on another display",
         "tutorial": "learn the interactive system step by step on the built-in demo",
         "tables": "print or write the tables of a scene, including created ones",
-        "sql": "ask and change the tables of a scene as a relational data base",
+        "sql": "query and change the tables of a scene as a relational data base",
     }
 
 

@@ -1,7 +1,7 @@
-"""What a shell may complete: scene and picture files, and the names and keys of the scene on the line.
+"""Completion in a shell: scene and picture files, and the names and keys of the scene on the line.
 
-A shell asks at each press of the key, so this reads small scenes alone, and never says anything: what cannot
-be read completes to nothing.
+A shell asks at each press of Tab, so only small scenes are read. A scene that cannot be read completes to
+nothing, without a message.
 """
 
 from __future__ import annotations
@@ -19,24 +19,24 @@ if TYPE_CHECKING:
     from autocolor.scene.scene import Scene
 
 LARGEST_SCENE: Final = 16 << 20
-"""Assumed: bytes of the files of a scene that is read for completion; measured: less than a second."""
+"""Limit: bytes of the files of a scene that is read for completion. Measured: less than a second."""
 
 MOST_ENTRIES: Final = 10_000
-"""Assumed: entries of a folder that are looked at."""
+"""Limit: entries of a folder that are read."""
 
 Complete = Callable[[click.Context, click.Parameter, str], list[str]]
 """A function that completes the value of a parameter, as click calls it."""
 
 
 def _silent(complete: Complete) -> Complete:
-    """The function, completing nothing where it fails."""
+    """The function; if it fails, it completes nothing."""
 
     @wraps(complete)
     def completed(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[str]:
         try:
             return complete(context, parameter, incomplete)
         except Exception:
-            # Whatever is wrong with a scene, the command itself will say it; here it would spoil the line.
+            # The command itself will report the error; here a message would spoil the line.
             return []
 
     return completed
@@ -80,7 +80,7 @@ def complete_surfaces(context: click.Context, parameter: click.Parameter, incomp
 @_silent
 def complete_settings(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[str]:
     """The keys of `--set` for the scene on the line, and the values of a whole key."""
-    from autocolor.commands.setting_keys import keys_after
+    from autocolor.commands.settings import keys_after
 
     scene = _scene(context)
 
@@ -101,9 +101,9 @@ def complete_colors(context: click.Context, parameter: click.Parameter, incomple
 def narrowed(incomplete: str, start: str, after: Callable[[str], Sequence[str]]) -> list[str]:
     """The candidates after a start that begin with the incomplete word.
 
-    `after` has the candidates that follow a start; those that end in "/", "." or "=" are starts themselves.
-    Where only one such candidate is left, those after it take its place, because a shell puts a space after
-    the only one.
+    `after` returns the candidates that follow a start. A candidate that ends in "/", "." or "=" is a start
+    itself. If it is the only one, the candidates after it take its place, because a shell puts a space after
+    an only candidate.
 
     >>> narrowed("a", "", lambda start: ["a.", "b="] if start == "" else ["a.x=", "a.y="])
     ['a.x=', 'a.y=']
@@ -149,7 +149,7 @@ def _scene(context: click.Context) -> Scene:
     from autocolor.files.scene_sources import read_scene_with_report
 
     given = context.params
-    # Before the value of an option is there, click has not told the arguments apart.
+    # While the value of an option is incomplete, click has not assigned the arguments.
     path = Path(given.get("scene") or given.get("picture") or context.args[0])
     files = [each for each in path.iterdir() if each.is_file()] if path.is_dir() else [path]
     if sum(each.stat().st_size for each in files) > LARGEST_SCENE:

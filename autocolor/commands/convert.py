@@ -18,7 +18,7 @@ Examples:
   autocolor convert car.stl car --up y --scale 0.001
                                                     a scene, in the folder car
   autocolor convert scenes/coupe coupe.csv          tables, in the folder coupe.csv
-  autocolor convert car.obj tables --to npy         tables that are mapped, not read
+  autocolor convert car.obj tables --to npy         tables that are mapped into memory, not read
   autocolor convert --formats                       list what can be read and written
 """
 
@@ -36,7 +36,7 @@ def _show_formats(context: click.Context, _: click.Parameter, asked: bool) -> No
 @click.option(
     "--to",
     metavar="FORMAT",
-    help="The format of OUT, where its name does not tell: csv, npy, obj, ply, scene and others.",
+    help="Format of OUT, if its ending does not determine it: csv, npy, obj, ply, scene and others.",
 )
 @click.option("--force", is_flag=True, help="Overwrite existing files.")
 @click.option(
@@ -45,14 +45,14 @@ def _show_formats(context: click.Context, _: click.Parameter, asked: bool) -> No
     is_eager=True,
     expose_value=False,
     callback=_show_formats,
-    help="List the formats that are read and written, and leave.",
+    help="List the formats that are read and written.",
 )
 @click.pass_context
 def convert(context: click.Context, source: SceneSource, out: str, to: str | None, force: bool) -> None:
-    """Write SCENE, a mesh or a whole scene, to OUT in the format that its name tells.
+    """Write SCENE, a mesh or a whole scene, to OUT; the ending of OUT determines the format.
 
-    A name without an ending becomes the folder of a scene. What the format does not hold is told, and makes
-    the exit code 1 with --strict.
+    Without an ending, OUT becomes the folder of a scene. Anything that OUT's format cannot hold is listed;
+    with --strict the exit code is then 1.
     """
     if out in ("", "-"):
         raise UsageError(f"OUT must be a file or a folder, not {out!r}; give it a name")

@@ -1,4 +1,7 @@
-"""Mistakes of the command line: an invalid value there is wrong usage, and no bad input."""
+"""Options that several commands share: `--normals`, `--size` and `-v`; and mistakes in options.
+
+An invalid value of an option is wrong usage, not invalid input.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +22,7 @@ if TYPE_CHECKING:
 
 @contextmanager
 def as_usage(place: str = "") -> Iterator[None]:
-    """Raise what is wrong with values from the command line as a UsageError.
+    """Raise an InputError about values from the command line as a UsageError.
 
     Each problem is on a line of its own, after the `place`.
     """
@@ -29,20 +32,17 @@ def as_usage(place: str = "") -> Iterator[None]:
         raise UsageError("\n".join(f"{place}{problem}" for problem in error.problems)) from None
 
 
-# -------------------- normals
-# `--normals`: words that stand for normals, so that lights move by loads of the table alone.
-
 normals_option = click.option(
     "--normals",
     is_flag=True,
-    help="Let words stand for normals: lights change entries alone; they and the eye are taken as far away.",
+    help="Let words stand for normals: lights then change entries only. Lights and eye count as far away.",
 )
 
 
 def with_normals(scene: Scene, normals: bool) -> Scene:
-    """The scene, whose words stand for normals if that is asked for.
+    """The scene; with `normals`, its words stand for normals.
 
-    Raises UsageError where a scalar colors its surfaces.
+    Raises UsageError if a scalar colors its surfaces.
     """
     if not normals:
         return scene
@@ -50,13 +50,8 @@ def with_normals(scene: Scene, normals: bool) -> Scene:
         return scene.replace(words="normals")
 
 
-# -------------------- raster_size
-# `--size ELEMENTSxLINES`: the size of a picture.
-
 LARGEST: Final = 4096
 """The most elements and lines of a display: the largest picture is as large as the largest memory."""
-
-WRITTEN: Final = re.compile(r"([0-9]{1,5})[xX]([0-9]{1,5})")
 
 
 def size_of(text: str) -> tuple[int, int]:
@@ -65,8 +60,8 @@ def size_of(text: str) -> tuple[int, int]:
     >>> size_of("1280x960")
     (1280, 960)
     """
-    found = WRITTEN.fullmatch(text)
-    size = (int(found[1]), int(found[2])) if found else (0, 0)
+    match = re.fullmatch(r"([0-9]{1,5})[xX]([0-9]{1,5})", text)
+    size = (int(match[1]), int(match[2])) if match else (0, 0)
     if not all(1 <= count <= LARGEST for count in size):
         raise click.BadParameter(
             f"a size must be ELEMENTSxLINES, each from 1 to {LARGEST}, not {text[:60]!r}; write it as in"
@@ -84,25 +79,21 @@ size_option = click.option(
     help="Size of the picture, up to 4096x4096.",
 )
 
-
-# -------------------- verbosity
-# `-v`: what the library logs, on stderr.
-
-COUNT: Final = "autocolor.verbosity"
-"""Where the contexts of a command keep how often the option was given."""
+VERBOSITY: Final = "autocolor.verbosity"
+"""The key of the number of `-v` in the contexts of a command."""
 
 
 def _listen(context: click.Context, _: click.Parameter, count: int) -> None:
-    """Print what is logged until the command has ended; nothing changes without the option."""
+    """Print log records until the command has ended; nothing changes without the option."""
     if not count or context.resilient_parsing:
         return
     import logging
 
     logger = logging.getLogger("autocolor")
     # The option may stand before the command and after it.
-    is_first = COUNT not in context.meta
-    context.meta[COUNT] = context.meta.get(COUNT, 0) + count
-    logger.setLevel(logging.INFO if context.meta[COUNT] == 1 else logging.DEBUG)
+    is_first = VERBOSITY not in context.meta
+    context.meta[VERBOSITY] = context.meta.get(VERBOSITY, 0) + count
+    logger.setLevel(logging.INFO if context.meta[VERBOSITY] == 1 else logging.DEBUG)
     if not is_first:
         return
 
@@ -129,6 +120,6 @@ verbose_option = click.option(
     expose_value=False,
     is_eager=True,
     callback=_listen,
-    help="Say what is read, created and computed, and how long it takes; -vv for more.",
+    help="Print each step of reading, creating and computing, and its time; -vv prints more.",
 )
 """`-v` of the group and of each command."""

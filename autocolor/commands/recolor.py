@@ -12,7 +12,7 @@ import click
 from autocolor.commands.completion import complete_colors, complete_pictures, complete_surfaces
 from autocolor.commands.options import as_usage, verbose_option
 from autocolor.commands.outputs import refuse_outputs, tell_written, write_png
-from autocolor.commands.settings import set_option, with_settings
+from autocolor.commands.scenes import set_option
 from autocolor.errors import UsageError
 
 if TYPE_CHECKING:
@@ -83,7 +83,8 @@ def recolor(
 ) -> None:
     """Change the colors of SURFACE in PICTURE, a picture file, without rendering it again.
 
-    --set takes what renders nothing: paints, the mapping, the color scale, limits and bands of a scalar.
+    --set takes fields that need no rendering: paints, the mapping, and the color scale, limits and bands of a
+    scalar.
     """
     changes: dict[str, Any] = {
         "object_color": object_color,
@@ -132,7 +133,8 @@ def check_what_is_recolored(surface: str | None, colors: Mapping[str, Any], sett
 def recolored(
     scene: Scene, surface: str | None, colors: Mapping[str, Any], settings: tuple[str, ...]
 ) -> Scene:
-    """The scene with settings and other colors of a surface; UsageError for what would render it again."""
+    """The scene with settings and other colors of a surface. Raises UsageError if they need a rendering."""
+    from autocolor.commands.settings import with_settings
     from autocolor.scene.columns import Tier
     from autocolor.scene.scene import costs_at_least
 

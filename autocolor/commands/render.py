@@ -13,8 +13,15 @@ import click
 from autocolor.commands.completion import complete_lights
 from autocolor.commands.options import normals_option, size_option, with_normals
 from autocolor.commands.outputs import refuse_outputs, tell_written, write_png
-from autocolor.commands.scenes import SceneSource, ended, read, scene_options
-from autocolor.commands.settings import created_again, reframed, set_option, with_settings
+from autocolor.commands.scenes import (
+    SceneSource,
+    created_again,
+    ended,
+    read,
+    reframed,
+    scene_options,
+    set_option,
+)
 
 EXAMPLES: Final = """\b
 Examples:
@@ -48,7 +55,7 @@ Examples:
     multiple=True,
     metavar="NAME",
     shell_complete=complete_lights,
-    help="Use only this light; repeat it for more than one.",
+    help="Use only this light; repeatable.",
 )
 @set_option
 @normals_option
@@ -56,7 +63,7 @@ Examples:
 @click.option(
     "--hold-exposure",
     is_flag=True,
-    help="Keep the exposure that the scene has without --light and --set, so that less light is darker.",
+    help="Keep the exposure of the scene without --light and --set, so that less light is darker.",
 )
 @click.option("--force", is_flag=True, help="Overwrite existing files.")
 @click.pass_context
@@ -73,6 +80,8 @@ def render(
     force: bool,
 ) -> None:
     """Render SCENE: a folder, a scene.toml, a mesh file or a picture file."""
+    from autocolor.commands.settings import with_settings
+
     elements, lines = size
     report = reframed(read(source), elements / lines)
     original = with_normals(report.scene, normals)

@@ -1,26 +1,28 @@
-"""Reading a scene for a command: the common options, messages about repairs, and the exit code."""
+"""Reading a scene for a command: its options, messages about repairs, created views and lights, exit code."""
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable
 from functools import wraps
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import click
 
-from autocolor.commands.completion import complete_scenes
+from autocolor.commands.completion import complete_scenes, complete_settings
 from autocolor.commands.options import verbose_option
 
 if TYPE_CHECKING:
     from autocolor.files.scene_report import SceneReport
     from autocolor.scene.creation import SurfaceSource
+    from autocolor.scene.scene import Scene
 
 REPAIRED: Final = 1
 """The exit code of a command that succeeds with --strict although something was skipped or repaired."""
 
 
 class SceneSource(NamedTuple):
-    """What a command reads a scene from, and how: what `scene_options` asks for."""
+    """The path of a scene, and how to read it: the values of `scene_options`."""
 
     path: str
     up: str = "z"
@@ -32,7 +34,8 @@ class SceneSource(NamedTuple):
 def scene_options(command: Callable[..., Any], required: bool = True) -> Callable[..., Any]:
     """A decorator that adds the argument and options of commands that read a scene.
 
-    The command gets them as one value, `source`, a SceneSource; None if none is named and none `required`.
+    The command gets them as one value, `source`, a SceneSource. It is None if the line names no scene and
+    none is `required`.
     """
 
     @wraps(command)
@@ -64,19 +67,29 @@ def scene_options(command: Callable[..., Any], required: bool = True) -> Callabl
             type=float,
             default=1.0,
             metavar="FACTOR",
-            help="Factor for the coordinates of a mesh file, as 0.001 for one in millimeters.",
+            help="Factor for the coordinates of a mesh file, such as 0.001 for millimeters.",
         ),
         click.option(
             "--surfaces",
             type=click.Choice(["materials", "parts"]),
             default="materials",
             show_default=True,
-            help="Where surfaces that are not given come from: materials of the mesh, or one for each part.",
+            help="Create missing surfaces from the materials of the mesh, or one for each part.",
         ),
         click.argument("scene", type=click.Path(), required=required, shell_complete=complete_scenes),
     ):
         decorated = decorate(decorated)
     return decorated
+
+
+set_option = click.option(
+    "--set",
+    "settings",
+    multiple=True,
+    metavar="KEY=VALUE",
+    shell_complete=complete_settings,
+    help="Set a field of the scene, as in scene.toml; none unsets it; repeatable.",
+)
 
 
 def read(source: SceneSource) -> SceneReport:
@@ -92,3 +105,37 @@ def read(source: SceneSource) -> SceneReport:
 def ended(report: SceneReport, source: SceneSource) -> int:
     """The exit code of a command that succeeded."""
     return REPAIRED if source.strict and report.repairs else 0
+
+
+def reframed(report: SceneReport, aspect: float) -> SceneReport:
+    """The report; if its view was created, the view frames the object for a picture of an aspect.
+
+    The aspect is the width over the height.
+    """
+    from autocolor.scene.defaults import ASPECT, framed
+
+    scene = report.scene
+    if not report.is_view_created or aspect == ASPECT:
+        return report
+    view = framed(scene.view, scene.object_coordinates, aspect)
+    return dataclasses.replace(report, scene=scene.replace(view=view))
+
+
+def created_again(report: SceneReport, edited: Scene, aspect: float | None = None) -> Scene:
+    """The edited scene of a report, with its view and lights as they would be created for the edits.
+
+    A created view frames the object again, unless an edit placed it, if any other field of the view or the
+    stage of a part was edited. Created lights are created again if the stage of a part was edited. `aspect`
+    is the aspect of the picture, by default the display's.
+    """
+    from autocolor.scene.defaults import ASPECT, default_lights, framed
+
+    original = report.scene
+    is_same_object = [part.stage for part in original.parts] == [part.stage for part in edited.parts]
+    before, view = original.view, edited.view
+    is_placed = (before.eye, before.direction, before.target) != (view.eye, view.direction, view.target)
+    if report.is_view_created and not is_placed and not (is_same_object and before == view):
+        edited = edited.replace(view=framed(view, edited.object_coordinates, aspect or ASPECT))
+    if report.are_lights_created and not is_same_object and edited.lights == original.lights:
+        edited = edited.replace(lights=default_lights(edited.object_coordinates, edited.view))
+    return edited

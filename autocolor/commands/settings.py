@@ -1,22 +1,32 @@
-"""`--set KEY=VALUE`: changing fields of a scene, named as in a scene file."""
+"""`--set KEY=VALUE`: setting fields of a scene by the names that they have in a scene file.
+
+A key is the path of a field, such as `lights.key.intensity`. A value is written as in a scene file, but needs
+no quotes, and a list of names needs no brackets. `keys_after` lists keys and values for completion.
+"""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, Final, NamedTuple
 
-import click
-
-from autocolor.commands.completion import complete_settings
+from autocolor.checks import nearest
 from autocolor.commands.options import as_usage
 from autocolor.errors import InputError, UsageError
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from autocolor.files.scene_report import SceneReport
-    from autocolor.scene.columns import Field
-    from autocolor.scene.scene import Scene
-
+from autocolor.files.scene_toml.toml_text import parsed_toml
+from autocolor.scene.color_scales import COLOR_SCALES
+from autocolor.scene.columns import REFUSED, Column, Field, Kind, Row, fields_of, keys_of, to_plain
+from autocolor.scene.kinds import ColorKind, Instance, OneOf, color_names
+from autocolor.scene.row_kinds import (
+    NamedRows,
+    Nested,
+    OneRowOf,
+    RangesByName,
+    References,
+    Referring,
+    RowList,
+)
+from autocolor.scene.scalar import Scalar, ScaleKind
+from autocolor.scene.scene import Scene
 
 UNSET: Final = "none"
 """The value that unsets a field."""
@@ -24,31 +34,17 @@ UNSET: Final = "none"
 Changes = dict[str, Any]
 
 
-class Inside(dict[str, Any]):
+class FieldsInside(dict[str, Any]):
     """Fields that are set one by one inside a field, unlike a table that is its value."""
 
 
-set_option = click.option(
-    "--set",
-    "settings",
-    multiple=True,
-    metavar="KEY=VALUE",
-    shell_complete=complete_settings,
-    help="Set a field of the scene, as in scene.toml; none unsets it; repeatable.",
-)
-
-
 def with_settings(scene: Scene, settings: tuple[str, ...]) -> Scene:
-    """The scene with each KEY=VALUE set, such as `lights.key.intensity=2` or `ambient=0.2`.
+    """The scene with each KEY=VALUE set, such as `lights.key.intensity=2` or `lights.key.only_parts=hood`.
 
-    A key is the path of a field in a scene file. A value is written as in a scene file, but needs no quotes,
-    and a list of names no brackets: `lights.key.only_surfaces=body,glass`;
     `none` unsets a field that may be absent, such as `view.target`. The settings of one row are applied
-    together, so that their order does not matter, except that the last value of a field counts. Raises
+    together, so that their order does not matter. If a field is set twice, the last value counts. Raises
     UsageError for an unknown key or an invalid value.
     """
-    from autocolor.commands.setting_keys import field_of, place_of
-
     changes: dict[tuple[str, str], Changes] = {}
     for setting in settings:
         key, equals, text = setting.partition("=")
@@ -62,45 +58,12 @@ def with_settings(scene: Scene, settings: tuple[str, ...]) -> Scene:
         _put(changes.setdefault((place.table, place.name), {}), place.path, value, key)
     with as_usage("--set: "):
         for (table, name), fields in changes.items():
-            scene = _changed(scene, table, name, fields)
+            scene = _replaced(scene, table, name, fields)
     return scene
 
 
-def reframed(report: SceneReport, aspect: float) -> SceneReport:
-    """The report, its view framed for pictures of an aspect, width over height, if it was created."""
-    import dataclasses
-
-    from autocolor.scene.defaults import ASPECT, framed
-
-    scene = report.scene
-    if not report.is_view_created or aspect == ASPECT:
-        return report
-    view = framed(scene.view, scene.object_coordinates, aspect)
-    return dataclasses.replace(report, scene=scene.replace(view=view))
-
-
-def created_again(report: SceneReport, edited: Scene, aspect: float | None = None) -> Scene:
-    """The edited scene of a report, with its view and lights as they would be created for what was set.
-
-    A view that was created frames the object again if other fields of it were set than where it is and looks
-    to, or which parts are stage; lights that were created are created again if the latter were set. `aspect`
-    is that of the picture, by default the display's.
-    """
-    from autocolor.scene.defaults import ASPECT, default_lights, framed
-
-    original = report.scene
-    is_same_object = [part.stage for part in original.parts] == [part.stage for part in edited.parts]
-    before, view = original.view, edited.view
-    is_placed = (before.eye, before.direction, before.target) != (view.eye, view.direction, view.target)
-    if report.is_view_created and not is_placed and not (is_same_object and before == view):
-        edited = edited.replace(view=framed(view, edited.object_coordinates, aspect or ASPECT))
-    if report.are_lights_created and not is_same_object and edited.lights == original.lights:
-        edited = edited.replace(lights=default_lights(edited.object_coordinates, edited.view))
-    return edited
-
-
-def _changed(scene: Scene, table: str, name: str, fields: Changes) -> Scene:
-    """The scene with some of its own fields, or fields of one row, changed."""
+def _replaced(scene: Scene, table: str, name: str, fields: Changes) -> Scene:
+    """The scene with other values in some of its own fields, or in fields of one row."""
     if table == "":
         return scene.replace(**fields)
     if table == "lights":
@@ -115,9 +78,7 @@ def _changed(scene: Scene, table: str, name: str, fields: Changes) -> Scene:
 
 
 def _value_at(scene: Scene, field: Field | None, key: str, text: str) -> object:
-    """The value for a field. Raises UsageError for a field that must have one and is to be unset."""
-    from autocolor.scene.row_kinds import References, Referring
-
+    """The value for a field. Raises UsageError if the field must have a value and the text unsets it."""
     kind = None if field is None else field.column.kind
     names = [row.name for row in vars(scene)[kind.table]] if isinstance(kind, Referring) else []
     if text.lower() == UNSET:
@@ -128,7 +89,7 @@ def _value_at(scene: Scene, field: Field | None, key: str, text: str) -> object:
 
 
 def _names_of(text: str, known: Sequence[str]) -> list[str]:
-    """The names in a text: one that is known, or else several between commas, in brackets or without.
+    """The names in a text: the whole text if it is a known name, else names between commas.
 
     >>> _names_of("body", []), _names_of("[body, glass]", []), _names_of("a, b", ["a, b"])
     (['body'], ['body', 'glass'], ['a, b'])
@@ -140,19 +101,17 @@ def _names_of(text: str, known: Sequence[str]) -> list[str]:
 
 
 def _unset(field: Field | None, key: str, text: str) -> object:
-    """What a field holds that is unset by a text; the text itself where that is a value, and for no field.
+    """The value of a field that the text "none" unsets; the text itself if the field may have it as a value.
 
-    Raises UsageError for a field that must have a value.
+    Raises UsageError if the field must have a value.
     """
-    from autocolor.scene.columns import REFUSED
-
-    if field is None or field.column.kind.held(text, (), []) is not REFUSED:
+    if field is None or field.column.kind.validated(text, (), []) is not REFUSED:
         return text
     if field.is_optional:
         return None
     default = None if field.default is None else field.default()
-    # What a scene file leaves out is unset there: no limit of a flap, no flaps.
-    if default is not None and field.column.kind.written(key, default).get(key) in (None, {}):
+    # An unset value is left out of a scene file: no limit of a flap, no flaps.
+    if default is not None and field.column.kind.to_plain(key, default).get(key) in (None, {}):
         return default
     rule = field.column.kind.rule()
     raise UsageError(f"--set {key}: it {rule}, not none; only a field that may be absent can be unset")
@@ -164,8 +123,6 @@ def value_of(text: str) -> Any:
     >>> value_of("2.5"), value_of("[1, 2]"), value_of("true"), value_of("#b01020")
     (2.5, [1, 2], True, '#b01020')
     """
-    from autocolor.files.scene_toml.toml_text import parsed_toml
-
     # In TOML, the # of a color begins a comment, and a line break ends the value.
     if not text or text.startswith("#") or not text.isprintable():
         return text
@@ -182,9 +139,207 @@ def _put(fields: Changes, path: tuple[str, ...], value: Any, key: str) -> None:
     order.
     """
     for name in path[:-1]:
-        fields = fields.setdefault(name, Inside())
-        if not isinstance(fields, Inside):
+        fields = fields.setdefault(name, FieldsInside())
+        if not isinstance(fields, FieldsInside):
             raise UsageError(f"--set {key}: {name} is also set as a whole; leave one out")
-    if isinstance(fields.get(path[-1]), Inside):
+    if isinstance(fields.get(path[-1]), FieldsInside):
         raise UsageError(f"--set {key}: some of its fields are also set; leave one out")
     fields[path[-1]] = value
+
+
+EXAMPLES: Final = {
+    "view": "view.angle=10",
+    "scalar": "scalar.name=z",
+    "lights": "lights.key.intensity=2",
+    "surfaces": "surfaces.body.blend=0.3",
+    "parts": "parts.hood.surface=body",
+}
+
+MOST_PARTS: Final = 4
+"""Limit: names in a field's path within its row."""
+
+
+class SettingPlace(NamedTuple):
+    """The place of a field: its table ("" for the scene itself), the name of its row, its path in the row."""
+
+    table: str
+    name: str
+    path: tuple[str, ...]
+
+
+def place_of(scene: Scene, key: str) -> SettingPlace:
+    """The place of a key. Raises UsageError if its table or row does not exist, or if it names no field."""
+    kinds = _settable()
+    table, _, rest = key.partition(".")
+    kind = kinds.get(table)
+    if kind is None or (rest and not isinstance(kind, (Nested, RowList))):
+        raise UsageError(f"--set {key}: there is no field of this name{nearest(table, kinds)}")
+    if not isinstance(kind, (Nested, RowList)):
+        return SettingPlace("", "", (table,))
+    row: Row | None = None
+    if isinstance(kind, RowList):
+        rows = {each.name: each for each in vars(scene)[table]}
+        name, field = _name_and_rest(rest, rows)
+        if name is None and "." in rest:
+            wrong = rest.partition(".")[0]
+            raise UsageError(f"--set {key}: there is no {table[:-1]} {wrong!r}{nearest(wrong, rows)}")
+        row = None if name is None else rows[name]
+    else:
+        name, field = "", rest
+    if key == table and fields_of(Scene)[table].is_optional:
+        # The whole row, which can be unset.
+        return SettingPlace("", "", (table,))
+    if name is None or not field:
+        raise UsageError(f"--set {key}: it must name one field; write it as in {EXAMPLES[table]}")
+    if field == "name" and isinstance(kind, RowList):
+        raise UsageError(f"--set {key}: a name cannot be set; change it in the scene file")
+    path = _path_in(row, field, key)
+    if len(path) > MOST_PARTS:
+        raise UsageError(f"--set {key}: there is no such field; write it as in {EXAMPLES[table]}")
+    return SettingPlace(table, name, path)
+
+
+def _name_and_rest(text: str, names: Iterable[str]) -> tuple[str | None, str]:
+    """The name that a text begins with, or None, and the text after it and a period.
+
+    A name may contain periods and may be quoted: the longest name that matches is taken.
+    """
+    written = {each: name for name in names for each in (name, f'"{name}"', f"'{name}'")}
+    start = max((each for each in written if f"{text}.".startswith(f"{each}.")), key=len, default=None)
+    return (None, "") if start is None else (written[start], text[len(start) + 1 :])
+
+
+def _path_in(row: Row | None, field: str, key: str) -> tuple[str, ...]:
+    """The path of a field in a row. Raises UsageError if a row by name on it does not exist."""
+    outer, _, rest = field.partition(".")
+    of_row = None if row is None else fields_of(type(row)).get(outer)
+    if row is None or of_row is None or not isinstance(of_row.column.kind, NamedRows) or not rest:
+        return tuple(field.split("."))
+    names = [each.name for each in vars(row)[outer]]
+    name, inner = _name_and_rest(rest, names)
+    if inner == "name":
+        raise UsageError(f"--set {key}: a name cannot be set; change it in the scene file")
+    if name is not None:
+        return (outer, name, *inner.split(".")) if inner else (outer, name)
+    if rest[0] in "\"'" and rest[0] == rest[-1]:
+        return outer, rest[1:-1]
+    wrong, _, inner = rest.partition(".")
+    if inner:
+        advice = nearest(wrong, names) or "; give a new one whole, as a table"
+        noun = of_row.column.kind.row_class.noun
+        raise UsageError(f"--set {key}: there is no {noun} {wrong!r}{advice}")
+    return outer, wrong
+
+
+def field_of(place: SettingPlace) -> Field | None:
+    """The field at a place; None if its row has no such field."""
+    kind = _settable().get(place.table)
+    return _field_at(kind.row_class if isinstance(kind, (Nested, RowList)) else Scene, place.path)
+
+
+def _settable() -> Mapping[str, Kind]:
+    """The kinds of the fields of a scene that can be set, by name."""
+    kinds = {name: field.column.kind for name, field in fields_of(Scene).items() if name != "name"}
+    return {name: kind for name, kind in kinds.items() if not isinstance(kind, Instance)}
+
+
+def _field_at(cls: type[Row], path: Sequence[str]) -> Field | None:
+    """The field at a path of keys in a row of a class, or None."""
+    key = keys_of(cls).get(path[0])
+    if key is None:
+        return None
+    field = fields_of(cls)[key.field]
+    kind = field.column.kind
+    if isinstance(kind, OneRowOf) and path[0] != key.field:
+        inside = next(each for each in kind.classes.values() if path[0] in keys_of(each))
+        return _field_at(inside, path)
+    if isinstance(kind, Nested) and kind.inline:
+        return _field_at(kind.row_class, path)
+    if len(path) == 1:
+        return field
+    if isinstance(kind, NamedRows):
+        # A row by name may be absent.
+        whole = Field(Column(Nested(kind.row_class), field.column.tier, field.column.help), True, None)
+        return whole if len(path) == 2 else _field_at(kind.row_class, path[2:])
+    return _field_at(kind.row_class, path[1:]) if isinstance(kind, Nested) else None
+
+
+def keys_after(scene: Scene, start: str) -> list[str]:
+    """The keys that begin with `start`: keys of tables and rows end in ".", all others in "=".
+
+    `start` is empty or such a key itself. A whole key is followed by its values: the choices of its field, or
+    its present value.
+    """
+    if start.endswith("="):
+        return [f"{start}{value}" for value in _values(scene, start[:-1])]
+    if not start:
+        return [
+            f"{name}." if isinstance(kind, (Nested, RowList)) else f"{name}="
+            for name, kind in _settable().items()
+        ]
+    table, _, rest = start[:-1].partition(".")
+    kind = _settable()[table]
+    if isinstance(kind, RowList):
+        names = [row.name for row in vars(scene)[table]]
+        if not rest:
+            return [f"{start}{name}." for name in names]
+        if rest in names:
+            (row,) = (row for row in vars(scene)[table] if row.name == rest)
+            return _fields_after(start, kind.row_class, row)
+    elif not rest and isinstance(kind, Nested):
+        return _fields_after(start, kind.row_class)
+    place = place_of(scene, start[:-1])
+    field = field_of(place)
+    inner = None if field is None else field.column.kind
+    if isinstance(inner, NamedRows):
+        present = vars(_row_at(scene, place))[place.path[0]]
+        return [f"{start}{row.name}." for row in present]
+    return _fields_after(start, inner.row_class) if isinstance(inner, Nested) else []
+
+
+def _fields_after(start: str, cls: type[Row], row: Row | None = None) -> list[str]:
+    """The keys of a class after a start; the key of rows by name ends in "." if the row has any."""
+    keys = {key: _field_at(cls, (key,)) for key in keys_of(cls)}
+    found = []
+    for key, field in keys.items():
+        if field is None or (key == "name" and cls is not Scalar):
+            continue
+        goes_on = isinstance(field.column.kind, Nested)
+        goes_on |= isinstance(field.column.kind, NamedRows) and row is not None and bool(vars(row)[key])
+        found.append(f"{start}{key}{'.' if goes_on else '='}")
+    return found
+
+
+def _row_at(scene: Scene, place: SettingPlace) -> Any:
+    """The row of a place; the scene itself for its own fields, None for a row that does not exist."""
+    if not place.table:
+        return scene
+    rows = vars(scene)[place.table]
+    return next((each for each in rows if each.name == place.name), None) if place.name else rows
+
+
+def _values(scene: Scene, key: str) -> list[str]:
+    """The values to offer for a field: its choices, or its present value and the names of colors."""
+    place = place_of(scene, key)
+    field = field_of(place)
+    if field is None:
+        return []
+    kind = field.column.kind
+    if isinstance(kind, OneOf):
+        return list(kind.names)
+    if isinstance(kind, OneRowOf):
+        return list(kind.classes)
+    if isinstance(kind, ScaleKind):
+        return list(COLOR_SCALES)
+    if (place.table, place.path) == ("scalar", ("name",)):
+        return list(scene.scalar_names)
+    if isinstance(kind, Referring) and not isinstance(kind, RangesByName):
+        return [*kind.words, *(each.name for each in vars(scene)[kind.table])]
+    row = _row_at(scene, place)
+    value: Any = {} if row is None else to_plain(row)
+    for part in place.path:
+        value = value.get(part) if isinstance(value, dict) else None
+    if isinstance(value, bool):
+        return ["true", "false"]
+    present = [] if value is None or isinstance(value, (dict, list)) else [str(value)]
+    return [*present, *color_names()] if isinstance(kind, ColorKind) else present

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
-from autocolor.commands.displays_elsewhere import refuse_address, session_elsewhere
 from autocolor.commands.options import verbose_option
+from autocolor.commands.show import refuse_address, session_elsewhere
 
 if TYPE_CHECKING:
     from autocolor.screens.viewer import Viewer
@@ -30,7 +30,7 @@ Examples:
 @click.option("--fit", is_flag=True, help="Scale the picture to fill the window; pixels may become uneven.")
 @verbose_option
 def tutorial(address: str | None, full_screen: bool, fit: bool) -> None:
-    """Light and paint a car step by step: a panel says what to do, and sees when it is done.
+    """Light and paint a car step by step: a panel says what to do, and notices when you have done it.
 
     Files are saved in the current folder.
     """

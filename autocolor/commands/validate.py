@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Sequence
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import click
 
@@ -12,10 +12,10 @@ from autocolor.checks import Color
 from autocolor.commands.outputs import refuse_outputs, tell_written, write_png
 from autocolor.commands.scenes import REPAIRED, SceneSource, ended, read, scene_options
 from autocolor.errors import InputError, UsageError
-from autocolor.scene.mesh_faults import EDGE, FAULT, KINDS, Fault, Hole, fault_scalar
-from autocolor.scene.scalar import Scalar
-from autocolor.scene.scene import AUTO, Scene
-from autocolor.scene.surfaces import Reflectance, Surface
+
+if TYPE_CHECKING:
+    from autocolor.scene.mesh_faults import Fault, Hole
+    from autocolor.scene.scene import Scene
 
 EXAMPLES: Final = """\b
 Examples:
@@ -41,10 +41,10 @@ def validate(
     output: str | None,
     force: bool,
 ) -> None:
-    """List every problem of SCENE, every repair, and every fault of its mesh, with its rows from 1 on.
+    """List every problem and every repair of SCENE, and every fault of its mesh. Rows are counted from 1.
 
-    The exit code is 65 if there is a problem. A fault keeps nothing from being rendered: it makes the exit
-    code 1 with --strict, as a repair does.
+    The exit code is 65 if there is a problem. A scene with faults can be rendered; with --strict, a fault or
+    a repair makes the exit code 1.
     """
     if output is not None and not shows:
         raise UsageError("-o is for --show; add that")
@@ -59,8 +59,8 @@ def validate(
 
     faults = mesh_faults(report.scene.mesh)
     if as_json:
-        told = {"problems": [], "repairs": report.repairs, "faults": fault_values(faults)}
-        click.echo(json.dumps(told, indent=2))
+        answer = {"problems": [], "repairs": report.repairs, "faults": fault_values(faults)}
+        click.echo(json.dumps(answer, indent=2))
     else:
         kinds = f"{len(faults)} kind{'s' if len(faults) > 1 else ''} of faults in its mesh"
         found = f"it can be rendered, with {kinds}" if faults else "no problem"
@@ -87,38 +87,36 @@ def show_scene(scene: Scene, output: str | None, force: bool) -> None:
     tell_written(output)
 
 
-# -------------------- fault_report
-# The faults of a mesh in sentences and as values that JSON can hold.
-#
-# Rows count from 1 here, as in a table store, an OBJ file or CSV tables without numbers of their own.
-
 FIRST_ROWS: Final = 5
-"""The rows, and the loops of edges, that a sentence names."""
+"""The most rows, and the most loops of edges, that a message names."""
 
 MOST_ROWS: Final = 10_000
-"""Assumed: the rows of one kind in JSON; a file of more can be read, but hardly be gone through."""
+"""Limit: rows of one kind in JSON; nobody reads more."""
 
 
 def fault_lines(faults: Sequence[Fault]) -> Iterator[str]:
-    """A line for each kind of faults, with its number and first rows, and one for each of the first loops."""
+    """A line for each kind of faults, with its number and first rows, and a line for each of the first loops.
+
+    Rows are counted from 1, as in a table store, an OBJ file or CSV tables without numbers of their own.
+    """
+    from autocolor.scene.mesh_faults import EDGE, KINDS
+
     for fault in faults:
         rows = fault.rows[:FIRST_ROWS] + 1
-        named = ", ".join("-".join(map(str, row)) for row in rows) if fault.of == EDGE else _listed(rows)
-        what = "nodes " if fault.of == EDGE else ""
+        if fault.of == EDGE:
+            names = "nodes " + ", ".join("-".join(map(str, row)) for row in rows)
+        else:
+            names = ", ".join(map(str, rows.tolist()))
         more = ", ..." if len(fault.rows) > FIRST_ROWS else ""
-        yield f"{fault.number:2} {fault.kind} {len(fault.rows):,}: {KINDS[fault.kind]} ({what}{named}{more})"
+        yield f"{fault.number:2} {fault.kind} {len(fault.rows):,}: {KINDS[fault.kind]} ({names}{more})"
         for hole in fault.holes[:FIRST_ROWS]:
-            yield f"     {_hole_told(hole)}"
+            yield f"     {_hole_line(hole)}"
         more_holes = len(fault.holes) - FIRST_ROWS
         if more_holes > 0:
             yield f"     and {more_holes:,} shorter {'one' if more_holes == 1 else 'ones'}"
 
 
-def _listed(rows: Any) -> str:
-    return ", ".join(map(str, rows.tolist()))
-
-
-def _hole_told(hole: Hole) -> str:
+def _hole_line(hole: Hole) -> str:
     kind = "a closed loop" if hole.is_closed else "a branching run"
     place = ", ".join(f"{component:.4g}" for component in hole.center)
     return (
@@ -152,9 +150,6 @@ def _hole_values(hole: Hole) -> dict[str, Any]:
     }
 
 
-# -------------------- fault_picture
-# A scene whose mesh is colored by its faults: one color for each kind, light gray where there is none.
-
 COLORS: Final[tuple[Color, ...]] = (
     (86, 180, 233),
     (120, 120, 220),
@@ -167,25 +162,28 @@ COLORS: Final[tuple[Color, ...]] = (
     (150, 40, 160),
     (220, 20, 40),
 )
-"""The color of each kind of faults, in the order of their numbers; graver ones are redder and darker."""
+"""The color of each kind of faults, in the order of their numbers; graver faults are redder and darker."""
 
 WITHOUT_FAULT: Final[Color] = (200, 200, 200)
 
 SURFACE: Final = "mesh"
-"""The one surface that all parts have in such a picture, so that there are levels for all kinds."""
-
-MATTE: Final = Reflectance(0.8, 0.0)
+"""The surface of all parts in a picture of faults, so that there are levels for all kinds."""
 
 
 def fault_scene(scene: Scene, faults: Sequence[Fault]) -> Scene:
-    """The scene with the faults of its mesh as a scalar that colors it; its lights and view stay."""
+    """The scene, colored by the faults of its mesh: a color for each kind, light gray elsewhere."""
+    from autocolor.scene.mesh_faults import FAULT, KINDS, fault_scalar
+    from autocolor.scene.scalar import Scalar
+    from autocolor.scene.scene import AUTO
+    from autocolor.scene.surfaces import Reflectance, Surface
+
     mesh = scene.mesh
     others = [scalar for scalar in mesh.scalars if scalar.name != FAULT]
     count = len(KINDS)
     return scene.replace(
         mesh=mesh.with_scalars(*others, fault_scalar(mesh, faults)),
         parts=tuple(part.replace(surface=SURFACE, stage=False) for part in scene.parts),
-        surfaces=(Surface(SURFACE, MATTE),),
+        surfaces=(Surface(SURFACE, Reflectance(0.8, 0.0)),),
         exposure=AUTO,
         scalar=Scalar(
             name=FAULT,

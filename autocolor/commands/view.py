@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Final
 import click
 
 from autocolor.commands.options import normals_option, with_normals
-from autocolor.commands.scenes import SceneSource, ended, read, scene_options
-from autocolor.commands.settings import created_again, set_option, with_settings
+from autocolor.commands.scenes import SceneSource, created_again, ended, read, scene_options, set_option
 from autocolor.errors import UsageError
 
 if TYPE_CHECKING:
@@ -39,7 +38,7 @@ Examples:
     is_flag=False,
     flag_value="newest",
     metavar="[SESSION]",
-    help="Go on with the newest session that did not end orderly, or with another; without SCENE.",
+    help="Continue the newest session that did not end orderly, or another; without SCENE.",
 )
 @click.option("--sessions", is_flag=True, help="List the sessions that did not end orderly.")
 @click.option("--forget", metavar="SESSION", help="Remove a session that did not end orderly.")
@@ -58,7 +57,7 @@ def view(
     full_screen: bool,
     fit: bool,
 ) -> None:
-    """Show SCENE in an interactive window; press F1 there for a list of keys."""
+    """Show SCENE in an interactive window; F1 there lists the keys."""
     asked = [source is not None, recover is not None, sessions, forget is not None]
     if sum(asked) != 1:
         raise UsageError(
@@ -77,6 +76,7 @@ def view(
         folder, session = chosen_session(recover)
         show(session.history, full_screen, fit, folder)
     elif source is not None:
+        from autocolor.commands.settings import with_settings
         from autocolor.files.state import note_file
         from autocolor.journal.history import History
         from autocolor.journal.places import Source, place_of
@@ -85,7 +85,7 @@ def view(
         report = read(source)
         edited = created_again(report, with_normals(with_settings(report.scene, settings), normals))
         note_file(source.path)
-        # What is opened after it has the same up axis and scale.
+        # Meshes that are opened later get the same up axis and scale.
         show(
             History(edited, place),
             full_screen,
@@ -111,7 +111,7 @@ def show(
 ) -> None:
     """Show the scene of a session in a window until that is closed.
 
-    The journal of the session is kept in the state folder until then; `left` is its folder there if it was
+    Until then the state folder has the journal of the session; `left` is its folder there if the session was
     left before. `prepare` is called with the viewer at the beginning. Raises UnavailableError if there is no
     screen.
     """

@@ -37,9 +37,9 @@ from autocolor.files.array_file import (
 )
 from autocolor.files.writing import check_suffix, write_atomically
 from autocolor.lighting.picture import Picture
-from autocolor.scene.columns import Problem, RowError, made, plain
+from autocolor.scene.columns import Problem, RowError, from_plain, to_plain
 from autocolor.scene.mesh import Mesh
-from autocolor.scene.scalar import Limits, MeshScalar
+from autocolor.scene.scalar import LimitsKind, MeshScalar
 from autocolor.scene.scene import Scene
 
 PLAIN_FORMATS: Final = ("autocolor picture 2", "autocolor picture 1")
@@ -205,7 +205,7 @@ def _shown_scalar(
     row, values = rows[0], arrays["scalar_0"]
     found: list[Problem] = []
     given = row["limits"] if isinstance(row, Mapping) and row.keys() == {"limits"} else row
-    limits: Any = Limits().held(given, (SHOWN, 0, "limits"), found)
+    limits: Any = LimitsKind().validated(given, (SHOWN, 0, "limits"), found)
     if found:
         raise RowError(found)
     if values.shape != arrays["surface_number"].shape or np.isinf(values).any():
@@ -225,7 +225,7 @@ def plain_scene(scene: Scene) -> dict[str, Any]:
     Keys whose value is None or infinite are omitted.
     """
     mesh = {"part_names": scene.mesh.part_names, "crease_angle": scene.mesh.crease_angle}
-    return {"mesh": mesh, **plain(scene)}
+    return {"mesh": mesh, **to_plain(scene)}
 
 
 def scene_of_plain(
@@ -247,4 +247,4 @@ def scene_of_plain(
         described.get("crease_angle", math.nan),
         scalars,
     )
-    return made(Scene, {**values, "mesh": mesh})
+    return from_plain(Scene, {**values, "mesh": mesh})

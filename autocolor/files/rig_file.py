@@ -23,7 +23,7 @@ from autocolor.files.scene_toml.scene_text import sparse_row
 from autocolor.files.scene_toml.toml_text import LARGEST_TEXT, SceneProblems, parsed_toml, table_text
 from autocolor.files.scene_writing import refuse_names
 from autocolor.files.writing import check_suffix, write_atomically
-from autocolor.scene.columns import RowError, made
+from autocolor.scene.columns import RowError, from_plain
 from autocolor.scene.rigs import Rig
 from autocolor.scene.scene import Scene
 
@@ -73,8 +73,8 @@ def read_rig(path: str | os.PathLike[str]) -> Rig:
     document = parsed_toml(data, path.name, "a rig file")
     problems = SceneProblems(path.name, data, document)
     try:
-        return made(Rig, document)
+        return from_plain(Rig, document)
     except RowError as error:
-        problems.note_all(error.found)
+        problems.note_all(error.row_problems)
         problems.raise_any()
         raise

@@ -39,7 +39,7 @@ from autocolor.files.scene_toml.toml_text import LARGEST_TEXT, parsed_toml
 from autocolor.files.store.store_file import STORE_SUFFIXES, write_store
 from autocolor.files.writing import refuse_output, write_atomically
 from autocolor.logs import logger_of
-from autocolor.scene.columns import Row, plain, row_label
+from autocolor.scene.columns import Row, row_label, to_plain
 from autocolor.scene.geometry.normals import CREASE_ANGLE
 from autocolor.scene.scene import Scene, check_scene
 
@@ -114,7 +114,7 @@ def _target(path: str | os.PathLike[str]) -> Path:
 def refuse_names(rows: Iterable[Row]) -> None:
     """Raise InputError if a name in a row, its own or another, has a character that UTF-8 lacks."""
     for row in rows:
-        if any(0xD800 <= ord(letter) < 0xE000 for text in _texts_in(plain(row)) for letter in text):
+        if any(0xD800 <= ord(letter) < 0xE000 for text in _texts_in(to_plain(row)) for letter in text):
             raise InputError(f"{row_label(row)}: a name in a file must be text in UTF-8; rename it")
 
 

@@ -19,7 +19,7 @@ from autocolor.checks import Color
 from autocolor.errors import AutocolorError, OutputError
 from autocolor.files.reading import read_bytes
 from autocolor.files.writing import write_atomically
-from autocolor.scene.kinds import IN_FULL, ColorKind, in_digits
+from autocolor.scene.kinds import SIX_DIGITS, ColorKind, in_digits
 
 MOST_COLORS: Final = 12
 MOST_FILES: Final = 10
@@ -108,7 +108,7 @@ def note_file(path: str | os.PathLike[str]) -> None:
 
 
 def _is_color(entry: str) -> bool:
-    return IN_FULL.fullmatch(entry) is not None
+    return SIX_DIGITS.fullmatch(entry) is not None
 
 
 def _is_path(entry: str) -> bool:

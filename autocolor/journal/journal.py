@@ -35,7 +35,7 @@ from autocolor.files.scene_toml.scene_meshes import source_of
 from autocolor.files.scene_writing import write_scene
 from autocolor.journal.history import Drop, Edit, History, Keep, Open, Saved, Show, Step
 from autocolor.journal.places import Opened, Source, checksum_of, opened
-from autocolor.scene.columns import difference, fields_of, plain
+from autocolor.scene.columns import difference, fields_of, to_plain
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import Scene
 
@@ -119,7 +119,7 @@ def _line(record: Mapping[str, object]) -> str:
 
 def _scene_record(scene: Scene, source: Source) -> dict[str, object]:
     absolute = source._replace(path=os.path.abspath(source.path))
-    return {**absolute._asdict(), "tables": plain(scene), "checksum": checksum_of(scene)}
+    return {**absolute._asdict(), "tables": to_plain(scene), "checksum": checksum_of(scene)}
 
 
 def _edit_record(edit: Edit, start: Scene, meshes: MeshesBeside) -> dict[str, object]:
@@ -154,7 +154,7 @@ def change_between(before: Scene, after: Scene) -> Change:
         return Change("without_scalar", None, {})
     if tables == ["scalar"] and after.scalar is not None:
         row = after.scalar
-        return Change("with_scalar", None, difference(before.scalar, row) if before.scalar else plain(row))
+        return Change("with_scalar", None, difference(before.scalar, row) if before.scalar else to_plain(row))
     if len(tables) == 1 and tables[0] in ROW_METHODS:
         rows, others = vars(before)[tables[0]], vars(after)[tables[0]]
         change = _change_of_row(ROW_METHODS[tables[0]], rows, others)
@@ -179,7 +179,7 @@ def _change_of_row(method: str, rows: tuple[Any, ...], others: tuple[Any, ...]) 
 def _light_added_or_removed(lights: tuple[Any, ...], others: tuple[Any, ...]) -> Change | None:
     """The change that adds a light after the others, or removes one; None if it is another change."""
     if others[:-1] == lights:
-        columns = plain(others[-1])
+        columns = to_plain(others[-1])
         return Change("with_new_light", str(columns.pop("name")), columns)
     removed = [light for light in lights if light not in others]
     if len(removed) == 1 and tuple(light for light in lights if light is not removed[0]) == others:

@@ -23,7 +23,7 @@ from typing import Final
 from autocolor.journal.history import Drop, Edit, History, Keep, Open, Saved, Show, Step
 from autocolor.journal.journal import MeshesBeside, change_between
 from autocolor.journal.places import Source, checksum_of
-from autocolor.scene.columns import fields_of, plain
+from autocolor.scene.columns import fields_of, to_plain
 from autocolor.scene.scene import AUTO, Scene
 from autocolor.scene.surfaces import Paint
 
@@ -50,7 +50,7 @@ def script_of(history: History, source: Source, meshes: MeshesBeside) -> str:
         "from ramtek_emu import Ramtek9300",
         "",
         f"scene = autocolor.read_scene({_arguments(os.path.abspath(source.path), **_options(source))})",
-        f"scene = scene.replace({_arguments(**plain(history.start))})",
+        f"scene = scene.replace({_arguments(**to_plain(history.start))})",
         "studio = autocolor.Studio(scene, Ramtek9300())",
         *(step_statement(step, history.start, meshes) for step in history.steps),
     ]
@@ -63,7 +63,7 @@ def step_statement(step: Step, start: Scene, meshes: MeshesBeside) -> str:
         case Edit():
             return _edit_statement(step, start, meshes)
         case Open(scene, source):
-            tables = {"tables": plain(scene), "checksum": checksum_of(scene)}
+            tables = {"tables": to_plain(scene), "checksum": checksum_of(scene)}
             return f"studio.open({_arguments(os.path.abspath(source.path), **_options(source), **tables)})"
         case Keep(name) | Show(name) | Drop(name):
             return f"studio.{type(step).__name__.lower()}_variant({literal(name)})"

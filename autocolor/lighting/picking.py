@@ -220,7 +220,7 @@ def rims(sight: Sight, light: str) -> Mapping[Rim, Indices]:
 
 
 def _pixels_of_rims(sight: Sight, inside: Mapping[Rim, Booleans]) -> dict[Rim, Indices]:
-    """The pixels of at most RIMS_AT_ONCE rims; `inside` tells of each point whether it is inside each."""
+    """The pixels of at most RIMS_AT_ONCE rims; `inside` has a flag for each point that is inside a rim."""
     points = sight.points
     # Set one flag for each rim, and spread the flags and the places over the raster.
     flags = np.full(len(points.pixels), VISIBLE)
@@ -231,7 +231,7 @@ def _pixels_of_rims(sight: Sight, inside: Mapping[Rim, Booleans]) -> dict[Rim, I
     places = np.empty(len(raster), np.intp)
     places[points.pixels] = np.arange(len(points.pixels))
 
-    # Find the neighbors that differ, and keep those on one surface.
+    # Find the pairs of neighbors that differ, and keep the pairs on one surface.
     pairs = [_differing(raster, points.elements, step) for step in (1, points.elements)]
     before, after = np.concatenate(pairs, axis=1)
     is_near = _are_on_one_surface(points, places[before], places[after])

@@ -51,8 +51,8 @@ from autocolor.visibility.visible_points import (
 class NormalImage(DisplayImage):
     """A display image whose words stand for normals; a light changes entries alone.
 
-    Nothing but the visible points is taken from the picture, whose intensities may be those of an earlier
-    light.
+    Only the visible points of the picture count; its intensities may be out of date. `normals` are the
+    normals that the words stand for, and `lit` is the light of the scene at them.
     """
 
     normals: WordNormals = field(kw_only=True)
@@ -123,8 +123,8 @@ class NormalImage(DisplayImage):
 class WordNormals(NamedTuple):
     """The words in use, (n,), sorted by surface as `slices` tells, and their normals, (3, n), read-only.
 
-    `samples`, (3, m), sorted by surface as `sample_slices` tells, are normals that are seen, more of them
-    than words. All are unit vectors in camera space.
+    `samples`, (3, m), sorted by surface as `sample_slices` tells, are the normals of bins, which are more
+    than the words. All are unit vectors in camera space.
     """
 
     words: Indices
@@ -137,7 +137,7 @@ class WordNormals(NamedTuple):
 class NormalLight(NamedTuple):
     """The light of a scene at normals: pictures of one line.
 
-    The elements of `at_words` are words; those of `at_samples` are the samples, whose range is mapped.
+    The elements of `at_words` are words. The elements of `at_samples` are samples, whose range is mapped.
     """
 
     at_words: Picture
@@ -207,7 +207,7 @@ def fractions_at_words(scene: Scene, lit: NormalLight) -> Mapping[str, Singles]:
 def words_at_levels(first: int, fractions: Singles, levels: int) -> Words:
     """For each level of a range, the word whose fraction is nearest to that of the level, (levels,) uint16.
 
-    `fractions` are those of the words from `first` on.
+    `fractions` are the fractions of the words from `first` on.
     """
     order = np.argsort(fractions, kind="stable")
     between = (fractions[order[1:]] + fractions[order[:-1]]) / 2
@@ -292,9 +292,9 @@ LEAST_SIDE: Final = 1e-3
 """Assumed: a surface whose normals differ by less than this, in radians, is flat; one bin holds them."""
 
 LEAST_FACING: Final = 1e-6
-"""The least 1 - z; only where a normal points straight away from the eye is it less.
+"""The least 1 - z. It is less only if a normal points straight away from the eye.
 
-Such a normal falls into the bin of those straight to the eye."""
+Such a normal falls into the bin of normals straight to the eye."""
 
 STEPS: Final = 3
 """How often the seeds move; measured: more change the mean error by less than a fiftieth."""
@@ -319,22 +319,22 @@ class Cells(NamedTuple):
 def cells_of(normals: Singles, most: int) -> Cells:
     """At most `most` cells of unit normals in camera space, (3, n) float32; each holds at least one of them.
 
-    The normal of a cell is the normalized mean of its normals; zero only where those cancel.
-    Assumed: a bin weighs the square root of its pixels, between normals that are spread evenly over what is
-    seen of the sphere, and over the picture.
+    The normal of a cell is the normalized mean of its normals; zero only if they cancel. Assumed: the weight
+    of a bin is the square root of its pixels, halfway between cells that are spread evenly over the visible
+    sphere and cells that are spread evenly over the picture.
     """
     places = _bin_places(normals)
     counts = np.bincount(places, minlength=BINS * BINS)
     used = np.flatnonzero(counts)
     bin_at = np.cumsum(counts > 0) - 1
-    # Sum the normals of each bin once: what follows is done with bins, which are far fewer.
+    # Sum the normals of each bin once. All other steps work on bins, which are far fewer.
     sums = _sums(normals, places, BINS * BINS)[:, used]
     middles = read_only(_normalized(sums))
     if len(used) <= most:
         return Cells(middles, read_only(bin_at[places]), middles)
     weights = np.sqrt(counts[used])
     cell_of_bin = _cell_of_bin(middles, _seeds(middles, weights, most), weights)
-    # What none of the bins is nearest to is no cell.
+    # A seed that is nearest to no bin is no cell.
     is_cell = np.bincount(cell_of_bin) > 0
     cell_of_bin = (np.cumsum(is_cell) - 1)[cell_of_bin]
     cells = _normalized(_sums(sums, cell_of_bin, int(np.count_nonzero(is_cell))))
@@ -342,7 +342,7 @@ def cells_of(normals: Singles, most: int) -> Cells:
 
 
 def spread_of(normals: Singles) -> int:
-    """How much of the sphere some unit normals take: the bins that hold any, of BINS x BINS for all of it."""
+    """The part of the sphere that some unit normals take: the number of their bins, of BINS x BINS."""
     on_sphere = (_flat(normals) + np.float32(RADIUS)) * np.float32(BINS / (2 * RADIUS))
     columns, rows = np.minimum(on_sphere.astype(np.intp), BINS - 1)
     return int(np.count_nonzero(np.bincount(columns * BINS + rows)))
@@ -376,13 +376,13 @@ def _flat(normals: Singles) -> Singles:
 def _spread_bits(numbers: Indices) -> Indices:
     """Numbers below 2^8 with a 0 before each of their bits."""
     spread = numbers
-    for shift, kept in ((4, 0x0F0F), (2, 0x3333), (1, 0x5555)):
-        spread = (spread | spread << shift) & kept
+    for shift, mask in ((4, 0x0F0F), (2, 0x3333), (1, 0x5555)):
+        spread = (spread | spread << shift) & mask
     return spread
 
 
 def _seeds(middles: Singles, weights: Floats, count: int) -> Singles:
-    """At most so many of the bins' normals, evenly spaced along the curve by the weight of the bins."""
+    """At most `count` of the bins' normals, evenly spaced along the curve by the weight of the bins."""
     passed = np.cumsum(weights)
     steps = (np.arange(count) + 0.5) * (passed[-1] / count)
     # Several steps may fall into a heavy bin.
@@ -404,7 +404,7 @@ def _nearest(normals: Singles, seeds: Singles) -> Indices:
     """The number of the seed at the smallest angle to each normal."""
     nearest = np.empty(normals.shape[1], np.intp)
     for chunk in chunks(len(nearest), BINS_AT_ONCE):
-        # In rows of seeds, so that the largest of each is searched along its memory.
+        # Rows of seeds let numpy search the largest product along memory.
         nearest[chunk] = (normals[:, chunk].T @ seeds).argmax(axis=1)
     return nearest
 
@@ -415,7 +415,7 @@ def _sums(vectors: RealArray[Real], numbers: Indices, count: int) -> Floats:
 
 
 def _normalized(sums: Floats) -> Singles:
-    """Vectors made as long as 1, (3, n) float32; zero vectors stay."""
+    """Vectors scaled to the length 1, (3, n) float32; zero vectors stay."""
     lengths = np.sqrt((sums * sums).sum(axis=0))
     normalized: Singles = (sums / np.where(lengths > 0, lengths, 1.0)).astype(np.float32)
     return normalized

@@ -1,6 +1,6 @@
 """What a change of a row may say: its keys and their types, for editors and type checkers.
 
-Written by `python -m tests.typed_changes` from the columns; do not edit it by hand.
+Written by `python -m docs.generate.changes` from the columns; do not edit it by hand.
 """
 
 from __future__ import annotations

@@ -1,13 +1,13 @@
 """Color scales: the colors from the lowest to the highest value of a scalar.
 
 viridis, plasma, inferno, magma and cividis are perceptually uniform: equal steps of the value look equally
-large, and stay in order in a print without colors. turbo and rainbow have more colors to tell apart, and
-steps that mislead; coolwarm and RdBu diverge from a light middle, for values around a zero. zebra is black
-and white in turn, for lines of equal value, and shows how smooth a surface is.
+large, and stay in order in a print without colors. turbo and rainbow have more colors that can be told
+apart, and steps that mislead. coolwarm and RdBu diverge from a light middle, for values around a zero.
+zebra is black and white in turn, for lines of equal value, and shows how smooth a surface is.
 
 Measured and rejected: the `cmap` library, which knows several hundred scales. A scene must have the same
 colors everywhere, and one that names a scale of an optional package could be read only where that is
-installed. The scales of scale_tables.py take 2 kB, `cmap` 7.3 MB; any other scale is given as a list of
+installed. The scales here take 2 kB, `cmap` 7.3 MB; any other scale is given as a list of
 colors, up to one for each band.
 """
 
@@ -24,9 +24,6 @@ from autocolor.checks import Color
 from autocolor.immutable import read_only
 from autocolor.scene.kinds import ColorKind
 
-# -------------------- scale_tables
-# The colors of the named color scales, at equal distances from the lowest value to the highest.
-#
 # The perceptually uniform scales are those of matplotlib: viridis, plasma, inferno and magma by N. Smith,
 # S. van der Walt and E. Firing, 2015; cividis by J. Nuñez, C. Anderton and R. Renslow, 2018, "Optimizing
 # colormaps with consideration for color vision deficiency". Turbo is by A. Mikhailov, 2019, coolwarm by K.
@@ -78,14 +75,13 @@ SCALE_TABLES: Final[Mapping[str, str]] = {
     "grays": "000000 ffffff",
     "zebra": "000000 ffffff",
 }
-"""Hexadecimal colors by the name of the scale."""
-
+"""Hexadecimal colors by the name of the scale, at equal distances from the lowest value to the highest."""
 
 REVERSED: Final = "_r"
-"""What ends the name of a scale whose colors run from its last to its first, as in matplotlib."""
+"""The end of the name of a scale in reverse order, as in matplotlib."""
 
 IN_TURN: Final = ("zebra", f"zebra{REVERSED}")
-"""The scales whose colors are repeated from band to band; those between the colors of others are mixed."""
+"""The scales whose colors repeat from band to band. Other scales mix their colors."""
 
 
 def _named_scales() -> dict[str, tuple[str, ...]]:

@@ -1,4 +1,4 @@
-"""Making a scene of a mesh: the tables that are not given are created.
+"""Making a scene of a mesh, whose missing tables are created, and a light at a free place.
 
 Paper: "Introduction": tables with the part, surface and lighting parameters can be supplied as input or
 created automatically by the system as they are needed.
@@ -16,7 +16,7 @@ from autocolor.checks import nearest, shown
 from autocolor.errors import InputError, UsageError
 from autocolor.logs import logger_of
 from autocolor.scene.changes import PartChanges, SceneFields
-from autocolor.scene.columns import Problem, Row, RowError, fields_of, made, unknown
+from autocolor.scene.columns import Problem, Row, RowError, fields_of, from_plain, unknown_key
 from autocolor.scene.defaults import (
     MAPPING_FIELDS,
     color_in_turn,
@@ -36,13 +36,13 @@ from autocolor.scene.surfaces import MOST_SURFACES, Part, Surface
 LOG: Final = logger_of(__name__)
 
 SHARED: Final = "surface"
-"""The name of the surface that is created for all parts that have no other."""
+"""The name of the created surface of all parts without another."""
 
 UNASSIGNED: Final = "\0"
-"""The surface of a part until one is found for it; no name has this character."""
+"""The surface of a part that has none yet; no name has this character."""
 
 SurfaceSource = Literal["materials", "parts"]
-"""Where the surfaces of parts come from that none is given for: from their materials, or each has its own."""
+"""The source of missing surfaces: the materials of the mesh, or one surface for each part."""
 
 MATERIALS: Final = "materials"
 PARTS: Final = "parts"
@@ -59,34 +59,34 @@ def scene_of(
     materials: Sequence[Surface] = (),
     **fields: Unpack[SceneFields],
 ) -> Scene:
-    """A scene of a mesh; tables and fields that are not given are created with defaults.
+    """A scene of a mesh; missing tables and fields are created with defaults.
 
-    `mesh` is a Mesh, a mesh of trimesh, PyVista or meshio, or an array of nodes with one of `polygons`: what
-    `Mesh.of` takes.
+    `mesh` is anything that `Mesh.of` takes: a Mesh, a mesh of trimesh, PyVista or meshio, or an array of
+    nodes with an array of `polygons`.
 
-    A part has the first of these surfaces that there is: the one that `parts` or `surface_of_part` names for
-    it; the given one of its own name; with `surfaces="parts"`, one of its own, which is created like that of
-    its material; that of its material, from `materials` or created; and else one that is created for all
-    parts without another. If that would make more than MOST_SURFACES, the remaining parts share the last one.
+    A part has the first of these surfaces that exists: the surface that `parts` or `surface_of_part` names
+    for it; the given surface of its own name; with `surfaces="parts"`, a new surface like that of its
+    material; the surface of its material, from `materials` or created; a created surface that all other
+    parts share. Beyond MOST_SURFACES, the remaining parts share the last surface.
 
     `parts` has fields of the parts by name, such as `{"floor": {"stage": True}}`; `fields` are the other
-    fields of Scene. Raises InputError, UsageError for another word than "materials" or "parts".
+    fields of Scene. Raises InputError, or UsageError for any word but "materials" and "parts".
 
-    Assumed: the mapping belongs to the lights. Where lights are created, so are ambient, scaling, mapping and
-    contrast, chosen so that the mesh keeps its form; with given lights they have the defaults of Scene.
+    Assumed: the mapping belongs to the lights. If the lights are created, so are ambient, scaling, mapping
+    and contrast, chosen so that the mesh keeps its form; with given lights they have the defaults of Scene.
     """
     mesh = Mesh.of(mesh, polygons)
     if isinstance(surfaces, str) and surfaces not in (MATERIALS, PARTS):
         raise UsageError(f"surfaces must be rows, {MATERIALS!r} or {PARTS!r}, not {shown(surfaces)}")
-    found = [unknown(name, fields_of(Scene)) for name in fields if name not in fields_of(Scene)]
-    given = () if isinstance(surfaces, str) else _held("surfaces", surfaces, found)
-    rows = _part_rows(mesh, parts or {}, surface_of_part or {}, found)
+    problems = [unknown_key(name, fields_of(Scene)) for name in fields if name not in fields_of(Scene)]
+    given = () if isinstance(surfaces, str) else _validated("surfaces", surfaces, problems)
+    rows = _part_rows(mesh, parts or {}, surface_of_part or {}, problems)
     tables: dict[str, Any] = {**(MAPPING_FIELDS if fields.get("lights") is None else {}), **fields}
     # The view is checked here, because the lights that are created depend on it.
     view, lights = tables.pop("view", None), tables.pop("lights", None)
-    view = None if view is None else _held("view", view, found)
-    if found:
-        raise RowError(found)
+    view = None if view is None else _validated("view", view, problems)
+    if problems:
+        raise RowError(problems)
     material_of_part = material_of_part or {}
     used = set(material_of_part.values())
     names = {row.name for row in rows} | used
@@ -122,17 +122,17 @@ def scene_of(
     return Scene(mesh, rows, table, lights, view, **tables)
 
 
-def _held(name: str, value: object, found: list[Problem]) -> Any:
-    return fields_of(Scene)[name].column.kind.held(value, (name,), found)
+def _validated(name: str, value: object, problems: list[Problem]) -> Any:
+    return fields_of(Scene)[name].column.kind.validated(value, (name,), problems)
 
 
 def _part_rows(
     mesh: Mesh,
     parts: Mapping[str, PartChanges],
     surface_of_part: Mapping[str, str],
-    found: list[Problem],
+    problems: list[Problem],
 ) -> tuple[Part, ...]:
-    """The part table as far as it is given; the surface of a part without one is UNASSIGNED."""
+    """The part table; the surface of a part is UNASSIGNED unless it is given."""
     known = set(mesh.part_names)
     missing = [name for name in (*parts, *surface_of_part) if name not in known]
     if missing:
@@ -145,9 +145,9 @@ def _part_rows(
         if name in surface_of_part:
             table["surface"] = surface_of_part[name]
         try:
-            rows.append(made(Part, table))
+            rows.append(from_plain(Part, table))
         except RowError as error:
-            found.extend(problem.under((PARTS, name)) for problem in error.found)
+            problems.extend(problem.under((PARTS, name)) for problem in error.row_problems)
     return tuple(rows)
 
 
@@ -160,8 +160,8 @@ def _with_created(
 ) -> tuple[tuple[Part, ...], tuple[Surface, ...]]:
     """The parts, and the given surfaces with those created for the parts, up to MOST_SURFACES.
 
-    A surface is created for some `names`, those of parts and materials, and for `shared`; other names are
-    left for the checks of Scene to refuse.
+    Surfaces are created for `names`, the names of parts and materials, and for `shared`. The checks of Scene
+    refuse other names.
     """
     table = {surface.name: surface for surface in given}
     if len(table) < len(given):
@@ -182,17 +182,14 @@ def _with_created(
     return rows, tuple(table.values())
 
 
-# -------------------- new_lights
-# A light that is added to a scene without its place being given.
-
 DISTANCE: Final = 4.0
-"""Assumed: from the middle of the object, in radii of the sphere around it, as far as the studio lights."""
+"""Assumed: distance of a new light from the middle of the object, in radii of the sphere around it."""
 
 ELEVATION: Final = 40.0
-"""Assumed: degrees above the level of the middle, so that the light is seen to fall from above."""
+"""Assumed: degrees of a new light above the level of the middle, so that its light falls from above."""
 
 TURNS: Final = (0, 35, -35, 70, -70, 105, -105, 140, -140, 180)
-"""Assumed: degrees around the object, from the side of the eye; the first place without a light is taken."""
+"""Assumed: degrees of a new light around the object, from the side of the eye; the first free place wins."""
 
 NAME: Final = "light"
 

@@ -23,7 +23,7 @@ FILLED: Final = 0.86
 """Assumed: the fraction of the width or height of the picture that a framed object fills."""
 
 ASPECT: Final = 640 / 480
-"""Assumed: that of the paper's display; in a picture of another shape the object is framed by its own."""
+"""Assumed: the width over the height of the paper's display. A picture of another shape has its own."""
 
 POINT: Final = 1e-12
 """Assumed: an object smaller than this fraction of its distance from the origin is treated as a point."""
@@ -44,13 +44,13 @@ OBJECT_COLORS: Final = (
 """Assumed: distinguishable object colors, assigned to the surfaces in turn."""
 
 CREATED_REFLECTANCE: Final = Reflectance(0.7, 0.63, exponent=32.0)
-"""Assumed: what the surfaces of a bare mesh reflect."""
+"""Assumed: the reflectance of the surfaces of a bare mesh."""
 
 PLAIN_PAINT: Final = Paint((176, 202, 232), blend=0.8)
-"""Assumed: a light steel blue, for the one surface of all parts that have no other."""
+"""Assumed: a light steel blue, for the shared surface of all parts without another."""
 
 COLORED_PAINT: Final = Paint(PLAIN_PAINT.object_color, blend=0.88, light_percentage=60.0)
-"""Assumed: what is not the object color of other surfaces of a bare mesh.
+"""Assumed: the blending of all other surfaces of a bare mesh.
 
 A side that is lit evenly may be the brightest of the object, and should still have its color: with the light
 color from 0.8 of the range on, the top of a red box is pink.
@@ -63,7 +63,7 @@ MAPPING_FIELDS: Final = {
     "mapping": ((0.0, 0.04), (0.12, 0.22), (0.3, 0.32), (0.55, 0.57), (0.8, 0.86), (1.0, 0.93)),
     "ambient": 0.13,
 }
-"""Assumed: how intensities are shown where only a mesh is given, and the ambient light.
+"""Assumed: the mapping and the ambient light of a bare mesh.
 
 Measured with the lights and the reflectance below: `python -m benchmarks.form` says of 24 meshes, seen from
 three sides each, how much of them is too dark or too bright, and whether the two sides of an edge differ. The
@@ -79,7 +79,7 @@ def object_coordinates(mesh: Mesh, parts: Sequence[Part]) -> Floats:
 
 
 def object_bounds(mesh: Mesh, parts: Sequence[Part]) -> tuple[Floats, Floats]:
-    """The least and the largest coordinates of the object, (3,) each; the mesh keeps those of all parts."""
+    """The least and the largest coordinates of the object, (3,) each; those of all parts are cached."""
     numbers = _object_parts(mesh, parts)
     return mesh.bounds if numbers is None else bounds_of(mesh.coordinates_of_parts(numbers))
 
@@ -91,7 +91,7 @@ def _object_parts(mesh: Mesh, parts: Sequence[Part]) -> Sequence[int] | None:
 
 
 def default_surface(name: str, number: int) -> Surface:
-    """The surface of a table without keys; its object color depends on its number, counted from 0."""
+    """The surface for a table without keys; its number, counted from 0, determines its object color."""
     return Surface(name).replace(object_color=color_in_turn(number))
 
 
@@ -101,7 +101,7 @@ def color_in_turn(number: int) -> str:
 
 
 def created_surface(name: str, object_color: str | Color | None = None) -> Surface:
-    """A glossy surface for parts that are given none; without an object color it has the plain one."""
+    """A glossy surface for parts without one; without an object color it has PLAIN_PAINT."""
     if object_color is None:
         return Surface(name, CREATED_REFLECTANCE, PLAIN_PAINT)
     return Surface(name, CREATED_REFLECTANCE, COLORED_PAINT.replace(object_color=object_color))
@@ -110,7 +110,7 @@ def created_surface(name: str, object_color: str | Color | None = None) -> Surfa
 def default_view(coordinates: Floats) -> View:
     """A view from the front left and slightly above, at the distance that frames the whole object.
 
-    The object is given by the coordinates of its nodes, (nodes, 3), here and below.
+    `coordinates`, here and below, are those of the nodes of the object, (nodes, 3).
     """
     azimuth, elevation = math.radians(-125.0), math.radians(18.0)
     toward_eye = (

@@ -177,7 +177,7 @@ def changes_in_frame(changes: Mapping[str, Any], frame: Frame | None) -> dict[st
     if frame is not None:
         columns = vector_columns(Light)
         for name in columns.keys() & changes.keys():
-            vector: Any = VectorKind().held(changes[name], (name,), [])
+            vector: Any = VectorKind().validated(changes[name], (name,), [])
             if vector is not REFUSED:
                 turn = frame.direction_from_world if columns[name] else frame.point_from_world
                 turned[name] = turn(vector)

@@ -1,4 +1,7 @@
-"""The kinds of columns that hold one value: numbers, switches, strings, vectors, choices, curves."""
+"""The kinds of columns whose values have no fields: numbers, strings, vectors, curves, colors and others.
+
+`Kind` in `columns` says what each method answers.
+"""
 
 from __future__ import annotations
 
@@ -9,40 +12,21 @@ from collections.abc import Mapping, Set
 from dataclasses import dataclass
 from itertools import pairwise
 from numbers import Integral, Real
-from typing import Any, ClassVar, Final
+from typing import Any, Final
 
 import numpy as np
 
 from autocolor.checks import Color, either, nearest, shown
-from autocolor.scene.columns import REFUSED, Bar, Kind, Path, Problem, Tier, bar_within
+from autocolor.scene.columns import REFUSED, BarRange, Kind, Path, Problem, Tier, bar_within
 
 LARGEST_PLACE: Final = 1e36
-"""Assumed: leaves room for the eye and the lights around the largest object."""
+"""Limit: a coordinate. It leaves room for the eye and the lights around the largest object."""
 
 NO_NUMBERS: Final = (bool, np.bool_, str, bytes, bytearray)
-"""Types that Python converts to numbers, but that are not accepted as numbers."""
+"""Types that Python converts to numbers, but that a column of numbers refuses."""
 
 UNORDERED: Final = (str, bytes, bytearray, Mapping, Set)
-"""Types with elements that are not accepted as components in their order."""
-
-
-class Leaf(Kind):
-    """A kind of values without fields: a value is accepted or refused as a whole."""
-
-    def accepted(self, value: Any) -> Any:
-        """The converted value. Raises TypeError, ValueError or OverflowError if it breaks the rule."""
-        raise NotImplementedError
-
-    def advice(self, value: object) -> str:
-        """A clause for the message about an invalid value: what to do."""
-        return ""
-
-    def held(self, value: object, path: Path, problems: list[Problem]) -> object:
-        try:
-            return self.accepted(value)
-        except (TypeError, ValueError, OverflowError):
-            problems.append(Problem(path, f"{self.rule()}, not {shown(value)}{self.advice(value)}"))
-            return REFUSED
+"""Types with elements that a column of components refuses, as they have no order or are text."""
 
 
 def require(condition: bool) -> None:
@@ -52,11 +36,11 @@ def require(condition: bool) -> None:
 
 
 @dataclass(frozen=True)
-class Number(Leaf):
+class Number(Kind):
     """A finite number within bounds, converted to float.
 
-    With `above`, the lower bound is excluded. `endless` is an infinite value that is also accepted, for no
-    limit, and is not written.
+    With `above`, the lower bound is excluded. `endless` is an infinite value that is accepted, too. It means
+    no limit and is not written.
     """
 
     at_least: float = -math.inf
@@ -86,23 +70,21 @@ class Number(Leaf):
             raise ValueError
         return number
 
-    def bar(self) -> Bar | None:
+    def bar(self) -> BarRange | None:
         is_limited = -math.inf < self.at_least < self.at_most < math.inf and not self.above
         return bar_within(self.at_least, self.at_most) if is_limited else None
 
-    def written(self, name: str, value: float) -> Mapping[str, object]:
+    def to_plain(self, name: str, value: float) -> Mapping[str, object]:
         return {name: None if value == self.endless else value}
 
     def difference(self, name: str, one: float, other: float) -> Mapping[str, object]:
-        # A limit that is taken away must be told: the key that is left out keeps its value.
+        # Write an infinite value, too: a key that is left out would keep its value.
         return {} if repr(one) == repr(other) else {name: other}
 
 
 @dataclass(frozen=True)
-class Whole(Leaf):
+class Whole(Kind):
     """A whole number within bounds."""
-
-    is_whole: ClassVar[bool] = True
 
     at_least: int
     at_most: int
@@ -110,8 +92,8 @@ class Whole(Leaf):
     def accepts(self) -> str:
         return "int"
 
-    def bar(self) -> Bar:
-        return Bar(self.at_least, self.at_most, 1)
+    def bar(self) -> BarRange:
+        return BarRange(self.at_least, self.at_most, 1)
 
     def rule(self) -> str:
         return f"must be a whole number from {self.at_least} to {self.at_most}"
@@ -124,7 +106,7 @@ class Whole(Leaf):
 
 
 @dataclass(frozen=True)
-class Switch(Leaf):
+class Boolean(Kind):
     """A boolean."""
 
     def rule(self) -> str:
@@ -139,7 +121,7 @@ class Switch(Leaf):
 
 
 @dataclass(frozen=True)
-class Text(Leaf):
+class Text(Kind):
     """A string, which must not be empty unless `may_be_empty`."""
 
     may_be_empty: bool = False
@@ -157,7 +139,7 @@ class Text(Leaf):
 
 
 @dataclass(frozen=True)
-class VectorKind(Leaf):
+class VectorKind(Kind):
     """A point or a direction: three finite numbers; with `has_length`, not all zero."""
 
     has_length: bool = False
@@ -179,8 +161,8 @@ class VectorKind(Leaf):
     def advice(self, value: object) -> str:
         return "; write them as in [1, 2, 3]" if isinstance(value, str) else ""
 
-    def held(self, value: object, path: Path, problems: list[Problem]) -> object:
-        vector = super().held(value, path, problems)
+    def validated(self, value: object, path: Path, problems: list[Problem]) -> object:
+        vector = super().validated(value, path, problems)
         if self.has_length and vector == (0.0, 0.0, 0.0):
             problems.append(Problem(path, f"must not be zero, not {shown(value)}; give it a length"))
             return REFUSED
@@ -188,7 +170,7 @@ class VectorKind(Leaf):
 
 
 @dataclass(frozen=True)
-class Choice(Leaf):
+class OneOf(Kind):
     """One of several names."""
 
     names: tuple[str, ...]
@@ -210,7 +192,7 @@ class Choice(Leaf):
 
 
 @dataclass(frozen=True, eq=False)
-class CurveKind(Leaf):
+class CurveKind(Kind):
     """The name of a curve, or points (x, y) of a nondecreasing one from x = 0 to x = 1."""
 
     names: Mapping[str, object]
@@ -240,8 +222,8 @@ class CurveKind(Leaf):
 
 
 @dataclass(frozen=True, eq=False)
-class Instance(Leaf):
-    """An instance of a class, such as the mesh; it is compared by identity and not written."""
+class Instance(Kind):
+    """An instance of a class, such as the mesh. It is compared by identity and not written."""
 
     value_class: type
 
@@ -255,7 +237,7 @@ class Instance(Leaf):
         require(isinstance(value, self.value_class))
         return value
 
-    def written(self, name: str, value: Any) -> Mapping[str, object]:
+    def to_plain(self, name: str, value: Any) -> Mapping[str, object]:
         return {}
 
     def difference(self, name: str, one: Any, other: Any) -> Mapping[str, object]:
@@ -265,24 +247,21 @@ class Instance(Leaf):
         return own
 
 
-# -------------------- angle_kinds
-# The kind of columns that hold a curve over the angles from 0 to 90 degrees.
-
 RIGHT_ANGLE: Final = 90.0
 
 MOST_POINTS: Final = 91
-"""Assumed: a point for each degree is enough of a curve."""
+"""Limit: points of a curve, one for each degree."""
 
 AngleCurve = tuple[tuple[float, float], ...]
 """Points (angle in degrees, value), with rising angles from 0 to 90; between them the curve is linear."""
 
 
 @dataclass(frozen=True)
-class AngleCurveKind(Leaf):
+class AngleCurveKind(Kind):
     """Points (angle, share) of a curve from 0 to 90 degrees, with shares from 0 to 1.
 
-    `least` is the least share at 0 degrees. `start` is what an absent curve begins with when it is switched
-    on.
+    `least` is the least share at 0 degrees. `start` is the first curve when an absent one is
+    switched on.
     """
 
     least: float
@@ -317,24 +296,20 @@ class AngleCurveKind(Leaf):
         return Number(0 if number else self.least, 1)
 
 
-# -------------------- color_kinds
-# The kind of columns that hold a color, and the ways to write one.
-#
-# A color is "#rrggbb", three whole numbers, or anything without transparency that Pillow's `ImageColor`
-# knows: a name of CSS, "#rgb", "rgb(10%, 20%, 30%)", "hsl(0, 100%, 50%)". Pillow is loaded for those alone,
-# so that scenes that are written in "#rrggbb" need no time for it.
-
 LONGEST_COLOR: Final = 100
-"""Letters of a color; Pillow takes no more either."""
+"""Limit: letters of a color; Pillow takes no more either."""
 
-IN_FULL: Final = re.compile("#[0-9a-fA-F]{6}")
-OF_DIGITS: Final = re.compile("#[0-9a-fA-F]*")
-A_NAME: Final = re.compile("[A-Za-z]{2,}")
+SIX_DIGITS: Final = re.compile("#[0-9a-fA-F]{6}")
 
 
 @dataclass(frozen=True)
-class ColorKind(Leaf):
-    """A color: red, green and blue from 0 to 255, written as "#rrggbb"."""
+class ColorKind(Kind):
+    """A color: red, green and blue from 0 to 255, written as "#rrggbb".
+
+    Three whole numbers are accepted, and any text without transparency that Pillow's `ImageColor` knows: a
+    name of CSS, "#rgb", "rgb(10%, 20%, 30%)", "hsl(0, 100%, 50%)". Pillow takes time to load, so "#rrggbb" is
+    read without it.
+    """
 
     def rule(self) -> str:
         return 'must be "#rrggbb", a name such as "red", or three whole numbers from 0 to 255'
@@ -354,7 +329,7 @@ class ColorKind(Leaf):
     def advice(self, value: object) -> str:
         return _advice_on_text(value) if isinstance(value, str) else _advice_on_floats(value)
 
-    def written(self, name: str, value: Any) -> Mapping[str, object]:
+    def to_plain(self, name: str, value: Any) -> Mapping[str, object]:
         return {name: in_digits(value)}
 
 
@@ -368,7 +343,7 @@ def in_digits(color: Color) -> str:
 
 
 def color_names() -> tuple[str, ...]:
-    """The names of colors, in small letters."""
+    """The names of colors, in lower case."""
     from PIL import ImageColor
 
     return tuple(ImageColor.colormap)
@@ -376,7 +351,7 @@ def color_names() -> tuple[str, ...]:
 
 def _color_of_text(text: str) -> Color:
     """The color that a text means. Raises ValueError if it means none, or one with transparency."""
-    if IN_FULL.fullmatch(text):
+    if SIX_DIGITS.fullmatch(text):
         red, green, blue = bytes.fromhex(text[1:])
         return red, green, blue
     return _within_range(_components(text))
@@ -384,7 +359,7 @@ def _color_of_text(text: str) -> Color:
 
 def _components(text: str) -> tuple[int, ...]:
     """The three or four components of a text that Pillow knows, of any size. Raises ValueError."""
-    # Pillow also takes a line break at the end, and digits of other alphabets.
+    # Pillow would also accept a line break at the end, and digits of other alphabets.
     require(len(text) <= LONGEST_COLOR and text.isascii() and text.isprintable())
     from PIL import ImageColor
 
@@ -408,9 +383,9 @@ def _advice_on_text(text: str) -> str:
         return f", which has transparency; write {in_digits((red, green, blue))!r}"
     if components:
         return "; keep its parts from 0 to 255, or from 0% to 100%"
-    if OF_DIGITS.fullmatch(text):
+    if re.fullmatch("#[0-9a-fA-F]*", text):
         return "; write three or six hexadecimal digits after the #"
-    if A_NAME.fullmatch(text):
+    if re.fullmatch("[A-Za-z]{2,}", text):
         return nearest(text.lower(), color_names()) or '; write it as in "#b01020"'
     return '; write it as in "#b01020"'
 

@@ -25,17 +25,17 @@ from autocolor.scene.changes import FlapChanges, FlapsChanges, HalfSpaceChanges,
 from autocolor.scene.columns import (
     REFUSED,
     WORLD_UNITS,
-    Bar,
+    BarRange,
     Column,
     Problem,
     Row,
     RowError,
     Tier,
-    changed,
     fields_of,
+    replaced,
 )
-from autocolor.scene.kinds import Choice, Number, Switch, Text, VectorKind
-from autocolor.scene.row_kinds import NamedRows, Nested, References, WordOrName
+from autocolor.scene.kinds import Boolean, Number, OneOf, Text, VectorKind
+from autocolor.scene.row_kinds import NamedRows, Nested, Reference, References
 
 AXES: Final = ("x", "y", "z")
 """The axes of the world in the order of coordinates."""
@@ -72,13 +72,13 @@ class Flap(Row):
         float,
         Column(Number(endless=math.inf), Tier.LIGHT, "The largest coordinate that is lit.", WORLD_UNITS),
     ] = math.inf
-    on: Annotated[bool, Column(Switch(), Tier.LIGHT, "Whether the flap restricts the light.")] = True
+    on: Annotated[bool, Column(Boolean(), Tier.LIGHT, "Whether the flap restricts the light.")] = True
     edge_width: Annotated[
         float,
         Column(
             Number(at_least=0),
             Tier.LIGHT,
-            "How far inside its ends the light is whole; 0 for sharp edges.",
+            "The distance inside the ends to full light; 0 for sharp edges.",
             WORLD_UNITS,
         ),
     ] = 0.0
@@ -91,7 +91,7 @@ class Flap(Row):
 
     def replace(self, /, **changes: Unpack[FlapChanges]) -> Flap:
         """The flap with some fields changed."""
-        return changed(self, changes)
+        return replaced(self, changes)
 
 
 @dataclass(frozen=True, repr=False)
@@ -106,7 +106,7 @@ class Flaps(Row):
 
     def replace(self, /, **changes: Unpack[FlapsChanges]) -> Flaps:
         """The flaps with some changed; a table of fields changes only these fields of a flap."""
-        return changed(self, changes)
+        return replaced(self, changes)
 
 
 @dataclass(frozen=True, repr=False)
@@ -136,14 +136,14 @@ class HalfSpace(Row):
         Column(
             Number(at_least=0),
             Tier.LIGHT,
-            "How far inside the plane the light is whole; 0 for a sharp edge.",
+            "The distance inside the plane to full light; 0 for a sharp edge.",
             WORLD_UNITS,
         ),
     ] = 0.0
     carried: Annotated[
-        bool, Column(Switch(), Tier.LIGHT, "Whether it moves and turns with the light, as barn doors do.")
+        bool, Column(Boolean(), Tier.LIGHT, "Whether it moves and turns with the light, like a barn door.")
     ] = False
-    on: Annotated[bool, Column(Switch(), Tier.LIGHT, "Whether it restricts the light.")] = True
+    on: Annotated[bool, Column(Boolean(), Tier.LIGHT, "Whether the half-space restricts the light.")] = True
 
     @classmethod
     def through(
@@ -178,13 +178,13 @@ class HalfSpace(Row):
 
     def replace(self, /, **changes: Unpack[HalfSpaceChanges]) -> HalfSpace:
         """The half-space with some fields changed."""
-        return changed(self, changes)
+        return replaced(self, changes)
 
 
 def _checked_points(name: str, *points: Sequence[float]) -> Floats:
     """Three points that are finite, (3, 3)."""
     kind, problems = VectorKind(), list[Problem]()
-    vectors = [kind.held(point, (key,), problems) for key, point in zip("abc", points, strict=True)]
+    vectors = [kind.validated(point, (key,), problems) for key, point in zip("abc", points, strict=True)]
     if any(each is REFUSED for each in vectors):
         raise RowError(problems, f"half-space {name!r}")
     return np.array(vectors, np.float64)
@@ -208,7 +208,7 @@ class Links(Row):
 
     only_surfaces: Annotated[
         Names | None,
-        Column(References("surfaces"), Tier.MIX, "The surfaces that it shines on; if absent, on all."),
+        Column(References("surfaces"), Tier.MIX, "The surfaces that it shines on; if absent, all surfaces."),
     ] = None
     except_surfaces: Annotated[
         Names | None,
@@ -216,7 +216,7 @@ class Links(Row):
     ] = None
     only_parts: Annotated[
         Names | None,
-        Column(References("parts"), Tier.LIGHT, "The parts that it shines on; if absent, on all."),
+        Column(References("parts"), Tier.LIGHT, "The parts that it shines on; if absent, all parts."),
     ] = None
     except_parts: Annotated[
         Names | None,
@@ -234,7 +234,7 @@ class Links(Row):
 
     def replace(self, /, **changes: Unpack[LinksChanges]) -> Links:
         """The links with some fields changed."""
-        return changed(self, changes)
+        return replaced(self, changes)
 
     @property
     def depend_on_parts(self) -> bool:
@@ -261,13 +261,17 @@ class Links(Row):
             if vars(self)[name]:
                 remaining[name] = tuple(each for each in vars(self)[name] if each in existing) or None
         is_same = all(remaining[name] == vars(self)[name] for name in remaining)
-        return self if is_same else changed(self, remaining)
+        return self if is_same else replaced(self, remaining)
 
 
 def _selected(names: Iterable[str], only: Names | None, excepted: Names | None) -> set[str]:
     """The names that are among `only`, if that is given, and not among the excepted names."""
     # A mesh may have many thousands of parts: search no list for a name.
     return (set(names) if only is None else set(names).intersection(only)).difference(excepted or ())
+
+
+AXIS_CONTROLS: Final = ("concentration", "cone_angle", "inner_angle", "at_infinity")
+"""The controls of a light that need an axis: a direction or an aim."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -290,10 +294,10 @@ class Light(Row):
             Number(at_least=0),
             Tier.MIX,
             "The intensity of the light, without an upper limit.",
-            bar=Bar(0, 2, 0.01),
+            bar=BarRange(0, 2, 0.01),
         ),
     ] = 1.0
-    on: Annotated[bool, Column(Switch(), Tier.MIX, "Whether the light is switched on.")] = True
+    on: Annotated[bool, Column(Boolean(), Tier.MIX, "Whether the light is switched on.")] = True
     direction: Annotated[
         Vector | None,
         Column(
@@ -317,7 +321,7 @@ class Light(Row):
             Number(at_least=0),
             Tier.LIGHT,
             "C: the exponent of the cosine of the angle from the direction.",
-            bar=Bar(0, 100, 1),
+            bar=BarRange(0, 100, 1),
         ),
     ] = 0.0
     cone_angle: Annotated[
@@ -327,7 +331,7 @@ class Light(Row):
             Tier.LIGHT,
             "A: the largest angle from the direction that is lit; if absent, there is no cone.",
             "degrees",
-            bar=Bar(1, 90, 1),
+            bar=BarRange(1, 90, 1),
             start=30.0,
         ),
     ] = None
@@ -336,9 +340,9 @@ class Light(Row):
         Column(
             Number(at_least=0, at_most=180),
             Tier.LIGHT,
-            "The angle up to which all of the light is left; if absent, the cone is sharp.",
+            "The angle of full light inside the cone; if absent, the cone is sharp.",
             "degrees",
-            bar=Bar(0, 90, 1),
+            bar=BarRange(0, 90, 1),
             start=0.0,
         ),
     ] = field(default=None, kw_only=True)
@@ -351,27 +355,31 @@ class Light(Row):
     ] = ()
     falloff: Annotated[
         str,
-        Column(Choice(FALLOFFS), Tier.LIGHT, "How it falls with the distance, to nothing at its reach."),
+        Column(
+            OneOf(FALLOFFS), Tier.LIGHT, "How the light decreases with the distance, to nothing at its reach."
+        ),
     ] = "none"
     reach: Annotated[
         float | None,
         Column(
             Number(at_least=0, above=True),
             Tier.LIGHT,
-            "The distance at which nothing is left of a light that falls with the distance.",
+            "The distance at which a light with falloff ends.",
             WORLD_UNITS,
         ),
     ] = None
     at_infinity: Annotated[
         bool,
-        Column(Switch(), Tier.LIGHT, "Whether its rays are parallel, as if the position were endlessly far."),
+        Column(
+            Boolean(), Tier.LIGHT, "Whether its rays are parallel, as if the position were endlessly far."
+        ),
     ] = False
     follows: Annotated[
         str | None,
         Column(
-            WordOrName("lights", EYE),
+            Reference("lights", EYE),
             Tier.LIGHT,
-            "What it is fixed to: 'eye', or the name of another light, for the point at which that is aimed.",
+            "The frame that it moves with: 'eye', or another light's name for the aim of that light.",
         ),
     ] = None
     links: Annotated[
@@ -379,7 +387,7 @@ class Light(Row):
     ] = field(default_factory=Links)
 
     def rules(self) -> Iterator[Problem]:
-        """At most one of direction and aim is given; without both, no control that needs one is given.
+        """At most one of direction and aim is given; without both, none of AXIS_CONTROLS is given.
 
         An inner angle comes with a cone that is not narrower, and a falloff with a reach.
         """
@@ -432,7 +440,7 @@ class Light(Row):
 
         Raises InputError for an unknown field or an invalid value.
         """
-        return changed(self, changes)
+        return replaced(self, changes)
 
 
 def unit_vector(direction: Vector) -> Vector:

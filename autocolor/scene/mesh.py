@@ -75,7 +75,7 @@ class Mesh(Immutable):
             )
             names = tuple(map(repr, names))
         of_angle: list[Problem] = []
-        angle = CREASE_ANGLES.held(self.crease_angle, ("crease_angle",), of_angle)
+        angle = CREASE_ANGLES.validated(self.crease_angle, ("crease_angle",), of_angle)
         problems.extend(f"mesh: {problem.sentence}" for problem in of_angle)
         if coordinate_rows.size and not (
             coordinate_rows.min() >= -LARGEST_COORDINATE and coordinate_rows.max() <= LARGEST_COORDINATE

@@ -27,7 +27,7 @@ from typing import Annotated, ClassVar, Final, NamedTuple
 import numpy as np
 
 from autocolor.arrays import Singles, power
-from autocolor.scene.columns import Bar, Column, Problem, Row, Tier
+from autocolor.scene.columns import BarRange, Column, Problem, Row, Tier
 from autocolor.scene.kinds import AngleCurve, AngleCurveKind, Number
 from autocolor.scene.row_kinds import Nested
 
@@ -91,8 +91,8 @@ class SpecularGrowth(Row):
         Column(
             Number(LEAST_REFLECTANCE, 1),
             Tier.LIGHT,
-            "F0: what is reflected at normal incidence; the less, the more S grows.",
-            bar=Bar(0.01, 1, 0.01),
+            "F0: the share reflected at normal incidence; the smaller, the more S grows.",
+            bar=BarRange(0.01, 1, 0.01),
             start=0.04,
         ),
     ] = None
@@ -101,8 +101,8 @@ class SpecularGrowth(Row):
         Column(
             Number(LEAST_INDEX, 10),
             Tier.LIGHT,
-            "The refractive index, which tells F0: S grows with the angle of incidence.",
-            bar=Bar(1.1, 4, 0.01),
+            "The refractive index, which determines F0: S grows with the angle of incidence.",
+            bar=BarRange(1.1, 4, 0.01),
             start=1.5,
         ),
     ] = None
@@ -111,7 +111,7 @@ class SpecularGrowth(Row):
         Column(
             AngleCurveKind(LEAST_REFLECTANCE, START_CURVE),
             Tier.LIGHT,
-            "Points [angle in degrees, share reflected]; S grows as the share does.",
+            "Points [angle in degrees, reflected share]; S grows with the share.",
         ),
     ] = None
 
@@ -175,7 +175,12 @@ class _PowerOfCosine(ReflectionModel):
 
     exponent: Annotated[
         float,
-        Column(Number(at_least=0), Tier.LIGHT, "N: how narrow the highlight is.", bar=Bar(1, 200, 1)),
+        Column(
+            Number(at_least=0),
+            Tier.LIGHT,
+            "N: the exponent, which makes the highlight narrower.",
+            bar=BarRange(1, 200, 1),
+        ),
     ] = 20.0
 
     growth: Annotated[
@@ -241,8 +246,8 @@ class CookTorrance(ReflectionModel):
         Column(
             Number(0.01, 1),
             Tier.LIGHT,
-            "How rough it is: m, the slope of the microfacets.",
-            bar=Bar(0.01, 1, 0.01),
+            "The roughness: m, the slope of the microfacets.",
+            bar=BarRange(0.01, 1, 0.01),
         ),
     ] = 0.3
     normal_reflectance: Annotated[
@@ -250,8 +255,8 @@ class CookTorrance(ReflectionModel):
         Column(
             Number(0.001, 1),
             Tier.LIGHT,
-            "F0: what is reflected at normal incidence.",
-            bar=Bar(0.01, 1, 0.01),
+            "F0: the share reflected at normal incidence.",
+            bar=BarRange(0.01, 1, 0.01),
         ),
     ] = 0.05
 

@@ -18,11 +18,11 @@ import numpy as np
 
 from autocolor.checks import Vector, either
 from autocolor.errors import UsageError
-from autocolor.scene.columns import REFUSED, WORLD_UNITS, Column, Problem, Row, Tier, changed, fields_of
+from autocolor.scene.columns import REFUSED, WORLD_UNITS, Column, Problem, Row, Tier, fields_of, replaced
 from autocolor.scene.following import light_frame, moved_vectors
 from autocolor.scene.kinds import Number, VectorKind
 from autocolor.scene.lights import AXES, Flap, HalfSpace, Light, middle_between
-from autocolor.scene.row_kinds import Rows
+from autocolor.scene.row_kinds import RowList
 
 
 @dataclass(frozen=True, repr=False)
@@ -37,7 +37,7 @@ class Rig(Row):
     maximum: Annotated[
         Vector, Column(VectorKind(), Tier.LIGHT, "The largest coordinates of the object.", WORLD_UNITS)
     ]
-    lights: Annotated[tuple[Light, ...], Column(Rows(Light), Tier.MIX, "The lights.")] = ()
+    lights: Annotated[tuple[Light, ...], Column(RowList(Light), Tier.MIX, "The lights.")] = ()
 
     def rules(self) -> Iterator[Problem]:
         """No coordinate of the minimum is above that of the maximum."""
@@ -68,8 +68,8 @@ class Rig(Row):
 def _moved(light: Light, scale: float, old: Vector, new: Vector) -> Light:
     """The light with each coordinate scaled about one point and moved with it to another.
 
-    The places of a light that follows something are scaled about the origin of its frame, and those of
-    carried half-spaces about their light.
+    A light that follows something is scaled about the origin of its frame, and a carried half-space about its
+    light.
     """
 
     def moved(axis: int, value: float) -> float:
@@ -84,16 +84,16 @@ def _moved(light: Light, scale: float, old: Vector, new: Vector) -> Light:
 
     def half_space(row: HalfSpace) -> HalfSpace:
         vectors = moved_vectors(row, scaled_point if row.carried else moved_point, _same)
-        return changed(row, {**vectors, **_scaled_lengths(row, scale)})
+        return replaced(row, {**vectors, **_scaled_lengths(row, scale)})
 
     flaps = {}
     for axis, name in enumerate(AXES):
         flap: Flap | None = vars(light.flaps)[name]
         if flap is not None:
             ends = {"minimum": moved(axis, flap.minimum), "maximum": moved(axis, flap.maximum)}
-            flaps[name] = changed(flap, {**_scaled_lengths(flap, scale), **ends})
+            flaps[name] = replaced(flap, {**_scaled_lengths(flap, scale), **ends})
     vectors = moved_vectors(light, moved_point if light.follows is None else scaled_point, _same)
-    return changed(
+    return replaced(
         light,
         {
             **vectors,
@@ -128,7 +128,7 @@ def mirrored(light: Light, name: str, axis: str, about: float) -> Light:
     if flap is not None:
         flap = flap.replace(minimum=2 * about - flap.maximum, maximum=2 * about - flap.minimum)
     vectors = moved_vectors(light, _reflection(number, about), _reflection(number, 0.0))
-    copy = changed(light, {**vectors, "name": name, "flaps": {axis: flap}})
+    copy = replaced(light, {**vectors, "name": name, "flaps": {axis: flap}})
     if not light.half_spaces:
         return copy
     mirror = np.eye(3)
@@ -140,7 +140,7 @@ def mirrored(light: Light, name: str, axis: str, about: float) -> Light:
         copied = row
         for each in np.flatnonzero(turned).tolist() if row.carried else [number]:
             point = _reflection(each, 0.0 if row.carried else about)
-            copied = changed(copied, moved_vectors(copied, point, _reflection(each, 0.0)))
+            copied = replaced(copied, moved_vectors(copied, point, _reflection(each, 0.0)))
         half_spaces.append(copied)
     return copy.replace(half_spaces=half_spaces)
 

@@ -1,4 +1,8 @@
-"""The kinds of columns that hold rows: one row, a row of one of several classes, a table of rows."""
+"""The kinds of columns whose values are rows, and of columns that refer to rows by name.
+
+A row inside a row is `Nested`, or `OneRowOf` several classes. Tables of rows are a `RowList` or, inside
+another row, `NamedRows`. Names of rows of other tables are a `Reference`, `References` or `RangesByName`.
+"""
 
 from __future__ import annotations
 
@@ -18,17 +22,19 @@ from autocolor.scene.columns import (
     Row,
     RowError,
     Tier,
-    changed,
+    cached_by_class,
     cost,
     difference,
     fields_of,
+    from_plain,
     keys_of,
-    made,
-    plain,
+    replaced,
+    to_plain,
 )
-from autocolor.scene.kinds import Leaf, Number, Text
+from autocolor.scene.kinds import Number, Text
 
 MOST_ROWS: Final = 1_000_000
+"""Limit: rows of a table."""
 
 
 @dataclass(frozen=True)
@@ -44,6 +50,7 @@ class Nested(Kind):
     def accepts(self) -> str:
         return f"Row | {self.row_class.__name__}Changes"
 
+    @property
     def has_keys_inside(self) -> bool:
         return self.inline
 
@@ -52,34 +59,34 @@ class Nested(Kind):
             return {name: column}
         return {key: inner.column for key, inner in keys_of(self.row_class).items()}
 
-    def held(self, value: object, path: Path, problems: list[Problem]) -> object:
+    def validated(self, value: object, path: Path, problems: list[Problem]) -> object:
         if isinstance(value, self.row_class):
             return value
         if isinstance(value, Mapping):
             try:
-                return made(self.row_class, value)
+                return from_plain(self.row_class, value)
             except RowError as error:
                 return _refused(error, self._path(path), problems)
         rule = f"must be a {self.row_class.__name__}" if self.inline else self.rule()
         problems.append(Problem(path, f"{rule}, not {shown(value)}"))
         return REFUSED
 
-    def changed(self, present: object, table: Mapping[str, Any], path: Path, problems: list[Problem]) -> Any:
+    def replaced(self, present: object, table: Mapping[str, Any], path: Path, problems: list[Problem]) -> Any:
         if isinstance(present, self.row_class):
             try:
-                return changed(present, table)
+                return replaced(present, table)
             except RowError as error:
                 return _refused(error, self._path(path), problems)
-        # Make a new row if there was none or an invalid one; anything else is refused where it is held.
-        is_made = present is REFUSED or (present is None and not self.inline)
-        return self.held(table, path, problems) if is_made else present
+        # Make a new row if there was none or an invalid one; `validated` refuses anything else later.
+        is_new = present is REFUSED or (present is None and not self.inline)
+        return self.validated(table, path, problems) if is_new else present
 
-    def written(self, name: str, value: Any) -> Mapping[str, object]:
-        return plain(value) if self.inline else {name: plain(value)}
+    def to_plain(self, name: str, value: Any) -> Mapping[str, object]:
+        return to_plain(value) if self.inline else {name: to_plain(value)}
 
     def difference(self, name: str, one: Any, other: Any) -> Mapping[str, object]:
-        told = difference(one, other)
-        return told if self.inline or not told else {name: told}
+        changes = difference(one, other)
+        return changes if self.inline or not changes else {name: changes}
 
     def cost(self, one: Any, other: Any, own: Tier) -> Tier | None:
         return own if one is None or other is None else cost(one, other)
@@ -89,11 +96,12 @@ class Nested(Kind):
 
 
 @dataclass(frozen=True, eq=False)
-class Variant(Kind):
+class OneRowOf(Kind):
     """A row of one of several classes, chosen by name; the name and its keys are in the containing row."""
 
     classes: Mapping[str, type[Row]]
 
+    @property
     def has_keys_inside(self) -> bool:
         return True
 
@@ -111,7 +119,7 @@ class Variant(Kind):
         inner = {key: each.column for cls in self.classes.values() for key, each in keys_of(cls).items()}
         return {name: column, **inner}
 
-    def held(self, value: object, path: Path, problems: list[Problem]) -> object:
+    def validated(self, value: object, path: Path, problems: list[Problem]) -> object:
         if type(value) in self.classes.values():
             return value
         if isinstance(value, str) and value in self.classes:
@@ -120,40 +128,40 @@ class Variant(Kind):
         problems.append(Problem(path, f"{self.rule()}, not {shown(value)}{clause}"))
         return REFUSED
 
-    def changed(self, present: object, table: Mapping[str, Any], path: Path, problems: list[Problem]) -> Any:
+    def replaced(self, present: object, table: Mapping[str, Any], path: Path, problems: list[Problem]) -> Any:
         name = path[-1]
-        value = self.held(table[str(name)], path, problems) if name in table else present
+        value = self.validated(table[str(name)], path, problems) if name in table else present
         if not isinstance(value, Row):
             return value
         own = keys_of(type(value))
         keys = {key: inner for key, inner in table.items() if key != name}
         for key in [key for key in keys if key not in own]:
-            having = [repr(other) for other, cls in self.classes.items() if key in keys_of(cls)]
+            owners = [repr(other) for other, cls in self.classes.items() if key in keys_of(cls)]
             problems.append(
                 Problem(
                     (*path[:-1], key),
-                    f"must go with {name} = {' or '.join(having)}, not with {self.name_of(value)!r};"
+                    f"must go with {name} = {' or '.join(owners)}, not with {self.name_of(value)!r};"
                     " leave it out, or change the other",
                 )
             )
             del keys[key]
         try:
-            return changed(value, keys) if keys else value
+            return replaced(value, keys) if keys else value
         except RowError as error:
             return _refused(error, path[:-1], problems)
 
-    def written(self, name: str, value: Any) -> Mapping[str, object]:
-        return {name: self.name_of(value), **plain(value)}
+    def to_plain(self, name: str, value: Any) -> Mapping[str, object]:
+        return {name: self.name_of(value), **to_plain(value)}
 
     def difference(self, name: str, one: Any, other: Any) -> Mapping[str, object]:
-        return difference(one, other) if type(one) is type(other) else self.written(name, other)
+        return difference(one, other) if type(one) is type(other) else self.to_plain(name, other)
 
     def cost(self, one: Any, other: Any, own: Tier) -> Tier | None:
         return cost(one, other, own)
 
 
 @dataclass(frozen=True)
-class Rows(Kind):
+class RowList(Kind):
     """A table: rows of a class with unique names; scene files write them `by_name` or as an array."""
 
     row_class: type[Row]
@@ -165,13 +173,13 @@ class Rows(Kind):
     def rule(self) -> str:
         return f"must be a list of {self.row_class.__name__} rows"
 
-    def held(self, value: object, path: Path, problems: list[Problem]) -> object:
+    def validated(self, value: object, path: Path, problems: list[Problem]) -> object:
         if not isinstance(value, (list, tuple)) or len(value) > MOST_ROWS:
             problems.append(Problem(path, f"{self.rule()}, not {shown(value)}"))
             return REFUSED
         nested = Nested(self.row_class)
         rows = tuple(
-            row if type(row) is self.row_class else nested.held(row, (*path, number), problems)
+            row if type(row) is self.row_class else nested.validated(row, (*path, number), problems)
             for number, row in enumerate(value)
         )
         first: dict[str, int] = {}
@@ -182,8 +190,8 @@ class Rows(Kind):
                 problems.append(Problem((*path, number, "name"), text))
         return REFUSED if any(row is REFUSED for row in rows) else rows
 
-    def written(self, name: str, value: Any) -> Mapping[str, object]:
-        return {name: [plain(row) for row in value]}
+    def to_plain(self, name: str, value: Any) -> Mapping[str, object]:
+        return {name: [to_plain(row) for row in value]}
 
     def cost(self, one: Any, other: Any, own: Tier) -> Tier | None:
         if len(one) != len(other):
@@ -195,23 +203,22 @@ class Rows(Kind):
 
 def _refused(error: RowError, path: Path, problems: list[Problem]) -> Any:
     """Append the problems of a nested row, with its path before theirs, and return REFUSED."""
-    problems.extend(problem.under(path) for problem in error.found)
+    problems.extend(problem.under(path) for problem in error.row_problems)
     return REFUSED
 
 
-# -------------------- reference_kinds
-# The kinds of columns that refer to rows of other tables by name.
+# References to rows of other tables, by name.
 
 
 @dataclass(frozen=True)
-class Referring(Leaf):
+class Referring(Kind):
     """References to rows of another table by name; the scene checks that these rows exist."""
 
     table: str
 
     @property
     def words(self) -> tuple[str, ...]:
-        """What may stand for a name, and is none."""
+        """The words that may stand in place of a name."""
         return ()
 
     def names_in(self, value: Any) -> Sequence[str]:
@@ -221,33 +228,16 @@ class Referring(Leaf):
 
 @dataclass(frozen=True)
 class Reference(Referring):
-    """The name of a row of another table."""
+    """The name of a row of another table, or a `word` that means the same in every scene, if there is one."""
 
-    def rule(self) -> str:
-        return Text().rule()
-
-    def accepts(self) -> str:
-        return "str"
-
-    def accepted(self, value: Any) -> str:
-        return Text().accepted(value)
-
-    def names_in(self, value: Any) -> Sequence[str]:
-        return (value,)
-
-
-@dataclass(frozen=True)
-class WordOrName(Referring):
-    """A word that means the same in every scene, or else the name of a row of another table."""
-
-    word: str
+    word: str = ""
 
     @property
     def words(self) -> tuple[str, ...]:
-        return (self.word,)
+        return (self.word,) if self.word else ()
 
     def rule(self) -> str:
-        return f"must be {self.word!r} or the name of one of the {self.table}"
+        return f"must be {self.word!r} or the name of one of the {self.table}" if self.word else Text().rule()
 
     def accepts(self) -> str:
         return "str"
@@ -282,7 +272,7 @@ class References(Referring):
 class RangesByName(Referring):
     """The word `none`, or ranges [minimum, maximum] by the name of a row, or by the name `others`.
 
-    They are held as pairs of a name and a range. Numbers are at least 0, and each maximum above its minimum.
+    The value is pairs of a name and a range. Numbers are at least 0, and each maximum is above its minimum.
     """
 
     none: str
@@ -320,7 +310,7 @@ class RangesByName(Referring):
     def names_in(self, value: Any) -> Sequence[str]:
         return () if isinstance(value, str) else [name for name, _ in value if name != self.others]
 
-    def written(self, name: str, value: Any) -> Mapping[str, object]:
+    def to_plain(self, name: str, value: Any) -> Mapping[str, object]:
         return {name: value if isinstance(value, str) else {key: list(limits) for key, limits in value}}
 
 
@@ -338,37 +328,32 @@ class ReferenceAt(NamedTuple):
         return value
 
 
+@cached_by_class
 def references_of(cls: type[Row]) -> Mapping[str, ReferenceAt]:
     """The columns of a row class that refer to rows of other tables, by key."""
-    found = _REFERENCES.get(cls)
-    if found is None:
-        found = _REFERENCES[cls] = {}
-        for name, field in fields_of(cls).items():
-            kind = field.column.kind
-            if isinstance(kind, Referring):
-                found[name] = ReferenceAt(kind, (name,))
-            elif isinstance(kind, Nested) and kind.inline:
-                inner = references_of(kind.row_class)
-                found |= {key: each._replace(path=(name, *each.path)) for key, each in inner.items()}
-    return found
+    references: dict[str, ReferenceAt] = {}
+    for name, field in fields_of(cls).items():
+        kind = field.column.kind
+        if isinstance(kind, Referring):
+            references[name] = ReferenceAt(kind, (name,))
+        elif isinstance(kind, Nested) and kind.inline:
+            inner = references_of(kind.row_class)
+            references |= {key: each._replace(path=(name, *each.path)) for key, each in inner.items()}
+    return references
 
 
-_REFERENCES: Final[dict[type[Row], dict[str, ReferenceAt]]] = {}
-
-
-# -------------------- named_row_kinds
-# The kind of columns that hold rows by name, any number of them, inside another row.
+# Rows by name inside another row.
 
 MOST_NAMED_ROWS: Final = 64
-"""Assumed: the most rows inside another one; more would hardly be told apart on a screen."""
+"""Limit: rows inside another row; a screen hardly has room for more."""
 
 
 @dataclass(frozen=True)
 class NamedRows(Kind):
     """Rows of a class with unique names, inside another row; they are sorted by name.
 
-    Files write them as a table of tables by name. A change is such a table, too: it changes the keys of the
-    rows that are there, of which `name` renames one, adds rows, and removes those for which it has None.
+    Files write a table of tables by name. A change is such a table, too. The keys of a row that exists are
+    replaced, and the key `name` renames it; a name that does not exist adds a row; None removes a row.
     """
 
     row_class: type[Row]
@@ -380,9 +365,9 @@ class NamedRows(Kind):
     def rule(self) -> str:
         return f"must be a table of {self.row_class.noun}s by name"
 
-    def held(self, value: object, path: Path, problems: list[Problem]) -> object:
+    def validated(self, value: object, path: Path, problems: list[Problem]) -> object:
         if isinstance(value, Mapping):
-            return self.changed((), value, path, problems)
+            return self.replaced((), value, path, problems)
         if not isinstance(value, (list, tuple)) or not all(type(row) is self.row_class for row in value):
             problems.append(Problem(path, f"{self.rule()}, not {shown(value)}"))
             return REFUSED
@@ -395,7 +380,7 @@ class NamedRows(Kind):
             problems.append(Problem((*path, name), text))
         return REFUSED if taken else tuple(rows)
 
-    def changed(self, present: object, table: Mapping[str, Any], path: Path, problems: list[Problem]) -> Any:
+    def replaced(self, present: object, table: Mapping[str, Any], path: Path, problems: list[Problem]) -> Any:
         rows = {row.name: row for row in present} if isinstance(present, tuple) else {}
         # All of them may be removed, and as many added.
         if not self._are_few(len(table), 2 * MOST_NAMED_ROWS, path, problems):
@@ -413,12 +398,12 @@ class NamedRows(Kind):
                 problems.append(Problem((*path, name), text))
                 rows[name] = REFUSED
             elif name in rows and isinstance(given, Mapping):
-                rows[name] = Nested(self.row_class).changed(rows[name], given, (*path, name), problems)
+                rows[name] = Nested(self.row_class).replaced(rows[name], given, (*path, name), problems)
             else:
                 rows[name] = self._new(name, given, (*path, name), problems)
         if any(row is REFUSED for row in rows.values()):
             return REFUSED
-        return self.held(tuple(rows.values()), path, problems)
+        return self.validated(tuple(rows.values()), path, problems)
 
     def _new(self, name: str, given: object, path: Path, problems: list[Problem]) -> object:
         """The row of a name, of keys or as a row; REFUSED if it is invalid, or has another name."""
@@ -432,7 +417,7 @@ class NamedRows(Kind):
             problems.append(Problem((*path, "name"), text))
             return REFUSED
         new = {**given, "name": name} if isinstance(given, Mapping) else given
-        return Nested(self.row_class).held(new, path, problems)
+        return Nested(self.row_class).validated(new, path, problems)
 
     def _are_few(self, count: int, most: int, path: Path, problems: list[Problem]) -> bool:
         """Whether rows or changes are not too many; else that is a problem."""
@@ -442,18 +427,18 @@ class NamedRows(Kind):
             )
         return count <= most
 
-    def written(self, name: str, value: Any) -> Mapping[str, object]:
-        return {name: {row.name: without_name(plain(row)) for row in value} or None}
+    def to_plain(self, name: str, value: Any) -> Mapping[str, object]:
+        return {name: {row.name: without_name(to_plain(row)) for row in value} or None}
 
     def difference(self, name: str, one: Any, other: Any) -> Mapping[str, object]:
         before, after = ({row.name: row for row in rows} for rows in (one, other))
-        told: dict[str, object] = {gone: None for gone in before if gone not in after}
+        changes: dict[str, object] = {gone: None for gone in before if gone not in after}
         for key, row in after.items():
             if key not in before:
-                told[key] = without_name(plain(row))
+                changes[key] = without_name(to_plain(row))
             elif inner := difference(before[key], row):
-                told[key] = inner
-        return {name: told} if told else {}
+                changes[key] = inner
+        return {name: changes} if changes else {}
 
     def cost(self, one: Any, other: Any, own: Tier) -> Tier | None:
         if [row.name for row in one] != [row.name for row in other]:
@@ -463,5 +448,5 @@ class NamedRows(Kind):
 
 
 def without_name(keys: Mapping[str, object]) -> dict[str, object]:
-    """The keys of a row that is written by name, which are those but its name."""
+    """The keys of a row without its name, which its table has already."""
     return {key: value for key, value in keys.items() if key != "name"}

@@ -1,7 +1,6 @@
-"""The row that tells which scalar is shown in color, and how.
+"""Scalars: the numbers of a mesh, such as stress, and the row that says how one of them is shown in color.
 
-Paper: "Introduction": scalar variables such as stress on the surface of an object are shown in color. The
-keys are those of the table `[scalar]` of a scene file.
+Paper: "Introduction": scalar variables such as stress on the surface of an object are shown in color.
 """
 
 from __future__ import annotations
@@ -17,13 +16,12 @@ from autocolor.checks import LARGEST_COORDINATE, Color, Vector, nearest, shown
 from autocolor.errors import InputError
 from autocolor.immutable import Immutable, read_only
 from autocolor.scene.color_scales import COLOR_SCALES, REVERSED
-from autocolor.scene.columns import Bar, Column, Problem, Row, Tier
+from autocolor.scene.columns import BarRange, Column, Kind, Problem, Row, Tier
 from autocolor.scene.kinds import (
     UNORDERED,
+    Boolean,
     ColorKind,
-    Leaf,
     Number,
-    Switch,
     Text,
     VectorKind,
     Whole,
@@ -32,14 +30,12 @@ from autocolor.scene.kinds import (
 )
 from autocolor.scene.row_kinds import References
 
-# -------------------- scalar_kinds
-# The kinds of columns that only scalars have: limits, the colors beyond them, and color scales.
-
 MOST_COLORS: Final = 256
+"""Limit: colors of a scale."""
 
 
 @dataclass(frozen=True)
-class Limits(Leaf):
+class LimitsKind(Kind):
     """Two numbers of float32, the second above the first."""
 
     def rule(self) -> str:
@@ -54,20 +50,20 @@ class Limits(Leaf):
         require(low < high)
         return low, high
 
-    def written(self, name: str, value: Any) -> Mapping[str, object]:
+    def to_plain(self, name: str, value: Any) -> Mapping[str, object]:
         return {name: list(value)}
 
 
 @dataclass(frozen=True)
 class EndColor(ColorKind):
-    """The color of values beyond a limit: a band of its own, so that its coming and going changes levels."""
+    """The color of values beyond a limit. It is a band of its own: with it, or without it, levels change."""
 
     def cost(self, one: Any, other: Any, own: Tier) -> Tier | None:
         return Tier.LEVELS if one is None or other is None else super().cost(one, other, own)
 
 
 @dataclass(frozen=True)
-class ScaleKind(Leaf):
+class ScaleKind(Kind):
     """The name of a color scale, or a list of at least two colors."""
 
     def rule(self) -> str:
@@ -91,11 +87,13 @@ class ScaleKind(Leaf):
         forward = (name for name in COLOR_SCALES if not name.endswith(REVERSED))
         return nearest(value, COLOR_SCALES) or nearest(value, forward)
 
-    def written(self, name: str, value: Any) -> Mapping[str, object]:
+    def to_plain(self, name: str, value: Any) -> Mapping[str, object]:
         return {name: value if isinstance(value, str) else [in_digits(color) for color in value]}
 
 
 MOST_BANDS: Final = 256
+"""Limit: bands, and levels of a band."""
+
 UP: Final = (0.0, 0.0, 1.0)
 
 
@@ -107,14 +105,14 @@ class Scalar(Row):
 
     name: Annotated[
         str,
-        Column(Text(), Tier.MIX, "A scalar of the mesh, or a computed one such as 'mean curvature'."),
+        Column(Text(), Tier.MIX, "A scalar of the mesh, or a computed scalar such as 'mean curvature'."),
     ]
     limits: Annotated[
         tuple[float, float] | None,
         Column(
-            Limits(),
+            LimitsKind(),
             Tier.LEVELS,
-            "Where the first band begins and the last ends; if absent, its range.",
+            "The start of the first band and the end of the last; if absent, the scalar's range.",
         ),
     ] = None
     scale: Annotated[
@@ -122,7 +120,7 @@ class Scalar(Row):
         Column(ScaleKind(), Tier.ENTRIES, "The color scale: a name, or a list of colors."),
     ] = "viridis"
     bands: Annotated[
-        int, Column(Whole(2, MOST_BANDS), Tier.LEVELS, "The number of colors.", bar=Bar(2, 64, 1))
+        int, Column(Whole(2, MOST_BANDS), Tier.LEVELS, "The number of colors.", bar=BarRange(2, 64, 1))
     ] = 16
     shades: Annotated[
         int | None,
@@ -130,7 +128,7 @@ class Scalar(Row):
             Whole(1, MOST_BANDS),
             Tier.LEVELS,
             "The levels of each color; 1 for flat color codes. If absent, as many as fit, at most 8.",
-            bar=Bar(1, 16, 1),
+            bar=BarRange(1, 16, 1),
             start=8,
         ),
     ] = None
@@ -139,7 +137,7 @@ class Scalar(Row):
         Column(
             EndColor(),
             Tier.ENTRIES,
-            "The color below the limits; if absent, that of the first band.",
+            "The color below the limits; if absent, the color of the first band.",
         ),
     ] = None
     above: Annotated[
@@ -147,23 +145,21 @@ class Scalar(Row):
         Column(
             EndColor(),
             Tier.ENTRIES,
-            "The color above the limits; if absent, that of the last band.",
+            "The color above the limits; if absent, the color of the last band.",
         ),
     ] = None
-    missing: Annotated[Color, Column(ColorKind(), Tier.ENTRIES, "The color where there is no value.")] = (
+    missing: Annotated[Color, Column(ColorKind(), Tier.ENTRIES, "The color of missing values.")] = (
         128,
         128,
         128,
     )
-    legend: Annotated[bool, Column(Switch(), Tier.NOTHING, "Whether the legend is drawn on the display.")] = (
-        True
-    )
+    legend: Annotated[bool, Column(Boolean(), Tier.NOTHING, "Whether the display shows the legend.")] = True
     surfaces: Annotated[
         tuple[str, ...] | None,
         Column(
             References("surfaces"),
             Tier.LEVELS,
-            "The surfaces that it colors; if absent, all but those of stage parts alone.",
+            "The surfaces that it colors; if absent, all surfaces that are not only of stage parts.",
         ),
     ] = None
     direction: Annotated[
@@ -171,35 +167,32 @@ class Scalar(Row):
         Column(
             VectorKind(has_length=True),
             Tier.MIX,
-            "The axis of a distance, the pull of a draft angle, the up of a slope, or the run of stripes.",
+            "The direction of a distance, of a draft angle's pull, of up for a slope, or of stripes.",
         ),
     ] = UP
     stripes: Annotated[
         float,
         Column(
-            Number(at_least=1, at_most=1000), Tier.MIX, "Zebra stripes in a half turn.", bar=Bar(1, 60, 1)
+            Number(at_least=1, at_most=1000),
+            Tier.MIX,
+            "The number of zebra stripes in half a turn.",
+            bar=BarRange(1, 60, 1),
         ),
     ] = 12.0
 
-
-# -------------------- mesh_scalars
-# Scalars of a mesh: one number for each node or each polygon, such as stress, pressure or temperature.
-#
-# Paper: "Introduction": scalar variables such as stress on the surface of an object. A number that is
-# missing is NaN; no other is without an end.
 
 NODE: Final = "node"
 POLYGON: Final = "polygon"
 
 MOST_SCALARS: Final = 1000
-"""Assumed: the scalars of one mesh."""
+"""Limit: scalars of a mesh."""
 
 LARGEST_SCALAR: Final = LARGEST_COORDINATE
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class MeshScalar(Immutable):
-    """A scalar: `values`, (n,) float64, one for each row of the table that `of` names, "node" or "polygon".
+    """A scalar of a mesh: `values`, (n,) float64, for the rows of the table `of`, "node" or "polygon".
 
     NaN is a missing value; all others are at most 1e30 in size. The values are copied unless they are a
     read-only array of this type. Raises InputError.
@@ -233,7 +226,7 @@ class MeshScalar(Immutable):
 
 
 def _endless(values: Floats) -> str | None:
-    """What is wrong with the first value that is infinite or too large; None if none is."""
+    """The problem of the first value that is infinite or too large, or None."""
     # A comparison with NaN is false, and warns of nothing.
     rows = np.flatnonzero((values > LARGEST_SCALAR) | (values < -LARGEST_SCALAR))
     if not len(rows):
@@ -243,7 +236,7 @@ def _endless(values: Floats) -> str | None:
 
 
 def scalar_problems(scalars: Sequence[MeshScalar], nodes: int, polygons: int) -> Iterator[str]:
-    """What is wrong with the scalars of a mesh of so many nodes and polygons."""
+    """The problems of the scalars of a mesh with these numbers of nodes and polygons."""
     names: set[str] = set()
     counts = {NODE: nodes, POLYGON: polygons}
     for scalar in scalars:
@@ -262,8 +255,8 @@ def joined_scalars(
 ) -> tuple[MeshScalar, ...]:
     """The scalars of several meshes that are joined to one; `nodes` and `polygons` are their counts.
 
-    A mesh without a scalar of a name has missing values. A name that is of nodes in one mesh and of polygons
-    in another becomes two: the second is named as in "stress of polygons".
+    A mesh without a scalar of some name has missing values. If a name is of nodes in one mesh and of polygons
+    in another, the second scalar gets another name, as in "stress of polygons".
     """
     kinds = dict.fromkeys((scalar.name, scalar.of) for each in scalars for scalar in each)
     names: dict[str, tuple[str, str]] = {}
@@ -281,9 +274,6 @@ def joined_scalars(
     return tuple(joined)
 
 
-# -------------------- computed_names
-# The names of the scalars that are computed of any mesh; `autocolor.scalars` computes them.
-
 COMPUTED: Final = (
     "x",
     "y",
@@ -297,11 +287,15 @@ COMPUTED: Final = (
     "smallest curvature",
     "zebra",
 )
-"""Assumed: a scalar of the mesh hides a computed one of its name, since the file's own numbers are meant."""
+"""The names of the scalars that `autocolor.scalars` computes for any mesh.
+
+Assumed: a scalar of the mesh hides a computed scalar of the same name, since the user means the numbers of
+the file.
+"""
 
 
 def name_problems(name: str, scalars: Iterable[MeshScalar]) -> Iterator[Problem]:
-    """What is wrong with the name of the scalar to show, given the scalars of the mesh."""
+    """The problem of the name of the scalar to show, given the scalars of the mesh."""
     known = [*(scalar.name for scalar in scalars), *COMPUTED]
     if name not in known:
         rule = "must be a scalar of the mesh or a computed one"

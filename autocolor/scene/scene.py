@@ -1,7 +1,7 @@
 """The scene: mesh, parts, surfaces, lights and view, and how intensities are shown.
 
-Scenes are immutable. An edit makes a new scene that shares every unchanged table with the old one, so that
-comparing the tables of two scenes tells what must be recomputed.
+Scenes are immutable. An edit makes a new scene that shares every unchanged table with the old scene, so that
+a comparison of two scenes gives the cost of the edit (see `Tier`).
 """
 
 from __future__ import annotations
@@ -27,15 +27,15 @@ from autocolor.scene.changes import (
 )
 from autocolor.scene.columns import (
     REFUSED,
-    Bar,
+    BarRange,
     Column,
     Problem,
     Row,
     RowError,
     Tier,
-    changed,
     cost,
     fields_of,
+    replaced,
     row_label,
     with_values,
 )
@@ -51,11 +51,11 @@ from autocolor.scene.following import (
     lights_in_world,
     vector_columns,
 )
-from autocolor.scene.kinds import Choice, ColorKind, CurveKind, Instance, Number, Text
+from autocolor.scene.kinds import ColorKind, CurveKind, Instance, Number, OneOf, Text
 from autocolor.scene.lights import Light, free_name
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.rigs import Rig, axis_number, mirrored
-from autocolor.scene.row_kinds import Nested, RangesByName, ReferenceAt, Rows, references_of
+from autocolor.scene.row_kinds import Nested, RangesByName, ReferenceAt, RowList, references_of
 from autocolor.scene.scalar import COMPUTED, Scalar, name_problems
 from autocolor.scene.surfaces import MOST_SURFACES, Part, Surface
 from autocolor.scene.view import View
@@ -68,21 +68,22 @@ DIVISIONS: Final = ("covered", "equal")
 DITHERS: Final = ("off", "ordered")
 LEVELS: Final = "levels"
 NORMALS: Final = "normals"
-"""What words stand for."""
+"""The meanings of words."""
 
 AUTO: Final = "auto"
 OBJECT: Final = "object"
-"""In `exposure`, the name of the range of the whole object; a surface of this name cannot be held."""
+"""In `exposure`, the name of the range of the whole object; a surface of this name has no fixed range."""
 
 Exposure = str | tuple[tuple[str, tuple[float, float]], ...]
-"""AUTO, or held ranges: pairs of a name, OBJECT or that of a surface, and its minimum and maximum."""
+"""AUTO, or fixed ranges: pairs of a name, OBJECT or a surface's, and its minimum and maximum."""
 
 MOST_PROBLEMS: Final = 100
+"""Limit: problems of references, and of lights that follow each other, in a message."""
 
 
 @dataclass(frozen=True, eq=False)
 class Scene(Row):
-    """All that is needed to render and color a picture; `scene_of` makes one of a mesh.
+    """Everything needed to render and color a picture. `scene_of` makes a scene of a mesh.
 
     There is one part for each part name of the mesh, in the same order, and every part's surface is in the
     surface table. Paper: "The Lighting Model" (ambient; mapping by surface or by object; nonlinear mappings).
@@ -91,12 +92,12 @@ class Scene(Row):
     mesh: Annotated[Mesh, Column(Instance(Mesh), Tier.FRAME, "The node table and the polygon table.")]
     parts: Annotated[
         tuple[Part, ...],
-        Column(Rows(Part, by_name=True), Tier.FRAME, "The parts, which are groups of polygons."),
+        Column(RowList(Part, by_name=True), Tier.FRAME, "The parts, which are groups of polygons."),
     ]
     surfaces: Annotated[
-        tuple[Surface, ...], Column(Rows(Surface, by_name=True), Tier.FRAME, "The surface types.")
+        tuple[Surface, ...], Column(RowList(Surface, by_name=True), Tier.FRAME, "The surface types.")
     ]
-    lights: Annotated[tuple[Light, ...], Column(Rows(Light), Tier.MIX, "The lights.")]
+    lights: Annotated[tuple[Light, ...], Column(RowList(Light), Tier.MIX, "The lights.")]
     view: Annotated[View, Column(Nested(View), Tier.FRAME, "The eye position and the view direction.")]
     ambient: Annotated[
         float,
@@ -104,15 +105,15 @@ class Scene(Row):
             Number(at_least=0),
             Tier.MIX,
             "The intensity of every point without any light.",
-            bar=Bar(0, 1, 0.01),
+            bar=BarRange(0, 1, 0.01),
         ),
     ] = 0.1
     scaling: Annotated[
         str,
         Column(
-            Choice(SCALINGS),
+            OneOf(SCALINGS),
             Tier.LEVELS,
-            "Whether each surface has its own intensity range, or all share one.",
+            "Whether each surface has its own intensity range, or all surfaces share a range.",
         ),
     ] = "surface"
     mapping: Annotated[
@@ -122,7 +123,7 @@ class Scene(Row):
     contrast: Annotated[
         str,
         Column(
-            Choice(CONTRASTS),
+            OneOf(CONTRASTS),
             Tier.ENTRIES,
             "Whether the lowest level is black, or in proportion to the minimum intensity.",
         ),
@@ -132,14 +133,14 @@ class Scene(Row):
         Column(
             RangesByName("surfaces", AUTO, OBJECT),
             Tier.LEVELS,
-            "Whether ranges are the picture's, or held: by surface, or of the object for all others.",
+            "Whether intensity ranges are automatic, or fixed: by surface, or of the object for all others.",
             "intensity",
         ),
     ] = AUTO
     dither: Annotated[
         str,
         Column(
-            Choice(DITHERS),
+            OneOf(DITHERS),
             Tier.LEVELS,
             "Whether levels are rounded, or dithered by an ordered pattern.",
         ),
@@ -147,7 +148,7 @@ class Scene(Row):
     division: Annotated[
         str,
         Column(
-            Choice(DIVISIONS),
+            OneOf(DIVISIONS),
             Tier.LEVELS,
             "Whether surfaces get more levels the more of the picture they cover, or all the same number.",
         ),
@@ -155,9 +156,9 @@ class Scene(Row):
     words: Annotated[
         str,
         Column(
-            Choice((LEVELS, NORMALS)),
+            OneOf((LEVELS, NORMALS)),
             Tier.LEVELS,
-            "Whether words stand for levels, or for normals, so that lights change entries alone.",
+            "Whether words stand for levels, or for normals: lights then change entries only.",
         ),
     ] = LEVELS
     background: Annotated[Color, Column(ColorKind(), Tier.ENTRIES, "The color where nothing is visible.")] = (
@@ -171,13 +172,13 @@ class Scene(Row):
     ] = None
     name: Annotated[
         str,
-        Column(Text(may_be_empty=True), Tier.NOTHING, "The name of the scene, that of its folder or file."),
+        Column(Text(may_be_empty=True), Tier.NOTHING, "The name of the scene, from its folder or file."),
     ] = "scene"
 
     def rules(self) -> Iterator[Problem]:
         """The parts are those of the mesh, all references are valid, and there are at most MOST_SURFACES.
 
-        Words do not stand for normals where a scalar colors surfaces: a band is told by the place of a point.
+        Words do not stand for normals if a scalar colors surfaces: a band depends on the place of a point.
         """
         if self.mesh is not REFUSED and self.parts is not REFUSED:
             names = [part.name for part in self.parts]
@@ -204,7 +205,7 @@ class Scene(Row):
         tables: list[tuple[type[Row], Sequence[Row]]] = [(Scene, (self,))]
         for table, field in fields_of(Scene).items():
             kind, rows = field.column.kind, vars(self)[table]
-            if isinstance(kind, Rows) and rows is not REFUSED:
+            if isinstance(kind, RowList) and rows is not REFUSED:
                 tables.append((kind.row_class, rows))
         if isinstance(self.scalar, Scalar):
             tables.append((Scalar, (self.scalar,)))
@@ -216,7 +217,7 @@ class Scene(Row):
 
     def replace(self, /, **changes: Unpack[SceneChanges]) -> Scene:
         """The scene with some fields changed."""
-        return changed(self, changes)
+        return replaced(self, changes)
 
     def equals(self, other: Scene) -> bool:
         """Whether all columns are equal; meshes are compared by identity."""
@@ -228,18 +229,18 @@ class Scene(Row):
 
     @property
     def lights_in_world(self) -> tuple[Light, ...]:
-        """The lights where they are, in object coordinates, also those that follow something."""
+        """The lights in object coordinates, whatever they follow."""
         return lights_in_world(self.lights, self.view)
 
     def light_in_world(self, name: str) -> Light:
-        """The light of that name where it is, in object coordinates. Raises UsageError if there is none."""
+        """The light of that name in object coordinates. Raises UsageError if there is none."""
         return self.lights_in_world[_place("light", self.lights, name)]
 
     def with_light_in_world(self, name: str, /, **changes: Unpack[LightChanges]) -> Scene:
         """The scene with some fields of one light changed; places and directions are in object coordinates.
 
-        They are turned to those of what the light follows, if anything; one that is to follow something else
-        stays where it is if nothing else is told. Raises UsageError or InputError.
+        They are converted to the frame that the light follows. A change of `follows` alone leaves the light
+        where it is in the object. Raises UsageError or InputError.
         """
         if "follows" in changes:
             followed = self.with_light_following(name, changes.pop("follows"))
@@ -249,7 +250,7 @@ class Scene(Row):
     def with_light_following(self, name: str, follows: str | None) -> Scene:
         """The scene with a light that follows "eye", another light or nothing, and stays where it is now.
 
-        Raises UsageError if there is no light of that name, InputError if it cannot follow that.
+        Raises UsageError if no light has that name, InputError if the light cannot follow `follows`.
         """
         world = self.light_in_world(name)
         places = {each: vars(world)[each] for each in vector_columns(Light)}
@@ -277,13 +278,13 @@ class Scene(Row):
         return self._with_row("surfaces", _place("surface", self.surfaces, name), changes)
 
     def with_paint(self, name: str, /, **changes: Unpack[PaintChanges]) -> Scene:
-        """The scene with some colors of one surface changed; the same scene if they are those it has."""
+        """The scene with some colors of one surface changed; the same scene if no color differs."""
         place = _place("surface", self.surfaces, name)
         surface = self.surfaces[place]
         try:
-            paint = changed(surface.paint, changes)
+            paint = replaced(surface.paint, changes)
         except RowError as error:
-            raise RowError(error.found, row_label(surface)) from None
+            raise RowError(error.row_problems, row_label(surface)) from None
         if paint == surface.paint:
             return self
         row = with_values(surface, {"paint": paint})
@@ -298,11 +299,11 @@ class Scene(Row):
         return with_values(self, {"view": self.view.replace(**changes)})
 
     def with_scalar(self, /, **changes: Unpack[ScalarChanges]) -> Scene:
-        """The scene with some fields of its scalar changed; without one, it must be given a name."""
-        return changed(self, {"scalar": changes})
+        """The scene with some fields of its scalar changed. A new scalar must have a name."""
+        return replaced(self, {"scalar": changes})
 
     def without_scalar(self) -> Scene:
-        """The scene with its own colors."""
+        """The scene in the colors of its surfaces."""
         return with_values(self, {"scalar": None})
 
     def with_new_light(self, name: str, /, **fields: Unpack[LightChanges]) -> Scene:
@@ -311,7 +312,7 @@ class Scene(Row):
         Raises InputError if a field is invalid or a light has that name already.
         """
         new: dict[str, Any] = {**fields, "name": name}
-        return changed(self, {"lights": (*self.lights, new)})
+        return replaced(self, {"lights": (*self.lights, new)})
 
     def without_light(self, name: str) -> Scene:
         """The scene without one light.
@@ -324,7 +325,7 @@ class Scene(Row):
             raise InputError(
                 f"light {name!r} must stay while {followers[0]!r} follows it; let that follow something else"
             )
-        return changed(self, {"lights": (*self.lights[:place], *self.lights[place + 1 :])})
+        return replaced(self, {"lights": (*self.lights[:place], *self.lights[place + 1 :])})
 
     def with_copied_light(self, name: str, new_name: str | None = None) -> Scene:
         """The scene with a copy of one light after the others, named like "key 2" unless a name is given.
@@ -334,7 +335,7 @@ class Scene(Row):
         light = self.light(name)
         if new_name is None:
             new_name = self._free_light_name(name)
-        return changed(self, {"lights": (*self.lights, light.replace(name=new_name))})
+        return replaced(self, {"lights": (*self.lights, light.replace(name=new_name))})
 
     def with_mirrored_light(
         self, name: str, axis: str = "x", about: float | None = None, new_name: str | None = None
@@ -342,10 +343,10 @@ class Scene(Row):
         """The scene with a mirrored copy of one light after the others; the light itself stays.
 
         It is mirrored in the plane where the coordinate of the axis, "x", "y" or "z", is `about`, by default
-        in the middle of the object: position, aim or direction, half-spaces, and the flap of that axis. One
-        that follows something is mirrored where it is now, and its copy follows, too. Its name is like "key
-        mirrored" unless one is given. Raises UsageError for an unknown light or axis, InputError if the new
-        name is taken.
+        in the middle of the object: position, aim or direction, half-spaces, and the flap of that axis. A
+        light that follows something is mirrored where it is now, and its copy follows it, too. The name of
+        the copy is like "key mirrored" unless `new_name` is given. Raises UsageError for an unknown light or
+        axis, InputError if the new name is taken.
         """
         light, number = self.light_in_world(name), axis_number(axis)
         if about is None:
@@ -355,10 +356,10 @@ class Scene(Row):
             new_name = self._free_light_name(f"{name} mirrored")
         copy = mirrored(light, new_name, axis, about)
         copy = in_frame(copy, self._frame_of(name), self.light(name).follows)
-        return changed(self, {"lights": (*self.lights, copy)})
+        return replaced(self, {"lights": (*self.lights, copy)})
 
     def with_all_lights_on(self) -> Scene:
-        """The scene with all lights switched on, as they are again after `only_lights`."""
+        """The scene with all lights switched on, as before `only_lights`."""
         return self.replace(lights=tuple(light.replace(on=True) for light in self.lights))
 
     def with_rig(self, rig: Rig) -> Scene:
@@ -376,7 +377,7 @@ class Scene(Row):
 
     @property
     def rig(self) -> Rig:
-        """The lights, with the size of the object that they were placed for."""
+        """The lights, with the size of their object."""
         return Rig(*self.object_bounds, self.lights)
 
     def _free_light_name(self, name: str) -> str:
@@ -390,16 +391,16 @@ class Scene(Row):
     def _with_row(self, table: str, place: int, changes: Mapping[str, Any]) -> Scene:
         rows = vars(self)[table]
         row = rows[place]
-        rows = (*rows[:place], changed(row, changes), *rows[place + 1 :])
-        # Tables refer to each other by name only: if no name changes, the references stay valid, but that a
-        # light must keep the aim that another one follows. What is cached of a scene depends on its parts.
+        rows = (*rows[:place], replaced(row, changes), *rows[place + 1 :])
+        # Tables refer to each other by name only: if no name changes, references stay valid, except that a
+        # light must keep the aim that another light follows. Cached properties depend on the parts.
         is_followed = table == "lights" and any(light.follows is not None for light in self.lights)
         is_referring = any(
             key in changes or reference.path[0] in changes
             for key, reference in references_of(type(row)).items()
         )
         if table == "parts" or "name" in changes or is_referring or is_followed:
-            return changed(self, {table: rows})
+            return replaced(self, {table: rows})
         return with_values(self, {table: rows})
 
     @cached_property

@@ -12,16 +12,16 @@ from typing import Annotated, ClassVar, Final, Unpack
 
 from autocolor.checks import Color
 from autocolor.scene.changes import PaintChanges, PartChanges, ReflectanceChanges, SurfaceChanges
-from autocolor.scene.columns import Bar, Column, Problem, Row, RowError, Tier, changed
-from autocolor.scene.kinds import ColorKind, Number, Switch, Text, Whole
+from autocolor.scene.columns import BarRange, Column, Problem, Row, RowError, Tier, replaced
+from autocolor.scene.kinds import Boolean, ColorKind, Number, Text, Whole
 from autocolor.scene.reflection_models import MODELS, Phong, ReflectionModel
-from autocolor.scene.row_kinds import Nested, Reference, Variant
+from autocolor.scene.row_kinds import Nested, OneRowOf, Reference
 
 MOST_SURFACES: Final = 255
 """Surface numbers have 8 bits, and 0 means that nothing is visible."""
 
 MOST_LEVELS: Final = 1_000_000
-"""Assumed: more than any lookup table has."""
+"""Limit: levels of a surface, more than any lookup table has."""
 
 PHONG: Final = Phong()
 """The default reflection model."""
@@ -37,12 +37,12 @@ class Part(Row):
     surface: Annotated[str, Column(Reference("surfaces"), Tier.FRAME, "The name of the part's surface.")]
     stage: Annotated[
         bool,
-        Column(Switch(), Tier.MIX, "Whether the part is not of the object, so that views leave it out."),
+        Column(Boolean(), Tier.MIX, "Whether the part is scenery: views are framed without it."),
     ] = False
 
     def replace(self, /, **changes: Unpack[PartChanges]) -> Part:
         """The part with some fields changed."""
-        return changed(self, changes)
+        return replaced(self, changes)
 
 
 @dataclass(frozen=True, init=False, repr=False)
@@ -53,14 +53,14 @@ class Reflectance(Row):
     """
 
     diffuse: Annotated[
-        float, Column(Number(at_least=0), Tier.MIX, "D: the diffuse reflectance.", bar=Bar(0, 1, 0.01))
+        float, Column(Number(at_least=0), Tier.MIX, "D: the diffuse reflectance.", bar=BarRange(0, 1, 0.01))
     ] = 0.7
     specular: Annotated[
-        float, Column(Number(at_least=0), Tier.MIX, "S: the specular reflectance.", bar=Bar(0, 1, 0.01))
+        float, Column(Number(at_least=0), Tier.MIX, "S: the specular reflectance.", bar=BarRange(0, 1, 0.01))
     ] = 0.5
     model: Annotated[
         ReflectionModel,
-        Column(Variant(MODELS), Tier.LIGHT, "The reflection model of the specular highlight."),
+        Column(OneRowOf(MODELS), Tier.LIGHT, "The reflection model of the specular highlight."),
     ] = PHONG
 
     def __init__(
@@ -71,7 +71,7 @@ class Reflectance(Row):
         *,
         exponent: float | None = None,
     ) -> None:
-        """Set D, S and the model, given by a value or a name; a number, or `exponent`, is N of Phong's model.
+        """Set D, S and the model, a row or a name; a number, or `exponent`, is N of Phong's model.
 
         Raises InputError.
         """
@@ -82,7 +82,7 @@ class Reflectance(Row):
         vars(self).update(diffuse=diffuse, specular=specular, model=model)
         self.__post_init__()
         if exponent is not None:
-            vars(self).update(vars(changed(self, {"exponent": exponent})))
+            vars(self).update(vars(replaced(self, {"exponent": exponent})))
 
     @property
     def exponent(self) -> float:
@@ -95,7 +95,7 @@ class Reflectance(Row):
 
     def replace(self, /, **changes: Unpack[ReflectanceChanges]) -> Reflectance:
         """The reflectance with some fields changed; a new model starts with its default parameters."""
-        return changed(self, changes)
+        return replaced(self, changes)
 
 
 @dataclass(frozen=True, repr=False)
@@ -134,7 +134,7 @@ class Paint(Row):
 
     def replace(self, /, **changes: Unpack[PaintChanges]) -> Paint:
         """The paint with some fields changed."""
-        return changed(self, changes)
+        return replaced(self, changes)
 
 
 @dataclass(frozen=True, repr=False)
@@ -153,21 +153,19 @@ class Surface(Row):
     ] = field(default_factory=Paint)
     two_sided: Annotated[
         bool,
-        Column(
-            Switch(), Tier.FRAME, "Whether the normals of polygons seen from behind are turned to the eye."
-        ),
+        Column(Boolean(), Tier.FRAME, "Whether normals of polygons seen from behind turn to the eye."),
     ] = True
     levels: Annotated[
         int | None,
         Column(
             Whole(at_least=2, at_most=MOST_LEVELS),
             Tier.LEVELS,
-            "The number of lookup table entries; if absent, a share of the rest.",
-            bar=Bar(2, 256, 1),
+            "The number of lookup table entries; if absent, a share of the remaining entries.",
+            bar=BarRange(2, 256, 1),
             start=64,
         ),
     ] = None
 
     def replace(self, /, **changes: Unpack[SurfaceChanges]) -> Surface:
         """The surface with some fields changed, including those of its reflectance and its paint."""
-        return changed(self, changes)
+        return replaced(self, changes)

@@ -1,9 +1,10 @@
-"""Swatches: a field of paints to pick from, in an order that the eye follows.
+"""Paints to pick from: swatches, a field of colors, and finishes, which look like plastic, metal or glass.
 
-Columns are hues, rows go from light to dark and then to muted paints; grays stand at the left, and the paints
-of cars of the time at the right. Lightness and hue are those of Oklab (B. Ottosson, 2020, "A perceptual color
-space for image processing"), in which equal steps look about equal; a hue is as strong as it can be on a
-monitor at its lightness, up to a limit. Assumed: the rows, the limits and the paints of cars.
+Swatches stand in an order that the eye follows. Columns are hues, rows go from light to dark and then to
+muted paints; grays stand at the left, and the paints of cars of the time at the right. Lightness and hue
+are those of Oklab (B. Ottosson, 2020, "A perceptual color space for image processing"), in which equal
+steps look about equal; a hue is as strong as it can be on a monitor at its lightness, up to a limit.
+Assumed: the rows, the limits and the paints of cars.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ HUES: Final = 18
 
 
 class Shade(NamedTuple):
-    """A row of hues: their lightness, from 0 to 1, and their chroma, as a share of the most that there is."""
+    """A row of hues: their lightness, from 0 to 1, and their chroma, as a share of the largest possible."""
 
     lightness: float
     share: float
@@ -116,33 +117,25 @@ def _linear(oklab: Floats) -> Floats:
 
 
 def _bytes(oklab: Floats) -> Bytes:
-    """The colors as a monitor is given them, (n, 3) uint8: sRGB, rounded half up."""
+    """The colors in sRGB, (n, 3) uint8, rounded half up."""
     linear = np.clip(_linear(oklab), 0, 1)
     encoded = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
     colors: Bytes = np.floor(encoded * 255 + 0.5).astype(np.uint8)
     return colors
 
 
-# -------------------- finishes
-# Finishes: what makes a surface look like plastic, paint, metal, rubber or glass, in any color.
-#
-# Paper: "Light Source Color Blending", Figure 15C: blending from the lowest level on looks like metallic
-# paint. Assumed: all the numbers, which were chosen by looking at the coupe in its studio lights.
-#
-# A finish keeps the object color. Its light color is the object color, brought toward the color of the
-# light by a share: what reflects at its surface, as plastic and glass do, has the color of the light; a
-# metal colors it.
-
 WHITE: Final = (255, 255, 255)
 DULL: Final = (96, 96, 100)
-"""The gray of a highlight on what scatters most of the light."""
+"""The gray of a highlight on a surface that scatters most of the light."""
 
 
 @dataclass(frozen=True)
 class Finish:
-    """The reflectance and the blending of a finish.
+    """The reflectance and the blending of a finish, which keeps the object color of its surface.
 
-    The light color is the object color, brought toward `light` by `share`, from 0 to 1.
+    The light color is the object color, brought toward `light` by `share`, from 0 to 1. The surface of
+    plastic or glass reflects the color of the light; a metal colors it. Paper: "Light Source Color
+    Blending", Figure 15C: blending from the lowest level on looks like metallic paint.
     """
 
     diffuse: float
@@ -162,7 +155,7 @@ FINISHES: Final[dict[str, Finish]] = {
     "rubber": Finish(0.8, 0.15, 4, share=0.65, blend=0.1, light=DULL),
     "glass": Finish(0.2, 1.0, 110, share=1.0, blend=0.3),
 }
-"""The finishes by name, in the order of a menu."""
+"""Assumed: all the numbers, chosen by looking at the coupe in its studio lights. Menus keep the order."""
 
 
 def finished(surface: Surface, name: str) -> SurfaceChanges:

@@ -17,7 +17,7 @@ from autocolor.arrays import Floats
 from autocolor.checks import Vector
 from autocolor.immutable import read_only
 from autocolor.scene.changes import ViewChanges
-from autocolor.scene.columns import WORLD_UNITS, Bar, Column, Problem, Row, Tier, changed
+from autocolor.scene.columns import WORLD_UNITS, BarRange, Column, Problem, Row, Tier, replaced
 from autocolor.scene.kinds import Number, VectorKind
 
 
@@ -48,7 +48,7 @@ class View(Row):
             Tier.FRAME,
             "Rotates the horizontal axis of the picture plane.",
             "degrees",
-            bar=Bar(-180, 180, 1),
+            bar=BarRange(-180, 180, 1),
         ),
     ] = 0.0
     field_of_view: Annotated[
@@ -58,7 +58,7 @@ class View(Row):
             Tier.FRAME,
             "The vertical field of view.",
             "degrees",
-            bar=Bar(5, 120, 1),
+            bar=BarRange(5, 120, 1),
         ),
     ] = 30.0
 
@@ -105,4 +105,4 @@ class View(Row):
 
     def replace(self, /, **changes: Unpack[ViewChanges]) -> View:
         """The view with some fields changed; a new direction removes the target, and vice versa."""
-        return changed(self, changes)
+        return replaced(self, changes)

@@ -11,7 +11,7 @@ from typing import Any, Final
 from autocolor.checks import Vector
 from autocolor.scene.columns import fields_of
 from autocolor.scene.following import names_to_follow
-from autocolor.scene.lights import EYE, Light
+from autocolor.scene.lights import AXIS_CONTROLS, EYE, Light
 from autocolor.screens.session import Session
 from autocolor.widgets.rows import rows_of
 from autocolor.widgets.widget import Choice, Widget
@@ -53,7 +53,7 @@ def parameter_rows(session: Session, light: Light, leave_out: Sequence[str] = ()
     rows = [_follows_row(session, light) if row.label == "follows" else row for row in rows]
     # A point source has no axis: rows that need an axis cannot be used, and say so.
     if kind_of(light) == POINT:
-        needing = ("concentration", "cone angle", "inner angle", "at infinity")
+        needing = [name.replace("_", " ") for name in AXIS_CONTROLS]
         rows = [replace(row, why_not=NEEDS_AXIS) if row.label in needing else row for row in rows]
     axis = ("direction", "aim", "concentration")
     before = next((number for number, row in enumerate(rows) if row.label.startswith(axis)), len(rows))

@@ -201,7 +201,7 @@ class MixingScreen(Screen):
     @property
     def _palette(self) -> Palette:
         ranges = tuple(self.session.studio.level_ranges.items())
-        return palette_of(ranges, self.session.surface_name, len(self.choices.colors))
+        return palette_of(ranges, self.session.surface_name, self.choices.count)
 
     def _small_picture(self) -> Item:
         """The chosen surface in the picture, at a quarter of its size; the same item until it changes."""
@@ -382,6 +382,11 @@ class PaintChoices:
         self._recent: tuple[Color, ...] = ()
         self._before: dict[str, Paint] = {}
         """The paints of all surfaces when the mixing began."""
+
+    @property
+    def count(self) -> int:
+        """The number of colors that can be picked."""
+        return len(swatches() if self._has_swatches else self._recent)
 
     @property
     def colors(self) -> Bytes:

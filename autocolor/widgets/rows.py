@@ -15,21 +15,20 @@ from functools import partial
 from typing import Any, Final, NamedTuple
 
 from autocolor.checks import Vector
-from autocolor.scene.columns import WORLD_UNITS, Column, Field, Row, bar_of, bar_within, fields_of
-from autocolor.scene.columns import Bar as Range
+from autocolor.scene.columns import WORLD_UNITS, BarRange, Column, Field, Row, bar_of, bar_within, fields_of
 from autocolor.scene.kinds import (
     AngleCurve,
     AngleCurveKind,
+    Boolean,
     ColorKind,
     Number,
+    OneOf,
     Text,
     VectorKind,
     Whole,
     in_digits,
 )
-from autocolor.scene.kinds import Choice as ChoiceKind
-from autocolor.scene.kinds import Switch as SwitchKind
-from autocolor.scene.row_kinds import NamedRows, Nested, Reference, References, Referring, Variant, WordOrName
+from autocolor.scene.row_kinds import NamedRows, Nested, OneRowOf, Reference, References, Referring
 from autocolor.widgets.bars import Bar
 from autocolor.widgets.widget import Choice, Entry, Heading, Switch, Widget, short_label
 
@@ -72,7 +71,7 @@ class World(NamedTuple):
         """The whole size of the object, from its least corner to its largest; 1 for a point."""
         return math.dist(self.low, self.high) or 1.0
 
-    def range_of(self, axis: str) -> Range:
+    def range_of(self, axis: str) -> BarRange:
         """The usual range of a coordinate: that of the object and its whole size around.
 
         Without an axis, it is that of all three.
@@ -82,7 +81,7 @@ class World(NamedTuple):
             low, high = self.low[AXES.index(axis)], self.high[AXES.index(axis)]
         return bar_within(low - self.size, high + self.size)
 
-    def range_of_lengths(self, is_zero_left_out: bool) -> Range:
+    def range_of_lengths(self, is_zero_left_out: bool) -> BarRange:
         """The usual range of a length: up to the whole size of the object."""
         usual = bar_within(0, self.size)
         return usual._replace(low=usual.step) if is_zero_left_out else usual
@@ -121,9 +120,9 @@ def _rows_of_field(menu: _Menu, name: str, field: Field, value: Any) -> Iterator
     put = partial(_put, menu.put, name)
     if isinstance(kind, (Number, Whole)):
         yield _bar(menu, shown, name, field, value)
-    elif isinstance(kind, SwitchKind):
+    elif isinstance(kind, Boolean):
         yield Switch(shown, help, is_on=bool(value), flip=partial(put, not value))
-    elif isinstance(kind, ChoiceKind):
+    elif isinstance(kind, OneOf):
         yield Choice(shown, help, names=kind.names, present=str(value), choose=put)
     elif isinstance(kind, Text):
         yield Entry(shown, help, value=str(value), take=put)
@@ -135,7 +134,7 @@ def _rows_of_field(menu: _Menu, name: str, field: Field, value: Any) -> Iterator
         yield from _curve_rows(menu, shown, name, kind, help, value)
     elif isinstance(kind, Referring):
         yield from reference_rows(shown, field, kind, value, put, menu.world.names)
-    elif isinstance(kind, Variant):
+    elif isinstance(kind, OneRowOf):
         yield Choice(shown, help, names=tuple(kind.classes), present=kind.name_of(value), choose=put)
         yield from _rows_in(menu, value)
     elif isinstance(kind, Nested) and kind.inline:
@@ -172,7 +171,7 @@ def _bar(menu: _Menu, label: str, name: str, field: Field, value: float | None) 
     """The bar of a number. A box switches a number that may be absent, or without a limit."""
     column, put, axis = field.column, menu.put, menu.axis
     kind = column.kind
-    usual = bar_of(column) or Range(0, 1, 0.01)
+    usual = bar_of(column) or BarRange(0, 1, 0.01)
     if column.unit == WORLD_UNITS and isinstance(kind, Number) and kind.at_least == 0:
         usual = menu.world.range_of_lengths(is_zero_left_out=kind.above)
     elif column.unit == WORLD_UNITS:
@@ -204,7 +203,7 @@ def _bar(menu: _Menu, label: str, name: str, field: Field, value: float | None) 
 def _vector_rows(menu: _Menu, label: str, name: str, column: Column, value: Vector) -> Iterator[Widget]:
     for number, axis in enumerate(AXES):
         is_place = column.unit == WORLD_UNITS
-        usual = menu.world.range_of(axis) if is_place else Range(-1, 1, 0.01)
+        usual = menu.world.range_of(axis) if is_place else BarRange(-1, 1, 0.01)
         yield Bar(
             f"{label} {axis}",
             _help(column),
@@ -244,9 +243,9 @@ def reference_rows(
     column, names = field.column, tables.of(kind.table)
     if isinstance(kind, References):
         yield from _list_rows(label, column, value, take, tables.pages, (kind.table, names))
-    elif isinstance(kind, (Reference, WordOrName)):
+    elif isinstance(kind, Reference):
         first = (NONE,) if field.is_optional else ()
-        word = (kind.word,) if isinstance(kind, WordOrName) else ()
+        word = kind.words
         yield Choice(
             label,
             column.help,

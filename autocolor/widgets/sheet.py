@@ -9,6 +9,7 @@ transfer to the display.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
@@ -132,7 +133,8 @@ def changed_items(
 
 def _columns(areas: Sequence[Area]) -> Numbers:
     """The left, top, right and bottom of areas, (4, n)."""
-    return np.array(areas, np.int64).reshape(-1, 4).T.copy()
+    # Of a list of tuples, `np.array` takes three times as long.
+    return np.fromiter(chain.from_iterable(areas), np.int64, 4 * len(areas)).reshape(-1, 4).T.copy()
 
 
 def _covering(columns: Numbers, area: Area) -> Booleans:

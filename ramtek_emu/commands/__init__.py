@@ -1,4 +1,4 @@
-"""The command line: `ramtek` and its commands, one module for each, imported when the command is used.
+"""The command line: `ramtek` and its commands. A command is a module, imported when the command is used.
 
-Uses all other wings, most of them only inside a command, so that help is shown at once.
+Uses all other wings. Commands import most of them inside their functions, so that help is shown at once.
 """

@@ -1,4 +1,4 @@
-"""`ramtek assemble`: a listing back into its stream."""
+"""`ramtek assemble`: converts a listing to its stream."""
 
 from __future__ import annotations
 

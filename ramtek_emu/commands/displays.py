@@ -1,4 +1,4 @@
-"""The parts that commands share: the display, the streams to read, the output files, the window, signals."""
+"""Shared parts of commands: the display, input streams, output files, the window, signals."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, BinaryIO, Final, TypeVar
 
 import click
 
-from ramtek_emu.configuration import CONFIGURATIONS, GMR_9300, Configuration, configuration_named
+from ramtek_emu.configuration import CONFIGURATIONS, GMR_9300
 from ramtek_emu.errors import MissingInputError, reason_of
 from ramtek_emu.writing import Output, refuse_output, write_atomically
 
@@ -26,7 +26,7 @@ Function = TypeVar("Function", bound=Callable[..., object])
 
 
 def complete_configurations(_: click.Context, __: click.Parameter, incomplete: str) -> list[str]:
-    """The names of configurations, for a shell; capitals need not be typed."""
+    """The names of configurations, for completion in a shell, in upper or lower case."""
     return [name for name in CONFIGURATIONS if name.startswith(incomplete.upper())]
 
 
@@ -53,13 +53,8 @@ def display_options(function: Function) -> Function:
     return function
 
 
-def configuration_asked_for(name: str | None) -> Configuration:
-    """The configuration of that name, GMR_9300 without a name; ConfigurationError lists all names."""
-    return GMR_9300 if name is None else configuration_named(name)
-
-
-def display_asked_for(configuration: str | None, start: str | None) -> Ramtek9300:
-    """A new display of that configuration, or the display of a snapshot."""
+def display_asked_for(configuration: str | None, start: str | None = None) -> Ramtek9300:
+    """A new display of the configuration, GMR_9300 if None, or the display of the snapshot `start`."""
     if start is not None:
         if configuration is not None:
             raise click.UsageError("a display must be given by --configuration or --start; leave one out")
@@ -68,11 +63,11 @@ def display_asked_for(configuration: str | None, start: str | None) -> Ramtek930
         return read_snapshot(start)
     from ramtek_emu.display import Ramtek9300
 
-    return Ramtek9300(configuration_asked_for(configuration))
+    return Ramtek9300(GMR_9300 if configuration is None else configuration)
 
 
 def refuse_outputs(force: bool, *paths: str | None) -> None:
-    """Refuse outputs that cannot be written, before anything is done; None stands for no output."""
+    """Refuse outputs that cannot be written; call it before the work. None means no output."""
     for path in paths:
         if path is not None:
             if path in ("", "-"):
@@ -82,7 +77,7 @@ def refuse_outputs(force: bool, *paths: str | None) -> None:
 
 @contextmanager
 def recording(path: str | None, force: bool) -> Iterator[Callable[[bytes], object] | None]:
-    """A function that records words in a file, or None; the file gets its name if nothing fails."""
+    """A function that records words in a file, or None without a path; the file appears if nothing fails."""
     if path is None:
         yield None
         return
@@ -93,7 +88,7 @@ def recording(path: str | None, force: bool) -> Iterator[Callable[[bytes], objec
 
 
 def write_outputs(display: Ramtek9300, output: str | None, snapshot: str | None, force: bool) -> None:
-    """Write the picture and the snapshot, if asked for, and report it on stderr."""
+    """Write the picture and the snapshot, if asked for, and report their names on stderr."""
     if output is not None:
         from ramtek_emu.png import png_bytes
 
@@ -127,7 +122,7 @@ def open_stream(path: str) -> BinaryIO:
 
 
 def reader_of(file: BinaryIO) -> Callable[[int], bytes]:
-    """A function that reads the bytes available, up to a number; it returns none at the end of the file."""
+    """A function `read(most)` that returns the available bytes, up to `most`; none at the end."""
     number = file.fileno()
 
     def read(most: int) -> bytes:
@@ -135,14 +130,14 @@ def reader_of(file: BinaryIO) -> Callable[[int], bytes]:
             return os.read(number, most)
         except OSError as cause:
             raise MissingInputError(
-                f"a stream must be readable to its end, and it is not ({reason_of(cause)}); try a copy of it"
+                f"a stream must be readable to its end, not fail ({reason_of(cause)}); try a copy of it"
             ) from None
 
     return read
 
 
 def tell(message: str) -> None:
-    """Print a message on stderr, since stdout is for results."""
+    """Print a message on stderr; stdout is for results."""
     click.echo(message, err=True)
 
 
@@ -160,14 +155,14 @@ class EndSignals:
             raise InterruptedError
 
     def until_received(self, read: Read) -> Read:
-        """A function like `read` that returns nothing after the signal, or if reading fails."""
+        """A function like `read` that returns no bytes after the signal, or if reading fails."""
 
         def read_until_received(most: int) -> bytes:
             try:
                 self._waiting = True
                 return b"" if self.received else read(most)
             except OSError:
-                # Also raised by a terminal or a socket whose other end was closed.
+                # A terminal or a socket also raises it after its other end was closed.
                 return b""
             finally:
                 self._waiting = False
@@ -194,9 +189,9 @@ TICK_SECONDS: Final = 0.01
 def show(
     display: Ramtek9300, serve_for: Callable[[float], None], waits: Callable[[], bool] = lambda: False
 ) -> None:
-    """Show the display in a window until that is closed; `serve_for` is called at each tick.
+    """Show the display in a window until the window is closed; `serve_for` is called at each tick.
 
-    `waits` tells whether `serve_for` waits for a host's words itself, so that the window need not wait for
+    While `waits()` is true, `serve_for` itself waits for a host's words, and the window does not wait for
     input.
     """
     # Signals close the window between two ticks, never while a host is served; outputs are still written.

@@ -8,7 +8,8 @@ from typing import Final
 
 import click
 
-from ramtek_emu.commands.displays import complete_configurations, configuration_asked_for, open_stream
+from ramtek_emu.commands.displays import complete_configurations, open_stream
+from ramtek_emu.configuration import GMR_9300, configuration_named
 
 EXAMPLES: Final = """\b
 Examples:
@@ -34,7 +35,7 @@ def list_command(stream: str, configuration: str | None, as_json: bool) -> None:
 
     `ramtek assemble` turns the listing into the same stream again, word for word.
     """
-    chosen = configuration_asked_for(configuration)
+    chosen = GMR_9300 if configuration is None else configuration_named(configuration)
     file = open_stream(stream)
 
     def pieces() -> Iterator[bytes]:

@@ -1,4 +1,4 @@
-"""`ramtek play`: a stream of instructions from a file, in a window or into a picture."""
+"""`ramtek play`: runs a stream of instructions from a file, in a window or into a picture."""
 
 from __future__ import annotations
 

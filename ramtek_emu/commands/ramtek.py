@@ -1,4 +1,4 @@
-"""`ramtek`: the test pattern, or one of the other commands, which is imported when it is used."""
+"""`ramtek`: shows the test pattern, or runs one of the other commands."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class RamtekGroup(CommandGroup):
 
 
 def configurations(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[str]:
-    """The names of configurations, for a shell."""
+    """The names of configurations, for completion in a shell. The import is late to keep help fast."""
     from ramtek_emu.commands.displays import complete_configurations
 
     return complete_configurations(context, parameter, incomplete)
@@ -78,14 +78,12 @@ def ramtek(
     """
     if context.invoked_subcommand is not None:
         return
-    from ramtek_emu.commands.displays import configuration_asked_for, refuse_outputs
-    from ramtek_emu.display import Ramtek9300
+    from ramtek_emu.commands.displays import display_asked_for, refuse_outputs
     from ramtek_emu.monitor.pattern import pattern
 
     refuse_outputs(force, output)
-    chosen = configuration_asked_for(configuration)
-    display = Ramtek9300(chosen)
-    display.send(pattern(chosen))
+    display = display_asked_for(configuration)
+    display.send(pattern(display.configuration))
     if output is not None:
         display.save_png(output, overwrite=force)
         return

@@ -1,4 +1,4 @@
-"""`ramtek serve`: a display for programs, over TCP, on a Unix socket or on a pipe."""
+"""`ramtek serve`: runs a display for programs, over TCP, on a Unix socket or on a pipe."""
 
 from __future__ import annotations
 
@@ -40,11 +40,11 @@ Examples:
 
 STEP_SECONDS: Final = 0.25
 JOYSTICK_SECONDS: Final = 0.02
-"""How long a line for the joystick may wait while nothing else happens."""
+"""How long a line for the joystick may wait while no words arrive."""
 HOST_SECONDS: Final = 0.005
 """How long the input of a window may wait while a connected host sends nothing. Its words never wait."""
 PIPE_SECONDS: Final = 0.002
-"""How long words on a pipe may wait while there are lines for the joystick, too."""
+"""How long words on a pipe may wait if `--joystick` is given."""
 
 
 @click.command(epilog=EXAMPLES)
@@ -126,7 +126,7 @@ def serve(
 
 
 def serve_stdio(session: HostSession, window: bool, lines: JoystickLines | None = None) -> None:
-    """Serve the program at the other ends of stdin and stdout until it closes its end."""
+    """Serve the program at the other end of stdin and stdout until it closes its end."""
     from ramtek_emu.host.pipe import PolledPipe, serve_pipe
 
     read, write = standard_streams()
@@ -146,7 +146,7 @@ def serve_stdio(session: HostSession, window: bool, lines: JoystickLines | None 
 
 
 def obeying(lines: JoystickLines | None, serve_for: Callable[[float], None]) -> Callable[[float], None]:
-    """A function that serves a host for some seconds, after the lines for the joystick."""
+    """A function that obeys the lines for the joystick, then calls `serve_for`."""
     if lines is None:
         return serve_for
     obey = lines.obey
@@ -159,7 +159,7 @@ def obeying(lines: JoystickLines | None, serve_for: Callable[[float], None]) -> 
 
 
 def standard_streams() -> tuple[Read, Write | None]:
-    """Functions that read stdin and write stdout. From here on, nothing else can write to stdout."""
+    """Functions that read stdin and write stdout. After this call, nothing else can write to stdout."""
     if sys.stdin is None:
         return lambda _: b"", None
     number = sys.stdin.fileno()
@@ -169,7 +169,7 @@ def standard_streams() -> tuple[Read, Write | None]:
 
     try:
         replies = os.dup(sys.stdout.fileno())
-        # Redirect printed text from here on, so that it does not mix with the words.
+        # Redirect all printed text to stderr, so that it does not mix with the words.
         os.dup2(sys.stderr.fileno() if sys.stderr is not None else replies, sys.stdout.fileno())
     except OSError:
         return read, None
@@ -189,7 +189,7 @@ def serve_hosts(
     if window:
         from ramtek_emu.monitor.window import open_screen
 
-        # Fail before a host is told where to connect.
+        # Fail before the address is printed.
         open_screen()
         announce(server)
         serve_for = partial(server.serve_for, wait=HOST_SECONDS)

@@ -1,4 +1,4 @@
-"""`ramtek tty`: a program that opens a device, whose writes a display gets one by one."""
+"""`ramtek tty`: runs a program that opens a device; a display gets its writes one by one."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ Examples:
 
 DEVICE: Final = "RAMTEK_DEVICE"
 WAIT_SECONDS: Final = 600.0
-"""How long the display may serve other hosts before it gets to the end of what this program wrote."""
+"""How long the display may take to execute the program's words, with other hosts before it in line."""
 
 
 @click.command(epilog=EXAMPLES)
@@ -61,7 +61,7 @@ def tty(
     """
     refuse_systems_without_pidfd()
     if shutil.which(program) is None:
-        raise MissingInputError(f"a program must be one that can be run, not {program!r}; check its name")
+        raise MissingInputError(f"a program must be executable, not {program!r}; check its name")
 
     from ramtek_emu.host.device import DeviceRelay
     from ramtek_emu.host.port import UnixPort
@@ -80,7 +80,7 @@ def tty(
 
 
 def refuse_systems_without_pidfd() -> None:
-    """PortError where a process cannot be waited for together with files: on Linux since 5.3 it can."""
+    """PortError on systems without pidfd, which waits for a process and files together: Linux 5.3 has it."""
     try:
         os.close(os.pidfd_open(os.getpid()))
     except (AttributeError, OSError):
@@ -92,14 +92,14 @@ def refuse_systems_without_pidfd() -> None:
 
 @contextmanager
 def terminal() -> Iterator[tuple[int, str]]:
-    """A pseudoterminal in raw mode: our side, and the path of the other."""
+    """A pseudoterminal in raw mode: our side, and the path of the program's side."""
     import pty
     import tty as terminal_modes
 
     ours, theirs = pty.openpty()
     try:
         terminal_modes.setraw(theirs)
-        # Their side stays open here, so that the program may close and open it as often as it likes.
+        # Keep the program's side open, so that the program may close and open it as often as it likes.
         yield ours, os.ttyname(theirs)
     finally:
         os.close(theirs)
@@ -117,7 +117,7 @@ def linked(name: str, device: str) -> Iterator[None]:
         ) from None
     except (OSError, ValueError) as cause:
         raise OutputError(
-            f"a link must be made where it can, not at {name} ({reason_of(cause)}); choose another"
+            f"a link must be where a link can be made, not at {name} ({reason_of(cause)}); choose another"
         ) from None
     try:
         yield
@@ -128,7 +128,7 @@ def linked(name: str, device: str) -> Iterator[None]:
 
 
 class Running(NamedTuple):
-    """A program: its process, a file that can be read when it has ended, and notices of its writes."""
+    """A running program: its process, a file that is readable after its end, and notices of its writes."""
 
     process: int
     ended: int
@@ -137,10 +137,11 @@ class Running(NamedTuple):
 
 @contextmanager
 def started(command: list[str], environment: dict[str, str], with_notices: bool) -> Iterator[Running]:
-    """Run a program, with notices of its writes or without.
+    """Run a program, with or without notices of its writes.
 
-    Ctrl+C is left to the program, other signals to end are passed on. It is hung up on an error. Raises
-    PortError if there are no notices of its writes, MissingInputError if it cannot be run.
+    Ctrl+C is left to the program, and SIGTERM and SIGHUP are passed on to it. If the display is lost, the
+    program gets SIGHUP. Raises PortError if the system gives no notices, MissingInputError if the program
+    cannot be run.
     """
     from ramtek_emu.host.device import WriteNotices
 
@@ -172,14 +173,14 @@ def started(command: list[str], environment: dict[str, str], with_notices: bool)
 
 WITH_NOTICES: Final = b"notices"
 WITHOUT: Final = b"none"
-"""A process that is about to become the program sends one of them, or the reason why it has no notices."""
+"""Messages of a child process before it executes the program; any other message is a failure's reason."""
 
 
 def forked(command: list[str], environment: dict[str, str], with_notices: bool) -> tuple[int, int | None]:
-    """A process that became the program, and the file of the notices of its writes.
+    """A child process that executes the program, and the file of the notices of its writes.
 
     PortError if notices are asked for and the system gives none, MissingInputError if the program cannot be
-    run; then no process is left.
+    run. In both cases the child process has ended.
     """
     ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     with ours:
@@ -195,10 +196,8 @@ def forked(command: list[str], environment: dict[str, str], with_notices: bool) 
     for file in files:
         os.close(file)
     if failure:
-        raise MissingInputError(
-            f"a program must be one that can be run, not {command[0]!r} ({failure}); check it"
-        )
-    # Some sandboxes end a process that asks for notices, so that it sends nothing.
+        raise MissingInputError(f"a program must be executable, not {command[0]!r} ({failure}); check it")
+    # Some sandboxes kill a process that asks for notices: then it sent nothing.
     reason = sent.decode() or "asking for it is forbidden"
     raise PortError(
         f"a system must tell one write of a program from the next, and this one does not ({reason}); "
@@ -209,7 +208,7 @@ def forked(command: list[str], environment: dict[str, str], with_notices: bool) 
 def become(
     command: list[str], environment: dict[str, str], parent: socket.socket, with_notices: bool
 ) -> NoReturn:
-    """Become the program, after sending the parent the file of the notices; end if there are none."""
+    """In the child: send the file of the notices to the parent and execute the program, or exit."""
     from ramtek_emu.host.device import ask_for_notices
 
     try:

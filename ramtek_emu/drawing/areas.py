@@ -1,7 +1,7 @@
 """Areas: the connected pixels around one pixel, for FILL.
 
-Each line is split into runs of open pixels. Runs of neighboring lines that touch are linked, and the area is
-every run that links lead to. So the work is bounded by the size of the memory, whatever the picture.
+Lines are split into runs of open pixels, and runs of neighboring lines that touch are linked. The area is all
+runs that the links connect to the first run. So the size of the memory bounds the work, for any picture.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from ramtek_emu.arrays import Dots, Indices
 
 
 def area(open_pixels: Dots, line: int, element: int) -> Dots:
-    """The open pixels that are connected to the one at (line, element), up, down, left and right.
+    """The open pixels that are connected, up, down, left and right, to the pixel at (line, element).
 
     >>> area(np.array([[True, False, True], [True, True, False]]), 0, 0).astype(int).tolist()
     [[1, 0, 0], [1, 1, 0]]
@@ -27,8 +27,8 @@ def area(open_pixels: Dots, line: int, element: int) -> Dots:
     starts, ends = np.flatnonzero(edges == 1) + 1, np.flatnonzero(edges == -1) + 1
     width = elements + 2
     labels = connected(*links(starts, ends, width), len(starts))
-    mine = int(np.searchsorted(starts, line * width + element + 1, side="right")) - 1
-    chosen = labels == labels[mine]
+    first_run = int(np.searchsorted(starts, line * width + element + 1, side="right")) - 1
+    chosen = labels == labels[first_run]
     marks = np.zeros(lines * width + 1, np.int8)
     marks[starts[chosen]] = 1
     marks[ends[chosen]] = -1
@@ -37,7 +37,7 @@ def area(open_pixels: Dots, line: int, element: int) -> Dots:
 
 
 def links(starts: Indices, ends: Indices, width: int) -> tuple[Indices, Indices]:
-    """The pairs of runs that touch: the upper run and the lower run of each pair."""
+    """The pairs of runs that touch: the indices of the upper runs and of the lower runs."""
     first = np.searchsorted(ends, starts + width, side="right")
     last = np.searchsorted(starts, ends + width, side="left")
     counts = np.maximum(last - first, 0)
@@ -46,21 +46,21 @@ def links(starts: Indices, ends: Indices, width: int) -> tuple[Indices, Indices]
     return upper, lower
 
 
-def connected(one: Indices, other: Indices, count: int) -> Indices:
-    """A label for each of `count` runs by union-find, equal where the pairs of `one` and `other` connect."""
+def connected(upper: Indices, lower: Indices, count: int) -> Indices:
+    """Labels of `count` runs, by union-find: runs that the pairs (upper, lower) connect get equal labels."""
     labels = np.arange(count)
     while True:
         # Link the larger root to the smaller one, then shorten every path to its root.
-        least = np.minimum(labels[one], labels[other])
+        least = np.minimum(labels[upper], labels[lower])
         before = labels.copy()
-        np.minimum.at(labels, before[one], least)
-        np.minimum.at(labels, before[other], least)
+        np.minimum.at(labels, before[upper], least)
+        np.minimum.at(labels, before[lower], least)
         while True:
             shorter = labels[labels]
             if (shorter == labels).all():
                 break
             labels = shorter
-        apart = labels[one] != labels[other]
+        apart = labels[upper] != labels[lower]
         if not apart.any():
             return labels
-        one, other = one[apart], other[apart]
+        upper, lower = upper[apart], lower[apart]

@@ -1,4 +1,4 @@
-"""Curves: circles and conics as the pixels nearest to them.
+"""Curves: the pixels nearest to circles and conics.
 
 What is modeled: outlines, one pixel wide. What is **not**: arcs (known by name only), pixels that are not
 square (Assumed: a radius in elements is one in lines).
@@ -35,7 +35,7 @@ def write_circles(
     inside = frame_buffer.window.intersection(enable.window)
     if inside.is_empty:
         return
-    crossing = crosses(centers, radii, inside)
+    crossing = may_cross(centers, radii, inside)
     centers, radii = centers[crossing], radii[crossing]
     reach = (radii * 0.7072).astype(np.int64) + 1
     for axis, (low, high) in enumerate(((inside.left, inside.right), (inside.top, inside.bottom))):
@@ -54,8 +54,8 @@ def write_circles(
                 frame_buffer.write_points(elements, lines, word, enable)
 
 
-def crosses(centers: Numbers, radii: Numbers, window: Window) -> Booleans:
-    """Whether the outline of each circle may have pixels in the window."""
+def may_cross(centers: Numbers, radii: Numbers, window: Window) -> Booleans:
+    """Whether the outlines of the circles may have pixels in the window."""
     corners = np.array(((window.left, window.top), (window.right, window.bottom)))
     before, behind = corners[0] - centers, centers - corners[1]
     nearest = np.maximum(np.maximum(before, behind), 0)
@@ -68,13 +68,13 @@ def crosses(centers: Numbers, radii: Numbers, window: Window) -> Booleans:
 
 
 def nearest_root(squares: Numbers) -> Numbers:
-    """The whole numbers nearest to the square roots; no root of a whole number lies half way between two."""
+    """The whole numbers nearest to the square roots. No root of a whole number is half way between two."""
     root = np.sqrt(np.maximum(squares, 0)).astype(np.int64)
     return root + (squares - root * root > root)
 
 
 def conic_pixels(conic: tuple[int, ...], start: Point, stop: Point | None) -> tuple[Numbers, Numbers]:
-    """The elements and lines of the pixels of a conic, in order, from the start on.
+    """The pixels of a conic from `start` on, in order: their elements and their lines.
 
     `conic` holds a to e of 0 = a x^2 + b y^2 + c xy + d x + e y, with x and y counted from the start, and the
     largest number of pixels. Hardware: LIN libdoc (the equation, the two ways to stop).
@@ -96,10 +96,10 @@ def conic_pixels(conic: tuple[int, ...], start: Point, stop: Point | None) -> tu
 
 @lru_cache(maxsize=8)
 def traced(conic: tuple[int, ...], target: tuple[int, int] | None) -> Numbers:
-    """The pixels of a conic, (2, n): their elements and lines from the start, which need not be known.
+    """The pixels of a conic, (2, n): elements and lines counted from the start.
 
-    Measured: keeping the value and the slopes from pixel to pixel takes two fifths of the time of computing
-    them anew; and a host that repeats an instruction of one word makes the display trace only once.
+    Measured: updating the value and the slopes from pixel to pixel takes two fifths of the time of computing
+    them anew. The cache makes a host that repeats the instruction cost a single trace.
     """
     a, b, c, slope_x, slope_y, most = conic
     most = min(most, MOST_PIXELS) if most > 0 else MOST_PIXELS
@@ -117,7 +117,7 @@ def traced(conic: tuple[int, ...], target: tuple[int, int] | None) -> Numbers:
         else:
             along, across, bend_along, bend_across = slope_x, slope_y, a, b
             sign, aside = (1 if across < 0 else -1), (1 if along > 0 else -1)
-        # Of three pixels take the one where the right-hand side of the equation is nearest to 0.
+        # Of three pixels, take the pixel where the right-hand side of the equation is nearest to 0.
         value += sign * along + bend_along
         turned = aside * (across + sign * c)
         shift, best = 0, value

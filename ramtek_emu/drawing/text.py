@@ -46,7 +46,7 @@ class TextStyle:
 
     @property
     def step(self) -> tuple[int, int]:
-        """The distance from a cell to the next, and from a line of text to the next, in pixels."""
+        """The distances to the next cell and to the next line of text, in pixels."""
         return self.cell[0] + self.spacing[0] * self.size[0], self.cell[1] + self.spacing[1] * self.size[1]
 
     def dots(self, shapes: Dots) -> Dots:
@@ -87,16 +87,16 @@ def write_text(
     start: Point,
     enable: WriteEnable,
 ) -> Point:
-    """Write characters along the scan of the window from `start` on; returns the place of the next cell.
+    """Write characters along the scan of the window from `start` on; returns the point of the next cell.
 
     Hardware: BTL, LIN, JPL (whole cells, advance 7, line 9); NCAR (the scan order turns the letters); LIN
     (the dots between are background); JPL (its driver sets a window from 1, 1 on and starts text anywhere,
     also before that).
     Assumed: a cell that would cross the edge of the window starts the next line of text, at the edge where
-    the scan starts. A next line of text that would cross the far edge of the window is not begun: what is
-    left of the text is dropped, and the operating point stays behind the last cell that was written. The
-    first line is written from the start point on, even if that lies outside the window, and a cell larger
-    than the window is written whole, since only the write window clips.
+    the scan starts. A line of text that would cross the far edge of the window is not begun: the rest of the
+    text is dropped, and the operating point stays behind the last cell that was written. The first line is
+    written from the start point on, even if that point lies outside the window. A cell larger than the window
+    is written whole, since only the write window clips.
     """
     if window.is_empty:
         window = order.block_window(start, 0x10000, 0x10000)
@@ -104,14 +104,14 @@ def write_text(
     corner = order.corner(window)
     width, height = order.inner_and_outer(window)
     inner, outer = order.steps(window, start)
-    # Count the cells of the first line and of each further one, and the lines.
+    # Count the cells of the first line, the cells of the next lines, and the lines.
     first_cells = cells_from(inner, width, along, step)
     line_cells = cells_from(0, width, along, step)
     lines = max(1, cells_from(outer, height, across, line_step))
     numbers = np.frombuffer(codes, np.uint8)[: first_cells + (lines - 1) * line_cells]
     more = len(numbers) - first_cells
     last = -(-more // line_cells) if more > 0 else 0
-    # Draw those cells of each line that reach into the memory.
+    # Draw the cells that reach into the memory, line by line.
     memory = frame_buffer.window.intersection(enable.window)
     low, low_line = order.steps(window, order.corner(memory))
     room, room_across = order.inner_and_outer(memory)
@@ -134,15 +134,15 @@ def write_text(
 
 
 def cells_from(first: int, extent: int, size: int, step: int) -> int:
-    """How many cells, at a distance of `step` from `first` on, end within an extent.
+    """The number of cells, from `first` on at a distance of `step`, that end within an extent.
 
-    A cell that begins at the near edge, or before it, counts whatever its size.
+    A cell that begins at the near edge, or before it, counts even if it is larger than the extent.
     """
     return max(0, 1 + (max(0, extent - size) - first) // step)
 
 
 def reaching(first: int, size: int, step: int, low: int, extent: int) -> range:
-    """The numbers of the cells, at a distance of `step` from `first` on, that reach into an extent at `low`.
+    """The indices of the cells, from `first` on at a distance of `step`, that reach into an extent at `low`.
 
     >>> reaching(-10, 7, 8, 0, 20)
     range(1, 4)

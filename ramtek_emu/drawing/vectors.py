@@ -3,8 +3,8 @@
 What is modeled: the pixels nearest to each line, both ends included; texture patterns; clipping at the memory
 and at the write window. What is **not**: the order in which the pixels of a line are written.
 
-Assumed: of two pixels equally near to the line, the one farther from the start in the direction across the
-line (Bresenham's algorithm leaves the choice open); no source says.
+Assumed: of two pixels equally near to the line, the pixel farther from the start, in the direction across the
+line, is drawn. Bresenham's algorithm leaves the choice open, and no source says.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from ramtek_emu.arrays import Dots, Indices, Numbers
 from ramtek_emu.memory.frame_buffer import FrameBuffer, WriteEnable
 from ramtek_emu.memory.scan_orders import Point, Window
 
-FEW: Final = 4
-"""Up to this number, lines are drawn faster one by one."""
+FEW_LINES: Final = 4
+"""Up to this number of lines, `write_line` for each of them is faster than all of them at once."""
 
 
 class Ink(NamedTuple):
-    """The words of a line: a word for the ones of the texture, and another for the zeros."""
+    """The words of a line: `word` for the ones of the texture, `background` for the zeros."""
 
     word: int
     background: int = 0
@@ -37,7 +37,7 @@ class Ink(NamedTuple):
         return self.texture[0] == 0xFFFF
 
     def is_one(self, numbers: Numbers) -> Dots:
-        """The bits of the texture for pixels with these numbers along the line.
+        """The bits of the texture at pixels with these numbers along the line.
 
         Hardware: NCAR (sixteen bits, no pixel repeated); LONG (the low field is a bit's width less one).
         Assumed: the highest bit comes first.
@@ -48,7 +48,7 @@ class Ink(NamedTuple):
 
 
 def write_linked(frame_buffer: FrameBuffer, vertices: Numbers, ink: Ink, enable: WriteEnable) -> None:
-    """Draw the lines that link (n, 2) vertices.
+    """Draw lines from vertex to vertex of (n, 2) vertices.
 
     Assumed: the texture continues from line to line, and starts again with the next instruction.
     """
@@ -63,11 +63,11 @@ def write_lines(
     enable: WriteEnable,
     runs_on: bool = False,
 ) -> None:
-    """Draw a line from each of the (n, 2) starts to its end."""
+    """Draw lines from the (n, 2) starts to the (n, 2) ends."""
     inside = frame_buffer.window.intersection(enable.window)
     if inside.is_empty:
         return
-    if len(starts) <= FEW and ink.is_solid:
+    if len(starts) <= FEW_LINES and ink.is_solid:
         for start, end in zip(starts.tolist(), ends.tolist(), strict=True):
             write_line(frame_buffer, Point(*start), Point(*end), ink.word, enable, inside)
         return
@@ -90,7 +90,7 @@ def write_lines(
 def write_line(
     frame_buffer: FrameBuffer, start: Point, end: Point, word: int, enable: WriteEnable, inside: Window
 ) -> None:
-    """Draw one solid line, with fewer numpy calls than many lines at once take."""
+    """Draw one solid line. It takes fewer numpy calls than drawing many lines at once."""
     across, down = end.element - start.element, end.line - start.line
     if across == 0 or down == 0:
         box = Window(
@@ -120,7 +120,7 @@ def write_line(
 
 
 def _are_inside(ends: Numbers, limits: Sequence[tuple[int, int]]) -> bool:
-    """Whether all of (n, 2) ends are within the limits of elements and lines."""
+    """Whether all (n, 2) ends are within the limits of elements and lines."""
     least, most = ends.min(axis=0).tolist(), ends.max(axis=0).tolist()
     return all(
         low <= lowest and highest <= high
@@ -131,10 +131,7 @@ def _are_inside(ends: Numbers, limits: Sequence[tuple[int, int]]) -> bool:
 def points(
     starts: Numbers, ends: Numbers, inside: Window
 ) -> Iterator[tuple[Numbers, Numbers, Numbers, Indices]]:
-    """The points of lines in order: elements, lines, the number along the line, and the row of the line.
-
-    Only points inside the window are computed.
-    """
+    """The points of lines inside a window: elements, lines, numbers along the line, and rows of the line."""
     offset = ends - starts
     size = np.abs(offset)
     length = size.max(axis=1)
@@ -143,13 +140,13 @@ def points(
     first, last = np.zeros_like(length), length
     limits: tuple[tuple[int, int], ...] = (inside.left, inside.right), (inside.top, inside.bottom)
     if len(starts) and _are_inside(np.concatenate((starts, ends)), limits):
-        # Most hosts clip their lines: finding out takes a fifth of the time of clipping.
+        # Most hosts clip their lines, and this test takes a fifth of the time of clipping.
         limits = ()
     for axis, (low, high) in enumerate(limits):
         begin, toward, slope = starts[:, axis], direction[:, axis], doubled[:, axis]
         near, far = (low - begin) * toward, (high - begin) * toward
         near, far = np.minimum(near, far), np.maximum(near, far)
-        # Find the numbers along the line at which it has gone at least `near`, and at most `far`.
+        # Find the numbers along the line where its distance is at least `near` and at most `far`.
         moving = np.maximum(slope, 1)
         enters = -((length - divisor * near) // moving)
         leaves = -((length - divisor * (far + 1)) // moving) - 1
@@ -169,13 +166,13 @@ def points(
 
 
 MOST_POINTS: Final = 1 << 15
-"""How many points are computed at once, or one row if it has more. Limit: a bound on memory."""
+"""The number of points computed at once, or a whole row if it has more. Limit: a bound on memory."""
 
 
 def steps(counts: Numbers) -> Iterator[tuple[Indices, Numbers]]:
-    """Number the points of many lines or circles along each; `counts` are the points of each row.
+    """Number the points of lines or circles; a line or circle is a row, and `counts` are its points.
 
-    Yields some thousands of points at once: the row of each point, and its number in that row from 0.
+    Yields some thousands of points at once: their rows, and their numbers in the row from 0.
 
     >>> [(rows.tolist(), numbers.tolist()) for rows, numbers in steps(np.array([2, 0, 3]))]
     [([0, 0, 2, 2, 2], [0, 1, 0, 1, 2])]

@@ -1,4 +1,4 @@
-"""The host: how its words reach a display and replies come back, here, by a pipe, TCP, Unix socket or device.
+"""The host: the ways of its words to a display, and of the replies: a pipe, TCP, a Unix socket, a device.
 
 Uses the basic modules, instruction_set, memory, instructions and display.
 """

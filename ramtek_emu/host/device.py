@@ -1,25 +1,25 @@
-"""DeviceRelay: a program's device on a pseudoterminal, whose writes a display gets with their boundaries.
+"""DeviceRelay: a pseudoterminal as a program's device; the display gets the program's writes one by one.
 
-The program opens the pseudoterminal by its path, as it opened the device, and it reads and writes whole
-words there in raw mode. Each of its writes is rounded down to whole words by itself, as the driver did
-(Hardware: PRG DRIVER.c, V8K), and goes to the display at a Unix socket; the replies come back.
+The program opens the pseudoterminal by its path, as it opened the device, and reads and writes whole words
+there in raw mode. Every write is rounded down to whole words, as the driver did (Hardware: PRG DRIVER.c,
+V8K), and goes to the display at a Unix socket. The replies come back.
 
 A terminal hands over bytes, not writes. Measured on Linux 6.18: a write of up to 4,095 bytes is read whole if
-it is read before the next one; of 4,096 bytes a read gives 4,095 and then 1; and 2,000 writes of a program
-that does not wait were read in 80 pieces. Packet mode (TIOCPKT) marks no boundaries. Therefore the kernel
-gives notice of each write before it begins: with a seccomp filter, Linux (5.5 and later) stops each `write`
-of the program and lets it go on when we say so. The bytes that were read until then belong to the writes
-before it. That is exact for writes of any size while one process writes at a time. The program and its
-children need not know: they may be statically linked, or of 32 bits. A write takes about a tenth of a
-millisecond longer.
+it is read before the next write; 4,096 bytes are read as 4,095 and then 1; and 2,000 writes of a program that
+does not wait were read in 80 pieces. Packet mode (TIOCPKT) marks no boundaries. Therefore the kernel gives
+notice of every write before it begins: with a seccomp filter, Linux (5.5 and later) stops the program at each
+`write` until we allow it. All bytes that were read before belong to earlier writes. This is exact for writes
+of any size while only one process writes at a time. The program and its children need no change: they may be
+statically linked, or 32-bit. A write takes about a tenth of a millisecond longer.
 
-What notices do **not** tell apart: writes of two processes or threads at the same time, and writes by other
-calls (`io_uring`). With the filter, the program gains no privileges from set-user-ID files; children that
-outlive us cannot write any more, to any file (ENOSYS); and a signal that comes while a write waits to begin
-ends it with EINTR, unless its handler was installed with SA_RESTART.
+What notices do **not** separate: simultaneous writes of two processes or threads, and writes by other calls
+(`io_uring`). With the filter, the program gains no privileges from set-user-ID files. Children that outlive
+us cannot write to any file (ENOSYS). A signal during a write that waits for permission ends the write with
+EINTR, unless the signal's handler was installed with SA_RESTART.
 
-A terminal is line-buffered in C's stdio: a program that draws with `fwrite` ends a write at each byte 0A,
-wherever that is in a word. Its writes mean one stream of bytes, and are passed on as such without notices.
+C's stdio buffers a terminal by lines: a program that draws with `fwrite` ends a write at every byte 0A, even
+in the middle of a word. Its writes are meant as a stream of bytes, and are relayed as a stream, without
+notices.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ CONTINUE: Final = 1
 
 
 class Architecture(NamedTuple):
-    """The numbers of an architecture: for the filter, and of the calls `write` and `writev`."""
+    """The number of an architecture in the filter, and its numbers of the calls `write` and `writev`."""
 
     audit: int
     write: int
@@ -66,7 +66,7 @@ class Architecture(NamedTuple):
 
 
 class Machine(NamedTuple):
-    """The number of the call `seccomp`, and the kinds of programs that run on a machine."""
+    """The number of the call `seccomp`, and the architectures of programs that run on a machine."""
 
     seccomp: int
     architectures: tuple[Architecture, ...]
@@ -95,12 +95,12 @@ def filter_of(machine: Machine) -> bytes:
 
 
 def ask_for_notices() -> int:
-    """Ask for notices of all writes of this process from now on; returns the file to give to WriteNotices.
+    """Install the filter in this process; returns the file of the notices, for WriteNotices.
 
-    The filter stays when a program is run in this process. OSError where the system does not offer it.
+    The filter stays when the process executes a program. OSError if the system has no such filters.
     """
     machine = MACHINES.get(platform.machine())
-    # A Python of 32 bits has other numbers than the machine it runs on.
+    # The numbers of calls differ in a 32-bit Python.
     if platform.system() != "Linux" or machine is None or PROGRAM.size != 16:
         raise OSError(errno.ENOSYS, f"not on {platform.system()}, {platform.machine()}")
     library = ctypes.CDLL(None, use_errno=True)
@@ -120,17 +120,17 @@ def ask_for_notices() -> int:
 
 
 class WriteNotices:
-    """The writes of a program that are about to begin."""
+    """The notices of a program's writes; a write begins when it is allowed."""
 
     def __init__(self, number: int) -> None:
         self._number = number
 
     def fileno(self) -> int:
-        """The number of the file that can be read when a write is about to begin."""
+        """The file descriptor that becomes readable when a write is about to begin."""
         return self._number
 
     def next(self) -> int | None:
-        """The number that identifies the next write; None if the program has gone meanwhile."""
+        """The identity of the next write; None if the program has ended meanwhile."""
         from fcntl import ioctl
 
         notice = bytearray(NOTICE_BYTES)
@@ -157,28 +157,28 @@ class WriteNotices:
 PIECE: Final = 1 << 16
 """The most bytes that are read or sent at once."""
 FULL: Final = 1 << 18
-"""When this many bytes wait in one direction, no more are read for it."""
+"""The number of waiting bytes in one direction at which reading for that direction stops."""
 
 
 class DeviceRelay:
     """Passes bytes between the terminal of a program and a display, until the program has ended."""
 
     def __init__(self, port: UnixPort, terminal: int, notices: WriteNotices | None) -> None:
-        """Begin; `terminal` is our side of the pseudoterminal, which is set not to block.
+        """Relay between the port and `terminal`, our side of the pseudoterminal; it is set not to block.
 
-        Without notices, writes are not rounded down: all of them are one stream of bytes.
+        Without notices, writes are not rounded down: they form a stream of bytes.
         """
         self._port, self._wire = port, port.wire
         self._terminal, self._notices = terminal, notices
         self._written = bytearray()
-        """Bytes that the program wrote and the display has not got; in mid-write their number may be odd."""
+        """Bytes that the program wrote and that were not sent yet; during a write their number may be odd."""
         self._replies = bytearray()
         os.set_blocking(terminal, False)
 
     def relay(self, ended: int) -> None:
-        """Relay until the program has ended, so that the file `ended` can be read; PortError if lost.
+        """Relay until the file `ended` is readable: the program has ended. PortError if the display left.
 
-        `finish` sends the rest of its bytes.
+        Then call `finish` to send the remaining bytes.
         """
         display, notices = self._wire.socket.fileno(), self._notices
         while True:
@@ -205,7 +205,7 @@ class DeviceRelay:
                 return
 
     def finish(self) -> None:
-        """Send the rest of the program's bytes; replies are dropped. PortError if the display left."""
+        """Send the remaining bytes of the program and drop replies. PortError if the display left."""
         while self._written:
             self._replies.clear()
             polled = select.poll()
@@ -214,7 +214,7 @@ class DeviceRelay:
                 self._serve_display(events)
 
     def _serve_display(self, events: int) -> None:
-        """Take replies and send words, as far as the display is ready for it; PortError if it left."""
+        """Receive replies and send words if the display is ready; PortError if it left."""
         try:
             if events & ~select.POLLOUT:
                 data = self._wire.read(PIECE)
@@ -233,7 +233,7 @@ class DeviceRelay:
     def _allow_next_write(self, notices: WriteNotices) -> None:
         identity = notices.next()
         if identity is not None:
-            # A terminal gives all that was written before, when it is read until there is nothing left.
+            # Reading the terminal until it is empty gives all bytes of earlier writes.
             self._take_written()
             self._end_write()
             notices.allow(identity)
@@ -246,7 +246,7 @@ class DeviceRelay:
                 return
 
     def _end_write(self) -> None:
-        """Round the bytes of a write that has ended down to whole words."""
+        """Round the bytes of a finished write down to whole words."""
         if len(self._written) & 1:
             del self._written[-1]
 

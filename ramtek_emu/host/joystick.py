@@ -1,13 +1,13 @@
 """The joystick unit and the RESET switch without a window: lines of text from a person or a script.
 
     cursor X Y      move the cursors that the joystick drives to this element and line
-    by X Y          move them by so many elements and lines
+    by X Y          move them by X elements and Y lines
     enter           press ENTER
     track on        set the TRACK switch (or: track off)
     reset           press RESET on the control unit
 
-A line may hold several of these, which are done in order: `cursor 100 200 enter`. Empty lines and comments
-after a # are ignored. A line that holds anything else does nothing and is answered with a sentence.
+A line may have several actions, which are done in order: `cursor 100 200 enter`. Empty lines, and comments
+after a #, are ignored. A line with anything else does nothing, and an error message answers it.
 """
 
 from __future__ import annotations
@@ -27,16 +27,16 @@ from ramtek_emu.errors import MissingInputError, reason_of
 from ramtek_emu.memory.cursors import Joystick
 
 MOST_BYTES: Final = 1 << 12
-"""Limit: the longest line that is read."""
+"""Limit: the most bytes of a line."""
 MOST_LINES: Final = 64
-"""Limit: how many lines wait to be done before no more are read."""
+"""Limit: the most lines that wait; while they do, no more are read."""
 NUMBER: Final = re.compile(r"[+-]?[0-9]{1,6}")
 
 Action = Callable[[], object]
 
 
 def actions(line: str, joystick: Joystick, reset: Action) -> list[Action]:
-    """The actions that a line asks for, in order; ValueError with a sentence if it asks for anything else."""
+    """The actions of a line, in order; ValueError with a sentence if the line has anything else."""
     words = line.partition("#")[0].split()
     asked: list[Action] = []
     while words:
@@ -65,17 +65,17 @@ def _are_numbers(*words: str) -> bool:
 
 
 class JoystickLines:
-    """Lines from a file, a FIFO or stdin. A thread reads them; `obey` does them when the display is idle."""
+    """Lines from a file, a FIFO or stdin. A thread reads them; `obey` acts on them when called."""
 
     def __init__(self, path: str, joystick: Joystick, reset: Action, answer: Callable[[str], object]) -> None:
-        """Begin to read; `answer` gets a sentence for each bad line. MissingInputError without a file."""
+        """Begin to read; `answer` gets a sentence for a bad line. MissingInputError if there is no file."""
         self._joystick, self._reset, self._answer = joystick, reset, answer
         self._lines: queue.Queue[str] = queue.Queue(MOST_LINES)
         self._number = 0
         threading.Thread(target=self._read, args=(opened(path),), daemon=True).start()
 
     def obey(self) -> None:
-        """Do the lines that wait."""
+        """Do the actions of the waiting lines."""
         for _ in range(MOST_LINES):
             try:
                 line = self._lines.get_nowait()
@@ -94,7 +94,7 @@ class JoystickLines:
 
 
 def opened(path: str) -> int:
-    """The number of the open file, stdin for `-`; MissingInputError if it cannot be read."""
+    """The descriptor of the opened file, stdin for `-`; MissingInputError if it cannot be read."""
     try:
         if path == "-":
             if sys.stdin is None:
@@ -103,7 +103,7 @@ def opened(path: str) -> int:
         kind = os.stat(path).st_mode
         if stat.S_ISDIR(kind):
             raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
-        # A FIFO that is open for writing, too, does not end when one of its writers leaves.
+        # Open a FIFO for writing, too: then it does not end when its last writer leaves.
         return os.open(path, os.O_RDWR if stat.S_ISFIFO(kind) else os.O_RDONLY)
     except (OSError, ValueError) as cause:
         raise MissingInputError(
@@ -113,7 +113,7 @@ def opened(path: str) -> int:
 
 
 def lines_of(number: int) -> Iterator[str]:
-    """The lines of an open file until its end; a line that is too long is cut, so that it is refused."""
+    """Yields the lines of an open file until its end. A line that is too long is cut and then refused."""
     rest = b""
     while True:
         try:
@@ -122,7 +122,7 @@ def lines_of(number: int) -> Iterator[str]:
             data = b""
         *lines, rest = (rest + data).split(b"\n")
         yield from (line.decode("utf-8", "replace") for line in lines)
-        # A line that was cut begins with a question mark, so that it is refused whatever it held.
+        # Put a question mark before a cut line: then its actions are refused.
         rest = rest if len(rest) <= MOST_BYTES else b"?" + rest[:MOST_BYTES]
         if not data:
             if rest:

@@ -1,12 +1,12 @@
-"""A display on pipes: the words of the host come in on one, the replies go out on the other.
+"""A display on two pipes: a pipe for the words of the host, and a pipe for the replies.
 
 `serve_pipe` blocks until the host sends something, as a command does. `PolledPipe` never blocks, so that a
 window can be drawn in between: two threads read and write the pipes, and only the caller uses the display.
-`PacedReader` reads a recorded stream at the pace of a host that loads the table so many times a second.
+`PacedReader` reads a recorded stream at the pace of a host that loads the table at a given rate.
 
-A host that no longer takes its replies loses them, but its words are still executed (Assumed: a host that
-draws and leaves wants its picture). The session ends with the input; an unfinished instruction and an odd
-last byte are dropped.
+A host that stops reading its replies loses them, but its words are still executed (Assumed: a host that draws
+and leaves wants its picture). The session ends with the input; an unfinished instruction and an odd last byte
+are dropped.
 """
 
 from __future__ import annotations
@@ -16,25 +16,22 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable, Iterator
-from typing import Final
 
 import numpy as np
 
 from ramtek_emu.configuration import Configuration
-from ramtek_emu.host.server import HostSession
+from ramtek_emu.host.server import READ_BYTES, HostSession
 from ramtek_emu.instruction_set.decoder import Decoder
 from ramtek_emu.instruction_set.instruction import encode
 
-READ_BYTES: Final = 1 << 16
 Read = Callable[[int], bytes]
 Write = Callable[[bytes], object]
 
 
 def serve_pipe(session: HostSession, read: Read, write: Write | None) -> None:
-    """Execute what `read` returns until it returns nothing; pass each reply to `write` at once.
+    """Execute the bytes that `read` returns until it returns none; pass replies to `write` at once.
 
-    `read` returns the bytes that are available, at most as many as it is asked for. Without `write`, replies
-    are dropped.
+    `read(most)` returns the available bytes, at most `most` of them. Without `write`, replies are dropped.
     """
     while data := read(READ_BYTES):
         for reply in session.feed(data):
@@ -47,7 +44,7 @@ def serve_pipe(session: HostSession, read: Read, write: Write | None) -> None:
 
 
 class PolledPipe:
-    """Serves pipes in slices of time; `ended` is set when the host has closed its end."""
+    """Serves pipes in slices of time; `ended` becomes true when the host has closed its end."""
 
     def __init__(self, session: HostSession, read: Read, write: Write | None = None) -> None:
         self.session = session
@@ -63,11 +60,11 @@ class PolledPipe:
 
     @property
     def has_replied(self) -> bool:
-        """Whether the host has got all replies, or no longer takes them."""
+        """Whether all replies were written, or the host no longer reads them."""
         return self._write is None or not (self._reply or self._replies.unfinished_tasks)
 
     def step(self) -> bool:
-        """Execute one piece; returns False if none has arrived, or if its reply must wait."""
+        """Execute a piece of words; returns False if none has arrived, or if the last reply must wait."""
         if self._reply:
             try:
                 self._replies.put_nowait(self._reply)
@@ -89,7 +86,7 @@ class PolledPipe:
         return True
 
     def serve_for(self, seconds: float) -> None:
-        """Serve, without blocking, until there is nothing left to do or the time is over."""
+        """Serve, without blocking, until nothing is left to do or the time is over."""
         end = time.monotonic() + seconds
         while not self.ended and self.step() and time.monotonic() < end:
             pass
@@ -116,14 +113,14 @@ class PolledPipe:
 
 
 class PacedReader:
-    """A function that reads a stream, like the function it is given, and waits before each load of the table.
+    """Reads a stream as the given `read` does, but waits before every load of the lookup table.
 
-    What is modeled: no more than the pace of the host. A stream has no times: the words that a host sent over
-    a minute are executed in a moment, and an animation of table loads would be over at once. What is **not**:
-    how long any other instruction takes; see `timing` for that.
+    What is modeled: only the pace of the host. A stream has no times: words that a host sent during a minute
+    are executed in a moment, and an animation of table loads would be over at once. What is **not**: the
+    time of any other instruction; see `timing`.
 
     Hardware: none: no source gives the rate of fields, or of transfers (NCAR waits for the vertical retrace
-    before each load, so that at most one came to a field).
+    before a load, so a field had at most one load).
 
     Call it from a thread that may block, such as `PolledPipe`'s.
     """
@@ -142,12 +139,12 @@ class PacedReader:
         self._clock = clock
         self._sleep = sleep
         self._pieces: deque[tuple[bytes, bool]] = deque()
-        """Bytes of the stream, and whether their end is that of a load; they hold no other load."""
+        """Pieces of the stream, and whether a piece ends with a load of the table."""
         self._odd_byte = b""
         self._due = clock()
 
     def __call__(self, most: int) -> bytes:
-        """At most so many bytes of the stream, none at its end. It waits until a load is due."""
+        """At most `most` bytes of the stream, none at its end. Waits until a load is due."""
         if not self._pieces:
             data = self._read(most)
             if not data:
@@ -159,14 +156,14 @@ class PacedReader:
         return data
 
     def _wait(self) -> None:
-        """Wait until the next load is due. A load that comes too late does not hurry the next."""
+        """Wait until the next load is due. After a late load, the next load still waits its full time."""
         now = self._clock()
         if now < self._due:
             self._sleep(self._due - now)
         self._due = max(self._due, now) + self._seconds
 
     def _pieces_of(self, data: bytes) -> Iterator[tuple[bytes, bool]]:
-        """The bytes, cut after each load."""
+        """Yields the bytes, cut after every load."""
         # A word may have begun in the bytes before, and an instruction in the words before.
         odd = len(self._odd_byte)
         whole = self._odd_byte + data

@@ -1,18 +1,18 @@
 """HostPort: the two methods by which a host uses a display; ports to a file and to a display elsewhere.
 
-Words are 16 bits and go low byte first, in files and on wires (Hardware: PRG, JPL, whose programs hand the
-words of their memory to the interface as they are).
+Words have 16 bits and are sent low byte first, in files and on wires (Hardware: PRG, JPL: their programs hand
+the words of their memory to the interface unchanged).
 
-A `Wire` is what a host and a display in another process have between them: a TCP connection or a Unix socket.
-TCP carries one stream of bytes. A Unix socket carries packets; a packet is one write of the host.
+A `Wire` connects a host to a display in another process: a TCP connection or a Unix socket. TCP carries a
+stream of bytes. A Unix socket carries packets; a packet is a write of the host.
 
 Between the words of a wire there may be marks. A host sends a mark to ask for a hard reset, and the display
-sends one back when the reset is done: the replies that arrive before it belong to the time before. On TCP, a
-mark is a byte of urgent data, which is no part of the words; on a Unix socket it is an empty packet.
+sends a mark back when the reset is done: the replies that arrive before that mark precede the reset. On TCP,
+a mark is a byte of urgent data, which is no part of the words; on a Unix socket it is an empty packet.
 
 Hardware: PRG DRIVER.c (the RESET bit of the interface's command register, a hard reset). Assumed: a mark
-stands for that bit, since a wire has no register beside the words; it takes effect after the words that
-were sent before it.
+stands for that bit, since a wire has no register beside the words; it takes effect after all words that were
+sent earlier.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class HostPort(Protocol):
 
 
 class Recorder:
-    """A host port that writes all words to a file, and passes them on to another port if one is given."""
+    """A host port that writes all words to a file, and passes them on to another port if there is one."""
 
     def __init__(self, file: BinaryIO, port: HostPort | None = None) -> None:
         self._file = file
@@ -77,11 +77,11 @@ class Recorder:
 
 
 PACKET_BYTES: Final = 1 << 19
-"""The longest packet that is read whole. Limit: more than a socket holds by the system's defaults."""
+"""The longest packet that is read whole. Limit: more than a socket's default buffer."""
 SIOCATMARK: Final = 0x8905
-"""The request that tells whether the next byte is urgent (Linux: asm-generic/sockios.h)."""
+"""The request that asks whether the next byte is urgent (Linux: asm-generic/sockios.h)."""
 MARKS_WORK: Final = hasattr(select, "epoll")
-"""Whether this system (Linux) tells where marks are."""
+"""Whether this system (Linux) reports the places of marks."""
 
 
 class Sign(Enum):
@@ -93,16 +93,16 @@ class Sign(Enum):
 
 
 class Wire:
-    """A connected socket, on which no call waits. Every method raises OSError if the other side is lost."""
+    """A connected socket. No method waits, and all raise OSError if the other side is lost."""
 
     def __init__(self, connected: socket.socket) -> None:
         self.socket = connected
         self.keeps_writes = connected.type != socket.SOCK_STREAM
-        """Whether the bytes come in packets, as the other side wrote them."""
+        """Whether bytes arrive in packets: a packet is a write of the other side."""
         connected.setblocking(False)
         if not self.keeps_writes:
             connected.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-            # Keep the urgent bytes at their places among the others.
+            # Leave urgent bytes at their places in the stream.
             connected.setsockopt(socket.SOL_SOCKET, socket.SO_OOBINLINE, 1)
 
     def read(self, most: int) -> bytes | Sign:
@@ -122,7 +122,7 @@ class Wire:
             return Sign.NOTHING
 
     def send(self, data: bytes | bytearray | memoryview) -> int:
-        """Send bytes, as many as the wire takes now; returns how many. A packet goes whole or not at all."""
+        """Send as many bytes as the wire takes now; returns their number: for a packet, all or none."""
         try:
             return self.socket.send(data)
         except BlockingIOError:
@@ -140,15 +140,15 @@ class Wire:
         return True
 
     def break_off(self) -> None:
-        """Let closing a TCP connection look like a loss to the other side. A Unix socket has one end only."""
+        """Make closing a TCP connection look like a loss to the other side. Do nothing on a Unix socket."""
         if not self.keeps_writes:
-            # On some systems, a connection that is lost already takes no options.
+            # On some systems, a lost connection accepts no options.
             with suppress(OSError):
                 at_once = struct.pack("ii", 1, 0)
                 self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, at_once)
 
     def _has_ended(self) -> bool:
-        """Whether an empty packet is the end: then the other side has hung up, and nothing waits."""
+        """Whether an empty packet is the end: the other side has hung up, and no bytes are waiting."""
         if not MARKS_WORK:
             return True
         from termios import FIONREAD
@@ -158,7 +158,7 @@ class Wire:
         return bool(poll.poll(0)) and not self._number(FIONREAD)
 
     def _number(self, request: int) -> int:
-        """The system's answer to a request about the socket; 0 where there are no such requests."""
+        """The system's answer to a request about the socket; 0 on systems without such requests."""
         if not MARKS_WORK:
             return 0
         from fcntl import ioctl
@@ -169,20 +169,20 @@ class Wire:
 MOST_SECONDS: Final = 1_000_000
 """The longest timeout. Limit: the system cannot wait for much longer at once."""
 HURRIED_SECONDS: Final = 1.0
-"""How long closing waits for the display while an error is under way. Limit: not to hide that error."""
+"""The longest wait for the display when an error closes the port. Limit: a hang would hide the error."""
 
 Self = TypeVar("Self", bound="SocketPort")
 
 
 class SocketPort:
-    """A host port over a connected socket; `timeout` is how long it waits for the display, in seconds.
+    """A host port over a connected socket; `timeout` is the longest wait for the display, in seconds.
 
-    While `send` is sending, it also takes the replies of the display. Otherwise both sides could wait for
+    While `send` is sending, it also reads the replies of the display. Otherwise both sides could wait for
     each other forever.
     """
 
     at_once: int
-    """How many bytes are sent or read at once."""
+    """The most bytes that are sent or read at once."""
 
     def __init__(self, address: str, connected: socket.socket, timeout: float) -> None:
         self.address = address
@@ -190,7 +190,7 @@ class SocketPort:
         self.wire = Wire(connected)
         self._received = bytearray()
         self._mark_is_due = False
-        """Whether a reset was asked for and is not answered yet; replies until then are dropped."""
+        """Whether the display has not answered a reset yet; replies that arrive before are dropped."""
 
     def __reduce__(self) -> NoReturn:
         raise TypeError(
@@ -233,9 +233,9 @@ class SocketPort:
     def reset(self) -> None:
         """Ask for a hard reset, and wait until it is done; all words sent before are executed first.
 
-        An unfinished instruction and all replies that were not received are dropped; parameters, screen,
-        cursors and status are reset; table and characters stay. PortError if it is not done in time, or on a
-        system that has no marks on TCP.
+        The unfinished instruction and all unread replies are dropped. Parameters, screen, cursors and status
+        are reset; the table and the characters are not. PortError if the display does not answer in time, or
+        on TCP on a system without marks.
         """
         if not (MARKS_WORK or self.wire.keeps_writes):
             raise PortError(
@@ -244,7 +244,7 @@ class SocketPort:
             )
         is_sent = False
         while self._mark_is_due or not is_sent:
-            # A reset that was given up is answered first: two marks at once would be one.
+            # Wait for the answer to an earlier reset that timed out: two marks at once would merge.
             events = self._ready(self.timeout, writing=not self._mark_is_due)
             if not events:
                 raise PortError(
@@ -260,10 +260,10 @@ class SocketPort:
                 self._take()
 
     def close(self) -> None:
-        """End the session, and wait until the display has executed everything; it is then free for others.
+        """End the session, and wait until the display has executed all words; then it can serve other hosts.
 
-        Replies that were not received are dropped. PortError if the display turned this host away, was lost,
-        or does not get to the end within `timeout` seconds.
+        Unread replies are dropped. PortError if the display turned this host away, was lost, or does not
+        execute all words within `timeout` seconds.
         """
         self._close(self.timeout)
 
@@ -276,7 +276,7 @@ class SocketPort:
         if error is None:
             self.close()
         else:
-            # The error under way tells more than an error of closing.
+            # The error that is being raised says more than an error of closing.
             with suppress(PortError):
                 self._close(min(self.timeout, HURRIED_SECONDS))
 
@@ -289,7 +289,7 @@ class SocketPort:
             self.wire.socket.close()
 
     def _end(self, seconds: float) -> None:
-        """End our side, and read until the display ends its own; PortError if it ended first, or does not."""
+        """End our side, and read until the display ends; PortError if it ended first, or does not end."""
         deadline = time.monotonic() + seconds
         data: bytes | Sign = b""
         while data is not Sign.NOTHING and time.monotonic() < deadline:
@@ -304,12 +304,12 @@ class SocketPort:
             if self._ready(left) and self._read() is Sign.END:
                 return
         raise PortError(
-            f"a display must get to the end of what it was sent within {seconds:g} seconds, and "
+            f"a display must execute all words within {seconds:g} seconds, and "
             f"{self.address} has not: it may be serving another host first; give a longer timeout"
         )
 
     def _ready(self, seconds: float, writing: bool = False) -> int:
-        """The events of the socket after waiting up to so many seconds for some: reading, perhaps writing."""
+        """The events of the socket, waiting up to `seconds` for some: reading and, if asked for, writing."""
         if self._is_closed:
             raise PortError(f"a port must be open, not closed ({self.address}); open it again")
         with selectors.DefaultSelector() as selector:
@@ -319,7 +319,7 @@ class SocketPort:
         return ready[0][1] if ready else 0
 
     def _send_some(self, data: bytes | memoryview) -> int:
-        """Send some bytes when the display takes them; returns how many. Replies are taken meanwhile."""
+        """Send bytes when the display takes them, and return their number. Replies are read meanwhile."""
         events = self._ready(self.timeout, writing=True)
         if not events:
             raise PortError(
@@ -336,7 +336,7 @@ class SocketPort:
             raise self._gone(reason_of(cause)) from cause
 
     def _take(self) -> None:
-        """Keep the replies that have arrived; at a mark, drop those that precede it."""
+        """Read the replies that have arrived; at a mark, drop all earlier replies."""
         data = self._read()
         if data is Sign.END:
             raise self._gone("it closed the connection")
@@ -359,7 +359,7 @@ class SocketPort:
 
 
 def checked_timeout(seconds: object) -> float:
-    """How long a port waits, as a float; PortError if it is no time in seconds."""
+    """The timeout of a port as a float; PortError if it is not a time in seconds."""
     if not isinstance(seconds, int | float) or isinstance(seconds, bool) or not 0 < seconds <= MOST_SECONDS:
         raise PortError(
             f"a timeout must be a number of seconds from 0 to {MOST_SECONDS:,}, not {seconds!r}; "
@@ -371,9 +371,9 @@ def checked_timeout(seconds: object) -> float:
 class TcpPort(SocketPort):
     """A host port to the display at `tcp://host:port`, such as `ramtek serve --port` opens.
 
-    If the display serves another host, this one waits in line: its words are kept and executed when its turn
-    comes. `receive` waits up to `timeout` seconds, and so does `close` until the display has executed
-    everything. A `with` block calls `close` at its end.
+    While the display serves another host, this host waits in line: its words are stored and executed when its
+    turn comes. `receive` waits up to `timeout` seconds for replies, and `close` until the display has
+    executed all words. A `with` block calls `close` at its end.
     """
 
     at_once = 1 << 18
@@ -421,9 +421,9 @@ class UnixPort(SocketPort):
         super().__init__(address, connected_socket(address, timeout), timeout)
 
     def write(self, data: bytes) -> None:
-        """Send any number of bytes up to 65,536 as one write, as a program of the time wrote them.
+        """Send up to 65,536 bytes as one write, as a program of the time did.
 
-        PortError if the connection is lost, or if the write is longer than that.
+        PortError if the connection is lost, or if there are more bytes.
         """
         if len(data) > self.at_once:
             raise PortError(
@@ -455,7 +455,7 @@ def connected_socket(path: str, timeout: float) -> socket.socket:
             connected.connect(path)
         except (OSError, ValueError) as cause:
             connected.close()
-            # The line is full. Unlike TCP, a Unix socket does not wait for a place by itself.
+            # The line is full. Unlike TCP, a Unix socket does not wait for a place.
             if isinstance(cause, BlockingIOError) and time.monotonic() < deadline:
                 time.sleep(0.05)
                 continue

@@ -1,21 +1,21 @@
 """Server: a display behind a listening socket, for one host after the other.
 
-What is modeled: the host interface as a stream of words, low byte first both ways (Hardware: PRG, JPL, V8K:
-the words of a PDP-11's or a VAX's memory as they are); instructions cut anywhere; replies in order and as
-soon as they exist; whole words: a write of odd length is rounded down (Hardware: PRG DRIVER.c, V8K). A Unix
-socket keeps the writes of a host apart, and each is rounded down by itself. TCP does not tell where a write
-ended: there, only the odd byte at the end of the session is dropped. What is **not** modeled: the UNIBUS
-registers and their interrupts.
+What is modeled: the host interface as a stream of words, low byte first in both directions (Hardware: PRG,
+JPL, V8K: the words of a PDP-11's or a VAX's memory); instructions cut anywhere; replies in order and as soon
+as they exist; whole words: a write of odd length is rounded down (Hardware: PRG DRIVER.c, V8K). A Unix socket
+separates the writes of a host, and every write is rounded down. TCP does not mark the ends of writes: only
+the odd byte at the end of the session is dropped. What is **not** modeled: the UNIBUS registers and their
+interrupts.
 
-No call blocks longer than its argument allows, so that a window can be drawn in between: `step` reads what
-has arrived, sends what can be sent, and returns. When a host leaves, all its words are executed first; then
-its unfinished instruction and its unread replies are dropped, the memories keep their state, and the next
-host is served. Hosts that connect meanwhile wait in line: the system keeps the connections of 128 of them
-with the words they have sent, and others try again until they find a place.
+No call blocks longer than its argument allows, so that a window can be drawn in between: `step` reads the
+bytes that have arrived, sends as many replies as the socket takes, and returns. When a host leaves, all its
+words are executed first. Then its unfinished instruction and its unread replies are dropped, the memories
+stay as they are, and the next host is served. Hosts that connect meanwhile wait in line: the system stores
+the connections of 128 hosts with the words they have sent; further hosts try again until there is a place.
 
 Limit: a host is disconnected if nothing is sent or received for `idle_seconds`, or if an instruction stays
-incomplete for `partial_seconds`. The clock of a host starts when its turn comes, so that a host that waits
-loses nothing, and a silent host holds up the line for `idle_seconds` at most. While REPLY_BYTES of replies
+incomplete for `partial_seconds`. The clock of a host starts when its turn comes, so that waiting in line
+costs nothing, and a silent host holds up the line for `idle_seconds` at most. While REPLY_BYTES of replies
 wait for the host, nothing more is read from it.
 """
 
@@ -43,29 +43,28 @@ from ramtek_emu.instruction_set.instruction import NO_WORDS
 from ramtek_emu.instruction_set.table import FORMATS
 
 Record = Callable[[bytes], object]
-"""Takes the bytes of whole instructions, in order, to record them."""
+"""A function that records the bytes of whole instructions, in order."""
 
-LEAST: Final = 4
-PIECE: Final = 1 << 15
+SMALLEST_PIECE: Final = 4
+LARGEST_PIECE: Final = 1 << 15
 """The smallest and the largest number of words passed to the display at once."""
-LONG: Final = 0.004
-SHORT: Final = 0.001
-"""Seconds: a piece that took longer than LONG makes the next one shorter, one below SHORT makes it longer."""
+LONG_SECONDS: Final = 0.004
+SHORT_SECONDS: Final = 0.001
+"""After a piece that took longer than LONG_SECONDS, the next is smaller; after a shorter time, larger."""
 READING_PIECE: Final = 64
-"""The size of a piece that may contain reading instructions: at most 32, each with at most 32,767 words."""
+"""The size of a piece that may contain reading instructions: at most 32 of them, of at most 32,767 words."""
 REPLY_PIECE: Final = 1 << 15
 """The largest number of words of replies returned at once."""
 REPLYING: Final[Booleans] = np.isin(np.arange(256), [row.opcode for row in FORMATS if row.replies])
-"""Whether an opcode makes the display reply."""
+"""Whether the display replies, for each opcode."""
 
 
 class HostSession:
-    """One host at a display: passes its bytes on, and the bytes of the replies back; for sockets and pipes.
+    """A host at a display: passes the bytes of its words on and the bytes of replies back, on any wire.
 
-    The words are passed on in pieces. A piece that may contain reading instructions is short, so that the
-    replies that wait never outgrow the processor's bound; the next piece is read when those replies were
-    taken. A piece is also short if the last one took long, so that a window that is served in between stays
-    responsive.
+    The words are passed on in pieces. A piece that may contain reading instructions is small, so that waiting
+    replies never outgrow the processor's bound; the next piece waits until the replies were taken. A piece is
+    also small if the last piece took long, so that a window that is served in between stays responsive.
     """
 
     def __init__(self, display: Ramtek9300, record: Record | None = None) -> None:
@@ -73,7 +72,7 @@ class HostSession:
         self._record = record
         self._unrecorded = NO_WORDS
         self.words = 0
-        """How many words the host has sent; it never decreases."""
+        """The number of words that the host has sent; it never decreases."""
         self.odd_byte = b""
         """The first byte of a word whose second byte has not arrived."""
         self._size = READING_PIECE
@@ -85,14 +84,14 @@ class HostSession:
         return bool(self.odd_byte) or self.display.decoder.pending_words > 0
 
     def feed(self, data: bytes) -> Iterator[bytes]:
-        """Pass bytes of the host to the display, piece by piece, and yield the replies to each piece.
+        """Pass bytes of the host to the display, piece by piece, and yield the replies after a piece.
 
-        The work is done while the iterator is consumed: the next piece waits until all replies were taken.
+        The next piece waits until the iterator is asked for more.
         """
         data = self.odd_byte + data
         self.odd_byte = data[len(data) & ~1 :]
         words = np.frombuffer(data, "<u2", len(data) // 2).astype(np.uint16, copy=False)
-        most = READING_PIECE if REPLYING[words >> 8].any() else PIECE
+        most = READING_PIECE if REPLYING[words >> 8].any() else LARGEST_PIECE
         place = 0
         while place < len(words):
             piece = words[place : place + min(self._size, most)]
@@ -100,10 +99,10 @@ class HostSession:
             begin = time.perf_counter()
             self.display.send(piece)
             took = time.perf_counter() - begin
-            if took > LONG:
-                self._size = max(LEAST, self._size // 8)
-            elif took < SHORT:
-                self._size = min(PIECE, 2 * self._size)
+            if took > LONG_SECONDS:
+                self._size = max(SMALLEST_PIECE, self._size // 8)
+            elif took < SHORT_SECONDS:
+                self._size = min(LARGEST_PIECE, 2 * self._size)
             self.words += len(piece)
             if self._record is not None:
                 self._unrecorded = self._recorded(self._record, piece)
@@ -112,17 +111,17 @@ class HostSession:
                 yield self.display.receive(min(waiting, REPLY_PIECE)).astype("<u2", copy=False).tobytes()
 
     def _recorded(self, record: Record, piece: Words) -> Words:
-        """Record the instructions that are complete now, and return the words of the incomplete one."""
+        """Record the complete instructions, and return the words of the incomplete instruction."""
         words = np.concatenate((self._unrecorded, piece))
         whole = len(words) - self.display.decoder.pending_words
         record(words[:whole].astype("<u2", copy=False).tobytes())
         return words[whole:]
 
     def reset(self) -> None:
-        """Reset the display; the recording resets it at the same place.
+        """Reset the display; the recording gets a reset at the same place.
 
-        The incomplete instruction and the replies that were not taken are dropped; the odd byte stays, since
-        the stream of bytes goes on.
+        The incomplete instruction and the unread replies are dropped; the odd byte stays, since the stream of
+        bytes goes on.
         """
         self._unrecorded = NO_WORDS
         self.display.reset()
@@ -130,7 +129,7 @@ class HostSession:
             self._record(instructions.reset().astype("<u2", copy=False).tobytes())
 
     def leave(self) -> None:
-        """Drop the incomplete instruction, the odd byte and the replies that were not taken."""
+        """Drop the incomplete instruction, the odd byte and the unread replies."""
         self.odd_byte = b""
         self._unrecorded = NO_WORDS
         self.display.decoder.clear()
@@ -138,15 +137,15 @@ class HostSession:
 
 
 READ_BYTES: Final = 1 << 16
-"""How many bytes are read from a stream at once."""
+"""The most bytes that are read at once."""
 REPLY_BYTES: Final = 1 << 18
-"""When this many bytes of replies wait for the host, no more of its words are read."""
+"""The bytes of waiting replies at which reading the host's words stops."""
 
 
 class Client:
-    """The host that is served now: its wire, its words, its replies and its time limits.
+    """The host that is served now, with its wire, its session, its waiting replies and its time limits.
 
-    A host that no longer takes its replies loses them, but its words are still executed, as on a pipe.
+    A host that stops reading its replies loses them, but its words are still executed, as on a pipe.
     """
 
     def __init__(self, wire: Wire, session: HostSession, idle_seconds: float, partial_seconds: float) -> None:
@@ -154,55 +153,55 @@ class Client:
         self.session = session
         self.idle_seconds, self.partial_seconds = idle_seconds, partial_seconds
         self.waiting = 0
-        """How many bytes of replies are still to be sent."""
+        """The number of bytes of waiting replies."""
         self._replies: deque[bytes] = deque()
         self._mark_is_due = False
         self._takes_replies = True
         self._pending: Iterator[bytes] | None = None
         self._is_gone = False
         self._sent_all = False
-        self._moved = self._whole = time.monotonic()
+        self._last_transfer = self._last_complete = time.monotonic()
 
     @property
     def has_work(self) -> bool:
-        """Whether words of the host can be passed to the display now."""
+        """Whether words of the host can be executed now."""
         return self._pending is not None and self.waiting < REPLY_BYTES
 
     @property
     def has_to_send(self) -> bool:
-        """Whether a mark or replies are still to be sent."""
+        """Whether a mark or replies wait to be sent."""
         return self._mark_is_due or self.waiting > 0
 
     @property
     def wanted(self) -> int:
-        """The events of the socket that can be handled now."""
+        """The events of the socket that can be served now."""
         reading = self._pending is None and not self._sent_all and self.waiting < REPLY_BYTES
         return (selectors.EVENT_READ if reading else 0) | (selectors.EVENT_WRITE if self.has_to_send else 0)
 
     @property
     def ended(self) -> bool:
-        """Whether nothing remains to be done for this host."""
+        """Whether the host is lost, or has left with all words executed and all replies sent."""
         return self._is_gone or (self._sent_all and self._pending is None and not self.has_to_send)
 
     @property
     def deadline(self) -> float:
-        """When the host is disconnected if nothing happens."""
-        idle = self._moved + self.idle_seconds
-        return min(idle, self._whole + self.partial_seconds) if self.session.unfinished else idle
+        """The time when the host is disconnected, unless something is transferred before."""
+        idle = self._last_transfer + self.idle_seconds
+        return min(idle, self._last_complete + self.partial_seconds) if self.session.unfinished else idle
 
     def serve(self, events: int) -> bool:
-        """Read or write what the socket is ready for; returns whether anything moved."""
-        moved = False
+        """Read or write if the socket is ready; returns whether anything was transferred."""
+        transferred = False
         if events & selectors.EVENT_WRITE and self.has_to_send:
-            moved = self._send()
+            transferred = self._send()
         if events & selectors.EVENT_READ:
-            moved |= self._read()
-        if moved:
-            self._moved = time.monotonic()
-        return moved
+            transferred |= self._read()
+        if transferred:
+            self._last_transfer = time.monotonic()
+        return transferred
 
     def _send(self) -> bool:
-        """Send the mark or one piece of the replies. Replies to different writes are in different packets."""
+        """Send the mark, or the next reply. Replies to different writes are in different packets."""
         try:
             if self._mark_is_due:
                 self._mark_is_due = not self.wire.send_mark()
@@ -232,7 +231,7 @@ class Client:
         if data is Sign.NOTHING:
             return False
         if not self.session.unfinished:
-            self._whole = time.monotonic()
+            self._last_complete = time.monotonic()
         if data is Sign.END:
             self._sent_all = True
         elif data is Sign.MARK:
@@ -241,32 +240,33 @@ class Client:
             self._drop_replies()
             self._mark_is_due = True
         elif not isinstance(data, Sign):
-            # A packet is one write of the host, and is rounded down to whole words by itself.
+            # A packet is a write of the host: round it down to whole words.
             self._pending = self.session.feed(data[: len(data) & ~1] if self.wire.keeps_writes else data)
         return True
 
     def work(self) -> bool:
-        """Pass one piece of the host's words to the display; returns whether there was one."""
+        """Execute a piece of the host's words; returns whether there was a piece."""
         if not self.has_work or self._pending is None:
             return False
         begin = time.monotonic()
         reply = next(self._pending, None)
-        # The clocks of the host stand still while it is the display that takes its time.
+        # Stop the clocks of the host while the display works.
         took = time.monotonic() - begin
-        self._moved, self._whole = self._moved + took, self._whole + took
+        self._last_transfer += took
+        self._last_complete += took
         if reply is None:
             self._pending = None
         elif reply and self._takes_replies:
             self._replies.append(reply)
             self.waiting += len(reply)
         if not self.session.unfinished:
-            self._whole = time.monotonic()
+            self._last_complete = time.monotonic()
         return True
 
     def leave(self) -> None:
         """Close the wire and drop the unfinished instruction and the replies."""
         if self._pending is not None:
-            # Not all of the host's words were executed, and it must know.
+            # Tell the host that not all its words were executed.
             self.wire.break_off()
         self._pending = None
         self.session.leave()
@@ -275,14 +275,14 @@ class Client:
 
 IDLE_SECONDS: Final = 600.0
 PARTIAL_SECONDS: Final = 60.0
-LINE: Final = 128
-"""Limit: how many hosts can wait in line."""
+HOSTS_IN_LINE: Final = 128
+"""Limit: the most hosts that wait in line."""
 
 Self = TypeVar("Self", bound="Server")
 
 
 class Server:
-    """A display that serves the hosts of a listening socket; `address` is what a host passes to its port."""
+    """A display that serves the hosts of a listening socket; `address` is the address for a host's port."""
 
     def __init__(
         self,
@@ -298,7 +298,7 @@ class Server:
         self.idle_seconds = idle_seconds
         self.partial_seconds = PARTIAL_SECONDS
         self.served = 0
-        """How many hosts were served and have left; it never decreases."""
+        """The number of hosts that were served and have left; it never decreases."""
         self._listener = listener
         self._listener.setblocking(False)
         self._selector = selectors.DefaultSelector()
@@ -311,7 +311,7 @@ class Server:
         return self._client is not None
 
     def step(self, seconds: float = 0.0) -> bool:
-        """Serve what has arrived, waiting up to `seconds` for it; returns whether anything was done."""
+        """Serve once, waiting up to `seconds` for an event; returns whether anything was done."""
         client = self._client
         if client is None:
             return bool(self._selector.select(seconds)) and self._accept()
@@ -330,7 +330,7 @@ class Server:
     def serve_for(self, seconds: float, wait: float = 0.0) -> None:
         """Serve until nothing is left to do or the time is over; for a window's ticks.
 
-        It blocks only while a host is connected, and up to `wait` seconds, for the first words.
+        If a host is connected, wait up to `wait` seconds for the first words; otherwise do not wait.
         """
         end = time.monotonic() + seconds
         done = self.step(wait if self.busy else 0.0)
@@ -338,12 +338,12 @@ class Server:
             done = self.step()
 
     def reset(self) -> None:
-        """Press RESET on the control unit: an unfinished instruction is dropped, the host stays connected."""
+        """Press RESET on the control unit: drops the unfinished instruction; the host stays connected."""
         client = self._client
         (HostSession(self.display, self.record) if client is None else client.session).reset()
 
     def close(self) -> None:
-        """Disconnect the host and stop listening; hosts that wait in line are turned away."""
+        """Disconnect the host and stop listening; the hosts in line are turned away."""
         self._disconnect()
         self._selector.close()
         self._listener.close()
@@ -360,7 +360,7 @@ class Server:
         try:
             connected, _ = self._listener.accept()
         except OSError:
-            # The caller has disconnected already.
+            # The host has disconnected already.
             return False
         try:
             connected.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
@@ -370,7 +370,7 @@ class Server:
             return True
         session = HostSession(self.display, self.record)
         self._client = Client(wire, session, self.idle_seconds, self.partial_seconds)
-        # While this host is served, the others wait in the listener's line.
+        # While this host is served, other hosts wait in the listener's line.
         self._selector.unregister(self._listener)
         self._selector.register(connected, selectors.EVENT_READ)
         return True
@@ -385,7 +385,7 @@ class Server:
 
 
 class TcpServer(Server):
-    """A display at `tcp://host:port`. `port` is the port it listens on, even if 0 asked for any free one."""
+    """A display at `tcp://host:port`. With `port=0` the system chooses a free port: see `port`."""
 
     def __init__(
         self,
@@ -399,10 +399,10 @@ class TcpServer(Server):
         """Start to listen; PortError if the port is taken or cannot be opened."""
         try:
             family = socket.AF_INET6 if ":" in host else socket.AF_INET
-            listener = socket.create_server((host, port), family=family, backlog=LINE)
+            listener = socket.create_server((host, port), family=family, backlog=HOSTS_IN_LINE)
         except (OSError, OverflowError, UnicodeError) as cause:
             raise PortError(
-                f"a server must have a port to itself, and {host}:{port} cannot be had ({reason_of(cause)}); "
+                f"a server must have a free port, and {host}:{port} cannot be opened ({reason_of(cause)}); "
                 "choose another, or 0 for any"
             ) from cause
         self.host = host
@@ -414,7 +414,7 @@ class TcpServer(Server):
 class UnixServer(Server):
     """A display at a path, on a Unix socket that keeps the boundaries of writes (SEQPACKET).
 
-    Whoever may write to the socket's file may draw: it is made for its owner only (0600).
+    Everyone who may write to the socket's file may draw: only its owner may (0600).
     """
 
     def __init__(
@@ -427,17 +427,17 @@ class UnixServer(Server):
     ) -> None:
         """Start to listen.
 
-        PortError where the system has no such sockets, OutputExistsError if the path is taken by anything but
-        the socket of a server that is gone, OutputError if no socket can be made there.
+        PortError if the system has no such sockets. OutputExistsError if the path exists, unless it is the
+        socket of a server that is gone. OutputError if no socket can be made there.
         """
         address = os.fspath(path)
         listener = packet_socket()
         try:
-            clear_the_way(address)
-            # The socket's file gets the permissions of the socket; they are never wider.
+            remove_stale_socket(address)
+            # The socket's file gets the permissions of the socket: set them before the file exists.
             os.fchmod(listener.fileno(), stat.S_IRUSR | stat.S_IWUSR)
             listener.bind(address)
-            listener.listen(LINE)
+            listener.listen(HOSTS_IN_LINE)
             self._file = os.lstat(address)
         except OutputExistsError:
             listener.close()
@@ -445,7 +445,7 @@ class UnixServer(Server):
         except (OSError, ValueError) as cause:
             listener.close()
             raise OutputError(
-                f"a server's socket must be where one can be made, not at {address!r} "
+                f"a server's socket must be where a socket can be made, not at {address!r} "
                 f"({reason_of(cause)}); choose another path"
             ) from cause
         super().__init__(display, listener, address, idle_seconds, record)
@@ -458,7 +458,7 @@ class UnixServer(Server):
                 os.unlink(self.address)
 
 
-def clear_the_way(path: str) -> None:
+def remove_stale_socket(path: str) -> None:
     """Remove the socket of a server that is gone; OutputExistsError if anything else is at the path."""
     try:
         kind = os.lstat(path).st_mode
@@ -467,7 +467,7 @@ def clear_the_way(path: str) -> None:
     thing = "exists"
     if stat.S_ISSOCK(kind):
         thing = "belongs to a server that runs"
-        # A socket of another type is refused by a server that runs, and does not disturb it.
+        # A running server refuses a socket of another type and is not disturbed.
         with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as asking:
             try:
                 asking.connect(path)

@@ -1,5 +1,5 @@
 """The instruction set: its table, and instructions as words, as values and as text.
 
-The words of a stream become instructions here and instructions become words; nothing is executed. Uses the
-basic modules: errors, arrays, checks, timing, configuration.
+Converts words to instructions and back; executes nothing. Uses the basic modules: errors, arrays, checks,
+timing, configuration.
 """

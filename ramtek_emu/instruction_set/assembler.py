@@ -1,6 +1,6 @@
-"""Assembler: the words of a listing, or of a program that was written by hand in the same form.
+"""Assembler: converts a listing, or a program that you wrote in the same form, to words.
 
-A line holds an instruction: its name, its flags, its operands by name or mnemonic, the length of its data.
+A line is an instruction: name, flags, operands by name or mnemonic, and the length of the data.
 
     SET FORE=1 BK
     ERS BACK=2 WIN=100,331..200,411       ; a filled box
@@ -8,8 +8,8 @@ A line holds an instruction: its name, its flags, its operands by name or mnemon
       to 100,451  200,300                 ; points; `text "HELLO"` for characters, `words 0010*640` for others
 
 Numbers are decimal or, after 0x, hexadecimal. `raw` and `words` take hexadecimal words, `byte` takes the odd
-byte at the end of a stream. If no length is given, the data are counted. The words on the left of a listing
-are ignored.
+byte at the end of a stream. If the length is left out, the data are counted. The words on the left of a
+listing are ignored.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ OPERAND_OF_WORD: Final = {
 
 
 def assemble(lines: Iterable[str]) -> Iterator[bytes]:
-    """The stream as bytes, low byte first, one instruction at a time; ListingError names the wrong line."""
+    """Yields the bytes of the stream, low byte first, by instructions; ListingError names the wrong line."""
     pending: Draft | None = None
     ended = 0
     for number, line in enumerate(lines, 1):
@@ -84,7 +84,7 @@ def assemble(lines: Iterable[str]) -> Iterator[bytes]:
 
 
 class Draft:
-    """An instruction whose lines of data have not all been read yet."""
+    """An instruction to which lines of data can be added."""
 
     def __init__(self, tokens: list[str], number: int) -> None:
         self.number = number
@@ -219,7 +219,7 @@ NUMBER: Final = re.compile(r"-?[0-9]{1,6}|0[xX][0-9A-Fa-f]{1,4}")
 HEXADECIMAL: Final = re.compile(r"(?P<word>[0-9A-Fa-f]{1,4})(?:\*(?P<times>[0-9]{1,5}))?")
 ESCAPE: Final = re.compile(r"\\x([0-9A-Fa-f]{2})|\\(.)")
 MOST_WORDS: Final = 0x8000
-"""The most words in a line, as many as the data of an instruction."""
+"""The most words in a line: the data of an instruction have no more."""
 MOST_LINE: Final = 1 << 16
 """Limit: the most characters in a line."""
 
@@ -256,7 +256,7 @@ def numbers_of(text: str, number: int) -> tuple[int, ...]:
 
 
 def hexadecimal_words(tokens: list[str], number: int) -> Words:
-    """Words such as 0010 and products such as 0010*640."""
+    """The words of tokens such as 0010, or 0010*640 for a word that repeats 640 times."""
     values, times = [], []
     for token in tokens:
         parts = HEXADECIMAL.fullmatch(token)

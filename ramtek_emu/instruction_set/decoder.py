@@ -33,20 +33,20 @@ from ramtek_emu.instruction_set.table import (
 )
 
 MOST_HEAD: Final = 64
-"""A bound on the words of an instruction before its data."""
+"""An upper bound on the words of an instruction before its data."""
 CONIC: Final = 1 << list(OPERANDS).index("conic")
 """The bit of the conic coefficients in the first operand flag word."""
 MOST_WORDS: Final = MOST_HEAD + 0x8000
-"""A bound on the words of an instruction."""
+"""An upper bound on the words of an instruction."""
 
 
 class Decoder:
-    """Takes words as they arrive, and returns whole instructions; the words of an incomplete one wait."""
+    """Takes words as they arrive and returns whole instructions; words of an incomplete instruction wait."""
 
     def __init__(self, configuration: Configuration = GMR_9300) -> None:
-        self._of(configuration.extended)
+        self._set_up(configuration.extended)
 
-    def _of(self, extended: bool) -> None:
+    def _set_up(self, extended: bool) -> None:
         self._extended = extended
         self._formats = formats_of_opcodes(extended)
         self._begins = words_that_begin(extended)
@@ -58,7 +58,7 @@ class Decoder:
         return self._extended, self._pending[: self._count].copy(), self._needed
 
     def __setstate__(self, state: tuple[bool, Words, int]) -> None:
-        self._of(state[0])
+        self._set_up(state[0])
         self._count, self._needed = len(state[1]), state[2]
         self._pending[: self._count] = state[1]
 
@@ -77,8 +77,8 @@ class Decoder:
     def feed(self, words: Words, in_rows: bool = False) -> Iterator[Instruction]:
         """The instructions that these words complete, in order; their data are views where possible.
 
-        Each illegal word is an instruction of its own. With `in_rows`, consecutive illegal words are the data
-        of one.
+        An illegal word becomes an instruction with the format ILLEGAL. With `in_rows=True`, consecutive
+        illegal words become the data of a single instruction.
         """
         place = 0
         while self._count and place < len(words):
@@ -130,19 +130,24 @@ class Decoder:
         return format
 
 
-FLAG_WORDS: Final = {0: 1, Flags.OPERANDS_1: 2, Flags.OPERANDS_2: 2, Flags.OPERANDS_1 | Flags.OPERANDS_2: 3}
-"""How many words come before the operands, by the two flags: the instruction word and its flag words."""
+FIRST_OPERAND: Final = {
+    0: 1,
+    Flags.OPERANDS_1: 2,
+    Flags.OPERANDS_2: 2,
+    Flags.OPERANDS_1 | Flags.OPERANDS_2: 3,
+}
+"""The index of the first operand by the two flags: the instruction word and the flag words precede it."""
 
 
 def words_needed(format: InstructionFormat, head: list[int]) -> int:
-    """How many words an instruction has, as far as its first words tell."""
+    """The number of words that an instruction needs at least, given its first words."""
     if format.fixed is not None:
         count = 1 + len(format.fixed)
         if format.replies or "length" not in format.fixed or len(head) < count:
             return count
         return count + (head[1 + format.fixed.index("length")] + 1) // 2
     flags = head[0]
-    count = FLAG_WORDS[flags & 6]
+    count = FIRST_OPERAND[flags & 6]
     if len(head) < count:
         return count
     if count > 1 and not format.requests_operands:
@@ -161,7 +166,7 @@ def words_needed(format: InstructionFormat, head: list[int]) -> int:
 
 
 def instruction_of(format: InstructionFormat, head: list[int], words: Words) -> Instruction:
-    """The instruction that these words are; `head` holds the first of them as numbers."""
+    """The instruction in these words; `head` is its first words as numbers."""
     if format is ILLEGAL:
         return Instruction(format, 0, {"word": (head[0],)})
     low_byte = head[0] & 0xFF
@@ -175,7 +180,7 @@ def instruction_of(format: InstructionFormat, head: list[int], words: Words) -> 
             else:
                 operands[name] = (word,)
     else:
-        place = FLAG_WORDS[low_byte & 6]
+        place = FIRST_OPERAND[low_byte & 6]
         if place > 1:
             for operand in operands_named(*flag_words(head)):
                 size = 0 if format.requests_operands else operand.words
@@ -191,7 +196,7 @@ def instruction_of(format: InstructionFormat, head: list[int], words: Words) -> 
 
 
 def flag_words(head: list[int]) -> tuple[int, int]:
-    """The two operand flag words of a normal instruction; 0 for one that it does not have."""
+    """The two operand flag words of a normal instruction; an absent flag word is 0."""
     first = head[1] if head[0] & Flags.OPERANDS_1 else 0
     second = head[2 if head[0] & Flags.OPERANDS_1 else 1] if head[0] & Flags.OPERANDS_2 else 0
     return first, second
@@ -199,14 +204,14 @@ def flag_words(head: list[int]) -> tuple[int, int]:
 
 @lru_cache
 def formats_of_opcodes(extended: bool) -> tuple[InstructionFormat, ...]:
-    """The format of each of the 256 opcodes, with or without those of the 9400 and 9460."""
+    """The formats of the 256 opcodes; without `extended`, opcodes of the 9400 and 9460 are ILLEGAL."""
     formats = {format.opcode: format for format in FORMATS if extended or not format.extended}
     return tuple(formats.get(opcode, ILLEGAL) for opcode in range(256))
 
 
 @lru_cache
 def words_that_begin(extended: bool) -> Booleans:
-    """Whether each of the 65,536 words begins an instruction, to find quickly where illegal words end."""
+    """Whether each of the 65,536 words begins an instruction: a table to find the end of illegal words."""
     formats = formats_of_opcodes(extended)
     begins = np.repeat([format is not ILLEGAL for format in formats], 256)
     if not extended:
@@ -218,12 +223,12 @@ def words_that_begin(extended: bool) -> Booleans:
 
 
 def short_length_place(head: list[int]) -> int | None:
-    """The index of the data length if there are six coefficients; None if there may be twelve.
+    """The index of the data length if there are six conic coefficients; None if that index is impossible.
 
-    There are six where twelve would make that word the upper half of a coefficient.
+    It is possible if, with twelve coefficients, the word there would be the upper half of a coefficient.
     """
     first, second = flag_words(head)
-    place = FLAG_WORDS[head[0] & 6]
+    place = FIRST_OPERAND[head[0] & 6]
     coefficients = place + sum(operand.words for operand in operands_named(first & (CONIC - 1)))
     length_place = place + sum(operand.words for operand in operands_named(first, second)) - 6
     offset = length_place - coefficients

@@ -1,19 +1,19 @@
-"""Disassembler: a stream of words as a listing, which can be read, changed and assembled again.
+"""Disassembler: lists a stream of words; the listing can be edited and assembled again.
 
     00000: 0802 8000 000A 01F5            SET STRT=10,501
     00004: 0E01 0004                      WVL 4 bytes
     00006: 0064 01C3                        to 100,451
 
-On the left are the index of the first word in the stream and the words; on the right is what they mean. The
+On the left are the index of the first word in the stream and the words; on the right is their meaning. The
 assembler reads only the right side, and returns exactly the words on the left, for any words. `raw` marks
 words that cannot be shown as an instruction: an illegal word, an instruction that the end of the stream cuts
-off, or one with flag bits that no source names. All data are listed; `0010*640` is one word 640 times.
+off, or an instruction with flag bits that no source names. All data are listed; `0010*640` is 640 times 0010.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, Final
 
@@ -33,11 +33,11 @@ from ramtek_emu.instruction_set.table import (
     Flags,
 )
 
-COLUMN: Final = 6
+WORDS_PER_LINE: Final = 6
 """The largest number of words on the left of a line."""
 IN_HEXADECIMAL: Final = frozenset(("mask", "read_mask", "texture", "scale", "conic"))
 NUMBERS: Final = frozenset(("address", "element", "line"))
-"""Operands of special instructions that are numbers; all others are listed in hexadecimal."""
+"""Operands of special instructions that are listed as numbers; all others are listed in hexadecimal."""
 SIGNED: Final = frozenset(
     ("index_1", "index_2", "origin", "window", "write_window", "write_offset", "start", "element", "line")
 )
@@ -47,34 +47,36 @@ VERTICES: Final = frozenset(("WVL", "WVU", "WPT"))
 
 @dataclass(frozen=True, slots=True)
 class ListingItem:
-    """One instruction of a stream, or words that are no instruction."""
+    """An instruction of a stream, or words that are no instruction."""
 
     place: int
-    """The index of its first word in the stream."""
+    """The index in the stream of the first word."""
     words: Words
     instruction: Instruction | None = None
     note: str = ""
-    """Why it is no instruction."""
-    odd_byte: bytes = field(default=b"")
+    """Why the words are no instruction."""
+    odd_byte: bytes = b""
 
     def lines(self) -> Iterator[str]:
-        """The lines of the listing: words on the left, meaning on the right."""
+        """The lines of the listing: words on the left, their meaning on the right."""
         if self.odd_byte:
             yield _line(self.place, "", f"byte {self.odd_byte[0]:02X} ; {self.note}")
             return
         if self.instruction is None:
-            for first in range(0, len(self.words), COLUMN):
-                part = _hexadecimal(self.words[first : first + COLUMN])
+            for first in range(0, len(self.words), WORDS_PER_LINE):
+                part = _hexadecimal(self.words[first : first + WORDS_PER_LINE])
                 yield _line(self.place + first, part, f"raw {part} ; {self.note}")
             return
         head = len(self.words) - len(self.instruction.data)
         text = head_text(self.instruction)
-        for first in range(0, head, COLUMN):
-            yield _line(self.place + first, _hexadecimal(self.words[first : min(head, first + COLUMN)]), text)
+        for first in range(0, head, WORDS_PER_LINE):
+            yield _line(
+                self.place + first, _hexadecimal(self.words[first : min(head, first + WORDS_PER_LINE)]), text
+            )
             text = ""
         place = self.place + head
         for words, text in data_texts(self.instruction):
-            yield _line(place, _hexadecimal(words) if len(words) <= COLUMN else "", f"  {text}")
+            yield _line(place, _hexadecimal(words) if len(words) <= WORDS_PER_LINE else "", f"  {text}")
             place += len(words)
 
     def to_plain(self) -> dict[str, Any]:
@@ -95,7 +97,7 @@ class ListingItem:
 
 
 def items(pieces: Iterable[bytes], configuration: Configuration = GMR_9300) -> Iterator[ListingItem]:
-    """The items of a stream given as pieces of bytes, low byte first, cut anywhere."""
+    """The items of a stream; its bytes, low byte first, may be cut anywhere into pieces."""
     decoder = Decoder(configuration)
     place, odd_byte = 0, b""
     rest: Words = np.zeros(0, np.uint16)
@@ -126,7 +128,7 @@ def items(pieces: Iterable[bytes], configuration: Configuration = GMR_9300) -> I
 
 
 def flag_names(low_byte: int) -> list[str]:
-    """The names of the flags that do not follow from the operands and the data."""
+    """The names of the flags; flags that follow from the operands and the data are left out."""
     names = [name for flag, name in FLAG_NAMES.items() if low_byte & flag]
     addressing = ADDRESSING_NAMES.get(low_byte & Flags.ADDRESSING)
     return names if addressing is None else [*names, addressing]
@@ -143,7 +145,7 @@ def head_text(instruction: Instruction) -> str:
             (Flags.OPERANDS_2, "OF2", OPERANDS_2),
         ):
             if instruction.low_byte & flag and not any(
-                each.name in instruction.operands for each in operands
+                operand.name in instruction.operands for operand in operands
             ):
                 parts.append(name)
     elif instruction.low_byte:
@@ -168,20 +170,20 @@ def operand_text(name: str, words: tuple[int, ...]) -> str:
 
 
 def data_texts(instruction: Instruction) -> Iterator[tuple[Words, str]]:
-    """The data of an instruction line by line: the words and their text."""
+    """Yields the data of an instruction by lines: the words and their text."""
     data, name = instruction.data, instruction.format.name
     length = instruction.length or 0
     if name in VERTICES and len(data) % 2 == 0:
         points = data.view(np.int16).reshape(-1, 2)
-        for first in range(0, len(points), COLUMN // 2):
-            part = points[first : first + COLUMN // 2].tolist()
+        for first in range(0, len(points), WORDS_PER_LINE // 2):
+            part = points[first : first + WORDS_PER_LINE // 2].tolist()
             text = "to " + "  ".join(f"{element},{line}" for element, line in part)
-            yield data[2 * first : 2 * first + COLUMN], text
+            yield data[2 * first : 2 * first + WORDS_PER_LINE], text
     elif name == "WT" and len(data) and not _has_pad(instruction, length):
         codes = instruction.data_bytes()
-        for first in range(0, len(data), COLUMN):
-            part = codes[2 * first : 2 * (first + COLUMN)]
-            yield data[first : first + COLUMN], f'text "{"".join(map(_character, part))}"'
+        for first in range(0, len(data), WORDS_PER_LINE):
+            part = codes[2 * first : 2 * (first + WORDS_PER_LINE)]
+            yield data[first : first + WORDS_PER_LINE], f'text "{"".join(map(_character, part))}"'
     else:
         yield from _runs(data)
 
@@ -195,7 +197,7 @@ def _has_pad(instruction: Instruction, length: int) -> bool:
 
 
 def _runs(data: Words) -> Iterator[tuple[Words, str]]:
-    """Words in hexadecimal, at most eight items a line; a word that repeats is written as a product."""
+    """Yields words in hexadecimal, eight items a line at most; a repeated word is written as 0010*640."""
     edges = np.flatnonzero(np.diff(data)) + 1
     starts = [0, *edges.tolist(), len(data)] if len(data) else [0]
     texts: list[str] = []
@@ -222,4 +224,4 @@ def _hexadecimal(words: Words) -> str:
 
 
 def _line(place: int, words: str, text: str) -> str:
-    return f"{place:05X}: {words:<{5 * COLUMN}} {text}".rstrip()
+    return f"{place:05X}: {words:<{5 * WORDS_PER_LINE}} {text}".rstrip()

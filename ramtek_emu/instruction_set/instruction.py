@@ -1,4 +1,4 @@
-"""Instruction: an instruction as one value, and the words that it is sent as.
+"""Instruction: an instruction as a value, and its conversion to the words that a host sends.
 
 >>> str(normal("SET", {"foreground": 1}))
 'SET  foreground 1'
@@ -29,15 +29,15 @@ from ramtek_emu.instruction_set.table import (
 )
 
 OperandValue = int | Sequence[int]
-"""The value of an operand: one number, or one for each of its words."""
+"""The value of an operand: a number, or a sequence with a number for each word."""
 NO_WORDS: Final[Words] = np.zeros(0, np.uint16)
 MOST_BYTES: Final = 0xFFFF
-"""The longest data field: its length is one word."""
+"""The most bytes of data: their length is sent as a 16-bit word."""
 
 
 @dataclass(frozen=True, eq=False, repr=False, slots=True)
 class Instruction:
-    """An instruction: its format, its low byte, its operands as words, and its data."""
+    """An instruction: format, low byte, operands as words, and data."""
 
     format: InstructionFormat
     low_byte: int = 0
@@ -79,7 +79,7 @@ def encode(instruction: Instruction) -> Words:
     head = [format.opcode << 8 | instruction.low_byte]
     if format.is_normal:
         first, second = flag_words_of(instruction.operands)
-        # A flag that is set has its flag word, even if that word names no operand.
+        # If a flag is set, its flag word is sent, even if that word names no operand.
         if instruction.low_byte & Flags.OPERANDS_1:
             head.append(first)
         if instruction.low_byte & Flags.OPERANDS_2:
@@ -110,7 +110,7 @@ def normal(
     length: int | None = None,
     flags: int = 0,
 ) -> Instruction:
-    """A normal instruction with these operands; numbers from -32768 to 65535 become words of 16 bits."""
+    """A normal instruction with these operands; numbers from -32768 to 65535 become 16-bit words."""
     named = {key: operand_words(key, value) for key, value in operands.items() if value is not None}
     first, second = flag_words_of(named)
     if first:

@@ -38,7 +38,7 @@ class Flags:
 
 @dataclass(frozen=True, slots=True)
 class Operand:
-    """A sticky parameter: its name here, its mnemonic in the sources, and its number of words."""
+    """A sticky parameter: our name for it, its mnemonic in the sources, and its number of words."""
 
     name: str
     mnemonic: str
@@ -77,7 +77,7 @@ OPERAND_BITS: Final = {
     for word, operands in enumerate((OPERANDS_1, OPERANDS_2))
     for bit, operand in enumerate(operands)
 }
-"""The bit of each operand in the two flag words; the second word is the upper half."""
+"""The bits of the operands in the two flag words; the second flag word is the upper half."""
 
 
 @lru_cache(maxsize=1024)
@@ -99,15 +99,15 @@ class InstructionFormat:
     name: str
     meaning: str
     fixed: tuple[str, ...] | None = None
-    """The operands of a special instruction, with `length` if data follow; None for a normal instruction."""
+    """The operands of a special instruction, and `length` if data follow; None for a normal instruction."""
     replies: bool = False
     """Whether the data go to the host; the instruction then has a length but no data."""
     extended: bool = False
-    """Whether only the 9400 and the 9460 have it."""
+    """Whether the instruction exists only on the 9400 and the 9460."""
     unimplemented: bool = False
-    """Whether the sources give only its name, so that it has no effect here."""
+    """Whether the sources give only the name; then the instruction has no effect here."""
     requests_operands: bool = False
-    """Whether the flag words name operands that the host asks for; then the instruction holds none."""
+    """Whether the flag words name operands that the host asks for; then no operands follow."""
 
     @property
     def is_normal(self) -> bool:
@@ -116,7 +116,7 @@ class InstructionFormat:
 
 
 ILLEGAL: Final = InstructionFormat(-1, "???", "no instruction", ())
-"""A word that begins no instruction of the table; that one word is skipped."""
+"""The format of a word that begins no instruction of the table; only that word is skipped."""
 
 CHARACTER_ROWS: Final = tuple(f"rows_{2 * pair}_{2 * pair + 1}" for pair in range(6))
 """The operands of LPF: twelve rows of eight dots, two a word."""
@@ -231,7 +231,7 @@ UNIMPLEMENTED: Final = (
     (0x8C, "RTCS", "RTCS"),
     (0x8D, "WCVU", "WCVU"),
 )
-"""Opcodes of the 9400 and 9460 that are known by number and name only: opcode, name, and its meaning.
+"""Opcodes of the 9400 and 9460 of which only number and name are known: opcode, name, meaning.
 
 Hardware: NCAR, whose header lists them; no client that sends one of them was found. Names such as DL43 are
 ours: the header describes a whole range.

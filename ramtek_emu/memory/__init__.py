@@ -1,5 +1,5 @@
 """The memories: words, entries, characters, cursors and the sticky parameters, and the order of a scan.
 
-They hold what instructions wrote and count the writes; nothing here knows how a picture is drawn or shown.
+The memories store words and count the writes; drawing and video are elsewhere.
 Uses the basic modules and instruction_set.
 """

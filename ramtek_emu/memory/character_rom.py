@@ -1,7 +1,7 @@
 """The character ROM: shapes in cells of 7 x 9 dots.
 
-What is modeled: the size of the cell and the character codes. What is **not**: the shapes of RAMTEK's own
-characters, which are in no source.
+What is modeled: the size of the cell and the character codes. What is **not**: the shapes of RAMTEK's
+characters; no source shows them.
 
 Hardware: BTL, LIN, JPL (7 x 9, the cell's top-left corner at the operating point).
 Assumed: these shapes, which were drawn for this emulator: 5 x 7 dots in columns 1 to 5 and lines 1 to 7, with
@@ -151,11 +151,11 @@ LOADED_ELEMENTS: Final = 8
 LOADED_LINES: Final = 12
 
 
-def loadable(shapes: Dots) -> Dots:
-    """The initial dots of the characters that a host can load, (256, 12, 8): the shapes of the ROM.
+def initial_loaded_characters() -> Dots:
+    """The loaded characters at power-on, (256, 12, 8): the shapes of the ROM, until a host loads others.
 
     Hardware: LIN (twelve rows of a byte each).
     """
     loaded = np.zeros((256, LOADED_LINES, LOADED_ELEMENTS), np.bool_)
-    loaded[:, :CELL_LINES, :CELL_ELEMENTS] = shapes
+    loaded[:, :CELL_LINES, :CELL_ELEMENTS] = characters()
     return loaded

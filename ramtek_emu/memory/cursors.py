@@ -3,15 +3,15 @@
 What is modeled: positions, visible and blinking cursors, their shapes, TRACK and ENTER, the connection of
 joysticks to cursors. What is **not**: the joystick's speed and spring, how a cursor was mixed into the video.
 
-A position is an element and a line of the screen, whatever part of the memory is shown there. Otherwise a
-program that moves the display origin with the cursor would lose it (Hardware: PRG, orig.c).
+A position is an element and a line of the screen, not of the memory. Otherwise a program that moves the
+display origin with the cursor would lose the cursor (Hardware: PRG, orig.c).
 
 Hardware: LIN (words in screen coordinates, TRACK and ENTER); NCAR (in pixel coordinates); JPL (in global
 coordinates; the shape of 32 x 32 around (15, 15), which device drives which cursor).
-Assumed: reading a cursor clears its ENTER, so that one press is read once; every cursor reports the switches,
-since the unit has one set; positions beyond the screen are kept, and the shape is clipped; RSET and INIT
-leave the cursors as they are, like the lookup table; the joystick drives cursor 0 until the host connects it
-to others.
+Assumed: reading a cursor clears its ENTER, so a press is read once. Every cursor reports the switches, since
+the unit has one set of them. A position may be beyond the screen; the shape is then clipped. RSET and INIT
+change neither the cursors nor the lookup table. The joystick drives cursor 0 until the host connects it to
+other cursors.
 """
 
 from __future__ import annotations
@@ -27,18 +27,18 @@ VISIBLE: Final = 1 << 10
 BLINK: Final = 1 << 11
 TRACK: Final = 1 << 12
 ENTER: Final = 1 << 13
-"""The bits of the state in the word that holds the line as well (Hardware: LIN)."""
+"""The bits of the state in the word of the line (Hardware: LIN)."""
 LINE_BITS: Final = 0x3FF
-"""The bits of the line in that word."""
+"""The bits of the line in the same word."""
 SHAPE_SIZE: Final = 32
 SHAPE_CENTER: Final = 15
 
 
 def cross() -> Dots:
-    """The shape of a cursor until a host loads another, (32, 32).
+    """The initial shape of a cursor, (32, 32).
 
-    Assumed: an upright cross of 15 x 15 pixels, open in the middle so that the pixel it points at is visible;
-    the 9300's shape is in no source.
+    Assumed: an upright cross of 15 x 15 pixels, open in the middle, so that the pixel under it is visible. No
+    source shows the shape of the 9300.
     """
     shape = np.zeros((SHAPE_SIZE, SHAPE_SIZE), np.bool_)
     arm = [*range(SHAPE_CENTER - 7, SHAPE_CENTER - 1), *range(SHAPE_CENTER + 2, SHAPE_CENTER + 8)]
@@ -79,9 +79,9 @@ class Cursors:
         self.enter_is_pressed = False
         """Whether ENTER was pressed since the interface's status was last cleared."""
         self.driven = {0: 1}
-        """The cursors that each tracking device drives, one bit for each cursor."""
+        """The cursors that a tracking device drives, by the number of the device; bit n is cursor n."""
         self.changed = 0
-        """How often a shape was changed; it never decreases."""
+        """The number of changes of shapes; it never decreases."""
 
     def __repr__(self) -> str:
         visible = sum(cursor.is_visible for cursor in self.all)
@@ -110,15 +110,15 @@ class Cursors:
         cursor.enter = False
         return state
 
-    def shape(self, number: int, rows: Bytes) -> None:
-        """Change the shape of a cursor: up to 32 rows of four bytes, the highest bit leftmost."""
+    def set_shape(self, number: int, rows: Bytes) -> None:
+        """Replace up to 32 rows of a cursor's shape; a row is four bytes, the highest bit leftmost."""
         dots = np.unpackbits(rows, axis=1).astype(np.bool_)
         self.all[number].shape = self.all[number].shape.copy()
         self.all[number].shape[: len(dots)] = dots
         self.changed += 1
 
     def forget_enter(self) -> None:
-        """Clear the ENTER of every cursor, so that no read reports it."""
+        """Clear the ENTER of every cursor."""
         for cursor in self.all:
             cursor.enter = False
 
@@ -144,24 +144,24 @@ class Joystick:
 
     @property
     def driven(self) -> tuple[Cursor, ...]:
-        """The cursors that this device moves."""
+        """The cursors that this device drives."""
         mask = self._cursors.driven.get(self._device, 0)
         return tuple(cursor for number, cursor in enumerate(self._cursors.all) if mask >> number & 1)
 
     @property
     def position(self) -> tuple[int, int]:
-        """The element and line of the first cursor that it moves; (0, 0) if it moves none."""
+        """The element and line of the first driven cursor; (0, 0) if no cursor is driven."""
         driven = self.driven
         return (driven[0].element, driven[0].line) if driven else (0, 0)
 
     def move_to(self, element: int, line: int) -> None:
-        """Move its cursors to a place; they stop at the edges of the screen."""
+        """Move the driven cursors to a place; they stop at the edges of the screen."""
         place = min(max(int(element), 0), self._limits[0]), min(max(int(line), 0), self._limits[1])
         for cursor in self.driven:
             cursor.element, cursor.line = place
 
     def move_by(self, elements: int, lines: int) -> None:
-        """Move its cursors by some elements and lines."""
+        """Move the driven cursors by a number of elements and lines."""
         element, line = self.position
         self.move_to(element + elements, line + lines)
 

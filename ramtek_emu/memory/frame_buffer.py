@@ -22,7 +22,7 @@ from ramtek_emu.memory.scan_orders import SCAN_ORDERS, Point, ScanBlock, ScanOrd
 
 
 class WriteEnable(NamedTuple):
-    """The planes that a write may change, by a mask, within a window."""
+    """The mask of the planes, and the window, that a write may change."""
 
     mask: int = 0xFFFF
     window: Window = Window(-0x8000, -0x8000, 0x7FFF, 0x7FFF)
@@ -64,15 +64,15 @@ class FrameBuffer:
         """Write a (lines, elements) array from Python; WordsError if a word or the window does not fit."""
         block = checked_words(words, self.planes)
         corner = (
-            checked_number(each, "the words' corner", -0x8000, 0x7FFF, "move it", WordsError)
-            for each in (left, top)
+            checked_number(place, "the words' corner", -0x8000, 0x7FFF, "move it", WordsError)
+            for place in (left, top)
         )
         place = NORMAL_ORDER.block_window(Point(*corner), block.shape[1], block.shape[0])
         refuse_outside(place, self.window)
         self._store(place, NORMAL_ORDER, block, EVERYTHING)
 
     def fill(self, window: Window, word: int, enable: WriteEnable = EVERYTHING) -> None:
-        """Write one word to every pixel of a window."""
+        """Fill a window with a word."""
         self._store(window, NORMAL_ORDER, np.uint16(word & 0xFFFF), enable)
 
     def write_scan(
@@ -84,9 +84,9 @@ class FrameBuffer:
         enable: WriteEnable = EVERYTHING,
         dots: Dots | None = None,
     ) -> Point:
-        """Write words along the scan of a window, beginning at a point; returns the point after the last one.
+        """Write words along the scan of a window from `start` on; returns the point after the last word.
 
-        If `dots` are given, only the words at which they are true are written.
+        With `dots`, only words whose dot is true are written.
         """
         along, runs = order.inner_and_outer(window)
         size = along * runs
@@ -95,7 +95,7 @@ class FrameBuffer:
         inner, outer = order.entry(window, start)
         count, rest = divmod(len(words), along)
         if dots is None and inner == rest == 0 and 0 <= outer < outer + count <= runs:
-            # The common case: whole lines of the window, none of them twice.
+            # The common case: whole lines of the window, without going around it.
             corner = order.corner(window)
             entered = order.stepped(corner, 0, outer)
             self.write_block(entered, order, words.reshape(count, along), enable)
@@ -108,7 +108,7 @@ class FrameBuffer:
         after = order.after(window, start, len(words))
         if dots is not None and len(words) > size and not before:
             words, dots = last_around(words, dots, size)
-        # When the words go around the window several times, only the last time matters.
+        # If the words go around the window several times, only the last time matters.
         skipped = 0 if before else max(0, len(words) - size)
         start = order.after(window, start, skipped)
         for block in blocks(window, order, start, len(words) - skipped):
@@ -120,7 +120,7 @@ class FrameBuffer:
         return after
 
     def read_scan(self, window: Window, order: ScanOrder, start: Point, count: int) -> tuple[Words, Point]:
-        """`count` words along the scan of a window, beginning at a point, and the point after the last."""
+        """`count` words along the scan of a window from `start` on, and the point after the last word."""
         size = window.width * window.height
         if size == 0:
             return np.zeros(count, np.uint16), start
@@ -144,7 +144,7 @@ class FrameBuffer:
         enable: WriteEnable = EVERYTHING,
         dots: Dots | None = None,
     ) -> None:
-        """Write an [outer, inner] block, its first word at `start`; with `dots`, only where they are true."""
+        """Write an [outer, inner] block from `start` on; with `dots`, only words whose dot is true."""
         place = order.block_window(start, block.shape[1], block.shape[0])
         self._store(place, order, block, enable, dots)
 
@@ -155,7 +155,7 @@ class FrameBuffer:
         words: int | Words,
         enable: WriteEnable = EVERYTHING,
     ) -> None:
-        """Write one word to all points inside, or to each its own; of equal points the last one wins."""
+        """Write points with one word, or with an array of words; the last of equal points wins."""
         inside = enable.window.intersection(self.window)
         mask = enable.mask & self._every_plane
         if inside.is_empty or not mask or not len(elements):
@@ -193,7 +193,7 @@ class FrameBuffer:
             block = block[part] if isinstance(block, np.ndarray) else block
             dots = None if dots is None else dots[part]
         if mask == self._every_plane and dots is None:
-            # The plain case: one pass that copies and drops the bits beyond the planes.
+            # The common case: one pass that copies the words without the bits beyond the planes.
             if isinstance(block, np.ndarray):
                 np.bitwise_and(block, np.uint16(mask), out=memory)
             else:
@@ -230,7 +230,7 @@ def part_of(place: Window, clipped: Window, order: ScanOrder) -> tuple[slice, sl
 
 
 def last_around(words: Words, dots: Dots, size: int) -> tuple[Words, Dots]:
-    """The words and dots that remain when they go around a window of `size` words more than once."""
+    """The words and dots that remain after going around a window of `size` words more than once."""
     around = -(-len(words) // size)
     rounds = np.zeros((around, size), np.uint16)
     rounds.reshape(-1)[: len(words)] = words

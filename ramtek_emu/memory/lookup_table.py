@@ -20,7 +20,7 @@ from ramtek_emu.checks import checked_colors
 from ramtek_emu.configuration import GMR_9300, Configuration, EntryFormat
 
 VIEWS: Final = ("_halves", "_unused", "packed")
-"""The attributes that are views of the packed entries."""
+"""Attributes that are views of the packed entries; a copy makes its own views."""
 
 
 class LookupTable:
@@ -30,13 +30,13 @@ class LookupTable:
         self.entry_format = configuration.entry_format
         self.size = configuration.entries
         self.word_count = self.size if self.entry_format is EntryFormat.WORD_12 else 2 * self.size
-        """How many words the host sends for the whole table."""
+        """The number of words that the host sends for the whole table."""
         self.address = 0
         """The address counter, in words."""
         self.written = 0
         """The number of words of entries written since power-on; it never decreases."""
         self._last_range = 0, 0, 0
-        """The range of entries written last: `written` before it, its first entry, and the one after it."""
+        """The last range written: the count `written` before it, its first entry, and the entry after it."""
         self._packed: PackedColors = np.zeros(self.size, "<u4")
         self._make_views()
 
@@ -73,9 +73,9 @@ class LookupTable:
         return colors
 
     def entries_written_since(self, written: int) -> tuple[int, int] | None:
-        """The first of the entries written since `self.written` had this value, and the one after the last.
+        """The range of entries written since the count was `written`: its first, and the entry after it.
 
-        None if they are not one range, or if more ranges were written since than are remembered.
+        None if the entries are not a single range. Only the last range is remembered.
         """
         since, first, end = self._last_range
         return (first, end) if written >= since else None
@@ -123,7 +123,7 @@ class LookupTable:
 
     def _note(self, first: int, end: int, words: int) -> None:
         """Count the words written to a range of entries, and remember the range."""
-        # A range that is written repeatedly, as while a color is dragged, counts as one.
+        # Writing the same range repeatedly, as while a color is dragged, counts as one write.
         if words and self._last_range[1:] != (first, end):
             self._last_range = self.written, first, end
         self.written += words

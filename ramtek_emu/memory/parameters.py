@@ -8,7 +8,7 @@ one), the background 0, the mask all ones, the window the whole memory, the scan
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Final
 
 from ramtek_emu.configuration import Configuration
@@ -28,7 +28,7 @@ def signed(word: int) -> int:
 
 
 def register(point: Point) -> Point:
-    """A point as the two registers of 16 bits hold it."""
+    """The point with its coordinates wrapped to registers of 16 bits."""
     return Point(signed(point.element & 0xFFFF), signed(point.line & 0xFFFF))
 
 
@@ -47,7 +47,7 @@ def coefficients(words: tuple[int, ...]) -> tuple[int, ...]:
 
 @dataclass(kw_only=True)
 class Parameters:
-    """All sticky operands, by their names in the operand table."""
+    """All sticky operands under their names in the operand table, and the parameters that have no operand."""
 
     mask: int
     foreground: int
@@ -74,11 +74,11 @@ class Parameters:
     display_class: int = 0
     image_mode: int = 0
     zoom: tuple[int, int] = (1, 1)
-    """How often each element, and each line, is repeated."""
+    """The number of times that elements, and lines, are repeated."""
     origin_at_bottom: bool = False
     """Whether lines are counted from the bottom of the screen."""
     font: int = 0
-    """The font of text: the ROM if it is STANDARD_FONT, otherwise the loaded characters."""
+    """The font of text: STANDARD_FONT is the ROM, any other number the loaded characters."""
     whole_window: Window = field(repr=False)
     whole_word: int = field(repr=False)
     """A word with every plane set."""
@@ -96,10 +96,6 @@ class Parameters:
             whole_window=window,
             whole_word=configuration.largest_word,
         )
-
-    def copy(self) -> Parameters:
-        """A copy that can be changed independently."""
-        return replace(self)
 
     def operand(self, name: str) -> tuple[int, ...]:
         """The words of an operand."""

@@ -1,23 +1,24 @@
 """Windows, points and the eight scan orders: the place of each word of an image.
 
 A window is inclusive at both ends and may lie partly or wholly outside the memory. Words follow each other in
-one direction (inner); at the edge of the window they continue one step further in the other direction
-(outer). A run is what lies between two edges: a line or a column of the window. Steps are counted from the
-corner where the scan starts: inner steps in words, outer steps in runs.
+the inner direction; at the edge of the window they continue one step further in the outer direction. A run is
+a line or a column of the window, from edge to edge. Steps are counted from the corner where the scan starts:
+inner steps in words, outer steps in runs.
 
 Hardware: PRG, LONG, ASF (the eight codes); LIN, JPL (the run wraps at the window's edge to the next line).
 Assumed: at the end of the window, words continue at the corner where the scan starts, as counters do. Words
 that start before the window continue into it, since counters compare with the far edges only (JPL reads pairs
 of pixels from even elements on, also where its window begins at an odd one). A start beyond the far edge of a
 run is at the next run, and one beyond the last run is at the first.
-Assumed: a window whose right is left of its left, or whose bottom is above its top, holds no word.
+Assumed: a window is empty if its right is less than its left, or its bottom less than its top.
 
-Images of bytes go in pairs, two pixels in a word of the host.
+Images of bytes are sent in pairs, two pixels in a word of the host.
 Hardware: JPL (with a window of odd width "an additional pixel will be written per line", which offsets what
 follows, so its driver refuses such areas and ends odd lines with a pair of their own).
-Assumed: the edge of the window is looked for after each pair, so a run holds whole pairs, the second pixel of
-its last pair may lie one step past the edge, and the next run begins with the next word; reading goes the
-same way, so what is read back is what was written. A pair begins wherever the operating point is.
+Assumed: the display looks for the edge of the window after each pair. So a run holds whole pairs, the second
+pixel of its last pair may lie one step past the edge, and the next run begins with the next word. Reading
+follows the same order, so it returns the pixels that were written. A pair begins wherever the operating
+point is.
 """
 
 from __future__ import annotations
@@ -36,7 +37,7 @@ class Point(NamedTuple):
 
 
 class Window(NamedTuple):
-    """Left, top, right and bottom, all inclusive."""
+    """A rectangle of pixels: left, top, right and bottom, all inclusive."""
 
     left: int
     top: int
@@ -45,12 +46,12 @@ class Window(NamedTuple):
 
     @property
     def width(self) -> int:
-        """How many elements each of its lines has."""
+        """The number of elements in a line."""
         return max(0, self.right - self.left + 1)
 
     @property
     def height(self) -> int:
-        """How many lines it has."""
+        """The number of lines."""
         return max(0, self.bottom - self.top + 1)
 
     @property
@@ -92,7 +93,7 @@ class ScanOrder(NamedTuple):
         return raster.T if self.vertical else raster
 
     def inner_and_outer(self, window: Window) -> tuple[int, int]:
-        """How many words a run has, and how many runs the window has."""
+        """The number of words in a run, and the number of runs in the window."""
         if self.vertical:
             return window.height, window.width
         return window.width, window.height
@@ -110,7 +111,7 @@ class ScanOrder(NamedTuple):
         return (down, across) if self.vertical else (across, down)
 
     def stepped(self, corner: Point, inner: int, outer: int) -> Point:
-        """The point that is so many steps from the corner: the inverse of `steps`."""
+        """The point at these steps from the corner: the inverse of `steps`."""
         across, down = (outer, inner) if self.vertical else (inner, outer)
         return Point(
             corner.element + (-across if self.leftward else across),
@@ -118,7 +119,7 @@ class ScanOrder(NamedTuple):
         )
 
     def entry(self, window: Window, start: Point) -> tuple[int, int]:
-        """The inner and outer steps of the first word, if the words begin at `start`."""
+        """The inner and outer steps of the first word of a scan that begins at `start`."""
         inner, outer = self.steps(window, start)
         along, runs = self.inner_and_outer(window)
         if inner >= along:
@@ -126,7 +127,7 @@ class ScanOrder(NamedTuple):
         return inner, 0 if outer >= runs else outer
 
     def words_before(self, window: Window, start: Point) -> int:
-        """How many words from `start` on come before the scan stays inside the window."""
+        """The number of words from `start` on that may lie before the window; the words after them do not."""
         inner, outer = self.entry(window, start)
         if inner >= 0 and outer >= 0:
             return 0
@@ -134,7 +135,7 @@ class ScanOrder(NamedTuple):
         return along * max(1, -outer) - inner
 
     def after(self, window: Window, start: Point, count: int) -> Point:
-        """The point after `count` words that begin at `start`."""
+        """The point after `count` words from `start` on."""
         if not count:
             return start
         inner, outer = self.entry(window, start)
@@ -148,7 +149,7 @@ class ScanOrder(NamedTuple):
         return self.stepped(self.corner(window), inner, outer % runs if outer >= 0 else outer)
 
     def block_window(self, start: Point, inner: int, outer: int) -> Window:
-        """The window that a block of inner x outer words covers if its first word is at `start`."""
+        """The window of a block of inner x outer words with its first word at `start`."""
         width, height = (outer, inner) if self.vertical else (inner, outer)
         left = start.element - width + 1 if self.leftward else start.element
         top = start.line - height + 1 if self.upward else start.line
@@ -168,7 +169,7 @@ SCAN_ORDERS: Final = (
 
 
 class ScanBlock(NamedTuple):
-    """Consecutive words that fill a rectangle: its first point, its sizes, the number of its first word."""
+    """Consecutive words that fill a rectangle: the first point, the sizes, the index of the first word."""
 
     start: Point
     inner: int
@@ -179,25 +180,24 @@ class ScanBlock(NamedTuple):
 def paired_parts(
     window: Window, order: ScanOrder, start: Point, count: int
 ) -> Iterator[tuple[Window, Point, int]]:
-    """The parts in which `count` pixels that go in pairs follow the scan of a window, at most two.
+    """Yields the parts, at most two, of a scan of `count` pixels in pairs: window, first point, pixels.
 
-    Of each part: its window, which is one step wider where a run holds an odd number of pixels, the point of
-    its first pixel, and how many pixels it has.
+    The window of a part is one step wider than `window` if its runs would hold an odd number of pixels.
     """
     along, runs = order.inner_and_outer(window)
     corner = order.corner(window)
     inner, outer = order.entry(window, start)
     begin = order.stepped(corner, inner, outer)
-    own = order.block_window(corner, along + (along - inner) % 2, runs)
-    further = order.block_window(corner, along + along % 2, runs)
-    first = count if own == further else min(count, along - inner + (along - inner) % 2)
-    yield own, begin, first
+    first_window = order.block_window(corner, along + (along - inner) % 2, runs)
+    next_window = order.block_window(corner, along + along % 2, runs)
+    first = count if first_window == next_window else min(count, along - inner + (along - inner) % 2)
+    yield first_window, begin, first
     if first < count:
-        yield further, order.after(own, begin, first), count - first
+        yield next_window, order.after(first_window, begin, first), count - first
 
 
 def blocks(window: Window, order: ScanOrder, start: Point, count: int) -> Iterator[ScanBlock]:
-    """The rectangles that `count` words from `start` on fill: at most three each time around the window."""
+    """Yields the rectangles that `count` words from `start` on fill, at most three for each time around."""
     along, runs = order.inner_and_outer(window)
     corner = order.corner(window)
     inner, outer = order.entry(window, start)

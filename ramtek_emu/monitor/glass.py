@@ -3,9 +3,9 @@
 What is modeled: the field at the largest whole multiple that fits, centered, each pixel a k x k block. What
 is **not**: the phosphor, the beam.
 
-Only lines that changed are enlarged and sent to the screen, and an X server is sent them directly. Measured
-with Xvfb, from an event of the mouse to the moved cursor: 0.2 ms at 640 x 480 and 0.3 ms at 1280 x 960; with
-whole fields 0.4 and 2.7 ms; with whole fields through OpenGL, as the library would choose, 2.4 and 8.7 ms.
+Only lines that changed are enlarged and sent to the screen; an X server gets them directly. Measured with
+Xvfb, from an event of the mouse to the moved cursor: 0.2 ms at 640 x 480 and 0.3 ms at 1280 x 960; with whole
+fields 0.4 and 2.7 ms; with whole fields through OpenGL, as the library would choose, 2.4 and 8.7 ms.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from ramtek_emu.video.scan_out import Run, ScanOut, Stamp
 
 KEY_DELAY: Final = 400
 KEY_INTERVAL: Final = 33
-"""Milliseconds until a key that is held down repeats, and between its repeats."""
+"""Milliseconds until the first repeat of a pressed key, and between the repeats."""
 FIELD_MASKS: Final = (0xFF0000, 0x00FF00, 0x0000FF, 0)
 REDRAWN_ON: Final = frozenset(
     (pygame.WINDOWEXPOSED, pygame.WINDOWSIZECHANGED, pygame.WINDOWRESTORED, pygame.WINDOWSHOWN)
@@ -39,7 +39,7 @@ CONTROL: Final = pygame.KMOD_CTRL | pygame.KMOD_META
 
 
 def open_screen() -> None:
-    """Start the video system; NoScreenError if there is no screen, or only a dummy that nobody asked for."""
+    """Start the video system; NoScreenError if there is no screen, or an unasked-for dummy driver."""
     asked = os.environ.get("SDL_VIDEODRIVER", "")
     advice = "run it on a desktop, or ask for a picture file instead"
     served_by_x = sys.platform.startswith(("linux", "freebsd", "openbsd", "netbsd"))
@@ -55,7 +55,7 @@ def open_screen() -> None:
         ) from cause
     driver = pygame.display.get_driver()
     if driver == "x11":
-        # Read when the window gets its surface. Without it, each part is sent as a whole window by OpenGL.
+        # SDL reads this when the window gets its surface. Otherwise OpenGL sends the whole window for a part.
         os.environ.setdefault("SDL_FRAMEBUFFER_ACCELERATION", "0")
     if driver in ("offscreen", "dummy") and driver not in asked.split(","):
         pygame.display.quit()
@@ -65,22 +65,22 @@ def open_screen() -> None:
 
 
 class Glass:
-    """The window of one display, closed at first. `size` is the field's, (elements, lines)."""
+    """The window of a display, closed at first; `size` is the size of the field, (elements, lines)."""
 
     def __init__(self, size: tuple[int, int], fit: bool = False) -> None:
         self.fit = fit
-        """Whether the field fills the window, blurred, instead of having whole multiples."""
+        """Whether the field fills the window, blurred, instead of being a whole multiple."""
         self.is_open = False
         self._size = size
         self._window_size = size
         self._redrawn = 0
-        """How often the window lost the field."""
+        """The number of times that the window lost the field."""
         self._shown: tuple[pygame.Surface, Viewport, Stamp] | None = None
-        """The surface that was scanned out to last, where the window shows it, and the field it holds."""
+        """The surface of the last field, its place in the window, and the stamp of that field."""
 
     @property
     def stamp(self) -> object:
-        """A value that changes whenever the field must be shown again, even if it is the same."""
+        """A value that changes whenever the window must show the field again, even an unchanged field."""
         return pygame.display.get_window_size(), self.fit, self._redrawn
 
     def open(self, full_screen: bool) -> None:
@@ -103,7 +103,7 @@ class Glass:
     def set_title(self, title: str) -> None:
         """Change the text of the window's title bar; letters that cannot be printed become question marks."""
         if self.is_open:
-            # Names of files may hold bytes that are not text, which pygame refuses.
+            # Names of files may contain bytes that are not text; pygame refuses them.
             printable = (letter if letter.isprintable() else "?" for letter in title)
             pygame.display.set_caption("".join(printable))
 
@@ -112,7 +112,7 @@ class Glass:
         if full_screen:
             self._window_size = pygame.display.get_window_size()
         else:
-            # Without a window manager this one only leaves full screen, and the next one sets the size.
+            # Without a window manager the first call only leaves full screen; the second sets the size.
             self._set_mode(full_screen)
         self._set_mode(full_screen)
 
@@ -125,18 +125,18 @@ class Glass:
         except pygame.error as cause:
             self.close()
             raise NoScreenError(
-                f"a window must have a screen that takes it, not this one ({cause}); "
+                f"a window must have a screen, and this screen refuses it ({cause}); "
                 "ask for a picture file instead"
             ) from cause
-        self._lose()
+        self._forget_shown()
 
-    def _lose(self) -> None:
+    def _forget_shown(self) -> None:
         """Note that the window has lost the field."""
         self._redrawn += 1
         self._shown = None
 
     def show(self, scan_out: ScanOut, overlay: Overlay, title: str, hides_mouse: bool) -> None:
-        """Show the current field with its overlay, and the pointer of the mouse unless it is hidden."""
+        """Show the current field with its overlay, and show or hide the pointer of the mouse."""
         pygame.mouse.set_visible(not hides_mouse)
         screen = pygame.display.get_surface()
         place = viewport(self._size, screen.get_size(), self.fit)
@@ -167,7 +167,7 @@ class Glass:
             )
 
     def _enlarge(self, screen: pygame.Surface, place: Viewport, run: Run) -> None:
-        """Copy some lines of the field to where the window shows them."""
+        """Copy a run of lines of the field, enlarged, to their place in the window."""
         lines = self._field.subsurface((0, run[0], self._size[0], run[1] - run[0]))
         target = enlarged(run, place, self._size)
         if target.size == lines.get_size():
@@ -175,13 +175,13 @@ class Glass:
         else:
             enlarge = pygame.transform.smoothscale if self.fit else pygame.transform.scale
             if screen.get_masks() == FIELD_MASKS and screen.get_rect().contains(target):
-                # Measured: two thirds of the time of a copy more.
+                # Measured: this takes two thirds of the time of enlarging into a copy.
                 enlarge(lines, target.size, screen.subsurface(target))
             else:
                 screen.blit(enlarge(lines, target.size), target)
 
     def collect(self, queue: InputQueue, wait: int = 0) -> None:
-        """Put the input of the user into a queue; wait up to so many milliseconds for some."""
+        """Put the input of the user into a queue, waiting up to `wait` milliseconds for the first."""
         if wait:
             self._note(pygame.event.wait(wait), queue)
         for event in pygame.event.get():
@@ -190,7 +190,7 @@ class Glass:
     def _note(self, event: pygame.event.Event, queue: InputQueue) -> None:
         """Put the input of an event into the queue, or note that the window has lost the field."""
         if event.type in REDRAWN_ON:
-            self._lose()
+            self._forget_shown()
         elif event.type == pygame.QUIT:
             queue.add(Close())
         elif event.type == pygame.KEYDOWN:
@@ -213,7 +213,7 @@ class Glass:
             queue.add(self._pointer(pygame.mouse.get_pos(), action, steps=abs(event.y)))
 
     def _pointer(self, place: tuple[int, int], action: str, button: int = 0, steps: int = 1) -> Pointer:
-        """The input of the mouse at a place of the window, with the modifiers that are down now."""
+        """The input of the mouse at a place of the window, with the current modifiers."""
         element, line = pixel_under(place, self._size, pygame.display.get_window_size(), self.fit)
         down = pygame.key.get_mods()
         shift, control = bool(down & pygame.KMOD_SHIFT), bool(down & CONTROL)
@@ -230,9 +230,9 @@ class Viewport(NamedTuple):
 
 
 def viewport(field: tuple[int, int], window: tuple[int, int], fit: bool = False) -> Viewport:
-    """Where a (width, height) window shows a (width, height) field, enlarged by a whole number unless `fit`.
+    """The place of a (width, height) field in a (width, height) window; a whole multiple unless `fit`.
 
-    A window that is smaller than the field shows its middle.
+    A window that is smaller than the field shows the middle of the field.
 
     >>> viewport((640, 480), (1400, 1000))
     Viewport(left=60, top=20, width=1280, height=960)
@@ -249,7 +249,7 @@ def viewport(field: tuple[int, int], window: tuple[int, int], fit: bool = False)
 def pixel_under(
     place: tuple[int, int], field: tuple[int, int], window: tuple[int, int], fit: bool = False
 ) -> tuple[int, int]:
-    """The element and line of the field at a place of the window; outside the field, the nearest at its edge.
+    """The element and line of the field at a place of the window; outside the field, the nearest pixel.
 
     >>> pixel_under((0, 999), (640, 480), (1400, 1000))
     (0, 479)
@@ -261,6 +261,6 @@ def pixel_under(
 
 
 def enlarged(run: Run, place: Viewport, size: tuple[int, int]) -> pygame.Rect:
-    """The rectangle of a window that shows some lines of a field of (elements, lines)."""
+    """The rectangle of the window that shows a run of lines; `size` is the field's (elements, lines)."""
     top, end = (place.top + line * place.height // size[1] for line in run)
     return pygame.Rect(place.left, top, place.width, end - top)

@@ -1,9 +1,9 @@
-"""Input queue: the inputs of a user that the program has not handled yet, without outdated ones.
+"""Input queue: the inputs of a user that the program has not handled yet, without outdated inputs.
 
-A program may take longer for a key than the keyboard takes to repeat it. Of the repeats of a key that wait,
-only the last is kept, and none when the key is released; of successive places of the mouse, only the last.
-So however long the program takes, one repeat of a key and one movement of the mouse wait at most, and nothing
-goes on after a key is released. The release itself waits in its place behind the press.
+A program may be slower than the repeats of a key. Of the waiting repeats of a key, only the last stays, and
+none after the key is released. Of successive movements of the mouse, only the last stays. So at most one
+repeat of a key and one movement of the mouse wait, however slow the program is, and nothing goes on after a
+key is released. The release waits in its place behind the press.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Final, NamedTuple, TypeAlias
 
 
 class Key(NamedTuple):
-    """A key that was pressed: its name ("a", "f1", "return", "escape", ...), its text, the modifiers held."""
+    """A pressed key: its name ("a", "f1", "return", "escape", ...), its text, and the modifiers."""
 
     name: str
     text: str = ""
@@ -22,23 +22,23 @@ class Key(NamedTuple):
     shift: bool = False
     alt: bool = False
     repeated: bool = False
-    """Whether the key was down already and the event is a repeat."""
+    """Whether the key was down already, so that this is a repeat."""
 
     @property
     def as_typed(self) -> Key:
-        """The key without Ctrl and Alt if it types a sign with both: Windows reports AltGr as both."""
+        """The key without Ctrl and Alt if it types a character with both: Windows reports AltGr as both."""
         types_a_sign = self.control and self.alt and self.text.isprintable() and self.text != ""
         return self._replace(control=False, alt=False) if types_a_sign else self
 
 
 class Release(NamedTuple):
-    """A key that was pressed is not down any more."""
+    """The release of a key."""
 
     name: str
 
 
 class Pointer(NamedTuple):
-    """Something the mouse did over an element and a line of the display."""
+    """An action of the mouse at an element and a line of the display."""
 
     element: int
     line: int
@@ -52,22 +52,22 @@ class Pointer(NamedTuple):
     """The steps of the wheel."""
     shift: bool = False
     control: bool = False
-    """Whether Shift and Ctrl are held on the keyboard."""
+    """Whether Shift and Ctrl are down on the keyboard."""
 
 
 class Close(NamedTuple):
-    """The window was asked to close."""
+    """The request to close the window."""
 
 
 Input: TypeAlias = Key | Release | Pointer | Path | Close
-"""One input; a path names a file that was dropped on the window."""
+"""An input; a path is a file that was dropped on the window."""
 
 MOVEMENTS: Final = frozenset(("move", "wheel up", "wheel down"))
-"""The actions of the mouse that are united if several wait in a row."""
+"""Actions of the mouse that are merged if several wait in a row."""
 
 
 class InputQueue:
-    """The inputs that wait, oldest first, and which keys and buttons are down."""
+    """The waiting inputs, oldest first, and the keys and buttons that are down."""
 
     def __init__(self) -> None:
         self._waiting: deque[Input] = deque()
@@ -82,7 +82,7 @@ class InputQueue:
         return frozenset(self._down)
 
     def add(self, added: Input) -> None:
-        """Let an input wait, in place of those that it overtakes; tell whether a key is a repeat."""
+        """Add an input, and drop the waiting inputs that it replaces. Marks a key that is a repeat."""
         if isinstance(added, Key):
             added = added._replace(repeated=added.name in self._down).as_typed
             self._down.add(added.name)
@@ -93,32 +93,32 @@ class InputQueue:
         self._waiting.append(added)
 
     def release(self, name: str) -> None:
-        """Take a key for released: its repeats wait no longer, and the release waits if the key was down."""
+        """Release a key: drop its waiting repeats, and add the release if the key was down."""
         self._drop_repeats(name)
         if name in self._down:
             self._down.discard(name)
             self._waiting.append(Release(name))
 
     def release_everything(self) -> None:
-        """Take all keys and buttons for released, as when another window gets the keyboard."""
+        """Release all keys and buttons, as when another window gets the keyboard."""
         for name in sorted(down for down in self._down if isinstance(down, str)):
             self.release(name)
         self._down.clear()
 
     def take(self) -> Input:
-        """The oldest input; IndexError if none waits."""
+        """Remove and return the oldest input; IndexError if none is waiting."""
         return self._waiting.popleft()
 
     def _drop_repeats(self, name: str) -> None:
-        """Drop the repeats of a key that wait. Its first press stays."""
+        """Drop the waiting repeats of a key. Its first press stays."""
         self._waiting = deque(
-            each
-            for each in self._waiting
-            if not (isinstance(each, Key) and each.repeated and each.name == name)
+            waiting
+            for waiting in self._waiting
+            if not (isinstance(waiting, Key) and waiting.repeated and waiting.name == name)
         )
 
     def _merged(self, added: Pointer) -> Pointer:
-        """The input of the mouse, in place of the one that waits last if both are the same movement."""
+        """The input of the mouse, merged with the newest waiting input if both are the same movement."""
         if added.action == "press":
             self._down.add(added.button)
         elif added.action == "release":
@@ -131,7 +131,7 @@ class InputQueue:
 
 
 def movement(pointer: Pointer) -> tuple[str, bool, bool] | None:
-    """Of which kind a movement is, with the modifiers held; None if the mouse did anything else."""
+    """The action and the modifiers of a movement; None if the action is no movement."""
     if pointer.action not in MOVEMENTS:
         return None
     return pointer.action, pointer.shift, pointer.control

@@ -1,7 +1,7 @@
 """Overlay: pages and messages over the field of a display whose memory belongs to a host.
 
-The words of a page in the frame buffer would overwrite the host's picture, and its entries may all be in use.
-So these pages are made here, in the colors of the window, and the display never knows of them.
+The words of a page in the frame buffer would overwrite the host's picture, and all entries may be in use. So
+these pages are drawn here, in the colors of the window; the display does not contain them.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ MESSAGE_LINES: Final = 16
 ROW_LINES: Final = 16
 MARGIN: Final = 8
 MESSAGE_SECONDS: Final = 5.0
-"""How long a message stands over the field."""
+"""How long a message is shown over the field."""
 PAGES: Final = {"f1": "help", "f4": "entries"}
 """The pages by the key that shows them."""
 
@@ -54,7 +54,7 @@ def write(
     background: int = BLACK,
     size: int = 1,
 ) -> None:
-    """Write a line of text, magnified by a whole number, clipped at the edges of (lines, elements) pixels."""
+    """Write a line of text on (lines, elements) pixels, magnified by a whole number and clipped."""
     codes = np.frombuffer(text.encode("latin-1", "replace"), np.uint8)
     cells = np.zeros((len(codes), CELL_LINES, ADVANCE), np.bool_)
     cells[:, :, :CELL_ELEMENTS] = characters()[codes]
@@ -64,20 +64,20 @@ def write(
 
 
 def help_page(lines: int, elements: int, title: str, rows: Sequence[tuple[str, str]] = KEYS) -> PackedColors:
-    """A page with a title and a line for each row (keys, what they do), (lines, elements)."""
+    """A page of (lines, elements) pixels with a title and a line for each row (keys, action)."""
     page = np.full((lines, elements), BLACK, np.uint32)
     size = max(1, elements // 640)
     write(page, title, MARGIN * size, MARGIN * size, YELLOW, size=2 * size)
     middle = MARGIN + ADVANCE * (2 + max(len(keys) for keys, _ in rows))
-    for number, (keys, does) in enumerate(rows):
+    for number, (keys, action) in enumerate(rows):
         top = (2 * MARGIN + ROW_LINES * (number + 2)) * size
         write(page, keys, MARGIN * size, top, ORANGE, size=size)
-        write(page, does, middle * size, top, size=size)
+        write(page, action, middle * size, top, size=size)
     return page
 
 
 def entries_page(colors: PackedColors, lines: int, elements: int) -> PackedColors:
-    """The colors of all words as cells, row by row, (lines, elements): 32 x 32 of them for 1024 words."""
+    """A page of (lines, elements) pixels with the colors of all words: 32 x 32 cells for 1024 words."""
     columns = 1 << ((len(colors) - 1).bit_length() + 1) // 2
     rows = -(-len(colors) // columns)
     row_of_line = np.arange(lines) * rows // lines
@@ -108,7 +108,7 @@ class Overlay:
 
     @property
     def message(self) -> str:
-        """The message; "" when its time has passed."""
+        """The message; "" after its time has passed."""
         return self._message if time.monotonic() < self._until else ""
 
     @message.setter
@@ -121,7 +121,7 @@ class Overlay:
         return self.page, self.message
 
     def turn_to(self, page: str) -> None:
-        """Show a page, or the field again if the page is shown already."""
+        """Show a page, or the field if the page is shown already."""
         self.page = "" if self.page == page else page
 
     def draw(self, pixels: PackedColors, colors: PackedColors, title: str) -> None:

@@ -1,4 +1,4 @@
-"""The test pattern: a stream of instructions that shows what a display of any configuration can do.
+"""The test pattern: a stream of instructions for a display of any configuration.
 
 It shows color bars, ramps through gray, red, green, blue and the hues, a grid to check the raster, circles to
 check the geometry, and the characters.
@@ -42,12 +42,12 @@ def pattern(configuration: Configuration = GMR_9300) -> Words:
 
 
 def words_in_use(configuration: Configuration) -> int:
-    """How many words there are that select different entries."""
+    """The number of words that select different entries."""
     return min(configuration.entries, configuration.largest_word + 1)
 
 
 def ramp_words(configuration: Configuration) -> dict[str, Indices]:
-    """The words of each ramp: a quarter of the table for gray, an eighth for each of the others."""
+    """The words of the ramps: a quarter of the table for gray, and an eighth each for the other colors."""
     total = words_in_use(configuration)
     starts = {"gray": 2, "red": 4, "green": 5, "blue": 6, "hue": 7}
     return {
@@ -82,8 +82,8 @@ def load(configuration: Configuration) -> Words:
     return instructions.concatenate(loaded, instructions.park_table())
 
 
-def middle(configuration: Configuration) -> tuple[int, int, int]:
-    """The element and the line of the center of the disc, and its radius."""
+def disc(configuration: Configuration) -> tuple[int, int, int]:
+    """The disc of bars and ramps: element and line of its center, and its radius."""
     width, height = configuration.shown_elements, configuration.shown_lines
     return width // 2, height // 2, min(width, height) * 5 // 12
 
@@ -91,7 +91,7 @@ def middle(configuration: Configuration) -> tuple[int, int, int]:
 def picture(configuration: Configuration) -> Words:
     """The words of background, grid and disc, (lines, elements)."""
     width, height = configuration.shown_elements, configuration.shown_lines
-    center, middle_line, radius = middle(configuration)
+    center, middle_line, radius = disc(configuration)
     words = np.full((height, width), GROUND, np.uint16)
     step = max(2, min(width, height) // 12)
     words[middle_line % step :: step] = GRID
@@ -101,25 +101,25 @@ def picture(configuration: Configuration) -> Words:
     ramps = ramp_words(configuration)
     edges = [-12, -4, -1, 2, 4, 6, 8, 12]
     across = np.arange(width) - (center - radius)
-    disc = np.zeros_like(words)
+    filled = np.zeros_like(words)
     bars = FIRST_BAR + np.clip(across * len(BARS) // (2 * radius), 0, len(BARS) - 1)
     rows: list[Indices] = [bars]
     for name in ("gray", "hue", "red", "green", "blue"):
         place = np.clip(across * len(ramps[name]) // (2 * radius), 0, len(ramps[name]) - 1)
         rows.append(ramps[name][place])
-    # The lowest part shows sixteen steps of gray, which should be clearly distinct.
+    # Show sixteen steps of gray at the bottom; they should be clearly distinct.
     rows.append(ramps["gray"][np.clip(across * 16 // (2 * radius), 0, 15) * (len(ramps["gray"]) - 1) // 15])
     for row, first, last in zip(rows, edges[:-1], edges[1:], strict=True):
-        disc[middle_line + first * radius // 12 : middle_line + last * radius // 12] = row
+        filled[middle_line + first * radius // 12 : middle_line + last * radius // 12] = row
     lines, elements = np.ogrid[:height, :width]
     inside = (lines - middle_line) ** 2 + (elements - center) ** 2 < radius * radius
-    words[inside] = disc[inside]
+    words[inside] = filled[inside]
     return words
 
 
 def circle_outline(configuration: Configuration) -> Words:
     """The vectors of the outline of the disc, and of a small circle in each corner."""
-    center, middle_line, radius = middle(configuration)
+    center, middle_line, radius = disc(configuration)
     width, height = configuration.shown_elements, configuration.shown_lines
     small = min(width, height) // 12
     around = np.linspace(0, 2 * np.pi, 181)
@@ -138,7 +138,7 @@ def circle_outline(configuration: Configuration) -> Words:
 
 def labels(configuration: Configuration) -> Words:
     """The instructions that write the name of the configuration, its sizes and the characters."""
-    center, middle_line, radius = middle(configuration)
+    center, middle_line, radius = disc(configuration)
     height = configuration.shown_lines
     sizes = (
         f" {configuration.shown_elements} x {configuration.shown_lines} x {configuration.planes} "

@@ -4,11 +4,11 @@ What is modeled: the joystick unit. The mouse moves the cursors that its device 
 ENTER, the right one is TRACK while it is down. What is **not**: how a joystick feels.
 
 The window shows fields: programs draw words in the frame buffer, and cursors. Keys, the mouse, dropped files
-and ticks are passed as plain values to the program that uses the display. A field is shown after every input
-that changed it, before the next input is handled, so that input never outruns the picture.
+and ticks are passed as plain values to the program that uses the display. After an input that changed the
+field, the field is shown before the next input is handled, so that input never outruns the picture.
 
-A program that draws its own pages takes F1 and F4 itself. For other programs, whose picture is a host's, the
-monitor shows pages over the field; see `overlay`.
+A program that draws its own pages handles F1 and F4 itself. If the picture belongs to a host, the monitor
+shows pages over the field; see `overlay`.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from ramtek_emu.monitor.overlay import PAGES, Overlay
 
 TICK_MILLISECONDS: Final = 15
 BLINK_SECONDS: Final = 0.5
-"""How long a blinking cursor is shown, and then hidden. Assumed: as in the time model."""
+"""How long a blinking cursor is shown, and how long it is hidden. Assumed: as in `Timing`."""
 LEFT: Final = 1
 RIGHT: Final = 3
 """Numbers of the mouse's buttons."""
@@ -62,10 +62,10 @@ class Monitor:
         """Prepare a window; `open` opens it.
 
         `on_key` returns whether it handled the key; if it did not, F1 and F4 show a page over the field, and
-        Esc leaves that page or else closes the window. In full screen, Esc leaves that first. `on_release`
-        takes the name of a key that is let go, after its press was handled, also when another window gets the
-        keyboard; modifiers are left out. `on_close` returns whether the window may close. `on_message` takes
-        messages for the user, such as the path of a screenshot; without it they are shown in the caption, and
+        Esc closes that page, or else the window. In full screen, Esc first leaves full screen. `on_release`
+        gets the name of a released key after its press was handled, also when another window gets the
+        keyboard; modifiers are left out. `on_close` returns whether the window may close. `on_message` gets
+        messages for the user, such as the path of a screenshot; without it they are shown in the caption, or
         in full screen over the field.
         """
         self.display = display
@@ -84,14 +84,14 @@ class Monitor:
         """The page and the message over the field."""
         self._enter = False
         self.refreshed = 0
-        """How often the field was shown; it never decreases."""
+        """The number of times that the field was shown; it never decreases."""
         self._caption = caption
         self._glass = Glass((display.scan_out.elements, display.scan_out.lines), fit)
         self._shown: tuple[object, ...] | None = None
 
     @property
     def fit(self) -> bool:
-        """Whether the field fills the window instead of having whole multiples."""
+        """Whether the field fills the window instead of being a whole multiple."""
         return self._glass.fit
 
     @property
@@ -127,7 +127,7 @@ class Monitor:
         return self.display.scan_out.stamp, self._glass.stamp, self.overlay.stamp
 
     def show_message(self, message: str) -> None:
-        """Show a message in the title bar of the window, or over the field where there is none."""
+        """Show a message in the title bar of the window, or over the field in full screen."""
         self.overlay.message = message if self.full_screen else ""
         self._glass.set_title(" - ".join(part for part in (self._caption, message) if part))
 
@@ -143,8 +143,8 @@ class Monitor:
     def step(self, wait: int = 0) -> bool:
         """Handle input, waiting up to `wait` milliseconds for some, and show the field if it changed.
 
-        At most one input that changes the field is handled; the others wait until it was shown. Returns
-        whether the window is still open.
+        After an input that changes the field, further inputs wait until the field was shown. Returns whether
+        the window is still open.
         """
         self._glass.collect(self.input, 0 if self.input else wait)
         before = self._to_be_shown() if self.is_open else ()
@@ -187,7 +187,7 @@ class Monitor:
             return path.resolve()
 
     def tell(self, message: str) -> None:
-        """Show a message to the user; an empty one takes the last one away."""
+        """Show a message to the user; "" removes the last message."""
         if self.on_message is not None:
             self.on_message(message)
         else:
@@ -214,7 +214,7 @@ class Monitor:
     def handle_key(self, key: Key) -> None:
         """Handle a key: first the shortcuts of the window, then `on_key`, then the pages and Esc.
 
-        Esc leaves full screen before anything else. Shortcuts do not repeat while their key is held down.
+        Esc leaves full screen before anything else. Shortcuts do not repeat while their key stays down.
         """
         if key.name in MODIFIERS:
             return
@@ -227,7 +227,7 @@ class Monitor:
             if not key.repeated:
                 self._tell_of_screenshot()
         elif key.name == "q" and key.control:
-            # Asked twice in a row, a program may take it for consent to lose changes.
+            # A program may take a second request in a row for consent to lose changes.
             if not key.repeated:
                 self.ask_to_close()
         elif self.on_key is not None and self.on_key(key):
@@ -247,7 +247,7 @@ class Monitor:
             self.on_release(release.name)
 
     def _tell_of_screenshot(self) -> None:
-        """Take a screenshot, without a message on it, and tell the path."""
+        """Take a screenshot, without a message on it, and show its path."""
         self.tell("")
         try:
             self.tell(f"saved {self.screenshot()}")

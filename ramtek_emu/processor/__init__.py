@@ -1,5 +1,5 @@
 """The processor: executes instructions, and keeps the status and the replies.
 
-There is one module of executors for each subject; `display` unites their tables. Uses the basic modules,
+Every subject has a module of executors; `display` joins their tables. Uses the basic modules,
 instruction_set, memory, drawing and video.
 """

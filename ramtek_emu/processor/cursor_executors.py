@@ -2,9 +2,9 @@
 
 Hardware: LIN (screen coordinates: element; line with visible and blink; TRACK and ENTER when read); NCAR
 (pixel coordinates, the same words); JPL (global coordinates: element, line, a word of the state).
-Assumed: screen coordinates are places on the screen; pixel coordinates are those of the memory shown there,
-by display origin, zoom and video origin; global coordinates equal screen coordinates, as on a system of one
-channel. Writing a cursor that does not exist has no effect and reading it gives 0; both set the
+Assumed: screen coordinates are places on the screen. Pixel coordinates are the pixels of the memory at these
+places, by display origin, zoom and video origin. Global coordinates equal screen coordinates, as on a system
+of one channel. Writing a cursor that does not exist has no effect, and reading it gives 0; both set the
 illegal-instruction status.
 """
 
@@ -22,8 +22,8 @@ from ramtek_emu.video.view import pixel_at, screen_at
 SHAPE_BYTES_PER_ROW: Final = 4
 
 
-def is_there(processor: Processor, instruction: Instruction) -> bool:
-    """Whether the display has the cursor of the instruction; if not, the illegal-instruction bit is set."""
+def has_cursor(processor: Processor, instruction: Instruction) -> bool:
+    """Whether the cursor of the instruction exists; if not, the illegal-instruction bit is set."""
     if instruction.low_byte in processor.cursors:
         return True
     processor.flag_illegal()
@@ -37,7 +37,7 @@ def element_bits(processor: Processor) -> int:
 
 def write_cursor(processor: Processor, instruction: Instruction) -> None:
     """Place a cursor in screen coordinates."""
-    if is_there(processor, instruction):
+    if has_cursor(processor, instruction):
         (element,), (line,) = instruction.operands.values()
         place = element & element_bits(processor), line & LINE_BITS
         processor.cursors.place(instruction.low_byte, *place, line & ~LINE_BITS)
@@ -45,7 +45,7 @@ def write_cursor(processor: Processor, instruction: Instruction) -> None:
 
 def write_cursor_at_pixel(processor: Processor, instruction: Instruction) -> None:
     """Place a cursor in pixel coordinates."""
-    if is_there(processor, instruction):
+    if has_cursor(processor, instruction):
         (element,), (line,) = instruction.operands.values()
         pixel = element & element_bits(processor), line & LINE_BITS
         place = screen_at(processor.parameters, processor.configuration, *pixel)
@@ -54,14 +54,14 @@ def write_cursor_at_pixel(processor: Processor, instruction: Instruction) -> Non
 
 def write_global_cursor(processor: Processor, instruction: Instruction) -> None:
     """Place a cursor in global coordinates; the state is a separate word."""
-    if is_there(processor, instruction):
+    if has_cursor(processor, instruction):
         (element,), (line,), (state,) = instruction.operands.values()
         processor.cursors.place(instruction.low_byte, element & 0xFFF, line & 0xFFF, state)
 
 
 def read_cursor(processor: Processor, instruction: Instruction) -> None:
     """Reply the place of a cursor in screen coordinates, with its state and the switches."""
-    if not is_there(processor, instruction):
+    if not has_cursor(processor, instruction):
         return processor.reply(np.zeros(2, np.uint16))
     cursor = processor.cursors[instruction.low_byte]
     state = processor.cursors.state_of(instruction.low_byte)
@@ -71,7 +71,7 @@ def read_cursor(processor: Processor, instruction: Instruction) -> None:
 
 def read_cursor_at_pixel(processor: Processor, instruction: Instruction) -> None:
     """Reply the place of a cursor in pixel coordinates, with its state and the switches."""
-    if not is_there(processor, instruction):
+    if not has_cursor(processor, instruction):
         return processor.reply(np.zeros(2, np.uint16))
     cursor = processor.cursors[instruction.low_byte]
     element, line = pixel_at(processor.parameters, processor.configuration, cursor.element, cursor.line)
@@ -81,7 +81,7 @@ def read_cursor_at_pixel(processor: Processor, instruction: Instruction) -> None
 
 def read_global_cursor(processor: Processor, instruction: Instruction) -> None:
     """Reply the place of a cursor in global coordinates; the state is a separate word."""
-    if not is_there(processor, instruction):
+    if not has_cursor(processor, instruction):
         return processor.reply(np.zeros(3, np.uint16))
     cursor = processor.cursors[instruction.low_byte]
     state = processor.cursors.state_of(instruction.low_byte)
@@ -90,10 +90,10 @@ def read_global_cursor(processor: Processor, instruction: Instruction) -> None:
 
 def load_cursor_shape(processor: Processor, instruction: Instruction) -> None:
     """Hardware: JPL (32 rows of two words, low byte first). Assumed: fewer rows replace the topmost ones."""
-    if is_there(processor, instruction):
+    if has_cursor(processor, instruction):
         data = instruction.data.astype("<u2").view(np.uint8)[: instruction.length]
         rows = data[: len(data) // SHAPE_BYTES_PER_ROW * SHAPE_BYTES_PER_ROW].reshape(-1, SHAPE_BYTES_PER_ROW)
-        processor.cursors.shape(instruction.low_byte, rows[:32])
+        processor.cursors.set_shape(instruction.low_byte, rows[:32])
 
 
 def connect_device(processor: Processor, instruction: Instruction) -> None:

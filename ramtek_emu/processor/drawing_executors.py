@@ -13,6 +13,7 @@ import numpy as np
 from ramtek_emu.drawing import curves, text, vectors
 from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.instruction_set.table import Flags
+from ramtek_emu.memory.character_rom import characters
 from ramtek_emu.memory.parameters import STANDARD_FONT, register
 from ramtek_emu.memory.scan_orders import Point
 from ramtek_emu.processor.processor import Executors, Processor
@@ -28,7 +29,7 @@ def ink(processor: Processor, instruction: Instruction) -> vectors.Ink:
 def write_linked_vectors(processor: Processor, instruction: Instruction) -> None:
     """Draw from the operating point through all vertices; the operating point moves to the last.
 
-    Hardware: LIN, BTL, JPL (from the operating point through every vertex, which it ends at); BTL (a
+    Hardware: LIN, BTL, JPL (from the operating point through every vertex; it ends at the last); BTL (a
     vector to the operating point is a point); NCAR (texture, write window).
     """
     parameters = processor.parameters
@@ -106,7 +107,7 @@ def write_text(processor: Processor, instruction: Instruction) -> None:
     is_standard = parameters.font == STANDARD_FONT
     next_cell = text.write_text(
         processor.frame_buffer,
-        processor.characters if is_standard else processor.loaded_characters,
+        characters() if is_standard else processor.loaded_characters,
         instruction.data_bytes(),
         style,
         window=parameters.window,

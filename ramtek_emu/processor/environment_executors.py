@@ -1,7 +1,8 @@
-"""Executors for reset, parameters, status, view and waiting, and for words that are no instruction."""
+"""Executors for reset, parameters, status, view, waiting and illegal words."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -12,17 +13,17 @@ from ramtek_emu.memory.parameters import Parameters
 from ramtek_emu.processor.processor import Executors, Processor, Status
 
 MOST_SAVED: Final = 16
-"""How many environments PUSHE can save. Assumed: one more sets the illegal-instruction status."""
+"""The number of environments that PUSHE can save. Assumed: one more sets the illegal-instruction status."""
 
 
 def skip_illegal_words(processor: Processor, instruction: Instruction) -> None:
-    """Hardware: PRG (the status bit). Assumed: each word alone is skipped."""
+    """Hardware: PRG (the status bit). Assumed: only the illegal word is skipped."""
     processor.flag_illegal()
     processor.illegal_words += max(1, len(instruction.data))
 
 
 def consume(processor: Processor, instruction: Instruction) -> None:
-    """Assumed: an instruction known by name only is consumed and sets the illegal-instruction status."""
+    """Assumed: an instruction of which only the name is known sets the illegal-instruction status."""
     processor.flag_illegal()
     processor.unimplemented += 1
 
@@ -30,7 +31,7 @@ def consume(processor: Processor, instruction: Instruction) -> None:
 def reset(processor: Processor, instruction: Instruction) -> None:
     """Hardware: LIN libdoc (clears interrupts, parameters and screen); BTL (the lookup table stays).
 
-    Assumed: an ENTER that no host has read is such an interrupt; the next program must not read it.
+    Assumed: an unread ENTER is such an interrupt and is cleared, so that the next program does not read it.
     """
     initialize(processor, instruction)
     processor.clear_status()
@@ -51,7 +52,7 @@ def do_nothing(processor: Processor, instruction: Instruction) -> None:
 def save_environment(processor: Processor, instruction: Instruction) -> None:
     """Assumed: all parameters are saved, zoom and font included."""
     if len(processor.saved) < MOST_SAVED:
-        processor.saved.append(processor.parameters.copy())
+        processor.saved.append(replace(processor.parameters))
     else:
         processor.flag_illegal()
 
@@ -65,9 +66,9 @@ def restore_environment(processor: Processor, instruction: Instruction) -> None:
 
 
 def read_parameters(processor: Processor, instruction: Instruction) -> None:
-    """Reply the operands that the flag words name, in the order in which they would be sent.
+    """Reply the operands that the flag words name, in the order of the operand table.
 
-    Assumed: all of it; without flag words every operand is replied, the operands of the second word last.
+    Assumed: all of this. Without flag words every operand is replied.
     """
     names = instruction.operands or OPERANDS
     words = [word for name in names for word in processor.parameters.operand(name)]
@@ -75,7 +76,7 @@ def read_parameters(processor: Processor, instruction: Instruction) -> None:
 
 
 def read_error_status(processor: Processor, instruction: Instruction) -> None:
-    """Assumed: the reply is one word, the request bits of the status register, which are then cleared."""
+    """Assumed: the reply is a word with the request bits of the status register; they are then cleared."""
     processor.reply(np.array([processor.status & ~Status.READY], np.uint16))
     processor.clear_status()
 
@@ -95,13 +96,13 @@ def select_video_origin(processor: Processor, instruction: Instruction) -> None:
 
 
 def wait_for_retrace(processor: Processor, instruction: Instruction) -> None:
-    """Hardware: NCAR (before a table is loaded). Assumed: the number is a channel; all retrace together."""
+    """Hardware: NCAR (before a table load). Assumed: the number is a channel; all retrace together."""
     if processor.beam is not None:
         processor.beam.wait_for_line(processor.beam.lines)
 
 
 def wait_for_line(processor: Processor, instruction: Instruction) -> None:
-    """Assumed: the word is a line of the screen, from the top; for one that does not exist no time passes."""
+    """Assumed: the word is a line of the screen, from the top. If there is no such line, no time passes."""
     line = instruction.operands["line"][0]
     if processor.beam is not None and line < processor.beam.lines:
         processor.beam.wait_for_line(line)

@@ -27,7 +27,7 @@ def erase(processor: Processor, instruction: Instruction) -> None:
 
 
 def erase_everything(processor: Processor, instruction: Instruction) -> None:
-    """Assumed: as ERS, but the whole memory, whatever the windows are: the B stands for bulk."""
+    """Assumed: as ERS, but it fills the whole memory and ignores the windows: the B stands for bulk."""
     parameters = processor.parameters
     _, background = processor.colors(instruction)
     enable = parameters.enable._replace(window=parameters.whole_window)
@@ -37,8 +37,8 @@ def erase_everything(processor: Processor, instruction: Instruction) -> None:
 def write_image(processor: Processor, instruction: Instruction) -> None:
     """Hardware: LIN, PIC (one word a pixel); JPL, NCAR (mode 1, two pixels a word; a run goes on).
 
-    Assumed: of an odd number of bytes in mode 0 the last is dropped; in mode 1 it is one pixel, and the upper
-    planes become 0. For pairs of pixels at the edge of the window see scan_orders.
+    Assumed: if the number of bytes is odd, the last byte is dropped in mode 0 and is a pixel in mode 1. In
+    mode 1 the upper planes become 0. For pairs of pixels at the edge of the window see scan_orders.
     """
     parameters = processor.parameters
     if parameters.image_mode & 1:
@@ -57,7 +57,7 @@ def write_image(processor: Processor, instruction: Instruction) -> None:
 def read_image(processor: Processor, instruction: Instruction) -> None:
     """Hardware: LIN (one word a pixel), NCAR (the read mask).
 
-    Assumed: planes that do not exist read as 0; reading moves the operating point as writing does; the byte
+    Assumed: planes that do not exist read as 0. Reading moves the operating point as writing does. The byte
     that pads the last word is 0.
     """
     parameters = processor.parameters
@@ -76,7 +76,7 @@ def read_image(processor: Processor, instruction: Instruction) -> None:
 
 
 def image_parts(processor: Processor, count: int) -> Iterator[tuple[Window, Point, int]]:
-    """The window, the first point and the number of pixels of each part of an image, by the image mode."""
+    """The parts of an image, by the image mode: window, first point, number of pixels."""
     parameters = processor.parameters
     if parameters.image_mode & 1 and count and not parameters.window.is_empty:
         return paired_parts(parameters.window, parameters.order, parameters.start, count)
@@ -119,8 +119,8 @@ def fill(processor: Processor, instruction: Instruction) -> None:
     are compared through the read mask).
     Assumed: in mode 0, or without data, the area ends at pixels of the foreground; in every other mode it
     consists of pixels with the word at the operating point. Pixels are connected up, down, left and right,
-    within the memory and the write window. An operating point outside fills nothing. The operating point
-    does not move.
+    within the memory and the write window. If the operating point is outside, nothing is filled. The
+    operating point does not move.
     """
     parameters = processor.parameters
     frame_buffer = processor.frame_buffer
@@ -143,8 +143,8 @@ def copy_image(processor: Processor, instruction: Instruction) -> None:
     """Copy the window to another place.
 
     Assumed: the data are the element and the line of the corner where the scan of the copy starts; without
-    data it is the operating point. The words are read through the read mask, all of them before any is
-    written. Outside the memory nothing is copied. The operating point becomes that corner.
+    data, that corner is the operating point. All words are read, through the read mask, before the first word
+    is written. Outside the memory nothing is copied. The operating point moves to that corner.
     """
     parameters = processor.parameters
     points = processor.placed(processor.points(instruction)[:1], instruction.low_byte)
@@ -165,7 +165,7 @@ def copy_image(processor: Processor, instruction: Instruction) -> None:
 
 
 def load_lookup_table(processor: Processor, instruction: Instruction) -> None:
-    """Hardware: JPL, NCAR (the device number is that of a table, 0 on systems of one channel).
+    """Hardware: JPL, NCAR (the device number is the number of a table, 0 on systems of one channel).
 
     Assumed: words for a table that does not exist are dropped.
     """

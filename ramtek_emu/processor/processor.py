@@ -1,13 +1,13 @@
-"""Processor: owns the parameters, the status and the replies, and does for executors what they share.
+"""Processor: owns the parameters, the status and the replies, and has the methods that executors share.
 
 Each instruction has a row in the instruction table and an executor: a function of the processor and the
 instruction, which raises no error. A new instruction is a row of the instruction table, a function in the
 module of executors for its subject, and a row of the table at the foot of that module.
 
 What is modeled: the parameters, the addressing modes, image modes, replies in order, the illegal-instruction
-bit. What is **not**: logical functions other than replacement; they replace (Assumed: FUNC, whose codes no
-source explains); write-enable offsets, which are kept and read back but have no effect (Assumed: WOF; its
-only client, NCAR, sends the corner of the window along with coordinates that include it already).
+bit. What is **not**: logical functions other than replacement; they replace (Assumed: FUNC; no source
+explains its codes); write-enable offsets, which can be set and read back but have no effect (Assumed: WOF;
+its only client, NCAR, sends the corner of the window along with coordinates that include it already).
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ from typing import Final
 
 import numpy as np
 
-from ramtek_emu.arrays import Dots, Numbers, Words
+from ramtek_emu.arrays import Numbers, Words
 from ramtek_emu.checks import is_whole
 from ramtek_emu.configuration import Configuration
 from ramtek_emu.errors import ReplyError
 from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.instruction_set.table import Flags
-from ramtek_emu.memory.character_rom import characters, loadable
+from ramtek_emu.memory.character_rom import initial_loaded_characters
 from ramtek_emu.memory.cursors import Cursors
 from ramtek_emu.memory.frame_buffer import FrameBuffer
 from ramtek_emu.memory.lookup_table import LookupTable
@@ -34,7 +34,7 @@ from ramtek_emu.video.beam import Beam
 MOST_WAITING: Final = 1 << 22
 """The largest number of words of replies that wait for the host.
 
-Assumed: further replies are dropped when the host does not read; hardware would stop the host.
+Assumed: if the host does not read, further replies are dropped; hardware would stop the host.
 """
 
 
@@ -65,12 +65,12 @@ class Processor:
         self.parameters = Parameters.at_reset(configuration)
         self.saved: list[Parameters] = []
         """The parameters that PUSHE saved, the newest last."""
-        self.loaded_characters = loadable(characters())
-        """The dots of the characters that a host can load, (256, 12, 8); at first the ROM's."""
+        self.loaded_characters = initial_loaded_characters()
+        """The dots of the loaded characters, (256, 12, 8)."""
         self.illegal_words = 0
-        """How many words were skipped because no instruction begins with them; it never decreases."""
+        """The number of illegal words that were skipped; it never decreases."""
         self.unimplemented = 0
-        """How many instructions without effect, known by name only, were consumed; it never decreases."""
+        """The number of instructions without effect, known by name only; it never decreases."""
         self._illegal = False
         self._replies = bytearray()
 
@@ -78,13 +78,8 @@ class Processor:
         state = f"{self.waiting} words of replies waiting, status {self.status.name}"
         return f"Processor({self.configuration.name}, {state})"
 
-    @property
-    def characters(self) -> Dots:
-        """The dots of the ROM, (256, 9, 7), read-only."""
-        return characters()
-
     def current_parameters(self) -> Parameters:
-        """The parameters; POPE and RSET replace them, so that they must be asked for each time."""
+        """The parameters. POPE and RSET replace the object, so ask for it each time."""
         return self.parameters
 
     @property
@@ -109,20 +104,20 @@ class Processor:
 
     @property
     def waiting(self) -> int:
-        """How many words the host can receive."""
+        """The number of words that the host can receive."""
         return len(self._replies) // 2
 
-    def points(self, instruction: Instruction, numbers_each: int = 2) -> Numbers:
-        """The data as (n, numbers_each) signed numbers; an incomplete row at the end is dropped."""
-        size = 2 * numbers_each
-        words = instruction.data[: (instruction.length or 0) // size * numbers_each]
-        return words.view(np.int16).reshape(-1, numbers_each).astype(np.int64)
+    def points(self, instruction: Instruction, columns: int = 2) -> Numbers:
+        """The data as (n, columns) signed numbers; an incomplete row at the end is dropped."""
+        size = 2 * columns
+        words = instruction.data[: (instruction.length or 0) // size * columns]
+        return words.view(np.int16).reshape(-1, columns).astype(np.int64)
 
     def placed(self, points: Numbers, flags: int) -> Numbers:
         """The (n, 2) points in absolute coordinates, by the addressing mode in the flags.
 
-        Assumed: with relative addressing each point is counted from the one before, the first from the
-        operating point. Coordinates are registers of 16 bits.
+        Assumed: with relative addressing a point is counted from the previous point, and the first point from
+        the operating point. Coordinates are registers of 16 bits.
         """
         if flags & Flags.ADDRESSING == Flags.RELATIVE:
             points = np.cumsum(points, axis=0) + self.parameters.start
@@ -134,11 +129,11 @@ class Processor:
         return wrapped
 
     def reply(self, words: Words) -> None:
-        """Keep words until the host receives them."""
+        """Store words until the host receives them."""
         self._replies += words[: MOST_WAITING - self.waiting].astype(np.uint16).tobytes()
 
     def take_reply(self, count: int) -> Words:
-        """The next `count` words of the replies; ReplyError if there are fewer."""
+        """The next `count` words of the replies; ReplyError if fewer are waiting."""
         if not is_whole(count) or not 0 <= count <= self.waiting:
             raise ReplyError(
                 f"the words received must be 0 to {self.waiting}, which wait, not {count!r}; "

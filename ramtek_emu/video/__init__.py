@@ -1,4 +1,4 @@
-"""The video: which part of the memory is shown, in which colors, and where the beam of the monitor is.
+"""The video: the part of the memory on the screen, its colors, and the beam of the monitor.
 
 Reads the memories and never writes them. Uses the basic modules and memory.
 """

@@ -1,4 +1,4 @@
-"""Beam: the clock of a display, and the line that the beam of its monitor is on.
+"""Beam: the clock of a display, and the position of its monitor's beam.
 
 What is modeled: a clock that only instructions advance, and a beam that moves line by line from the top of a
 field to its bottom and is then blanked for some lines. So the same stream always gives the same field. What
@@ -24,22 +24,22 @@ class Beam:
 
     @property
     def lines_done(self) -> int:
-        """How many lines were begun since power-on, blanked lines included."""
+        """The number of lines begun since power-on, with the blanked lines."""
         return self.nanoseconds // self.timing.line
 
     @property
     def lines_per_field(self) -> int:
-        """How many lines a field has, blanked lines included."""
+        """The number of lines of a field, with the blanked lines."""
         return self.lines + self.timing.blanked_lines
 
     @property
     def field_number(self) -> int:
-        """How many whole fields were shown since power-on."""
+        """The number of whole fields shown since power-on."""
         return self.lines_done // self.lines_per_field
 
     @property
     def line(self) -> int:
-        """The line that the beam is on; `lines` and above are blanked lines."""
+        """The current line of the beam; lines from `lines` on are blanked."""
         return self.lines_done % self.lines_per_field
 
     @property
@@ -53,7 +53,7 @@ class Beam:
         self.nanoseconds += timing.instruction + words * timing.word + pixels * timing.pixel
 
     def wait_for_line(self, line: int) -> None:
-        """Advance the clock until the beam begins a line; not at all if it is on that line."""
+        """Advance the clock until the beam begins a line; do nothing if it is on that line now."""
         ahead = (line - self.line) % self.lines_per_field
         if ahead:
             self.nanoseconds = (self.lines_done + ahead) * self.timing.line

@@ -1,14 +1,14 @@
-"""ScanOut: makes fields. The words shown go through the lookup table, and the cursors are drawn on top.
+"""ScanOut: makes fields. Words go through the lookup table, and the cursors are drawn on top.
 
 What is modeled: each word selects its entry; display origin, zoom and video origin select the part of the
 memory that is shown; with fewer planes than the table has address bits, the upper bits of the table's address
-counter select the section that is shown; the cursors; a black-and-white monitor; with a beam, each line as
-the memories were when the beam passed it. What is **not**: interlace, the levels of blanking and border.
+counter select the section of the table; the cursors; a black-and-white monitor; with a beam, lines that show
+the memories as they were when the beam passed. What is **not**: interlace, the levels of blanking and border.
 
 Hardware: GM (one word selects all three components); LIN, JPL, BTL (parking the address counter); PRG cmap.c,
 introdoc (a black-and-white monitor sees the low eight bits of an entry).
-Assumed: a cursor is white where the picture is dark and black where it is light, so that it is always
-visible; how the 9300 mixed it into the video is in no source.
+Assumed: a cursor is white on dark pixels and black on light pixels, so that it is always visible. No source
+says how the 9300 mixed cursors into the video.
 """
 
 from __future__ import annotations
@@ -29,21 +29,21 @@ from ramtek_emu.video.beam import Beam
 from ramtek_emu.video.view import PLAIN_VIEW, View, copy_shown, pixel_at, view_of
 
 Run = tuple[int, int]
-"""Consecutive lines of a field, or entries of the table: the first, and the one after the last."""
+"""A range of lines of a field, or of entries of the table: the first, and the end after the last."""
 
 
 class Mark(NamedTuple):
-    """A cursor as it is drawn on a field. Equal marks look the same."""
+    """A cursor drawn on a field. Equal marks look the same."""
 
     number: int
     element: int
     line: int
     changed: int
-    """How often the shape of any cursor had been changed."""
+    """The number of changes of shapes so far, of all cursors."""
 
     @property
     def lines(self) -> Run:
-        """The lines that it is drawn on, also beyond the edges of the field."""
+        """The lines of the cursor, even beyond the edges of the field."""
         return self.line - SHAPE_CENTER, self.line - SHAPE_CENTER + SHAPE_SIZE
 
 
@@ -58,8 +58,8 @@ class Stamp(NamedTuple):
     """All else that a field depends on."""
 
 
-FORGOTTEN: Final = ("_indices", "_indices_of", "_lines_with", "_gray")
-"""The attributes that are computed from the memories; a copy computes its own."""
+CACHED: Final = ("_indices", "_indices_of", "_lines_with", "_gray")
+"""Attributes that are computed from the memories; a copy computes its own."""
 
 
 class ScanOut:
@@ -85,14 +85,14 @@ class ScanOut:
         self._parameters = parameters
         self._beam = beam
         self._words = configuration.largest_word + 1
-        self._is_parted = self._words < lookup_table.size
+        self._has_sections = self._words < lookup_table.size
         # With a beam: the image on the monitor, and the number of lines painted since power-on.
         self._monitor_image: PackedColors = np.zeros((self.lines, self.elements), np.uint32)
         self._painted = 0
-        self._forget_indices()
+        self._clear_caches()
 
-    def _forget_indices(self) -> None:
-        # np.take is fastest with indices of type intp; they are renewed when words were written. Measured:
+    def _clear_caches(self) -> None:
+        # np.take is fastest with indices of type intp; they are updated when words were written. Measured:
         # mode "clip" takes 1.3 times as long; converting the words for each field, 32 lines at a time, 1.8
         # times; indices on huge pages take 3 % less, which is not worth the memory.
         self._indices = np.zeros((self.lines, self.elements), np.intp)
@@ -103,11 +103,11 @@ class ScanOut:
         self._gray: tuple[int, PackedColors] = (-1, self._lookup_table.packed)
 
     def __getstate__(self) -> dict[str, object]:
-        return {name: value for name, value in vars(self).items() if name not in FORGOTTEN}
+        return {name: value for name, value in vars(self).items() if name not in CACHED}
 
     def __setstate__(self, state: dict[str, object]) -> None:
         vars(self).update(state)
-        self._forget_indices()
+        self._clear_caches()
 
     def __repr__(self) -> str:
         return f"ScanOut({self.elements} x {self.lines})"
@@ -119,14 +119,14 @@ class ScanOut:
         rest = (
             self._frame_buffer.written,
             view_of(self._parameters()),
-            self._is_parted and self._partition(),
+            self._has_sections and self._first_entry(),
             beam and beam.lines_done,
         )
         return Stamp(self._lookup_table.written, self._marks(), rest)
 
     @property
     def monitor_image(self) -> tuple[int, PackedColors]:
-        """With a beam: how many lines were painted since power-on, and the image on the monitor."""
+        """With a beam: the number of lines painted since power-on, and the image on the monitor."""
         return self._painted, self._monitor_image
 
     @monitor_image.setter
@@ -139,20 +139,20 @@ class ScanOut:
         if self._beam is not None:
             self._finish_field(self._beam, pixels)
         else:
-            self._renew_indices()
+            self._update_indices()
             self.table().take(self._indices, out=pixels, mode="wrap")
         self._draw_cursors(pixels)
 
     def lines_changed_since(self, last: Stamp | None) -> tuple[Run, ...]:
         """The lines that may have changed since the field with the stamp `last`, as runs from the top.
 
-        After a load of entries, the lines that show some of them; where a cursor moved, the lines of its old
-        place and of its new one; otherwise all lines, as with None.
+        After a load of entries, these are the lines that show the entries; after a cursor moved, the lines of
+        its old and its new place. In all other cases, and with None, they are all lines.
         """
         stamp = self.stamp
         if last is None or last.rest != stamp.rest or self._beam is not None:
             return ((0, self.lines),)
-        self._renew_indices()
+        self._update_indices()
         runs = [mark.lines for mark in set(last.marks) ^ set(stamp.marks)]
         if last.entries != stamp.entries:
             runs.append(self._lines_showing(self._lookup_table.entries_written_since(last.entries)))
@@ -161,8 +161,8 @@ class ScanOut:
     def scan_out_changes_into(self, pixels: PackedColors, last: Stamp | None) -> Stamp:
         """Bring an array up to date with the current field, and return the stamp of that field.
 
-        `last` is the stamp of the field in the array, or None if the array holds anything else, such as a
-        field that was drawn on. Only the lines that changed are written.
+        `last` is the stamp of the field in the array; None if something else is in the array, or was drawn on
+        the field. Only the lines that changed are written.
         """
         stamp = self.stamp
         runs = self.lines_changed_since(last)
@@ -181,7 +181,7 @@ class ScanOut:
         return pixels.view(np.uint8).reshape(self.lines, self.elements, 4)[:, :, 2::-1].copy()
 
     def follow_beam(self) -> None:
-        """Paint the lines that the beam has passed since the last call, as the memories are now."""
+        """Paint the lines that the beam has passed since the last call, from the memories as they are now."""
         beam = self._beam
         if beam is None or beam.lines_done == self._painted:
             return
@@ -196,7 +196,7 @@ class ScanOut:
         self._painted = beam.lines_done
 
     def _finish_field(self, beam: Beam, pixels: PackedColors) -> None:
-        # Lines that the beam has not reached show the memories as they are now; in the retrace, all lines do.
+        # Lines below the beam show the memories as they are now; in the retrace, all lines do.
         self.follow_beam()
         line = beam.line if beam.line < self.lines else 0
         pixels[:line] = self._monitor_image[:line]
@@ -218,12 +218,12 @@ class ScanOut:
             draw(pixels, mark, self._cursors[mark.number].shape, first_line)
 
     def _lines_showing(self, run: Run | None) -> Run:
-        """The first line that shows an entry of a range, and the one after the last; all lines if unknown."""
+        """The lines from the first to the last that show an entry of a range; all lines if unknown."""
         is_plain = self._words == self._lookup_table.size and self._indices_of[1] == PLAIN_VIEW
         return self._lines_with(*run) if run and is_plain else (0, self.lines)
 
-    def _renew_indices(self) -> None:
-        # This is `view_of` without the call: with cold caches it would take a fiftieth of a scan-out.
+    def _update_indices(self) -> None:
+        # This is `view_of` without the call, which would take a fiftieth of a scan-out with cold caches.
         parameters = self._parameters()
         view = parameters.origin, parameters.zoom, parameters.origin_at_bottom
         now = self._frame_buffer.written, view
@@ -234,7 +234,7 @@ class ScanOut:
         copy_shown(self._indices, self._frame_buffer.words, view)
 
     def table(self) -> PackedColors:
-        """The colors that words select now, 0x00RRGGBB: of the part in use, gray on a monochrome monitor."""
+        """The colors of all words, 0x00RRGGBB: the shown section, in gray on a monochrome monitor."""
         table = self._lookup_table.packed
         if self._configuration.monochrome:
             if self._gray[0] != self._lookup_table.written:
@@ -242,46 +242,47 @@ class ScanOut:
                 low = (table >> 4 & 0xF0 | table & 0x0F) if short else table & 0xFF
                 self._gray = self._lookup_table.written, (low * 0x010101).astype(np.uint32)
             table = self._gray[1]
-        first = self._partition()
-        return table[first : first + self._words] if self._is_parted else table
+        first = self._first_entry()
+        return table[first : first + self._words] if self._has_sections else table
 
-    def _partition(self) -> int:
-        return self._lookup_table.addressed_entry // self._words * self._words if self._is_parted else 0
+    def _first_entry(self) -> int:
+        """The first entry of the section of the table that is shown."""
+        return self._lookup_table.addressed_entry // self._words * self._words if self._has_sections else 0
 
 
 def marks(cursors: Cursors, blink_is_on: bool) -> tuple[Mark, ...]:
-    """The marks of the cursors that are drawn while blinking ones are shown, or while they are not."""
+    """The marks of the visible cursors; blinking cursors are left out unless `blink_is_on`."""
     return tuple([
-        Mark(number, each.element, each.line, cursors.changed)
-        for number, each in enumerate(cursors.all)
-        if each.state & VISIBLE and (blink_is_on or not each.blinks)
+        Mark(number, cursor.element, cursor.line, cursors.changed)
+        for number, cursor in enumerate(cursors.all)
+        if cursor.state & VISIBLE and (blink_is_on or not cursor.blinks)
     ])  # fmt: skip
 
 
 def draw(pixels: PackedColors, mark: Mark, shape: Dots, first_line: int = 0) -> None:
-    """Draw a cursor, clipped at the edges, on the lines of a field from `first_line` on."""
+    """Draw a cursor, clipped at the edges, on pixels whose first line is line `first_line` of the field."""
     top, left = mark.lines[0] - first_line, mark.element - SHAPE_CENTER
     up, across = max(0, -top), max(0, -left)
     part = pixels[max(0, top) : max(0, top + SHAPE_SIZE), max(0, left) : max(0, left + SHAPE_SIZE)]
     dots = shape[up : up + part.shape[0], across : across + part.shape[1]]
     if part.size:
-        # The highest bit of green tells light from dark well enough, and is quick to test.
+        # The highest bit of green separates light from dark well enough, and is quick to test.
         light = (part >> 15 & 1).astype(np.bool_)
         part[dots] = np.where(light[dots], np.uint32(0), np.uint32(0xFFFFFF))
 
 
 STRIP: Final = 32
-"""How many lines are searched at once."""
+"""The number of lines that are searched at once."""
 
 
 def lines_with(words: Words, first: int, end: int) -> Run:
-    """The first line that contains a word from `first` to `end` - 1, and the line after the last such line.
+    """The first line with a word from `first` to `end` - 1, and the line after the last such line.
 
-    (0, 0) if no line contains one.
+    (0, 0) if no line has such a word.
     """
-    # Search from the top and from the bottom, and skip what lies between. Measured: searching every line
-    # takes twice as long. Returning whole strips would save a tenth of a scan-out once, and cost a twentieth
-    # of one for each field while a color is dragged.
+    # Search from the top and from the bottom, and skip the lines between. Measured: searching every line
+    # takes twice as long. Returning whole strips would save a tenth of a scan-out once, but would cost a
+    # twentieth of a scan-out for each field while a color is dragged.
     top, bottom = 0, len(words)
     while top < bottom and least_above(words[top : top + STRIP], first) >= end - first:
         top += STRIP
@@ -296,13 +297,13 @@ def lines_with(words: Words, first: int, end: int) -> Run:
 
 
 def least_above(words: Words, first: int, axis: int | None = None) -> Any:
-    """The smallest difference between a word and `first`, of all words or of each line, in 16 bits."""
+    """The smallest difference word - `first`, in 16 bits without a sign; by lines with `axis=1`."""
     # A word below `first` wraps to a larger difference than any word in the range.
     return (words - np.uint16(first)).min(axis=axis)
 
 
 def united(runs: Iterable[Run], lines: int) -> tuple[Run, ...]:
-    """The lines of all runs that a field of so many has, as runs from the top that do not touch.
+    """The runs clipped to `lines` lines, sorted from the top; runs that touch are joined.
 
     >>> united([(40, 72), (9, 9), (-5, 32), (20, 40), (90, 105)], 100)
     ((0, 72), (90, 100))

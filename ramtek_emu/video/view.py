@@ -1,13 +1,13 @@
-"""View: which pixel of the memory is shown where on the screen.
+"""View: converts places of the screen to pixels of the memory, and back.
 
 Three parameters decide: the display origin, the zoom, and whether the video origin is at the bottom of the
-screen. All arithmetic with them is in this module.
+screen. All arithmetic with these parameters is in this module.
 
 Hardware: JPL (the origin is the pixel at the screen's top-left corner; zoom repeats pixels 1 to 16 times);
 PRG orig.c (the origin wraps around the memory); NCAR (the video origin may be at the bottom, lines count
 up).
-Assumed: with the video origin at the bottom the origin is the pixel at the bottom-left corner; memory,
-windows and scan orders stay as they are.
+Assumed: with the video origin at the bottom, the origin is the pixel at the bottom-left corner. Memory,
+windows and scan orders do not change.
 """
 
 from __future__ import annotations
@@ -37,10 +37,7 @@ def view_of(parameters: Parameters) -> View:
 def pixel_at(
     parameters: Parameters, configuration: Configuration, element: Place, line: Place
 ) -> tuple[Place, Place]:
-    """The element and the line of the memory that are shown at a place of the screen.
-
-    Arrays of elements and of lines of the screen give arrays of elements and of lines of the memory.
-    """
+    """The element and the line of the memory at an element and a line of the screen, or at arrays of them."""
     if parameters.origin_at_bottom:
         line = configuration.shown_lines - 1 - line
     across, down = parameters.zoom
@@ -53,9 +50,9 @@ def pixel_at(
 def screen_at(
     parameters: Parameters, configuration: Configuration, element: int, line: int
 ) -> tuple[int, int]:
-    """The first element and line of the screen, from the video origin on, where a pixel is shown.
+    """The first element and line of the screen, from the video origin on, that show a pixel of the memory.
 
-    The place is beyond the screen when the pixel is not shown.
+    If no place of the screen shows the pixel, the result is beyond the screen.
     """
     across, down = parameters.zoom
     element = (element - parameters.origin.element) % configuration.elements * across
@@ -64,7 +61,7 @@ def screen_at(
 
 
 def shown_at(place: Place, origin: int, zoom: int, size: int) -> Place:
-    """Along one axis, the place in a memory of `size` that a place of the screen shows.
+    """Along one axis, the place in a memory of `size` places that a place of the screen shows.
 
     >>> [shown_at(place, 638, 2, 640) for place in range(6)]
     [638, 638, 639, 639, 0, 0]
@@ -73,7 +70,7 @@ def shown_at(place: Place, origin: int, zoom: int, size: int) -> Place:
 
 
 def copy_shown(screen: Indices, words: Words, view: View) -> None:
-    """Fill a whole screen with the words that a view shows: at each place the word at its `pixel_at`.
+    """Fill a whole screen with the words that a view shows, as `pixel_at` defines them.
 
     Measured: copying rectangles takes a fifth of the time of taking words by the indices of `pixel_at`.
     """
@@ -92,7 +89,7 @@ def copy_shown(screen: Indices, words: Words, view: View) -> None:
 
 
 def copy_around(target: Indices, words: Words, origin: tuple[int, int]) -> None:
-    """Fill the target with the words from an origin on, which wrap around the edges of the memory."""
+    """Fill the target with the words from an origin on, wrapping around the edges of the memory."""
     lines, elements = words.shape
     for target_lines, memory_lines in runs(origin[1], lines, target.shape[0]):
         for target_elements, memory_elements in runs(origin[0], elements, target.shape[1]):
@@ -100,7 +97,7 @@ def copy_around(target: Indices, words: Words, origin: tuple[int, int]) -> None:
 
 
 def runs(origin: int, size: int, count: int) -> Iterator[tuple[slice, slice]]:
-    """`count` places from an origin on, as ranges that do not wrap; with each, the range of the memory."""
+    """Yields ranges of `count` places of the screen, and their ranges of the memory, which do not wrap."""
     done = 0
     while done < count:
         first = shown_at(done, origin, 1, size)

@@ -14,6 +14,11 @@ def test_the_nearest_right_name_is_told() -> None:
     assert nearest("xyz", []) == ""
 
 
+def test_a_key_that_is_no_text_is_not_the_nearest_name() -> None:
+    assert nearest("bodi", [0, None, "body"]) == "; did you mean 'body'?"
+    assert nearest("xyz", [0, (1, 2)]) == ""
+
+
 def test_a_name_of_a_million_letters_is_compared_by_its_first() -> None:
     assert nearest("b" * 1_000_000, ["body", "glass"]) == "; known are 'body', 'glass'"
 

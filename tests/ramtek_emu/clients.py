@@ -1,6 +1,6 @@
-"""Host programs of the time, written anew: they know a host port and the words of the display, nothing else.
+"""Host programs of the time, written anew: they use only a host port and the words of the display.
 
-`Library` has the calls of a C library of 1978: one write for each instruction, parameters that stay set.
+`Library` has the calls of a C library of 1978. A call writes one instruction; parameters stay set.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ Place = tuple[int, int]
 
 
 class Library:
-    """Calls that each send one instruction."""
+    """Calls; a call sends one instruction."""
 
     def __init__(self, port: HostPort) -> None:
         self.port = port
@@ -61,7 +61,7 @@ class Library:
         self.send(0x0A03, 0x0040, *box, 2 * len(row), *row)
 
     def read_image(self, box: Box) -> Words:
-        """Set the window, then read it: without a start point."""
+        """Set the window, then read it without a start point."""
         count = (box[2] - box[0] + 1) * (box[3] - box[1] + 1)
         self.window(box)
         self.send(0x0B01, 2 * count)
@@ -71,7 +71,7 @@ class Library:
         self.send(0x0C13 if swapped else 0x0C03, 0x0040, *box, len(text), *pairs(text.encode()))
 
     def text_here(self, text: str) -> None:
-        """Upper case, in a window that lies at the operating point."""
+        """Write text in upper case, in a window at the operating point."""
         text = text.upper()
         self.send(0x0CC3, 0x0040, 0, 0, 7 * len(text), 9, len(text), *pairs(text.encode()))
 
@@ -83,7 +83,9 @@ class Library:
         self.send(0x0E01, 4 * len(vertices), *(number for vertex in vertices for number in vertex))
 
     def conic(self, coefficients: Sequence[int], stop: Place) -> None:
-        self.send(0x0F03, 0x1000, *(word for each in coefficients for word in (0, each)), 4, *stop)
+        self.send(
+            0x0F03, 0x1000, *(word for coefficient in coefficients for word in (0, coefficient)), 4, *stop
+        )
 
     def load_table(self, first: int, words: Iterable[int]) -> None:
         row = list(words)
@@ -94,7 +96,7 @@ class Library:
         self.send(0x1600 | number, place[0], place[1] | state)
 
     def read_cursor(self, number: int) -> tuple[int, int, int]:
-        """Element, line and state."""
+        """The element, the line and the state of a cursor."""
         self.send(0x1700 | number)
         element, word = self.port.receive(2).tolist()
         return element & 0x3FF, word & 0x3FF, word & ~0x3FF
@@ -108,7 +110,7 @@ def pairs(data: bytes, low_first: bool = False) -> list[int]:
 
 
 def fill_polygon(library: Library, corners: Sequence[Place], outline: int, inside: int) -> None:
-    """Outline a polygon, read its lines back and fill between what was found there: for convex ones."""
+    """Outline a convex polygon, read its lines back and fill them between the outlines."""
     library.color(outline)
     library.start(*corners[0])
     library.vectors(*corners[1:], corners[0])
@@ -141,7 +143,7 @@ def dim_table(port: HostPort, count: int) -> None:
 
 
 def draft(library: Library, color: int, hand: Callable[[], object]) -> list[list[Place]]:
-    """Follow cursor 0 with lines while TRACK is on, until ENTER; `hand` is what the user does meanwhile."""
+    """Follow cursor 0 with lines while TRACK is on, until ENTER; `hand` moves and presses for the user."""
     library.color(color)
     library.write_cursor(0, (320, 240), VISIBLE)
     strokes: list[list[Place]] = []
@@ -162,7 +164,7 @@ def draft(library: Library, color: int, hand: Callable[[], object]) -> list[list
 
 
 def follow_with_origin(library: Library, steps: int, hand: Callable[[], object], size: Place) -> None:
-    """Keep memory (0, 0) below the cursor."""
+    """Move the origin so that the cursor stays over memory (0, 0)."""
     for _ in range(steps):
         hand()
         element, line, _ = library.read_cursor(0)

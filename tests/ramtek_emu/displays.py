@@ -1,4 +1,4 @@
-"""Displays that were sent words, and their answers, memories and windows."""
+"""Displays with words sent to them; their replies, memories and windows."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def box(display: Ramtek9300) -> tuple[int, int, int, int]:
 
 
 def read(display: Ramtek9300, *words: int) -> list[int]:
-    """What the display answers to these words."""
+    """The replies of the display to these words."""
     display.send(sent_words(words))
     answer: list[int] = display.receive(display.processor.waiting).tolist()
     return answer

@@ -1,4 +1,4 @@
-"""The commands as other programs see them: real processes, and pipes at their ends."""
+"""The commands in real processes, with pipes to the tests."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def run(*arguments: object, data: bytes = b"") -> subprocess.CompletedProcess[by
 
 @contextmanager
 def started(*arguments: object) -> Iterator[subprocess.Popen[bytes]]:
-    """A command with pipes at its three ends."""
+    """A running command, with pipes for stdin, stdout and stderr."""
     process = subprocess.Popen(
         [sys.executable, "-m", "ramtek_emu", *map(str, arguments)],
         env=environment(),
@@ -64,7 +64,7 @@ def field_of(path: Path) -> np.ndarray[tuple[int, ...], np.dtype[np.uint8]]:
 
 
 class PipedHost:
-    """A host program at a display on a pipe."""
+    """A host program that uses a display on a pipe."""
 
     def __init__(self, process: subprocess.Popen[bytes]) -> None:
         assert process.stdin is not None

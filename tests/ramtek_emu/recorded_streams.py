@@ -1,6 +1,6 @@
-"""Streams that programs of the time sent, and that the descriptions of their instructions show.
+"""Streams of programs of the time, as hexadecimal words.
 
-Each was sent by a real program of 1978 to 1990 to its display. Here they are hexadecimal words.
+Real programs of 1978 to 1990 sent these streams to their displays.
 """
 
 from __future__ import annotations

@@ -34,7 +34,7 @@ def corner(window: tuple[int, int, int, int], code: int) -> Place:
 def walk(
     window: tuple[int, int, int, int], code: int, start: Place, count: int, pairs: bool = False
 ) -> list[Place]:
-    """The places of `count` words, or pixels that go in pairs, from `start` on, and the one after them."""
+    """The places of `count` words, or pixels in pairs, from `start` on, and the place after the last."""
     step, run = STEPS[code]
     first = corner(window, code)
     room_along, room_across = rooms(window, code)
@@ -54,13 +54,13 @@ def walk(
 
 
 def rooms(window: tuple[int, int, int, int], code: int) -> tuple[int, int]:
-    """How many words a run takes, and how many runs there are."""
+    """The number of words in a run, and the number of runs."""
     width, height = window[2] - window[0] + 1, window[3] - window[1] + 1
     return (width, height) if STEPS[code][0][0] else (height, width)
 
 
 def away(place: Place, window: tuple[int, int, int, int], code: int) -> tuple[int, int]:
-    """Steps along and across from the first corner, below 0 before it."""
+    """Steps along and across from the first corner; negative before the corner."""
     first, (step, run) = corner(window, code), STEPS[code]
     across, down = place[0] - first[0], place[1] - first[1]
     return across * step[0] + down * step[1], across * run[0] + down * run[1]
@@ -104,7 +104,7 @@ def field(words: Raster, entries: list[tuple[int, int, int]]) -> list[list[tuple
 
 
 def line_places(start: Place, end: Place) -> list[Place]:
-    """The pixels of a line: along its longer side, the nearest on the other, ties away from the start."""
+    """The pixels of a line: at each step along the longer side, the nearest; ties go away from the start."""
     elements, lines = end[0] - start[0], end[1] - start[1]
     length = max(abs(elements), abs(lines))
     places = [start]
@@ -119,7 +119,7 @@ def line_places(start: Place, end: Place) -> list[Place]:
 
 
 def conic_places(coefficients: tuple[int, ...], most: int, start: Place, stop: Place | None) -> list[Place]:
-    """The pixels of a conic: from each, of the three neighbors ahead, the one nearest to the curve."""
+    """The pixels of a conic: the next pixel is the nearest to the curve of the three neighbors ahead."""
     a, b, c, d, e = coefficients
     target = (0, 0) if stop is None else (stop[0] - start[0], stop[1] - start[1])
 
@@ -207,7 +207,7 @@ OPERAND_WORDS = (
 
 
 def split(stream: list[int]) -> list[list[int]]:
-    """The words of each whole instruction of a stream, read one word after the other."""
+    """The words of the whole instructions of a stream, read word by word."""
     formats = {format.opcode: format for format in FORMATS}
     parts: list[list[int]] = []
     words = iter(stream)
@@ -241,7 +241,7 @@ def split(stream: list[int]) -> list[list[int]]:
                 if format.requests_operands:
                     following = 0
                 elif format.name == "WC" and first & 1 and flag_words[0] & 1 << 12:
-                    # Six coefficients are those after which a length of 4 follows that is half a coefficient.
+                    # There are six coefficients if the next word is 4 and would be half a coefficient.
                     half = following - 6 - before
                     if half < 12 and half % 2 == 0 and take(following - 6 + 1) == 4:
                         take(2)

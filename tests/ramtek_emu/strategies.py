@@ -35,7 +35,7 @@ def windows(draw: st.DrawFn) -> Window:
 
 
 def streams(most: int = 60) -> st.SearchStrategy[list[int]]:
-    """Words at random, many of which begin an instruction."""
+    """Random words; many of them begin an instruction."""
     opcodes = st.sampled_from([format.opcode for format in SUBSTANTIATED]) | st.sampled_from(
         [format.opcode for format in FORMATS]
     )
@@ -50,11 +50,11 @@ def rasters(lines: int = 9, elements: int = 13) -> st.SearchStrategy[NDArray[np.
 
 
 def cuts(stream: list[int], places: list[int]) -> list[NDArray[np.uint16]]:
-    """The stream in pieces, cut at these places."""
+    """The pieces of a stream that is cut at these places."""
     edges = sorted({0, len(stream), *(place % (len(stream) + 1) for place in places)})
     return [np.array(stream[a:b], np.uint16) for a, b in itertools.pairwise(edges)]
 
 
 def sent_words(numbers: Iterable[int]) -> NDArray[np.uint16]:
-    """Numbers as 16-bit words, those below 0 in two's complement."""
+    """Numbers as 16-bit words; negative numbers in two's complement."""
     return np.array([number & 0xFFFF for number in numbers], np.uint16)

@@ -14,7 +14,7 @@ from ramtek_emu.memory.scan_orders import Point
 
 
 def kind_of(array_type: object) -> object:
-    """The type of the numbers that an array type names: from numpy 2.5 on its argument, before an array's."""
+    """The type of the numbers in an array type; numpy 2.5 and later store it in another place."""
     kind = get_args(array_type)[-1]
     return (get_args(kind) or (kind,))[0]
 
@@ -36,7 +36,7 @@ def test_a_type_names_the_kind_of_numbers_that_such_arrays_hold(name: str, array
     assert kind_of(getattr(arrays, name)) is array.dtype.type
 
 
-def test_every_type_says_what_it_means() -> None:
+def test_every_type_has_a_docstring() -> None:
     body = ast.parse(Path(arrays.__file__).read_text("utf-8")).body
     for statement, text in zip(body, [*body[1:], None], strict=True):
         if isinstance(statement, ast.Assign) and "NDArray" in ast.unparse(statement.value):

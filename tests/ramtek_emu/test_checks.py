@@ -21,7 +21,7 @@ KINDS = st.sampled_from([np.uint16, np.int16, np.int64, np.uint64, ">u2"])
 
 @quick
 @given(st.lists(st.integers(-5, 1030), min_size=1, max_size=12), st.integers(1, 10))
-def test_words_are_taken_when_every_one_fits_the_planes(row: list[int], planes: int) -> None:
+def test_words_that_fit_the_planes_are_accepted(row: list[int], planes: int) -> None:
     if all(0 <= word < 1 << planes for word in row):
         checked = checked_words([row], planes)
         assert checked.dtype == np.uint16
@@ -41,7 +41,7 @@ def test_words_that_are_no_raster_are_refused_with_their_shape(shape: tuple[int,
     with pytest.raises(WordsError) as refusal:
         checked_words(np.zeros(shape, np.uint16))
     assert str(refusal.value) == (
-        f"words must be a (lines, elements) array with at least one of each, not of shape {shape}; "
+        f"words must be a (lines, elements) array with at least one word, not of shape {shape}; "
         "pass words[np.newaxis] for one line"
     )
 
@@ -74,7 +74,7 @@ def test_colors_are_taken_when_the_table_holds_them_all(
             checked_colors(first, array)
 
 
-def test_what_is_no_array_of_whole_numbers_is_refused_by_the_error_of_its_door() -> None:
+def test_an_argument_that_is_no_array_of_whole_numbers_is_refused() -> None:
     for error in (WordsError, ColorsError):
         with pytest.raises(error) as refusal:
             whole_numbers([[1], [2, 3]], "things", error)
@@ -86,7 +86,7 @@ def test_what_is_no_array_of_whole_numbers_is_refused_by_the_error_of_its_door()
     assert whole_numbers([], "things", WordsError).size == 0
 
 
-def test_a_whole_number_is_one_of_python_or_numpy_and_no_truth_value() -> None:
+def test_numbers_of_python_and_numpy_are_whole_and_truth_values_are_not() -> None:
     for whole in (3, np.uint8(3), np.int64(3)):
         assert is_whole(whole)
         checked = checked_number(whole, "a factor", 1, 16, "choose another", WordsError)
@@ -135,7 +135,7 @@ def test_bytes_are_no_stream_since_nobody_can_tell_their_order(data: object) -> 
         ([[1792]], "one row, not of shape (1, 1); flatten it first"),
     ],
 )
-def test_what_is_no_row_of_whole_numbers_is_no_stream(words: object, sentence: str) -> None:
+def test_a_stream_must_be_a_row_of_whole_numbers(words: object, sentence: str) -> None:
     with pytest.raises(WordsError) as refusal:
         checked_stream(words)
     assert str(refusal.value) == f"a stream of words must be {sentence}"

@@ -1,4 +1,4 @@
-"""Programs that draw, read back and draw from what they read; and the habits of the drivers of the time."""
+"""Programs that draw, read words back and draw again; and the habits of the drivers of the time."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 from ramtek_emu import GMR_9300, JPL_9460, NCAR_9460, PRINCETON_9300, Configuration, Ramtek9300, instructions
+from ramtek_emu.memory.character_rom import characters
 from ramtek_emu.processor.processor import Status
 from tests.ramtek_emu import reference
 from tests.ramtek_emu.clients import (
@@ -25,11 +26,13 @@ from tests.ramtek_emu.clients import (
 )
 from tests.ramtek_emu.strategies import sent_words
 
-both_9300s = pytest.mark.parametrize("configuration", [GMR_9300, PRINCETON_9300], ids=lambda each: each.name)
+both_9300s = pytest.mark.parametrize(
+    "configuration", [GMR_9300, PRINCETON_9300], ids=lambda configuration: configuration.name
+)
 
 
 @both_9300s
-def test_a_polygon_is_filled_between_what_is_read_of_its_outline(configuration: Configuration) -> None:
+def test_a_polygon_is_filled_between_the_outlines_that_are_read_back(configuration: Configuration) -> None:
     display = Ramtek9300(configuration)
     library = Library(display)
     library.reset()
@@ -151,11 +154,11 @@ def test_relative_text_starts_where_the_operating_point_was_set() -> None:
     library.color(3)
     library.start(200, 150)
     library.text_here("Ramtek")
-    cells = np.concatenate([display.processor.characters[ord(letter)] for letter in "RAMTEK"], axis=1)
+    cells = np.concatenate([characters()[ord(letter)] for letter in "RAMTEK"], axis=1)
     assert (display.words[150:159, 200:242] == 3 * cells).all()
 
 
-def test_a_raster_of_one_bit_a_pixel_is_shown_as_it_lies() -> None:
+def test_a_raster_of_one_bit_a_pixel_is_shown_in_order() -> None:
     display = Ramtek9300(PRINCETON_9300)
     dots = np.random.default_rng(2).random((40, 64)) < 0.5
     library = Library(display)
@@ -183,7 +186,7 @@ def test_a_conic_of_the_library_is_an_arc() -> None:
 
 
 def plot_session(display: Ramtek9300) -> None:
-    """What the plot library sends: table, erase, colors, lines, a box, text with reverse packing."""
+    """The stream of the plot library: table, erase, colors, lines, a box, text with reverse packing."""
     table = [
         sum(part for bit, part in enumerate((0xF00, 0x0F0, 0x00F)) if index >> bit & 1)
         for index in range(512)
@@ -208,12 +211,12 @@ def test_the_plot_library_draws_lines_boxes_and_text() -> None:
     words = display.words
     assert words[501, 10] == 1
     assert (words[331:412, 100:201] == 2).all()
-    cells = np.concatenate([display.processor.characters[ord(letter)] for letter in "HELLO "], axis=1)
+    cells = np.concatenate([characters()[ord(letter)] for letter in "HELLO "], axis=1)
     # The box's color stayed the background.
     assert (words[451:460, 100:142] == np.where(cells, 1, 2)).all()
     assert display.field()[501, 10].tolist() == [255, 0, 0]
     assert display.field()[340, 110].tolist() == [0, 255, 0]
-    # The box left a small window; the vectors afterwards were not clipped by it.
+    # The box left a small window, which did not clip the vectors afterwards.
     assert display.status == Status.READY
 
 
@@ -239,7 +242,7 @@ def test_the_image_driver_sets_text_at_the_edge_before_its_window() -> None:
     for element, line in ((0, 190), (-21, 300)):
         display.send(sent_words([0x0C0B, 0x8443, 255, 7, 1, 1, 640, 480, 0, element, line, 6]))
         display.send(sent_words(pairs(b"VICAR ", low_first=True)))
-    cells = np.concatenate([display.processor.characters[ord(letter)] for letter in "VICAR "], axis=1)
+    cells = np.concatenate([characters()[ord(letter)] for letter in "VICAR "], axis=1)
     assert (display.words[190:199, :42] == 7 * cells).all()
     assert (display.words[300:309, :21] == 7 * cells[:, 21:]).all()
     assert np.count_nonzero(display.words) == cells.sum() + cells[:, 21:].sum()
@@ -249,7 +252,7 @@ def test_the_image_driver_changes_a_pixel_at_the_edge_of_an_odd_window() -> None
     display = Ramtek9300(JPL_9460)
     picture = np.arange(480 * 640).reshape(480, 640) % 251
     display.send(instructions.write_image(picture))
-    # Pixels go in pairs from even elements on; the window begins at element 101, the pixel is 101, 60.
+    # Pixels are sent in pairs from even elements on; the window begins at element 101, the pixel is 101, 60.
     head = [0x80C1, 0x0020, 0x00FF, 101, 20, 300, 99, 0, 100, 60, 1, 2]
     display.send(sent_words([0x0B0F, *head]))
     (pair,) = display.receive(1).tolist()
@@ -259,7 +262,7 @@ def test_the_image_driver_changes_a_pixel_at_the_edge_of_an_odd_window() -> None
     assert (display.words == picture).all()
 
 
-def test_an_area_of_more_bytes_than_one_instruction_takes_goes_on() -> None:
+def test_an_area_of_too_many_bytes_continues_in_the_next_instruction() -> None:
     display = Ramtek9300(JPL_9460)
     picture = np.random.default_rng(12).integers(0, 256, (400, 300), np.uint8)
     flat = picture.reshape(-1)
@@ -295,7 +298,7 @@ def test_the_weather_driver_clips_draws_and_colors() -> None:
     image = [0x0A0F, 0x00C0, 0x0020, 8, 528, 11, 531, 0, 1, 16, *bytes_of(np.arange(1, 17, dtype=np.uint8))]
     display.send(sent_words(image))
     assert display.words[528:532, 8:12].tolist() == np.arange(1, 17).reshape(4, 4).tolist()
-    # A line that leaves the clip window.
+    # Draw a line that leaves the clip window.
     display.send(sent_words([0x0E0F, 0x8002, 0x0008, 7, 600, 600, 0xFFFF, 0x1000, 4, 700, 600]))
     assert (display.words[600, 600:640] == 7).all()
     assert not display.words[600, 640:].any()
@@ -318,7 +321,7 @@ def test_a_drawing_program_that_sees_its_cursor_only_draws_what_it_sends() -> No
 
 def test_sessions_do_not_depend_on_how_they_are_cut() -> None:
     class Cut(Ramtek9300):
-        """A display that gets its words one by one."""
+        """A display that gets its words one at a time."""
 
         def send(self, words: NDArray[np.uint16]) -> None:
             for word in words:

@@ -1,4 +1,4 @@
-"""How a command leaves the process; what only a process of its own shows is tried with `autocolor`."""
+"""The exit codes and messages of a command; tests that need a process of their own are with `autocolor`."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ End = Callable[..., Left]
 
 @pytest.fixture
 def end(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> End:
-    """Run a command that does what it is given, and tell how it ended."""
+    """Run a command that calls the given function; returns how it ended."""
 
     def run(does: Callable[[], object], *arguments: str) -> Left:
         @click.command()
@@ -55,7 +55,7 @@ def raising(error: BaseException) -> Callable[[], None]:
     return does
 
 
-def test_what_goes_well_ends_with_0(end: End) -> None:
+def test_success_ends_with_0(end: End) -> None:
     assert end(lambda: None, "a", "b") == (0, "a b\n", "")
 
 
@@ -108,11 +108,11 @@ def test_debug_after_two_dashes_is_an_argument(end: End) -> None:
     assert end(lambda: None, "--", "a", "--debug") == (0, "a --debug\n", "")
 
 
-def test_names_that_are_no_text_are_told_with_backslashes(end: End) -> None:
+def test_names_that_are_no_text_are_shown_with_backslashes(end: End) -> None:
     assert end(lambda: None, "\udcff").out == "\\udcff\n"
 
 
-def test_a_process_without_a_stdout_is_told_when_it_answers(
+def test_a_process_without_a_stdout_fails_when_it_writes(
     end: End, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(sys, "stdout", None)
@@ -123,7 +123,7 @@ def test_a_process_without_a_stdout_is_told_when_it_answers(
 
 
 class TwoCommands(CommandGroup):
-    """Commands that are looked for in a module of this test."""
+    """Commands in a module of this test."""
 
     package = "tests_of_command_line"
     table: ClassVar[dict[str, str]] = {"paint": "paint the house", "list": "list the rooms"}
@@ -161,12 +161,12 @@ def test_help_shows_the_table_in_its_order_and_loads_no_command(
     assert shown.index("paint the house") < shown.index("list the rooms")
 
 
-def test_a_wrong_name_is_told_the_nearest_right_one(group: TwoCommands) -> None:
+def test_a_wrong_name_is_answered_with_the_nearest_command(group: TwoCommands) -> None:
     assert "there is no command 'pant'; did you mean 'paint'?" in run_group(group, "pant")[1]
     assert "there is no command 'xyz'; known are paint, list" in run_group(group, "xyz")[1]
 
 
-def test_a_file_without_a_command_is_told_where_one_stands(
+def test_a_file_without_a_command_is_answered_with_the_place_of_a_command(
     group: TwoCommands, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -190,7 +190,7 @@ def paint(set: str, to: str, name: str) -> None:
 
 
 def candidates(monkeypatch: pytest.MonkeyPatch, *words: str) -> list[str]:
-    """What bash is told for the words that it made of a line, the last of them incomplete."""
+    """The candidates for the words that bash made of a line; the last word is incomplete."""
     monkeypatch.setenv("COMP_WORDS", "\n".join(words))
     monkeypatch.setenv("COMP_CWORD", str(len(words) - 1))
     return WholeWords(paint, {}, "paint", "_PAINT_COMPLETE").complete().splitlines()
@@ -203,7 +203,7 @@ def test_values_are_completed_after_an_equals_sign(monkeypatch: pytest.MonkeyPat
     assert candidates(monkeypatch, "paint", "--set", "=", "si") == ["plain,size=1"]
 
 
-def test_a_bash_that_leaves_words_whole_is_told_whole_candidates(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_bash_that_leaves_words_whole_gets_whole_candidates(monkeypatch: pytest.MonkeyPatch) -> None:
     assert candidates(monkeypatch, "paint", "--set", "color=d") == ["plain,color=dark\\ red"]
 
 

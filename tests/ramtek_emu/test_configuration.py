@@ -74,7 +74,7 @@ def test_a_display_is_made_by_the_name_of_its_configuration(name: str) -> None:
         ("", "choose one of them"),
     ],
 )
-def test_a_name_of_no_configuration_is_told_all_names_and_the_nearest(name: str, advice: str) -> None:
+def test_an_unknown_configuration_is_answered_with_all_names_and_the_nearest(name: str, advice: str) -> None:
     with pytest.raises(ConfigurationError) as refusal:
         Ramtek9300(name)
     assert str(refusal.value) == (
@@ -84,7 +84,7 @@ def test_a_name_of_no_configuration_is_told_all_names_and_the_nearest(name: str,
 
 
 @pytest.mark.parametrize("value", [None, 9300, b"GMR_9300"])
-def test_what_is_no_configuration_and_no_name_is_refused(value: Any) -> None:
+def test_a_configuration_must_be_a_configuration_or_a_name(value: Any) -> None:
     with pytest.raises(ConfigurationError) as refusal:
         Ramtek9300(value)
     assert str(refusal.value).startswith(
@@ -92,7 +92,9 @@ def test_what_is_no_configuration_and_no_name_is_refused(value: Any) -> None:
     )
 
 
-@pytest.mark.parametrize("configuration", CONFIGURATIONS.values(), ids=lambda each: each.name)
+@pytest.mark.parametrize(
+    "configuration", CONFIGURATIONS.values(), ids=lambda configuration: configuration.name
+)
 def test_a_configuration_is_shown_as_python_that_makes_it(configuration: Configuration) -> None:
     names = {"Configuration": Configuration, "EntryFormat": EntryFormat}
     assert eval(repr(configuration), names) == configuration

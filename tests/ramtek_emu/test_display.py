@@ -1,4 +1,4 @@
-"""The whole display: streams of the time, streams that nobody would send, and its own switches."""
+"""The whole display: streams of the time, streams that no program would send, and the switches."""
 
 from __future__ import annotations
 
@@ -28,6 +28,7 @@ from ramtek_emu import (
 )
 from ramtek_emu.display import EXECUTORS
 from ramtek_emu.instruction_set.table import FORMATS, ILLEGAL
+from ramtek_emu.memory.character_rom import characters
 from ramtek_emu.snapshot import snapshot_bytes
 from tests.ramtek_emu.displays import sent
 from tests.ramtek_emu.recorded_streams import RECORDED
@@ -53,7 +54,7 @@ def test_no_words_at_all_raise_or_leave_the_planes(stream: list[int], places: li
     assert (cut.receive(cut.processor.waiting) == whole.receive(whole.processor.waiting)).all()
 
 
-def test_every_row_of_the_instruction_table_has_an_executor_that_says_what_it_does() -> None:
+def test_every_instruction_has_an_executor_with_a_docstring() -> None:
     assert set(EXECUTORS) == {row.name for row in (*FORMATS, ILLEGAL)}
     for name, executor in EXECUTORS.items():
         assert executor.__doc__, name
@@ -122,7 +123,7 @@ def test_no_instruction_takes_long(name: str) -> None:
     assert display.words.max() <= 1023
 
 
-def test_the_reset_switch_hides_the_cursors_and_forgets_what_was_unfinished() -> None:
+def test_the_reset_switch_hides_the_cursors_and_drops_unfinished_words() -> None:
     display = Ramtek9300()
     display.send(sent_words([0x1600, 5, 0x406, 0x1700, 0x0802, 2, 9, 0x0A01, 0xFFFF, 1, 2, 3]))
     assert display.decoder.pending_words
@@ -146,7 +147,7 @@ def test_a_display_shows_itself_in_a_notebook_and_in_a_file(tmp_path: Path) -> N
 
 
 def busy_display(configuration: Configuration) -> Ramtek9300:
-    """A display with something in all of its parts, and in the middle of an instruction."""
+    """A display with state in all of its parts, in the middle of an instruction."""
     display = Ramtek9300(configuration)
     display.send(instructions.write_image(np.arange(480 * 640).reshape(480, 640) % 200))
     display.send(sent_words([0x0300, 0, 12, 0x1234, 0x0056, 0x789A, 0x00BC, 0x0DEF, 3]))
@@ -178,8 +179,8 @@ def test_a_copy_of_a_display_goes_on_as_the_display_does(
     display.field()
     twin = copied(display)
     rest = sent_words([4, 5, 6, 0x1700, 0x1400, 0x0C01, 2, 0x4142])
-    for each in (display, twin):
-        each.send(rest)
+    for receiver in (display, twin):
+        receiver.send(rest)
     assert (twin.words == display.words).all()
     assert (twin.entries == display.entries).all()
     assert (twin.field() == display.field()).all()
@@ -192,7 +193,7 @@ def test_a_copy_of_a_display_goes_on_as_the_display_does(
 
 
 @pytest.mark.parametrize("copied", COPIES, ids=["deepcopy", "pickle"])
-def test_a_copy_of_a_display_is_apart_from_it_and_its_arrays_stay_read_only(
+def test_a_copy_of_a_display_is_independent_and_its_arrays_stay_read_only(
     copied: Callable[[Ramtek9300], Ramtek9300],
 ) -> None:
     display = busy_display(GMR_9300)
@@ -200,7 +201,7 @@ def test_a_copy_of_a_display_is_apart_from_it_and_its_arrays_stay_read_only(
     display.send(sent_words([4, 5, 6, 0x2B00]))
     words, entries = twin.words, twin.lookup_table.packed
     assert words[10, 10] == (640 * 10 + 10) % 200
-    for handed_out in (words, entries, twin.entries, twin.processor.characters):
+    for handed_out in (words, entries, twin.entries, characters()):
         assert not handed_out.flags.writeable
     # The views that were handed out before stay current.
     twin.reset()
@@ -211,7 +212,7 @@ def test_a_copy_of_a_display_is_apart_from_it_and_its_arrays_stay_read_only(
     assert twin.field()[0, 0].tolist() == [1, 2, 3]
 
 
-def test_the_parts_of_a_display_tell_what_they_are() -> None:
+def test_the_parts_of_a_display_have_a_repr() -> None:
     display = Ramtek9300("ncar_9460")
     display.send(instructions.erase(window=(0, 0, 9, 9)))
     display.send(instructions.write_cursor(0, 5, 6))
@@ -221,7 +222,7 @@ def test_the_parts_of_a_display_tell_what_they_are() -> None:
         display.processor, display.decoder, display.scan_out,
         Ramtek9300(replace(GMR_9300, timing=Timing())).beam,
     ]  # fmt: skip
-    assert [repr(each) for each in shown] == [
+    assert [repr(part) for part in shown] == [
         "Ramtek9300(NCAR_9460, 1280 x 1024 x 8 bits, 1024 entries, 11 words received)",
         "FrameBuffer(1280 x 1024 words of 8 bits, 100 written)",
         "LookupTable(1024 entries, PAIR_24, 0 words written)",

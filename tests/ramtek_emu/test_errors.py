@@ -8,7 +8,7 @@ import ramtek_emu
 from ramtek_emu import errors
 
 TREE = [
-    each for _, each in inspect.getmembers(errors, inspect.isclass) if issubclass(each, errors.RamtekError)
+    error for _, error in inspect.getmembers(errors, inspect.isclass) if issubclass(error, errors.RamtekError)
 ]
 CODES = {
     "RamtekError": 70,
@@ -29,11 +29,11 @@ CODES = {
 
 
 def test_each_refusal_leaves_with_its_exit_code() -> None:
-    assert {each.__name__: each.exit_code for each in TREE} == CODES
+    assert {error.__name__: error.exit_code for error in TREE} == CODES
 
 
 @pytest.mark.parametrize("error", TREE)
-def test_every_refusal_is_of_one_tree_and_a_public_name(error: type[errors.RamtekError]) -> None:
+def test_every_error_is_public_and_a_ramtek_error(error: type[errors.RamtekError]) -> None:
     assert issubclass(error, errors.RamtekError)
     assert getattr(ramtek_emu, error.__name__) is error
 

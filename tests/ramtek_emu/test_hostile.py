@@ -1,4 +1,4 @@
-"""Streams of real programs with faults in them, as bad lines and bad programs make them."""
+"""Streams of real programs with faults, such as bad lines and bad programs cause."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ EACH = 40
 
 
 class Listener(Ramtek9300):
-    """A display that keeps what it was sent."""
+    """A display that records the words that it was sent."""
 
     def __init__(self, configuration: Configuration = GMR_9300) -> None:
         super().__init__(configuration)
@@ -30,7 +30,7 @@ class Listener(Ramtek9300):
 
 @lru_cache
 def sessions() -> tuple[NDArray[np.uint16], ...]:
-    """What some programs send."""
+    """The streams of some programs."""
     drawing = Listener()
     library = Library(drawing)
     library.reset()
@@ -55,7 +55,7 @@ def sessions() -> tuple[NDArray[np.uint16], ...]:
 
 
 def with_faults(stream: NDArray[np.uint16], random: np.random.Generator) -> NDArray[np.uint16]:
-    """The stream with a few words changed, lost, doubled or put in."""
+    """The stream with a few words changed, lost, doubled or inserted."""
     faulty = stream.copy()
     for _ in range(int(random.integers(1, 6))):
         place = int(random.integers(0, len(faulty)))
@@ -73,7 +73,9 @@ def with_faults(stream: NDArray[np.uint16], random: np.random.Generator) -> NDAr
     return faulty
 
 
-@pytest.mark.parametrize("configuration", [GMR_9300, PRINCETON_9300, NCAR_9460], ids=lambda each: each.name)
+@pytest.mark.parametrize(
+    "configuration", [GMR_9300, PRINCETON_9300, NCAR_9460], ids=lambda configuration: configuration.name
+)
 @pytest.mark.parametrize("session", range(3))
 def test_streams_with_faults_are_drawn_somehow_and_do_no_harm(
     configuration: Configuration, session: int

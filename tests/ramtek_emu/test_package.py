@@ -46,7 +46,7 @@ def test_the_package_lists_its_public_names_and_no_other() -> None:
     assert {"__version__", "__doc__", "__name__", "__file__", "__all__"} <= set(listed)
 
 
-def test_the_version_is_that_of_the_installed_package(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_version_is_the_version_of_the_installed_package(monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[str] = []
 
     def version(name: str) -> str:

@@ -103,7 +103,7 @@ def test_after_any_words_a_snapshot_goes_on_as_the_display_does(before: list[int
     display = Ramtek9300(SMALL)
     display.send(np.array(before, np.uint16))
     again = display_of(snapshot_bytes(display))
-    # What a host left unfinished is in no snapshot.
+    # An unfinished instruction and unread replies are in no snapshot.
     display.decoder.clear()
     same(display, again)
     display.receive(display.processor.waiting)
@@ -118,7 +118,7 @@ def test_time_goes_on_where_it_was() -> None:
     configuration = replace(GMR_9300, timing=Timing(pixel=900))
     display = Ramtek9300(configuration)
     display.send(instructions.load_entries(0, [[200, 0, 0]] * 1024))
-    # One image after another until the beam is in the middle of a field.
+    # Send images until the beam is in the middle of a field.
     dot, half = instructions.write_image([[5] * 100]), 240
     assert display.beam is not None
     while not half < display.beam.line < 300:
@@ -171,7 +171,7 @@ def test_mutated_snapshots_are_read_or_refused() -> None:
             display = display_of(picture_bytes(picture, texts | {keyword: text.decode()}))
         except SnapshotError:
             continue
-        # What is taken works.
+        # A display that was accepted works.
         accepted += 1
         display.send(OUTLINE)
         display.field()
@@ -237,7 +237,7 @@ def test_a_value_that_does_not_fit_is_refused_by_name(keyword: str, old: str, ne
     st.lists(st.integers(0, 0xFFFF), min_size=6, max_size=6),
     st.lists(st.booleans(), min_size=11, max_size=11),
 )
-def test_what_was_made_plain_is_restored_through_json(words: list[int], dots: list[bool]) -> None:
+def test_plain_values_are_restored_through_json(words: list[int], dots: list[bool]) -> None:
     parameters = Parameters.at_reset(SMALL)
     parameters.conic = tuple(words)
     parameters.background = words[0]
@@ -307,7 +307,7 @@ def hostile(*chunks: bytes, header: bytes = struct.pack(">IIBBBBB", 13, 9, 16, 0
         (hostile(chunk(b"IDAT", zlib.compress(bytes(10)))), "9 lines of 13 words"),
         (hostile(chunk(b"IDAT", zlib.compress(bytes(50_000_000)))), "9 lines of 13 words"),
         (hostile(chunk(b"IDAT", zlib.compress(b"\2" * 9 * 27))), "unfiltered lines"),
-        (hostile(chunk(b"PLTE", b"")), "chunks that are known"),
+        (hostile(chunk(b"PLTE", b"")), "known chunks"),
         (hostile(chunk(b"tEXt", b"no zero")), "texts with a keyword"),
         (hostile(chunk(b"tEXt", b"a\0\xff")), "in ASCII"),
         (hostile(*[chunk(b"tEXt", b"a\0b")] * 2), "each text once"),

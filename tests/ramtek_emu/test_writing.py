@@ -13,7 +13,7 @@ from ramtek_emu.writing import Output, refuse_output, write_atomically
 FIELD = np.arange(2 * 3 * 3, dtype=np.uint8).reshape(2, 3, 3)
 
 
-def test_saving_again_replaces_the_file_unless_told_otherwise(tmp_path: Path) -> None:
+def test_saving_again_replaces_the_file_unless_overwrite_is_false(tmp_path: Path) -> None:
     path = tmp_path / "field.png"
     path.write_bytes(b"old")
     with pytest.raises(OutputExistsError) as refusal:
@@ -71,7 +71,7 @@ def test_after_a_failed_write_the_old_file_is_whole(tmp_path: Path, monkeypatch:
     assert os.listdir(tmp_path) == ["field.png"]
 
 
-def test_an_output_comes_piece_by_piece_and_is_there_when_it_is_kept(tmp_path: Path) -> None:
+def test_an_output_is_written_piece_by_piece_and_appears_when_kept(tmp_path: Path) -> None:
     path = tmp_path / "words.ramtek"
     with Output(path, overwrite=False) as output:
         output.write(b"one ")
@@ -82,7 +82,7 @@ def test_an_output_comes_piece_by_piece_and_is_there_when_it_is_kept(tmp_path: P
     assert os.listdir(tmp_path) == ["words.ramtek"]
 
 
-def test_an_output_that_is_not_kept_leaves_nothing_behind(tmp_path: Path) -> None:
+def test_an_output_without_keep_leaves_nothing_behind(tmp_path: Path) -> None:
     path = tmp_path / "words.ramtek"
     path.write_bytes(b"old")
     with Output(path, overwrite=True) as output:
@@ -110,12 +110,12 @@ def test_a_file_that_is_replaced_keeps_its_permissions(tmp_path: Path) -> None:
     assert path.stat().st_mode & 0o777 == 0o640
 
 
-def test_places_where_no_output_can_be_are_refused_before_anything_is_done(tmp_path: Path) -> None:
+def test_impossible_outputs_are_refused_before_anything_is_done(tmp_path: Path) -> None:
     refuse_output(tmp_path / "new.png", overwrite=False)
     for place, sentence in (
         (tmp_path, "an output must be a file, not the folder"),
         (Path("/dev/null"), "an output must be a file, not the device"),
-        (Path("a\0b"), "a file name must be one that the system can hold"),
+        (Path("a\0b"), "a file name must be valid on this system"),
         (tmp_path / ("x" * 300), "an output must have a place, and at"),
     ):
         with pytest.raises(OutputError, match=sentence):

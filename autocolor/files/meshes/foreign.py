@@ -47,7 +47,7 @@ from autocolor.files.meshes.number_text import MOST_PROBLEMS
 from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, RawPolygons, repaired
 from autocolor.files.paths import path_within
 from autocolor.files.reading import LARGEST_MESH_FILE, bounded_json, read_bytes
-from autocolor.scene.columns import changed
+from autocolor.scene.columns import replaced
 from autocolor.scene.defaults import COLORED_PAINT, created_surface
 from autocolor.scene.scalar import NODE
 
@@ -417,7 +417,7 @@ def read_foreign(read_as: ForeignFormat, path: Path, placement: Placement = PLAI
         report,
         material_of_part=dict(mesh.material_of_part),
         materials=tuple(
-            changed(created_surface(name, COLORED_PAINT.object_color), {"object_color": mesh.colors[name]})
+            replaced(created_surface(name, COLORED_PAINT.object_color), {"object_color": mesh.colors[name]})
             for name in materials
         ),
     )

@@ -270,7 +270,7 @@ def read_notes(path: Path) -> TableNotes:
     if len(set(names)) != len(names):
         _refuse(path, "part_names must differ, not repeat")
     problems: list[Problem] = []
-    angle = CREASE_ANGLES.held(content["crease_angle"], ("crease_angle",), problems)
+    angle = CREASE_ANGLES.validated(content["crease_angle"], ("crease_angle",), problems)
     if not isinstance(angle, float):
         _refuse(path, problems[0].sentence.partition(";")[0])
     if not isinstance(scalars, list) or len(scalars) > MOST_SCALARS or not all(map(_is_scalar, scalars)):

@@ -3,8 +3,7 @@
 These statements are used: `v` (a weight or color after x y z is ignored); `f`, with node numbers that count
 from 1 or, if negative, back from the latest node (texture and normal numbers are ignored); `g`, `o` and
 `usemtl`, which name the parts and their materials; and `mtllib`, which names the libraries of materials. A
-polygon may name nodes that are defined later. Quads stay quads, and
-shared nodes stay shared.
+polygon may name nodes that are defined later. Quads stay quads, and shared nodes stay shared.
 
 Texture coordinates and normals are ignored. Points, lines, curves and unknown statements are skipped and
 counted. Lines may end with LF, CR LF or CR, may be continued with a backslash, and may start with spaces or
@@ -35,7 +34,7 @@ from autocolor.files.meshes.number_text import MOST_PROBLEMS, NUMBER, Problems
 from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, RawPolygons, name_of, repaired
 from autocolor.files.paths import path_within
 from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, shown, text_problem
-from autocolor.scene.columns import changed
+from autocolor.scene.columns import replaced
 from autocolor.scene.defaults import COLORED_PAINT, created_surface
 from autocolor.scene.geometry.polygon_split import MOST_CORNERS
 from autocolor.scene.mesh import Mesh
@@ -656,7 +655,7 @@ def _surface(name: str, values: Mapping[bytes, list[float]]) -> Surface:
         changes["blend"] = 1.0
     if b"Ns" in values:
         changes["exponent"] = max(values[b"Ns"][0], LEAST_EXPONENT)
-    return changed(created_surface(name, COLORED_PAINT.object_color), changes)
+    return replaced(created_surface(name, COLORED_PAINT.object_color), changes)
 
 
 ROWS_AT_ONCE: Final = 1 << 16

@@ -26,10 +26,10 @@ from autocolor.scene.columns import (
     Problem,
     RowError,
     SomeRow,
-    changed,
+    from_plain,
     keys_of,
-    made,
-    unknown,
+    replaced,
+    unknown_key,
 )
 from autocolor.scene.creation import MATERIALS, SurfaceSource
 from autocolor.scene.defaults import default_surface
@@ -102,9 +102,9 @@ def _fields(problems: SceneProblems, document: Mapping[str, Any]) -> dict[str, A
     found: list[Problem] = []
     for key, value in document.items():
         if key not in FILE_KEYS:
-            found.append(unknown(key, FILE_KEYS))
+            found.append(unknown_key(key, FILE_KEYS))
         elif key not in TABLES:
-            fields[key] = keys_of(Scene)[key].column.kind.held(value, (key,), found)
+            fields[key] = keys_of(Scene)[key].column.kind.validated(value, (key,), found)
     problems.note_all(found)
     return {key: value for key, value in fields.items() if value is not REFUSED}
 
@@ -124,11 +124,11 @@ def _surfaces(problems: SceneProblems, document: Mapping[str, Any]) -> dict[str,
 
 
 def _surface(name: str, number: int, table: Mapping[str, Any]) -> Surface:
-    return changed(default_surface(name, number), table)
+    return replaced(default_surface(name, number), table)
 
 
 def _part(name: str, table: Mapping[str, Any]) -> Part:
-    return made(Part, {"surface": name, **table, "name": name})
+    return from_plain(Part, {"surface": name, **table, "name": name})
 
 
 def _parts(
@@ -184,9 +184,9 @@ def _row(
     try:
         row = make(table)
     except RowError as error:
-        problems.note_all(error.found, path)
+        problems.note_all(error.row_problems, path)
         return None
     if "name" in table:
         known = [key for key in keys_of(type(row)) if key != "name"]
-        problems.note_all([unknown("name", known)], path)
+        problems.note_all([unknown_key("name", known)], path)
     return row

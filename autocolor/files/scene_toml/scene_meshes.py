@@ -23,15 +23,15 @@ from autocolor.files.paths import path_within
 from autocolor.files.reading import LARGEST_MESH_FILE
 from autocolor.files.scene_toml.toml_text import KeyPath, SceneProblems, parsed_toml
 from autocolor.files.writing import free_path, write_atomically
-from autocolor.scene.columns import Bar, Column, Problem, Row, RowError, Tier, made
-from autocolor.scene.kinds import Choice, Text
+from autocolor.scene.columns import BarRange, Column, Problem, Row, RowError, Tier, from_plain
+from autocolor.scene.kinds import OneOf, Text
 from autocolor.scene.mesh import CREASE_ANGLES, Mesh, has_same_tables
 
 MOST_MESHES: Final = 1000
 MESH_STEM: Final = "mesh"
 """The name, without its ending, of a mesh file that is written beside a scene file."""
 
-SCALE_BAR: Final = Bar(0.01, 10, 0.01)
+SCALE_BAR: Final = BarRange(0.01, 10, 0.01)
 
 FILE_KEYS: Final = (("file",), ("nodes", "polygons"))
 """The keys that name the files of a mesh: one file, or a node table and a polygon table."""
@@ -49,8 +49,10 @@ class MeshEntry(Row):
     file: Annotated[str | None, Column(Text(), Tier.FRAME, "A mesh file in the scene's folder.")] = None
     nodes: Annotated[str | None, Column(Text(), Tier.FRAME, "A node table, with a polygon table.")] = None
     polygons: Annotated[str | None, Column(Text(), Tier.FRAME, "The polygon table.")] = None
-    up: Annotated[str, Column(Choice(UPS), Tier.FRAME, "The file's up axis; the world's is z.")] = "z"
-    scale: Annotated[float, Column(SCALES, Tier.FRAME, "A factor for its coordinates.", bar=SCALE_BAR)] = 1.0
+    up: Annotated[str, Column(OneOf(UPS), Tier.FRAME, "The file's up axis; the world's is z.")] = "z"
+    scale: Annotated[
+        float, Column(SCALES, Tier.FRAME, "A factor for the coordinates of the file.", bar=SCALE_BAR)
+    ] = 1.0
     crease_angle: Annotated[
         float | None,
         Column(
@@ -138,14 +140,14 @@ def _entry(problems: SceneProblems, path: KeyPath, table: object) -> MeshEntry |
     Its files are still read, so that their problems are reported too.
     """
     try:
-        return made(MeshEntry, table)
+        return from_plain(MeshEntry, table)
     except RowError as error:
-        problems.note_all(error.found, path)
-        wrong = {problem.path[0] for problem in error.found if problem.path}
+        problems.note_all(error.row_problems, path)
+        wrong = {problem.path[0] for problem in error.row_problems if problem.path}
     if not wrong or not isinstance(table, Mapping):
         return None
     try:
-        return made(MeshEntry, {key: value for key, value in table.items() if key not in wrong})
+        return from_plain(MeshEntry, {key: value for key, value in table.items() if key not in wrong})
     except RowError:
         return None
 

@@ -13,10 +13,10 @@ from typing import Any, Final
 from autocolor.errors import InputError
 from autocolor.files.scene_toml.toml_edit import TomlText
 from autocolor.files.scene_toml.toml_text import KeyPath, parsed_toml, table_text, toml_key
-from autocolor.scene.columns import Row, fields_of, made, plain, with_values
+from autocolor.scene.columns import Row, fields_of, from_plain, to_plain, with_values
 from autocolor.scene.geometry.normals import CREASE_ANGLE
 from autocolor.scene.lights import Flap, HalfSpace, Light
-from autocolor.scene.row_kinds import NamedRows, Nested, RangesByName, Rows, without_name
+from autocolor.scene.row_kinds import NamedRows, Nested, RangesByName, RowList, without_name
 from autocolor.scene.scalar import Scalar
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Part, Surface
@@ -46,12 +46,12 @@ def scene_text(
     Keys whose values are their defaults can be left out. The scene's name is not written, as it is given by
     the name of the folder or file.
     """
-    tables = sparse_tables(scene) if without_defaults else plain(scene)
+    tables = sparse_tables(scene) if without_defaults else to_plain(scene)
     kinds = {name: field.column.kind for name, field in fields_of(Scene).items()}
     keys = {
         key: value
         for key, value in tables.items()
-        if key != "name" and (not isinstance(kinds[key], (Nested, Rows)) or (key, value) == ("lights", []))
+        if key != "name" and (not isinstance(kinds[key], (Nested, RowList)) or (key, value) == ("lights", []))
     }
     blocks = [table_text("", keys)] if keys else []
     nested = [name for name, kind in kinds.items() if isinstance(kind, Nested) and name in tables]
@@ -60,7 +60,7 @@ def scene_text(
         entry = {**files} if row else {**files, "crease_angle": scene.mesh.crease_angle}
         blocks.append(table_text("[[mesh]]", sparse_entry(entry) if without_defaults else entry))
     for name, kind in kinds.items():
-        if isinstance(kind, Rows):
+        if isinstance(kind, RowList):
             blocks.extend(_rows(name, kind, tables[name]))
     return "\n".join(blocks)
 
@@ -70,12 +70,12 @@ def sparse_tables(scene: Scene) -> dict[str, Any]:
     tables: dict[str, Any] = {}
     for name, field in fields_of(Scene).items():
         value, kind = vars(scene)[name], field.column.kind
-        if isinstance(kind, Rows):
+        if isinstance(kind, RowList):
             tables[name] = [sparse_row(row) for row in value]
         elif isinstance(kind, Nested) and value is not None:
             tables[name] = sparse_row(value)
         elif field.default is None or value != field.default():
-            tables.update(kind.written(name, value))
+            tables.update(kind.to_plain(name, value))
     return tables
 
 
@@ -87,11 +87,12 @@ def sparse_entry(entry: Mapping[str, Any]) -> dict[str, Any]:
 
 def sparse_row(row: Row) -> dict[str, object]:
     """The row as keys and plain values, without keys whose values are their defaults."""
-    keys = plain(row)
+    keys = to_plain(row)
     always = ALWAYS_WRITTEN[type(row)]
     given = {key: keys[key] for key in always if key in keys}
     model = {key: keys[key] for key in ("model",) if key in keys}
-    default, of_model = plain(made(type(row), given)), plain(made(type(row), {**given, **model}))
+    default = to_plain(from_plain(type(row), given))
+    of_model = to_plain(from_plain(type(row), {**given, **model}))
     if isinstance(row, Light):
         keys["flaps"] = {axis: sparse_row(flap) for axis, flap in vars(row.flaps).items() if flap is not None}
     for name, field in fields_of(type(row)).items():
@@ -104,7 +105,7 @@ def sparse_row(row: Row) -> dict[str, object]:
     }
 
 
-def _rows(name: str, kind: Rows, rows: Any) -> Iterator[str]:
+def _rows(name: str, kind: RowList, rows: Any) -> Iterator[str]:
     """The rows of a table, as [name.ROW] tables or as [[name]] tables."""
     for keys in rows:
         if kind.by_name:
@@ -152,7 +153,7 @@ def completed(data: bytes, scene: Scene) -> bytes:
     """The text of a scene file that gives the scene, with all omitted keys and rows added."""
     document = parsed_toml(data, "scene.toml")
     text = TomlText(data.decode(), FILE_TABLES)
-    tables: dict[str, Any] = plain(scene)
+    tables: dict[str, Any] = to_plain(scene)
     _complete(text, (), document, {key: tables[key] for key in tables if key not in (*FILE_TABLES, "name")})
     _complete(text, ("view",), document.get("view", {}), tables["view"])
     if "scalar" in tables:
@@ -222,8 +223,8 @@ def _edited(data: bytes, old: Scene, new: Scene) -> bytes:
     """The text with the differences between the scene that it gives and another one changed."""
     document = parsed_toml(data, "scene.toml")
     text = TomlText(data.decode(), FILE_TABLES)
-    before: dict[str, Any] = plain(old)
-    after: dict[str, Any] = plain(new)
+    before: dict[str, Any] = to_plain(old)
+    after: dict[str, Any] = to_plain(new)
     sparse = sparse_tables(new)
 
     keys = [key for key in after if key not in (*FILE_TABLES, "name")]

@@ -133,14 +133,21 @@ def _begun(path: Path, checks_references: bool) -> sqlite3.Connection | None:
 def transaction(connection: sqlite3.Connection, name: str) -> Iterator[None]:
     """A transaction, begun unless the connection is in it, that is rolled back whole if anything in it fails.
 
-    Raises WriteError if another program is writing to the store, or if writing fails.
+    Raises WriteError if another program is writing to the store, if writing fails, or if a table of another
+    program then refers to a missing row.
     """
     with write_refusals(name):
         try:
             if not connection.in_transaction:
                 connection.execute("BEGIN IMMEDIATE")
             yield
-            connection.execute("COMMIT")
+            try:
+                connection.execute("COMMIT")
+            except sqlite3.IntegrityError as error:
+                raise WriteError(
+                    f"{name}: tables of other programs must not refer to rows that a change removes or"
+                    f" renames ({error}); change their rows first"
+                ) from None
         except BaseException:
             if connection.in_transaction:
                 connection.execute("ROLLBACK")

@@ -42,7 +42,7 @@ from autocolor.files.store.schema import (
     rows_of_table,
 )
 from autocolor.immutable import read_only
-from autocolor.scene.columns import Row, RowError, changed, made
+from autocolor.scene.columns import Row, RowError, from_plain, replaced
 from autocolor.scene.creation import PARTS, UNASSIGNED, SurfaceSource
 from autocolor.scene.defaults import default_surface
 from autocolor.scene.geometry.normals import CREASE_ANGLE
@@ -140,13 +140,15 @@ def _validated(table: RowTable, rows: list[dict[str, SqlValue]], problems: list[
         try:
             if table.row_class is Surface and isinstance(values.get("name"), str):
                 name = values.pop("name")
-                validated.append(changed(default_surface(name, number - 1), values))
+                validated.append(replaced(default_surface(name, number - 1), values))
             else:
                 # A part without a surface gets one when the scene is made.
                 start = {"surface": UNASSIGNED} if table.row_class is Part else {}
-                validated.append(made(table.row_class, {**start, **values}))
+                validated.append(from_plain(table.row_class, {**start, **values}))
         except RowError as error:
-            problems.extend(f"{table.name}, row {number}: {problem.sentence}" for problem in error.found)
+            problems.extend(
+                f"{table.name}, row {number}: {problem.sentence}" for problem in error.row_problems
+            )
     return tuple(validated)
 
 

@@ -21,19 +21,19 @@ from typing import Any, Final, NamedTuple
 
 from autocolor.checks import LARGEST_COORDINATE, listed, nearest, shown
 from autocolor.errors import InputError
-from autocolor.scene.columns import Field, Kind, Row, fields_of, plain
+from autocolor.scene.columns import Field, Kind, Row, fields_of, to_plain
 from autocolor.scene.kinds import (
     LARGEST_PLACE,
-    Choice,
+    Boolean,
     ColorKind,
     Instance,
     Number,
-    Switch,
+    OneOf,
     Text,
     VectorKind,
     Whole,
 )
-from autocolor.scene.row_kinds import NamedRows, Nested, Reference, Rows, Variant, WordOrName
+from autocolor.scene.row_kinds import NamedRows, Nested, OneRowOf, Reference, RowList
 from autocolor.scene.scalar import NODE, POLYGON
 from autocolor.scene.scene import Scene
 
@@ -43,7 +43,7 @@ NUMBER: Final = "number"
 AXES: Final = ("x", "y", "z")
 LARGEST_FLOAT: Final = 1.7976931348623157e308
 
-TEXT_KINDS: Final = (Text, Choice, ColorKind, Reference, WordOrName, Variant)
+TEXT_KINDS: Final = (Text, OneOf, ColorKind, Reference, OneRowOf)
 JSON_BEGINS: Final = ("[", "{", '"')
 """A text that begins with one of these is JSON."""
 
@@ -73,7 +73,7 @@ class SqlColumn:
         """The type in SQL."""
         if isinstance(self.kind, (Number, VectorKind)):
             return "REAL"
-        if isinstance(self.kind, (Whole, Switch)):
+        if isinstance(self.kind, (Whole, Boolean)):
             return "INTEGER"
         return "TEXT" if isinstance(self.kind, TEXT_KINDS) else "ANY"
 
@@ -91,12 +91,12 @@ class SqlColumn:
                 yield f"{name} <= {kind.at_most!r}"
         elif isinstance(kind, Whole):
             yield f"{name} BETWEEN {kind.at_least} AND {kind.at_most}"
-        elif isinstance(kind, Switch):
+        elif isinstance(kind, Boolean):
             yield f"{name} IN (0, 1)"
-        elif isinstance(kind, (Choice, Variant)):
-            names = kind.names if isinstance(kind, Choice) else kind.classes
+        elif isinstance(kind, (OneOf, OneRowOf)):
+            names = kind.names if isinstance(kind, OneOf) else kind.classes
             yield f"{name} IN ({', '.join(map(literal, names))})"
-        elif isinstance(kind, (Reference, WordOrName)) or (isinstance(kind, Text) and not kind.may_be_empty):
+        elif isinstance(kind, Reference) or (isinstance(kind, Text) and not kind.may_be_empty):
             yield f"{name} <> ''"
 
     @property
@@ -156,7 +156,7 @@ def _columns(name: str, field: Field, prefix: tuple[str, ...], is_given: bool) -
     """The columns of a field; unless the row around it `is_given`, all of them may be NULL."""
     column, is_optional, default = field
     kind, path = column.kind, (*prefix, name)
-    if isinstance(kind, (Instance, Rows)):
+    if isinstance(kind, (Instance, RowList)):
         return
     if isinstance(kind, Nested) and (not is_optional or _has_required_column(kind.row_class)):
         inner_prefix = prefix if kind.inline else path
@@ -166,7 +166,7 @@ def _columns(name: str, field: Field, prefix: tuple[str, ...], is_given: bool) -
     may_be_null = is_optional or not is_given or getattr(kind, "endless", None) is not None
     may_be_null |= isinstance(kind, NamedRows)
     start: Any = default() if default is not None and is_given and not may_be_null else None
-    defaults = {} if start is None else dict(kind.written(name, start))
+    defaults: dict[str, Any] = {} if start is None else dict(kind.to_plain(name, start))
     keys = kind.keys(name, column)
     for key, inner_column in keys.items():
         # The other keys of a variant belong to its classes, and each class has only some of them.
@@ -176,11 +176,11 @@ def _columns(name: str, field: Field, prefix: tuple[str, ...], is_given: bool) -
         value = defaults.get(key) if is_own else None
         if isinstance(inner_kind, VectorKind):
             for number, axis in enumerate(AXES):
-                component = None if value is None else float(value[number])  # type: ignore[index]
+                component = None if value is None else float(value[number])
                 name_of_axis = "_".join((*prefix, key, axis))
                 yield SqlColumn(name_of_axis, (*prefix, key), inner_kind, text, number, nullable, component)
         else:
-            references = inner_kind.table if isinstance(inner_kind, Reference) else ""
+            references = inner_kind.table if isinstance(inner_kind, Reference) and not inner_kind.word else ""
             yield SqlColumn(
                 "_".join((*prefix, key)),
                 (*prefix, key),
@@ -216,7 +216,7 @@ def in_sql(value: object) -> SqlValue:
 
 def row_values(columns: Iterable[SqlColumn], row: Row) -> list[SqlValue]:
     """The values of a row for some columns of its class."""
-    table = plain(row)
+    table = to_plain(row)
     return [in_sql(_within(table, column)) for column in columns]
 
 
@@ -256,7 +256,7 @@ def plain_row(columns: Iterable[SqlColumn], values: Mapping[str, SqlValue]) -> d
 
 def _from_sql(kind: Kind, value: SqlValue) -> object:
     """A value of a table as a plain value. A value that its kind will refuse is returned as it is."""
-    if isinstance(kind, Switch) and value in (0, 1):
+    if isinstance(kind, Boolean) and value in (0, 1):
         return bool(value)
     if isinstance(value, str) and value.startswith(JSON_BEGINS):
         try:
@@ -346,7 +346,7 @@ def _row_tables() -> dict[str, RowTable]:
     tables = {SCENE: row_table(SCENE, Scene, is_single=True)}
     for name, field in fields_of(Scene).items():
         kind = field.column.kind
-        if isinstance(kind, (Rows, Nested)):
+        if isinstance(kind, (RowList, Nested)):
             tables[name] = row_table(name, kind.row_class, is_single=isinstance(kind, Nested))
     return tables
 

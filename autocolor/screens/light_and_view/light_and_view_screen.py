@@ -320,12 +320,13 @@ class DisplayView:
 
 
 def smaller(words: Words, area: Area) -> Words:
-    """The words of a picture at the size of an area: each pixel is one of the picture's, from its middle."""
+    """The words of a picture at the size of an area: a pixel of the picture for each, from its middle."""
     lines, elements = (
         (2 * np.arange(size) + 1) * count // (2 * size)
         for size, count in zip((area.height, area.width), words.shape, strict=True)
     )
-    small: Words = words[np.ix_(lines, elements)]
+    # Twice `take` costs a seventh of indexing by both.
+    small: Words = words.take(lines, axis=0).take(elements, axis=1)
     return small
 
 

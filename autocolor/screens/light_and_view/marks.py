@@ -19,7 +19,12 @@ from autocolor.scene.lights import Light
 from autocolor.scene.scene import Scene
 from autocolor.scene.view import View
 from autocolor.screens.light_and_view.object_lines import Cached, ObjectStrokes
-from autocolor.screens.light_and_view.orthographic_views import AXES, PICTURE_ASPECT, OrthographicViews, Side
+from autocolor.screens.light_and_view.orthographic_views import (
+    AXES,
+    PICTURE_ASPECT,
+    OrthographicViews,
+    ViewSide,
+)
 from autocolor.widgets.items import (
     BLUE,
     CHARACTER,
@@ -90,7 +95,7 @@ class EyeMarks(NamedTuple):
 
 
 def eye_marks(
-    views: OrthographicViews, side: Side, view: View, target: Vector, aspect: float = PICTURE_ASPECT
+    views: OrthographicViews, side: ViewSide, view: View, target: Vector, aspect: float = PICTURE_ASPECT
 ) -> EyeMarks:
     """The marks of a view in one of the three, clipped by its area.
 
@@ -128,7 +133,7 @@ RIM_SIDES: Final = 36
 """Assumed: strokes of an ellipse."""
 
 
-def cone_outline(views: OrthographicViews, side: Side, light: Light, end: Vector) -> tuple[Floats, ...]:
+def cone_outline(views: OrthographicViews, side: ViewSide, light: Light, end: Vector) -> tuple[Floats, ...]:
     """The outline of the cone of a light that has one, as polylines, each (positions, 2).
 
     `end` is the end of its arrow. A cone of more than 90 degrees opens behind the light, and one of 180 holds
@@ -216,7 +221,7 @@ def arrow_end(views: OrthographicViews, light: Light) -> Vector | None:
     return x + length * light.axis[0], y + length * light.axis[1], z + length * light.axis[2]
 
 
-def light_marks(views: OrthographicViews, side: Side, light: Light) -> LightMarks:
+def light_marks(views: OrthographicViews, side: ViewSide, light: Light) -> LightMarks:
     """The marks of a light in one of the views, clipped by its area; the flaps are marked on their own."""
     at = views.position(side, light.position)
     end = arrow_end(views, light)
@@ -229,7 +234,7 @@ def light_marks(views: OrthographicViews, side: Side, light: Light) -> LightMark
     return LightMarks(clipped(cross, side.area), clipped(shaft, side.area), clipped(cone, side.area))
 
 
-def flap_marks(views: OrthographicViews, side: Side, light: Light) -> tuple[FlapMark, ...]:
+def flap_marks(views: OrthographicViews, side: ViewSide, light: Light) -> tuple[FlapMark, ...]:
     """The ends of a light's flaps that one of the views shows, as lines across its area.
 
     A view shows the flaps of the two coordinates that it shows. An end at infinity has no line, nor has one
@@ -336,7 +341,7 @@ Numbered = tuple[int, Light]
 class SideItems:
     """The items of one of the views, which are made anew as far as something changed."""
 
-    def __init__(self, side: Side) -> None:
+    def __init__(self, side: ViewSide) -> None:
         self._side = side
         self._eye: Cached[EyeMarks] = Cached()
         self._still: Cached[list[Item]] = Cached()
@@ -404,7 +409,7 @@ class SideItems:
 
 def still_items(
     views: OrthographicViews,
-    side: Side,
+    side: ViewSide,
     eye: EyeMarks,
     strokes: ObjectStrokes,
     lights: Sequence[Light],
@@ -431,7 +436,7 @@ def eye_items(eye: EyeMarks) -> list[Item]:
     return drawn_items({YELLOW: [eye.direction, eye.eye]})
 
 
-def chosen_items(views: OrthographicViews, side: Side, light: Light) -> list[Item]:
+def chosen_items(views: OrthographicViews, side: ViewSide, light: Light) -> list[Item]:
     """The light that is chosen, with its flaps."""
     layers: dict[int, list[Floats]] = {GRAY: [], YELLOW: []}
     for mark in flap_marks(views, side, light):
@@ -445,7 +450,7 @@ def numeral_item(numeral: Numeral, word: int) -> Item:
     return text(str(numeral.cross.number), numeral.area.left, numeral.area.top, word)
 
 
-def cross_of(views: OrthographicViews, side: Side, number: int, light: Light) -> Cross:
+def cross_of(views: OrthographicViews, side: ViewSide, number: int, light: Light) -> Cross:
     """Where a light is in one of the views, and where its arrow points."""
     element, line = views.position(side, light.position)
     end, arrow = arrow_end(views, light), (0.0, 0.0)
@@ -459,7 +464,7 @@ def cross_of(views: OrthographicViews, side: Side, number: int, light: Light) ->
     return Cross(number, round(element), round(line), arrow)
 
 
-def lines_across(views: OrthographicViews, side: Side, point: Vector) -> Item:
+def lines_across(views: OrthographicViews, side: ViewSide, point: Vector) -> Item:
     """Thin lines through a point, which run on in the view beside or above."""
     area = side.area
     element, line = views.position(side, point)

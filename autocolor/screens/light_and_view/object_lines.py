@@ -22,7 +22,7 @@ from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Part
 from autocolor.scene.view import View
-from autocolor.screens.light_and_view.orthographic_views import SIDES, OrthographicViews, Side
+from autocolor.screens.light_and_view.orthographic_views import SIDES, OrthographicViews, ViewSide
 from autocolor.visibility.camera import NEAR, rotated
 from autocolor.visibility.projection import focal_length
 from autocolor.visibility.visible_points import POINT, VisiblePoints
@@ -86,7 +86,9 @@ def visible_depths(visible: VisiblePoints) -> VisibleDepths:
     )
 
 
-def depths_toward(mesh: Mesh, side: Side, part_numbers: Sequence[int] | None = None) -> VisibleDepths | None:
+def depths_toward(
+    mesh: Mesh, side: ViewSide, part_numbers: Sequence[int] | None = None
+) -> VisibleDepths | None:
     """The depths of what one of the three views shows; None if there is nothing.
 
     The object fills the picture of an eye far away. With `part_numbers`, only these parts are there, so that
@@ -380,7 +382,7 @@ class ObjectLines:
         self._mesh_lines: _MeshLines | None = None
         self._strokes: dict[str, Cached[ObjectStrokes]] = {side.name: Cached() for side in SIDES}
 
-    def of_side(self, scene: Scene, views: OrthographicViews, side: Side) -> ObjectStrokes:
+    def of_side(self, scene: Scene, views: OrthographicViews, side: ViewSide) -> ObjectStrokes:
         """The lines in one of the three views, the same as before if nothing changed."""
         lines, coordinates = self._of(scene), scene.mesh.coordinates
         edges = lines.of_side[side.name]

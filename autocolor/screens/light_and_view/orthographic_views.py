@@ -70,7 +70,7 @@ AXES: Final = "xyz"
 """The names of the axes."""
 
 
-class Side(NamedTuple):
+class ViewSide(NamedTuple):
     """One of the three views: the axes that run to the right and up, and its area.
 
     Axes are 0 to 2 for x, y and z; `toward` is the unit vector to the viewer, who looks along its reverse.
@@ -83,15 +83,15 @@ class Side(NamedTuple):
     area: Area
 
 
-TOP: Final = Side("top", 0, 1, (0.0, 0.0, 1.0), TOP_AREA)
-FRONT: Final = Side("front", 0, 2, (0.0, -1.0, 0.0), FRONT_AREA)
-SIDE: Final = Side("side", 1, 2, (1.0, 0.0, 0.0), SIDE_AREA)
+TOP: Final = ViewSide("top", 0, 1, (0.0, 0.0, 1.0), TOP_AREA)
+FRONT: Final = ViewSide("front", 0, 2, (0.0, -1.0, 0.0), FRONT_AREA)
+SIDE: Final = ViewSide("side", 1, 2, (1.0, 0.0, 0.0), SIDE_AREA)
 
 SIDES: Final = (TOP, FRONT, SIDE)
 """The three views. Assumed: x to the right and y up, x to the right and z up, y to the right and z up."""
 
 
-def side_at(element: float, line: float) -> Side | None:
+def side_at(element: float, line: float) -> ViewSide | None:
     """The view in whose area a place is; None beside them."""
     return next((side for side in SIDES if side.area.has(element, line)), None)
 
@@ -103,7 +103,7 @@ class OrthographicViews:
     center: Vector
     scale: float
 
-    def positions(self, side: Side, points: Floats) -> Floats:
+    def positions(self, side: ViewSide, points: Floats) -> Floats:
         """The element and line of each point of (n, 3) in one of the views, (n, 2), also outside its area."""
         element, line = side.area.middle
         positions = np.empty((len(points), 2))
@@ -111,7 +111,7 @@ class OrthographicViews:
         positions[:, 1] = line - (points[:, side.up] - self.center[side.up]) * self.scale
         return positions
 
-    def position(self, side: Side, point: Vector) -> tuple[float, float]:
+    def position(self, side: ViewSide, point: Vector) -> tuple[float, float]:
         """The element and line of one point."""
         element, line = side.area.middle
         return (
@@ -119,7 +119,7 @@ class OrthographicViews:
             line - (point[side.up] - self.center[side.up]) * self.scale,
         )
 
-    def placed(self, side: Side, point: Vector, element: int, line: int) -> Vector:
+    def placed(self, side: ViewSide, point: Vector, element: int, line: int) -> Vector:
         """The point moved to a pixel of a view, which gives it the two coordinates that the view shows.
 
         The third one is kept exactly, and so is one that is at this element or line already.
@@ -141,7 +141,7 @@ class OrthographicViews:
         rounded = round(coordinate, math.ceil(math.log10(5 * self.scale))) + 0.0
         return max(-LARGEST_COORDINATE, min(LARGEST_COORDINATE, rounded))
 
-    def strokes(self, side: Side, coordinates: Floats, edges: Indices) -> Floats:
+    def strokes(self, side: ViewSide, coordinates: Floats, edges: Indices) -> Floats:
         """The strokes of edges in one of the views, clipped by its area, (strokes, 4).
 
         `coordinates` is (nodes, 3), `edges` (n, 2) the nodes that each edge joins.

@@ -159,13 +159,15 @@ def test_candidates_of_a_single_start_take_its_place_down_to_its_end() -> None:
     ],
 )
 def test_a_shell_is_told_in_its_own_quotes_and_nothing_else(
-    process: Run, folder: Path, shell: str, line: str, told: str
+    run: Run, folder: Path, monkeypatch: pytest.MonkeyPatch, shell: str, line: str, told: str
 ) -> None:
     (folder / "a (1).obj").write_text("")
     (folder / "bad.obj").write_text("v 0 0\n")
     count = str(len(line.split("\n")) - 1)
-    asked = {"COMP_WORDS": line, "COMP_CWORD": "a" if shell == "fish" else count}
-    ran = process(environment={"_AUTOCOLOR_COMPLETE": f"{shell}_complete", **asked})
+    monkeypatch.setenv("_AUTOCOLOR_COMPLETE", f"{shell}_complete")
+    monkeypatch.setenv("COMP_WORDS", line)
+    monkeypatch.setenv("COMP_CWORD", "a" if shell == "fish" else count)
+    ran = run()
     assert (ran.code, ran.err) == (0, "")
     # How a candidate is marked differs between versions of click.
     assert told in ran.out

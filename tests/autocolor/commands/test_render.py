@@ -165,7 +165,7 @@ def test_a_broken_mesh_is_bad_input_and_one_that_is_not_there_is_missing(folder:
 
 
 @pytest.mark.skipif(os.name != "posix", reason="needs a pseudo-terminal")
-def test_a_progress_bar_is_shown_on_a_terminal_alone(process: Run, folder: Path) -> None:
+def test_a_progress_bar_is_shown_on_a_terminal_alone(process: Run, run: Run, folder: Path) -> None:
     import pty
 
     outer, inner = pty.openpty()
@@ -179,7 +179,7 @@ def test_a_progress_bar_is_shown_on_a_terminal_alone(process: Run, folder: Path)
     assert ran.code == 0
     assert b"100%" in shown
     assert shown.endswith(b"wrote two.png\r\n")
-    assert process("render", "two.obj", "--force").err == "wrote two.png\n"
+    assert run("render", "two.obj", "--force").err == "wrote two.png\n"
 
 
 def _read(number: int) -> bytes:

@@ -6,9 +6,12 @@ import click
 import pytest
 from click.testing import CliRunner
 
-from autocolor.commands.scenes import SceneSource, ended, read, scene_options
+from autocolor.commands.scenes import SceneSource, created_again, ended, read, reframed, scene_options
+from autocolor.commands.settings import with_settings
 from autocolor.errors import InputError, MissingInputError
 from autocolor.files.scene_report import SceneReport
+from autocolor.files.scene_sources import read_scene_with_report
+from autocolor.scene.defaults import default_lights, framed
 from tests.autocolor.commands.conftest import Run
 from tests.autocolor.meshes import wall_scene
 
@@ -98,3 +101,53 @@ def test_every_command_that_reads_a_scene_takes_the_same_options(run: Run, comma
     shown = run(command, "--help").out
     for option in ("SCENE", "--up [x|y|z]", "--scale FACTOR", "--surfaces [materials|parts]", "--strict"):
         assert option in shown
+
+
+def test_a_created_view_frames_what_is_left_when_a_part_becomes_stage(folder: Path) -> None:
+    report = read_scene_with_report("two.obj")
+    edited = created_again(report, with_settings(report.scene, ("parts.side.stage=true",)))
+    alone = framed(report.scene.view, edited.object_coordinates)
+    assert edited.view == alone != report.scene.view
+    assert edited.lights == default_lights(edited.object_coordinates, alone) != report.scene.lights
+
+
+def test_a_created_view_with_another_field_of_view_still_frames_the_object(folder: Path) -> None:
+    report = read_scene_with_report("two.obj")
+    edited = created_again(report, with_settings(report.scene, ("view.field_of_view=10",)))
+    assert edited.view == framed(edited.view, edited.object_coordinates)
+    assert edited.lights == report.scene.lights
+
+
+def test_a_created_view_frames_the_object_in_a_picture_of_any_shape(folder: Path) -> None:
+    report = read_scene_with_report("two.obj")
+    assert reframed(report, 640 / 480) is report
+    narrow = reframed(report, 0.5)
+    coordinates = report.scene.object_coordinates
+    assert narrow.scene.view == framed(report.scene.view, coordinates, 0.5) != report.scene.view
+    edited = created_again(narrow, with_settings(narrow.scene, ("view.field_of_view=10",)), 0.5)
+    assert edited.view == framed(edited.view, coordinates, 0.5)
+    given = read_scene_with_report("scene")
+    assert given.is_view_created or reframed(given, 0.5) is given
+
+
+@pytest.mark.parametrize(
+    ("source", "settings"),
+    [
+        ("two.obj", ("view.eye=[1, -5, 2]", "view.target=[0, 0, 0]", "view.field_of_view=10")),
+        ("two.obj", ("ambient=0.5", "lights.key.intensity=2")),
+        ("two.obj", ()),
+    ],
+)
+def test_what_was_set_is_kept_as_it_is(folder: Path, source: str, settings: tuple[str, ...]) -> None:
+    report = read_scene_with_report(source)
+    edited = with_settings(report.scene, settings)
+    assert created_again(report, edited) is edited
+
+
+def test_a_view_and_lights_that_the_scene_gives_stay_where_they_are(folder: Path) -> None:
+    path = folder / "scene" / "scene.toml"
+    path.write_text(path.read_text() + "[view]\neye = [1, -4, 2]\ntarget = [0, 0, 0]\n")
+    report = read_scene_with_report("scene")
+    settings = ("parts.side.stage=true", "view.field_of_view=10")
+    edited = with_settings(report.scene, settings)
+    assert created_again(report, edited) is edited

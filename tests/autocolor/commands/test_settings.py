@@ -6,10 +6,16 @@ from pathlib import Path
 import pytest
 
 from autocolor import Flaps, Phong, Scene, Surface, read_scene
-from autocolor.commands.settings import created_again, reframed, value_of, with_settings
+from autocolor.commands.settings import (
+    SettingPlace,
+    field_of,
+    keys_after,
+    place_of,
+    value_of,
+    with_settings,
+)
 from autocolor.errors import UsageError
-from autocolor.files.scene_sources import read_scene_with_report
-from autocolor.scene.defaults import default_lights, framed
+from autocolor.scene.changes import HalfSpaceChanges
 from tests.autocolor.commands.conftest import Run
 
 
@@ -316,56 +322,6 @@ def test_the_last_value_of_a_field_counts(scene: Scene) -> None:
     assert with_settings(scene, ("ambient=0.1", "ambient=0.2")).ambient == 0.2
 
 
-def test_a_created_view_frames_what_is_left_when_a_part_becomes_stage(folder: Path) -> None:
-    report = read_scene_with_report("two.obj")
-    edited = created_again(report, with_settings(report.scene, ("parts.side.stage=true",)))
-    alone = framed(report.scene.view, edited.object_coordinates)
-    assert edited.view == alone != report.scene.view
-    assert edited.lights == default_lights(edited.object_coordinates, alone) != report.scene.lights
-
-
-def test_a_created_view_with_another_field_of_view_still_frames_the_object(folder: Path) -> None:
-    report = read_scene_with_report("two.obj")
-    edited = created_again(report, with_settings(report.scene, ("view.field_of_view=10",)))
-    assert edited.view == framed(edited.view, edited.object_coordinates)
-    assert edited.lights == report.scene.lights
-
-
-def test_a_created_view_frames_the_object_in_a_picture_of_any_shape(folder: Path) -> None:
-    report = read_scene_with_report("two.obj")
-    assert reframed(report, 640 / 480) is report
-    narrow = reframed(report, 0.5)
-    coordinates = report.scene.object_coordinates
-    assert narrow.scene.view == framed(report.scene.view, coordinates, 0.5) != report.scene.view
-    edited = created_again(narrow, with_settings(narrow.scene, ("view.field_of_view=10",)), 0.5)
-    assert edited.view == framed(edited.view, coordinates, 0.5)
-    given = read_scene_with_report("scene")
-    assert given.is_view_created or reframed(given, 0.5) is given
-
-
-@pytest.mark.parametrize(
-    ("source", "settings"),
-    [
-        ("two.obj", ("view.eye=[1, -5, 2]", "view.target=[0, 0, 0]", "view.field_of_view=10")),
-        ("two.obj", ("ambient=0.5", "lights.key.intensity=2")),
-        ("two.obj", ()),
-    ],
-)
-def test_what_was_set_is_kept_as_it_is(folder: Path, source: str, settings: tuple[str, ...]) -> None:
-    report = read_scene_with_report(source)
-    edited = with_settings(report.scene, settings)
-    assert created_again(report, edited) is edited
-
-
-def test_a_view_and_lights_that_the_scene_gives_stay_where_they_are(folder: Path) -> None:
-    path = folder / "scene" / "scene.toml"
-    path.write_text(path.read_text() + "[view]\neye = [1, -4, 2]\ntarget = [0, 0, 0]\n")
-    report = read_scene_with_report("scene")
-    settings = ("parts.side.stage=true", "view.field_of_view=10")
-    edited = with_settings(report.scene, settings)
-    assert created_again(report, edited) is edited
-
-
 DOOR = "{point = [0, 0, 0], direction = [1, 0, 0]}"
 WHOLE = (
     f"lights.key.half_spaces.left={DOOR}",
@@ -491,3 +447,117 @@ def test_a_half_space_and_its_fields_are_not_both_set(scene: Scene) -> None:
     for settings in (both, both[::-1]):
         with pytest.raises(UsageError, match="also set"):
             with_settings(with_settings(scene, WHOLE), settings)
+
+
+@pytest.fixture
+def linked(folder: Path) -> Scene:
+    plane: HalfSpaceChanges = {"point": (0, 0, 0), "direction": (0, 0, 1)}
+    rows = {"left": plane, "a.b": plane}
+    return read_scene("scene").with_light("key", half_spaces=rows, only_parts=["side"])
+
+
+@pytest.mark.parametrize(
+    ("key", "place"),
+    [
+        ("ambient", ("", "", ("ambient",))),
+        ("view.eye", ("view", "", ("eye",))),
+        ("scalar.name", ("scalar", "", ("name",))),
+        ("scalar", ("", "", ("scalar",))),
+        ("lights.key.aim", ("lights", "key", ("aim",))),
+        ("lights.key.2.aim", ("lights", "key.2", ("aim",))),
+        ('surfaces."front.low".blend', ("surfaces", "front.low", ("blend",))),
+        ("lights.key.flaps.z.minimum", ("lights", "key", ("flaps", "z", "minimum"))),
+        ("lights.key.half_spaces", ("lights", "key", ("half_spaces",))),
+        ("lights.key.half_spaces.left", ("lights", "key", ("half_spaces", "left"))),
+        ("lights.key.half_spaces.new", ("lights", "key", ("half_spaces", "new"))),
+        ("lights.key.half_spaces.'ne.w'", ("lights", "key", ("half_spaces", "ne.w"))),
+        ("lights.key.half_spaces.a.b.on", ("lights", "key", ("half_spaces", "a.b", "on"))),
+        ("lights.key.only_parts", ("lights", "key", ("only_parts",))),
+    ],
+)
+def test_a_key_leads_to_a_table_a_row_and_a_path_in_it(linked: Scene, key: str, place: SettingPlace) -> None:
+    assert place_of(linked, key) == place
+    assert field_of(place_of(linked, key)) is not None
+
+
+@pytest.mark.parametrize(
+    ("key", "default"),
+    [
+        ("ambient", 0.1),
+        ("lights.key.cone_angle", None),
+        ("lights.key.flaps.z", None),
+        ("lights.key.flaps.z.on", True),
+        ("lights.key.half_spaces.left.edge_width", 0.0),
+        ("lights.key.half_spaces.a.b.on", True),
+        ("lights.key.follows", None),
+        ("lights.key.except_surfaces", None),
+        ("surfaces.side.blend", 0.6),
+        ("surfaces.side.diffuse", 0.7),
+        ("surfaces.side.exponent", 20.0),
+        ("surfaces.side.roughness", 0.3),
+        ("surfaces.side.base_reflectance", None),
+        ("surfaces.side.refractive_index", None),
+        ("surfaces.side.fresnel_curve", None),
+    ],
+)
+def test_a_field_is_found_wherever_it_is_inside_its_row(linked: Scene, key: str, default: object) -> None:
+    field = field_of(place_of(linked, key))
+    assert field is not None
+    assert field.default is not None
+    assert field.default() == default
+
+
+def test_a_key_that_its_row_has_not_has_no_field() -> None:
+    assert field_of(SettingPlace("lights", "key", ("brightness",))) is None
+    assert field_of(SettingPlace("lights", "key", ("on", "off"))) is None
+
+
+@pytest.mark.parametrize(
+    ("start", "some"),
+    [
+        ("", {"ambient=", "view.", "lights.", "parts.", "surfaces.", "background="}),
+        ("lights.", {"lights.key.", "lights.key.2."}),
+        ("surfaces.", {"surfaces.front.low.", "surfaces.side."}),
+        ("surfaces.front.low.", {"surfaces.front.low.blend=", "surfaces.front.low.exponent="}),
+        ("lights.key.", {"lights.key.aim=", "lights.key.flaps.", "lights.key.cone_angle="}),
+        ("lights.key.flaps.", {"lights.key.flaps.x.", "lights.key.flaps.y.", "lights.key.flaps.z."}),
+        ("lights.key.flaps.z.", {"lights.key.flaps.z.minimum=", "lights.key.flaps.z.on="}),
+        ("lights.key.", {"lights.key.half_spaces.", "lights.key.follows=", "lights.key.only_parts="}),
+        ("lights.key.2.", {"lights.key.2.half_spaces="}),
+        ("lights.key.half_spaces.", {"lights.key.half_spaces.a.b.", "lights.key.half_spaces.left."}),
+        (
+            "lights.key.half_spaces.a.b.",
+            {"lights.key.half_spaces.a.b.point=", "lights.key.half_spaces.a.b.on="},
+        ),
+        ("lights.key.half_spaces.left.on=", {"lights.key.half_spaces.left.on=false"}),
+        ("lights.key.half_spaces.left.edge_width=", {"lights.key.half_spaces.left.edge_width=0.0"}),
+        ("lights.key.follows=", {"lights.key.follows=eye", "lights.key.follows=key.2"}),
+        ("lights.key.only_parts=", {"lights.key.only_parts=side", "lights.key.only_parts=front.low"}),
+        ("parts.side.surface=", {"parts.side.surface=side", "parts.side.surface=front.low"}),
+        ("view.", {"view.eye=", "view.field_of_view="}),
+        ("scalar.", {"scalar.name=", "scalar.limits=", "scalar.bands="}),
+        ("scalar.name=", {"scalar.name=x", "scalar.name=mean curvature"}),
+        ("scalar.scale=", {"scalar.scale=viridis", "scalar.scale=zebra_r"}),
+        ("dither=", {"dither=off", "dither=ordered"}),
+        ("ambient=", {"ambient=0.1"}),
+        ("lights.key.on=", {"lights.key.on=true", "lights.key.on=false"}),
+        ("lights.key.flaps.z.maximum=", {"lights.key.flaps.z.maximum=0.5"}),
+        ("surfaces.side.model=", {"surfaces.side.model=phong", "surfaces.side.model=blinn"}),
+    ],
+)
+def test_the_keys_after_a_start_are_those_of_its_table(linked: Scene, start: str, some: set[str]) -> None:
+    found = keys_after(linked, start)
+    assert some <= set(found)
+    assert all(each.startswith(start) for each in found)
+    assert not {"lights.key.name=", "lights.key.half_spaces.a.b.name="} & set(found)
+
+
+def test_every_key_that_is_offered_can_be_set(linked: Scene) -> None:
+    starts = [""]
+    keys: list[str] = []
+    while starts:
+        for each in keys_after(linked, starts.pop()):
+            (keys if each.endswith("=") else starts).append(each)
+    assert len(keys) > 60
+    for key in keys:
+        assert field_of(place_of(linked, key[:-1])) is not None

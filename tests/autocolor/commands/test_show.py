@@ -5,46 +5,69 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from threading import Event, Thread
+from types import SimpleNamespace
 
-import numpy as np
 import pytest
-from PIL import Image
 
-from autocolor import Studio, read_journal, read_scene
+from autocolor import Studio, UnavailableError, UsageError, read_journal, read_scene
 from autocolor.commands.demo import demo_folder
-from autocolor.commands.show import folder_of
+from autocolor.commands.show import attend, folder_of, port_to, refuse_address, session_elsewhere
 from autocolor.journal.autosave import JOURNAL, left_sessions
+from autocolor.journal.history import History
 from autocolor.journal.places import Source
-from ramtek_emu import Ramtek9300
-from ramtek_emu.host.server import TcpServer
+from autocolor.screens.viewer import Viewer
+from ramtek_emu import PortError, Ramtek9300
+from ramtek_emu.host.server import Server, TcpServer, UnixServer
 from tests.autocolor.commands.conftest import Run
+from tests.autocolor.sessions import car
 
 SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\ng lid\nf 1 2 3 4\n"
 
 
-def test_a_picture_is_shown_once_on_a_display_behind_a_port(tmp_path: Path, run: Run) -> None:
-    mesh, picture = tmp_path / "square.obj", tmp_path / "shown.png"
+Act = Callable[[Ramtek9300], object]
+
+
+class Served:
+    """A display that a thread serves until it is stopped."""
+
+    def __init__(self, server: Server, address: str) -> None:
+        self.address = address
+        self.display = server.display
+        self._server = server
+        self._ends = Event()
+        self._thread = Thread(target=self._serve)
+        self._thread.start()
+
+    def _serve(self) -> None:
+        with self._server:
+            while not self._ends.is_set():
+                self._server.step(0.01)
+
+    def stop(self) -> None:
+        """Disconnect the host, and listen no more."""
+        self._ends.set()
+        self._thread.join(60)
+
+
+@pytest.fixture
+def server() -> Iterator[Served]:
+    listening = TcpServer(Ramtek9300())
+    served = Served(listening, listening.address)
+    yield served
+    served.stop()
+
+
+def test_a_picture_is_shown_once_on_a_display_behind_a_port(tmp_path: Path, run: Run, server: Served) -> None:
+    mesh = tmp_path / "square.obj"
     mesh.write_text(SQUARE)
-    command = [sys.executable, "-m", "ramtek_emu", "serve", "--port", "0", "--once", "-o", str(picture)]
-    root = Path(__file__).parents[3]
-    with subprocess.Popen(
-        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=root
-    ) as server:
-        assert server.stdout is not None
-        address = server.stdout.readline().split()[-1]
-        ran = run("show", str(mesh), "--to", address, "--once")
-        if ran.code:
-            # It would wait for its host forever.
-            server.kill()
-        assert (ran.code, ran.out) == (0, "")
-        assert ran.err == f"shown on {address}\n"
-        server.communicate(timeout=60)
-        assert server.returncode == 0
-    display = Ramtek9300()
-    Studio(read_scene(mesh), display)
-    with Image.open(picture) as image:
-        assert (np.asarray(image.convert("RGB")) == display.field()).all()
+    ran = run("show", str(mesh), "--to", server.address, "--once")
+    assert ran == (0, "", f"shown on {server.address}\n")
+    here = Ramtek9300()
+    Studio(read_scene(mesh), here)
+    assert (server.display.field() == here.field()).all()
 
 
 @pytest.mark.parametrize("address", ["127.0.0.1:9300", "tcp://127.0.0.1:0", "http://x:1"])
@@ -136,3 +159,233 @@ def test_files_are_in_the_folder_of_the_scene_and_never_in_that_of_the_demo(fold
     assert folder_of(Source("scene/scene.toml")) == folder / "scene"
     assert folder_of(Source("two.obj")) == folder
     assert folder_of(Source(str(demo_folder()))) == folder
+
+
+def place_of(viewer: Viewer, label: str, share: float = 0.5) -> tuple[int, int]:
+    """Where a row of the menu is, at a share of its width."""
+    area = next(each.area for each in viewer.board.layout.rows if each.label == label)
+    return round(area.left + share * area.width), (area.top + area.bottom) // 2
+
+
+def move(viewer: Viewer, display: Ramtek9300, element: int, line: int) -> None:
+    display.joystick.move_to(element, line)
+    viewer.poll()
+
+
+def pick(viewer: Viewer, display: Ramtek9300, label: str, share: float = 0.5) -> None:
+    """Go to the menu, and pick a row of it."""
+    move(viewer, display, 639, 200)
+    display.joystick.move_to(*place_of(viewer, label, share))
+    display.joystick.press_enter()
+    viewer.poll()
+
+
+def drag(viewer: Viewer, display: Ramtek9300, *places: tuple[int, int]) -> None:
+    """Drag by TRACK from the first place to the last."""
+    move(viewer, display, *places[0])
+    display.joystick.track = True
+    for place in places:
+        move(viewer, display, *place)
+    display.joystick.track = False
+    viewer.poll()
+    viewer.on_tick()
+
+
+def work(viewer: Viewer, display: Ramtek9300) -> Iterator[str]:
+    """A session of every kind of gesture; the name of each after it."""
+    drag(viewer, display, (300, 200), (320, 205), (350, 220))
+    yield "turned"
+    move(viewer, display, 310, 240)
+    display.joystick.press_enter()
+    viewer.poll()
+    yield "a surface chosen"
+    pick(viewer, display, "lights")
+    yield "the lights"
+    left, line = place_of(viewer, "position x", 0.2)
+    drag(viewer, display, (left, line), (left + 10, line), (left + 30, line))
+    yield "a light moved"
+    pick(viewer, display, "position x")
+    yield "its wide bar"
+    pick(viewer, display, "cone angle", 0.95)
+    yield "its cone switched"
+    pick(viewer, display, "< picture")
+    yield "the picture"
+    pick(viewer, display, "turn", 0.9)
+    yield "turned by the menu"
+    pick(viewer, display, " ", 0.1)
+    yield "undone"
+
+
+def test_a_session_by_the_joystick_gives_the_same_words_here_and_elsewhere(server: Served) -> None:
+    here = Ramtek9300()
+    elsewhere = server.display
+    scene = car()
+    viewer = Viewer(scene, here)
+    scenes = []
+    with port_to(server.address) as port:
+        other = Viewer(scene, port)
+        for name, same in zip(work(viewer, here), work(other, elsewhere), strict=True):
+            viewer.tell(name)
+            other.tell(same)
+            # Its reply comes when all that was sent before has been executed.
+            other.poll()
+            assert (here.words == elsewhere.words).all(), name
+            assert (here.entries == elsewhere.entries).all(), name
+            assert here.field().tobytes() == elsewhere.field().tobytes(), name
+            scenes.append(viewer.studio.scene)
+            assert other.studio.scene.equals(scenes[-1]), name
+    assert len({id(scene) for scene in scenes}) == 4
+
+
+def acting(server: Served, viewer_of: list[Viewer], *acts: Act) -> Callable[[Viewer], None]:
+    """A preparation that lets a thread do things with the unit, each when the one before was polled."""
+
+    def prepare(viewer: Viewer) -> None:
+        viewer_of.append(viewer)
+        poll, waiting = viewer.poll, list(acts)
+
+        def polled() -> None:
+            poll()
+            if waiting:
+                waiting.pop(0)(server.display)
+
+        viewer.poll = polled  # type: ignore[method-assign]
+
+    return prepare
+
+
+def menu(display: Ramtek9300) -> None:
+    display.joystick.move_to(639, 200)
+
+
+def on(viewer_of: list[Viewer], label: str, share: float = 0.5) -> Act:
+    """Point at a row of the menu, and press ENTER."""
+
+    def act(display: Ramtek9300) -> None:
+        display.joystick.move_to(*place_of(viewer_of[0], label, share))
+        display.joystick.press_enter()
+
+    return act
+
+
+def test_it_is_left_by_the_menu_and_the_picture_stays(
+    server: Served, tmp_path: Path, capsys: pytest.CaptureFixture[str], state: Path
+) -> None:
+    seen: list[Viewer] = []
+    session_elsewhere(
+        History(car()), server.address, tmp_path, None, acting(server, seen, menu, on(seen, "leave"))
+    )
+    assert capsys.readouterr().err.startswith(f"shown on {server.address}; pick `leave` in the menu there")
+    display = server.display
+    assert (display.words == seen[0].studio.words).all()
+    assert not any(cursor.is_visible for cursor in display.cursors.all)
+    assert left_sessions() == []
+
+
+def test_unsaved_changes_are_told_before_it_is_left(server: Served, tmp_path: Path) -> None:
+    seen: list[Viewer] = []
+    messages: list[str] = []
+    leave = on(seen, "leave")
+
+    def note(_: Ramtek9300) -> None:
+        messages.append(seen[0].message)
+
+    prepare = acting(server, seen, menu, on(seen, "turn", 0.9), leave, note, leave)
+    session_elsewhere(History(car()), server.address, tmp_path, None, prepare)
+    assert messages == ["not saved: save it, or leave once more to discard the changes"]
+    assert seen[0].studio.is_changed
+
+
+def test_a_pointer_elsewhere_saves_in_the_folder_of_the_scene(server: Served, tmp_path: Path) -> None:
+    seen: list[Viewer] = []
+    saving = (menu, on(seen, "turn", 0.9), menu, on(seen, "file"), on(seen, "save"))
+    prepare = acting(server, seen, *saving, on(seen, "< picture"), menu, on(seen, "leave"))
+    session_elsewhere(History(car().replace(name="car")), server.address, tmp_path, None, prepare)
+    assert sorted(str(path.relative_to(tmp_path)) for path in tmp_path.rglob("*.*")) == [
+        "car.npz",
+        "car/mesh.tables",
+        "car/scene.toml",
+    ]
+
+
+def test_a_display_that_goes_away_leaves_the_session_to_be_recovered(
+    server: Served, tmp_path: Path, state: Path
+) -> None:
+    seen: list[Viewer] = []
+
+    def lose(_: Ramtek9300) -> None:
+        server.stop()
+
+    prepare = acting(server, seen, menu, on(seen, "turn", 0.9), lambda _: None, lose)
+    with pytest.raises(UnavailableError) as told:
+        session_elsewhere(History(car()), server.address, tmp_path, None, prepare)
+    assert str(told.value).startswith(f"a display must stay at {server.address}, and it left (")
+    assert str(told.value).endswith("; `autocolor show --recover --to ADDRESS` goes on with the session")
+    (path,) = state.glob(f"sessions/*/{JOURNAL}")
+    assert read_journal(path).history.scene.view == seen[0].studio.scene.view != car().view
+
+
+def test_a_display_that_does_not_answer_is_given_up(tmp_path: Path) -> None:
+    with TcpServer(Ramtek9300()) as silent, port_to(silent.address) as port:
+        # Nobody serves it, but the system takes the connection.
+        port.timeout = 0.2
+        with pytest.raises(UnavailableError, match=r"must answer within 0\.2 seconds, and tcp.* does not"):
+            session_with(port, silent.address, tmp_path)
+
+
+def session_with(port: object, address: str, folder: Path) -> None:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("autocolor.commands.show.port_to", lambda _: port)
+        session_elsewhere(History(car()), address, folder)
+
+
+def test_the_unit_is_polled_at_least_sixty_times_a_second_and_the_program_sleeps(
+    server: Served, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    now, slept, polls = 100.0, 0.0, 0
+
+    def sleep(seconds: float) -> None:
+        nonlocal now, slept
+        now, slept = now + seconds, slept + seconds
+
+    with port_to(server.address) as port:
+        viewer = Viewer(car(), port, tmp_path)
+
+        def update() -> None:
+            nonlocal now, polls
+            polls += 1
+            now += 0.25 if polls == 1 else 0.004
+            viewer.session.leaves = now >= 101.25
+
+        clock = SimpleNamespace(monotonic=lambda: now, sleep=sleep)
+        # `show` is a command in its module, which has the same name.
+        monkeypatch.setattr(sys.modules["autocolor.commands.show"], "time", clock)
+        attend(viewer, update)
+    # The first poll, which took a quarter of a second, is not made up for.
+    assert 60 <= polls < 110
+    assert slept > 0.5
+
+
+def test_a_unix_socket_is_addressed_by_its_path(tmp_path: Path) -> None:
+    path = tmp_path / "display"
+    served = Served(UnixServer(Ramtek9300(), path), str(path))
+    seen: list[Viewer] = []
+
+    def leave(viewer: Viewer) -> None:
+        seen.append(viewer)
+        viewer.session.leave()
+
+    session_elsewhere(History(car()), served.address, tmp_path, None, leave)
+    served.stop()
+    assert (served.display.words == seen[0].studio.words).all()
+
+
+@pytest.mark.parametrize("address", ["127.0.0.1:9300", "tcp://x", "http://x:1", "display"])
+def test_what_is_no_address_is_refused(address: str) -> None:
+    with pytest.raises(UsageError, match="--to: an address must be tcp://host:port with a port"):
+        refuse_address(address)
+
+
+def test_a_port_to_no_display_is_refused() -> None:
+    with pytest.raises(PortError, match="start `ramtek serve` there"):
+        port_to("tcp://127.0.0.1:1")

@@ -19,7 +19,7 @@ from autocolor.journal.places import (
     place_of,
     stamp_of,
 )
-from autocolor.scene.columns import plain
+from autocolor.scene.columns import to_plain
 from autocolor.scene.scalar import MeshScalar
 from tests.autocolor.sessions import car
 
@@ -40,10 +40,10 @@ def test_a_scene_is_opened_with_the_stamp_of_its_file(source: Source) -> None:
 def test_a_scene_that_was_saved_over_is_opened_as_it_was_and_not_saved_there_again(source: Source) -> None:
     then = opened(source).scene
     autocolor.write_scene(source.path, then.replace(ambient=0.75), overwrite=True)
-    again = opened(source, plain(then), checksum_of(then))
+    again = opened(source, to_plain(then), checksum_of(then))
     assert checksum_of(again.scene) == checksum_of(then)
     assert again.place.stamp is None
-    assert opened(source, plain(again.scene.replace(ambient=0.75))).place.stamp is not None
+    assert opened(source, to_plain(again.scene.replace(ambient=0.75))).place.stamp is not None
 
 
 def test_a_scene_of_another_checksum_is_refused(source: Source) -> None:

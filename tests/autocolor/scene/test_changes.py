@@ -6,13 +6,13 @@ from typing import get_type_hints
 from autocolor.scene.changes import SceneChanges, SceneFields
 from autocolor.scene.columns import fields_of, keys_of
 from autocolor.scene.scene import Scene
-from tests.typed_changes import CLASSES, WRITTEN, source, types_of
+from docs.generate.changes import CLASSES, WRITTEN, source, types_of
 
 
 def test_the_types_are_those_of_the_columns() -> None:
     written = WRITTEN.read_text("utf-8")
     is_current = ast.dump(ast.parse(written)) == ast.dump(ast.parse(source()))
-    assert is_current, "run: python -m tests.typed_changes"
+    assert is_current, "run: python -m docs.generate.changes"
 
 
 def test_every_field_and_every_key_has_a_type() -> None:

@@ -13,7 +13,7 @@ from autocolor.files.scene_toml.scene_meshes import MeshEntry
 from autocolor.scene.columns import (
     REFUSED,
     WORLD_UNITS,
-    Bar,
+    BarRange,
     Column,
     Problem,
     Row,
@@ -21,14 +21,13 @@ from autocolor.scene.columns import (
     Tier,
     bar_of,
     bar_within,
-    changed,
     cost,
     difference,
     fields_of,
+    from_plain,
     keys_of,
-    made,
-    on_bar,
-    plain,
+    replaced,
+    to_plain,
 )
 from autocolor.scene.kinds import Number, Whole
 from tests.autocolor.scene.spans import Span, sentences
@@ -86,7 +85,7 @@ def test_every_number_has_a_bar_within_its_limits_or_is_measured_by_the_object(c
     assert 10 <= (bar.high - bar.low) / bar.step <= 1000
     problems: list[Problem] = []
     for value in (bar.low, bar.high, bar.low + bar.step, bar.low - 1, 1e9, column.start or bar.high):
-        column.kind.held(on_bar(column, value), (), problems)
+        column.kind.validated(type(bar.low)(bar.rounded(value)), (), problems)
     assert problems == []
 
 
@@ -107,20 +106,13 @@ def test_a_number_that_may_be_absent_tells_what_it_starts_with(cls: type[Row]) -
             assert bar.low <= value <= bar.high
 
 
-def test_a_value_on_a_bar_is_of_the_type_that_its_column_holds() -> None:
-    levels, cone = keys_of(Surface)["levels"].column, keys_of(Light)["cone_angle"].column
-    assert (on_bar(levels, 63.6), type(on_bar(levels, 63.6))) == (64, int)
-    assert (on_bar(cone, 29.6), type(on_bar(cone, 29.6))) == (30.0, float)
-    assert on_bar(Column(Number(), Tier.FRAME, "The place.", WORLD_UNITS), 1.234) == 1.234
-
-
 bars = st.tuples(
     st.integers(-100, 100), st.integers(1, 400), st.sampled_from([0.001, 0.01, 0.02, 0.05, 0.1, 0.5, 1, 5])
-).map(lambda given: Bar(given[0] * given[2], (given[0] + given[1]) * given[2], given[2]))
+).map(lambda given: BarRange(given[0] * given[2], (given[0] + given[1]) * given[2], given[2]))
 
 
 @given(bars, st.floats(-1e6, 1e6))
-def test_a_rounded_value_is_on_the_bar_and_the_nearest_step(bar: Bar, value: float) -> None:
+def test_a_rounded_value_is_on_the_bar_and_the_nearest_step(bar: BarRange, value: float) -> None:
     rounded = bar.rounded(value)
     assert bar.low <= rounded <= bar.high
     within = min(max(value, bar.low), bar.high)
@@ -129,17 +121,17 @@ def test_a_rounded_value_is_on_the_bar_and_the_nearest_step(bar: Bar, value: flo
 
 
 def test_values_are_multiples_of_the_step_or_the_ends() -> None:
-    bar = Bar(0.01, 1, 0.05)
+    bar = BarRange(0.01, 1, 0.05)
     assert [bar.rounded(value) for value in (0, 0.04, 0.31, 2)] == [0.01, 0.05, 0.3, 1.0]
 
 
 def test_halves_are_rounded_up_and_written_short() -> None:
-    bar = Bar(-1, 1, 0.1)
+    bar = BarRange(-1, 1, 0.1)
     assert [bar.rounded(value) for value in (0.25, -0.25, 0.30000000000000004)] == [0.3, -0.2, 0.3]
 
 
 @given(bars, st.floats(0, 1))
-def test_the_value_at_a_fraction_has_that_fraction_but_for_a_step(bar: Bar, fraction: float) -> None:
+def test_the_value_at_a_fraction_has_that_fraction_but_for_a_step(bar: BarRange, fraction: float) -> None:
     assert abs(bar.fraction(bar.at(fraction)) - fraction) * (bar.high - bar.low) <= bar.step * 0.5000001
 
 
@@ -148,7 +140,7 @@ def test_the_value_at_a_fraction_has_that_fraction_but_for_a_step(bar: Bar, frac
     [(0, 1, 0.01), (0, 100, 1), (0, 180, 1), (-180, 180, 2), (3, 3.004, 2e-5), (0, 3e-9, 2e-11)],
 )
 def test_a_bar_has_round_steps_of_at_most_a_hundredth(low: float, high: float, step: float) -> None:
-    assert bar_within(low, high) == Bar(low, high, step)
+    assert bar_within(low, high) == BarRange(low, high, step)
 
 
 def test_a_refused_value_breaks_no_rule_again() -> None:
@@ -160,7 +152,7 @@ def test_a_refused_value_breaks_no_rule_again() -> None:
 def test_problems_say_where_they_are() -> None:
     with pytest.raises(RowError) as caught:
         Light("key", (0, 0, 0), flaps={"z": {"on": 3}})  # type: ignore[arg-type]
-    assert [problem.path for problem in caught.value.found] == [("flaps", "z", "on")]
+    assert [problem.path for problem in caught.value.row_problems] == [("flaps", "z", "on")]
     assert caught.value.row == "light 'key'"
 
 
@@ -176,13 +168,13 @@ def test_an_error_can_be_sent_to_another_process() -> None:
         Light("key", (1, 2), intensity=-1)  # type: ignore[arg-type]
     error = caught.value
     copy = pickle.loads(pickle.dumps(error))
-    assert (copy.problems, copy.found, copy.row) == (error.problems, error.found, error.row)
+    assert (copy.problems, copy.row_problems, copy.row) == (error.problems, error.row_problems, error.row)
 
 
 def test_a_change_checks_what_it_changes_and_the_rules() -> None:
     span = Span("a", 1, 2)
-    assert changed(span, {"begin": 1.5}) == Span("a", 1.5, 2)
-    assert sentences(lambda: changed(span, {"begin": 3})) == (
+    assert replaced(span, {"begin": 1.5}) == Span("a", 1.5, 2)
+    assert sentences(lambda: replaced(span, {"begin": 3})) == (
         "span 'a': begin must not be above the end, not 3",
     )
     assert span == Span("a", 1, 2)
@@ -190,15 +182,15 @@ def test_a_change_checks_what_it_changes_and_the_rules() -> None:
 
 def test_giving_one_alternative_drops_the_others() -> None:
     span = Span("a", 1, 2)
-    assert changed(span, {"length": 4}) == Span("a", 1, None, 4)
-    assert changed(changed(span, {"length": 4}), {"end": 9}) == Span("a", 1, 9)
-    assert changed(span, {"end": None}) == Span("a", 1)
+    assert replaced(span, {"length": 4}) == Span("a", 1, None, 4)
+    assert replaced(replaced(span, {"length": 4}), {"end": 9}) == Span("a", 1, 9)
+    assert replaced(span, {"end": None}) == Span("a", 1)
     with pytest.raises(RowError, match="not both"):
-        changed(span, {"end": 3, "length": 4})
+        replaced(span, {"end": 3, "length": 4})
 
 
 def test_an_unknown_key_is_told_with_the_nearest_right_one() -> None:
-    assert sentences(lambda: changed(Span("a"), {"beginn": 3, "x": 1})) == (
+    assert sentences(lambda: replaced(Span("a"), {"beginn": 3, "x": 1})) == (
         "span 'a': there is no 'beginn'; did you mean 'begin'?",
         "span 'a': there is no 'x'; known are 'name', 'begin', 'end', 'length'",
     )
@@ -213,11 +205,11 @@ def test_a_change_keeps_nothing_that_was_computed_of_the_row() -> None:
 
 
 def test_a_row_of_a_table_has_defaults_for_what_is_left_out() -> None:
-    assert made(Span, {"name": "a", "end": 2}) == Span("a", end=2)
+    assert from_plain(Span, {"name": "a", "end": 2}) == Span("a", end=2)
 
 
 def test_what_is_missing_is_told_beside_what_is_wrong() -> None:
-    assert sentences(lambda: made(Span, {"begin": "x", "z": 1})) == (
+    assert sentences(lambda: from_plain(Span, {"begin": "x", "z": 1})) == (
         "span: there is no 'z'; known are 'name', 'begin', 'end', 'length'",
         "span: name must be a string of at least one character, not missing; add it",
         "span: begin must be a finite number, not 'x'",
@@ -226,20 +218,20 @@ def test_what_is_missing_is_told_beside_what_is_wrong() -> None:
 
 @pytest.mark.parametrize("table", [None, 3, "x", [], [("name", "a")]])
 def test_what_is_no_table_makes_no_row(table: object) -> None:
-    assert sentences(lambda: made(Span, table)) == (
+    assert sentences(lambda: from_plain(Span, table)) == (
         f"must be a table of name, begin, end and length, not {table!r}",
     )
 
 
 def test_a_table_of_very_many_keys_is_refused_at_once() -> None:
-    assert sentences(lambda: made(Span, {f"key{number}": 0 for number in range(1000)})) == (
+    assert sentences(lambda: from_plain(Span, {f"key{number}": 0 for number in range(1000)})) == (
         "span: it must be a table of at most 64 keys, not 1,000",
     )
 
 
 @given(lights() | surfaces("body") | views())
 def test_a_row_comes_back_from_its_plain_values(row: Row) -> None:
-    assert made(type(row), plain(row)) == row
+    assert from_plain(type(row), to_plain(row)) == row
 
 
 @given(scenes())
@@ -256,7 +248,7 @@ def test_plain_values_are_texts_numbers_switches_lists_and_tables(scene: Scene) 
             assert type(value) in (str, float, int, bool)
             assert value == value, "not a number"
 
-    check(plain(scene))
+    check(to_plain(scene))
 
 
 def test_an_edit_costs_the_most_of_what_it_changes() -> None:
@@ -282,7 +274,7 @@ def test_an_edit_costs_the_most_of_what_it_changes() -> None:
     ],
 )
 def test_a_change_of_a_surface_costs_the_tier_of_its_column(change: dict[str, Any], tier: Tier) -> None:
-    assert cost(Surface("body"), changed(Surface("body"), change)) == tier
+    assert cost(Surface("body"), replaced(Surface("body"), change)) == tier
 
 
 @given(surfaces("body"), surfaces("body"))
@@ -300,9 +292,9 @@ def test_a_difference_makes_of_one_row_the_other_and_of_equal_ones_is_empty(one:
     ]
     for before, after in rows:
         told = difference(before, after)
-        assert changed(before, told) == after
+        assert replaced(before, told) == after
         assert bool(told) == (before != after)
-        assert difference(after, changed(after, {})) == {}
+        assert difference(after, replaced(after, {})) == {}
         assert "name" not in told or vars(before)["name"] != vars(after)["name"]
 
 

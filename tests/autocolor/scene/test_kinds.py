@@ -17,38 +17,38 @@ from autocolor.scene.kinds import (
     MOST_POINTS,
     AngleCurve,
     AngleCurveKind,
-    Choice,
+    Boolean,
     ColorKind,
     CurveKind,
     Instance,
     Number,
-    Switch,
+    OneOf,
     Text,
     VectorKind,
     Whole,
     in_digits,
 )
-from autocolor.scene.row_kinds import Reference, References, WordOrName
+from autocolor.scene.row_kinds import Reference, References
 from tests.autocolor.strategies import angle_curves
 
 
-def held(kind: Kind, value: object) -> tuple[Any, list[str]]:
-    """What a kind holds of a value, and the sentences of its problems."""
+def validated(kind: Kind, value: object) -> tuple[Any, list[str]]:
+    """The value that a kind makes of a value, and the sentences of its problems."""
     problems: list[Problem] = []
-    return kind.held(value, ("it",), problems), [problem.sentence for problem in problems]
+    return kind.validated(value, ("it",), problems), [problem.sentence for problem in problems]
 
 
 def refusal(kind: Kind, value: object) -> str:
     """The one sentence with which a kind refuses a value."""
-    result, sentences = held(kind, value)
+    result, sentences = validated(kind, value)
     assert result is REFUSED
     (sentence,) = sentences
     return sentence
 
 
 def accepted(kind: Kind, value: object) -> Any:
-    """What a kind holds of a value that it accepts."""
-    result, sentences = held(kind, value)
+    """The value that a kind makes of a value that it accepts."""
+    result, sentences = validated(kind, value)
     assert sentences == []
     return result
 
@@ -75,17 +75,17 @@ def test_what_is_no_finite_number_is_refused(value: object) -> None:
         (Whole(2, 9), 1, "it must be a whole number from 2 to 9, not 1"),
         (Whole(2, 9), 2.0, "it must be a whole number from 2 to 9, not 2.0"),
         (Whole(0, 9), True, "it must be a whole number from 0 to 9, not true"),
-        (Switch(), 1, "it must be true or false, not 1"),
-        (Switch(), None, "it must be true or false, not None"),
+        (Boolean(), 1, "it must be true or false, not 1"),
+        (Boolean(), None, "it must be true or false, not None"),
         (Text(), "", "it must be a string of at least one character, not ''"),
         (Text(may_be_empty=True), 3, "it must be a string, not 3"),
-        (Choice(("on", "off")), "of", "it must be 'on' or 'off', not 'of'; did you mean 'off'?"),
-        (Choice(("surface", "object")), 3, "it must be 'surface' or 'object', not 3"),
+        (OneOf(("on", "off")), "of", "it must be 'on' or 'off', not 'of'; did you mean 'off'?"),
+        (OneOf(("surface", "object")), 3, "it must be 'surface' or 'object', not 3"),
         (VectorKind(has_length=True), (0, 0, 0), "it must not be zero, not (0, 0, 0); give it a length"),
         (Reference("surfaces"), 3, "it must be a string of at least one character, not 3"),
         (References("lights"), "key", "it must be a list of names, not 'key'"),
         (References("lights"), ["key", 3], "it must be a list of names, not ['key', 3]"),
-        (WordOrName("lights", "eye"), 3, "it must be 'eye' or the name of one of the lights, not 3"),
+        (Reference("lights", "eye"), 3, "it must be 'eye' or the name of one of the lights, not 3"),
         (Instance(dict), [], "it must be a dict, not []"),
         (
             CurveKind({"linear": 1, "gamma": 2}),
@@ -108,15 +108,15 @@ def test_a_value_that_breaks_a_rule_is_refused_in_a_sentence(
         (Number(at_least=0, at_most=1), 1, 1.0),
         (Number(endless=math.inf), math.inf, math.inf),
         (Whole(2, 9), np.int64(5), 5),
-        (Switch(), np.False_, False),
+        (Boolean(), np.False_, False),
         (Text(may_be_empty=True), "", ""),
         (VectorKind(), np.array([1, 2, 3], np.float32), (1.0, 2.0, 3.0)),
         (VectorKind(), (0, 0, 0), (0.0, 0.0, 0.0)),
         (Reference("surfaces"), "body", "body"),
         (References("lights"), ["key", "rim"], ("key", "rim")),
         (References("lights"), [], ()),
-        (WordOrName("lights", "eye"), "key", "key"),
-        (WordOrName("lights", "eye"), "eye", "eye"),
+        (Reference("lights", "eye"), "key", "key"),
+        (Reference("lights", "eye"), "eye", "eye"),
         (CurveKind({"linear": 1}), "linear", "linear"),
         (CurveKind({"linear": 1}), [[0, 0], [1, 0.5]], ((0.0, 0.0), (1.0, 0.5))),
     ],
@@ -168,19 +168,14 @@ def test_a_number_of_thousands_of_digits_is_refused_without_writing_it() -> None
 KIND = AngleCurveKind(0.001, ((0.0, 0.04), (60.0, 0.1), (90.0, 1.0)))
 
 
-def held_2(value: object) -> tuple[object, list[str]]:
-    problems: list[Problem] = []
-    return KIND.held(value, ("curve",), problems), [problem.sentence for problem in problems]
-
-
 @given(angle_curves)
 def test_a_curve_is_held_as_it_is_whatever_lists_it_came_in(curve: AngleCurve) -> None:
-    assert held_2([list(point) for point in curve]) == (curve, [])
-    assert held_2(np.array(curve)) == (curve, [])
+    assert validated(KIND, [list(point) for point in curve]) == (curve, [])
+    assert validated(KIND, np.array(curve)) == (curve, [])
 
 
 def test_whole_numbers_become_floats() -> None:
-    assert repr(held_2([[0, 1], [90, 0]])[0]) == "((0.0, 1.0), (90.0, 0.0))"
+    assert repr(validated(KIND, [[0, 1], [90, 0]])[0]) == "((0.0, 1.0), (90.0, 0.0))"
 
 
 @pytest.mark.parametrize(
@@ -194,10 +189,10 @@ def test_whole_numbers_become_floats() -> None:
     ],
 )  # fmt: skip
 def test_what_is_no_curve_from_0_to_90_degrees_is_refused_with_an_example(value: object) -> None:
-    found, (sentence,) = held_2(value)
+    found, (sentence,) = validated(KIND, value)
     assert found is REFUSED
     assert sentence.startswith(
-        "curve must be 2 to 91 points [angle, share], with angles that rise from 0 to 90 and shares from 0 to"
+        "it must be 2 to 91 points [angle, share], with angles that rise from 0 to 90 and shares from 0 to"
         " 1, the first at least 0.001, not "
     )
     assert sentence.endswith("; write them as in [[0.0, 0.04], [60.0, 0.1], [90.0, 1.0]]")
@@ -206,18 +201,12 @@ def test_what_is_no_curve_from_0_to_90_degrees_is_refused_with_an_example(value:
 @given(st.integers(2, 200))
 def test_a_curve_has_at_most_a_point_a_degree(count: int) -> None:
     points = [[angle, 0.5] for angle in np.linspace(0, 90, count)]
-    assert (held_2(points)[0] is REFUSED) == (count > MOST_POINTS)
+    assert (validated(KIND, points)[0] is REFUSED) == (count > MOST_POINTS)
 
 
 RULE = 'it must be "#rrggbb", a name such as "red", or three whole numbers from 0 to 255'
 
 PARTS = st.integers(0, 255)
-
-
-def held_3(value: object) -> tuple[Any, list[str]]:
-    """What a color column holds of a value, and the sentences of its problems."""
-    problems: list[Problem] = []
-    return ColorKind().held(value, ("it",), problems), [problem.sentence for problem in problems]
 
 
 @pytest.mark.parametrize(
@@ -240,7 +229,7 @@ def held_3(value: object) -> tuple[Any, list[str]]:
 def test_a_color_is_a_name_or_a_text_or_three_whole_numbers(
     value: object, color: tuple[int, int, int]
 ) -> None:
-    found, sentences = held_3(value)
+    found, sentences = validated(ColorKind(), value)
     assert sentences == []
     assert found == color
     assert [type(part) for part in found] == [int, int, int]
@@ -249,19 +238,19 @@ def test_a_color_is_a_name_or_a_text_or_three_whole_numbers(
 @given(st.tuples(PARTS, PARTS, PARTS))
 def test_a_color_in_digits_is_what_pillow_takes_it_for(color: tuple[int, int, int]) -> None:
     for text in (in_digits(color), in_digits(color).upper()):
-        assert held_3(text) == (ImageColor.getrgb(text), [])
+        assert validated(ColorKind(), text) == (ImageColor.getrgb(text), [])
 
 
 @pytest.mark.parametrize("name", ImageColor.colormap)
 def test_every_name_that_pillow_knows_is_a_color(name: str) -> None:
-    assert held_3(name) == (ImageColor.getrgb(name), [])
+    assert validated(ColorKind(), name) == (ImageColor.getrgb(name), [])
 
 
 @given(
     st.one_of(st.text(), st.from_regex(r"#[0-9a-f]{0,9}|(rgb|hsl|hsv|rgba)\([0-9%., ]*\)", fullmatch=True))
 )
 def test_any_text_is_a_color_in_range_or_refused_in_a_sentence(text: str) -> None:
-    color, sentences = held_3(text)
+    color, sentences = validated(ColorKind(), text)
     if color is REFUSED:
         assert len(sentences) == 1
         assert sentences[0].startswith(f"{RULE}, not ")
@@ -296,7 +285,7 @@ def test_any_text_is_a_color_in_range_or_refused_in_a_sentence(text: str) -> Non
     ],
 )
 def test_a_refusal_says_what_to_write_instead(value: object, end: str) -> None:
-    color, sentences = held_3(value)
+    color, sentences = validated(ColorKind(), value)
     assert color is REFUSED
     assert sentences == [f"{RULE}, not {end}"]
 
@@ -310,7 +299,7 @@ def test_a_refusal_says_what_to_write_instead(value: object, end: str) -> None:
     ],
 )  # fmt: skip
 def test_what_is_no_color_is_refused(value: object) -> None:
-    color, sentences = held_3(value)
+    color, sentences = validated(ColorKind(), value)
     assert color is REFUSED
     assert re.match(re.escape(f"{RULE}, not "), sentences[0])
 

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from autocolor import InputError, Surface
 from autocolor.arrays import Singles, power
-from autocolor.scene.columns import Field, Tier, cost, difference, fields_of, plain
+from autocolor.scene.columns import Field, Tier, cost, difference, fields_of, to_plain
 from autocolor.scene.kinds import AngleCurve
 from autocolor.scene.reflection_models import (
     LEAST_FACING,
@@ -144,9 +144,9 @@ def test_a_growth_multiplies_the_factor_without_it_by_a_function_of_incidence_al
     rows = [list(column) for column in zip(*some, strict=True)]
     times = growth.factor(np.array(rows[0], np.float32))
     for model in (Phong, BlinnPhong):
-        plain = np.array(specular(model(exponent), *rows), np.float32)
+        to_plain = np.array(specular(model(exponent), *rows), np.float32)
         grown = specular(model(exponent, growth), *rows)
-        assert grown == (plain if times is None else plain * times).tolist()
+        assert grown == (to_plain if times is None else to_plain * times).tolist()
 
 
 @given(st.lists(st.tuples(cosines, cosines, cosines), min_size=1), exponents, growths)
@@ -380,7 +380,7 @@ def test_without_a_material_there_is_nothing_to_multiply_by() -> None:
 @pytest.mark.parametrize("way", WAYS)
 def test_each_way_to_tell_it_is_a_key_of_the_surface(model: str, way: dict[str, Any]) -> None:
     surface = Surface("body").replace(model=model, exponent=9, **way)
-    assert plain(surface).items() >= way.items()
+    assert to_plain(surface).items() >= way.items()
     assert surface.reflectance.model == MODELS[model](9, SpecularGrowth(**way))  # type: ignore[call-arg]
 
 

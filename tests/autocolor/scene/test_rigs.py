@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Flap, Flaps, HalfSpace, InputError, Light, Rig, Scene, UsageError, render, scene_of
-from autocolor.scene.columns import WORLD_UNITS, Row, fields_of, made, plain
+from autocolor.scene.columns import WORLD_UNITS, Row, fields_of, from_plain, to_plain
 from autocolor.scene.following import detached
 from autocolor.scene.lights import AXES
 from autocolor.scene.rigs import mirrored
@@ -20,7 +20,7 @@ from tests.autocolor.strategies import lights, scenes, short
 @given(scenes())
 def test_a_rig_on_its_own_scene_gives_the_same_lights_exactly(scene: Scene) -> None:
     assert scene.replace(lights=()).with_rig(scene.rig).lights == scene.lights
-    assert made(Rig, plain(scene.rig)) == scene.rig
+    assert from_plain(Rig, to_plain(scene.rig)) == scene.rig
 
 
 @given(scenes(), scenes())

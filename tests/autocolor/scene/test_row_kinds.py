@@ -10,17 +10,26 @@ from hypothesis import strategies as st
 
 from autocolor import Light, Part, Surface
 from autocolor.errors import InputError
-from autocolor.scene.columns import Column, Row, Tier, changed, cost, difference, keys_of, made, plain
-from autocolor.scene.kinds import Number, Switch, Text
+from autocolor.scene.columns import (
+    Column,
+    Row,
+    Tier,
+    cost,
+    difference,
+    from_plain,
+    keys_of,
+    replaced,
+    to_plain,
+)
+from autocolor.scene.kinds import Boolean, Number, Text
 from autocolor.scene.lights import HalfSpace, Links
 from autocolor.scene.row_kinds import (
     MOST_NAMED_ROWS,
     Nested,
+    OneRowOf,
     Reference,
     References,
-    Rows,
-    Variant,
-    WordOrName,
+    RowList,
     references_of,
 )
 
@@ -45,7 +54,7 @@ class Shape(Row):
     """What is inline."""
 
     weight: Annotated[float, Column(Number(at_least=0), Tier.MIX, "How heavy it is.")] = 1.0
-    model: Annotated[Row, Column(Variant({"round": Round, "square": Square}), Tier.LIGHT, "Its form.")] = (
+    model: Annotated[Row, Column(OneRowOf({"round": Round, "square": Square}), Tier.LIGHT, "Its form.")] = (
         Round()
     )
 
@@ -56,7 +65,7 @@ class Lid(Row):
 
     noun: ClassVar[str] = "lid"
 
-    open: Annotated[bool, Column(Switch(), Tier.ENTRIES, "Whether it is open.")] = False
+    open: Annotated[bool, Column(Boolean(), Tier.ENTRIES, "Whether it is open.")] = False
 
 
 @dataclass(frozen=True)
@@ -75,7 +84,7 @@ class Box(Row):
 class Stack(Row):
     """A row with a table."""
 
-    boxes: Annotated[tuple[Box, ...], Column(Rows(Box, by_name=True), Tier.FRAME, "The boxes.")] = ()
+    boxes: Annotated[tuple[Box, ...], Column(RowList(Box, by_name=True), Tier.FRAME, "The boxes.")] = ()
 
 
 def sentences(make: Any) -> tuple[str, ...]:
@@ -87,35 +96,35 @@ def sentences(make: Any) -> tuple[str, ...]:
 
 def test_the_keys_of_inline_rows_stand_among_those_around_them() -> None:
     assert list(keys_of(Box)) == ["name", "weight", "model", "radius", "side", "turn", "lid", "beside"]
-    box = made(Box, {"name": "a", "weight": 3, "model": "square", "turn": 5, "lid": {"open": True}})
+    box = from_plain(Box, {"name": "a", "weight": 3, "model": "square", "turn": 5, "lid": {"open": True}})
     assert box == Box("a", Shape(3.0, Square(turn=5.0)), Lid(True))
-    assert plain(box) == {
+    assert to_plain(box) == {
         "name": "a", "weight": 3.0, "model": "square", "side": 2.0, "turn": 5.0, "lid": {"open": True},
     }  # fmt: skip
-    assert made(Box, plain(box)) == box
+    assert from_plain(Box, to_plain(box)) == box
 
 
 def test_another_variant_begins_with_its_own_defaults() -> None:
     box = Box("a", Shape(model=Round(4)))
-    assert changed(box, {"radius": 5}).shape.model == Round(5.0)
-    assert changed(box, {"model": "square"}).shape.model == Square()
-    assert changed(box, {"model": "square", "side": 3}).shape.model == Square(3.0)
-    assert changed(box, {"model": Square(7)}).shape.model == Square(7.0)
-    assert changed(changed(box, {"model": "square"}), {"model": "round"}).shape.model == Round()
+    assert replaced(box, {"radius": 5}).shape.model == Round(5.0)
+    assert replaced(box, {"model": "square"}).shape.model == Square()
+    assert replaced(box, {"model": "square", "side": 3}).shape.model == Square(3.0)
+    assert replaced(box, {"model": Square(7)}).shape.model == Square(7.0)
+    assert replaced(replaced(box, {"model": "square"}), {"model": "round"}).shape.model == Round()
 
 
 def test_a_key_of_another_variant_is_refused_by_name() -> None:
-    assert sentences(lambda: changed(Box("a"), {"turn": 5})) == (
+    assert sentences(lambda: replaced(Box("a"), {"turn": 5})) == (
         "box 'a': turn must go with model = 'square', not with 'round'; leave it out, or change the other",
     )
-    assert sentences(lambda: changed(Box("a"), {"model": "squar"})) == (
+    assert sentences(lambda: replaced(Box("a"), {"model": "squar"})) == (
         "box 'a': model must be 'round' or 'square', not 'squar'; did you mean 'square'?",
     )
 
 
 def test_problems_inside_are_told_with_the_keys_that_lead_there() -> None:
     assert sentences(
-        lambda: made(Box, {"name": "a", "weight": -1, "radius": "x", "lid": {"open": 1, "opn": 2}})
+        lambda: from_plain(Box, {"name": "a", "weight": -1, "radius": "x", "lid": {"open": 1, "opn": 2}})
     ) == (
         "box 'a': radius must be a finite number of at least 0, not 'x'",
         "box 'a': weight must be a finite number of at least 0, not -1",
@@ -125,26 +134,28 @@ def test_problems_inside_are_told_with_the_keys_that_lead_there() -> None:
 
 
 def test_a_table_for_a_row_that_is_there_changes_its_fields_and_else_makes_one() -> None:
-    assert changed(Box("a"), {"lid": {"open": True}}).lid == Lid(True)
-    assert changed(Box("a", lid=Lid(True)), {"lid": {}}).lid == Lid(True)
-    assert changed(Box("a", lid=Lid(True)), {"lid": None}).lid is None
-    assert sentences(lambda: changed(Box("a"), {"lid": 3})) == (
+    assert replaced(Box("a"), {"lid": {"open": True}}).lid == Lid(True)
+    assert replaced(Box("a", lid=Lid(True)), {"lid": {}}).lid == Lid(True)
+    assert replaced(Box("a", lid=Lid(True)), {"lid": None}).lid is None
+    assert sentences(lambda: replaced(Box("a"), {"lid": 3})) == (
         "box 'a': lid must be a table of open, not 3",
     )
 
 
 def test_a_table_holds_rows_whose_names_differ() -> None:
-    stack = made(Stack, {"boxes": [{"name": "a"}, Box("b")]})
+    stack = from_plain(Stack, {"boxes": [{"name": "a"}, Box("b")]})
     assert stack.boxes == (Box("a"), Box("b"))
-    assert plain(stack)["boxes"] == [plain(Box("a")), plain(Box("b"))]
+    assert to_plain(stack)["boxes"] == [to_plain(Box("a")), to_plain(Box("b"))]
     assert sentences(lambda: Stack((Box("a"), Box("b"), Box("a")))) == (
         "boxes[3].name must be unique, not the same as boxes[1]; rename it",
     )
-    assert sentences(lambda: made(Stack, {"boxes": [{"name": "a", "weight": -1}, 3]})) == (
+    assert sentences(lambda: from_plain(Stack, {"boxes": [{"name": "a", "weight": -1}, 3]})) == (
         "boxes[1].weight must be a finite number of at least 0, not -1",
         "boxes[2] must be a table of name, weight, model, radius, side, turn, lid and beside, not 3",
     )
-    assert sentences(lambda: made(Stack, {"boxes": {}})) == ("boxes must be a list of Box rows, not {}",)
+    assert sentences(lambda: from_plain(Stack, {"boxes": {}})) == (
+        "boxes must be a list of Box rows, not {}",
+    )
 
 
 def test_names_that_refer_to_other_rows_are_found() -> None:
@@ -153,8 +164,8 @@ def test_names_that_refer_to_other_rows_are_found() -> None:
 
 
 def test_a_word_is_no_name() -> None:
-    assert WordOrName("lights", "eye").names_in("eye") == ()
-    assert WordOrName("lights", "eye").names_in("key") == ("key",)
+    assert Reference("lights", "eye").names_in("eye") == ()
+    assert Reference("lights", "eye").names_in("key") == ("key",)
 
 
 def test_columns_that_refer_to_other_tables_are_known_also_inside_others() -> None:
@@ -205,7 +216,7 @@ def light(*rows: HalfSpace, **fields: Any) -> Light:
 def sentence(changes: Any, *rows: HalfSpace) -> str:
     """What is said of changes that are refused."""
     with pytest.raises(InputError) as caught:
-        changed(light(*rows), {"half_spaces": changes})
+        replaced(light(*rows), {"half_spaces": changes})
     return str(caught.value)
 
 
@@ -214,32 +225,32 @@ def test_they_are_given_as_rows_or_as_tables_by_name_and_held_by_name() -> None:
     assert expected.half_spaces == (LEFT, RIGHT)
     assert light(RIGHT, LEFT) == expected
     tables = {"right": {"point": [1, 0, 0], "direction": [-1, 0, 0], "edge_width": 0.5}, "left": LEFT}
-    assert made(Light, {"name": "key", "position": [0, 0, 1], "half_spaces": tables}) == expected
+    assert from_plain(Light, {"name": "key", "position": [0, 0, 1], "half_spaces": tables}) == expected
     assert light().half_spaces == ()
 
 
 def test_a_change_goes_into_the_rows_that_are_there() -> None:
-    row = changed(light(LEFT, RIGHT), {"half_spaces": {"right": {"on": False}}})
+    row = replaced(light(LEFT, RIGHT), {"half_spaces": {"right": {"on": False}}})
     assert row.half_spaces == (LEFT, RIGHT.replace(on=False))
 
 
 def test_a_change_adds_and_removes_rows() -> None:
-    row = changed(light(LEFT, RIGHT), {"half_spaces": {"back": PLANE, "right": None}})
+    row = replaced(light(LEFT, RIGHT), {"half_spaces": {"back": PLANE, "right": None}})
     assert row.half_spaces == (HalfSpace("back", (0, 0, 0), (0, 0, 1)), LEFT)
 
 
 def test_a_row_takes_the_place_of_that_of_its_name() -> None:
     other = LEFT.replace(direction=(0, 1, 0))
-    assert changed(light(LEFT, RIGHT), {"half_spaces": {"left": other}}).half_spaces == (other, RIGHT)
+    assert replaced(light(LEFT, RIGHT), {"half_spaces": {"left": other}}).half_spaces == (other, RIGHT)
     # A list of rows takes the place of all.
-    assert changed(light(LEFT, RIGHT), {"half_spaces": [other]}).half_spaces == (other,)
+    assert replaced(light(LEFT, RIGHT), {"half_spaces": [other]}).half_spaces == (other,)
 
 
 def test_a_row_that_is_there_can_be_renamed() -> None:
-    row = changed(light(LEFT, RIGHT), {"half_spaces": {"left": {"name": "top", "carried": True}}})
+    row = replaced(light(LEFT, RIGHT), {"half_spaces": {"left": {"name": "top", "carried": True}}})
     assert row.half_spaces == (RIGHT, LEFT.replace(name="top", carried=True))
     # Also to the name of one that goes.
-    row = changed(light(LEFT, RIGHT), {"half_spaces": {"left": {"name": "right"}, "right": None}})
+    row = replaced(light(LEFT, RIGHT), {"half_spaces": {"left": {"name": "right"}, "right": None}})
     assert row.half_spaces == (LEFT.replace(name="right"),)
 
 
@@ -247,7 +258,7 @@ def test_a_row_that_is_there_can_be_renamed() -> None:
 def test_a_difference_makes_one_row_equal_to_the_other(one: list[HalfSpace], other: list[HalfSpace]) -> None:
     before, after = light(*one), light(*other)
     told = difference(before, after)
-    assert changed(before, told) == after
+    assert replaced(before, told) == after
     assert (told == {}) == (before == after) == (cost(before, after) is None)
     # What is not told is equal already.
     inner = told.get("half_spaces", {})
@@ -257,13 +268,13 @@ def test_a_difference_makes_one_row_equal_to_the_other(one: list[HalfSpace], oth
 
 @given(several)
 def test_what_is_written_gives_the_same_rows(rows: list[HalfSpace]) -> None:
-    keys = plain(light(*rows))
+    keys = to_plain(light(*rows))
     assert ("half_spaces" in keys) == bool(rows)
-    assert made(Light, keys) == light(*rows)
+    assert from_plain(Light, keys) == light(*rows)
 
 
 def test_the_names_are_written_once() -> None:
-    assert plain(light(LEFT))["half_spaces"] == {
+    assert to_plain(light(LEFT))["half_spaces"] == {
         "left": {
             "point": (-1.0, 0.0, 0.0),
             "direction": (1.0, 0.0, 0.0),
@@ -310,6 +321,11 @@ def test_an_edit_costs_the_planes_of_its_light() -> None:
             {"left\ndoor": {**PLANE, "direction": (0, 0, 0)}},
             ".'left\\ndoor'.direction must not be zero, not (0, 0, 0); give it a length",
         ),
+        (
+            {0: None, "a": None},
+            " must be a table of half-spaces by name, not by 0; name it by at least one character\n"
+            "light 'key': half_spaces.a: there is no half-space of this name; known are 'left', 'right'",
+        ),
         (None, " must be a table of half-spaces by name, not None"),
         ("left", " must be a table of half-spaces by name, not 'left'"),
         (
@@ -340,10 +356,10 @@ def test_there_are_as_many_as_can_be_told_apart() -> None:
     most = [LEFT.replace(name=f"{number:03}") for number in range(MOST_NAMED_ROWS)]
     full = light(*most)
     # All can be changed at once, and others take the place of all.
-    off = changed(full, {"half_spaces": {row.name: {"on": False} for row in most}})
+    off = replaced(full, {"half_spaces": {row.name: {"on": False} for row in most}})
     assert not any(row.on for row in off.half_spaces)
     others = light(*(row.replace(name=f"other {row.name}") for row in most))
-    assert changed(full, difference(full, others)) == others
+    assert replaced(full, difference(full, others)) == others
     rule = "light 'key': half_spaces must be at most 64, not {}; leave some out"
     assert sentence({"one more": PLANE}, *most) == rule.format(65)
     assert sentence([*most, RIGHT]) == rule.format(65)
@@ -355,7 +371,7 @@ def test_whatever_is_given_makes_a_row_or_is_refused_in_sentences(value: Any) ->
     for rows in ((), (LEFT, HalfSpace("a", (0, 0, 0), (0, 0, 1)))):
         told = ""
         try:
-            row = changed(light(*rows), {"half_spaces": value})
+            row = replaced(light(*rows), {"half_spaces": value})
         except InputError as error:
             told = str(error)
         else:

@@ -10,21 +10,20 @@ from typing import Annotated, Any, ClassVar
 import pytest
 
 from autocolor.checks import Color, Vector
-from autocolor.scene.columns import WORLD_UNITS, Column, Row, Tier, changed, fields_of
-from autocolor.scene.columns import Bar as Range
+from autocolor.scene.columns import WORLD_UNITS, BarRange, Column, Row, Tier, fields_of, replaced
 from autocolor.scene.kinds import (
     AngleCurve,
     AngleCurveKind,
+    Boolean,
     ColorKind,
     CurveKind,
     Number,
+    OneOf,
     Text,
     VectorKind,
     Whole,
 )
-from autocolor.scene.kinds import Choice as ChoiceKind
-from autocolor.scene.kinds import Switch as SwitchKind
-from autocolor.scene.row_kinds import NamedRows, Nested, Reference, References, Referring, Variant, WordOrName
+from autocolor.scene.row_kinds import NamedRows, Nested, OneRowOf, Reference, References, Referring
 from autocolor.widgets.bars import Bar
 from autocolor.widgets.items import Area
 from autocolor.widgets.rows import NAMES_A_PAGE, TableNames, World, reference_rows, rows_of
@@ -40,7 +39,7 @@ AREA = Area(505, 0, 639, 15)
 class Shutter(Row):
     low: Annotated[float, Column(Number(endless=-math.inf), MIX, "Low.", WORLD_UNITS)] = -math.inf
     high: Annotated[float, Column(Number(endless=math.inf), MIX, "High.", WORLD_UNITS)] = math.inf
-    on: Annotated[bool, Column(SwitchKind(), MIX, "Whether it is used.")] = True
+    on: Annotated[bool, Column(Boolean(), MIX, "Whether it is used.")] = True
 
 
 @dataclass(frozen=True)
@@ -76,7 +75,7 @@ class Hood(Row):
     length: Annotated[float | None, Column(Number(at_least=0, above=True), MIX, "How long.", WORLD_UNITS)] = (
         None
     )
-    on: Annotated[bool, Column(SwitchKind(), MIX, "Whether it is used.")] = True
+    on: Annotated[bool, Column(Boolean(), MIX, "Whether it is used.")] = True
 
 
 @dataclass(frozen=True)
@@ -86,18 +85,18 @@ class Lamp(Row):
     name: Annotated[str, Column(Text(), MIX, "Its name.")] = "lamp"
     share: Annotated[float, Column(Number(0, 1), MIX, "A share.")] = 0.5
     tilt_angle: Annotated[
-        float | None, Column(Number(0, 180), MIX, "A tilt.", "degrees", bar=Range(0, 90, 1), start=30.0)
+        float | None, Column(Number(0, 180), MIX, "A tilt.", "degrees", bar=BarRange(0, 90, 1), start=30.0)
     ] = None
     blades: Annotated[int, Column(Whole(2, 12), MIX, "Blades.")] = 6
     count: Annotated[int | None, Column(Whole(1, 100), MIX, "A count.")] = None
     reach: Annotated[float, Column(Number(), MIX, "How far.", WORLD_UNITS)] = 1.0
-    on: Annotated[bool, Column(SwitchKind(), MIX, "Whether it is on.")] = True
-    mode: Annotated[str, Column(ChoiceKind(("wide", "narrow")), MIX, "Its mode.")] = "wide"
+    on: Annotated[bool, Column(Boolean(), MIX, "Whether it is on.")] = True
+    mode: Annotated[str, Column(OneOf(("wide", "narrow")), MIX, "Its mode.")] = "wide"
     tint: Annotated[Color, Column(ColorKind(), MIX, "Its tint.")] = (255, 0, 0)
     place: Annotated[Vector, Column(VectorKind(), MIX, "Where it is.", WORLD_UNITS)] = (0.0, 0.0, 0.0)
     facing: Annotated[Vector | None, Column(VectorKind(has_length=True), MIX, "Where it faces.")] = None
-    finish: Annotated[Row, Column(Variant({"smooth": Smooth, "coarse": Coarse}), MIX, "Its finish.")] = field(
-        default_factory=Smooth
+    finish: Annotated[Row, Column(OneRowOf({"smooth": Smooth, "coarse": Coarse}), MIX, "Its finish.")] = (
+        field(default_factory=Smooth)
     )
     haze: Annotated[Haze, Column(Nested(Haze, inline=True), MIX, "Its haze.")] = field(default_factory=Haze)
     shutters: Annotated[Shutters, Column(Nested(Shutters), MIX, "Its shutters.")] = field(
@@ -109,7 +108,7 @@ class Lamp(Row):
     ] = None
     curve: Annotated[str, Column(CurveKind({"linear": 1}), MIX, "Its curve.")] = "linear"
     hoods: Annotated[tuple[Hood, ...], Column(NamedRows(Hood), MIX, "Its hoods.")] = ()
-    follows: Annotated[str | None, Column(WordOrName("lamps", "sun"), MIX, "What it follows.")] = None
+    follows: Annotated[str | None, Column(Reference("lamps", "sun"), MIX, "What it follows.")] = None
     walls: Annotated[tuple[str, ...] | None, Column(References("walls"), MIX, "Its walls.")] = None
 
 
@@ -120,7 +119,7 @@ class Table:
         self.lamp = Lamp() if lamp is None else lamp
 
     def put(self, changes: Mapping[str, Any]) -> None:
-        self.lamp = changed(self.lamp, changes)
+        self.lamp = replaced(self.lamp, changes)
 
     def rows(self, **options: Any) -> dict[str, Widget]:
         return {row.label: row.at(AREA) for row in rows_of(self.lamp, self.put, WORLD, **options)}
@@ -324,7 +323,7 @@ class Rope(Row):
 
     post: Annotated[str, Column(Reference("posts"), Tier.MIX, "Its post.")] = "a"
     hook: Annotated[str | None, Column(Reference("posts"), Tier.MIX, "Its hook.")] = None
-    end: Annotated[str | None, Column(WordOrName("posts", "ground"), Tier.MIX, "Its end.")] = None
+    end: Annotated[str | None, Column(Reference("posts", "ground"), Tier.MIX, "Its end.")] = None
     only_posts: Annotated[tuple[str, ...] | None, Column(References("posts"), Tier.MIX, "Posts.")] = None
 
 

@@ -41,7 +41,7 @@ def test_help_has_examples_and_loads_nothing_heavy(command: str) -> None:
     assert shown.stderr.strip() == ""
 
 
-def test_what_hosts_sent_is_recorded_in_whole_instructions(tmp_path: Path) -> None:
+def test_recordings_hold_whole_instructions(tmp_path: Path) -> None:
     record = tmp_path / "hosts.ramtek"
     with started("serve", "--port", 0, "--record", record) as process:
         assert process.stdout is not None
@@ -79,7 +79,7 @@ def test_a_display_goes_on_from_a_snapshot(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_signal_ends_a_read_that_waits_and_every_one_after_it(number: signal.Signals) -> None:
+def test_a_signal_ends_a_waiting_read_and_all_later_reads(number: signal.Signals) -> None:
     read_end, write_end = os.pipe()
     before = signal.getsignal(number)
     with end_signals() as signals:

@@ -30,7 +30,7 @@ def ramtek(*arguments: str, **environment: str) -> subprocess.CompletedProcess[s
     )
 
 
-def test_without_a_screen_it_says_so_in_one_sentence() -> None:
+def test_a_missing_screen_is_reported_in_one_sentence() -> None:
     run = ramtek()
     assert run.returncode == 69
     assert run.stdout == ""
@@ -40,7 +40,7 @@ def test_without_a_screen_it_says_so_in_one_sentence() -> None:
     )
 
 
-def test_a_window_without_a_screen_is_refused_before_a_host_is_told_where_to_connect() -> None:
+def test_a_window_without_a_screen_is_refused_before_the_address_is_printed() -> None:
     run = ramtek("serve", "--port", "0", "--window")
     assert (run.returncode, run.stdout) == (69, "")
     assert run.stderr.startswith("ramtek: a window must have a screen")
@@ -136,7 +136,7 @@ REFUSED = (
     (
         "tty none -- 'no such program'",
         66,
-        "ramtek: a program must be one that can be run, not 'no such program'; check its name",
+        "ramtek: a program must be executable, not 'no such program'; check its name",
     ),
     (
         "tty none -- true",
@@ -145,7 +145,7 @@ REFUSED = (
         "start `ramtek serve --unix none`",
     ),
 )
-"""Arguments, the exit code, and the sentence on stderr, or its start where click writes it."""
+"""Arguments, the exit code, and the sentence on stderr, or the start of click's sentence."""
 
 
 @pytest.mark.parametrize(("arguments", "code", "sentence"), REFUSED)
@@ -183,7 +183,9 @@ def without_pygame(folder: Path, program: str, *arguments: str) -> subprocess.Co
 
 
 @pytest.mark.parametrize("kind", BROKEN)
-def test_a_pygame_that_is_missing_or_broken_is_told_with_what_to_install(tmp_path: Path, kind: str) -> None:
+def test_a_missing_or_broken_pygame_is_reported_with_the_package_to_install(
+    tmp_path: Path, kind: str
+) -> None:
     run = without_pygame(tmp_path, BROKEN[kind])
     assert (run.returncode, run.stdout) == (69, "")
     assert run.stderr.startswith("ramtek: a window must have pygame, and it cannot be loaded (")
@@ -197,7 +199,7 @@ def test_a_pygame_that_is_missing_or_broken_is_told_with_what_to_install(tmp_pat
 @pytest.mark.parametrize(
     "arguments", [("play", "-"), ("serve", "--stdio", "--window"), ("serve", "--port", "0", "--window")]
 )
-def test_every_command_that_opens_a_window_tells_what_it_lacks(
+def test_every_command_with_a_window_reports_a_missing_pygame(
     tmp_path: Path, arguments: tuple[str, ...]
 ) -> None:
     run = without_pygame(tmp_path, BROKEN["missing"], *arguments)

@@ -1,4 +1,4 @@
-"""`ramtek serve` as other programs see it: real processes, pipes and sockets."""
+"""`ramtek serve` in real processes, with pipes and sockets."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ pygame = pytest.importorskip("pygame")
 
 
 def fill_polygon(host: PipedHost | TcpPort, left: int, top: int, width: int, height: int) -> None:
-    """Fill what is outlined: read each line, write between its first and last word that is not 0."""
+    """Fill an outline: read every line, write between its first and its last word that is not 0."""
     for line in range(top, top + height):
         host.send(words(f"0B03 0040 {left:X} {line:X} {left + width - 1:X} {line:X} {2 * width:X}"))
         row = np.flatnonzero(host.receive(width))
@@ -131,7 +131,7 @@ def test_the_shell_s_pipes_put_any_program_on_the_display(tmp_path: Path) -> Non
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_program_that_never_ends_is_interrupted_and_its_picture_is_there(
+def test_an_endless_program_is_interrupted_and_its_picture_is_written(
     tmp_path: Path, number: signal.Signals
 ) -> None:
     with started("serve", "--stdio", "--snapshot", tmp_path / "s.png") as process:
@@ -166,7 +166,7 @@ def test_two_pipes_put_a_program_that_reads_back_on_the_display(tmp_path: Path) 
     assert read_snapshot(tmp_path / "s.png").words[[3, 4], [3, 4]].tolist() == [7, 8]
 
 
-def test_a_server_prints_its_port_serves_one_host_after_the_other_and_ends_when_told(tmp_path: Path) -> None:
+def test_a_server_prints_its_port_serves_hosts_in_turn_and_ends_at_a_signal(tmp_path: Path) -> None:
     with started("serve", "--port", 0, "-o", tmp_path / "end.png", "--configuration", "jpl-9460") as process:
         assert process.stdout is not None
         assert process.stderr is not None
@@ -185,7 +185,7 @@ def mark(number: int) -> np.ndarray[tuple[int, ...], np.dtype[np.uint16]]:
     return words(f"0902 0044 {number + 1:X} {number:X} 9 {number:X} 9")
 
 
-def test_two_hundred_hosts_one_right_after_another_all_draw_on_a_server_process(tmp_path: Path) -> None:
+def test_two_hundred_hosts_in_a_row_all_draw_on_a_server_process(tmp_path: Path) -> None:
     with started("serve", "--port", 0, "--snapshot", tmp_path / "end.png") as process:
         assert process.stdout is not None
         address = process.stdout.readline().decode().strip()
@@ -252,7 +252,7 @@ def test_a_fifo_moves_the_joystick_of_a_display_on_a_pipe(tmp_path: Path) -> Non
         host.send(words("1600 0005 0406 1700"))
         assert host.receive(2).tolist() == [5, 0x406]
         for number in (1, 2):
-            # Each writer closes the FIFO, which is then open for the next.
+            # A writer closes the FIFO, which stays open for the next writer.
             (tmp_path / "stick").write_text(f"cursor {number} 9 enter\n?\n")
             assert process.stderr is not None
             assert f"line {2 * number}:".encode() in process.stderr.readline()
@@ -275,7 +275,7 @@ def test_a_host_address_other_than_loopback_is_served_with_a_warning() -> None:
         assert b"whoever reaches tcp://0.0.0.0" in process.stderr.read()
 
 
-def test_the_window_shows_what_a_remote_host_draws_as_it_draws(on_screen: str) -> None:
+def test_the_window_shows_the_drawing_of_a_remote_host_at_once(on_screen: str) -> None:
     with TcpServer(Ramtek9300()) as server:
         monitor = Monitor(server.display, on_tick=lambda: server.serve_for(0.01))
         monitor.open()
@@ -367,7 +367,7 @@ def test_a_window_closes_at_once_while_a_host_is_still_sending(on_screen: str) -
 @pytest.mark.parametrize(
     "arguments", [["play", "-"], ["serve", "--stdio", "--window", "--snapshot", "s.png"]]
 )
-def test_a_command_with_a_window_stays_until_it_is_told(
+def test_a_command_with_a_window_runs_until_a_signal(
     on_screen: str, tmp_path: Path, arguments: list[str]
 ) -> None:
     process = subprocess.Popen(
@@ -397,9 +397,7 @@ def catches(process: int, number: signal.Signals) -> bool:
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_signal_that_comes_while_a_host_is_served_closes_the_window_afterwards(
-    number: signal.Signals, on_screen: str
-) -> None:
+def test_a_signal_during_service_closes_the_window_afterwards(number: signal.Signals, on_screen: str) -> None:
     display = Ramtek9300()
     served = 0
 

@@ -80,7 +80,7 @@ for size in map(int, open(sys.argv[2])):
 """
 
 
-def test_quick_writes_of_all_sizes_are_rounded_down_one_by_one(display: UnixServer, tmp_path: Path) -> None:
+def test_quick_writes_of_all_sizes_are_rounded_down_singly(display: UnixServer, tmp_path: Path) -> None:
     draw = random.Random(1983)
     written, expected, sizes = b"", [], []
     for number in range(600):
@@ -109,7 +109,7 @@ for line in re.findall(rb"[^\\n]*\\n|[^\\n]+", words):
 """
 
 
-def test_as_a_stream_the_lines_that_stdio_makes_of_words_are_put_together(display: UnixServer) -> None:
+def test_a_stream_joins_the_lines_that_stdio_makes_of_words(display: UnixServer) -> None:
     drawing = stream(words("0902 0044 10A 5 A 5 A 0902 0044 7 A 6 A 6"))
     program = [sys.executable, "-c", LINE_BUFFERED % drawing.hex()]
     done = run("tty", "--stream", display.address, "--", *program)
@@ -132,7 +132,7 @@ os.execv(sys.executable, [sys.executable, "-m", "ramtek_emu", *sys.argv[1:]])
 """
 
 
-def test_in_a_sandbox_that_ends_a_process_that_asks_for_notices_nothing_is_run(display: UnixServer) -> None:
+def test_a_sandbox_that_kills_for_asking_for_notices_runs_nothing(display: UnixServer) -> None:
     if platform.machine() not in MACHINES:
         pytest.skip("needs a machine with notices")
     for options, code, said in (
@@ -150,7 +150,7 @@ def test_in_a_sandbox_that_ends_a_process_that_asks_for_notices_nothing_is_run(d
         assert (done.returncode, done.stderr.decode()) == (code, said)
 
 
-def test_a_system_that_cannot_wait_for_a_program_is_told_before_it_runs(
+def test_a_system_that_cannot_wait_for_a_program_is_refused_before_it_runs(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     def refused(process: int) -> int:
@@ -167,7 +167,7 @@ def test_the_shell_redirects_a_program_to_the_device(display: UnixServer) -> Non
     assert display.display.words[5, 5] == 7
 
 
-def test_a_link_to_the_device_is_there_while_the_program_runs(
+def test_a_link_to_the_device_exists_while_the_program_runs(
     display: UnixServer, program: Path, tmp_path: Path
 ) -> None:
     link = tmp_path / "ramtek"
@@ -229,10 +229,8 @@ def test_a_display_that_leaves_hangs_up_the_program(tmp_path: Path) -> None:
     assert b"while a program uses it, and it left" in said
 
 
-def test_without_notices_a_program_is_run_only_with_its_writes_as_one_stream(
-    display: UnixServer, tmp_path: Path
-) -> None:
-    # The kernel gives notices of a process to one other only: the inner relay has none.
+def test_without_notices_a_program_is_run_only_as_a_stream(display: UnixServer, tmp_path: Path) -> None:
+    # The kernel gives notices of a process to only one other process: the inner relay gets none.
     with serving_at(tmp_path / "outer") as outer:
         for options in ([], ["--stream"]):
             inner = [sys.executable, "-m", "ramtek_emu", "tty", *options, display.address, "--"]

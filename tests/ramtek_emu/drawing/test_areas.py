@@ -12,7 +12,7 @@ from tests.ramtek_emu.strategies import thorough
 
 
 def reached(open_pixels: NDArray[np.bool_], line: int, element: int) -> set[tuple[int, int]]:
-    """The open pixels that a walk from one comes to, step by step."""
+    """The open pixels that a walk from a pixel reaches, step by step."""
     lines, elements = open_pixels.shape
     waiting = [(line, element)] if open_pixels[line, element] else []
     filled = set(waiting)
@@ -28,7 +28,9 @@ def reached(open_pixels: NDArray[np.bool_], line: int, element: int) -> set[tupl
 
 @thorough
 @given(arrays.arrays(np.bool_, st.tuples(st.integers(1, 8), st.integers(1, 9))), st.data())
-def test_an_area_is_what_a_walk_reaches(open_pixels: NDArray[np.bool_], data: st.DataObject) -> None:
+def test_an_area_has_the_pixels_that_a_walk_reaches(
+    open_pixels: NDArray[np.bool_], data: st.DataObject
+) -> None:
     line = data.draw(st.integers(0, open_pixels.shape[0] - 1))
     element = data.draw(st.integers(0, open_pixels.shape[1] - 1))
     filled = {(n, e) for n, e in np.argwhere(area(open_pixels, line, element)).tolist()}
@@ -55,7 +57,7 @@ def test_a_spiral_is_one_area_from_its_end_to_its_middle(side: int) -> None:
 
 
 def test_runs_touch_when_they_share_an_element_of_neighboring_lines() -> None:
-    # Lines of ten: 1 to 3; 2 to 5 and 7 to 8 below it; 5 to 6 below those.
+    # Lines of ten pixels with runs 1 to 3; then 2 to 5 and 7 to 8; then 5 to 6.
     starts, ends = np.array([1, 12, 17, 25]), np.array([4, 16, 19, 27])
     upper, lower = links(starts, ends, 10)
     assert list(zip(upper.tolist(), lower.tolist(), strict=True)) == [(0, 1), (1, 3)]
@@ -63,7 +65,7 @@ def test_runs_touch_when_they_share_an_element_of_neighboring_lines() -> None:
 
 @thorough
 @given(st.integers(1, 12), st.lists(st.tuples(st.integers(0, 11), st.integers(0, 11)), max_size=15))
-def test_things_that_links_lead_to_have_one_label(count: int, pairs: list[tuple[int, int]]) -> None:
+def test_linked_runs_have_equal_labels(count: int, pairs: list[tuple[int, int]]) -> None:
     pairs = [(one % count, other % count) for one, other in pairs]
     one, other = (np.array([pair[side] for pair in pairs], np.intp) for side in (0, 1))
     labels = connected(one, other, count).tolist()

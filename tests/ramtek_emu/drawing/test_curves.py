@@ -16,7 +16,7 @@ far = st.integers(-40, 60)
 
 
 def circle_places(center: tuple[int, int], radius: int) -> set[tuple[int, int]]:
-    """Of each column and each row the pixel nearest to the circle, where the circle is flat there."""
+    """The pixels nearest to the circle: by columns where the circle is flat, by rows where it is steep."""
     places = set()
     for across in range(-radius, radius + 1):
         away = np.abs(np.sqrt(radius**2 - across**2) - np.arange(radius + 1))
@@ -107,7 +107,7 @@ def test_every_pixel_of_a_conic_lies_beside_the_curve(a: int, b: int, c: int, d:
     for x, y in pixels:
         slope = np.hypot(2 * a * x + c * y + d, 2 * b * y + c * x + e)
         value = abs(a * x * x + b * y * y + c * x * y + d * x + e * y)
-        # Within about a pixel, or where the whole ellipse is no wider than that.
+        # The pixel is within about a pixel of the curve, or the whole ellipse is no wider than a pixel.
         assert value <= 1.01 * slope + 4 * (a + b)
 
 
@@ -154,7 +154,7 @@ whole = (
     st.tuples(far, far),
     st.none() | st.tuples(far, far),
 )
-def test_a_conic_of_any_coefficients_is_that_of_the_twin(
+def test_a_conic_of_any_coefficients_equals_the_twin(
     coefficients: tuple[int, ...], most: int, start: tuple[int, int], stop: tuple[int, int] | None
 ) -> None:
     elements, lines = conic_pixels(
@@ -194,7 +194,7 @@ def test_only_circles_that_reach_into_the_memory_are_drawn(monkeypatch: pytest.M
 
 @quick
 @given(st.lists(st.tuples(far, far, st.integers(0, 90)), min_size=1, max_size=40))
-def test_circles_together_are_those_one_by_one(circles: list[tuple[int, int, int]]) -> None:
+def test_circles_drawn_together_equal_circles_drawn_singly(circles: list[tuple[int, int, int]]) -> None:
     together, apart = Ramtek9300(SMALL), Ramtek9300(SMALL)
     together.send(instructions.write_circles(circles, 7))
     for circle in circles:

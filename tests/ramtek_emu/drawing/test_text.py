@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from ramtek_emu import InstructionError, Ramtek9300, instructions
+from ramtek_emu.memory.character_rom import characters
 from ramtek_emu.memory.scan_orders import SCAN_ORDERS, Point, ScanOrder, Window
 from ramtek_emu.snapshot import display_of, snapshot_bytes
 from tests.ramtek_emu import reference
@@ -23,7 +24,7 @@ def test_the_scan_order_turns_text(code: int, text: str) -> None:
     data = text.encode()
     packed = np.frombuffer(data + bytes(len(data) % 2), ">u2").astype(np.uint16)
     display.send(np.concatenate(([0x0C01, len(data)], packed)).astype(np.uint16))
-    cells = np.concatenate([display.processor.characters[letter] for letter in data], axis=1)
+    cells = np.concatenate([characters()[letter] for letter in data], axis=1)
     window = SCAN_ORDERS[code].oriented(display.words[200:300, 200:300])
     assert (window[:9, : cells.shape[1]] == np.where(cells, 5, 2)).all()
     assert not window[9:].any()
@@ -34,7 +35,7 @@ def test_size_repeats_the_dots(size: int | tuple[int, int]) -> None:
     across, down = (size, size) if isinstance(size, int) else size
     display = Ramtek9300()
     display.send(instructions.write_text("Rg", 10, 20, 7, 1, size))
-    dots = np.concatenate([display.processor.characters[ord(letter)] for letter in "Rg"], axis=1)
+    dots = np.concatenate([characters()[ord(letter)] for letter in "Rg"], axis=1)
     large = np.repeat(np.repeat(dots, down, axis=0), across, axis=1)
     lines, elements = large.shape
     assert (display.words[20 : 20 + lines, 10 : 10 + elements] == np.where(large, 7, 1)).all()
@@ -52,13 +53,13 @@ def test_text_that_reaches_the_window_s_edge_goes_on_below() -> None:
     display = Ramtek9300()
     # A window of two cells' width, three characters.
     display.send(np.array([0x0C03, 0x0042, 5, 10, 10, 23, 40, 3, 0x4142, 0x4300], np.uint16))
-    shapes = display.processor.characters
+    shapes = characters()
     assert (display.words[19:28, 10:17] == np.where(shapes[ord("C")], 5, 0)).all()
     assert display.processor.parameters.start == (17, 19)
 
 
 def letters(display: Ramtek9300, text: str) -> NDArray[np.bool_]:
-    return np.concatenate([display.processor.characters[ord(letter)] for letter in text], axis=1)
+    return np.concatenate([characters()[ord(letter)] for letter in text], axis=1)
 
 
 def test_text_longer_than_its_window_keeps_its_beginning() -> None:
@@ -68,14 +69,14 @@ def test_text_longer_than_its_window_keeps_its_beginning() -> None:
     assert (display.words[:9, :14] == 1023 * letters(display, "AB")).all()
     assert np.count_nonzero(display.words) == np.count_nonzero(letters(display, "AB"))
     assert display.processor.parameters.start == (14, 0)
-    # What follows without a start of its own is the same text, and dropped too.
+    # Text without a start point continues the dropped text, and is dropped too.
     display.send(sent_words([0x0C01, 2, 0x4748]))
     assert np.count_nonzero(display.words) == np.count_nonzero(letters(display, "AB"))
 
 
 def test_text_fills_the_lines_of_its_window_and_then_ends() -> None:
     display = Ramtek9300()
-    # Two cells a line, two lines, and a rest in which no third one fits.
+    # Two cells in a line, two lines, and a rest that is too small for a third line.
     display.send(sent_words([0x0C03, 0x0042, 5, 10, 20, 23, 45, 7, 0x4142, 0x4344, 0x4546, 0x4700]))
     assert (display.words[20:29, 10:24] == 5 * letters(display, "AB")).all()
     assert (display.words[29:38, 10:24] == 5 * letters(display, "CD")).all()
@@ -105,7 +106,7 @@ def test_only_lines_of_text_that_reach_into_the_memory_are_drawn(monkeypatch: py
         blocks.append(block.shape)
 
     monkeypatch.setattr(display.frame_buffer, "write_block", write_block)
-    # 65,534 cells of one dot: a column below the memory, one that begins in it, then lines.
+    # 65,534 cells of one dot: a column below the memory, a column that begins in the memory, then lines.
     display.send(sent_words([0x0C03, 0x0140, 9, 480, 9, 0x7FFF, 1, 1, 65534, *[0x4142] * 32767]))
     assert blocks == []
     display.send(sent_words([0x0C03, 0x0140, 9, 0, 9, 0x7FFF, 1, 1, 65534, *[0x4142] * 32767]))
@@ -123,7 +124,7 @@ def test_text_may_run_off_the_screen() -> None:
     assert display.words[475:, 630:].any()
 
 
-def test_the_operating_point_after_text_stays_one_of_16_bits() -> None:
+def test_the_operating_point_after_text_has_16_bits() -> None:
     display = Ramtek9300()
     display.send(instructions.write_text("A", 32761, 0))
     display.send(instructions.set_parameters(start=(32767, 0), spacing=(20, 0)))
@@ -146,7 +147,7 @@ def test_spacing_leaves_the_pixels_between_the_cells() -> None:
     display = Ramtek9300()
     display.send(instructions.erase(word=4))
     display.send(np.array([0x0C03, 0x0246, 7, 2, 10, 20, 99, 60, 3, 2, 2, 0x4142], np.uint16))
-    shapes = display.processor.characters
+    shapes = characters()
     for element, letter in ((10, "A"), (20, "B")):
         cell = display.words[20:29, element : element + 7]
         assert (cell == np.where(shapes[ord(letter)], 7, 2)).all()
@@ -176,7 +177,7 @@ small = st.integers(1, 4)
     masks,
     windows(),
 )
-def test_text_in_every_scan_order_is_that_of_the_twin(
+def test_text_in_every_scan_order_equals_the_twin(
     codes: bytes,
     window: Window,
     code: int,
@@ -213,7 +214,7 @@ def test_text_in_every_scan_order_is_that_of_the_twin(
     words = (257, 514) if swapped else (514, 257)
     after = reference.write_text(
         twin,
-        display.processor.characters.tolist(),
+        characters().tolist(),
         codes,
         window,
         code,
@@ -235,9 +236,9 @@ def test_a_loaded_character_takes_the_place_of_its_code() -> None:
     display.send(sent_words([0x0C03, 0x0142, 5, 20, 30, 99, 99, 8, 12, 1, 0x4100]))
     dots = np.unpackbits(np.array(rows, np.uint8)[:, np.newaxis], axis=1)
     assert (display.words[30:42, 20:28] == 5 * dots).all()
-    # The standard font is the ROM's; the loaded one comes back, and survives RSET.
+    # The standard font is the ROM; the loaded font can be attached again, and survives RSET.
     display.send(sent_words([0x4EFF, 0x0C03, 0x0140, 20, 30, 99, 99, 7, 9, 1, 0x4100]))
-    assert (display.words[30:39, 20:27] == 5 * display.processor.characters[0x41]).all()
+    assert (display.words[30:39, 20:27] == 5 * characters()[0x41]).all()
     display.send(sent_words([0x0500, 0x0C03, 0x0142, 5, 20, 30, 99, 99, 8, 12, 1, 0x4100]))
     assert (display.words[30:42, 20:28] == 5 * dots).all()
     display.send(sent_words([0x2142] + [rows[row + 1] << 8 | rows[row] for row in range(0, 12, 2)]))

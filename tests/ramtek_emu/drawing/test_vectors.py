@@ -36,7 +36,7 @@ def test_a_vector_to_the_operating_point_is_a_point() -> None:
     assert np.argwhere(display.words).tolist() == [[5, 4]]
 
 
-def test_relative_vertices_count_from_the_one_before() -> None:
+def test_relative_vertices_count_from_the_previous_vertex() -> None:
     display = Ramtek9300(SMALL)
     display.send(np.array([0x0EC3, 0x8002, 1, 2, 2, 8, 3, 0, 0xFFFF, 2], np.uint16))
     assert np.argwhere(display.words).tolist() == [[2, 2], [2, 3], [2, 4], [2, 5], [3, 4], [4, 4]]
@@ -67,7 +67,7 @@ addressings = st.sampled_from([0x00, 0x40, 0x80, 0xC0])
     windows(),
     st.booleans(),
 )
-def test_vectors_of_every_kind_are_those_of_the_twin(
+def test_vectors_of_every_kind_equal_the_twin(
     vertices: list[tuple[int, int]],
     start: tuple[int, int],
     addressing: int,
@@ -165,7 +165,7 @@ def test_only_the_points_inside_are_computed(
     drawn = [
         point
         for part in points(starts, ends, window)
-        for point in zip(*(each.tolist() for each in part), strict=True)
+        for point in zip(*(numbers.tolist() for numbers in part), strict=True)
     ]
     expected = [
         (*place, number, row)

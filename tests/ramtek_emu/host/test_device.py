@@ -48,7 +48,7 @@ class Device:
             self._port.wire.socket.close()
 
     def end(self) -> None:
-        """Tell the relay that the program has ended, and wait until everything is drawn."""
+        """Signal to the relay that the program has ended, and wait until everything is drawn."""
         os.close(self._end)
         self.join()
 
@@ -72,7 +72,7 @@ def read(number: int, count: int) -> bytes:
     return data
 
 
-def test_words_and_replies_go_both_ways_and_the_rest_is_drawn_when_the_program_has_ended(
+def test_words_and_replies_go_both_ways_and_the_rest_is_drawn_at_the_end(
     tmp_path: Path,
 ) -> None:
     picture = np.arange(480 * 640) % 1024
@@ -106,14 +106,14 @@ def test_a_display_that_leaves_ends_the_relay_with_an_error(tmp_path: Path) -> N
     )
 
 
-def test_a_program_that_takes_no_replies_is_stopped_and_not_kept_in_memory(tmp_path: Path) -> None:
+def test_a_program_that_reads_no_replies_is_stopped_and_fills_no_memory(tmp_path: Path) -> None:
     with on_a_display(tmp_path / "display") as (_, device):
         os.set_blocking(device.file, False)
         asked = np.tile(words("0B03 0040 0 0 27F 1F A000"), 100)
         left = np.append(asked, np.full(1 << 20, 0x0700)).astype("<u2").tobytes()
 
         def is_stopped() -> bool:
-            """Whether the relay takes no more in both directions; the program writes until then."""
+            """Whether the relay has stopped reading in both directions; the program writes until then."""
             nonlocal left
             with suppress(BlockingIOError):
                 left = left[os.write(device.file, left) :]
@@ -129,7 +129,7 @@ ALLOWED, NOTIFIED = 0x7FFF0000, 0x7FC00000
 
 
 def verdict(steps: list[tuple[int, int, int, int]], number: int, architecture: int) -> int:
-    """What a filter returns for a call, interpreted step by step."""
+    """The result of a filter for a call, interpreted step by step."""
     place, loaded = 0, 0
     while True:
         code, if_equal, otherwise, value = steps[place]
@@ -147,11 +147,11 @@ def verdict(steps: list[tuple[int, int, int, int]], number: int, architecture: i
 def test_the_filter_gives_notice_of_writes_and_lets_everything_else_pass(machine: str) -> None:
     data = filter_of(MACHINES[machine])
     steps = list(INSTRUCTION.iter_unpack(data))
-    for each in MACHINES[machine].architectures:
+    for architecture in MACHINES[machine].architectures:
         for number in range(500):
-            expected = NOTIFIED if number in (each.write, each.writev) else ALLOWED
-            assert verdict(steps, number, each.audit) == expected
-        assert verdict(steps, each.write, 0x12345678) == ALLOWED
+            expected = NOTIFIED if number in (architecture.write, architecture.writev) else ALLOWED
+            assert verdict(steps, number, architecture.audit) == expected
+        assert verdict(steps, architecture.write, 0x12345678) == ALLOWED
 
 
 PROGRAM = """
@@ -194,7 +194,7 @@ def test_a_write_begins_only_when_it_is_allowed() -> None:
             assert os.read(read_end, 10) == written
             os.set_blocking(read_end, False)
         assert program.wait(60) == 7
-    # An answer that comes too late does nothing.
+    # A late answer does nothing.
     assert identity is not None
     notices.allow(identity)
     notices.close()

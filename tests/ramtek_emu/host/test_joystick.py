@@ -60,7 +60,7 @@ def obey_until(lines: JoystickLines, condition: Callable[[], bool]) -> None:
     until(is_met)
 
 
-def test_lines_of_a_fifo_are_done_and_bad_ones_answered_with_their_number(tmp_path: Path) -> None:
+def test_lines_of_a_fifo_are_obeyed_and_bad_lines_answered_with_their_number(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "stick")
     display = Ramtek9300()
     answers: list[str] = []

@@ -19,14 +19,16 @@ from tests.ramtek_emu.serving import until
 
 
 def pop_of(pieces: list[bytes]) -> Callable[[int], bytes]:
-    """A reader that gives the last of the pieces, whatever is asked."""
+    """A `read` that returns the last of the pieces, and ignores its argument."""
     return lambda _: pieces.pop()
 
 
 def test_a_thousand_mutated_streams_are_played_and_leave_a_display_that_works() -> None:
     draw = random.Random(1983)
     display = Ramtek9300()
-    real = [stream(each[:600]) for each in RECORDED] + [stream(instructions.write_text("mutated", 9, 9))]
+    real = [stream(recorded[:600]) for recorded in RECORDED] + [
+        stream(instructions.write_text("mutated", 9, 9))
+    ]
     session = HostSession(display)
     for _ in range(1000):
         data = bytearray(draw.choice(real))
@@ -71,7 +73,7 @@ def test_a_pipe_is_shown_in_slices_of_time_and_its_replies_come(on_screen: str) 
 
 
 class Clock:
-    """A clock that only sleeping moves on, and what was slept."""
+    """A clock that advances only by sleeping; it lists the sleeps."""
 
     def __init__(self) -> None:
         self.now = 100.0
@@ -90,7 +92,7 @@ def load(number: int) -> bytes:
 
 
 def paced(data: bytes, cuts: list[int], rate: int, clock: Clock) -> list[bytes]:
-    """What a paced reader returns of a stream that comes in pieces, up to its end."""
+    """The pieces that a paced reader returns for a stream in pieces."""
     places = [0, *sorted(cut % (len(data) + 1) for cut in cuts), len(data)]
     pieces = [data[start:end] for start, end in pairwise(places) if start < end]
     read = PacedReader(lambda _: pieces.pop(0) if pieces else b"", rate, GMR_9300, clock, clock.sleep)
@@ -117,16 +119,16 @@ def test_each_load_but_the_first_waits_for_its_time(cuts: list[int]) -> None:
     loads = _loads(drawing) + 5
     assert len(clock.slept) == loads - 1
     assert np.allclose(clock.slept, 1 / 20)
-    # After each load there is a cut, so that the field is shown.
+    # Cut the stream after each load, so that the field is shown.
     assert pieces[-1] == load(4)[-len(pieces[-1]) :]
 
 
 def _loads(data: bytes) -> int:
     words = np.frombuffer(data, "<u2").astype(np.uint16)
-    return sum(each.format.name == "LAM" for each in Decoder().feed(words))
+    return sum(instruction.format.name == "LAM" for instruction in Decoder().feed(words))
 
 
-def test_a_late_load_does_not_hurry_those_after_it() -> None:
+def test_a_late_load_does_not_hurry_the_next_loads() -> None:
     clock = Clock()
     data = [load(0), load(1), load(2)]
 

@@ -70,7 +70,7 @@ def test_a_recording_answers_through_the_port_behind_it() -> None:
         ("text", "a stream of words must be whole numbers, not text; pass a list or an array of them"),
     ],
 )
-def test_what_is_no_stream_of_words_is_refused_by_name(words: Any, sentence: str) -> None:
+def test_wrong_streams_are_refused(words: Any, sentence: str) -> None:
     display = Ramtek9300()
     for port in (display, Recorder(BytesIO())):
         with pytest.raises(WordsError) as refusal:
@@ -86,7 +86,7 @@ def test_streams_of_either_byte_order_and_any_whole_type_are_taken() -> None:
     Ramtek9300().send(np.array([]))
 
 
-def test_a_recorder_tells_its_file_and_its_display(tmp_path: Path) -> None:
+def test_the_repr_of_a_recorder_names_its_file_and_its_display(tmp_path: Path) -> None:
     with open(tmp_path / "words", "wb") as file:
         assert repr(Recorder(file)) == f"Recorder({tmp_path / 'words'})"
     assert repr(Recorder(BytesIO(), Ramtek9300())).startswith("Recorder(BytesIO, Ramtek9300(GMR_9300, ")
@@ -109,7 +109,7 @@ def unix_pair() -> tuple[socket.socket, socket.socket]:
 
 
 def signs_and_bytes(wire: Wire) -> list[bytes | Sign]:
-    """Everything that a wire gives until its end; it is waited for, and parts of a stream are joined."""
+    """Everything that arrives on a wire until its end; parts of a stream are joined."""
     given: list[bytes | Sign] = []
     while Sign.END not in given:
         data = wire.read(100)
@@ -177,7 +177,7 @@ def test_words_are_sent_in_pieces_low_byte_first() -> None:
     port.wire.socket.close()
 
 
-def test_a_display_that_takes_nothing_or_is_lost_is_told_as_such() -> None:
+def test_a_display_that_reads_nothing_or_is_lost_is_a_port_error() -> None:
     port, display = paired(0.1)
     with pytest.raises(PortError, match=r"a display must take words within 0\.1 seconds"):
         port.send(np.zeros(10_000_000, np.uint16))
@@ -215,7 +215,7 @@ REFUSED: list[tuple[Callable[[Any], object], list[Any], str]] = [
     ),
     (receive, [-1, 1.0, None, "1", True], COUNT),
 ]
-"""A call with one argument, arguments that it refuses, and its sentence about them."""
+"""A call with one argument, refused arguments, and the sentence of the refusal."""
 
 
 @pytest.mark.parametrize(
@@ -275,11 +275,11 @@ def test_closing_drops_the_replies_that_nobody_took_and_loses_no_word() -> None:
 
 
 def silent_listener() -> socket.socket:
-    """A server that accepts nobody: whoever comes waits in its line."""
+    """A server that accepts no host: hosts wait in its line."""
     return socket.create_server(("127.0.0.1", 0))
 
 
-def test_a_display_that_does_not_get_to_the_end_is_told_when_closing() -> None:
+def test_closing_reports_a_display_that_does_not_execute_all_words() -> None:
     with silent_listener() as listener:
         address = f"tcp://127.0.0.1:{listener.getsockname()[1]}"
         port = TcpPort(address, timeout=0.2)
@@ -287,13 +287,13 @@ def test_a_display_that_does_not_get_to_the_end_is_told_when_closing() -> None:
         with pytest.raises(PortError) as refusal:
             port.close()
     assert str(refusal.value) == (
-        f"a display must get to the end of what it was sent within 0.2 seconds, and {address} has not: "
+        f"a display must execute all words within 0.2 seconds, and {address} has not: "
         "it may be serving another host first; give a longer timeout"
     )
 
 
 @pytest.mark.parametrize("rudely", [False, True])
-def test_a_host_that_is_turned_away_is_told_when_closing(rudely: bool) -> None:
+def test_closing_reports_that_the_host_was_turned_away(rudely: bool) -> None:
     with silent_listener() as listener:
         port = TcpPort(f"tcp://127.0.0.1:{listener.getsockname()[1]}", timeout=5)
         connection, _ = listener.accept()
@@ -307,7 +307,7 @@ def test_a_host_that_is_turned_away_is_told_when_closing(rudely: bool) -> None:
         port.close()
 
 
-def test_an_error_in_a_with_block_is_not_hidden_by_the_one_of_closing() -> None:
+def test_an_error_of_closing_does_not_hide_an_error_in_the_with_block() -> None:
     with silent_listener() as listener:
         address = f"tcp://127.0.0.1:{listener.getsockname()[1]}"
         with pytest.raises(ZeroDivisionError), TcpPort(address, timeout=0.1):
@@ -348,7 +348,7 @@ def test_many_resets_in_a_row_leave_the_words_between_them_whole() -> None:
         assert not server.display.words.any()
 
 
-def test_a_reset_that_is_not_answered_is_told() -> None:
+def test_a_reset_without_an_answer_is_a_port_error() -> None:
     with silent_listener() as listener:
         port = TcpPort(f"tcp://127.0.0.1:{listener.getsockname()[1]}", timeout=0.2)
         with pytest.raises(PortError, match=r"a display must reset within 0\.2 seconds"):
@@ -357,7 +357,7 @@ def test_a_reset_that_is_not_answered_is_told() -> None:
             port.close()
 
 
-def test_a_reset_that_is_answered_late_still_drops_the_replies_of_before() -> None:
+def test_a_late_answer_to_a_reset_still_drops_the_earlier_replies() -> None:
     with silent_listener() as listener:
         port = TcpPort(f"tcp://127.0.0.1:{listener.getsockname()[1]}", timeout=0.2)
         connected, _ = listener.accept()
@@ -373,7 +373,7 @@ def test_a_reset_that_is_answered_late_still_drops_the_replies_of_before() -> No
         port.close()
 
 
-def test_replies_that_come_while_words_are_sent_are_kept_in_order() -> None:
+def test_replies_that_arrive_during_sending_stay_in_order() -> None:
     with serving() as server, TcpPort(server.address) as port:
         threads = threading.active_count()
         for _ in range(4):
@@ -409,7 +409,7 @@ def test_each_write_is_rounded_down_to_whole_words_alone(tmp_path: Path) -> None
         assert port.receive(2).tolist() == [0, 0]
         assert server.display.words.any()
         assert server.display.decoder.pending_words == 0
-        # Single bytes are no words at all.
+        # A write of a single byte has no word.
         for byte in b"\x02\x09\x44":
             port.write(bytes((byte,)))
         port.send(words("0B03 0040 0 0 0 0 2"))
@@ -426,7 +426,7 @@ def test_a_whole_picture_goes_both_ways(tmp_path: Path) -> None:
             assert (port.receive(480 * 640) == picture.reshape(-1)).all()
 
 
-def test_two_hundred_hosts_one_right_after_another_all_draw_at_a_unix_socket(tmp_path: Path) -> None:
+def test_two_hundred_hosts_in_a_row_all_draw_at_a_unix_socket(tmp_path: Path) -> None:
     path = tmp_path / "display"
     with serving_at(path) as server:
         for number in range(0, 200, 2):

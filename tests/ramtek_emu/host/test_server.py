@@ -35,7 +35,7 @@ def closed(connection: socket.socket) -> bool:
     return True
 
 
-def test_a_host_draws_reads_back_and_draws_from_what_it_read() -> None:
+def test_a_host_draws_reads_words_back_and_draws_again() -> None:
     here = Ramtek9300()
     with serving() as server, TcpPort(server.address) as there:
         ports: tuple[HostPort, ...] = (here, there)
@@ -79,7 +79,7 @@ def test_a_host_that_takes_no_replies_is_read_no_further() -> None:
 
         until(is_stopped)
         assert len(left) > 0
-        # The replies of one piece may come on top.
+        # The replies to a piece may exceed the bound.
         assert server._client is not None
         assert server._client.waiting < REPLY_BYTES + (1 << 17)
 
@@ -116,7 +116,7 @@ def test_a_host_that_vanishes_in_mid_instruction_leaves_the_display_to_the_next(
                 first.wire.socket.setblocking(True)
                 first.wire.socket.sendall(data)
             if rudely:
-                # Closed with a reset instead of a farewell.
+                # Close with a reset, not with an end of the stream.
                 first.wire.socket.setsockopt(
                     socket.SOL_SOCKET, socket.SO_LINGER, b"\x01\x00\x00\x00\x00\x00\x00\x00"
                 )
@@ -148,7 +148,7 @@ def test_a_second_host_waits_until_the_first_has_left() -> None:
 
 
 def mark(number: int) -> np.ndarray[tuple[int, ...], np.dtype[np.uint16]]:
-    """A drawing of one pixel, whose place tells which."""
+    """A drawing of one pixel; its place is the number of the drawing."""
     return words(f"0902 0044 {number % 1000 + 1:X} {number:X} 9 {number:X} 9")
 
 
@@ -160,7 +160,7 @@ def draw_from_a_socket(server: TcpServer, number: int, *, more: bytes = b"") -> 
 ALL_MARKS = [number + 1 for number in range(200)]
 
 
-def test_two_hundred_hosts_one_right_after_another_all_draw() -> None:
+def test_two_hundred_hosts_in_a_row_all_draw() -> None:
     with serving() as server:
         for number in range(200):
             with TcpPort(server.address) as port:
@@ -190,7 +190,7 @@ def test_a_server_that_closes_before_all_is_drawn_is_lost_for_the_host() -> None
     assert "and it left (" in errors[0]
 
 
-def test_two_hundred_plain_sockets_one_right_after_another_all_draw() -> None:
+def test_two_hundred_plain_sockets_in_a_row_all_draw() -> None:
     with serving() as server:
         for number in range(200):
             draw_from_a_socket(server, number)
@@ -227,7 +227,7 @@ def test_a_silent_host_holds_up_the_line_no_longer_than_its_limit() -> None:
         assert server.display.words[9, 1] == 2
 
 
-def test_a_silent_host_and_a_host_that_leaves_an_instruction_unfinished_are_shown_out() -> None:
+def test_a_silent_host_and_an_unfinished_instruction_are_disconnected() -> None:
     for sent, limits in ((b"", {"idle_seconds": 0.2}), (b"\x00", {"partial_seconds": 0.2})):
         with serving(**limits) as server:
             with connected(server) as host:
@@ -368,7 +368,7 @@ def test_a_display_gets_the_words_whatever_pieces_their_bytes_come_in(
 
 @quick
 @given(streams(), st.integers(0, 200))
-def test_what_is_recorded_ends_with_a_whole_instruction(stream: list[int], cut: int) -> None:
+def test_a_recording_ends_with_a_whole_instruction(stream: list[int], cut: int) -> None:
     recorded: list[bytes] = []
     session = HostSession(Ramtek9300(SMALL), recorded.append)
     data = np.array(stream, "<u2").tobytes()
@@ -455,7 +455,7 @@ def test_replies_to_different_writes_are_in_different_packets_and_an_odd_byte_is
     client.leave()
 
 
-def test_a_mark_resets_the_display_is_recorded_and_answered_instead_of_the_replies_that_wait() -> None:
+def test_a_mark_resets_the_display_and_drops_the_waiting_replies() -> None:
     host, there = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     recorded: list[bytes] = []
     display = Ramtek9300()
@@ -480,10 +480,10 @@ def test_a_port_that_is_taken_is_refused_in_one_sentence() -> None:
         port = listener.getsockname()[1]
         with pytest.raises(PortError) as taken:
             TcpServer(Ramtek9300(), port)
-    assert f"a server must have a port to itself, and 127.0.0.1:{port} cannot be had" in str(taken.value)
+    assert f"a server must have a free port, and 127.0.0.1:{port} cannot be opened" in str(taken.value)
 
 
-def test_an_address_of_version_six_is_one_that_a_port_takes() -> None:
+def test_a_port_accepts_the_address_of_a_server_on_ipv6() -> None:
     try:
         server = TcpServer(Ramtek9300(), host="::1")
     except PortError:
@@ -534,7 +534,7 @@ def test_the_socket_of_a_server_that_is_gone_is_replaced(tmp_path: Path) -> None
 
 
 @pytest.mark.parametrize("kind", ["file", "folder", "link", "server"])
-def test_what_is_at_the_path_already_is_left_alone(tmp_path: Path, kind: str) -> None:
+def test_an_existing_file_at_the_path_is_left_alone(tmp_path: Path, kind: str) -> None:
     path = tmp_path / "display"
     server = None
     if kind == "file":
@@ -568,11 +568,11 @@ def test_a_server_leaves_a_file_that_took_the_place_of_its_socket(tmp_path: Path
 
 @pytest.mark.parametrize("path", ["no folder/display", "x" * 200])
 def test_a_path_where_no_socket_can_be_made_is_refused(path: str, tmp_path: Path) -> None:
-    with pytest.raises(OutputError, match=r"a server's socket must be where one can be made, not at"):
+    with pytest.raises(OutputError, match=r"a server's socket must be where a socket can be made, not at"):
         UnixServer(Ramtek9300(), tmp_path / path)
 
 
-def test_a_system_without_sockets_of_packets_is_told_in_one_sentence(
+def test_a_system_without_packet_sockets_is_refused_in_one_sentence(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.delattr(socket, "SOCK_SEQPACKET")
@@ -585,7 +585,7 @@ def test_a_system_without_sockets_of_packets_is_told_in_one_sentence(
     )
 
 
-def test_packets_of_random_bytes_leave_the_display_that_their_whole_words_leave(tmp_path: Path) -> None:
+def test_packets_of_random_bytes_act_as_their_whole_words(tmp_path: Path) -> None:
     draw = np.random.default_rng(9400)
     packets = [draw.bytes(int(draw.integers(1, 300))) for _ in range(400)]
     twin = Ramtek9300()

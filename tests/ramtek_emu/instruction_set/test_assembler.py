@@ -77,7 +77,7 @@ def test_a_program_written_by_hand_is_assembled() -> None:
         ("byte 01\nNOP", "the byte of line 1 must be the last of the stream; delete one of them"),
     ],
 )
-def test_what_cannot_be_assembled_is_refused_with_its_line(line: str, sentence: str) -> None:
+def test_wrong_listings_are_refused_with_their_line(line: str, sentence: str) -> None:
     with pytest.raises(ListingError) as refusal:
         list(assemble(line.splitlines()))
     number = 1 + line.count("\n")
@@ -104,7 +104,7 @@ def test_any_text_is_assembled_or_refused(lines: list[str]) -> None:
         ("0802 0002", ["0802", "0002"]),
     ],
 )
-def test_a_line_is_cut_into_what_an_instruction_is_written_with(line: str, tokens: list[str]) -> None:
+def test_a_line_is_split_into_tokens(line: str, tokens: list[str]) -> None:
     assert tokens_of(line, 1) == tokens
 
 

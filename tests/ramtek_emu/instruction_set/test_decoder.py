@@ -40,7 +40,7 @@ def test_the_decoder_splits_as_a_reader_of_single_words_does(stream: list[int]) 
 
 @quick
 @given(st.lists(words, max_size=2000))
-def test_what_is_held_is_never_more_than_one_instruction(stream: list[int]) -> None:
+def test_pending_words_are_never_more_than_one_instruction(stream: list[int]) -> None:
     decoder = Decoder()
     for word in stream:
         list(decoder.feed(np.array([word], np.uint16)))
@@ -63,7 +63,9 @@ def test_a_word_that_begins_nothing_is_skipped_alone() -> None:
 @given(
     st.integers(0, 0xFFFF), st.integers(0, 255), st.lists(st.sampled_from([0, 1, 4, 8, 0xFFFF]), max_size=60)
 )
-def test_conics_of_six_and_twelve_words_are_told_apart(flag_word: int, low_byte: int, row: list[int]) -> None:
+def test_conics_of_six_and_twelve_words_are_distinguished(
+    flag_word: int, low_byte: int, row: list[int]
+) -> None:
     stream = [0x0F03 | low_byte, flag_word | 0x1000, *row]
     encoded, decoder = decoded([np.array(stream, np.uint16)])
     twin = reference.split(stream)
@@ -82,7 +84,7 @@ def test_six_coefficients_are_taken_where_twelve_make_no_sense() -> None:
 
 @quick
 @given(streams(300), st.booleans())
-def test_rows_of_illegal_words_are_the_illegal_words_one_by_one(stream: list[int], extended: bool) -> None:
+def test_rows_of_illegal_words_equal_single_illegal_words(stream: list[int], extended: bool) -> None:
     configuration = GMR_9300 if extended else PRINCETON_9300
     single, rows = Decoder(configuration), Decoder(configuration)
     words = np.array(stream, np.uint16)

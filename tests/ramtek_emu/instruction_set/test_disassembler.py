@@ -12,7 +12,7 @@ from tests.ramtek_emu.strategies import cuts, streams, thorough
 
 
 def texts(text: str) -> list[str]:
-    """What stands at the right of the listing of some hexadecimal words."""
+    """The right side of the listing of hexadecimal words."""
     lines = listing(words(text).astype("<u2").tobytes())
     return [line[38:].strip() for line in lines if line[38:].strip()]
 

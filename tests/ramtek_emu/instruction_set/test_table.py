@@ -30,10 +30,10 @@ def test_the_operands_are_as_long_as_the_library_of_1978_sends_them() -> None:
     assert [operand.words for operand in OPERANDS_1] == ARGNO
 
 
-def test_an_operand_is_known_by_one_name_and_one_mnemonic() -> None:
+def test_names_and_mnemonics_of_operands_are_unique() -> None:
     operands = OPERANDS_1 + OPERANDS_2
     assert len(operands) == len(OPERANDS) == 22
-    words = [word for each in operands for word in {each.name.upper(), each.mnemonic}]
+    words = [word for operand in operands for word in {operand.name.upper(), operand.mnemonic}]
     assert len(words) == len(set(words))
 
 

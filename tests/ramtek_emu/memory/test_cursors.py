@@ -6,7 +6,7 @@ from tests.ramtek_emu.displays import read
 from tests.ramtek_emu.strategies import sent_words
 
 
-def test_track_stands_and_enter_is_told_once() -> None:
+def test_track_stays_on_and_enter_is_reported_once() -> None:
     display = Ramtek9300()
     display.joystick.move_to(320, 200)
     display.joystick.track = True
@@ -14,7 +14,7 @@ def test_track_stands_and_enter_is_told_once() -> None:
     assert display.status == Status.READY | Status.CURSOR
     assert read(display, 0x1700) == [320, 200 | 0x3000]
     assert read(display, 0x1700) == [320, 200 | 0x1000]
-    # The other cursor tells of it as well, each on its own.
+    # The other cursor reports ENTER as well, independently.
     assert read(display, 0x1701) == [0, 0x3000]
     display.joystick.track = False
     assert read(display, 0x1701) == [0, 0]
@@ -22,7 +22,7 @@ def test_track_stands_and_enter_is_told_once() -> None:
     assert display.status == Status.READY
 
 
-def test_reset_forgets_an_enter_that_nobody_read_and_leaves_the_cursors() -> None:
+def test_reset_clears_an_unread_enter_and_leaves_the_cursors() -> None:
     display = Ramtek9300()
     display.send(sent_words([0x1600, 5, 0x406]))
     display.joystick.press_enter()
@@ -31,7 +31,7 @@ def test_reset_forgets_an_enter_that_nobody_read_and_leaves_the_cursors() -> Non
     assert read(display, 0x1700) == [5, 0x406]
 
 
-def test_the_joystick_stays_on_the_screen_and_moves_what_it_is_connected_to() -> None:
+def test_the_joystick_stays_on_the_screen_and_moves_its_cursors() -> None:
     display = Ramtek9300()
     display.joystick.move_to(10_000, -5)
     assert display.joystick.position == (639, 0)

@@ -24,7 +24,7 @@ def filled(raster: NDArray[np.uint16]) -> FrameBuffer:
 @given(
     rasters(), windows(), scan_codes, points, st.lists(any_words, max_size=300), masks, windows() | st.none()
 )
-def test_a_run_writes_what_a_walk_word_by_word_writes(
+def test_writing_a_run_equals_a_walk_word_by_word(
     raster: NDArray[np.uint16],
     window: Window,
     code: int,
@@ -59,7 +59,7 @@ def test_whole_runs_of_a_window_are_written_as_a_walk_writes_them(
 
 @quick
 @given(rasters(), windows(), scan_codes, points, st.integers(0, 300))
-def test_a_run_reads_what_a_walk_word_by_word_reads(
+def test_reading_a_run_equals_a_walk_word_by_word(
     raster: NDArray[np.uint16], window: Window, code: int, start: Point, count: int
 ) -> None:
     words, after = filled(raster).read_scan(window, SCAN_ORDERS[code], start, count)
@@ -70,7 +70,7 @@ def test_a_run_reads_what_a_walk_word_by_word_reads(
 
 @quick
 @given(rasters(), windows(), any_words, masks)
-def test_a_fill_is_a_run_of_one_word_over_the_window(
+def test_a_fill_equals_a_run_of_a_repeated_word(
     raster: NDArray[np.uint16], window: Window, word: int, mask: int
 ) -> None:
     buffer, twin = filled(raster), filled(raster)
@@ -107,7 +107,7 @@ def test_written_counts_the_words_that_reached_the_memory() -> None:
     assert buffer.written == 3
 
 
-def test_the_words_handed_out_are_read_only_and_always_the_present_ones() -> None:
+def test_the_words_of_a_display_are_read_only_and_stay_current() -> None:
     buffer = FrameBuffer(SMALL)
     words = buffer.words
     buffer.fill(buffer.window, 3)
@@ -125,7 +125,7 @@ def test_the_words_handed_out_are_read_only_and_always_the_present_ones() -> Non
         (
             [1, 2],
             (0, 0),
-            "words must be a (lines, elements) array with at least one of each, not of shape (2,); "
+            "words must be a (lines, elements) array with at least one word, not of shape (2,); "
             "pass words[np.newaxis] for one line",
         ),
         (

@@ -54,7 +54,7 @@ def test_all_that_was_written_since_a_count_lies_in_the_run(
         before.append((table.written, table.packed.copy()))
 
 
-def test_a_run_that_is_loaded_again_and_again_stays_the_run_of_all_that_was_written() -> None:
+def test_loading_the_same_entries_repeatedly_counts_as_one_range() -> None:
     table = LookupTable()
     table.load(0, np.zeros(2048, np.uint16))
     written = table.written

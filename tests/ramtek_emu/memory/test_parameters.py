@@ -28,7 +28,7 @@ def test_addresses_count_from_index_registers_and_the_operating_point() -> None:
     assert box(display) == (5, 6, 6, 6)
     display = sent("0802 0010 0009 0007", "0982 0044 0003 FFFF 0000 0000 0000")
     assert box(display) == (8, 7, 9, 7)
-    # The text window of wtr() lies at the operating point.
+    # The text window of wtr() begins at the operating point.
     display = sent("0802 8000 0014 001E", "09C2 0044 0003 0000 0000 0006 0008")
     assert box(display) == (20, 30, 26, 38)
 
@@ -76,10 +76,3 @@ def test_every_operand_is_read_as_the_words_that_set_it(name: str) -> None:
         words = tuple(half for number in range(1, 7) for half in (0, number))
     parameters.take({name: words}, 0)
     assert parameters.operand(name) == words
-
-
-def test_a_copy_is_changed_alone() -> None:
-    parameters = Parameters.at_reset(SMALL)
-    copy = parameters.copy()
-    copy.take({"foreground": (5,), "window": (1, 2, 3, 4)}, 0)
-    assert (parameters.foreground, parameters.window) == (1023, parameters.whole_window)

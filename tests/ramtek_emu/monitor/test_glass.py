@@ -1,4 +1,4 @@
-"""Which part of a window shows which lines, and how often the screen is sent a part or the whole."""
+"""The place of lines in a window, and the parts of the window that are sent to the screen."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def test_runs_of_lines_that_touch_are_rectangles_that_touch(window: tuple[int, i
 
 @pytest.fixture
 def glass(monkeypatch: pytest.MonkeyPatch) -> Iterator[Glass]:
-    """An open window on a screen that nobody sees."""
+    """An open window on a virtual screen."""
     monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
     opened = Glass((640, 480))
     opened.open(full_screen=False)
@@ -53,7 +53,7 @@ def test_a_title_of_any_text_is_shown(glass: Glass, title: str) -> None:
 
 
 @pytest.mark.parametrize("scale", [1, 2])
-def test_after_a_cursor_moved_only_the_lines_of_its_places_are_sent_to_the_screen(
+def test_after_a_cursor_moved_only_its_old_and_new_lines_go_to_the_screen(
     glass: Glass, monkeypatch: pytest.MonkeyPatch, scale: int
 ) -> None:
     pygame.display.set_mode((640 * scale, 480 * scale), pygame.RESIZABLE)

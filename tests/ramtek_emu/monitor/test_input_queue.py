@@ -16,8 +16,8 @@ def taken(queue: InputQueue) -> list[Input]:
 def test_inputs_are_taken_in_their_order() -> None:
     queue = InputQueue()
     inputs: list[Input] = [Key("a", "a"), Pointer(1, 2, False, "press", 1), Path("scene.toml"), Close()]
-    for each in inputs:
-        queue.add(each)
+    for user_input in inputs:
+        queue.add(user_input)
     assert taken(queue) == inputs
     with pytest.raises(IndexError):
         queue.take()
@@ -38,17 +38,17 @@ def test_a_released_key_leaves_its_first_press_and_the_release_and_no_repeat() -
     queue.release("left")
     assert taken(queue) == [Key("left"), Key("up"), Release("left")]
     assert queue.down == {"up"}
-    # Released again, as when the keyboard comes back, it was not down.
+    # A second release, as when the keyboard comes back, finds no key down.
     queue.release("left")
     assert taken(queue) == []
-    # Pressed again, it is no repeat.
+    # The next press is no repeat.
     queue.add(Key("left"))
     assert taken(queue) == [Key("left")]
 
 
 def test_of_successive_places_of_the_mouse_only_the_last_waits() -> None:
     queue = InputQueue()
-    for each in (
+    for user_input in (
         Pointer(1, 1, False, "move"),
         Pointer(2, 1, False, "move"),
         Pointer(2, 1, False, "press", 1),
@@ -57,8 +57,10 @@ def test_of_successive_places_of_the_mouse_only_the_last_waits() -> None:
         Pointer(4, 1, False, "release", 1),
         Pointer(5, 1, False, "move"),
     ):
-        queue.add(each)
-    assert [(each.element, each.action) for each in taken(queue) if isinstance(each, Pointer)] == [
+        queue.add(user_input)
+    assert [
+        (pointer.element, pointer.action) for pointer in taken(queue) if isinstance(pointer, Pointer)
+    ] == [
         (2, "move"),
         (2, "press"),
         (4, "move"),
@@ -78,7 +80,7 @@ def test_movements_with_other_modifiers_are_not_one() -> None:
     queue = InputQueue()
     for shift in (False, False, True, True, False):
         queue.add(Pointer(0, 0, False, "wheel up", shift=shift))
-    assert [(each.steps, each.shift) for each in taken(queue) if isinstance(each, Pointer)] == [
+    assert [(pointer.steps, pointer.shift) for pointer in taken(queue) if isinstance(pointer, Pointer)] == [
         (2, False),
         (2, True),
         (1, False),
@@ -87,8 +89,14 @@ def test_movements_with_other_modifiers_are_not_one() -> None:
 
 def test_when_the_keyboard_goes_elsewhere_nothing_is_down() -> None:
     queue = InputQueue()
-    for each in (Key("left"), Key("left"), Pointer(0, 0, False, "press", 3), Key("right"), Key("right")):
-        queue.add(each)
+    for user_input in (
+        Key("left"),
+        Key("left"),
+        Pointer(0, 0, False, "press", 3),
+        Key("right"),
+        Key("right"),
+    ):
+        queue.add(user_input)
     assert queue.down == {"left", "right", 3}
     queue.release_everything()
     assert queue.down == frozenset()
@@ -101,7 +109,7 @@ def test_when_the_keyboard_goes_elsewhere_nothing_is_down() -> None:
     ]
 
 
-def test_a_sign_typed_with_altgr_is_that_sign_where_altgr_is_ctrl_and_alt() -> None:
+def test_a_character_typed_with_altgr_has_no_ctrl_and_alt() -> None:
     queue = InputQueue()
     for key in (
         Key("8", "[", control=True, alt=True),
@@ -117,7 +125,7 @@ def test_a_sign_typed_with_altgr_is_that_sign_where_altgr_is_ctrl_and_alt() -> N
 
 
 @given(st.lists(st.tuples(st.sampled_from(["down", "up", "move", "wheel"]), st.sampled_from("abc"))))
-def test_what_waits_is_bounded_by_what_was_pressed(events: list[tuple[str, str]]) -> None:
+def test_the_pressed_keys_bound_the_waiting_inputs(events: list[tuple[str, str]]) -> None:
     queue = InputQueue()
     presses = 0
     for kind, name in events:
@@ -128,10 +136,10 @@ def test_what_waits_is_bounded_by_what_was_pressed(events: list[tuple[str, str]]
             queue.release(name)
         else:
             queue.add(Pointer(0, 0, False, "move" if kind == "move" else "wheel up"))
-    # Each press is kept, and the release of each key that is up; at most one repeat of each key.
+    # All presses stay, and the releases of all keys that are up; a key has at most one repeat.
     waiting = taken(queue)
-    keys = [each for each in waiting if isinstance(each, Key)]
-    releases = [each for each in waiting if isinstance(each, Release)]
+    keys = [key for key in waiting if isinstance(key, Key)]
+    releases = [release for release in waiting if isinstance(release, Release)]
     assert len(releases) == presses - len(queue.down)
     assert sum(not key.repeated for key in keys) == presses
     repeats = [key.name for key in keys if key.repeated]

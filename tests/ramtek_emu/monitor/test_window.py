@@ -1,4 +1,4 @@
-"""The window on a real screen, Xvfb's; and its keys and mouse without any."""
+"""The window on a virtual screen (Xvfb), and its keys and mouse without a screen."""
 
 from __future__ import annotations
 
@@ -142,7 +142,7 @@ def test_keys_are_handed_over_as_plain_values(monitor: Monitor) -> None:
     assert monitor.is_open
 
 
-def test_a_release_is_told_after_its_press_and_when_the_keyboard_goes_elsewhere(monitor: Monitor) -> None:
+def test_a_release_follows_its_press_or_the_loss_of_the_keyboard(monitor: Monitor) -> None:
     calls: list[str] = []
     monitor.on_key = lambda key: calls.append(f"{key.name} down")
     monitor.on_release = lambda name: calls.append(f"{name} up")
@@ -158,7 +158,7 @@ def test_a_release_is_told_after_its_press_and_when_the_keyboard_goes_elsewhere(
     assert monitor.is_at_rest
 
 
-def test_what_a_key_shows_while_it_is_held_is_seen_before_it_is_let_go(monitor: Monitor) -> None:
+def test_the_effect_of_a_key_is_seen_before_its_release(monitor: Monitor) -> None:
     resize(monitor, (640, 480))
     before = shown().copy()
     compare = (
@@ -208,7 +208,7 @@ def test_a_screenshot_that_cannot_be_saved_is_a_message(monitor: Monitor, tmp_pa
     assert "there is no folder" in messages[1]
 
 
-def test_the_mouse_is_told_in_elements_and_lines(monitor: Monitor) -> None:
+def test_the_mouse_is_reported_in_elements_and_lines(monitor: Monitor) -> None:
     calls: list[Pointer] = []
     monitor.on_pointer = calls.append
     resize(monitor, (1380, 960))
@@ -227,7 +227,7 @@ def test_the_mouse_is_told_in_elements_and_lines(monitor: Monitor) -> None:
     ]
 
 
-def test_the_mouse_tells_the_modifiers_that_are_held(monitor: Monitor) -> None:
+def test_the_mouse_is_reported_with_the_modifiers(monitor: Monitor) -> None:
     calls: list[Pointer] = []
     monitor.on_pointer = calls.append
     resize(monitor, (640, 480))
@@ -237,7 +237,7 @@ def test_the_mouse_tells_the_modifiers_that_are_held(monitor: Monitor) -> None:
         pygame.event.post(pygame.event.Event(pygame.MOUSEBUTTONDOWN, pos=(5, 6), button=2))
         monitor.step()
     pygame.key.set_mods(0)
-    assert [(each.shift, each.control) for each in calls] == [
+    assert [(pointer.shift, pointer.control) for pointer in calls] == [
         (False, False),
         (True, False),
         (False, True),
@@ -330,7 +330,7 @@ def test_of_repeats_and_motions_that_wait_only_the_last_is_handled(monitor: Moni
     assert keys == [Key("left"), Key("left", repeated=True)]
     assert places[-1] == (19, 19)
     assert not monitor.is_at_rest
-    # Released keys leave nothing to do.
+    # After the keys were released, no input waits.
     for kind in (pygame.KEYDOWN, pygame.KEYDOWN, pygame.KEYUP):
         pygame.event.post(pygame.event.Event(kind, key=pygame.K_LEFT, unicode="", mod=0))
     monitor.step()
@@ -465,14 +465,14 @@ def test_escape_leaves_full_screen_before_it_closes(unopened: UnopenedMonitor) -
 
 
 @pytest.mark.parametrize("key", [Key("left shift"), Key("right ctrl"), Key("left meta")])
-def test_a_modifier_alone_is_told_to_nobody(unopened: UnopenedMonitor, key: Key) -> None:
+def test_a_modifier_alone_is_not_reported(unopened: UnopenedMonitor, key: Key) -> None:
     taken: list[Key] = []
     unopened.on_key = taken.append
     unopened.handle_key(key)
     assert taken == []
 
 
-def test_a_key_that_is_let_go_is_told_by_its_name_unless_it_is_a_modifier(unopened: UnopenedMonitor) -> None:
+def test_a_released_key_is_reported_by_name_unless_it_is_a_modifier(unopened: UnopenedMonitor) -> None:
     unopened.handle(Release("a"))
     given: list[str] = []
     unopened.on_release = given.append
@@ -533,7 +533,7 @@ def test_the_mouse_moves_the_joystick_and_its_buttons_are_the_switches(unopened:
     ]
 
 
-def test_the_mouse_and_dropped_files_and_closing_are_told(unopened: UnopenedMonitor) -> None:
+def test_the_mouse_dropped_files_and_closing_are_reported(unopened: UnopenedMonitor) -> None:
     given: list[object] = []
     unopened.on_drop = given.append
     unopened.handle(Path("scene.toml"))

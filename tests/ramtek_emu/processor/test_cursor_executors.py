@@ -43,7 +43,7 @@ def test_pixel_coordinates_go_through_origin_zoom_and_video_origin() -> None:
     display.send(sent_words([0x2701, 0x2C00, 110, 0x400 | 60]))
     assert (display.cursors[0].element, display.cursors[0].line) == (40, 1003)
     assert read(display, 0x2E00) == [110, 0x400 | 60]
-    # Where the origin wraps, so does what lies under the cursor.
+    # If the origin wraps, the pixel under the cursor wraps too.
     display.send(sent_words([0x2700, 0x0802, 0x0020, 1270, 1020, 0x1600, 80, 0x400 | 20]))
     assert read(display, 0x2E00) == [(1270 + 20) % 1280, 0x400 | (1020 + 10) % 1024]
 

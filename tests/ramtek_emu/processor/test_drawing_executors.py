@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ramtek_emu.memory.character_rom import characters
 from ramtek_emu.processor.processor import Status
 from tests.ramtek_emu.displays import box, sent
 
@@ -21,7 +22,7 @@ def test_recorded_rrr_draws_its_figure_and_its_letters() -> None:
     assert (words[200, 201:350] == 256).all()
     assert (words[51:200, 200] == 256).all()
     assert (words[100, 101:200] == 128).all()
-    shapes = display.processor.characters
+    shapes = characters()
     for letter, element, line, word in (("a", 90, 90, 256), ("c", 205, 40, 256), ("f", 240, 110, 128)):
         cell = words[line : line + 9, element : element + 7]
         assert (cell == np.where(shapes[ord(letter)], word, 0)).all()
@@ -38,7 +39,7 @@ def test_recorded_sqap_numbers_its_squares_in_the_background() -> None:
     words = display.words
     assert (words[9:32, :32] == 4).all()
     assert (words[9:32, 32:64] == 6).all()
-    shapes = display.processor.characters
+    shapes = characters()
     for number, letter in enumerate("004"):
         assert (words[:9, 7 * number : 7 * number + 7] == np.where(shapes[ord(letter)], 0, 4)).all()
     assert (words[:9, 46:53] == np.where(shapes[ord("6")], 0, 6)).all()

@@ -51,7 +51,7 @@ def test_saved_environments_come_back_in_reverse() -> None:
     assert display.processor.status == Status.READY | Status.ILLEGAL
 
 
-def test_environments_beyond_the_most_are_flagged_and_not_kept() -> None:
+def test_environments_beyond_the_most_are_flagged_and_not_saved() -> None:
     display = Ramtek9300()
     display.send(np.full(5000, 0x1300, np.uint16))
     assert len(display.processor.saved) == 16
@@ -70,7 +70,7 @@ def test_the_error_status_is_read_and_cleared() -> None:
 @pytest.mark.parametrize(
     "format", [format for format in FORMATS if format.unimplemented], ids=lambda format: format.name
 )
-def test_what_is_known_by_name_only_is_consumed_and_flagged(format: object) -> None:
+def test_instructions_known_by_name_only_are_consumed_and_flagged(format: object) -> None:
     display = Ramtek9300()
     opcode = format.opcode  # type: ignore[attr-defined]
     display.send(sent_words([opcode << 8 | 3, 2, 5, 4, 0x0500, 0x0600, 0x0902, 0x44, 3, 0, 0, 1, 1]))
@@ -83,7 +83,7 @@ def test_what_is_known_by_name_only_is_consumed_and_flagged(format: object) -> N
 @pytest.mark.parametrize(
     "format", [format for format in FORMATS if format.extended], ids=lambda format: format.name
 )
-def test_what_the_9460_brought_is_illegal_on_the_9300(format: object) -> None:
+def test_instructions_of_the_9460_are_illegal_on_the_9300(format: object) -> None:
     display = Ramtek9300(PRINCETON_9300)
     opcode = format.opcode  # type: ignore[attr-defined]
     display.send(sent_words([opcode << 8]))

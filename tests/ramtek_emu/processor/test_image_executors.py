@@ -53,7 +53,7 @@ def packed(data: bytes, low_first: bool) -> list[int]:
     masks,
     windows(),
 )
-def test_images_of_every_kind_are_those_of_the_twin(
+def test_images_of_every_kind_equal_the_twin(
     raster: NDArray[np.uint16],
     window: Window,
     code: int,
@@ -92,7 +92,7 @@ def test_images_of_every_kind_are_those_of_the_twin(
     assert display.words.tolist() == twin
     assert display.processor.parameters.start == after
 
-    # Read it back from where the run began.
+    # Read the words back from the start of the run.
     display.send(sent_words([0x0B03 | low, 0x8000, begin[0], begin[1], len(data)]))
     if addressing:
         return
@@ -116,7 +116,7 @@ def test_images_of_every_kind_are_those_of_the_twin(
     masks,
     windows(),
 )
-def test_rasters_of_every_kind_are_those_of_the_twin(
+def test_rasters_of_every_kind_equal_the_twin(
     raster: NDArray[np.uint16],
     window: Window,
     code: int,
@@ -152,7 +152,7 @@ def test_rasters_of_every_kind_are_those_of_the_twin(
 @given(
     rasters(), st.integers(0, 3), points, windows(), st.integers(0, 1), st.sampled_from([0, 1, 2, 3, 0xFFFF])
 )
-def test_a_filled_area_is_what_a_walk_reaches(
+def test_a_filled_area_has_the_pixels_that_a_walk_reaches(
     raster: NDArray[np.uint16], foreground: int, start: Point, clip: Window, mode: int, read_mask: int
 ) -> None:
     raster = raster % 4
@@ -249,7 +249,7 @@ def test_a_large_area_is_filled_whole(noise: float) -> None:
     display.send(instructions.write_image(words))
     display.send(sent_words([0x0802, 0x8002, 1, 320, 240, 0x3A01, 2, 0]))
     filled_words = display.words == 1
-    # Nothing open is left beside what was filled.
+    # No open pixel is left beside the filled area.
     new = filled_words & (words == 0)
     left = ~filled_words
     assert not (new[1:] & left[:-1]).any()
@@ -280,7 +280,7 @@ def test_erase_accepts_a_data_field_of_no_bytes() -> None:
     assert sent("0802 0004 0005", "0909 0000", "0700").words.min() == 5
 
 
-def test_an_image_without_operands_goes_on_where_the_last_one_ended() -> None:
+def test_an_image_without_operands_continues_the_last_image() -> None:
     display = sent("0A03 0040 0002 0001 0004 0005 0008 0001 0002 0003 0004", "0A01 0004 0005 0006")
     assert display.words[1:3, 2:5].tolist() == [[1, 2, 3], [4, 5, 6]]
 

@@ -25,7 +25,7 @@ def test_asking_for_more_than_waits_is_refused_by_name() -> None:
     assert display.receive(1).tolist() == [0]
 
 
-def test_what_a_host_never_reads_does_not_fill_the_memory() -> None:
+def test_unread_replies_do_not_fill_the_memory() -> None:
     display = Ramtek9300(SMALL)
     display.send(np.array([0x0B01, 0xFFFF] * 400, np.uint16))
     assert display.processor.waiting == 1 << 22

@@ -41,7 +41,7 @@ def test_cursors_blink_with_the_fields() -> None:
 
 @quick
 @given(st.integers(1, 50), st.integers(0, 9), st.integers(1, 1000), st.integers(0, 10**7))
-def test_the_beam_is_on_the_line_that_the_time_tells(
+def test_the_time_gives_the_line_of_the_beam(
     lines: int, blanked: int, line_time: int, nanoseconds: int
 ) -> None:
     beam = Beam(Timing(line=line_time, blanked_lines=blanked), lines)
@@ -64,7 +64,7 @@ def test_a_wait_ends_where_its_line_begins_and_takes_less_than_a_field(nanosecon
     assert beam.nanoseconds == nanoseconds if was_on_it else beam.nanoseconds % 1000 == 0
 
 
-def test_an_instruction_takes_its_own_time_and_that_of_its_words_and_pixels() -> None:
+def test_an_instruction_takes_time_for_itself_its_words_and_its_pixels() -> None:
     beam = Beam(Timing(instruction=7, word=100, pixel=1000), 480)
     beam.charge(words=3, pixels=2)
     beam.charge(words=0, pixels=0)

@@ -84,7 +84,7 @@ def test_only_the_visible_part_of_the_memory_is_shown() -> None:
     assert display.field()[..., 0].tolist() == np.arange(40).reshape(5, 8).tolist()
 
 
-def test_with_fewer_planes_the_address_counter_picks_the_part_of_the_table() -> None:
+def test_with_fewer_planes_the_address_counter_selects_the_section() -> None:
     display = Ramtek9300(Configuration(name="EIGHT", elements=2, lines=1, planes=8))
     display.send(instructions.load_entries(256, np.full((256, 3), 50)))
     park = np.array([0x0300, 0x0000, 0x0000], np.uint16)
@@ -98,7 +98,7 @@ PLACES = st.tuples(st.integers(0, 8), st.integers(0, 12))
 
 
 LOADS = st.tuples(st.integers(0, 8), st.integers(-3, 18), st.sampled_from([0, 1, 5, 210, 2100]))
-"""The line that shows a run of entries, how far from its first one the run begins, and its words."""
+"""The line that shows a run of entries, the offset of the run, and its words."""
 
 
 MEMORY_ACTIONS = st.one_of(
@@ -143,7 +143,7 @@ KINDS: list[dict[str, Any]] = [
 
 
 def do(display: Ramtek9300, name: str, value: Any) -> None:
-    """One thing that may change the field."""
+    """An action that may change the field."""
     if name in ("load", "write entries"):
         line, offset, count = value
         data = np.random.default_rng(display.lookup_table.written).integers(0, 0x10000, count)
@@ -168,19 +168,19 @@ def do(display: Ramtek9300, name: str, value: Any) -> None:
         visible, blinking = look != 0, look == 3
         display.send(instructions.write_cursor(number, element, line, visible=visible, blinking=blinking))
     elif name == "shape":
-        display.cursors.shape(0, np.full((32, 4), value, np.uint8))
+        display.cursors.set_shape(0, np.full((32, 4), value, np.uint8))
     elif name == "blink":
         display.scan_out.blink_is_on = value
 
 
 @given(st.sampled_from(KINDS), st.integers(1, 4), STEPS)
 @thorough
-def test_a_field_that_is_kept_is_always_the_one_that_a_whole_scan_out_makes(
+def test_an_updated_field_equals_a_whole_scan_out(
     kind: dict[str, Any], strip: int, steps: list[tuple[tuple[str, Any], bool]]
 ) -> None:
     configuration = replace(SMALL, **kind)
     display = Ramtek9300(configuration)
-    # Each line shows entries that no other does.
+    # No two lines show the same entries.
     words = np.arange(9)[:, np.newaxis] * 100 + np.arange(13) % 8
     display.send(instructions.write_image(words & configuration.largest_word))
     scan_out, last = display.scan_out, None
@@ -232,7 +232,7 @@ TALL = replace(SMALL, elements=40, lines=150)
     ),
     st.sampled_from([0, 0, 1, 7]),
 )
-def test_where_cursors_moved_the_lines_of_old_and_new_places_are_those_that_change(
+def test_the_lines_of_a_cursors_old_and_new_place_change(
     moves: list[tuple[int, int, int, int]], seed: int
 ) -> None:
     display = Ramtek9300(TALL)
@@ -257,7 +257,7 @@ def test_where_cursors_moved_the_lines_of_old_and_new_places_are_those_that_chan
         assert look == 3 or outside.sum() >= 150 - 4 * 32
 
 
-def test_of_a_cursor_that_moves_only_its_old_and_new_lines_are_scanned_out() -> None:
+def test_a_moving_cursor_scans_out_only_its_old_and_new_lines() -> None:
     display = Ramtek9300()
     display.send(instructions.write_cursor(0, 100, 100))
     pixels = np.zeros((480, 640), np.uint32)
@@ -276,7 +276,7 @@ def test_of_a_cursor_that_moves_only_its_old_and_new_lines_are_scanned_out() -> 
 
 
 class UpdatedField:
-    """A field that is brought up to date, and compared with a whole one each time."""
+    """A field that is updated, and compared with a whole scan-out each time."""
 
     def __init__(self, display: Ramtek9300) -> None:
         self.scan_out = display.scan_out
@@ -290,7 +290,7 @@ class UpdatedField:
 
 
 @patch("ramtek_emu.video.scan_out.STRIP", 1)
-def test_words_that_were_written_meanwhile_show_the_next_load_of_the_same_entries() -> None:
+def test_words_written_between_two_loads_show_the_second_load() -> None:
     display = Ramtek9300(SMALL)
     updated = UpdatedField(display)
     for blue, line in enumerate((2, 7, 4), 1):
@@ -313,7 +313,7 @@ def test_a_view_that_came_back_shows_the_next_load() -> None:
     assert updated.is_right()
 
 
-def test_a_part_of_the_table_that_is_parked_at_is_shown_by_a_field_that_is_kept() -> None:
+def test_an_updated_field_shows_the_section_where_the_counter_is_parked() -> None:
     display = Ramtek9300(replace(SMALL, planes=8))
     updated = UpdatedField(display)
     display.send(instructions.load_entries(256, [[1, 2, 3]]))
@@ -324,7 +324,7 @@ def test_a_part_of_the_table_that_is_parked_at_is_shown_by_a_field_that_is_kept(
 
 def test_a_black_and_white_monitor_sees_the_low_eight_bits() -> None:
     display = Ramtek9300(replace(PRINCETON_9300, monochrome=True))
-    # The first table of cmap: each word its own number.
+    # The first table of cmap: the entry of a word is the word.
     display.send(sent_words([0x0300, 0, 2048, *range(1024)]))
     display.send(instructions.write_image(np.arange(1024).reshape(2, 512)))
     field = display.field()[:2, :512].reshape(-1, 3)
@@ -335,10 +335,10 @@ def test_a_black_and_white_monitor_sees_the_low_eight_bits() -> None:
 
 
 @pytest.mark.parametrize("section", range(4))
-def test_the_colors_of_all_words_are_those_of_the_section_in_use(section: int) -> None:
+def test_the_colors_of_all_words_come_from_the_shown_section(section: int) -> None:
     display = Ramtek9300(JPL_9460)
-    for each in range(4):
-        display.send(sent_words([0x0300, 0x200 * each, 1024, *([each + 1, 0] * 256)]))
+    for number in range(4):
+        display.send(sent_words([0x0300, 0x200 * number, 1024, *([number + 1, 0] * 256)]))
     display.send(sent_words([0x0300, 0x200 * section, 0]))
     assert display.scan_out.table().tolist() == [section + 1] * 256
 
@@ -399,7 +399,7 @@ TIMED = replace(GMR_9300, timing=Timing())
 
 
 def colors(display: Ramtek9300) -> list[int]:
-    """The red of each line, which must be the same all along it."""
+    """The red component by lines; all pixels of a line must be equal."""
     field = display.field()
     assert (field == field[:, :1]).all()
     reds: list[int] = field[:, 0, 0].tolist()
@@ -416,7 +416,7 @@ def test_a_load_in_mid_field_shows_on_the_lines_below() -> None:
     display.send(sent_words([0x2A00, 200]))
     display.send(entry(90))
     assert colors(display) == [50] * 200 + [90] * 280
-    # A field later it is everywhere.
+    # A field later, all lines show it.
     display.send(sent_words([0x2A00, 100]))
     assert colors(display) == [90] * 480
 
@@ -461,18 +461,18 @@ def test_the_same_stream_gives_the_same_field_however_it_is_cut(stream: list[int
         cut.send(piece)
     assert (whole.field() == cut.field()).all()
     assert whole.scan_out.stamp == cut.scan_out.stamp
-    # Looking takes no time.
+    # Making a field takes no time.
     assert (whole.field() == cut.field()).all()
 
 
-def test_marks_are_those_of_the_cursors_that_are_seen_now() -> None:
+def test_visible_cursors_have_marks() -> None:
     cursors = Cursors(4)
     cursors.place(0, 5, 6, 0)
     cursors.place(1, 7, 8, VISIBLE)
     cursors.place(3, 9, 10, VISIBLE | BLINK)
     assert marks(cursors, True) == (Mark(1, 7, 8, 0), Mark(3, 9, 10, 0))
     assert marks(cursors, False) == (Mark(1, 7, 8, 0),)
-    cursors.shape(2, np.zeros((1, 4), np.uint8))
+    cursors.set_shape(2, np.zeros((1, 4), np.uint8))
     assert marks(cursors, False) == (Mark(1, 7, 8, 1),)
 
 

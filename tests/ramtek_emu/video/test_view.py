@@ -21,7 +21,7 @@ def twin_field(
     zoom: tuple[int, int],
     up: bool,
 ) -> list[list[int]]:
-    """The word shown at each pixel of the screen, found one by one."""
+    """The words that the screen shows, pixel by pixel."""
     lines, elements = words.shape
     field = []
     for line in range(shown[0]):
@@ -36,7 +36,7 @@ def twin_field(
     st.integers(1, 13), st.integers(1, 9), st.tuples(*[st.integers(-0x8000, 0x7FFF)] * 2),
     st.tuples(*[st.integers(1, 16)] * 2), st.booleans(),
 )  # fmt: skip
-def test_what_is_shown_follows_origin_zoom_and_video_origin(
+def test_the_field_follows_origin_zoom_and_video_origin(
     elements: int, lines: int, origin: tuple[int, int], zoom: tuple[int, int], up: bool
 ) -> None:
     display = Ramtek9300(replace(SMALL, visible_elements=elements, visible_lines=lines))
@@ -82,7 +82,7 @@ def test_a_whole_screen_is_copied_as_pixel_after_pixel_is_found(
 
 @quick
 @given(views)
-def test_lines_and_elements_are_found_together_as_one_by_one(
+def test_arrays_of_places_give_the_pixels_of_single_places(
     view: tuple[Point, tuple[int, int], bool],
 ) -> None:
     parameters = parameters_of(view)

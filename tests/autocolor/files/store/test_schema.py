@@ -25,10 +25,10 @@ from autocolor.files.store.schema import (
     row_values,
 )
 from autocolor.files.store.store_file import read_store
-from autocolor.scene.columns import Column, Row, Tier, fields_of, keys_of, made
-from autocolor.scene.kinds import Choice, ColorKind, Number, Switch, Text, VectorKind, Whole
+from autocolor.scene.columns import Column, Row, Tier, fields_of, from_plain, keys_of
+from autocolor.scene.kinds import Boolean, ColorKind, Number, OneOf, Text, VectorKind, Whole
 from autocolor.scene.reflection_models import MODELS
-from autocolor.scene.row_kinds import Nested, References, Rows, Variant, WordOrName
+from autocolor.scene.row_kinds import Nested, OneRowOf, Reference, References, RowList
 from autocolor.scene.scalar import Scalar
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Part
@@ -39,7 +39,7 @@ from tests.autocolor.strategies import lights, surfaces, vectors
 
 def test_every_table_of_a_scene_has_a_table_and_all_are_strict() -> None:
     kinds = {name: field.column.kind for name, field in fields_of(Scene).items()}
-    tables = {name for name, kind in kinds.items() if isinstance(kind, (Rows, Nested))}
+    tables = {name for name, kind in kinds.items() if isinstance(kind, (RowList, Nested))}
     assert ROW_TABLES.keys() == {"scene", *tables}
     assert DEFINITIONS.keys() == {*ROW_TABLES, *MESH_TABLES}
     connection = sqlite3.connect(":memory:")
@@ -73,7 +73,7 @@ FREE = Tier.NOTHING
 @dataclass(frozen=True)
 class Inner(Row):
     low: Annotated[float, Column(Number(endless=-math.inf), FREE, "")] = -math.inf
-    shut: Annotated[bool, Column(Switch(), FREE, "")] = False
+    shut: Annotated[bool, Column(Boolean(), FREE, "")] = False
 
 
 @dataclass(frozen=True)
@@ -87,12 +87,12 @@ class MadeUp(Row):
 
     name: Annotated[str, Column(Text(), FREE, "")]
     order: Annotated[int, Column(Whole(1, 5), FREE, "")]
-    group: Annotated[str, Column(Choice(("a", "it's")), FREE, "")] = "it's"
+    group: Annotated[str, Column(OneOf(("a", "it's")), FREE, "")] = "it's"
     place: Annotated[tuple[float, float, float], Column(VectorKind(), FREE, "")] = (1.0, 2.0, 3.0)
     way: Annotated[tuple[float, float, float] | None, Column(VectorKind(has_length=True), FREE, "")] = None
     tint: Annotated[Color | None, Column(ColorKind(), FREE, "")] = None
-    model: Annotated[Row, Column(Variant(MODELS), FREE, "")] = field(default_factory=BlinnPhong)
-    near: Annotated[object, Column(WordOrName("lights", "here"), FREE, "")] = "here"
+    model: Annotated[Row, Column(OneRowOf(MODELS), FREE, "")] = field(default_factory=BlinnPhong)
+    near: Annotated[object, Column(Reference("lights", "here"), FREE, "")] = "here"
     all: Annotated[tuple[str, ...] | None, Column(References("lights"), FREE, "")] = None
     inner: Annotated[Inner | None, Column(Nested(Inner), FREE, "")] = None
     loose: Annotated[Loose | None, Column(Nested(Loose), FREE, "")] = None
@@ -139,7 +139,7 @@ def through_a_table(row: Row) -> dict[str, SqlValue]:
 
 @given(made_up | lights() | surfaces("body"))
 def test_a_row_of_any_class_comes_back_from_its_table(row: Row) -> None:
-    assert made(type(row), plain_row(columns_of(type(row)), through_a_table(row))) == row
+    assert from_plain(type(row), plain_row(columns_of(type(row)), through_a_table(row))) == row
 
 
 @pytest.mark.parametrize("cls", [Scene, View, Scalar, Light, Surface, Part, Flap, Flaps, MadeUp])
@@ -156,7 +156,7 @@ def test_a_table_fills_in_the_defaults_of_the_row() -> None:
     cursor = connection.execute("SELECT * FROM rows")
     (row,) = cursor.fetchall()
     values = dict(zip((each[0] for each in cursor.description), row, strict=True))
-    assert made(MadeUp, plain_row(columns_of(MadeUp), values)) == MadeUp("new", 2)
+    assert from_plain(MadeUp, plain_row(columns_of(MadeUp), values)) == MadeUp("new", 2)
 
 
 def test_a_row_in_a_row_that_is_absent_has_no_infinite_limits() -> None:

@@ -137,6 +137,20 @@ def test_views_and_indexes_of_others_are_no_hindrance_to_a_change(tmp_path: Path
         assert tables.select("SELECT max(intensity) AS most FROM bright") == [{"most": 2.0}]
 
 
+def test_a_row_that_a_table_of_others_refers_to_is_not_removed(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    run(path, "CREATE TABLE notes (light REFERENCES lights (name))", "INSERT INTO notes VALUES ('rim')")
+    before = tables_of(path)
+    with (
+        open_tables(path) as tables,
+        pytest.raises(
+            WriteError, match=r"small\.sqlite: tables of other programs must not refer to rows that a change"
+        ),
+    ):
+        tables.change("DELETE FROM lights WHERE name = 'rim'")
+    assert tables_of(path) == before
+
+
 def test_a_scene_of_files_is_read_into_memory_and_written_by_its_user(tmp_path: Path) -> None:
     folder = tmp_path / "small"
     write_scene(folder, small_scene().replace(mesh=small_scene().mesh.with_scalars()))

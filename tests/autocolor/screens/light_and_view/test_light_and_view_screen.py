@@ -29,7 +29,7 @@ from autocolor.screens.light_and_view.orthographic_views import (
     TOP,
     TOP_AREA,
     OrthographicViews,
-    Side,
+    ViewSide,
 )
 from autocolor.studio import Studio
 from autocolor.widgets.items import GRAY, NIGHT, ORANGE, SLATE, YELLOW, Area, filled
@@ -56,7 +56,7 @@ def places(area: Area) -> st.SearchStrategy[tuple[int, int]]:
     return st.tuples(st.integers(area.left, area.right), st.integers(area.top, area.bottom))
 
 
-def where(hand: Hand, side: Side, light: str = "key") -> tuple[float, float]:
+def where(hand: Hand, side: ViewSide, light: str = "key") -> tuple[float, float]:
     """Where a light is in one of the views, now."""
     return screen_of(hand).views.position(side, scene_of_hand(hand).light(light).position)
 
@@ -94,7 +94,7 @@ def test_two_drags_in_two_views_put_a_light_at_the_picked_coordinates_to_a_pixel
 @pytest.mark.parametrize(("side", "unseen"), [(TOP, 2), (FRONT, 1), (SIDE, 0)])
 @pytest.mark.parametrize("what", [EYE, TARGET, LIGHT, AIM])
 def test_a_drag_never_moves_the_coordinate_that_its_view_does_not_show(
-    what: str, side: Side, unseen: int
+    what: str, side: ViewSide, unseen: int
 ) -> None:
     hand = opened(boxed(KEY))
     before = scene_of_hand(hand)

@@ -44,7 +44,7 @@ from autocolor.screens.light_and_view.orthographic_views import (
     SIDES,
     TOP,
     OrthographicViews,
-    Side,
+    ViewSide,
     fitted_views,
     shown_points,
 )
@@ -263,7 +263,7 @@ def test_a_cone_that_holds_everything_has_no_outline() -> None:
 
 @given(vectors(), directions, numbers(1, 179), st.sampled_from(SIDES))
 def test_the_lines_are_tangents_of_the_rim(
-    position: Vector, direction: Vector, cone_angle: float, side: Side
+    position: Vector, direction: Vector, cone_angle: float, side: ViewSide
 ) -> None:
     light = Light("key", position, direction=direction, cone_angle=cone_angle)
     assert light.axis is not None

@@ -26,7 +26,7 @@ from autocolor.screens.light_and_view.orthographic_views import (
     PICTURE_AREA,
     SIDES,
     TOP,
-    Side,
+    ViewSide,
     area_of_picture,
     fitted_views,
 )
@@ -120,7 +120,7 @@ def test_a_scene_without_polygons_has_no_lines() -> None:
     assert not any(map(len, lines.of_eye(scene, AREA)))
 
 
-def shown(edges: MeshEdges, mesh: Mesh, side: Side) -> set[tuple[int, ...]]:
+def shown(edges: MeshEdges, mesh: Mesh, side: ViewSide) -> set[tuple[int, ...]]:
     depths = depths_toward(mesh, side)
     assert depths is not None
     return {
@@ -129,7 +129,7 @@ def shown(edges: MeshEdges, mesh: Mesh, side: Side) -> set[tuple[int, ...]]:
 
 
 @pytest.mark.parametrize("side", SIDES, ids=[side.name for side in SIDES])
-def test_the_far_side_of_a_cube_is_hidden_within_a_ring_around_it(side: Side) -> None:
+def test_the_far_side_of_a_cube_is_hidden_within_a_ring_around_it(side: ViewSide) -> None:
     # A smaller cube behind a wall of the same shape is hidden; the wall is not.
     toward = np.array(side.toward)
     box = cube()

@@ -20,7 +20,7 @@ from autocolor.screens.light_and_view.orthographic_views import (
     TOP,
     TOP_AREA,
     OrthographicViews,
-    Side,
+    ViewSide,
     area_of_picture,
     fitted_views,
     shown_points,
@@ -45,7 +45,7 @@ def some_views(draw: st.DrawFn) -> OrthographicViews:
 
 
 @st.composite
-def pixels(draw: st.DrawFn, side: Side) -> tuple[int, int]:
+def pixels(draw: st.DrawFn, side: ViewSide) -> tuple[int, int]:
     area = side.area
     return draw(st.integers(area.left, area.right)), draw(st.integers(area.top, area.bottom))
 
@@ -60,7 +60,7 @@ def test_each_view_shows_two_axes_as_on_an_engineering_drawing() -> None:
 
 
 @pytest.mark.parametrize("side", SIDES, ids=[side.name for side in SIDES])
-def test_the_viewer_has_right_and_up_where_the_view_has_them(side: Side) -> None:
+def test_the_viewer_has_right_and_up_where_the_view_has_them(side: ViewSide) -> None:
     right, up = np.eye(3)[side.right], np.eye(3)[side.up]
     assert np.cross(right, up).tolist() == list(side.toward)
 
@@ -75,7 +75,7 @@ def test_a_point_is_in_one_column_of_the_top_and_front_view_and_on_one_line_of_f
 
 @given(some_views(), sides, st.lists(points, max_size=4))
 def test_many_points_are_where_each_of_them_is(
-    views: OrthographicViews, side: Side, many: list[Vector]
+    views: OrthographicViews, side: ViewSide, many: list[Vector]
 ) -> None:
     found = views.positions(side, np.array(many, np.float64).reshape(-1, 3))
     assert [tuple(row) for row in found.tolist()] == [views.position(side, point) for point in many]

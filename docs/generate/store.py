@@ -1,6 +1,6 @@
 """The reference of the table store: every table and column, as the store itself makes them.
 
-`python -m tests.store_reference > docs/STORE.md` writes it.
+`python -m docs.generate.store > docs/STORE.md` writes it.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from autocolor.files.store.schema import (
     literal,
 )
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 
 HEAD = """# The table store
 
 A scene in one SQLite file (`.sqlite` or `.db`), whose tables any tool of SQLite 3.37 or later can ask and
 edit. `read_scene`, `write_scene` and every command take it as they take a folder. The page is written
-from the columns in `autocolor/scene` by `python -m tests.store_reference > docs/STORE.md`; what a key
+from the columns in `autocolor/scene` by `python -m docs.generate.store > docs/STORE.md`; what a key
 means and what an edit of it costs is in COLUMNS.md.
 
     autocolor sql car.sqlite "SELECT name, intensity FROM lights"

@@ -1,6 +1,6 @@
 """The types of changes: for each class of rows, which keys a change may have, and of which type each is.
 
-They derive from the columns, and type checkers want them written out: `python -m tests.typed_changes`
+They derive from the columns, and type checkers want them written out: `python -m docs.generate.changes`
 writes `autocolor/scene/changes.py`. The shell's `>` would empty the file before it is imported here.
 """
 
@@ -10,13 +10,13 @@ from pathlib import Path
 
 from autocolor.scene.columns import Row, fields_of, keys_of
 from autocolor.scene.lights import Flap, Flaps, HalfSpace, Light, Links
-from autocolor.scene.row_kinds import Nested, Variant
+from autocolor.scene.row_kinds import Nested, OneRowOf
 from autocolor.scene.scalar import Scalar
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Paint, Part, Reflectance, Surface
 from autocolor.scene.view import View
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 WRITTEN = ROOT / "autocolor" / "scene" / "changes.py"
 
 CLASSES: tuple[type[Row], ...] = (
@@ -35,7 +35,7 @@ CLASSES: tuple[type[Row], ...] = (
 
 HEAD = '''"""What a change of a row may say: its keys and their types, for editors and type checkers.
 
-Written by `python -m tests.typed_changes` from the columns; do not edit it by hand.
+Written by `python -m docs.generate.changes` from the columns; do not edit it by hand.
 """
 
 from __future__ import annotations
@@ -86,7 +86,7 @@ def optional_keys(cls: type[Row]) -> set[str]:
     found = {name for name, field in fields_of(cls).items() if field.is_optional}
     for field in fields_of(cls).values():
         kind = field.column.kind
-        if isinstance(kind, Variant):
+        if isinstance(kind, OneRowOf):
             found = found.union(*map(optional_keys, kind.classes.values()))
         elif isinstance(kind, Nested) and kind.inline:
             found |= optional_keys(kind.row_class)

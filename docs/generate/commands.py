@@ -1,7 +1,8 @@
 """The reference of what commands answer: their exit codes and messages, and what a shell completes.
 
-Each command of the document is run, in a folder of its own. `python -m tests.command_reference >
-docs/COMMANDS.md` writes it.
+Each command of the document is run in this process, in a folder of its own. A command gets a process of its
+own if its subject is a pipe, a signal, a full disk or a missing screen. `python -m docs.generate.commands >
+docs/COMMANDS.md` writes the document.
 """
 
 from __future__ import annotations
@@ -14,17 +15,23 @@ import sys
 import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
+from contextlib import chdir, contextmanager, redirect_stderr, redirect_stdout
+from io import BytesIO, TextIOWrapper
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
+from unittest.mock import patch
 
-ROOT = Path(__file__).resolve().parents[1]
+from autocolor.commands.autocolor import autocolor
+from ramtek_emu.command_line import run_command
+from ramtek_emu.commands.ramtek import ramtek
+
+ROOT = Path(__file__).resolve().parents[2]
 
 HEAD = """# The commands
 
 `autocolor --help` and `ramtek --help` list the commands; `--help` of each has examples. This page is what the
-commands themselves answered: `python -m tests.command_reference > docs/COMMANDS.md` runs every line and
+commands themselves answered: `python -m docs.generate.commands > docs/COMMANDS.md` runs every line and
 writes it.
 
 Results go to stdout, messages to stderr. `-v` says what `autocolor` reads, creates and computes, and how long
@@ -110,7 +117,13 @@ After a whole key, bash lists the values alone: `off` and `ordered` after `dithe
 """
 
 LEFT = " | true"
-"""The end of a line of whose output nothing is read."""
+"""The end of a line whose output nobody reads."""
+
+ALONE = (LEFT, " > ", "ramtek ")
+"""Parts of lines that are run in a process of their own: `ramtek` leaves it to the end to close its files."""
+
+WITHOUT_SCREEN = ("autocolor view car", "autocolor tutorial", "ramtek")
+"""The lines that look for a screen, each in a process of its own."""
 
 LINES = (
     "autocolor re",
@@ -168,11 +181,11 @@ def folder() -> Iterator[Path]:
         yield Path(name)
 
 
-def process(line: str, place: Path, **given: str) -> subprocess.Popen[str]:
+def process(line: str, place: Path) -> subprocess.Popen[str]:
     """The process of a line, in a folder and without a screen."""
     hidden = ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER", "PYTHONWARNINGS")
     environment = {key: value for key, value in os.environ.items() if key not in hidden}
-    environment |= {"PYTHONPATH": str(ROOT), "COLUMNS": "1000", "LC_ALL": "C.UTF-8", **given}
+    environment |= {"PYTHONPATH": str(ROOT), "COLUMNS": "1000", "LC_ALL": "C.UTF-8"}
     words, _, target = line.removesuffix(LEFT).partition(" > ")
     program, *arguments = shlex.split(words)
     module = {"autocolor": "autocolor", "ramtek": "ramtek_emu"}[program]
@@ -196,9 +209,44 @@ def process(line: str, place: Path, **given: str) -> subprocess.Popen[str]:
 
 
 def ran(line: str, place: Path) -> Ran:
-    """How a line ended. One that reads stdin is interrupted once it has begun to record."""
+    """How a line ended. A line that reads stdin is interrupted once it has begun to record."""
+    if not needs_process(line):
+        code, out, err = here(line, place)
+        return Ran(code, last_line(code, out, err))
     with process(line, place) as started:
         return _ended(line, place, started)
+
+
+def needs_process(line: str) -> bool:
+    """Whether a line is run in a process of its own."""
+    return line in WITHOUT_SCREEN or any(part in line for part in ALONE)
+
+
+def here(line: str, place: Path, **given: str) -> tuple[int, str, str]:
+    """The exit code, stdout and stderr of a line that is run in this process."""
+    program = line.split()[0]
+    out, err = (TextIOWrapper(BytesIO(), "utf-8", write_through=True) for _ in range(2))
+    with (
+        chdir(place),
+        patch.dict(os.environ, {"COLUMNS": "1000", **given}),
+        patch("sys.argv", shlex.split(line)),
+        redirect_stdout(out),
+        redirect_stderr(err),
+    ):
+        try:
+            run_command({"autocolor": autocolor, "ramtek": ramtek}[program], program)
+        except SystemExit as left:
+            code = left.code
+    assert isinstance(code, int)
+    out.seek(0)
+    err.seek(0)
+    return code, out.read(), err.read()
+
+
+def last_line(code: int, out: str, err: str) -> str:
+    """The last line of a command's messages, or of its result if it ended well and said nothing."""
+    lines = [text for text in (out if code == 0 and not err else err).splitlines() if text]
+    return lines[-1] if lines else ""
 
 
 def _ended(line: str, place: Path, started: subprocess.Popen[str]) -> Ran:
@@ -215,27 +263,27 @@ def _ended(line: str, place: Path, started: subprocess.Popen[str]) -> Ran:
     else:
         out, err = started.communicate("", timeout=60)
         code = started.returncode
-    said = [text for text in (out if code == 0 and not err else err).splitlines() if text]
-    return Ran(code, said[-1] if said else "")
+    return Ran(code, last_line(code, out, err))
 
 
 def completed(line: str, place: Path) -> list[str]:
-    """The candidates that bash is told for a line whose last word is incomplete."""
+    """The candidates that bash gets for a line whose last word is incomplete."""
     words = line.split(" ")
     name = f"_{words[0].upper()}"
     asked = {f"{name}_COMPLETE": "bash_complete", "COMP_CWORD": str(len(words) - 1)}
-    with process(words[0], place, COMP_WORDS="\n".join(words), **asked) as started:
-        out, err = started.communicate("", timeout=60)
-    assert (started.returncode, err) == (0, ""), err
+    code, out, err = here(words[0], place, COMP_WORDS="\n".join(words), **asked)
+    assert (code, err) == (0, ""), err
     return [text.partition(",")[2] for text in out.splitlines() if text]
 
 
 def document() -> str:
     """The whole reference."""
     parts = [HEAD]
+    lines = [line for _, line in COMMANDS]
     with folder() as place, ThreadPoolExecutor(4) as pool:
-        answers = list(pool.map(lambda row: ran(row[1], place), COMMANDS))
-        candidates = list(pool.map(lambda line: completed(line, place), LINES))
+        waiting = {line: pool.submit(ran, line, place) for line in lines if needs_process(line)}
+        answers = [waiting[line].result() if line in waiting else ran(line, place) for line in lines]
+        candidates = [completed(line, place) for line in LINES]
     for code, meaning in MEANINGS.items():
         rows = [
             (line, answer) for (each, line), answer in zip(COMMANDS, answers, strict=True) if each == code

@@ -1,6 +1,6 @@
 """The reference of scene files: every table and key, as the columns describe them.
 
-`python -m tests.column_reference > docs/COLUMNS.md` writes it.
+`python -m docs.generate.columns > docs/COLUMNS.md` writes it.
 """
 
 from __future__ import annotations
@@ -11,34 +11,25 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from autocolor.files.scene_toml.scene_meshes import MeshEntry
-from autocolor.scene.columns import WORLD_UNITS, Column, Kind, Row, Tier, bar_of, fields_of, keys_of, plain
+from autocolor.scene.columns import WORLD_UNITS, Column, Kind, Row, Tier, bar_of, fields_of, keys_of, to_plain
 from autocolor.scene.kinds import Number
 from autocolor.scene.lights import Flap, HalfSpace, Light
-from autocolor.scene.row_kinds import Nested, Variant
+from autocolor.scene.row_kinds import Nested, OneRowOf
 from autocolor.scene.scalar import Scalar
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Part, Surface
 from autocolor.scene.view import View
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 
 HEAD = """# The columns
 
 Every table of a scene and every key, as `scene.toml`, `--set`, Python and picture files have them. The page
-is written from the columns in `autocolor/scene` by `python -m tests.column_reference > docs/COLUMNS.md`.
+is written from the columns in `autocolor/scene` by `python -m docs.generate.columns > docs/COLUMNS.md`.
 
 A key that has no default must be given; one whose default is "absent" may be left out. "On a bar" is the
 usual range of a number and its step where it is set by pointing, and what it starts with if it was absent;
 typed numbers may be any that the value's own rule allows. The last column says what an edit of it costs:
-
-| an edit costs | what is computed again |
-|---|---|
-| nothing | nothing |
-| entries | entries of the lookup table; no word is written |
-| levels | the levels, and so the words |
-| mix | the weighted sum of the lights |
-| light | one light, or all lights on one surface |
-| frame | everything |
 """
 
 TABLES: tuple[tuple[str, str, type[Row]], ...] = (
@@ -67,9 +58,17 @@ LEFT_OUT = {
 """What stands in a header, or has a table of its own."""
 
 
+def tiers() -> Iterator[str]:
+    """The table of the costs of edits."""
+    yield "| an edit costs | computed again | sent to the display |"
+    yield "|---|---|---|"
+    yield from (f"| {tier.name.lower()} | {tier.computed} | {tier.sent} |" for tier in Tier)
+    yield ""
+
+
 def document() -> str:
     """The whole reference."""
-    return "\n".join([HEAD, *(line for table in TABLES for line in lines_of(*table))]) + "\n"
+    return "\n".join([HEAD, *tiers(), *(line for table in TABLES for line in lines_of(*table))]) + "\n"
 
 
 def lines_of(title: str, text: str, cls: type[Row]) -> Iterator[str]:
@@ -100,9 +99,9 @@ def going_with(kind: Kind, key: str) -> str:
     """A sentence with the variants that have the key, of inline rows too; nothing for any other key."""
     if isinstance(kind, Nested) and kind.inline:
         for name, field in fields_of(kind.row_class).items():
-            if isinstance(field.column.kind, Variant) and key != name:
+            if isinstance(field.column.kind, OneRowOf) and key != name:
                 return going_with(field.column.kind, key)
-    if not isinstance(kind, Variant):
+    if not isinstance(kind, OneRowOf):
         return ""
     names = [repr(name) for name, cls in kind.classes.items() if key in keys_of(cls)]
     return f" Goes with {' or '.join(names)}." if names else ""
@@ -121,8 +120,8 @@ def on_a_bar(column: Column) -> str:
 
 
 def tier(column: Column) -> str:
-    """What an edit costs, in small letters."""
-    return Tier(column.tier).name.lower()
+    """The cost of an edit, in lower case."""
+    return column.tier.name.lower()
 
 
 def default(cls: type[Row], key: str, field: str) -> str:
@@ -133,14 +132,14 @@ def default(cls: type[Row], key: str, field: str) -> str:
     value = described.default()
     if value is None:
         return "absent"
-    written = {**parameters(described.column.kind), **described.column.kind.written(field, value)}
+    written = {**parameters(described.column.kind), **described.column.kind.to_plain(field, value)}
     return f"`{json.dumps(written[key])}`" if written.get(key) not in (None, {}) else "absent"
 
 
 def parameters(kind: Kind) -> dict[str, object]:
     """The keys of each variant with their defaults, those of variants inside inline rows too."""
-    if isinstance(kind, Variant):
-        return {key: value for cls in kind.classes.values() for key, value in plain(cls()).items()}
+    if isinstance(kind, OneRowOf):
+        return {key: value for cls in kind.classes.values() for key, value in to_plain(cls()).items()}
     inner = fields_of(kind.row_class).values() if isinstance(kind, Nested) and kind.inline else ()
     return {key: value for each in inner for key, value in parameters(each.column.kind).items()}
 

@@ -2,7 +2,7 @@
 
 `Paper:` Warn's paper; `Hardware:` a source about the RAMTEK by its key; `Assumed:` our choice where sources
 are silent; `Departs:` where the program knowingly differs; `Limit:` a bound that no source asks for, such as
-the largest file that is read. `python -m tests.fidelity_ledger > docs/FIDELITY.md` writes the document.
+the largest file that is read. `python -m docs.generate.fidelity > docs/FIDELITY.md` writes the document.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ("autocolor", "ramtek_emu")
 KINDS = {
     "Paper": "What follows the paper",
@@ -224,7 +224,7 @@ def document() -> str:
     lines = lines_of_packages()
     parts = [
         "# Fidelity\n\nWhere every formula, number and rule comes from, collected from the sources by"
-        ' `python -m tests.fidelity_ledger > docs/FIDELITY.md`. The paper is D. R. Warn, "Lighting Controls'
+        ' `python -m docs.generate.fidelity > docs/FIDELITY.md`. The paper is D. R. Warn, "Lighting Controls'
         ' for Synthetic Images", SIGGRAPH 1983; the keys of the hardware sources stand in `ramtek_emu`.\n',
         "\n## The paper: where each section and figure is built and tested\n\nThe tests are those of"
         " `tests/test_paper.py`, which goes through the paper in its order.\n\n| section or figure | module |"

@@ -1,0 +1,443 @@
+"""Every column of every row, with another value than its default, on every way that a scene takes.
+
+`EDITS` has an edit for each key of each table. A new column is a line there; a test says which is missing.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+
+from autocolor import (
+    Light,
+    Mesh,
+    MeshScalar,
+    Scene,
+    Studio,
+    read_journal,
+    read_picture,
+    read_rig,
+    read_scene,
+    render,
+    scene_of,
+    write_picture,
+    write_rig,
+    write_scene,
+)
+from autocolor.commands.settings import with_settings
+from autocolor.files.picture_file import plain_scene
+from autocolor.journal.history import History
+from autocolor.journal.journal import MeshesBeside, first_line, step_line
+from autocolor.journal.places import Source
+from autocolor.journal.script import script_of
+from autocolor.mapping.normal_words import far_light
+from autocolor.scene.columns import Row, fields_of, from_plain, keys_of, to_plain, with_values
+from autocolor.scene.lights import Flap, HalfSpace
+from autocolor.scene.scalar import Scalar
+from autocolor.scene.surfaces import Part, Surface
+from autocolor.scene.view import View
+from tests.autocolor.linked_scenes import linked_scenes
+from tests.autocolor.meshes import cube, grid
+
+Values = Mapping[str, Any]
+
+EDITS: dict[str, dict[str, Values]] = {
+    "": {
+        "ambient": {"ambient": 0.25},
+        "scaling": {"scaling": "object"},
+        "mapping": {"mapping": [[0, 0.1], [0.4, 0.8], [1, 1]]},
+        "contrast": {"contrast": "floor"},
+        "exposure": {"exposure": {"body": [0.1, 0.9], "object": [0, 2]}},
+        "dither": {"dither": "ordered"},
+        "division": {"division": "equal"},
+        "words": {"words": "normals"},
+        "background": {"background": "#102030"},
+    },
+    "view": {
+        "eye": {"eye": [1, -5, 2]},
+        "direction": {"direction": [0, 1, 0.25]},
+        "target": {"target": [0.25, 0, 0.5]},
+        "angle": {"angle": 12},
+        "field_of_view": {"field_of_view": 50},
+    },
+    "scalar": {
+        "name": {"name": "stress"},
+        "limits": {"name": "z", "limits": [-0.25, 0.5]},
+        "scale": {"name": "z", "scale": ["#000000", "#ff8000", "#ffffff"]},
+        "bands": {"name": "z", "bands": 7},
+        "shades": {"name": "z", "shades": 3},
+        "below": {"name": "z", "below": "#0000ff"},
+        "above": {"name": "z", "above": "#ff0000"},
+        "missing": {"name": "z", "missing": "#010203"},
+        "legend": {"name": "z", "legend": False},
+        "surfaces": {"name": "z", "surfaces": ["glass"]},
+        "direction": {"name": "distance", "direction": [1, 0, 0.5]},
+        "stripes": {"name": "zebra", "stripes": 20},
+    },
+    "parts": {
+        "surface": {"surface": "glass"},
+        "stage": {"stage": True},
+    },
+    "surfaces": {
+        "diffuse": {"diffuse": 0.3},
+        "specular": {"specular": 0.9},
+        "model": {"model": "blinn"},
+        "exponent": {"exponent": 7},
+        "base_reflectance": {"base_reflectance": 0.04},
+        "refractive_index": {"refractive_index": 1.5},
+        "fresnel_curve": {"fresnel_curve": [[0, 0.04], [60, 0.1], [90, 1]]},
+        "roughness": {"model": "cook-torrance", "roughness": 0.5},
+        "normal_reflectance": {"model": "cook-torrance", "normal_reflectance": 0.5},
+        "object_color": {"object_color": "#b01020"},
+        "light_color": {"light_color": "#fff0e0"},
+        "blend": {"blend": 0.25},
+        "light_percentage": {"light_percentage": 40},
+        "two_sided": {"two_sided": False},
+        "levels": {"levels": 99},
+    },
+    "lights": {
+        "position": {"position": [2, -3, 4]},
+        "intensity": {"intensity": 0.5},
+        "on": {"on": False},
+        "direction": {"aim": None, "direction": [-1, 1, -1]},
+        "aim": {"aim": [0.25, 0.5, 0]},
+        "concentration": {"concentration": 5},
+        "cone_angle": {"cone_angle": 40},
+        "inner_angle": {"cone_angle": 40, "inner_angle": 30},
+        "flaps": {"flaps": {"x": {"minimum": -0.25}, "z": {"maximum": 0.5}}},
+        "half_spaces": {"half_spaces": {"left door": {"point": [0, 0, 1], "direction": [1, 0, 0]}}},
+        "falloff": {"falloff": "linear", "reach": 9},
+        "reach": {"falloff": "quadratic", "reach": 8},
+        "at_infinity": {"at_infinity": True},
+        "follows": {"follows": "rim"},
+        "only_surfaces": {"only_surfaces": ["body"]},
+        "except_surfaces": {"except_surfaces": ["glass"]},
+        "only_parts": {"only_parts": ["cube"]},
+        "except_parts": {"except_parts": []},
+    },
+    "flaps": {
+        "minimum": {"minimum": -0.25},
+        "maximum": {"maximum": 0.5},
+        "on": {"maximum": 0.5, "on": False},
+        "edge_width": {"maximum": 0.5, "edge_width": 0.125},
+    },
+    "half_spaces": {
+        "point": {"point": [0, 0, 1], "direction": [1, 0, 0]},
+        "direction": {"point": [0, 0, 0], "direction": [0, 0.5, 1]},
+        "edge_width": {"point": [0, 0, 0], "direction": [1, 0, 0], "edge_width": 0.25},
+        "carried": {"point": [0, 0, 0], "direction": [1, 0, 0], "carried": True},
+        "on": {"point": [0, 0, 0], "direction": [1, 0, 0], "on": False},
+    },
+}
+"""For each key of each table, keys and values that give it another value than its default."""
+
+CLASSES: dict[str, type[Row]] = {
+    "": Scene,
+    "view": View,
+    "scalar": Scalar,
+    "parts": Part,
+    "surfaces": Surface,
+    "lights": Light,
+    "flaps": Flap,
+    "half_spaces": HalfSpace,
+}
+
+ROWS = {"parts": "cube", "surfaces": "body", "lights": "key"}
+"""The row of each table that is edited."""
+
+NOT_EDITED = {
+    "": {"mesh", "parts", "surfaces", "lights", "view", "scalar", "name"},
+    "parts": {"name"},
+    "surfaces": {"name"},
+    "lights": {"name"},
+    "half_spaces": {"name"},
+}
+"""The tables, which have edits of their own, the mesh, and names; a scene has the name of its file."""
+
+CASES = [pytest.param(table, key, id=f"{table}.{key}".strip(".")) for table in EDITS for key in EDITS[table]]
+LIGHT_CASES = [case for case in CASES if case.values[0] in ("lights", "flaps", "half_spaces")]
+every_column = pytest.mark.parametrize(("table", "key"), CASES)
+every_column_of_a_light = pytest.mark.parametrize(("table", "key"), LIGHT_CASES)
+
+
+@cache
+def start() -> Scene:
+    """A scene of two parts and two lights, in which every column has its default as far as it can."""
+    mesh = Mesh.joined([cube(), grid(2, 2, (-1.5, -1, -1), (1, 0, 0), (0, 0, 1), "pane")])
+    mesh = mesh.with_scalars(MeshScalar("stress", np.arange(float(len(mesh.coordinates))), "node"))
+    return scene_of(
+        mesh,
+        surface_of_part={"cube": "body", "pane": "glass"},
+        surfaces=[Surface("body"), Surface("glass")],
+        lights=[Light("key", (2, -4, 3), aim=(0, 0, 0)), Light("rim", (-3, 2, 1), aim=(0, 0, 0.5))],
+        view=View((1, -4, 1), target=(0, 0, 0)),
+    )
+
+
+def edited(scene: Scene, table: str, key: str) -> Scene:
+    """The scene with another value in one column."""
+    values: Any = EDITS[table][key]
+    if table == "":
+        return scene.replace(**values)
+    if table == "view":
+        return scene.with_view(**values)
+    if table == "scalar":
+        return scene.with_scalar(**values)
+    if table == "parts":
+        return scene.with_part("cube", **values)
+    if table == "surfaces":
+        return scene.with_surface("body", **values)
+    if table == "flaps":
+        values = {"flaps": {"y": values}}
+    if table == "half_spaces":
+        values = {"half_spaces": {"door": values}}
+    return scene.with_light("key", **values)
+
+
+def row_of(scene: Scene, table: str) -> Row | None:
+    """The row of a scene that the edits of a table change."""
+    if table in ("flaps", "half_spaces"):
+        light = scene.light("key")
+        return light.flaps.y if table == "flaps" else next(iter(light.half_spaces), None)
+    if table in ROWS:
+        (row,) = (row for row in vars(scene)[table] if row.name == ROWS[table])
+    else:
+        row = scene if table == "" else vars(scene)[table]
+    assert row is None or isinstance(row, Row)
+    return row
+
+
+def default_of(cls: type[Row], key: str) -> object:
+    """The plain value of a key that is left out; None for a key that must be given."""
+    fields = fields_of(cls)
+    field = keys_of(cls)[key].field
+    default = fields[field].default
+    value = None if default is None else default()
+    return None if value is None else fields[field].column.kind.to_plain(field, value).get(key)
+
+
+def test_every_key_has_an_edit() -> None:
+    for table, cls in CLASSES.items():
+        assert set(EDITS[table]) == set(keys_of(cls)) - NOT_EDITED.get(table, set())
+
+
+@every_column
+def test_an_edit_gives_the_column_another_value_than_its_default(table: str, key: str) -> None:
+    row = row_of(edited(start(), table, key), table)
+    assert row is not None
+    plain = to_plain(row)
+    assert key in plain
+    assert plain[key] != default_of(CLASSES[table], key)
+
+
+def same(one: Scene, other: Scene) -> bool:
+    """Whether two scenes are equal in every column but their names and meshes."""
+    return with_values(one, {"mesh": other.mesh, "name": other.name}).equals(other)
+
+
+def by_scene_file(scene: Scene, folder: Path) -> Scene:
+    write_scene(folder, scene)
+    return read_scene(folder)
+
+
+def by_scene_file_saved_over(scene: Scene, folder: Path) -> Scene:
+    write_scene(folder, start())
+    write_scene(folder, scene, overwrite=True)
+    return read_scene(folder)
+
+
+def by_table_store(scene: Scene, folder: Path) -> Scene:
+    write_scene(folder / "scene.sqlite", scene)
+    return read_scene(folder / "scene.sqlite")
+
+
+def by_picture_file(scene: Scene, folder: Path) -> Scene:
+    write_picture(folder / "scene.npz", render(scene, 12, 16), scene)
+    return read_picture(folder / "scene.npz").scene
+
+
+def by_plain_values(scene: Scene, folder: Path) -> Scene:
+    plain = json.loads(json.dumps(plain_scene(scene)))
+    fields = {name: plain[name] for name in fields_of(Scene) if name in plain}
+    return from_plain(Scene, {**fields, "mesh": scene.mesh})
+
+
+def session(scene: Scene, folder: Path) -> History:
+    """A session with the start, in which the edit is a step."""
+    write_scene(folder, start())
+    history = History(read_scene(folder))
+    history.take(with_values(scene, {"mesh": history.scene.mesh, "name": history.scene.name}))
+    return history
+
+
+def replayed(history: History, folder: Path) -> History:
+    """The history that the journal of a history gives."""
+    meshes = MeshesBeside()
+    lines = [step_line(step, history.start, meshes) for step in history.steps]
+    (folder / "journal").write_text("".join([first_line(history.start, Source(str(folder))), *lines]))
+    return read_journal(folder / "journal").history
+
+
+def by_journal(scene: Scene, folder: Path) -> Scene:
+    return replayed(session(scene, folder), folder).scene
+
+
+def by_start_of_journal(scene: Scene, folder: Path) -> Scene:
+    """The journal of a session that began with the edited scene."""
+    edits = session(scene, folder)
+    return replayed(History(edits.scene), folder).start
+
+
+def by_script(scene: Scene, folder: Path) -> Scene:
+    """The script of a session, after it was run."""
+    names: dict[str, Any] = {}
+    exec(script_of(session(scene, folder), Source(str(folder)), MeshesBeside()), names)
+    studio = names["studio"]
+    assert isinstance(studio, Studio)
+    return studio.scene
+
+
+WAYS = (
+    by_scene_file,
+    by_scene_file_saved_over,
+    by_table_store,
+    by_picture_file,
+    by_plain_values,
+    by_journal,
+    by_start_of_journal,
+    by_script,
+)
+
+
+@pytest.mark.parametrize("way", WAYS)
+@every_column
+def test_a_column_comes_through(
+    tmp_path: Path, way: Callable[[Scene, Path], Scene], table: str, key: str
+) -> None:
+    scene = edited(start(), table, key)
+    assert same(scene, way(scene, tmp_path))
+    assert not same(scene, start())
+
+
+@every_column
+def test_a_column_is_set_on_the_command_line(table: str, key: str) -> None:
+    within = {"flaps": "lights.key.flaps.y", "half_spaces": "lights.key.half_spaces.door"}
+    prefix = within.get(table) or ".".join(filter(None, (table, ROWS.get(table, ""))))
+    values = EDITS[table][key]
+    if table == "half_spaces":
+        # A row that does not exist is given whole, as a table.
+        fields = ", ".join(f"{name} = {toml(value)}" for name, value in values.items())
+        lines = [f"{prefix}={{{fields}}}"]
+    else:
+        lines = [f"{prefix}.{name}={toml(value)}".lstrip(".") for name, value in values.items()]
+    assert same(with_settings(start(), tuple(lines)), edited(start(), table, key))
+
+
+def toml(value: Any) -> str:
+    """A value as TOML; "none" for None."""
+    if isinstance(value, dict):
+        return "{" + ", ".join(f'"{name}" = {toml(inner)}' for name, inner in value.items()) + "}"
+    return "none" if value is None else json.dumps(value)
+
+
+@every_column_of_a_light
+def test_a_column_comes_through_copies_and_rigs(tmp_path: Path, table: str, key: str) -> None:
+    scene = edited(start(), table, key)
+    light = scene.light("key")
+    assert scene.with_copied_light("key", "copy").light("copy").replace(name="key") == light
+    twice = scene.with_mirrored_light("key", "x", 0.25, "there").with_mirrored_light(
+        "there", "x", 0.25, "back"
+    )
+    back, plain = to_plain(twice.light("back").replace(name="key")), to_plain(light)
+    assert numbers_in(back) == pytest.approx(numbers_in(plain))
+    assert without_numbers(back) == without_numbers(plain)
+    assert same(scene.with_rig(scene.rig), scene)
+    write_rig(tmp_path / "lights.toml", scene)
+    assert read_rig(tmp_path / "lights.toml").lights == scene.lights
+
+
+SCALED_BY_RIGS = {"position", "aim", "flaps", "half_spaces", "reach"}
+"""The places and lengths of a light: they are measured by the object."""
+
+
+@every_column_of_a_light
+def test_a_rig_fitted_to_another_object_scales_places_and_lengths_and_keeps_the_rest(
+    table: str, key: str
+) -> None:
+    rig = edited(start(), table, key).rig
+    low, high = rig.minimum, rig.maximum
+    (fitted, _) = rig.fitted(tuple(2 * each for each in low), tuple(2 * each for each in high))  # type: ignore[arg-type]
+    before, after = to_plain(rig.lights[0]), to_plain(fitted)
+    assert {name for name in before if before[name] != after[name]} <= SCALED_BY_RIGS
+    assert without_numbers(before) == without_numbers(after)
+
+
+NOT_FAR_AWAY = {"position", "at_infinity", "only_parts", "except_parts"}
+"""The columns that a far light has in another way, or not at all: they depend on the place of a point."""
+
+
+@every_column_of_a_light
+def test_a_far_light_keeps_all_columns_but_its_place_and_its_links_to_parts(table: str, key: str) -> None:
+    light = edited(start(), table, key).light_in_world("key")
+    far, plain = to_plain(far_light(light, (0.0, 0.0, 0.0))), to_plain(light)
+    assert {name for name in plain if far.get(name) != plain[name]} <= NOT_FAR_AWAY
+    assert "only_parts" not in far
+    assert "except_parts" not in far
+
+
+NOT_DRAWN = {("", "words")}
+"""Words for normals have tests of their own, as no scalar goes with them."""
+
+
+def test_the_random_scenes_have_other_values_in_every_column() -> None:
+    seen: set[tuple[str, str]] = set()
+
+    @settings(max_examples=60, derandomize=True, database=None)
+    @given(linked_scenes())
+    def draw(scene: Scene) -> None:
+        tables: dict[str, list[Row]] = {
+            "": [scene],
+            "view": [scene.view],
+            "scalar": [] if scene.scalar is None else [scene.scalar],
+            "parts": list(scene.parts),
+            "surfaces": list(scene.surfaces),
+            "lights": list(scene.lights),
+            "flaps": [flap for each in scene.lights for flap in vars(each.flaps).values() if flap],
+            "half_spaces": [row for each in scene.lights for row in each.half_spaces],
+        }
+        for table, rows in tables.items():
+            for row in rows:
+                plain = to_plain(row)
+                seen.update(
+                    (table, key)
+                    for key in EDITS[table]
+                    if key in plain and plain[key] != default_of(CLASSES[table], key)
+                )
+
+    draw()
+    assert {(table, key) for table in EDITS for key in EDITS[table]} - seen == NOT_DRAWN
+
+
+def numbers_in(value: object) -> list[float]:
+    """The numbers in a plain value, in their order."""
+    if isinstance(value, dict):
+        value = list(value.values())
+    if isinstance(value, (list, tuple)):
+        return [number for each in value for number in numbers_in(each)]
+    return [value] if isinstance(value, float) else []
+
+
+def without_numbers(value: object) -> object:
+    """A plain value with 0 in place of each number."""
+    if isinstance(value, dict):
+        return {name: without_numbers(each) for name, each in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [without_numbers(each) for each in value]
+    return 0 if isinstance(value, float) else value
