@@ -49,7 +49,7 @@ class Served:
     def stop(self) -> None:
         """Disconnect the host, and listen no more."""
         self._ends.set()
-        self._thread.join(30)
+        self._thread.join(60)
 
 
 @pytest.fixture
