@@ -96,6 +96,8 @@ def entries(image: NormalImage) -> dict[int, tuple[int, ...]]:
         width = high - low - 2.0**-20 * high
         # Whether it has an extent may be decided by rounding.
         assume(abs(width) > 1e-5 * high)
+        # A light that grazes all faces leaves a range of rounding alone.
+        assume(width <= 0 or width > 1e-5 * sum(light.intensity for light in scene.lights if light.on))
         if width <= 0:
             low, high = whole
             assume(abs(high - low - 2.0**-20 * high) > 1e-5 * high)
