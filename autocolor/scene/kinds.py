@@ -386,7 +386,7 @@ def _advice_on_text(text: str) -> str:
 
 
 def _advice_on_floats(value: object) -> str:
-    """The color to write instead of three numbers of which some are floats; empty for any other value."""
+    """How to write the color if some of three numbers are floats; empty for any other value."""
     try:
         parts = list(value)  # type: ignore[call-overload]
         if len(parts) != 3 or all(isinstance(part, (Integral, *NO_NUMBERS)) for part in parts):

@@ -159,7 +159,7 @@ class Scalar(Row):
         Column(
             References("surfaces"),
             Tier.LEVELS,
-            "The surfaces that it colors; if absent, all surfaces that some part has which is not stage.",
+            "The surfaces that it colors; if absent, the surfaces of all parts but stage parts.",
         ),
     ] = None
     direction: Annotated[

@@ -73,7 +73,7 @@ class Reflectance(Row):
     ) -> None:
         """Set D, S and the model: a row, a name, or N of Phong's model as a number.
 
-        `exponent` sets N of any model that has it. Raises InputError.
+        `exponent` sets N, if the model has an N. Raises InputError.
         """
         if isinstance(model, Real) and not isinstance(model, bool):
             if exponent is not None:

@@ -36,15 +36,15 @@ TABLES: tuple[tuple[str, str, type[Row]], ...] = (
     ("Keys outside of all tables", "", Scene),
     ("`[view]`", "", View),
     ("`[scalar]`", "It colors the surfaces by a scalar of the mesh, or by a computed one.", Scalar),
-    ("`[[mesh]]`", "One for each mesh: a `file`, or `nodes` and `polygons`.", MeshEntry),
+    ("`[[mesh]]`", "A mesh: a `file`, or `nodes` and `polygons`.", MeshEntry),
     ("`[parts.NAME]`", "", Part),
     ("`[surfaces.NAME]`", "", Surface),
     ("`[[lights]]`", "", Light),
     ("`flaps.x`, `flaps.y`, `flaps.z` of a light", "", Flap),
     (
         "`half_spaces.NAME` of a light",
-        "One for each half-space, such as `half_spaces.left = { point = [0, 0, 0], direction = [1, 0, 0] }`."
-        " `--set` and Python change the keys of one that is there; `none`, in Python `None`, removes it.",
+        "A half-space, such as `half_spaces.left = { point = [0, 0, 0], direction = [1, 0, 0] }`."
+        " `--set` and Python change single keys of an existing half-space; `none`, in Python `None`, removes it.",
         HalfSpace,
     ),
 )

@@ -49,15 +49,16 @@ memory for it; `--write` then saves to its folder, whose comments stay. In Pytho
   scene is saved.
 - Surfaces, parts, lights and scalars are referred to by their names.
 - A point, a direction or an axis is three columns: `position_x`, `position_y`, `position_z`.
-- A flap of a light is `flaps_z_minimum`, `flaps_z_maximum` and `flaps_z_on`; all three are NULL where
-  there is none. A limit that is NULL in a flap that is there is infinite.
-- What may be one of several things is text as it is or a list as JSON: `'linear'` or `'[[0, 0], [1,
-  1]]'`, `'auto'` or `'{"object": [0, 1.3]}'`. A switch is 0 or 1, a color any that a scene file may have.
-- NULL is absent, and a value of a scalar that is NULL or has no row is missing. Minus zero is 0.
+- A flap of a light is `flaps_z_minimum`, `flaps_z_maximum` and `flaps_z_on`. Without a flap all three are
+  NULL. In an existing flap, a limit that is NULL is infinite.
+- A mapping or an exposure is a word, or JSON: `'linear'` or `'[[0, 0], [1, 1]]'`, `'auto'` or
+  `'{"object": [0, 1.3]}'`. A switch is 0 or 1. Colors are written as in scene files.
+- NULL is absent. A scalar without a row for a node or polygon, or with NULL there, has no value there. Minus
+  zero is 0.
 - `on` and `of` are words of SQL: write `"on"` and `"of"`.
 
-Only `nodes` and `polygons` must be there; all else is created as for any mesh, and a column that is
-missing has its default. Without `parts`, the parts are those that polygons name. `lights` without rows
+Only `nodes` and `polygons` are required. Other missing tables are created as for any mesh, and a missing
+column has its default. Without `parts`, the parts are named by the polygons. A table `lights` without rows
 means no lights.
 
 ## What is checked, and what is run
@@ -67,14 +68,14 @@ references unchecked unless they are asked (`PRAGMA foreign_keys = ON`), so read
 again, as it does every value: "polygons, row 12: node 40 is not in the node table (1 to 37); correct it".
 Nothing is repaired: polygons without area and parts without polygons stay, as they do in `.tables` files.
 
-A store is data. Reading a store runs nothing that is in it. Views, triggers and tables of other names are
+A store is data, and reading it runs no code from it. Views, triggers and tables of other names are
 ignored; a view, a virtual table or a computed column with one of the names below is refused. Statements may
 read, compute, and with `--write` change rows. They may not attach files, load extensions, set pragmas or
 change tables, and they end after 30 seconds (`--seconds`). A value has at most 1 MiB, a value that a
 statement reads or computes 128 KiB, a file at most 2 GiB.
 
-A new store is written beside its place and renamed. An existing store is changed in place by one
-transaction, so that programs that have it open notice; tables of other programs stay. A store with triggers,
+A new store is written under another name and renamed. An existing store is changed in place by one
+transaction, so programs with the store open notice. Tables of other programs stay. A store with triggers,
 views or indexes of other programs is not written over: save the scene to another file. A store with triggers
 is not changed by `--write` either. A studio that shows a store, or a scene file, shows the changes of other
 programs as one step to undo; with unsaved edits it asks.

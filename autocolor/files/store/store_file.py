@@ -136,7 +136,7 @@ def _is_rewritten(path: Path, scene: Scene) -> bool:
     except InputError as error:
         if any(os.path.lexists(f"{os.path.realpath(path)}{end}") for end in ("-wal", "-journal")):
             raise WriteError(str(error)) from None
-        LOG.warning("%s: written anew, as it is no store that can be read", path)
+        LOG.warning("%s: written anew, because the file is not a readable store", path)
         return False
     try:
         with closing(connection), transaction(connection, path.name):
