@@ -44,7 +44,8 @@ TABLES: tuple[tuple[str, str, type[Row]], ...] = (
     (
         "`half_spaces.NAME` of a light",
         "A half-space, such as `half_spaces.left = { point = [0, 0, 0], direction = [1, 0, 0] }`."
-        " `--set` and Python change single keys of an existing half-space; `none`, in Python `None`, removes it.",
+        " `--set` and Python change single keys of an existing half-space; `none`, in Python `None`, removes"
+        " it.",
         HalfSpace,
     ),
 )
