@@ -83,7 +83,7 @@ def test_a_plain_format_has_no_series(tmp_path: Path) -> None:
     (tmp_path / "file").write_bytes(array_file_bytes(KIND, {"name": ""}, NUMBERS))
     assert read_array_file(WITH_SERIES, tmp_path / "file").arrays.keys() == {"numbers"}
     (tmp_path / "file").write_bytes(array_file_bytes(KIND, {"name": "", "rows": []}, NUMBERS))
-    with pytest.raises(InputError, match=r"file, header: its keys must be exactly the keys of its format"):
+    with pytest.raises(InputError, match=r"file, header: it must have exactly the keys of its format"):
         read_array_file(WITH_SERIES, tmp_path / "file")
 
 

@@ -392,7 +392,7 @@ def change_scene(table: str, row: int | None = None, **fields: Any) -> Callable[
     ("edit", "sentence"),
     [
         (change(format="autocolor picture 5"), "its format must be 'autocolor picture 4'"),
-        (change(format="autocolor picture 2"), "its keys must be exactly the keys of its format"),
+        (change(format="autocolor picture 2"), "it must have exactly the keys of its format"),
         (change(scale=0), "its scale must be a number above 0, not 0"),
         (change(scale=-1.5), "its scale must be a number above 0, not -1.5"),
         (change(scale=True), "its scale must be a number above 0, not True"),
@@ -403,7 +403,7 @@ def change_scene(table: str, row: int | None = None, **fields: Any) -> Callable[
         (change(surfaces=["wall", "more"]), "its surfaces must be the scene's"),
         (change(surfaces={}), "its surfaces must be the scene's"),
         (change(scene=[]), "scene: it must be tables, its mesh among them, not []"),
-        (change(more=1), "its keys must be exactly the keys of its format"),
+        (change(more=1), "it must have exactly the keys of its format"),
         (change(mesh_scalars=3), "mesh_scalars must be a list of at most 1,000 rows, not 3"),
         (change(mesh_scalars=[{}] * 1001), "mesh_scalars must be a list of at most 1,000 rows, not ["),
         (change(shown_scalars=[{}, {}]), "shown_scalars must be a list of at most 1 rows, not ["),
