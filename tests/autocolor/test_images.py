@@ -83,7 +83,10 @@ def test_an_image_under_the_name_of_another_kind_is_refused(tmp_path: Path) -> N
 def test_a_scene_and_a_picture_in_the_wrong_order_are_refused_in_words() -> None:
     scene = scene_of(cube())
     picture = render(scene, 24, 32)
-    with pytest.raises(UsageError, match=r"a scene must be a Scene, not Picture\(.*; read a scene from files with `read_scene`"):
+    with pytest.raises(
+        UsageError,
+        match=r"a scene must be a Scene, not Picture\(.*; read a scene from files with `read_scene`",
+    ):
         image(picture, scene)  # type: ignore[arg-type]
     with pytest.raises(UsageError, match=r"a picture must be a Picture, not Scene\(.*; `render` makes one"):
         image(scene, scene)  # type: ignore[arg-type]

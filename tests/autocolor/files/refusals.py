@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from autocolor.errors import InputError
@@ -16,6 +18,18 @@ def refusal(read: Callable[..., object], *arguments: object) -> str:
     with pytest.raises(InputError) as caught:
         read(*arguments)
     return str(caught.value)
+
+
+def is_read_or_refused(path: Path, data: bytes) -> bool:
+    """Whether a mesh file with these bytes is read as a sound mesh, or refused by its name, soon."""
+    path.write_bytes(data)
+    begin = time.process_time()
+    try:
+        mesh = read_mesh({"file": path}).mesh
+        sound = np.isfinite(mesh.coordinates).all() and mesh.node_numbers.max() < len(mesh.coordinates)
+    except InputError as error:
+        sound = all(problem.startswith(path.name) for problem in error.problems)
+    return bool(sound) and time.process_time() - begin < 2
 
 
 def swapped(text: str, old: str, new: str) -> bytes:

@@ -34,7 +34,7 @@ from autocolor.files.meshes.obj import (
 from autocolor.files.meshes.repair import MeshReport, Placement
 from autocolor.files.reading import read_bytes
 from autocolor.scene.defaults import COLORED_PAINT, created_surface
-from tests.autocolor.files.refusals import refusal
+from tests.autocolor.files.refusals import is_read_or_refused, refusal
 from tests.autocolor.meshes import cube, sphere
 
 SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
@@ -48,13 +48,6 @@ def path(tmp_path: Path) -> Path:
 def read(path: Path, text: str | bytes, up: str = "z") -> MeshReport:
     path.write_bytes(text if isinstance(text, bytes) else text.encode())
     return read_obj(path, Placement(up))
-
-
-def is_read_or_refused(path: Path, data: bytes) -> bool:
-    try:
-        return len(read(path, data).mesh.node_numbers) > 0
-    except InputError as error:
-        return all(problem.startswith(path.name) for problem in error.problems)
 
 
 def test_quads_stay_quads_and_triangles_repeat_their_last_node(path: Path) -> None:

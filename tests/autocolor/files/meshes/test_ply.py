@@ -1,7 +1,6 @@
 from __future__ import annotations
 
 import struct
-import time
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +26,7 @@ from autocolor.files.meshes.ply_elements import Column, ElementRows, Lists
 from autocolor.files.meshes.repair import MeshReport, Placement, RawPolygons
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalar import MeshScalar
+from tests.autocolor.files.refusals import is_read_or_refused
 
 NODES = [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
 QUADS = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
@@ -63,16 +63,6 @@ def path(tmp_path: Path) -> Path:
 def read(path: Path, data: bytes, up: str = "z") -> MeshReport:
     path.write_bytes(data)
     return read_ply(path, Placement(up))
-
-
-def is_read_or_refused(path: Path, data: bytes) -> bool:
-    begin = time.process_time()
-    try:
-        mesh = read(path, data).mesh
-        sound = np.isfinite(mesh.coordinates).all() and mesh.node_numbers.max() < len(mesh.coordinates)
-    except InputError as error:
-        sound = all(problem.startswith(path.name) for problem in error.problems)
-    return bool(sound) and time.process_time() - begin < 2
 
 
 @pytest.mark.parametrize("order", ["", "<", ">"])
