@@ -52,7 +52,7 @@ class MappingScreen(OverPicture):
 
     name = "mapping"
     title = "mapping"
-    help = "How intensities become levels; click in the picture: the surface whose curve is shown"
+    help = "How intensities become levels; click a surface in the picture to show its curve"
 
     has_room_at_left = False
 
