@@ -64,10 +64,6 @@ READING_FOR_US = {"meshio", "trimesh"}
 """The packages of the extra `meshes`."""
 
 
-STILL_TWINS = {"Side"}
-"""Names that await another one."""
-
-
 class Import(NamedTuple):
     """A module that another one imports, and whether it does so when it is loaded itself."""
 
@@ -133,20 +129,6 @@ def test_the_renderer_knows_the_display_only_where_they_meet_and_only_by_its_doo
             used = {i.target for i in IMPORTS[name] if top(i.target) == "ramtek_emu"}
             assert used <= DOORS_OF_THE_DISPLAY, name
             assert not used or name in KNOWING_THE_DISPLAY or name.startswith(WINGS_KNOWING_THE_DISPLAY), name
-
-
-def test_no_two_classes_share_a_name_and_no_two_modules_of_a_wing() -> None:
-    places: dict[str, set[str]] = {}
-    for name, path in MODULES.items():
-        wing, stem = ".".join(name.split(".")[:2]), name.rpartition(".")[2]
-        if path.stem != "__init__":
-            places.setdefault(f"{wing}: {stem}", set()).add(name)
-        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
-            if isinstance(node, ast.ClassDef):
-                places.setdefault(node.name, set()).add(name)
-    both_publish = set.intersection(*map(set, PUBLIC_NAMES.values()))
-    twins = {name for name, modules in places.items() if len(modules) > 1}
-    assert twins - both_publish <= STILL_TWINS
 
 
 def test_pygame_is_in_one_file() -> None:
@@ -240,15 +222,15 @@ def test_no_two_modules_of_a_wing_have_the_same_name() -> None:
 
 
 def test_no_two_classes_have_the_same_name() -> None:
-    for package in WINGS:
-        names = Counter(
-            node.name
-            for name, tree in TREES.items()
-            if top(name) == package
-            for node in ast.walk(tree)
-            if isinstance(node, ast.ClassDef)
-        )
-        assert [name for name, count in names.items() if count > 1] == []
+    # An error that both packages publish is a class of each.
+    of_both = set.intersection(*map(set, PUBLIC_NAMES.values()))
+    names = Counter(
+        (top(name) if node.name in of_both else "", node.name)
+        for name, tree in TREES.items()
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ClassDef)
+    )
+    assert [name for name, count in names.items() if count > 1] == []
 
 
 def run(code: str, timeout: float = 60) -> str:

@@ -15,7 +15,7 @@ import numpy as np
 from autocolor.arrays import Booleans, Floats, Indices, Singles, dot
 from autocolor.immutable import Immutable, read_only
 from autocolor.scene.defaults import framed
-from autocolor.scene.geometry.normals import places_of_corners
+from autocolor.scene.geometry.normals import edge_keys, places_of_corners
 from autocolor.scene.geometry.planes import ScaledPolygons
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import Scene
@@ -238,7 +238,7 @@ def _sides(places: Indices, has_edges: Booleans) -> _Sides:
     ends = np.roll(places, -1, axis=0)
     corners = np.flatnonzero((places != ends) & has_edges)
     start, end = places.ravel()[corners], ends.ravel()[corners]
-    keys = np.minimum(start, end) * (int(places.max(initial=0)) + 1) + np.maximum(start, end)
+    keys = edge_keys(start, end, int(places.max(initial=0)) + 1)
     order = np.argsort(keys, kind="stable")
     starts = np.flatnonzero(np.diff(keys[order], prepend=-1))
     return _Sides(corners[order], (start < end)[order], starts, np.diff(starts, append=len(corners)))
