@@ -9,13 +9,15 @@ from __future__ import annotations
 import difflib
 import os
 import re
+import select
+import signal
 import sys
 import traceback
 from collections.abc import Sequence
 from contextlib import suppress
 from importlib import import_module
 from io import TextIOWrapper
-from typing import Any, ClassVar, Final, NoReturn
+from typing import Any, ClassVar, Final, NoReturn, TextIO
 
 import click
 from click.shell_completion import BashComplete, CompletionItem, split_arg_string
@@ -23,7 +25,12 @@ from click.shell_completion import BashComplete, CompletionItem, split_arg_strin
 UNAVAILABLE: Final = 69
 FAULT: Final = 70
 WRITING_FAILED: Final = 74
-INTERRUPTED: Final = 130
+BY_SIGNAL: Final = 128
+"""The exit code in a shell of a program that a signal ended, minus the number of the signal."""
+ENDING: Final = tuple(
+    getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
+)
+"""The signals that end a program from outside. Windows has no SIGHUP."""
 READER_LEFT: Final = 141
 """The exit code in a shell of a program that SIGPIPE ended."""
 WINDOW: Final = "ramtek_emu.monitor.window"
@@ -103,14 +110,80 @@ class CommandGroup(click.Group):
             formatter.write_dl(list(self.table.items()))
 
 
+class Ended(KeyboardInterrupt):
+    """A signal is to end the program."""
+
+    def __init__(self, number: int) -> None:
+        super().__init__(f"ended by {signal.Signals(number).name}")
+        self.exit_code = BY_SIGNAL + number
+
+
+class EndingSignals:
+    """The handlers of the signals that end a program: the first signal raises Ended, the others do nothing.
+
+    A signal that was ignored when the program started (`nohup`) stays ignored.
+    """
+
+    def __init__(self) -> None:
+        self.ended: Ended | None = None
+        self.ignored = False
+        """Whether further signals do nothing, because the program ends."""
+        self._unraisable = sys.unraisablehook
+
+    def install(self) -> None:
+        """Install the handlers for the rest of the process."""
+        sys.unraisablehook = self._raise_later
+        for number in ENDING:
+            if signal.getsignal(number) is not signal.SIG_IGN:
+                signal.signal(number, self._raise)
+
+    def _raise(self, number: int, _: object) -> None:
+        if not self.ignored:
+            self.ignored = True
+            self.ended = Ended(number)
+            raise self.ended
+
+    def _raise_later(self, unraisable: sys.UnraisableHookArgs) -> None:
+        """Raise Ended again if Python dropped it, as in a `__del__`; show any other exception."""
+        if unraisable.exc_value is not self.ended or self.ended is None:
+            self._unraisable(unraisable)
+        elif hasattr(signal, "setitimer"):
+            number = self.ended.exit_code - BY_SIGNAL
+            signal.signal(signal.SIGALRM, lambda *_: self._raise(number, None))
+            self.ignored = False
+            signal.setitimer(signal.ITIMER_REAL, 0.005)
+
+
 def run_command(command: click.Command, name: str) -> None:
     """Run a command and end the process with its exit code.
 
-    If an error has an attribute `exit_code`, the user can act on it: its message is shown, and the attribute
-    is the code. If the reader of stdout leaves, the command ends in silence. An error while the module of the
-    window is loaded means that pygame is missing or broken. All other errors are faults of the program. With
+    SIGINT, SIGTERM and SIGHUP raise Ended, once; the exit code is 128 plus the number of the signal. If an
+    error has an attribute `exit_code`, the user can act on it: its message is shown, and the attribute is the
+    code. If the reader of stdout leaves, the command ends in silence. An error while the module of the window
+    is loaded means that pygame is missing or broken. All other errors are faults of the program. With
     `--debug` anywhere before a `--`, the traceback is shown.
     """
+    signals = EndingSignals()
+    signals.install()
+    try:
+        code, message = _outcome(command, name)
+        if signals.ended is not None:
+            # A library replaced the exception by another, such as SQLite's "interrupted".
+            raise signals.ended
+        _show(name, message)
+        signals.ignored = True
+    except KeyboardInterrupt as end:
+        signals.ignored = True
+        # Nobody may read what is left in the buffers: drop it.
+        _discard(sys.stdout)
+        if _takes_text(sys.stderr):
+            _show(name, str(end) or "interrupted")
+        code = getattr(end, "exit_code", BY_SIGNAL + signal.SIGINT)
+    _leave(code)
+
+
+def _outcome(command: click.Command, name: str) -> tuple[int, str]:
+    """Run a command. Returns its exit code and the message for stderr."""
     debug, arguments = _without_debug(sys.argv[1:])
     had_stdout = sys.stdout is not None
     if sys.stdout is None:
@@ -121,39 +194,35 @@ def run_command(command: click.Command, name: str) -> None:
     try:
         code = _exit_code(command, name, arguments)
         sys.stdout.flush()
-    except (click.exceptions.Abort, KeyboardInterrupt):
-        _end(name, "interrupted", INTERRUPTED)
+    except click.exceptions.Abort:
+        raise KeyboardInterrupt from None
     except click.ClickException as refusal:
         with suppress(OSError, ValueError):
             refusal.show()
-        _leave(refusal.exit_code)
+        return refusal.exit_code, ""
     except BrokenPipeError:
         if had_stdout:
-            _leave(READER_LEFT)
-        _end(name, "stdout must stay open until all is written, not be closed; read it all", WRITING_FAILED)
+            return READER_LEFT, ""
+        return WRITING_FAILED, "stdout must stay open until all is written, not be closed; read it all"
     except Exception as error:
         if debug:
             with suppress(OSError, ValueError):
                 traceback.print_exc()
-        refused = getattr(error, "exit_code", None)
+        refused: int | None = getattr(error, "exit_code", None)
         if refused is not None:
-            _end(name, str(error), refused)
+            return refused, str(error)
         if _is_of_the_window(error):
             reason = str(error) or type(error).__name__
-            _end(
-                name,
+            return UNAVAILABLE, (
                 f"a window must have pygame, and it cannot be loaded ({reason}); "
-                f"install it with `pip install {PYGAME}`, or ask for a picture file instead",
-                UNAVAILABLE,
+                f"install it with `pip install {PYGAME}`, or ask for a picture file instead"
             )
         if isinstance(error, OSError) and error.filename is None:
             reason = (error.strerror or str(error)).lower()
-            _end(name, f"stdout must take what is written, not fail ({reason}); make room", WRITING_FAILED)
+            return WRITING_FAILED, f"stdout must take what is written, not fail ({reason}); make room"
         fault = f"a fault of this program, not of yours: {type(error).__name__}: {error}"
-        _end(
-            name, f"{fault}; {'report it' if debug else 'add --debug for the traceback and report it'}", FAULT
-        )
-    _leave(code if isinstance(code, int) else 0)
+        return FAULT, f"{fault}; {'report it' if debug else 'add --debug for the traceback and report it'}"
+    return code if isinstance(code, int) else 0, ""
 
 
 def _exit_code(command: click.Command, name: str, arguments: list[str]) -> object:
@@ -193,13 +262,27 @@ def _closed_pipe() -> TextIOWrapper:
     return open(write_end, "w", encoding="utf-8")
 
 
-def _end(name: str, message: str, code: int) -> NoReturn:
-    """Print the message, with the name of the command before each line, and end the process."""
+def _show(name: str, message: str) -> None:
+    """Print the message on stderr, with the name of the command before each line."""
     for line in message.splitlines():
         # A file name may contain characters that the terminal cannot encode.
         with suppress(OSError, ValueError):
             click.echo(f"{name}: {line}", err=True)
-    _leave(code)
+
+
+def _takes_text(stream: TextIO | None) -> bool:
+    """Whether writing to the stream does not wait for a reader; True where this cannot be known."""
+    try:
+        return stream is not None and bool(select.select([], [stream], [], 0)[1])
+    except (OSError, ValueError):
+        return True
+
+
+def _discard(stream: TextIO | None) -> None:
+    """Send what a stream's buffer contains, and all that follows, to the null device."""
+    with suppress(OSError, ValueError):
+        if stream is not None:
+            os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
 def _leave(code: int) -> NoReturn:
@@ -209,9 +292,8 @@ def _leave(code: int) -> NoReturn:
             if stream is not None:
                 stream.flush()
         except (OSError, ValueError):
-            # Send the rest to the null device; otherwise the exit would fail and change the code.
-            with suppress(OSError, ValueError):
-                os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+            # Otherwise the exit would fail and change the code.
+            _discard(stream)
     sys.exit(code)
 
 
