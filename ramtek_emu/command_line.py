@@ -114,7 +114,9 @@ class Ended(KeyboardInterrupt):
     """A signal is to end the program."""
 
     def __init__(self, number: int) -> None:
-        super().__init__(f"ended by {signal.Signals(number).name}")
+        super().__init__(
+            "interrupted" if number == signal.SIGINT else f"ended by {signal.Signals(number).name}"
+        )
         self.exit_code = BY_SIGNAL + number
 
 
@@ -124,24 +126,28 @@ class EndingSignals:
     A signal that was ignored when the program started (`nohup`) stays ignored.
     """
 
-    def __init__(self) -> None:
-        self.ended: Ended | None = None
-        self.ignored = False
-        """Whether further signals do nothing, because the program ends."""
-        self._unraisable = sys.unraisablehook
+    ended: Ended | None = None
+    ignored = False
+    """Whether further signals do nothing, because the program ends."""
+    cancels = False
+    """Whether Ctrl+C raises KeyboardInterrupt each time, because it cancels a step, not the program."""
 
     def install(self) -> None:
         """Install the handlers for the rest of the process."""
-        sys.unraisablehook = self._raise_later
+        self.ended, self.ignored, self.cancels = None, False, False
+        self._unraisable, sys.unraisablehook = sys.unraisablehook, self._raise_later
         for number in ENDING:
             if signal.getsignal(number) is not signal.SIG_IGN:
                 signal.signal(number, self._raise)
 
     def _raise(self, number: int, _: object) -> None:
-        if not self.ignored:
-            self.ignored = True
-            self.ended = Ended(number)
-            raise self.ended
+        if self.ignored:
+            return
+        if self.cancels and number == signal.SIGINT:
+            raise KeyboardInterrupt
+        self.ignored = True
+        self.ended = Ended(number)
+        raise self.ended
 
     def _raise_later(self, unraisable: sys.UnraisableHookArgs) -> None:
         """Raise Ended again if Python dropped it, as in a `__del__`; show any other exception."""
@@ -154,6 +160,10 @@ class EndingSignals:
             signal.setitimer(signal.ITIMER_REAL, 0.005)
 
 
+SIGNALS: Final = EndingSignals()
+"""The signals that end this process."""
+
+
 def run_command(command: click.Command, name: str) -> None:
     """Run a command and end the process with its exit code.
 
@@ -163,17 +173,17 @@ def run_command(command: click.Command, name: str) -> None:
     is loaded means that pygame is missing or broken. All other errors are faults of the program. With
     `--debug` anywhere before a `--`, the traceback is shown.
     """
-    signals = EndingSignals()
-    signals.install()
+    SIGNALS.install()
     try:
         code, message = _outcome(command, name)
-        if signals.ended is not None:
+        if SIGNALS.ended is not None:
             # A library replaced the exception by another, such as SQLite's "interrupted".
-            raise signals.ended
+            raise SIGNALS.ended
         _show(name, message)
-        signals.ignored = True
-    except KeyboardInterrupt as end:
-        signals.ignored = True
+        SIGNALS.ignored = True
+    except KeyboardInterrupt as interrupt:
+        end = SIGNALS.ended or interrupt
+        SIGNALS.ignored = True
         # Nobody may read what is left in the buffers: drop it.
         _discard(sys.stdout)
         if _takes_text(sys.stderr):

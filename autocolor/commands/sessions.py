@@ -5,13 +5,11 @@ A session is abandoned if its program ended without closing it, for example by a
 
 from __future__ import annotations
 
-import signal
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from types import FrameType
-from typing import TYPE_CHECKING, Final, NoReturn
+from typing import TYPE_CHECKING, Final
 
 import click
 
@@ -31,20 +29,14 @@ OLD: Final = (
     " --forget` removes it"
 )
 
-ENDING: Final = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name))
-"""The signals that end a program from outside."""
-
-BY_SIGNAL: Final = 128
-"""The exit code of a program that a signal ended, minus the number of the signal, as in a shell."""
-
 
 @contextmanager
 def autosaved_session(viewer: Viewer, folder: Path | None = None) -> Iterator[Callable[[], None]]:
     """Autosave the session of a viewer. Yields a function that the caller calls often.
 
     `folder` is the folder of a recovered session. If the journal cannot be written, the viewer shows a
-    message once. Messages on stderr and in the viewer mention abandoned sessions. SIGTERM and SIGHUP end the
-    program at once, and the journal remains.
+    message once. Messages on stderr and in the viewer mention abandoned sessions. After an exception, such as
+    `Ended` by a signal, the journal remains, with every step.
     """
     autosave = Autosave(folder)
     _mention_left_sessions(viewer)
@@ -58,22 +50,13 @@ def autosaved_session(viewer: Viewer, folder: Path | None = None) -> Iterator[Ca
                 messages.add(str(error))
                 viewer.tell(str(error))
 
-    before = {number: signal.signal(number, _end) for number in ENDING}
     try:
         yield update
     except BaseException:
         with suppress(AutocolorError):
             autosave.update(viewer.studio.history, at_once=True)
         raise
-    finally:
-        for number, handler in before.items():
-            # None means a handler that Python has not installed.
-            signal.signal(number, signal.SIG_DFL if handler is None else handler)
     autosave.end()
-
-
-def _end(number: int, _: FrameType | None) -> NoReturn:
-    raise SystemExit(BY_SIGNAL + number)
 
 
 def _mention_left_sessions(viewer: Viewer) -> None:

@@ -22,6 +22,7 @@ from autocolor.commands.options import as_usage
 from autocolor.commands.outputs import tell_written
 from autocolor.commands.scenes import SceneSource, ended, read, scene_options
 from autocolor.errors import AutocolorError, InputError, UsageError
+from ramtek_emu.command_line import SIGNALS
 
 if TYPE_CHECKING:
     from autocolor.files.scene_report import SceneReport
@@ -230,6 +231,7 @@ _PIECES: Final = re.compile(
 
 def prompt(tables: Tables, run: Callable[[str], None]) -> None:
     """Run typed statements until Ctrl+D or `.quit`; Ctrl+C deletes the typed text or stops a statement."""
+    SIGNALS.cancels = True
     with suppress(ImportError):
         # With readline the user can edit lines, and the arrow keys bring earlier lines back.
         import readline  # noqa: F401
@@ -247,6 +249,8 @@ def prompt(tables: Tables, run: Callable[[str], None]) -> None:
             click.echo(err=True)
             return
         except KeyboardInterrupt:
+            if SIGNALS.ended is not None:
+                raise
             text = ""
             click.echo("canceled; Ctrl+D ends", err=True)
         except AutocolorError as error:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import errno
 import shutil
+import signal
 import subprocess
 import sys
+import time
 from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
@@ -91,6 +93,61 @@ def test_each_failure_has_its_code_and_no_traceback(
     assert left.code == code
     assert sentence in left.err
     assert "Traceback" not in left.err
+
+
+ENDING = [
+    pytest.param(
+        name, code, sentence, marks=pytest.mark.skipif(not hasattr(signal, name), reason="no such signal")
+    )
+    for name, code, sentence in (
+        ("SIGINT", 130, "interrupted"),
+        ("SIGTERM", 143, "ended by SIGTERM"),
+        ("SIGHUP", 129, "ended by SIGHUP"),
+    )
+]
+
+
+@pytest.mark.parametrize(("name", "code", "sentence"), ENDING)
+def test_the_first_signal_ends_a_command_and_later_signals_do_nothing(
+    end: End, name: str, code: int, sentence: str
+) -> None:
+    def does() -> None:
+        try:
+            signal.raise_signal(getattr(signal, name))
+        finally:
+            signal.raise_signal(signal.SIGTERM)
+            signal.raise_signal(signal.SIGINT)
+
+    assert end(does) == (code, "\n", f"tool: {sentence}\n")
+
+
+def test_a_signal_that_was_ignored_at_the_start_stays_ignored(end: End) -> None:
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    assert end(lambda: signal.raise_signal(signal.SIGTERM)) == (0, "\n", "")
+
+
+def test_a_signal_ends_a_command_whose_library_raises_another_exception(end: End) -> None:
+    def does() -> None:
+        try:
+            signal.raise_signal(signal.SIGTERM)
+        except KeyboardInterrupt:
+            raise ValueError("interrupted") from None
+
+    assert end(does) == (143, "\n", "tool: ended by SIGTERM\n")
+
+
+@pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="this system has no timers")
+def test_a_signal_amid_a_destructor_ends_the_command_later(end: End) -> None:
+    class Destroyed:
+        def __del__(self) -> None:
+            signal.raise_signal(signal.SIGTERM)
+
+    def does() -> None:
+        Destroyed()
+        while True:
+            time.sleep(1)
+
+    assert end(does) == (143, "\n", "tool: ended by SIGTERM\n")
 
 
 def test_a_reader_of_stdout_that_left_ends_a_command_in_silence(end: End) -> None:
