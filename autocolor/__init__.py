@@ -12,7 +12,7 @@ Paper: D. R. Warn, "Lighting Controls for Synthetic Images", SIGGRAPH 1983.
 from __future__ import annotations
 
 # Nothing is imported at once: a command can handle Ctrl+C only afterwards.
-TYPE_CHECKING = False
+TYPE_CHECKING: Final = False
 if TYPE_CHECKING:
     from typing import Final
 

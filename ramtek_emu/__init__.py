@@ -34,7 +34,7 @@ SIGGRAPH 1983).
 from __future__ import annotations
 
 # Nothing is imported at once: a command can handle Ctrl+C only afterwards.
-TYPE_CHECKING = False
+TYPE_CHECKING: Final = False
 if TYPE_CHECKING:
     from typing import Final
 

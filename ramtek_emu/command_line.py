@@ -22,6 +22,8 @@ from typing import Any, ClassVar, Final, NoReturn, TextIO
 import click
 from click.shell_completion import BashComplete, CompletionItem, split_arg_string
 
+from ramtek_emu.errors import escaped
+
 UNAVAILABLE: Final = 69
 FAULT: Final = 70
 WRITING_FAILED: Final = 74
@@ -207,6 +209,7 @@ def _outcome(command: click.Command, name: str) -> tuple[int, str]:
     except click.exceptions.Abort:
         raise KeyboardInterrupt from None
     except click.ClickException as refusal:
+        refusal.message = escaped(refusal.message)  # type: ignore[misc]
         with suppress(OSError, ValueError):
             refusal.show()
         return refusal.exit_code, ""
@@ -272,12 +275,17 @@ def _closed_pipe() -> TextIOWrapper:
     return open(write_end, "w", encoding="utf-8")
 
 
+def tell(*lines: str, err: bool = True) -> None:
+    """Print lines, by default on stderr. What cannot be printed, as in names of files, is escaped."""
+    for line in lines:
+        click.echo(escaped(line), err=err)
+
+
 def _show(name: str, message: str) -> None:
     """Print the message on stderr, with the name of the command before each line."""
-    for line in message.splitlines():
-        # A file name may contain characters that the terminal cannot encode.
-        with suppress(OSError, ValueError):
-            click.echo(f"{name}: {line}", err=True)
+    # A closed stderr does not change the exit code.
+    with suppress(OSError, ValueError):
+        tell(*(f"{name}: {line}" for line in message.split("\n") if line))
 
 
 def _takes_text(stream: TextIO | None) -> bool:

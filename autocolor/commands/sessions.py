@@ -17,6 +17,7 @@ from autocolor.errors import AutocolorError, InputError, MissingInputError, Usag
 from autocolor.journal.autosave import OLD_SCRIPT, Autosave, forget, journal_in, left_sessions
 from autocolor.journal.journal import read_journal
 from autocolor.screens.viewer import Viewer
+from ramtek_emu.command_line import tell
 
 if TYPE_CHECKING:
     from autocolor.journal.journal import JournalSession
@@ -82,18 +83,18 @@ def list_sessions() -> None:
         try:
             session = _session_in(folder)
         except InputError as error:
-            text = str(error).replace("\n", "; ")
+            text = "; ".join(error.problems)
         else:
             steps = len(session.history.steps)
             text = f"{session.source.path}, {steps} step{'' if steps == 1 else 's'}"
-        click.echo(f"{folder.name}  {_time_of(folder)}  {text}")
+        tell(f"{folder.name}  {_time_of(folder)}  {text}", err=False)
 
 
 def forget_session(name: str) -> None:
     """Remove an abandoned session, by the beginning of its name, and say so on stderr."""
     folder = _folder_named(name)
     forget(folder)
-    click.echo(f"autocolor: {folder.name} is removed", err=True)
+    tell(f"autocolor: {folder.name} is removed")
 
 
 def chosen_session(name: str) -> tuple[Path, JournalSession]:
@@ -109,7 +110,7 @@ def chosen_session(name: str) -> tuple[Path, JournalSession]:
         try:
             return folder, _session_in(folder)
         except InputError as error:
-            click.echo(f"autocolor: {folder}: {error}", err=True)
+            tell(*(f"autocolor: {folder}: {problem}" for problem in error.problems))
     raise MissingInputError(
         "--recover: there must be a session that was not closed and can be read, and there is none; name a"
         " scene instead"

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, BinaryIO, Final, TypeVar
 
 import click
 
+from ramtek_emu.command_line import tell as tell
 from ramtek_emu.configuration import CONFIGURATIONS, GMR_9300
 from ramtek_emu.errors import MissingInputError, reason_of
 from ramtek_emu.writing import Output, refuse_output, write_atomically
@@ -134,11 +135,6 @@ def reader_of(file: BinaryIO) -> Callable[[int], bytes]:
             ) from None
 
     return read
-
-
-def tell(message: str) -> None:
-    """Print a message on stderr; stdout is for results."""
-    click.echo(message, err=True)
 
 
 class EndSignals:

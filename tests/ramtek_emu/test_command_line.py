@@ -15,9 +15,11 @@ from typing import ClassVar, NamedTuple
 
 import click
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from ramtek_emu.command_line import CommandGroup, WholeWords, joined, prefix_in_bash, run_command
-from ramtek_emu.errors import OutputExistsError
+from ramtek_emu.command_line import CommandGroup, WholeWords, joined, prefix_in_bash, run_command, tell
+from ramtek_emu.errors import OutputExistsError, escaped
 
 
 class Left(NamedTuple):
@@ -66,12 +68,60 @@ def test_a_command_may_end_with_a_code_of_its_own(end: End) -> None:
 
 
 def test_a_refusal_ends_with_its_sentence_and_its_code(end: End) -> None:
-    refusal = OutputExistsError("the file must be a new one\nor another")
-    assert end(raising(refusal)) == (
+    assert end(raising(OutputExistsError("the file\n\x1b must be new"))) == (
         73,
         "\n",
-        "tool: the file must be a new one\ntool: or another\n",
+        "tool: the file\\n\\x1b must be new\n",
     )
+
+
+class TwoProblemsError(Exception):
+    exit_code = 65
+
+
+def test_each_problem_of_a_refusal_has_a_line_with_the_name_of_the_command(end: End) -> None:
+    assert end(raising(TwoProblemsError("a\x0b\nb"))).err == "tool: a\\x0b\ntool: b\n"
+
+
+def has_no_commands_for_a_terminal(text: str) -> bool:
+    return all(letter.isprintable() or letter == "\n" for letter in text)
+
+
+@given(st.text())
+def test_what_is_printed_commands_no_terminal(text: str) -> None:
+    assert escaped(text).isprintable()
+    assert escaped(escaped(text)) == escaped(text)
+    if text.isprintable():
+        assert escaped(text) == text
+
+
+STRANGE = "\u202e\x00\x16\x1b[2J\x7f\x85\u2028\u2066\u061c\udcff\n"
+"""Characters that turn the direction of text, clear a terminal, begin a line or are no text."""
+
+
+@pytest.mark.parametrize(
+    "does",
+    [
+        raising(OutputExistsError(STRANGE)),
+        raising(TwoProblemsError(STRANGE)),
+        raising(ValueError(STRANGE)),
+        raising(click.UsageError(STRANGE)),
+        raising(click.BadParameter(STRANGE)),
+        lambda: tell(STRANGE, STRANGE),
+    ],
+)
+def test_strange_characters_of_names_are_escaped_in_every_message(
+    end: End, does: Callable[[], object]
+) -> None:
+    left = end(does)
+    assert has_no_commands_for_a_terminal(left.err)
+    assert "\\u202e\\x00\\x16\\x1b[2J" in left.err
+
+
+def test_strange_characters_of_arguments_are_escaped(end: End) -> None:
+    left = end(lambda: None, f"--{STRANGE}")
+    assert left.code == 2
+    assert has_no_commands_for_a_terminal(left.err)
 
 
 @pytest.mark.parametrize(
