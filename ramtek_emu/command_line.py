@@ -26,6 +26,7 @@ from ramtek_emu.errors import escaped
 
 UNAVAILABLE: Final = 69
 FAULT: Final = 70
+OUT_OF_MEMORY: Final = 71
 WRITING_FAILED: Final = 74
 BY_SIGNAL: Final = 128
 """The exit code in a shell of a program that a signal ended, minus the number of the signal."""
@@ -221,6 +222,15 @@ def _outcome(command: click.Command, name: str) -> tuple[int, str]:
         if debug:
             with suppress(OSError, ValueError):
                 traceback.print_exc()
+        if memory_error := _memory_error(error):
+            # Free what the functions had allocated when memory ran out.
+            traceback.clear_frames(error.__traceback__)
+            doing = ", ".join(getattr(memory_error, "__notes__", [" ".join([name, *arguments])]))
+            reason = str(memory_error) or "nothing is left"
+            return OUT_OF_MEMORY, (
+                f"memory must suffice, and it ran out ({escaped(doing)}: {reason[:1].lower()}{reason[1:]});"
+                " take a smaller mesh or picture, or give the program more memory"
+            )
         refused: int | None = getattr(error, "exit_code", None)
         if refused is not None:
             return refused, str(error)
@@ -247,10 +257,22 @@ def _exit_code(command: click.Command, name: str, arguments: list[str]) -> objec
         add_completion_class(WholeWords)
         return shell_complete(command, {}, name, completion, os.environ[completion])
     try:
-        with command.make_context(name, arguments) as context:
+        with command.make_context(name, [*arguments]) as context:
             return command.invoke(context)
     except click.exceptions.Exit as leaving:
         return leaving.exit_code
+
+
+def _memory_error(error: BaseException | None) -> BaseException | None:
+    """The lack of memory that an error reports, or that led to it; None for any other error."""
+    while error is not None:
+        # Errors of pygame and of the loader of libraries have no other sign.
+        is_foreign = not hasattr(error, "exit_code")
+        is_lack = is_foreign and re.search("out of memory|cannot allocate memory", str(error), re.IGNORECASE)
+        if isinstance(error, MemoryError) or is_lack:
+            return error
+        error = error.__context__
+    return None
 
 
 def _is_of_the_window(error: Exception) -> bool:

@@ -59,6 +59,12 @@ def raising(error: BaseException) -> Callable[[], None]:
     return does
 
 
+def after(cause: BaseException, error: BaseException) -> BaseException:
+    """The error, raised while the cause was handled."""
+    error.__context__ = cause
+    return error
+
+
 def test_success_ends_with_0(end: End) -> None:
     assert end(lambda: None, "a", "b") == (0, "a b\n", "")
 
@@ -132,14 +138,22 @@ def test_strange_characters_of_arguments_are_escaped(end: End) -> None:
         (KeyboardInterrupt(), 130, "tool: interrupted"),
         (OSError(errno.ENOSPC, "No space left on device"), 74, "not fail (no space left on device)"),
         (OSError(errno.EIO, "Input/output error", "a/file"), 70, "a fault of this program"),
-        (MemoryError(), 70, "a fault of this program, not of yours: MemoryError: ; add --debug"),
+        (MemoryError(), 71, "tool: memory must suffice, and it ran out (tool a\\n: nothing is left); take a"),
+        (
+            OSError(errno.ENOMEM, "Cannot allocate memory"),
+            71,
+            "(tool a\\n: [Errno 12] Cannot allocate memory)",
+        ),
+        (RuntimeError("Out of memory"), 71, "(tool a\\n: out of memory)"),
+        (after(MemoryError("no"), OutputExistsError("out of memory.png exists")), 71, "(tool a\\n: no)"),
+        (OutputExistsError("out of memory.png exists"), 73, "out of memory.png exists"),
         (RecursionError("deep"), 70, "RecursionError: deep"),
     ],
 )
 def test_each_failure_has_its_code_and_no_traceback(
     end: End, error: BaseException, code: int, sentence: str
 ) -> None:
-    left = end(raising(error))
+    left = end(raising(error), "a\n")
     assert left.code == code
     assert sentence in left.err
     assert "Traceback" not in left.err
