@@ -298,16 +298,18 @@ def _closed_pipe() -> TextIOWrapper:
 
 
 def tell(*lines: str, err: bool = True) -> None:
-    """Print lines, by default on stderr. What cannot be printed, as in names of files, is escaped."""
-    for line in lines:
-        click.echo(escaped(line), err=err)
+    """Print lines, by default on stderr. What cannot be printed, as in names of files, is escaped.
+
+    If stderr is closed, the lines are lost, and the program goes on.
+    """
+    with suppress(*((OSError, ValueError) if err else ())):
+        for line in lines:
+            click.echo(escaped(line), err=err)
 
 
 def _show(name: str, message: str) -> None:
     """Print the message on stderr, with the name of the command before each line."""
-    # A closed stderr does not change the exit code.
-    with suppress(OSError, ValueError):
-        tell(*(f"{name}: {line}" for line in message.split("\n") if line))
+    tell(*(f"{name}: {line}" for line in message.split("\n") if line))
 
 
 def _takes_text(stream: TextIO | None) -> bool:

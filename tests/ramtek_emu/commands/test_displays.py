@@ -1,10 +1,8 @@
 from __future__ import annotations
 
-import os
 import signal
 import subprocess
 import sys
-import threading
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +10,6 @@ import pytest
 from click.shell_completion import BashComplete
 
 from ramtek_emu import PRINCETON_9300, Ramtek9300, TcpPort, read_snapshot
-from ramtek_emu.commands.displays import end_signals
 from ramtek_emu.commands.ramtek import ramtek
 from tests.ramtek_emu.processes import environment, run, started, stream
 from tests.ramtek_emu.recorded_streams import COLOR_MAP, OUTLINE, words
@@ -76,27 +73,3 @@ def test_a_display_goes_on_from_a_snapshot(tmp_path: Path) -> None:
         b"ramtek: a snapshot must begin as a PNG file does, not as something else; "
         b"take a new one with --snapshot\n"
     )
-
-
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_signal_ends_a_waiting_read_and_all_later_reads(number: signal.Signals) -> None:
-    read_end, write_end = os.pipe()
-    before = signal.getsignal(number)
-    with end_signals() as signals:
-        read = signals.until_received(lambda most: os.read(read_end, most))
-        os.write(write_end, b"words")
-        assert read(5) == b"words"
-        assert not signals.received
-        threading.Timer(0.2, os.kill, (os.getpid(), number)).start()
-        assert read(5) == b""
-        assert signals.received
-        os.write(write_end, b"words")
-        assert read(5) == b""
-    assert signal.getsignal(number) is before
-    os.close(read_end)
-    os.close(write_end)
-
-
-def test_a_read_that_fails_is_the_end() -> None:
-    with end_signals() as signals:
-        assert signals.until_received(lambda most: os.read(-1, most))(5) == b""

@@ -1,0 +1,276 @@
+"""Signals at every moment: `python -m tests.signals [--rounds N] [--row TEXT]`.
+
+A row is a command and a moment. For each signal that ends a program the command is started in a folder of its
+own, and it gets the signal at that moment. Then it must end with the row's exit code and without a traceback,
+its outputs must be whole, and nothing else may be left in the folder. The script prints the longest time from
+a signal to the end of each row, and leaves with 1 if a row failed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import random
+import select
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+from array import array
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from fcntl import ioctl
+from functools import partial
+from pathlib import Path
+from termios import FIONREAD
+from typing import NamedTuple
+
+import numpy as np
+
+from ramtek_emu import NCAR_9460, Ramtek9300, instructions, read_snapshot
+from tests.ramtek_emu.processes import environment, stream
+
+ENDING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+DRAWING = stream(instructions.write_vectors([[20, 10], [60, 45], [5, 40]], 9))
+READ = stream(next(instructions.read_image(0, 0, 1, 1))[0])
+READ_ALL = stream(np.concatenate([words for words, _ in instructions.read_image(0, 0, 640, 480)]))
+FILLS = stream(np.concatenate([instructions.fill(5, 5, 9), instructions.fill(5, 5, 8)] * 17_000))
+"""About 240,000 words that take the display a minute and more."""
+PIPE_BYTES = 1 << 16
+
+
+class Command:
+    """A command that runs in a folder of its own, and its host."""
+
+    def __init__(self, process: subprocess.Popen[bytes], place: Path) -> None:
+        self.process, self.place = process, place
+        self._host: socket.socket | None = None
+
+    def until(self, condition: Callable[[], object]) -> None:
+        """Wait for a state of the command."""
+        end = time.monotonic() + 60
+        while not condition():
+            assert self.process.poll() is None, self.process.communicate()
+            assert time.monotonic() < end, "the command does not get there"
+            time.sleep(0.002)
+
+    def connect(self) -> None:
+        """Connect to the address that a server prints."""
+        assert self.process.stdout is not None
+        address = self.process.stdout.readline().decode().strip()
+        if address.startswith("tcp:"):
+            self._host = socket.create_connection(("127.0.0.1", int(address.rpartition(":")[2])))
+        else:
+            self._host = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+            self._host.connect(str(self.place / address))
+
+    def send(self, data: bytes, least: int | None = None) -> None:
+        """Send at least `least` bytes, or all, and then as many as the command takes at once."""
+        assert self.process.stdin is not None
+        number = self.process.stdin.fileno() if self._host is None else self._host.fileno()
+        os.set_blocking(number, False)
+        sent = 0
+        while sent < len(data):
+            try:
+                sent += os.write(number, data[sent : sent + (1 << 14)])
+            except BlockingIOError:
+                if least is not None and sent >= least:
+                    break
+                select.select([], [number], [], 60)
+
+    def receive(self, count: int) -> bytes:
+        """Bytes of a reply."""
+        assert self.process.stdout is not None
+        file = self.process.stdout if self._host is None else self._host
+        select.select([file], [], [], 60)
+        return os.read(file.fileno(), count)
+
+    @property
+    def unread(self) -> int:
+        """How many bytes wait in the command's stdout."""
+        waiting = array("i", [0])
+        ioctl(self.process.stdout, FIONREAD, waiting)  # type: ignore[arg-type]
+        return waiting[0]
+
+    def catches(self, number: signal.Signals) -> bool:
+        """Whether the command handles a signal."""
+        status = Path(f"/proc/{self.process.pid}/status").read_text()
+        return bool(int(status.partition("SigCgt:")[2].split()[0], 16) >> (number - 1) & 1)
+
+    def close(self) -> None:
+        """Close the host, and the pipes."""
+        if self._host is not None:
+            self._host.close()
+        for pipe in (self.process.stdin, self.process.stdout, self.process.stderr):
+            assert pipe is not None
+            pipe.close()
+
+
+def starting(command: Command) -> None:
+    command.until(lambda: command.catches(signal.SIGTERM))
+
+
+def at_any_time(command: Command) -> None:
+    time.sleep(random.uniform(0, 0.8))
+
+
+def running(command: Command) -> None:
+    """The display runs: its recording has begun."""
+    command.until(lambda: any(name.name.endswith(".part") for name in command.place.iterdir()))
+    command.send(DRAWING)
+
+
+def idle(command: Command, connect: bool = False) -> None:
+    if connect:
+        command.connect()
+    command.send(DRAWING + READ)
+    assert command.receive(2) == b"\0\0"
+
+
+def filling(command: Command, connect: bool = False) -> None:
+    if connect:
+        idle(command, connect)
+    command.send(FILLS, PIPE_BYTES + 1)
+
+
+def unread(command: Command, connect: bool = False) -> None:
+    """Nobody reads what the command writes."""
+    if connect:
+        command.connect()
+    command.send(DRAWING + READ_ALL * 40, 0)
+    command.until(lambda: connect or command.unread > PIPE_BYTES - 4096)
+
+
+def printing(command: Command) -> None:
+    command.until(lambda: command.unread > PIPE_BYTES - 4096)
+
+
+def program(command: Command) -> None:
+    assert command.process.stdout is not None
+    assert command.process.stdout.readline() == b"ready\n"
+
+
+class Row(NamedTuple):
+    """A command at a moment; its exit codes, where -1 stands for 128 and the signal; its outputs."""
+
+    arguments: str
+    moment: Callable[[Command], None]
+    codes: tuple[int, ...] = (-1,)
+    written: tuple[str, ...] = ()
+    module: str = "ramtek_emu"
+
+
+OUTPUTS = "-o o.png --snapshot s.png --record r.ramtek --configuration NCAR_9460"
+WRITTEN = ("o.png", "s.png", "r.ramtek")
+SERVERS = (f"serve --unix display {OUTPUTS}", f"serve --port 0 {OUTPUTS}")
+PIPED = (f"serve --stdio {OUTPUTS}", f"serve --stdio --joystick stick {OUTPUTS}")
+
+ROWS = (
+    *(Row(command, idle, (0,), WRITTEN) for command in PIPED),
+    *(Row(command, filling, (0,), WRITTEN) for command in PIPED),
+    *(Row(command, unread, (0,), WRITTEN) for command in PIPED),
+    *(Row(command, partial(idle, connect=True), (0,), WRITTEN) for command in SERVERS),
+    *(Row(command, partial(filling, connect=True), (0,), WRITTEN) for command in SERVERS),
+    *(Row(command, partial(unread, connect=True), (0,), WRITTEN) for command in SERVERS),
+    Row(f"play - {OUTPUTS}", running, (-1,), WRITTEN),
+    Row(f"play - {OUTPUTS}", filling, (-1,), WRITTEN),
+    *(Row(command, starting, (0, -1)) for command in (*PIPED, *SERVERS, f"play - {OUTPUTS}")),
+    *(Row(command, at_any_time, (0, -1)) for command in (*PIPED, *SERVERS, f"play - {OUTPUTS}")),
+    Row("list lines.ramtek", printing),
+    Row("list lines.ramtek", starting, (0, -1)),
+    Row("list lines.ramtek", at_any_time, (0, -1)),
+    Row("assemble - -o a.ramtek", starting),
+    Row("assemble - -o a.ramtek", at_any_time),
+)
+"""Windows are tried where there is a screen: in the tests of `serve`."""
+
+
+@contextmanager
+def started(row: Row, place: Path, ignored: str = "") -> Iterator[Command]:
+    """The command of a row; the signals in `ignored` are ignored when it starts, as by `nohup`."""
+    (place / "lines.ramtek").write_bytes(DRAWING * 4000)
+    os.mkfifo(place / "stick")
+    command = (sys.executable, "-m", row.module, *row.arguments.split())
+    process = subprocess.Popen(
+        ("sh", "-c", f"trap '' {ignored}; exec \"$@\"", "sh", *command) if ignored else command,
+        cwd=place,
+        env=environment(),
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        bufsize=0,
+    )
+    running_command = Command(process, place)
+    try:
+        yield running_command
+    finally:
+        process.kill()
+        process.wait()
+        running_command.close()
+
+
+def attack(row: Row, number: signal.Signals, place: Path) -> tuple[float, str]:
+    """Start a row's command, send it a signal at its moment, and check what it leaves.
+
+    Returns the seconds until its end, and what it said on stderr.
+    """
+    with started(row, place) as command:
+        row.moment(command)
+        begin = time.monotonic()
+        with suppress(ProcessLookupError):
+            command.process.send_signal(number)
+        code = command.process.wait(60)
+        seconds = time.monotonic() - begin
+        assert command.process.stderr is not None
+        said = command.process.stderr.read().decode()
+    check(row, number, place, code, said)
+    return seconds, said
+
+
+def check(row: Row, number: signal.Signals, place: Path, code: int, said: str) -> None:
+    """Whether a command that ended has left its outputs, whole, and nothing else."""
+    codes = {128 + number if expected == -1 else expected for expected in row.codes}
+    if row.moment in (starting, at_any_time):
+        # Before our first line and after our last one, the signal ends Python.
+        codes.add(-number)
+    assert code in codes, (code, said)
+    assert "Traceback" not in said
+    left = {path.name for path in place.iterdir()} - {"lines.ramtek", "stick"}
+    if row.moment in (starting, at_any_time):
+        # Everything is written, or nothing; a file may be named before the next one is written.
+        assert left in (set(), set(WRITTEN)), (left, said)
+    else:
+        assert left == set(row.written), (left, said)
+    if "s.png" in left:
+        twin = Ramtek9300(NCAR_9460)
+        twin.send(np.frombuffer((place / "r.ramtek").read_bytes(), "<u2").astype(np.uint16))
+        assert np.array_equal(read_snapshot(place / "s.png").words, twin.words), "the recording is cut"
+
+
+def main() -> None:
+    """Attack each row by each signal, and print what happened."""
+    parser = argparse.ArgumentParser(prog="python -m tests.signals", description=__doc__)
+    parser.add_argument("--rounds", type=int, default=1, help="how often each row gets each signal")
+    parser.add_argument("--row", default="", help="only the rows with this text in their command or moment")
+    options = parser.parse_args()
+    failed = 0
+    for row in ROWS:
+        moment = getattr(row.moment, "func", row.moment).__name__
+        if options.row not in f"{row.arguments} {moment}":
+            continue
+        longest, faults = 0.0, []
+        for number in ENDING * options.rounds:
+            with tempfile.TemporaryDirectory() as place:
+                try:
+                    longest = max(longest, attack(row, number, Path(place))[0])
+                except (AssertionError, subprocess.TimeoutExpired) as fault:
+                    faults.append(f"  {number.name}: {fault}")
+        print(f"{longest:6.3f} s  {moment:12} {row.module} {row.arguments}", *faults, sep="\n", flush=True)
+        failed += len(faults)
+    sys.exit(1 if failed else 0)
+
+
+if __name__ == "__main__":
+    main()
