@@ -80,7 +80,7 @@ PACKET_BYTES: Final = 1 << 19
 """The longest packet that is read whole. Limit: more than a socket's default buffer."""
 SIOCATMARK: Final = 0x8905
 """The request that asks whether the next byte is urgent (Linux: asm-generic/sockios.h)."""
-MARKS_WORK: Final = hasattr(select, "epoll")
+MARKS_WORK: Final = sys.platform == "linux"
 """Whether this system (Linux) reports the places of marks."""
 
 
@@ -149,7 +149,7 @@ class Wire:
 
     def _has_ended(self) -> bool:
         """Whether an empty packet is the end: the other side has hung up, and no bytes are waiting."""
-        if not MARKS_WORK:
+        if sys.platform != "linux":
             return True
         poll = select.poll()
         poll.register(self.socket, select.POLLRDHUP)
@@ -161,22 +161,21 @@ def waiting_bytes(file: socket.socket | int) -> int:
 
     0 on systems that do not tell.
     """
-    if not MARKS_WORK:
-        return 0
-    from termios import FIONREAD
-
     with suppress(OSError):
-        return answer_of(file, FIONREAD)
+        if sys.platform == "linux":
+            import termios
+
+            return answer_of(file, termios.FIONREAD)
     return 0
 
 
 def answer_of(file: socket.socket | int, request: int) -> int:
     """The system's answer to a request about an open file; 0 on systems without such requests."""
-    if not MARKS_WORK:
+    if sys.platform != "linux":
         return 0
-    from fcntl import ioctl
+    import fcntl
 
-    return int.from_bytes(ioctl(file, request, bytes(struct.calcsize("i"))), sys.byteorder)
+    return int.from_bytes(fcntl.ioctl(file, request, bytes(struct.calcsize("i"))), sys.byteorder)
 
 
 MOST_SECONDS: Final = 1_000_000
@@ -448,14 +447,16 @@ class UnixPort(SocketPort):
 
 def packet_socket() -> socket.socket:
     """A Unix socket that keeps the boundaries of writes; PortError where the system has none."""
-    try:
-        return socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-    except (AttributeError, OSError) as cause:
-        reason = (getattr(cause, "strerror", None) or "no SOCK_SEQPACKET").lower()
-        raise PortError(
-            "a system must have Unix sockets that keep the boundaries of writes, and this one does not "
-            f"({reason}); use TCP or a pipe"
-        ) from cause
+    reason = "no SOCK_SEQPACKET"
+    if sys.platform != "win32":
+        try:
+            return socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        except (AttributeError, OSError) as cause:
+            reason = (getattr(cause, "strerror", None) or reason).lower()
+    raise PortError(
+        "a system must have Unix sockets that keep the boundaries of writes, and this one does not "
+        f"({reason}); use TCP or a pipe"
+    )
 
 
 def connected_socket(path: str, timeout: float) -> socket.socket:

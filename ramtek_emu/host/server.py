@@ -25,6 +25,7 @@ import os
 import selectors
 import socket
 import stat
+import sys
 import time
 from collections import deque
 from collections.abc import Callable, Iterator
@@ -443,7 +444,8 @@ class UnixServer(Server):
         try:
             remove_stale_socket(address)
             # The socket's file gets the permissions of the socket: set them before the file exists.
-            os.fchmod(listener.fileno(), stat.S_IRUSR | stat.S_IWUSR)
+            if sys.platform != "win32":
+                os.fchmod(listener.fileno(), stat.S_IRUSR | stat.S_IWUSR)
             listener.bind(address)
             listener.listen(HOSTS_IN_LINE)
             self._file = os.lstat(address)
@@ -473,7 +475,7 @@ def remove_stale_socket(path: str) -> None:
     except FileNotFoundError:
         return
     thing = "exists"
-    if stat.S_ISSOCK(kind):
+    if sys.platform != "win32" and stat.S_ISSOCK(kind):
         thing = "belongs to a server that runs"
         # A running server refuses a socket of another type and is not disturbed.
         with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as asking:

@@ -77,10 +77,10 @@ def sentence_of(error: BaseException) -> str:
 
 def limit(size: int) -> None:
     """Limit the time, the memory and the result of this process for a file of `size` bytes."""
-    try:
-        import resource
-    except ImportError:
+    if sys.platform == "win32":
         return
+    import resource
+
     memory, largest = most_memory(size), largest_result(size)
     seconds = math.ceil(time.process_time() + most_seconds(size))
     for kind, soft, hard in (
