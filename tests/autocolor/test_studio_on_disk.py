@@ -8,16 +8,33 @@ import sqlite3
 from collections.abc import Iterator
 from contextlib import closing
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
 
 import autocolor
-from autocolor import OutputError, read_picture, read_scene, scene_of
+from autocolor import (
+    OutputError,
+    Studio,
+    UsageError,
+    read_journal,
+    read_picture,
+    read_scene,
+    render,
+    scene_of,
+    write_picture,
+)
 from autocolor.files.stamps import stamp_of
 from autocolor.files.store import store_file
-from autocolor.journal.places import checksum_of
+from autocolor.journal import places
+from autocolor.journal.history import History
+from autocolor.journal.places import Source, checksum_of
+from ramtek_emu import Ramtek9300
+from tests.autocolor.journal.random_steps import journal_of, summary
 from tests.autocolor.meshes import cube
-from tests.autocolor.sessions import car, opened
+from tests.autocolor.sessions import SMALL, car, is_true_to_its_file, opened
 
 
 def outside_toml(path: Path) -> None:
@@ -226,3 +243,76 @@ def test_a_scene_that_was_shown_when_its_file_was_left_for_another_is_unsaved(tm
     studio.open(mesh_file)
     assert studio.history.left_unsaved == ("car",)
     assert studio.history.unsaved_variants == ("A",)
+
+
+FILES = "a/scene.toml", "b.sqlite", "c.npz"
+BOX = scene_of(cube(), name="box")
+
+random_moves = st.lists(
+    st.tuples(st.sampled_from(["edit", "edit", "open", "save", "write"]), st.sampled_from(FILES))
+    | st.tuples(st.sampled_from(["undo", "undo", "redo", "session", "reopen", "keep", "show"]), st.none()),
+    max_size=20,
+)
+
+
+def take(studio: Studio, kind: str, path: Path, number: int) -> None:
+    """Take a random move; `number` makes each edit another one."""
+    scene = studio.scene.replace(ambient=number % 4 / 8)
+    if kind == "edit":
+        studio.edit(scene)
+    elif kind == "open":
+        studio.open(path)
+    elif kind == "save":
+        (studio.save if path.suffix == ".npz" else studio.save_scene)(path, overwrite=True)
+    elif kind == "write":
+        # Another program writes the file.
+        if path.suffix == ".npz":
+            write_picture(path, render(scene, 24, 32), scene, overwrite=True)
+        else:
+            autocolor.write_scene(path, scene, overwrite=True)
+    elif kind == "session":
+        studio.save_session(path.parent / "work")
+    elif kind == "keep":
+        studio.keep_variant()
+    elif kind == "show":
+        studio.show_variant("A")
+    else:
+        getattr(studio, kind)()
+
+
+@settings(max_examples=15)
+@given(random_moves)
+@example([("edit", None), ("reopen", None), *[("edit", None)] * 2, ("session", None), *[("undo", None)] * 4])
+def test_a_scene_that_counts_as_saved_is_in_its_file_also_after_recovery(
+    moves: list[tuple[str, str | None]],
+) -> None:
+    with TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / "work").mkdir()
+        autocolor.write_scene(folder / FILES[0], BOX)
+        autocolor.write_scene(folder / FILES[1], BOX)
+        opened(BOX)[0].save(folder / FILES[2])
+        source = Source(str(folder / FILES[0]))
+        studio = Studio(History(*places.opened(source)), Ramtek9300(SMALL))
+        files = studio.history.on_disk
+        for number, (kind, file) in enumerate(moves):
+            path = folder / (file or "none")
+            before, is_there = stamp_of(path), files[str(path)] is not None
+            was_changed = files.was_changed(str(path))
+            try:
+                take(studio, kind, path, number)
+            except UsageError:
+                pass
+            except OutputError:
+                assert was_changed
+            else:
+                assert not (kind == "save" and was_changed)
+            if is_there and was_changed and kind != "write":
+                assert stamp_of(path) == before
+            main = next(iter(studio.history.files))
+            assert files.was_changed(main) or is_true_to_its_file(studio), (number, kind, file)
+        if not any(files.was_changed(path) for path in files._real_paths):
+            session = folder / "session"
+            assert summary(read_journal(journal_of(studio.history, session)).history) == summary(
+                studio.history
+            )
