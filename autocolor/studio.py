@@ -26,6 +26,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from os import fspath
+from os.path import abspath
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, NoReturn, Unpack
@@ -33,10 +34,10 @@ from typing import TYPE_CHECKING, NoReturn, Unpack
 from autocolor.arrays import Bytes, Words
 from autocolor.checks import nearest
 from autocolor.errors import UsageError
-from autocolor.files.paths import PICTURE_SUFFIX
+from autocolor.files.stamps import stamp_of
 from autocolor.images import display_image
-from autocolor.journal.history import History
-from autocolor.journal.places import Source, file_of, opened, opened_again
+from autocolor.journal.history import History, is_picture
+from autocolor.journal.places import NO_STAMP, Source, opened
 from autocolor.lighting.picking import highlight_of, highlight_placed
 from autocolor.lighting.picture import Picture
 from autocolor.mapping.display_image import DisplayImage, words_by_line
@@ -263,9 +264,10 @@ class Studio:
 
     @property
     def is_changed(self) -> bool:
-        """Whether the scene differs from the scene that was opened or saved last.
+        """Whether the scene differs from the scene in the file that `save_session` would write again.
 
-        `history.left_unsaved` names other scenes of the session with unsaved changes.
+        A scene without a file is compared with the scene that was opened or marked as saved last.
+        `history.left_unsaved` names the other scenes of the session with unsaved changes.
         """
         return self._history.is_changed
 
@@ -311,49 +313,59 @@ class Studio:
         the scene. Raises InputError if the scene has another checksum.
         """
         source = Source(fspath(path), up, surfaces, scale)
-        scene = opened(source, tables, checksum)
+        scene = opened(source, tables, checksum, self._known_scenes)
         self._show_scene(scene.scene)
         self._history.open(scene, source)
 
     @property
     def file(self) -> Path | None:
-        """The scene file or the store that the scene is saved to; None before the first save."""
-        saved = [Path(path) for path in self._history.saved.files]
-        place = self._history.place
-        if not saved and place.source is not None and place.stamp is not None:
-            saved = [path for path in (file_of(place.source),) if path is not None]
-        return next((path for path in saved if path.suffix.lower() != PICTURE_SUFFIX), None)
+        """The scene file or the store that `save_session` writes again; None for a scene in no such file."""
+        return next((Path(path) for path in self._history.files if not is_picture(path)), None)
 
     def reopen(self) -> bool:
         """Read the scene's file again, by one step to undo; returns False if the scene is still the same.
 
-        Raises UsageError if there is no such file, InputError if it cannot be read.
+        A file that another program changed may be saved to again after this. Raises UsageError if there is no
+        such file, InputError if it cannot be read.
         """
         path, source = self.file, self._history.place.source
         if path is None:
             raise UsageError("the scene must be in a file to be read again, and it is in none; save it")
         source = Source(str(path), surfaces="materials" if source is None else source.surfaces)
-        again = opened_again(source, self.scene)
+        again = opened(source, known=self._known_scenes)
         if again.scene.equals(self.scene):
+            if self._history.on_disk.was_changed(str(path)):
+                self._mark_written(path)
             return False
         self._show_scene(again.scene)
         self._history.open(again, source)
         return True
 
     def save(self, path: str | PathLike[str], overwrite: bool = False) -> None:
-        """Write the picture with its scene to a picture file, and mark the scene as saved."""
+        """Write the picture with its scene to a picture file; `save_session` writes it again.
+
+        A scene that has no scene file or store is then saved. Raises OutputError if another program changed
+        the file since the studio read or wrote it.
+        """
         from autocolor.files.picture_file import write_picture
 
         self.refine()
+        if overwrite:
+            self._history.on_disk.guard(Path(path))
         write_picture(path, self.picture, self.scene, overwrite=overwrite)
-        self.mark_saved()
+        self._mark_written(path)
 
     def save_scene(self, path: str | PathLike[str], overwrite: bool = False) -> None:
-        """Write the scene to a scene file (see `write_scene`), and mark it as saved."""
-        from autocolor.files.scene_writing import write_scene
+        """Write the scene to a scene file or a store (see `write_scene`); `save_session` writes it again.
 
-        write_scene(path, self.scene, overwrite=overwrite)
-        self.mark_saved()
+        Raises OutputError if another program changed the file since the studio read or wrote it: `reopen`
+        shows the change, and permits to save.
+        """
+        from autocolor.files.scene_writing import write_scene_with_tables
+
+        guard = self._history.on_disk.guard
+        *_, file = write_scene_with_tables(path, self.scene, overwrite=overwrite, complete=False, guard=guard)
+        self._mark_written(file)
 
     def save_session(self, folder: str | PathLike[str] = ".") -> SavedFiles:
         """Save the scene and the picture to their files, or to new files in the folder; returns the files.
@@ -366,11 +378,23 @@ class Studio:
         return save_session(self._history, self.picture, Path(folder))
 
     def mark_saved(self, files: Mapping[str, str] | None = None) -> None:
-        """Mark the current scene as saved.
+        """Mark the current scene as saved to files, by their paths and stamps (see `files.stamps`).
 
-        `files` are the files to which `save_session` saves again, with the SHA-256 of their bytes.
+        Without `files`, the scene's present file counts as written by the calling program.
         """
-        self._history.mark_saved(files)
+        if files is not None or not self._history.files:
+            self._history.mark_saved(files or {})
+        else:
+            self._mark_written(self._history.files[0])
+
+    def _mark_written(self, path: str | PathLike[str]) -> None:
+        """Mark the scene as saved to a file, which gets a backup before `save_session` overwrites it."""
+        self._history.mark_saved({abspath(path): stamp_of(Path(path)) or NO_STAMP}, is_own=False)
+
+    @property
+    def _known_scenes(self) -> tuple[Scene, ...]:
+        """The scenes whose meshes are shared with scenes that are read."""
+        return self.scene, *self._history.on_disk.scenes
 
     def journal(
         self,

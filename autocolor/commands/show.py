@@ -86,7 +86,7 @@ def show(
         if once:
             show_once(scene, address)
         else:
-            session_elsewhere(History(scene, place), address, folder_of(origin))
+            session_elsewhere(History(scene, place, report.scene), address, folder_of(origin))
         context.exit(ended(report, source))
 
 

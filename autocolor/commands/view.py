@@ -87,7 +87,7 @@ def view(
         note_file(source.path)
         # Meshes that the user opens later get the same up axis and scale.
         show(
-            History(edited, place),
+            History(edited, place, report.scene),
             full_screen,
             fit,
             prepare=lambda viewer: viewer.session.place_meshes(source.up, source.scale),

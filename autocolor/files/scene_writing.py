@@ -36,6 +36,7 @@ from autocolor.files.scene_toml.scene_text import (
     without_parts,
 )
 from autocolor.files.scene_toml.toml_text import LARGEST_TEXT, parsed_toml
+from autocolor.files.stamps import Guard, no_guard
 from autocolor.files.store.store_file import write_store
 from autocolor.files.writing import refuse_output, write_atomically
 from autocolor.logs import logger_of
@@ -64,20 +65,27 @@ def write_scene(path: str | os.PathLike[str], scene: Scene, *, overwrite: bool =
 
 
 def write_scene_with_tables(
-    path: str | os.PathLike[str], scene: Scene, *, overwrite: bool, complete: bool = True
+    path: str | os.PathLike[str],
+    scene: Scene,
+    *,
+    overwrite: bool,
+    complete: bool = True,
+    guard: Guard = no_guard,
 ) -> list[Path]:
     """Like `write_scene`; returns the files that were written, the scene file last.
 
-    If `complete`, all keys are written, also those whose values are their defaults.
+    If `complete`, all keys are written, also those whose values are their defaults. `guard` checks the scene
+    file or store before it is overwritten.
     """
     if Path(path).suffix.lower() in STORE_SUFFIXES and not os.path.isdir(path):
-        write_store(path, scene, overwrite=overwrite)
+        write_store(path, scene, overwrite=overwrite, guard=guard)
         return [Path(path)]
     target = _target(path)
     check_scene(scene)
     refuse_names((*scene.parts, *scene.surfaces, *scene.lights))
     with _new_folder(target.parent), _removed_on_failure() as written:
         refuse_output(target, overwrite=overwrite)
+        check = guard(target)
         old = _existing(target)
         meshes = meshes_there(target.parent, scene.mesh, old)
         if meshes is None:
@@ -87,6 +95,7 @@ def write_scene_with_tables(
             if old is not None:
                 LOG.warning("%s: written anew; its old content and comments are lost", target)
             data = _fresh(target, scene, meshes, complete)
+        check()
         write_atomically(target, data, overwrite=overwrite)
         return [*written, target]
 

@@ -13,7 +13,8 @@ from typing import Final, Literal, NamedTuple
 
 from autocolor.checks import nearest, shown
 from autocolor.errors import UsageError
-from autocolor.journal.places import Opened, ScenePlace, Source
+from autocolor.files.paths import PICTURE_SUFFIX
+from autocolor.journal.places import NO_STAMP, FilesOnDisk, OnDisk, Opened, ScenePlace, Source
 from autocolor.scene.scene import Scene
 
 MOST_VARIANTS: Final = 1000
@@ -54,10 +55,14 @@ class Drop(NamedTuple):
 
 
 class Saved(NamedTuple):
-    """A scene was saved; undo skips this step. `files` are saved to again, and have their stamps."""
+    """A scene was saved; undo skips this step. `files` are saved to again, and have their stamps.
+
+    If `is_own` is false, the files get a backup before `save_session` overwrites them for the first time.
+    """
 
     scene: Scene
     files: Mapping[str, str]
+    is_own: bool = True
 
 
 Step = Edit | Open | Show | Keep | Drop | Saved | Literal["undo", "redo"]
@@ -66,10 +71,11 @@ Step = Edit | Open | Show | Keep | Drop | Saved | Literal["undo", "redo"]
 class History:
     """The scenes of a session and the steps between them; `start` is the scene with which it began.
 
-    `steps` has every step, also those that were undone. `first_place` is the place of the first scene.
+    `steps` has every step, also those that were undone. `first_place` is the place of the first scene. If its
+    file holds another scene than `start`, that is `read`.
     """
 
-    def __init__(self, start: Scene, place: ScenePlace | None = None) -> None:
+    def __init__(self, start: Scene, place: ScenePlace | None = None, read: Scene | None = None) -> None:
         self.start = start
         self.first_place = ScenePlace() if place is None else place
         self.steps: list[Step] = []
@@ -77,7 +83,11 @@ class History:
         self._present = Opened(start, self.first_place)
         self._undo_stack: list[Opened] = []
         self._redo_stack: list[Opened] = []
-        self._saved = {self.first_place: Saved(start, {})}
+        self._saved: dict[ScenePlace, Saved] = {}
+        self._files: dict[ScenePlace, tuple[str, ...]] = {}
+        self.on_disk = FilesOnDisk()
+        """The files that the session read or wrote."""
+        self._note_opened(self._present, read or start)
 
     @property
     def scene(self) -> Scene:
@@ -91,33 +101,47 @@ class History:
 
     @property
     def saved(self) -> Saved:
-        """The scene of the current place that was opened or saved last, and the files it is saved to."""
+        """The scene of the current place that was opened or saved last, and the files it was saved to."""
         return self._saved[self.place]
 
     @property
+    def files(self) -> tuple[str, ...]:
+        """The files to save the current scene to again: at most one scene file or store, and one picture."""
+        return self._files[self.place]
+
+    @property
     def is_changed(self) -> bool:
-        """Whether the current scene differs from the scene of its place that was opened or saved last."""
-        return not self.saved.scene.equals(self.scene)
+        """Whether the current scene differs from the scene in the file that it is saved to again.
+
+        This is its scene file or store, else its picture file. A scene without a file is compared with the
+        scene that was opened or marked as saved last.
+        """
+        return not self._is_on_disk(self._present)
 
     @property
     def left_unsaved(self) -> tuple[str, ...]:
         """The names of scenes with unsaved changes that the session left for other scenes."""
-        steps = pairwise([*self._undo_stack, self._present])
-        last = {before.place: before.scene for before, after in steps if before.place is not after.place}
+        steps = [*self._undo_stack, self._present]
+        left = {before.place: before for before, after in pairwise(steps) if before.place is not after.place}
+        # Where a file was opened again, only changes of the scene before were left unsaved.
+        last_of_files = {self._main_file(each.place) or each.place: each.place for each in steps}.values()
         return tuple(
-            scene.name
-            for place, scene in last.items()
-            if place is not self.place and not self._saved[place].scene.equals(scene)
+            each.scene.name
+            for place, each in left.items()
+            if place is not self.place
+            and not self._is_on_disk(each)
+            and (place in last_of_files or not self._saved[place].scene.equals(each.scene))
         )
 
     @property
     def unsaved_variants(self) -> tuple[str, ...]:
-        """The names of variants that differ from every scene that was opened or saved last."""
-        saved = [each.scene for each in self._saved.values()]
+        """The names of variants that no file of the session holds, and that were not opened as they are."""
+        places = [place for place in self._saved if self._main_file(place) is None]
+        scenes = [*self.on_disk.scenes, *(self._saved[place].scene for place in places)]
         return tuple(
             name
             for name, variant in self.variants.items()
-            if not any(scene.equals(variant.scene) for scene in saved)
+            if not any(scene.equals(variant.scene) for scene in scenes)
         )
 
     @property
@@ -142,7 +166,7 @@ class History:
 
     def open(self, opened: Opened, source: Source) -> None:
         """Make a scene the current one that was opened from a source."""
-        self._saved[opened.place] = Saved(opened.scene, {})
+        self._note_opened(opened, opened.scene)
         self._go_to(opened)
         self.steps.append(Open(opened.scene, source))
 
@@ -161,12 +185,17 @@ class History:
         self.variants = self.variants.without(name)
         self.steps.append(Drop(name))
 
-    def mark_saved(self, files: Mapping[str, str] | None = None) -> None:
-        """Mark the current scene as saved.
+    def mark_saved(self, files: Mapping[str, str], is_own: bool = True) -> None:
+        """Mark the current scene as saved to files, which have these stamps; it is saved to them again.
 
-        `files` are the files to save to again, with their stamps. If None, the files stay as they were.
+        Without files, the scene alone is marked. `is_own` is whether `save_session` wrote the files.
         """
-        saved = Saved(self.scene, dict(self.saved.files if files is None else files))
+        saved = Saved(self.scene, dict(files), is_own)
+        for path, stamp in files.items():
+            self.on_disk.note(path, OnDisk(self.scene, stamp, is_own))
+        # A new scene file takes the place of the one before, and a new picture that of the picture before.
+        slots = {is_picture(path): path for path in (*self.files, *files)}
+        self._files[self.place] = tuple(slots[kind] for kind in sorted(slots))
         self._saved[self.place] = saved
         self.steps.append(saved)
 
@@ -184,6 +213,28 @@ class History:
         self._present = after
         self.steps.append("redo")
 
+    def _note_opened(self, opened: Opened, read: Scene) -> None:
+        """Note the scene of a place that was opened, and its file, from which a scene was read."""
+        place = opened.place
+        self._saved[place] = Saved(opened.scene, {})
+        self._files[place] = () if place.file is None else (place.file,)
+        if place.file is not None and place.stamp is not None:
+            before = self.on_disk[place.file]
+            is_own = before is not None and before.is_own and before.stamp == place.stamp
+            scene = None if place.stamp == NO_STAMP else read
+            self.on_disk.note(place.file, OnDisk(scene, place.stamp, is_own))
+
+    def _main_file(self, place: ScenePlace) -> str | None:
+        """The scene file or store of a place, else its picture file; None without files."""
+        return next(iter(self._files[place]), None)
+
+    def _is_on_disk(self, opened: Opened) -> bool:
+        """Whether the file of its place holds a scene; without a file, whether it was marked as saved."""
+        path = self._main_file(opened.place)
+        file = None if path is None else self.on_disk[path]
+        scene = self._saved[opened.place].scene if file is None else file.scene
+        return scene is not None and scene.equals(opened.scene)
+
     def _go_to(self, opened: Opened) -> None:
         """Make a scene the current one by a step to undo."""
         self._undo_stack.append(self._present)
@@ -200,6 +251,11 @@ class History:
                 self.steps[-1] = drag
                 return
         self.steps.append(edit)
+
+
+def is_picture(path: str) -> bool:
+    """Whether a file is a picture file."""
+    return path.lower().endswith(PICTURE_SUFFIX)
 
 
 class Variants(Mapping[str, Opened]):

@@ -8,10 +8,11 @@
     {"step": "saved", "files": {"/home/ann/car/scene.toml": "77d0...", "/home/ann/car.npz": "c1e9..."}}
     {"step": "undo"}
 
-The other steps are `show` and `drop`, with the name of a variant, and `redo`. An edit is the call of a method
-of the scene; its columns have the plain values of scene files. `mesh` is null if the mesh stays, empty for
-the mesh of the first scene, else the name of a folder beside the journal that has the mesh in a scene. The
-line of an opened scene has all its tables, so that only the mesh must still be in the files.
+The other steps are `show` and `drop`, with the name of a variant, `redo`, and `on_disk`, which is
+like `saved` for files that get a backup before they are overwritten. An edit is the call of a method of the
+scene; its columns have the plain values of scene files. `mesh` is null if the mesh stays, empty for the mesh
+of the first scene, else the name of a folder beside the journal that has the mesh in a scene. The line of an
+opened scene has all its tables, so that only the mesh must still be in the files.
 
 A line counts once its newline is written. If the program was killed during a line, its part is ignored.
 """
@@ -107,7 +108,7 @@ def step_line(step: Step, start: Scene, meshes: MeshesBeside) -> str:
         case Keep(name) | Show(name) | Drop(name):
             return _line({"step": type(step).__name__.lower(), "name": name})
         case Saved():
-            return _line({"step": "saved", "files": step.files})
+            return _line({"step": "saved" if step.is_own else "on_disk", "files": step.files})
         case _:
             return _line({"step": step})
 
@@ -257,6 +258,7 @@ STEPS: Final[Mapping[str, Mapping[str, tuple[type, ...]]]] = {
     "show": {"name": (str,)},
     "drop": {"name": (str,)},
     "saved": {"files": (dict,)},
+    "on_disk": {"files": (dict,)},
     "undo": {},
     "redo": {},
 }
@@ -293,7 +295,7 @@ def _is_step(record: Record) -> bool:
         return False
     if kind == "begin":
         return bool(record["version"] == VERSION)
-    if kind == "saved":
+    if kind in ("saved", "on_disk"):
         return all(isinstance(stamp, str) for stamp in record["files"].values())
     if kind == "edit":
         change, has_row = record["change"], record["row"] is not None
@@ -320,11 +322,11 @@ def _take(record: Record, history: History, meshes: dict[str, Mesh], folder: Pat
             scene = getattr(history.scene, record["change"])(*rows, **columns)
             history.take(scene, record["joins"])
         case "open":
-            history.open(*_opened(record))
+            history.open(*_opened(record, history))
         case "keep" | "show" | "drop":
             getattr(history, kind)(record["name"])
-        case "saved":
-            history.mark_saved(record["files"])
+        case "saved" | "on_disk":
+            history.mark_saved(record["files"], is_own=kind == "saved")
         case "undo" | "redo":
             try:
                 getattr(history, kind)()
@@ -335,10 +337,11 @@ def _take(record: Record, history: History, meshes: dict[str, Mesh], folder: Pat
             raise InputError("a journal must begin once; remove the line")
 
 
-def _opened(record: Record) -> tuple[Opened, Source]:
+def _opened(record: Record, history: History | None = None) -> tuple[Opened, Source]:
     """The scene that a step opens, with its tables at that time, and its source."""
     source = Source(*(record[name] for name in Source._fields))
-    return opened(source, record["tables"], record["checksum"]), source
+    known = () if history is None else (history.scene, *history.on_disk.scenes)
+    return opened(source, record["tables"], record["checksum"], known), source
 
 
 @contextmanager

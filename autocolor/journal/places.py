@@ -1,7 +1,8 @@
-"""Places: the files that scenes are opened from, and whether a scene may be saved to its file again.
+"""Places: the files that scenes are opened from and saved to, and what the session knows of these files.
 
 A place is one opening of a file: opening a file twice makes two places. Edits belong to the place that was
-opened last. A place has the stamp of its file, so a file that another program changed is never saved over.
+opened last. `FilesOnDisk` has the scene and the stamp of every file that the session read or wrote, so that a
+file that another program changed since is never saved over.
 """
 
 from __future__ import annotations
@@ -9,23 +10,28 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from autocolor.errors import InputError
+from autocolor.errors import InputError, OutputError
 from autocolor.files.paths import PICTURE_SUFFIX, SCENE_FILE, STORE_SUFFIXES
 from autocolor.files.picture_file import plain_scene
 from autocolor.files.scene_sources import read_scene
+from autocolor.files.stamps import numbers_of, stamp_of
 from autocolor.scene.creation import SurfaceSource
 from autocolor.scene.mesh import has_same_tables
 from autocolor.scene.scene import Scene
 
 PACKAGE: Final = Path(__file__).resolve().parents[1]
 """The folder of this package, with the built-in demo; nothing is saved there."""
+
+NO_STAMP: Final = ""
+"""The stamp of a file that holds another scene by now: no file has it."""
 
 
 class Source(NamedTuple):
@@ -41,12 +47,18 @@ class Source(NamedTuple):
 class ScenePlace:
     """The place of a scene; `source` is None for a scene that was made in memory.
 
-    `stamp` is the stamp of the file when the scene was opened (see `stamp_of`). Without a stamp, the scene is
-    never saved to the file.
+    `stamp` is the stamp of the file when the scene was opened (see `stamp_of`), or NO_STAMP if the file holds
+    another scene by now. With None, the scene is never saved to the file.
     """
 
     source: Source | None = None
     stamp: str | None = None
+
+    @cached_property
+    def file(self) -> str | None:
+        """The absolute path of the file to save to; None if the scene is never saved to the file."""
+        path = None if self.source is None or self.stamp is None else file_of(self.source)
+        return None if path is None else os.path.abspath(path)
 
 
 class Opened(NamedTuple):
@@ -56,8 +68,78 @@ class Opened(NamedTuple):
     place: ScenePlace
 
 
-def opened(source: Source, tables: Mapping[str, Any] | None = None, checksum: str | None = None) -> Opened:
-    """The scene of a source and its place.
+class OnDisk(NamedTuple):
+    """A file as a session read or wrote it last: its scene and its stamp.
+
+    The scene is None if the file holds another scene by now. `is_own` is whether `save_session` wrote the
+    file. Other files get a backup before it overwrites them.
+    """
+
+    scene: Scene | None
+    stamp: str
+    is_own: bool
+
+
+class FilesOnDisk:
+    """The files that a session read or wrote, by their paths."""
+
+    def __init__(self) -> None:
+        self._files: dict[str, OnDisk] = {}
+        self._real_paths: dict[str, str] = {}
+        """The file that each path led to: a link may lead to another file since."""
+
+    def __getitem__(self, path: str) -> OnDisk | None:
+        """The file at a path as it was last; None if the session neither read nor wrote it."""
+        return self._files.get(self._real_paths.get(path) or _real_path(path))
+
+    def note(self, path: str, file: OnDisk) -> None:
+        """Note that the session read or wrote a file."""
+        self._real_paths[path] = _real_path(path)
+        self._files[self._real_paths[path]] = file
+
+    @property
+    def scenes(self) -> tuple[Scene, ...]:
+        """The scenes that the files hold."""
+        return tuple(file.scene for file in self._files.values() if file.scene is not None)
+
+    def was_changed(self, path: str) -> bool:
+        """Whether another program changed a file since; False for a missing or an unknown file."""
+        file = self[path]
+        return file is not None and os.path.lexists(path) and stamp_of(Path(path)) != file.stamp
+
+    def guard(self, path: Path) -> Callable[[], None]:
+        """Refuse to overwrite a file that another program changed since (see `Guard`). Raises OutputError."""
+        refusal = OutputError(
+            f"an output must be as the studio last read or saved it, and another program changed {path}; call"
+            " reopen() to see that change (or open(), for another file than the scene's; undo goes back), or"
+            " choose another name"
+        )
+        numbers, name = numbers_of(path), os.path.abspath(path)
+
+        def check() -> None:
+            if self[name] is not None and numbers_of(path) != numbers:
+                raise refusal
+
+        if self.was_changed(name):
+            raise refusal
+        return check
+
+
+def _real_path(path: str) -> str:
+    """The path without links. A path that cannot be one, as in a damaged journal, stays."""
+    try:
+        return os.path.realpath(path)
+    except (OSError, ValueError):
+        return path
+
+
+def opened(
+    source: Source,
+    tables: Mapping[str, Any] | None = None,
+    checksum: str | None = None,
+    known: Iterable[Scene | None] = (),
+) -> Opened:
+    """The scene of a source and its place. If one of the `known` scenes has an equal mesh, that is shared.
 
     A journal gives the `tables` that the scene had when it was opened, because the file may have been saved
     over since. Only the mesh must still be the same. If the file has other tables now, the scene will not be
@@ -65,25 +147,18 @@ def opened(source: Source, tables: Mapping[str, Any] | None = None, checksum: st
     """
     place = place_of(source)
     present = read_scene(source.path, up=source.up, scale=source.scale, surfaces=source.surfaces)
+    for mesh in [scene.mesh for scene in known if scene is not None]:
+        if mesh.crease_angle == present.mesh.crease_angle and has_same_tables(mesh, present.mesh):
+            present = present.replace(mesh=mesh)
     scene = present if tables is None else present.replace(**tables)
     if checksum is not None and checksum != checksum_of(scene):
         raise InputError(
             f"{source.path} must hold the mesh that it held when it was opened, and it was changed since;"
             " bring the old file back"
         )
-    return Opened(scene, place if scene.equals(present) else ScenePlace(source))
-
-
-def opened_again(source: Source, present: Scene) -> Opened:
-    """The scene of a source as it is now, and its place. An equal mesh is shared with the present scene.
-
-    Raises InputError as `read_scene`.
-    """
-    again = opened(source)
-    mesh, present_mesh = again.scene.mesh, present.mesh
-    if mesh.crease_angle == present_mesh.crease_angle and has_same_tables(mesh, present_mesh):
-        return Opened(again.scene.replace(mesh=present_mesh), again.place)
-    return again
+    if place.stamp is not None and not scene.equals(present):
+        place = ScenePlace(source, NO_STAMP)
+    return Opened(scene, place)
 
 
 def place_of(source: Source) -> ScenePlace:
@@ -101,22 +176,6 @@ def file_of(source: Source) -> Path | None:
     # Unlike Path.is_dir, this raises no error for a name that cannot be one.
     path = path / SCENE_FILE if os.path.isdir(path) else path
     return path if path.suffix.lower() in (".toml", PICTURE_SUFFIX, *STORE_SUFFIXES) else None
-
-
-def stamp_of(path: Path) -> str | None:
-    """The SHA-256 of the bytes of a file, in hexadecimal digits; None if it cannot be read.
-
-    The stamp of a store includes its write-ahead log, the changes that are not yet in the store file.
-    """
-    try:
-        with open(path, "rb") as file:
-            digest = hashlib.file_digest(file, "sha256")
-        log = Path(f"{path}-wal")
-        if path.suffix.lower() in STORE_SUFFIXES and log.exists():
-            digest.update(log.read_bytes())
-    except (OSError, ValueError):
-        return None
-    return digest.hexdigest()
 
 
 def checksum_of(scene: Scene) -> str:

@@ -1,8 +1,8 @@
 """Saving a session by Ctrl+S: its scene and its picture, under names that the program chooses.
 
 A scene that was opened from a scene file or a store, or a picture that was opened from a picture file, is
-saved to that file, unless another program changed the file since. The first time, the old content is copied
-to a backup beside the file, under a numbered name. Otherwise new files are made in a folder:
+saved to that file, unless another program changed the file since. Content that the session did not write is
+first copied to a backup beside the file, under a numbered name. Otherwise new files are made in a folder:
 `coupe/scene.toml` and `coupe.npz`, or `coupe-2/scene.toml` and `coupe-2.npz` if one of those exists. Later
 saves overwrite these files, unless another program changed them since.
 """
@@ -10,16 +10,18 @@ saves overwrite these files, unless another program changed them since.
 from __future__ import annotations
 
 import os
+from contextlib import closing
 from itertools import count
 from pathlib import Path
 from typing import NamedTuple
 
-from autocolor.files.paths import PICTURE_SUFFIX, SCENE_FILE, file_stem, free_path
+from autocolor.files.paths import PICTURE_SUFFIX, SCENE_FILE, STORE_SUFFIXES, file_stem, free_path
 from autocolor.files.picture_file import write_picture
-from autocolor.files.scene_writing import write_scene
+from autocolor.files.scene_writing import write_scene_with_tables
+from autocolor.files.stamps import stamp_of
 from autocolor.files.writing import write_atomically
-from autocolor.journal.history import History
-from autocolor.journal.places import file_of, stamp_of
+from autocolor.journal.history import History, is_picture
+from autocolor.journal.places import NO_STAMP
 from autocolor.lighting.picture import Picture
 
 
@@ -52,10 +54,11 @@ class SavedFiles(NamedTuple):
 
 
 class _Targets(NamedTuple):
-    """The files to save to, with the stamps that they must still have. A new file has the stamp None."""
+    """The files to save to, and which of them are overwritten. `changed` files are left alone."""
 
-    scene: tuple[Path, str | None]
-    picture: tuple[Path, str | None]
+    scene: Path
+    picture: Path
+    overwritten: tuple[Path, ...]
     changed: tuple[Path, ...]
 
 
@@ -64,41 +67,43 @@ def save_session(history: History, picture: Picture, folder: Path) -> SavedFiles
 
     New files are made in `folder`. If it raises OutputError or WriteError, no file is lost.
     """
-    (scene_file, scene_stamp), (picture_file, picture_stamp), changed = _targets(history, folder)
-    own = history.saved.files
+    scene_file, picture_file, overwritten, changed = _targets(history, folder)
     backups: list[Path] = []
     try:
-        for path, stamp in ((scene_file, scene_stamp), (picture_file, picture_stamp)):
-            if stamp is not None and str(path) not in own:
+        for path in overwritten:
+            file = history.on_disk[str(path)]
+            if file is None or not file.is_own:
                 backups.append(_backup_of(path))
-        write_picture(picture_file, picture, history.scene, overwrite=picture_stamp is not None)
+        write_picture(picture_file, picture, history.scene, overwrite=picture_file in overwritten)
     except BaseException:
         # No file was written yet, so backups are not needed.
         for path in backups:
             path.unlink(missing_ok=True)
         raise
-    write_scene(scene_file, history.scene, overwrite=scene_stamp is not None)
-    history.mark_saved({str(path): stamp_of(path) or "" for path in (scene_file, picture_file)})
+    overwrite, guard = scene_file in overwritten, history.on_disk.guard
+    write_scene_with_tables(scene_file, history.scene, overwrite=overwrite, complete=False, guard=guard)
+    history.mark_saved({str(path): stamp_of(path) or NO_STAMP for path in (scene_file, picture_file)})
     return SavedFiles(scene_file, picture_file, tuple(backups), changed)
 
 
 def _targets(history: History, folder: Path) -> _Targets:
-    """The files to save to. A file that nobody else changed since our last save is overwritten."""
-    last = [(Path(path), stamp) for path, stamp in history.saved.files.items()]
-    place = history.place
-    if not last and place.source is not None and place.stamp is not None:
-        path = file_of(place.source)
-        last = [] if path is None else [(Path(os.path.abspath(path)), place.stamp)]
+    """The files to save to. A file that nobody else changed since we read or wrote it is overwritten."""
     # The scene file by False, the picture file by True.
-    unchanged: dict[bool, tuple[Path, str]] = {}
+    unchanged: dict[bool, Path] = {}
     changed = []
-    for path, stamp in last:
-        if stamp_of(path) == stamp and _is_writable(path):
-            unchanged[path.suffix.lower() == PICTURE_SUFFIX] = path, stamp
-        elif os.path.lexists(path) and stamp_of(path) != stamp:
+    for name in history.files:
+        path = Path(name)
+        if history.on_disk.was_changed(name):
             changed.append(path)
+        elif os.path.exists(name) and _is_writable(path):
+            unchanged[is_picture(name)] = path
     scene, picture = _new_names(history.scene.name, folder, False in unchanged, True in unchanged)
-    return _Targets(unchanged.get(False, (scene, None)), unchanged.get(True, (picture, None)), tuple(changed))
+    return _Targets(
+        unchanged.get(False, scene),
+        unchanged.get(True, picture),
+        tuple(unchanged[kind] for kind in sorted(unchanged)),
+        tuple(changed),
+    )
 
 
 def _new_names(name: str, folder: Path, has_scene: bool, has_picture: bool) -> tuple[Path, Path]:
@@ -116,7 +121,15 @@ def _new_names(name: str, folder: Path, has_scene: bool, has_picture: bool) -> t
 def _backup_of(path: Path) -> Path:
     """Copy a file to a free numbered name beside it; returns the copy."""
     backup = free_path(path)
-    write_atomically(backup, path.read_bytes(), overwrite=False)
+    if path.suffix.lower() in STORE_SUFFIXES:
+        # SQLite is loaded for stores alone. The latest changes may be beside the store, in its log.
+        from autocolor.files.store.connections import connected
+
+        with closing(connected(path)) as store:
+            data = store.serialize()
+    else:
+        data = path.read_bytes()
+    write_atomically(backup, data, overwrite=False)
     return backup
 
 

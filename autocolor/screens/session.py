@@ -12,11 +12,11 @@ from pathlib import Path
 from typing import Final, NamedTuple, Unpack
 
 from autocolor.errors import InputError, UsageError
-from autocolor.files.paths import SCENE_FILE, STORE_SUFFIXES, file_stem, free_path
+from autocolor.files.paths import SCENE_FILE, file_stem, free_path
 from autocolor.files.rig_file import RIG_SUFFIX, is_rig, read_rig, write_rig
 from autocolor.files.scene_files import MESH, kind_of
+from autocolor.files.stamps import look_at
 from autocolor.files.state import note_file
-from autocolor.files.store.connections import FileChanges
 from autocolor.mapping.display_image import DisplayImage
 from autocolor.scene.changes import LightChanges, PaintChanges, SurfaceChanges
 from autocolor.scene.lights import Light
@@ -259,14 +259,12 @@ class Session:
             self.studio.open(path, up=self.mesh_up, scale=self.mesh_scale)
         else:
             self.studio.open(path)
-        self.disk.seen()
         note_file(path.resolve())
         self.tell(f"opened {path.name}; undo goes back")
 
     def reopen(self) -> None:
         """Read the scene's file again, as one step to undo. Raises UsageError or InputError."""
         is_other = self.studio.reopen()
-        self.disk.seen()
         self.tell("read again; undo goes back" if is_other else "the file holds this scene")
 
     def take_changes(self) -> bool:
@@ -279,7 +277,6 @@ class Session:
     def save(self) -> None:
         """Save the scene and the picture; the message says the names of the files."""
         saved = self.studio.save_session(self.folder)
-        self.disk.seen()
         note_file(saved.scene)
         self.tell(saved.message(self.folder))
 
@@ -421,34 +418,30 @@ class FileOnDisk:
 
     def __init__(self, studio: Studio) -> None:
         self._studio = studio
-        self._changes: FileChanges | None = None
         self._looked_at = time.monotonic()
-        self._bind()
+        self._last_look: tuple[int | bytes, ...] | None = None
 
     def was_changed(self) -> bool:
-        """Whether another program changed the file since it was `seen`; it is looked at twice a second."""
+        """Whether another program changed the file since the last call; it is looked at twice a second."""
         now = time.monotonic()
         if now - self._looked_at < SECONDS_BETWEEN:
             return False
         self._looked_at = now
-        self._bind()
-        return self._changes is not None and self._changes.have_come()
-
-    def seen(self) -> None:
-        """Note the present file as seen, after the session saved or opened it."""
-        self._bind()
-        if self._changes is not None:
-            self._changes.seen()
+        path = self._studio.file
+        look = None if path is None else look_at(path)
+        if look is None or look == self._last_look:
+            return False
+        self._last_look = look
+        return self._studio.history.on_disk.was_changed(str(path))
 
     def take(self) -> str:
         """Show the file's scene, or ask whether to; returns the message, empty if nothing differs.
 
         Raises InputError if the file has an error; the scene stays as it was.
         """
-        assert self._changes is not None
-        name = self._changes.path.name
-        # From now on, another write is another change.
-        self._changes.seen()
+        path = self._studio.file
+        assert path is not None
+        name = path.name
         if self._studio.is_changed:
             return f"{name} was changed elsewhere: Ctrl+R shows that, Ctrl+S saves yours beside"
         try:
@@ -456,11 +449,3 @@ class FileOnDisk:
         except InputError as error:
             raise InputError(f"not shown: {problem}" for problem in error.problems) from None
         return f"{name} was changed elsewhere; undo goes back" if is_other else ""
-
-    def _bind(self) -> None:
-        """Watch the scene's present file, which may differ from the file before."""
-        path = self._studio.file
-        if path is None:
-            self._changes = None
-        elif self._changes is None or self._changes.path != path:
-            self._changes = FileChanges(path, path.suffix.lower() in STORE_SUFFIXES)

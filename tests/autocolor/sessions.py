@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from autocolor import Flap, Flaps, Light, Mesh, Scene, Studio, Surface, View, scene_of
+from autocolor import Flap, Flaps, Light, Mesh, Scene, Studio, Surface, View, read_scene, scene_of
+from autocolor.journal.places import checksum_of
 from autocolor.scene.scalar import MeshScalar
 from ramtek_emu import Configuration, Ramtek9300
 from tests.autocolor.meshes import STRETCHED, cube, grid, sphere
@@ -51,3 +52,11 @@ def held(display: Ramtek9300) -> tuple[bytes, bytes]:
 
 def fresh(scene: Scene) -> tuple[bytes, bytes]:
     return held(opened(scene)[1])
+
+
+def is_true_to_its_file(studio: Studio) -> bool:
+    """Whether the file of a scene that counts as saved gives that scene, whatever its name."""
+    path = next(iter(studio.history.files), None)
+    if studio.is_changed or path is None:
+        return True
+    return checksum_of(read_scene(path).replace(name=studio.scene.name)) == checksum_of(studio.scene)

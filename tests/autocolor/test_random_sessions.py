@@ -20,7 +20,7 @@ from ramtek_emu.host.server import TcpServer
 from tests.autocolor.journal.random_steps import summary
 from tests.autocolor.meshes import grid, wall_scene
 from tests.autocolor.random_hand import RandomHand
-from tests.autocolor.sessions import car, held
+from tests.autocolor.sessions import car, held, is_true_to_its_file
 from tests.ramtek_emu.serving import in_a_thread
 
 GESTURES = 120
@@ -98,6 +98,7 @@ def test_a_random_session_is_shown_recovered_run_as_a_script_undone_and_redone(
         hand.do()
         if number % 3 == 0:
             autosave.update(viewer.studio.history, at_once=True)
+            assert is_true_to_its_file(viewer.studio), f"gesture {number}"
         if number % 4 == 0:
             # What was sent is what the whole page would be.
             whole = Ramtek9300()
@@ -109,7 +110,7 @@ def test_a_random_session_is_shown_recovered_run_as_a_script_undone_and_redone(
     assert viewer.page == PICTURE
     last = held(display)
     assert last == held_by_a_fresh_display(studio.scene)
-    assert studio.is_changed == (not studio.history.saved.scene.equals(studio.scene))
+    assert is_true_to_its_file(studio)
     assert studio.history.steps
 
     autosave.update(studio.history, at_once=True)

@@ -384,53 +384,6 @@ def _has_journal(path: Path) -> bool:
     return False
 
 
-CHANGE_COUNTER: Final = slice(24, 28)
-"""The place of the count of changes in the header of a store; in WAL mode it counts checkpoints only."""
-
-
-class FileChanges:
-    """Detects changes of a file by other programs since it was `seen` last.
-
-    A file is compared by its inode, time and size, a store also by its count of changes and its `-wal`. A
-    comparison takes a few system calls, so call it often. It opens no store with SQLite.
-    """
-
-    def __init__(self, path: Path, is_store: bool) -> None:
-        self.path = path
-        self._is_store = is_store
-        self._seen = self._stamp()
-
-    def have_come(self) -> bool:
-        """Whether the file was changed. A file that is missing or being written does not count as changed."""
-        stamp = self._stamp()
-        return stamp is not None and stamp != self._seen
-
-    def seen(self) -> None:
-        """Remember the file as it is now."""
-        self._seen = self._stamp() or self._seen
-
-    def _stamp(self) -> tuple[int | bytes, ...] | None:
-        """Numbers that differ after a change; None while the file is missing or being written."""
-        try:
-            status = os.stat(self.path)
-            stamp = (status.st_dev, status.st_ino, status.st_mtime_ns, status.st_size)
-            if not self._is_store:
-                return stamp
-            # The header of the journal has bytes other than zero while a commit writes to the store.
-            refuse_journal(self.path)
-        except (OSError, ValueError, InputError):
-            return None
-        return *stamp, read_head(self.path)[CHANGE_COUNTER], *self._wal()
-
-    def _wal(self) -> tuple[int, int]:
-        """The time and the size of the `-wal` of a store; zeros if it has no changes."""
-        try:
-            status = os.stat(f"{os.path.realpath(self.path)}-wal")
-        except OSError:
-            return 0, 0
-        return (status.st_mtime_ns, status.st_size) if status.st_size else (0, 0)
-
-
 # Errors of SQLite as errors of this package.
 
 BUSY_ERRORS: Final = (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import os
 import sqlite3
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import closing
 from pathlib import Path
 from typing import Final
@@ -18,6 +18,7 @@ from autocolor.checks import shown
 from autocolor.errors import InputError, OutputError, UsageError, WriteError
 from autocolor.files.paths import STORE_SUFFIXES
 from autocolor.files.scene_report import SceneReport
+from autocolor.files.stamps import Guard, no_guard
 from autocolor.files.store.connections import (
     DAMAGE_ERRORS,
     Clock,
@@ -99,13 +100,15 @@ def store_bytes(scene: Scene) -> bytes:
         return connection.serialize()
 
 
-def write_store(path: str | os.PathLike[str], scene: Scene, *, overwrite: bool = False) -> None:
+def write_store(
+    path: str | os.PathLike[str], scene: Scene, *, overwrite: bool = False, guard: Guard = no_guard
+) -> None:
     """Write a scene to a store, so that `read_store` gives it back.
 
     With `overwrite`, a store that exists is changed in place (see above), and a file that is no store, or is
-    damaged, is replaced. Raises OutputError if the file exists and `overwrite` is false, or if nothing can be
-    created there; WriteError if writing fails, or if the store has triggers, views or indexes of others;
-    InputError for a name that UTF-8 cannot hold. Nothing is changed then.
+    damaged, is replaced; `guard` checks the file before. Raises OutputError if the file exists and
+    `overwrite` is false, or if nothing can be created there; WriteError if writing fails, or if the store has
+    triggers, views or indexes of others; InputError for a name that is not UTF-8. Nothing is changed then.
     """
     path = Path(path)
     if path.suffix.lower() not in STORE_SUFFIXES:
@@ -115,19 +118,24 @@ def write_store(path: str | os.PathLike[str], scene: Scene, *, overwrite: bool =
         )
     check_scene(scene)
     refuse_output(path, overwrite=overwrite)
+    check = guard(path)
     with timed(LOG, f"wrote {path.name}"):
-        if path.exists() and _is_rewritten(path, scene):
+        if path.exists() and _is_rewritten(path, scene, check):
             return
         try:
             # Other programs would roll a journal without a store back into the new one.
             refuse_journal(path)
         except InputError as error:
             raise WriteError(str(error)) from None
+        check()
         write_atomically(path, store_bytes(scene), overwrite=overwrite)
 
 
-def _is_rewritten(path: Path, scene: Scene) -> bool:
-    """Change a store that exists; returns False, without a change, if the file is no readable store."""
+def _is_rewritten(path: Path, scene: Scene, check: Callable[[], None]) -> bool:
+    """Change a store that exists; returns False, without a change, if the file is no readable store.
+
+    The transaction begins with a `check`, because it may have waited for another program.
+    """
     if not os.access(path, os.W_OK):
         raise OutputError(f"an output must be a file that can be written, not {path}; change its permissions")
     try:
@@ -140,6 +148,7 @@ def _is_rewritten(path: Path, scene: Scene) -> bool:
         return False
     try:
         with closing(connection), transaction(connection, path.name):
+            check()
             refuse_additions(
                 connection,
                 ("trigger", "view", "index"),

@@ -98,7 +98,7 @@ def test_what_is_nothing_to_undo_leaves_a_drag_one_step() -> None:
     history = History(SCENES[0])
     history.take(SCENES[1])
     history.keep("A")
-    history.mark_saved()
+    history.mark_saved({})
     history.take(SCENES[2], same_step=True)
     assert history.to_undo == (SCENES[0],)
     history.show("A")

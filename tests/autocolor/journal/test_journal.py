@@ -20,7 +20,7 @@ from autocolor.journal import journal
 from autocolor.journal.autosave import JOURNAL, Autosave
 from autocolor.journal.history import Edit, History
 from autocolor.journal.journal import MeshesBeside, change_between, first_line, step_line
-from autocolor.journal.places import Source, checksum_of, opened, place_of
+from autocolor.journal.places import NO_STAMP, Source, checksum_of, opened, place_of
 from autocolor.scene.creation import new_light_of
 from ramtek_emu import Ramtek9300
 from tests.autocolor.journal.random_steps import (
@@ -202,7 +202,7 @@ def test_only_the_mesh_must_still_be_in_the_files(tmp_path: Path) -> None:
     again = read_journal(path).history
     assert checksum_of(again.scene) == checksum_of(history.scene)
     # The file has another scene now, and is not saved over.
-    assert again.place.stamp is None
+    assert again.place.stamp == NO_STAMP
 
 
 def test_a_mesh_that_was_changed_since_or_is_gone_is_refused(tmp_path: Path) -> None:

@@ -2,23 +2,14 @@
 
 from __future__ import annotations
 
-import hashlib
 from pathlib import Path
 
 import pytest
 
 import autocolor
 from autocolor import InputError, Mesh, read_scene
-from autocolor.journal.places import (
-    PACKAGE,
-    Source,
-    checksum_of,
-    file_of,
-    opened,
-    opened_again,
-    place_of,
-    stamp_of,
-)
+from autocolor.files.stamps import stamp_of
+from autocolor.journal.places import NO_STAMP, PACKAGE, Source, checksum_of, file_of, opened, place_of
 from autocolor.scene.columns import to_plain
 from autocolor.scene.scalar import MeshScalar
 from tests.autocolor.sessions import car
@@ -42,8 +33,8 @@ def test_a_scene_that_was_saved_over_is_opened_as_it_was_and_not_saved_there_aga
     autocolor.write_scene(source.path, then.replace(ambient=0.75), overwrite=True)
     again = opened(source, to_plain(then), checksum_of(then))
     assert checksum_of(again.scene) == checksum_of(then)
-    assert again.place.stamp is None
-    assert opened(source, to_plain(again.scene.replace(ambient=0.75))).place.stamp is not None
+    assert again.place.stamp == NO_STAMP
+    assert opened(source, to_plain(again.scene.replace(ambient=0.75))).place.stamp
 
 
 def test_a_scene_of_another_checksum_is_refused(source: Source) -> None:
@@ -71,7 +62,7 @@ def test_the_checksum_is_that_of_all_values_and_scalars(source: Source) -> None:
 
 def test_a_scene_that_is_opened_again_shares_the_mesh_if_it_is_the_same(source: Source) -> None:
     present = read_scene(source.path)
-    again = opened_again(source, present)
+    again = opened(source, known=[present])
     assert again.scene.equals(present)
     assert again.place.stamp == stamp_of(Path(source.path) / "scene.toml")
     mesh = present.mesh
@@ -80,7 +71,7 @@ def test_a_scene_that_is_opened_again_shares_the_mesh_if_it_is_the_same(source: 
         Mesh(mesh.coordinates + 1, mesh.node_numbers, mesh.part_numbers, mesh.part_names),
         Mesh(mesh.coordinates, mesh.node_numbers, mesh.part_numbers, mesh.part_names, crease_angle=1.0),
     ):
-        assert opened_again(source, present.replace(mesh=other)).scene.mesh is not other
+        assert opened(source, known=[present.replace(mesh=other)]).scene.mesh is not other
 
 
 def test_the_file_of_a_scene_folder_is_its_scene_file(tmp_path: Path) -> None:
@@ -90,15 +81,6 @@ def test_the_file_of_a_scene_folder_is_its_scene_file(tmp_path: Path) -> None:
     assert file_of(Source(str(path))) == path
     assert file_of(Source(str(tmp_path / "car.npz"))) == tmp_path / "car.npz"
     assert file_of(Source(str(tmp_path / "car.obj"))) is None
-
-
-def test_a_stamp_is_that_of_the_bytes_of_a_file(tmp_path: Path) -> None:
-    path = tmp_path / "scene.toml"
-    assert stamp_of(path) is None
-    path.write_bytes(b"ambient = 0.1\n")
-    assert stamp_of(path) == hashlib.sha256(b"ambient = 0.1\n").hexdigest()
-    assert place_of(Source(str(path))).stamp == stamp_of(path)
-    assert stamp_of(tmp_path) is None
 
 
 def test_meshes_and_files_of_the_package_have_no_stamp(tmp_path: Path) -> None:
@@ -113,17 +95,6 @@ def test_two_openings_of_one_file_are_two_places(tmp_path: Path) -> None:
     source = Source(str(tmp_path / "car.obj"))
     assert place_of(source) != place_of(source)
     assert len({place_of(source), place_of(source)}) == 2
-
-
-def test_the_stamp_of_a_store_is_also_that_of_what_was_written_beside_it(tmp_path: Path) -> None:
-    path = tmp_path / "car.sqlite"
-    assert file_of(Source(str(path))) == path
-    path.write_bytes(b"store")
-    before = stamp_of(path)
-    Path(f"{path}-wal").write_bytes(b"more")
-    assert stamp_of(path) != before
-    Path(f"{path}-wal").unlink()
-    assert stamp_of(path) == before
 
 
 def test_a_path_that_cannot_be_read_has_no_stamp(tmp_path: Path) -> None:

@@ -1,0 +1,143 @@
+"""Stamps and looks: every change of a file by another program is noticed."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import sqlite3
+from contextlib import closing
+from pathlib import Path
+
+import pytest
+
+import autocolor
+from autocolor.files.stamps import look_at, stamp_of
+from tests.autocolor.files.store.stores import hostile_journal, run, small_store
+from tests.autocolor.sessions import car
+
+BRIGHTER = "UPDATE lights SET intensity = intensity + 1"
+
+
+def test_a_store_that_is_changed_in_place_is_noticed(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    seen = look_at(path)
+    assert look_at(path) == seen
+    run(path, BRIGHTER)
+    assert look_at(path) not in (None, seen)
+    seen = look_at(path)
+    assert look_at(path) == seen
+    run(path, "SELECT * FROM lights")
+    assert look_at(path) == seen
+
+
+def test_a_change_that_is_only_beside_the_store_is_noticed(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    run(path, "PRAGMA journal_mode = WAL")
+    with closing(sqlite3.connect(path, isolation_level=None)) as other:
+        other.execute("SELECT * FROM lights").fetchall()
+        seen = look_at(path)
+        before = os.stat(path)
+        other.execute(BRIGHTER)
+        assert os.stat(path).st_mtime_ns == before.st_mtime_ns
+        assert look_at(path) not in (None, seen)
+
+
+def test_a_store_that_is_replaced_is_noticed_and_changes_of_the_new_one(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    seen = look_at(path)
+    other = small_store(tmp_path, "other.sqlite")
+    os.utime(other, ns=(os.stat(path).st_atime_ns, os.stat(path).st_mtime_ns))
+    os.replace(other, path)
+    assert look_at(path) not in (None, seen)
+    seen = look_at(path)
+    run(path, BRIGHTER)
+    assert look_at(path) not in (None, seen)
+
+
+def test_a_file_that_is_being_written_or_is_gone_was_not_changed_yet(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    seen = look_at(path)
+    with closing(sqlite3.connect(path, isolation_level=None)) as other:
+        other.execute("BEGIN EXCLUSIVE")
+        other.execute(BRIGHTER)
+        assert look_at(path) is None
+        other.execute("COMMIT")
+        assert look_at(path) not in (None, seen)
+    path.unlink()
+    assert look_at(path) is None
+
+
+def test_a_text_file_is_noticed_by_its_place_and_time(tmp_path: Path) -> None:
+    path = tmp_path / "scene.toml"
+    path.write_text("a")
+    seen = look_at(path)
+    assert look_at(path) == seen
+    path.write_text("ab")
+    assert look_at(path) not in (None, seen)
+
+
+def test_to_look_leaves_nothing_beside_the_store(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    seen = look_at(path)
+    run(path, "PRAGMA journal_mode = WAL")
+    assert look_at(path) not in (None, seen)
+    assert os.listdir(tmp_path) == ["small.sqlite"]
+
+
+def test_a_store_with_a_journal_left_beside_it_is_being_written(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    seen = look_at(path)
+    run(path, BRIGHTER)
+    journal = hostile_journal(path, tmp_path / "other.txt")
+    assert look_at(path) is None
+    journal.unlink()
+    assert look_at(path) not in (None, seen)
+
+
+def test_a_stamp_is_that_of_the_bytes_of_a_file(tmp_path: Path) -> None:
+    path = tmp_path / "scene.toml"
+    assert stamp_of(path) is None
+    path.write_bytes(b"ambient = 0.1\n")
+    assert stamp_of(path) == hashlib.sha256(b"ambient = 0.1\n").hexdigest()
+    assert stamp_of(tmp_path) is None
+
+
+def test_a_stamp_of_a_store_includes_its_log_also_through_a_link(tmp_path: Path) -> None:
+    path, link = tmp_path / "car.sqlite", tmp_path / "link.sqlite"
+    path.write_bytes(b"store")
+    link.symlink_to(path)
+    before = stamp_of(path)
+    (tmp_path / "car.sqlite-wal").write_bytes(b"")
+    assert stamp_of(path) == before
+    (tmp_path / "car.sqlite-wal").write_bytes(b"more")
+    assert stamp_of(path) == stamp_of(link) != before
+    (tmp_path / "car.sqlite-wal").unlink()
+    assert stamp_of(path) == stamp_of(link) == before
+
+
+def test_a_stamp_of_a_scene_file_includes_the_meshes_that_it_names(tmp_path: Path) -> None:
+    autocolor.write_scene(tmp_path / "car", car())
+    path = tmp_path / "car" / "scene.toml"
+    before = stamp_of(path)
+    (mesh,) = (each for each in path.parent.iterdir() if each != path)
+    assert before == stamp_of(path)
+    (path.parent / "other.obj").write_text("v 0 0 0\n")
+    assert before == stamp_of(path)
+    os.utime(mesh, ns=(0, 0))
+    assert before != stamp_of(path)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["mesh = 5", 'mesh = ["a", 5]', "mesh = [{file = 5}]", 'mesh = [{file = "/etc/passwd"}]', "[[mesh"],
+)
+def test_a_scene_file_without_valid_meshes_has_the_stamp_of_its_bytes(tmp_path: Path, text: str) -> None:
+    (tmp_path / "scene.toml").write_text(text)
+    assert stamp_of(tmp_path / "scene.toml") == hashlib.sha256(text.encode()).hexdigest()
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="the system has no pipes with names")
+def test_a_pipe_has_no_stamp_and_is_not_waited_for(tmp_path: Path) -> None:
+    for name in ("scene.toml", "car.npz", "car.sqlite"):
+        os.mkfifo(tmp_path / name)
+        assert stamp_of(tmp_path / name) is None

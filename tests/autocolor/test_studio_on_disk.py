@@ -1,0 +1,318 @@
+"""A studio and its files, which other programs may change: nothing is lost unasked."""
+
+from __future__ import annotations
+
+import os
+import re
+import sqlite3
+from collections.abc import Iterator
+from contextlib import closing
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+import autocolor
+from autocolor import (
+    OutputError,
+    Studio,
+    UsageError,
+    read_journal,
+    read_picture,
+    read_scene,
+    render,
+    scene_of,
+    write_picture,
+)
+from autocolor.files.stamps import stamp_of
+from autocolor.files.store import store_file
+from autocolor.journal import places
+from autocolor.journal.history import History
+from autocolor.journal.places import Source, checksum_of
+from ramtek_emu import Ramtek9300
+from tests.autocolor.journal.random_steps import journal_of, summary
+from tests.autocolor.meshes import cube
+from tests.autocolor.sessions import SMALL, car, is_true_to_its_file, opened
+
+
+def outside_toml(path: Path) -> None:
+    """Another program edits a scene file."""
+    text = re.sub("^angle = .*\n", "", path.read_text(), flags=re.MULTILINE)
+    path.write_text(text.replace("[view]", "[view]\nangle = 7.0"))
+
+
+def outside_row(path: Path) -> None:
+    """Another program changes a row of a store."""
+    with closing(sqlite3.connect(path)) as other, other:
+        other.execute("UPDATE view SET angle = 7")
+
+
+def outside_log(path: Path) -> None:
+    """Another program changes a row of a store in WAL mode, and leaves it in the log."""
+    with closing(sqlite3.connect(path)) as other, other:
+        other.execute("PRAGMA journal_mode = WAL")
+    OPEN.append(sqlite3.connect(path))
+    with OPEN[-1]:
+        OPEN[-1].execute("UPDATE view SET angle = 7")
+
+
+def outside_mesh(path: Path) -> None:
+    """Another program changes the mesh beside a scene file."""
+    (mesh,) = (each for each in path.parent.iterdir() if each != path)
+    autocolor.write_scene(path.parent.parent / "other", MOVED)
+    (other,) = (each for each in (path.parent.parent / "other").iterdir() if each.suffix == mesh.suffix)
+    os.replace(other, mesh)
+
+
+OPEN: list[sqlite3.Connection] = []
+MOVED = scene_of(cube(2.0))
+OUTSIDE = {
+    "a scene file": ("box/scene.toml", outside_toml),
+    "a mesh": ("box/scene.toml", outside_mesh),
+    "a store": ("box.sqlite", outside_row),
+    "the log of a store": ("box.db", outside_log),
+}
+
+
+@pytest.fixture
+def _closed() -> Iterator[None]:
+    yield
+    while OPEN:
+        OPEN.pop().close()
+
+
+@pytest.mark.usefixtures("_closed")
+@pytest.mark.parametrize("has_saved", [False, True])
+@pytest.mark.parametrize("what", OUTSIDE)
+def test_a_change_of_another_program_is_never_overwritten_silently(
+    tmp_path: Path, what: str, has_saved: bool
+) -> None:
+    name, change = OUTSIDE[what]
+    path = tmp_path / name
+    autocolor.write_scene(path, scene_of(cube()))
+    studio, _ = opened()
+    studio.open(path.parent if path.suffix == ".toml" else path)
+    if has_saved:
+        studio.view(angle=3)
+        studio.save_scene(path, overwrite=True)
+    change(path)
+    theirs = read_scene(path)
+    studio.view(angle=5)
+    mine, before = studio.scene, stamp_of(path)
+    with pytest.raises(OutputError) as refusal:
+        studio.save_scene(path, overwrite=True)
+    assert "reopen()" in str(refusal.value)
+    saved = studio.save_session(tmp_path)
+    assert (saved.changed, stamp_of(path)) == ((path,), before)
+    studio.undo()
+    studio.open(path)
+    assert checksum_of(studio.scene) == checksum_of(theirs)
+    studio.undo()
+    studio.redo()
+    assert not studio.is_changed
+    studio.edit(mine)
+    studio.save_scene(path, overwrite=True)
+    assert read_scene(path).view.angle == 5
+
+
+def test_a_change_that_was_read_again_may_be_overwritten(tmp_path: Path) -> None:
+    autocolor.write_scene(tmp_path / "car", car())
+    path = tmp_path / "car" / "scene.toml"
+    studio, _ = opened()
+    studio.open(path)
+    studio.light("key", on=False)
+    outside_toml(path)
+    assert studio.reopen()
+    assert studio.scene.view.angle == 7
+    studio.undo()
+    assert studio.is_changed
+    studio.save_scene(path, overwrite=True)
+    assert not studio.is_changed
+    assert not read_scene(path).light("key").on
+    # A comment is no other scene, and the file may be saved to after it was read again.
+    path.write_text(path.read_text() + "# mine\n")
+    studio.light("key", on=True)
+    with pytest.raises(OutputError, match="another program changed"):
+        studio.save_scene(path, overwrite=True)
+    studio.undo()
+    assert not studio.reopen()
+    studio.redo()
+    studio.save_scene(path, overwrite=True)
+    assert path.read_text().endswith("# mine\n")
+
+
+def test_a_picture_that_another_program_changed_is_not_overwritten(tmp_path: Path) -> None:
+    studio, other = opened()[0], opened(car().replace(ambient=0.5))[0]
+    path = tmp_path / "car.npz"
+    for _ in range(2):
+        studio.save(path, overwrite=True)
+    other.save(path, overwrite=True)
+    with pytest.raises(OutputError, match="another program changed"):
+        studio.save(path, overwrite=True)
+    assert read_picture(path).scene.ambient == 0.5
+    studio.open(path)
+    studio.undo()
+    studio.save(path, overwrite=True)
+
+
+def test_a_place_that_the_studio_never_read_is_overwritten_if_asked(tmp_path: Path) -> None:
+    autocolor.write_scene(tmp_path / "car", car())
+    outside_toml(tmp_path / "car" / "scene.toml")
+    studio, _ = opened()
+    studio.save_scene(tmp_path / "car", overwrite=True)
+    (tmp_path / "car" / "scene.toml").unlink()
+    studio.save_scene(tmp_path / "car")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="links need permissions there")
+def test_a_file_is_known_by_its_links_and_a_link_to_another_file_is_a_change(tmp_path: Path) -> None:
+    for name in ("one", "two"):
+        autocolor.write_scene(tmp_path / name, car().replace(ambient=0.3 if name == "one" else 0.6))
+    (tmp_path / "link").symlink_to("one")
+    studio, _ = opened()
+    studio.open(tmp_path / "link")
+    outside_toml(tmp_path / "one" / "scene.toml")
+    for name in ("link", "one"):
+        with pytest.raises(OutputError, match="another program changed"):
+            studio.save_scene(tmp_path / name, overwrite=True)
+    studio.reopen()
+    (tmp_path / "link").unlink()
+    (tmp_path / "link").symlink_to("two")
+    with pytest.raises(OutputError, match="another program changed"):
+        studio.save_scene(tmp_path / "link", overwrite=True)
+    assert read_scene(tmp_path / "two").ambient == 0.6
+
+
+def test_a_change_while_the_save_waits_for_the_store_is_seen(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "box.sqlite"
+    autocolor.write_scene(path, scene_of(cube()))
+    studio, _ = opened()
+    studio.open(path)
+    begun = store_file.connected_to_change
+
+    def connected(store: Path) -> sqlite3.Connection:
+        outside_row(store)
+        return begun(store)
+
+    monkeypatch.setattr(store_file, "connected_to_change", connected)
+    with pytest.raises(OutputError, match="another program changed"):
+        studio.save_scene(path, overwrite=True)
+    assert read_scene(path).view.angle == 7
+
+
+def test_four_undos_after_a_reload_and_a_save_leave_the_scene_unsaved(tmp_path: Path) -> None:
+    autocolor.write_scene(tmp_path / "car", car())
+    studio, _ = opened()
+    studio.open(tmp_path / "car")
+    studio.recolor("body", blend=0.1)
+    assert studio.reopen()
+    studio.recolor("body", blend=0.2)
+    studio.recolor("body", blend=0.3)
+    saved = studio.save_session(tmp_path)
+    for _ in range(3):
+        studio.undo()
+    assert studio.history.left_unsaved == ()
+    studio.undo()
+    assert studio.is_changed
+    assert studio.save_session(tmp_path).scene == saved.scene
+    assert not studio.is_changed
+    assert read_scene(saved.scene).surface("body").paint.blend == studio.scene.surface("body").paint.blend
+    studio.redo()
+    assert studio.is_changed
+
+
+def test_a_scene_that_was_shown_when_its_file_was_left_for_another_is_unsaved(tmp_path: Path) -> None:
+    mesh_file = tmp_path / "box.obj"
+    mesh_file.write_text("v 0 0 0\nv 1 0 0\nv 1 0 1\nf 1 2 3\n")
+    autocolor.write_scene(tmp_path / "car", car())
+    studio, _ = opened()
+    for _ in range(2):
+        studio.open(tmp_path / "car")
+    first = studio.scene
+    studio.recolor("body", blend=0.2)
+    studio.save_session(tmp_path)
+    assert studio.history.left_unsaved == ()
+    studio.undo()
+    studio.undo()
+    assert studio.scene.equals(first)
+    studio.keep_variant("A")
+    studio.open(mesh_file)
+    assert studio.history.left_unsaved == ("car",)
+    assert studio.history.unsaved_variants == ("A",)
+
+
+FILES = "a/scene.toml", "b.sqlite", "c.npz"
+BOX = scene_of(cube(), name="box")
+
+random_moves = st.lists(
+    st.tuples(st.sampled_from(["edit", "edit", "open", "save", "write"]), st.sampled_from(FILES))
+    | st.tuples(st.sampled_from(["undo", "undo", "redo", "session", "reopen", "keep", "show"]), st.none()),
+    max_size=20,
+)
+
+
+def take(studio: Studio, kind: str, path: Path, number: int) -> None:
+    """Take a random move; `number` makes each edit another one."""
+    scene = studio.scene.replace(ambient=number % 4 / 8)
+    if kind == "edit":
+        studio.edit(scene)
+    elif kind == "open":
+        studio.open(path)
+    elif kind == "save":
+        (studio.save if path.suffix == ".npz" else studio.save_scene)(path, overwrite=True)
+    elif kind == "write":
+        # Another program writes the file.
+        if path.suffix == ".npz":
+            write_picture(path, render(scene, 24, 32), scene, overwrite=True)
+        else:
+            autocolor.write_scene(path, scene, overwrite=True)
+    elif kind == "session":
+        studio.save_session(path.parent / "work")
+    elif kind == "keep":
+        studio.keep_variant()
+    elif kind == "show":
+        studio.show_variant("A")
+    else:
+        getattr(studio, kind)()
+
+
+@settings(max_examples=15)
+@given(random_moves)
+@example([("edit", None), ("reopen", None), *[("edit", None)] * 2, ("session", None), *[("undo", None)] * 4])
+def test_a_scene_that_counts_as_saved_is_in_its_file_also_after_recovery(
+    moves: list[tuple[str, str | None]],
+) -> None:
+    with TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / "work").mkdir()
+        autocolor.write_scene(folder / FILES[0], BOX)
+        autocolor.write_scene(folder / FILES[1], BOX)
+        opened(BOX)[0].save(folder / FILES[2])
+        source = Source(str(folder / FILES[0]))
+        studio = Studio(History(*places.opened(source)), Ramtek9300(SMALL))
+        files = studio.history.on_disk
+        for number, (kind, file) in enumerate(moves):
+            path = folder / (file or "none")
+            before, is_there = stamp_of(path), files[str(path)] is not None
+            was_changed = files.was_changed(str(path))
+            try:
+                take(studio, kind, path, number)
+            except UsageError:
+                pass
+            except OutputError:
+                assert was_changed
+            else:
+                assert not (kind == "save" and was_changed)
+            if is_there and was_changed and kind != "write":
+                assert stamp_of(path) == before
+            main = next(iter(studio.history.files))
+            assert files.was_changed(main) or is_true_to_its_file(studio), (number, kind, file)
+        if not any(files.was_changed(path) for path in files._real_paths):
+            session = folder / "session"
+            assert summary(read_journal(journal_of(studio.history, session)).history) == summary(
+                studio.history
+            )
