@@ -14,7 +14,7 @@ import click
 
 from ramtek_emu.configuration import CONFIGURATIONS, GMR_9300
 from ramtek_emu.errors import MissingInputError, reason_of
-from ramtek_emu.writing import Output, refuse_output, write_atomically
+from ramtek_emu.writing import Output, refuse_output, same_outputs, write_atomically
 
 if TYPE_CHECKING:
     from ramtek_emu.display import Ramtek9300
@@ -73,6 +73,10 @@ def refuse_outputs(force: bool, *paths: str | None) -> None:
             if path in ("", "-"):
                 raise click.UsageError(f"an output must be the name of a file, not {path!r}; give it one")
             refuse_output(path, force)
+    if same := same_outputs(path for path in paths if path is not None):
+        raise click.UsageError(
+            f"two outputs must be two files, not {same[0]} and {same[1]}, which are the same; rename one"
+        )
 
 
 @contextmanager

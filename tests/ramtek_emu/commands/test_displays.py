@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.shell_completion import BashComplete
+from click.testing import CliRunner
 
 from ramtek_emu import PRINCETON_9300, Ramtek9300, TcpPort, read_snapshot
 from ramtek_emu.commands.displays import end_signals
@@ -100,3 +101,12 @@ def test_a_signal_ends_a_waiting_read_and_all_later_reads(number: signal.Signals
 def test_a_read_that_fails_is_the_end() -> None:
     with end_signals() as signals:
         assert signals.until_received(lambda most: os.read(-1, most))(5) == b""
+
+
+@pytest.mark.parametrize("other", ["--snapshot", "--record"])
+def test_two_outputs_of_one_name_are_refused_before_anything_is_done(tmp_path: Path, other: str) -> None:
+    arguments = ["play", str(tmp_path / "none"), "-o", str(tmp_path / "a.png"), other, f"{tmp_path}/./a.png"]
+    played = CliRunner().invoke(ramtek, arguments)
+    assert played.exit_code == 2
+    assert "two outputs must be two files, not" in played.output
+    assert list(tmp_path.iterdir()) == []
