@@ -180,7 +180,8 @@ def test_a_program_that_ends_without_closing_its_output_leaves_nothing(tmp_path:
 def test_an_output_that_another_program_sweeps_as_it_is_made_is_made_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    lock, swept = writing.lock, []
+    lock = writing.lock
+    swept: list[Path] = []
 
     def sweep_first(descriptor: int, *, wait: bool) -> None:
         if not swept:

@@ -4,14 +4,17 @@
   loaded, no statement can set a pragma (see `authorizer`), sizes are limited, and a statement that takes too
   long is ended. Python 3.11 cannot set SQLite's defensive mode; later versions do.
 - A `-journal` beside a store may name any file as its super-journal. SQLite deletes that file after it
-  rolled the journal back. So a store is always opened read-only first, and no journal is ever rolled back.
+  rolled the journal back. So a store is always opened read-only first, and only a copy of a journal that
+  names no file is ever rolled back.
 """
 
 from __future__ import annotations
 
 import os
+import shutil
 import sqlite3
 import stat
+import tempfile
 import time
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
@@ -21,7 +24,8 @@ from urllib.request import pathname2url
 
 from autocolor.checks import printable
 from autocolor.errors import InputError, MissingInputError, UnavailableError, WriteError, reason_of
-from autocolor.files.reading import opened, read_head, refuse_irregular, status_of
+from autocolor.files.reading import opened, read_head, refuse_irregular, status_of, unreadable
+from autocolor.files.writing import temporary_folder
 
 LEAST_SQLITE: Final = (3, 37, 0)
 """The first version with STRICT tables."""
@@ -76,13 +80,22 @@ def in_memory() -> sqlite3.Connection:
 def connected(path: Path) -> sqlite3.Connection:
     """A read-only connection to the store at a path.
 
-    It also reads changes of another program that are still in the store's `-wal`. It rolls no journal back,
-    and creates no file. Raises InputError, MissingInputError.
+    It also reads changes of another program that are still in the store's `-wal`. If a program was killed in
+    a change, it reads a copy of the store before that change. It creates no file beside the store. Raises
+    InputError, MissingInputError.
     """
     _refuse_unsafe(path)
     mode = _reading_mode(path)
     with refusals(path.name):
-        return _opened(path, mode, SECONDS_OF_WAITING)
+        try:
+            return _opened(path, mode, SECONDS_OF_WAITING)
+        except sqlite3.OperationalError as error:
+            if not _was_cut_off(error):
+                raise
+        try:
+            return _restored(path)
+        except OSError as error:
+            raise unreadable(path, error) from None
 
 
 def connected_to_change(path: Path, *, checks_references: bool = False) -> sqlite3.Connection:
@@ -122,9 +135,11 @@ def _begun(path: Path, checks_references: bool) -> sqlite3.Connection | None:
                 connection.close()
                 raise
     except sqlite3.OperationalError as error:
-        if primary_code(error) in BUSY_ERRORS:
-            return None
-        raise
+        if _was_cut_off(error):
+            _roll_back(path)
+        elif primary_code(error) not in BUSY_ERRORS:
+            raise
+        return None
     connection.execute(f"PRAGMA busy_timeout = {SECONDS_OF_WAITING * 1000:.0f}")
     return connection
 
@@ -277,9 +292,6 @@ class Clock:
 
 # Checks of a file, and of the files beside it, before SQLite opens it.
 
-JOURNAL_HEADER: Final = 28
-"""Bytes of the header of a rollback journal; the rest of its first sector is padding."""
-
 JOURNAL_MAGIC: Final = bytes.fromhex("d9d505f920a163d7")
 """The bytes that a rollback journal begins with, and that follow the name of a super-journal at its end."""
 
@@ -369,19 +381,90 @@ def refuse_journal(path: Path) -> None:
 def _has_journal(path: Path) -> bool:
     """Whether a journal beside a store may be rolled back, or may end with the name of a file to delete.
 
-    A program that reuses its journal leaves it with a header of zeros. If such a journal ends with the name
-    of a super-journal, SQLite deletes the named file as soon as a change of ours is taken back.
+    A program that reuses its journal leaves it with a header of zeros. The header also begins with zeros
+    until the journal is synced, before the store is changed. If such a journal ends with the name of a
+    super-journal, SQLite deletes the named file as soon as a change of ours is taken back.
     """
     for place in (path, os.path.realpath(path)):
         try:
             with opened(Path(f"{place}-journal")) as (file, status):
-                head = file.read(JOURNAL_HEADER)
+                begins = any(file.read(1))
                 file.seek(max(0, status.st_size - len(JOURNAL_MAGIC)))
-                if any(head) or file.read() == JOURNAL_MAGIC:
+                if begins or file.read() == JOURNAL_MAGIC:
                     return True
         except MissingInputError:
             continue
     return False
+
+
+# A change that was cut off, because its program was killed. Its journal has the old pages of the store. They
+# can be written back twice, so a program that is killed while it writes them back does no harm.
+
+
+def _was_cut_off(error: sqlite3.Error) -> bool:
+    """Whether SQLite would have to roll a journal back to read a store."""
+    return getattr(error, "sqlite_errorcode", 0) == sqlite3.SQLITE_READONLY_ROLLBACK
+
+
+def _restored(path: Path) -> sqlite3.Connection:
+    """A copy in memory of a store as it was before a change that was cut off. Raises InputError, OSError."""
+    with tempfile.TemporaryDirectory(prefix="autocolor-") as folder:
+        copy = Path(folder) / "store"
+        stamp = _copy_journal(path, copy)
+        shutil.copyfile(path, copy)
+        if stamp != _journal_stamp(path):
+            raise InputError(f"{path.name}: {BUSY}")
+        with closing(_opened(copy, "rw", 0.0)) as connection:
+            if copy.stat().st_size > LARGEST_STORE:
+                raise InputError(f"{path.name}: {JOURNAL_LEFT}")
+            memory = in_memory()
+            connection.backup(memory)
+    return memory
+
+
+def _roll_back(path: Path) -> None:
+    """Roll back a change of a store that was cut off, in place. Raises InputError, and WriteError.
+
+    SQLite does it by a second name of the store, in a folder with a copy of the journal that nobody else can
+    change. Then the journal itself is deleted, while no other program can begin a change.
+    """
+    # Refuse a journal that restores no store.
+    connected(path).close()
+    place = Path(os.path.realpath(path))
+    try:
+        with temporary_folder(place) as (folder, _):
+            os.chmod(folder, 0o700)
+            os.link(place, folder / "store")
+            stamp = _copy_journal(place, folder / "store")
+            with closing(_opened(folder / "store", "rw", 0.0)) as connection:
+                connection.execute("BEGIN IMMEDIATE")
+                if stamp == _journal_stamp(place):
+                    os.unlink(f"{place}-journal")
+                connection.execute("ROLLBACK")
+    except OSError:
+        raise WriteError(f"{path.name}: {JOURNAL_LEFT}") from None
+
+
+def _copy_journal(path: Path, copy: Path) -> tuple[int, ...]:
+    """Copy the journal of a store for a copy of the store; returns its stamp. Raises InputError, OSError."""
+    stamp = _journal_stamp(path)
+    beside = Path(f"{copy}-journal")
+    if (_size_beside(path, "-journal") or 0) <= 2 * LARGEST_STORE:
+        shutil.copyfile(f"{os.path.realpath(path)}-journal", beside)
+        with open(beside, "rb") as file:
+            file.seek(-min(len(JOURNAL_MAGIC), stamp[1]), os.SEEK_END)
+            if file.read() != JOURNAL_MAGIC:
+                return stamp
+    raise InputError(f"{path.name}: {JOURNAL_LEFT}")
+
+
+def _journal_stamp(path: Path) -> tuple[int, ...]:
+    """Numbers that differ for another journal of a store; none if there is none."""
+    try:
+        status = os.stat(f"{os.path.realpath(path)}-journal")
+    except OSError:
+        return ()
+    return status.st_ino, status.st_size, status.st_mtime_ns
 
 
 CHANGE_COUNTER: Final = slice(24, 28)

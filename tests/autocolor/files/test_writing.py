@@ -276,9 +276,10 @@ def test_a_set_of_tables_that_we_did_not_write_is_refused(tmp_path: Path, conten
     (committed / NAMES).write_bytes(content)
     (tmp_path / "t" / "scene.toml").touch()
     files = {key: tmp_path / "t" / f"{key}.csv" for key in ("nodes", "polygons")}
-    for act in (lambda: read_mesh(files), lambda: kind.save(tmp_path, 1)):
-        with pytest.raises(InputError, match=r"it must be what a save wrote"):
-            act()
+    with pytest.raises(InputError, match=r"it must be what a save wrote"):
+        read_mesh(files)
+    with pytest.raises(InputError, match=r"it must be what a save wrote"):
+        kind.save(tmp_path, 1)
     assert (tmp_path / "t" / "scene.toml").exists()
 
 
