@@ -2,16 +2,26 @@
 
 The bytes go into a temporary file in the same folder, which is synced and then renamed. Both packages write
 their files with this module.
+
+However Python ends, it removes the temporary files of the process. A program that is killed leaves them. They
+are locked while their program lives, so the next program that writes to the folder knows, and removes them.
 """
 
 from __future__ import annotations
 
+import atexit
 import errno
 import os
+import re
 import secrets
-from contextlib import suppress
+import shutil
+import stat
+import sys
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
+from itertools import combinations
 from pathlib import Path
-from typing import Final
+from typing import BinaryIO, Final
 
 from ramtek_emu.errors import OutputError, OutputExistsError, WriteError, reason_of
 
@@ -29,6 +39,17 @@ NO_PLACE: Final = (
 NO_LINKS: Final = (errno.EPERM, errno.ENOSYS, errno.EOPNOTSUPP, errno.ENOTSUP, errno.EMLINK)
 """The errors of file systems without hard links."""
 
+PART: Final = re.compile(r"\..{1,100}\.[0-9a-f]{12}\.part", re.DOTALL)
+"""The names of temporary files and folders. A locked file of this name is in each temporary folder:"""
+
+PART_LOCK: Final = "names.json"
+
+_PARTS: Final[set[Path]] = set()
+"""The temporary files and folders of this process, noted before they are created."""
+
+_SWEPT: Final[set[Path]] = set()
+"""The folders in which this process removed the temporary files of killed programs."""
+
 
 class Output:
     """A file that is written piece by piece under a temporary name; `keep` gives it its own name."""
@@ -39,33 +60,34 @@ class Output:
         refuse_output(path, overwrite)
         # Follow links: the file that a link names is replaced, and the link is kept.
         self.path = Path(os.path.realpath(path))
-        self._beside = self.path.with_name(f".{self.path.name[:100]}.{secrets.token_hex(6)}.part")
-        flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
         try:
-            # `keep` or the end of the with statement closes it.
-            self._file = open(os.open(self._beside, flags, 0o666), "wb")  # noqa: SIM115
+            self._beside, descriptor = _new_part(self.path, is_folder=False)
+            # The end of the with statement closes it.
+            self._file = open(descriptor, "wb")  # noqa: SIM115
         except OSError as error:
-            raise _refusal(self.path, error) from None
+            raise refusal(self.path, error) from None
 
     def write(self, data: bytes) -> None:
         """Add bytes; WriteError when they cannot be written."""
         try:
             self._file.write(data)
         except OSError as error:
-            raise _refusal(self.path, error) from None
+            raise refusal(self.path, error) from None
 
     def keep(self) -> None:
         """Sync the file and give it its name; WriteError or OutputExistsError when that fails."""
         try:
-            with self._file:
-                self._file.flush()
-                os.fsync(self._file.fileno())
+            self._file.flush()
+            os.fsync(self._file.fileno())
+            if sys.platform == "win32":
+                # Open files cannot be renamed there. Elsewhere the file is locked until it has its name.
+                self._file.close()
             _name(self._beside, self.path, self.overwrite)
-            _sync_folder(self.path.parent)
+            sync_folder(self.path.parent)
         except OutputError:
             raise
         except OSError as error:
-            raise _refusal(self.path, error) from None
+            raise refusal(self.path, error) from None
 
     def __enter__(self) -> Output:
         return self
@@ -74,8 +96,21 @@ class Output:
         """Remove the temporary file if it was not kept."""
         with suppress(OSError):
             self._file.close()
-        with suppress(OSError):
-            os.unlink(self._beside)
+        _remove(self._beside)
+
+
+@contextmanager
+def temporary_folder(path: Path) -> Iterator[tuple[Path, BinaryIO]]:
+    """A temporary folder beside a path, and its locked file PART_LOCK, for writing.
+
+    What is left of the folder is removed at the end. Raises OSError.
+    """
+    folder, descriptor = _new_part(path, is_folder=True)
+    try:
+        with open(descriptor, "wb") as file:
+            yield folder, file
+    finally:
+        _remove(folder)
 
 
 def write_atomically(path: str | os.PathLike[str], data: bytes, *, overwrite: bool) -> None:
@@ -107,11 +142,21 @@ def refuse_output(path: str | os.PathLike[str], overwrite: bool) -> None:
     except OutputError:
         raise
     except OSError as error:
-        raise _refusal(target, error) from None
+        raise refusal(target, error) from None
     except ValueError:
         raise OutputError(
             f"a file name must be valid on this system, not {str(path)!r}; choose another name"
         ) from None
+
+
+def same_outputs(paths: Iterable[str]) -> tuple[str, str] | None:
+    """The first two of the paths that name the same file, also by a link; None if all files differ."""
+    for one, other in combinations(paths, 2):
+        names = [os.path.normcase(os.path.realpath(path)) for path in (one, other)]
+        with suppress(OSError):
+            if names[0] == names[1] or os.path.samefile(one, other):
+                return one, other
+    return None
 
 
 def _name(beside: Path, target: Path, overwrite: bool) -> None:
@@ -138,7 +183,8 @@ def _exists(path: Path) -> OutputExistsError:
     )
 
 
-def _refusal(path: Path, error: OSError) -> OutputError | WriteError:
+def refusal(path: Path, error: OSError) -> OutputError | WriteError:
+    """The error that says why a file could not be written."""
     reason = reason_of(error)
     if error.errno in NO_PLACE:
         other = "name" if error.errno == errno.ENAMETOOLONG else "place"
@@ -151,11 +197,106 @@ def _refusal(path: Path, error: OSError) -> OutputError | WriteError:
     )
 
 
-def _sync_folder(folder: Path) -> None:
-    # Not every system can open folders; the file itself is already synced.
+def sync_folder(folder: Path) -> None:
+    """Sync the names in a folder. Not every system can open folders; then nothing happens."""
     with suppress(OSError):
         number = os.open(folder, os.O_RDONLY)
         try:
             os.fsync(number)
         finally:
             os.close(number)
+
+
+# Temporary files and folders. `.part` names that others left are removed before a process makes its first one
+# in a folder: if nobody has the lock, the program that wrote the file has ended.
+
+
+def _new_part(path: Path, *, is_folder: bool) -> tuple[Path, int]:
+    """A new temporary file or folder beside a path, and the descriptor of its locked file."""
+    _sweep(path.parent)
+    while True:
+        part = path.with_name(f".{path.name[:100]}.{secrets.token_hex(6)}.part")
+        _PARTS.add(part)
+        if is_folder:
+            os.mkdir(part)
+        locked = part / PART_LOCK if is_folder else part
+        try:
+            descriptor = os.open(
+                locked, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o666
+            )
+        except (FileExistsError, FileNotFoundError):
+            # Another program swept the folder as it was made, unless the place itself is gone.
+            if not is_folder:
+                raise
+            continue
+        with suppress(OSError):
+            # Without locks, as on some network drives, nothing is swept either.
+            lock(descriptor, wait=True)
+        with suppress(OSError):
+            if os.path.samestat(os.fstat(descriptor), os.lstat(locked)):
+                return part, descriptor
+        os.close(descriptor)
+
+
+def lock(descriptor: int, *, wait: bool) -> None:
+    """Lock an open file or folder until it is closed. Raises OSError if others have the lock, unless `wait`.
+
+    On Windows there is no such lock, but open files cannot be removed there.
+    """
+    with suppress(ImportError):
+        import fcntl
+
+        if sys.platform != "win32":
+            fcntl.flock(descriptor, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
+
+
+def _sweep(folder: Path) -> None:
+    """Remove the temporary files and folders that killed programs left in a folder, once a process."""
+    if folder in _SWEPT:
+        return
+    _SWEPT.add(folder)
+    with suppress(OSError), os.scandir(folder) as entries:
+        for part in [Path(entry.path) for entry in entries if PART.fullmatch(entry.name)]:
+            with suppress(OSError):
+                _remove_left(part)
+
+
+def _remove_left(part: Path) -> None:
+    """Remove a temporary file or folder, unless its program still has the lock. Raises OSError."""
+    kind = os.lstat(part).st_mode
+    if stat.S_ISDIR(kind):
+        # A folder that is just being made has no locked file yet: then its program makes another folder.
+        locked, flags = part / PART_LOCK, os.O_RDWR | os.O_CREAT
+    elif stat.S_ISREG(kind):
+        locked, flags = part, os.O_RDONLY
+    else:
+        return
+    flags |= getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0)
+    with open(os.open(locked, flags, 0o666), "rb") as file:
+        lock(file.fileno(), wait=False)
+        if not os.path.samestat(os.fstat(file.fileno()), os.lstat(locked)):
+            return
+        if sys.platform == "win32":
+            file.close()
+        os.unlink(locked)
+        _remove(part)
+
+
+def _remove(part: Path) -> None:
+    """Remove a temporary file or folder, if it is still there."""
+    with suppress(OSError):
+        os.unlink(part)
+    # This follows no links. It does nothing if the file is gone.
+    shutil.rmtree(part, ignore_errors=True)
+    _PARTS.discard(part)
+
+
+@atexit.register
+def _remove_parts() -> None:
+    for part in tuple(_PARTS):
+        _remove(part)
+
+
+if hasattr(os, "register_at_fork"):
+    # The files belong to the process that created them.
+    os.register_at_fork(after_in_child=_PARTS.clear)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from autocolor.errors import OutputError, UsageError
 from ramtek_emu.command_line import tell
+from ramtek_emu.writing import same_outputs
 
 if TYPE_CHECKING:
     from ramtek_emu import Ramtek9300
@@ -27,6 +28,10 @@ def refuse_outputs(output: str | None, save: str | None, force: bool) -> None:
         _refuse(save, force)
         if Path(save).suffix.lower() != ".npz":
             raise UsageError(f"--save must be the name of a picture file, not {save!r}; end it in .npz")
+    if output is not None and save is not None and same_outputs((output, save)):
+        raise UsageError(
+            f"two outputs must be two files, not {output} and {save}, which are the same; rename one"
+        )
 
 
 def _refuse(path: str, force: bool) -> None:

@@ -7,8 +7,6 @@ from __future__ import annotations
 
 import difflib
 import os
-import secrets
-import shutil
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
@@ -17,7 +15,7 @@ from pathlib import Path
 from typing import Final
 
 from autocolor.checks import shown
-from autocolor.errors import OutputError, UsageError, WriteError, reason_of
+from autocolor.errors import UsageError
 from autocolor.files.formats import (
     MESH_EXTRAS,
     MESH_FORMATS,
@@ -33,7 +31,7 @@ from autocolor.files.formats import (
 )
 from autocolor.files.meshes.obj import materials_of, mtl_text, obj_text
 from autocolor.files.meshes.repair import name_of
-from autocolor.files.paths import SCENE_FILE
+from autocolor.files.paths import SCENE_FILE, free_path
 from autocolor.files.scene_sources import STORE
 from autocolor.files.scene_writing import write_scene_with_tables
 from autocolor.files.store.store_file import write_store
@@ -41,7 +39,6 @@ from autocolor.files.writing import refuse_output, write_atomically
 from autocolor.scene.columns import fields_of
 from autocolor.scene.creation import SHARED
 from autocolor.scene.geometry.normals import CREASE_ANGLE
-from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalar import NODE
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Surface
@@ -207,7 +204,7 @@ def _write_file(mesh_format: MeshFormat, path: Path, scene: Scene, overwrite: bo
 def _write_files(mesh_format: MeshFormat, path: Path, scene: Scene, overwrite: bool) -> list[Path]:
     assert mesh_format.write is not None
     folder = path.parent if path.name in mesh_format.in_folder else path
-    return write_folder(folder, scene.mesh, mesh_format.write, overwrite=overwrite)
+    return mesh_format.write(folder, scene.mesh, overwrite=overwrite)
 
 
 LIBRARY_SUFFIX: Final = ".mtl"
@@ -227,15 +224,22 @@ def write_obj(path: Path, scene: Scene, overwrite: bool) -> list[Path]:
     surface_of = {part.name: part.surface for part in scene.parts}
     materials = [names[surface_of[part]] for part in scene.mesh.part_names]
     data = mtl_text((names[surface.name], surface) for surface in scene.surfaces)
-    was_there = os.path.lexists(library)
-    write_atomically(library, data, overwrite=overwrite)
-    try:
-        write_atomically(path, obj_text(scene.mesh, materials, library.name), overwrite=overwrite)
-    except BaseException:
-        if not was_there:
-            with suppress(OSError):
-                os.unlink(library)
-        raise
+    refuse_output(library, overwrite=overwrite)
+    # An old OBJ file may name the old library. The new OBJ file names a spare library until that is replaced.
+    has_old = os.path.lexists(path) and os.path.lexists(library)
+    libraries = [free_path(library), library] if has_old else [library]
+    for written in libraries:
+        was_there = os.path.lexists(written)
+        write_atomically(written, data, overwrite=overwrite)
+        try:
+            write_atomically(path, obj_text(scene.mesh, materials, written.name), overwrite=overwrite)
+        except BaseException:
+            if not was_there:
+                with suppress(OSError):
+                    os.unlink(written)
+            raise
+    if has_old:
+        os.unlink(libraries[0])
     return [path, library]
 
 
@@ -260,59 +264,6 @@ def beyond_materials(surfaces: Iterable[Surface]) -> list[str]:
         return materials["material"].replace(name=surface.name)
 
     return [surface.name for surface in surfaces if read_back(surface) != surface]
-
-
-def write_folder(
-    path: Path, mesh: Mesh, write: Callable[[Path, Mesh], object], *, overwrite: bool
-) -> list[Path]:
-    """Write the files of a mesh to a folder, which is created if it does not exist; returns the files.
-
-    `write` writes them into an empty folder; when all are complete they move to the path. Other files in the
-    folder stay. Raises OutputError if a file exists and `overwrite` is false, or if the folder cannot be
-    created; WriteError if writing fails.
-    """
-    parent = path.resolve().parent
-    if not parent.is_dir():
-        raise OutputError(f"an output must be in an existing folder, not {path.parent}; create it")
-    if os.path.exists(path) and not os.path.isdir(path):
-        raise OutputError(f"an output of several files must be a folder, not the file {path}; name another")
-    beside = parent / f".{path.name[:100]}.{secrets.token_hex(6)}.part"
-    try:
-        os.mkdir(beside)
-    except OSError as error:
-        raise OutputError(
-            f"an output must have a place, and at {path} it cannot be made ({reason_of(error)}); choose"
-            " another"
-        ) from None
-    try:
-        write(beside, mesh)
-        names = sorted(str(file.relative_to(beside)) for file in beside.rglob("*") if file.is_file())
-        there = [name for name in names if os.path.lexists(path / name)]
-        if there and not overwrite:
-            raise OutputError(
-                f"an output must be new files, not {path / there[0]}, which exists; choose another folder, or"
-                " overwrite it with --force"
-            )
-        for name in names:
-            with open(beside / name, "rb+") as file:
-                os.fsync(file.fileno())
-        if path.exists():
-            # Remove the old files first: if this is cut off, the folder has files of one mesh only.
-            for name in there:
-                os.unlink(path / name)
-            for name in names:
-                (path / name).parent.mkdir(parents=True, exist_ok=True)
-                os.replace(beside / name, path / name)
-        else:
-            os.rename(beside, path)
-    except OSError as error:
-        raise WriteError(
-            f"an output must be written whole, and {path} could not be ({reason_of(error)}); make room or"
-            " choose another place"
-        ) from None
-    finally:
-        shutil.rmtree(beside, ignore_errors=True)
-    return [path / name for name in names]
 
 
 STORE_OUTPUT: Final = OutputFormat(STORE.name, STORE.suffixes, _write_store)

@@ -28,7 +28,7 @@ from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement
 from autocolor.files.meshes.stl import begins_as_stl, read_stl
 from autocolor.files.meshes.table_file import SUFFIX, read_table_file, table_file_bytes
 from autocolor.files.meshes.vtk import begins_as_vtk, read_vtk
-from autocolor.files.reading import read_head
+from autocolor.files.reading import read_head, table_exists
 from autocolor.logs import logger_of, timed
 from autocolor.scene.mesh import Mesh
 
@@ -106,6 +106,10 @@ MeshReader = Callable[..., MeshReport]
 """A function that reads a mesh. Its positional arguments are the paths of the files, in the order of the
 format's keys, and a Placement. It raises InputError."""
 
+MeshWriter = Callable[..., list[Path]]
+"""A function that writes the files of a mesh to a folder, and returns them. Its arguments are the folder, the
+mesh, and the keyword `overwrite`. It raises OutputError and WriteError."""
+
 
 @dataclass(frozen=True)
 class MeshFormat(Format):
@@ -115,15 +119,15 @@ class MeshFormat(Format):
     first file. In a folder of this format, the first files `in_folder` are the files of the keys. If the only
     key is "file", the folder itself is the file.
 
-    `written` returns the content of a single file; `write` writes several files into an empty folder. `holds`
-    are the MESH_EXTRAS that a written mesh keeps. Files that are `mapped` into memory are read page by page,
-    so their size has no limit.
+    `written` returns the content of a single file; `write` writes several files into a folder, and returns
+    them. `holds` are the MESH_EXTRAS that a written mesh keeps. Files that are `mapped` into memory are read
+    page by page, so their size has no limit.
     """
 
     read: MeshReader
     keys: tuple[str, ...] = FILE
     written: Callable[[Mesh], bytes] | None = None
-    write: Callable[[Path, Mesh], object] | None = None
+    write: MeshWriter | None = None
     holds: frozenset[str] = frozenset(MESH_EXTRAS)
     mapped: bool = False
 
@@ -173,7 +177,7 @@ def format_of_folder(folder: Path) -> MeshFormat | None:
     """The format of the mesh in a folder; None if the folder has no mesh."""
     for mesh_format in MESH_FORMATS:
         names = mesh_format.in_folder
-        if names and all((folder / name).exists() for name in names):
+        if names and all(table_exists(folder, name) for name in names):
             return mesh_format
     return None
 

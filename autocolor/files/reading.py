@@ -1,15 +1,21 @@
-"""Reading input files safely: regular files only, and never more than a given number of bytes."""
+"""Reading input files safely: regular files only, and never more than a given number of bytes.
+
+A mesh of several tables in a folder is saved by one rename (see `writing.write_together`): the new tables
+are in the hidden folder COMMITTED until each has its own name. `TableFiles` finds them there.
+"""
 
 from __future__ import annotations
 
 import errno
 import json
 import os
+import re
 import stat
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, BinaryIO, Final, NoReturn
+from typing import Any, BinaryIO, Final, NamedTuple, NoReturn, TypeVar
 
 from autocolor import checks
 from autocolor.errors import InputError, MissingInputError, reason_of
@@ -28,6 +34,8 @@ HEAD: Final = 4096
 """Bytes that are enough to recognize a file format."""
 
 UTF_8_MARK: Final = b"\xef\xbb\xbf"
+
+Result = TypeVar("Result")
 
 
 def read_bytes(path: Path, largest: int) -> bytes:
@@ -83,6 +91,157 @@ def read_head(path: Path) -> bytes:
             return file.read(HEAD)
     except (OSError, ValueError, InputError):
         return b""
+
+
+# Tables in a folder. The folder COMMITTED has the tables of the last save that have no name of their own yet,
+# and NAMES, the names of all tables of that save. It exists for a moment, or after a program was killed.
+
+COMMITTED: Final = ".autocolor-tables"
+
+NAMES: Final = "names.json"
+
+SET_KEYS: Final = frozenset(("save", "files", "absent"))
+
+LARGEST_SET: Final = 1 << 17
+MOST_NAMES: Final = 4000
+"""Limit: more than the names of 1000 scalars, twice."""
+
+TABLE_NAME: Final = re.compile(r"(?:scalars/)?[a-z0-9_]{1,40}\.(?:csv|npy)|tables\.json")
+"""The names that a set may have, so that a set of a stranger moves and removes nothing else."""
+
+MOST_TRIES: Final = 20
+"""Limit: how often tables are opened anew while others save them, in two seconds."""
+
+SECONDS_BETWEEN_TRIES: Final = 0.01
+
+
+class TableSet(NamedTuple):
+    """The names of a committed save of tables, and the names that it removes from the folder.
+
+    `save` is a random number that no other save has.
+    """
+
+    save: str
+    files: tuple[str, ...]
+    absent: tuple[str, ...]
+
+
+def committed_set(folder: Path) -> TableSet | None:
+    """The save of tables in a folder whose tables do not all have their own names; None if all have.
+
+    Raises InputError if it is none of ours.
+    """
+    path = folder / COMMITTED / NAMES
+    try:
+        if stat.S_ISLNK(os.lstat(path.parent).st_mode) or stat.S_ISLNK(os.lstat(path).st_mode):
+            raise ValueError("it is a link")
+        content = bounded_json(read_bytes(path, LARGEST_SET), MOST_NAMES)
+        if not isinstance(content, dict) or set(content) != SET_KEYS or not isinstance(content["save"], str):
+            raise ValueError("its keys are others")
+        names = [content["files"], content["absent"]]
+        if not all(isinstance(listed, list) and all(map(_is_table_name, listed)) for listed in names):
+            raise ValueError("its names are others")
+    except (FileNotFoundError, NotADirectoryError, MissingInputError):
+        return None
+    except (OSError, ValueError) as error:
+        raise InputError(
+            f"{path}: it must be what a save wrote, and is not ({str(error)[:100]}); delete that folder"
+        ) from None
+    return TableSet(content["save"], *map(tuple, names))
+
+
+def _is_table_name(name: object) -> bool:
+    return isinstance(name, str) and TABLE_NAME.fullmatch(name) is not None
+
+
+def name_in_set(name: str) -> str:
+    """The name of a table in the folder COMMITTED, which has no folders."""
+    return name.replace("/", "_")
+
+
+class TableFiles:
+    """Where the tables of folders are. Notes all that was asked, to find out if a save came meanwhile."""
+
+    def __init__(self) -> None:
+        self._sets: dict[Path, TableSet | None] = {}
+        self._seen: dict[tuple[Path, str], tuple[Path, tuple[int, ...] | None]] = {}
+
+    def path(self, folder: Path, name: str) -> Path:
+        """The path of a table of a folder; no file has it if the folder has no such table.
+
+        Raises InputError as `committed_set`.
+        """
+        if folder not in self._sets:
+            self._sets[folder] = committed_set(folder)
+        committed = self._sets[folder]
+        path = folder / name
+        if committed is not None and name in (*committed.files, *committed.absent):
+            moved = folder / COMMITTED / name_in_set(name)
+            path = moved if name in committed.absent or _is_regular(moved) else path
+        self._seen[folder, name] = path, _stamp(path)
+        return path
+
+    def has(self, folder: Path, name: str) -> bool:
+        """Whether a folder has a table. Raises InputError as `committed_set`."""
+        self.path(folder, name)
+        return self._seen[folder, name][1] is not None
+
+    def are_unchanged(self) -> bool:
+        """Whether every answer would be the same now. Raises InputError as `committed_set`."""
+        now = TableFiles()
+        for folder, name in self._seen:
+            now.path(folder, name)
+        return (now._sets, now._seen) == (self._sets, self._seen)
+
+
+def _is_regular(path: Path) -> bool:
+    try:
+        return stat.S_ISREG(os.lstat(path).st_mode)
+    except OSError:
+        return False
+
+
+def _stamp(path: Path) -> tuple[int, ...] | None:
+    """Numbers that differ for another file, or other content; None for no file."""
+    try:
+        status = os.stat(path)
+    except (OSError, ValueError):
+        return None
+    return status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns
+
+
+def read_together(open_files: Callable[[TableFiles], Result]) -> Result:
+    """The result of a function that opens files of folders of tables, all files of one save.
+
+    The function is called again if a save came meanwhile. Raises InputError if saves come all the time, and
+    what the function raises.
+    """
+    for number in range(MOST_TRIES):
+        files = TableFiles()
+        try:
+            result = open_files(files)
+        except InputError:
+            if files.are_unchanged():
+                raise
+        else:
+            if files.are_unchanged():
+                return result
+        time.sleep(SECONDS_BETWEEN_TRIES * number)
+    raise InputError(
+        "tables must stay as they are while they are opened, and these were saved again each of"
+        f" {MOST_TRIES} times; try again when the other program has ended"
+    )
+
+
+def table_exists(folder: Path, name: str) -> bool:
+    """Whether a folder has a table, by the names alone."""
+    try:
+        committed = committed_set(folder)
+    except InputError:
+        committed = None
+    if committed is not None and name in (*committed.files, *committed.absent):
+        return name in committed.files
+    return (folder / name).exists()
 
 
 def refuse_irregular(path: Path, status: os.stat_result) -> None:

@@ -28,7 +28,7 @@ from autocolor.files.formats import (
 from autocolor.files.meshes.repair import SCALES, UPS, Placement
 from autocolor.files.paths import PICTURE_SUFFIX, SCENE_FILE, STORE_SUFFIXES
 from autocolor.files.picture_file import read_picture
-from autocolor.files.reading import status_of
+from autocolor.files.reading import TableFiles, status_of
 from autocolor.files.scene_report import SceneReport, scene_report
 from autocolor.files.scene_toml.scene_file import read_scene_file
 from autocolor.files.scene_toml.scene_meshes import MeshSource, keep_source
@@ -129,7 +129,7 @@ def read_scene_with_report(
     if surfaces not in (MATERIALS, PARTS):
         raise UsageError(f"surfaces must be {MATERIALS!r} or {PARTS!r}, not {shown(surfaces)}")
     path = Path(path)
-    status_of(path)
+    status_of(TableFiles().path(path.parent, path.name))
 
     path, source = source_format(path)
     if isinstance(source, SceneFormat):

@@ -13,7 +13,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Final
 
-from autocolor.errors import InputError, OutputError, UsageError, reason_of
+from autocolor.errors import InputError, OutputError, UsageError
 from autocolor.files.formats import mesh_suffixes, suffixes_of
 from autocolor.files.paths import SCENE_FILE, STORE_SUFFIXES
 from autocolor.files.reading import read_bytes
@@ -38,7 +38,7 @@ from autocolor.files.scene_toml.scene_text import (
 from autocolor.files.scene_toml.toml_text import LARGEST_TEXT, parsed_toml
 from autocolor.files.stamps import Guard, no_guard
 from autocolor.files.store.store_file import write_store
-from autocolor.files.writing import refuse_output, write_atomically
+from autocolor.files.writing import new_folder, refuse_output, write_atomically
 from autocolor.logs import logger_of
 from autocolor.scene.columns import Row, row_label, to_plain
 from autocolor.scene.geometry.normals import CREASE_ANGLE
@@ -83,7 +83,7 @@ def write_scene_with_tables(
     target = _target(path)
     check_scene(scene)
     refuse_names((*scene.parts, *scene.surfaces, *scene.lights))
-    with _new_folder(target.parent), _removed_on_failure() as written:
+    with new_folder(target.parent, "a scene"), _removed_on_failure() as written:
         refuse_output(target, overwrite=overwrite)
         check = guard(target)
         old = _existing(target)
@@ -136,27 +136,6 @@ def _texts_in(value: object) -> Iterator[str]:
         yield from value if isinstance(value, Mapping) else ()
         for each in inner:
             yield from _texts_in(each)
-
-
-@contextmanager
-def _new_folder(folder: Path) -> Iterator[None]:
-    """Create a missing folder; remove it again if the body fails. Raises OutputError."""
-    try:
-        os.mkdir(folder)
-    except FileExistsError:
-        yield
-        return
-    except (OSError, ValueError) as error:
-        raise OutputError(
-            f"a scene must have a folder to be in, and {str(folder)!r} cannot be made ({reason_of(error)});"
-            " choose another place"
-        ) from None
-    try:
-        yield
-    except BaseException:
-        with suppress(OSError):
-            os.rmdir(folder)
-        raise
 
 
 @contextmanager

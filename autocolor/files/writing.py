@@ -1,18 +1,27 @@
-"""Writing files atomically: after any failure, either the old or the new file is there, complete.
+"""Writing files atomically: after any failure, either the old or the new files are there, complete.
 
-`ramtek_emu.writing` does the work. Its errors become errors of this package.
+`ramtek_emu.writing` does the work for single files. Its errors become errors of this package.
 """
 
 from __future__ import annotations
 
+import json
 import os
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import ExitStack, contextmanager
+import sys
+import time
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import Final
 
 import ramtek_emu
-from autocolor.errors import OutputError, UsageError, WriteError
+from autocolor.errors import OutputError, UsageError, WriteError, reason_of
+from autocolor.files.reading import COMMITTED, NAMES, committed_set, name_in_set
 from ramtek_emu import writing
+from ramtek_emu.writing import temporary_folder as temporary_folder
+
+SECONDS_OF_WAITING: Final = 10.0
+"""Limit: how long to wait for another program that moves tables, which takes milliseconds."""
 
 
 def write_atomically(path: str | os.PathLike[str], data: bytes, *, overwrite: bool) -> None:
@@ -26,24 +35,132 @@ def write_atomically(path: str | os.PathLike[str], data: bytes, *, overwrite: bo
 
 
 def write_together(
-    files: Iterable[tuple[Path, Iterable[bytes]]],
-    *,
-    overwrite: bool,
-    before_names: Callable[[], None] = lambda: None,
-) -> None:
-    """Write files piece by piece, and rename all of them when they are whole, in their order.
+    folder: Path, files: Iterable[tuple[str, Iterable[bytes]]], *, others: Iterable[str], overwrite: bool
+) -> list[Path]:
+    """Write tables to a folder, which is created if it does not exist; returns their paths, sorted.
 
-    `before_names` is called before that. Raises OutputError and WriteError as `write_atomically` does.
+    The tables are written to a hidden folder in it. One rename commits them, and from then on our readers
+    read the new tables; then each is moved to its name. If a program is killed before the rename, the old
+    tables are whole. If it is killed later, the next call moves the tables that are left. Tables of the names
+    `others` are removed if the new tables do not have these names. Other files in the folder stay.
+
+    Raises OutputError if a table exists and `overwrite` is false, or if the folder cannot be created, and
+    WriteError if writing fails. The old or the new tables are whole then.
     """
-    with _refusals_of_this_package(), ExitStack() as stack:
-        outputs = []
-        for path, pieces in files:
-            outputs.append(stack.enter_context(writing.Output(path, overwrite=overwrite)))
-            for piece in pieces:
-                outputs[-1].write(piece)
-        before_names()
-        for output in outputs:
-            output.keep()
+    parent = folder.resolve().parent
+    if not parent.is_dir():
+        raise OutputError(f"an output must be in an existing folder, not {folder.parent}; create it")
+    if os.path.exists(folder) and not os.path.isdir(folder):
+        raise OutputError(f"an output of several files must be a folder, not the file {folder}; name another")
+    with new_folder(folder, "a mesh"), _refusals_of_this_package(), _refusals_at(folder):
+        with _saving_alone(folder):
+            _move_tables(folder)
+        with writing.temporary_folder(folder.resolve() / "tables") as (part, names_file):
+            names = []
+            for name, pieces in files:
+                if "/" not in name:
+                    writing.refuse_output(folder / name, overwrite)
+                names.append(name)
+                with open(part / name_in_set(name), "xb") as file:
+                    file.writelines(pieces)
+                    file.flush()
+                    os.fsync(file.fileno())
+            with _saving_alone(folder):
+                _move_tables(folder)
+                for name in names:
+                    _make_folder((folder / name).parent)
+                    writing.refuse_output(folder / name, overwrite)
+                absent = sorted(name for name in {*others} - {*names} if os.path.isfile(folder / name))
+                content = {"save": part.name, "files": names, "absent": absent}
+                names_file.write(json.dumps(content, indent=1).encode())
+                names_file.flush()
+                os.fsync(names_file.fileno())
+                if sys.platform == "win32":
+                    # A folder of open files cannot be renamed there.
+                    names_file.close()
+                writing.sync_folder(part)
+                os.rename(part, folder / COMMITTED)
+                writing.sync_folder(folder)
+                _move_tables(folder)
+    return sorted(folder / name for name in names)
+
+
+def _move_tables(folder: Path) -> None:
+    """Move the tables of a committed save to their names, if there is one. Raises OSError, InputError."""
+    committed = committed_set(folder)
+    source = folder / COMMITTED
+    if committed is not None:
+        for name in committed.absent:
+            (folder / name).unlink(missing_ok=True)
+        for name in committed.files:
+            _make_folder((folder / name).parent)
+            if os.path.lexists(source / name_in_set(name)):
+                os.replace(source / name_in_set(name), folder / name)
+        for place in {(folder / name).parent for name in committed.files}:
+            writing.sync_folder(place)
+        os.unlink(source / NAMES)
+    with suppress(FileNotFoundError):
+        os.rmdir(source)
+
+
+def _make_folder(folder: Path) -> None:
+    try:
+        folder.mkdir(exist_ok=True)
+        if folder.is_symlink() and folder.name == "scalars":
+            raise OutputError(f"{folder}: it must be a folder, not a link; choose another place")
+    except OSError as error:
+        raise OutputError(f"{folder}: it cannot be made ({reason_of(error)}); choose another place") from None
+
+
+@contextmanager
+def new_folder(folder: Path, thing: str) -> Iterator[None]:
+    """Create a missing folder for `thing`; remove it again if the body fails. Raises OutputError."""
+    try:
+        os.mkdir(folder)
+    except FileExistsError:
+        yield
+        return
+    except (OSError, ValueError) as error:
+        raise OutputError(
+            f"{thing} must have a folder to be in, and {str(folder)!r} cannot be made ({reason_of(error)});"
+            " choose another place"
+        ) from None
+    try:
+        yield
+    except BaseException:
+        with suppress(OSError):
+            os.rmdir(folder)
+        raise
+
+
+@contextmanager
+def _saving_alone(folder: Path) -> Iterator[None]:
+    """Wait until no other program commits or moves tables in a folder. Raises WriteError."""
+    try:
+        descriptor = os.open(folder, os.O_RDONLY)
+    except OSError:
+        # Windows opens no folders.
+        yield
+        return
+    try:
+        until = time.monotonic() + SECONDS_OF_WAITING
+        while True:
+            try:
+                writing.lock(descriptor, wait=False)
+                break
+            except BlockingIOError:
+                if time.monotonic() > until:
+                    raise WriteError(
+                        f"tables must be saved by one program at a time, and another one saves to {folder};"
+                        " try again"
+                    ) from None
+                time.sleep(0.01)
+            except OSError:
+                # The file system has no locks.
+                break
+        yield
+    finally:
+        os.close(descriptor)
 
 
 def refuse_output(path: str | os.PathLike[str], *, overwrite: bool) -> None:
@@ -56,6 +173,17 @@ def check_suffix(path: str | os.PathLike[str], suffix: str, what: str) -> None:
     """Raise UsageError if the name of a file does not end in a suffix; `what` is written to it."""
     if Path(path).suffix.lower() != suffix:
         raise UsageError(f"{what} must be written to a file that ends in {suffix}, not to {path}; rename it")
+
+
+@contextmanager
+def _refusals_at(path: Path) -> Iterator[None]:
+    try:
+        yield
+    except (ramtek_emu.OutputError, ramtek_emu.WriteError):
+        # They are OSErrors, too.
+        raise
+    except OSError as error:
+        raise writing.refusal(path, error) from None
 
 
 @contextmanager

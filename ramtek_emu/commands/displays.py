@@ -17,7 +17,7 @@ from ramtek_emu.command_line import ENDING
 from ramtek_emu.command_line import tell as tell
 from ramtek_emu.configuration import CONFIGURATIONS, GMR_9300
 from ramtek_emu.errors import MissingInputError, RamtekError, reason_of
-from ramtek_emu.writing import Output, refuse_output
+from ramtek_emu.writing import Output, refuse_output, same_outputs
 
 if TYPE_CHECKING:
     from ramtek_emu.display import Ramtek9300
@@ -75,6 +75,10 @@ def refuse_outputs(force: bool, *paths: str | None) -> None:
             if path in ("", "-"):
                 raise click.UsageError(f"an output must be the name of a file, not {path!r}; give it one")
             refuse_output(path, force)
+    if same := same_outputs(path for path in paths if path is not None):
+        raise click.UsageError(
+            f"two outputs must be two files, not {same[0]} and {same[1]}, which are the same; rename one"
+        )
 
 
 Handler = Callable[[int, object], object] | signal.Handlers
@@ -202,8 +206,6 @@ def open_stream(path: str) -> BinaryIO:
         raise MissingInputError(
             f"a stream must be a file that can be read, not {path!r} ({reason_of(cause)}); check the name"
         ) from None
-
-
 
 
 TICK_SECONDS: Final = 0.01

@@ -1,12 +1,14 @@
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from ramtek_emu import OutputError, OutputExistsError, WriteError
+from ramtek_emu import OutputError, OutputExistsError, WriteError, writing
 from ramtek_emu.png import png_bytes, save_png
 from ramtek_emu.writing import Output, refuse_output, write_atomically
 
@@ -120,3 +122,86 @@ def test_impossible_outputs_are_refused_before_anything_is_done(tmp_path: Path) 
     ):
         with pytest.raises(OutputError, match=sentence):
             refuse_output(place, overwrite=True)
+
+
+def part(folder: Path, name: str = "a.png") -> Path:
+    return folder / f".{name}.0123456789ab.part"
+
+
+def test_temporary_files_of_killed_programs_are_swept_and_nothing_else(tmp_path: Path) -> None:
+    others = [".a.png.0123456789aB.part", ".a.png.part", "a.0123456789ab.part", ".b.0123456789ab.parts"]
+    for name in others:
+        (tmp_path / name).write_bytes(b"mine")
+    part(tmp_path).write_bytes(b"left")
+    part(tmp_path, "tables").mkdir()
+    (part(tmp_path, "tables") / "nodes.npy").write_bytes(b"left")
+    (tmp_path / "linked").mkdir()
+    part(tmp_path, "link").symlink_to(tmp_path / "linked")
+    (part(tmp_path, "tables") / "link").symlink_to(tmp_path / "linked")
+    others += [part(tmp_path, "link").name, "linked"]
+    write_atomically(tmp_path / "new.png", b"new", overwrite=False)
+    assert sorted(os.listdir(tmp_path)) == sorted([*others, "new.png"])
+
+
+def test_temporary_files_of_running_programs_stay(tmp_path: Path) -> None:
+    code = (
+        "import sys\n"
+        "from pathlib import Path\n"
+        "from ramtek_emu.writing import Output, temporary_folder\n"
+        "with Output(sys.argv[1] + '/a', overwrite=True), temporary_folder(Path(sys.argv[1], 'b')):\n"
+        "    print('ready', flush=True)\n"
+        "    sys.stdin.read()\n"
+    )
+    command = [sys.executable, "-c", code, str(tmp_path)]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as program:
+        assert program.stdout is not None
+        assert program.stdout.readline() == b"ready\n"
+        running = {path.name for path in tmp_path.iterdir()}
+        assert len(running) == 2
+        write_atomically(tmp_path / "new.png", b"new", overwrite=False)
+        assert set(os.listdir(tmp_path)) == {*running, "new.png"}
+        program.kill()
+    writing._SWEPT.clear()
+    write_atomically(tmp_path / "newer.png", b"new", overwrite=False)
+    assert sorted(os.listdir(tmp_path)) == ["new.png", "newer.png"]
+
+
+def test_a_program_that_ends_without_closing_its_output_leaves_nothing(tmp_path: Path) -> None:
+    code = (
+        "import sys\n"
+        "from ramtek_emu.writing import Output\n"
+        "output = Output(sys.argv[1] + '/a', overwrite=True)\n"
+        "raise KeyboardInterrupt\n"
+    )
+    subprocess.run([sys.executable, "-c", code, str(tmp_path)], stderr=subprocess.DEVNULL, check=False)
+    assert os.listdir(tmp_path) == []
+
+
+def test_an_output_that_another_program_sweeps_as_it_is_made_is_made_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    lock = writing.lock
+    swept: list[Path] = []
+
+    def sweep_first(descriptor: int, *, wait: bool) -> None:
+        if not swept:
+            swept.extend(tmp_path.iterdir())
+            swept[0].unlink()
+        lock(descriptor, wait=wait)
+
+    monkeypatch.setattr(writing, "lock", sweep_first)
+    write_atomically(tmp_path / "a", b"new", overwrite=False)
+    assert len(swept) == 1
+    assert os.listdir(tmp_path) == ["a"]
+
+
+def test_paths_of_the_same_file_are_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "link").symlink_to("a.png")
+    (tmp_path / "folder").symlink_to(".")
+    for other in ("a.png", "./a.png", str(tmp_path / "a.png"), "link", "folder/a.png"):
+        assert writing.same_outputs(("b.png", "a.png", other)) == ("a.png", other)
+    assert writing.same_outputs(("a.png", "b.png", "c/a.png")) is None
+    (tmp_path / "a.png").touch()
+    os.link("a.png", "hard")
+    assert writing.same_outputs(("hard", "a.png")) == ("hard", "a.png")

@@ -36,7 +36,8 @@ from autocolor.errors import InputError
 from autocolor.files.meshes.file_scalars import FileScalars
 from autocolor.files.meshes.number_text import MOST_PROBLEMS, NUMBER, Problems
 from autocolor.files.meshes.repair import LONGEST_NAME, PLAIN, MeshReport, Placement, RawPolygons, repaired
-from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, shown, text_lines
+from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, read_together, shown, text_lines
+from autocolor.files.writing import write_together
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalar import MOST_SCALARS, NODE, POLYGON
 
@@ -144,9 +145,9 @@ def _require_letters(cells: Sequence[str], letters: bytes) -> None:
 class CsvRows:
     """The header of a file, its cells without spaces around, and the other rows in blocks."""
 
-    def __init__(self, path: Path) -> None:
-        self.place = path.name
-        data = text_lines(read_bytes(path, LARGEST_MESH_FILE), self.place, "a table")
+    def __init__(self, place: str, data: bytes) -> None:
+        self.place = place
+        data = text_lines(data, place, "a table")
         try:
             data.decode("utf-8")
         except UnicodeDecodeError as error:
@@ -249,13 +250,14 @@ class Table:
     def __init__(
         self,
         problems: Problems,
-        path: Path,
+        place: str,
+        data: bytes,
         columns: Mapping[str, CellKind],
         required: tuple[str, ...],
     ) -> None:
         self.problems = problems
-        self.place = path.name
-        rows = CsvRows(path)
+        self.place = place
+        rows = CsvRows(place, data)
         header = rows.header
         _check_header(self.place, header, tuple(columns), required)
         kinds = [columns.get(name, VALUES) for name in header]
@@ -280,10 +282,15 @@ def read_csv_tables(nodes: Path, polygons: Path, placement: Placement = PLAIN) -
 
     Raises InputError with every problem of both tables, each with its file and row.
     """
+    paths = (nodes, polygons)
+    node_data, polygon_data = read_together(
+        lambda files: [read_bytes(files.path(path.parent, path.name), LARGEST_MESH_FILE) for path in paths]
+    )
     problems = Problems("row")
     node_table = Table(
         problems,
-        nodes,
+        nodes.name,
+        node_data,
         {"node": WholeCells("a node number"), **dict.fromkeys("xyz", COORDINATES)},
         ("x", "y", "z"),
     )
@@ -295,7 +302,8 @@ def read_csv_tables(nodes: Path, polygons: Path, placement: Placement = PLAIN) -
     corner, last = WholeCells("a corner"), WholeCells("a corner", may_be_empty=True)
     polygon_table = Table(
         problems,
-        polygons,
+        polygons.name,
+        polygon_data,
         {
             "polygon": WholeCells("a polygon number"),
             "part": names,
@@ -477,7 +485,7 @@ CSV_FILES: Final = ("nodes.csv", "polygons.csv")
 """The files of a folder that is a mesh in CSV."""
 
 
-def write_csv_tables(folder: Path, mesh: Mesh) -> None:
-    """Write the tables of a mesh to an empty folder. Raises OSError."""
-    for name, data in zip(CSV_FILES, csv_tables_bytes(mesh), strict=True):
-        (folder / name).write_bytes(data)
+def write_csv_tables(folder: Path, mesh: Mesh, *, overwrite: bool = False) -> list[Path]:
+    """Write the tables of a mesh to a folder, and return their paths. Raises OutputError and WriteError."""
+    tables = zip(CSV_FILES, csv_tables_bytes(mesh), strict=True)
+    return write_together(folder, ((name, [data]) for name, data in tables), others=(), overwrite=overwrite)

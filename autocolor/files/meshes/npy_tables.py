@@ -40,9 +40,9 @@ import numpy as np
 
 from autocolor.arrays import AnyArray, Booleans, Indices, chunks
 from autocolor.checks import LARGEST_COORDINATE
-from autocolor.errors import InputError, OutputError, WriteError, reason_of
+from autocolor.errors import InputError, WriteError, reason_of
 from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, placed
-from autocolor.files.reading import bounded_json, opened, read_bytes, shown
+from autocolor.files.reading import TableFiles, bounded_json, opened, read_bytes, read_together, shown
 from autocolor.files.writing import write_together
 from autocolor.immutable import read_only
 from autocolor.logs import logger_of, timed
@@ -199,23 +199,25 @@ def parsed_header(name: str, head: bytes) -> NpyHeader:
     return NpyHeader(dtype, by_columns, shape, start)
 
 
-def mapped(path: Path) -> AnyArray:
+def mapped(path: Path, name: str = "") -> AnyArray:
     """The table of an .npy file, (rows,) or (rows, columns), mapped and read-only.
 
-    Raises MissingInputError if there is no such file, InputError if it is not such a table.
+    Messages have the `name`, if it is another than the path's. Raises MissingInputError if there is no such
+    file, InputError if it is not such a table.
     """
+    name = name or path.name
     with opened(path) as (file, status):
-        header = parsed_header(path.name, file.read(LARGEST_HEADER))
+        header = parsed_header(name, file.read(LARGEST_HEADER))
         if status.st_size != header.size:
             raise InputError(
-                f"{path.name}: a table of shape {header.shape} and type {header.dtype} must have"
+                f"{name}: a table of shape {header.shape} and type {header.dtype} must have"
                 f" {header.size:,} bytes, not {status.st_size:,}; write it again"
             )
         try:
             pages = mmap.mmap(file.fileno(), header.size, access=mmap.ACCESS_READ)
         except ValueError as error:
             # Another program shortened the file meanwhile.
-            raise InputError(f"{path.name}: a table must stay whole ({error}); write it again") from None
+            raise InputError(f"{name}: a table must stay whole ({error}); write it again") from None
     numbers: AnyArray = np.frombuffer(pages, header.dtype, math.prod(header.shape), header.start)
     return read_only(numbers.reshape(header.shape, order="F" if header.by_columns else "C"))
 
@@ -322,48 +324,77 @@ def read_npy_tables(nodes: Path, polygons: Path, placement: Placement = PLAIN) -
 
     Raises InputError that names table, row and remedy.
     """
-    coordinates = _table(nodes, "coordinates", None, (3,), np.float64, are_coordinates, FINITE)
-    corners = _numbers(polygons, "node numbers", None, (4, 3), "node table", len(coordinates))
-    count = len(corners)
     is_plain = placement.up == "z" and placement.scale == 1
+    tables, notes, wanted = read_together(
+        lambda files: _mapped_tables(files, nodes, polygons, placement.crease_angle, is_plain)
+    )
+    coordinates = _table(tables, NODES, "coordinates", None, (3,), np.float64, are_coordinates, FINITE)
+    corners = _numbers(tables, POLYGONS, "node numbers", None, (4, 3), "node table", len(coordinates))
+    count = len(corners)
     if not is_plain:
         coordinates = np.asfortranarray(placed(coordinates.copy(order="F"), placement))
         thing = "scaled coordinates must be at most 1e30 in size"
         checked(NODES, coordinates, thing, are_coordinates, "give a smaller scale")
         read_only(coordinates)
-    folder = nodes.parent
-    is_folder = (nodes.name, polygons.name) == (NODES, POLYGONS) and polygons.parent == folder
-    notes = read_notes(folder / NOTES) if is_folder and (folder / NOTES).exists() else None
-    angle = CREASE_ANGLE if notes is None else notes.crease_angle
-    wanted = angle if placement.crease_angle is None else placement.crease_angle
     # Part 0 for all polygons takes the memory of one number.
     part_numbers: Indices = np.broadcast_to(np.zeros(1, np.intp), count)
-    if not is_folder:
-        return MeshReport(Mesh.of_tables(coordinates, corners, part_numbers, (PART,), wanted))
     names = () if notes is None else notes.part_names
-    if (folder / PARTS).exists():
+    if PARTS in tables:
         most = len(names) or MOST_PARTS
-        part_numbers = _numbers(folder / PARTS, "part numbers", count, (0,), "part table", most)
+        part_numbers = _numbers(tables, PARTS, "part numbers", count, (0,), "part table", most)
         names = names or tuple(f"part {number}" for number in range(int(part_numbers.max(initial=0)) + 1))
-    normals = _normals(folder, count) if is_plain and wanted == angle else None
     planes: Any = ...
     if notes is not None and notes.planes is not None and is_plain:
-        planes = _planes(folder, count) if notes.planes else None
+        planes = _planes(tables, count) if notes.planes else None
     mesh = Mesh.of_tables(
         coordinates,
         corners,
         part_numbers,
         names or (PART,),
         wanted,
-        () if notes is None else _scalars(folder, notes, {NODE: len(coordinates), POLYGON: count}),
-        normals=normals,
+        () if notes is None else _scalars(tables, notes, {NODE: len(coordinates), POLYGON: count}),
+        normals=_normals(tables, count),
         shared_planes=planes,
     )
     return MeshReport(mesh)
 
 
+Tables = Mapping[str, tuple[str, AnyArray]]
+"""The mapped tables of a folder by their usual names: the name of the file, and the table."""
+
+
+def _mapped_tables(
+    files: TableFiles, nodes: Path, polygons: Path, crease_angle: float | None, is_plain: bool
+) -> tuple[Tables, TableNotes | None, float]:
+    """The tables to use, the notes if there are any, and the crease angle of the mesh.
+
+    Only headers are checked. Raises InputError.
+    """
+    folder = nodes.parent
+    is_folder = (nodes.name, polygons.name) == (NODES, POLYGONS) and polygons.parent == folder
+    has_notes = is_folder and files.has(folder, NOTES)
+    notes = read_notes(files.path(folder, NOTES)) if has_notes else None
+    angle = CREASE_ANGLE if notes is None else notes.crease_angle
+    wanted = angle if crease_angle is None else crease_angle
+    names = [PARTS] if is_folder and files.has(folder, PARTS) else []
+    if is_folder and is_plain and wanted == angle:
+        names += [name for name in (NORMALS, NORMAL_NUMBERS) if files.has(folder, name)]
+    if notes is not None:
+        names += [PLANES, PLANE_NUMBERS, PLANE_SIDES] if notes.planes and is_plain else []
+        names += [_scalar_name(number) for number in range(1, len(notes.scalars) + 1)]
+    places = {NODES: (folder, nodes.name), POLYGONS: (polygons.parent, polygons.name)}
+    places |= {name: (folder, name) for name in names}
+    tables = {key: (name, mapped(files.path(at, name), name)) for key, (at, name) in places.items()}
+    return tables, notes, wanted
+
+
+def _scalar_name(number: int) -> str:
+    return f"{SCALARS}/{number}.npy"
+
+
 def _table(
-    path: Path,
+    tables: Tables,
+    name: str,
     what: str,
     rows: int | None,
     widths: tuple[int, ...],
@@ -376,8 +407,7 @@ def _table(
 
     `what` names the table, and `thing` the rule, in messages.
     """
-    table = mapped(path)
-    place = f"{SCALARS}/{path.name}" if path.parent.name == SCALARS else path.name
+    place, table = tables[name]
     is_shaped(place, table, what, rows, widths)
     is_of(place, table, what, kinds)
     checked(place, table, thing, rule, CORRECT)
@@ -385,16 +415,16 @@ def _table(
 
 
 def _numbers(
-    path: Path, what: str, rows: int | None, widths: tuple[int, ...], target: str, count: int
+    tables: Tables, name: str, what: str, rows: int | None, widths: tuple[int, ...], target: str, count: int
 ) -> Indices:
     """The checked numbers in a file, each a row of another table, `target`, of `count` rows."""
     thing = f"{what} must be rows of the {target} (0 to {count - 1})"
-    return _table(path, what, rows, widths, np.intp, within(count), thing, "iu")
+    return _table(tables, name, what, rows, widths, np.intp, within(count), thing, "iu")
 
 
-def _normals(folder: Path, polygons: int) -> NodeNormals | None:
+def _normals(tables: Tables, polygons: int) -> NodeNormals | None:
     """The normals of the files; None if there are none."""
-    names = [name for name in (NORMALS, NORMAL_NUMBERS) if (folder / name).exists()]
+    names = [name for name in (NORMALS, NORMAL_NUMBERS) if name in tables]
     if not names:
         return None
     if len(names) == 1:
@@ -402,19 +432,20 @@ def _normals(folder: Path, polygons: int) -> NodeNormals | None:
             f"{names[0]}: {NORMALS} and {NORMAL_NUMBERS} must be in the folder together; delete it"
         )
     thing = "a normal must be a unit vector"
-    vectors = _table(folder / NORMALS, "normals", None, (3,), np.float32, are_unit_vectors, thing)
-    path = folder / NORMAL_NUMBERS
-    return NodeNormals(vectors, _numbers(path, "normal numbers", polygons, (4,), "normals", len(vectors)))
+    vectors = _table(tables, NORMALS, "normals", None, (3,), np.float32, are_unit_vectors, thing)
+    numbers = _numbers(tables, NORMAL_NUMBERS, "normal numbers", polygons, (4,), "normals", len(vectors))
+    return NodeNormals(vectors, numbers)
 
 
-def _planes(folder: Path, polygons: int) -> SharedPlanes:
+def _planes(tables: Tables, polygons: int) -> SharedPlanes:
     """The planes of the files that the notes promise."""
     thing = "numbers must be finite and at most 1e30 in size"
-    planes = _table(folder / PLANES, "planes", None, (7,), np.float64, are_coordinates, thing)
+    planes = _table(tables, PLANES, "planes", None, (7,), np.float64, are_coordinates, thing)
     checked(PLANES, planes[:, :3], "the normal of a plane must be a unit vector", are_unit_vectors, CORRECT)
     columns = np.ascontiguousarray(planes.T)
     numbers = _table(
-        folder / PLANE_NUMBERS,
+        tables,
+        PLANE_NUMBERS,
         "plane numbers",
         polygons,
         (0,),
@@ -424,7 +455,8 @@ def _planes(folder: Path, polygons: int) -> SharedPlanes:
         "i",
     )
     sides = _table(
-        folder / PLANE_SIDES,
+        tables,
+        PLANE_SIDES,
         "sides",
         polygons,
         (0,),
@@ -435,13 +467,14 @@ def _planes(folder: Path, polygons: int) -> SharedPlanes:
     return SharedPlanes(columns[:3], columns[3:6], columns[6], numbers, sides.view(np.bool_))
 
 
-def _scalars(folder: Path, notes: TableNotes, counts: Mapping[str, int]) -> tuple[MeshScalar, ...]:
+def _scalars(tables: Tables, notes: TableNotes, counts: Mapping[str, int]) -> tuple[MeshScalar, ...]:
     """The scalars that the notes name, for this many nodes and polygons."""
     return tuple(
         MeshScalar(
             name,
             _table(
-                folder / SCALARS / f"{number}.npy",
+                tables,
+                _scalar_name(number),
                 f"a scalar of each {of}",
                 counts[of],
                 (0,),
@@ -455,8 +488,7 @@ def _scalars(folder: Path, notes: TableNotes, counts: Mapping[str, int]) -> tupl
     )
 
 
-# Writing goes in chunks: no table is copied whole. Each file is written beside its place, synced and renamed.
-# The notes are renamed last: without them nobody reads normals and planes.
+# Writing goes in chunks: no table is copied whole.
 
 NUMBERS_AT_ONCE: Final = 1 << 17
 
@@ -464,24 +496,30 @@ LARGE: Final = 1 << 21
 """From this many polygons on, normals are computed in files: they take 160 bytes a polygon."""
 
 
-def write_npy_tables(folder: Path, mesh: Mesh, *, overwrite: bool = False) -> None:
+OTHERS: Final = (
+    *(NOTES, PARTS, PLANES, PLANE_NUMBERS, PLANE_SIDES, NORMALS, NORMAL_NUMBERS),
+    *map(_scalar_name, range(1, MOST_SCALARS + 1)),
+)
+"""The names of tables that a mesh may lack: those of an older mesh are removed."""
+
+
+def write_npy_tables(folder: Path, mesh: Mesh, *, overwrite: bool = False) -> list[Path]:
     """Write a mesh as tables to a folder, with its normals and planes, in the order that rendering reads.
 
-    Raises OutputError if a file is there already and `overwrite` is false, WriteError if writing fails.
+    Returns the paths of the tables. Raises OutputError if a file is there already and `overwrite` is false,
+    WriteError if writing fails.
     """
-    if mesh.scalars:
-        _make(folder / SCALARS)
     with timed(LOG, f"write tables, {len(mesh.node_numbers):,} polygons"):
-        write_together(_files(folder, mesh), overwrite=overwrite, before_names=lambda: _remove_notes(folder))
+        return write_together(folder, _files(folder, mesh), others=OTHERS, overwrite=overwrite)
 
 
-def _files(folder: Path, mesh: Mesh) -> Iterator[tuple[Path, Iterable[bytes]]]:
+def _files(folder: Path, mesh: Mesh) -> Iterator[tuple[str, Iterable[bytes]]]:
     """The files of a mesh and their content; each is computed when it is written."""
     for name, table in _named_tables(folder, mesh):
-        yield folder / name, _pieces(table)
+        yield name, _pieces(table)
     scalars = tuple((scalar.name, scalar.of) for scalar in mesh.scalars)
     notes = TableNotes(mesh.part_names, mesh.crease_angle, scalars, mesh.shared_planes is not None)
-    yield folder / NOTES, [notes_text(notes)]
+    yield NOTES, [notes_text(notes)]
 
 
 def _named_tables(folder: Path, mesh: Mesh) -> Iterator[tuple[str, AnyArray]]:
@@ -490,7 +528,7 @@ def _named_tables(folder: Path, mesh: Mesh) -> Iterator[tuple[str, AnyArray]]:
     yield POLYGONS, mesh.node_numbers
     yield PARTS, mesh.part_numbers
     for number, scalar in enumerate(mesh.scalars, 1):
-        yield f"{SCALARS}/{number}.npy", scalar.values
+        yield _scalar_name(number), scalar.values
     planes = mesh.shared_planes
     if planes is not None:
         yield PLANES, _plane_rows(planes)
@@ -538,23 +576,6 @@ def scratch_array(folder: Path, shape: tuple[int, ...], dtype: type[Any]) -> Any
 
 def _plane_rows(planes: SharedPlanes) -> AnyArray:
     return np.concatenate([planes.normals, planes.points, planes.distances[None]]).T
-
-
-def _make(folder: Path) -> None:
-    try:
-        folder.mkdir(exist_ok=True)
-    except OSError as error:
-        raise OutputError(f"{folder}: it cannot be made ({reason_of(error)}); choose another place") from None
-
-
-def _remove_notes(folder: Path) -> None:
-    """Remove the notes, normals and planes of an older mesh before its files are replaced."""
-    others = (PLANES, PLANE_NUMBERS, PLANE_SIDES, NORMALS, NORMAL_NUMBERS)
-    for path in (folder / NOTES, *(folder / name for name in others)):
-        try:
-            path.unlink(missing_ok=True)
-        except OSError as error:
-            raise OutputError(f"{path}: it cannot be replaced ({reason_of(error)}); delete it") from None
 
 
 def npy_header(dtype: np.dtype[Any], shape: tuple[int, ...]) -> bytes:

@@ -277,9 +277,6 @@ class Clock:
 
 # Checks of a file, and of the files beside it, before SQLite opens it.
 
-JOURNAL_HEADER: Final = 28
-"""Bytes of the header of a rollback journal; the rest of its first sector is padding."""
-
 JOURNAL_MAGIC: Final = bytes.fromhex("d9d505f920a163d7")
 """The bytes that a rollback journal begins with, and that follow the name of a super-journal at its end."""
 
@@ -369,15 +366,16 @@ def refuse_journal(path: Path) -> None:
 def _has_journal(path: Path) -> bool:
     """Whether a journal beside a store may be rolled back, or may end with the name of a file to delete.
 
-    A program that reuses its journal leaves it with a header of zeros. If such a journal ends with the name
-    of a super-journal, SQLite deletes the named file as soon as a change of ours is taken back.
+    A program that reuses its journal leaves it with a header of zeros. The header also begins with zeros
+    until the journal is synced, before the store is changed. If such a journal ends with the name of a
+    super-journal, SQLite deletes the named file as soon as a change of ours is taken back.
     """
     for place in (path, os.path.realpath(path)):
         try:
             with opened(Path(f"{place}-journal")) as (file, status):
-                head = file.read(JOURNAL_HEADER)
+                is_hot = any(file.read(1))
                 file.seek(max(0, status.st_size - len(JOURNAL_MAGIC)))
-                if any(head) or file.read() == JOURNAL_MAGIC:
+                if is_hot or file.read() == JOURNAL_MAGIC:
                     return True
         except MissingInputError:
             continue

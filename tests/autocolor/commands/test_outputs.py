@@ -77,3 +77,12 @@ def test_a_folder_that_cannot_be_written_is_refused(folder: Path, monkeypatch: p
         OutputError, match="an output must be in a writable folder, not scene; choose another"
     ):
         refuse_outputs("scene/a.png", None, force=False)
+
+
+def test_two_outputs_of_one_name_are_refused(folder: Path) -> None:
+    (folder / "a.png").symlink_to("a.npz")
+    with pytest.raises(UsageError) as caught:
+        refuse_outputs("a.png", "a.npz", force=True)
+    assert str(caught.value) == (
+        "two outputs must be two files, not a.png and a.npz, which are the same; rename one"
+    )

@@ -1,14 +1,23 @@
 from __future__ import annotations
 
 import errno
+import json
 import os
+import shutil
 from collections.abc import Iterator
+from contextlib import suppress
+from itertools import count
 from pathlib import Path
 
 import pytest
 
-from autocolor.errors import AutocolorError, OutputError, WriteError
+from autocolor.errors import AutocolorError, InputError, OutputError, WriteError
+from autocolor.files import reading
+from autocolor.files.formats import read_mesh
+from autocolor.files.reading import COMMITTED, NAMES, TableFiles, read_together
 from autocolor.files.writing import write_atomically, write_together
+from ramtek_emu import writing
+from tests.kills import KINDS, Killed, killed, steps
 
 
 def test_a_new_file_has_the_bytes_and_nothing_stands_beside_it(tmp_path: Path) -> None:
@@ -137,25 +146,155 @@ def test_a_file_that_came_meanwhile_is_not_replaced(tmp_path: Path, monkeypatch:
     assert path.read_bytes() == b"other"
 
 
-def test_files_written_together_get_their_names_when_all_are_whole(tmp_path: Path) -> None:
-    seen: list[list[str]] = []
+# Folders of tables.
 
-    def pieces(fails: bool) -> Iterator[bytes]:
-        yield b"one"
-        if fails:
-            raise WriteError("the disk is full")
-        yield b"two"
 
-    def look() -> None:
-        seen.append([path.name for path in tmp_path.iterdir() if path.suffix == ".npy"])
+def tables_of(folder: Path, *, old: bool) -> None:
+    """Save a set of tables: the old has a table that the new lacks, and the new has one in a folder."""
+    names = ["nodes.npy", "polygons.npy", "parts.npy" if old else "scalars/1.npy"]
+    files = [(name, [b"old" if old else b"new", name.encode()]) for name in names]
+    write_together(folder, files, others=["parts.npy", "scalars/1.npy"], overwrite=True)
 
-    files = [tmp_path / "a.npy", tmp_path / "b.npy"]
-    with pytest.raises(WriteError, match="the disk is full"):
-        write_together([(path, pieces(path == files[1])) for path in files], overwrite=False)
-    assert list(tmp_path.iterdir()) == []
-    write_together([(path, pieces(False)) for path in files], overwrite=False, before_names=look)
-    assert seen == [[]]
-    assert [path.read_bytes() for path in files] == [b"onetwo"] * 2
+
+def names_in(folder: Path) -> list[str]:
+    return sorted(str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file())
+
+
+def test_tables_written_together_get_their_names_and_other_files_stay(tmp_path: Path) -> None:
+    folder = tmp_path / "tables"
+    tables_of(folder, old=True)
+    (folder / "notes.txt").write_text("mine")
+    tables_of(folder, old=False)
+    assert names_in(tmp_path / "tables") == ["nodes.npy", "notes.txt", "polygons.npy", "scalars/1.npy"]
+    assert (folder / "nodes.npy").read_bytes() == b"newnodes.npy"
+
+
+def test_tables_are_not_overwritten_unless_that_is_allowed(tmp_path: Path) -> None:
+    (tmp_path / "polygons.npy").write_bytes(b"mine")
     with pytest.raises(OutputError, match="an output must be a new file"):
-        write_together([(files[0], [b""])], overwrite=False)
-    assert files[0].read_bytes() == b"onetwo"
+        write_together(tmp_path, [("nodes.npy", [b""]), ("polygons.npy", [b""])], others=(), overwrite=False)
+    assert names_in(tmp_path) == ["polygons.npy"]
+    assert (tmp_path / "polygons.npy").read_bytes() == b"mine"
+
+
+def test_tables_that_cannot_be_written_leave_nothing(tmp_path: Path) -> None:
+    def pieces() -> Iterator[bytes]:
+        yield b"one"
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    with pytest.raises(WriteError, match="must be written whole"):
+        write_together(tmp_path / "new", [("nodes.npy", pieces())], others=(), overwrite=True)
+    assert list(tmp_path.iterdir()) == []
+    (tmp_path / "file").touch()
+    for folder, sentence in (
+        (tmp_path / "none" / "out", r"must be in an existing folder, not .*none; create it"),
+        (tmp_path / "file", "must be a folder, not the file"),
+        (tmp_path / ("x" * 300), r"a mesh must have a folder to be in, .* cannot be made"),
+    ):
+        with pytest.raises(OutputError, match=sentence):
+            write_together(folder, [], others=(), overwrite=True)
+
+
+@pytest.mark.parametrize("name", ["CSV tables", "npy tables"])
+@pytest.mark.parametrize("has_old", [True, False])
+def test_a_save_of_tables_that_is_killed_leaves_the_old_or_the_new(
+    tmp_path: Path, name: str, has_old: bool
+) -> None:
+    kind = KINDS[name]
+    reads: list[object] = []
+    for each in (0, 2):
+        (tmp_path / str(each)).mkdir()
+        kind.save(tmp_path / str(each), each)
+        reads.append(kind.read(tmp_path / str(each)))
+    found = []
+    for number in count():
+        folder = tmp_path / f"killed {number}"
+        folder.mkdir()
+        if has_old:
+            shutil.copytree(tmp_path / "0" / "t", folder / "t")
+        with suppress(Killed), steps(number, killed) as done:
+            kind.save(folder, 2)
+        try:
+            found.append(reads.index(kind.read(folder)))
+        except InputError:
+            found.append(0)
+            assert not has_old
+        # The next save moves the tables that are left, and removes temporary files.
+        writing._SWEPT.clear()
+        kind.save(folder, 2)
+        assert names_in(folder) == names_in(tmp_path / "2")
+        if len(done) < number:
+            break
+    assert found == sorted(found)
+    assert 0 < sum(found) < len(found)
+
+
+def test_tables_are_read_again_if_a_save_comes_while_they_are_opened(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(reading, "SECONDS_BETWEEN_TRIES", 0)
+    for old in (True, False):
+        tables_of(tmp_path / str(old), old=old)
+    folder = tmp_path / "True"
+    moments = iter(["between", "late", "never"])
+
+    def opened(files: TableFiles) -> list[bytes]:
+        moment = next(moments)
+        nodes = files.path(folder, "nodes.npy").read_bytes()
+        if moment == "between":
+            tables_of(folder, old=False)
+        polygons = files.path(folder, "polygons.npy").read_bytes()
+        if moment == "late":
+            tables_of(folder, old=True)
+        return [nodes, polygons]
+
+    assert read_together(opened) == [b"oldnodes.npy", b"oldpolygons.npy"]
+
+    def always(files: TableFiles) -> bool:
+        has = files.has(folder, "nodes.npy")
+        tables_of(folder, old=True)
+        return has
+
+    with pytest.raises(InputError, match="tables must stay as they are while they are opened"):
+        read_together(always)
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"",
+        b"[]",
+        b'{"save": "1", "files": ["../x.csv"], "absent": []}',
+        b'{"save": "1", "files": ["nodes.csv"], "absent": ["scene.toml"]}',
+    ],
+)
+def test_a_set_of_tables_that_we_did_not_write_is_refused(tmp_path: Path, content: bytes) -> None:
+    kind = KINDS["CSV tables"]
+    kind.save(tmp_path, 0)
+    committed = tmp_path / "t" / COMMITTED
+    committed.mkdir()
+    (committed / NAMES).write_bytes(content)
+    (tmp_path / "t" / "scene.toml").touch()
+    files = {key: tmp_path / "t" / f"{key}.csv" for key in ("nodes", "polygons")}
+    with pytest.raises(InputError, match=r"it must be what a save wrote"):
+        read_mesh(files)
+    with pytest.raises(InputError, match=r"it must be what a save wrote"):
+        kind.save(tmp_path, 1)
+    assert (tmp_path / "t" / "scene.toml").exists()
+
+
+def test_links_in_a_set_of_tables_are_not_followed(tmp_path: Path) -> None:
+    kind = KINDS["CSV tables"]
+    kind.save(tmp_path, 0)
+    before = kind.read(tmp_path)
+    committed = tmp_path / "t" / COMMITTED
+    committed.mkdir()
+    (committed / "nodes.csv").symlink_to(tmp_path / "elsewhere")
+    (committed / NAMES).write_text(json.dumps({"save": "1", "files": ["nodes.csv"], "absent": []}))
+    assert kind.read(tmp_path) == before
+    shutil.rmtree(committed)
+    kind.save(tmp_path / "t", 1)
+    committed.symlink_to(tmp_path / "t" / "t")
+    (tmp_path / "t" / "t" / NAMES).write_text(json.dumps({"save": "1", "files": ["nodes.csv"], "absent": []}))
+    with pytest.raises(InputError, match="it is a link"):
+        kind.read(tmp_path)

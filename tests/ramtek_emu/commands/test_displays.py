@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.shell_completion import BashComplete
+from click.testing import CliRunner
 
 from ramtek_emu import PRINCETON_9300, Ramtek9300, TcpPort, read_snapshot
 from ramtek_emu.commands.ramtek import ramtek
@@ -73,3 +74,12 @@ def test_a_display_goes_on_from_a_snapshot(tmp_path: Path) -> None:
         b"ramtek: a snapshot must begin as a PNG file does, not as something else; "
         b"take a new one with --snapshot\n"
     )
+
+
+@pytest.mark.parametrize("other", ["--snapshot", "--record"])
+def test_two_outputs_of_one_name_are_refused_before_anything_is_done(tmp_path: Path, other: str) -> None:
+    arguments = ["play", str(tmp_path / "none"), "-o", str(tmp_path / "a.png"), other, f"{tmp_path}/./a.png"]
+    played = CliRunner().invoke(ramtek, arguments)
+    assert played.exit_code == 2
+    assert "two outputs must be two files, not" in played.output
+    assert list(tmp_path.iterdir()) == []

@@ -228,7 +228,7 @@ def test_rows_of_many_blocks_keep_their_numbers_and_values(tmp_path: Path) -> No
     lines = [f"{row}.5,{row if row % 2 else ''}" for row in range(count)]
     lines[ROWS_AT_ONCE + 3] = "\u00a07.5 ,8"
     path.write_text("number, whole\n\n" + "\n".join(lines), "utf-8")
-    rows = CsvRows(path)
+    rows = CsvRows(path.name, path.read_bytes())
     assert rows.header == ["number", "whole"]
     problems = Problems("row")
     kinds: list[CellKind] = [NumberCells("rule"), WholeCells("a whole", may_be_empty=True)]
