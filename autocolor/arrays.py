@@ -262,7 +262,7 @@ def _multiplied(out: Singles, exponent: int) -> Singles:
                 powers = out.copy() if powers is None else np.multiply(powers, out, out=powers)
             np.multiply(out, out, out=out)
             exponent >>= 1
-    return out if powers is None else np.multiply(out, powers, out=out)
+        return out if powers is None else np.multiply(out, powers, out=out)
 
 
 def half_up(value: float) -> int:
