@@ -33,6 +33,7 @@ from autocolor.arrays import (
     least_of_four,
     most_of_four,
     runs,
+    underflowing,
 )
 from autocolor.immutable import read_only
 from autocolor.scene.mesh import Mesh
@@ -81,6 +82,7 @@ DEPTH: Final = 6
 RAY: Final = slice(7, 10)
 
 
+@underflowing
 def visible_surfaces(
     mesh: Mesh,
     view: View,

@@ -12,7 +12,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from autocolor.arrays import Booleans, Floats, Indices
+from autocolor.arrays import Booleans, Floats, Indices, underflowing
 from autocolor.errors import InputError
 
 MOST_CORNERS: Final = 1000
@@ -27,6 +27,7 @@ FEW: Final = 30
 Point = tuple[float, float]
 
 
+@underflowing
 def split_polygons(coordinates: Floats, corners: Indices, counts: Indices) -> tuple[Indices, Indices]:
     """The pieces, (n, 4), and the index of the polygon of each piece, (n,).
 
