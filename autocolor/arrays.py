@@ -6,9 +6,10 @@ vectors are (3, n), a row for each axis, because numpy is fast on long rows.
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Callable, Iterator, Sequence
-from typing import Any, Final, TypeVar
+from typing import Any, Final, ParamSpec, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,6 +56,24 @@ RealArray = NDArray[Real]
 """An array of either type of floating-point numbers."""
 
 LARGEST_SINGLE: Final = float(np.finfo(np.float32).max)
+
+Arguments = ParamSpec("Arguments")
+Result = TypeVar("Result")
+
+
+def underflowing(function: Callable[Arguments, Result]) -> Callable[Arguments, Result]:
+    """The function, in which numbers too small for their type become 0, whatever `np.seterr` says.
+
+    Light far from a highlight, and products of small coordinates, are expected to underflow.
+    """
+
+    @functools.wraps(function)
+    def silent(*args: Arguments.args, **kwargs: Arguments.kwargs) -> Result:
+        with np.errstate(under="ignore"):
+            return function(*args, **kwargs)
+
+    return silent
+
 
 HALF: Final = 0.5
 """Added before taking the floor: rounding half up is the only rounding rule of the package."""
@@ -262,7 +281,7 @@ def _multiplied(out: Singles, exponent: int) -> Singles:
                 powers = out.copy() if powers is None else np.multiply(powers, out, out=powers)
             np.multiply(out, out, out=out)
             exponent >>= 1
-    return out if powers is None else np.multiply(out, powers, out=out)
+        return out if powers is None else np.multiply(out, powers, out=out)
 
 
 def half_up(value: float) -> int:

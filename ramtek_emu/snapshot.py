@@ -389,7 +389,7 @@ def picture_of(data: bytes) -> tuple[Words, dict[str, str]]:
     size: tuple[int, int] | None = None
     texts: dict[str, str] = {}
     packed: list[bytes] = []
-    place, kind = 8, b""
+    place, kind, text_size = 8, b"", 0
     for _ in range(MOST_CHUNKS):
         kind, content, place = _next_chunk(data, place)
         if size is None:
@@ -401,7 +401,8 @@ def picture_of(data: bytes) -> tuple[Words, dict[str, str]]:
             if keyword in texts:
                 raise refusal("have each text once", f"{keyword!r} twice")
             texts[keyword] = text
-            if sum(map(len, texts.values())) > MOST_TEXT:
+            text_size += len(text)
+            if text_size > MOST_TEXT:
                 raise refusal(f"have texts of at most {MOST_TEXT} bytes", "longer texts")
         elif kind == b"IEND":
             break

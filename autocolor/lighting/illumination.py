@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from autocolor.arrays import underflowing
 from autocolor.immutable import read_only
 from autocolor.lighting.picture import Picture
 from autocolor.lighting.shading import (
@@ -36,6 +37,7 @@ class Previous(NamedTuple):
     picture: Picture
 
 
+@underflowing
 def illuminate(
     scene: Scene, points: VisiblePoints, previous: Previous | None = None, with_controls: bool = True
 ) -> Picture:

@@ -12,7 +12,7 @@ from typing import Final, Literal, NamedTuple, get_args
 
 import numpy as np
 
-from autocolor.arrays import Booleans, Bytes, Indices, Singles, chunks, dot, unit_vector
+from autocolor.arrays import Booleans, Bytes, Indices, Singles, chunks, dot, underflowing, unit_vector
 from autocolor.checks import either, nearest, shown
 from autocolor.errors import UsageError
 from autocolor.lighting.controls import Axis, Cone, FlapEnd, flap_sides, flaps_of, half_space_sides, is_inside
@@ -69,6 +69,7 @@ VISIBLE: Final = np.uint8(1 << RIMS_AT_ONCE)
 """The flag of a visible pixel; the flags below it belong to the rims."""
 
 
+@underflowing
 def highlight_of(sight: Sight, light: str, surface: str | None = None) -> tuple[int, int] | None:
     """The line and the element where the highlight of a light is: the pixel with the largest cos(E).
 
@@ -131,6 +132,7 @@ def _brightest_from_afar(
     return place
 
 
+@underflowing
 def cosines_from_afar(scene: Scene, light: Light, points: VisiblePoints, pixels: slice) -> Singles:
     """cos(E) at some visible points, (points,) float32; -1 where the light is behind the surface."""
     to_eye = direction_to_eye(scene)
@@ -200,6 +202,7 @@ def _on_surface(seen: Seen | None, what: str) -> Seen:
     return seen
 
 
+@underflowing
 def rims(sight: Sight, light: str) -> Mapping[Rim, Indices]:
     """The pixels at which the cone, the flaps and the half-spaces of a light end, (n, 2): line and element.
 

@@ -37,7 +37,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import LARGEST_SINGLE, Booleans, Indices, Singles, dot
+from autocolor.arrays import LARGEST_SINGLE, Booleans, Indices, Singles, dot, underflowing
 from autocolor.errors import InputError
 from autocolor.immutable import Immutable
 from autocolor.lighting.controls import LightControl, LitPoints, controls_of
@@ -86,6 +86,7 @@ def controlled_light(light: Light, points: VisiblePoints, with_controls: bool = 
     return ControlledLight(camera_light(light, points, directed), controls)
 
 
+@underflowing
 def shade(
     planes: Singles,
     light: ControlledLight,
@@ -225,6 +226,7 @@ def _multiplier(controls: Sequence[LightControl], at_points: _AtPoints) -> Singl
     return multiplier
 
 
+@underflowing
 def mix(planes: LightPlanes, chunk: PointChunk, out: Singles) -> None:
     """Write the weighted sum of a light's two planes at a chunk of points to `out`."""
     values = planes.values[:, chunk.pixels]

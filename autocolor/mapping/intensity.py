@@ -16,7 +16,7 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import HALF, LARGEST_SINGLE, Singles, Words, halves_up
+from autocolor.arrays import HALF, LARGEST_SINGLE, Singles, Words, halves_up, underflowing
 from autocolor.errors import InputError
 from autocolor.lighting.picture import IntensityRange, Picture
 from autocolor.mapping.bands import Bands, band_numbers
@@ -85,6 +85,7 @@ def held_exposure(picture: Picture, scaling: str, exposure: Exposure = AUTO) -> 
     return tuple(held.items()) or AUTO
 
 
+@underflowing
 def words_of(
     picture: Picture,
     ranges: Mapping[str, LevelRange],
@@ -134,6 +135,7 @@ def words_of(
     return words.reshape(picture.lines, picture.elements)
 
 
+@underflowing
 def fractions_by_surface(
     picture: Picture,
     extents: Mapping[int, IntensityRange],
@@ -196,6 +198,7 @@ def ordered_thresholds(lines: int, elements: int) -> Singles:
     return thresholds
 
 
+@underflowing
 def fraction_of(
     mapped: IntensityRange, mapping: str | CurvePoints, everything: Singles, own: IntensityRange
 ) -> Fractions:

@@ -65,6 +65,9 @@ MOST_DIGITS: Final = 6
 EXACT: Final = 1e-7
 """Assumed: the error of an exact number, as a fraction of the distance to the next; limits are float32."""
 
+LEAST_SCALED: Final = 1e-290
+"""Quotients and powers of smaller numbers would lose their digits, or vanish."""
+
 
 class Swatch(NamedTuple):
     """An area of one word; its edges are included."""
@@ -267,6 +270,9 @@ def numbers_between(low: float, high: float, count: int) -> ScaledNumbers:
     >>> numbers_between(0, 5e6, 2)
     ScaledNumbers(texts=['0', '2.5', '5'], exponent=6)
     """
+    if max(abs(low), abs(high)) < LEAST_SCALED:
+        texts, exponent = numbers_between(low * 1e60, high * 1e60, count)
+        return ScaledNumbers(texts, exponent - 60)
     distance = (high - low) / count
     values = [low + (high - low) * number / count for number in range(count)] + [high]
     # A number that is zero up to rounding is written as zero.

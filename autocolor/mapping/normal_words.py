@@ -23,7 +23,19 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Bytes, Floats, Indices, Real, RealArray, Singles, Words, chunks, dot, normalized
+from autocolor.arrays import (
+    Bytes,
+    Floats,
+    Indices,
+    Real,
+    RealArray,
+    Singles,
+    Words,
+    chunks,
+    dot,
+    normalized,
+    underflowing,
+)
 from autocolor.checks import Vector
 from autocolor.immutable import read_only
 from autocolor.lighting.illumination import illuminate
@@ -224,6 +236,7 @@ def words_at_levels(first: int, fractions: Singles, levels: int) -> Words:
 # links to surfaces, reflection models, the ambient light.
 
 
+@underflowing
 def light_at_normals(
     scene: Scene, normals: Singles, slices: tuple[SurfaceSlice, ...], numbers: Indices, count: int
 ) -> Picture:

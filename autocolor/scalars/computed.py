@@ -14,7 +14,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from autocolor.arrays import Floats, Indices, Singles, chunks, lengths, unit_vector, used_rows
+from autocolor.arrays import Floats, Indices, Singles, chunks, lengths, underflowing, unit_vector, used_rows
 from autocolor.immutable import read_only
 from autocolor.scalars.interpolation import interpolated, weighted_points
 from autocolor.scene.geometry.curvature import Curvatures
@@ -38,6 +38,7 @@ MOST_RANGES: Final = 64
 """Limit: cached ranges of one mesh; while a direction is dragged, every direction has its own range."""
 
 
+@underflowing
 def size_of(mesh: Mesh) -> float:
     """The diagonal of the box around a mesh."""
     low, high = mesh.bounds
@@ -51,6 +52,7 @@ class ScalarValues(NamedTuple):
     limits: Limits
 
 
+@underflowing
 def scalar_values(
     mesh: Mesh, scalar: Scalar, points: VisiblePoints, object_coordinates: Floats | None = None
 ) -> ScalarValues:
@@ -111,7 +113,7 @@ def widened(low: float, high: float, least: float = 0.0) -> Limits:
     if high - low > max(LEAST_EXTENT * most, least):
         return low, high
     half = max(most / 2, least)
-    half = half if half > SMALLEST else 0.5
+    half = min(half, LARGEST_SCALAR) if half > SMALLEST else 0.5
     return float(np.float32(low - half)), float(np.float32(high + half))
 
 
@@ -296,7 +298,7 @@ def _bending(
     def corner_values(polygons: Indices) -> Floats:
         return at_normals.take(np.take(numbers, polygons, axis=1))
 
-    least = (LEAST_BEND / (size_of(mesh) or 1.0)) ** power
+    least = min(LEAST_BEND / (size_of(mesh) or 1.0), LARGEST_SCALAR) ** power
     limits = cached_range(mesh, ("bending", name), lambda: range_of(at_normals, CUT, least))
     return ScalarValues(interpolated(mesh, points, corner_values), limits)
 

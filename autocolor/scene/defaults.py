@@ -12,7 +12,7 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Floats, Indices, bounds_of, chunks
+from autocolor.arrays import Floats, Indices, bounds_of, chunks, underflowing
 from autocolor.checks import Color
 from autocolor.scene.lights import Light
 from autocolor.scene.mesh import Mesh
@@ -124,6 +124,7 @@ def default_view(coordinates: Floats) -> View:
     return framed(View(eye=toward_eye, target=(0.0, 0.0, 0.0)), coordinates)
 
 
+@underflowing
 def framed(view: View, coordinates: Floats, aspect: float = ASPECT) -> View:
     """The view with the eye moved, but not turned, so that the object fills the picture, with a margin.
 
@@ -195,6 +196,7 @@ def _is_a_point(low: Floats, high: Floats) -> bool:
     return float((high - low).max()) <= max(POINT * float(np.abs([low, high]).max()), LEAST_EXTENT)
 
 
+@underflowing
 def sphere_around(low: Floats, high: Floats) -> tuple[Floats, float]:
     """The center and the radius of a sphere around an object. An object treated as a point gets some room."""
     if _is_a_point(low, high):
@@ -204,6 +206,7 @@ def sphere_around(low: Floats, high: Floats) -> tuple[Floats, float]:
     return (low + high) / 2, float(np.linalg.norm((high - low) / extent) * extent / 2)
 
 
+@underflowing
 def studio_axes(view: View) -> tuple[Floats, Floats, Floats]:
     """The unit vectors to the right, up and away, as seen from the eye; up is the world's up.
 

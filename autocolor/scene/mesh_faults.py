@@ -12,7 +12,19 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import AnyArray, Booleans, Floats, Indices, chunks, cross, dot, lengths, runs, used_rows
+from autocolor.arrays import (
+    AnyArray,
+    Booleans,
+    Floats,
+    Indices,
+    chunks,
+    cross,
+    dot,
+    lengths,
+    runs,
+    underflowing,
+    used_rows,
+)
 from autocolor.immutable import read_only
 from autocolor.scene.geometry.normals import MIXER, edge_keys, group_numbers, unite
 from autocolor.scene.mesh import Mesh
@@ -67,6 +79,7 @@ class Fault:
         return list(KINDS).index(self.kind) + 1
 
 
+@underflowing
 def mesh_faults(mesh: Mesh) -> tuple[Fault, ...]:
     """The faults of a mesh, in the order of KINDS, without the kinds that it does not have."""
     coordinates, node_numbers = mesh.coordinates, mesh.node_numbers
@@ -229,6 +242,7 @@ def quad_shapes(mesh: Mesh) -> QuadShapes:
     return QuadShapes(quads, len(shapes.warped), len(shapes.concave), len(shapes.crossed))
 
 
+@underflowing
 def polygon_shapes(coordinates: Floats, node_numbers: Indices) -> Shapes:
     """The rows of warped, concave and crossed quads, and of polygons without area."""
     rows_of_shapes: tuple[list[Indices], ...] = ([], [], [], [])

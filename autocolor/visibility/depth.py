@@ -24,7 +24,7 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import AnyArray, Floats, Indices, Numbers, chunks_of_runs, most_of_four
+from autocolor.arrays import AnyArray, Booleans, Floats, Indices, Numbers, chunks_of_runs, most_of_four
 from autocolor.visibility.projection import PlanesInView, Projection
 from autocolor.visibility.scan_lines import extents_of_polygons
 
@@ -172,6 +172,10 @@ class Segments:
     count: Indices
     start: Numbers
     step: Numbers
+
+    def some(self, rows: Booleans) -> Segments:
+        """Some of the segments."""
+        return Segments(*(column[rows] for column in vars(self).values()))
 
 
 def segments_of_polygons(projected: Projection, scale: DepthScale, polygons: Indices) -> Segments:

@@ -21,6 +21,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from autocolor.arrays import (
+    Booleans,
     Bytes,
     Floats,
     Indices,
@@ -32,12 +33,14 @@ from autocolor.arrays import (
     least_of_four,
     most_of_four,
     runs,
+    underflowing,
 )
 from autocolor.immutable import read_only
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.view import View
 from autocolor.visibility.depth import (
     DepthScale,
+    Segments,
     depth_scale,
     plane_rounding,
     polygons_of_numbers,
@@ -62,6 +65,12 @@ FRAGMENTS_AT_ONCE: Final = 1 << 16
 SPANS_AT_ONCE: Final = 1 << 14
 PIXELS_AT_ONCE: Final = 1 << 14
 
+OVERDRAW: Final = 16
+"""The fragments a pixel, on average, after which hidden polygons are looked for before they are drawn.
+
+Measured: culling takes a fifth of the time of drawing. Meshes have three to five fragments a pixel.
+"""
+
 FITTING: Final = 0.9
 """The fraction of the polygons that fit into a tile of the occlusion culling."""
 
@@ -73,6 +82,7 @@ DEPTH: Final = 6
 RAY: Final = slice(7, 10)
 
 
+@underflowing
 def visible_surfaces(
     mesh: Mesh,
     view: View,
@@ -101,20 +111,83 @@ def visible_surfaces(
     return interpolated_points(projected, depth_buffer, surface_numbers, one_sided)
 
 
-def depth_test(depth_buffer: Numbers, projected: Projection, scale: DepthScale, polygons: Indices) -> None:
+def depth_test(
+    depth_buffer: Numbers, projected: Projection, scale: DepthScale, polygons: Indices, culls: bool = False
+) -> None:
     """Raise each pixel of the depth buffer, (lines * elements,), to the largest key of some polygons there.
 
-    The nearest polygon has the largest key, and of equally near polygons the highest number.
+    The nearest polygon has the largest key, and of equally near polygons the highest number. The polygons are
+    in ascending order. With `culls=True` they are as from `_nearest_first`, and most of the polygons and
+    segments that others hide are left out.
     """
+    if not culls:
+        polygons = polygons[::-1]
+    fragments = 0
     for chunk, _ in chunks_of_runs(projected.line_counts.take(polygons), SEGMENTS_AT_ONCE):
+        if not culls and fragments > OVERDRAW * len(depth_buffer):
+            left = _nearest_first(projected, scale, polygons[chunk.start :])
+            depth_test(depth_buffer, projected, scale, left, culls=True)
+            return
         # Find the segments of the polygons on all lines.
         segments = segments_of_polygons(projected, scale, polygons[chunk])
+        if culls and len(segments.count):
+            hidden = _are_behind(depth_buffer, segments)
+            hidden |= _are_hidden_in_their_planes(depth_buffer, projected, scale, segments)
+            segments = segments.some(~hidden)
         # Step the keys along each segment, and keep the largest at each pixel.
         keys = segments.start + segments.number
         for part, _ in chunks_of_runs(segments.count, FRAGMENTS_AT_ONCE):
             count = segments.count[part]
             pixel = runs(segments.first_pixel[part], count)
             np.maximum.at(depth_buffer, pixel, runs(keys[part], count, segments.step[part]))
+            fragments += len(pixel)
+
+
+def _nearest_first(projected: Projection, scale: DepthScale, polygons: Indices) -> Indices:
+    """The polygons by their nearest corners, the nearest first. Polygons of a shared plane stay in order."""
+    nearest = most_of_four(projected.inverse_depth[np.take(projected.corners, polygons, axis=1)])
+    if scale.planes is not None:
+        plane = scale.planes.take(polygons)
+        shared = np.flatnonzero(plane >= 0)
+        nearest_of_plane = np.zeros(scale.linear.shape[1])
+        np.maximum.at(nearest_of_plane, plane[shared], nearest[shared])
+        nearest[shared] = nearest_of_plane[plane[shared]]
+    return polygons[np.argsort(-nearest, kind="stable")]
+
+
+def _are_behind(depth_buffer: Numbers, segments: Segments) -> Booleans:
+    """Which segments are farther everywhere than the farthest of their pixels in the depth buffer."""
+    # Row k of the table has the least key of the 2^k pixels from each pixel on.
+    level = np.frexp(segments.count)[1] - 1
+    least = np.empty((int(level.max()) + 1, len(depth_buffer)), np.int64)
+    least[0] = depth_buffer
+    for row in range(1, len(least)):
+        half = 1 << row - 1
+        np.minimum(least[row - 1, :-half], least[row - 1, half:], out=least[row, :-half])
+    last_pixel = segments.first_pixel + segments.count - 1
+    farthest = np.minimum(
+        least[level, segments.first_pixel], least[level, last_pixel + 1 - (1 << level.astype(np.intp))]
+    )
+    last = segments.start + (segments.count - 1) * segments.step
+    behind: Booleans = np.maximum(segments.start, last) + segments.number < farthest
+    return behind
+
+
+def _are_hidden_in_their_planes(
+    depth_buffer: Numbers, projected: Projection, scale: DepthScale, segments: Segments
+) -> Booleans:
+    """Which segments have only pixels that see their own shared plane, a polygon with a higher number."""
+    if scale.planes is None:
+        return np.zeros(len(segments.count), np.bool_)
+    # A pixel that sees no polygon looks up the -1 at the end.
+    plane_of = np.append(scale.planes, -1)
+    at_pixel = plane_of[polygons_of_numbers(projected, depth_buffer & (scale.number_limit - 1))]
+    last_of_run = np.append(np.flatnonzero(at_pixel[1:] != at_pixel[:-1]), len(at_pixel) - 1)
+    plane = plane_of[polygons_of_numbers(projected, segments.number)]
+    last = last_of_run[np.searchsorted(last_of_run, segments.first_pixel)]
+    sees_plane = (plane >= 0) & (at_pixel[segments.first_pixel] == plane)
+    hidden: Booleans = sees_plane & (segments.first_pixel + segments.count <= last + 1)
+    return hidden
 
 
 def not_occluded(

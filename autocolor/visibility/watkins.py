@@ -13,7 +13,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from autocolor.arrays import Numbers
+from autocolor.arrays import Numbers, underflowing
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.view import View
 from autocolor.visibility.depth import (
@@ -70,6 +70,7 @@ class Segment:
         return self.start + (element - self.first) * self.step, self.number
 
 
+@underflowing
 def watkins(
     mesh: Mesh,
     view: View,

@@ -333,6 +333,7 @@ def read_csv_tables(nodes: Path, polygons: Path, placement: Placement = PLAIN) -
         parts.astype(np.intp),
         tuple(names.rows),
         scalars.scalars,
+        lambda row: f"row {polygon_table.numbers[row]}",
     )
     return repaired(mesh, polygons.name, placement)
 

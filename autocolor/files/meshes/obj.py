@@ -1,9 +1,9 @@
 """Meshes in Wavefront OBJ files: read with their materials, and written.
 
-These statements are used: `v` (a weight or color after x y z is ignored); `f`, with node numbers that count
-from 1 or, if negative, back from the latest node (texture and normal numbers are ignored); `g`, `o` and
-`usemtl`, which name the parts and their materials; and `mtllib`, which names the libraries of materials. A
-polygon may name nodes that are defined later. Quads stay quads, and shared nodes stay shared.
+These statements are used: `v` (what follows x y z, such as a weight or a color, is ignored); `f`, with node
+numbers that count from 1 or, if negative, back from the latest node (texture and normal numbers are ignored);
+`g`, `o` and `usemtl`, which name the parts and their materials; and `mtllib`, which names the libraries of
+materials. A polygon may name nodes that are defined later. Quads stay quads, and shared nodes stay shared.
 
 Texture coordinates and normals are ignored. Points, lines, curves and unknown statements are skipped and
 counted. Lines may end with LF, CR LF or CR, may be continued with a backslash, and may start with spaces or
@@ -64,6 +64,7 @@ def read_obj(path: Path, placement: Placement = PLAIN) -> MeshReport:
         tables.corner_counts,
         tables.part_numbers,
         tuple(parts),
+        place_of=lambda row: f"line {tables.lines[row]}",
     )
     report = repaired(polygons, path.name, placement, skipped=statements.sentences)
     material_of_part = {part: material for part, material in parts.items() if material is not None}
@@ -91,8 +92,9 @@ class ObjTables:
     """The nodes and polygons of an OBJ file.
 
     `coordinates` is (nodes, 3). `numbers` holds the node numbers of all polygons, concatenated, as in the
-    file: from 1, or negative, counted back from the latest node. `corner_counts`, `part_numbers` and
-    `nodes_before` (the number of nodes defined before the polygon) have one element for each polygon.
+    file: from 1, or negative, counted back from the latest node. `corner_counts`, `part_numbers`,
+    `nodes_before` (the number of nodes defined before the polygon) and `lines` have one element for each
+    polygon.
     """
 
     coordinates: Floats
@@ -100,6 +102,7 @@ class ObjTables:
     corner_counts: Numbers
     part_numbers: Numbers
     nodes_before: Numbers
+    lines: Numbers
 
     @cached_property
     def rows(self) -> Indices:
@@ -121,7 +124,9 @@ class ObjTables:
 BLOCK: Final = 1 << 21
 """Bytes converted at a time: enough for numpy to be efficient, and few enough to save memory."""
 
-NOT_IN_NODES: Final = b"0123456789+-.eEv \t\n"
+NOT_IN_NODES: Final = b"0123456789+-.eE nNaAiIfF v\t\n"
+"""Colors may be nan or inf."""
+
 NOT_IN_POLYGONS: Final = b"0123456789-f \t\n"
 TEXTURE_AND_NORMAL: Final = re.compile(rb"(?<=[0-9])/-?[0-9]*(?:/-?[0-9]*)?(?=[ \t\n])")
 
@@ -131,8 +136,9 @@ def read_plain_obj(data: bytes, statements: Statements) -> ObjTables | None:
     if b"\\\n" in data:
         return None
     node_count = 0
+    first_line = 1
     nodes = [np.empty((0, 3))]
-    tables: list[tuple[Numbers, Numbers, Numbers, Numbers]] = []
+    tables: list[tuple[Numbers, ...]] = []
     for block in _blocks(data):
         text = np.frombuffer(block, np.uint8)
         ends = np.flatnonzero(text == ord("\n"))
@@ -152,12 +158,15 @@ def read_plain_obj(data: bytes, statements: Statements) -> ObjTables | None:
         coordinates = _coordinates(text, is_node, lengths)
         corners = _corners(text, is_polygon, lengths)
         others = np.flatnonzero(~(is_node | is_polygon | unused))
-        parts = _part_numbers(block, others, starts, ends, np.flatnonzero(is_polygon), statements)
+        polygons = np.flatnonzero(is_polygon)
+        parts = _part_numbers(block, others, starts, ends, polygons, statements)
         if coordinates is None or corners is None or parts is None:
             return None
         nodes.append(coordinates)
-        tables.append((*corners, parts, node_count + np.cumsum(is_node)[is_polygon]))
+        nodes_before = node_count + np.cumsum(is_node)[polygons]
+        tables.append((*corners, parts, nodes_before, first_line + polygons))
         node_count += len(coordinates)
+        first_line += len(ends)
     if not tables:
         return None
     return ObjTables(np.concatenate(nodes), *(np.concatenate(column) for column in zip(*tables, strict=True)))
@@ -191,6 +200,8 @@ def _coordinates(text: Bytes, chosen: Booleans, lengths: Numbers) -> Floats | No
     try:
         numbers = np.fromiter(map(float, words), np.float64, len(words))
     except ValueError:
+        return None
+    if counts[0] == 5 and not np.isfinite(numbers).all():
         return None
     coordinates = np.ascontiguousarray(numbers.reshape(len(counts), -1)[:, :3])
     return coordinates if (np.abs(coordinates) <= LARGEST_COORDINATE).all() else None
@@ -274,7 +285,7 @@ class ObjLines:
         self.corner_counts = array("q")
         self.part_numbers = array("q")
         self.nodes_before = array("q")
-        self.polygon_lines = array("q")
+        self.lines = array("q")
         self.line = 0
 
     def problem(self, sentence: str) -> None:
@@ -282,19 +293,17 @@ class ObjLines:
         self.problems.note(self.place, self.line, sentence)
 
     def node(self, words: list[bytes]) -> None:
-        """Read the words after `v`: x y z. A weight or color that follows must be numeric and is ignored."""
+        """Read the words after `v`: x y z. What follows is ignored, but a single weight must be a number."""
         if len(words) < 3:
             self.problem(f"a node must have three coordinates x y z, not {len(words)}; add what is missing")
             words = [*words, b"0", b"0", b"0"][:3]
-        for row, word in enumerate(words):
+        for row, word in enumerate(words[: 4 if len(words) == 4 else 3]):
             number = float(word) if NUMBER.fullmatch(word) else math.nan
             if row < 3 and not abs(number) <= LARGEST_COORDINATE:
                 rule = "a coordinate must be a decimal number of at most 1e30 in size"
                 self.problem(f"{rule}, not {shown(word)}; correct it")
             elif math.isnan(number):
-                self.problem(
-                    f"weights and colors of nodes must be decimal numbers, not {shown(word)}; correct it"
-                )
+                self.problem(f"the weight of a node must be a decimal number, not {shown(word)}; correct it")
             if row < 3:
                 self.coordinates.append(number)
 
@@ -317,7 +326,7 @@ class ObjLines:
         self.corner_counts.append(len(words))
         self.part_numbers.append(self.statements.part_number)
         self.nodes_before.append(len(self.coordinates) // 3)
-        self.polygon_lines.append(self.line)
+        self.lines.append(self.line)
 
     def tables(self) -> ObjTables:
         """The tables. Raises InputError if there was a problem or a corner names no node."""
@@ -326,14 +335,20 @@ class ObjLines:
             np.array(self.coordinates).reshape(count, 3),
             *(
                 np.frombuffer(column, np.int64) if column else np.empty(0, np.int64)
-                for column in (self.numbers, self.corner_counts, self.part_numbers, self.nodes_before)
+                for column in (
+                    self.numbers,
+                    self.corner_counts,
+                    self.part_numbers,
+                    self.nodes_before,
+                    self.lines,
+                )
             ),
         )
         missing = np.flatnonzero(tables.rows < 0)[: MOST_PROBLEMS * MOST_CORNERS]
         polygons = np.searchsorted(np.cumsum(tables.corner_counts), missing, side="right")
         polygons, first = np.unique(polygons, return_index=True)
         for corner, polygon in zip(missing[first].tolist(), polygons.tolist(), strict=True):
-            self.line = self.polygon_lines[polygon]
+            self.line = self.lines[polygon]
             rule = f"from 1 to {count}" if count else "of the file, which has no nodes"
             if before := self.nodes_before[polygon]:
                 rule += f" or from -{before} to -1"

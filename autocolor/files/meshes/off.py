@@ -53,9 +53,16 @@ def read_off(path: Path, placement: Placement = PLAIN) -> MeshReport:
             raise text.wrong(at, f"a count must be from 1 to {len(text):,}, the count of words in the file")
     lines, _ = text.lines()
     coordinates, first = _coordinates(text, lines, nodes)
-    corners, counts, end = _polygons(text, lines, first, polygons, nodes)
+    corners, counts, begins, end = _polygons(text, lines, first, polygons, nodes)
     left = len(text) - end
-    table = RawPolygons(coordinates, corners, counts, np.zeros(polygons, np.intp), (path.stem,))
+    table = RawPolygons(
+        coordinates,
+        corners,
+        counts,
+        np.zeros(polygons, np.intp),
+        (path.stem,),
+        place_of=lambda row: f"line {text.line(begins[row])}",
+    )
     skipped = (f"skipped words that are neither nodes nor polygons: {left:,}",) if left else ()
     return repaired(table, path.name, placement, skipped=skipped)
 
@@ -80,8 +87,11 @@ def _coordinates(text: NumberText, lines: Indices, nodes: int) -> tuple[Floats, 
 
 def _polygons(
     text: NumberText, lines: Indices, first: int, polygons: int, nodes: int
-) -> tuple[Indices, Indices, int]:
-    """The corners, their number in each polygon, and the word after the last. Raises InputError."""
+) -> tuple[Indices, Indices, Indices, int]:
+    """The corners, their number in each polygon, its first word, and the word after the last polygon.
+
+    Raises InputError.
+    """
     # Each polygon begins a line, so words after its corners may be anything.
     lines = np.concatenate([[first], lines[lines > first]])
     if first >= len(text) or len(lines) < polygons:
@@ -122,7 +132,7 @@ def _polygons(
                 at + int(chosen[wrong[0]]), f"a corner must be a node number from 0 to {nodes - 1:,}"
             )
         corners.append(of_corners.astype(np.intp))
-    return np.concatenate(corners), counts, int(limits[-1])
+    return np.concatenate(corners), counts, begins, int(limits[-1])
 
 
 def begins_as_off(head: bytes) -> bool:

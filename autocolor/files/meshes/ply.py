@@ -170,7 +170,16 @@ def ply_polygons(
             is_part = of == POLYGON and name == part
             if not isinstance(column, Lists) and not is_part and is_scalar(name, comments):
                 scalars.add(comments.scalars.get(name, name), column, of)
-    polygons = RawPolygons(coordinates, corners, counts, part_numbers, names, scalars.scalars)
+    polygons = RawPolygons(
+        coordinates,
+        corners,
+        counts,
+        part_numbers,
+        names,
+        scalars.scalars,
+        # Lines would keep the text of the file in memory.
+        lambda row: f"triangle {row} of {STRIPS}" if has_strips else f"{FACE} {row}",
+    )
     return polygons, [*messages, *scalars.messages]
 
 

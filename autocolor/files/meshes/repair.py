@@ -10,13 +10,13 @@
 from __future__ import annotations
 
 import codecs
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Booleans, Floats, Indices, cross, dot, lengths
+from autocolor.arrays import Booleans, Floats, Indices, cross, dot, lengths, underflowing
 from autocolor.checks import printable
 from autocolor.errors import InputError
 from autocolor.immutable import read_only
@@ -66,7 +66,8 @@ class RawPolygons:
 
     `coordinates` is (nodes, 3) float64. `corners` holds the rows in `coordinates` of all corners, polygon
     after polygon; they must be valid. `corner_counts` and `part_numbers`, indices of `part_names`, have one
-    element for each polygon. `scalars` belong to nodes or polygons.
+    element for each polygon. `scalars` belong to nodes or polygons. `place_of` tells where in the file a
+    polygon is, such as "line 7".
     """
 
     coordinates: Floats
@@ -75,6 +76,7 @@ class RawPolygons:
     part_numbers: Indices
     part_names: tuple[str, ...]
     scalars: tuple[MeshScalar, ...] = ()
+    place_of: Callable[[int], str] = lambda row: f"polygon {row + 1}"
 
 
 @dataclass(frozen=True)
@@ -105,6 +107,7 @@ LEAST_SQUARE: Final = 1e-250
 """Squares below have lost digits."""
 
 
+@underflowing
 def repaired(
     polygons: RawPolygons,
     place: str,
@@ -147,8 +150,12 @@ def repaired(
         if count := int(repaired_polygons.sum()):
             polygon, was = ("polygon", "was") if count == 1 else ("polygons", "were")
             repairs.append(sentence.format(f"{count:,} {polygon}", was))
+            if not len(node_numbers):
+                where = polygons.place_of(int(repaired_polygons.argmax()))
+                repairs[-1] += f" ({where})" if count == 1 else f" (the first: {where})"
     if not len(node_numbers):
-        raise InputError(f"{place}: a mesh must have a polygon with area, not none; add polygons")
+        causes = "".join(f"; {repair}" for repair in repairs)
+        raise InputError(f"{place}: a mesh must have a polygon with area, not none{causes}; add polygons")
     # A piece of a polygon has the scalars of the whole.
     scalars = tuple(
         each if each.of == NODE else MeshScalar(each.name, read_only(each.values[owners]), POLYGON)

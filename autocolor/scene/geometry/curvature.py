@@ -23,7 +23,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Booleans, Floats, Indices, Singles, chunks_of_runs, cross, dot
+from autocolor.arrays import Booleans, Floats, Indices, Singles, chunks_of_runs, cross, dot, underflowing
 from autocolor.immutable import Immutable, read_only
 from autocolor.scene.geometry.normals import NodeNormals
 
@@ -38,6 +38,9 @@ RIDGE: Final = 1e-9
 UNKNOWNS: Final = 5
 """The slopes p and q, and a, b and c."""
 
+LEAST_SQUARE: Final = 1e-150
+"""The least squared length of an edge that counts; float64 can hold the inverse of its square."""
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Curvatures(Immutable):
@@ -50,6 +53,7 @@ class Curvatures(Immutable):
     gaussian: Floats
 
 
+@underflowing
 def curvatures(coordinates: Floats, node_numbers: Indices, normals: NodeNormals) -> Curvatures:
     """The curvatures at the normals of a mesh; 0 where a normal has no polygon with area.
 
@@ -116,7 +120,7 @@ def _equations(coordinate_rows: Floats, vector_rows: Singles, corners: Corners) 
         edge = points[:, step] - points[:, 0]
         turn = np.take(vector_rows, neighbor, axis=1) - normal
         square = dot(edge, edge)
-        counts = square > 0
+        counts = square > LEAST_SQUARE
         if step == 2:
             # The corner across in a triangle is a neighbor already.
             counts &= ~triangles

@@ -15,7 +15,7 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Floats, Indices, Numbers, Scratch, Singles, chunks, cross, lengths
+from autocolor.arrays import Floats, Indices, Numbers, Scratch, Singles, chunks, cross, lengths, underflowing
 from autocolor.immutable import Immutable, read_only
 
 CREASE_ANGLE: Final = 40.0
@@ -51,6 +51,7 @@ class NodeNormals(Immutable):
     numbers: Indices
 
 
+@underflowing
 def node_normals(
     coordinates: Floats,
     node_numbers: Indices,
@@ -140,6 +141,7 @@ def _united_with_opposite(sums: Floats, opposite: list[Indices]) -> tuple[Floats
     return np.stack([np.bincount(groups, row)[:used] for row in both]), groups[:count]
 
 
+@underflowing
 def polygon_normals(corners: Floats) -> Floats:
     """Unit normals, (3, polygons), of corners (3, 4, polygons); zero for a polygon without area.
 

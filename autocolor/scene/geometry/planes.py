@@ -30,7 +30,18 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Booleans, Floats, Indices, LowBits, chunks, cross, dot, lengths, used_bounds
+from autocolor.arrays import (
+    Booleans,
+    Floats,
+    Indices,
+    LowBits,
+    chunks,
+    cross,
+    dot,
+    lengths,
+    underflowing,
+    used_bounds,
+)
 from autocolor.immutable import Immutable
 from autocolor.scene.geometry.normals import (
     edge_keys,
@@ -69,6 +80,7 @@ class SharedPlanes(Immutable):
     turned: Booleans
 
 
+@underflowing
 def shared_planes(coordinates: Floats, node_numbers: Indices) -> SharedPlanes | None:
     """The planes in which polygons may overlap; None if there are no such planes."""
     coordinate_rows, node_rows = coordinates.T, node_numbers.T
@@ -93,14 +105,16 @@ def shared_planes(coordinates: Floats, node_numbers: Indices) -> SharedPlanes | 
     places = places_of_corners(coordinate_rows, node_rows[:, polygons])
     patches, several = _patches(places, groups, turned)
     polygons, groups, places = polygons[several], renumbered(groups[several]), places[:, several]
-    # Divide the groups into levels.
+    # Divide the groups into levels. Beside a tiny extent, the middle may be infinitely far.
+    with np.errstate(over="ignore"):
+        middle_in_extents = middle / extent
     rounding = coordinate_rounding(np.take(coordinate_rows, node_rows[:, polygons].ravel(), axis=1))
     level = levels(
         mesh.facets(polygons),
         groups,
         patches[several],
         rounding._replace(most=rounding.most / extent),
-        middle / extent,
+        middle_in_extents,
     )
     groups = groups * (MOST_LEVELS + 1) + level
     order = np.argsort(groups, kind="stable")

@@ -217,6 +217,8 @@ def test_numbers_are_at_limits_of_bands_and_far_enough_apart_or_at_the_ends_alon
         (0, 45_000, 3, ["0", "15000", "30000", "45000"], 0),
         (-0.3, 0.3, 2, ["-0.3", "0", "0.3"], 0),
         (1e30, 3e30, 2, ["1", "2", "3"], 30),
+        (0, 2e-300, 2, ["0", "1", "2"], -300),
+        (0, 5e-324, 2, ["0", "2.47", "4.94"], -324),
     ],
 )
 def test_numbers_are_written_in_few_digits(

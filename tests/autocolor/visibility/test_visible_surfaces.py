@@ -9,10 +9,12 @@ import tracemalloc
 import numpy as np
 import numpy.typing as npt
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from autocolor import Mesh, View
+from autocolor.arrays import Numbers, runs
+from autocolor.visibility import visible_surfaces as module
 from autocolor.visibility.depth import depth_scale, polygons_of_numbers
 from autocolor.visibility.projection import projection
 from autocolor.visibility.visible_points import NORMAL, POINT, POINT_SQUARED, REFLECTED_VIEW
@@ -370,6 +372,45 @@ def test_the_far_side_of_a_ball_is_culled_except_near_its_rim(distance: float) -
     behind = int(projection(sphere(), view, *CULLING_RASTER).from_behind.sum())
     assert visible <= tested
     assert len(tested) < 0.9 * behind
+
+
+@settings(max_examples=10)
+@given(st.integers(0, 1 << 32), st.booleans())
+def test_culling_segments_changes_no_pixel(seed: int, in_planes: bool) -> None:
+    random = np.random.default_rng(seed)
+    mesh, view = decal_on_ground(seed)
+    # Add copies of the polygons that lie in the same planes, or a little farther or nearer.
+    shift = np.zeros(3) if in_planes else random.normal(scale=0.05, size=3)
+    copies = [
+        Mesh(mesh.coordinates + number * shift, random.permuted(mesh.node_numbers[:, ::turn], axis=0))
+        for number, turn in enumerate((1, -1, 1))
+    ]
+    mesh = Mesh.joined(copies)
+    plain = visible_surfaces(mesh, view, (1,), *CULLING_RASTER)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(module, "OVERDRAW", 0)
+        patch.setattr(module, "SEGMENTS_AT_ONCE", 1000)
+        culled = visible_surfaces(mesh, view, (1,), *CULLING_RASTER)
+    assert np.array_equal(plain.polygon_numbers, culled.polygon_numbers)
+    assert np.array_equal(plain.rows, culled.rows)
+
+
+@pytest.mark.parametrize("apart", [0.0, 1e-3])
+def test_of_a_stack_of_quads_few_are_drawn(apart: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn = 0
+
+    def counted(first: Numbers, count: Numbers, *step: Numbers) -> Numbers:
+        nonlocal drawn
+        drawn += int(count.sum())
+        return runs(first, count, *step)
+
+    monkeypatch.setattr(module, "runs", counted)
+    monkeypatch.setattr(module, "SEGMENTS_AT_ONCE", 1000)
+    stack = Mesh.joined(
+        [panel((-1, y, -1), (1, y, -1), (1, y, 1), (-1, y, 1)) for y in np.arange(1000) * apart]
+    )
+    visible_surfaces(stack, View((0.1, -4, 0), target=(0.1, 0, 0)), (1,), 60, 80)
+    assert drawn < 1000 * 60 * 80 / 10
 
 
 tenths = st.integers(-20, 20).map(lambda number: number / 10)

@@ -171,8 +171,19 @@ def test_a_node_that_is_not_there_is_refused(path: Path, number: str) -> None:
 
 
 def test_a_file_without_polygons_is_refused(path: Path) -> None:
-    for text in ("", "\n", "# nothing\n", SQUARE, "solid cube\n  facet normal 0 0 1\n", SQUARE + "f 1 2\n"):
+    for text in ("", "\n", "# nothing\n", SQUARE):
         assert refusal(read, path, text).endswith("must have a polygon with area, not none; add polygons")
+
+
+@pytest.mark.parametrize("indent", ["", " "])
+def test_a_refusal_for_want_of_polygons_says_what_was_dropped_and_where(path: Path, indent: str) -> None:
+    text = f"{SQUARE}\np 1\n{indent}f 1 2\nl 1 2\nl 2 3\n# a comment\nf 3 3 3\n\nf 1 2 1 2\n"
+    lines = [text[: text.index(polygon)].count("\n") + 1 for polygon in ("f 1 2\n", "f 1 2 1 2")]
+    assert refusal(read, path, text) == (
+        "car.obj: a mesh must have a polygon with area, not none; skipped points: 1; skipped lines: 2;"
+        " 2 polygons with fewer than three different corners were dropped"
+        f" (the first: line {lines[0]}); 1 polygon without area was dropped (line {lines[1]}); add polygons"
+    )
 
 
 def test_other_encodings_are_refused(path: Path) -> None:
@@ -310,10 +321,17 @@ def test_a_polygon_of_too_many_corners_is_refused() -> None:
 
 
 @pytest.mark.parametrize("word", ["nan", "x", "1_0", "0x1"])
-def test_what_follows_the_coordinates_must_be_numbers_too(word: str) -> None:
-    assert refusal(lines_read, f"v 0 0 0 1 {word}\n") == (
-        f"car.obj, line 1: weights and colors of nodes must be decimal numbers, not {word!r}; correct it"
+def test_the_weight_of_a_node_must_be_a_number(word: str) -> None:
+    assert refusal(lines_read, f"v 0 0 0 {word}\n") == (
+        f"car.obj, line 1: the weight of a node must be a decimal number, not {word!r}; correct it"
     )
+
+
+@pytest.mark.parametrize("word", ["nan", "-nan", "inf", "1e999", "-nan(ind)", "1.#QNAN", "x"])
+@pytest.mark.parametrize("weight", ["", " 1"])
+def test_colors_of_nodes_may_be_anything(path: Path, word: str, weight: str) -> None:
+    colored = "".join(f"v {place}{weight} {word} 0.5 {word}\n" for place in ("0 0 0", "1 0 0", "1 1 0"))
+    assert read(path, colored + "f 1 2 3\n").mesh.coordinates.tolist() == [[0, 0, 0], [1, 0, 0], [1, 1, 0]]
 
 
 def test_a_corner_in_a_file_without_nodes_is_refused() -> None:
@@ -881,7 +899,7 @@ def test_a_mesh_reads_back_equal_however_it_is_cut(
 
 
 written_numbers = st.sampled_from(
-    ["0", "1", "-1.5", "+.5", "5.", "1e3", "1E-3", "nan", "1e31", "1_0", "e", "1-2", "x"]
+    ["0", "1", "-1.5", "+.5", "5.", "1e3", "1E-3", "nan", "inf", "1e31", "1e999", "1_0", "e", "1-2", "x"]
 )
 nodes = st.lists(written_numbers, min_size=0, max_size=7).map(lambda words: " ".join(["v", *words]))
 plain_nodes = st.lists(st.sampled_from(["0", "1", "-2.25", "3e-2"]), min_size=3, max_size=3).map(
@@ -1189,6 +1207,7 @@ def tables_of(nodes: int, *polygons: tuple[int, list[int]]) -> ObjTables:
         np.array([len(numbers) for _, numbers in polygons], np.int64),
         np.zeros(len(polygons), np.int64),
         np.array([before for before, _ in polygons], np.int64),
+        np.arange(len(polygons)),
     )
 
 

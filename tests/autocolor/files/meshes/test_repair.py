@@ -91,10 +91,19 @@ def test_unused_nodes_are_kept() -> None:
 
 
 def test_a_mesh_without_polygons_left_is_refused() -> None:
-    for polygons in ([], [[0, 1, 4]], [[0, 1]]):
+    dropped = "; 1 polygon without area was dropped (polygon 1)"
+    short = "; 2 polygons with fewer than three different corners were dropped (the first: polygon 2)"
+    for polygons, causes in (
+        ([], ""),
+        ([[0, 1, 4]], dropped),
+        ([[0, 1, 4], [0, 1], [2]], short + dropped),
+    ):
         with pytest.raises(InputError) as caught:
             mesh_of(*polygons)
-        assert str(caught.value) == "a.obj: a mesh must have a polygon with area, not none; add polygons"
+        assert (
+            str(caught.value)
+            == f"a.obj: a mesh must have a polygon with area, not none{causes}; add polygons"
+        )
 
 
 @pytest.mark.parametrize("scale", [1e-300, 1e-20, 1e20, 1e30])

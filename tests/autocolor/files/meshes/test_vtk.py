@@ -278,7 +278,7 @@ test_a_wrong_file_is_refused_with_its_place = refused(
         ),
         (
             VtkWriter("UNSTRUCTURED_GRID").points().grid([(3, [0, 1])]).data,
-            "thing.vtk: a mesh must have a polygon with area, not none; add polygons",
+            "thing.vtk: a mesh must have a polygon with area, not none; skipped lines: 1; add polygons",
         ),
     ],
 )

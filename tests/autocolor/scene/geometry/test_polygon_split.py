@@ -72,8 +72,30 @@ def test_clipping_ends_whatever_crosses(points: list[tuple[float, float]]) -> No
     assert {row for piece in pieces for row in piece} == set(range(len(points)))
 
 
+def spiral(count: int) -> list[tuple[float, float]]:
+    """A spiral band of four turns: where clipping begins, hardly a corner is an ear."""
+    half = count // 2
+    turns = np.append(np.arange(half), np.arange(half)[::-1]) * 8 * math.pi / half
+    radii = (1 + turns) * np.repeat([1.0, 1.05], half)
+    return list(zip((radii * np.cos(turns)).tolist(), (radii * np.sin(turns)).tolist(), strict=True))
+
+
+def test_hardly_a_corner_is_tested_twice(monkeypatch: pytest.MonkeyPatch) -> None:
+    tests = 0
+    turn = polygon_split._turn
+
+    def counted(*points: object) -> object:
+        nonlocal tests
+        tests += 1
+        return turn(*points)
+
+    monkeypatch.setattr(polygon_split, "_turn", counted)
+    assert len(clipped_ears(spiral(300)[::-1])) == 297
+    assert tests < 300 * 60
+
+
 def test_clipping_without_end_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(polygon_split, "MOST_CLIPPING", 50)
+    monkeypatch.setattr(polygon_split, "MOST_CLIPPING", 10)
     notched = np.array([[0, 0, 0], [2, 0, 0], [2, 2, 0], [1, 1, 0], [0, 2, 0]], np.float64)
     split_polygons(notched, np.tile(np.arange(5), 2), np.array([5, 5]))
     with pytest.raises(InputError) as caught:
