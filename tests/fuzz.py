@@ -112,8 +112,6 @@ class Progress:
 
 def attack_here(name: str, folder: Path, keep: Path, seconds: float, seed: int, plain: bool) -> None:
     """Try inputs for some seconds. The progress and the faults are noted in the folder."""
-    hard = resource.getrlimit(resource.RLIMIT_AS)[1]
-    resource.setrlimit(resource.RLIMIT_AS, (MOST_MEMORY, hard))
     if plain or importlib.util.find_spec("atheris") is None:
         with trying(name, folder, keep) as (try_input, samples):
             attack_plainly(try_input, samples, seconds, seed)
@@ -333,6 +331,8 @@ def main(arguments: list[str] | None = None) -> int:
     seed = random.randrange(1 << 31) if options.seed is None else options.seed
     seconds = 60 * options.minutes
     if options.child is not None:
+        hard = resource.getrlimit(resource.RLIMIT_AS)[1]
+        resource.setrlimit(resource.RLIMIT_AS, (MOST_MEMORY, hard))
         attack_here(options.targets[0], options.child, options.keep, seconds, seed, options.plain)
         return 0
 

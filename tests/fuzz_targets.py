@@ -26,7 +26,7 @@ import warnings
 import zipfile
 import zlib
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from functools import cache
+from functools import cache, partial
 from itertools import islice
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -46,10 +46,11 @@ from autocolor import (
     write_picture,
     write_rig,
 )
+from autocolor.checks import printable
 from autocolor.commands.settings import with_settings
 from autocolor.commands.show import session_elsewhere, show_once
 from autocolor.commands.sql import lines_of, statements_in
-from autocolor.errors import AutocolorError, InputError
+from autocolor.errors import AutocolorError, InputError, UsageError
 from autocolor.files.formats import MESH_FORMATS
 from autocolor.files.meshes.foreign import FOREIGN
 from autocolor.files.scene_sources import read_scene_with_report
@@ -122,25 +123,19 @@ class Arena:
         self.here, self.temporary, self.state = root / "here", root / "temporary", root / "state"
         for folder in (self.here, self.temporary, self.state):
             folder.mkdir()
+        self._surroundings = os.environ.get("XDG_STATE_HOME"), tempfile.tempdir, os.getcwd()
         os.chdir(self.here)
-        self._surroundings = os.environ.get("XDG_STATE_HOME"), tempfile.tempdir
         os.environ["XDG_STATE_HOME"], tempfile.tempdir = str(self.state), str(self.temporary)
 
     def close(self) -> None:
         """Let the program have its own folders again."""
-        os.chdir("/")
-        home, tempfile.tempdir = self._surroundings
+        home, tempfile.tempdir, folder = self._surroundings
+        os.chdir(folder)
         os.environ.pop("XDG_STATE_HOME", None) if home is None else os.environ.update(XDG_STATE_HOME=home)
 
     def fault_of(self, target: Target, data: bytes) -> Fault | None:
         """What goes wrong with an input; None if nothing does."""
-        files = target.files(data)
-        for folder in (self.here, self.temporary, self.state):
-            empty(folder)
-        for name, content in files.items():
-            path = self.here / name
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_bytes(content)
+        files = self.files_of(target, data)
         left = counts_of_what_may_be_left()
         forget_peak()
         memory, began = memory_of("VmRSS"), time.process_time()
@@ -152,6 +147,17 @@ class Arena:
         if fault is None and taken > most:
             fault = Fault("too much memory", f"it took {taken >> 20:,} MiB, more than {most >> 20:,} MiB")
         return fault or self._fault_of_the_place(files, left)
+
+    def files_of(self, target: Target, data: bytes) -> dict[str, bytes]:
+        """Write the files of an input, which are the only ones then; returns their contents by name."""
+        files = target.files(data)
+        for folder in (self.here, self.temporary, self.state):
+            empty(folder)
+        for name, content in files.items():
+            path = self.here / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_bytes(content)
+        return files
 
     def _outcome(self, target: Target, data: bytes, files: Mapping[str, bytes]) -> Fault | None:
         try:
@@ -329,7 +335,7 @@ def picture_samples() -> Iterator[bytes]:
     """Picture files of a small picture, without a scalar and with it."""
     for scene in (small_scene(), small_scene().with_scalar(name="stress")):
         picture = render(scene, 6, 8)
-        yield written("small.npz", lambda path, seen=(picture, scene): write_picture(path, *seen))
+        yield written("small.npz", partial(write_picture, picture=picture, scene=scene))
 
 
 def fault_of_picture(_: bytes) -> str:
@@ -446,7 +452,7 @@ def journal_samples() -> Iterator[bytes]:
 
         data = journal_of(studio.history, Path("journal"), Source("car.obj")).read_bytes()
         lines = data.replace(os.path.abspath("car.obj").encode(), b"car.obj")
-        yield lines + BETWEEN + OBJ_TEXT
+    yield lines + BETWEEN + OBJ_TEXT
 
 
 def fault_of_journal(_: bytes) -> str:
@@ -458,24 +464,28 @@ def settings_samples() -> Iterator[bytes]:
     yield b"lights.key.intensity=2"
     yield b"lights.key.only_parts=hood, roof\0lights.rim.position=[1, 2, 3]\0lights.rim.on=false"
     yield b"view.angle=10\0view.target=none\0view.eye=[1,2,3]\0scalar=none"
-    yield b"surfaces.body.object_color=#b01020\0surfaces.glass.blend=0.3\0surfaces.body.highlight=1"
+    yield b"surfaces.body.object_color=#b01020\0surfaces.glass.blend=0.3\0surfaces.body.levels=20"
     yield b"scalar.name=stress\0scalar.bands=4\0scalar.limits=[0, 5]\0ambient=0.1\0mapping=[[0,0],[1,1]]"
     yield b"lights.key.flaps.z.minimum=-0.5\0parts.hood.surface=glass"
-    yield b"lights.key.half_spaces.door={point=[0,0,1], normal=[0,0,1]}\0lights.key.half_spaces.a.x=1"
-    yield "lights.\"key\".follows=rim\0name=\N{SNOWMAN}\0exposure=none\0lights.key.aim='x'".encode()
+    yield b"lights.key.half_spaces.door={point=[0,0,1], direction=[0,0,1]}\0lights.rim.half_spaces=none"
+    yield b"lights.'key'.follows=eye\0background=\"red\"\0exposure=auto\0lights.key.aim= [1e0, 0x2,3.0]"
 
 
 def fault_of_settings(data: bytes) -> str:
     texts = os.fsdecode(data).split("\0")
-    return fault_of_mesh(with_settings(small_scene(), tuple(texts)).mesh)
+    try:
+        return fault_of_mesh(with_settings(small_scene(), tuple(texts)).mesh)
+    except UsageError as refusal:
+        # The command escapes what its user typed.
+        raise UsageError("\n".join(map(printable, str(refusal).split("\n")))) from None
 
 
 def sql_samples() -> Iterator[bytes]:
     yield b"SELECT name, intensity FROM lights;"
     yield b"UPDATE lights SET intensity = 2 WHERE name = 'key'; SELECT * FROM lights"
     yield b"SELECT part, count(*) AS n FROM polygons GROUP BY part HAVING n > 1 ORDER BY 1 LIMIT 3;"
-    yield b"INSERT INTO lights (name, position_x, position_y, position_z) VALUES ('a;b', 1, 2, 3.5e0); --x\n"
-    yield b"DELETE FROM polygons WHERE polygon = 1; DELETE FROM nodes RETURNING node"
+    yield b"INSERT INTO lights (name, position_x, position_y, position_z) VALUES ('a;b', 1, 2, 3.5e0) --x\n"
+    yield b"DELETE FROM polygons WHERE polygon = 1; UPDATE nodes SET x = x + 1 RETURNING node"
     yield b"SELECT x'00ff', 1e999, NULL; SELECT * FROM lights AS a JOIN lights AS b USING (name)"
     yield b"WITH RECURSIVE c(n) AS (SELECT 1 UNION ALL SELECT n + 1 FROM c WHERE n < 50) SELECT * FROM c;"
     yield b"EXPLAIN SELECT printf('%s', group_concat(name, '\xc3\xa9')) FROM parts; PRAGMA table_info(nodes)"
@@ -562,9 +572,9 @@ def fault_of_lister(data: bytes) -> str:
 def listing_samples() -> Iterator[bytes]:
     for sample in stream_samples():
         lines = [line for item in items([sample[1:]]) for line in item.lines()]
-        yield "\n".join(lines[:20]).encode("latin-1")
+        yield "\n".join(lines).encode("latin-1")
     yield b"SET FORE=1 BK\nERS BACK=2 WIN=100,331..200,411 ; a box\nWVL STRT=10,501\n  to 100,451  200,300\n"
-    yield b'WTX STRT=1,2 5 bytes\n text "HELLO"\nWI WIN=0,0..7,7\n words 0010*640 1234\nraw 0A03\nbyte 7F\n'
+    yield b'WT STRT=1,2 5 bytes\n text "HELLO"\nWI WIN=0,0..7,7\n words 0010*640 1234\nraw 0A03\nbyte 7F\n'
 
 
 def fault_of_assembler(data: bytes) -> str:
