@@ -15,6 +15,7 @@ import io
 import json
 import os
 import random
+import resource
 import shutil
 import socket
 import struct
@@ -137,10 +138,10 @@ class Arena:
         """What goes wrong with an input; None if nothing does."""
         files = self.files_of(target, data)
         left = counts_of_what_may_be_left()
-        forget_peak()
-        memory, began = memory_of("VmRSS"), time.process_time()
+        Path("/proc/self/clear_refs").write_text("5")
+        memory, began = peak_of_memory(), time.process_time()
         fault = self._outcome(target, data, files)
-        seconds, taken = time.process_time() - began, memory_of("VmHWM") - memory
+        seconds, taken = time.process_time() - began, peak_of_memory() - memory
         most = FREE_MEMORY + TIMES_THE_INPUT * len(data)
         if fault is None and seconds > MOST_SECONDS:
             fault = Fault("too slow", f"it took {seconds:.1f} s of the processor")
@@ -230,19 +231,9 @@ def counts_of_what_may_be_left() -> dict[str, int]:
     }
 
 
-def forget_peak() -> None:
-    """Let the peak of this process's memory begin anew."""
-    with open("/proc/self/clear_refs", "w") as file:
-        file.write("5")
-
-
-def memory_of(key: str) -> int:
-    """The bytes that a line of /proc/self/status gives."""
-    with open("/proc/self/status") as file:
-        for line in file:
-            if line.startswith(f"{key}:"):
-                return int(line.split()[1]) * 1024
-    raise ValueError(f"no {key}")
+def peak_of_memory() -> int:
+    """The most bytes of memory that this process has taken since its peak was cleared."""
+    return 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 
 
 def innermost(error: BaseException) -> str:
@@ -273,9 +264,19 @@ def fault_of_mesh(mesh: Mesh) -> str:
     return ""
 
 
+def fault_of_scene(scene: Scene) -> str:
+    """What is wrong with a scene, or with a small picture of it."""
+    picture = render(scene, 12, 16)
+    if not np.isfinite(picture.relative).all() or picture.relative.min(initial=0) < 0:
+        return "an intensity that is negative or not finite"
+    if display_image(scene, picture).words.max(initial=0) > GMR_9300.largest_word:
+        return "a word that no display has"
+    return fault_of_mesh(scene.mesh)
+
+
 def fault_of_scene_at(path: str) -> str:
     """What is wrong with the scene that is read from a path."""
-    return fault_of_mesh(read_scene_with_report(path).scene.mesh)
+    return fault_of_scene(read_scene_with_report(path).scene)
 
 
 @cache
@@ -340,12 +341,9 @@ def picture_samples() -> Iterator[bytes]:
 
 def fault_of_picture(_: bytes) -> str:
     picture, scene = read_picture("small.npz")
-    if not np.isfinite(picture.relative).all() or picture.relative.min(initial=0) < 0:
-        return "an intensity that is negative or not finite"
-    image = display_image(scene, picture)
-    if image.words.max(initial=0) > GMR_9300.largest_word:
+    if display_image(scene, picture).words.max(initial=0) > GMR_9300.largest_word:
         return "a word that no display has"
-    return fault_of_mesh(scene.mesh)
+    return fault_of_scene(scene)
 
 
 def store_samples() -> Iterator[bytes]:
@@ -405,8 +403,7 @@ def rig_samples() -> Iterator[bytes]:
 
 
 def fault_of_rig(_: bytes) -> str:
-    rig = read_rig("rig.toml")
-    return fault_of_mesh(small_scene().with_rig(rig).mesh)
+    return fault_of_scene(small_scene().with_rig(read_rig("rig.toml")))
 
 
 # Sessions, settings and statements.
@@ -456,8 +453,7 @@ def journal_samples() -> Iterator[bytes]:
 
 
 def fault_of_journal(_: bytes) -> str:
-    history = read_journal("session.jsonl").history
-    return fault_of_mesh(history.scene.mesh)
+    return fault_of_scene(read_journal("session.jsonl").history.scene)
 
 
 def settings_samples() -> Iterator[bytes]:
@@ -474,7 +470,7 @@ def settings_samples() -> Iterator[bytes]:
 def fault_of_settings(data: bytes) -> str:
     texts = os.fsdecode(data).split("\0")
     try:
-        return fault_of_mesh(with_settings(small_scene(), tuple(texts)).mesh)
+        return fault_of_scene(with_settings(small_scene(), tuple(texts)))
     except UsageError as refusal:
         # The command escapes what its user typed.
         raise UsageError("\n".join(map(printable, str(refusal).split("\n")))) from None
@@ -503,7 +499,7 @@ def fault_of_sql(data: bytes) -> str:
                 if number % 2 == 0
             ):
                 return "a table with a line that cannot be printed"
-        return fault_of_mesh(tables.scene().mesh)
+        return fault_of_scene(tables.scene())
 
 
 # The display.
@@ -830,10 +826,10 @@ TARGETS: dict[str, Target] = {
     ),
     "state": Target(state_samples, fault_of_state, STATE),
     "journal": Target(journal_samples, fault_of_journal, ("session.jsonl", "car.obj")),
-    "set": Target(settings_samples, fault_of_settings, largest=4096),
+    "set": Target(settings_samples, fault_of_settings, largest=1000),
     "sql": Target(sql_samples, fault_of_sql, largest=4096),
     "stream": Target(stream_samples, fault_of_stream, largest=4096),
-    "lister": Target(stream_samples, fault_of_lister),
+    "lister": Target(stream_samples, fault_of_lister, largest=2048),
     "assembler": Target(listing_samples, fault_of_assembler),
     "joystick": Target(joystick_samples, fault_of_joystick, ("lines.txt",)),
     "snapshot": Target(snapshot_samples, fault_of_snapshot, ("small.png",), png),
