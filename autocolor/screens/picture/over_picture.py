@@ -95,7 +95,7 @@ class OverPicture(Screen):
         studio = session.studio
         lines, elements = studio.words.shape
         if line >= lines or element >= elements:
-            # The display is larger than the picture.
+            # A display that is out of order may report any place, and any word there.
             return None
         word = session.word_at(element, line)
         name = session.surface_of(word)

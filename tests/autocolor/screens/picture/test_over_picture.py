@@ -15,7 +15,7 @@ from autocolor.screens.viewer import Viewer
 from autocolor.sending import drawn_legend
 from autocolor.studio import Studio
 from autocolor.widgets.sheet import Sheet
-from ramtek_emu import Configuration, Ramtek9300, instructions
+from ramtek_emu import Ramtek9300
 from tests.autocolor.screens.ball import MIDDLE, ball_scene, hand_before
 from tests.autocolor.screens.boxes import boxes
 from tests.autocolor.screens.hand import Hand
@@ -50,13 +50,12 @@ def test_a_pick_names_and_chooses_part_and_surface(hand: Hand) -> None:
     assert hand.viewer.studio.scene is hand.viewer.studio.history.start
 
 
-def test_a_click_beside_the_picture_on_a_larger_display_is_on_the_background(tmp_path: Path) -> None:
-    display = Ramtek9300(Configuration(name="large", elements=1024, lines=1024, planes=10))
-    viewer = Viewer(ball_scene(), display, tmp_path)
-    word = int(viewer.studio.words[FLOOR[1], FLOOR[0]])
-    display.send(instructions.write_image(np.full((100, 100), word), 900, 900))
-    Hand(viewer).click(950, 950)
-    assert viewer.message == "the background"
+def test_a_place_beyond_the_screen_is_the_background(hand: Hand, monkeypatch: pytest.MonkeyPatch) -> None:
+    word = hand.viewer.session.word_at(*FLOOR)
+    monkeypatch.setattr(hand.viewer.session, "word_at", lambda *_: word)
+    screen = hand.viewer.board.screen
+    assert screen.hint(320, 430).startswith("floor")
+    assert screen.hint(320, 882) == screen.hint(900, 430) == screen.help
 
 
 def test_a_click_on_the_legend_tells_that_it_is_one(tmp_path: Path) -> None:
