@@ -84,6 +84,9 @@ TIMES_THE_INPUT = 100
 """The bytes of memory for any input, and for each byte of an input. An OBJ polygon in text takes 20 bytes;
 its mesh, its normals and the arrays of their computation take some hundred."""
 
+SMALL = Configuration(name="small", elements=64, lines=48, planes=10)
+"""The display of most inputs, which takes a hundredth of the time of the usual one."""
+
 LONGEST_SENTENCE = 2000
 MOST_SENTENCES = 101
 
@@ -265,11 +268,11 @@ def fault_of_mesh(mesh: Mesh) -> str:
 
 
 def fault_of_scene(scene: Scene) -> str:
-    """What is wrong with a scene, or with a small picture of it."""
-    picture = render(scene, 12, 16)
-    if not np.isfinite(picture.relative).all() or picture.relative.min(initial=0) < 0:
+    """What is wrong with a scene, or with its picture on a small display."""
+    studio = Studio(scene, Ramtek9300(SMALL))
+    if not np.isfinite(studio.picture.relative).all() or studio.picture.relative.min(initial=0) < 0:
         return "an intensity that is negative or not finite"
-    if display_image(scene, picture).words.max(initial=0) > GMR_9300.largest_word:
+    if studio.words.max(initial=0) > SMALL.largest_word:
         return "a word that no display has"
     return fault_of_mesh(scene.mesh)
 
@@ -504,7 +507,6 @@ def fault_of_sql(data: bytes) -> str:
 
 # The display.
 
-SMALL = Configuration(name="small", elements=64, lines=48, planes=10)
 CONFIGURATIONS = (SMALL, GMR_9300, PRINCETON_9300, NCAR_9460, *(SMALL,) * 12)
 
 
@@ -567,7 +569,7 @@ def fault_of_lister(data: bytes) -> str:
 
 def listing_samples() -> Iterator[bytes]:
     for sample in stream_samples():
-        lines = [line for item in items([sample[1:]]) for line in item.lines()]
+        lines = [line for item in items([sample[1:300]]) for line in item.lines()]
         yield "\n".join(lines).encode("latin-1")
     yield b"SET FORE=1 BK\nERS BACK=2 WIN=100,331..200,411 ; a box\nWVL STRT=10,501\n  to 100,451  200,300\n"
     yield b'WT STRT=1,2 5 bytes\n text "HELLO"\nWI WIN=0,0..7,7\n words 0010*640 1234\nraw 0A03\nbyte 7F\n'

@@ -22,8 +22,10 @@ NUMBERS = (
     b"4294967296", b"4294967295", b"2147483648", b"2147483647", b"-1", b"0", b"nan", b"inf", b"1e999",
     b"-1e39",
     b"99999999999999999999", b"1.5", b"0x10", b"1_0", b"", b"\xd9\xa3", b"1,5", b"1e", b"\0", b"9" * 400,
+    b"5e-324", b"1e-40", b"1e300", b"NaN", b"Infinity", b"null", b"true", b"[" * 300, b"\xe2\x80\xae",
+    b"\x1b[2J",
 )  # fmt: skip
-"""Words that readers of numbers in text must take or refuse."""
+"""Words that readers of numbers and names in text must take or refuse."""
 
 BITS = tuple(
     struct.pack(layout, number)
