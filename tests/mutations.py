@@ -1,37 +1,31 @@
-"""Damaged copies of files, and what readers do with them: for the tests of all formats and `fuzz_readers`.
+"""Samples of the files of all formats, and the one way in which tests damage bytes.
 
-A seed is a file that is read, or a folder of files. Its mutations are the same for the same number. A reader
-must give a mesh that holds what it promises, or refuse in short sentences that name a file.
+A seed is a file that is read, or a folder of files. Its mutations are the same for the same number.
 """
 
 from __future__ import annotations
 
 import random
-import shutil
 import struct
 import tempfile
-import time
-import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 
 import numpy as np
 
 from autocolor import Mesh, scene_of
-from autocolor.errors import InputError
 from autocolor.files.conversion import OutputFormat, outputs
-from autocolor.files.formats import MESH_FORMATS
-from autocolor.files.scene_sources import read_scene_with_report
 from autocolor.scene.scalar import MeshScalar
 
 NUMBERS = (
     b"4294967296", b"4294967295", b"2147483648", b"2147483647", b"-1", b"0", b"nan", b"inf", b"1e999",
     b"-1e39",
     b"99999999999999999999", b"1.5", b"0x10", b"1_0", b"", b"\xd9\xa3", b"1,5", b"1e", b"\0", b"9" * 400,
+    b"5e-324", b"1e-40", b"1e300", b"NaN", b"Infinity", b"null", b"true", b"[" * 300, b"\xe2\x80\xae",
+    b"\x1b[2J",
 )  # fmt: skip
-"""Words that readers of numbers in text must take or refuse."""
+"""Words that readers of numbers and names in text must take or refuse."""
 
 BITS = tuple(
     struct.pack(layout, number)
@@ -41,10 +35,6 @@ BITS = tuple(
     )
 )  # fmt: skip
 """The same for readers of numbers in bits."""
-
-MOST_SECONDS = 2.0
-LONGEST_SENTENCE = 2000
-MOST_SENTENCES = 101
 
 
 @dataclass(frozen=True)
@@ -56,28 +46,25 @@ class Seed:
     read: str = ""
 
 
-@dataclass(frozen=True)
-class Outcome:
-    """What came of reading: "mesh" or "refused", and what was wrong with that, empty if nothing was."""
-
-    kind: str
-    fault: str = ""
-
-
 def mutated(seed: Seed, number: int) -> Seed:
     """The mutation of that number of a seed; number 0 is the seed itself."""
     if number == 0:
         return seed
     chance = random.Random(f"{seed.name} {number}")
     name = chance.choice(sorted(seed.files))
-    data = bytearray(seed.files[name])
-    others = [each for each in seed.files.values() if each]
+    data = damaged(seed.files[name], chance, [each for each in seed.files.values() if each])
+    return Seed(seed.name, {**seed.files, name: data}, seed.read)
+
+
+def damaged(data: bytes, chance: random.Random, others: Sequence[bytes]) -> bytes:
+    """The data, damaged at up to four places. Some of the damage is copied from the other data."""
+    copy = bytearray(data)
     for _ in range(chance.randint(1, 4)):
-        _damage(data, chance, others)
-    return Seed(seed.name, {**seed.files, name: bytes(data)}, seed.read)
+        _damage(copy, chance, others)
+    return bytes(copy)
 
 
-def _damage(data: bytearray, chance: random.Random, others: list[bytes]) -> None:
+def _damage(data: bytearray, chance: random.Random, others: Sequence[bytes]) -> None:
     """Damage the data at one place."""
     at = chance.randrange(len(data) + 1)
     end = min(len(data), at + chance.choice((1, 1, 2, 4, 8, 40, 400)))
@@ -113,59 +100,6 @@ def _replace_word(data: bytearray, chance: random.Random, at: int) -> None:
     while end < len(data) and data[end] not in spaces and end < start + 40:
         end += 1
     data[start:end] = chance.choice(NUMBERS)
-
-
-def outcome_of(seed: Seed, folder: Path) -> Outcome:
-    """What comes of reading the files of a seed, which are written to a folder."""
-    for name, data in seed.files.items():
-        (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        (folder / name).write_bytes(data)
-    began = time.process_time()
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("error")
-            mesh = read_scene_with_report(folder / seed.read).scene.mesh
-    except InputError as refusal:
-        outcome = Outcome("refused", _fault_of_refusal(refusal, seed.files, folder))
-    except Exception as error:
-        outcome = Outcome("raised", f"{type(error).__name__}: {error}"[:300])
-    else:
-        outcome = Outcome("mesh", fault_of_mesh(mesh))
-    seconds = time.process_time() - began
-    if seconds > MOST_SECONDS:
-        return Outcome(outcome.kind, f"it took {seconds:.1f} s; {outcome.fault}")
-    return outcome
-
-
-def _fault_of_refusal(refusal: InputError, files: Mapping[str, bytes], folder: Path) -> str:
-    if not 0 < len(refusal.problems) <= MOST_SENTENCES:
-        return f"a refusal of {len(refusal.problems)} sentences"
-    for sentence in refusal.problems:
-        if len(sentence) > LONGEST_SENTENCE or not sentence.isprintable():
-            return f"a refusal that cannot be read: {sentence[:300]!r}"
-        place = sentence.partition(":")[0].partition(",")[0].encode()
-        is_named = any(Path(name).stem in sentence for name in files) or folder.name in sentence
-        # A damaged scene file may name any other file.
-        if not is_named and not any(place in data for data in files.values()):
-            return f"a refusal that names no file: {sentence}"
-    return ""
-
-
-def fault_of_mesh(mesh: Mesh) -> str:
-    """What is wrong with the tables of a mesh that was handed on; empty if nothing is."""
-    nodes, polygons = len(mesh.coordinates), len(mesh.node_numbers)
-    if not np.isfinite(mesh.coordinates).all():
-        return "a coordinate that is not finite"
-    if polygons and not (mesh.node_numbers.min() >= 0 and mesh.node_numbers.max() < nodes):
-        return "a node number that is not in the node table"
-    if polygons and not (mesh.part_numbers.min() >= 0 and mesh.part_numbers.max() < len(mesh.part_names)):
-        return "a part number that is not in the part table"
-    for scalar in mesh.scalars:
-        if np.isinf(scalar.values).any() or len(scalar.values) not in (nodes, polygons):
-            return f"scalar {scalar.name!r} with an infinite value, or too many or few"
-    if polygons and not np.isfinite(mesh.normals.vectors).all():
-        return "a normal that is not finite"
-    return ""
 
 
 def small_mesh() -> Mesh:
@@ -315,27 +249,3 @@ def seeds() -> Iterator[Seed]:
     yield from BY_HAND
     for output in outputs():
         yield written_seed(output)
-
-
-def formats_without_seeds() -> list[str]:
-    """The names of mesh formats of which there is no sample, so that nobody forgets one.
-
-    What other libraries read is read in a process of its own, which has tests of its own.
-    """
-    given = list(seeds())
-    suffixes = {Path(name).suffix for seed in given for name in seed.files}
-    names = {name for seed in given for name in seed.files}
-    return [
-        each.name
-        for each in MESH_FORMATS
-        if not isinstance(each.read, partial)
-        and not suffixes & set(each.suffixes)
-        and not (each.in_folder and set(each.in_folder) <= names)
-    ]
-
-
-def read_fresh(seed: Seed, folder: Path) -> Outcome:
-    """The outcome of a seed in a folder that is emptied before."""
-    shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir()
-    return outcome_of(seed, folder)

@@ -92,7 +92,12 @@ class OverPicture(Screen):
     def _pointed(self, element: int, line: int) -> Pointed | None:
         """The surface and part at a place; None on the background, and where an item covers the picture."""
         session = self.session
-        studio, word = session.studio, session.word_at(element, line)
+        studio = session.studio
+        lines, elements = studio.words.shape
+        if line >= lines or element >= elements:
+            # A display that is out of order may report any place, and any word there.
+            return None
+        word = session.word_at(element, line)
         name = session.surface_of(word)
         if not name or session.comparing.is_on or word != studio.words[line, element]:
             return None

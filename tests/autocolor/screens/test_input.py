@@ -141,6 +141,17 @@ def told(unit: Unit) -> list[tuple[str, int, int]]:
     return [(each.kind, each.element, each.line) for each in unit.poll()]
 
 
+def test_bits_above_the_place_of_a_cursor_are_no_part_of_it(display: Ramtek9300) -> None:
+    class Noisy(Ramtek9300):
+        def receive(self, count: int) -> np.ndarray[tuple[int, ...], np.dtype[np.uint16]]:
+            return super().receive(count) | np.uint16(0x8000)
+
+    noisy = Noisy()
+    noisy.joystick.move_to(30, 40)
+    Unit(noisy).show()
+    assert noisy.joystick.position == (30, 40)
+
+
 def test_a_movement_is_told_once(unit: Unit, display: Ramtek9300) -> None:
     display.joystick.move_to(30, 40)
     assert told(unit) == [("hover", 30, 40)]

@@ -50,6 +50,14 @@ def test_a_pick_names_and_chooses_part_and_surface(hand: Hand) -> None:
     assert hand.viewer.studio.scene is hand.viewer.studio.history.start
 
 
+def test_a_place_beyond_the_screen_is_the_background(hand: Hand, monkeypatch: pytest.MonkeyPatch) -> None:
+    word = hand.viewer.session.word_at(*FLOOR)
+    monkeypatch.setattr(hand.viewer.session, "word_at", lambda *_: word)
+    screen = hand.viewer.board.screen
+    assert screen.hint(320, 430).startswith("floor")
+    assert screen.hint(320, 882) == screen.hint(900, 430) == screen.help
+
+
 def test_a_click_on_the_legend_tells_that_it_is_one(tmp_path: Path) -> None:
     hand = hand_before(ball_scene().with_scalar(name="z"), tmp_path)
     hand.click(600, 100)
