@@ -24,7 +24,7 @@ settings.register_profile(
 settings.register_profile(
     "mutants",
     deadline=None,
-    max_examples=25,
+    max_examples=8,
     derandomize=True,
     phases=(Phase.explicit, Phase.generate),
     suppress_health_check=UNHURRIED,

@@ -76,10 +76,11 @@ class Mutant:
 
 @dataclass(frozen=True)
 class Result:
-    """How far a mutant came: `killed` names the tests that failed, or is empty; `by` is the failing test."""
+    """Whether the tests of an extent killed a mutant; `by` is the failing test."""
 
     mutant: Mutant
-    killed: str
+    extent: str
+    killed: bool
     by: str
     seconds: float
 
@@ -283,20 +284,28 @@ def chosen_mutants(count: int, seed: int, only: Iterable[str]) -> list[Mutant]:
 
 
 def tests_of(file: str, extent: str) -> tuple[str, ...]:
-    """The tests of a file's subject, of its wing, or the whole suite, as pytest takes them."""
+    """The tests of a file's subject, of its wing, or the whole suite, as pytest takes them.
+
+    The tests of a wing that name the file's module come first: they are the likeliest to fail.
+    """
     path = Path(file)
+    package, *rooms = path.parts
+    folder = ROOT / "tests" / path.parent
     if extent == "subject":
-        folder = ROOT / "tests" / path.parent
         stem = path.parent.name if path.stem == "__init__" else path.stem.strip("_")
         files = [folder / f"test_{stem}.py", *sorted(folder.glob(f"test_{stem}_*.py"))]
         return (*(each.relative_to(ROOT).as_posix() for each in files if each.exists()), file)
     if extent == "whole":
         return ("tests", *PACKAGES)
-    package, *rooms = path.parts
     if len(rooms) > 1:
-        return f"tests/{package}/{rooms[0]}", f"{package}/{rooms[0]}"
-    files = sorted((ROOT / "tests" / package).glob("test_*.py"))
-    return tuple(each.relative_to(ROOT).as_posix() for each in files)
+        files = sorted((ROOT / "tests" / package / rooms[0]).rglob("test_*.py"))
+        doctests: tuple[str, ...] = (f"{package}/{rooms[0]}",)
+    else:
+        files = sorted((ROOT / "tests" / package).glob("test_*.py"))
+        doctests = ()
+    module = ".".join(path.with_suffix("").parts)
+    files.sort(key=lambda each: (each.parent != folder, module not in each.read_text()))
+    return (*(each.relative_to(ROOT).as_posix() for each in files), *doctests)
 
 
 def passes(copy: Path, tests: tuple[str, ...], most_seconds: float) -> tuple[bool, str]:
@@ -366,37 +375,33 @@ def _copy_tree(copy: Path) -> None:
 class _Runner:
     """Runs mutants in a copy of the tree of its own."""
 
-    def __init__(self, copy: Path, extents: tuple[str, ...], times: Path) -> None:
+    def __init__(self, copy: Path, times: Path) -> None:
         self.copy = copy
-        self.extents = extents
         self.times = times
         _copy_tree(copy)
 
-    def run(self, mutant: Mutant) -> Result:
-        """Run the tests until one fails."""
+    def run(self, mutant: Mutant, extent: str) -> Result:
+        """Run the tests of the subject, of the wing or all, until one fails."""
+        tests = tests_of(mutant.file, extent)
+        most_seconds = self._most_seconds(tests)
         start = time.monotonic()
         path = self.copy / mutant.file
         original = path.read_bytes()
         times = path.stat()
-        for extent in self.extents:
-            tests = tests_of(mutant.file, extent)
-            most_seconds = self._most_seconds(tests)
-            path.write_bytes(mutant.source(original))
-            # Python compiles a file anew only if its time in seconds or its size changed.
-            moment = random.randrange(1 << 30)
-            os.utime(path, (moment, moment))
-            try:
-                passed, by = passes(self.copy, tests, most_seconds)
-            finally:
-                path.write_bytes(original)
-                os.utime(path, ns=(times.st_atime_ns, times.st_mtime_ns))
-            if not passed:
-                return Result(mutant, extent, by, time.monotonic() - start)
-        return Result(mutant, "", "", time.monotonic() - start)
+        path.write_bytes(mutant.source(original))
+        # Python compiles a file anew only if its time in seconds or its size changed.
+        moment = random.randrange(1 << 30)
+        os.utime(path, (moment, moment))
+        try:
+            passed, by = passes(self.copy, tests, most_seconds)
+        finally:
+            path.write_bytes(original)
+            os.utime(path, ns=(times.st_atime_ns, times.st_mtime_ns))
+        return Result(mutant, extent, not passed, by, time.monotonic() - start)
 
     def _most_seconds(self, tests: tuple[str, ...]) -> float:
         """How long the tests may take: five times as long as without a mutant, and 10 s."""
-        name = " ".join(tests)
+        name = " ".join(sorted(tests))
         seconds = json.loads(self.times.read_text()) if self.times.exists() else {}
         if name not in seconds:
             start = time.monotonic()
@@ -411,27 +416,36 @@ class _Runner:
 _runners: list[_Runner] = []
 
 
-def _start(folder: Path, extents: tuple[str, ...], times: Path) -> None:
+def _start(folder: Path, times: Path) -> None:
     # A test that starts processes of its own counts on being interrupted.
     signal.signal(signal.SIGINT, signal.default_int_handler)
-    _runners.append(_Runner(folder / f"copy-{os.getpid()}", extents, times))
+    _runners.append(_Runner(folder / f"copy-{os.getpid()}", times))
 
 
-def _run(mutant: Mutant) -> Result:
-    return _runners[0].run(mutant)
+def _run(extent: str, mutant: Mutant) -> Result:
+    return _runners[0].run(mutant, extent)
 
 
 def results(mutants: list[Mutant], jobs: int, extents: tuple[str, ...], times: Path) -> Iterator[Result]:
-    """Run mutants, as many at once as there are jobs. The file `times` keeps how long tests take without any."""
+    """Run mutants, as many at once as there are jobs. The file `times` keeps how long tests take.
+
+    The subjects of all mutants come first, then the wings of those that are alive.
+    """
     import hypothesis.strategies  # noqa: F401  # What all tests import is imported once, before the forks.
     import numpy as np  # noqa: F401
     import pygame  # noqa: F401
     import pytest  # noqa: F401
 
     with tempfile.TemporaryDirectory(prefix="mutants-") as folder:
-        start = partial(_start, Path(folder), extents, times)
+        start = partial(_start, Path(folder), times)
         with get_context("fork").Pool(jobs, start) as pool:
-            yield from pool.imap_unordered(_run, mutants)
+            for extent in extents:
+                alive = []
+                for result in pool.imap_unordered(partial(_run, extent), mutants):
+                    yield result
+                    if not result.killed:
+                        alive.append(result.mutant)
+                mutants = alive
 
 
 def equivalent_mutants() -> dict[tuple[str, str, str], str]:
@@ -477,43 +491,47 @@ def main() -> None:
     extents = ("subject", "wing", "whole") if options.whole else ("subject", "wing")
     reasons = equivalent_mutants()
     options.log.mkdir(parents=True, exist_ok=True)
-    outcomes = []
-    earlier: dict[tuple[str, str, str], str] = {}
+    outcomes: dict[Mutant, str] = {}
+    killed: dict[tuple[str, ...], str] = {}
+    passed: defaultdict[str, set[tuple[str, ...]]] = defaultdict(set)
+    logs = (
+        sorted(options.again.glob("*.jsonl"))
+        if options.again
+        else [options.log / f"seed-{options.seed}.jsonl"]
+    )
+    for row in (json.loads(line) for log in logs if log.exists() for line in log.read_text().splitlines()):
+        if row["killed"]:
+            killed[tuple(row["key"])] = row["extent"]
+        else:
+            passed[row["extent"]].add(tuple(row["key"]))
     if options.again:
-        store = None
-        lines = [
-            line for log in sorted(options.again.glob("*.jsonl")) for line in log.read_text().splitlines()
-        ]
-        alive = {tuple(row["key"]) for row in map(json.loads, lines) if not row["killed"]}
-        files = sorted({str(key[0]) for key in alive if (ROOT / str(key[0])).exists()})
+        alive = passed["subject"] - killed.keys()
+        files = sorted(file for file in {key[0] for key in alive} if (ROOT / file).exists())
         mutants = list(
             {m.key: m for file in files for m in mutants_of(ROOT / file) if m.key in alive}.values()
         )
-        mutants = [mutant for mutant in mutants if mutant.file.startswith(tuple(options.only) or "")]
+        passed.clear()
     else:
-        store = options.log / f"seed-{options.seed}.jsonl"
-        if store.exists():
-            rows = map(json.loads, store.read_text().splitlines())
-            earlier = {tuple(row["key"]): row["killed"] or "alive" for row in rows}
         mutants = chosen_mutants(options.count, options.seed, options.only)
     waiting = []
     for mutant in mutants:
         if reason_of(mutant, reasons):
-            outcomes.append((mutant, "equivalent"))
-        elif mutant.key in earlier:
-            outcomes.append((mutant, earlier[mutant.key]))
+            outcomes[mutant] = "equivalent"
+        elif mutant.key in killed:
+            outcomes[mutant] = killed[mutant.key]
+        elif mutant.key in passed[extents[-1]]:
+            outcomes[mutant] = "alive"
         else:
             waiting.append(mutant)
     for result in results(waiting, options.jobs, extents, options.log / "seconds.json"):
         mutant = result.mutant
-        outcomes.append((mutant, result.killed or "alive"))
-        end = f"killed by {result.killed}: {result.by}" if result.killed else "ALIVE"
-        print(f"{mutant.file}:{mutant.number}: {mutant.change}: {end} ({result.seconds:.1f} s)", flush=True)
-        if store is not None:
-            row = {**asdict(result), "key": mutant.key}
-            with store.open("a") as log:
-                log.write(json.dumps(row) + "\n")
-    _print_summary(outcomes)
+        outcomes[mutant] = result.extent if result.killed else "alive"
+        end = f"killed by {result.by}" if result.killed else "ALIVE"
+        place = f"{mutant.file}:{mutant.number}"
+        print(f"{result.extent}: {place}: {mutant.change}: {end} ({result.seconds:.1f} s)", flush=True)
+        with logs[-1].open("a") as log:
+            log.write(json.dumps({**asdict(result), "key": mutant.key}) + "\n")
+    _print_summary(list(outcomes.items()))
 
 
 if __name__ == "__main__":
