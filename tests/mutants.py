@@ -45,6 +45,13 @@ OPERATORS: Final[dict[type[ast.AST], type[ast.AST]]] = {
     ast.Mod: ast.Mult, ast.BitAnd: ast.BitOr, ast.BitOr: ast.BitAnd, ast.LShift: ast.RShift,
     ast.RShift: ast.LShift, ast.And: ast.Or, ast.Or: ast.And,
 }  # fmt: skip
+# References in docs are made from the wings, and compared with them.
+REFERENCES: Final = {
+    "autocolor/scene": "tests/test_column_reference.py",
+    "autocolor/commands": "tests/test_command_reference.py",
+    "ramtek_emu/commands": "tests/test_command_reference.py",
+    "autocolor/files": "tests/test_store_reference.py",
+}
 EXTREMES: Final = {"min": "max", "max": "min", "minimum": "maximum", "maximum": "minimum"}
 # Keys of tables are mutated sparingly: most are checked by whatever reads the table.
 KEY_SHARE: Final = 0.2
@@ -299,13 +306,14 @@ def tests_of(file: str, extent: str) -> tuple[str, ...]:
         return ("tests", *PACKAGES)
     if len(rooms) > 1:
         files = sorted((ROOT / "tests" / package / rooms[0]).rglob("test_*.py"))
-        doctests: tuple[str, ...] = (f"{package}/{rooms[0]}",)
+        wing = f"{package}/{rooms[0]}"
+        others = [wing, *([REFERENCES[wing]] if wing in REFERENCES else [])]
     else:
         files = sorted((ROOT / "tests" / package).glob("test_*.py"))
-        doctests = ()
+        others = []
     module = ".".join(path.with_suffix("").parts)
     files.sort(key=lambda each: (each.parent != folder, module not in each.read_text()))
-    return (*(each.relative_to(ROOT).as_posix() for each in files), *doctests)
+    return (*(each.relative_to(ROOT).as_posix() for each in files), *others)
 
 
 def passes(copy: Path, tests: tuple[str, ...], most_seconds: float) -> tuple[bool, str]:
