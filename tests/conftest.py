@@ -13,13 +13,22 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from hypothesis import HealthCheck, settings
+from hypothesis import HealthCheck, Phase, settings
 
 UNHURRIED = (HealthCheck.too_slow, HealthCheck.data_too_large)
 
 settings.register_profile("desk", deadline=None, max_examples=25, suppress_health_check=UNHURRIED)
 settings.register_profile(
     "ci", deadline=None, max_examples=25, derandomize=True, suppress_health_check=UNHURRIED
+)
+# A mutant is killed by any failing example; the smallest one is not looked for.
+settings.register_profile(
+    "mutants",
+    deadline=None,
+    max_examples=8,
+    derandomize=True,
+    phases=(Phase.explicit, Phase.generate),
+    suppress_health_check=UNHURRIED,
 )
 settings.register_profile("thorough", deadline=None, max_examples=1000, suppress_health_check=UNHURRIED)
 settings.load_profile(

@@ -31,6 +31,7 @@ from ramtek_emu import (
 from ramtek_emu.arrays import Words
 from ramtek_emu.configuration import CONFIGURATIONS
 from ramtek_emu.memory.parameters import Parameters
+from ramtek_emu.memory.scan_orders import Point
 from ramtek_emu.monitor.pattern import pattern
 from ramtek_emu.snapshot import (
     MOST_TEXT,
@@ -43,6 +44,7 @@ from ramtek_emu.snapshot import (
     snapshot_bytes,
     to_plain,
     unpacked,
+    value_refusal,
     whole_number,
 )
 from ramtek_emu.timing import Timing
@@ -275,6 +277,78 @@ def test_a_number_is_whole_and_within_its_limits(value: object) -> None:
         f"lines of a snapshot must be a whole number from 0 to 10, not {value!r}; "
         "take a new one with --snapshot"
     )
+
+
+@pytest.mark.parametrize(
+    ("name", "low", "high"),
+    [
+        ("conic", -(2**31), 2**32 - 1),
+        ("zoom", 1, 16),
+        ("nanoseconds", 0, 2**62),
+        ("illegal_words", 0, 2**62),
+        ("named_only", 0, 2**62),
+        ("line", -(2**15), 2**30),
+        ("blink_fields", 1, 2**30),
+        ("blanked_lines", 0, 2**16),
+        ("instruction", 0, 2**30),
+        ("word", 0, 2**30),
+        ("pixel", 0, 2**30),
+        ("address", 0, 2**16 - 1),
+        ("any other", -(2**15), 2**16 - 1),
+    ],
+)
+def test_every_number_of_a_state_has_its_limits(name: str, low: int, high: int) -> None:
+    for place in (name, f"display.{name}", f"display.{name}[3]"):
+        for value in (low, low + 1, high - 1, high):
+            assert from_plain(0, value, place) == value
+        for value in (low - 1, high + 1):
+            with pytest.raises(SnapshotError, match=f"must be a whole number from {low} to {high}, not"):
+                from_plain(0, value, place)
+
+
+def test_a_place_has_numbers_of_16_bits() -> None:
+    for value in (-(2**15), 2**15 - 1):
+        assert from_plain(Point(0, 0), [value, 1], "start") == (value, 1)
+    for value in (-(2**15) - 1, 2**15):
+        with pytest.raises(SnapshotError):
+            from_plain(Point(0, 0), [1, value], "start")
+
+
+def test_a_name_has_1_to_60_characters_and_a_long_value_is_cut_in_messages() -> None:
+    for name in ("a", 60 * "a"):
+        assert from_plain("tiny", name, "name") == name
+    for name in ("", 61 * "a", "\n", "\u00e9"):
+        with pytest.raises(SnapshotError, match="name of a snapshot must be a name, not"):
+            from_plain("tiny", name, "name")
+    # With its quotes a text of 58 characters has 60.
+    assert f"not {58 * 'a'!r};" in str(value_refusal("name", "short", 58 * "a"))
+    assert f"not '{59 * 'a'}...;" in str(value_refusal("name", "short", 59 * "a"))
+
+
+def test_a_picture_has_at_most_4096_elements_and_lines_and_65536_chunks() -> None:
+    def picture(elements: int, lines: int, *chunks: bytes) -> bytes:
+        pixels = chunk(b"IDAT", zlib.compress(bytes(lines * (1 + 2 * elements))))
+        return hostile(pixels, *chunks, header=struct.pack(">IIBBBBB", elements, lines, 16, 0, 0, 0, 0))
+
+    for shape in ((1, 1), (4095, 1), (4096, 1), (1, 4096)):
+        assert picture_of(picture(*shape))[0].shape == shape[::-1]
+    for shape in ((4097, 1), (1, 4097), (0, 1), (1, 0)):
+        with pytest.raises(SnapshotError, match="1 to 4096 elements and lines, not"):
+            picture_of(picture(*shape))
+    # The header, the pixels and the end are chunks, too.
+    other = chunk(b"tIME", b"")
+    picture_of(picture(1, 1, *[other] * (65536 - 3)))
+    with pytest.raises(SnapshotError, match="end within 65536 chunks"):
+        picture_of(picture(1, 1, *[other] * (65536 - 2)))
+    for keyword in (b"a", 79 * b"a"):
+        assert picture_of(picture(1, 1, chunk(b"tEXt", keyword + b"\0b")))[1] == {keyword.decode(): "b"}
+    for keyword in (b"", 80 * b"a"):
+        with pytest.raises(SnapshotError, match="texts with a keyword"):
+            picture_of(picture(1, 1, chunk(b"tEXt", keyword + b"\0b")))
+    texts = [chunk(b"tEXt", b"%d\0" % n + b"a" * (1 << 20)) for n in range(8)]
+    assert len(picture_of(picture(1, 1, *texts))[1]) == 8
+    with pytest.raises(SnapshotError, match=f"at most {MOST_TEXT}"):
+        picture_of(picture(1, 1, *texts, chunk(b"tEXt", b"8\0a")))
 
 
 def test_a_list_is_no_longer_than_it_may_be() -> None:

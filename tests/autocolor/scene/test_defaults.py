@@ -88,6 +88,54 @@ def test_an_object_is_framed_by_the_shape_of_the_picture(mesh: Mesh, lines: int,
     assert max(np.ptp(seen[0]) / lines, np.ptp(seen[1]) / elements) == pytest.approx(0.86, abs=0.03)
 
 
+VIEWS: list[tuple[Vector, Vector, list[tuple[str, float, Vector]]]] = [
+    (
+        (1, 2, -1),
+        (-0.548, -2.596, 1.674),
+        [
+            ("key", 1.22, (-3.662, -0.627, 1.968)),
+            ("fill", 0.31, (1.769, -2.318, 2.541)),
+            ("top", 0.74, (1.359, 1.473, 4.833)),
+            ("rim", 0.79, (1.256, 4.086, 4.489)),
+        ],
+    ),
+    (
+        (0, 0, -1),
+        (1.0, 0.5, 3.755),
+        [
+            ("key", 1.22, (-2.666, 2.218, 3.343)),
+            ("fill", 0.31, (2.948, 2.791, 2.427)),
+            ("top", 0.74, (0.885, 5.083, -0.781)),
+            ("rim", 0.79, (-0.375, 4.739, -3.072)),
+        ],
+    ),
+    (
+        (0.1, 0.05, 1),
+        (0.489, 0.26, -4.789),
+        [
+            ("key", 1.22, (-2.474, 2.862, -2.633)),
+            ("fill", 0.31, (-0.382, -2.368, -1.659)),
+            ("top", 0.74, (-3.022, -1.383, 1.784)),
+            ("rim", 0.79, (-3.053, 0.011, 4.023)),
+        ],
+    ),
+]
+
+
+@pytest.mark.parametrize(("direction", "eye", "lights"), VIEWS)
+def test_the_eye_and_the_lights_stand_where_they_stood(
+    direction: Vector, eye: Vector, lights: list[tuple[str, float, Vector]]
+) -> None:
+    coordinates = cube().coordinates * (2, 1, 0.5)
+    view = framed(View((0, 0, 0), direction=direction), coordinates)
+    created = default_lights(coordinates, view)
+    assert view.eye == pytest.approx(eye, abs=1e-3)
+    assert [(light.name, light.intensity) for light in created] == [light[:2] for light in lights]
+    for light, (_, _, place) in zip(created, lights, strict=True):
+        assert light.position == pytest.approx(place, abs=1e-3)
+        assert light.aim == (1.0, 0.5, 0.25)
+
+
 @given(meshes(), SIZES, vectors())
 def test_a_scene_is_created_for_any_mesh_and_rendered(mesh: Mesh, size: float, middle: Vector) -> None:
     scene = scene_of(resized(mesh, size, middle))

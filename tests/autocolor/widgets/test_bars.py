@@ -29,6 +29,7 @@ from autocolor.widgets.items import GRAY, RED, SLATE, WHITE, YELLOW, Area, Item
 from autocolor.widgets.menu import WIDE_BAR
 from autocolor.widgets.widget import Place, Widget
 from ramtek_emu import Ramtek9300
+from tests.autocolor.widgets.drawing import checksum
 
 STEPS = (0.001, 0.01, 0.05, 0.1, 0.125, 0.25, 0.5, 1.0, 2.5, 5.0, 10.0)
 ROW = Area(505, 32, 639, 47)
@@ -326,3 +327,27 @@ def test_a_bar_is_framed_so_that_its_ends_are_seen_on_a_dark_picture(upright: bo
     assert (words[[top - 1, bottom + 1], left - 1] == GRAY).all()
     assert (words[[top - 1, bottom + 1], right + 1] == GRAY).all()
     assert words[top - 1, left + 1] == words[bottom + 1, left + 1] == GRAY
+
+
+LEVELS = np.arange(900, 916, dtype=np.uint16)
+TALL = Area(400, 20, 430, 220)
+COMPONENT = Area(20, 20, 339, 35)
+
+# If a bar changes on purpose, look at it, and copy the new numbers from the failure.
+DRAWN = [
+    (Bar("bar", area=ROW, value=0.3), 2248963053, 3937851439),
+    (Bar("bar", area=ROW, value=0.3, flip=lambda: 0), 779451755, 1080164163),
+    (Bar("bar", area=ROW, value=None, flip=lambda: 0), 3860464718, 3947222848),
+    (Bar("bar", area=ROW, value=0.3, why_not="not now", word=RED), 2965018818, 496825007),
+    (Bar("bar", area=WIDE_BAR, value=0.3, unit="degrees", word=RED), 1594393171, 1561743892),
+    (Bar("bar", area=ROW._replace(bottom=60), value=0.3), 1982306133, 1325038702),
+    (ComponentBar("red", area=COMPONENT, value=77, letter="R", word=RED), 4277067857, 1323743011),
+    (LevelBar("levels", area=Area(20, 20, 219, 60), words=LEVELS, level=5), 1359616466, 3955108515),
+    (LevelBar("levels", area=TALL, words=LEVELS, level=5, number="5", upright=True), 3848373696, 4287666951),
+    (PercentBar("percent", area=TALL, value=30), 3844272778, 3672469405),
+]
+
+
+@pytest.mark.parametrize(("bar", "dim", "bright"), DRAWN)
+def test_a_bar_is_drawn_as_it_was(bar: Widget, dim: int, bright: int) -> None:
+    assert [checksum(bar.items(lit)) for lit in (False, True)] == [dim, bright]

@@ -20,6 +20,7 @@ from autocolor.widgets.widget import (
     short_label,
     short_name,
 )
+from tests.autocolor.widgets.drawing import checksum
 
 ROW = Area(505, 32, 639, 47)
 LEFT, RIGHT = Place(510, 40), Place(630, 40)
@@ -131,6 +132,30 @@ def test_a_row_stays_in_its_area_and_fills_it(widget: Widget, lit: bool) -> None
     assert items[0].area == ROW
     assert items[0].is_solid
     assert all(ROW.covers(item.area) for item in items)
+
+
+# If a widget changes on purpose, look at it, and copy the new numbers from the failure.
+DRAWN = [
+    (Heading("lights"), 764194933, 764194933),
+    (Gap("gap"), 1506126552, 1506126552),
+    (Button("go"), 3637888975, 3632758787),
+    (Button("go", value="5", is_chosen=True), 618134226, 618134226),
+    (Button("go", why_not="not now", value="5"), 826001560, 3578027959),
+    (Button("go", why_not="not now", is_chosen=True), 3626575330, 3626575330),
+    (Switch("key", is_on=True), 3827057332, 195005123),
+    (Switch("key", is_chosen=True), 20739999, 20739999),
+    (Switch("key", why_not="not now"), 1115352088, 3596536255),
+    (Steps("turn"), 317012268, 489188201),
+    (Choice("curve", present="linear"), 1101980339, 1951774414),
+    (Entry("name", value="key"), 1773502175, 1538077327),
+    (Pair("add", other="copy"), 1561964572, 1862401100),
+    (Pair("add", why_not="not now", other="copy"), 1084517321, 1924933529),
+]
+
+
+@pytest.mark.parametrize(("widget", "dim", "bright"), DRAWN)
+def test_a_widget_is_drawn_as_it_was(widget: Widget, dim: int, bright: int) -> None:
+    assert [checksum(widget.at(ROW).items(lit)) for lit in (False, True)] == [dim, bright]
 
 
 def test_the_label_of_a_value_that_needs_the_room_is_shortened_by_its_words() -> None:

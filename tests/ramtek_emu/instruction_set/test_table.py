@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from ramtek_emu.instruction_set.table import (
     FORMAT_OF_NAME,
     FORMATS,
+    OPERAND_BITS,
     OPERANDS,
     OPERANDS_1,
     OPERANDS_2,
@@ -28,6 +29,29 @@ def test_no_two_rows_have_an_opcode_or_a_name_in_common() -> None:
 
 def test_the_operands_are_as_long_as_the_library_of_1978_sends_them() -> None:
     assert [operand.words for operand in OPERANDS_1] == ARGNO
+
+
+def test_the_operands_of_the_second_flag_word_have_their_lengths_and_all_have_their_bits() -> None:
+    assert {operand.mnemonic: operand.words for operand in OPERANDS_2} == {
+        "RMSK": 1, "WEW": 4, "WOF": 2, "VTX": 2, "DCL": 1, "IMG": 1
+    }  # fmt: skip
+    assert list(OPERAND_BITS.values()) == [1 << bit for bit in range(22)]
+    assert list(OPERAND_BITS) == [operand.name for operand in OPERANDS_1 + OPERANDS_2]
+
+
+def test_every_instruction_has_its_number() -> None:
+    numbers = " ".join(f"{format.opcode:02X}:{format.name}" for format in SUBSTANTIATED)
+    assert numbers == (
+        "03:LAM 04:RAM 05:RSET 06:INIT 07:NOP 08:SET 09:ERS 0A:WI 0B:RI 0C:WT 0D:WR 0E:WVL 0F:WC 13:PUSHE"
+        " 14:POPE 15:LPF 16:WCSS 17:RCSS 21:LPFRP 24:READP 25:RERR 26:ZOOM 27:SELVO 29:WAITVR 2A:WAITL"
+        " 2B:BERS 2C:WCSP 2D:WCSG 2E:RCSP 2F:RCSG 30:LCF 33:DDCC 35:WVU 38:WPT 39:WRP 3A:FILL 4E:ATTPF"
+        " 69:COPY 6D:CIRC"
+    )
+    # The numbers without a row.
+    assert {*range(0x8E)} - {format.opcode for format in FORMATS} == {0, *range(0x78, 0x7F)}
+    assert FORMAT_OF_NAME["LPF"].fixed == tuple(f"rows_{row}_{row + 1}" for row in range(0, 12, 2))
+    assert {format.name for format in FORMATS if format.replies} == {"RAM", "RI"}
+    assert [format.name for format in FORMATS if format.requests_operands] == ["READP"]
 
 
 def test_names_and_mnemonics_of_operands_are_unique() -> None:

@@ -1,11 +1,32 @@
 from __future__ import annotations
 
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from ramtek_emu.memory.scan_orders import SCAN_ORDERS, Point, Window, blocks, paired_parts
 from tests.ramtek_emu import reference
 from tests.ramtek_emu.strategies import points, quick, scan_codes, windows
+
+
+def places(window: Window) -> set[tuple[int, int]]:
+    """Every pixel of a window."""
+    elements, lines = range(window.left, window.right + 1), range(window.top, window.bottom + 1)
+    return {(element, line) for element in elements for line in lines}
+
+
+small = st.integers(-3, 6)
+small_windows = st.builds(Window, small, small, small, small)
+
+
+@quick
+@given(small_windows, small_windows, st.builds(Point, small, small))
+@example(Window(0, 0, 3, 3), Window(2, 2, 5, 5), Point(3, 3))
+def test_windows_meet_where_pixels_are_in_both(one: Window, other: Window, point: Point) -> None:
+    assert places(one.intersection(other)) == places(one) & places(other)
+    assert one.is_empty is (not places(one))
+    assert one.holds(point) is (point in places(one))
+    assert (one.width * one.height) == len(places(one))
+    assert places(one.moved(2, -1)) == {(element + 2, line - 1) for element, line in places(one)}
 
 
 @quick

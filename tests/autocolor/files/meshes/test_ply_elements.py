@@ -162,6 +162,27 @@ test_a_wrong_header_is_refused = refused(
 )
 
 
+def test_a_header_may_have_as_many_elements_and_properties_and_as_long_lines_as_it_may() -> None:
+    for elements in (99, 100):
+        lines = [f"element e{number} 1" for number in range(elements)]
+        assert len(header_of("ply", "format ascii 1.0", *lines, "end_header").elements) == elements
+    for count in (999, 1000):
+        properties = [f"property int p{number}" for number in range(count)]
+        (element,) = header_of("ply", "format ascii 1.0", "element e 1", *properties, "end_header").elements
+        assert len(element.properties) == count
+    for size in (65_534, 65_535):
+        comment = "comment ".ljust(size, "x")
+        (found,) = header_of("ply", "format ascii 1.0", comment, "end_header").comments
+        assert len(found) == size - len("comment ")
+    assert "at most 65,536 bytes" in refusal(
+        parsed_header, text("ply", "comment ".ljust(65_537, "x")), "a.ply"
+    )
+
+
+def header_of(*lines: str) -> PlyHeader:
+    return parsed_header(text(*lines), "a.ply")
+
+
 def test_a_header_without_an_end_is_not_searched_to_the_end_of_the_file(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -227,6 +227,34 @@ def test_coordinates_that_are_no_numbers_are_refused(number: float, shown: str) 
     )
 
 
+@pytest.mark.parametrize("sign", [-1, 1])
+def test_a_coordinate_may_be_the_largest_and_no_larger(sign: int) -> None:
+    # 1e30 in float32 lies a little below it, and the next number above it.
+    most = np.float32(sign * 1e30)
+    more = np.nextafter(most, np.float32(sign * np.inf))
+    assert abs(most) <= 1e30 < abs(more)
+    for at in np.ndindex(2, 3, 3):
+        corners = CORNERS.copy()
+        corners[at] = most
+        assert read_binary(two_triangles(corners), "a.stl")[0].reshape(2, 3, 3)[at] == most
+        corners[at] = more
+        assert f"facet {at[0] + 1}: a coordinate must be" in refusal_of_binary(two_triangles(corners))
+    solid = "solid a\n{}endsolid\n".format
+    largest = f"{sign * 1e30!r}"
+    text = solid(A.replace("1e0", largest))
+    assert read_text(text.encode(), "a.stl").corners[2, 1] == sign * 1e30
+    larger = repr(sign * np.nextafter(1e30, np.inf))
+    assert f"at most 1e30 in size, not '{larger}'" in refusal_of_text(solid(A.replace("1e0", larger)))
+
+
+def test_a_file_is_cut_short_before_its_84_bytes_and_not_at_them() -> None:
+    empty = two_triangles(count=0)[:84]
+    assert len(read_binary(empty, "a.stl")[0]) == 0
+    assert "must have at least 84 bytes, not 83;" in refusal_of_binary(empty[:83])
+    assert "must have 184 bytes, not 183;" in refusal_of_binary(two_triangles()[:183])
+    assert read_binary(two_triangles() + b"x", "a.stl")[1] == ("skipped bytes after the last triangle: 1",)
+
+
 def test_not_more_than_twenty_are_told() -> None:
     assert refusal_of_binary(two_triangles(np.full((30, 3, 3), np.nan))).count("\n") == 19
 

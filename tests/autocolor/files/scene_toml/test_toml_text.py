@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Callable
 
 import pytest
 from hypothesis import given
@@ -83,6 +84,21 @@ def test_endless_numbers_are_refused_before_parsing(word: str) -> None:
         "scene.toml, line 1: a number or a key must have at most 100 digits or letters, not 5,000; write it"
         " shorter, or in quotes"
     )
+
+
+def test_nesting_key_parts_and_words_may_reach_their_limits() -> None:
+    texts: dict[str, Callable[[int], str]] = {
+        "brackets must be nested at most 16 deep": lambda n: "a = " + "[" * n + "]" * n,
+        "a key must have at most 8 parts": lambda n: "a" + ".b" * (n - 1) + " = 1",
+        "a number or a key must have at most 100 digits or letters, not 101;": lambda n: "a" * n + " = 1",
+    }
+    for (sentence, text), most in zip(texts.items(), (16, 8, 100), strict=True):
+        for number in (most - 1, most):
+            assert parsed_toml(text(number).encode(), "scene.toml")
+        assert sentence in refusal(text(most + 1))
+    # Brackets that are closed again do not count, nor do closing brackets too many.
+    assert parsed_toml(b"a = [" + b"[[]], " * 40 + b"]", "x")
+    assert "at most 16 deep" in refusal("]]]]\na = " + "[" * 17)
 
 
 def test_brackets_and_dots_in_texts_and_comments_do_not_count() -> None:

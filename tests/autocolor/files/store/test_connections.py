@@ -13,6 +13,7 @@ import pytest
 from autocolor import InputError, MissingInputError, UnavailableError, WriteError, open_tables
 from autocolor.files.store import connections
 from autocolor.files.store.connections import (
+    UNSAFE_FUNCTIONS,
     Clock,
     authorizer,
     connected,
@@ -34,12 +35,20 @@ def test_a_connection_to_read_cannot_write(tmp_path: Path) -> None:
 
 def test_sizes_are_limited_and_the_schema_is_not_trusted() -> None:
     connection = in_memory()
-    assert connection.getlimit(sqlite3.SQLITE_LIMIT_LENGTH) == 1 << 20
-    assert connection.getlimit(sqlite3.SQLITE_LIMIT_ATTACHED) == 0
-    assert connection.execute("PRAGMA trusted_schema").fetchone() == (0,)
-    assert connection.execute("PRAGMA cell_size_check").fetchone() == (1,)
+    limits = {
+        "LENGTH": 1 << 20, "SQL_LENGTH": 1 << 20, "COLUMN": 2000, "EXPR_DEPTH": 200, "COMPOUND_SELECT": 50,
+        "VDBE_OP": 250_000, "FUNCTION_ARG": 100, "ATTACHED": 0, "LIKE_PATTERN_LENGTH": 1000,
+        "VARIABLE_NUMBER": 1000, "TRIGGER_DEPTH": 1, "WORKER_THREADS": 0,
+    }  # fmt: skip
+    for name, most in limits.items():
+        assert connection.getlimit(getattr(sqlite3, f"SQLITE_LIMIT_{name}")) == most, name
+    pragmas = {"trusted_schema": 0, "cell_size_check": 1, "foreign_keys": 0}
+    for pragma, value in pragmas.items():
+        assert connection.execute(f"PRAGMA {pragma}").fetchone() == (value,), pragma
+    for size in ((1 << 20) - 1, 1 << 20):
+        assert connection.execute("SELECT length(?)", (bytes(size),)).fetchone() == (size,)
     with pytest.raises(sqlite3.DataError, match="too big"):
-        connection.execute("SELECT hex(zeroblob(1000000))").fetchall()
+        connection.execute("SELECT length(?)", (bytes((1 << 20) + 1),)).fetchall()
     connection.close()
 
 
@@ -67,9 +76,14 @@ def test_a_pipe_a_folder_and_a_missing_file_are_refused(tmp_path: Path) -> None:
 
 
 def test_a_file_that_is_too_large_is_not_opened(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(connections, "LARGEST_STORE", 100)
-    with pytest.raises(InputError, match="a store must have at most 100 bytes, not more; split it"):
-        connected(small_store(tmp_path))
+    path = small_store(tmp_path)
+    size = path.stat().st_size
+    for most in (size + 1, size):
+        monkeypatch.setattr(connections, "LARGEST_STORE", most)
+        connected(path).close()
+    monkeypatch.setattr(connections, "LARGEST_STORE", size - 1)
+    with pytest.raises(InputError, match=f"a store must have at most {size - 1:,} bytes, not more; split it"):
+        connected(path)
 
 
 def test_a_store_in_a_folder_that_cannot_be_written_is_read(tmp_path: Path) -> None:
@@ -85,9 +99,13 @@ def test_a_store_in_a_folder_that_cannot_be_written_is_read(tmp_path: Path) -> N
 
 
 def test_an_old_sqlite_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sqlite3, "sqlite_version_info", (3, 31, 1))
-    with pytest.raises(UnavailableError, match=r"a store must have SQLite 3\.37 or later"):
-        in_memory()
+    for version in ((3, 37, 0), (3, 37, 1), (4, 0, 0)):
+        monkeypatch.setattr(sqlite3, "sqlite_version_info", version)
+        in_memory().close()
+    for version in ((3, 36, 0), (3, 36, 9)):
+        monkeypatch.setattr(sqlite3, "sqlite_version_info", version)
+        with pytest.raises(UnavailableError, match=r"a store must have SQLite 3\.37 or later"):
+            in_memory()
 
 
 @pytest.mark.parametrize("opened", [connected, connected_to_change])
@@ -282,6 +300,63 @@ def test_a_statement_that_changes_rows_may_change_nothing_else(statement: str) -
 @pytest.mark.parametrize("statement", CHANGES)
 def test_rows_are_changed_where_that_is_asked_for(statement: str) -> None:
     assert guarded(may_change=True).execute(statement).rowcount == 1
+
+
+ACTIONS = {
+    name: number
+    for name in dir(sqlite3)
+    if name in (
+        "SQLITE_ALTER_TABLE", "SQLITE_ANALYZE", "SQLITE_ATTACH", "SQLITE_CREATE_INDEX", "SQLITE_CREATE_TABLE",
+        "SQLITE_CREATE_TEMP_INDEX", "SQLITE_CREATE_TEMP_TABLE", "SQLITE_CREATE_TEMP_TRIGGER",
+        "SQLITE_CREATE_TEMP_VIEW", "SQLITE_CREATE_TRIGGER", "SQLITE_CREATE_VIEW", "SQLITE_CREATE_VTABLE",
+        "SQLITE_DELETE", "SQLITE_DETACH", "SQLITE_DROP_INDEX", "SQLITE_DROP_TABLE", "SQLITE_DROP_TEMP_INDEX",
+        "SQLITE_DROP_TEMP_TABLE", "SQLITE_DROP_TEMP_TRIGGER", "SQLITE_DROP_TEMP_VIEW", "SQLITE_DROP_TRIGGER",
+        "SQLITE_DROP_VIEW", "SQLITE_DROP_VTABLE", "SQLITE_INSERT", "SQLITE_READ", "SQLITE_RECURSIVE",
+        "SQLITE_REINDEX", "SQLITE_SAVEPOINT", "SQLITE_SELECT", "SQLITE_TRANSACTION", "SQLITE_UPDATE",
+    )
+    for number in [getattr(sqlite3, name)]
+}  # fmt: skip
+"""All actions that SQLite asks about, but for pragmas and functions, which go by their names."""
+
+READ = {"SQLITE_READ", "SQLITE_RECURSIVE", "SQLITE_SAVEPOINT", "SQLITE_SELECT", "SQLITE_TRANSACTION"}
+CHANGED = {"SQLITE_DELETE", "SQLITE_INSERT", "SQLITE_UPDATE"}
+
+
+@pytest.mark.parametrize("may_change", [False, True])
+def test_every_action_but_reads_and_changes_of_rows_is_denied(may_change: bool) -> None:
+    ask = authorizer(may_change)
+    answers = {name: ask(action, "lights", "name", "main", None) for name, action in ACTIONS.items()}
+    assert {name for name, answer in answers.items() if answer == sqlite3.SQLITE_OK} == (
+        READ | CHANGED if may_change else READ
+    )
+    assert set(answers.values()) == {sqlite3.SQLITE_OK, sqlite3.SQLITE_DENY}
+    # Reads inside of a view or trigger are allowed, and changes are not; nor are those of SQLite's tables.
+    for name in READ | CHANGED:
+        inner = ask(ACTIONS[name], "lights", "name", "main", "view")
+        assert inner == (sqlite3.SQLITE_OK if name in READ else sqlite3.SQLITE_DENY)
+        of_sqlite = [ask(ACTIONS[name], table, None, "main", None) for table in ("SQLite_x", "sqlite_master")]
+        assert set(of_sqlite) == {sqlite3.SQLITE_OK if name in READ else sqlite3.SQLITE_DENY}
+    for unknown in (0, 100, -1):
+        assert ask(unknown, None, None, None, None) == sqlite3.SQLITE_DENY
+
+
+def test_pragmas_are_allowed_that_read_and_functions_that_compute() -> None:
+    def is_allowed(action: int, first: str | None, second: str | None) -> bool:
+        answers = {authorizer(may)(action, first, second, None, None) for may in (False, True)}
+        assert len(answers) == 1
+        return answers == {sqlite3.SQLITE_OK}
+
+    for pragma in ("application_id", "schema_version", "User_Version"):
+        assert is_allowed(sqlite3.SQLITE_PRAGMA, pragma, None)
+        assert not is_allowed(sqlite3.SQLITE_PRAGMA, pragma, "1")
+    for pragma in ("table_info", "INDEX_LIST", "integrity_check"):
+        assert is_allowed(sqlite3.SQLITE_PRAGMA, pragma, "lights")
+    for pragma in ("trusted_schema", "journal_mode", "", None):
+        assert not is_allowed(sqlite3.SQLITE_PRAGMA, pragma, None)
+    for function in ("max", "HEX", None):
+        assert is_allowed(sqlite3.SQLITE_FUNCTION, None, function)
+    for function in UNSAFE_FUNCTIONS:
+        assert not is_allowed(sqlite3.SQLITE_FUNCTION, None, function.upper())
 
 
 def test_a_trigger_changes_nothing_whatever_the_schema_calls_it() -> None:

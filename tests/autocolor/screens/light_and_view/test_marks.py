@@ -429,8 +429,42 @@ crosses = st.builds(Cross, st.integers(1, 16), st.integers(-20, 260), st.integer
 def test_a_numeral_stands_to_the_right_and_above_its_cross() -> None:
     ((cross, area),) = numerals([Cross(3, 100, 100)], AREA, [])
     assert cross.number == 3
-    assert (area.left, area.bottom) == (106, 94)
-    assert (area.width, area.height) == (7, 9)
+    assert area == (106, 86, 112, 94)
+
+
+@pytest.mark.parametrize(
+    ("right", "down", "area"),
+    [
+        (1, -1, (106, 86, 119, 94)),
+        (-1, -1, (81, 86, 94, 94)),
+        (1, 1, (106, 106, 119, 114)),
+        (-1, 1, (81, 106, 94, 114)),
+        (1, 0, (108, 96, 121, 104)),
+        (-1, 0, (79, 96, 92, 104)),
+        (0, -1, (93, 84, 106, 92)),
+        (0, 1, (93, 108, 106, 116)),
+    ],
+)
+def test_a_numeral_has_eight_places_around_its_cross(
+    right: int, down: int, area: tuple[int, int, int, int]
+) -> None:
+    cross = Cross(16, 100, 100)
+    assert cross.numeral(right, down) == area
+    assert cross.area == (96, 96, 104, 104)
+    # If all other places are taken, it stands there.
+    others = [
+        (x, y) for x, y in itertools.product((-1, 0, 1), repeat=2) if (x, y) not in ((right, down), (0, 0))
+    ]
+    taken = [cross.numeral(*place).within(Area(*MIDDLES[place])) for place in others]
+    ((_, found),) = numerals([cross], AREA, taken)
+    assert found == area
+
+
+MIDDLES = {
+    (x, y): (100 + 13 * x, 100 + 12 * y, 100 + 13 * x, 100 + 12 * y)
+    for x, y in itertools.product((-1, 0, 1), repeat=2)
+}
+"""Pixels of the eight places around a cross at (100, 100) that no other place covers."""
 
 
 def test_a_numeral_makes_way_for_the_arrow_of_its_light() -> None:

@@ -1,0 +1,58 @@
+"""What every screen draws over its base, as checksums: a golden of places, inks, labels and numerals.
+
+If a screen changes on purpose, look at it, and copy the new number from the failure.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from autocolor.screens.board import rows_of_menu
+from autocolor.screens.viewer import Viewer
+from autocolor.widgets.bars import Bar
+from autocolor.widgets.menu import WIDE_BAR, laid_out
+from ramtek_emu import Ramtek9300
+from tests.autocolor.screens.boxes import boxes
+from tests.autocolor.widgets.drawing import checksum
+
+PAGES = {
+    "picture": 818944094,
+    "light and view": 4278437345,
+    "lights": 762500052,
+    "reflectance": 1918282790,
+    "mixing": 943779901,
+    "blending": 3756060397,
+    "mapping": 2510185100,
+    "scalar": 3447545316,
+    "kept": 1018747720,
+    "file": 826649456,
+    "entries": 3253356514,
+    "help": 1182376081,
+}
+
+
+def test_every_screen_is_drawn_as_it_was(tmp_path: Path) -> None:
+    folder = tmp_path / "scenes"
+    (folder / "more").mkdir(parents=True)
+    (folder / "car.obj").touch()
+    viewer = Viewer(boxes().with_scalar(name="z"), Ramtek9300(), folder)
+    viewer.studio.keep_variant("first")
+    viewer.studio.keep_variant()
+    board = viewer.board
+    board.is_pinned = True
+    pages = {}
+    for name, screen in viewer.screens.items():
+        viewer.session.turn_to(name)
+        viewer.tell("")
+        items = list(board.page().items)
+        for widget in board.widgets():
+            items += widget.items(lit=True)
+        # The rows of all pages of the menu, and their wide bars.
+        for row in rows_of_menu(viewer.session, screen, viewer.screens.values()):
+            for widget in laid_out([row]):
+                items += widget.items(lit=False)
+            if isinstance(row, Bar):
+                items += row.at(WIDE_BAR).items(lit=False)
+        pages[name] = checksum(items, skips_images=True)
+    changed = {name: number for name, number in pages.items() if PAGES.get(name) != number}
+    assert not changed, changed
