@@ -156,7 +156,7 @@ class EndingSignals:
         """Raise Ended again if Python dropped it, as in a `__del__`; show any other exception."""
         if unraisable.exc_value is not self.ended or self.ended is None:
             self._unraisable(unraisable)
-        elif hasattr(signal, "setitimer"):
+        elif sys.platform != "win32":
             number = self.ended.exit_code - BY_SIGNAL
             signal.signal(signal.SIGALRM, lambda *_: self._raise(number, None))
             self.ignored = False

@@ -47,7 +47,7 @@ HOST_SECONDS: Final = 0.005
 """How long the input of a window may wait while a connected host sends nothing. Its words never wait."""
 PIPE_SECONDS: Final = 0.002
 """How long words on a pipe may wait if `--joystick` is given."""
-WRITTEN_AT_ONCE: Final = 512 if sys.platform == "win32" else select.PIPE_BUF
+WRITTEN_AT_ONCE: Final[int] = getattr(select, "PIPE_BUF", 512)
 """The most bytes that a pipe takes without waiting if it takes any: a signal ends the wait for the rest."""
 
 
