@@ -11,10 +11,11 @@ Paper: D. R. Warn, "Lighting Controls for Synthetic Images", SIGGRAPH 1983.
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Final
-
+# Nothing is imported at once: a command can handle Ctrl+C only afterwards.
+TYPE_CHECKING: Final = False
 if TYPE_CHECKING:
+    from typing import Final
+
     from autocolor.commands.demo import demo as demo
     from autocolor.errors import AutocolorError as AutocolorError
     from autocolor.errors import InputError as InputError
@@ -114,6 +115,8 @@ def __getattr__(name: str) -> object:
     """A public name, from the module that defines it, or the version; found when it is first asked for."""
     if name not in _HOME and name != "__version__":
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib import import_module
+
     value = _version() if name == "__version__" else getattr(import_module(f"{__name__}.{_HOME[name]}"), name)
     globals()[name] = value
     return value

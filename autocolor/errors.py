@@ -7,11 +7,21 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from ramtek_emu.errors import escaped
+
 
 class AutocolorError(Exception):
-    """Base class of all errors of this package. `exit_code` is the exit code of a command that fails."""
+    """Base class of all errors of this package. `exit_code` is the exit code of a command that fails.
+
+    `problems` holds one message for each problem; `str` joins them with line breaks. In a message, whatever
+    cannot be printed is escaped.
+    """
 
     exit_code = 70
+
+    def __init__(self, problems: str | Iterable[str] = ()) -> None:
+        self.problems = tuple(map(escaped, (problems,) if isinstance(problems, str) else problems))
+        super().__init__("\n".join(self.problems))
 
 
 class UsageError(AutocolorError, ValueError):
@@ -21,13 +31,9 @@ class UsageError(AutocolorError, ValueError):
 
 
 class InputError(AutocolorError, ValueError):
-    """Invalid input. `problems` holds one message for each problem; `str` joins them with line breaks."""
+    """Invalid input."""
 
     exit_code = 65
-
-    def __init__(self, problems: str | Iterable[str]) -> None:
-        self.problems = (problems,) if isinstance(problems, str) else tuple(problems)
-        super().__init__("\n".join(self.problems))
 
 
 class MissingInputError(InputError):

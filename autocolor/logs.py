@@ -21,10 +21,15 @@ def logger_of(module: str) -> logging.Logger:
 
 @contextmanager
 def timed(logger: logging.Logger, stage: str) -> Iterator[None]:
-    """Log the duration of a stage at the level INFO. Without a listener, the time is not measured."""
-    if not logger.isEnabledFor(logging.INFO):
-        yield
-        return
+    """Log the duration of a stage at the level INFO.
+
+    If memory runs out, the innermost stage is a note of the MemoryError.
+    """
     start = perf_counter()
-    yield
+    try:
+        yield
+    except MemoryError as error:
+        if not hasattr(error, "__notes__"):
+            error.add_note(stage)
+        raise
     logger.info("%s: %.1f ms", stage, 1000 * (perf_counter() - start))

@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 
 from autocolor.arrays import Bytes, Words
-from autocolor.checks import shown
+from autocolor.checks import printable, shown
 from autocolor.errors import UsageError
 from autocolor.mapping.display_image import DisplayImage
 from autocolor.mapping.legend import GROUND, INK, Legend, legend
@@ -76,6 +76,8 @@ def shown_colors(image: DisplayImage) -> Bytes:
 def drawn_legend(key: Legend) -> Words:
     """The instructions that draw a legend."""
     areas = [instructions.erase(swatch[:4], swatch.word) for swatch in key.swatches]
-    texts = [instructions.write_text(each.text, each.left, each.top, INK, GROUND) for each in key.labels]
+    texts = [
+        instructions.write_text(printable(each.text), each.left, each.top, INK, GROUND) for each in key.labels
+    ]
     drawn: Words = np.concatenate([*areas, *texts])
     return drawn

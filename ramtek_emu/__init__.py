@@ -33,10 +33,11 @@ SIGGRAPH 1983).
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Final
-
+# Nothing is imported at once: a command can handle Ctrl+C only afterwards.
+TYPE_CHECKING: Final = False
 if TYPE_CHECKING:
+    from typing import Final
+
     __version__: str
     from ramtek_emu.configuration import GMR_9300 as GMR_9300
     from ramtek_emu.configuration import JPL_9460 as JPL_9460
@@ -118,6 +119,8 @@ def __getattr__(name: str) -> object:
             return version("autocolor")
         except PackageNotFoundError:
             return "0+unknown"
+    from importlib import import_module
+
     if name in _MODULES:
         return import_module(f"{__name__}.{name}")
     if name not in _HOME:

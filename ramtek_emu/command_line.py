@@ -22,8 +22,11 @@ from typing import Any, ClassVar, Final, NoReturn, TextIO
 import click
 from click.shell_completion import BashComplete, CompletionItem, split_arg_string
 
+from ramtek_emu.errors import escaped
+
 UNAVAILABLE: Final = 69
 FAULT: Final = 70
+OUT_OF_MEMORY: Final = 71
 WRITING_FAILED: Final = 74
 BY_SIGNAL: Final = 128
 """The exit code in a shell of a program that a signal ended, minus the number of the signal."""
@@ -114,7 +117,9 @@ class Ended(KeyboardInterrupt):
     """A signal is to end the program."""
 
     def __init__(self, number: int) -> None:
-        super().__init__(f"ended by {signal.Signals(number).name}")
+        super().__init__(
+            "interrupted" if number == signal.SIGINT else f"ended by {signal.Signals(number).name}"
+        )
         self.exit_code = BY_SIGNAL + number
 
 
@@ -124,24 +129,28 @@ class EndingSignals:
     A signal that was ignored when the program started (`nohup`) stays ignored.
     """
 
-    def __init__(self) -> None:
-        self.ended: Ended | None = None
-        self.ignored = False
-        """Whether further signals do nothing, because the program ends."""
-        self._unraisable = sys.unraisablehook
+    ended: Ended | None = None
+    ignored = False
+    """Whether further signals do nothing, because the program ends."""
+    cancels = False
+    """Whether Ctrl+C raises KeyboardInterrupt each time, because it cancels a step, not the program."""
 
     def install(self) -> None:
         """Install the handlers for the rest of the process."""
-        sys.unraisablehook = self._raise_later
+        self.ended, self.ignored, self.cancels = None, False, False
+        self._unraisable, sys.unraisablehook = sys.unraisablehook, self._raise_later
         for number in ENDING:
             if signal.getsignal(number) is not signal.SIG_IGN:
                 signal.signal(number, self._raise)
 
     def _raise(self, number: int, _: object) -> None:
-        if not self.ignored:
-            self.ignored = True
-            self.ended = Ended(number)
-            raise self.ended
+        if self.ignored:
+            return
+        if self.cancels and number == signal.SIGINT:
+            raise KeyboardInterrupt
+        self.ignored = True
+        self.ended = Ended(number)
+        raise self.ended
 
     def _raise_later(self, unraisable: sys.UnraisableHookArgs) -> None:
         """Raise Ended again if Python dropped it, as in a `__del__`; show any other exception."""
@@ -154,6 +163,10 @@ class EndingSignals:
             signal.setitimer(signal.ITIMER_REAL, 0.005)
 
 
+SIGNALS: Final = EndingSignals()
+"""The signals that end this process."""
+
+
 def run_command(command: click.Command, name: str) -> None:
     """Run a command and end the process with its exit code.
 
@@ -163,20 +176,20 @@ def run_command(command: click.Command, name: str) -> None:
     is loaded means that pygame is missing or broken. All other errors are faults of the program. With
     `--debug` anywhere before a `--`, the traceback is shown.
     """
-    signals = EndingSignals()
-    signals.install()
+    SIGNALS.install()
     try:
         code, message = _outcome(command, name)
-        if signals.ended is not None:
+        if SIGNALS.ended is not None:
             # A library replaced the exception by another, such as SQLite's "interrupted".
-            raise signals.ended
+            raise SIGNALS.ended
         _show(name, message)
-        signals.ignored = True
-    except KeyboardInterrupt as end:
-        signals.ignored = True
+        SIGNALS.ignored = True
+    except KeyboardInterrupt as interrupt:
+        end = SIGNALS.ended or interrupt
+        SIGNALS.ignored = True
         # Nobody may read what is left in the buffers: drop it.
         _discard(sys.stdout)
-        if _takes_text(sys.stderr):
+        if takes_text(sys.stderr):
             _show(name, str(end) or "interrupted")
         code = getattr(end, "exit_code", BY_SIGNAL + signal.SIGINT)
     _leave(code)
@@ -197,6 +210,7 @@ def _outcome(command: click.Command, name: str) -> tuple[int, str]:
     except click.exceptions.Abort:
         raise KeyboardInterrupt from None
     except click.ClickException as refusal:
+        refusal.message = escaped(refusal.message)  # type: ignore[misc]
         with suppress(OSError, ValueError):
             refusal.show()
         return refusal.exit_code, ""
@@ -208,6 +222,15 @@ def _outcome(command: click.Command, name: str) -> tuple[int, str]:
         if debug:
             with suppress(OSError, ValueError):
                 traceback.print_exc()
+        if memory_error := _memory_error(error):
+            # Free what the functions had allocated when memory ran out.
+            traceback.clear_frames(error.__traceback__)
+            doing = ", ".join(getattr(memory_error, "__notes__", [" ".join([name, *arguments])]))
+            reason = str(memory_error) or "nothing is left"
+            return OUT_OF_MEMORY, (
+                f"memory must suffice, and it ran out ({escaped(doing)}: {reason[:1].lower()}{reason[1:]});"
+                " take a smaller mesh or picture, or give the program more memory"
+            )
         refused: int | None = getattr(error, "exit_code", None)
         if refused is not None:
             return refused, str(error)
@@ -234,10 +257,22 @@ def _exit_code(command: click.Command, name: str, arguments: list[str]) -> objec
         add_completion_class(WholeWords)
         return shell_complete(command, {}, name, completion, os.environ[completion])
     try:
-        with command.make_context(name, arguments) as context:
+        with command.make_context(name, [*arguments]) as context:
             return command.invoke(context)
     except click.exceptions.Exit as leaving:
         return leaving.exit_code
+
+
+def _memory_error(error: BaseException | None) -> BaseException | None:
+    """The lack of memory that an error reports, or that led to it; None for any other error."""
+    while error is not None:
+        # Errors of pygame and of the loader of libraries have no other sign.
+        is_foreign = not hasattr(error, "exit_code")
+        is_lack = is_foreign and re.search("out of memory|cannot allocate memory", str(error), re.IGNORECASE)
+        if isinstance(error, MemoryError) or is_lack:
+            return error
+        error = error.__context__
+    return None
 
 
 def _is_of_the_window(error: Exception) -> bool:
@@ -262,15 +297,20 @@ def _closed_pipe() -> TextIOWrapper:
     return open(write_end, "w", encoding="utf-8")
 
 
+def tell(*lines: str, err: bool = True) -> None:
+    """Print lines, by default on stderr. What cannot be printed, as in names of files, is escaped."""
+    for line in lines:
+        click.echo(escaped(line), err=err)
+
+
 def _show(name: str, message: str) -> None:
     """Print the message on stderr, with the name of the command before each line."""
-    for line in message.splitlines():
-        # A file name may contain characters that the terminal cannot encode.
-        with suppress(OSError, ValueError):
-            click.echo(f"{name}: {line}", err=True)
+    # A closed stderr does not change the exit code.
+    with suppress(OSError, ValueError):
+        tell(*(f"{name}: {line}" for line in message.split("\n") if line))
 
 
-def _takes_text(stream: TextIO | None) -> bool:
+def takes_text(stream: TextIO | None) -> bool:
     """Whether writing to the stream does not wait for a reader; True where this cannot be known."""
     try:
         return stream is not None and bool(select.select([], [stream], [], 0)[1])

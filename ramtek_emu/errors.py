@@ -6,10 +6,27 @@ Only Python callers get these errors: no word that a host sends raises an error.
 from __future__ import annotations
 
 
+def escaped(text: str) -> str:
+    r"""The text with an escape for each character that cannot be printed, as in names of files.
+
+    >>> print(escaped("car\n\u202e.obj"))
+    car\n\u202e.obj
+    """
+    if text.isprintable():
+        return text
+    return "".join(letter if letter.isprintable() else repr(letter)[1:-1] for letter in text)
+
+
 class RamtekError(Exception):
-    """The base of all errors of this package; a command ends with the `exit_code` of its error."""
+    """The base of all errors of this package; a command ends with the `exit_code` of its error.
+
+    The message is one line; what cannot be printed in it is escaped.
+    """
 
     exit_code = 70
+
+    def __init__(self, message: str = "") -> None:
+        super().__init__(escaped(message))
 
 
 class ConfigurationError(RamtekError, ValueError):

@@ -10,6 +10,7 @@ import click
 from autocolor.commands.outputs import tell_written
 from autocolor.commands.scenes import REPAIRED, SceneSource, ended, read, scene_options
 from autocolor.errors import UsageError
+from ramtek_emu.command_line import tell
 
 EXAMPLES: Final = """\b
 Examples:
@@ -70,7 +71,7 @@ def convert(context: click.Context, source: SceneSource, out: str, to: str | Non
     written = output.write(path, report.scene, force)
     lost = left_out(report.scene, output, is_bare=is_bare)
     for phrase in lost:
-        click.echo(f"autocolor: {path.name}: left out, as {output.name} cannot hold it: {phrase}", err=True)
+        tell(f"autocolor: {path.name}: left out, as {output.name} cannot hold it: {phrase}")
     tell_written(*map(str, written))
     context.exit(REPAIRED if source.strict and lost else ended(report, source))
 

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
-from autocolor.checks import printable
 from autocolor.commands.scenes import SceneSource, ended, read, scene_options
+from ramtek_emu.command_line import tell
 
 if TYPE_CHECKING:
     from autocolor.files.scene_report import SceneReport
@@ -34,7 +34,7 @@ def info(context: click.Context, source: SceneSource, as_json: bool) -> None:
     if as_json:
         click.echo(json.dumps(facts, indent=2))
     else:
-        click.echo("\n".join(lines_of(facts)))
+        tell(*lines_of(facts), err=False)
     context.exit(ended(report, source))
 
 
@@ -117,7 +117,7 @@ def lines_of(facts: dict[str, Any]) -> list[str]:
         extent, missing = scalar["range"], scalar["missing"]
         values = f"{extent[0]:.4g} to {extent[1]:.4g}" if extent else "no values"
         gaps = f", missing {missing:,}" if missing else ""
-        lines.append(f"  {printable(scalar['name'])}: of {scalar['of']}s, {values}{gaps}")
+        lines.append(f"  {scalar['name']}: of {scalar['of']}s, {values}{gaps}")
     if facts["created"]:
         lines.append(f"created: {', '.join(facts['created'])}")
     return lines

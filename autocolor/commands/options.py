@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Final
 import click
 
 from autocolor.errors import InputError, UsageError
+from ramtek_emu.command_line import tell
 
 if TYPE_CHECKING:
     from logging import LogRecord
@@ -26,7 +27,7 @@ def as_usage(place: str = "") -> Iterator[None]:
     try:
         yield
     except InputError as error:
-        raise UsageError("\n".join(f"{place}{problem}" for problem in error.problems)) from None
+        raise UsageError(f"{place}{problem}" for problem in error.problems) from None
 
 
 normals_option = click.option(
@@ -98,7 +99,7 @@ def _listen(context: click.Context, _: click.Parameter, count: int) -> None:
         """Prints records on stderr, like all messages of a command."""
 
         def emit(self, record: LogRecord) -> None:
-            click.echo(f"autocolor: {self.format(record)}", err=True)
+            tell(f"autocolor: {self.format(record)}")
 
     printer = Printer()
     logger.addHandler(printer)

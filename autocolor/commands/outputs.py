@@ -6,9 +6,8 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import click
-
 from autocolor.errors import OutputError, UsageError
+from ramtek_emu.command_line import tell
 
 if TYPE_CHECKING:
     from ramtek_emu import Ramtek9300
@@ -59,4 +58,4 @@ def tell_written(*paths: str | None) -> None:
     """Print on stderr that these files were written; None is skipped."""
     for path in paths:
         if path is not None:
-            click.echo(f"wrote {path}", err=True)
+            tell(f"wrote {path}")

@@ -11,6 +11,7 @@ import click
 
 from autocolor.commands.completion import complete_scenes, complete_settings
 from autocolor.commands.options import verbose_option
+from ramtek_emu.command_line import tell
 
 if TYPE_CHECKING:
     from autocolor.files.scene_report import SceneReport
@@ -98,8 +99,7 @@ def read(source: SceneSource) -> SceneReport:
     from autocolor.files.scene_sources import read_scene_with_report
 
     report = read_scene_with_report(source.path, up=source.up, scale=source.scale, surfaces=source.surfaces)
-    for repair in report.repairs:
-        click.echo(f"autocolor: {repair}", err=True)
+    tell(*(f"autocolor: {repair}" for repair in report.repairs))
     return report
 
 

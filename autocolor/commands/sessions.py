@@ -5,13 +5,11 @@ A session is abandoned if its program ended without closing it, for example by a
 
 from __future__ import annotations
 
-import signal
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from types import FrameType
-from typing import TYPE_CHECKING, Final, NoReturn
+from typing import TYPE_CHECKING, Final
 
 import click
 
@@ -19,6 +17,7 @@ from autocolor.errors import AutocolorError, InputError, MissingInputError, Usag
 from autocolor.journal.autosave import OLD_SCRIPT, Autosave, forget, journal_in, left_sessions
 from autocolor.journal.journal import read_journal
 from autocolor.screens.viewer import Viewer
+from ramtek_emu.command_line import tell
 
 if TYPE_CHECKING:
     from autocolor.journal.journal import JournalSession
@@ -31,20 +30,14 @@ OLD: Final = (
     " --forget` removes it"
 )
 
-ENDING: Final = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name))
-"""The signals that end a program from outside."""
-
-BY_SIGNAL: Final = 128
-"""The exit code of a program that a signal ended, minus the number of the signal, as in a shell."""
-
 
 @contextmanager
 def autosaved_session(viewer: Viewer, folder: Path | None = None) -> Iterator[Callable[[], None]]:
     """Autosave the session of a viewer. Yields a function that the caller calls often.
 
     `folder` is the folder of a recovered session. If the journal cannot be written, the viewer shows a
-    message once. Messages on stderr and in the viewer mention abandoned sessions. SIGTERM and SIGHUP end the
-    program at once, and the journal remains.
+    message once. Messages on stderr and in the viewer mention abandoned sessions. After an exception, such as
+    `Ended` by a signal, the journal remains, with every step.
     """
     autosave = Autosave(folder)
     _mention_left_sessions(viewer)
@@ -58,22 +51,13 @@ def autosaved_session(viewer: Viewer, folder: Path | None = None) -> Iterator[Ca
                 messages.add(str(error))
                 viewer.tell(str(error))
 
-    before = {number: signal.signal(number, _end) for number in ENDING}
     try:
         yield update
     except BaseException:
         with suppress(AutocolorError):
             autosave.update(viewer.studio.history, at_once=True)
         raise
-    finally:
-        for number, handler in before.items():
-            # None means a handler that Python has not installed.
-            signal.signal(number, signal.SIG_DFL if handler is None else handler)
     autosave.end()
-
-
-def _end(number: int, _: FrameType | None) -> NoReturn:
-    raise SystemExit(BY_SIGNAL + number)
 
 
 def _mention_left_sessions(viewer: Viewer) -> None:
@@ -99,18 +83,18 @@ def list_sessions() -> None:
         try:
             session = _session_in(folder)
         except InputError as error:
-            text = str(error).replace("\n", "; ")
+            text = "; ".join(error.problems)
         else:
             steps = len(session.history.steps)
             text = f"{session.source.path}, {steps} step{'' if steps == 1 else 's'}"
-        click.echo(f"{folder.name}  {_time_of(folder)}  {text}")
+        tell(f"{folder.name}  {_time_of(folder)}  {text}", err=False)
 
 
 def forget_session(name: str) -> None:
     """Remove an abandoned session, by the beginning of its name, and say so on stderr."""
     folder = _folder_named(name)
     forget(folder)
-    click.echo(f"autocolor: {folder.name} is removed", err=True)
+    tell(f"autocolor: {folder.name} is removed")
 
 
 def chosen_session(name: str) -> tuple[Path, JournalSession]:
@@ -126,7 +110,7 @@ def chosen_session(name: str) -> tuple[Path, JournalSession]:
         try:
             return folder, _session_in(folder)
         except InputError as error:
-            click.echo(f"autocolor: {folder}: {error}", err=True)
+            tell(*(f"autocolor: {folder}: {problem}" for problem in error.problems))
     raise MissingInputError(
         "--recover: there must be a session that was not closed and can be read, and there is none; name a"
         " scene instead"

@@ -13,6 +13,7 @@ import click
 from autocolor.commands.demo import PLACES
 from autocolor.commands.scenes import SceneSource, created_again, ended, read, scene_options, set_option
 from autocolor.errors import UnavailableError, UsageError
+from ramtek_emu.command_line import tell
 
 if TYPE_CHECKING:
     from autocolor.journal.history import History
@@ -99,7 +100,7 @@ def show_once(scene: Scene, address: str) -> None:
         # The display replies only after it has executed all earlier instructions.
         port.send(instructions.read_entries(0, 2))
         port.receive(2)
-    click.echo(f"shown on {address}", err=True)
+    tell(f"shown on {address}")
 
 
 def folder_of(source: Source) -> Path:
@@ -132,7 +133,7 @@ def session_elsewhere(
             viewer = Viewer(history, port, folder)
             viewer.tell("the right edge brings the menu; ENTER picks, TRACK drags", persistent=True)
             prepare(viewer)
-            click.echo(f"shown on {address}; pick `leave` in the menu there, or press Ctrl+C here", err=True)
+            tell(f"shown on {address}; pick `leave` in the menu there, or press Ctrl+C here")
             with autosaved_session(viewer, left) as update:
                 attend(viewer, update)
             viewer.clear()

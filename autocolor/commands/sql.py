@@ -17,11 +17,12 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
-from autocolor.checks import printable
 from autocolor.commands.options import as_usage
 from autocolor.commands.outputs import tell_written
 from autocolor.commands.scenes import SceneSource, ended, read, scene_options
 from autocolor.errors import AutocolorError, InputError, UsageError
+from ramtek_emu.command_line import SIGNALS, tell
+from ramtek_emu.errors import escaped
 
 if TYPE_CHECKING:
     from autocolor.files.scene_report import SceneReport
@@ -159,7 +160,7 @@ def _table(answer: Answer) -> Iterator[str]:
             has_other[place] |= not isinstance(value, (int, float, type(None)))
     if not answer.columns:
         return
-    header = [printable(name) for name in answer.columns]
+    header = [escaped(name) for name in answer.columns]
     widths = [max(map(len, column)) for column in zip(header, *cells, strict=True)]
     is_number = [number and not other for number, other in zip(has_number, has_other, strict=True)]
     yield _line(header, widths, is_number)
@@ -180,7 +181,7 @@ def _cell(value: Value) -> str:
     if value is None:
         return ABSENT
     text = f"{len(value):,} bytes" if isinstance(value, bytes) else str(value)
-    return printable(text if len(text) <= WIDEST else f"{text[: WIDEST - 3]}...")
+    return escaped(text if len(text) <= WIDEST else f"{text[: WIDEST - 3]}...")
 
 
 def _csv(answer: Answer) -> Iterator[str]:
@@ -230,6 +231,7 @@ _PIECES: Final = re.compile(
 
 def prompt(tables: Tables, run: Callable[[str], None]) -> None:
     """Run typed statements until Ctrl+D or `.quit`; Ctrl+C deletes the typed text or stops a statement."""
+    SIGNALS.cancels = True
     with suppress(ImportError):
         # With readline the user can edit lines, and the arrow keys bring earlier lines back.
         import readline  # noqa: F401
@@ -247,10 +249,12 @@ def prompt(tables: Tables, run: Callable[[str], None]) -> None:
             click.echo(err=True)
             return
         except KeyboardInterrupt:
+            if SIGNALS.ended is not None:
+                raise
             text = ""
             click.echo("canceled; Ctrl+D ends", err=True)
         except AutocolorError as error:
-            click.echo(f"autocolor: {error}", err=True)
+            tell(*(f"autocolor: {problem}" for problem in error.problems))
         except _Quit:
             return
 
@@ -267,10 +271,10 @@ def _dotted(line: str, tables: Tables) -> bool:
     if not words[0].startswith("."):
         return False
     if words[0] == ".tables":
-        click.echo("\n".join(map(printable, tables.names)))
+        tell(*tables.names, err=False)
     elif words[0] == ".schema":
         for name in words[1:] or tables.names:
-            click.echo("\n".join(map(printable, tables.definition(name).split("\n"))))
+            tell(*tables.definition(name).split("\n"), err=False)
     elif words[0] in (".quit", ".exit"):
         raise _Quit
     else:

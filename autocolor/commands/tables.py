@@ -10,6 +10,7 @@ import click
 
 from autocolor.commands.outputs import tell_written
 from autocolor.commands.scenes import SceneSource, ended, read, scene_options
+from ramtek_emu.command_line import tell
 
 EXAMPLES: Final = """\b
 Examples:
@@ -41,7 +42,7 @@ def tables(
         folder = path if path.is_dir() else path.parent
         *meshes, scene_file = write_scene_with_tables(folder, report.scene, overwrite=force)
         tell_written(*map(str, meshes))
-        click.echo(f"wrote {scene_file}; to render it, name it or its folder, not the mesh", err=True)
+        tell(f"wrote {scene_file}; to render it, name it or its folder, not the mesh")
     elif as_json:
         from autocolor.files.picture_file import plain_scene
 

@@ -12,6 +12,7 @@ from autocolor.checks import Color
 from autocolor.commands.outputs import refuse_outputs, tell_written, write_png
 from autocolor.commands.scenes import REPAIRED, SceneSource, ended, read, scene_options
 from autocolor.errors import InputError, UsageError
+from ramtek_emu.command_line import tell
 
 if TYPE_CHECKING:
     from autocolor.scene.mesh_faults import Fault, Hole
@@ -64,7 +65,7 @@ def validate(
     else:
         kinds = f"{len(faults)} kind{'s' if len(faults) > 1 else ''} of faults in its mesh"
         verdict = f"it can be rendered, with {kinds}" if faults else "no problem"
-        click.echo("\n".join([f"{source.path}: {verdict}", *fault_lines(faults)]))
+        tell(f"{source.path}: {verdict}", *fault_lines(faults), err=False)
     if shows:
         show_scene(fault_scene(report.scene, faults), output, force)
     context.exit(REPAIRED if source.strict and faults else ended(report, source))

@@ -11,6 +11,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, BinaryIO, Final, NoReturn
 
+from autocolor import checks
 from autocolor.errors import InputError, MissingInputError, reason_of
 
 LARGEST_MESH_FILE: Final = 256 * 1024 * 1024
@@ -144,4 +145,4 @@ def shown(value: str | bytes, most: int = 40) -> str:
     """The text in quotes for a message, cut to `most` characters."""
     if isinstance(value, bytes):
         value = value[: 4 * most + 4].decode("utf-8", "backslashreplace")
-    return repr(value) if len(value) <= most else repr(value[:most]) + "..."
+    return checks.shown(value, most)

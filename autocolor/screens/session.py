@@ -11,7 +11,6 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Final, NamedTuple, Unpack
 
-from autocolor.checks import printable
 from autocolor.errors import InputError, UsageError
 from autocolor.files.paths import SCENE_FILE, STORE_SUFFIXES, file_stem, free_path
 from autocolor.files.rig_file import RIG_SUFFIX, is_rig, read_rig, write_rig
@@ -29,6 +28,7 @@ from autocolor.studio import Studio
 from autocolor.widgets.rows import TableNames, World
 from autocolor.widgets.widget import short_name
 from ramtek_emu import HostPort, instructions
+from ramtek_emu.errors import escaped
 
 PICTURE: Final = "picture"
 """The name of the screen that a session begins with, and comes back to."""
@@ -143,10 +143,9 @@ class Session:
         """Show a message for some seconds; with `persistent`, until the next action.
 
         An empty message takes the last message away. Letters that cannot be printed, as in names of files,
-        become question marks.
+        are escaped.
         """
-        line = printable(message)
-        self.news = Message(line, is_warning, time.monotonic(), persistent)
+        self.news = Message(escaped(message), is_warning, time.monotonic(), persistent)
 
     def warn(self, message: object) -> None:
         """Show an error in one line; of several problems, the first and the number of the others."""

@@ -13,6 +13,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from autocolor.arrays import Floats, Numbers, Words
+from autocolor.checks import printable
 from autocolor.mapping.ranges import SCREENS
 from ramtek_emu import instructions
 
@@ -260,7 +261,8 @@ def text(line: str, left: int, top: int, word: int = WHITE, background: int = NI
     area = Area(left, top, left + width - 1, top + CHARACTER_LINES * size - 1)
     if not line or not DRAWABLE.covers(area):
         return Item(area, b"")
-    return Item(area, instructions.write_text(line, left, top, word, background, size).tobytes(), True)
+    stream = instructions.write_text(printable(line), left, top, word, background, size).tobytes()
+    return Item(area, stream, True)
 
 
 @lru_cache(maxsize=1024)

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, BinaryIO, Final, TypeVar
 
 import click
 
-from ramtek_emu.command_line import ENDING
+from ramtek_emu import command_line
+from ramtek_emu.command_line import ENDING, SIGNALS, takes_text
 from ramtek_emu.configuration import CONFIGURATIONS, GMR_9300
 from ramtek_emu.errors import MissingInputError, RamtekError, reason_of
 from ramtek_emu.writing import Output, refuse_output
@@ -94,7 +95,7 @@ def handling(handlers: Mapping[int, Handler]) -> Iterator[None]:
             signal.signal(number, previous)
 
 
-WAIT_SECONDS: Final = 0.25
+WAIT_SECONDS: Final = 0.1
 """Limit: how long a signal may be unnoticed while nothing arrives."""
 
 
@@ -179,6 +180,8 @@ def running(
 
             if run.attempt(lambda: write_snapshot(display, snapshot, overwrite=force)):
                 tell(f"wrote {snapshot}")
+        # A signal that was noticed must not end the command a second time.
+        SIGNALS.ignored = run.ends
     if run.exit_code:
         raise click.exceptions.Exit(run.exit_code)
 
@@ -204,9 +207,10 @@ def open_stream(path: str) -> BinaryIO:
 
 
 def tell(message: str) -> None:
-    """Print a message on stderr; stdout is for results. If nobody reads stderr, the command goes on."""
-    with suppress(OSError):
-        click.echo(message, err=True)
+    """Print a message on stderr; stdout is for results. If nobody reads stderr, the message is dropped."""
+    if takes_text(sys.stderr):
+        with suppress(OSError):
+            command_line.tell(message)
 
 
 TICK_SECONDS: Final = 0.01

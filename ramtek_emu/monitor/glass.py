@@ -23,7 +23,7 @@ os.environ["PYGAME_HIDE_SUPPORT_PROMPT"] = "1"
 os.environ["SDL_WINDOWS_DPI_AWARENESS"] = os.environ.get("SDL_WINDOWS_DPI_AWARENESS", "permonitorv2")
 import pygame
 
-from ramtek_emu.errors import NoScreenError
+from ramtek_emu.errors import NoScreenError, escaped
 from ramtek_emu.monitor.input_queue import Close, InputQueue, Key, Pointer
 from ramtek_emu.monitor.overlay import Overlay
 from ramtek_emu.video.scan_out import Run, ScanOut, Stamp
@@ -101,11 +101,10 @@ class Glass:
             pygame.display.quit()
 
     def set_title(self, title: str) -> None:
-        """Change the text of the window's title bar; letters that cannot be printed become question marks."""
+        """Change the text of the window's title bar; letters that cannot be printed are escaped."""
         if self.is_open:
             # Names of files may contain bytes that are not text; pygame refuses them.
-            printable = (letter if letter.isprintable() else "?" for letter in title)
-            pygame.display.set_caption("".join(printable))
+            pygame.display.set_caption(escaped(title))
 
     def set_full_screen(self, full_screen: bool) -> None:
         """Fill the screen, or go back to a window of the previous size; NoScreenError if that fails."""

@@ -23,6 +23,13 @@ def test_a_stage_is_told_with_its_time_to_those_who_listen(caplog: pytest.LogCap
     assert re.fullmatch(r"something: \d+\.\d ms", message)
 
 
+def test_when_memory_runs_out_the_innermost_stage_is_noted() -> None:
+    logger = logger_of("autocolor.somewhere")
+    with pytest.raises(MemoryError) as caught, timed(logger, "read car"), timed(logger, "node normals"):
+        raise MemoryError
+    assert caught.value.__notes__ == ["node normals"]
+
+
 def test_what_is_created_and_each_stage_of_a_rendering_are_told(caplog: pytest.LogCaptureFixture) -> None:
     with caplog.at_level(logging.INFO, "autocolor"):
         render(scene_of(cube()), 20, 30)

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import errno
 import shutil
+import signal
 import subprocess
 import sys
+import time
 from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
@@ -13,9 +15,11 @@ from typing import ClassVar, NamedTuple
 
 import click
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from ramtek_emu.command_line import CommandGroup, WholeWords, joined, prefix_in_bash, run_command
-from ramtek_emu.errors import OutputExistsError
+from ramtek_emu.command_line import CommandGroup, WholeWords, joined, prefix_in_bash, run_command, tell
+from ramtek_emu.errors import OutputExistsError, escaped
 
 
 class Left(NamedTuple):
@@ -55,6 +59,12 @@ def raising(error: BaseException) -> Callable[[], None]:
     return does
 
 
+def after(cause: BaseException, error: BaseException) -> BaseException:
+    """The error, raised while the cause was handled."""
+    error.__context__ = cause
+    return error
+
+
 def test_success_ends_with_0(end: End) -> None:
     assert end(lambda: None, "a", "b") == (0, "a b\n", "")
 
@@ -64,12 +74,60 @@ def test_a_command_may_end_with_a_code_of_its_own(end: End) -> None:
 
 
 def test_a_refusal_ends_with_its_sentence_and_its_code(end: End) -> None:
-    refusal = OutputExistsError("the file must be a new one\nor another")
-    assert end(raising(refusal)) == (
+    assert end(raising(OutputExistsError("the file\n\x1b must be new"))) == (
         73,
         "\n",
-        "tool: the file must be a new one\ntool: or another\n",
+        "tool: the file\\n\\x1b must be new\n",
     )
+
+
+class TwoProblemsError(Exception):
+    exit_code = 65
+
+
+def test_each_problem_of_a_refusal_has_a_line_with_the_name_of_the_command(end: End) -> None:
+    assert end(raising(TwoProblemsError("a\x0b\nb"))).err == "tool: a\\x0b\ntool: b\n"
+
+
+def has_no_commands_for_a_terminal(text: str) -> bool:
+    return all(letter.isprintable() or letter == "\n" for letter in text)
+
+
+@given(st.text())
+def test_what_is_printed_commands_no_terminal(text: str) -> None:
+    assert escaped(text).isprintable()
+    assert escaped(escaped(text)) == escaped(text)
+    if text.isprintable():
+        assert escaped(text) == text
+
+
+STRANGE = "\u202e\x00\x16\x1b[2J\x7f\x85\u2028\u2066\u061c\udcff\n"
+"""Characters that turn the direction of text, clear a terminal, begin a line or are no text."""
+
+
+@pytest.mark.parametrize(
+    "does",
+    [
+        raising(OutputExistsError(STRANGE)),
+        raising(TwoProblemsError(STRANGE)),
+        raising(ValueError(STRANGE)),
+        raising(click.UsageError(STRANGE)),
+        raising(click.BadParameter(STRANGE)),
+        lambda: tell(STRANGE, STRANGE),
+    ],
+)
+def test_strange_characters_of_names_are_escaped_in_every_message(
+    end: End, does: Callable[[], object]
+) -> None:
+    left = end(does)
+    assert has_no_commands_for_a_terminal(left.err)
+    assert "\\u202e\\x00\\x16\\x1b[2J" in left.err
+
+
+def test_strange_characters_of_arguments_are_escaped(end: End) -> None:
+    left = end(lambda: None, f"--{STRANGE}")
+    assert left.code == 2
+    assert has_no_commands_for_a_terminal(left.err)
 
 
 @pytest.mark.parametrize(
@@ -80,17 +138,80 @@ def test_a_refusal_ends_with_its_sentence_and_its_code(end: End) -> None:
         (KeyboardInterrupt(), 130, "tool: interrupted"),
         (OSError(errno.ENOSPC, "No space left on device"), 74, "not fail (no space left on device)"),
         (OSError(errno.EIO, "Input/output error", "a/file"), 70, "a fault of this program"),
-        (MemoryError(), 70, "a fault of this program, not of yours: MemoryError: ; add --debug"),
+        (MemoryError(), 71, "tool: memory must suffice, and it ran out (tool a\\n: nothing is left); take a"),
+        (
+            OSError(errno.ENOMEM, "Cannot allocate memory"),
+            71,
+            "(tool a\\n: [Errno 12] Cannot allocate memory)",
+        ),
+        (RuntimeError("Out of memory"), 71, "(tool a\\n: out of memory)"),
+        (after(MemoryError("no"), OutputExistsError("out of memory.png exists")), 71, "(tool a\\n: no)"),
+        (OutputExistsError("out of memory.png exists"), 73, "out of memory.png exists"),
         (RecursionError("deep"), 70, "RecursionError: deep"),
     ],
 )
 def test_each_failure_has_its_code_and_no_traceback(
     end: End, error: BaseException, code: int, sentence: str
 ) -> None:
-    left = end(raising(error))
+    left = end(raising(error), "a\n")
     assert left.code == code
     assert sentence in left.err
     assert "Traceback" not in left.err
+
+
+ENDING = [
+    pytest.param(
+        name, code, sentence, marks=pytest.mark.skipif(not hasattr(signal, name), reason="no such signal")
+    )
+    for name, code, sentence in (
+        ("SIGINT", 130, "interrupted"),
+        ("SIGTERM", 143, "ended by SIGTERM"),
+        ("SIGHUP", 129, "ended by SIGHUP"),
+    )
+]
+
+
+@pytest.mark.parametrize(("name", "code", "sentence"), ENDING)
+def test_the_first_signal_ends_a_command_and_later_signals_do_nothing(
+    end: End, name: str, code: int, sentence: str
+) -> None:
+    def does() -> None:
+        try:
+            signal.raise_signal(getattr(signal, name))
+        finally:
+            signal.raise_signal(signal.SIGTERM)
+            signal.raise_signal(signal.SIGINT)
+
+    assert end(does) == (code, "\n", f"tool: {sentence}\n")
+
+
+def test_a_signal_that_was_ignored_at_the_start_stays_ignored(end: End) -> None:
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    assert end(lambda: signal.raise_signal(signal.SIGTERM)) == (0, "\n", "")
+
+
+def test_a_signal_ends_a_command_whose_library_raises_another_exception(end: End) -> None:
+    def does() -> None:
+        try:
+            signal.raise_signal(signal.SIGTERM)
+        except KeyboardInterrupt:
+            raise ValueError("interrupted") from None
+
+    assert end(does) == (143, "\n", "tool: ended by SIGTERM\n")
+
+
+@pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="this system has no timers")
+def test_a_signal_amid_a_destructor_ends_the_command_later(end: End) -> None:
+    class Destroyed:
+        def __del__(self) -> None:
+            signal.raise_signal(signal.SIGTERM)
+
+    def does() -> None:
+        Destroyed()
+        while True:
+            time.sleep(1)
+
+    assert end(does) == (143, "\n", "tool: ended by SIGTERM\n")
 
 
 def test_a_reader_of_stdout_that_left_ends_a_command_in_silence(end: End) -> None:

@@ -84,7 +84,7 @@ def test_the_scalars_of_the_mesh_are_told_with_their_ranges_and_what_is_missing(
     assert lines[at + 1 : at + 4] == [
         f"  stress: of nodes, 1 to {nodes - 1}, missing 1",
         "  area: of polygons, 0.125 to 0.125",
-        f"  none?here: of nodes, no values, missing {nodes}",
+        f"  none\\nhere: of nodes, no values, missing {nodes}",
     ]
     assert json.loads(run("info", "wall.npz", "--json").out)["scalars"] == [
         {"name": "stress", "of": "node", "range": [1, nodes - 1], "missing": 1},

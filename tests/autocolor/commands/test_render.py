@@ -311,3 +311,19 @@ def test_words_that_stand_for_normals_are_asked_for_by_an_option_or_a_setting(fo
     refused = run("render", "scene", "--set", "scalar.name=z", "--set", "words=normals", "-o", "three.png")
     assert refused.code == 2
     assert "words must be 'levels' where a scalar colors surfaces, not 'normals'" in refused.err
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="the limit of memory is Linux's")
+def test_a_picture_too_large_for_the_memory_ends_with_what_was_being_done(folder: Path, process: Run) -> None:
+    import resource
+
+    ran = process(
+        *("render", "scene", "--size", "4096x4096"),
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (500 << 20, 500 << 20)),
+    )
+    assert (ran.code, ran.out) == (71, "")
+    assert ran.err.startswith(
+        "autocolor: memory must suffice, and it ran out (visible surfaces, 4096 x 4096: "
+    )
+    assert ran.err.endswith("; take a smaller mesh or picture, or give the program more memory\n")
+    assert not (folder / "scene.png").exists()

@@ -82,7 +82,7 @@ def test_an_error_is_one_sentence(session: Session, error: object, shown: str) -
 
 def test_a_message_is_one_line_that_can_be_printed(session: Session) -> None:
     session.tell("opened a\nb\x1b[31m \udcff\0.obj")
-    assert session.message == "opened a?b?[31m ??.obj"
+    assert session.message == r"opened a\nb\x1b[31m \udcff\x00.obj"
 
 
 def test_a_chosen_surface_or_light_is_always_in_the_scene(session: Session) -> None:
