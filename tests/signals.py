@@ -19,8 +19,7 @@ import sys
 import tempfile
 import time
 from array import array
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable
 from fcntl import ioctl
 from functools import partial
 from pathlib import Path
@@ -116,8 +115,7 @@ def at_any_time(command: Command) -> None:
     time.sleep(random.uniform(0, 0.8))
 
 
-def running(command: Command) -> None:
-    """The display runs: its recording has begun."""
+def recording(command: Command) -> None:
     command.until(lambda: any(name.name.endswith(".part") for name in command.place.iterdir()))
     command.send(DRAWING)
 
@@ -174,7 +172,7 @@ ROWS = (
     *(Row(command, partial(idle, connect=True), (0,), WRITTEN) for command in SERVERS),
     *(Row(command, partial(filling, connect=True), (0,), WRITTEN) for command in SERVERS),
     *(Row(command, partial(unread, connect=True), (0,), WRITTEN) for command in SERVERS),
-    Row(f"play - {OUTPUTS}", running, (-1,), WRITTEN),
+    Row(f"play - {OUTPUTS}", recording, (-1,), WRITTEN),
     Row(f"play - {OUTPUTS}", filling, (-1,), WRITTEN),
     *(Row(command, starting, (0, -1)) for command in (*PIPED, *SERVERS, f"play - {OUTPUTS}")),
     *(Row(command, at_any_time, (0, -1)) for command in (*PIPED, *SERVERS, f"play - {OUTPUTS}")),
@@ -187,28 +185,13 @@ ROWS = (
 """Windows are tried where there is a screen: in the tests of `serve`."""
 
 
-@contextmanager
-def started(row: Row, place: Path, ignored: str = "") -> Iterator[Command]:
-    """The command of a row; the signals in `ignored` are ignored when it starts, as by `nohup`."""
-    (place / "lines.ramtek").write_bytes(DRAWING * 4000)
-    os.mkfifo(place / "stick")
-    command = (sys.executable, "-m", row.module, *row.arguments.split())
-    process = subprocess.Popen(
-        ("sh", "-c", f"trap '' {ignored}; exec \"$@\"", "sh", *command) if ignored else command,
-        cwd=place,
-        env=environment(),
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        bufsize=0,
+def row_of(arguments: str, moment: Callable[[Command], None]) -> Row:
+    """The first row whose command begins with this text, at this moment."""
+    return next(
+        row
+        for row in ROWS
+        if row.arguments.startswith(arguments) and getattr(row.moment, "func", row.moment) is moment
     )
-    running_command = Command(process, place)
-    try:
-        yield running_command
-    finally:
-        process.kill()
-        process.wait()
-        running_command.close()
 
 
 def attack(row: Row, number: signal.Signals, place: Path) -> tuple[float, str]:
@@ -216,15 +199,30 @@ def attack(row: Row, number: signal.Signals, place: Path) -> tuple[float, str]:
 
     Returns the seconds until its end, and what it said on stderr.
     """
-    with started(row, place) as command:
+    (place / "lines.ramtek").write_bytes(DRAWING * 4000)
+    os.mkfifo(place / "stick")
+    process = subprocess.Popen(
+        (sys.executable, "-m", row.module, *row.arguments.split()),
+        cwd=place,
+        env=environment(),
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        bufsize=0,
+    )
+    command = Command(process, place)
+    try:
         row.moment(command)
         begin = time.monotonic()
-        with suppress(ProcessLookupError):
-            command.process.send_signal(number)
-        code = command.process.wait(60)
+        process.send_signal(number)
+        code = process.wait(60)
         seconds = time.monotonic() - begin
-        assert command.process.stderr is not None
-        said = command.process.stderr.read().decode()
+        assert process.stderr is not None
+        said = process.stderr.read().decode()
+    finally:
+        process.kill()
+        process.wait()
+        command.close()
     check(row, number, place, code, said)
     return seconds, said
 

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, BinaryIO, Final, TypeVar
 
 import click
 
-from ramtek_emu.command_line import ENDING
-from ramtek_emu.command_line import tell as tell
+from ramtek_emu import command_line
+from ramtek_emu.command_line import ENDING, SIGNALS, takes_text
 from ramtek_emu.configuration import CONFIGURATIONS, GMR_9300
 from ramtek_emu.errors import MissingInputError, RamtekError, reason_of
 from ramtek_emu.writing import Output, refuse_output, same_outputs
@@ -99,7 +99,7 @@ def handling(handlers: Mapping[int, Handler]) -> Iterator[None]:
             signal.signal(number, previous)
 
 
-WAIT_SECONDS: Final = 0.25
+WAIT_SECONDS: Final = 0.1
 """Limit: how long a signal may be unnoticed while nothing arrives."""
 
 
@@ -184,6 +184,8 @@ def running(
 
             if run.attempt(lambda: write_snapshot(display, snapshot, overwrite=force)):
                 tell(f"wrote {snapshot}")
+        # A signal that was noticed must not end the command a second time.
+        SIGNALS.ignored = run.ends
     if run.exit_code:
         raise click.exceptions.Exit(run.exit_code)
 
@@ -206,6 +208,12 @@ def open_stream(path: str) -> BinaryIO:
         raise MissingInputError(
             f"a stream must be a file that can be read, not {path!r} ({reason_of(cause)}); check the name"
         ) from None
+
+
+def tell(message: str) -> None:
+    """Print a message on stderr; stdout is for results. If nobody reads stderr, the message is dropped."""
+    if takes_text(sys.stderr):
+        command_line.tell(message)
 
 
 TICK_SECONDS: Final = 0.01

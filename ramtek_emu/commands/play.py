@@ -66,7 +66,7 @@ def play(
     from ramtek_emu.host.server import HostSession
 
     number = file.fileno()
-    with running(display, output, snapshot, record, force) as run:
+    with file, running(display, output, snapshot, record, force) as run:
 
         def read(most: int) -> bytes:
             try:

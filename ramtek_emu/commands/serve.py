@@ -40,7 +40,7 @@ Examples:
   socat EXEC:./old_program EXEC:'ramtek serve --stdio'    one that reads back as well
 """
 
-STEP_SECONDS: Final = 0.25
+STEP_SECONDS: Final = 0.1
 JOYSTICK_SECONDS: Final = 0.02
 """How long a line for the joystick may wait while no words arrive."""
 HOST_SECONDS: Final = 0.005

@@ -130,20 +130,6 @@ def test_the_shell_s_pipes_put_any_program_on_the_display(tmp_path: Path) -> Non
     assert (tmp_path / "out.png").exists()
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_an_endless_program_is_interrupted_and_its_picture_is_written(
-    tmp_path: Path, number: signal.Signals
-) -> None:
-    with started("serve", "--stdio", "--snapshot", tmp_path / "s.png") as process:
-        host = PipedHost(process)
-        host.send(OUTLINE)
-        host.send(words("0B03 0040 64 64 64 64 2 0A01"))
-        assert host.receive(1).tolist() == [128]
-        process.send_signal(number)
-        assert process.wait(60) == 0
-    assert read_snapshot(tmp_path / "s.png").words.any()
-
-
 def test_two_pipes_put_a_program_that_reads_back_on_the_display(tmp_path: Path) -> None:
     program = (
         "import os\n"
@@ -396,7 +382,7 @@ def test_a_command_with_a_window_runs_until_a_signal(
     assert b"Traceback" not in said
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_signal_during_service_closes_the_window_afterwards(number: signal.Signals, on_screen: str) -> None:
     display = Ramtek9300()
     served = 0

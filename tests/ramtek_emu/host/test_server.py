@@ -411,6 +411,24 @@ def test_a_host_that_takes_no_more_replies_is_still_drawn_for() -> None:
     client.leave()
 
 
+def test_the_words_that_arrived_and_were_not_executed_are_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("ramtek_emu.host.server.SLICE_SECONDS", 0.0)
+    host, there = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    client = Client(Wire(there), HostSession(Ramtek9300()), 10, 10)
+    host.send(packet("0902 0044 7 5 5 5 5 0700 0902 0044"))
+    host.send(packet("0700 0700"))
+    counts = [client.unexecuted]
+    client.serve(client.wanted)
+    while client.has_work:
+        counts.append(client.unexecuted)
+        client.work()
+    # The packet that was not read has two words. The last two words of the other begin an instruction.
+    assert counts == [12, 12, 5, 4, 2]
+    host.close()
+    client.leave()
+    assert client.session.unexecuted == 0
+
+
 def test_the_time_that_the_display_takes_is_no_silence_of_the_host(monkeypatch: pytest.MonkeyPatch) -> None:
     host, there = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     display = Ramtek9300()
