@@ -247,4 +247,4 @@ class Unit:
         """The element and line of the pointer, and the word with its switches."""
         self._display.send(instructions.read_cursor(POINTER))
         element, line = self._display.receive(2).tolist()
-        return element, line & LINE_BITS, line
+        return element & ELEMENT_BITS, line & LINE_BITS, line
