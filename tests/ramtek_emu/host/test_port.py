@@ -259,32 +259,30 @@ def test_words_that_do_not_come_are_refused_after_a_while() -> None:
 
 def test_a_server_that_sends_without_end_fills_no_memory(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("ramtek_emu.host.port.MOST_UNREAD", 1000)
-    with socket.create_server(("127.0.0.1", 0)) as listening:
-        port = TcpPort(f"tcp://127.0.0.1:{listening.getsockname()[1]}", timeout=5)
-        flooding, _ = listening.accept()
-        with flooding, pytest.raises(PortError, match="sent 1,000 bytes more; check the address"), port:
-            flooding.sendall(bytes(1002))
-            port.receive(502)
+    port, display = paired()
+    display.sendall(bytes(1002))
+    with pytest.raises(PortError, match="sent 1,000 bytes more; check the address"):
+        port.receive(502)
+    port.wire.socket.close()
+    display.close()
 
 
 def test_words_that_come_one_by_one_are_refused_after_a_while_too() -> None:
-    with socket.create_server(("127.0.0.1", 0)) as listening:
-        port = TcpPort(f"tcp://127.0.0.1:{listening.getsockname()[1]}", timeout=0.2)
-        slow, _ = listening.accept()
-        stop = threading.Event()
+    port, display = paired(0.2)
+    stop = threading.Event()
 
-        def trickle() -> None:
-            while not stop.wait(0.02):
-                slow.send(b"x")
+    def trickle() -> None:
+        while not stop.wait(0.02):
+            display.send(b"x")
 
-        thread = threading.Thread(target=trickle)
-        thread.start()
-        with pytest.raises(ReplyError, match=r"must come within 0\.2 seconds, not 1000"):
-            port.receive(1000)
-        stop.set()
-        thread.join()
-        slow.close()
-        port.wire.socket.close()
+    thread = threading.Thread(target=trickle)
+    thread.start()
+    with pytest.raises(ReplyError, match=r"must come within 0\.2 seconds, not 1000"):
+        port.receive(1000)
+    stop.set()
+    thread.join()
+    port.wire.socket.close()
+    display.close()
 
 
 def test_after_closing_everything_that_was_sent_is_drawn() -> None:
