@@ -16,6 +16,7 @@ from autocolor.errors import UnavailableError, UsageError
 from ramtek_emu.command_line import tell
 
 if TYPE_CHECKING:
+    from autocolor.arrays import Bytes
     from autocolor.journal.history import History
     from autocolor.journal.places import Source
     from autocolor.scene.scene import Scene
@@ -91,16 +92,44 @@ def show(
 
 
 def show_once(scene: Scene, address: str) -> None:
-    """Send the picture of a scene to the display at an address, and wait until it is complete."""
+    """Send the picture of a scene to the display at an address, and wait until it is complete.
+
+    Raises UnavailableError if no display answers there.
+    """
     from autocolor.studio import Studio
-    from ramtek_emu import instructions
 
     with port_to(address) as port:
-        Studio(scene, port)
-        # The display replies only after it has executed all earlier instructions.
-        port.send(instructions.read_entries(0, 2))
-        port.receive(2)
+        require_display(port, address, Studio(scene, port).entries)
     tell(f"shown on {address}")
+
+
+def require_display(port: TcpPort | UnixPort, address: str, entries: Bytes) -> None:
+    """Raise UnavailableError unless the display replies with the entries that were sent last.
+
+    A server that is no display replies with other words or none. The display replies only after it has
+    executed all earlier instructions.
+    """
+    from ramtek_emu import ReplyError, instructions
+
+    # The display replies with the words of the load, without its instruction, address and length.
+    _, _, _, *sent = instructions.load_entries(0, entries).tolist()
+    port.send(instructions.read_entries(0, len(sent)))
+    try:
+        replied = port.receive(len(sent)).tolist()
+    except ReplyError:
+        raise _without_answer(port, address) from None
+    if replied != sent:
+        raise UnavailableError(
+            f"a display must answer at {address}, and another server does; check the address, or start"
+            " `ramtek serve` there"
+        )
+
+
+def _without_answer(port: TcpPort | UnixPort, address: str) -> UnavailableError:
+    return UnavailableError(
+        f"a display must answer within {port.timeout:g} seconds, and {address} does not; it may be serving"
+        " another host first"
+    )
 
 
 def folder_of(source: Source) -> Path:
@@ -131,19 +160,15 @@ def session_elsewhere(
     with port_to(address) as port:
         try:
             viewer = Viewer(history, port, folder)
+            require_display(port, address, viewer.studio.entries)
             viewer.tell("the right edge brings the menu; ENTER picks, TRACK drags", persistent=True)
             prepare(viewer)
             tell(f"shown on {address}; pick `leave` in the menu there, or press Ctrl+C here")
             with autosaved_session(viewer, left) as update:
                 attend(viewer, update)
             viewer.clear()
-        except (PortError, ReplyError) as error:
-            message = str(error)
-            if isinstance(error, ReplyError):
-                message = (
-                    f"a display must answer within {port.timeout:g} seconds, and {address} does not; it may"
-                    " be serving another host first"
-                )
+        except (PortError, ReplyError, UnavailableError) as error:
+            message = str(_without_answer(port, address) if isinstance(error, ReplyError) else error)
             if history.steps:
                 message += "; `autocolor show --recover --to ADDRESS` continues the session"
             raise UnavailableError(message) from None

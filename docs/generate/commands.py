@@ -35,7 +35,11 @@ commands themselves answered: `python -m docs.generate.commands > docs/COMMANDS.
 writes it.
 
 Results go to stdout, messages to stderr. `-v` says what `autocolor` reads, creates and computes, and how long
-that takes; `-vv` says more. `--debug` shows the traceback of an error.
+that takes; `-vv` says more. `--debug` shows the traceback of an error. What cannot be printed in a name or a value
+is shown as an escape, such as `\\x1b`.
+
+Ctrl+C, SIGTERM and SIGHUP end a command at once: each output is whole or as it was before, and the session of
+a window can be recovered. A signal that is ignored when the command starts, as with `nohup`, stays ignored.
 
 ## Exit codes
 
@@ -56,8 +60,10 @@ MEANINGS = {
     71: "not enough memory",
     73: "the output exists, or cannot be made where it is",
     74: "writing failed",
+    129: "ended by SIGHUP, as when a terminal is closed",
     130: "interrupted with Ctrl+C",
     141: "the reader of stdout left, as `head` does; nothing is said",
+    143: "ended by SIGTERM",
 }
 
 COMMANDS = (

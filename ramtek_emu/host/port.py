@@ -180,6 +180,8 @@ def answer_of(file: socket.socket | int, request: int) -> int:
 
 MOST_SECONDS: Final = 1_000_000
 """The longest timeout. Limit: the system cannot wait for much longer at once."""
+MOST_UNREAD: Final = 1 << 28
+"""Limit: bytes of replies that were not received yet. Another server than a display may send without end."""
 HURRIED_SECONDS: Final = 0.25
 """The longest wait for the display when an error or a signal closes the port. Limit: a hang would hide it."""
 
@@ -230,8 +232,9 @@ class SocketPort:
                 f"the words received must be a whole number from 0 on, not {count!r}; "
                 "ask for as many as an instruction replies"
             )
+        deadline = time.monotonic() + self.timeout
         while self._mark_is_due or len(self._received) < 2 * count:
-            if not self._ready(self.timeout):
+            if not self._ready(max(0.0, deadline - time.monotonic())):
                 raise ReplyError(
                     f"the words received must come within {self.timeout:g} seconds, not {count} of which "
                     f"{len(self._received) // 2} came; send an instruction that reads them first, "
@@ -332,20 +335,21 @@ class SocketPort:
 
     def _send_some(self, data: bytes | memoryview) -> int:
         """Send bytes when the display takes them, and return their number. Replies are read meanwhile."""
-        events = self._ready(self.timeout, writing=True)
-        if not events:
-            raise PortError(
-                f"a display must take words within {self.timeout:g} seconds, and {self.address} does not; "
-                "read its replies, wait until no other host is served, or start it again"
-            )
-        if events & selectors.EVENT_READ:
-            self._take()
-        if not events & selectors.EVENT_WRITE:
-            return 0
-        try:
-            return self.wire.send(data)
-        except OSError as cause:
-            raise self._gone(reason_of(cause)) from cause
+        deadline = time.monotonic() + self.timeout
+        while True:
+            events = self._ready(max(0.0, deadline - time.monotonic()), writing=True)
+            if events & selectors.EVENT_READ:
+                self._take()
+            try:
+                if events & selectors.EVENT_WRITE and (count := self.wire.send(data)):
+                    return count
+            except OSError as cause:
+                raise self._gone(reason_of(cause)) from cause
+            if time.monotonic() >= deadline:
+                raise PortError(
+                    f"a display must take words within {self.timeout:g} seconds, and {self.address} does "
+                    "not; read its replies, wait until no other host is served, or start it again"
+                )
 
     def _take(self) -> None:
         """Read the replies that have arrived; at a mark, drop all earlier replies."""
@@ -357,6 +361,11 @@ class SocketPort:
             self._mark_is_due = False
         elif not isinstance(data, Sign):
             self._received += data
+            if len(self._received) > MOST_UNREAD:
+                raise PortError(
+                    f"a display must send only what instructions read, and {self.address} sent "
+                    f"{MOST_UNREAD:,} bytes more; check the address, or receive replies earlier"
+                )
 
     def _read(self) -> bytes | Sign:
         try:

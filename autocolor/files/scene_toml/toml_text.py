@@ -209,9 +209,15 @@ def toml_value(value: object) -> str:
     if isinstance(value, Mapping):
         return f"{{ {', '.join(f'{toml_key(key)} = {toml_value(inner)}' for key, inner in value.items())} }}"
     if isinstance(value, (str, bool)):
-        # TOML needs the escapes of JSON, and one for DEL.
-        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+        # TOML has the escapes of JSON. What can be printed stays legible.
+        text = json.dumps(value, ensure_ascii=False)
+        return text if text.isprintable() else "".join(map(_legible, text))
     return repr(value)
+
+
+def _legible(letter: str) -> str:
+    """The letter, or its escape in TOML if it cannot be printed."""
+    return letter if letter.isprintable() else f"\\U{ord(letter):08x}"
 
 
 # The problems of a file, with their lines, tables and keys.

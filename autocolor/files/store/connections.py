@@ -17,7 +17,6 @@ from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import Final
-from urllib.request import pathname2url
 
 from autocolor.checks import printable
 from autocolor.errors import InputError, MissingInputError, UnavailableError, WriteError, reason_of
@@ -170,7 +169,7 @@ def refuse_old_sqlite() -> None:
 
 def _opened(path: Path, mode: str, seconds_of_waiting: float) -> sqlite3.Connection:
     """A connection that begins no transaction by itself."""
-    uri = f"file:{pathname2url(os.path.abspath(path))}?mode={mode}"
+    uri = f"{Path(os.path.abspath(path)).as_uri()}?mode={mode}"
     connection = sqlite3.connect(uri, uri=True, isolation_level=None, timeout=seconds_of_waiting)
     try:
         _guarded(connection)

@@ -122,6 +122,40 @@ def test_an_interrupt_ends_with_130(folder: Path, run: Run, monkeypatch: pytest.
 
 # What only a process of its own shows.
 
+AT_AN_IMPORT = """
+import signal, sys
+module = sys.argv.pop(1)
+class Interrupts:
+    def find_spec(self, name, path=None, target=None):
+        if name == module:
+            sys.meta_path.remove(self)
+            signal.raise_signal(signal.SIGINT)
+sys.meta_path.insert(0, Interrupts())
+from {package}.__main__ import main
+main()
+"""
+
+
+@POSIX
+@pytest.mark.parametrize(
+    ("package", "module", "code"),
+    [
+        ("autocolor", "autocolor.commands.autocolor", -2),
+        ("autocolor", "click", -2),
+        ("autocolor", "ramtek_emu.command_line", -2),
+        ("autocolor", "autocolor.commands.render", 130),
+        ("autocolor", "numpy", 130),
+        ("ramtek_emu", "click", -2),
+    ],
+)
+def test_an_interrupt_while_the_command_starts_shows_no_traceback(
+    process: Run, package: str, module: str, code: int
+) -> None:
+    arguments = ["play", "-"] if package == "ramtek_emu" else ["render", "two.obj"]
+    ran = process(command=[sys.executable, "-c", AT_AN_IMPORT.format(package=package), module, *arguments])
+    assert (ran.code, ran.out) == (code, "")
+    assert ran.err == ("autocolor: interrupted\n" if code == 130 else "")
+
 
 @POSIX
 def test_a_real_interrupt_ends_with_130_and_leaves_nothing(process: Run, folder: Path) -> None:

@@ -2,10 +2,12 @@ from __future__ import annotations
 
 import os
 import signal
+import socket
 import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
 from threading import Event, Thread
 from types import SimpleNamespace
@@ -19,7 +21,7 @@ from autocolor.journal.autosave import JOURNAL, left_sessions
 from autocolor.journal.history import History
 from autocolor.journal.places import Source
 from autocolor.screens.viewer import Viewer
-from ramtek_emu import PortError, Ramtek9300
+from ramtek_emu import PortError, Ramtek9300, TcpPort
 from ramtek_emu.host.server import Server, TcpServer, UnixServer
 from tests.autocolor.commands.conftest import Run
 from tests.autocolor.sessions import car
@@ -389,3 +391,73 @@ def test_what_is_no_address_is_refused(address: str) -> None:
 def test_a_port_to_no_display_is_refused() -> None:
     with pytest.raises(PortError, match="start `ramtek serve` there"):
         port_to("tcp://127.0.0.1:1")
+
+
+def banner(host: socket.socket) -> None:
+    host.sendall(b"SSH-2.0-OpenSSH_9.6\r\n")
+    while host.recv(1 << 16):
+        pass
+
+
+def echo(host: socket.socket) -> None:
+    while data := host.recv(1 << 16):
+        host.sendall(data)
+
+
+def garbage(host: socket.socket) -> None:
+    while host.recv(1 << 16):
+        host.sendall(bytes(range(256)) * 256)
+
+
+def zeros(host: socket.socket) -> None:
+    while host.recv(1 << 16):
+        host.sendall(bytes(1 << 16))
+
+
+def silence(host: socket.socket) -> None:
+    while host.recv(1 << 16):
+        pass
+
+
+def deafness(host: socket.socket) -> None:
+    """Send without end, and read nothing."""
+    while True:
+        host.sendall(b"\r\n")
+
+
+@pytest.mark.parametrize("interactive", [False, True])
+@pytest.mark.parametrize(
+    ("serve", "sentence"),
+    [
+        (banner, "must answer within 0.3 seconds, and"),
+        (silence, "must answer within 0.3 seconds, and"),
+        (echo, "and another server does; check the address, or start `ramtek serve` there"),
+        (garbage, "and another server does"),
+        (zeros, "and another server does"),
+        (deafness, ""),
+    ],
+)
+def test_a_server_that_is_no_display_is_refused(
+    serve: Callable[[socket.socket], None],
+    sentence: str,
+    interactive: bool,
+    folder: Path,
+    run: Run,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(TcpPort.__init__, "__defaults__", (0.3,))
+    with socket.create_server(("127.0.0.1", 0)) as listening:
+
+        def accept() -> None:
+            host, _ = listening.accept()
+            with host, suppress(OSError):
+                serve(host)
+
+        thread = Thread(target=accept)
+        thread.start()
+        address = f"tcp://127.0.0.1:{listening.getsockname()[1]}"
+        ran = run("show", "scene", "--to", address, *([] if interactive else ["--once"]))
+        thread.join(60)
+    assert (ran.code, ran.out) == (69, "")
+    assert sentence in ran.err
+    assert "shown" not in ran.err

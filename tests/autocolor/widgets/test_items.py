@@ -86,6 +86,10 @@ def test_text_stays_in_its_cells() -> None:
     assert elements.max() < 38
 
 
+def test_characters_that_cannot_be_printed_are_drawn_as_question_marks() -> None:
+    assert text("a\x00\x1b\u202e\udcffb", 10, 5) == text("a????b", 10, 5)
+
+
 def test_lines_that_leave_an_area_are_drawn_inside_it_and_come_back() -> None:
     area = Area(10, 10, 20, 20)
     display = painted(lines([[(5, 15), (25, 15), (25, 12), (12, 12)]], WHITE, area))

@@ -257,6 +257,34 @@ def test_words_that_do_not_come_are_refused_after_a_while() -> None:
         port.send(words("0700"))
 
 
+def test_a_server_that_sends_without_end_fills_no_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("ramtek_emu.host.port.MOST_UNREAD", 1000)
+    port, display = paired()
+    display.sendall(bytes(1002))
+    with pytest.raises(PortError, match="sent 1,000 bytes more; check the address"):
+        port.receive(502)
+    port.wire.socket.close()
+    display.close()
+
+
+def test_words_that_come_one_by_one_are_refused_after_a_while_too() -> None:
+    port, display = paired(0.2)
+    stop = threading.Event()
+
+    def trickle() -> None:
+        while not stop.wait(0.02):
+            display.send(b"x")
+
+    thread = threading.Thread(target=trickle)
+    thread.start()
+    with pytest.raises(ReplyError, match=r"must come within 0\.2 seconds, not 1000"):
+        port.receive(1000)
+    stop.set()
+    thread.join()
+    port.wire.socket.close()
+    display.close()
+
+
 def test_after_closing_everything_that_was_sent_is_drawn() -> None:
     picture = np.arange(480 * 640).reshape(480, 640) % 1024
     with serving() as server:

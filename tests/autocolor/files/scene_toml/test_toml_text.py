@@ -4,7 +4,7 @@ import tomllib
 from collections.abc import Callable
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from autocolor import InputError
@@ -15,6 +15,7 @@ from autocolor.files.scene_toml.toml_text import (
     SceneProblems,
     key_lines,
     parsed_toml,
+    toml_value,
 )
 from autocolor.scene.columns import Problem
 
@@ -126,6 +127,14 @@ def test_any_bytes_are_parsed_or_refused(data: bytes) -> None:
     except InputError:
         return
     key_lines(data)
+
+
+@given(st.text(st.characters(exclude_categories=["Cs"])))
+@example("\x00\x1b\x7f\x85\u2028\u202e\U000e0001")
+def test_any_text_is_written_so_that_it_can_be_printed_and_reads_back_equal(text: str) -> None:
+    written = toml_value(text)
+    assert written.isprintable()
+    assert tomllib.loads(f"name = {written}") == {"name": text}
 
 
 def test_every_key_has_its_line() -> None:

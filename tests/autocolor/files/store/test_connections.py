@@ -3,6 +3,7 @@ from __future__ import annotations
 import os
 import shutil
 import sqlite3
+import sys
 from collections.abc import Callable
 from contextlib import closing
 from pathlib import Path
@@ -31,6 +32,13 @@ def test_a_connection_to_read_cannot_write(tmp_path: Path) -> None:
     with pytest.raises(sqlite3.OperationalError, match="readonly"):
         connection.execute("DELETE FROM lights")
     connection.close()
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="names of files are text elsewhere")
+def test_a_store_of_any_name_is_opened(tmp_path: Path) -> None:
+    path = small_store(tmp_path).rename(tmp_path / "a?b#c%20\u202e\x1b\n\udcff.sqlite")
+    with closing(connected(path)) as connection:
+        assert connection.execute("SELECT count(*) FROM lights").fetchone()[0] > 0
 
 
 def test_sizes_are_limited_and_the_schema_is_not_trusted() -> None:
