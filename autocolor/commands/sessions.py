@@ -15,8 +15,17 @@ from typing import TYPE_CHECKING, Final, NoReturn
 
 import click
 
+from autocolor.checks import printable
 from autocolor.errors import AutocolorError, InputError, MissingInputError, UsageError
-from autocolor.journal.autosave import OLD_SCRIPT, Autosave, forget, journal_in, left_sessions
+from autocolor.journal.autosave import (
+    OLD_SCRIPT,
+    Autosave,
+    forget,
+    journal_in,
+    left_sessions,
+    refuse_links,
+    written_at,
+)
 from autocolor.journal.journal import read_journal
 from autocolor.screens.viewer import Viewer
 
@@ -103,14 +112,14 @@ def list_sessions() -> None:
         else:
             steps = len(session.history.steps)
             text = f"{session.source.path}, {steps} step{'' if steps == 1 else 's'}"
-        click.echo(f"{folder.name}  {_time_of(folder)}  {text}")
+        click.echo(printable(f"{folder.name}  {_time_of(folder)}  {text}"))
 
 
 def forget_session(name: str) -> None:
     """Remove an abandoned session, by the beginning of its name, and say so on stderr."""
     folder = _folder_named(name)
     forget(folder)
-    click.echo(f"autocolor: {folder.name} is removed", err=True)
+    click.echo(printable(f"autocolor: {folder.name} is removed"), err=True)
 
 
 def chosen_session(name: str) -> tuple[Path, JournalSession]:
@@ -126,7 +135,7 @@ def chosen_session(name: str) -> tuple[Path, JournalSession]:
         try:
             return folder, _session_in(folder)
         except InputError as error:
-            click.echo(f"autocolor: {folder}: {error}", err=True)
+            click.echo(printable(f"autocolor: {folder}: {error}"), err=True)
     raise MissingInputError(
         "--recover: there must be a session that was not closed and can be read, and there is none; name a"
         " scene instead"
@@ -135,6 +144,7 @@ def chosen_session(name: str) -> tuple[Path, JournalSession]:
 
 def _session_in(folder: Path) -> JournalSession:
     """The session in a folder. Raises InputError if it is invalid or from an older version."""
+    refuse_links(folder)
     journal = journal_in(folder)
     if journal.name == OLD_SCRIPT:
         raise InputError(OLD)
@@ -154,4 +164,8 @@ def _folder_named(name: str) -> Path:
 
 def _time_of(folder: Path) -> str:
     """The time of the last write to the journal of a session, in local time."""
-    return time.strftime("%Y-%m-%d %H:%M", time.localtime(journal_in(folder).stat().st_mtime))
+    try:
+        return time.strftime("%Y-%m-%d %H:%M", time.localtime(written_at(folder)))
+    except (OverflowError, ValueError, OSError):
+        # A file may have any time.
+        return "at no valid time"
