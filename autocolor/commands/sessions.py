@@ -14,7 +14,15 @@ from typing import TYPE_CHECKING, Final
 import click
 
 from autocolor.errors import AutocolorError, InputError, MissingInputError, UsageError
-from autocolor.journal.autosave import OLD_SCRIPT, Autosave, forget, journal_in, left_sessions
+from autocolor.journal.autosave import (
+    OLD_SCRIPT,
+    Autosave,
+    forget,
+    journal_in,
+    left_sessions,
+    refuse_links,
+    written_at,
+)
 from autocolor.journal.journal import read_journal
 from autocolor.screens.viewer import Viewer
 from ramtek_emu.command_line import tell
@@ -119,6 +127,7 @@ def chosen_session(name: str) -> tuple[Path, JournalSession]:
 
 def _session_in(folder: Path) -> JournalSession:
     """The session in a folder. Raises InputError if it is invalid or from an older version."""
+    refuse_links(folder)
     journal = journal_in(folder)
     if journal.name == OLD_SCRIPT:
         raise InputError(OLD)
@@ -138,4 +147,8 @@ def _folder_named(name: str) -> Path:
 
 def _time_of(folder: Path) -> str:
     """The time of the last write to the journal of a session, in local time."""
-    return time.strftime("%Y-%m-%d %H:%M", time.localtime(journal_in(folder).stat().st_mtime))
+    try:
+        return time.strftime("%Y-%m-%d %H:%M", time.localtime(written_at(folder)))
+    except (OverflowError, ValueError, OSError):
+        # A file may have any time.
+        return "at no valid time"

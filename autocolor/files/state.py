@@ -64,9 +64,9 @@ def lock_file(path: Path) -> int | None:
     """A descriptor that has the lock on a file; None if another program has the lock.
 
     The file is created if there is none. The lock lasts until `os.close`, or until the program ends, however
-    it ends. Raises OSError if the file cannot be opened.
+    it ends. Raises OSError if the file cannot be opened, or is a link.
     """
-    descriptor = os.open(path, os.O_RDWR | os.O_CREAT, 0o600)
+    descriptor = os.open(path, os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0), 0o600)
     try:
         _lock(descriptor)
     except OSError:

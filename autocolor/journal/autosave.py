@@ -2,7 +2,8 @@
 
 Each session has its own folder there, with the journal, a lock, the meshes that edits changed, and the first
 scene if no file has it. However the program ends, its lock ends with it. A session whose lock is free did not
-end in order: it was left, and can be recovered or forgotten.
+end in order: it was left, and can be recovered or forgotten. Of a folder or file that is a link, nothing is
+locked, written or removed but the link itself.
 
 Versions before the journal left a Python script. It is listed and can be forgotten, but not recovered.
 """
@@ -17,7 +18,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Final
 
-from autocolor.errors import AutocolorError, WriteError, reason_of
+from autocolor.errors import AutocolorError, InputError, WriteError, reason_of
 from autocolor.files.scene_writing import write_scene
 from autocolor.files.state import lock_file, state_folder
 from autocolor.files.writing import write_atomically
@@ -43,7 +44,10 @@ class Autosave:
 
     def __init__(self, folder: Path | None = None) -> None:
         self._folder = folder
-        self._lock = None if folder is None else _lock(folder)
+        self._lock: int | None = None
+        if folder is not None:
+            with _write_errors():
+                self._lock = _lock_of(folder)
         self._meshes = MeshesBeside(folder)
         self._count = 0
         """The number of steps in the journal file; 0 until the whole file was written."""
@@ -84,23 +88,34 @@ class Autosave:
         """Remove the folder of the session, because the session ended in order."""
         folder, self._folder = self._folder, None
         if folder is not None:
-            for name in (JOURNAL, OLD_SCRIPT):
-                with suppress(OSError):
-                    os.unlink(folder / name)
-            if self._lock is not None:
-                os.close(self._lock)
-            shutil.rmtree(folder, ignore_errors=True)
+            _remove(folder, self._lock)
 
     def _own_folder(self) -> Path:
         """The folder of this session; the first call creates it. Raises OSError."""
         if self._folder is None:
             sessions = state_folder() / SESSIONS
             sessions.mkdir(mode=0o700, parents=True, exist_ok=True)
-            folder = sessions / f"{time.strftime('%Y-%m-%d-%H%M%S')}-{os.getpid()}-{time.time_ns():x}"
-            folder.mkdir(mode=0o700)
-            self._folder, self._lock = folder, lock_file(folder / LOCK)
+            for _ in range(3):
+                folder = sessions / f"{time.strftime('%Y-%m-%d-%H%M%S')}-{os.getpid()}-{time.time_ns():x}"
+                folder.mkdir(mode=0o700)
+                with suppress(FileNotFoundError):
+                    self._lock = lock_file(folder / LOCK)
+                if self._lock is not None and folder.exists():
+                    break
+                # Another program removed the empty folder before it was locked.
+            self._folder = folder
             self._meshes = MeshesBeside(folder)
         return self._folder
+
+
+def _remove(folder: Path, lock: int | None) -> None:
+    """Remove the folder of a session, and release its lock; links in it are removed alone."""
+    for name in (JOURNAL, OLD_SCRIPT):
+        with suppress(OSError):
+            os.unlink(folder / name)
+    if lock is not None:
+        os.close(lock)
+    shutil.rmtree(folder, ignore_errors=True)
 
 
 def _append(path: Path, data: bytes) -> None:
@@ -122,41 +137,88 @@ def _source_of(history: History, folder: Path) -> Source:
 
 
 def left_sessions() -> list[Path]:
-    """The folders of sessions that did not end in order, the last session first."""
+    """The folders of sessions that did not end in order, the last session first.
+
+    A session that cannot be read is among them. Folders of sessions that wrote nothing are removed.
+    """
     try:
-        folders = [path for path in (state_folder() / SESSIONS).iterdir() if journal_in(path).is_file()]
-        folders.sort(key=lambda path: journal_in(path).stat().st_mtime, reverse=True)
-        return [folder for folder in folders if _is_left(folder)]
+        paths = list((state_folder() / SESSIONS).iterdir())
     except (OSError, AutocolorError):
         return []
+    left = [path for path in paths if (path.is_symlink() or os.path.isdir(path)) and _is_left(path)]
+    return sorted(left, key=written_at, reverse=True)
 
 
 def journal_in(folder: Path) -> Path:
     """The journal in the folder of a session, or the script that an older version left there."""
     script = folder / OLD_SCRIPT
-    return script if script.is_file() and not (folder / JOURNAL).is_file() else folder / JOURNAL
+    is_old = os.path.isfile(script) and not os.path.isfile(folder / JOURNAL)
+    return script if is_old else folder / JOURNAL
+
+
+def written_at(folder: Path) -> float:
+    """The time of the last write to the journal of a session, or to its folder without a journal."""
+    for path in (journal_in(folder), folder):
+        with suppress(OSError):
+            return os.lstat(path).st_mtime
+    return 0.0
+
+
+def refuse_links(folder: Path) -> None:
+    """Raise InputError if the folder, the journal or the lock of a session is a link."""
+    for path in (folder, journal_in(folder), folder / LOCK):
+        if os.path.islink(path):
+            raise InputError(
+                f"{path.name}: it must not be a link; `autocolor view --forget` removes the session"
+            )
 
 
 def forget(folder: Path) -> None:
-    """Remove a session that was left. Raises WriteError if another program goes on with it."""
-    Autosave(folder).end()
+    """Remove a session that was left. Links are removed, and what they lead to stays.
+
+    Raises WriteError if another program goes on with the session, or if it cannot be removed.
+    """
+    if folder.is_symlink():
+        with suppress(OSError):
+            os.unlink(folder)
+    else:
+        lock = None
+        # A lock that cannot be opened, such as a link, is none of ours.
+        with suppress(OSError):
+            lock = _lock_of(folder)
+        _remove(folder, lock)
+    if os.path.lexists(folder):
+        raise WriteError(f"a session must be removed whole, and {folder} could not be; remove it by hand")
 
 
 def _is_left(folder: Path) -> bool:
-    """Whether no program has the lock on the folder of a session."""
+    """Whether no program has the lock on the folder of a session, and the session wrote anything."""
+    if folder.is_symlink():
+        return True
     try:
         descriptor = lock_file(folder / LOCK)
     except OSError:
+        return os.path.lexists(folder)
+    if descriptor is None:
         return False
-    if descriptor is not None:
+    try:
+        names = os.listdir(folder)
+        if any(name != LOCK and not name.endswith(".part") for name in names):
+            return True
+        with suppress(OSError):
+            for name in names:
+                os.unlink(folder / name)
+            os.rmdir(folder)
+        return False
+    except OSError:
+        return True
+    finally:
         os.close(descriptor)
-    return descriptor is not None
 
 
-def _lock(folder: Path) -> int:
-    """The lock on the folder of a session that was left. Raises WriteError if another program has it."""
-    with _write_errors():
-        descriptor = lock_file(folder / LOCK)
+def _lock_of(folder: Path) -> int:
+    """The lock on the folder of a session that was left. Raises OSError, WriteError if it is in use."""
+    descriptor = lock_file(folder / LOCK)
     if descriptor is None:
         raise WriteError("a session must be recovered by one program, and another one does; try again later")
     return descriptor

@@ -3,24 +3,28 @@
 from __future__ import annotations
 
 import os
+import shutil
 import signal
 import subprocess
 import sys
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from autocolor import MissingInputError, UsageError, read_journal, read_scene
+from autocolor import MissingInputError, UsageError, read_journal, read_scene, write_scene
 from autocolor.commands.sessions import NEWEST, autosaved_session, chosen_session, forget_session
 from autocolor.journal import autosave
 from autocolor.journal.autosave import JOURNAL, OLD_SCRIPT
 from autocolor.journal.history import History
-from autocolor.journal.places import Source, place_of
+from autocolor.journal.places import Source, opened, place_of
 from autocolor.screens.viewer import Viewer
 from ramtek_emu import Ramtek9300
 from tests.autocolor.commands.conftest import Run
 from tests.autocolor.commands.test_view import monitors as monitors
+from tests.autocolor.files.store.stores import run as run_on_store
 from tests.autocolor.journal.random_steps import journal_of
 from tests.autocolor.sessions import SMALL, car
 
@@ -253,6 +257,99 @@ def test_a_session_is_forgotten_and_no_other(sessions: Path, run: Run) -> None:
     assert sorted(path.name for path in sessions.iterdir()) == ["2026-01-01-a", "2026-01-02-b"]
     with pytest.raises(UsageError):
         forget_session("2026-01-02-c")
+
+
+def link_folder(session: Path, precious: Path) -> None:
+    shutil.rmtree(session)
+    session.symlink_to(precious)
+
+
+def link_file(session: Path, precious: Path, name: str = JOURNAL) -> None:
+    (session / name).unlink(missing_ok=True)
+    (session / name).symlink_to(precious / JOURNAL)
+
+
+def lead_nowhere(session: Path, _: Path) -> None:
+    shutil.rmtree(session)
+    session.symlink_to("nowhere")
+
+
+def make_folder(session: Path, _: Path) -> None:
+    (session / JOURNAL).unlink()
+    (session / JOURNAL).mkdir()
+
+
+def make_pipe(session: Path, _: Path) -> None:
+    (session / JOURNAL).unlink()
+    os.mkfifo(session / JOURNAL)
+
+
+HOSTILE: dict[str, tuple[Callable[[Path, Path], object], str]] = {
+    "a link": (link_folder, "hostile: it must not be a link; "),
+    "a link to nothing": (lead_nowhere, "hostile: it must not be a link; "),
+    "a journal that is a link": (link_file, "session.jsonl: it must not be a link; "),
+    "a lock that is a link": (partial(link_file, name="lock"), "lock: it must not be a link; "),
+    "a scene that is a link": (partial(link_file, name="scene-2"), ", 1 step"),
+    "a lock that is a folder": (lambda session, _: (session / "lock").mkdir(), ", 1 step"),
+    "no journal": (lambda session, _: (session / JOURNAL).rename(session / "x"), "there is no such file"),
+    "a journal that is a folder": (make_folder, "must be a regular file"),
+    "a journal that is a pipe": (make_pipe, "must be a regular file"),
+    "an endless time": (lambda session, _: os.utime(session / JOURNAL, (1 << 60, 1 << 60)), ", 1 step"),
+    "NaN": (lambda session, _: (session / JOURNAL).write_text("NaN\n"), "a journal must begin as"),
+}
+
+
+@pytest.mark.skipif(os.name == "nt", reason="links need permissions there")
+@pytest.mark.parametrize("name", HOSTILE)
+def test_a_hostile_session_is_listed_and_forgotten_and_no_link_is_followed(
+    sessions: Path, run: Run, tmp_path: Path, name: str
+) -> None:
+    session, precious = sessions / "hostile", tmp_path / "precious"
+    shutil.copytree(sessions / "2026-01-01-a", session)
+    shutil.copytree(session, precious)
+    hostile, reason = HOSTILE[name]
+    hostile(session, precious)
+    before = {path: path.read_bytes() for path in precious.iterdir()}
+    ran = run("view", "--sessions")
+    assert (ran.code, ran.err, len(ran.out.splitlines())) == (0, "", 4)
+    (line,) = (line for line in ran.out.splitlines() if line.startswith("hostile  "))
+    assert reason in line
+    assert run("view", "--forget", "hostile") == (0, "", "autocolor: hostile is removed\n")
+    assert not os.path.lexists(session)
+    assert {path: path.read_bytes() for path in precious.iterdir()} == before
+    assert len(run("view", "--sessions").out.splitlines()) == 3
+
+
+def test_a_name_of_a_session_is_printed_without_control_characters(sessions: Path, run: Run) -> None:
+    (sessions / "2026-01-01-a").rename(sessions / "red\x1b[31m\u202e")
+    assert "red?[31m?  " in run("view", "--sessions").out
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no pipes with names")
+@pytest.mark.parametrize("how", ["gone", "no store", "other rows", "a pipe"])
+def test_a_session_whose_store_was_broken_is_listed_with_its_reason(
+    folder: Path, state: Path, run: Run, how: str
+) -> None:
+    path = folder / "car.sqlite"
+    write_scene(path, car())
+    history = History(*opened(Source(str(path))))
+    history.take(history.scene.replace(ambient=0.5))
+    (state / "sessions").mkdir(parents=True)
+    journal_of(history, state / "sessions" / "left")
+    if how == "other rows":
+        run_on_store(path, "UPDATE nodes SET x = x + 1", "DROP TABLE polygons")
+    else:
+        path.unlink()
+    if how == "no store":
+        path.write_bytes(b"SQLite format 3\0" + bytes(range(256)) * 40)
+    elif how == "a pipe":
+        os.mkfifo(path)
+    ran = run("view", "--sessions")
+    assert (ran.code, ran.err) == (0, "")
+    assert ran.out.startswith("left  2")
+    assert "  session.jsonl, line 1: " in ran.out
+    assert run("view", "--recover", "left").code in (65, 66)
+    assert run("view", "--forget", "left").code == 0
 
 
 def test_without_any_a_scene_is_asked_for() -> None:

@@ -13,6 +13,7 @@ import pytest
 
 import autocolor
 from autocolor import AutocolorError, read_journal, read_scene
+from autocolor.files.state import lock_file
 from autocolor.journal import autosave as autosave_module
 from autocolor.journal.autosave import (
     JOURNAL,
@@ -134,7 +135,6 @@ def test_a_first_scene_of_no_file_is_saved_beside_the_journal(state: Path) -> No
 def test_a_session_is_left_when_no_program_has_its_lock(history: History, left: Path, state: Path) -> None:
     autosave = Autosave()
     autosave.update(history)
-    (state / "sessions" / "empty").mkdir()
     assert len(journals(state)) == 2
     assert left_sessions() == [left]
     again = Autosave(left)
@@ -206,6 +206,42 @@ def test_a_journal_that_cannot_be_written_is_written_whole_by_the_next_update(
     edit(history, 0.7)
     autosave.update(history, at_once=True)
     assert summary(read_journal(path).history) == summary(history)
+    autosave.end()
+
+
+def test_folders_of_sessions_that_wrote_nothing_are_removed(state: Path) -> None:
+    sessions = state / "sessions"
+    for name in ("empty", "with a lock", "with a part", "in use", "with a scene"):
+        (sessions / name).mkdir(parents=True)
+    (sessions / "with a lock" / "lock").touch()
+    (sessions / "with a part" / f".{JOURNAL}.0a1b.part").touch()
+    (sessions / "with a scene" / "scene").mkdir()
+    (sessions / "notes.txt").touch()
+    lock = lock_file(sessions / "in use" / "lock")
+    assert left_sessions() == [sessions / "with a scene"]
+    assert sorted(os.listdir(sessions)) == ["in use", "notes.txt", "with a scene"]
+    assert lock is not None
+    os.close(lock)
+    assert left_sessions() == [sessions / "with a scene"]
+    assert sorted(os.listdir(sessions)) == ["notes.txt", "with a scene"]
+
+
+def test_a_folder_that_is_removed_before_it_is_locked_is_made_anew(
+    history: History, state: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tries: list[Path] = []
+
+    def swept_once(path: Path) -> int | None:
+        tries.append(path)
+        if len(tries) == 1:
+            path.parent.rmdir()
+        return lock_file(path)
+
+    monkeypatch.setattr(autosave_module, "lock_file", swept_once)
+    autosave = Autosave()
+    edit(history, 0.5)
+    autosave.update(history)
+    assert [path.parent for path in journals(state)] == [tries[1].parent]
     autosave.end()
 
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+import random
+import re
+from collections.abc import Callable, Iterator
 from itertools import pairwise
 from pathlib import Path
 from tempfile import mkdtemp
@@ -440,6 +442,62 @@ def test_values_that_are_nested_deep_are_refused(tmp_path: Path, begin: str) -> 
         line = b'{"step": "edit", "change": "replace", "row": null, "columns": {"exposure": '
         line += b'{"a": ' * depth + b"1" + b"}" * depth + b'}, "mesh": null, "joins": false}'
         assert refusal(tmp_path, begin, line).startswith(f"{JOURNAL}, line 2: ")
+
+
+STRANGE = (
+    *("NaN", "Infinity", "-Infinity", "1e999", "9" * 400, "9" * 5000),
+    *("[" * depth + "]" * depth for depth in (300, 990, 100_000)),
+    *('{"a": ' * depth + "1" + "}" * depth for depth in (300, 990, 100_000)),
+)
+
+
+def places_in(value: object, path: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
+    """The paths of all values in a record."""
+    items = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+    for key, inner in items:
+        yield (*path, key)
+        yield from places_in(inner, (*path, key))
+
+
+def test_a_strange_value_in_any_place_of_any_line_is_refused_and_the_lines_before_are_recovered(
+    tmp_path: Path,
+) -> None:
+    history = session_of(written_scenes(tmp_path))
+    for after in (CAR.with_light("key", on=False).lights, CAR.replace(lights=()).lights):
+        history.take(history.scene.replace(lights=after))
+    history.take(history.scene.replace(exposure={"object": (0.0, 2.0)}))
+    history.keep("A")
+    history.mark_saved({"/car/scene.toml": "9f"})
+    history.open(opened(Source(str(tmp_path / "car"))), Source(str(tmp_path / "car")))
+    history.undo()
+    path = journal_of(history, tmp_path / "session")
+    lines = path.read_text("ascii").splitlines(keepends=True)
+    places = [(number, place) for number, line in enumerate(lines) for place in places_in(json.loads(line))]
+    chance = random.Random(22)
+    for number, place in chance.sample(places, 40):
+        record = json.loads(lines[number])
+        inner = record
+        for key in place[:-1]:
+            inner = inner[key]
+        inner[place[-1]] = "@"
+        value = chance.choice(STRANGE)
+        line = json.dumps(record).replace('"@"', value)
+        path.write_text("".join([*lines[:number], f"{line}\n", *lines[number + 1 :]]), "ascii")
+        message = ""
+        try:
+            read_journal(path)
+        except InputError as error:
+            message = str(error)
+        if message:
+            begins = f"{JOURNAL}(: a journal must begin|, line {number + 1}: )"
+            assert re.fullmatch(f"{begins}.{{9,450}}", message)
+        else:
+            # A flap may have no end.
+            assert value in ("Infinity", "-Infinity", "1e999")
+            assert "flaps" in place
+        if number:
+            path.write_text("".join(lines[:number]), "ascii")
+            assert len(read_journal(path).history.steps) == number - 1
 
 
 @pytest.mark.parametrize(
