@@ -27,7 +27,7 @@ import tempfile
 import time
 import tomllib
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
 from multiprocessing import get_context
@@ -316,20 +316,23 @@ def tests_of(file: str, extent: str) -> tuple[str, ...]:
     return (*(each.relative_to(ROOT).as_posix() for each in files), *others)
 
 
-def passes(copy: Path, tests: tuple[str, ...], most_seconds: float) -> tuple[bool, str]:
-    """Whether the tests pass in a copy of the tree, and which one does not.
+def failed_tests(
+    copy: Path, tests: tuple[str, ...], most_seconds: float, left_out: Sequence[str] | None = None
+) -> list[str]:
+    """The tests that fail in a copy of the tree, or another reason why they do not pass.
 
-    They run in a fork of this process, which has imported what takes long.
+    With `left_out`, they run without these, until one fails. They run in a fork of this process, which has
+    imported what takes long.
     """
     output = copy / "output"
     process = os.fork()
     if not process:
+        status = 3
         try:
             os.setsid()
-            status = _run_tests(copy, tests, output)
+            status = _run_tests(copy, tests, output, left_out)
         except BaseException as problem:
             output.write_text(f"ERROR {problem!r}")
-            status = 3
         os._exit(status)
     deadline = time.monotonic() + most_seconds
     ended = False
@@ -342,16 +345,18 @@ def passes(copy: Path, tests: tuple[str, ...], most_seconds: float) -> tuple[boo
         os.killpg(process, signal.SIGKILL)
     if not ended:
         os.waitpid(process, 0)
-        return False, f"more than {most_seconds:.0f} s"
+        return [f"more than {most_seconds:.0f} s"]
     # 5: no tests were collected.
     if os.waitstatus_to_exitcode(status) in (0, 5):
-        return True, ""
-    text = output.read_text(errors="replace").splitlines()
-    failed = [line.split(" - ")[0] for line in text if line.startswith(("FAILED ", "ERROR "))]
-    return False, failed[0] if failed else f"ended with {os.waitstatus_to_exitcode(status)}"
+        return []
+    lines = output.read_text(errors="replace").splitlines()
+    failed = [
+        line.split(" - ")[0].split(" ", 1)[1] for line in lines if line.startswith(("FAILED ", "ERROR "))
+    ]
+    return failed or [f"ended with {os.waitstatus_to_exitcode(status)}"]
 
 
-def _run_tests(copy: Path, tests: tuple[str, ...], output: Path) -> int:
+def _run_tests(copy: Path, tests: tuple[str, ...], output: Path, left_out: Sequence[str] | None) -> int:
     descriptor = os.open(output, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
     for stream in (1, 2):
         os.dup2(descriptor, stream)
@@ -364,7 +369,9 @@ def _run_tests(copy: Path, tests: tuple[str, ...], output: Path) -> int:
         del sys.modules[name]
     import pytest
 
-    options = ["-x", "-q", "--tb=no", "-p", "no:cacheprovider", f"--basetemp={copy / 'tmp'}"]
+    options = ["-q", "--tb=no", "-p", "no:cacheprovider", f"--basetemp={copy / 'tmp'}"]
+    if left_out is not None:
+        options += ["-x", *(f"--deselect={test}" for test in left_out)]
     # hypothesis is imported already: pytest cannot rewrite its assertions, and has no need to.
     options += ["-W", "ignore::pytest.PytestAssertRewriteWarning"]
     return int(pytest.main([*options, *tests]))
@@ -383,15 +390,15 @@ def _copy_tree(copy: Path) -> None:
 class _Runner:
     """Runs mutants in a copy of the tree of its own."""
 
-    def __init__(self, copy: Path, times: Path) -> None:
+    def __init__(self, copy: Path, log: Path) -> None:
         self.copy = copy
-        self.times = times
+        self.log = log
         _copy_tree(copy)
 
     def run(self, mutant: Mutant, extent: str) -> Result:
         """Run the tests of the subject, of the wing or all, until one fails."""
         tests = tests_of(mutant.file, extent)
-        most_seconds = self._most_seconds(tests)
+        most_seconds, broken = self._without_mutant(tests)
         start = time.monotonic()
         path = self.copy / mutant.file
         original = path.read_bytes()
@@ -401,41 +408,45 @@ class _Runner:
         moment = random.randrange(1 << 30)
         os.utime(path, (moment, moment))
         try:
-            passed, by = passes(self.copy, tests, most_seconds)
+            failed = failed_tests(self.copy, tests, most_seconds, broken)
         finally:
             path.write_bytes(original)
             os.utime(path, ns=(times.st_atime_ns, times.st_mtime_ns))
-        return Result(mutant, extent, not passed, by, time.monotonic() - start)
+        return Result(mutant, extent, bool(failed), " ".join(failed), time.monotonic() - start)
 
-    def _most_seconds(self, tests: tuple[str, ...]) -> float:
-        """How long the tests may take: five times as long as without a mutant, and 10 s."""
+    def _without_mutant(self, tests: tuple[str, ...]) -> tuple[float, list[str]]:
+        """How long the tests may take, and those that fail without a mutant, which are left out.
+
+        The time is five times the time without a mutant, and 10 s.
+        """
         name = " ".join(sorted(tests))
-        seconds = json.loads(self.times.read_text()) if self.times.exists() else {}
-        if name not in seconds:
+        runs = json.loads(self.log.read_text()) if self.log.exists() else {}
+        if name not in runs:
             start = time.monotonic()
-            passed, by = passes(self.copy, tests, 1200)
-            if not passed:
-                raise RuntimeError(f"{name} fail without a mutant: {by}")
-            seconds[name] = time.monotonic() - start
-            self.times.write_text(json.dumps(seconds))
-        return 5 * float(seconds[name]) + 10
+            broken = failed_tests(self.copy, tests, 1800)
+            for test in broken:
+                print(f"left out, since it fails without a mutant: {test}", flush=True)
+            runs[name] = time.monotonic() - start, broken
+            self.log.write_text(json.dumps(runs))
+        seconds, broken = runs[name]
+        return 5 * seconds + 10, broken
 
 
 _runners: list[_Runner] = []
 
 
-def _start(folder: Path, times: Path) -> None:
+def _start(folder: Path, log: Path) -> None:
     # A test that starts processes of its own counts on being interrupted.
     signal.signal(signal.SIGINT, signal.default_int_handler)
-    _runners.append(_Runner(folder / f"copy-{os.getpid()}", times))
+    _runners.append(_Runner(folder / f"copy-{os.getpid()}", log))
 
 
 def _run(extent: str, mutant: Mutant) -> Result:
     return _runners[0].run(mutant, extent)
 
 
-def results(mutants: list[Mutant], jobs: int, extents: tuple[str, ...], times: Path) -> Iterator[Result]:
-    """Run mutants, as many at once as there are jobs. The file `times` keeps how long tests take.
+def results(mutants: list[Mutant], jobs: int, extents: tuple[str, ...], log: Path) -> Iterator[Result]:
+    """Run mutants, as many at once as there are jobs. The file `log` keeps how tests run without one.
 
     The subjects of all mutants come first, then the wings of those that are alive.
     """
@@ -445,7 +456,7 @@ def results(mutants: list[Mutant], jobs: int, extents: tuple[str, ...], times: P
     import pytest  # noqa: F401
 
     with tempfile.TemporaryDirectory(prefix="mutants-") as folder:
-        start = partial(_start, Path(folder), times)
+        start = partial(_start, Path(folder), log)
         with get_context("fork").Pool(jobs, start) as pool:
             for extent in extents:
                 alive = []
@@ -531,7 +542,7 @@ def main() -> None:
             outcomes[mutant] = "alive"
         else:
             waiting.append(mutant)
-    for result in results(waiting, options.jobs, extents, options.log / "seconds.json"):
+    for result in results(waiting, options.jobs, extents, options.log / "without-mutant.json"):
         mutant = result.mutant
         outcomes[mutant] = result.extent if result.killed else "alive"
         end = f"killed by {result.by}" if result.killed else "ALIVE"

@@ -359,10 +359,10 @@ def test_pragmas_are_allowed_that_read_and_functions_that_compute() -> None:
         assert not is_allowed(sqlite3.SQLITE_PRAGMA, pragma, "1")
     for pragma in ("table_info", "INDEX_LIST", "integrity_check"):
         assert is_allowed(sqlite3.SQLITE_PRAGMA, pragma, "lights")
-    for pragma in ("trusted_schema", "journal_mode", "", None):
-        assert not is_allowed(sqlite3.SQLITE_PRAGMA, pragma, None)
-    for function in ("max", "HEX", None):
-        assert is_allowed(sqlite3.SQLITE_FUNCTION, None, function)
+    for unknown in ("trusted_schema", "journal_mode", "", None):
+        assert not is_allowed(sqlite3.SQLITE_PRAGMA, unknown, None)
+    for computing in ("max", "HEX", None):
+        assert is_allowed(sqlite3.SQLITE_FUNCTION, None, computing)
     for function in UNSAFE_FUNCTIONS:
         assert not is_allowed(sqlite3.SQLITE_FUNCTION, None, function.upper())
 
