@@ -149,7 +149,7 @@ def read_by_one_process(read_as: ForeignFormat, paths: list[Path]) -> list[int]:
 
 def report_of(read_as: ForeignFormat, path: Path) -> MeshReport:
     """The mesh of a file that was read by one process. Raises InputError."""
-    found = read_foreign_mesh(result_of(path), largest_result(SIZE), path.name, read_as.library)
+    found = read_foreign_mesh(result_of(path), path.name, read_as.library)
     return repaired(found.polygons, path.name, skipped=found.sentences)
 
 
@@ -570,7 +570,7 @@ ARRAYS: dict[str, Any] = {
 def result(folder: Path, data: bytes) -> ForeignMesh:
     path = folder / "result.npz"
     path.write_bytes(data)
-    return read_foreign_mesh(path, 1 << 20, "a.glb", "trimesh")
+    return read_foreign_mesh(path, "a.glb", "trimesh")
 
 
 def test_a_mesh_comes_back_as_it_was_sent(tmp_path: Path) -> None:
