@@ -104,7 +104,33 @@ def size_of_gltf(path: Path) -> int:
             size += os.stat(named).st_size
     if problems:
         raise InputError(problems)
+    _refuse_deep_nodes(path.name, described.get("nodes"))
     return size
+
+
+MOST_LEVELS: Final = 100
+"""Limit: nodes of a glTF file above a node. The library places each node from the root, which takes time."""
+
+
+def _refuse_deep_nodes(place: str, nodes: object) -> None:
+    """Raise InputError if nodes of a glTF file are nested too deeply; the library finds other faults."""
+    rows = nodes if isinstance(nodes, list) else []
+    children: list[list[int]] = []
+    for row in rows:
+        numbers = row.get("children") if isinstance(row, dict) else None
+        numbers = numbers if isinstance(numbers, list) else []
+        children.append([each for each in numbers if type(each) is int and 0 <= each < len(rows)])
+    # Go down from the roots, level by level, to each node once. Nodes in a circle have no root.
+    level = set(range(len(rows))).difference(*children)
+    reached = set(level)
+    for _ in range(MOST_LEVELS + 1):
+        level = {each for number in level for each in children[number]} - reached
+        reached |= level
+    if level:
+        raise InputError(
+            f"{place}: nodes {min(level)}: a node must have at most {MOST_LEVELS} nodes above it, not more;"
+            " export the scene flat"
+        )
 
 
 def _gltf_json(place: str, data: bytes) -> dict[str, Any]:
