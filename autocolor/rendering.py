@@ -24,6 +24,7 @@ from typing import Final
 
 import numpy as np
 
+from autocolor.budget import allowing, require_memory
 from autocolor.checks import nearest, shown
 from autocolor.errors import UsageError
 from autocolor.lighting.illumination import Previous, illuminate
@@ -40,7 +41,11 @@ from autocolor.visibility.watkins import watkins
 LOG: Final = logger_of(__name__)
 
 LARGEST_RASTER: Final = 16384
-"""Limit: a picture with this many lines and elements takes tens of gigabytes."""
+"""Limit: lines, and elements. The memory budget refuses a picture with this many of both."""
+
+BYTES_OF_PIXEL: Final = 96
+"""Measured where all pixels see polygons: 64 bytes, and 8 for each of four lights. Planes of more lights have
+a budget of their own (see `illumination`)."""
 
 LARGE: Final = 1600 * 1200
 """Pixels of the largest picture whose arrays are not larger than 32 MB."""
@@ -64,12 +69,20 @@ class Rendering:
     picture: Picture
 
 
-def render(scene: Scene, lines: int = 480, elements: int = 640, algorithm: str = "batch") -> Picture:
+def render(
+    scene: Scene,
+    lines: int = 480,
+    elements: int = 640,
+    algorithm: str = "batch",
+    *,
+    limit: float | None = None,
+) -> Picture:
     """The picture of a scene, (lines, elements).
 
     `algorithm` is "batch", which processes all lines at once, or "watkins", the literal scan-line algorithm,
-    which gives the same picture some fifteen times slower. Raises InputError if an intensity exceeds the
-    range of float32, UsageError for an invalid size or algorithm.
+    which gives the same picture some fifteen times slower. `limit` is a factor for the memory budget. Raises
+    InputError if an intensity exceeds the range of float32, or if the picture needs more memory than the
+    budget allows; UsageError for an invalid size, algorithm or limit.
     """
     for what, size in (("lines", lines), ("elements", elements)):
         if isinstance(size, bool) or not isinstance(size, Integral) or not 1 <= size <= LARGEST_RASTER:
@@ -78,7 +91,8 @@ def render(scene: Scene, lines: int = 480, elements: int = 640, algorithm: str =
             )
     if not isinstance(algorithm, str) or algorithm not in ALGORITHMS:
         raise UsageError(f"there is no algorithm {shown(algorithm)}{nearest(algorithm, ALGORITHMS)}")
-    return rendering(scene, lines, elements, algorithm=algorithm).picture
+    with allowing(limit):
+        return rendering(scene, lines, elements, algorithm=algorithm).picture
 
 
 def rendering(
@@ -101,6 +115,11 @@ def rendering(
         points = before.points
     else:
         before = None
+        require_memory(
+            BYTES_OF_PIXEL * lines * elements,
+            f"a picture of {elements} x {lines} pixels",
+            "render fewer lines and elements",
+        )
         _keep_arrays()
         if lines * elements > LARGE:
             _keep_large_arrays()

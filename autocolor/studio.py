@@ -32,6 +32,7 @@ from time import perf_counter
 from typing import TYPE_CHECKING, NoReturn, Unpack
 
 from autocolor.arrays import Bytes, Words
+from autocolor.budget import allowing, validated_limit
 from autocolor.checks import nearest
 from autocolor.errors import UsageError
 from autocolor.files.stamps import stamp_of
@@ -43,7 +44,7 @@ from autocolor.lighting.picture import Picture
 from autocolor.mapping.display_image import DisplayImage, words_by_line
 from autocolor.mapping.intensity import held_exposure
 from autocolor.mapping.ranges import LevelRange
-from autocolor.rendering import block_for, blocks_of, rendering, sees_the_same
+from autocolor.rendering import Rendering, block_for, blocks_of, rendering, sees_the_same
 from autocolor.scene.changes import LightChanges, PaintChanges, ScalarChanges, SurfaceChanges, ViewChanges
 from autocolor.scene.columns import Tier, fields_of
 from autocolor.scene.scene import AUTO, LEVELS, NORMALS, Scene, cost_of_edit
@@ -68,15 +69,19 @@ class Studio:
     whole picture; each edit then sends only what changed. An edit that raises an error changes nothing.
     """
 
-    def __init__(self, scene: Scene | History, display: HostPort) -> None:
-        """Show a scene, or go on with a session, such as the history of a journal."""
+    def __init__(self, scene: Scene | History, display: HostPort, *, limit: float | None = None) -> None:
+        """Show a scene, or go on with a session, such as the history of a journal.
+
+        `limit` is a factor for the memory budget of this studio: of its pictures, and of files that it opens.
+        """
+        self._limit = validated_limit(limit)
         self._history = scene if isinstance(scene, History) else History(scene)
         scene = self._history.scene
         configuration = configuration_of(display)
         self._display = display
         self._size = configuration.shown_lines, configuration.shown_elements
         begun = perf_counter()
-        self._rendering = rendering(scene, *self._size)
+        self._rendering = self._rendered(scene, *self._size)
         self._shown = display_image(scene, self._rendering.picture)
         self._pace = 1, perf_counter() - begun
         """The block of the last picture that was computed whole, and the seconds that took."""
@@ -127,7 +132,7 @@ class Studio:
         Everything that both scenes share is neither computed nor stored again: if they differ in colors only,
         `words` is the same array. Raises InputError if the scene cannot be rendered.
         """
-        picture = rendering(scene, *self._size, self._rendering).picture
+        picture = self._rendered(scene, *self._size, self._rendering).picture
         return display_image(scene, picture, self._shown)
 
     @property
@@ -313,7 +318,8 @@ class Studio:
         the scene. Raises InputError if the scene has another checksum.
         """
         source = Source(fspath(path), up, surfaces, scale)
-        scene = opened(source, tables, checksum, self._known_scenes)
+        with allowing(self._limit):
+            scene = opened(source, tables, checksum, self._known_scenes)
         self._show_scene(scene.scene)
         self._history.open(scene, source)
 
@@ -332,7 +338,8 @@ class Studio:
         if path is None:
             raise UsageError("the scene must be in a file to be read again, and it is in none; save it")
         source = Source(str(path), surfaces="materials" if source is None else source.surfaces)
-        again = opened(source, known=self._known_scenes)
+        with allowing(self._limit):
+            again = opened(source, known=self._known_scenes)
         if again.scene.equals(self.scene):
             if self._history.on_disk.was_changed(str(path)):
                 self._mark_written(path)
@@ -465,7 +472,7 @@ class Studio:
             # Otherwise the visible points stay, and are used again.
             if not (block == before.block and _differs_in_light_alone(before, rendered.scene, scene)):
                 lines, elements = (size // block for size in self._size)
-                rendered = rendering(scene, lines, elements, rendered)
+                rendered = self._rendered(scene, lines, elements, rendered)
         now = display_image(scene, rendered.picture, before, block)
         if self.sends:
             send_image(self._display, now, before)
@@ -473,11 +480,18 @@ class Studio:
         if costs == Tier.FRAME:
             self._pace = block, perf_counter() - begun
 
+    def _rendered(
+        self, scene: Scene, lines: int, elements: int, before: Rendering | None = None
+    ) -> Rendering:
+        """The rendering of a scene within the budget of this studio."""
+        with allowing(self._limit):
+            return rendering(scene, lines, elements, before)
+
     def _render_lights(self) -> None:
         """Render the edits of lights since words stand for normals; nothing is sent."""
         shown = self._shown
         lines, elements = (size // shown.block for size in self._size)
-        rendered = rendering(self.scene, lines, elements, self._rendering)
+        rendered = self._rendered(self.scene, lines, elements, self._rendering)
         if rendered.picture is not shown.picture:
             self._shown = display_image(self.scene, rendered.picture, shown, shown.block)
         self._rendering = rendered

@@ -35,7 +35,7 @@ PUBLIC_NAMES = {
 
 WINGS = {
     "autocolor": (
-        "errors", "logs", "arrays", "immutable", "checks", "scene", "visibility", "scalars",
+        "errors", "logs", "arrays", "immutable", "checks", "budget", "scene", "visibility", "scalars",
         "lighting", "mapping", "files", "rendering", "sending", "images", "journal", "studio",
         "widgets", "screens", "commands", "__main__",
     ),

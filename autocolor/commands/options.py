@@ -1,4 +1,4 @@
-"""Options that several commands share: `--normals`, `--size` and `-v`.
+"""Options that several commands share: `--normals`, `--size`, `--limit` and `-v`.
 
 An invalid value of an option is a UsageError, not an InputError.
 """
@@ -77,23 +77,42 @@ size_option = click.option(
     help="Width and height of the picture, up to 4096x4096.",
 )
 
+
+def _allow(context: click.Context, _: click.Parameter, limit: float | None) -> None:
+    """Allow the command this multiple of the memory budget."""
+    if limit is not None and not context.resilient_parsing:
+        from autocolor.budget import allowing
+
+        context.find_root().with_resource(allowing(limit))
+
+
+limit_option = click.option(
+    "--limit",
+    type=float,
+    metavar="FACTOR",
+    expose_value=False,
+    callback=_allow,
+    help="Factor for the memory that files and pictures may take, such as 2 for twice as much.",
+)
+"""`--limit` of the commands that read files."""
+
 VERBOSITY: Final = "autocolor.verbosity"
 """The key of a click context for the number of `-v`."""
 
+PRINTER: Final = "autocolor.printer"
+"""The key of a click context whose log is printed."""
 
-def _listen(context: click.Context, _: click.Parameter, count: int) -> None:
-    """Print log records until the command ends, if `-v` was given."""
-    if not count or context.resilient_parsing:
-        return
+
+def print_log(context: click.Context) -> None:
+    """Print log records on stderr until the command ends: warnings, and what `-v` asks for."""
     import logging
 
     logger = logging.getLogger("autocolor")
-    # `-v` is allowed before the command and after it.
-    is_first = VERBOSITY not in context.meta
-    context.meta[VERBOSITY] = context.meta.get(VERBOSITY, 0) + count
-    logger.setLevel(logging.INFO if context.meta[VERBOSITY] == 1 else logging.DEBUG)
-    if not is_first:
+    verbosity = context.meta.get(VERBOSITY, 0)
+    logger.setLevel((logging.WARNING, logging.INFO, logging.DEBUG)[min(verbosity, 2)])
+    if PRINTER in context.meta:
         return
+    context.meta[PRINTER] = True
 
     class Printer(logging.Handler):
         """Prints records on stderr, like all messages of a command."""
@@ -109,6 +128,13 @@ def _listen(context: click.Context, _: click.Parameter, count: int) -> None:
         logger.setLevel(logging.NOTSET)
 
     context.find_root().call_on_close(stop)
+
+
+def _listen(context: click.Context, _: click.Parameter, count: int) -> None:
+    """Print log records until the command ends, if `-v` was given before the command or after it."""
+    if count and not context.resilient_parsing:
+        context.meta[VERBOSITY] = context.meta.get(VERBOSITY, 0) + count
+        print_log(context)
 
 
 verbose_option = click.option(

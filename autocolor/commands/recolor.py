@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 from autocolor.commands.completion import complete_colors, complete_pictures, complete_surfaces
-from autocolor.commands.options import as_usage, verbose_option
+from autocolor.commands.options import as_usage, limit_option, verbose_option
 from autocolor.commands.outputs import refuse_outputs, tell_written, write_png
 from autocolor.commands.scenes import set_option
 from autocolor.errors import UsageError
@@ -68,6 +68,7 @@ Examples:
     "--save", type=click.Path(), metavar="PICTURE.npz", help="Save the picture with the new colors."
 )
 @click.option("--force", is_flag=True, help="Overwrite existing files.")
+@limit_option
 @verbose_option
 def recolor(
     picture: str,

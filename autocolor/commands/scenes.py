@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 import click
 
 from autocolor.commands.completion import complete_scenes, complete_settings
-from autocolor.commands.options import verbose_option
+from autocolor.commands.options import limit_option, print_log, verbose_option
 from ramtek_emu.command_line import tell
 
 if TYPE_CHECKING:
@@ -55,6 +55,7 @@ def scene_options(command: Callable[..., Any], required: bool = True) -> Callabl
     decorated: Callable[..., Any] = with_source
     for decorate in (
         verbose_option,
+        limit_option,
         click.option("--strict", is_flag=True, help="Exit with code 1 if input was repaired or skipped."),
         click.option(
             "--up",
@@ -95,9 +96,11 @@ set_option = click.option(
 
 
 def read(source: SceneSource) -> SceneReport:
-    """Read a scene, and print a line on stderr for each repair."""
+    """Read a scene, and print a line on stderr for each repair and each warning."""
     from autocolor.files.scene_sources import read_scene_with_report
 
+    if context := click.get_current_context(silent=True):
+        print_log(context)
     report = read_scene_with_report(source.path, up=source.up, scale=source.scale, surfaces=source.surfaces)
     tell(*(f"autocolor: {repair}" for repair in report.repairs))
     return report

@@ -1,9 +1,9 @@
 """Files of arrays, as .npz archives that numpy can open: picture files and table files.
 
 A file has a member `header`, JSON in UTF-8, and arrays of given types. Some arrays are in series, whose
-lengths the header gives. Members are stored without compression, and the size of an array is compared with
-the size of its member before memory is allocated. So a small file cannot take much memory. Nothing is ever
-unpickled.
+lengths the header gives. Members are stored without compression. The sum of their sizes is compared with
+the memory budget before a member is read, and the size of an array with the size of its member. So a small
+or sparse file cannot take much memory. Nothing is ever unpickled.
 """
 
 from __future__ import annotations
@@ -24,8 +24,11 @@ import numpy as np
 from autocolor.arrays import AnyArray
 from autocolor.checks import printable, shown
 from autocolor.errors import InputError
-from autocolor.files.reading import bounded_json, read_bytes
+from autocolor.files.reading import bounded_json, opened, require_size
 from autocolor.scene.scalar import MOST_SCALARS, MeshScalar
+
+GROWTH: Final = 3
+"""Measured: how many times the size of its arrays a file takes while it is read."""
 
 LARGEST_HEADER: Final = 16 << 20
 MOST_VALUES: Final = 1_000_000
@@ -66,7 +69,6 @@ class ArrayFileKind:
 
     noun: str
     advice: str
-    largest: int
     formats: tuple[str, ...]
     keys: frozenset[str]
     arrays: Mapping[str, ArrayType]
@@ -116,16 +118,20 @@ def read_array_file(kind: ArrayFileKind, source: Path) -> ArrayFile:
 
     Raises InputError if the file is damaged or incomplete.
     """
-    try:
-        with zipfile.ZipFile(io.BytesIO(read_bytes(source, kind.largest))) as archive:
-            return _read(kind, source, archive)
-    except InputError:
-        raise
-    except (zipfile.BadZipFile, EOFError, RuntimeError, ValueError, OSError) as error:
-        raise _damaged(kind, source, f"damaged or of another kind ({error or 'cut short'})") from None
-    except (struct.error, LookupError, ArithmeticError) as error:
-        # zipfile raises these for wrong offsets in its directory.
-        raise _damaged(kind, source, f"damaged ({error})") from None
+    with opened(source) as (file, status):
+        require_size(source.name, status.st_size, GROWTH)
+        try:
+            with zipfile.ZipFile(file) as archive:
+                # Members may overlap, so that their sum is larger than the file.
+                require_size(source.name, sum(each.file_size for each in archive.infolist()), GROWTH)
+                return _read(kind, source, archive)
+        except InputError:
+            raise
+        except (zipfile.BadZipFile, EOFError, RuntimeError, ValueError, OSError) as error:
+            raise _damaged(kind, source, f"damaged or of another kind ({error or 'cut short'})") from None
+        except (struct.error, LookupError, ArithmeticError) as error:
+            # zipfile raises these for wrong offsets in its directory.
+            raise _damaged(kind, source, f"damaged ({error})") from None
 
 
 def _damaged(kind: ArrayFileKind, source: Path, reason: str) -> InputError:

@@ -22,6 +22,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from autocolor.arrays import LARGEST_SINGLE, AnyArray
+from autocolor.budget import allowing
 from autocolor.checks import shown
 from autocolor.errors import InputError, UsageError
 from autocolor.files.array_file import (
@@ -55,7 +56,6 @@ LONGEST_PROBLEM: Final = 400
 PICTURE_FILE: Final = ArrayFileKind(
     noun="picture file",
     advice="save the picture again",
-    largest=4 << 30,
     formats=("autocolor picture 4", "autocolor picture 3"),
     plain=PLAIN_FORMATS,
     keys=frozenset(("scale", "surfaces", "scene")),
@@ -114,10 +114,14 @@ def write_picture(
     write_atomically(path, array_file_bytes(PICTURE_FILE, header, arrays), overwrite=overwrite)
 
 
-def read_picture(path: str | PathLike[str]) -> SavedPicture:
-    """The picture and the scene of a picture file. Raises InputError if the file is damaged or incomplete."""
+def read_picture(path: str | PathLike[str], *, limit: float | None = None) -> SavedPicture:
+    """The picture and the scene of a picture file; `limit` is a factor for the memory budget.
+
+    Raises InputError if the file is damaged or incomplete, or if it needs more memory than the budget allows.
+    """
     source = Path(path)
-    header, arrays = read_array_file(PICTURE_FILE, source)
+    with allowing(limit):
+        header, arrays = read_array_file(PICTURE_FILE, source)
     try:
         mesh = (arrays["coordinates"], arrays["node_numbers"], arrays["part_numbers"])
         scene = scene_of_plain(header["scene"], *mesh, scalars_of(header, arrays))

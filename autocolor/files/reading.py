@@ -18,14 +18,8 @@ from pathlib import Path
 from typing import Any, BinaryIO, Final, NamedTuple, NoReturn, TypeVar
 
 from autocolor import checks
+from autocolor.budget import allowed_memory, require_memory
 from autocolor.errors import InputError, MissingInputError, reason_of
-
-LARGEST_MESH_FILE: Final = 256 * 1024 * 1024
-"""Limit: in bytes, about three million polygons as OBJ; it bounds the memory that a reader needs."""
-
-LARGEST_BINARY_MESH_FILE: Final = 1024 * 1024 * 1024
-"""Limit: in bytes, twenty million triangles as STL or fifty million polygons as PLY. A binary file is read
-at a hundred megabytes a second and more, and in about six times its size of memory."""
 
 LEAST_READ: Final = 1 << 20
 """Bytes to request even if the file system reports a smaller file."""
@@ -52,6 +46,22 @@ def read_bytes(path: Path, largest: int) -> bytes:
             f"{path.name}: a file must have at most {largest:,} bytes, not more; split or simplify it"
         )
     return data.removeprefix(UTF_8_MARK)
+
+
+def read_whole(path: Path, growth: float) -> bytes:
+    """The content of a regular file like `read_bytes`, as large as the memory budget allows.
+
+    To read the file takes `growth` times its size in memory, as measured. Raises InputError if this is more
+    than the budget allows, before anything is read.
+    """
+    with opened(path) as (_, status):
+        require_size(path.name, status.st_size, growth)
+    return read_bytes(path, int(allowed_memory() / growth))
+
+
+def require_size(name: str, size: int, growth: float) -> None:
+    """Raise InputError if the memory to read `size` bytes, `growth` times as much, is more than allowed."""
+    require_memory(growth * size, f"{name}: to read {size:,} bytes", "split or simplify it")
 
 
 @contextmanager
@@ -265,6 +275,13 @@ def unreadable(path: Path, error: OSError) -> InputError:
     return InputError(f"{path}: it cannot be read ({reason_of(error)}); check the name and its permissions")
 
 
+MOST_NESTED: Final = 100
+"""Limit: lists and tables around a value in JSON; files of ours need eight."""
+
+NESTING: Final = re.compile(rb'"[^"\\]*+(?:\\.[^"\\]*+)*+"?|[\[\]{}]', re.DOTALL)
+"""A text, which may lack its end, or a bracket."""
+
+
 def bounded_json(data: bytes, most_values: int) -> Any:
     """The value that JSON text describes. Raises ValueError if it is wrong or has too many values."""
 
@@ -273,13 +290,30 @@ def bounded_json(data: bytes, most_values: int) -> Any:
 
     if sum(map(data.count, (b",", b"[", b"{"))) > most_values:
         raise ValueError(f"more than {most_values:,} values")
+    if nesting(data) > MOST_NESTED:
+        raise ValueError(f"values in more than {MOST_NESTED} lists and tables")
     try:
         return json.loads(data.decode("utf-8"), parse_constant=refuse)
     except json.JSONDecodeError as error:
         reason = error.msg.removesuffix(" at")
         raise ValueError(f"{reason} at line {error.lineno}, column {error.colno}") from None
-    except RecursionError:
-        raise ValueError("lists in lists without end") from None
+
+
+def nesting(data: bytes) -> int:
+    """The most lists and tables around a value of JSON text, counted before it is parsed.
+
+    >>> nesting(b'{"a": [1, [2]], "b": "[[[[["}')
+    3
+    """
+    depth = most = 0
+    # A text is skipped whole: what is in it opens nothing.
+    for mark in NESTING.finditer(data):
+        if mark[0] in b"[{":
+            depth += 1
+            most = max(most, depth)
+        elif mark[0] in b"]}":
+            depth -= 1
+    return most
 
 
 def text_problem(data: bytes) -> str | None:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
+from autocolor.budget import allowing
 from autocolor.checks import shown
 from autocolor.errors import InputError, UsageError
 from autocolor.files.formats import (
@@ -92,6 +93,7 @@ def read_scene(
     scale: float = 1.0,
     outside: bool = False,
     surfaces: SurfaceSource = MATERIALS,
+    limit: float | None = None,
 ) -> Scene:
     """The scene of a folder, a scene file (.toml), a store (.sqlite), a mesh file or a picture file (.npz).
 
@@ -100,10 +102,12 @@ def read_scene(
     with defaults. `up` and `scale` are the up axis of a mesh that is read without a scene file, and a factor
     for its coordinates. With `outside`, a scene file may name files outside its folder. With `strict`, a mesh
     that needs repair is refused. A part without a surface has the surface of its material; with
-    `surfaces="parts"`, each such part has its own surface. Raises InputError with every problem,
-    MissingInputError if a file does not exist.
+    `surfaces="parts"`, each such part has its own surface. `limit` is a factor for the memory budget: a file
+    that needs more is refused before it is read. Raises InputError with every problem, MissingInputError if a
+    file does not exist.
     """
-    report = read_scene_with_report(path, up=up, scale=scale, outside=outside, surfaces=surfaces)
+    with allowing(limit):
+        report = read_scene_with_report(path, up=up, scale=scale, outside=outside, surfaces=surfaces)
     if strict and report.repairs:
         raise InputError(
             [f"{repair}; correct the file, or read it without strict" for repair in report.repairs]

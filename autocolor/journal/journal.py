@@ -28,6 +28,7 @@ from itertools import count
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
+from autocolor.budget import allowing
 from autocolor.checks import shown
 from autocolor.errors import AutocolorError, InputError, MissingInputError
 from autocolor.files.paths import SCENE_FILE
@@ -61,13 +62,18 @@ class JournalSession(NamedTuple):
     source: Source
 
 
-def read_journal(path: str | os.PathLike[str]) -> JournalSession:
+def read_journal(path: str | os.PathLike[str], *, limit: float | None = None) -> JournalSession:
     """The session of a journal: `Studio(read_journal(path).history, display)` goes on with it.
 
     Meshes are read from their files. Raises InputError if a line is no step of this version, if a step is
-    refused, or if a mesh was changed since; MissingInputError if a file is missing.
+    refused, or if a mesh was changed since; MissingInputError if a file is missing. `limit` is a factor for
+    the memory budget.
     """
-    path = Path(path)
+    with allowing(limit):
+        return _session_of(Path(path))
+
+
+def _session_of(path: Path) -> JournalSession:
     data = read_bytes(path, LARGEST_JOURNAL)
     if data.startswith(b'"""'):
         raise InputError(f"{path.name}: it is the script of a session, not a journal; run it with Python")

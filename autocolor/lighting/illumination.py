@@ -1,17 +1,20 @@
 """The visible points under all lights: the planes of each light are computed or reused, mixed and added up.
 
-Paper: "The Lighting Model": light(j) of all lights and the ambient term are summed at each point.
+Paper: "The Lighting Model": light(j) of all lights and the ambient term are summed at each point. The paper
+sets no limit to the lights. A picture keeps the planes of the lights as far as they fit in a share of the
+budget. The planes of further lights are computed in turns, in the same array, and again for each edit.
 """
 
 from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping, Set
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import underflowing
+from autocolor.arrays import Singles, underflowing
+from autocolor.budget import allowed_memory
 from autocolor.immutable import read_only
 from autocolor.lighting.picture import Picture
 from autocolor.lighting.shading import (
@@ -28,6 +31,12 @@ from autocolor.scene.lights import Light
 from autocolor.scene.reflection_models import ReflectionModel
 from autocolor.scene.scene import Scene
 from autocolor.visibility.visible_points import VisiblePoints
+
+SHARE: Final = 0.25
+"""Limit: the share of the memory budget for light planes: on a whole picture of 640 x 480, of 271 lights."""
+
+BYTES_OF_LIGHT: Final = 12
+"""Bytes at each visible point: both planes of a light and, while other lights are edited, their mix."""
 
 
 class Previous(NamedTuple):
@@ -54,8 +63,20 @@ def illuminate(
     weights = light_mix(models, scene.surfaces, scene.lights, scene.ambient, scene.parts)
     changed = _changed_surfaces(models, previous)
     reusable = _reusable_planes(lights, previous)
+    most = int(SHARE * allowed_memory()) // (BYTES_OF_LIGHT * max(1, len(points.pixels)))
+    new = [name for name in weights.lights if name not in reusable]
+    in_turns = set(new[max(0, most - len(reusable)) :])
+    shared = np.empty((2, len(points.pixels)), np.float32) if in_turns else None
     updates = {
-        name: _plane_update(lights[name], reusable.get(name), changed, surface_weights, points, with_controls)
+        name: _plane_update(
+            lights[name],
+            reusable.get(name),
+            changed,
+            surface_weights,
+            points,
+            with_controls,
+            shared if name in in_turns else None,
+        )
         for name, surface_weights in weights.lights.items()
     }
 
@@ -76,7 +97,7 @@ def illuminate(
 
     # A light that does not shine keeps its planes as long as no model changes.
     valid = {} if changed else reusable
-    valid |= {name: update.planes for name, update in updates.items()}
+    valid |= {name: update.planes for name, update in updates.items() if name not in in_turns}
     planes = {light.name: valid[light.name] for light in scene.lights if light.name in valid}
     for each in planes.values():
         read_only(each.values)
@@ -137,10 +158,14 @@ def _plane_update(
     weights: SurfaceWeights,
     points: VisiblePoints,
     with_controls: bool,
+    shared: Singles | None,
 ) -> _PlaneUpdate:
-    """The update of a light that shines, given its reusable planes and the changed surfaces."""
+    """The update of a light that shines, given its reusable planes and the changed surfaces.
+
+    New planes are computed in the array `shared`, (2, n), if it is given, else in an array of their own.
+    """
     if old is None:
-        values = np.empty((2, len(points.pixels)), np.float32)
+        values = np.empty((2, len(points.pixels)), np.float32) if shared is None else shared
         ready = controlled_light(light, points, with_controls)
         return _PlaneUpdate(LightPlanes(values, weights), ready, weights.keys(), to_mix=True)
     if not changed:

@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from autocolor.arrays import AnyArray, Bytes, Indices, PartNumbers, Singles
+from autocolor.budget import require_memory
 from autocolor.immutable import Immutable, read_only
 from autocolor.lighting.shading import DIFFUSE, SPECULAR, LightPlanes
 from autocolor.visibility.visible_points import SurfaceSlice, VisibleParts, surface_slices
@@ -52,7 +53,7 @@ class Picture(Immutable):
 
     The visible pixels are sorted by surface; `slices` has the slice of each surface. `pixels` are their flat
     places in the raster, `relative` the intensities in proportion to `scale`, both (n,). `light_planes` has
-    the computed planes by light.
+    the computed planes by light; of many lights, only the planes that fit in memory (see `illumination`).
 
     `scalar_values`, (n,) float32 in the order of `pixels`, are the values of the scalar that colors the
     scene, NaN where missing. `scalar_limits` are its own range. Both are None without a scalar.
@@ -175,7 +176,15 @@ class Picture(Immutable):
 
     @property
     def planes(self) -> Mapping[str, LightPlane]:
-        """The two planes of the lights as rasters, by the name of the light."""
+        """The two planes of the lights as rasters, by the name of the light.
+
+        Raises InputError if the rasters take more memory than the budget allows.
+        """
+        require_memory(
+            8 * self.lines * self.elements * len(self.light_planes),
+            f"the planes of {len(self.light_planes):,} lights",
+            "render fewer lights or pixels",
+        )
         return {
             name: LightPlane(self._raster(planes.values[DIFFUSE]), self._raster(planes.values[SPECULAR]))
             for name, planes in self.light_planes.items()

@@ -16,6 +16,7 @@ from typing import Final
 import numpy as np
 
 from autocolor.arrays import AnyArray, Floats, Indices, chunks, used_bounds, used_rows
+from autocolor.budget import require_memory
 from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError
 from autocolor.immutable import Immutable, read_only
@@ -37,6 +38,9 @@ PART: Final = "mesh"
 """The name of the part of a mesh without parts."""
 
 POLYGONS_AT_ONCE: Final = 1 << 16
+
+BYTES_OF_NORMALS: Final = 160
+"""Measured: bytes a polygon while its normals are computed."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -115,7 +119,15 @@ class Mesh(Immutable):
 
     @cached_property
     def normals(self) -> NodeNormals:
-        """Unit normals at the corners of the polygons, computed from the adjoining polygons."""
+        """Unit normals at the corners of the polygons, computed from the adjoining polygons.
+
+        Raises InputError if that takes more memory than the budget allows, such as for a sparse mapped file.
+        """
+        require_memory(
+            BYTES_OF_NORMALS * len(self.node_numbers),
+            f"the normals of {len(self.node_numbers):,} polygons",
+            "write the mesh with its normals by `autocolor convert MESH OUT --to npy`",
+        )
         with timed(LOG, "node normals"):
             return node_normals(self.coordinates, self.node_numbers, self.part_numbers, self.crease_angle)
 

@@ -21,9 +21,9 @@ import numpy as np
 
 from autocolor.arrays import Indices, Numbers
 from autocolor.errors import InputError
-from autocolor.files.meshes.number_text import NumberText
+from autocolor.files.meshes.number_text import GROWTH, NumberText
 from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, RawPolygons, repaired
-from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, text_lines
+from autocolor.files.reading import read_whole, text_lines
 
 TOUCHING: Final = re.compile(rb"(?<=[0-9.])(?=[+-])")
 """Where a number with a sign begins right after another; the sign of an exponent follows a letter."""
@@ -41,7 +41,7 @@ MOST_OVERLAP: Final = 100
 
 def read_byu(path: Path, placement: Placement = PLAIN) -> MeshReport:
     """The mesh of a Movie.BYU file, and what was repaired. Raises InputError."""
-    data = text_lines(read_bytes(path, LARGEST_MESH_FILE), path.name, "a Movie.BYU file")
+    data = text_lines(read_whole(path, GROWTH), path.name, "a Movie.BYU file")
     text = _text_with_spaces(data, path.name)
     text.require(4, "header")
     parts, nodes, polygons, connectivity = _counts(text)

@@ -31,6 +31,7 @@ import numpy as np
 
 import autocolor.files
 from autocolor.arrays import AnyArray
+from autocolor.budget import allowed_memory, validated_limit
 from autocolor.checks import LARGEST_COORDINATE, Color, listed, printable, shown
 from autocolor.errors import InputError, UnavailableError
 from autocolor.files.array_file import (
@@ -46,7 +47,7 @@ from autocolor.files.array_file import (
 from autocolor.files.meshes.number_text import MOST_PROBLEMS
 from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, RawPolygons, repaired
 from autocolor.files.paths import path_within
-from autocolor.files.reading import LARGEST_MESH_FILE, bounded_json, read_bytes
+from autocolor.files.reading import bounded_json, opened, read_bytes, read_whole, require_size
 from autocolor.scene.columns import replaced
 from autocolor.scene.defaults import COLORED_PAINT, created_surface
 from autocolor.scene.scalar import NODE
@@ -66,8 +67,9 @@ LARGEST_GROWTH: Final = 200
 
 
 def size_of_file(path: Path) -> int:
-    """The bytes of a file that names no others. Raises InputError if it is too large or not regular."""
-    return len(read_bytes(path, LARGEST_MESH_FILE))
+    """The bytes of a file that names no others. Raises InputError if it is not regular."""
+    with opened(path) as (_, status):
+        return status.st_size
 
 
 def size_of_gltf(path: Path) -> int:
@@ -75,7 +77,7 @@ def size_of_gltf(path: Path) -> int:
 
     A file that is named by an address or out of the folder is refused: no address is ever fetched.
     """
-    data = read_bytes(path, LARGEST_MESH_FILE)
+    data = read_whole(path, 1)
     described = _gltf_json(path.name, data)
     problems: list[str] = []
     size = len(data)
@@ -102,12 +104,33 @@ def size_of_gltf(path: Path) -> int:
             size += os.stat(named).st_size
     if problems:
         raise InputError(problems)
-    if size > LARGEST_MESH_FILE:
-        raise InputError(
-            f"{path.name}: it and its buffers must have at most {LARGEST_MESH_FILE:,} bytes, not {size:,};"
-            " split or simplify it"
-        )
+    _refuse_deep_nodes(path.name, described.get("nodes"))
     return size
+
+
+MOST_LEVELS: Final = 100
+"""Limit: nodes of a glTF file above a node. The library places each node from the root, which takes time."""
+
+
+def _refuse_deep_nodes(place: str, nodes: object) -> None:
+    """Raise InputError if nodes of a glTF file are nested too deeply; the library finds other faults."""
+    rows = nodes if isinstance(nodes, list) else []
+    children: list[list[int]] = []
+    for row in rows:
+        numbers = row.get("children") if isinstance(row, dict) else None
+        numbers = numbers if isinstance(numbers, list) else []
+        children.append([each for each in numbers if type(each) is int and 0 <= each < len(rows)])
+    # Go down from the roots, level by level, to each node once. Nodes in a circle have no root.
+    level = set(range(len(rows))).difference(*children)
+    reached = set(level)
+    for _ in range(MOST_LEVELS + 1):
+        level = {each for number in level for each in children[number]} - reached
+        reached |= level
+    if level:
+        raise InputError(
+            f"{place}: nodes {min(level)}: a node must have at most {MOST_LEVELS} nodes above it, not more;"
+            " export the scene flat"
+        )
 
 
 def _gltf_json(place: str, data: bytes) -> dict[str, Any]:
@@ -136,7 +159,7 @@ def _gltf_json(place: str, data: bytes) -> dict[str, Any]:
 
 def size_of_3mf(path: Path) -> int:
     """The bytes of the unpacked files of a 3MF file, by the directory of the archive. Raises InputError."""
-    data = read_bytes(path, LARGEST_MESH_FILE)
+    data = read_whole(path, 1)
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             members = archive.infolist()
@@ -153,7 +176,7 @@ def size_of_3mf(path: Path) -> int:
             f"{path.name}: a 3MF file must be a whole ZIP archive, not damaged ({error}); write it again"
         ) from None
     size = sum(member.file_size for member in members)
-    most = min(LARGEST_MESH_FILE, LARGEST_GROWTH * len(data))
+    most = LARGEST_GROWTH * len(data)
     if len(members) > MOST_MEMBERS or size > most:
         raise InputError(
             f"{path.name}: a 3MF file of its size must hold at most {MOST_MEMBERS:,} files and {most:,}"
@@ -182,7 +205,6 @@ class ForeignMesh:
 RESULT: Final = ArrayFileKind(
     noun="result of a reader",
     advice="write the mesh as OBJ or PLY",
-    largest=0,
     formats=("autocolor foreign mesh 2",),
     keys=frozenset(("part_names", "sentences", "material_of_part", "colors")),
     arrays={
@@ -193,7 +215,7 @@ RESULT: Final = ArrayFileKind(
     },
     series={KEY: MESH_SCALARS},
 )
-"""The array file that a mesh comes back in; `largest` depends on the size of the file that is read."""
+"""The array file that a mesh comes back in."""
 
 LONGEST_SENTENCE: Final = 300
 MOST_SENTENCES: Final = 100
@@ -213,13 +235,13 @@ def foreign_mesh_bytes(mesh: ForeignMesh) -> bytes:
     return array_file_bytes(RESULT, header, {**arrays, **scalar_members(polygons.scalars)})
 
 
-def read_foreign_mesh(path: Path, largest: int, place: str, library: str) -> ForeignMesh:
-    """The mesh that a library gave for the file `place`, in an array file of at most `largest` bytes.
+def read_foreign_mesh(path: Path, place: str, library: str) -> ForeignMesh:
+    """The mesh that a library gave for the file `place`, in an array file.
 
     Raises InputError unless all numbers of nodes, corners and parts are right.
     """
     try:
-        header, arrays = read_array_file(dataclasses.replace(RESULT, largest=largest), path)
+        header, arrays = read_array_file(RESULT, path)
         scalars = scalars_of(header, arrays)
     except InputError as error:
         raise InputError(
@@ -282,12 +304,12 @@ OUT_OF_TIME: Final = -int(getattr(signal, "SIGXCPU", 24))
 
 def most_seconds(size: int) -> float:
     """Limit: seconds of computing for a file of `size` bytes. Measured: text takes 0.1 to 0.5 a megabyte."""
-    return 2 + size / MEGABYTE
+    return (2 + size / MEGABYTE) * max(1, validated_limit(None))
 
 
 def most_memory(size: int) -> int:
     """Limit: bytes of address space. The libraries take half a gigabyte; text takes 40 times its size."""
-    return (1 << 30) + 60 * size
+    return (1 << 30) + min(60 * size, allowed_memory())
 
 
 def largest_result(size: int) -> int:
@@ -306,13 +328,14 @@ def read_in_own_process(
     """The mesh of a file of `size` bytes that a library reads as a format, `kind`. Raises InputError."""
     with tempfile.TemporaryDirectory(prefix="autocolor-") as folder:
         result = Path(folder) / "mesh.npz"
-        arguments = [library, kind, os.fspath(path.absolute()), os.fspath(result), str(size)]
+        limit = str(validated_limit(None))
+        arguments = [library, kind, os.fspath(path.absolute()), os.fspath(result), str(size), limit]
         seconds = most_seconds(size)
         code = _exit_code([*command, *arguments], starting + 2 * seconds)
         if code in (None, OUT_OF_TIME):
             raise InputError(
                 f"{path.name}: {library} must read it within {seconds:.0f} seconds, for its size, and did"
-                " not; write it as OBJ or PLY"
+                " not; write it as OBJ or PLY, or allow more with --limit (limit= in Python)"
             )
         if code == FAILED and result.is_file():
             sentence = read_bytes(result, 4 * LONGEST_SENTENCE).decode("utf-8", "replace")
@@ -322,7 +345,7 @@ def read_in_own_process(
             )
         if code != 0 or not result.is_file():
             raise InputError(f"{path.name}: {library} must read it, and {_end_of(code)}; {REMEDY}")
-        return read_foreign_mesh(result, largest_result(size), path.name, library)
+        return read_foreign_mesh(result, path.name, library)
 
 
 def _exit_code(command: Sequence[str], seconds: float) -> int | None:
@@ -370,7 +393,7 @@ class ForeignFormat:
     """A format that a library reads: its name, its suffixes, the library and its word for the format.
 
     `packages` must be installed. `size_of` gives the number of bytes to read, and checks which files the file
-    names; `up` is the file's up axis.
+    names; `up` is the file's up axis. `growth` is how many times its size a file takes, as measured.
     """
 
     name: str
@@ -378,21 +401,22 @@ class ForeignFormat:
     library: str
     kind: str
     packages: tuple[str, ...]
+    growth: float
     size_of: Callable[[Path], int] = size_of_file
     up: str = "z"
 
 
 FOREIGN: Final = (
-    ForeignFormat("glTF", (".glb",), "trimesh", "glb", ("trimesh", "networkx"), size_of_gltf, "y"),
-    ForeignFormat("glTF text", (".gltf",), "trimesh", "gltf", ("trimesh", "networkx"), size_of_gltf, "y"),
-    ForeignFormat("3MF", (".3mf",), "trimesh", "3mf", ("trimesh", "networkx", "lxml"), size_of_3mf),
-    ForeignFormat("VTU", (".vtu",), "meshio", "vtu", ("meshio",)),
-    ForeignFormat("Abaqus", (".inp",), "meshio", "abaqus", ("meshio",)),
-    ForeignFormat("Gmsh", (".msh",), "meshio", "gmsh", ("meshio",)),
-    ForeignFormat("Nastran", (".bdf", ".nas", ".fem"), "meshio", "nastran", ("meshio",)),
-    ForeignFormat("Medit", (".mesh",), "meshio", "medit", ("meshio",)),
-    ForeignFormat("SU2", (".su2",), "meshio", "su2", ("meshio",)),
-    ForeignFormat("UGRID", (".ugrid",), "meshio", "ugrid", ("meshio",)),
+    ForeignFormat("glTF", (".glb",), "trimesh", "glb", ("trimesh", "networkx"), 12, size_of_gltf, "y"),
+    ForeignFormat("glTF text", (".gltf",), "trimesh", "gltf", ("trimesh", "networkx"), 12, size_of_gltf, "y"),
+    ForeignFormat("3MF", (".3mf",), "trimesh", "3mf", ("trimesh", "networkx", "lxml"), 20, size_of_3mf),
+    ForeignFormat("VTU", (".vtu",), "meshio", "vtu", ("meshio",), 15),
+    ForeignFormat("Abaqus", (".inp",), "meshio", "abaqus", ("meshio",), 4),
+    ForeignFormat("Gmsh", (".msh",), "meshio", "gmsh", ("meshio",), 8),
+    ForeignFormat("Nastran", (".bdf", ".nas", ".fem"), "meshio", "nastran", ("meshio",), 4),
+    ForeignFormat("Medit", (".mesh",), "meshio", "medit", ("meshio",), 4),
+    ForeignFormat("SU2", (".su2",), "meshio", "su2", ("meshio",), 4),
+    ForeignFormat("UGRID", (".ugrid",), "meshio", "ugrid", ("meshio",), 8),
 )
 
 
@@ -408,6 +432,7 @@ def read_foreign(read_as: ForeignFormat, path: Path, placement: Placement = PLAI
             f"{path.name}: to read {read_as.suffixes[0]} files, the package {listed(missing)} must be"
             ' installed; run: pip install "autocolor[meshes]"'
         )
+    require_size(path.name, size, read_as.growth)
     mesh = read_in_own_process(read_as.library, read_as.kind, path, size)
     if placement.up == "z":
         placement = dataclasses.replace(placement, up=read_as.up)

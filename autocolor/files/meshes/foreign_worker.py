@@ -1,9 +1,10 @@
 """The process in which a library reads a file: the only module that imports trimesh and meshio.
 
-It is started as `python -m autocolor.files.meshes.foreign_worker LIBRARY FORMAT MESH RESULT SIZE`, where SIZE
-is the number of bytes to read. Once the library is loaded, the system limits time, memory and the size of the
-result. From then on this process opens no file but in the folder of the mesh and of Python, writes none but
-the result, and has no network. If the file cannot be read, the exit code is FAILED and the result a sentence.
+It is started as `python -m autocolor.files.meshes.foreign_worker LIBRARY FORMAT MESH RESULT SIZE LIMIT`. SIZE
+is the number of bytes to read, and LIMIT a factor for the budget. Once the library is loaded, the system
+limits time, memory and the size of the result. From then on this process opens no file but in the folder of
+the mesh and of Python, writes none but the result, and has no network. If the file cannot be read, the exit
+code is FAILED and the result a sentence.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from typing import Any, Final
 import numpy as np
 
 from autocolor.arrays import AnyArray, Floats, Indices
+from autocolor.budget import allowing
 from autocolor.checks import Color
 from autocolor.files.meshes.cells import CORNERS, Flats, Volumes, cell_surface
 from autocolor.files.meshes.file_scalars import FileScalars
@@ -49,12 +51,13 @@ WRITING: Final = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND
 
 def main(arguments: list[str]) -> int:
     """Read a file and write its mesh, or the reason of a failure. Returns the exit code."""
-    library, kind, mesh, result, size = arguments
+    library, kind, mesh, result, size, factor = arguments
     warnings.simplefilter("ignore")
     code = 0
     try:
         read = LIBRARIES[library](kind)
-        limit(int(size))
+        with allowing(float(factor)):
+            limit(int(size))
         sys.addaudithook(guard(Path(mesh).parent, Path(result)))
         data = foreign_mesh_bytes(read(mesh))
     except (Exception, SystemExit) as error:
@@ -67,7 +70,7 @@ def main(arguments: list[str]) -> int:
 def sentence_of(error: BaseException) -> str:
     """The message of an exception, in one line of at most LONGEST_SENTENCE letters."""
     if isinstance(error, MemoryError):
-        return "it needs more memory than its size allows"
+        return "it needs more memory than its size and --limit allow"
     if isinstance(error, SystemExit):
         return "it gave up"
     text = " ".join(str(error).split())

@@ -39,6 +39,7 @@ from typing import Any, Final, NamedTuple, NoReturn
 import numpy as np
 
 from autocolor.arrays import AnyArray, Booleans, Indices, chunks
+from autocolor.budget import require_memory
 from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError, WriteError, reason_of
 from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, placed
@@ -123,10 +124,20 @@ def are_unit_vectors(rows: AnyArray) -> Booleans:
     return right
 
 
+LARGE_COPY: Final = 256_000_000
+"""Limit: bytes; a larger copy is a warning, which commands print without `-v`."""
+
+REMEDY: Final = (
+    "to map the tables, write them with `autocolor convert FOLDER OUT --to npy`, or use"
+    " numpy.asfortranarray before numpy.save"
+)
+
+
 def as_read(name: str, table: AnyArray, dtype: type[Any], width: int = 0) -> AnyArray:
     """The table itself, or a copy in this type and by columns, which the log mentions.
 
-    A copy has at least `width` columns: further columns repeat the last.
+    A copy has at least `width` columns: further columns repeat the last. A large copy is a warning. Raises
+    InputError if it is larger than the memory budget allows.
     """
     rows = np.atleast_2d(table.T)
     is_narrow = len(rows) < width
@@ -136,8 +147,14 @@ def as_read(name: str, table: AnyArray, dtype: type[Any], width: int = 0) -> Any
     reason += " columns" if rows.flags.c_contiguous else " rows"
     if is_narrow:
         reason = "its triangles do not repeat their last node"
-    LOG.info("%s: copied, for %s", name, reason)
-    copy = np.empty((max(len(rows), width), len(table)), dtype)
+    shape = max(len(rows), width), len(table)
+    size = math.prod(shape) * np.dtype(dtype).itemsize
+    require_memory(size, f"{name}: its copy, for {reason},", REMEDY)
+    if size > LARGE_COPY:
+        LOG.warning("%s: copied into %s MB of memory, for %s; %s", name, f"{size / 1e6:,.0f}", reason, REMEDY)
+    else:
+        LOG.info("%s: copied, for %s", name, reason)
+    copy = np.empty(shape, dtype)
     for chunk in chunks(len(table), ROWS_AT_ONCE):
         copy[: len(rows), chunk] = rows[:, chunk]
         copy[len(rows) :, chunk] = rows[-1, chunk]

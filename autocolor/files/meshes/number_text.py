@@ -14,6 +14,7 @@ from typing import Final
 import numpy as np
 
 from autocolor.arrays import AnyArray, Floats, Indices, Numbers, chunks
+from autocolor.budget import require_memory
 from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError
 from autocolor.files.reading import shown
@@ -68,8 +69,18 @@ class Problems:
             raise InputError([sentence for _, _, sentence in in_order])
 
 
+GROWTH: Final = 3
+"""Measured: how many times its size a text takes until its words are counted."""
+
+BYTES_OF_WORD: Final = 40
+"""Measured: bytes that a word takes until its mesh is made; a word of a Movie.BYU file takes a bit less."""
+
+
 class NumberText:
-    """The text of a file, `data`, and where its words begin, `starts`; `place` is its name in messages."""
+    """The text of a file, `data`, and where its words begin, `starts`; `place` is its name in messages.
+
+    Raises InputError if a mesh of so many words takes more memory than the budget allows.
+    """
 
     def __init__(self, data: bytes, place: str) -> None:
         self.data = data
@@ -77,6 +88,10 @@ class NumberText:
         is_word = np.frombuffer(data, np.uint8) > ord(" ")
         begins = is_word.copy()
         np.greater(is_word[1:], is_word[:-1], out=begins[1:])
+        words = int(np.count_nonzero(begins))
+        require_memory(
+            len(data) + BYTES_OF_WORD * words, f"{place}: to read {words:,} words", "split or simplify it"
+        )
         self.starts: Numbers = np.flatnonzero(begins)
 
     def __len__(self) -> int:

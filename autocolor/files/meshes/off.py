@@ -21,9 +21,9 @@ import numpy as np
 from autocolor.arrays import Floats, Indices
 from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError
-from autocolor.files.meshes.number_text import NumberText
+from autocolor.files.meshes.number_text import GROWTH, NumberText
 from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, RawPolygons, repaired
-from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, shown, text_lines
+from autocolor.files.reading import read_whole, shown, text_lines
 from autocolor.scene.geometry.polygon_split import MOST_CORNERS
 
 KEYWORD: Final = re.compile(rb"\s*([A-Za-z0-9]*OFF)\b")
@@ -33,7 +33,7 @@ COMMENT: Final = re.compile(rb"#[^\n]*")
 
 def read_off(path: Path, placement: Placement = PLAIN) -> MeshReport:
     """The mesh of an OFF file, and what was repaired. Raises InputError."""
-    data = text_lines(read_bytes(path, LARGEST_MESH_FILE), path.name, "an OFF file")
+    data = text_lines(read_whole(path, GROWTH), path.name, "an OFF file")
     if b"#" in data:
         data = COMMENT.sub(b"", data)
     keyword = KEYWORD.match(data)

@@ -44,13 +44,17 @@ from autocolor.files.meshes.repair import (
     name_of,
     repaired,
 )
-from autocolor.files.reading import LARGEST_BINARY_MESH_FILE, LARGEST_MESH_FILE, read_bytes, read_head
+from autocolor.files.reading import read_whole
 from autocolor.scene.geometry.polygon_split import MOST_CORNERS
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalar import NODE, POLYGON, MeshScalar
 
 AXES: Final = ("x", "y", "z")
 CORNERS: Final = ("vertex_indices", "vertex_index")
+
+GROWTH: Final = 8
+"""Measured: how many times its size a file of triangles takes. A file of quads, with coordinates of 64 bits,
+takes 5, and the words of a text are counted (see `NumberText`)."""
 
 PART: Final = "part"
 PARTS: Final = (PART, "material_index", "group")
@@ -121,14 +125,8 @@ def read_ply(path: Path, placement: Placement = PLAIN) -> MeshReport:
 
 def _read(path: Path) -> tuple[RawPolygons, list[str]]:
     """The polygons of a file, and messages about skipped data. Returning frees the bytes of the file."""
-    is_text = b"format ascii" in read_head(path)
-    data = read_bytes(path, LARGEST_MESH_FILE if is_text else LARGEST_BINARY_MESH_FILE)
+    data = read_whole(path, GROWTH)
     header = parsed_header(data, path.name)
-    if not header.order and len(data) > LARGEST_MESH_FILE:
-        raise InputError(
-            f"{path.name}: an ascii PLY file must have at most {LARGEST_MESH_FILE:,} bytes, not more; export"
-            " it as binary"
-        )
     elements, skipped = (read_binary if header.order else read_text)(data, header, path.name)
     comments = named_in(header.comments)
     polygons, messages = ply_polygons(elements, comments, path.name, path.stem)

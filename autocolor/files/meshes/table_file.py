@@ -23,7 +23,6 @@ from autocolor.files.array_file import (
     scalars_of,
 )
 from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, placed
-from autocolor.files.reading import LARGEST_MESH_FILE
 from autocolor.scene.geometry.normals import CREASE_ANGLE
 from autocolor.scene.mesh import Mesh
 
@@ -32,7 +31,6 @@ SUFFIX: Final = ".tables"
 TABLE_FILE: Final = ArrayFileKind(
     noun="table file",
     advice="write the scene again",
-    largest=LARGEST_MESH_FILE,
     formats=("autocolor tables 2",),
     plain=("autocolor tables 1",),
     keys=frozenset(("part_names",)),

@@ -26,15 +26,18 @@ from autocolor.files.meshes.cells import CORNERS, Flats, Volumes, cell_surface
 from autocolor.files.meshes.file_scalars import FileScalars
 from autocolor.files.meshes.number_text import NumberText
 from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, RawPolygons, repaired
-from autocolor.files.reading import HEAD, LARGEST_MESH_FILE, read_bytes, shown
+from autocolor.files.reading import HEAD, read_whole, shown
 from autocolor.scene.scalar import NODE, POLYGON
+
+GROWTH: Final = 10
+"""Measured: how many times its size a binary file takes; a text takes about as much."""
 
 FIRST_LINE: Final = re.compile(rb"# vtk DataFile Version [1-5]\.[0-9]+", re.IGNORECASE)
 
 
 def read_vtk(path: Path, placement: Placement = PLAIN) -> MeshReport:
     """The mesh of a legacy VTK file with its scalars, and what was repaired. Raises InputError."""
-    data = read_bytes(path, LARGEST_MESH_FILE)
+    data = read_whole(path, GROWTH)
     if b"\n" not in data[:HEAD] and b"ASCII" in data[:HEAD]:
         data = data.replace(b"\r", b"\n")
     cursor = VtkCursor(data, path.name)

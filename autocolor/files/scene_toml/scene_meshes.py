@@ -14,13 +14,14 @@ from pathlib import Path
 from typing import Annotated, Any, ClassVar, Final, NamedTuple
 from weakref import WeakKeyDictionary
 
+from autocolor.budget import memory_problem
 from autocolor.errors import InputError, OutputError
 from autocolor.files.formats import format_of_files, read_mesh
 from autocolor.files.meshes.obj import obj_text
 from autocolor.files.meshes.repair import SCALES, UPS, MeshReport, Placement
 from autocolor.files.meshes.table_file import SUFFIX, table_file_bytes
 from autocolor.files.paths import free_path, path_within
-from autocolor.files.reading import LARGEST_MESH_FILE, TableFiles
+from autocolor.files.reading import TableFiles
 from autocolor.files.scene_toml.toml_text import KeyPath, SceneProblems, parsed_toml
 from autocolor.files.writing import write_atomically
 from autocolor.scene.columns import BarRange, Column, Problem, Row, RowError, Tier, from_plain
@@ -75,6 +76,9 @@ class MeshEntry(Row):
             yield Problem((), f"it must have a file, or nodes and polygons, not {listed}; correct it")
 
 
+GROWTH: Final = 6
+"""Measured: how many times their size mesh files of most formats take while they are read."""
+
 Entries = tuple[Mapping[str, Any], ...]
 """`[[mesh]]` tables."""
 
@@ -101,12 +105,8 @@ def meshes_of(problems: SceneProblems, rows: list[Any], folder: Path, *, outside
     ]
     crease_angle = _crease_angle(problems, sources)
     size = sum(_size(file) for source in sources for file in _read_whole(source.files))
-    if size > LARGEST_MESH_FILE:
-        problems.note(
-            ("mesh",),
-            f"the mesh files must have at most {LARGEST_MESH_FILE:,} bytes together, not {size:,};"
-            " thin them out",
-        )
+    if problem := memory_problem(GROWTH * size, "thin out the mesh files"):
+        problems.note(("mesh",), f"the mesh files together {problem}")
         return []
     reports = []
     for source in sources:

@@ -20,14 +20,14 @@ from typing import Final
 
 from autocolor.checks import printable
 from autocolor.errors import InputError, MissingInputError, UnavailableError, WriteError, reason_of
-from autocolor.files.reading import opened, read_head, refuse_irregular, status_of
+from autocolor.files.reading import opened, read_head, refuse_irregular, require_size, status_of
 
 LEAST_SQLITE: Final = (3, 37, 0)
 """The first version with STRICT tables."""
 
 BEGINS: Final = b"SQLite format 3\0"
-LARGEST_STORE: Final = 1 << 31
-"""Limit: in bytes; thirty million polygons."""
+GROWTH: Final = 2
+"""Measured: how many times its size the store of a scene takes while it is read."""
 
 LONGEST_TEXT: Final = 1 << 20
 """Limit: in bytes, of a value and of a row."""
@@ -294,10 +294,7 @@ def _refuse_unsafe(path: Path) -> None:
     refuse_old_sqlite()
     status = status_of(path)
     refuse_irregular(path, status)
-    if status.st_size > LARGEST_STORE:
-        raise InputError(
-            f"{path.name}: a store must have at most {LARGEST_STORE:,} bytes, not more; split it"
-        )
+    require_size(path.name, status.st_size, GROWTH)
     _, wal, shm = (_size_beside(path, ending) for ending in ("-journal", "-wal", "-shm"))
     if os.path.islink(path):
         # SQLite ignores a journal beside the link, but would find it if the folder were copied without links.

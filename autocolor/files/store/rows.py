@@ -17,6 +17,7 @@ from typing import Any, Final
 import numpy as np
 
 from autocolor.arrays import AnyArray, Floats, Indices, Numbers
+from autocolor.budget import require_memory
 from autocolor.checks import LARGEST_COORDINATE, nearest, shown
 from autocolor.errors import InputError
 from autocolor.files.meshes.repair import MeshReport
@@ -51,8 +52,8 @@ from autocolor.scene.scalar import MOST_SCALARS, NODE, POLYGON, MeshScalar
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Part, Surface
 
-MOST_MESH_ROWS: Final = 32_000_000
-"""Limit: the nodes, and the polygons, of a store."""
+BYTES_OF_ROW: Final = 120
+"""Measured: bytes that a row of the nodes or polygons takes while it is read, however small it is stored."""
 
 PYTHON_TYPES: Final = {"integer": int, "real": float, "text": str, "null": type(None)}
 """The types of values in Python, by their names in SQLite."""
@@ -352,8 +353,7 @@ def _keys(
         check()
     query = f"SELECT count(*), min({key}), max({key}) FROM {name} NOT INDEXED"
     count, first, last = connection.execute(query).fetchone()
-    if count > MOST_MESH_ROWS:
-        raise InputError(f"{name} must have at most {MOST_MESH_ROWS:,} rows, not {count:,}; leave rows out")
+    require_memory(BYTES_OF_ROW * count, f"{name}: to read {count:,} rows", "leave rows out")
     if table.key == key and count and last - first == count - 1:
         return np.arange(first, last + 1, dtype=np.int64)
     query = f"SELECT {key} FROM {name} NOT INDEXED ORDER BY {key}"

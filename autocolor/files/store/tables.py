@@ -9,6 +9,7 @@ from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import Final, NamedTuple
 
+from autocolor.budget import allowing, validated_limit
 from autocolor.checks import nearest, printable, shown
 from autocolor.errors import InputError, UsageError, WriteError
 from autocolor.files.formats import recognized
@@ -51,19 +52,21 @@ class Answer(NamedTuple):
     rows: Iterator[tuple[Value, ...]]
 
 
-def open_tables(path: PathLike, *, up: str = "z", scale: float = 1.0) -> Tables:
+def open_tables(path: PathLike, *, up: str = "z", scale: float = 1.0, limit: float | None = None) -> Tables:
     """The tables of a store. Any other scene is read, and its tables are made in memory.
 
         with autocolor.open_tables("car.sqlite") as tables:
             tables.select("SELECT name, surface FROM parts WHERE stage = ?", [False])
             tables.update("lights", "key", intensity=2.0)
 
-    Raises InputError, MissingInputError, and UsageError as `read_scene`.
+    `limit` is a factor for the memory budget. Raises InputError, MissingInputError, and UsageError as
+    `read_scene`.
     """
     path = Path(path)
-    if is_store(path) and (up, scale) == ("z", 1):
-        return Tables(connected(path), path.name, path)
-    return tables_of(read_scene_with_report(path, up=up, scale=scale).scene)
+    with allowing(limit):
+        if is_store(path) and (up, scale) == ("z", 1):
+            return Tables(connected(path), path.name, path)
+        return tables_of(read_scene_with_report(path, up=up, scale=scale).scene)
 
 
 def is_store(path: Path) -> bool:
@@ -92,6 +95,7 @@ class Tables:
         self._name = name
         self._store = store
         self.seconds = SECONDS
+        self._limit = validated_limit(None)
 
     @property
     def names(self) -> list[str]:
@@ -162,14 +166,17 @@ class Tables:
         if self._store is None:
             self._connection.execute(f"PRAGMA foreign_keys = {'ON' if checks_references else 'OFF'}")
             return self._changed(self._connection, tables, statement, parameters)
-        connection = connected_to_change(self._store, checks_references=checks_references)
-        with closing(connection):
+        with (
+            allowing(self._limit),
+            closing(connected_to_change(self._store, checks_references=checks_references)) as connection,
+        ):
             count = self._changed(connection, tables, statement, parameters)
             is_outdated = journal_mode(connection) != journal_mode(self._connection)
         if is_outdated:
             # The store is in WAL mode, and was opened as a file that never changes.
             self._connection.close()
-            self._connection = connected(self._store)
+            with allowing(self._limit):
+                self._connection = connected(self._store)
         return count
 
     def _changed(
@@ -204,7 +211,8 @@ class Tables:
 
     def scene(self) -> Scene:
         """The scene of the tables as they are now. Raises InputError."""
-        return report_in(self._connection, self._name, self._scene_name).scene
+        with allowing(self._limit):
+            return report_in(self._connection, self._name, self._scene_name).scene
 
     def definition(self, table: str) -> str:
         """The statement that creates a table."""

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import dataclasses
+import os
+import zipfile
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from autocolor import InputError
+from autocolor.budget import MEMORY, allowing
 from autocolor.files.array_file import (
     ArrayFileKind,
     Series,
@@ -23,7 +26,6 @@ from autocolor.scene.scalar import MeshScalar
 KIND = ArrayFileKind(
     noun="test file",
     advice="make it again",
-    largest=1 << 16,
     formats=("test 2", "test 1"),
     keys=frozenset(("name",)),
     arrays={"numbers": ("<i4", 2)},
@@ -121,10 +123,17 @@ def test_a_damaged_file_is_refused_and_told_by_its_kind(tmp_path: Path, data: by
         read_array_file(KIND, tmp_path / "file")
 
 
-def test_a_file_that_is_too_large_is_refused(tmp_path: Path) -> None:
-    (tmp_path / "file").write_bytes(bytes(KIND.largest + 1))
-    with pytest.raises(InputError, match="a file must have at most 65,536 bytes, not more"):
-        read_array_file(KIND, tmp_path / "file")
+def test_a_sparse_file_and_overlapping_members_are_refused_before_they_are_read(tmp_path: Path) -> None:
+    path = tmp_path / "file"
+    path.write_bytes(array_file_bytes(KIND, {"name": ""}, NUMBERS))
+    os.truncate(path, 3 << 30)
+    with pytest.raises(InputError, match=r"file: to read 3,221,225,472 bytes must take at most 4,000.0 MB "):
+        read_array_file(KIND, path)
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("header.npy", bytes(1000))
+        archive.filelist = archive.filelist * 9
+    with pytest.raises(InputError, match="file: to read 9,000 bytes"), allowing(9000 / MEMORY):
+        read_array_file(KIND, path)
 
 
 def test_scalars_come_back_from_their_rows_and_members() -> None:

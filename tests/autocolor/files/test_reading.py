@@ -3,11 +3,12 @@ from __future__ import annotations
 import os
 import socket
 from pathlib import Path
+from time import process_time
 
 import pytest
 
 from autocolor.errors import InputError, MissingInputError
-from autocolor.files.reading import read_bytes, shown, text_problem
+from autocolor.files.reading import MOST_NESTED, bounded_json, nesting, read_bytes, shown, text_problem
 
 
 def test_a_byte_order_mark_is_left_out(tmp_path: Path) -> None:
@@ -80,3 +81,21 @@ def test_what_is_no_text_is_said() -> None:
 def test_what_is_shown_is_short() -> None:
     assert shown("a" * 1_000_000) == repr("a" * 40) + "..."
     assert shown(b"\xff\n") == repr("\\xff\n")
+
+
+@pytest.mark.parametrize("depth", [MOST_NESTED - 1, MOST_NESTED, MOST_NESTED + 1])
+def test_json_is_refused_that_is_nested_too_deeply(depth: int) -> None:
+    data = b'{"[[": "\\"[[", "list": ' + b"[" * (depth - 1) + b"]" * (depth - 1) + b"}"
+    assert nesting(data) == depth
+    if depth <= MOST_NESTED:
+        assert bounded_json(data, 1000)
+        return
+    with pytest.raises(ValueError, match="values in more than 100 lists and tables"):
+        bounded_json(data, 1000)
+
+
+@pytest.mark.parametrize("data", [b'"' + b'\\"' * 500_000, b'[{"' * 300_000, b'"\\'])
+def test_any_json_is_counted_in_one_pass(data: bytes) -> None:
+    begun = process_time()
+    nesting(data)
+    assert process_time() - begun < 3

@@ -17,12 +17,14 @@ from typing import Any
 import numpy as np
 import pytest
 
+from autocolor.budget import MEMORY, allowing
 from autocolor.errors import InputError, UnavailableError
 from autocolor.files.array_file import array_file_bytes
 from autocolor.files.formats import read_mesh
 from autocolor.files.meshes.cells import CORNERS
 from autocolor.files.meshes.foreign import (
     FOREIGN,
+    MOST_LEVELS,
     RESULT,
     ForeignFormat,
     ForeignMesh,
@@ -149,7 +151,7 @@ def read_by_one_process(read_as: ForeignFormat, paths: list[Path]) -> list[int]:
 
 def report_of(read_as: ForeignFormat, path: Path) -> MeshReport:
     """The mesh of a file that was read by one process. Raises InputError."""
-    found = read_foreign_mesh(result_of(path), largest_result(SIZE), path.name, read_as.library)
+    found = read_foreign_mesh(result_of(path), path.name, read_as.library)
     return repaired(found.polygons, path.name, skipped=found.sentences)
 
 
@@ -525,11 +527,35 @@ def test_a_command_that_is_not_there_is_told(tmp_path: Path) -> None:
         read_in_own_process("fake", "glb", tmp_path / "a.glb", SIZE, [str(tmp_path / "none")])
 
 
+@pytest.mark.parametrize("levels", [MOST_LEVELS - 1, MOST_LEVELS, MOST_LEVELS + 1])
+def test_nodes_of_a_gltf_file_have_a_limited_depth(tmp_path: Path, levels: int) -> None:
+    path = tmp_path / "deep.gltf"
+    nodes = [{"children": [number + 1]} for number in range(levels)]
+    path.write_text(
+        json.dumps({"nodes": [*nodes, {"children": [0, "x", -1]}, {"children": [len(nodes) + 1]}]})
+    )
+    # The last node of the chain refers to the first, so that the circle has no root.
+    assert size_of_gltf(path) > 0
+    path.write_text(json.dumps({"nodes": [*nodes, {}]}))
+    if levels <= MOST_LEVELS:
+        assert size_of_gltf(path) > 0
+        return
+    with pytest.raises(
+        InputError, match=r"deep.gltf: nodes 101: a node must have at most 100 nodes above it"
+    ):
+        size_of_gltf(path)
+
+
 def test_limits_grow_with_the_size_of_the_file() -> None:
     assert (most_seconds(0), most_memory(0), largest_result(0)) == (2, 1 << 30, 16 << 20)
     assert most_seconds(10 << 20) == 12
     assert most_memory(10 << 20) == (1 << 30) + (600 << 20)
     assert largest_result(1 << 20) == 46 << 20
+    assert most_memory(1 << 40) == (1 << 30) + MEMORY
+    with allowing(3):
+        assert (most_seconds(0), most_memory(1 << 40)) == (6, (1 << 30) + 3 * MEMORY)
+    with allowing(0.5):
+        assert (most_seconds(0), most_memory(1 << 40)) == (2, (1 << 30) + MEMORY // 2)
 
 
 NODES = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.0]])
@@ -570,7 +596,7 @@ ARRAYS: dict[str, Any] = {
 def result(folder: Path, data: bytes) -> ForeignMesh:
     path = folder / "result.npz"
     path.write_bytes(data)
-    return read_foreign_mesh(path, 1 << 20, "a.glb", "trimesh")
+    return read_foreign_mesh(path, "a.glb", "trimesh")
 
 
 def test_a_mesh_comes_back_as_it_was_sent(tmp_path: Path) -> None:

@@ -139,15 +139,10 @@ def test_a_scene_file_and_a_folder_name_the_tables_alike(tmp_path: Path) -> None
         assert read_scene(path).mesh.node_numbers.tolist() == mesh.node_numbers.tolist()
 
 
-def test_files_that_are_mapped_may_be_larger_than_those_that_are_read(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    from autocolor.files.scene_toml import scene_meshes
-
+def test_files_that_are_mapped_need_no_memory(tmp_path: Path) -> None:
     folder_of(tmp_path, nodes=cube().coordinates, polygons=cube().node_numbers)
     (tmp_path / "scene.toml").write_text('[[mesh]]\nnodes = "nodes.npy"\npolygons = "polygons.npy"\n')
-    monkeypatch.setattr(scene_meshes, "LARGEST_MESH_FILE", 10)
-    assert len(read_scene(tmp_path).mesh.node_numbers) == 6
+    assert len(read_scene(tmp_path, limit=1e-9).mesh.node_numbers) == 6
 
 
 def test_a_turned_or_scaled_mesh_has_normals_of_its_own(tmp_path: Path) -> None:

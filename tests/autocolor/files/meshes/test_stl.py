@@ -134,18 +134,9 @@ def test_other_encodings_are_refused(path: Path) -> None:
     )
 
 
-def test_a_file_that_is_missing_or_too_large_is_refused(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_missing_file_is_refused(path: Path) -> None:
     with pytest.raises(MissingInputError):
         read_stl(path)
-    monkeypatch.setattr(stl, "LARGEST_MESH_FILE", 600)
-    assert refusal(read, path, text()) == (
-        "cube.stl: an ascii STL file must have at most 600 bytes, not more; export it as binary"
-    )
-    assert len(read(path, binary()).mesh.node_numbers) == 12
-    monkeypatch.setattr(stl, "LARGEST_BINARY_MESH_FILE", 600)
-    assert refusal(read, path, binary()) == (
-        "cube.stl: a file must have at most 600 bytes, not more; split or simplify it"
-    )
 
 
 def test_a_binary_file_cut_short_anywhere_is_refused(path: Path) -> None:

@@ -6,7 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from autocolor import InputError
+from autocolor import InputError, read_scene
+from autocolor.budget import MEMORY
 from autocolor.files.store import rows as module
 from autocolor.files.store.rows import insert_mesh
 from autocolor.files.store.schema import DEFINITIONS
@@ -132,9 +133,10 @@ def test_a_missing_node_is_named_also_where_no_table_tells_of_references(tmp_pat
 def test_too_many_rows_are_refused_before_they_are_read(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(module, "MOST_MESH_ROWS", 4)
-    with pytest.raises(InputError, match="nodes must have at most 4 rows, not 5; leave rows out"):
+    monkeypatch.setattr(module, "BYTES_OF_ROW", MEMORY // 5 + 1)
+    with pytest.raises(InputError, match=r"nodes: to read 5 rows must take .*; leave rows out, or allow it"):
         read_store(small_store(tmp_path))
+    assert len(read_scene(small_store(tmp_path, "allowed.sqlite"), limit=1.1).mesh.coordinates) == 5
 
 
 def test_values_belong_to_nodes_whose_numbers_a_double_does_not_hold(tmp_path: Path) -> None:

@@ -1,0 +1,281 @@
+"""The budget of memory: estimates are refused before anything is allocated, and users may allow more."""
+
+from __future__ import annotations
+
+import logging
+import math
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager
+from pathlib import Path
+from typing import Any
+from unittest.mock import patch
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import autocolor
+from autocolor import InputError, Scene, Studio, UsageError, read_scene, render, scene_of, write_scene
+from autocolor import budget as module
+from autocolor.budget import MEMORY, allowed_memory, allowing, require_memory
+from autocolor.commands.info import info
+from autocolor.files.conversion import output_named
+from autocolor.files.meshes import npy_tables
+from autocolor.lighting.illumination import BYTES_OF_LIGHT, SHARE
+from autocolor.rendering import rendering
+from ramtek_emu import Ramtek9300
+
+
+@pytest.fixture
+def asked(monkeypatch: pytest.MonkeyPatch) -> list[float]:
+    """The bytes that the budget is asked for."""
+    needs: list[float] = []
+    problem = module.memory_problem
+
+    def recorded(needed: float, remedy: str) -> str | None:
+        needs.append(needed)
+        return problem(needed, remedy)
+
+    monkeypatch.setattr(module, "memory_problem", recorded)
+    return needs
+
+
+def factor(needed: float) -> float:
+    """The limit that allows this number of bytes and no more."""
+    return (needed + 0.5) / MEMORY
+
+
+def test_the_budget_allows_as_much_as_it_has_and_names_the_limit_that_allows_more() -> None:
+    for needed in (MEMORY - 1, MEMORY):
+        require_memory(needed, "a.ply: to read it", "split it")
+    with pytest.raises(InputError) as refused:
+        require_memory(MEMORY + 1, "a.ply: to read it", "split it")
+    assert str(refused.value) == (
+        "a.ply: to read it must take at most 4,000.0 MB of memory, not 4,000.1 MB; split it, or allow it with"
+        " --limit 1.1 (limit=1.1 in Python)"
+    )
+    with allowing(1.1):
+        require_memory(MEMORY + 1, "a.ply: to read it", "split it")
+
+
+def test_a_limit_holds_inside_of_its_block_and_none_leaves_it() -> None:
+    with allowing(2.0), allowing(None):
+        assert allowed_memory() == 2 * MEMORY
+        with allowing(0.5):
+            assert allowed_memory() == MEMORY // 2
+        assert allowed_memory() == 2 * MEMORY
+    assert allowed_memory() == MEMORY
+    with allowing(1e300):
+        require_memory(1e18, "it", "split it")
+
+
+@pytest.mark.parametrize("limit", [0, -1, math.nan, math.inf, True, "2"])
+def test_a_limit_must_be_a_finite_number_above_zero(limit: Any) -> None:
+    with pytest.raises(UsageError, match="limit must be a finite number above 0"), allowing(limit):
+        pass
+    with pytest.raises(UsageError, match="limit must be"):
+        read_scene("scenes/pyramid", limit=limit)
+
+
+def test_threads_have_the_usual_budget() -> None:
+    budgets: list[int] = []
+    with allowing(2.0):
+        thread = threading.Thread(target=lambda: budgets.append(allowed_memory()))
+        thread.start()
+        thread.join()
+    assert budgets == [MEMORY]
+
+
+def hills() -> Scene:
+    """Nine warped quads."""
+    x, y = np.meshgrid(np.arange(4.0), np.arange(4.0))
+    quads = (np.arange(3) + 4 * np.arange(3)[:, None]).reshape(-1, 1) + np.array([0, 1, 5, 4])
+    return scene_of(autocolor.Mesh(np.column_stack([x.ravel(), y.ravel(), (x * y * y).ravel()]), quads))
+
+
+def plain_text(form: str) -> Callable[[Path], Path]:
+    """A function that writes the hills as a text in this form, with {nodes} and {polygons}."""
+
+    def write(folder: Path) -> Path:
+        mesh = hills().mesh
+        nodes = "\n".join(f"{x:g} {y:g} {z:g}" for x, y, z in mesh.coordinates.tolist())
+        quads = "\n".join(f"4 {a} {b} {c} {d}" for a, b, c, d in mesh.node_numbers.tolist())
+        path = folder / "hills"
+        path.write_text(form.format(nodes=nodes, polygons=quads))
+        return path
+
+    return write
+
+
+def converted(name: str) -> Callable[[Path], Path]:
+    """A function that writes the hills in a format that we write."""
+
+    def write(folder: Path) -> Path:
+        output = output_named(name)
+        path = folder / f"hills{output.suffixes[0] if output.suffixes else ''}"
+        output.write(path, hills(), False)
+        return path
+
+    return write
+
+
+OFF = "OFF\n16 9 0\n{nodes}\n{polygons}\n"
+VTK = (
+    "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 16 float\n{nodes}\n"
+    "POLYGONS 9 45\n{polygons}\n"
+)
+FORMATS = {
+    "OFF": plain_text(OFF),
+    "VTK": plain_text(VTK),
+    **{name: converted(name) for name in ("CSV", "OBJ", "PLY", "tables", "store")},
+}
+
+
+@pytest.mark.parametrize("write", FORMATS.values(), ids=FORMATS)
+def test_a_file_is_read_within_the_budget_that_it_asks_for_and_refused_below(
+    tmp_path: Path, write: Callable[[Path], Path], asked: list[float]
+) -> None:
+    path = write(tmp_path)
+    assert len(read_scene(path).mesh.node_numbers) == 9
+    needed = max(asked)
+    assert path.is_dir() or needed >= 2 * path.stat().st_size
+    for more in (0, 1):
+        read_scene(path, limit=factor(needed + more))
+    with pytest.raises(InputError, match=r"must take at most 0.[04] MB .* --limit 0.1 "):
+        read_scene(path, limit=factor(needed - 1))
+
+
+def test_a_picture_is_rendered_within_the_budget_that_it_asks_for(asked: list[float]) -> None:
+    scene = hills()
+    whole = render(scene, 30, 40)
+    needed = max(asked)
+    assert needed == 96 * 30 * 40
+    for more in (0, 1):
+        assert np.array_equal(render(scene, 30, 40, limit=factor(needed + more)).relative, whole.relative)
+    with pytest.raises(InputError, match=r"a picture of 40 x 30 pixels must take .*; render fewer lines"):
+        render(scene, 30, 40, limit=factor(needed - 1))
+    with pytest.raises(InputError, match=r"a picture of 16384 x 16384 pixels .* --limit 6.5 "):
+        render(scene, 16384, 16384)
+
+
+def test_normals_of_many_mapped_polygons_are_refused_before_they_are_computed(tmp_path: Path) -> None:
+    mesh = hills().mesh
+    np.save(tmp_path / "nodes.npy", np.asfortranarray(mesh.coordinates))
+    np.save(tmp_path / "polygons.npy", np.asfortranarray(mesh.node_numbers))
+    scene = read_scene(tmp_path, limit=1e-9)
+    with pytest.raises(InputError, match=r"the normals of 9 polygons must take .*--to npy"), allowing(1e-9):
+        _ = scene.mesh.normals
+    assert len(scene.mesh.normals.vectors)
+
+
+def test_a_studio_remembers_its_limit(tmp_path: Path) -> None:
+    write_scene(tmp_path / "hills", hills())
+    scene = hills()
+    small = Studio(scene, Ramtek9300(), limit=factor(96 * 640 * 480))
+    small.view(eye=(9.0, 9.0, 9.0))
+    with pytest.raises(InputError, match="to read"):
+        Studio(scene, Ramtek9300(), limit=factor(96 * 640 * 480)).open(_large(tmp_path))
+    with pytest.raises(InputError, match="a picture of 640 x 480 pixels"):
+        Studio(scene, Ramtek9300(), limit=factor(96 * 640 * 480 - 1))
+    small.open(tmp_path / "hills")
+
+
+def _large(folder: Path) -> Path:
+    path = folder / "large.ply"
+    path.write_bytes(bytes(5_000_000))
+    return path
+
+
+@pytest.fixture
+def runner() -> Iterator[CliRunner]:
+    yield CliRunner()
+    assert allowed_memory() == MEMORY
+    assert logging.getLogger("autocolor").level == logging.NOTSET
+
+
+def test_a_command_allows_the_limit_of_its_option_until_it_ends(tmp_path: Path, runner: CliRunner) -> None:
+    path = converted("OBJ")(tmp_path)
+    refused = runner.invoke(info, [str(path), "--limit", "1e-9"])
+    assert isinstance(refused.exception, InputError)
+    assert "hills.obj: to read " in str(refused.exception)
+    assert runner.invoke(info, [str(path), "--limit", "0.1"]).exit_code == 0
+    assert isinstance(runner.invoke(info, [str(path), "--limit", "nan"]).exception, UsageError)
+
+
+def test_a_large_copy_of_mapped_tables_is_reported_without_verbose(
+    tmp_path: Path, runner: CliRunner, monkeypatch: pytest.MonkeyPatch, asked: list[float]
+) -> None:
+    mesh = hills().mesh
+    np.save(tmp_path / "nodes.npy", np.ascontiguousarray(mesh.coordinates))
+    np.save(tmp_path / "polygons.npy", np.asfortranarray(mesh.node_numbers))
+    size = mesh.coordinates.nbytes
+    monkeypatch.setattr(npy_tables, "LARGE_COPY", size)
+    assert "copied" not in runner.invoke(info, [str(tmp_path)]).output
+    assert size in asked
+    with pytest.raises(InputError, match=r"nodes.npy: its copy, for it is not float64 stored by columns"):
+        read_scene(tmp_path, limit=factor(size - 1))
+    monkeypatch.setattr(npy_tables, "LARGE_COPY", size - 1)
+    output = runner.invoke(info, [str(tmp_path)]).output
+    assert "autocolor: nodes.npy: copied into 0 MB of memory, for it is not float64 stored by col" in output
+    assert "--to npy" in output
+
+
+def lit_by(count: int) -> Scene:
+    """The hills under some lights."""
+    lights = [autocolor.Light(f"light {n}", position=(9.0 - n, 9.0, 9.0 + n)) for n in range(count)]
+    return hills().replace(lights=lights)
+
+
+def unasked() -> AbstractContextManager[object]:
+    """Nothing is asked of the budget for pixels and normals, so that a test of planes may have a tiny one."""
+    return patch.object(module, "memory_problem", lambda *_: None)
+
+
+def planes_for(scene: Scene, count: int) -> float:
+    """The limit that allows the planes of this number of lights, and no more."""
+    return count * BYTES_OF_LIGHT * len(render(scene, 30, 40).pixels) / SHARE / MEMORY * (1 + 1e-9)
+
+
+def test_planes_that_do_not_fit_are_computed_in_turns_and_give_the_same_bits() -> None:
+    scene = lit_by(5)
+    whole = render(scene, 30, 40)
+    assert len(whole.light_planes) == 5
+    for fitting in (0.5, 1, 4, 4.99, 5, 6):
+        with allowing(planes_for(scene, 1) * fitting), unasked():
+            picture = render(scene, 30, 40)
+        assert list(picture.light_planes) == [light.name for light in scene.lights][: int(fitting)]
+        assert picture.relative.tobytes() == whole.relative.tobytes()
+        for name, planes in picture.light_planes.items():
+            assert planes.values.tobytes() == whole.light_planes[name].values.tobytes()
+
+
+@pytest.mark.parametrize(
+    "edit",
+    [
+        lambda scene: scene.with_light("light 0", intensity=2.0),
+        lambda scene: scene.with_light("light 0", position=(1.0, 2.0, 30.0)),
+        lambda scene: scene.with_light("light 4", position=(1.0, 2.0, 30.0)),
+        lambda scene: scene.with_light("light 1", on=False),
+        lambda scene: scene.without_light("light 0"),
+        lambda scene: scene.with_surface("surface", model="cook-torrance"),
+    ],
+)
+def test_an_edit_of_lights_computed_in_turns_is_as_a_fresh_picture(edit: Callable[[Scene], Scene]) -> None:
+    scene = lit_by(5)
+    with allowing(planes_for(scene, 2)), unasked():
+        before = rendering(scene, 30, 40)
+        edited = rendering(edit(scene), 30, 40, before)
+        again = rendering(scene, 30, 40, edited)
+    assert len(edited.picture.light_planes) <= 2
+    assert edited.picture.relative.tobytes() == render(edit(scene), 30, 40).relative.tobytes()
+    assert again.picture.relative.tobytes() == before.picture.relative.tobytes()
+
+
+def test_rasters_of_planes_ask_the_budget() -> None:
+    picture = render(lit_by(3), 30, 40)
+    needed = 3 * 8 * 30 * 40
+    with allowing(factor(needed)):
+        assert len(picture.planes) == 3
+    with pytest.raises(InputError, match="the planes of 3 lights must take"), allowing(factor(needed - 1)):
+        _ = picture.planes
