@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Final, NoReturn
 
 import click
 
-from autocolor.checks import printable
 from autocolor.errors import AutocolorError, InputError, MissingInputError, UsageError
 from autocolor.journal.autosave import (
     OLD_SCRIPT,
@@ -112,14 +111,14 @@ def list_sessions() -> None:
         else:
             steps = len(session.history.steps)
             text = f"{session.source.path}, {steps} step{'' if steps == 1 else 's'}"
-        click.echo(printable(f"{folder.name}  {_time_of(folder)}  {text}"))
+        click.echo(f"{folder.name}  {_time_of(folder)}  {text}")
 
 
 def forget_session(name: str) -> None:
     """Remove an abandoned session, by the beginning of its name, and say so on stderr."""
     folder = _folder_named(name)
     forget(folder)
-    click.echo(printable(f"autocolor: {folder.name} is removed"), err=True)
+    click.echo(f"autocolor: {folder.name} is removed", err=True)
 
 
 def chosen_session(name: str) -> tuple[Path, JournalSession]:
@@ -135,7 +134,7 @@ def chosen_session(name: str) -> tuple[Path, JournalSession]:
         try:
             return folder, _session_in(folder)
         except InputError as error:
-            click.echo(printable(f"autocolor: {folder}: {error}"), err=True)
+            click.echo(f"autocolor: {folder}: {error}", err=True)
     raise MissingInputError(
         "--recover: there must be a session that was not closed and can be read, and there is none; name a"
         " scene instead"
