@@ -14,8 +14,8 @@ scene; its columns have the plain values of scene files. `mesh` is null if the m
 of the first scene, else the name of a folder beside the journal that has the mesh in a scene. The line of an
 opened scene has all its tables, so that only the mesh must still be in the files.
 
-A line counts once its newline is written. If the program was killed during a line, its part is ignored. A line
-that is refused is named by its number: without this line and those after it, the steps before are recovered.
+A line counts once its newline is written. If the program was killed during a line, its part is ignored. A
+refused line is named by its number: remove it and the lines after it to recover the steps before.
 """
 
 from __future__ import annotations

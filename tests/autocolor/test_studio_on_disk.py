@@ -28,6 +28,7 @@ from autocolor import (
 )
 from autocolor.files.stamps import stamp_of
 from autocolor.files.store import store_file
+from autocolor.files.store.connections import connected_to_change
 from autocolor.journal import places
 from autocolor.journal.history import History
 from autocolor.journal.places import Source, checksum_of
@@ -192,11 +193,10 @@ def test_a_change_while_the_save_waits_for_the_store_is_seen(
     autocolor.write_scene(path, scene_of(cube()))
     studio, _ = opened()
     studio.open(path)
-    begun = store_file.connected_to_change
 
     def connected(store: Path) -> sqlite3.Connection:
         outside_row(store)
-        return begun(store)
+        return connected_to_change(store)
 
     monkeypatch.setattr(store_file, "connected_to_change", connected)
     with pytest.raises(OutputError, match="another program changed"):
@@ -215,7 +215,7 @@ def test_four_undos_after_a_reload_and_a_save_leave_the_scene_unsaved(tmp_path: 
     saved = studio.save_session(tmp_path)
     for _ in range(3):
         studio.undo()
-    assert studio.history.left_unsaved == ()
+    assert not studio.history.left_unsaved
     studio.undo()
     assert studio.is_changed
     assert studio.save_session(tmp_path).scene == saved.scene
@@ -235,7 +235,7 @@ def test_a_scene_that_was_shown_when_its_file_was_left_for_another_is_unsaved(tm
     first = studio.scene
     studio.recolor("body", blend=0.2)
     studio.save_session(tmp_path)
-    assert studio.history.left_unsaved == ()
+    assert not studio.history.left_unsaved
     studio.undo()
     studio.undo()
     assert studio.scene.equals(first)

@@ -320,11 +320,6 @@ def test_a_hostile_session_is_listed_and_forgotten_and_no_link_is_followed(
     assert len(run("view", "--sessions").out.splitlines()) == 3
 
 
-def test_a_name_of_a_session_is_printed_without_control_characters(sessions: Path, run: Run) -> None:
-    (sessions / "2026-01-01-a").rename(sessions / "red\x1b[31m\u202e")
-    assert "red?[31m?  " in run("view", "--sessions").out
-
-
 @pytest.mark.skipif(os.name == "nt", reason="Windows has no pipes with names")
 @pytest.mark.parametrize("how", ["gone", "no store", "other rows", "a pipe"])
 def test_a_session_whose_store_was_broken_is_listed_with_its_reason(

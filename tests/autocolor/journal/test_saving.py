@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import sqlite3
+from contextlib import closing
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -84,6 +86,19 @@ def test_a_scene_file_keeps_its_comments_and_has_one_backup(scene_file: Path, wo
     assert studio.save_session(work) == SavedFiles(scene_file, work / "car.npz")
     assert [path.name for path in scene_file.parent.glob("scene*")].count("scene-3.toml") == 0
     assert read_scene(scene_file).surface("body").paint.blend == 0.5
+
+
+def test_the_backup_of_a_store_has_the_changes_that_are_only_in_its_log(work: Path) -> None:
+    path = work / "car.sqlite"
+    autocolor.write_scene(path, car())
+    with closing(sqlite3.connect(path, isolation_level=None)) as other:
+        other.execute("PRAGMA journal_mode = WAL")
+        other.execute("UPDATE view SET angle = 7")
+        studio = studio_of(path)
+        studio.recolor("body", blend=0.25)
+        (backup,) = studio.save_session(work).backups
+    assert read_scene(backup).view.angle == 7
+    assert read_scene(path).surface("body").paint.blend == 0.25
 
 
 def test_a_picture_file_that_was_opened_is_saved_to_and_has_a_backup(work: Path) -> None:

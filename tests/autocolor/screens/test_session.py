@@ -557,6 +557,23 @@ def test_with_unsaved_edits_the_user_is_asked(store: Path) -> None:
     assert viewer.studio.scene is mine
 
 
+def test_undone_to_before_a_reload_the_scene_is_not_the_saved_one_and_closing_asks(tmp_path: Path) -> None:
+    write_scene(tmp_path / "small", small_scene())
+    viewer = viewer_of(tmp_path / "small")
+    viewer.studio.recolor("body", blend=0.1)
+    control(viewer, "r")
+    for blend in (0.2, 0.3):
+        viewer.studio.recolor("body", blend=blend)
+    control(viewer, "s")
+    assert "*" not in viewer.caption
+    for _ in range(4):
+        control(viewer, "z")
+    assert viewer.caption.startswith("autocolor - small* - ")
+    assert not viewer.on_close()
+    control(viewer, "s")
+    assert viewer.on_close()
+
+
 def test_edits_that_are_saved_instead_leave_the_change_of_the_other_program(store: Path) -> None:
     viewer = viewer_of(store)
     viewer.studio.light("rim", intensity=0.25)
