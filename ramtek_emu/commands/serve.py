@@ -202,7 +202,7 @@ def replies_to(stdout: int) -> tuple[int, int]:
     """A descriptor for replies, and how many bytes it takes without waiting once it can be written."""
     with suppress(OSError):
         if sys.platform == "linux" and stat.S_ISFIFO(os.fstat(stdout).st_mode):
-            # A pipe that is opened anew can be set not to wait. For others that write to stdout it still waits.
+            # A pipe that is opened anew can be set not to wait, and waits as before for other programs.
             return os.open(f"/proc/self/fd/{stdout}", os.O_WRONLY | os.O_NONBLOCK), MOST_WRITTEN
     return os.dup(stdout), WRITTEN_AT_ONCE
 
