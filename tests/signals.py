@@ -3,7 +3,8 @@
 A row is a command and a moment. For each signal that ends a program the command is started in a folder of its
 own, and it gets the signal at that moment. Then it must end with the row's exit code and without a traceback,
 its outputs must be whole, and nothing else may be left in the folder. The script prints the longest time from
-a signal to the end of each row, and leaves with 1 if a row failed.
+a signal to the end of each row, and leaves with 1 if a row failed. Windows are tried if there is a screen
+(`xvfb-run python -m tests.signals`).
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ import argparse
 import os
 import random
 import select
+import shlex
 import signal
 import socket
 import subprocess
@@ -20,6 +22,7 @@ import tempfile
 import time
 from array import array
 from collections.abc import Callable
+from contextlib import nullcontext, suppress
 from fcntl import ioctl
 from functools import partial
 from pathlib import Path
@@ -30,6 +33,7 @@ import numpy as np
 
 from ramtek_emu import NCAR_9460, Ramtek9300, instructions, read_snapshot
 from tests.ramtek_emu.processes import environment, stream
+from tests.ramtek_emu.serving import serving_at
 
 ENDING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 DRAWING = stream(instructions.write_vectors([[20, 10], [60, 45], [5, 40]], 9))
@@ -112,7 +116,9 @@ def starting(command: Command) -> None:
 
 
 def at_any_time(command: Command) -> None:
-    time.sleep(random.uniform(0, 0.8))
+    """At any time after our first line."""
+    starting(command)
+    time.sleep(random.uniform(0, 0.5))
 
 
 def recording(command: Command) -> None:
@@ -146,6 +152,7 @@ def printing(command: Command) -> None:
 
 
 def program(command: Command) -> None:
+    """The program of `ramtek tty` runs."""
     assert command.process.stdout is not None
     assert command.process.stdout.readline() == b"ready\n"
 
@@ -164,25 +171,42 @@ OUTPUTS = "-o o.png --snapshot s.png --record r.ramtek --configuration NCAR_9460
 WRITTEN = ("o.png", "s.png", "r.ramtek")
 SERVERS = (f"serve --unix display {OUTPUTS}", f"serve --port 0 {OUTPUTS}")
 PIPED = (f"serve --stdio {OUTPUTS}", f"serve --stdio --joystick stick {OUTPUTS}")
+PLAYED = f"play - {OUTPUTS}"
+TTY = "tty --stream --link link display -- sh -c 'echo ready; exec sleep 60'"
+COUPE = Path(__file__).parents[1] / "scenes" / "coupe"
 
 ROWS = (
-    *(Row(command, idle, (0,), WRITTEN) for command in PIPED),
-    *(Row(command, filling, (0,), WRITTEN) for command in PIPED),
-    *(Row(command, unread, (0,), WRITTEN) for command in PIPED),
-    *(Row(command, partial(idle, connect=True), (0,), WRITTEN) for command in SERVERS),
-    *(Row(command, partial(filling, connect=True), (0,), WRITTEN) for command in SERVERS),
-    *(Row(command, partial(unread, connect=True), (0,), WRITTEN) for command in SERVERS),
-    Row(f"play - {OUTPUTS}", recording, (-1,), WRITTEN),
-    Row(f"play - {OUTPUTS}", filling, (-1,), WRITTEN),
-    *(Row(command, starting, (0, -1)) for command in (*PIPED, *SERVERS, f"play - {OUTPUTS}")),
-    *(Row(command, at_any_time, (0, -1)) for command in (*PIPED, *SERVERS, f"play - {OUTPUTS}")),
-    Row("list lines.ramtek", printing),
-    Row("list lines.ramtek", starting, (0, -1)),
+    *(Row(command, moment, (0,), WRITTEN) for moment in (idle, filling, unread) for command in PIPED),
+    *(
+        Row(command, partial(moment, connect=True), (0,), WRITTEN)
+        for moment in (idle, filling, unread)
+        for command in SERVERS
+    ),
+    *(Row(PLAYED, moment, (-1,), WRITTEN) for moment in (recording, filling)),
+    *(
+        Row(command, moment, (0, -1), WRITTEN)
+        for moment in (starting, at_any_time)
+        for command in (*PIPED, *SERVERS, PLAYED)
+    ),
+    *(Row("list lines.ramtek", moment) for moment in (starting, printing)),
     Row("list lines.ramtek", at_any_time, (0, -1)),
-    Row("assemble - -o a.ramtek", starting),
-    Row("assemble - -o a.ramtek", at_any_time),
+    *(Row("assemble - -o a.ramtek", moment) for moment in (starting, at_any_time)),
+    *(Row(TTY, moment) for moment in (starting, at_any_time, program)),
+    Row("-o o.png", at_any_time, (0, -1), ("o.png",)),
+    Row(f"render {COUPE} -o o.png", at_any_time, (0, -1), ("o.png",), "autocolor"),
 )
-"""Windows are tried where there is a screen: in the tests of `serve`."""
+WINDOWS = tuple(
+    Row(f"{command} --window", moment, (0,), WRITTEN)
+    for command, moment in (
+        (PLAYED, recording),
+        (PLAYED, filling),
+        (PIPED[0], idle),
+        (PIPED[0], filling),
+        (PIPED[0], unread),
+        (SERVERS[1], partial(idle, connect=True)),
+        (SERVERS[1], partial(filling, connect=True)),
+    )
+)
 
 
 def row_of(arguments: str, moment: Callable[[Command], None]) -> Row:
@@ -201,10 +225,19 @@ def attack(row: Row, number: signal.Signals, place: Path) -> tuple[float, str]:
     """
     (place / "lines.ramtek").write_bytes(DRAWING * 4000)
     os.mkfifo(place / "stick")
+    with serving_at(place / "display") if row.arguments == TTY else nullcontext():
+        seconds, code, said = ended(row, number, place)
+    check(row, number, place, code, said)
+    return seconds, said
+
+
+def ended(row: Row, number: signal.Signals, place: Path) -> tuple[float, int, str]:
+    """The seconds from the signal to the end of a row's command, its exit code, and what it said."""
     process = subprocess.Popen(
-        (sys.executable, "-m", row.module, *row.arguments.split()),
+        (sys.executable, "-m", row.module, *shlex.split(row.arguments)),
         cwd=place,
-        env=environment(),
+        env={**environment(), **({"DISPLAY": os.environ["DISPLAY"]} if row in WINDOWS else {})},
+        start_new_session=True,
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
@@ -214,7 +247,9 @@ def attack(row: Row, number: signal.Signals, place: Path) -> tuple[float, str]:
     try:
         row.moment(command)
         begin = time.monotonic()
-        process.send_signal(number)
+        # As a terminal does: all processes of the group get it.
+        with suppress(ProcessLookupError):
+            os.killpg(process.pid, number)
         code = process.wait(60)
         seconds = time.monotonic() - begin
         assert process.stderr is not None
@@ -223,22 +258,21 @@ def attack(row: Row, number: signal.Signals, place: Path) -> tuple[float, str]:
         process.kill()
         process.wait()
         command.close()
-    check(row, number, place, code, said)
-    return seconds, said
+    return seconds, code, said
 
 
 def check(row: Row, number: signal.Signals, place: Path, code: int, said: str) -> None:
     """Whether a command that ended has left its outputs, whole, and nothing else."""
     codes = {128 + number if expected == -1 else expected for expected in row.codes}
     if row.moment in (starting, at_any_time):
-        # Before our first line and after our last one, the signal ends Python.
+        # After our last line, the signal ends Python.
         codes.add(-number)
     assert code in codes, (code, said)
     assert "Traceback" not in said
     left = {path.name for path in place.iterdir()} - {"lines.ramtek", "stick"}
     if row.moment in (starting, at_any_time):
-        # Everything is written, or nothing; a file may be named before the next one is written.
-        assert left in (set(), set(WRITTEN)), (left, said)
+        # Everything is written, or nothing.
+        assert left in (set(), set(row.written)), (left, said)
     else:
         assert left == set(row.written), (left, said)
     if "s.png" in left:
@@ -254,7 +288,7 @@ def main() -> None:
     parser.add_argument("--row", default="", help="only the rows with this text in their command or moment")
     options = parser.parse_args()
     failed = 0
-    for row in ROWS:
+    for row in ROWS + (WINDOWS if "DISPLAY" in os.environ else ()):
         moment = getattr(row.moment, "func", row.moment).__name__
         if options.row not in f"{row.arguments} {moment}":
             continue

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import select
+import stat
 import sys
 import time
 from collections.abc import Callable
@@ -48,7 +49,9 @@ HOST_SECONDS: Final = 0.005
 PIPE_SECONDS: Final = 0.002
 """How long words on a pipe may wait if `--joystick` is given."""
 WRITTEN_AT_ONCE: Final[int] = getattr(select, "PIPE_BUF", 512)
-"""The most bytes that a pipe takes without waiting if it takes any: a signal ends the wait for the rest."""
+"""The most bytes that any pipe takes without waiting, if it can be written."""
+MOST_WRITTEN: Final = 1 << 16
+"""The most bytes that are written at once to a pipe that never waits."""
 
 
 @click.command(epilog=EXAMPLES)
@@ -180,7 +183,7 @@ def standard_streams(run: Run) -> tuple[Read, Write | None]:
         return b""
 
     try:
-        replies = os.dup(sys.stdout.fileno())
+        replies, at_once = replies_to(sys.stdout.fileno())
         # Redirect all printed text to stderr, so that it does not mix with the words.
         os.dup2(sys.stderr.fileno() if sys.stderr is not None else replies, sys.stdout.fileno())
     except OSError:
@@ -189,9 +192,19 @@ def standard_streams(run: Run) -> tuple[Read, Write | None]:
     def write(data: bytes) -> None:
         view = memoryview(data)
         while view and run.wait(replies, to_write=True):
-            view = view[os.write(replies, view[:WRITTEN_AT_ONCE]) :]
+            with suppress(BlockingIOError):
+                view = view[os.write(replies, view[:at_once]) :]
 
     return read, write
+
+
+def replies_to(stdout: int) -> tuple[int, int]:
+    """A descriptor for replies, and how many bytes it takes without waiting once it can be written."""
+    with suppress(OSError):
+        if sys.platform == "linux" and stat.S_ISFIFO(os.fstat(stdout).st_mode):
+            # A pipe that is opened anew can be set not to wait, and waits as before for other programs.
+            return os.open(f"/proc/self/fd/{stdout}", os.O_WRONLY | os.O_NONBLOCK), MOST_WRITTEN
+    return os.dup(stdout), WRITTEN_AT_ONCE
 
 
 def serve_hosts(
