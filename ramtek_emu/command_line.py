@@ -156,10 +156,11 @@ class EndingSignals:
         """Raise Ended again if Python dropped it, as in a `__del__`; show any other exception."""
         if unraisable.exc_value is not self.ended or self.ended is None:
             self._unraisable(unraisable)
-        elif hasattr(signal, "setitimer"):
-            number = self.ended.exit_code - BY_SIGNAL
+            return
+        self.ignored = False
+        number = self.ended.exit_code - BY_SIGNAL
+        if sys.platform != "win32":
             signal.signal(signal.SIGALRM, lambda *_: self._raise(number, None))
-            self.ignored = False
             signal.setitimer(signal.ITIMER_REAL, 0.005)
 
 
