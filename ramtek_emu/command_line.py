@@ -17,6 +17,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from importlib import import_module
 from io import TextIOWrapper
+from types import FrameType
 from typing import Any, ClassVar, Final, NoReturn, TextIO
 
 import click
@@ -34,6 +35,8 @@ ENDING: Final = tuple(
     getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
 )
 """The signals that end a program from outside. Windows has no SIGHUP."""
+SECONDS_BETWEEN: Final = 0.02
+"""Limit: of two looks at whether Ended was dropped."""
 READER_LEFT: Final = 141
 """The exit code in a shell of a program that SIGPIPE ended."""
 WINDOW: Final = "ramtek_emu.monitor.window"
@@ -126,42 +129,56 @@ class Ended(KeyboardInterrupt):
 class EndingSignals:
     """The handlers of the signals that end a program: the first signal raises Ended, the others do nothing.
 
-    A signal that was ignored when the program started (`nohup`) stays ignored.
+    A signal that was ignored when the program started (`nohup`) stays ignored. Python or a library in C may
+    drop an exception, as in a `__del__` or during an import. So Ended is not raised during an import, and it
+    is raised again if nothing handles it.
     """
 
     ended: Ended | None = None
     ignored = False
-    """Whether further signals do nothing, because the program ends."""
+    """Whether signals do nothing, because the program ends."""
     cancels = False
     """Whether Ctrl+C raises KeyboardInterrupt each time, because it cancels a step, not the program."""
 
     def install(self) -> None:
         """Install the handlers for the rest of the process."""
         self.ended, self.ignored, self.cancels = None, False, False
-        self._unraisable, sys.unraisablehook = sys.unraisablehook, self._raise_later
+        self._show_unraisable, sys.unraisablehook = sys.unraisablehook, self._on_unraisable
         for number in ENDING:
             if signal.getsignal(number) is not signal.SIG_IGN:
-                signal.signal(number, self._raise)
+                signal.signal(number, self._receive)
 
-    def _raise(self, number: int, _: object) -> None:
-        if self.ignored:
+    def ignore(self) -> None:
+        """Ignore signals from now on."""
+        self.ignored = True
+        if sys.platform != "win32":
+            signal.setitimer(signal.ITIMER_REAL, 0)
+
+    def _receive(self, number: int, frame: FrameType | None) -> None:
+        if self.ignored or self.ended is not None:
             return
         if self.cancels and number == signal.SIGINT:
             raise KeyboardInterrupt
-        self.ignored = True
         self.ended = Ended(number)
-        raise self.ended
+        if sys.platform == "win32":
+            raise self.ended
+        signal.signal(signal.SIGALRM, self._look)
+        signal.setitimer(signal.ITIMER_REAL, SECONDS_BETWEEN, SECONDS_BETWEEN)
+        self._look(number, frame)
 
-    def _raise_later(self, unraisable: sys.UnraisableHookArgs) -> None:
-        """Raise Ended again if Python dropped it, as in a `__del__`; show any other exception."""
-        if unraisable.exc_value is not self.ended or self.ended is None:
-            self._unraisable(unraisable)
-            return
-        self.ignored = False
-        number = self.ended.exit_code - BY_SIGNAL
-        if sys.platform != "win32":
-            signal.signal(signal.SIGALRM, lambda *_: self._raise(number, None))
-            signal.setitimer(signal.ITIMER_REAL, 0.005)
+    def _look(self, _: int, frame: FrameType | None) -> None:
+        """Raise Ended, unless it is being handled, as in a `finally`, or a module is being imported."""
+        error = sys.exception()
+        while error is not None and error is not self.ended:
+            error = error.__context__
+        while frame is not None and frame.f_globals.get("__name__") != "importlib._bootstrap":
+            frame = frame.f_back
+        if self.ended is not None and not self.ignored and error is None and frame is None:
+            raise self.ended
+
+    def _on_unraisable(self, unraisable: sys.UnraisableHookArgs) -> None:
+        if not isinstance(unraisable.exc_value, Ended):
+            self._show_unraisable(unraisable)
 
 
 SIGNALS: Final = EndingSignals()
@@ -184,10 +201,10 @@ def run_command(command: click.Command, name: str) -> None:
             # A library replaced the exception by another, such as SQLite's "interrupted".
             raise SIGNALS.ended
         _show(name, message)
-        SIGNALS.ignored = True
+        SIGNALS.ignore()
     except KeyboardInterrupt as interrupt:
+        SIGNALS.ignore()
         end = SIGNALS.ended or interrupt
-        SIGNALS.ignored = True
         # Nobody may read what is left in the buffers: drop it.
         _discard(sys.stdout)
         if _takes_text(sys.stderr):
