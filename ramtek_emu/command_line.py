@@ -17,7 +17,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from importlib import import_module
 from io import TextIOWrapper
-from types import FrameType
+from types import TracebackType
 from typing import Any, ClassVar, Final, NoReturn, TextIO
 
 import click
@@ -130,8 +130,7 @@ class EndingSignals:
     """The handlers of the signals that end a program: the first signal raises Ended, the others do nothing.
 
     A signal that was ignored when the program started (`nohup`) stays ignored. Python or a library in C may
-    drop an exception, as in a `__del__` or during an import. So Ended is not raised during an import, and it
-    is raised again if nothing handles it.
+    drop an exception, as in a `__del__` or during an import. So Ended is raised again if nothing handles it.
     """
 
     ended: Ended | None = None
@@ -144,6 +143,8 @@ class EndingSignals:
         """Install the handlers for the rest of the process."""
         self.ended, self.ignored, self.cancels = None, False, False
         self._show_unraisable, sys.unraisablehook = sys.unraisablehook, self._on_unraisable
+        # Libraries in C may print an exception that is raised while they are imported.
+        self._show, sys.excepthook = sys.excepthook, self._on_exception
         for number in ENDING:
             if signal.getsignal(number) is not signal.SIG_IGN:
                 signal.signal(number, self._receive)
@@ -154,31 +155,34 @@ class EndingSignals:
         if sys.platform != "win32":
             signal.setitimer(signal.ITIMER_REAL, 0)
 
-    def _receive(self, number: int, frame: FrameType | None) -> None:
+    def _receive(self, number: int, _: object) -> None:
         if self.ignored or self.ended is not None:
             return
         if self.cancels and number == signal.SIGINT:
             raise KeyboardInterrupt
         self.ended = Ended(number)
-        if sys.platform == "win32":
-            raise self.ended
-        signal.signal(signal.SIGALRM, self._look)
-        signal.setitimer(signal.ITIMER_REAL, SECONDS_BETWEEN, SECONDS_BETWEEN)
-        self._look(number, frame)
+        if sys.platform != "win32":
+            signal.signal(signal.SIGALRM, self._raise_again)
+            signal.setitimer(signal.ITIMER_REAL, SECONDS_BETWEEN, SECONDS_BETWEEN)
+        raise self.ended
 
-    def _look(self, _: int, frame: FrameType | None) -> None:
-        """Raise Ended, unless it is being handled, as in a `finally`, or a module is being imported."""
+    def _raise_again(self, *_: object) -> None:
+        """Raise Ended, unless it is being handled, as in a `finally`."""
         error = sys.exception()
         while error is not None and error is not self.ended:
             error = error.__context__
-        while frame is not None and frame.f_globals.get("__name__") != "importlib._bootstrap":
-            frame = frame.f_back
-        if self.ended is not None and not self.ignored and error is None and frame is None:
+        if self.ended is not None and not self.ignored and error is None:
             raise self.ended
 
     def _on_unraisable(self, unraisable: sys.UnraisableHookArgs) -> None:
         if not isinstance(unraisable.exc_value, Ended):
             self._show_unraisable(unraisable)
+
+    def _on_exception(
+        self, kind: type[BaseException], error: BaseException, trace: TracebackType | None
+    ) -> None:
+        if not isinstance(error, Ended):
+            self._show(kind, error, trace)
 
 
 SIGNALS: Final = EndingSignals()

@@ -10,7 +10,6 @@ import sys
 import time
 from collections.abc import Callable
 from contextlib import suppress
-from importlib import import_module
 from pathlib import Path
 from types import ModuleType
 from typing import ClassVar, NamedTuple
@@ -226,24 +225,6 @@ def test_a_signal_whose_exception_is_dropped_ends_the_command_later(
             time.sleep(1)
 
     assert end(does) == (143, "\n", "tool: ended by SIGTERM\n")
-
-
-@WITH_TIMERS
-def test_a_signal_during_an_import_ends_the_command_after_the_import(end: End, tmp_path: Path) -> None:
-    (tmp_path / "of_this_test.py").write_text(
-        "import signal\nsignal.raise_signal(signal.SIGTERM)\nis_whole = True\n"
-    )
-
-    def does() -> None:
-        with pytest.MonkeyPatch.context() as patch:
-            patch.syspath_prepend(tmp_path)
-            module = import_module("of_this_test")
-            assert module.is_whole
-            while True:
-                time.sleep(1)
-
-    assert end(does) == (143, "\n", "tool: ended by SIGTERM\n")
-    assert sys.modules.pop("of_this_test").is_whole
 
 
 @WITH_TIMERS
