@@ -211,7 +211,7 @@ def run_command(command: click.Command, name: str) -> None:
         end = SIGNALS.ended or interrupt
         # Nobody may read what is left in the buffers: drop it.
         _discard(sys.stdout)
-        if _takes_text(sys.stderr):
+        if takes_text(sys.stderr):
             _show(name, str(end) or "interrupted")
         code = getattr(end, "exit_code", BY_SIGNAL + signal.SIGINT)
     _leave(code)
@@ -332,7 +332,7 @@ def _show(name: str, message: str) -> None:
         tell(*(f"{name}: {line}" for line in message.split("\n") if line))
 
 
-def _takes_text(stream: TextIO | None) -> bool:
+def takes_text(stream: TextIO | None) -> bool:
     """Whether writing to the stream does not wait for a reader; True where this cannot be known."""
     try:
         return stream is not None and bool(select.select([], [stream], [], 0)[1])

@@ -5,6 +5,7 @@ host port -> decoder -> processor -> frame buffer, lookup table, cursors -> scan
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from os import PathLike
 from typing import Final
 
@@ -58,17 +59,24 @@ class Ramtek9300:
 
     def send(self, words: Words) -> None:
         """Send 16-bit words; instructions may be cut anywhere. WordsError if they are not 16-bit words."""
+        for _ in self.send_stepwise(words):
+            pass
+
+    def send_stepwise(self, words: Words) -> Iterator[int]:
+        """Send words as `send` does, and pause after each instruction: yields how many words are executed."""
         stream = checked_stream(words)
         self.words_received += len(stream)
-        self._take(stream)
+        return self._take(stream)
 
-    def _take(self, stream: Words) -> None:
-        if self.beam is None:
-            for instruction in self.decoder.feed(stream, in_rows=True):
+    def _take(self, stream: Words) -> Iterator[int]:
+        for instruction in self.decoder.feed(stream, in_rows=self.beam is None):
+            # A reset during the pause feeds the decoder, too.
+            used = self.decoder.used
+            if self.beam is None:
                 execute(self.processor, instruction)
-        else:
-            for instruction in self.decoder.feed(stream):
+            else:
                 self._execute_in_time(instruction, self.beam)
+            yield used
 
     def _execute_in_time(self, instruction: Instruction, beam: Beam) -> None:
         # Lines that the beam has passed show the state before the instruction, all others the state after it.
@@ -88,7 +96,8 @@ class Ramtek9300:
         self.decoder.clear()
         self.processor.clear_replies()
         self.cursors.hide()
-        self._take(np.array([FORMAT_OF_NAME["RSET"].opcode << 8], np.uint16))
+        for _ in self._take(np.array([FORMAT_OF_NAME["RSET"].opcode << 8], np.uint16)):
+            pass
 
     def receive(self, count: int) -> Words:
         """The next `count` words of the replies, uint16; ReplyError if fewer are waiting."""

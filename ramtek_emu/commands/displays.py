@@ -3,24 +3,25 @@
 from __future__ import annotations
 
 import os
+import select
 import signal
 import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO, Final, TypeVar
 
 import click
 
-from ramtek_emu.command_line import tell as tell
+from ramtek_emu import command_line
+from ramtek_emu.command_line import ENDING, SIGNALS, takes_text
 from ramtek_emu.configuration import CONFIGURATIONS, GMR_9300
-from ramtek_emu.errors import MissingInputError, reason_of
-from ramtek_emu.writing import Output, refuse_output, write_atomically
+from ramtek_emu.errors import MissingInputError, RamtekError, reason_of
+from ramtek_emu.writing import Output, refuse_output
 
 if TYPE_CHECKING:
     from ramtek_emu.display import Ramtek9300
-    from ramtek_emu.host.pipe import Read
-    from ramtek_emu.host.server import HostSession
+    from ramtek_emu.host.server import HostSession, Record
 
 
 Function = TypeVar("Function", bound=Callable[..., object])
@@ -76,30 +77,113 @@ def refuse_outputs(force: bool, *paths: str | None) -> None:
             refuse_output(path, force)
 
 
+Handler = Callable[[int, object], object] | signal.Handlers
+
+
 @contextmanager
-def recording(path: str | None, force: bool) -> Iterator[Callable[[bytes], object] | None]:
-    """A function that records words in a file, or None without a path; the file appears if nothing fails."""
-    if path is None:
-        yield None
-        return
-    with Output(path, overwrite=force) as output:
-        yield output.write
-        output.keep()
-    tell(f"wrote {path}")
+def handling(handlers: Mapping[int, Handler]) -> Iterator[None]:
+    """Handle signals within a `with` block. Signals that the program's parent ignores stay ignored."""
+    before = {
+        number: signal.signal(number, handler)
+        for number, handler in handlers.items()
+        if signal.getsignal(number) is not signal.SIG_IGN
+    }
+    try:
+        yield
+    finally:
+        for number, previous in before.items():
+            signal.signal(number, previous)
 
 
-def write_outputs(display: Ramtek9300, output: str | None, snapshot: str | None, force: bool) -> None:
-    """Write the picture and the snapshot, if asked for, and report their names on stderr."""
-    if output is not None:
-        from ramtek_emu.png import png_bytes
+WAIT_SECONDS: Final = 0.1
+"""Limit: how long a signal may be unnoticed while nothing arrives."""
 
-        write_atomically(output, png_bytes(display.field()), overwrite=force)
-        tell(f"wrote {output}")
-    if snapshot is not None:
-        from ramtek_emu.snapshot import write_snapshot
 
-        write_snapshot(display, snapshot, overwrite=force)
-        tell(f"wrote {snapshot}")
+class Run:
+    """A display that runs for hosts or from a file, the signal that ends it, and its outputs.
+
+    A signal interrupts nothing: it is remembered, and noticed between two instructions and while waiting for
+    the host. If an output cannot be written, that is reported, and the display goes on with its other
+    outputs.
+    """
+
+    def __init__(self) -> None:
+        self.signal = 0
+        """The number of the first signal that is to end the display; 0 if there was none."""
+        self.exit_code = 0
+        """The exit code of the first output that failed; 0 if none has."""
+        self.record: Record | None = None
+        """Records words; None if no recording was asked for."""
+
+    def receive(self, number: int, _: object) -> None:
+        """Remember a signal."""
+        self.signal = self.signal or number
+
+    @property
+    def ends(self) -> bool:
+        """Whether a signal is to end the display."""
+        return self.signal != 0
+
+    def wait(self, file: int, to_write: bool = False) -> bool:
+        """Wait until a file can be read, or written; False after a signal."""
+        read, write = ([], [file]) if to_write else ([file], [])
+        while not self.signal:
+            # Windows cannot wait for a pipe.
+            if os.name == "nt" or any(select.select(read, write, [], WAIT_SECONDS)):
+                return True
+        return False
+
+    def attempt(self, write: Callable[[], object]) -> bool:
+        """Write an output, and return True; if that fails, report the reason and return False."""
+        try:
+            write()
+        except RamtekError as failure:
+            tell(f"ramtek: {failure}")
+            self.exit_code = self.exit_code or failure.exit_code
+            return False
+        return True
+
+
+@contextmanager
+def running(
+    display: Ramtek9300,
+    output: str | None = None,
+    snapshot: str | None = None,
+    record: str | None = None,
+    force: bool = False,
+) -> Iterator[Run]:
+    """Run a display in a `with` block. At its end the recording, the picture and the snapshot are written.
+
+    SIGINT, SIGTERM and SIGHUP end the display, but no output is lost: see `Run`. If an output failed, the
+    command ends with its exit code. After any other error, no output is written.
+    """
+    run = Run()
+    with handling(dict.fromkeys(ENDING, run.receive)), ExitStack() as opened:
+        if record is not None:
+            recording = opened.enter_context(Output(record, overwrite=force))
+
+            def record_words(data: bytes) -> None:
+                nonlocal record
+                if record is not None and not run.attempt(lambda: recording.write(data)):
+                    tell("the display goes on without its recording")
+                    record = None
+                    opened.close()
+
+            run.record = record_words
+        yield run
+        if record is not None and run.attempt(recording.keep):
+            tell(f"wrote {record}")
+        if output is not None and run.attempt(lambda: display.save_png(output, overwrite=force)):
+            tell(f"wrote {output}")
+        if snapshot is not None:
+            from ramtek_emu.snapshot import write_snapshot
+
+            if run.attempt(lambda: write_snapshot(display, snapshot, overwrite=force)):
+                tell(f"wrote {snapshot}")
+        # A signal that was noticed must not end the command a second time.
+        SIGNALS.ignored = run.ends
+    if run.exit_code:
+        raise click.exceptions.Exit(run.exit_code)
 
 
 def open_stream(path: str) -> BinaryIO:
@@ -122,60 +206,11 @@ def open_stream(path: str) -> BinaryIO:
         ) from None
 
 
-def reader_of(file: BinaryIO) -> Callable[[int], bytes]:
-    """A function `read(most)` that returns the available bytes, up to `most`; none at the end."""
-    number = file.fileno()
-
-    def read(most: int) -> bytes:
-        try:
-            return os.read(number, most)
-        except OSError as cause:
-            raise MissingInputError(
-                f"a stream must be readable to its end, not fail ({reason_of(cause)}); try a copy of it"
-            ) from None
-
-    return read
-
-
-class EndSignals:
-    """Remembers Ctrl+C or a termination signal, which end a server without an error."""
-
-    def __init__(self) -> None:
-        self.received = False
-        self._waiting = False
-
-    def receive(self, *_: object) -> None:
-        """Remember the signal, and interrupt a read that is waiting."""
-        self.received = True
-        if self._waiting:
-            raise InterruptedError
-
-    def until_received(self, read: Read) -> Read:
-        """A function like `read` that returns no bytes after the signal, or if reading fails."""
-
-        def read_until_received(most: int) -> bytes:
-            try:
-                self._waiting = True
-                return b"" if self.received else read(most)
-            except OSError:
-                # A terminal or a socket also raises it after its other end was closed.
-                return b""
-            finally:
-                self._waiting = False
-
-        return read_until_received
-
-
-@contextmanager
-def end_signals() -> Iterator[EndSignals]:
-    """Handle Ctrl+C and termination signals within a `with` block."""
-    signals = EndSignals()
-    before = {number: signal.signal(number, signals.receive) for number in (signal.SIGINT, signal.SIGTERM)}
-    try:
-        yield signals
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
+def tell(message: str) -> None:
+    """Print a message on stderr; stdout is for results. If nobody reads stderr, the message is dropped."""
+    if takes_text(sys.stderr):
+        with suppress(OSError):
+            command_line.tell(message)
 
 
 TICK_SECONDS: Final = 0.01
@@ -183,30 +218,37 @@ TICK_SECONDS: Final = 0.01
 
 
 def show(
-    display: Ramtek9300, serve_for: Callable[[float], None], waits: Callable[[], bool] = lambda: False
+    display: Ramtek9300,
+    run: Run,
+    serve_for: Callable[[float], None],
+    waits: Callable[[], bool] = lambda: False,
 ) -> None:
-    """Show the display in a window until the window is closed; `serve_for` is called at each tick.
+    """Show the display in a window until it is closed, or a signal ends it. Each tick calls `serve_for`.
 
     While `waits()` is true, `serve_for` itself waits for a host's words, and the window does not wait for
     input.
     """
-    # Signals close the window between two ticks, never while a host is served; outputs are still written.
-    with end_signals() as signals:
-        from ramtek_emu.monitor.window import TICK_MILLISECONDS, Monitor
+    from ramtek_emu.monitor.window import TICK_MILLISECONDS, Monitor
 
-        def tick() -> None:
-            if signals.received:
-                monitor.close()
-            else:
-                serve_for(TICK_SECONDS)
-
-        monitor = Monitor(display, f"RAMTEK {display.configuration.name.replace('_', ' ')}", on_tick=tick)
-        monitor.open()
-        try:
-            while monitor.is_open:
-                monitor.step(0 if waits() else TICK_MILLISECONDS)
-        finally:
+    def tick() -> None:
+        if run.ends:
             monitor.close()
+        else:
+            serve_for(TICK_SECONDS)
+
+    monitor = Monitor(display, f"RAMTEK {display.configuration.name.replace('_', ' ')}", on_tick=tick)
+    monitor.open()
+    try:
+        while monitor.is_open:
+            monitor.step(0 if waits() else TICK_MILLISECONDS)
+    finally:
+        monitor.close()
+
+
+def tell_unexecuted(words: int) -> None:
+    """Report words that had arrived when the display ended."""
+    if words:
+        tell(f"{words:,} {'word' if words == 1 else 'words'} of the host arrived and were not executed")
 
 
 def tell_the_end(session: HostSession) -> None:

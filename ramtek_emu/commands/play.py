@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
+import os
 from typing import Final
 
 import click
 
+from ramtek_emu.command_line import Ended
 from ramtek_emu.commands.displays import (
     display_asked_for,
     display_options,
     open_stream,
-    reader_of,
-    recording,
     refuse_outputs,
+    running,
     show,
     tell_the_end,
-    write_outputs,
+    tell_unexecuted,
 )
+from ramtek_emu.errors import MissingInputError, reason_of
 
 EXAMPLES: Final = """\b
 Examples:
@@ -59,19 +61,30 @@ def play(
     file = open_stream(stream)
     display = display_asked_for(configuration, start)
 
-    from ramtek_emu.host.pipe import PolledPipe, serve_pipe
+    from ramtek_emu.host.pipe import PacedReader, PolledPipe, serve_pipe
+    from ramtek_emu.host.port import waiting_bytes
     from ramtek_emu.host.server import HostSession
 
-    read = reader_of(file)
-    with recording(record, force) as write:
-        session = HostSession(display, write)
-        if in_window:
-            if loads_per_second is not None:
-                from ramtek_emu.host.pipe import PacedReader
+    number = file.fileno()
+    with file, running(display, output, snapshot, record, force) as run:
 
-                read = PacedReader(read, loads_per_second, display.configuration)
-            show(display, PolledPipe(session, read).serve_for)
-        else:
-            serve_pipe(session, read, None)
-            tell_the_end(session)
-    write_outputs(display, output, snapshot, force)
+        def read(most: int) -> bytes:
+            try:
+                return os.read(number, most) if run.wait(number) else b""
+            except OSError as cause:
+                raise MissingInputError(
+                    f"a stream must be readable to its end, not fail ({reason_of(cause)}); try a copy of it"
+                ) from None
+
+        session = HostSession(display, run.record)
+        if in_window:
+            paced = read
+            if loads_per_second is not None:
+                paced = PacedReader(read, loads_per_second, display.configuration)
+            show(display, run, PolledPipe(session, paced).serve_for)
+            return
+        serve_pipe(session, read, None, lambda: run.ends)
+        tell_the_end(session)
+        tell_unexecuted(session.unexecuted + waiting_bytes(number) // 2)
+    if run.signal:
+        raise Ended(run.signal)

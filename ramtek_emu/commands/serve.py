@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import os
+import select
+import stat
 import sys
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from functools import partial
 from typing import TYPE_CHECKING, Final
 
@@ -14,16 +17,16 @@ import click
 from ramtek_emu.commands.displays import (
     display_asked_for,
     display_options,
-    end_signals,
-    recording,
     refuse_outputs,
+    running,
     show,
     tell,
     tell_the_end,
-    write_outputs,
+    tell_unexecuted,
 )
 
 if TYPE_CHECKING:
+    from ramtek_emu.commands.displays import Run
     from ramtek_emu.host.joystick import JoystickLines
     from ramtek_emu.host.pipe import Read, Write
     from ramtek_emu.host.server import HostSession, Server, TcpServer, UnixServer
@@ -38,13 +41,17 @@ Examples:
   socat EXEC:./old_program EXEC:'ramtek serve --stdio'    one that reads back as well
 """
 
-STEP_SECONDS: Final = 0.25
+STEP_SECONDS: Final = 0.1
 JOYSTICK_SECONDS: Final = 0.02
 """How long a line for the joystick may wait while no words arrive."""
 HOST_SECONDS: Final = 0.005
 """How long the input of a window may wait while a connected host sends nothing. Its words never wait."""
 PIPE_SECONDS: Final = 0.002
 """How long words on a pipe may wait if `--joystick` is given."""
+WRITTEN_AT_ONCE: Final = 512 if sys.platform == "win32" else select.PIPE_BUF
+"""The most bytes that any pipe takes without waiting, if it can be written."""
+MOST_WRITTEN: Final = 1 << 16
+"""The most bytes that are written at once to a pipe that never waits."""
 
 
 @click.command(epilog=EXAMPLES)
@@ -110,39 +117,41 @@ def serve(
             return None
         return JoystickLines(joystick, display.joystick, resettable.reset, tell)
 
-    with recording(record, force) as write:
+    with running(display, output, snapshot, record, force) as run:
         if stdio:
-            session = HostSession(display, write)
-            serve_stdio(session, window, lines_for(session))
+            session = HostSession(display, run.record)
+            serve_stdio(session, run, window, lines_for(session))
         else:
             server: TcpServer | UnixServer
             if unix is not None:
-                server = UnixServer(display, unix, idle_seconds=idle, record=write)
+                server = UnixServer(display, unix, idle_seconds=idle, record=run.record)
             else:
-                server = TcpServer(display, port or 0, host, idle_seconds=idle, record=write)
+                server = TcpServer(display, port or 0, host, idle_seconds=idle, record=run.record)
             with server:
-                serve_hosts(server, window, once, lines_for(server))
-    write_outputs(display, output, snapshot, force)
+                serve_hosts(server, run, window, once, lines_for(server))
+                tell_unexecuted(server.unexecuted)
 
 
-def serve_stdio(session: HostSession, window: bool, lines: JoystickLines | None = None) -> None:
+def serve_stdio(session: HostSession, run: Run, window: bool, lines: JoystickLines | None = None) -> None:
     """Serve the program at the other end of stdin and stdout until it closes its end."""
     from ramtek_emu.host.pipe import PolledPipe, serve_pipe
+    from ramtek_emu.host.port import waiting_bytes
 
-    read, write = standard_streams()
+    read, write = standard_streams(run)
+    source: HostSession | PolledPipe = session
     if window:
-        show(session.display, obeying(lines, PolledPipe(session, read, write).serve_for))
-        return
-    with end_signals() as signals:
-        if lines is None:
-            serve_pipe(session, signals.until_received(read), write)
-        else:
-            pipe = PolledPipe(session, read, write)
-            while not signals.received and not (pipe.ended and pipe.has_replied):
-                lines.obey()
-                if pipe.ended or not pipe.step():
-                    time.sleep(PIPE_SECONDS)
+        source = pipe = PolledPipe(session, read, write)
+        show(session.display, run, obeying(lines, pipe.serve_for))
+    elif lines is None:
+        serve_pipe(session, read, write, lambda: run.ends)
+    else:
+        source = pipe = PolledPipe(session, read, write)
+        while not run.ends and not (pipe.ended and pipe.has_replied):
+            lines.obey()
+            if pipe.ended or not pipe.step():
+                time.sleep(PIPE_SECONDS)
     tell_the_end(session)
+    tell_unexecuted(source.unexecuted + (waiting_bytes(sys.stdin.fileno()) // 2 if sys.stdin else 0))
 
 
 def obeying(lines: JoystickLines | None, serve_for: Callable[[float], None]) -> Callable[[float], None]:
@@ -158,17 +167,23 @@ def obeying(lines: JoystickLines | None, serve_for: Callable[[float], None]) -> 
     return obey_and_serve_for
 
 
-def standard_streams() -> tuple[Read, Write | None]:
-    """Functions that read stdin and write stdout. After this call, nothing else can write to stdout."""
+def standard_streams(run: Run) -> tuple[Read, Write | None]:
+    """Functions that read stdin and write stdout until a signal ends the display.
+
+    After this call, nothing else can write to stdout.
+    """
     if sys.stdin is None:
         return lambda _: b"", None
     number = sys.stdin.fileno()
 
     def read(most: int) -> bytes:
-        return os.read(number, most)
+        # A terminal or a socket raises an error if its other end was closed.
+        with suppress(OSError):
+            return os.read(number, most) if run.wait(number) else b""
+        return b""
 
     try:
-        replies = os.dup(sys.stdout.fileno())
+        replies, at_once = replies_to(sys.stdout.fileno())
         # Redirect all printed text to stderr, so that it does not mix with the words.
         os.dup2(sys.stderr.fileno() if sys.stderr is not None else replies, sys.stdout.fileno())
     except OSError:
@@ -176,16 +191,26 @@ def standard_streams() -> tuple[Read, Write | None]:
 
     def write(data: bytes) -> None:
         view = memoryview(data)
-        while view:
-            view = view[os.write(replies, view) :]
+        while view and run.wait(replies, to_write=True):
+            with suppress(BlockingIOError):
+                view = view[os.write(replies, view[:at_once]) :]
 
     return read, write
 
 
+def replies_to(stdout: int) -> tuple[int, int]:
+    """A descriptor for replies, and how many bytes it takes without waiting once it can be written."""
+    with suppress(OSError):
+        if sys.platform == "linux" and stat.S_ISFIFO(os.fstat(stdout).st_mode):
+            # A pipe that is opened anew can be set not to wait. For others that write to stdout it still waits.
+            return os.open(f"/proc/self/fd/{stdout}", os.O_WRONLY | os.O_NONBLOCK), MOST_WRITTEN
+    return os.dup(stdout), WRITTEN_AT_ONCE
+
+
 def serve_hosts(
-    server: TcpServer | UnixServer, window: bool, once: bool, lines: JoystickLines | None = None
+    server: TcpServer | UnixServer, run: Run, window: bool, once: bool, lines: JoystickLines | None = None
 ) -> None:
-    """Serve hosts until Ctrl+C, until the window is closed, or, with `once`, until a host leaves."""
+    """Serve hosts until a signal, until the window is closed, or, with `once`, until a host leaves."""
     if window:
         from ramtek_emu.monitor.window import open_screen
 
@@ -193,14 +218,13 @@ def serve_hosts(
         open_screen()
         announce(server)
         serve_for = partial(server.serve_for, wait=HOST_SECONDS)
-        show(server.display, obeying(lines, serve_for), lambda: server.busy)
+        show(server.display, run, obeying(lines, serve_for), lambda: server.busy)
         return
-    with end_signals() as signals:
-        announce(server)
-        while not signals.received and not (once and server.served):
-            if lines is not None:
-                lines.obey()
-            server.step(STEP_SECONDS if lines is None else JOYSTICK_SECONDS)
+    announce(server)
+    while not run.ends and not (once and server.served):
+        if lines is not None:
+            lines.obey()
+        server.step(STEP_SECONDS if lines is None else JOYSTICK_SECONDS)
 
 
 def announce(server: TcpServer | UnixServer) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import platform
+import re
 import shutil
 import signal
 import socket
@@ -13,6 +14,8 @@ from typing import TYPE_CHECKING, Final, NamedTuple, NoReturn
 
 import click
 
+from ramtek_emu.command_line import ENDING
+from ramtek_emu.commands.displays import Handler, handling
 from ramtek_emu.errors import MissingInputError, OutputError, OutputExistsError, PortError, reason_of
 
 if TYPE_CHECKING:
@@ -93,12 +96,15 @@ def refuse_systems_without_pidfd() -> None:
 @contextmanager
 def terminal() -> Iterator[tuple[int, str]]:
     """A pseudoterminal in raw mode: our side, and the path of the program's side."""
+    import fcntl
     import pty
     import tty as terminal_modes
 
     ours, theirs = pty.openpty()
     try:
         terminal_modes.setraw(theirs)
+        # The lock says that the device is in use; it goes with this process.
+        fcntl.lockf(theirs, fcntl.LOCK_EX, 1)
         # Keep the program's side open, so that the program may close and open it as often as it likes.
         yield ours, os.ttyname(theirs)
     finally:
@@ -108,8 +114,13 @@ def terminal() -> Iterator[tuple[int, str]]:
 
 @contextmanager
 def linked(name: str, device: str) -> Iterator[None]:
-    """Make a name a link to the device; OutputExistsError or OutputError if that cannot be done."""
+    """Make a name a link to the device; OutputExistsError or OutputError if that cannot be done.
+
+    The link of a `ramtek tty` that was killed is replaced.
+    """
     try:
+        if is_stale(name, device):
+            os.unlink(name)
         os.symlink(device, name)
     except FileExistsError:
         raise OutputExistsError(
@@ -125,6 +136,30 @@ def linked(name: str, device: str) -> Iterator[None]:
         with suppress(OSError):
             if os.readlink(name) == device:
                 os.unlink(name)
+
+
+def is_stale(name: str, our_device: str) -> bool:
+    """Whether a name is a link to a device that no `ramtek tty` uses any longer, or that we use now."""
+    import fcntl
+
+    try:
+        device = os.readlink(name)
+        if re.fullmatch("/dev/pts/[0-9]+", device) is None:
+            return False
+        if device == our_device:
+            return True
+        number = os.open(device, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
+    except FileNotFoundError:
+        return os.path.islink(name)
+    except OSError:
+        return False
+    try:
+        fcntl.lockf(number, fcntl.LOCK_EX | fcntl.LOCK_NB, 1)
+    except OSError:
+        return False
+    finally:
+        os.close(number)
+    return True
 
 
 class Running(NamedTuple):
@@ -145,30 +180,29 @@ def started(command: list[str], environment: dict[str, str], with_notices: bool)
     """
     from ramtek_emu.host.device import WriteNotices
 
-    process, notices_file = forked(command, environment, with_notices)
-    notices = None if notices_file is None else WriteNotices(notices_file)
-    ended = os.pidfd_open(process)
-
     def pass_on(number: int, _: object = None) -> None:
         with suppress(ProcessLookupError):
             signal.pidfd_send_signal(ended, number)
 
-    before = {
-        signal.SIGINT: signal.signal(signal.SIGINT, signal.SIG_IGN),
-        signal.SIGTERM: signal.signal(signal.SIGTERM, pass_on),
-        signal.SIGHUP: signal.signal(signal.SIGHUP, pass_on),
-    }
-    try:
-        yield Running(process, ended, notices)
-    except PortError:
-        pass_on(signal.SIGHUP)
-        raise
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
-        os.close(ended)
-        if notices is not None:
-            notices.close()
+    handlers: dict[int, Handler] = {**dict.fromkeys(ENDING, pass_on), signal.SIGINT: signal.SIG_IGN}
+    with ExitStack() as opened:
+        # A signal that arrives meanwhile is for the program, too.
+        signal.pthread_sigmask(signal.SIG_BLOCK, ENDING)
+        try:
+            process, notices_file = forked(command, environment, with_notices)
+            ended = os.pidfd_open(process)
+            opened.callback(os.close, ended)
+            notices = None if notices_file is None else WriteNotices(notices_file)
+            if notices is not None:
+                opened.callback(notices.close)
+            opened.enter_context(handling(handlers))
+        finally:
+            signal.pthread_sigmask(signal.SIG_UNBLOCK, ENDING)
+        try:
+            yield Running(process, ended, notices)
+        except PortError:
+            pass_on(signal.SIGHUP)
+            raise
 
 
 WITH_NOTICES: Final = b"notices"
@@ -212,7 +246,10 @@ def become(
     from ramtek_emu.host.device import ask_for_notices
 
     try:
-        signal.signal(signal.SIGPIPE, signal.SIG_DFL)
+        for number in (*ENDING, signal.SIGPIPE):
+            if number == signal.SIGPIPE or signal.getsignal(number) is not signal.SIG_IGN:
+                signal.signal(number, signal.SIG_DFL)
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, ENDING)
         if with_notices:
             socket.send_fds(parent, [WITH_NOTICES], [ask_for_notices()])
         else:

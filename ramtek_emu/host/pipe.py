@@ -28,13 +28,18 @@ Read = Callable[[int], bytes]
 Write = Callable[[bytes], object]
 
 
-def serve_pipe(session: HostSession, read: Read, write: Write | None) -> None:
+def serve_pipe(
+    session: HostSession, read: Read, write: Write | None, ends: Callable[[], bool] = lambda: False
+) -> None:
     """Execute the bytes that `read` returns until it returns none; pass replies to `write` at once.
 
     `read(most)` returns the available bytes, at most `most` of them. Without `write`, replies are dropped.
+    When `ends()` is true, the rest of the words is not executed.
     """
     while data := read(READ_BYTES):
         for reply in session.feed(data):
+            if ends():
+                return
             if reply and write is not None:
                 try:
                     write(reply)
@@ -62,6 +67,11 @@ class PolledPipe:
     def has_replied(self) -> bool:
         """Whether all replies were written, or the host no longer reads them."""
         return self._write is None or not (self._reply or self._replies.unfinished_tasks)
+
+    @property
+    def unexecuted(self) -> int:
+        """The number of words that were read and are not executed."""
+        return self.session.unexecuted + sum(map(len, tuple(self._data.queue))) // 2
 
     def step(self) -> bool:
         """Execute a piece of words; returns False if none has arrived, or if the last reply must wait."""

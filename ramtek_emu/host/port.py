@@ -114,7 +114,7 @@ class Wire:
             if self.keeps_writes:
                 packet = self.socket.recv(PACKET_BYTES)
                 return packet or (Sign.END if self._has_ended() else Sign.MARK)
-            if self._number(SIOCATMARK):
+            if answer_of(self.socket, SIOCATMARK):
                 self.socket.recv(1)
                 return Sign.MARK
             return self.socket.recv(most) or Sign.END
@@ -151,19 +151,32 @@ class Wire:
         """Whether an empty packet is the end: the other side has hung up, and no bytes are waiting."""
         if not MARKS_WORK:
             return True
-        from termios import FIONREAD
-
         poll = select.poll()
         poll.register(self.socket, select.POLLRDHUP)
-        return bool(poll.poll(0)) and not self._number(FIONREAD)
+        return bool(poll.poll(0)) and not waiting_bytes(self.socket)
 
-    def _number(self, request: int) -> int:
-        """The system's answer to a request about the socket; 0 on systems without such requests."""
-        if not MARKS_WORK:
-            return 0
-        from fcntl import ioctl
 
-        return int.from_bytes(ioctl(self.socket, request, bytes(struct.calcsize("i"))), sys.byteorder)
+def waiting_bytes(file: socket.socket | int) -> int:
+    """The number of bytes that have arrived at a socket or a pipe, or that are left in a file.
+
+    0 on systems that do not tell.
+    """
+    if not MARKS_WORK:
+        return 0
+    from termios import FIONREAD
+
+    with suppress(OSError):
+        return answer_of(file, FIONREAD)
+    return 0
+
+
+def answer_of(file: socket.socket | int, request: int) -> int:
+    """The system's answer to a request about an open file; 0 on systems without such requests."""
+    if not MARKS_WORK:
+        return 0
+    from fcntl import ioctl
+
+    return int.from_bytes(ioctl(file, request, bytes(struct.calcsize("i"))), sys.byteorder)
 
 
 MOST_SECONDS: Final = 1_000_000
@@ -171,7 +184,7 @@ MOST_SECONDS: Final = 1_000_000
 MOST_UNREAD: Final = 1 << 28
 """Limit: bytes of replies that were not received yet. Another server than a display may send without end."""
 HURRIED_SECONDS: Final = 0.25
-"""The longest wait for the display when an error closes the port. Limit: a hang would hide the error."""
+"""The longest wait for the display when an error or a signal closes the port. Limit: a hang would hide it."""
 
 Self = TypeVar("Self", bound="SocketPort")
 

@@ -35,47 +35,36 @@ from typing import Final, TypeVar
 import numpy as np
 
 from ramtek_emu import instructions
-from ramtek_emu.arrays import Booleans, Words
+from ramtek_emu.arrays import Words
 from ramtek_emu.display import Ramtek9300
 from ramtek_emu.errors import OutputError, OutputExistsError, PortError, reason_of
-from ramtek_emu.host.port import Sign, Wire, packet_socket
+from ramtek_emu.host.port import Sign, Wire, packet_socket, waiting_bytes
 from ramtek_emu.instruction_set.instruction import NO_WORDS
-from ramtek_emu.instruction_set.table import FORMATS
 
 Record = Callable[[bytes], object]
 """A function that records the bytes of whole instructions, in order."""
 
-SMALLEST_PIECE: Final = 4
-LARGEST_PIECE: Final = 1 << 15
-"""The smallest and the largest number of words passed to the display at once."""
-LONG_SECONDS: Final = 0.004
-SHORT_SECONDS: Final = 0.001
-"""After a piece that took longer than LONG_SECONDS, the next is smaller; after a shorter time, larger."""
-READING_PIECE: Final = 64
-"""The size of a piece that may contain reading instructions: at most 32 of them, of at most 32,767 words."""
+SLICE_SECONDS: Final = 0.004
+"""How long words are executed before the session pauses; a pause is between two instructions."""
 REPLY_PIECE: Final = 1 << 15
-"""The largest number of words of replies returned at once."""
-REPLYING: Final[Booleans] = np.isin(np.arange(256), [row.opcode for row in FORMATS if row.replies])
-"""Whether the display replies, for each opcode."""
+"""The words of waiting replies at which the session pauses, and the most that are returned at once."""
 
 
 class HostSession:
     """A host at a display: passes the bytes of its words on and the bytes of replies back, on any wire.
 
-    The words are passed on in pieces. A piece that may contain reading instructions is small, so that waiting
-    replies never outgrow the processor's bound; the next piece waits until the replies were taken. A piece is
-    also small if the last piece took long, so that a window that is served in between stays responsive.
+    The session pauses often: a window is served in between, a signal is noticed, and replies are taken before
+    they outgrow the processor's bound.
     """
 
     def __init__(self, display: Ramtek9300, record: Record | None = None) -> None:
         self.display = display
         self._record = record
         self._unrecorded = NO_WORDS
-        self.words = 0
-        """The number of words that the host has sent; it never decreases."""
+        self.unexecuted = 0
+        """The number of words of the last `feed` that are not executed yet."""
         self.odd_byte = b""
         """The first byte of a word whose second byte has not arrived."""
-        self._size = READING_PIECE
         self.leave()
 
     @property
@@ -84,38 +73,46 @@ class HostSession:
         return bool(self.odd_byte) or self.display.decoder.pending_words > 0
 
     def feed(self, data: bytes) -> Iterator[bytes]:
-        """Pass bytes of the host to the display, piece by piece, and yield the replies after a piece.
+        """Pass bytes of the host to the display, and yield the replies, or no bytes, at every pause.
 
-        The next piece waits until the iterator is asked for more.
+        The session goes on when the iterator is asked for more.
         """
         data = self.odd_byte + data
         self.odd_byte = data[len(data) & ~1 :]
         words = np.frombuffer(data, "<u2", len(data) // 2).astype(np.uint16, copy=False)
-        most = READING_PIECE if REPLYING[words >> 8].any() else LARGEST_PIECE
-        place = 0
-        while place < len(words):
-            piece = words[place : place + min(self._size, most)]
-            place += len(piece)
-            begin = time.perf_counter()
-            self.display.send(piece)
-            took = time.perf_counter() - begin
-            if took > LONG_SECONDS:
-                self._size = max(SMALLEST_PIECE, self._size // 8)
-            elif took < SHORT_SECONDS:
-                self._size = min(LARGEST_PIECE, 2 * self._size)
-            self.words += len(piece)
-            if self._record is not None:
-                self._unrecorded = self._recorded(self._record, piece)
-            yield b""
-            while waiting := self.display.processor.waiting:
-                yield self.display.receive(min(waiting, REPLY_PIECE)).astype("<u2", copy=False).tobytes()
+        self.unexecuted = len(words)
+        return self._execute(words)
 
-    def _recorded(self, record: Record, piece: Words) -> Words:
-        """Record the complete instructions, and return the words of the incomplete instruction."""
-        words = np.concatenate((self._unrecorded, piece))
-        whole = len(words) - self.display.decoder.pending_words
-        record(words[:whole].astype("<u2", copy=False).tobytes())
-        return words[whole:]
+    def _execute(self, words: Words) -> Iterator[bytes]:
+        processor, clock = self.display.processor, time.perf_counter
+        steps = self.display.send_stepwise(words)
+        begin = place = 0
+        while self.unexecuted:
+            due = clock() + SLICE_SECONDS
+            for place in steps:
+                if clock() >= due or processor.waiting >= REPLY_PIECE:
+                    self.unexecuted = len(words) - place
+                    break
+            else:
+                self.unexecuted = 0
+            if self._record is not None:
+                self._record_words(self._record, words[begin:place], words[place:])
+            begin = place
+            yield self._reply()
+            while processor.waiting:
+                yield self._reply()
+
+    def _record_words(self, record: Record, executed: Words, rest: Words) -> None:
+        """Record whole instructions; at the end, keep the words of an incomplete instruction for later."""
+        if len(executed):
+            record(np.concatenate((self._unrecorded, executed)).astype("<u2", copy=False).tobytes())
+            self._unrecorded = NO_WORDS
+        if not self.unexecuted:
+            self._unrecorded = np.concatenate((self._unrecorded, rest))
+
+    def _reply(self) -> bytes:
+        count = min(self.display.processor.waiting, REPLY_PIECE)
+        return self.display.receive(count).astype("<u2", copy=False).tobytes()
 
     def reset(self) -> None:
         """Reset the display; the recording gets a reset at the same place.
@@ -130,7 +127,7 @@ class HostSession:
 
     def leave(self) -> None:
         """Drop the incomplete instruction, the odd byte and the unread replies."""
-        self.odd_byte = b""
+        self.unexecuted, self.odd_byte = 0, b""
         self._unrecorded = NO_WORDS
         self.display.decoder.clear()
         self.display.receive(self.display.processor.waiting)
@@ -263,6 +260,12 @@ class Client:
             self._last_complete = time.monotonic()
         return True
 
+    @property
+    def unexecuted(self) -> int:
+        """The number of the host's words that have arrived and are not executed."""
+        data = waiting_bytes(self.wire.socket) + len(self.session.odd_byte)
+        return data // 2 + self.session.unexecuted
+
     def leave(self) -> None:
         """Close the wire and drop the unfinished instruction and the replies."""
         if self._pending is not None:
@@ -309,6 +312,11 @@ class Server:
     def busy(self) -> bool:
         """Whether a host is being served."""
         return self._client is not None
+
+    @property
+    def unexecuted(self) -> int:
+        """The number of words of the host that is served which have arrived and are not executed."""
+        return 0 if self._client is None else self._client.unexecuted
 
     def step(self, seconds: float = 0.0) -> bool:
         """Serve once, waiting up to `seconds` for an event; returns whether anything was done."""

@@ -53,6 +53,8 @@ class Decoder:
         self._pending: Words = np.empty(MOST_WORDS, np.uint16)
         self._count = 0
         self._needed = 1
+        self.used = 0
+        """How many words of the last `feed` belong to the instructions that it has yielded."""
 
     def __getstate__(self) -> tuple[bool, Words, int]:
         return self._extended, self._pending[: self._count].copy(), self._needed
@@ -80,7 +82,7 @@ class Decoder:
         An illegal word becomes an instruction with the format ILLEGAL. With `in_rows=True`, consecutive
         illegal words become the data of a single instruction.
         """
-        place = 0
+        place = self.used = 0
         while self._count and place < len(words):
             taken = min(self._needed - self._count, len(words) - place)
             self._pending[self._count : self._count + taken] = words[place : place + taken]
@@ -94,14 +96,15 @@ class Decoder:
             if self._needed == self._count:
                 whole = self._pending[: self._count].copy()
                 self.clear()
+                self.used = place
                 yield instruction_of(format, head, whole)
         while place < len(words):
             head = words[place : place + MOST_HEAD].tolist()
             format = self._format(head[0])
             if in_rows and format is ILLEGAL:
                 row = self._illegal_row(words, place)
-                yield Instruction(ILLEGAL, 0, {}, None, words[place : place + row])
-                place += row
+                self.used = place = place + row
+                yield Instruction(ILLEGAL, 0, {}, None, words[place - row : place])
                 continue
             needed = words_needed(format, head)
             if needed > len(words) - place:
@@ -109,7 +112,7 @@ class Decoder:
                 self._needed, self._count = needed, len(words) - place
                 self._pending[: self._count] = words[place:]
                 return
-            place += needed
+            self.used = place = place + needed
             yield instruction_of(format, head, words[place - needed : place])
 
     def _illegal_row(self, words: Words, place: int) -> int:

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-import os
+import re
 import signal
 import subprocess
 import sys
@@ -10,12 +10,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.shell_completion import BashComplete
+from click.testing import CliRunner
 
-from ramtek_emu import PRINCETON_9300, Ramtek9300, TcpPort, read_snapshot
-from ramtek_emu.commands.displays import end_signals
+from ramtek_emu import PRINCETON_9300, Ramtek9300, TcpPort, UnixPort, WriteError, read_snapshot
+from ramtek_emu.command_line import ENDING
+from ramtek_emu.commands.displays import running
 from ramtek_emu.commands.ramtek import ramtek
-from tests.ramtek_emu.processes import environment, run, started, stream
+from ramtek_emu.writing import Output
+from tests.ramtek_emu import processes
+from tests.ramtek_emu.processes import environment, run, stream
 from tests.ramtek_emu.recorded_streams import COLOR_MAP, OUTLINE, words
+from tests.ramtek_emu.serving import until
+from tests.signals import Row, attack, filling, printing, recording, row_of, unread
 
 
 @pytest.mark.parametrize("command", [[], ["play"], ["list"], ["serve"]])
@@ -43,7 +49,7 @@ def test_help_has_examples_and_loads_nothing_heavy(command: str) -> None:
 
 def test_recordings_hold_whole_instructions(tmp_path: Path) -> None:
     record = tmp_path / "hosts.ramtek"
-    with started("serve", "--port", 0, "--record", record) as process:
+    with processes.started("serve", "--port", 0, "--record", record) as process:
         assert process.stdout is not None
         address = process.stdout.readline().decode().strip()
         for part in (OUTLINE, words("0A03 0040 0 0"), COLOR_MAP):
@@ -78,25 +84,94 @@ def test_a_display_goes_on_from_a_snapshot(tmp_path: Path) -> None:
     )
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_signal_ends_a_waiting_read_and_all_later_reads(number: signal.Signals) -> None:
-    read_end, write_end = os.pipe()
-    before = signal.getsignal(number)
-    with end_signals() as signals:
-        read = signals.until_received(lambda most: os.read(read_end, most))
-        os.write(write_end, b"words")
-        assert read(5) == b"words"
-        assert not signals.received
-        threading.Timer(0.2, os.kill, (os.getpid(), number)).start()
-        assert read(5) == b""
-        assert signals.received
-        os.write(write_end, b"words")
-        assert read(5) == b""
-    assert signal.getsignal(number) is before
-    os.close(read_end)
-    os.close(write_end)
+ATTACKS = (
+    (row_of("serve --stdio -o", filling), signal.SIGTERM, r"[0-9],[0-9]{3} words of the host arrived and"),
+    (row_of("serve --stdio -o", unread), signal.SIGHUP, ""),
+    (row_of("serve --unix", filling), signal.SIGHUP, r"[0-9],[0-9]{3} words of the host arrived and"),
+    (row_of("serve --port", filling), signal.SIGINT, r"[0-9],[0-9]{3} words of the host arrived and"),
+    (row_of("play", recording), signal.SIGHUP, ""),
+    (row_of("list", printing), signal.SIGTERM, ""),
+)
 
 
-def test_a_read_that_fails_is_the_end() -> None:
-    with end_signals() as signals:
-        assert signals.until_received(lambda most: os.read(-1, most))(5) == b""
+@pytest.mark.parametrize(("row", "number", "said"), ATTACKS)
+def test_a_signal_ends_a_command_in_order_at_any_moment(
+    row: Row, number: signal.Signals, said: str, tmp_path: Path
+) -> None:
+    assert re.search(said, attack(row, number, tmp_path)[1])
+
+
+OUTPUTS = ("o.png", "s.png", "r.ramtek")
+
+
+def test_signals_lose_no_output_also_while_the_outputs_are_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    handlers = [signal.getsignal(number) for number in ENDING]
+    display = Ramtek9300()
+    save = display.save_png
+
+    def interrupted(path: str, overwrite: bool) -> None:
+        for number in ENDING:
+            signal.raise_signal(number)
+        save(path, overwrite)
+
+    monkeypatch.setattr(display, "save_png", interrupted)
+    with running(display, *OUTPUTS) as run:
+        assert not run.ends
+        for number in ENDING:
+            signal.raise_signal(number)
+        assert run.signal == ENDING[0]
+        assert not run.wait(0)
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted(OUTPUTS)
+    assert [signal.getsignal(number) for number in ENDING] == handlers
+
+
+def test_a_signal_that_was_ignored_before_stays_ignored() -> None:
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    try:
+        with running(Ramtek9300()) as run:
+            signal.raise_signal(signal.SIGHUP)
+            assert not run.ends
+        assert signal.getsignal(signal.SIGHUP) is signal.SIG_IGN
+    finally:
+        signal.signal(signal.SIGHUP, before)
+
+
+@pytest.mark.parametrize("command", [["play", "drawing"], ["serve", "--once", "--unix", "display"]])
+def test_a_recording_that_fails_is_reported_once_and_the_display_goes_on_without_it(
+    command: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "drawing").write_bytes(stream(OUTLINE))
+
+    def fail(output: Output, _: bytes) -> None:
+        raise WriteError(f"{output.path.name} is full")
+
+    def draw() -> None:
+        until((tmp_path / "display").exists)
+        with UnixPort("display") as port:
+            for part in np.array_split(OUTLINE, 3):
+                port.send(part)
+
+    monkeypatch.setattr(Output, "write", fail)
+    monkeypatch.setattr(
+        "ramtek_emu.snapshot.write_atomically", lambda path, data, **_: Path(path).write_bytes(data)
+    )
+    host = threading.Thread(target=draw)
+    if command[0] == "serve":
+        host.start()
+    done = CliRunner().invoke(ramtek, [*command, "--record", "r.ramtek", "--snapshot", "s.png"])
+    assert done.exit_code == 74
+    assert done.stderr.splitlines() == [
+        "ramtek: r.ramtek is full",
+        "the display goes on without its recording",
+        "wrote s.png",
+    ]
+    if command[0] == "serve":
+        host.join()
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["drawing", "s.png"]
+    twin = Ramtek9300()
+    twin.send(OUTLINE)
+    assert np.array_equal(read_snapshot("s.png").words, twin.words)

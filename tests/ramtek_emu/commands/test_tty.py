@@ -183,6 +183,31 @@ def test_a_link_to_the_device_exists_while_the_program_runs(
     assert link.read_text() == "mine"
 
 
+def test_the_link_of_a_killed_tty_is_replaced_and_that_of_a_running_tty_is_not(
+    display: UnixServer, tmp_path: Path
+) -> None:
+    link = tmp_path / "ramtek"
+    waiting = ("tty", "--stream", "--link", link, display.address, "--", "sh", "-c", "echo ready; read _")
+    with started(*waiting) as killed:
+        assert killed.stdout is not None
+        assert killed.stdout.readline() == b"ready\n"
+        refused = run(*waiting)
+        assert refused.returncode == 73
+        assert b"a link must be a new name" in refused.stderr
+        killed.kill()
+        killed.wait()
+    # The number of the device may belong to another terminal now.
+    ours, theirs = os.openpty()
+    for device in (os.readlink(link), os.ttyname(theirs)):
+        link.unlink()
+        link.symlink_to(device)
+        assert run(*waiting).returncode == 1
+        assert not link.is_symlink()
+        link.symlink_to(device)
+    os.close(ours)
+    os.close(theirs)
+
+
 def test_a_program_that_a_signal_ends_gives_its_number(display: UnixServer) -> None:
     assert tty(display, "sh", "-c", "kill -9 $$").returncode == 137
 

@@ -6,6 +6,7 @@ import selectors
 import socket
 import stat
 import threading
+from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 
@@ -345,7 +346,7 @@ def test_a_session_never_lets_more_replies_wait_than_the_display_holds() -> None
     asked = np.tile(np.array([0x0B01, 0xFFFE], np.uint16), 2000).astype("<u2").tobytes()
     count = sum(len(reply) for reply in session.feed(asked))
     assert count == 2000 * 0xFFFE
-    assert session.words == 4000
+    assert session.unexecuted == 0
 
 
 @quick
@@ -383,9 +384,9 @@ def test_a_recording_ends_with_a_whole_instruction(stream: list[int], cut: int) 
 def test_a_host_that_leaves_takes_its_unfinished_words_and_replies_with_it() -> None:
     session = HostSession(Ramtek9300(SMALL))
     feeding = session.feed(np.array([0x0B01, 8, 0x0A01, 0xFFFF, 1], "<u2").tobytes() + b"!")
-    next(feeding)
+    assert next(feeding) == bytes(8)
+    session.display.processor.reply(np.zeros(4, np.uint16))
     assert session.unfinished
-    assert session.display.processor.waiting == 4
     session.leave()
     assert not session.unfinished
     assert session.display.processor.waiting == 0
@@ -410,21 +411,40 @@ def test_a_host_that_takes_no_more_replies_is_still_drawn_for() -> None:
     client.leave()
 
 
+def test_the_words_that_arrived_and_were_not_executed_are_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("ramtek_emu.host.server.SLICE_SECONDS", 0.0)
+    host, there = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    client = Client(Wire(there), HostSession(Ramtek9300()), 10, 10)
+    host.send(packet("0902 0044 7 5 5 5 5 0700 0902 0044"))
+    host.send(packet("0700 0700"))
+    counts = [client.unexecuted]
+    client.serve(client.wanted)
+    while client.has_work:
+        counts.append(client.unexecuted)
+        client.work()
+    # The packet that was not read has two words. The last two words of the other begin an instruction.
+    assert counts == [12, 12, 5, 4, 2]
+    host.close()
+    client.leave()
+    assert client.session.unexecuted == 0
+
+
 def test_the_time_that_the_display_takes_is_no_silence_of_the_host(monkeypatch: pytest.MonkeyPatch) -> None:
     host, there = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     display = Ramtek9300()
     client = Client(Wire(there), HostSession(display), 10, 10)
     now = 1000.0
     monkeypatch.setattr("ramtek_emu.host.server.time.monotonic", lambda: now)
-    monkeypatch.setattr("ramtek_emu.host.server.READING_PIECE", 4)
-    draw = display.send
+    monkeypatch.setattr("ramtek_emu.host.server.SLICE_SECONDS", 0.0)
+    draw = display.send_stepwise
 
-    def slow(sent: Words) -> None:
+    def slow(sent: Words) -> Iterator[int]:
         nonlocal now
-        now += 7
-        draw(sent)
+        for place in draw(sent):
+            now += 12
+            yield place
 
-    monkeypatch.setattr(display, "send", slow)
+    monkeypatch.setattr(display, "send_stepwise", slow)
     host.send(packet("0902 0044 7 5 5 5 5 0B03 0040 0 0 0 0 2"))
     client.serve(client.wanted)
     while client.has_work:
