@@ -17,6 +17,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from importlib import import_module
 from io import TextIOWrapper
+from types import TracebackType
 from typing import Any, ClassVar, Final, NoReturn, TextIO
 
 import click
@@ -34,6 +35,8 @@ ENDING: Final = tuple(
     getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
 )
 """The signals that end a program from outside. Windows has no SIGHUP."""
+SECONDS_BETWEEN: Final = 0.02
+"""Limit: of two looks at whether Ended was dropped."""
 READER_LEFT: Final = 141
 """The exit code in a shell of a program that SIGPIPE ended."""
 WINDOW: Final = "ramtek_emu.monitor.window"
@@ -126,41 +129,60 @@ class Ended(KeyboardInterrupt):
 class EndingSignals:
     """The handlers of the signals that end a program: the first signal raises Ended, the others do nothing.
 
-    A signal that was ignored when the program started (`nohup`) stays ignored.
+    A signal that was ignored when the program started (`nohup`) stays ignored. Python or a library in C may
+    drop an exception, as in a `__del__` or during an import. So Ended is raised again if nothing handles it.
     """
 
     ended: Ended | None = None
     ignored = False
-    """Whether further signals do nothing, because the program ends."""
+    """Whether signals do nothing, because the program ends."""
     cancels = False
     """Whether Ctrl+C raises KeyboardInterrupt each time, because it cancels a step, not the program."""
 
     def install(self) -> None:
         """Install the handlers for the rest of the process."""
         self.ended, self.ignored, self.cancels = None, False, False
-        self._unraisable, sys.unraisablehook = sys.unraisablehook, self._raise_later
+        self._show_unraisable, sys.unraisablehook = sys.unraisablehook, self._on_unraisable
+        # Libraries in C may print an exception that is raised while they are imported.
+        self._show, sys.excepthook = sys.excepthook, self._on_exception
         for number in ENDING:
             if signal.getsignal(number) is not signal.SIG_IGN:
-                signal.signal(number, self._raise)
+                signal.signal(number, self._receive)
 
-    def _raise(self, number: int, _: object) -> None:
-        if self.ignored:
+    def ignore(self) -> None:
+        """Ignore signals from now on."""
+        self.ignored = True
+        if sys.platform != "win32":
+            signal.setitimer(signal.ITIMER_REAL, 0)
+
+    def _receive(self, number: int, _: object) -> None:
+        if self.ignored or self.ended is not None:
             return
         if self.cancels and number == signal.SIGINT:
             raise KeyboardInterrupt
-        self.ignored = True
         self.ended = Ended(number)
+        if sys.platform != "win32":
+            signal.signal(signal.SIGALRM, self._raise_again)
+            signal.setitimer(signal.ITIMER_REAL, SECONDS_BETWEEN, SECONDS_BETWEEN)
         raise self.ended
 
-    def _raise_later(self, unraisable: sys.UnraisableHookArgs) -> None:
-        """Raise Ended again if Python dropped it, as in a `__del__`; show any other exception."""
-        if unraisable.exc_value is not self.ended or self.ended is None:
-            self._unraisable(unraisable)
-        elif sys.platform != "win32":
-            number = self.ended.exit_code - BY_SIGNAL
-            signal.signal(signal.SIGALRM, lambda *_: self._raise(number, None))
-            self.ignored = False
-            signal.setitimer(signal.ITIMER_REAL, 0.005)
+    def _raise_again(self, *_: object) -> None:
+        """Raise Ended, unless it is being handled, as in a `finally`."""
+        error = sys.exception()
+        while error is not None and error is not self.ended:
+            error = error.__context__
+        if self.ended is not None and not self.ignored and error is None:
+            raise self.ended
+
+    def _on_unraisable(self, unraisable: sys.UnraisableHookArgs) -> None:
+        if not isinstance(unraisable.exc_value, Ended):
+            self._show_unraisable(unraisable)
+
+    def _on_exception(
+        self, kind: type[BaseException], error: BaseException, trace: TracebackType | None
+    ) -> None:
+        if not isinstance(error, Ended):
+            self._show(kind, error, trace)
 
 
 SIGNALS: Final = EndingSignals()
@@ -183,10 +205,10 @@ def run_command(command: click.Command, name: str) -> None:
             # A library replaced the exception by another, such as SQLite's "interrupted".
             raise SIGNALS.ended
         _show(name, message)
-        SIGNALS.ignored = True
+        SIGNALS.ignore()
     except KeyboardInterrupt as interrupt:
+        SIGNALS.ignore()
         end = SIGNALS.ended or interrupt
-        SIGNALS.ignored = True
         # Nobody may read what is left in the buffers: drop it.
         _discard(sys.stdout)
         if takes_text(sys.stderr):

@@ -63,8 +63,8 @@ def signal_handlers() -> Iterator[None]:
     """Restore the handlers of signals: a command that runs in this process installs its own."""
     numbers = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
     before = {number: signal.getsignal(number) for number in numbers}
-    hook = sys.unraisablehook
+    hooks = sys.unraisablehook, sys.excepthook
     yield
-    sys.unraisablehook = hook
+    sys.unraisablehook, sys.excepthook = hooks
     for number, handler in before.items():
         signal.signal(number, handler)

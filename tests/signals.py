@@ -165,6 +165,8 @@ class Row(NamedTuple):
     codes: tuple[int, ...] = (-1,)
     written: tuple[str, ...] = ()
     module: str = "ramtek_emu"
+    has_display: bool = False
+    """Whether a display is served at `display`."""
 
 
 OUTPUTS = "-o o.png --snapshot s.png --record r.ramtek --configuration NCAR_9460"
@@ -174,6 +176,18 @@ PIPED = (f"serve --stdio {OUTPUTS}", f"serve --stdio --joystick stick {OUTPUTS}"
 PLAYED = f"play - {OUTPUTS}"
 TTY = "tty --stream --link link display -- sh -c 'echo ready; exec sleep 60'"
 COUPE = Path(__file__).parents[1] / "scenes" / "coupe"
+AUTOCOLOR = (
+    (f"render {COUPE} -o o.png", ("o.png",)),
+    (f"render {COUPE} --save o.npz", ("o.npz",)),
+    (f"validate {COUPE} --show -o o.png", ("o.png",)),
+    *((f"convert {COUPE} {output}", (output,)) for output in ("o.sqlite", "o.csv", "o.tables", "o")),
+    (f"convert {COUPE / 'body.obj'} o.ply", ("o.ply",)),
+    *((f"{command} {COUPE}", ()) for command in ("info", "validate", "tables")),
+    (f"sql {COUPE} 'SELECT count(*) FROM nodes a, nodes b, nodes c'", ()),
+    ("view --sessions", ()),
+)
+"""Commands and their outputs."""
+SHOWN = (f"show {COUPE} --to ./display --once", f"show {COUPE} --to ./display", "tutorial --to ./display")
 
 ROWS = (
     *(Row(command, moment, (0,), WRITTEN) for moment in (idle, filling, unread) for command in PIPED),
@@ -191,21 +205,25 @@ ROWS = (
     *(Row("list lines.ramtek", moment) for moment in (starting, printing)),
     Row("list lines.ramtek", at_any_time, (0, -1)),
     *(Row("assemble - -o a.ramtek", moment) for moment in (starting, at_any_time)),
-    *(Row(TTY, moment) for moment in (starting, at_any_time, program)),
+    *(Row(TTY, moment, has_display=True) for moment in (starting, at_any_time, program)),
     Row("-o o.png", at_any_time, (0, -1), ("o.png",)),
-    Row(f"render {COUPE} -o o.png", at_any_time, (0, -1), ("o.png",), "autocolor"),
+    *(Row(command, at_any_time, (0, -1), written, "autocolor") for command, written in AUTOCOLOR),
+    *(Row(command, at_any_time, (0, -1), (), "autocolor", has_display=True) for command in SHOWN),
 )
-WINDOWS = tuple(
-    Row(f"{command} --window", moment, (0,), WRITTEN)
-    for command, moment in (
-        (PLAYED, recording),
-        (PLAYED, filling),
-        (PIPED[0], idle),
-        (PIPED[0], filling),
-        (PIPED[0], unread),
-        (SERVERS[1], partial(idle, connect=True)),
-        (SERVERS[1], partial(filling, connect=True)),
-    )
+WINDOWS = (
+    *(
+        Row(f"{command} --window", moment, (0,), WRITTEN)
+        for command, moment in (
+            (PLAYED, recording),
+            (PLAYED, filling),
+            (PIPED[0], idle),
+            (PIPED[0], filling),
+            (PIPED[0], unread),
+            (SERVERS[1], partial(idle, connect=True)),
+            (SERVERS[1], partial(filling, connect=True)),
+        )
+    ),
+    *(Row(command, at_any_time, module="autocolor") for command in (f"view {COUPE}", "tutorial", "")),
 )
 
 
@@ -225,7 +243,7 @@ def attack(row: Row, number: signal.Signals, place: Path) -> tuple[float, str]:
     """
     (place / "lines.ramtek").write_bytes(DRAWING * 4000)
     os.mkfifo(place / "stick")
-    with serving_at(place / "display") if row.arguments == TTY else nullcontext():
+    with serving_at(place / "display") if row.has_display else nullcontext():
         seconds, code, said = ended(row, number, place)
     check(row, number, place, code, said)
     return seconds, said
@@ -236,7 +254,11 @@ def ended(row: Row, number: signal.Signals, place: Path) -> tuple[float, int, st
     process = subprocess.Popen(
         (sys.executable, "-m", row.module, *shlex.split(row.arguments)),
         cwd=place,
-        env={**environment(), **({"DISPLAY": os.environ["DISPLAY"]} if row in WINDOWS else {})},
+        env={
+            **environment(),
+            "XDG_STATE_HOME": str(place / "state"),
+            **({"DISPLAY": os.environ["DISPLAY"]} if row in WINDOWS else {}),
+        },
         start_new_session=True,
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
@@ -269,7 +291,7 @@ def check(row: Row, number: signal.Signals, place: Path, code: int, said: str) -
         codes.add(-number)
     assert code in codes, (code, said)
     assert "Traceback" not in said
-    left = {path.name for path in place.iterdir()} - {"lines.ramtek", "stick"}
+    left = {path.name for path in place.iterdir()} - {"lines.ramtek", "stick", "state"}
     if row.moment in (starting, at_any_time):
         # Everything is written, or nothing.
         assert left in (set(), set(row.written)), (left, said)

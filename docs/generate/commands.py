@@ -35,8 +35,8 @@ commands themselves answered: `python -m docs.generate.commands > docs/COMMANDS.
 writes it.
 
 Results go to stdout, messages to stderr. `-v` says what `autocolor` reads, creates and computes, and how long
-that takes; `-vv` says more. `--debug` shows the traceback of an error. What cannot be printed in a name or a value
-is shown as an escape, such as `\\x1b`.
+that takes; `-vv` says more. `--debug` shows the traceback of an error. A character that cannot be printed, as
+in the name of a file, is shown as an escape, such as `\\x1b`.
 
 Ctrl+C, SIGTERM and SIGHUP end a command at once: each output is whole or as it was before, and the session of
 a window can be recovered. A signal that is ignored when the command starts, as with `nohup`, stays ignored.

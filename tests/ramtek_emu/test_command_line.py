@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from types import ModuleType
 from typing import ClassVar, NamedTuple
@@ -200,18 +201,48 @@ def test_a_signal_ends_a_command_whose_library_raises_another_exception(end: End
     assert end(does) == (143, "\n", "tool: ended by SIGTERM\n")
 
 
-@pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="this system has no timers")
-def test_a_signal_amid_a_destructor_ends_the_command_later(end: End) -> None:
-    class Destroyed:
-        def __del__(self) -> None:
-            signal.raise_signal(signal.SIGTERM)
+WITH_TIMERS = pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="this system has no timers")
 
+
+class Destroyed:
+    def __del__(self) -> None:
+        signal.raise_signal(signal.SIGTERM)
+
+
+def drop() -> None:
+    with suppress(KeyboardInterrupt):
+        signal.raise_signal(signal.SIGTERM)
+
+
+@WITH_TIMERS
+@pytest.mark.parametrize("dropping", [Destroyed, drop])
+def test_a_signal_whose_exception_is_dropped_ends_the_command_later(
+    end: End, dropping: Callable[[], object]
+) -> None:
     def does() -> None:
-        Destroyed()
+        dropping()
         while True:
             time.sleep(1)
 
     assert end(does) == (143, "\n", "tool: ended by SIGTERM\n")
+
+
+@WITH_TIMERS
+def test_what_is_put_in_order_after_a_signal_is_not_interrupted(end: End) -> None:
+    orders = []
+
+    def does() -> None:
+        try:
+            signal.raise_signal(signal.SIGTERM)
+        finally:
+            for _ in range(20):
+                time.sleep(0.005)
+                with suppress(ValueError):
+                    raise ValueError
+            orders.append("done")
+
+    assert end(does).code == 143
+    assert orders == ["done"]
 
 
 def test_a_reader_of_stdout_that_left_ends_a_command_in_silence(end: End) -> None:
