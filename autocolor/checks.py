@@ -12,6 +12,9 @@ Color = tuple[int, int, int]
 LONGEST_NAME: Final = 200
 """Limit: letters of a name that are compared; the time to compare names grows with their lengths."""
 
+MOST_COMPARED: Final = 1000
+"""Limit: names whose spelling is compared with a wrong name; each takes some ten microseconds."""
+
 LARGEST_COORDINATE: Final = 1e30
 """Limit: a coordinate. Its square is still well within the float64 range."""
 
@@ -92,7 +95,7 @@ def closest(name: object, names: Iterable[str]) -> str:
 
     The order of preference: our name for another program's word; a name that differs in capitals only; a name
     that begins with the given name; a name with the given name between underscores; the most similar
-    spelling.
+    spelling among the first MOST_COMPARED names.
 
     >>> closest("color", ["blend", "object_color"]), closest("N", ["exponent"])
     ("; did you mean 'object_color'?", "; did you mean 'exponent'?")
@@ -105,6 +108,6 @@ def closest(name: object, names: Iterable[str]) -> str:
         or [text for text in texts if text.casefold() == name.casefold()]
         or [text for text in texts if text.startswith(name)]
         or [text for text in texts if name in text.split("_")]
-        or difflib.get_close_matches(name, texts, n=1)
+        or difflib.get_close_matches(name, texts[:MOST_COMPARED], n=1)
     )
     return f"; did you mean {close[0]!r}?" if close else ""

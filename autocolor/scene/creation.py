@@ -28,7 +28,7 @@ from autocolor.scene.defaults import (
 )
 from autocolor.scene.lights import Light, free_name
 from autocolor.scene.mesh import Mesh
-from autocolor.scene.scene import Scene
+from autocolor.scene.scene import MOST_PROBLEMS, Scene
 from autocolor.scene.surfaces import MOST_SURFACES, Part, Surface
 
 LOG: Final = logger_of(__name__)
@@ -134,7 +134,8 @@ def _part_rows(
     names = set(mesh.part_names)
     if missing := [name for name in (*parts, *surface_of_part) if name not in names]:
         raise InputError(
-            f"there is no part {shown(name)}{nearest(name, mesh.part_names)}" for name in missing
+            f"there is no part {shown(name)}{nearest(name, mesh.part_names)}"
+            for name in missing[:MOST_PROBLEMS]
         )
     rows = []
     for name in mesh.part_names:

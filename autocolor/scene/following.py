@@ -205,12 +205,16 @@ def followers_of(name: str, lights: Sequence[Light]) -> list[str]:
 
 def names_to_follow(light: Light, lights: Sequence[Light]) -> list[str]:
     """The names of the other lights that a light can follow: they have an aim and do not follow the light."""
-    by_name = {each.name: each for each in lights}
-    return [
-        each.name
-        for each in lights
-        if each.aim is not None and each.name != EYE and light.name not in _path(each, by_name)
-    ]
+    followers: dict[str | None, list[str]] = {}
+    for each in lights:
+        if each.follows != EYE:
+            followers.setdefault(each.follows, []).append(each.name)
+    # The light and all lights that follow it, directly or not.
+    following = [light.name]
+    for name in following:
+        following.extend(followers.pop(name, ()))
+    excluded = {*following, EYE}
+    return [each.name for each in lights if each.aim is not None and each.name not in excluded]
 
 
 def following_problems(lights: Sequence[Light]) -> Iterator[Problem]:

@@ -1,10 +1,12 @@
 from __future__ import annotations
 
+import difflib
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor.checks import listed, nearest, printable, shown
+from autocolor.checks import MOST_COMPARED, listed, nearest, printable, shown
 
 
 def test_the_nearest_right_name_is_told() -> None:
@@ -21,6 +23,13 @@ def test_a_key_that_is_no_text_is_not_the_nearest_name() -> None:
 
 def test_a_name_of_a_million_letters_is_compared_by_its_first() -> None:
     assert nearest("b" * 1_000_000, ["body", "glass"]) == "; choose 'body' or 'glass'"
+
+
+def test_the_spelling_of_few_names_is_compared(monkeypatch: pytest.MonkeyPatch) -> None:
+    compared: list[str] = []
+    monkeypatch.setattr(difflib, "get_close_matches", lambda _, names, n: compared.extend(names) or [])
+    nearest("grille", [f"part {number}" for number in range(100_000)])
+    assert len(compared) == MOST_COMPARED
 
 
 @given(st.text(), st.lists(st.text()))

@@ -187,6 +187,12 @@ def test_mutated_snapshots_are_read_or_refused() -> None:
             display_of(bytes(data[: draw.choice((len(data), draw.randrange(len(data))))]))
 
 
+def test_the_size_of_many_texts_is_counted_once_each() -> None:
+    # Adding up all texts at each text would take seconds.
+    texts = {f"k{number}": "x" for number in range(20_000)}
+    assert picture_of(picture_bytes(np.zeros((1, 1), np.uint16), texts))[1] == texts
+
+
 def test_a_snapshot_shows_itself_to_pillow_with_its_texts() -> None:
     with Image.open(BytesIO(SNAPSHOT)) as picture:
         picture.load()

@@ -102,7 +102,9 @@ def _fields(problems: SceneProblems, document: Mapping[str, Any]) -> dict[str, A
     refused: list[Problem] = []
     for key, value in document.items():
         if key not in FILE_KEYS:
-            refused.append(unknown_key(key, FILE_KEYS))
+            # Finding the closest key is slow, and a file may have many unknown keys.
+            if not problems.full:
+                problems.note_all([unknown_key(key, FILE_KEYS)])
         elif key not in TABLES:
             fields[key] = keys_of(Scene)[key].column.kind.validated(value, (key,), refused)
     problems.note_all(refused)

@@ -8,6 +8,7 @@ omitted keys are created from the given ones: lights, for example, depend on the
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import count, takewhile
 from typing import Any, Final
 
 from autocolor.errors import InputError
@@ -188,10 +189,7 @@ def with_meshes(data: bytes, entries: tuple[Mapping[str, Any], ...]) -> bytes:
     for row, entry in enumerate(entries):
         for key, value in sparse_entry(entry).items():
             text.set(("mesh", NEW_ROW + row, key), value)
-    row = 0
-    while text.has(("mesh", row)):
-        text.remove(("mesh", row))
-        row += 1
+    text.remove(*takewhile(text.has, (("mesh", row) for row in count())))
     return text.text.encode()
 
 
@@ -214,8 +212,7 @@ def with_crease_angle(data: bytes, angle: float) -> bytes:
 def without_parts(data: bytes, names: set[str]) -> bytes:
     """The text of a scene file without some parts."""
     text = TomlText(data.decode(), FILE_TABLES)
-    for name in names:
-        text.remove(("parts", name))
+    text.remove(*(("parts", name) for name in names))
     return text.text.encode()
 
 
@@ -279,8 +276,7 @@ def _change_named(
     olds = {row["name"]: row for row in before}
     names = [row["name"] for row in after]
     is_moved = table == "surfaces" and list(olds) != names
-    for name in olds.keys() - set(names):
-        text.remove((table, name))
+    text.remove(*((table, name) for name in olds.keys() - set(names)))
     for row, keys in zip(after, sparse, strict=True):
         name = row["name"]
         old = olds.get(name)
@@ -314,15 +310,13 @@ def _change_lights(
         written = []
     olds = {row["name"]: row for row in before}
     number_of = {row["name"]: number for number, row in enumerate(written)}
-    names = [row["name"] for row in after]
+    names = dict.fromkeys(row["name"] for row in after)
     if len(written) == len(names):
         # A light with another name in the same place was renamed.
         for old, new in zip(tuple(number_of), names, strict=True):
             if new not in number_of and old not in names:
                 number_of[new], olds[new] = number_of.pop(old), olds[old]
-    for name, number in number_of.items():
-        if name not in names:
-            text.remove(("lights", number))
+    text.remove(*(("lights", number) for name, number in number_of.items() if name not in names))
     for row, keys in zip(after, sparse, strict=True):
         name = row["name"]
         if name in number_of:

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import sqlite3
 from collections.abc import Callable, Iterator, Mapping
-from itertools import chain
+from itertools import chain, islice
 from typing import Any, Final
 
 import numpy as np
@@ -94,7 +94,7 @@ def report_of(
         problems.append("parts: names must be unique, not repeated; rename one")
     _validated(ROW_TABLES["parts"], part_rows, problems)
     if "surfaces" in rows_of:
-        problems.extend(_unknown_surfaces(part_rows, rows_of["surfaces"]))
+        problems.extend(islice(_unknown_surfaces(part_rows, rows_of["surfaces"]), MOST_PROBLEMS))
     if problems:
         raise InputError(problems[:MOST_PROBLEMS])
     mesh = mesh_of(connection, tables, tuple(parts) if part_rows else None)

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import difflib
 from pathlib import Path
 
 import pytest
@@ -350,6 +351,14 @@ def test_a_thousand_problems_are_a_hundred_and_a_count(folder: Path) -> None:
     problems = refusal(folder, MESH + "".join(f"[parts.x{row}]\nsurface = 'y'\n" for row in range(1000)))
     assert len(problems) == 101
     assert problems[-1] == "scene.toml: there may be more problems; correct these first"
+
+
+def test_of_many_unknown_keys_few_get_the_closest_key(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    compared: list[str] = []
+    monkeypatch.setattr(difflib, "get_close_matches", lambda name, _, n: compared.append(name) or [])
+    text = "".join(f"qq{number} = 1\n" for number in range(5000))
+    assert len(refusal(folder, text + MESH)) == 101
+    assert len(compared) == 100
 
 
 def test_too_many_surfaces_are_refused(folder: Path) -> None:
