@@ -393,7 +393,8 @@ def foreign_file(pieces: list[bytes]) -> list[bytes]:
 def fault_of_foreign(data: bytes) -> str:
     first = data.partition(b"\n")[0].decode("latin-1")
     suffix = first if first in FOREIGN_SUFFIXES else FOREIGN_SUFFIXES[len(data) % len(FOREIGN_SUFFIXES)]
-    name = f"foreign{suffix}"
+    # The name of a UGRID file tells the kind of its numbers.
+    name = f"foreign{'.b8' if suffix == '.ugrid' else ''}{suffix}"
     os.rename("foreign", name)
     try:
         return fault_of_scene_at(name)

@@ -42,8 +42,9 @@ ROOT = Path(__file__).parents[1]
 
 FREE_GROWTH = 16.0
 GROWTH_OF_AN_EVENT = 0.006
-"""Megabytes by which the memory of a process may grow after the first tenth of the time, and for each event
-beside that: a session keeps all its steps, which can be undone."""
+"""Megabytes by which the memory of a process may grow in the last half of the time, and for each event beside
+that: a session keeps all its steps, which can be undone. In the first half, the process fills the memory that
+it freed and keeps for the next picture (see `autocolor.rendering`)."""
 
 MORE = 4
 """How many more descriptors, threads, children and temporary files there may be at the end."""
@@ -176,22 +177,29 @@ class Subject:
         if len(late) < 3:
             return f"{self.name:<8} too few samples for a verdict", False
         first, last = late[0], late[-1]
-        times = np.array([each.seconds for each in late]) / 3600
-        slope = float(np.polyfit(times, [each.megabytes for each in late], 1)[0])
-        hours, events = times[-1] - times[0], last.events - first.events
-        growth = slope * hours
-        leaks = bool(growth > FREE_GROWTH + GROWTH_OF_AN_EVENT * events)
+        half = late[len(late) // 2 :]
+        growth = slope_of(half) * (last.seconds - half[0].seconds) / 3600
+        leaks = growth > FREE_GROWTH + GROWTH_OF_AN_EVENT * (last.events - half[0].events)
         more = [
             f"{getattr(last, noun) - getattr(first, noun):+d} {noun.replace('_', ' ')}"
             for noun in ("descriptors", "threads", "children", "temporary_files")
             if getattr(last, noun) > getattr(first, noun) + MORE
         ]
         text = (
-            f"{self.name:<8} {first.megabytes:7.1f} to {last.megabytes:7.1f} MB in {60 * hours:.0f} minutes"
-            f" and {events:,} events: {slope:+.1f} MB/h, {1024 * growth / max(1, events):+.2f} kB an event;"
+            f"{self.name:<8} {first.megabytes:7.1f} to {last.megabytes:7.1f} MB in"
+            f" {(last.seconds - first.seconds) / 60:.0f} minutes and {last.events - first.events:,} events:"
+            f" {slope_of(late):+.1f} MB/h, in the last half {slope_of(half):+.1f} MB/h;"
             f" {len(self.faults)} faults, started again {self.ends} times"
         )
         return "; ".join((text, *["LEAK"] * leaks, *more)), leaks or bool(more)
+
+
+def slope_of(samples: list[Sample]) -> float:
+    """The growth of the memory, in megabytes an hour."""
+    if len(samples) < 2:
+        return 0.0
+    hours = [each.seconds / 3600 for each in samples]
+    return float(np.polyfit(hours, [each.megabytes for each in samples], 1)[0])
 
 
 # The window.

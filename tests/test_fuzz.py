@@ -50,7 +50,7 @@ def test_what_is_damaged_was_whole(name: str, arena: Arena) -> None:
 
 @pytest.mark.parametrize("path", sorted((ROOT / "fuzz_cases").glob("*.bin")), ids=lambda path: path.stem)
 def test_an_input_that_had_a_fault_has_none(path: Path, arena: Arena) -> None:
-    fault = arena.fault_of(TARGETS[path.name.rpartition("-")[0]], path.read_bytes())
+    fault = arena.fault_of(TARGETS[path.name.partition("-")[0]], path.read_bytes())
     assert fault is None, fault.story
 
 

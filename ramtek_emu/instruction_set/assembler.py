@@ -282,6 +282,11 @@ def string_of(token: str, number: int) -> bytes:
     return text.encode("latin-1")
 
 
+OVERLONG: Final = re.compile(r"(, not .{60}).{20,}(; )")
+"""Limit: the quoted part of a message is cut after 60 characters."""
+
+
 def refusal(number: int, sentence: str) -> ListingError:
     """The error for a line that cannot be assembled."""
-    return ListingError(f"line {number}: {sentence}")
+    shortened = OVERLONG.sub(r"\1...\2", sentence)
+    return ListingError(f"line {number}: {shortened}")

@@ -145,3 +145,10 @@ def test_a_refusal_names_its_line_and_what_to_do() -> None:
     assert str(refusal.value) == "line 3: a line must be at most 32768 words, not 60000; break it"
     with pytest.raises(ListingError, match="line 5: a number must be -32768 to 65535"):
         numbers_of("65536", 5)
+
+
+@pytest.mark.parametrize("line", ["9" * 9000, "SET " + "9" * 9000, "WVL\nto " + "7 " * 9000])
+def test_a_message_quotes_the_beginning_of_a_long_word(line: str) -> None:
+    with pytest.raises(ListingError, match=r", not '\w.{58}\.\.\.; \w") as caught:
+        b"".join(assemble(line.split("\n")))
+    assert len(str(caught.value)) < 250
