@@ -6,7 +6,7 @@ from importlib import import_module
 
 import pytest
 
-LIMITS = {
+LIMITS: dict[str, dict[str, float]] = {
     "array_file": {"LARGEST_HEADER": 16 << 20, "MOST_VALUES": 1_000_000, "LARGEST_ARRAY_HEADER": 1024},
     "conversion": {"MOST_NAMED": 5},
     "meshes.byu": {"MOST_OVERLAP": 100},

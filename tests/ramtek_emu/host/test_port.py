@@ -25,7 +25,7 @@ from ramtek_emu import (
     WordsError,
     instructions,
 )
-from ramtek_emu.host.port import Sign, SocketPort, Wire, host_and_port
+from ramtek_emu.host.port import Sign, SocketPort, Wire, host_and_port, packet_socket
 from ramtek_emu.host.server import Server, TcpServer
 from tests.ramtek_emu.recorded_streams import OUTLINE, words
 from tests.ramtek_emu.serving import READ_EVERYTHING, serving, serving_at, until
@@ -226,6 +226,17 @@ def test_a_wrong_argument_is_refused(call: Callable[[Any], object], value: Any, 
     with pytest.raises(RamtekError) as refusal:
         call(value)
     assert str(refusal.value) == sentence.format(value)
+
+
+def test_a_system_that_makes_no_packet_socket_is_told_with_its_reason(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def refuse(*_: int) -> None:
+        raise OSError(97, "Address family not supported")
+
+    monkeypatch.setattr(socket, "socket", refuse)
+    with pytest.raises(PortError, match=r"does not \(address family not supported\); use TCP"):
+        packet_socket()
 
 
 def test_a_port_without_a_display_is_refused(tmp_path: Path) -> None:
