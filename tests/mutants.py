@@ -52,6 +52,7 @@ REFERENCES: Final = {
     "ramtek_emu/commands": "tests/test_command_reference.py",
     "autocolor/files": "tests/test_store_reference.py",
 }
+LOGS: Final = ("logger.", "LOG.")
 EXTREMES: Final = {"min": "max", "max": "min", "minimum": "maximum", "maximum": "minimum"}
 # Keys of tables are mutated sparingly: most are checked by whatever reads the table.
 KEY_SHARE: Final = 0.2
@@ -173,7 +174,7 @@ class _Mutations(ast.NodeVisitor):
             self.visit(node.value)
 
     def visit_Expr(self, node: ast.Expr) -> None:
-        if isinstance(node.value, ast.Call) and not ast.unparse(node.value.func).startswith("logger."):
+        if isinstance(node.value, ast.Call) and not ast.unparse(node.value.func).startswith(LOGS):
             self._add(node, "pass", f"{ast.unparse(node)} deleted")
             self.visit(node.value)
         elif not isinstance(node.value, ast.Constant | ast.Call):

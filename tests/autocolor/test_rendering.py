@@ -296,9 +296,14 @@ def test_only_the_named_lights_are_in_a_picture_of_single_lights() -> None:
     )
 
 
-@pytest.mark.parametrize("size", [(0, 10), (10, 0), (-1, 10), (2.5, 10), (10, "x"), (1 << 20, 10)])
+@pytest.mark.parametrize("size", [(1, 16384), (16384, 1), (16383, 1), (1, 1)])
+def test_a_raster_may_have_16384_lines_or_elements(size: tuple[int, int]) -> None:
+    assert render(two_surfaces(), *size).intensity.shape == size
+
+
+@pytest.mark.parametrize("size", [(0, 9), (9, 0), (-1, 9), (2.5, 9), (9, "x"), (16385, 9), (9, 16385)])
 def test_a_raster_of_no_whole_size_is_refused(size: tuple[Any, Any]) -> None:
-    with pytest.raises(UsageError, match=r"(lines|elements) must be a whole number from 1 to \d+, not "):
+    with pytest.raises(UsageError, match=r"(lines|elements) must be a whole number from 1 to 16384, not "):
         render(two_surfaces(), *size)
 
 

@@ -5,8 +5,17 @@ import sys
 from typing import Any
 
 import numpy as np
+import pytest
 
-from ramtek_emu import instructions
+from ramtek_emu import WordsError, instructions
+
+
+def test_an_instruction_takes_at_most_10922_circles() -> None:
+    for count in (1, 10_921, 10_922):
+        assert len(instructions.write_circles([(1, 1, 1)] * count)) == 2 + 3 * count
+    for count in (0, 10_923):
+        with pytest.raises(WordsError, match="with 1 to 10922 rows"):
+            instructions.write_circles([(1, 1, 1)] * count)
 
 
 def test_encoders_take_numbers_and_rows_of_python_and_of_numpy_alike() -> None:

@@ -33,6 +33,19 @@ ANYTHING = Format("ANYTHING", (".any",))
 ALL = (ANYTHING, PLAIN, SOLID)
 
 
+def test_every_mesh_format_has_its_suffixes_and_abilities() -> None:
+    table = {each.name: each.suffixes for each in MESH_FORMATS}
+    own = {
+        "CSV": (".csv",), "Movie.BYU": (".g", ".byu"), "npy": (".npy",), "OBJ": (".obj",), "OFF": (".off",),
+        "PLY": (".ply",), "STL": (".stl",), "VTK": (".vtk",),
+    }  # fmt: skip
+    assert {name: table[name] for name in own} == own
+    assert [each.name for each in MESH_FORMATS if each.mapped] == ["npy"]
+    assert [each.name for each in MESH_FORMATS if each.in_folder] == ["CSV", "npy"]
+    assert [each.name for each in MESH_FORMATS if each.written] == ["OBJ", "PLY", "tables"]
+    assert [each.name for each in MESH_FORMATS if each.write] == ["CSV", "npy"]
+
+
 def test_suffixes_are_each_listed_once() -> None:
     assert suffixes_of((*ALL, Format("another", (".any",)))) == (".any", ".plain", ".sld", ".solid")
 

@@ -146,6 +146,15 @@ def test_a_name_is_a_short_text(name: str) -> None:
         Variants().with_variant(name, ONE)
 
 
+def test_a_name_may_have_1_to_100_characters_and_there_may_be_1000_variants() -> None:
+    variants = Variants().with_variant("x", ONE).with_variant("x" * 99, ONE).with_variant("x" * 100, ONE)
+    assert [len(name) for name in variants] == [1, 99, 100]
+    full = Variants({f"{number}": ONE for number in range(999)}).with_variant("last", ONE)
+    assert len(full) == 1000
+    with pytest.raises(UsageError, match="there must be at most 1000 variants; drop one"):
+        full.with_variant("more", ONE)
+
+
 def test_an_unknown_name_is_told_with_the_closest() -> None:
     with pytest.raises(UsageError) as refusal:
         Variants().with_variant("evening", ONE)["evenin"]

@@ -182,3 +182,11 @@ def test_names_that_a_light_shines_on_only_take_the_place_of_those_that_it_excep
             put_light(session, "key", {chosen: ()})
             links = vars(session.scene.light("key").links)
             assert (links[chosen], links[other]) == ((), None)
+
+
+@pytest.mark.parametrize(("cone", "inner"), [(40.0, 25.0), (25.0, 25.0), (20.0, 20.0), (None, None)])
+def test_the_inner_angle_stays_within_the_cone(cone: float | None, inner: float | None) -> None:
+    session = session_of(AIMED.replace(inner_angle=25.0))
+    put_light(session, "key", {"cone_angle": cone})
+    light = session.scene.light("key")
+    assert (light.cone_angle, light.inner_angle) == (cone, inner)

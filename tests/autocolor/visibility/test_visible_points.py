@@ -152,7 +152,8 @@ def test_part_numbers_are_worked_out_once_when_they_are_asked_for_and_read_only(
     assert parts.numbers.dtype == np.int32
     assert set(parts.numbers.tolist()) == {2, 3, 6}
     for each in (parts, pickle.loads(pickle.dumps(parts))):
-        assert not each.numbers.flags.writeable
+        arrays = (each.numbers, each.part_of_polygon, each.span_polygons, each.span_lengths)
+        assert not any(array.flags.writeable for array in arrays)
         assert each.numbers.tolist() == parts.numbers.tolist()
 
 

@@ -13,6 +13,7 @@ from autocolor.widgets import items as colors
 from autocolor.widgets.items import (
     DRAWABLE,
     NIGHT,
+    SCREEN,
     WHITE,
     Area,
     Item,
@@ -161,6 +162,13 @@ def test_areas_meet_where_pixels_are_in_both(one: Area, other: Area) -> None:
         assert one.overlaps(other) is bool(pixels(one) & pixels(other))
         assert one.covers(other) is (pixels(one) >= pixels(other))
         assert len(pixels(one)) == one.width * one.height
+
+
+def test_the_screen_is_640_elements_wide_and_480_lines_high() -> None:
+    assert SCREEN == (0, 0, 639, 479)
+    assert DRAWABLE == (-32768, -32768, 32767, 32767)
+    assert (SCREEN.width, SCREEN.height, SCREEN.middle) == (640, 480, (319.5, 239.5))
+    assert SCREEN.inset(2) == (2, 2, 637, 477)
 
 
 def test_the_words_of_the_screens_belong_to_the_screens_and_differ() -> None:

@@ -3,7 +3,7 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor.widgets.menu import MENU, MOST_LINES, laid_out, menu_items, pages_of
+from autocolor.widgets.menu import MENU, MOST_LINES, WIDE_BAR, WORK, laid_out, menu_items, pages_of
 from autocolor.widgets.widget import ROW_LINES, Button, Gap, Heading, Widget
 
 rows = st.lists(st.sampled_from([Button, Gap, Heading]), max_size=120).map(
@@ -37,7 +37,10 @@ def test_rows_stand_one_below_the_other_within_the_menu(rows: list[Widget]) -> N
         assert row.area.top == top
         assert row.area.height == (ROW_LINES // 2 if isinstance(row, Gap) else ROW_LINES)
         top = row.area.bottom + 1
-    assert MENU.height == MOST_LINES
+    assert MENU.height == MOST_LINES == 464
+    assert MENU == (504, 0, 639, 463)
+    assert WORK == (0, 0, 503, 463)
+    assert WIDE_BAR == (0, 440, 503, 463)
 
 
 def test_the_row_that_is_lit_alone_looks_different() -> None:

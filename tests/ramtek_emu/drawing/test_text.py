@@ -7,11 +7,27 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from ramtek_emu import InstructionError, Ramtek9300, instructions
+from ramtek_emu.drawing.text import TextStyle
 from ramtek_emu.memory.character_rom import characters
 from ramtek_emu.memory.scan_orders import SCAN_ORDERS, Point, ScanOrder, Window
 from ramtek_emu.snapshot import display_of, snapshot_bytes
 from tests.ramtek_emu import reference
 from tests.ramtek_emu.strategies import SMALL, masks, points, quick, scan_codes, sent_words, thorough, windows
+
+
+def test_a_cell_has_1_to_16_dots_in_each_direction() -> None:
+    for size, dots in [(-1, 1), (0, 1), (1, 1), (2, 2), (15, 15), (16, 16), (17, 16)]:
+        for dimensions, expected in [((size, 9), (dots, 9)), ((7, size), (7, dots))]:
+            style = TextStyle(
+                dimensions=dimensions,
+                spacing=(0, 0),
+                size=(2, 3),
+                foreground=1,
+                background=0,
+                transparent=False,
+            )
+            assert style.dots_each == expected
+            assert style.cell == (2 * expected[0], 3 * expected[1])
 
 
 @quick

@@ -54,6 +54,11 @@ def test_a_thousand_mutated_streams_are_played_and_leave_a_display_that_works() 
     assert (display.words == twin.words).all()
 
 
+def test_a_pipe_without_a_reader_of_replies_owes_none() -> None:
+    pipe = PolledPipe(HostSession(Ramtek9300()), pop_of([b""]), None)
+    assert pipe.has_replied is True
+
+
 def test_a_pipe_is_shown_in_slices_of_time_and_its_replies_come(on_screen: str) -> None:
     stream = np.concatenate((OUTLINE, next(instructions.read_image(100, 100, 3, 1))[0]))
     replies: list[bytes] = []

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import copy
+import math
 import pickle
 import select
 import socket
@@ -25,7 +26,7 @@ from ramtek_emu import (
     WordsError,
     instructions,
 )
-from ramtek_emu.host.port import Sign, SocketPort, Wire, host_and_port
+from ramtek_emu.host.port import Sign, SocketPort, Wire, checked_timeout, host_and_port, packet_socket
 from ramtek_emu.host.server import Server, TcpServer
 from tests.ramtek_emu.recorded_streams import OUTLINE, words
 from tests.ramtek_emu.serving import READ_EVERYTHING, serving, serving_at, until
@@ -226,6 +227,27 @@ def test_a_wrong_argument_is_refused(call: Callable[[Any], object], value: Any, 
     with pytest.raises(RamtekError) as refusal:
         call(value)
     assert str(refusal.value) == sentence.format(value)
+
+
+def test_a_system_that_makes_no_packet_socket_is_told_with_its_reason(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def refuse(*_: int) -> None:
+        raise OSError(97, "Address family not supported")
+
+    monkeypatch.setattr(socket, "socket", refuse)
+    with pytest.raises(PortError, match=r"does not \(address family not supported\); use TCP"):
+        packet_socket()
+
+
+def test_a_timeout_is_more_than_0_and_at_most_a_million_seconds() -> None:
+    for seconds in (5e-324, 1, 999_999, 1_000_000):
+        assert checked_timeout(seconds) == seconds
+    for wrong in (0, -1, math.nextafter(1e6, math.inf), math.nan, math.inf, True, "1"):
+        with pytest.raises(
+            PortError, match=r"a timeout must be a number of seconds from 0 to 1,000,000, not"
+        ):
+            checked_timeout(wrong)
 
 
 def test_a_port_without_a_display_is_refused(tmp_path: Path) -> None:

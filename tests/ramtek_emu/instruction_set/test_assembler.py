@@ -134,6 +134,20 @@ def test_a_string_of_escapes_holds_any_bytes(data: bytes) -> None:
     assert string_of('"' + "".join(f"\\x{byte:02X}" for byte in data) + '"', 1) == data
 
 
+def test_a_line_may_have_as_many_characters_and_words_as_it_may() -> None:
+    for characters in (MOST_LINE - 1, MOST_LINE):
+        assert tokens_of("x" * characters, 7) == ["x" * characters]
+    for count in (32767, 32768):
+        assert len(hexadecimal_words([f"0001*{count}"], 3)) == count
+    with pytest.raises(ListingError, match="to 32768, not"):
+        hexadecimal_words(["0001*32769"], 3)
+    with pytest.raises(ListingError, match="at most 32768 words, not 32769"):
+        hexadecimal_words(["0001*32768", "0002"], 3)
+    assert [numbers_of(text, 5) for text in ("-32768", "65535")] == [(32768,), (65535,)]
+    with pytest.raises(ListingError, match="a number must be -32768 to 65535"):
+        numbers_of("-32769", 5)
+
+
 def test_a_refusal_names_its_line_and_what_to_do() -> None:
     with pytest.raises(ListingError) as refusal:
         tokens_of("x" * (MOST_LINE + 1), 7)

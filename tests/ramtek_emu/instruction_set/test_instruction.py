@@ -1,8 +1,10 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from hypothesis import given
 
+from ramtek_emu import InstructionError
 from ramtek_emu.instruction_set.decoder import Decoder
 from ramtek_emu.instruction_set.instruction import encode, normal
 from tests.ramtek_emu.strategies import quick, streams
@@ -16,6 +18,14 @@ def test_an_instruction_is_equal_to_its_own_words_read_again(stream: list[int]) 
         assert again == instruction
         assert hash(again) == hash(instruction)
         assert str(again) == str(instruction)
+
+
+def test_an_instruction_has_at_most_65535_bytes_of_data() -> None:
+    for length in (0, 65534, 65535):
+        assert normal("WI", {}, length=length).length == length
+    for length in (-1, 65536):
+        with pytest.raises(InstructionError, match=f"the data of WI must be 0 to 65535 bytes, not {length};"):
+            normal("WI", {}, length=length)
 
 
 def test_a_listing_names_operands_and_flags() -> None:

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 from ramtek_emu import Ramtek9300, instructions
+from ramtek_emu.memory.cursors import BLINK, VISIBLE, Cursor
 from ramtek_emu.processor.processor import Status
 from tests.ramtek_emu.displays import read
 from tests.ramtek_emu.strategies import sent_words
@@ -20,6 +21,15 @@ def test_track_stays_on_and_enter_is_reported_once() -> None:
     assert read(display, 0x1701) == [0, 0]
     assert read(display, 0x2500) == [Status.CURSOR]
     assert display.status == Status.READY
+
+
+def test_a_cursor_is_visible_and_blinks_by_its_bits() -> None:
+    for state, is_visible, blinks in [
+        (0, False, False), (VISIBLE, True, False), (BLINK, False, True), (VISIBLE | BLINK, True, True),
+        (0xFFFF & ~(VISIBLE | BLINK), False, False),
+    ]:  # fmt: skip
+        cursor = Cursor(state=state)
+        assert (cursor.is_visible, cursor.blinks) == (is_visible, blinks)
 
 
 def test_reset_clears_an_unread_enter_and_leaves_the_cursors() -> None:

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 from ramtek_emu import Ramtek9300, instructions
 from ramtek_emu.errors import escaped
-from ramtek_emu.monitor.glass import Glass, enlarged, viewport
+from ramtek_emu.monitor.glass import Glass, enlarged, pixel_under, viewport
 from ramtek_emu.monitor.overlay import Overlay
 from ramtek_emu.monitor.pattern import pattern
 from tests.ramtek_emu.strategies import quick
@@ -120,6 +120,34 @@ def test_the_field_is_placed_at_the_largest_whole_multiple(w: int, h: int, width
     assert multiple == 1 or (across <= width and down <= height)
     assert abs(2 * left + across - width) <= 1
     assert abs(2 * top + down - height) <= 1
+
+
+@quick
+@given(st.integers(1, 70), st.integers(1, 50), st.integers(70, 400), st.integers(50, 300), st.booleans())
+def test_every_place_of_the_window_is_over_the_nearest_pixel(
+    w: int, h: int, width: int, height: int, fit: bool
+) -> None:
+    left, top, across, down = viewport((w, h), (width, height), fit)
+    for element, line in itertools.product({0, w // 2, w - 1}, {0, h // 2, h - 1}):
+        # The first place that shows the pixel, and the last one.
+        first = left - (-element * across // w), top - (-line * down // h)
+        last = left - (-(element + 1) * across // w) - 1, top - (-(line + 1) * down // h) - 1
+        for place in (first, last):
+            assert pixel_under(place, (w, h), (width, height), fit) == (element, line)
+    for x, y in itertools.product((-9999, 9999), repeat=2):
+        corner = 0 if x < 0 else w - 1, 0 if y < 0 else h - 1
+        assert pixel_under((x, y), (w, h), (width, height), fit) == corner
+
+
+@pytest.mark.parametrize("shift", [False, True])
+@pytest.mark.parametrize("control", [False, True])
+def test_the_mouse_has_the_modifiers_of_the_keyboard(glass: Glass, shift: bool, control: bool) -> None:
+    pygame.key.set_mods((pygame.KMOD_LSHIFT if shift else 0) | (pygame.KMOD_RCTRL if control else 0))
+    try:
+        pointer = glass._pointer((0, 0), "press", 1)
+    finally:
+        pygame.key.set_mods(0)
+    assert (pointer.shift, pointer.control) == (shift, control)
 
 
 def test_a_fitted_field_fills_one_side() -> None:

@@ -52,6 +52,9 @@ def test_saved_environments_come_back_in_reverse() -> None:
 
 def test_environments_beyond_the_most_are_flagged_and_not_saved() -> None:
     display = Ramtek9300()
+    display.send(np.full(16, 0x1300, np.uint16))
+    assert len(display.processor.saved) == 16
+    assert Status.ILLEGAL not in display.status
     display.send(np.full(5000, 0x1300, np.uint16))
     assert len(display.processor.saved) == 16
     assert Status.ILLEGAL in display.status

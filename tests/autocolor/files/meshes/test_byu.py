@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from autocolor.errors import InputError
 from autocolor.files.formats import format_of
 from autocolor.files.meshes.byu import read_byu
 from autocolor.files.meshes.repair import MeshReport, Placement
@@ -64,6 +65,23 @@ def test_whole_numbers_that_fill_their_columns_touch_without_a_sign(tmp_path: Pa
     mesh = read(tmp_path, "\n".join(lines)).mesh
     assert mesh.node_numbers.tolist() == [[9997, 9999, 998, 998]]
     assert mesh.coordinates[:, 1].tolist() == [float(f"{at * at:.5E}") for at in range(nodes)]
+
+
+@pytest.mark.parametrize("width", [4, 5, 6, 7, 8, 9, 10, 11])
+def test_columns_of_whole_numbers_are_5_to_10_wide(tmp_path: Path, width: int) -> None:
+    # Zeros fill the columns, so that no space is between the numbers.
+    lines = FREE.split("\n")
+    text = "\n".join(
+        "".join(word.zfill(width) for word in line.split()) if at not in (2, 3) else line
+        for at, line in enumerate(lines)
+    )
+    if width in (4, 11):
+        with pytest.raises(InputError):
+            read(tmp_path, text)
+    else:
+        assert (
+            read(tmp_path, text).mesh.node_numbers.tolist() == read(tmp_path, FREE).mesh.node_numbers.tolist()
+        )
 
 
 @pytest.mark.parametrize("ending", ["\n", "\r\n", "\r"])

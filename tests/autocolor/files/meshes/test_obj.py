@@ -314,6 +314,19 @@ def test_an_endless_continuation_is_refused() -> None:
     assert sentence.startswith("car.obj, line 5: a line must have at most 1,048,576 bytes, not ")
 
 
+@pytest.mark.parametrize("corner", ["{}", "{}/1"])
+def test_a_polygon_may_have_1000_corners(path: Path, corner: str) -> None:
+    def text(corners: int) -> str:
+        around = np.linspace(0, 2 * np.pi, corners, endpoint=False)
+        nodes = "".join(f"v {x:.6f} {y:.6f} 0\n" for x, y in zip(np.cos(around), np.sin(around), strict=True))
+        return nodes + "f " + " ".join(corner.format(number + 1) for number in range(corners)) + "\n"
+
+    for corners in (999, 1000):
+        assert len(read(path, text(corners)).mesh.node_numbers) >= corners // 2 - 1
+    with pytest.raises(InputError, match=r"must have at most 1,000 corners, not 1,001; split it"):
+        read(path, text(1001))
+
+
 def test_a_polygon_of_too_many_corners_is_refused() -> None:
     assert refusal(lines_read, SQUARE + "f" + " 1 2 3" * 400) == (
         "car.obj, line 5: a polygon must have at most 1,000 corners, not 1,200; split it"

@@ -10,10 +10,12 @@ from hypothesis import strategies as st
 
 from autocolor.errors import InputError
 from autocolor.files.meshes.repair import (
+    FLAT,
     LONGEST_NAME,
     MeshReport,
     Placement,
     RawPolygons,
+    _are_flat,
     _have_area,
     different,
     name_of,
@@ -219,3 +221,12 @@ def test_bytes_that_are_not_utf_8_are_latin_1() -> None:
 
 def test_a_name_that_is_cut_within_a_letter_is_still_utf_8() -> None:
     assert name_of(("x" + "ü" * 1000).encode()) == "x" + "ü" * (LONGEST_NAME - 1)
+
+
+def test_a_polygon_is_flat_if_its_triangles_are_flatter_than_a_share_of_its_size() -> None:
+    for size in (1.0, 1e-30, 1e30):
+        heights = np.array([FLAT / 2, FLAT * (1 - 1e-9), FLAT, 2 * FLAT, 1.0])
+        corners = np.array([[(0, 0, 0), (1, 0, 0), (1, h, 0), (0, h, 0)] for h in heights]) * size
+        assert _are_flat(corners)[[0, 1, 3, 4]].tolist() == [True, True, False, False]
+    corners = np.array([[(0, 0, 0), (1, 0, 0), (1, FLAT, 0), (0, FLAT, 0)]])
+    assert not _are_flat(corners).any()

@@ -242,6 +242,15 @@ def test_a_store_in_wal_mode_is_changed_and_nothing_stays_beside_it(tmp_path: Pa
     assert os.listdir(tmp_path) == [path.name]
 
 
+def test_only_the_two_bytes_of_the_version_tell_the_wal_mode(tmp_path: Path) -> None:
+    path = tmp_path / "store.sqlite"
+    for place, mode in [(17, "ro"), (18, "ro&immutable=1"), (19, "ro&immutable=1"), (20, "ro")]:
+        head = bytearray(b"SQLite format 3\0" + bytes([16, 0, 1, 1, 0, 64, 32, 32]))
+        head[place] = 2
+        path.write_bytes(head)
+        assert connections._reading_mode(path) == mode, place
+
+
 def test_a_journal_that_appears_beside_open_tables_is_told(tmp_path: Path) -> None:
     path = small_store(tmp_path)
     with open_tables(path) as tables:

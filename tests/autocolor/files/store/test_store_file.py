@@ -94,6 +94,12 @@ def test_a_store_of_nodes_and_polygons_alone_is_completed_as_any_mesh_is(tmp_pat
     assert len(report.created) == 3
 
 
+LOOSE_POLYGONS = (
+    "ALTER TABLE polygons RENAME TO old",
+    "CREATE TABLE polygons (polygon, node1, node2, node3, node4, part)",
+    "INSERT INTO polygons SELECT polygon, node1, node2, node3, node4, part FROM old",
+    "DROP TABLE old",
+)
 LOOSE_NODES = (
     "ALTER TABLE nodes RENAME TO old",
     "CREATE TABLE nodes (node, x, y, z)",
@@ -209,6 +215,22 @@ REFUSALS = (
     (
         (*LOOSE_NODES, "UPDATE nodes SET node = 1.5 WHERE node = 2"),
         "nodes, row 1.5: node must be a whole number, not 1.5; correct it",
+    ),
+    (
+        (*LOOSE_POLYGONS, "UPDATE polygons SET polygon = 1.5 WHERE polygon = 1"),
+        "polygons, row 1.5: polygon must be a whole number, not 1.5; correct it",
+    ),
+    (
+        (*LOOSE_POLYGONS, "UPDATE polygons SET node2 = NULL WHERE polygon = 1"),
+        "polygons, row 1: node2 must be a node number, not missing; correct it",
+    ),
+    (
+        (*LOOSE_POLYGONS, "UPDATE polygons SET node4 = 'a' WHERE polygon = 1"),
+        "polygons, row 1: node4 must be a node number, or NULL for a triangle, not 'a'; correct it",
+    ),
+    (
+        (*LOOSE_POLYGONS, "UPDATE polygons SET part = 7 WHERE polygon = 1"),
+        "polygons, row 1: part must be the name of a part, not 7; correct it",
     ),
     (
         (*LOOSE_NODES, "UPDATE nodes SET z = 9e999 WHERE node = 2"),

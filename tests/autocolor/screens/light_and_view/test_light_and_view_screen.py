@@ -574,6 +574,20 @@ def test_each_line_of_a_flap_has_a_switch_at_its_end() -> None:
     assert line - 3 <= switches[1].area.bottom < line
 
 
+def test_the_switches_of_flaps_stand_beside_the_ends_of_their_lines() -> None:
+    switches = switches_of(Flaps(x=Flap(-1.0, 2.5), z=Flap(-1.5, 9.6)))
+    assert {each.label.removeprefix("key: flap "): tuple(each.area) for each in switches} == {
+        "x, minimum, top": (116, 215, 122, 221),
+        "x, maximum, top": (150, 215, 156, 221),
+        "x, minimum, front": (116, 447, 122, 453),
+        "x, maximum, front": (150, 447, 156, 453),
+        "z, minimum, front": (239, 350, 245, 356),
+        "z, maximum, front": (239, 240, 245, 246),
+        "z, minimum, side": (495, 350, 501, 356),
+        "z, maximum, side": (495, 240, 501, 246),
+    }
+
+
 def test_switches_are_within_their_view_wherever_the_lines_are() -> None:
     for tenth in range(-130, 131):
         flaps = Flaps(*(Flap(minimum=tenth / 10) for _ in "xyz"))
