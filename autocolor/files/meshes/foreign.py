@@ -309,7 +309,7 @@ def most_seconds(size: int) -> float:
 
 def most_memory(size: int) -> int:
     """Limit: bytes of address space. The libraries take half a gigabyte; text takes 40 times its size."""
-    return (1 << 30) + min(60 * size, allowed_memory())
+    return (1 << 30) + int(min(60 * size * max(1, validated_limit(None)), allowed_memory()))
 
 
 def largest_result(size: int) -> int:

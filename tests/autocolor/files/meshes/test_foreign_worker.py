@@ -89,7 +89,7 @@ def test_a_failure_is_one_line_of_limited_length() -> None:
     assert sentence_of(ValueError("a\n b")) == "ValueError: a b"
     assert sentence_of(KeyError()) == "KeyError"
     assert sentence_of(SystemExit(1)) == "it gave up"
-    assert sentence_of(MemoryError()) == "it needs more memory than its size allows"
+    assert sentence_of(MemoryError()) == "it needs more memory than its size and --limit allow"
     assert len(sentence_of(ValueError("x" * 1000))) == 300
 
 
