@@ -132,7 +132,11 @@ def committed_set(folder: Path) -> TableSet | None:
     """
     path = folder / COMMITTED / NAMES
     try:
-        if stat.S_ISLNK(os.lstat(path.parent).st_mode) or stat.S_ISLNK(os.lstat(path).st_mode):
+        kind = os.lstat(path.parent).st_mode
+    except (OSError, ValueError):
+        return None
+    try:
+        if stat.S_ISLNK(kind) or stat.S_ISLNK(os.lstat(path).st_mode):
             raise ValueError("it is a link")
         content = bounded_json(read_bytes(path, LARGEST_SET), MOST_NAMES)
         if not isinstance(content, dict) or set(content) != SET_KEYS or not isinstance(content["save"], str):

@@ -10,14 +10,18 @@ from itertools import count
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
 
+from autocolor import read_scene
+from autocolor.commands.autocolor import autocolor
 from autocolor.errors import AutocolorError, InputError, OutputError, WriteError
 from autocolor.files import reading
 from autocolor.files.formats import read_mesh
 from autocolor.files.reading import COMMITTED, NAMES, TableFiles, read_together
+from autocolor.files.scene_files import kind_of
 from autocolor.files.writing import write_atomically, write_together
 from ramtek_emu import writing
-from tests.kills import KINDS, Killed, killed, steps
+from tests.kills import KINDS, Killed, killed, mesh_sum, steps
 
 
 def test_a_new_file_has_the_bytes_and_nothing_stands_beside_it(tmp_path: Path) -> None:
@@ -227,6 +231,28 @@ def test_a_save_of_tables_that_is_killed_leaves_the_old_or_the_new(
             break
     assert found == sorted(found)
     assert 0 < sum(found) < len(found)
+
+
+def test_tables_that_have_no_names_of_their_own_yet_are_found_in_every_way(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name, suffix in (("CSV tables", "csv"), ("npy tables", "npy")):
+        kind, folder = KINDS[name], tmp_path / suffix
+        folder.mkdir()
+        with monkeypatch.context() as patch, suppress(Killed):
+            patch.setattr(os, "replace", lambda *_: killed())
+            kind.save(folder, 1)
+        assert os.listdir(folder / "t") == [COMMITTED, *(["scalars"] if suffix == "npy" else [])]
+        expected = kind.read(folder)
+        nodes, polygons = (f"t/{key}.{suffix}" for key in ("nodes", "polygons"))
+        (folder / "scene.toml").write_text(f'mesh = [{{nodes = "{nodes}", polygons = "{polygons}"}}]')
+        for source in (folder / "scene.toml", folder / nodes):
+            assert mesh_sum(read_scene(source).mesh) == expected
+        assert kind_of(folder / "t") == "mesh"
+        for command in (["info"], ["validate"], ["convert", str(folder / "out.ply")]):
+            arguments = [command[0], str(folder / "t"), *command[1:]]
+            assert CliRunner().invoke(autocolor, arguments).exit_code == 0
+        assert os.listdir(folder / "t")[0] == COMMITTED
 
 
 def test_tables_are_read_again_if_a_save_comes_while_they_are_opened(
