@@ -174,9 +174,11 @@ class TableFiles:
 
         Raises InputError as `committed_set`.
         """
-        if folder not in self._sets:
-            self._sets[folder] = committed_set(folder)
-        committed = self._sets[folder]
+        committed = None
+        if _is_table_name(name):
+            if folder not in self._sets:
+                self._sets[folder] = committed_set(folder)
+            committed = self._sets[folder]
         path = folder / name
         if committed is not None and name in (*committed.files, *committed.absent):
             moved = folder / COMMITTED / name_in_set(name)

@@ -138,7 +138,10 @@ def test_neither_file_is_overwritten_unless_that_is_allowed(tmp_path: Path, exis
     assert len(list(tmp_path.iterdir())) == 2
 
 
-def test_a_save_that_is_killed_mixes_no_surfaces_of_the_old_and_the_new_library(tmp_path: Path) -> None:
+def test_a_save_that_is_killed_mixes_no_surfaces_of_the_old_and_the_new_library(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("os.fsync", lambda _: None)
     path = tmp_path / "wall.obj"
     old, new = colored(), colored().with_surface("body", object_color=(1, 2, 3))
     scenes = []
