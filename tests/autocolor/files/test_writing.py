@@ -306,9 +306,9 @@ def test_a_set_of_tables_that_we_did_not_write_is_refused(tmp_path: Path, conten
     (committed / NAMES).write_bytes(content)
     (tmp_path / "t" / "scene.toml").touch()
     files = {key: tmp_path / "t" / f"{key}.csv" for key in ("nodes", "polygons")}
-    with pytest.raises(InputError, match=r"it must be what a save wrote"):
+    with pytest.raises(InputError, match="it must be a file that autocolor wrote"):
         read_mesh(files)
-    with pytest.raises(InputError, match=r"it must be what a save wrote"):
+    with pytest.raises(InputError, match="it must be a file that autocolor wrote"):
         kind.save(tmp_path, 1)
     assert (tmp_path / "t" / "scene.toml").exists()
 
