@@ -148,7 +148,7 @@ def committed_set(folder: Path) -> TableSet | None:
         return None
     except (OSError, ValueError) as error:
         raise InputError(
-            f"{path}: it must be a file that autocolor wrote, and is not ({str(error)[:100]}); delete its folder"
+            f"{path}: it must be a file that autocolor wrote, and is not ({str(error)[:100]}); delete it"
         ) from None
     return TableSet(content["save"], *map(tuple, names))
 
