@@ -232,9 +232,9 @@ def _new_part(path: Path, *, is_folder: bool) -> tuple[Path, int]:
         with suppress(OSError):
             # Without locks, as on some network drives, nothing is swept either.
             lock(descriptor, wait=True)
-        with suppress(OSError):
-            if os.path.samestat(os.fstat(descriptor), os.lstat(locked)):
-                return part, descriptor
+        if os.path.lexists(locked):
+            return part, descriptor
+        # Another program swept it before it was locked.
         os.close(descriptor)
 
 
@@ -274,8 +274,6 @@ def _remove_left(part: Path) -> None:
     flags |= getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0)
     with open(os.open(locked, flags, 0o666), "rb") as file:
         lock(file.fileno(), wait=False)
-        if not os.path.samestat(os.fstat(file.fileno()), os.lstat(locked)):
-            return
         if sys.platform == "win32":
             file.close()
         os.unlink(locked)

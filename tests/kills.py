@@ -43,7 +43,8 @@ from autocolor.files.reading import COMMITTED
 from autocolor.files.rig_file import read_rig, write_rig
 from autocolor.journal.autosave import Autosave, journal_in, left_sessions
 from autocolor.journal.history import History
-from autocolor.journal.places import ScenePlace, Source, checksum_of
+from autocolor.journal.places import ScenePlace, Source, checksum_of, place_of
+from autocolor.journal.saving import save_session
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalar import MeshScalar
 from ramtek_emu import Ramtek9300, read_snapshot, write_snapshot, writing
@@ -162,6 +163,23 @@ def read_steps(folder: Path) -> object:
     return checksum_of(read_journal(journal_in(left)).history.scene)
 
 
+def save_in_studio(folder: Path, number: int) -> None:
+    """Save a session that changed a scene, as Ctrl+S does."""
+    if not (folder / "s").exists():
+        write_scene(folder / "s", scene_number(0))
+    source = Source(str(folder / "s"))
+    history = History(read_scene(source.path), place_of(source))
+    history.take(history.scene.replace(ambient=number / 1000), False)
+    save_session(history, render(history.scene, 24, 32), folder)
+
+
+def read_session(folder: Path) -> object:
+    """The checksum of the scene that was saved. The pictures beside it must be whole."""
+    for path in folder.glob("*.npz"):
+        read_picture(path)
+    return checksum_of(read_scene(folder / "s"))
+
+
 def save_picture(path: Path, number: int) -> None:
     """Save a small picture of scene `number`."""
     scene = scene_number(number)
@@ -217,6 +235,7 @@ KINDS: Final = {
         lambda folder: (folder / "r.ramtek").read_bytes(),
     ),
     "journal": Kind(save_step, read_steps),
+    "session": Kind(save_in_studio, read_session),
 }
 """The ways to save. Each saves over what it saved before."""
 

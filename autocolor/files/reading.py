@@ -137,25 +137,29 @@ class TableSet(NamedTuple):
 
 
 def committed_set(folder: Path) -> TableSet | None:
-    """The save of tables in a folder whose tables do not all have their own names; None if all have.
+    """The last save of tables to a folder, if some of its tables have no name of their own yet; else None.
 
-    Raises InputError if it is none of ours.
+    Raises InputError if another program wrote it.
     """
     path = folder / COMMITTED / NAMES
     try:
-        if stat.S_ISLNK(os.lstat(path.parent).st_mode) or stat.S_ISLNK(os.lstat(path).st_mode):
+        kind = os.lstat(path.parent).st_mode
+    except (OSError, ValueError):
+        return None
+    try:
+        if stat.S_ISLNK(kind) or stat.S_ISLNK(os.lstat(path).st_mode):
             raise ValueError("it is a link")
         content = bounded_json(read_bytes(path, LARGEST_SET), MOST_NAMES)
         if not isinstance(content, dict) or set(content) != SET_KEYS or not isinstance(content["save"], str):
-            raise ValueError("its keys are others")
+            raise ValueError("it has other keys")
         names = [content["files"], content["absent"]]
         if not all(isinstance(listed, list) and all(map(_is_table_name, listed)) for listed in names):
-            raise ValueError("its names are others")
+            raise ValueError("it names other files")
     except (FileNotFoundError, NotADirectoryError, MissingInputError):
         return None
     except (OSError, ValueError) as error:
         raise InputError(
-            f"{path}: it must be what a save wrote, and is not ({str(error)[:100]}); delete that folder"
+            f"{path}: it must be a file that autocolor wrote, and is not ({str(error)[:100]}); delete it"
         ) from None
     return TableSet(content["save"], *map(tuple, names))
 
@@ -170,7 +174,7 @@ def name_in_set(name: str) -> str:
 
 
 class TableFiles:
-    """Where the tables of folders are. Notes all that was asked, to find out if a save came meanwhile."""
+    """Finds the tables of folders, and remembers its answers, to compare them when all tables are open."""
 
     def __init__(self) -> None:
         self._sets: dict[Path, TableSet | None] = {}
@@ -181,9 +185,11 @@ class TableFiles:
 
         Raises InputError as `committed_set`.
         """
-        if folder not in self._sets:
-            self._sets[folder] = committed_set(folder)
-        committed = self._sets[folder]
+        committed = None
+        if _is_table_name(name):
+            if folder not in self._sets:
+                self._sets[folder] = committed_set(folder)
+            committed = self._sets[folder]
         path = folder / name
         if committed is not None and name in (*committed.files, *committed.absent):
             moved = folder / COMMITTED / name_in_set(name)
@@ -197,7 +203,7 @@ class TableFiles:
         return self._seen[folder, name][1] is not None
 
     def are_unchanged(self) -> bool:
-        """Whether every answer would be the same now. Raises InputError as `committed_set`."""
+        """Whether all answers would be the same now. Raises InputError as `committed_set`."""
         now = TableFiles()
         for folder, name in self._seen:
             now.path(folder, name)
@@ -221,10 +227,10 @@ def _stamp(path: Path) -> tuple[int, ...] | None:
 
 
 def read_together(open_files: Callable[[TableFiles], Result]) -> Result:
-    """The result of a function that opens files of folders of tables, all files of one save.
+    """The result of `open_files`, which opens tables; all tables of a folder are of the same save.
 
-    The function is called again if a save came meanwhile. Raises InputError if saves come all the time, and
-    what the function raises.
+    If a save came while it opened them, it is called again. Raises InputError if saves come all the time, and
+    the errors of `open_files`.
     """
     for number in range(MOST_TRIES):
         files = TableFiles()

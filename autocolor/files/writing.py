@@ -68,7 +68,7 @@ def write_together(
             with _saving_alone(folder):
                 _move_tables(folder)
                 for name in names:
-                    _make_folder((folder / name).parent)
+                    _make_folder(folder, name)
                     writing.refuse_output(folder / name, overwrite)
                 absent = sorted(name for name in {*others} - {*names} if os.path.isfile(folder / name))
                 content = {"save": part.name, "files": names, "absent": absent}
@@ -93,7 +93,7 @@ def _move_tables(folder: Path) -> None:
         for name in committed.absent:
             (folder / name).unlink(missing_ok=True)
         for name in committed.files:
-            _make_folder((folder / name).parent)
+            _make_folder(folder, name)
             if os.path.lexists(source / name_in_set(name)):
                 os.replace(source / name_in_set(name), folder / name)
         for place in {(folder / name).parent for name in committed.files}:
@@ -103,13 +103,17 @@ def _move_tables(folder: Path) -> None:
         os.rmdir(source)
 
 
-def _make_folder(folder: Path) -> None:
+def _make_folder(folder: Path, name: str) -> None:
+    """Make the folder in a folder of tables that a table is in, such as `scalars`. Raises OutputError."""
+    if "/" not in name:
+        return
+    place = (folder / name).parent
+    if place.is_symlink():
+        raise OutputError(f"{place}: it must be a folder, not a link; choose another place")
     try:
-        folder.mkdir(exist_ok=True)
-        if folder.is_symlink() and folder.name == "scalars":
-            raise OutputError(f"{folder}: it must be a folder, not a link; choose another place")
+        place.mkdir(exist_ok=True)
     except OSError as error:
-        raise OutputError(f"{folder}: it cannot be made ({reason_of(error)}); choose another place") from None
+        raise OutputError(f"{place}: it cannot be made ({reason_of(error)}); choose another place") from None
 
 
 @contextmanager

@@ -106,9 +106,9 @@ def test_a_scene_file_holds_everything_and_a_mesh_no_lights() -> None:
         assert each.holds <= {*MESH_EXTRAS, "surfaces"}
 
 
-def colored() -> Scene:
+def colored(size: float = 1.0) -> Scene:
     """A cube whose one surface has a color and a highlight of its own."""
-    scene = scene_of(cube(), surfaces=[Surface("body")], parts={"cube": {"surface": "body"}})
+    scene = scene_of(cube(size), surfaces=[Surface("body")], parts={"cube": {"surface": "body"}})
     return scene.with_surface("body", object_color=(10, 20, 30), specular=0.25, exponent=7.5)
 
 
@@ -138,20 +138,26 @@ def test_neither_file_is_overwritten_unless_that_is_allowed(tmp_path: Path, exis
     assert len(list(tmp_path.iterdir())) == 2
 
 
-def test_a_save_that_is_killed_mixes_no_surfaces_of_the_old_and_the_new_library(tmp_path: Path) -> None:
+def test_a_save_that_is_killed_mixes_no_surfaces_of_the_old_and_the_new_library(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("os.fsync", lambda _: None)
     path = tmp_path / "wall.obj"
-    old, new = colored(), colored().with_surface("body", object_color=(1, 2, 3))
-    scenes = []
+    old, new = colored(), colored(2.0).with_surface("body", object_color=(1, 2, 3))
+    read = []
     for number in count():
         write_obj(path, old, True)
         with suppress(Killed), steps(number, killed) as done:
             write_obj(path, new, True)
-        scenes.append(read_scene(path).surfaces[0].paint.object_color)
+        scene = read_scene(path)
+        read.append((scene.mesh.coordinates.max(), scene.surfaces[0].paint.object_color))
         if len(done) < number:
             break
-    switch = scenes.index((1, 2, 3))
-    assert set(scenes[:switch]) == {old.surfaces[0].paint.object_color}
-    assert set(scenes[switch:]) == {(1, 2, 3)}
+    before, after = (1, (10, 20, 30)), (2, (1, 2, 3))
+    assert read == [before] * read.count(before) + [after] * read.count(after)
+    assert read[0] == before
+    assert read[-1] == after
+    assert len(list(tmp_path.glob("wall.*"))) == 2
 
 
 def test_names_of_materials_are_readable_and_differ() -> None:

@@ -180,7 +180,10 @@ def test_a_journal_without_a_header_is_refused_only_for_a_change(
     assert contents(tmp_path) == before
 
 
-@pytest.mark.parametrize("content", [b"", bytes(600), bytes(512) + b"old pages"])
+@pytest.mark.parametrize(
+    "content",
+    [b"", bytes(600), bytes(512) + b"old pages", (bytes(12) + b"unsynced header").ljust(512, b"\0")],
+)
 def test_a_journal_that_a_program_keeps_for_its_next_change_is_no_hindrance(
     tmp_path: Path, content: bytes
 ) -> None:
