@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import io
 import json
+import signal
 import sqlite3
 from collections.abc import Iterator
 from itertools import count
@@ -16,6 +17,7 @@ from autocolor.commands.sql import lines_of, prompt, split, sql, statements_in
 from autocolor.errors import AutocolorError, UsageError
 from autocolor.files.store.tables import Answer, Value, open_tables
 from autocolor.scene.lights import HalfSpace, Links
+from tests.autocolor.commands.conftest import Run
 from tests.autocolor.files.store.stores import small_scene, small_store, tables_of
 
 LIGHTS = "SELECT name, intensity FROM lights"
@@ -260,6 +262,22 @@ def test_ctrl_c_takes_back_what_was_typed_and_errors_are_told(
     told = capsys.readouterr().err
     assert "canceled; Ctrl+D ends" in told
     assert "autocolor: it is wrong; correct it" in told
+
+
+def test_at_the_prompt_ctrl_c_cancels_each_time_and_sigterm_ends(
+    tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    numbers = iter([signal.SIGINT, signal.SIGINT, signal.SIGTERM])
+
+    def interrupted(_: str) -> str:
+        signal.raise_signal(next(numbers))
+        return ""
+
+    monkeypatch.setattr("builtins.input", interrupted)
+    monkeypatch.setattr("sys.stdin.isatty", lambda: True)
+    ran = run("sql", str(small_store(tmp_path)))
+    assert ran.code == 143
+    assert ran.err.splitlines()[1:] == ["canceled; Ctrl+D ends"] * 2 + ["autocolor: ended by SIGTERM"]
 
 
 def test_words_with_a_dot_show_the_tables_and_leave(
