@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import AnyArray, Bytes, Indices, PartNumbers, Singles
+from autocolor.arrays import AnyArray, Bytes, Indices, PartNumbers, Singles, underflowing
 from autocolor.budget import require_memory
 from autocolor.immutable import Immutable, read_only
 from autocolor.lighting.shading import DIFFUSE, SPECULAR, LightPlanes
@@ -118,6 +118,7 @@ class Picture(Immutable):
         )
 
     @cached_property
+    @underflowing
     def intensity(self) -> Singles:
         """Unscaled intensities, (lines, elements) float32, 0 where nothing is visible; read-only."""
         return self._raster(self.relative * np.float32(self.scale))
@@ -163,6 +164,7 @@ class Picture(Immutable):
         return {0: IntensityRange(least, most), **ranges}
 
     @property
+    @underflowing
     def ranges(self) -> PictureRanges:
         """Minimum and maximum intensity of the whole picture and of each visible surface."""
         scale = np.float32(self.scale)

@@ -26,7 +26,7 @@ from typing import Annotated, ClassVar, Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Singles, power
+from autocolor.arrays import Singles, power, underflowing
 from autocolor.scene.columns import BarRange, Column, Problem, Row, Tier
 from autocolor.scene.kinds import AngleCurve, AngleCurveKind, Number
 from autocolor.scene.row_kinds import Nested
@@ -198,6 +198,7 @@ class _PowerOfCosine(ReflectionModel):
 class Phong(_PowerOfCosine):
     """cos^N(E). Paper: Figure 2."""
 
+    @underflowing
     def specular(self, cosines: Cosines, out: Singles) -> Singles:
         """cos^N(E), times the growth of S; a negative cosine counts as 0."""
         # Most surfaces reflect some of the lights away from the eye.
@@ -212,6 +213,7 @@ class Phong(_PowerOfCosine):
 class BlinnPhong(_PowerOfCosine):
     """cos^N of the angle between normal and half vector. Departs: J. Blinn, SIGGRAPH 1977, not Figure 2."""
 
+    @underflowing
     def specular(self, cosines: Cosines, out: Singles) -> Singles:
         """(N.H)^N, times the growth of S; a negative cosine counts as 0."""
         half = _half_vector(cosines.incidence, cosines.view(), cosines.eye)
@@ -265,6 +267,7 @@ class CookTorrance(ReflectionModel):
         """The factor if F and G were 1 and D at its maximum, which is 4 / e for a roughness of 1."""
         return 4 / math.e / self.normal_reflectance / LEAST_FACING
 
+    @underflowing
     def specular(self, cosines: Cosines, out: Singles) -> Singles:
         """F D G / (N.V), relative to normal incidence and view."""
         view = cosines.view()
@@ -279,9 +282,8 @@ class CookTorrance(ReflectionModel):
         square = np.maximum(cos_half * cos_half, np.float32(1e-4))
         tangent = (1 - square) / square
         tangent /= np.float32(-self.roughness * self.roughness)
-        with np.errstate(under="ignore"):
-            distribution: Singles = np.exp(tangent, out=tangent)
-            distribution /= square * square
+        distribution: Singles = np.exp(tangent, out=tangent)
+        distribution /= square * square
         return distribution
 
     def _fresnel(self, cosine: Singles) -> Singles:
@@ -300,10 +302,7 @@ class CookTorrance(ReflectionModel):
 
 def _grown(factor: Singles, growth: Singles | None) -> Singles:
     """A specular factor times the growth of S, in its own array; unchanged if S is constant."""
-    if growth is None:
-        return factor
-    with np.errstate(under="ignore"):
-        return np.multiply(factor, growth, out=factor)
+    return factor if growth is None else np.multiply(factor, growth, out=factor)
 
 
 class _HalfVector(NamedTuple):

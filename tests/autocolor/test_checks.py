@@ -27,7 +27,12 @@ def test_a_name_of_a_million_letters_is_compared_by_its_first() -> None:
 
 def test_the_spelling_of_few_names_is_compared(monkeypatch: pytest.MonkeyPatch) -> None:
     compared: list[str] = []
-    monkeypatch.setattr(difflib, "get_close_matches", lambda _, names, n: compared.extend(names) or [])
+
+    def compare(name: str, names: list[str], n: int) -> list[str]:
+        compared.extend(names)
+        return []
+
+    monkeypatch.setattr(difflib, "get_close_matches", compare)
     nearest("grille", [f"part {number}" for number in range(100_000)])
     assert len(compared) == MOST_COMPARED
 

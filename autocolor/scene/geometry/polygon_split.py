@@ -107,7 +107,7 @@ def clipped_ears(points: list[Point]) -> list[tuple[int, int, int, int]]:
     blockers: list[list[int] | None] = [None] * count
     blocked: list[list[int]] = [[] for _ in points]
     untested = list(range(count))
-    pieces = []
+    pieces: list[tuple[int, int, int, int]] = []
     here = 0
     crosses = False
     while len(pieces) < count - 4:

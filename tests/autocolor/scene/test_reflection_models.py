@@ -146,7 +146,8 @@ def test_a_growth_multiplies_the_factor_without_it_by_a_function_of_incidence_al
     for model in (Phong, BlinnPhong):
         to_plain = np.array(specular(model(exponent), *rows), np.float32)
         grown = specular(model(exponent, growth), *rows)
-        assert grown == (to_plain if times is None else to_plain * times).tolist()
+        with np.errstate(under="ignore"):
+            assert grown == (to_plain if times is None else to_plain * times).tolist()
 
 
 @given(st.lists(st.tuples(cosines, cosines, cosines), min_size=1), exponents, growths)

@@ -192,6 +192,13 @@ def test_the_limits_do_not_cross(colored_hand: Hand) -> None:
     assert low < high
 
 
+@pytest.mark.parametrize("limits", [(0.0, 5e-324), (-5e-324, 0.0)])
+def test_limits_may_be_as_close_as_numbers_are(tmp_path: Path, limits: tuple[float, float]) -> None:
+    hand = hand_at(tmp_path, "scalar", boxes().with_scalar(name="z", limits=limits, legend=True))
+    hand.pull("high limit", 0.9, 0.5)
+    assert scalar_of(hand).limits != limits
+
+
 def test_the_own_range_is_held_and_followed_again(colored_hand: Hand) -> None:
     colored_hand.pick("own range")
     assert scalar_of(colored_hand).limits == (0.0, 1.0)

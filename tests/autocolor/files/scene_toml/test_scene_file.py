@@ -355,7 +355,12 @@ def test_a_thousand_problems_are_a_hundred_and_a_count(folder: Path) -> None:
 
 def test_of_many_unknown_keys_few_get_the_closest_key(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     compared: list[str] = []
-    monkeypatch.setattr(difflib, "get_close_matches", lambda name, _, n: compared.append(name) or [])
+
+    def compare(name: str, names: list[str], n: int) -> list[str]:
+        compared.append(name)
+        return []
+
+    monkeypatch.setattr(difflib, "get_close_matches", compare)
     text = "".join(f"qq{number} = 1\n" for number in range(5000))
     assert len(refusal(folder, text + MESH)) == 101
     assert len(compared) == 100

@@ -368,3 +368,24 @@ def test_the_rest_of_a_line_is_kept_apart_from_the_value() -> None:
 )
 def test_the_items_of_an_inline_table_have_their_places(text: str, expected: list[object]) -> None:
     assert [(each.path, each.key, text[each.start : each.stop]) for each in inline_items(text)] == expected
+
+
+@given(st.sets(st.integers(0, 5)), st.booleans())
+def test_many_rows_are_removed_at_once_as_one_by_one(rows: set[int], top: bool) -> None:
+    lights = "".join(
+        f'# light {row}\n[[lights]]\nname = "{row}" # name\n\n[lights.flaps.x]\non = true\n'
+        for row in range(6)
+    )
+    at_once, one_by_one = (TomlText("ambient = 1\n\n" * top + lights, ["view", "lights"]) for _ in range(2))
+    at_once.remove(*(("lights", row) for row in rows))
+    for row in sorted(rows):
+        one_by_one.remove(("lights", row))
+    assert at_once.text == one_by_one.text
+
+
+def test_the_places_of_keys_are_noted_once_for_all_removed_rows(monkeypatch: pytest.MonkeyPatch) -> None:
+    text = TomlText("".join(f"[parts.p{row}]\nstage = true\n" for row in range(100)), ["parts"])
+    noted: list[int] = []
+    monkeypatch.setattr(text, "_index", lambda: noted.append(1))
+    text.remove(*(("parts", f"p{row}") for row in range(50)))
+    assert len(noted) == 1

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -84,7 +85,7 @@ def test_hardly_a_corner_is_tested_twice(monkeypatch: pytest.MonkeyPatch) -> Non
     tests = 0
     turn = polygon_split._turn
 
-    def counted(*points: object) -> object:
+    def counted(*points: Any) -> Any:
         nonlocal tests
         tests += 1
         return turn(*points)
