@@ -125,7 +125,12 @@ VTK = (
     "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 16 float\n{nodes}\n"
     "POLYGONS 9 45\n{polygons}\n"
 )
+GRID = (
+    "# vtk DataFile Version 3.0\nx\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 4 4 1\nORIGIN 0 0 0\n"
+    "SPACING 1 1 1\n"
+)
 FORMATS = {
+    "grid": plain_text(GRID),
     "OFF": plain_text(OFF),
     "VTK": plain_text(VTK),
     **{name: converted(name) for name in ("CSV", "OBJ", "PLY", "tables", "store")},

@@ -20,6 +20,7 @@ from urllib.parse import unquote_to_bytes
 import numpy as np
 
 from autocolor.arrays import AnyArray, Floats, Indices, Numbers, runs
+from autocolor.budget import require_memory
 from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError
 from autocolor.files.meshes.cells import CORNERS, Flats, Volumes, cell_surface
@@ -502,8 +503,8 @@ def _add_shaped(
 LAYERS: Final = (b"STRUCTURED_GRID", b"RECTILINEAR_GRID", b"STRUCTURED_POINTS")
 
 AXES: Final = (b"X_COORDINATES", b"Y_COORDINATES", b"Z_COORDINATES")
-MOST_NODES: Final = 4_000_000
-"""Limit: nodes of one layer. A small file that gives only its axes can have many nodes."""
+BYTES_OF_NODE: Final = 340
+"""Measured: bytes that a node of a layer takes. A small file that gives only its axes can have many nodes."""
 
 VECTORS: Final = (b"ORIGIN", b"SPACING", b"ASPECT_RATIO")
 
@@ -535,12 +536,12 @@ def read_layer(cursor: VtkCursor, dataset: bytes) -> tuple[Floats, VtkCells]:
     if dimensions is None:
         raise InputError(f"{cursor.name}: a {dataset.decode()} must have DIMENSIONS, not none; add them")
     nodes = int(np.prod(dimensions, dtype=object))
-    most = min(len(cursor.data), MOST_NODES)
-    if nodes > most:
+    if nodes > len(cursor.data):
         raise InputError(
-            f"{cursor.name}: a {dataset.decode()} must have at most as many nodes as the file has bytes, and"
-            f" {MOST_NODES:,}, not {nodes:,}; take fewer"
+            f"{cursor.name}: a {dataset.decode()} must have at most as many nodes as the file has bytes, not"
+            f" {nodes:,}; take fewer"
         )
+    require_memory(BYTES_OF_NODE * nodes, f"{cursor.name}: to read {nodes:,} nodes", "take fewer")
     if points is None:
         points = _points(cursor, dataset, dimensions, axes, vectors)
         if not (np.abs(points) <= LARGEST_COORDINATE).all():

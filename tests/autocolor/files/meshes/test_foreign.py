@@ -123,7 +123,7 @@ for mesh, result in zip(pairs[::2], pairs[1::2]):
     child = os.fork()
     if child == 0:
         os.dup2(os.open(os.devnull, os.O_RDWR), 1)
-        os._exit(worker.main([library, kind, mesh, result, size]))
+        os._exit(worker.main([library, kind, mesh, result, size, "1"]))
     print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
 """
 """Reads many files, each in a process of its own that has the library already."""
