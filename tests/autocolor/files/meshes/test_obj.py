@@ -298,6 +298,11 @@ def test_an_endless_line_is_refused(letter: bytes) -> None:
     assert sentence == "car.obj, line 5: a line must have at most 1,048,576 bytes, not 2,000,000; split it"
 
 
+def test_the_last_line_may_end_with_a_continuation(path: Path) -> None:
+    for end in ("\\\n", "\\\n\\\n", "\\\n \n"):
+        assert read(path, f"{SQUARE}f 1 2 3 4 {end}").mesh.node_numbers.tolist() == [[0, 1, 2, 3]]
+
+
 def test_an_endless_continuation_is_refused() -> None:
     sentence = refusal(lines_read, SQUARE + "f 1 2 3 " + "\\\n1 " * 1_000_000)
     assert sentence.startswith("car.obj, line 5: a line must have at most 1,048,576 bytes, not ")
