@@ -303,7 +303,7 @@ def tests_of(file: str, extent: str) -> tuple[str, ...]:
     package, *rooms = path.parts
     folder = ROOT / "tests" / path.parent
     if extent == "subject":
-        stem = path.parent.name if path.stem == "__init__" else path.stem.strip("_")
+        stem = "package" if path.stem == "__init__" else path.stem.strip("_")
         files = [folder / f"test_{stem}.py", *sorted(folder.glob(f"test_{stem}_*.py"))]
         return (*(each.relative_to(ROOT).as_posix() for each in files if each.exists()), file)
     if extent == "whole":
