@@ -282,12 +282,15 @@ def chosen_mutants(count: int, seed: int, only: Iterable[str]) -> list[Mutant]:
     """As many mutants of different lines, the same for the same seed and program."""
     generator = random.Random(seed)
     by_line: defaultdict[tuple[str, int], list[Mutant]] = defaultdict(list)
-    for path in sorted(path for package in PACKAGES for path in (ROOT / package).rglob("*.py")):
+    paths = sorted(path for package in PACKAGES for path in (ROOT / package).rglob("*.py"))
+    for path in paths:
+        if only and not path.relative_to(ROOT).as_posix().startswith(tuple(only)):
+            continue
         for mutant in mutants_of(path):
             is_key = mutant.replacement.endswith("_'")
             if not is_key or generator.random() < KEY_SHARE:
                 by_line[mutant.file, mutant.number].append(mutant)
-    lines = [line for line in by_line if not only or line[0].startswith(tuple(only))]
+    lines = list(by_line)
     return [generator.choice(by_line[line]) for line in generator.sample(lines, min(count, len(lines)))]
 
 
@@ -300,7 +303,7 @@ def tests_of(file: str, extent: str) -> tuple[str, ...]:
     package, *rooms = path.parts
     folder = ROOT / "tests" / path.parent
     if extent == "subject":
-        stem = path.parent.name if path.stem == "__init__" else path.stem.strip("_")
+        stem = "package" if path.stem == "__init__" else path.stem.strip("_")
         files = [folder / f"test_{stem}.py", *sorted(folder.glob(f"test_{stem}_*.py"))]
         return (*(each.relative_to(ROOT).as_posix() for each in files if each.exists()), file)
     if extent == "whole":

@@ -206,6 +206,8 @@ def test_without_a_screen_render_is_named(
         monkeypatch.delenv(name, raising=False)
     if os.name == "nt":
         pytest.skip("Windows always has a screen")
+    # The scene is not rendered first.
+    monkeypatch.setattr("autocolor.screens.viewer.Viewer", None)
     ran = run(*arguments)
     assert (ran.code, ran.out) == (69, "")
     assert ran.err.count("\n") == 1

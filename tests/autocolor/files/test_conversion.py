@@ -14,6 +14,7 @@ from autocolor.files.conversion import (
     SCENE,
     WHOLE_SCENE,
     OutputFormat,
+    _named,
     beyond_materials,
     left_out,
     material_names,
@@ -226,3 +227,17 @@ def test_many_names_are_cut() -> None:
     assert left_out(scene_of(mesh), NOTHING, is_bare=True) == [
         "10 parts ('cube', '0', '1', '2', '3' and 5 more)"
     ]
+
+
+@pytest.mark.parametrize(
+    ("count", "text"),
+    [
+        (1, "'0'"),
+        (4, "'0', '1', '2', '3'"),
+        (5, "'0', '1', '2', '3', '4'"),
+        (6, "'0', '1', '2', '3', '4' and 1 more"),
+        (2005, "'0', '1', '2', '3', '4' and 2,000 more"),
+    ],
+)
+def test_at_most_five_names_are_written_out(count: int, text: str) -> None:
+    assert _named([str(number) for number in range(count)]) == text

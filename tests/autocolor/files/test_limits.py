@@ -6,6 +6,8 @@ from importlib import import_module
 
 import pytest
 
+from autocolor.files.picture_file import PICTURE_FILE
+
 LIMITS: dict[str, dict[str, float]] = {
     "array_file": {"LARGEST_HEADER": 16 << 20, "MOST_VALUES": 1_000_000, "LARGEST_ARRAY_HEADER": 1024},
     "conversion": {"MOST_NAMED": 5},
@@ -36,6 +38,10 @@ LIMITS: dict[str, dict[str, float]] = {
     "store.schema": {"MOST_TABLES": 10_000, "MOST_ROWS": 100_000, "LARGEST_FLOAT": 1.7976931348623157e308},
     "store.tables": {"LONGEST_COMPUTED": 1 << 17},
 }  # fmt: skip
+
+
+def test_a_picture_file_has_at_most_4_gigabytes() -> None:
+    assert PICTURE_FILE.largest == 4 << 30
 
 
 @pytest.mark.parametrize("module", LIMITS)

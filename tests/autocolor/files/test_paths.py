@@ -119,3 +119,10 @@ def test_a_path_that_is_taken_gets_the_lowest_number_from_two(tmp_path: Path) ->
     (tmp_path / "rig-2.toml").mkdir()
     (tmp_path / "rig-3.toml").symlink_to(tmp_path / "nowhere")
     assert free_path(path) == tmp_path / "rig-4.toml"
+
+
+def test_a_stem_has_at_most_100_letters() -> None:
+    for letters, kept in [(99, 99), (100, 100), (101, 100)]:
+        assert file_stem("a" * letters) == "a" * kept
+    # A space at the cut goes, too.
+    assert file_stem("a" * 99 + " b") == "a" * 99

@@ -147,6 +147,13 @@ def test_a_session_is_left_when_no_program_has_its_lock(history: History, left: 
     assert journals(state) == []
 
 
+def test_sessions_that_were_left_are_listed_the_last_first(history: History, left: Path) -> None:
+    folders = [journal_of(history, left.with_name(name)).parent for name in ("c", "a", "d", "b")]
+    for age, folder in enumerate((left, *folders)):
+        os.utime(journal_in(folder), (1e9 - age, 1e9 - age))
+    assert left_sessions() == [left, *folders]
+
+
 def test_a_session_that_goes_on_has_its_journal_in_the_same_folder(left: Path, state: Path) -> None:
     journal = left / JOURNAL
     # The program was killed while it wrote a line.

@@ -10,6 +10,7 @@ from autocolor.files.state import note_file
 from autocolor.screens.file_screen import LEFT, MOST_ROWS, RIGHT, FileRow
 from autocolor.screens.session import PICTURE
 from autocolor.widgets.menu import WORK
+from autocolor.widgets.widget import Choice
 from tests.autocolor.meshes import wall_scene
 from tests.autocolor.screens.boxes import boxes, hand_at, told, undo
 from tests.autocolor.screens.hand import Hand
@@ -305,5 +306,8 @@ def test_the_scale_of_a_mesh_is_chosen_before_it_is_opened(hand: Hand) -> None:
 def test_the_scale_of_the_command_line_can_be_pointed_at(hand: Hand) -> None:
     hand.viewer.session.place_meshes("y", 25.4)
     row = next(each for each in hand.viewer.board.layout.rows if each.label == "mesh scale")
+    choice = next(each for each in hand.viewer.board.screen.rows() if each.label == "mesh scale")
+    assert isinstance(choice, Choice)
+    assert choice.names == ("0.001", "0.01", "0.0254", "0.3048", "1", "10", "25.4", "100", "1000")
     hand.click(row.area.right - 8, row.area.top + 8)
     assert (hand.viewer.session.mesh_up, hand.viewer.session.mesh_scale) == ("y", 100)

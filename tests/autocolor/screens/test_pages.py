@@ -8,6 +8,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from autocolor.screens.board import rows_of_menu
+from autocolor.screens.tutorial import Tutorial
 from autocolor.screens.viewer import Viewer
 from autocolor.widgets.bars import Bar
 from autocolor.widgets.menu import WIDE_BAR, laid_out
@@ -26,6 +27,7 @@ PAGES = {
     "scalar": 3447545316,
     "kept": 1018747720,
     "file": 826649456,
+    "tutorial": 2372431904,
     "entries": 3253356514,
     "help": 1182376081,
 }
@@ -54,5 +56,13 @@ def test_every_screen_is_drawn_as_it_was(tmp_path: Path) -> None:
             if isinstance(row, Bar):
                 items += row.at(WIDE_BAR).items(lit=False)
         pages[name] = checksum(items, skips_images=True)
+    viewer.session.turn_to("picture")
+    tutorial = Tutorial(viewer.session)
+    board.over = tutorial.widgets
+    viewer.tell("")
+    items = list(board.page().items)
+    for widget in tutorial.widgets():
+        items += widget.items(lit=True)
+    pages["tutorial"] = checksum(items)
     changed = {name: number for name, number in pages.items() if PAGES.get(name) != number}
     assert not changed, changed

@@ -17,6 +17,7 @@ from autocolor.visibility.visible_points import (
     NORMAL,
     POINT,
     ROW_COUNT,
+    Seen,
     Sight,
     VisibleParts,
     fill_point_products,
@@ -172,20 +173,32 @@ def test_parts_of_points_keep_the_given_numbers(numbers: list[int]) -> None:
 
 LINES, ELEMENTS = 12, 16
 
-pixels = st.tuples(st.integers(0, LINES - 1), st.integers(0, ELEMENTS - 1))
+shares = st.floats(0, 1)
 
 
 def sight_of(scene: Scene, block: int = 1) -> Sight:
     return Sight(scene, rendering(scene, LINES, ELEMENTS).points, block)
 
 
-@given(outside_views(), pixels, st.booleans())
+def seen_in(sight: Sight, share: float) -> tuple[tuple[int, int], Seen] | None:
+    """A pixel where something is visible, at a share of all, and what is seen there."""
+    pixels = sight.points.pixels
+    if not len(pixels):
+        return None
+    line, element = divmod(int(pixels[int(share * (len(pixels) - 1))]), ELEMENTS)
+    seen = seen_at(sight, line, element)
+    assert seen is not None
+    return (line, element), seen
+
+
+@given(outside_views(), shares, st.booleans())
 def test_on_a_wall_the_point_is_where_the_ray_meets_it_and_the_view_is_mirrored(
-    view: View, pixel: tuple[int, int], two_sided: bool
+    view: View, share: float, two_sided: bool
 ) -> None:
-    seen = seen_at(sight_of(wall_scene(wall(3, 2, half=2.0), view=view, two_sided=two_sided)), *pixel)
-    if seen is None:
+    found = seen_in(sight_of(wall_scene(wall(3, 2, half=2.0), view=view, two_sided=two_sided)), share)
+    if found is None:
         return
+    pixel, seen = found
     toward = ray(view, LINES, ELEMENTS, *pixel)
     point = plus(view.eye, times(view.eye[1] / -toward[1], toward))
     facing = 1.0 if two_sided and view.eye[1] > 0 else -1.0
@@ -195,11 +208,12 @@ def test_on_a_wall_the_point_is_where_the_ray_meets_it_and_the_view_is_mirrored(
     assert seen.reflected_view == pytest.approx((x, -y, z), abs=2e-5)
 
 
-@given(outside_views(), pixels)
-def test_on_a_sphere_the_normal_is_the_direction_of_the_point(view: View, pixel: tuple[int, int]) -> None:
-    seen = seen_at(sight_of(wall_scene(sphere(96, 48, radius=1.5), view=view)), *pixel)
-    if seen is None:
+@given(outside_views(), shares)
+def test_on_a_sphere_the_normal_is_the_direction_of_the_point(view: View, share: float) -> None:
+    found = seen_in(sight_of(wall_scene(sphere(96, 48, radius=1.5), view=view)), share)
+    if found is None:
         return
+    _, seen = found
     assert math.hypot(*seen.point) == pytest.approx(1.5, abs=0.01)
     assert seen.normal == pytest.approx(unit(seen.point), abs=0.02)
     assert math.hypot(*seen.normal) == pytest.approx(1.0, abs=1e-12)

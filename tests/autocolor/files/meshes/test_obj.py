@@ -25,6 +25,7 @@ from autocolor.files.meshes.obj import (
     ObjTables,
     Statements,
     materials_of,
+    mtl_text,
     obj_text,
     read_materials,
     read_obj,
@@ -307,6 +308,21 @@ def test_a_file_of_faults_has_a_short_report() -> None:
 def test_an_endless_line_is_refused(letter: bytes) -> None:
     sentence = refusal(lines_read, SQUARE.encode() + letter * (2_000_000 // len(letter)))
     assert sentence == "car.obj, line 5: a line must have at most 1,048,576 bytes, not 2,000,000; split it"
+
+
+def test_surfaces_are_written_as_a_library_of_materials() -> None:
+    paint = Surface("red").replace(object_color=(255, 51, 0), specular=0.25, exponent=30.0)
+    matte = Surface("matte").replace(object_color=(0, 0, 102), specular=0.5, model="cook-torrance")
+    assert mtl_text([("paint 1", paint), ("b", matte)]).decode() == (
+        "newmtl paint 1\nKd 1 0.2 0\nKs 0.25 0.25 0.25\nNs 30.0\nillum 2\n"
+        "newmtl b\nKd 0 0 0.4\nKs 0.5 0.5 0.5\nillum 2\n"
+    )
+    assert mtl_text([]) == b""
+
+
+def test_the_last_line_may_end_with_a_continuation(path: Path) -> None:
+    for end in ("\\\n", "\\\n\\\n", "\\\n \n"):
+        assert read(path, f"{SQUARE}f 1 2 3 4 {end}").mesh.node_numbers.tolist() == [[0, 1, 2, 3]]
 
 
 def test_an_endless_continuation_is_refused() -> None:

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor import Flap, Flaps, Light, Scene, View
+from autocolor import Flap, Flaps, Light, Mesh, Scene, View, scene_of
 from autocolor.screens.light_and_view.handles import AIM, DIRECTION, EYE, FLAP, LIGHT, TARGET, MovablePoint
 from autocolor.screens.light_and_view.light_and_view_screen import (
     MESH,
@@ -339,6 +339,13 @@ def test_rescale_moves_nearer_and_farther_and_fits_everything_with_space_on_all_
     assert screen_of(hand).views.scale > 2 * scale
     hand.pick("fit surface")
     assert hand.viewer.message == "the views show low"
+
+
+def test_the_views_stay_where_no_surface_is_in_use() -> None:
+    hand = opened(scene_of(Mesh(np.empty((0, 3)), np.empty((0, 4), np.intp), np.empty(0, np.intp), ())))
+    views = screen_of(hand).views
+    screen_of(hand).fit_surface()
+    assert screen_of(hand).views is views
 
 
 def test_angle_and_frame_change_the_view_by_one_step_each() -> None:
