@@ -347,9 +347,8 @@ def read_beside(kind: Kind, count: int, place: Path) -> Counter[str]:
                 print(error, file=sys.stderr)
                 counts["refused" if "tables must stay" in str(error) else "neither"] += 1
                 continue
-            # The states: which saves were seen at all.
-            name = next((str(number) for number in NUMBERS if ready[number].read == there), "neither")
-            counts["new" if name not in ("0", "neither") else "old" if name == "0" else name] += 1
+            number = next((number for number in NUMBERS if ready[number].read == there), None)
+            counts["neither" if number is None else "new" if number else "old"] += 1
     finally:
         os.kill(process, signal.SIGKILL)
         os.waitpid(process, 0)
