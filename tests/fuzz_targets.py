@@ -823,7 +823,7 @@ TARGETS: dict[str, Target] = {
     ),
     "state": Target(state_samples, fault_of_state, STATE),
     "journal": Target(journal_samples, fault_of_journal, ("session.jsonl", "car.obj")),
-    "set": Target(settings_samples, fault_of_settings, largest=1000),
+    "set": Target(settings_samples, fault_of_settings, largest=300),
     "sql": Target(sql_samples, fault_of_sql, largest=4096),
     "stream": Target(stream_samples, fault_of_stream, largest=4096),
     "lister": Target(stream_samples, fault_of_lister, largest=2048),

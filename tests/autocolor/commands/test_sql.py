@@ -186,12 +186,13 @@ def lines(form: str, columns: tuple[str, ...], *rows: tuple[Value, ...]) -> list
 
 
 def test_numbers_stand_to_the_right_and_text_to_the_left() -> None:
-    assert lines("table", ("name", "n"), ("a", 1), ("body", 100), ("b", None)) == [
-        "name     n",
-        "----  ----",
-        "a        1",
-        "body   100",
-        "b     NULL",
+    rows = [("a", 1, 1, None), ("body", 100, "x", None), ("b", None, 2.5, None)]
+    assert lines("table", ("name", "n", "mixed", "nothing"), *rows) == [
+        "name     n  mixed  nothing",
+        "----  ----  -----  -------",
+        "a        1  1      NULL",
+        "body   100  x      NULL",
+        "b     NULL  2.5    NULL",
     ]
 
 

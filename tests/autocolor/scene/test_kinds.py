@@ -269,6 +269,8 @@ def test_any_text_is_a_color_in_range_or_refused_in_a_sentence(text: str) -> Non
         ("", "''; write it as in \"#b01020\""),
         ("#12", "'#12'; write three or six hexadecimal digits after the #"),
         ("#12345", "'#12345'; write three or six hexadecimal digits after the #"),
+        ("#ff1122ff", "'#ff1122ff', which has transparency; write '#ff1122'"),
+        ("rgba(1, 2, 3, 256)", "'rgba(1, 2, 3, 256)'; keep its parts from 0 to 255, or from 0% to 100%"),
         ("#11223380", "'#11223380', which has transparency; write '#112233'"),
         ("#1238", "'#1238', which has transparency; write '#112233'"),
         ("rgba(1, 2, 3, 4)", "'rgba(1, 2, 3, 4)', which has transparency; write '#010203'"),

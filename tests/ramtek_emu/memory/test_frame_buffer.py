@@ -1,5 +1,9 @@
 from __future__ import annotations
 
+import copy
+import pickle
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -144,3 +148,16 @@ def test_words_that_do_not_fit_are_refused_by_name(
         buffer.write(words, *place)
     assert str(refusal.value) == sentence
     assert buffer.written == 0
+
+
+@pytest.mark.parametrize("copied", [copy.deepcopy, lambda memory: pickle.loads(pickle.dumps(memory))])
+def test_a_copy_has_its_own_words_and_a_view_of_them(copied: Callable[[FrameBuffer], FrameBuffer]) -> None:
+    memory = FrameBuffer(SMALL)
+    memory.write([[1, 2]], 3, 1)
+    twin = copied(memory)
+    assert twin.words[1, 3:5].tolist() == [1, 2]
+    assert not twin.words.flags.writeable
+    twin.write([[7]], 3, 1)
+    assert (twin.words[1, 3], memory.words[1, 3]) == (7, 1)
+    assert (twin.written, memory.written) == (3, 2)
+    assert (twin.planes, twin.window) == (memory.planes, memory.window)

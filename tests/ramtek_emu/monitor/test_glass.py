@@ -139,6 +139,12 @@ def test_every_place_of_the_window_is_over_the_nearest_pixel(
         assert pixel_under((x, y), (w, h), (width, height), fit) == corner
 
 
+@pytest.mark.parametrize("hides", [False, True])
+def test_the_mouse_is_hidden_where_a_cursor_stands_for_it(glass: Glass, hides: bool) -> None:
+    glass.show(Ramtek9300().scan_out, Overlay(), "", hides_mouse=hides)
+    assert pygame.mouse.get_visible() is not hides
+
+
 @pytest.mark.parametrize("shift", [False, True])
 @pytest.mark.parametrize("control", [False, True])
 def test_the_mouse_has_the_modifiers_of_the_keyboard(glass: Glass, shift: bool, control: bool) -> None:

@@ -15,6 +15,7 @@ from autocolor.files.scene_toml.toml_text import (
     SceneProblems,
     key_lines,
     parsed_toml,
+    statements_of,
     toml_value,
 )
 from autocolor.scene.columns import Problem
@@ -107,6 +108,22 @@ def test_brackets_and_dots_in_texts_and_comments_do_not_count() -> None:
     text = f"# {brackets}\na = '{brackets}'\nb = \"\\\"{brackets}\"\nc = '''\n'{brackets}'''\n"
     text += f'd = """\n\\"""{brackets}"""\n'
     assert set(parsed_toml(text.encode(), "x")) == {"a", "b", "c", "d"}
+
+
+@pytest.mark.parametrize(
+    ("text", "statements"),
+    [
+        ("a = 1", [("", "a = 1", 2, "")]),
+        ("a = 1\n", [("", "a = 1", 2, "\n")]),
+        ("# one\n\n  b=2 # two\n[c]", [("# one\n\n  ", "b=2", 1, " # two\n"), ("", "[c]", 0, "")]),
+        ("a = [\n1]\n\nb = 'x\"=' \n", [("", "a = [\n1]", 2, "\n"), ("\n", "b = 'x\"='", 2, " \n")]),
+        ("]\na = {b = 1}", [("", "]", 0, "\n"), ("", "a = {b = 1}", 2, "")]),
+        ("", []),
+    ],
+)
+def test_a_text_is_cut_into_its_statements(text: str, statements: list[tuple[str, str, int, str]]) -> None:
+    assert [each for each in statements_of(text) if each[1]] == statements
+    assert "".join(above + statement + after for above, statement, _, after in statements_of(text)) == text
 
 
 def test_a_list_of_many_numbers_is_no_dotted_key() -> None:
