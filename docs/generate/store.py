@@ -81,11 +81,10 @@ is not changed by `--write` either. A studio that shows a store, or a scene file
 programs as one step to undo; with unsaved edits it asks.
 
 Reading leaves no file beside a store. What another program has written to a `-wal` file is read with the
-store while its `-shm` is there too; without it the store is refused. If a program is killed in a change, it
-leaves a `-journal`. The store is then read as it was before the change, from a copy, and the next save rolls
-the change back. A `-journal` can also name any file, and SQLite deletes that file afterwards: such a journal
-is never rolled back, and the store is refused, for reading and for writing. If you trust both files, open the
-store once with `sqlite3 FILE .tables`; otherwise move the journal away.
+store while its `-shm` is there too; without it the store is refused. A `-journal` of a change that has not
+ended is never rolled back: it can name any file, and SQLite deletes that file afterwards. The store is
+refused then, for reading and for writing. If you trust both files, open the store once with
+`sqlite3 FILE .tables`, which rolls the journal back; otherwise move the journal away.
 
 Each column that refers to another table has an index, so that joins are fast in any tool. The indexes are
 created after the rows. With them, a million nodes and a million quads are written in 3.9 seconds instead of
