@@ -18,12 +18,13 @@ import os
 import random
 import shutil
 import signal
+import sqlite3
 import sys
 import tempfile
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, closing, contextmanager
 from functools import partial
 from itertools import cycle
 from pathlib import Path
@@ -131,6 +132,17 @@ def read_tables(suffix: str, folder: Path) -> str:
     return by_folder
 
 
+def read_saved_store(folder: Path) -> object:
+    """The checksum of the scene in a store. If a change was killed, SQLite first rolls it back."""
+    path = folder / "s.sqlite"
+    try:
+        return checksum_of(read_scene(path))
+    except InputError:
+        with closing(sqlite3.connect(path)) as connection:
+            connection.execute("SELECT count(*) FROM sqlite_schema")
+        return checksum_of(read_scene(path))
+
+
 def save_recording(path: Path, number: int) -> None:
     """Record some words, as `ramtek serve --record` does."""
     with writing.Output(path, overwrite=True) as output:
@@ -208,7 +220,7 @@ KINDS: Final = {
     ),
     "store": Kind(
         lambda folder, number: write_scene(folder / "s.sqlite", scene_number(number), overwrite=True),
-        lambda folder: checksum_of(read_scene(folder / "s.sqlite")),
+        read_saved_store,
     ),
     "OBJ and library": Kind(
         lambda folder, number: write_obj(folder / "s.obj", colored(number), True),
