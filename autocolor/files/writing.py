@@ -18,7 +18,6 @@ import ramtek_emu
 from autocolor.errors import OutputError, UsageError, WriteError, reason_of
 from autocolor.files.reading import COMMITTED, NAMES, committed_set, name_in_set
 from ramtek_emu import writing
-from ramtek_emu.writing import temporary_folder as temporary_folder
 
 SECONDS_OF_WAITING: Final = 10.0
 """Limit: how long to wait for another program that moves tables, which takes milliseconds."""
