@@ -294,30 +294,30 @@ def chosen_mutants(count: int, seed: int, only: Iterable[str]) -> list[Mutant]:
     return [generator.choice(by_line[line]) for line in generator.sample(lines, min(count, len(lines)))]
 
 
-def tests_of(file: str, extent: str) -> tuple[str, ...]:
+def tests_of(file: str, extent: str, root: Path = ROOT) -> tuple[str, ...]:
     """The tests of a file's subject, of its wing, or the whole suite, as pytest takes them.
 
     The tests of a wing that name the file's module come first: they are the likeliest to fail.
     """
     path = Path(file)
     package, *rooms = path.parts
-    folder = ROOT / "tests" / path.parent
+    folder = root / "tests" / path.parent
     if extent == "subject":
         stem = "package" if path.stem == "__init__" else path.stem.strip("_")
         files = [folder / f"test_{stem}.py", *sorted(folder.glob(f"test_{stem}_*.py"))]
-        return (*(each.relative_to(ROOT).as_posix() for each in files if each.exists()), file)
+        return (*(each.relative_to(root).as_posix() for each in files if each.exists()), file)
     if extent == "whole":
         return ("tests", *PACKAGES)
     if len(rooms) > 1:
-        files = sorted((ROOT / "tests" / package / rooms[0]).rglob("test_*.py"))
+        files = sorted((root / "tests" / package / rooms[0]).rglob("test_*.py"))
         wing = f"{package}/{rooms[0]}"
         others = [wing, *([REFERENCES[wing]] if wing in REFERENCES else [])]
     else:
-        files = sorted((ROOT / "tests" / package).glob("test_*.py"))
+        files = sorted((root / "tests" / package).glob("test_*.py"))
         others = []
     module = ".".join(path.with_suffix("").parts)
     files.sort(key=lambda each: (each.parent != folder, module not in each.read_text()))
-    return (*(each.relative_to(ROOT).as_posix() for each in files), *others)
+    return (*(each.relative_to(root).as_posix() for each in files), *others)
 
 
 def failed_tests(
@@ -401,7 +401,7 @@ class _Runner:
 
     def run(self, mutant: Mutant, extent: str) -> Result:
         """Run the tests of the subject, of the wing or all, until one fails."""
-        tests = tests_of(mutant.file, extent)
+        tests = tests_of(mutant.file, extent, self.copy)
         most_seconds, broken = self._without_mutant(tests)
         start = time.monotonic()
         path = self.copy / mutant.file
