@@ -294,7 +294,7 @@ def chosen_mutants(count: int, seed: int, only: Iterable[str]) -> list[Mutant]:
     return [generator.choice(by_line[line]) for line in generator.sample(lines, min(count, len(lines)))]
 
 
-def tests_of(file: str, extent: str, root: Path = ROOT) -> tuple[str, ...]:
+def suite_of(file: str, extent: str, root: Path) -> tuple[str, ...]:
     """The tests of a file's subject, of its wing, or the whole suite, as pytest takes them.
 
     The tests of a wing that name the file's module come first: they are the likeliest to fail.
@@ -401,7 +401,7 @@ class _Runner:
 
     def run(self, mutant: Mutant, extent: str) -> Result:
         """Run the tests of the subject, of the wing or all, until one fails."""
-        tests = tests_of(mutant.file, extent, self.copy)
+        tests = suite_of(mutant.file, extent, self.copy)
         most_seconds, broken = self._without_mutant(tests)
         start = time.monotonic()
         path = self.copy / mutant.file

@@ -25,9 +25,9 @@ def test_what_is_no_display_is_refused_in_words(display: Any) -> None:
 
 def test_the_colors_of_an_image_with_a_legend_are_those_of_its_display() -> None:
     scene = wall_scene().with_scalar(name="x")
-    shown = display_image(scene, render(scene, 240, 320))
+    shown = display_image(scene, render(scene))
     assert legend(shown) is not None
-    display = Ramtek9300(dataclasses.replace(GMR_9300, lines=240, elements=320))
+    display = Ramtek9300(GMR_9300)
     send_image(display, shown)
     assert np.array_equal(shown_colors(shown), display.field())
     plain = display_image(wall_scene(), render(wall_scene(), 60, 80))
