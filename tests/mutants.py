@@ -19,6 +19,7 @@ import contextlib
 import json
 import os
 import random
+import re
 import resource
 import shutil
 import signal
@@ -278,8 +279,11 @@ def mutants_of(path: Path) -> list[Mutant]:
     return visitor.mutants
 
 
-def chosen_mutants(count: int, seed: int, only: Iterable[str]) -> list[Mutant]:
-    """As many mutants of different lines, the same for the same seed and program."""
+def chosen_mutants(count: int, seed: int, only: Iterable[str], pattern: str = "") -> list[Mutant]:
+    """As many mutants of different lines, the same for the same seed and program.
+
+    They are of files that begin as `only` says, if it says anything, and of lines that the pattern matches.
+    """
     generator = random.Random(seed)
     by_line: defaultdict[tuple[str, int], list[Mutant]] = defaultdict(list)
     paths = sorted(path for package in PACKAGES for path in (ROOT / package).rglob("*.py"))
@@ -288,7 +292,7 @@ def chosen_mutants(count: int, seed: int, only: Iterable[str]) -> list[Mutant]:
             continue
         for mutant in mutants_of(path):
             is_key = mutant.replacement.endswith("_'")
-            if not is_key or generator.random() < KEY_SHARE:
+            if re.search(pattern, mutant.line) and (not is_key or generator.random() < KEY_SHARE):
                 by_line[mutant.file, mutant.number].append(mutant)
     lines = list(by_line)
     return [generator.choice(by_line[line]) for line in generator.sample(lines, min(count, len(lines)))]
@@ -505,6 +509,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--only", action="append", default=[], help="a file or folder of the program")
+    parser.add_argument("--lines", default="", help="a pattern of lines, such as 'MOST_|LARGEST_'")
     parser.add_argument(
         "--whole", action="store_true", help="run the whole suite on what a wing leaves alive"
     )
@@ -535,7 +540,7 @@ def main() -> None:
         )
         passed.clear()
     else:
-        mutants = chosen_mutants(options.count, options.seed, options.only)
+        mutants = chosen_mutants(options.count, options.seed, options.only, options.lines)
     waiting = []
     for mutant in mutants:
         if reason_of(mutant, reasons):
