@@ -377,7 +377,7 @@ def _run_tests(copy: Path, tests: tuple[str, ...], output: Path, left_out: Seque
         del sys.modules[name]
     import pytest
 
-    options = ["-q", "--tb=no", "-p", "no:cacheprovider", f"--basetemp={copy / 'tmp'}"]
+    options = ["-q", "--tb=no", "-p", "no:cacheprovider", f"--basetemp={copy}-tmp"]
     if left_out is not None:
         options += ["-x", *(f"--deselect={test}" for test in left_out)]
     # hypothesis is imported already: pytest cannot rewrite its assertions, and has no need to.
