@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor.checks import listed, nearest, printable, shown
+from autocolor.checks import closest, listed, nearest, printable, shown
 
 
 def test_the_nearest_right_name_is_told() -> None:
@@ -21,6 +21,13 @@ def test_a_key_that_is_no_text_is_not_the_nearest_name() -> None:
 
 def test_a_name_of_a_million_letters_is_compared_by_its_first() -> None:
     assert nearest("b" * 1_000_000, ["body", "glass"]) == "; choose 'body' or 'glass'"
+
+
+def test_a_name_is_compared_by_its_first_200_letters() -> None:
+    # The rest of the candidate is too long for a similar spelling; only the beginning can be the same.
+    rest = "y" * 1000
+    assert closest("a" * 200 + "z", ["a" * 200 + rest])
+    assert not closest("a" * 199 + "z", ["a" * 199 + rest])
 
 
 @given(st.text(), st.lists(st.text()))
