@@ -184,7 +184,7 @@ def lines(form: str, columns: tuple[str, ...], *rows: tuple[Value, ...]) -> list
 
 
 def test_numbers_stand_to_the_right_and_text_to_the_left() -> None:
-    rows = [("a", 1, 1, None), ("body", 100, "x", None), ("b", None, 2.5, None)]
+    rows: list[tuple[Value, ...]] = [("a", 1, 1, None), ("body", 100, "x", None), ("b", None, 2.5, None)]
     assert lines("table", ("name", "n", "mixed", "nothing"), *rows) == [
         "name     n  mixed  nothing",
         "----  ----  -----  -------",
