@@ -19,6 +19,7 @@ import contextlib
 import json
 import os
 import random
+import re
 import resource
 import shutil
 import signal
@@ -278,8 +279,11 @@ def mutants_of(path: Path) -> list[Mutant]:
     return visitor.mutants
 
 
-def chosen_mutants(count: int, seed: int, only: Iterable[str]) -> list[Mutant]:
-    """As many mutants of different lines, the same for the same seed and program."""
+def chosen_mutants(count: int, seed: int, only: Iterable[str], pattern: str = "") -> list[Mutant]:
+    """As many mutants of different lines, the same for the same seed and program.
+
+    They are of files that begin as `only` says, if it says anything, and of lines that the pattern matches.
+    """
     generator = random.Random(seed)
     by_line: defaultdict[tuple[str, int], list[Mutant]] = defaultdict(list)
     paths = sorted(path for package in PACKAGES for path in (ROOT / package).rglob("*.py"))
@@ -288,36 +292,36 @@ def chosen_mutants(count: int, seed: int, only: Iterable[str]) -> list[Mutant]:
             continue
         for mutant in mutants_of(path):
             is_key = mutant.replacement.endswith("_'")
-            if not is_key or generator.random() < KEY_SHARE:
+            if re.search(pattern, mutant.line) and (not is_key or generator.random() < KEY_SHARE):
                 by_line[mutant.file, mutant.number].append(mutant)
     lines = list(by_line)
     return [generator.choice(by_line[line]) for line in generator.sample(lines, min(count, len(lines)))]
 
 
-def tests_of(file: str, extent: str) -> tuple[str, ...]:
+def suite_of(file: str, extent: str, root: Path) -> tuple[str, ...]:
     """The tests of a file's subject, of its wing, or the whole suite, as pytest takes them.
 
     The tests of a wing that name the file's module come first: they are the likeliest to fail.
     """
     path = Path(file)
     package, *rooms = path.parts
-    folder = ROOT / "tests" / path.parent
+    folder = root / "tests" / path.parent
     if extent == "subject":
         stem = "package" if path.stem == "__init__" else path.stem.strip("_")
         files = [folder / f"test_{stem}.py", *sorted(folder.glob(f"test_{stem}_*.py"))]
-        return (*(each.relative_to(ROOT).as_posix() for each in files if each.exists()), file)
+        return (*(each.relative_to(root).as_posix() for each in files if each.exists()), file)
     if extent == "whole":
         return ("tests", *PACKAGES)
     if len(rooms) > 1:
-        files = sorted((ROOT / "tests" / package / rooms[0]).rglob("test_*.py"))
+        files = sorted((root / "tests" / package / rooms[0]).rglob("test_*.py"))
         wing = f"{package}/{rooms[0]}"
         others = [wing, *([REFERENCES[wing]] if wing in REFERENCES else [])]
     else:
-        files = sorted((ROOT / "tests" / package).glob("test_*.py"))
+        files = sorted((root / "tests" / package).glob("test_*.py"))
         others = []
     module = ".".join(path.with_suffix("").parts)
     files.sort(key=lambda each: (each.parent != folder, module not in each.read_text()))
-    return (*(each.relative_to(ROOT).as_posix() for each in files), *others)
+    return (*(each.relative_to(root).as_posix() for each in files), *others)
 
 
 def failed_tests(
@@ -373,7 +377,7 @@ def _run_tests(copy: Path, tests: tuple[str, ...], output: Path, left_out: Seque
         del sys.modules[name]
     import pytest
 
-    options = ["-q", "--tb=no", "-p", "no:cacheprovider", f"--basetemp={copy / 'tmp'}"]
+    options = ["-q", "--tb=no", "-p", "no:cacheprovider", f"--basetemp={copy}-tmp"]
     if left_out is not None:
         options += ["-x", *(f"--deselect={test}" for test in left_out)]
     # hypothesis is imported already: pytest cannot rewrite its assertions, and has no need to.
@@ -401,7 +405,7 @@ class _Runner:
 
     def run(self, mutant: Mutant, extent: str) -> Result:
         """Run the tests of the subject, of the wing or all, until one fails."""
-        tests = tests_of(mutant.file, extent)
+        tests = suite_of(mutant.file, extent, self.copy)
         most_seconds, broken = self._without_mutant(tests)
         start = time.monotonic()
         path = self.copy / mutant.file
@@ -505,6 +509,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--only", action="append", default=[], help="a file or folder of the program")
+    parser.add_argument("--lines", default="", help="a pattern of lines, such as 'MOST_|LARGEST_'")
     parser.add_argument(
         "--whole", action="store_true", help="run the whole suite on what a wing leaves alive"
     )
@@ -535,7 +540,7 @@ def main() -> None:
         )
         passed.clear()
     else:
-        mutants = chosen_mutants(options.count, options.seed, options.only)
+        mutants = chosen_mutants(options.count, options.seed, options.only, options.lines)
     waiting = []
     for mutant in mutants:
         if reason_of(mutant, reasons):

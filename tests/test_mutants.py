@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests import mutants as module
-from tests.mutants import EQUIVALENT, ROOT, chosen_mutants, mutants_of, reason_of
+from tests.mutants import EQUIVALENT, ROOT, chosen_mutants, mutants_of, reason_of, suite_of
 
 SOURCE = '''"""A docstring with 1 < 2."""
 def limited(value: int, most: int = 3) -> int:
@@ -50,8 +50,8 @@ def test_the_same_seed_chooses_the_same_mutants_of_different_lines() -> None:
 
 def test_the_tests_of_a_subject_are_its_mirrored_file_and_its_doctests() -> None:
     file = "autocolor/scene/geometry/planes.py"
-    assert module.tests_of(file, "subject") == ("tests/autocolor/scene/geometry/test_planes.py", file)
-    wing = module.tests_of(file, "wing")
+    assert suite_of(file, "subject", ROOT) == ("tests/autocolor/scene/geometry/test_planes.py", file)
+    wing = suite_of(file, "wing", ROOT)
     assert wing[0].startswith("tests/autocolor/scene/geometry/test_")
     assert wing[-2:] == ("autocolor/scene", "tests/test_column_reference.py")
 

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor.checks import MOST_COMPARED, listed, nearest, printable, shown
+from autocolor.checks import MOST_COMPARED, closest, listed, nearest, printable, shown
 
 
 def test_the_nearest_right_name_is_told() -> None:
@@ -35,6 +35,13 @@ def test_the_spelling_of_few_names_is_compared(monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr(difflib, "get_close_matches", compare)
     nearest("grille", [f"part {number}" for number in range(100_000)])
     assert len(compared) == MOST_COMPARED
+
+
+def test_a_name_is_compared_by_its_first_200_letters() -> None:
+    # The rest of the candidate is too long for a similar spelling; only the beginning can be the same.
+    rest = "y" * 1000
+    assert closest("a" * 200 + "z", ["a" * 200 + rest])
+    assert not closest("a" * 199 + "z", ["a" * 199 + rest])
 
 
 @given(st.text(), st.lists(st.text()))

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ramtek_emu import WordsError, instructions
+from ramtek_emu import InstructionError, WordsError, instructions
 
 
 def test_an_instruction_takes_at_most_10922_circles() -> None:
@@ -16,6 +16,17 @@ def test_an_instruction_takes_at_most_10922_circles() -> None:
     for count in (0, 10_923):
         with pytest.raises(WordsError, match="with 1 to 10922 rows"):
             instructions.write_circles([(1, 1, 1)] * count)
+
+
+def test_the_lookup_table_is_addressed_by_words() -> None:
+    assert instructions.park_table(5).tolist() == [0x0300, 5, 0]
+    assert instructions.read_entries(6, 3).tolist() == [0x0400, 6, 6]
+    assert instructions.load_entries(7, [[1, 2, 3]]).tolist()[:2] == [0x0300, 14]
+    for words in (0, 1, 32766, 32767):
+        assert instructions.read_entries(0, words)[2] == 2 * words
+    for wrong in (-1, 32768):
+        with pytest.raises(InstructionError, match="the words to read must be 0 to 32767"):
+            instructions.read_entries(0, wrong)
 
 
 def test_encoders_take_numbers_and_rows_of_python_and_of_numpy_alike() -> None:

@@ -306,6 +306,8 @@ def test_text_without_an_end_is_not_collected_for_ever(monkeypatch: pytest.Monke
     monkeypatch.setattr(module, "MOST_LETTERS", 10)
     endless = iter(lambda: "x" * 6, None)
     assert list(statements_in(endless)) == ["x" * 12]
+    for letters, lines in [(9, 2), (10, 2), (11, 1)]:
+        assert list(statements_in(["x" * letters, "y"])) == ["x" * letters + "y" * (lines - 1)]
 
 
 @pytest.mark.parametrize("text", ["SELECT '\udcff';", "SELECT '\0';"])

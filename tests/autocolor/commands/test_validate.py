@@ -12,8 +12,8 @@ from autocolor.commands.validate import COLORS, fault_lines, fault_scene, fault_
 from autocolor.images import display_image
 from autocolor.journal.history import History
 from autocolor.mapping.legend import legend
-from autocolor.scene.mesh_faults import KINDS, mesh_faults
-from autocolor.scene.scalar import MeshScalar
+from autocolor.scene.mesh_faults import KINDS, Fault, mesh_faults
+from autocolor.scene.scalar import POLYGON, MeshScalar
 from tests.autocolor.commands.conftest import Run
 from tests.autocolor.meshes import cube
 
@@ -123,6 +123,12 @@ def test_loops_that_are_not_told_are_counted(sheets: int, told: str) -> None:
     corners = np.arange(4 * sheets).reshape(sheets, 4)
     lines = list(fault_lines(mesh_faults(Mesh((square + apart).reshape(-1, 3), corners))))
     assert lines[6].strip() == told
+
+
+@pytest.mark.parametrize(("count", "told"), [(0, 0), (9_999, 9_999), (10_000, 10_000), (10_001, 10_000)])
+def test_json_has_at_most_10_000_rows_of_a_kind(count: int, told: int) -> None:
+    (values,) = fault_values([Fault("turned", POLYGON, np.arange(count), np.arange(count))])
+    assert (values["count"], values["rows"]) == (count, list(range(1, told + 1)))
 
 
 def test_there_is_a_color_for_each_kind() -> None:

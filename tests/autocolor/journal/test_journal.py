@@ -567,3 +567,8 @@ def test_a_session_that_saved_over_the_file_it_opened_is_recovered(tmp_path: Pat
     assert not history.is_changed
     history.undo()
     assert history.is_changed
+
+
+def test_a_journal_has_its_limits() -> None:
+    limits = (journal.LARGEST_JOURNAL, journal.MOST_LINES, journal.LONGEST_LINE, journal.LONGEST_PROBLEM)
+    assert limits == (64 << 20, 1_000_000, 16 << 20, 400)

@@ -43,6 +43,16 @@ def picture_of(*intensities: list[float]) -> Picture:
     return Picture(1, len(flat) + 2, names, np.arange(1, len(flat) + 1), slices, flat, 1.0)
 
 
+def test_an_exposure_holds_the_ranges_that_the_scaling_maps() -> None:
+    picture = picture_of([1.0, 3.0], [2.0, 8.0], [5.0, 5.0])
+    whole, each = ("object", (1.0, 8.0)), [("a", (1.0, 3.0)), ("b", (2.0, 8.0))]
+    assert held_exposure(picture, "object") == (whole,)
+    assert held_exposure(picture, "surface") == (whole, *each)
+    # A range that is held already stays, and with that of the object no other is added.
+    assert held_exposure(picture, "surface", (("b", (0.0, 9.0)),)) == (("b", (0.0, 9.0)), whole, each[0])
+    assert held_exposure(picture, "surface", (("object", (0.0, 9.0)),)) == (("object", (0.0, 9.0)),)
+
+
 RANGES = {"a": LevelRange(1, 11), "b": LevelRange(12, 101)}
 
 

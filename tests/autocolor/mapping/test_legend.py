@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+import math
+import zlib
 from itertools import pairwise
 from typing import Any
 
@@ -64,6 +66,35 @@ def test_it_tells_the_name_and_the_limits_beside_the_ends_of_the_bar() -> None:
     assert [each.text for each in numbers] == ["-2", "-1", "0", "1", "2", "3", "4", "5", "6"]
     for number, end in ((numbers[0], bar[0].bottom + 1), (numbers[-1], bar[-1].top)):
         assert abs(number.top + LETTER_LINES // 2 - end) <= 1
+
+
+# If the legend changes on purpose, look at it, and copy the new numbers from the failure.
+PLACED = [
+    ({"limits": [-2, 6], "bands": 8}, 4236150687),
+    ({"limits": [0, 1], "bands": 3, "below": "red", "above": "blue"}, 3464469761),
+    ({"bands": 64, "scale": "turbo"}, 3575307316),
+    ({"name": "mean curvature", "bands": 5}, 2952231849),
+]
+
+
+@pytest.mark.parametrize(("scalar", "number"), PLACED)
+def test_the_legend_stands_where_it_stood(scalar: dict[str, Any], number: int) -> None:
+    assert zlib.crc32(repr(legend_of(shown(ball(**scalar)))).encode()) == number
+
+
+@pytest.mark.parametrize("limits", [[-2, 6], [0, 1e5]])
+def test_a_picture_has_a_legend_if_it_takes_at_most_two_fifths_of_its_width(limits: list[float]) -> None:
+    scene = ball(limits=limits, bands=8)
+    frame = legend_of(shown(scene)).swatches[0]
+    # The frame, and the margin beside it.
+    taken = frame.right - frame.left + 1 + 8
+    least = math.ceil(taken / 0.4)
+    assert legend(shown(scene, elements=least)) is not None
+    assert legend(shown(scene, elements=least - 1)) is None
+    # The height of the frame, and the margins above and below it.
+    least = frame.bottom - frame.top + 1 + 2 * 8
+    assert legend(shown(scene, lines=least)) is not None
+    assert legend(shown(scene, lines=least - 1)) is None
 
 
 def test_large_numbers_are_written_in_millions() -> None:

@@ -30,25 +30,26 @@ def half_spaces(count: int) -> Light:
     return LIGHT.replace(half_spaces=[HalfSpace(f"{n}", (0, 0, 0), (0, 0, 1)) for n in range(count)])
 
 
-LIMITS: list[tuple[Callable[[int], Row], int, str]] = [
-    (surfaces, 255, "surfaces must be at most 255, not 256;"),
-    (half_spaces, 64, "must be at most 64, not 65;"),
-    (lambda n: Scalar("z", scale=((1, 2, 3),) * n), 256, "a list of 2 to 256 colors"),
-    (lambda n: Scalar("z", bands=n), 256, "bands must be a whole number from 2 to 256, not 257"),
-    (lambda n: Scalar("z", shades=n), 256, "shades must be a whole number from 1 to 256, not 257"),
-    (lambda n: WALL.replace(levels=n), 1_000_000, "levels must be a whole number from 2 to 1000000"),
+LIMITS: list[tuple[Callable[[int], Row], int, int, str]] = [
+    (surfaces, 1, 255, "surfaces must be at most 255, not 256;"),
+    (half_spaces, 0, 64, "must be at most 64, not 65;"),
+    (lambda n: Scalar("z", scale=((1, 2, 3),) * n), 2, 256, "a list of 2 to 256 colors"),
+    (lambda n: Scalar("z", bands=n), 2, 256, "bands must be a whole number from 2 to 256, not "),
+    (lambda n: Scalar("z", shades=n), 1, 256, "shades must be a whole number from 1 to 256, not "),
+    (lambda n: WALL.replace(levels=n), 2, 1_000_000, "levels must be a whole number from 2 to 1000000"),
 ]
 
 
-@pytest.mark.parametrize(("row", "most", "sentence"), LIMITS)
-def test_a_count_may_be_the_largest_and_no_larger(
-    row: Callable[[int], Row], most: int, sentence: str
+@pytest.mark.parametrize(("row", "least", "most", "sentence"), LIMITS)
+def test_a_count_is_between_the_smallest_and_the_largest(
+    row: Callable[[int], Row], least: int, most: int, sentence: str
 ) -> None:
-    for count in (most - 1, most):
+    for count in (least, least + 1, most - 1, most):
         row(count)
-    with pytest.raises(InputError) as refusal:
-        row(most + 1)
-    assert sentence in str(refusal.value)
+    for count in (most + 1, *([least - 1] if least > 1 or "whole" in sentence else [])):
+        with pytest.raises(InputError) as refusal:
+            row(count)
+        assert sentence in str(refusal.value)
 
 
 def test_a_place_is_at_most_1e36_and_a_value_of_a_scalar_1e30_in_size() -> None:

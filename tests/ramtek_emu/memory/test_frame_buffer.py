@@ -101,6 +101,17 @@ def test_a_window_without_words_takes_none_and_leaves_the_point(window: Window) 
         assert after == Point(5, 3)
 
 
+@given(rasters(), masks, st.booleans())
+def test_written_counts_the_words_whose_dots_are_true(
+    raster: NDArray[np.uint16], mask: int, has_dots: bool
+) -> None:
+    buffer = FrameBuffer(SMALL)
+    dots = raster % 2 == 1 if has_dots else None
+    buffer.write_block(Point(0, 0), SCAN_ORDERS[0], raster, WriteEnable(mask), dots)
+    most = raster.size if dots is None else np.count_nonzero(dots)
+    assert buffer.written == (most if mask & 1023 else 0)
+
+
 def test_written_counts_the_words_that_reached_the_memory() -> None:
     buffer = FrameBuffer(SMALL)
     buffer.fill(Window(-2, 0, 1, 0), 5)

@@ -62,6 +62,16 @@ def test_environments_beyond_the_most_are_flagged_and_not_saved() -> None:
     assert not display.processor.saved
 
 
+def test_zoom_and_video_origin_have_the_lowest_bits_of_their_words() -> None:
+    display = Ramtek9300()
+    for word, zoom in [(0, (1, 1)), (0x0102, (3, 2)), (0x0F0F, (16, 16)), (0xF3F5, (6, 4))]:
+        display.send(sent_words([0x2600, word]))
+        assert display.processor.parameters.zoom == zoom
+    for low_byte in (1, 0, 3, 2, 0xFF, 0xFE):
+        display.send(sent_words([0x2700 | low_byte]))
+        assert display.processor.parameters.origin_at_bottom is bool(low_byte % 2)
+
+
 def test_the_error_status_is_read_and_cleared() -> None:
     display = Ramtek9300()
     display.send(sent_words([0xFFFF, 0x2500, 0x2500]))

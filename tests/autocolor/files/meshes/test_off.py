@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from autocolor.errors import InputError
 from autocolor.files.formats import format_of
 from autocolor.files.meshes.off import read_off
 from autocolor.files.meshes.repair import MeshReport
@@ -62,6 +63,17 @@ def test_colors_and_normals_are_skipped(tmp_path: Path) -> None:
     assert report.mesh.coordinates.tolist() == read(tmp_path, CUBE).mesh.coordinates.tolist()
     assert report.mesh.node_numbers.tolist() == read(tmp_path, CUBE).mesh.node_numbers.tolist()
     assert report.repairs == ()
+
+
+def test_a_polygon_may_have_1000_corners(tmp_path: Path) -> None:
+    def text(corners: int) -> str:
+        nodes = "".join(f"{number} {number * number} 0\n" for number in range(corners))
+        return f"OFF\n{corners} 1 0\n{nodes}{corners} {' '.join(map(str, range(corners)))}\n"
+
+    for corners in (999, 1000):
+        assert len(read(tmp_path, text(corners)).mesh.node_numbers) >= corners // 2 - 1
+    with pytest.raises(InputError, match="a polygon must have at most 1,000 corners"):
+        read(tmp_path, text(1001))
 
 
 def test_polygons_of_many_sides_are_split_and_what_follows_is_told(tmp_path: Path) -> None:

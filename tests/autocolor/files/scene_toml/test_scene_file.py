@@ -367,6 +367,10 @@ def test_of_many_unknown_keys_few_get_the_closest_key(folder: Path, monkeypatch:
 
 
 def test_too_many_surfaces_are_refused(folder: Path) -> None:
+    for count in (254, 255):
+        scene = read(folder, MESH + "".join(f"[surfaces.x{row}]\n" for row in range(count))).scene
+        assert len(scene.surfaces) >= count
+    assert len(refusal(folder, MESH + "".join(f"[surfaces.x{row}]\n" for row in range(256)))) == 1
     assert refusal(folder, MESH + "".join(f"[surfaces.x{row}]\n" for row in range(300))) == [
         "scene.toml, line 3, surfaces must be at most 255, not 300; let parts share a surface"
     ]

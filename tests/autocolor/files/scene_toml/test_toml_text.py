@@ -16,6 +16,7 @@ from autocolor.files.scene_toml.toml_text import (
     key_lines,
     parsed_toml,
     statements_of,
+    table_text,
     toml_value,
 )
 from autocolor.scene.columns import Problem
@@ -108,6 +109,13 @@ def test_brackets_and_dots_in_texts_and_comments_do_not_count() -> None:
     text = f"# {brackets}\na = '{brackets}'\nb = \"\\\"{brackets}\"\nc = '''\n'{brackets}'''\n"
     text += f'd = """\n\\"""{brackets}"""\n'
     assert set(parsed_toml(text.encode(), "x")) == {"a", "b", "c", "d"}
+
+
+def test_a_table_is_written_with_its_header_and_its_inner_tables_in_lines() -> None:
+    keys = {"a": 1, "flaps": {"x": {"on": True}, "y z": {"minimum": 0.5}}, "b": {"c": 2}}
+    body = 'a = 1\nflaps.x = { on = true }\nflaps."y z" = { minimum = 0.5 }\nb = { c = 2 }\n'
+    assert table_text("[view]", keys) == f"[view]\n{body}"
+    assert table_text("", keys) == body
 
 
 @pytest.mark.parametrize(
