@@ -19,7 +19,9 @@ def test_an_instruction_takes_at_most_10922_circles() -> None:
 
 
 def test_the_lookup_table_is_addressed_by_words() -> None:
+    assert instructions.park_table().tolist() == [0x0300, 0, 0]
     assert instructions.park_table(5).tolist() == [0x0300, 5, 0]
+    assert instructions.read_entries().tolist() == [0x0400, 0, 4096]
     assert instructions.read_entries(6, 3).tolist() == [0x0400, 6, 6]
     assert instructions.load_entries(7, [[1, 2, 3]]).tolist()[:2] == [0x0300, 14]
     for words in (0, 1, 32766, 32767):
