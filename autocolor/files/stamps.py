@@ -77,7 +77,7 @@ def look_at(path: Path) -> tuple[int | bytes, ...] | None:
     from autocolor.files.store.connections import refuse_journal
 
     try:
-        # The header of the journal has bytes other than zero while a commit writes to the store.
+        # While a commit writes to the store, there is a journal to roll back.
         refuse_journal(path)
     except InputError:
         return None

@@ -75,13 +75,16 @@ def start(how: str, *arguments: str, folder: Path) -> subprocess.Popen[str]:
 def ended(process: subprocess.Popen[str], number: int, state: Path, journals: int = 1) -> tuple[int, str]:
     """Send a signal to a program that edits once there are journals; returns its steps and its stderr."""
     assert process.stdout is not None
+    assert process.stderr is not None
     lines = [process.stdout.readline()]
-    while len(left(state)) < journals:
+    while len(left(state)) < journals or lines[-1] == "0\n":
         lines.append(process.stdout.readline())
         assert lines[-1]
     process.send_signal(number)
-    out, err = process.communicate(timeout=60)
-    lines += out.splitlines(keepends=True)
+    with process:
+        # Unlike `communicate`, this also returns lines that have arrived already.
+        lines += process.stdout.readlines()
+        err = process.stderr.read()
     return max(int(line) for line in lines if line.endswith("\n")), err
 
 

@@ -944,7 +944,7 @@ def test_an_error_is_a_message_and_what_does_nothing_leaves_the_last_one(session
     action = Action(session)
 
     def refuse() -> None:
-        raise UsageError("a number must be one\nchoose it")
+        raise UsageError(("a number must be one", "choose it"))
 
     assert action.do(None, refuse, False, False)
     assert (session.message, session.news.is_warning) == ("a number must be one; choose it", True)
