@@ -39,7 +39,7 @@ def validated_limit(limit: float | None) -> float:
     """The factor as a number, the current factor for None. Raises UsageError."""
     if limit is None:
         return _LIMIT.get()
-    if isinstance(limit, bool) or not isinstance(limit, Real) or not 0 < limit < math.inf:
+    if isinstance(limit, bool) or not isinstance(limit, Real) or not 0 < limit <= sys.float_info.max:
         raise UsageError(
             f"limit must be a finite number above 0, a factor for the memory that is allowed, not"
             f" {shown(limit)}; give one such as 2"
@@ -49,7 +49,7 @@ def validated_limit(limit: float | None) -> float:
 
 def allowed_memory() -> int:
     """The budget in bytes."""
-    return int(min(MEMORY * _LIMIT.get(), sys.maxsize))
+    return round(min(MEMORY * _LIMIT.get(), sys.maxsize))
 
 
 def require_memory(needed: float, subject: str, remedy: str) -> None:

@@ -38,7 +38,7 @@ from autocolor.errors import UsageError
 from autocolor.files.stamps import stamp_of
 from autocolor.images import display_image
 from autocolor.journal.history import History, is_picture
-from autocolor.journal.places import NO_STAMP, Source, opened
+from autocolor.journal.places import NO_STAMP, Source, file_of, opened
 from autocolor.lighting.picking import highlight_of, highlight_placed
 from autocolor.lighting.picture import Picture
 from autocolor.mapping.display_image import DisplayImage, words_by_line
@@ -319,7 +319,7 @@ class Studio:
         """
         source = Source(fspath(path), up, surfaces, scale)
         with allowing(self._limit):
-            scene = opened(source, tables, checksum, self._known_scenes)
+            scene = opened(source, tables, checksum, self._known_scenes(source))
         self._show_scene(scene.scene)
         self._history.open(scene, source)
 
@@ -339,10 +339,10 @@ class Studio:
             raise UsageError("the scene must be in a file to be read again, and it is in none; save it")
         source = Source(str(path), surfaces="materials" if source is None else source.surfaces)
         with allowing(self._limit):
-            again = opened(source, known=self._known_scenes)
+            again = opened(source, known=(self.scene, *self._known_scenes(source)))
         if again.scene.equals(self.scene):
-            if self._history.on_disk.was_changed(str(path)):
-                self._mark_written(path)
+            if again.place.stamp is not None and self._history.on_disk.was_changed(str(path)):
+                self._history.mark_saved({str(path): again.place.stamp}, is_own=False)
             return False
         self._show_scene(again.scene)
         self._history.open(again, source)
@@ -355,11 +355,11 @@ class Studio:
         the file since the studio read or wrote it.
         """
         from autocolor.files.picture_file import write_picture
+        from autocolor.files.writing import no_guard
 
         self.refine()
-        if overwrite:
-            self._history.on_disk.guard(Path(path))
-        write_picture(path, self.picture, self.scene, overwrite=overwrite)
+        guard = self._history.on_disk.guard if overwrite else no_guard
+        write_picture(path, self.picture, self.scene, overwrite=overwrite, guard=guard)
         self._mark_written(path)
 
     def save_scene(self, path: str | PathLike[str], overwrite: bool = False) -> None:
@@ -398,10 +398,11 @@ class Studio:
         """Mark the scene as saved to a file, which gets a backup before `save_session` overwrites it."""
         self._history.mark_saved({abspath(path): stamp_of(Path(path)) or NO_STAMP}, is_own=False)
 
-    @property
-    def _known_scenes(self) -> tuple[Scene, ...]:
-        """The scenes whose meshes are shared with scenes that are read."""
-        return self.scene, *self._history.on_disk.scenes
+    def _known_scenes(self, source: Source) -> tuple[Scene | None, ...]:
+        """The scene that the file of a source held, whose mesh is shared if the file still has it."""
+        path = file_of(source)
+        file = None if path is None else self._history.on_disk[abspath(path)]
+        return () if file is None else (file.scene,)
 
     def journal(
         self,

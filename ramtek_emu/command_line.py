@@ -7,6 +7,7 @@ traceback unless --debug is given.
 from __future__ import annotations
 
 import difflib
+import errno
 import os
 import re
 import select
@@ -289,9 +290,9 @@ def _memory_error(error: BaseException | None) -> BaseException | None:
     """The lack of memory that an error reports, or that led to it; None for any other error."""
     while error is not None:
         # Errors of pygame and of the loader of libraries have no other sign.
-        is_foreign = not hasattr(error, "exit_code")
-        is_lack = is_foreign and re.search("out of memory|cannot allocate memory", str(error), re.IGNORECASE)
-        if isinstance(error, MemoryError) or is_lack:
+        may_lack = isinstance(error, (RuntimeError, ImportError)) and not hasattr(error, "exit_code")
+        is_lack = may_lack and re.search("out of memory|cannot allocate memory", str(error), re.IGNORECASE)
+        if isinstance(error, MemoryError) or is_lack or getattr(error, "errno", None) == errno.ENOMEM:
             return error
         error = error.__context__
     return None

@@ -3,8 +3,8 @@
 The bytes go into a temporary file in the same folder, which is synced and then renamed. Both packages write
 their files with this module.
 
-However Python ends, it removes the temporary files of the process. A program that is killed leaves them. They
-are locked while their program lives, so the next program that writes to the folder knows, and removes them.
+At its exit, Python removes the temporary files of the process. If it is killed, they stay. They are locked
+while their program lives, so the next program that writes to the folder knows, and removes them.
 """
 
 from __future__ import annotations
@@ -40,9 +40,10 @@ NO_LINKS: Final = (errno.EPERM, errno.ENOSYS, errno.EOPNOTSUPP, errno.ENOTSUP, e
 """The errors of file systems without hard links."""
 
 PART: Final = re.compile(r"\..{1,100}\.[0-9a-f]{12}\.part", re.DOTALL)
-"""The names of temporary files and folders. A locked file of this name is in each temporary folder:"""
+"""The names of temporary files and folders."""
 
 PART_LOCK: Final = "names.json"
+"""The file in a temporary folder that is locked while its program lives."""
 
 _PARTS: Final[set[Path]] = set()
 """The temporary files and folders of this process, noted before they are created."""
@@ -276,7 +277,7 @@ def _remove_left(part: Path) -> None:
         lock(file.fileno(), wait=False)
         if sys.platform == "win32":
             file.close()
-        os.unlink(locked)
+            os.unlink(locked)
         _remove(part)
 
 

@@ -87,7 +87,10 @@ def show(
         if once:
             show_once(scene, address)
         else:
-            session_elsewhere(History(scene, place, report.scene), address, folder_of(origin))
+            history = History(report.scene, place)
+            if scene is not report.scene:
+                history.take(scene)
+            session_elsewhere(history, address, folder_of(origin))
         context.exit(ended(report, source))
 
 

@@ -231,32 +231,35 @@ _PIECES: Final = re.compile(
 
 def prompt(tables: Tables, run: Callable[[str], None]) -> None:
     """Run typed statements until Ctrl+D or `.quit`; Ctrl+C deletes the typed text or stops a statement."""
-    SIGNALS.cancels = True
     with suppress(ImportError):
         # With readline the user can edit lines, and the arrow keys bring earlier lines back.
         import readline  # noqa: F401
     click.echo(GREETING, err=True)
     text = ""
-    while True:
-        try:
-            line = input(NEXT if text else FIRST)
-            if not text and _dotted(line, tables):
-                continue
-            whole, text = split(f"{text}{line}\n")
-            for statement in whole:
-                run(statement)
-        except EOFError:
-            click.echo(err=True)
-            return
-        except KeyboardInterrupt:
-            if SIGNALS.ended is not None:
-                raise
-            text = ""
-            click.echo("canceled; Ctrl+D ends", err=True)
-        except AutocolorError as error:
-            tell(*(f"autocolor: {problem}" for problem in error.problems))
-        except _Quit:
-            return
+    SIGNALS.cancels = True
+    try:
+        while True:
+            try:
+                line = input(NEXT if text else FIRST)
+                if not text and _dotted(line, tables):
+                    continue
+                whole, text = split(f"{text}{line}\n")
+                for statement in whole:
+                    run(statement)
+            except EOFError:
+                click.echo(err=True)
+                return
+            except KeyboardInterrupt:
+                if SIGNALS.ended is not None:
+                    raise
+                text = ""
+                click.echo("canceled; Ctrl+D ends", err=True)
+            except AutocolorError as error:
+                tell(*(f"autocolor: {problem}" for problem in error.problems))
+            except _Quit:
+                return
+    finally:
+        SIGNALS.cancels = False
 
 
 class _Quit(Exception):  # noqa: N818

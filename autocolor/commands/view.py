@@ -85,9 +85,12 @@ def view(
         report = read(source)
         edited = created_again(report, with_normals(with_settings(report.scene, settings), normals))
         note_file(source.path)
+        history = History(report.scene, place)
+        if edited is not report.scene:
+            history.take(edited)
         # Meshes that the user opens later get the same up axis and scale.
         show(
-            History(edited, place, report.scene),
+            history,
             full_screen,
             fit,
             prepare=lambda viewer: viewer.session.place_meshes(source.up, source.scale),

@@ -28,7 +28,7 @@ from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement
 from autocolor.files.meshes.stl import begins_as_stl, read_stl
 from autocolor.files.meshes.table_file import SUFFIX, read_table_file, table_file_bytes
 from autocolor.files.meshes.vtk import begins_as_vtk, read_vtk
-from autocolor.files.reading import read_head, table_exists
+from autocolor.files.reading import read_head, refuse_irregular, status_of, table_exists
 from autocolor.logs import logger_of, timed
 from autocolor.scene.mesh import Mesh
 
@@ -211,6 +211,9 @@ def read_mesh(files: Mapping[str, Path], placement: Placement = PLAIN) -> MeshRe
             f"{path.name}: a mesh file must {suffix_rule(path, mesh_suffixes())}; export it as one of these"
         )
     with timed(LOG, f"read {', '.join(path.name for path in files.values())}"):
+        # A folder of tables is no file.
+        for file in files.values() if len(files) < len(mesh_format.keys) else ():
+            refuse_irregular(file, status_of(file))
         report = mesh_format.read(*files.values(), placement)
     named = format_named(path, MESH_FORMATS)
     if named not in (None, mesh_format) and path.suffix.lower() not in mesh_format.suffixes:

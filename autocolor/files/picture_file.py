@@ -37,7 +37,7 @@ from autocolor.files.array_file import (
     scalars_of,
 )
 from autocolor.files.paths import PICTURE_SUFFIX
-from autocolor.files.writing import check_suffix, write_atomically
+from autocolor.files.writing import Guard, check_suffix, no_guard, write_atomically
 from autocolor.lighting.picture import Picture
 from autocolor.scene.columns import Problem, RowError, from_plain, to_plain
 from autocolor.scene.mesh import Mesh
@@ -80,14 +80,20 @@ class SavedPicture(NamedTuple):
 
 
 def write_picture(
-    path: str | PathLike[str], picture: Picture, scene: Scene, *, overwrite: bool = False
+    path: str | PathLike[str],
+    picture: Picture,
+    scene: Scene,
+    *,
+    overwrite: bool = False,
+    guard: Guard = no_guard,
 ) -> None:
-    """Write a picture file atomically.
+    """Write a picture file atomically; `guard` may refuse to overwrite a file.
 
     Raises UsageError for a name that does not end in .npz, or if only one of the picture and the scene has a
     scalar; OutputError or WriteError if it cannot be written.
     """
     check_suffix(path, PICTURE_SUFFIX, "a picture with its scene")
+    check = guard(Path(path))
     if (picture.scalar_values is None) != (scene.scalar is None):
         raise UsageError(
             "a picture and its scene must both have a scalar or neither, not one alone; render the scene"
@@ -111,7 +117,9 @@ def write_picture(
         **scalar_members(scene.mesh.scalars),
         **({} if picture.scalar is None else {"scalar_0": picture.scalar}),
     }
-    write_atomically(path, array_file_bytes(PICTURE_FILE, header, arrays), overwrite=overwrite)
+    data = array_file_bytes(PICTURE_FILE, header, arrays)
+    check()
+    write_atomically(path, data, overwrite=overwrite)
 
 
 def read_picture(path: str | PathLike[str], *, limit: float | None = None) -> SavedPicture:

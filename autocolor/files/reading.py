@@ -20,6 +20,7 @@ from typing import Any, BinaryIO, Final, NamedTuple, NoReturn, TypeVar
 from autocolor import checks
 from autocolor.budget import allowed_memory, require_memory
 from autocolor.errors import InputError, MissingInputError, reason_of
+from ramtek_emu.writing import PART_LOCK
 
 LEAST_READ: Final = 1 << 20
 """Bytes to request even if the file system reports a smaller file."""
@@ -108,9 +109,9 @@ def read_head(path: Path) -> bytes:
 
 COMMITTED: Final = ".autocolor-tables"
 
-NAMES: Final = "names.json"
+NAMES: Final = PART_LOCK
 
-SET_KEYS: Final = frozenset(("save", "files", "absent"))
+SET_KEYS: Final = frozenset(("files", "absent"))
 
 LARGEST_SET: Final = 1 << 17
 MOST_NAMES: Final = 4000
@@ -120,18 +121,14 @@ TABLE_NAME: Final = re.compile(r"(?:scalars/)?[a-z0-9_]{1,40}\.(?:csv|npy)|table
 """The names that a set may have, so that a set of a stranger moves and removes nothing else."""
 
 MOST_TRIES: Final = 20
-"""Limit: how often tables are opened anew while others save them, in two seconds."""
+"""Limit: how often tables are opened while others save them; the pauses between take two seconds together."""
 
 SECONDS_BETWEEN_TRIES: Final = 0.01
 
 
 class TableSet(NamedTuple):
-    """The names of a committed save of tables, and the names that it removes from the folder.
+    """The names of a committed save of tables, and the names that it removes from the folder."""
 
-    `save` is a random number that no other save has.
-    """
-
-    save: str
     files: tuple[str, ...]
     absent: tuple[str, ...]
 
@@ -150,7 +147,7 @@ def committed_set(folder: Path) -> TableSet | None:
         if stat.S_ISLNK(kind) or stat.S_ISLNK(os.lstat(path).st_mode):
             raise ValueError("it is a link")
         content = bounded_json(read_bytes(path, LARGEST_SET), MOST_NAMES)
-        if not isinstance(content, dict) or set(content) != SET_KEYS or not isinstance(content["save"], str):
+        if not isinstance(content, dict) or set(content) != SET_KEYS:
             raise ValueError("it has other keys")
         names = [content["files"], content["absent"]]
         if not all(isinstance(listed, list) and all(map(_is_table_name, listed)) for listed in names):
@@ -161,7 +158,7 @@ def committed_set(folder: Path) -> TableSet | None:
         raise InputError(
             f"{path}: it must be a file that autocolor wrote, and is not ({str(error)[:100]}); delete it"
         ) from None
-    return TableSet(content["save"], *map(tuple, names))
+    return TableSet(*map(tuple, names))
 
 
 def _is_table_name(name: object) -> bool:
@@ -207,7 +204,7 @@ class TableFiles:
         now = TableFiles()
         for folder, name in self._seen:
             now.path(folder, name)
-        return (now._sets, now._seen) == (self._sets, self._seen)
+        return now._seen == self._seen
 
 
 def _is_regular(path: Path) -> bool:
@@ -252,12 +249,9 @@ def read_together(open_files: Callable[[TableFiles], Result]) -> Result:
 def table_exists(folder: Path, name: str) -> bool:
     """Whether a folder has a table, by the names alone."""
     try:
-        committed = committed_set(folder)
+        return TableFiles().has(folder, name)
     except InputError:
-        committed = None
-    if committed is not None and name in (*committed.files, *committed.absent):
-        return name in committed.files
-    return (folder / name).exists()
+        return (folder / name).exists()
 
 
 def refuse_irregular(path: Path, status: os.stat_result) -> None:

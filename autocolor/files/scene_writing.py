@@ -36,9 +36,8 @@ from autocolor.files.scene_toml.scene_text import (
     without_parts,
 )
 from autocolor.files.scene_toml.toml_text import LARGEST_TEXT, parsed_toml
-from autocolor.files.stamps import Guard, no_guard
 from autocolor.files.store.store_file import write_store
-from autocolor.files.writing import new_folder, refuse_output, write_atomically
+from autocolor.files.writing import Guard, new_folder, no_guard, refuse_output, write_atomically
 from autocolor.logs import logger_of
 from autocolor.scene.columns import Row, row_label, to_plain
 from autocolor.scene.geometry.normals import CREASE_ANGLE

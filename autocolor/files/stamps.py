@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from pathlib import Path
 from typing import Final
@@ -21,17 +21,6 @@ from autocolor.files.scene_toml.toml_text import LARGEST_TEXT
 
 CHANGE_COUNTER: Final = slice(24, 28)
 """The place of the count of changes in the header of a store; in WAL mode it counts checkpoints only."""
-
-Guard = Callable[[Path], Callable[[], None]]
-"""A check before a file is overwritten, which returns a second check for the moment of overwriting.
-
-Both raise OutputError. The second check opens no file: closing a store would end the locks of a transaction.
-"""
-
-
-def no_guard(_: Path) -> Callable[[], None]:
-    """The guard that lets every file be overwritten."""
-    return lambda: None
 
 
 def stamp_of(path: Path) -> str | None:

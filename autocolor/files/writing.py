@@ -9,7 +9,7 @@ import json
 import os
 import sys
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Final
@@ -21,6 +21,18 @@ from ramtek_emu import writing
 
 SECONDS_OF_WAITING: Final = 10.0
 """Limit: how long to wait for another program that moves tables, which takes milliseconds."""
+
+
+Guard = Callable[[Path], Callable[[], None]]
+"""A check before a file is overwritten, which returns a second check for the moment of overwriting.
+
+Both raise OutputError. The second check opens no file: closing a store would end the locks of a transaction.
+"""
+
+
+def no_guard(_: Path) -> Callable[[], None]:
+    """The guard that lets every file be overwritten."""
+    return lambda: None
 
 
 def write_atomically(path: str | os.PathLike[str], data: bytes, *, overwrite: bool) -> None:
@@ -40,8 +52,8 @@ def write_together(
 
     The tables are written to a hidden folder in it. One rename commits them, and from then on our readers
     read the new tables; then each is moved to its name. If a program is killed before the rename, the old
-    tables are whole. If it is killed later, the next call moves the tables that are left. Tables of the names
-    `others` are removed if the new tables do not have these names. Other files in the folder stay.
+    tables are whole. If it is killed later, the next call moves the tables that are left. `others` are
+    names of tables that are removed unless they are written. Other files in the folder stay.
 
     Raises OutputError if a table exists and `overwrite` is false, or if the folder cannot be created, and
     WriteError if writing fails. The old or the new tables are whole then.
@@ -52,8 +64,6 @@ def write_together(
     if os.path.exists(folder) and not os.path.isdir(folder):
         raise OutputError(f"an output of several files must be a folder, not the file {folder}; name another")
     with new_folder(folder, "a mesh"), _refusals_of_this_package(), _refusals_at(folder):
-        with _saving_alone(folder):
-            _move_tables(folder)
         with writing.temporary_folder(folder.resolve() / "tables") as (part, names_file):
             names = []
             for name, pieces in files:
@@ -70,7 +80,7 @@ def write_together(
                     _make_folder(folder, name)
                     writing.refuse_output(folder / name, overwrite)
                 absent = sorted(name for name in {*others} - {*names} if os.path.isfile(folder / name))
-                content = {"save": part.name, "files": names, "absent": absent}
+                content = {"files": names, "absent": absent}
                 names_file.write(json.dumps(content, indent=1).encode())
                 names_file.flush()
                 os.fsync(names_file.fileno())
@@ -94,11 +104,13 @@ def _move_tables(folder: Path) -> None:
         for name in committed.files:
             _make_folder(folder, name)
             if os.path.lexists(source / name_in_set(name)):
+                with suppress(OSError):
+                    os.chmod(source / name_in_set(name), os.stat(folder / name).st_mode & 0o777)
                 os.replace(source / name_in_set(name), folder / name)
         for place in {(folder / name).parent for name in committed.files}:
             writing.sync_folder(place)
         os.unlink(source / NAMES)
-    with suppress(FileNotFoundError):
+    with _refusals_at(source), suppress(FileNotFoundError):
         os.rmdir(source)
 
 

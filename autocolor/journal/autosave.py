@@ -95,13 +95,15 @@ class Autosave:
         if self._folder is None:
             sessions = state_folder() / SESSIONS
             sessions.mkdir(mode=0o700, parents=True, exist_ok=True)
-            for _ in range(3):
+            for is_last in (False, False, True):
                 folder = sessions / f"{time.strftime('%Y-%m-%d-%H%M%S')}-{os.getpid()}-{time.time_ns():x}"
                 folder.mkdir(mode=0o700)
                 with suppress(FileNotFoundError):
                     self._lock = lock_file(folder / LOCK)
-                if self._lock is not None and folder.exists():
+                if is_last or (self._lock is not None and folder.exists()):
                     break
+                _remove(folder, self._lock)
+                self._lock = None
                 # Another program removed the empty folder before it was locked.
             self._folder = folder
             self._meshes = MeshesBeside(folder)

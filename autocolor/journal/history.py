@@ -71,11 +71,10 @@ Step = Edit | Open | Show | Keep | Drop | Saved | Literal["undo", "redo"]
 class History:
     """The scenes of a session and the steps between them; `start` is the scene with which it began.
 
-    `steps` has every step, also those that were undone. `first_place` is the place of the first scene. If its
-    file holds another scene than `start`, that is `read`.
+    `steps` has every step, also those that were undone. `first_place` is the place of the first scene.
     """
 
-    def __init__(self, start: Scene, place: ScenePlace | None = None, read: Scene | None = None) -> None:
+    def __init__(self, start: Scene, place: ScenePlace | None = None) -> None:
         self.start = start
         self.first_place = ScenePlace() if place is None else place
         self.steps: list[Step] = []
@@ -87,7 +86,7 @@ class History:
         self._files: dict[ScenePlace, tuple[str, ...]] = {}
         self.on_disk = FilesOnDisk()
         """The files that the session read or wrote."""
-        self._note_opened(self._present, read or start)
+        self._note_opened(self._present)
 
     @property
     def scene(self) -> Scene:
@@ -166,7 +165,7 @@ class History:
 
     def open(self, opened: Opened, source: Source) -> None:
         """Make a scene the current one that was opened from a source."""
-        self._note_opened(opened, opened.scene)
+        self._note_opened(opened)
         self._go_to(opened)
         self.steps.append(Open(opened.scene, source))
 
@@ -213,15 +212,15 @@ class History:
         self._present = after
         self.steps.append("redo")
 
-    def _note_opened(self, opened: Opened, read: Scene) -> None:
-        """Note the scene of a place that was opened, and its file, from which a scene was read."""
+    def _note_opened(self, opened: Opened) -> None:
+        """Note the scene of a place that was opened, and its file."""
         place = opened.place
         self._saved[place] = Saved(opened.scene, {})
         self._files[place] = () if place.file is None else (place.file,)
         if place.file is not None and place.stamp is not None:
             before = self.on_disk[place.file]
             is_own = before is not None and before.is_own and before.stamp == place.stamp
-            scene = None if place.stamp == NO_STAMP else read
+            scene = None if place.stamp == NO_STAMP else opened.scene
             self.on_disk.note(place.file, OnDisk(scene, place.stamp, is_own))
 
     def _main_file(self, place: ScenePlace) -> str | None:

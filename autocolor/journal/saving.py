@@ -21,7 +21,7 @@ from autocolor.files.scene_writing import write_scene_with_tables
 from autocolor.files.stamps import stamp_of
 from autocolor.files.writing import write_atomically
 from autocolor.journal.history import History, is_picture
-from autocolor.journal.places import NO_STAMP
+from autocolor.journal.places import NO_STAMP, OnDisk
 from autocolor.lighting.picture import Picture
 
 
@@ -68,19 +68,23 @@ def save_session(history: History, picture: Picture, folder: Path) -> SavedFiles
     New files are made in `folder`. If it raises OutputError or WriteError, no file is lost.
     """
     scene_file, picture_file, overwritten, changed = _targets(history, folder)
-    backups: list[Path] = []
+    guard, backups = history.on_disk.guard, list[Path]()
     try:
         for path in overwritten:
             file = history.on_disk[str(path)]
             if file is None or not file.is_own:
                 backups.append(_backup_of(path))
-        write_picture(picture_file, picture, history.scene, overwrite=picture_file in overwritten)
+        overwrite = picture_file in overwritten
+        write_picture(picture_file, picture, history.scene, overwrite=overwrite, guard=guard)
     except BaseException:
         # No file was written yet, so backups are not needed.
         for path in backups:
             path.unlink(missing_ok=True)
         raise
-    overwrite, guard = scene_file in overwritten, history.on_disk.guard
+    # If writing the scene fails, the picture is still known to be ours.
+    written = OnDisk(history.scene, stamp_of(picture_file) or NO_STAMP, is_own=True)
+    history.on_disk.note(str(picture_file), written)
+    overwrite = scene_file in overwritten
     write_scene_with_tables(scene_file, history.scene, overwrite=overwrite, complete=False, guard=guard)
     history.mark_saved({str(path): stamp_of(path) or NO_STAMP for path in (scene_file, picture_file)})
     return SavedFiles(scene_file, picture_file, tuple(backups), changed)

@@ -66,7 +66,7 @@ SPANS_AT_ONCE: Final = 1 << 14
 PIXELS_AT_ONCE: Final = 1 << 14
 
 OVERDRAW: Final = 16
-"""The fragments a pixel, on average, after which hidden polygons are looked for before they are drawn.
+"""Once a pixel was drawn so often on average, polygons are tested for being hidden before they are drawn.
 
 Measured: culling takes a fifth of the time of drawing. Meshes have three to five fragments a pixel.
 """
@@ -117,8 +117,8 @@ def depth_test(
     """Raise each pixel of the depth buffer, (lines * elements,), to the largest key of some polygons there.
 
     The nearest polygon has the largest key, and of equally near polygons the highest number. The polygons are
-    in ascending order. With `culls=True` they are as from `_nearest_first`, and most of the polygons and
-    segments that others hide are left out.
+    in ascending order. With `culls=True` they must be in the order of `_nearest_first`, and most of the
+    polygons and segments that others hide are left out.
     """
     if not culls:
         polygons = polygons[::-1]
@@ -176,7 +176,7 @@ def _are_behind(depth_buffer: Numbers, segments: Segments) -> Booleans:
 def _are_hidden_in_their_planes(
     depth_buffer: Numbers, projected: Projection, scale: DepthScale, segments: Segments
 ) -> Booleans:
-    """Which segments have only pixels that see their own shared plane, a polygon with a higher number."""
+    """Which segments lie wholly behind a polygon of their own plane with a higher number."""
     if scale.planes is None:
         return np.zeros(len(segments.count), np.bool_)
     # A pixel that sees no polygon looks up the -1 at the end.

@@ -96,15 +96,12 @@ def refuse_systems_without_pidfd() -> None:
 @contextmanager
 def terminal() -> Iterator[tuple[int, str]]:
     """A pseudoterminal in raw mode: our side, and the path of the program's side."""
-    import fcntl
     import pty
     import tty as terminal_modes
 
     ours, theirs = pty.openpty()
     try:
         terminal_modes.setraw(theirs)
-        # The lock says that the device is in use; it goes with this process.
-        fcntl.lockf(theirs, fcntl.LOCK_EX, 1)
         # Keep the program's side open, so that the program may close and open it as often as it likes.
         yield ours, os.ttyname(theirs)
     finally:
@@ -139,27 +136,13 @@ def linked(name: str, device: str) -> Iterator[None]:
 
 
 def is_stale(name: str, our_device: str) -> bool:
-    """Whether a name is a link to a device that no `ramtek tty` uses any longer, or that we use now."""
-    import fcntl
-
+    """Whether a name is a link to a device that is gone, or whose number is that of our device now."""
     try:
         device = os.readlink(name)
-        if re.fullmatch("/dev/pts/[0-9]+", device) is None:
-            return False
-        if device == our_device:
-            return True
-        number = os.open(device, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
-    except FileNotFoundError:
-        return os.path.islink(name)
     except OSError:
         return False
-    try:
-        fcntl.lockf(number, fcntl.LOCK_EX | fcntl.LOCK_NB, 1)
-    except OSError:
-        return False
-    finally:
-        os.close(number)
-    return True
+    is_terminal = re.fullmatch("/dev/pts/[0-9]+", device) is not None
+    return is_terminal and (device == our_device or not os.path.lexists(device))
 
 
 class Running(NamedTuple):

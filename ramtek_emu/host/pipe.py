@@ -59,6 +59,8 @@ class PolledPipe:
         self._pending: Iterator[bytes] = iter(())
         self._reply = b""
         self._write = write
+        # The bytes that were read, and those of them that the session has got.
+        self._read_bytes = self._fed_bytes = 0
         threading.Thread(target=self._fill, args=(read,), daemon=True).start()
         if write is not None:
             threading.Thread(target=self._drain, daemon=True).start()
@@ -71,7 +73,7 @@ class PolledPipe:
     @property
     def unexecuted(self) -> int:
         """The number of words that were read and are not executed."""
-        return self.session.unexecuted + sum(map(len, tuple(self._data.queue))) // 2
+        return self.session.unexecuted + (self._read_bytes - self._fed_bytes) // 2
 
     def step(self) -> bool:
         """Execute a piece of words; returns False if none has arrived, or if the last reply must wait."""
@@ -90,6 +92,7 @@ class PolledPipe:
             if not data:
                 self.ended = True
                 return False
+            self._fed_bytes += len(data)
             self._pending = self.session.feed(data)
         elif self._write is not None:
             self._reply = reply
@@ -108,6 +111,7 @@ class PolledPipe:
                 data = read(READ_BYTES)
             except (OSError, ValueError):
                 data = b""
+            self._read_bytes += len(data)
             self._data.put(data)
 
     def _drain(self) -> None:

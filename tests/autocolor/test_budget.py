@@ -43,7 +43,7 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> list[float]:
 
 def factor(needed: float) -> float:
     """The limit that allows this number of bytes and no more."""
-    return (needed + 0.5) / MEMORY
+    return needed / MEMORY
 
 
 def test_the_budget_allows_as_much_as_it_has_and_names_the_limit_that_allows_more() -> None:
@@ -59,6 +59,12 @@ def test_the_budget_allows_as_much_as_it_has_and_names_the_limit_that_allows_mor
         require_memory(MEMORY + 1, "a.ply: to read it", "split it")
 
 
+def test_the_limit_that_a_message_names_allows_what_was_refused() -> None:
+    for tenths in range(11, 3000):
+        with allowing(tenths / 10):
+            require_memory(MEMORY // 10 * tenths, "it", "split it")
+
+
 def test_a_limit_holds_inside_of_its_block_and_none_leaves_it() -> None:
     with allowing(2.0), allowing(None):
         assert allowed_memory() == 2 * MEMORY
@@ -70,7 +76,7 @@ def test_a_limit_holds_inside_of_its_block_and_none_leaves_it() -> None:
         require_memory(1e18, "it", "split it")
 
 
-@pytest.mark.parametrize("limit", [0, -1, math.nan, math.inf, True, "2"])
+@pytest.mark.parametrize("limit", [0, -1, math.nan, math.inf, 10**400, True, "2"])
 def test_a_limit_must_be_a_finite_number_above_zero(limit: Any) -> None:
     with pytest.raises(UsageError, match="limit must be a finite number above 0"), allowing(limit):
         pass

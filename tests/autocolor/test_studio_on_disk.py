@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from contextlib import closing
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
 import pytest
 from hypothesis import example, given, settings
@@ -26,6 +27,7 @@ from autocolor import (
     scene_of,
     write_picture,
 )
+from autocolor.files import picture_file
 from autocolor.files.stamps import stamp_of
 from autocolor.files.store import store_file
 from autocolor.files.store.connections import connected_to_change
@@ -316,3 +318,87 @@ def test_a_scene_that_counts_as_saved_is_in_its_file_also_after_recovery(
             assert summary(read_journal(journal_of(studio.history, session)).history) == summary(
                 studio.history
             )
+
+
+def test_a_change_that_comes_while_a_file_is_read_again_is_not_overwritten(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "car" / "scene.toml"
+    autocolor.write_scene(path.parent, car())
+    studio, _ = opened()
+    studio.open(path)
+    path.write_text(f"# theirs\n{path.read_text()}")
+    read = places.opened
+
+    def interrupted(*arguments: Any, **keywords: Any) -> Any:
+        again = read(*arguments, **keywords)
+        outside_toml(path)
+        return again
+
+    monkeypatch.setattr("autocolor.studio.opened", interrupted)
+    assert not studio.reopen()
+    with pytest.raises(OutputError, match="another program changed"):
+        studio.save_scene(path, overwrite=True)
+
+
+@pytest.mark.parametrize("is_session", [False, True])
+def test_a_picture_that_changes_while_it_is_made_is_not_overwritten(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, is_session: bool
+) -> None:
+    studio, _ = opened()
+    path = studio.save_session(tmp_path).picture
+    studio.light("key", on=False)
+    pack = picture_file.array_file_bytes
+
+    def interrupted(*arguments: Any) -> bytes:
+        path.write_bytes(b"theirs")
+        return pack(*arguments)
+
+    monkeypatch.setattr(picture_file, "array_file_bytes", interrupted)
+    with pytest.raises(OutputError, match="another program changed"):
+        studio.save_session(tmp_path) if is_session else studio.save(path, overwrite=True)
+    assert path.read_bytes() == b"theirs"
+
+
+def test_a_picture_is_known_as_ours_if_its_scene_could_not_be_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    studio, _ = opened()
+    saved = studio.save_session(tmp_path)
+    studio.light("key", on=False)
+
+    def fail(*_: object, **__: object) -> None:
+        raise autocolor.WriteError("the disk is full")
+
+    with monkeypatch.context() as patch:
+        patch.setattr("autocolor.journal.saving.write_scene_with_tables", fail)
+        with pytest.raises(autocolor.WriteError):
+            studio.save_session(tmp_path)
+    again = studio.save_session(tmp_path)
+    assert (again.scene, again.picture, again.changed) == (saved.scene, saved.picture, ())
+
+
+def test_a_mesh_is_named_by_the_file_that_it_was_read_from(tmp_path: Path) -> None:
+    for name in ("a", "b"):
+        autocolor.write_scene(tmp_path / name, car())
+    (mesh,) = (path for path in (tmp_path / "b").iterdir() if path.suffix != ".toml")
+    mesh.rename(mesh.with_stem("other"))
+    scene = tmp_path / "b" / "scene.toml"
+    scene.write_text(scene.read_text().replace(mesh.name, f"other{mesh.suffix}"))
+    studio, _ = opened()
+    studio.open(tmp_path / "a")
+    studio.open(tmp_path / "b")
+    studio.save_scene(tmp_path / "b" / "variant.toml")
+    assert sorted(os.listdir(tmp_path / "b")) == [f"other{mesh.suffix}", "scene.toml", "variant.toml"]
+
+
+def test_a_session_that_began_with_settings_is_recovered_and_saved_to_its_file(tmp_path: Path) -> None:
+    autocolor.write_scene(tmp_path / "s", car())
+    place = places.place_of(Source(str(tmp_path / "s")))
+    history = History(read_scene(tmp_path / "s"), place)
+    history.take(history.scene.replace(ambient=0.3))
+    again = read_journal(journal_of(history, tmp_path / "state")).history
+    assert again.is_changed
+    studio = Studio(again, Ramtek9300(SMALL))
+    studio.save_scene(tmp_path / "s", overwrite=True)
+    assert read_scene(tmp_path / "s").ambient == 0.3

@@ -148,6 +148,11 @@ def test_strange_characters_of_arguments_are_escaped(end: End) -> None:
         (RuntimeError("Out of memory"), 71, "(tool a\\n: out of memory)"),
         (after(MemoryError("no"), OutputExistsError("out of memory.png exists")), 71, "(tool a\\n: no)"),
         (OutputExistsError("out of memory.png exists"), 73, "out of memory.png exists"),
+        (
+            after(FileNotFoundError(2, "No such file", "out of memory"), OutputExistsError("no")),
+            73,
+            "tool: no",
+        ),
         (RecursionError("deep"), 70, "RecursionError: deep"),
     ],
 )

@@ -304,11 +304,11 @@ OUT_OF_TIME: Final = -int(getattr(signal, "SIGXCPU", 24))
 
 def most_seconds(size: int) -> float:
     """Limit: seconds of computing for a file of `size` bytes. Measured: text takes 0.1 to 0.5 a megabyte."""
-    return (2 + size / MEGABYTE) * max(1, validated_limit(None))
+    return min((2 + size / MEGABYTE) * max(1, validated_limit(None)), 1e9)
 
 
 def most_memory(size: int) -> int:
-    """Limit: bytes of address space. The libraries take half a gigabyte; text takes 40 times its size."""
+    """Limit: bytes of address space. Libraries take half a gigabyte, at times 40 times the size of a text."""
     return (1 << 30) + int(min(60 * size * max(1, validated_limit(None)), allowed_memory()))
 
 
@@ -411,11 +411,11 @@ FOREIGN: Final = (
     ForeignFormat("glTF text", (".gltf",), "trimesh", "gltf", ("trimesh", "networkx"), 12, size_of_gltf, "y"),
     ForeignFormat("3MF", (".3mf",), "trimesh", "3mf", ("trimesh", "networkx", "lxml"), 20, size_of_3mf),
     ForeignFormat("VTU", (".vtu",), "meshio", "vtu", ("meshio",), 15),
-    ForeignFormat("Abaqus", (".inp",), "meshio", "abaqus", ("meshio",), 4),
+    ForeignFormat("Abaqus", (".inp",), "meshio", "abaqus", ("meshio",), 8),
     ForeignFormat("Gmsh", (".msh",), "meshio", "gmsh", ("meshio",), 8),
-    ForeignFormat("Nastran", (".bdf", ".nas", ".fem"), "meshio", "nastran", ("meshio",), 4),
-    ForeignFormat("Medit", (".mesh",), "meshio", "medit", ("meshio",), 4),
-    ForeignFormat("SU2", (".su2",), "meshio", "su2", ("meshio",), 4),
+    ForeignFormat("Nastran", (".bdf", ".nas", ".fem"), "meshio", "nastran", ("meshio",), 8),
+    ForeignFormat("Medit", (".mesh",), "meshio", "medit", ("meshio",), 8),
+    ForeignFormat("SU2", (".su2",), "meshio", "su2", ("meshio",), 8),
     ForeignFormat("UGRID", (".ugrid",), "meshio", "ugrid", ("meshio",), 8),
 )
 

@@ -18,7 +18,6 @@ from autocolor.checks import shown
 from autocolor.errors import InputError, OutputError, UsageError, WriteError
 from autocolor.files.paths import STORE_SUFFIXES
 from autocolor.files.scene_report import SceneReport
-from autocolor.files.stamps import Guard, no_guard
 from autocolor.files.store.connections import (
     DAMAGE_ERRORS,
     Clock,
@@ -42,7 +41,7 @@ from autocolor.files.store.schema import (
     quoted,
     stored_tables,
 )
-from autocolor.files.writing import refuse_output, write_atomically
+from autocolor.files.writing import Guard, no_guard, refuse_output, write_atomically
 from autocolor.logs import logger_of, timed
 from autocolor.scene.creation import MATERIALS, SurfaceSource
 from autocolor.scene.scene import Scene, check_scene

@@ -22,8 +22,10 @@ from autocolor.files.formats import (
     suffix_rule,
     suffixes_of,
 )
+from autocolor.files.meshes.npy_tables import write_npy_tables
 from autocolor.files.meshes.repair import MeshReport
 from autocolor.files.scene_sources import SCENE_FORMATS
+from tests.autocolor.meshes import cube
 
 SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n"
 
@@ -196,3 +198,9 @@ def test_a_file_of_the_wrong_suffix_is_read_as_what_it_is_and_that_is_told(tmp_p
     assert read_mesh({"file": tmp_path / "car.off"}).repairs == (
         "car.off: it begins as OBJ and was read as that, not as OFF; rename it",
     )
+
+
+def test_a_folder_is_no_mesh_file(tmp_path: Path) -> None:
+    write_npy_tables(tmp_path / "tables", cube())
+    with pytest.raises(InputError, match="must be a regular file, not a folder"):
+        read_mesh({"file": tmp_path / "tables"})

@@ -294,8 +294,8 @@ def test_tables_are_read_again_if_a_save_comes_while_they_are_opened(
     [
         b"",
         b"[]",
-        b'{"save": "1", "files": ["../x.csv"], "absent": []}',
-        b'{"save": "1", "files": ["nodes.csv"], "absent": ["scene.toml"]}',
+        b'{"files": ["../x.csv"], "absent": []}',
+        b'{"files": ["nodes.csv"], "absent": ["scene.toml"]}',
     ],
 )
 def test_a_set_of_tables_that_we_did_not_write_is_refused(tmp_path: Path, content: bytes) -> None:
@@ -320,12 +320,12 @@ def test_links_in_a_set_of_tables_are_not_followed(tmp_path: Path) -> None:
     committed = tmp_path / "t" / COMMITTED
     committed.mkdir()
     (committed / "nodes.csv").symlink_to(tmp_path / "elsewhere")
-    (committed / NAMES).write_text(json.dumps({"save": "1", "files": ["nodes.csv"], "absent": []}))
+    (committed / NAMES).write_text(json.dumps({"files": ["nodes.csv"], "absent": []}))
     assert kind.read(tmp_path) == before
     shutil.rmtree(committed)
     kind.save(tmp_path / "t", 1)
     committed.symlink_to(tmp_path / "t" / "t")
-    (tmp_path / "t" / "t" / NAMES).write_text(json.dumps({"save": "1", "files": ["nodes.csv"], "absent": []}))
+    (tmp_path / "t" / "t" / NAMES).write_text(json.dumps({"files": ["nodes.csv"], "absent": []}))
     with pytest.raises(InputError, match="it is a link"):
         kind.read(tmp_path)
 
@@ -338,3 +338,29 @@ def test_scalars_are_not_written_through_a_link(tmp_path: Path) -> None:
         KINDS["npy tables"].save(tmp_path, 1)
     assert os.listdir(tmp_path / "elsewhere") == []
     assert os.listdir(tmp_path / "t") == ["scalars"]
+
+
+def test_tables_keep_their_permissions(tmp_path: Path) -> None:
+    for number in (0, 1):
+        KINDS["npy tables"].save(tmp_path, number)
+        (tmp_path / "t" / "nodes.npy").chmod(0o600)
+    assert (tmp_path / "t" / "nodes.npy").stat().st_mode & 0o777 == 0o600
+
+
+def test_tables_that_are_left_replace_no_new_file_unless_that_is_allowed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with monkeypatch.context() as patch, suppress(Killed):
+        patch.setattr(os, "replace", lambda *_: killed())
+        KINDS["CSV tables"].save(tmp_path, 1)
+    (tmp_path / "t" / "nodes.csv").write_text("mine")
+    with pytest.raises(OutputError, match="must be a new file"):
+        write_together(tmp_path / "t", [("nodes.csv", [b"new"])], others=(), overwrite=False)
+    assert (tmp_path / "t" / "nodes.csv").read_text() == "mine"
+
+
+def test_a_folder_of_the_name_of_a_save_that_holds_other_files_is_named(tmp_path: Path) -> None:
+    (tmp_path / COMMITTED).mkdir()
+    (tmp_path / COMMITTED / "other").touch()
+    with pytest.raises(WriteError, match=rf"{COMMITTED} could not be"):
+        write_together(tmp_path, [("nodes.csv", [b"new"])], others=(), overwrite=True)

@@ -54,6 +54,13 @@ def test_a_thousand_mutated_streams_are_played_and_leave_a_display_that_works() 
     assert (display.words == twin.words).all()
 
 
+def test_words_that_wait_for_a_place_in_the_queue_are_counted_as_unexecuted() -> None:
+    pieces = [b"", *[b"\0" * 2000] * 6]
+    pipe = PolledPipe(HostSession(Ramtek9300()), pop_of(pieces))
+    until(lambda: pipe.unexecuted == 5000)
+    assert len(pieces) == 2
+
+
 def test_a_pipe_without_a_reader_of_replies_owes_none() -> None:
     pipe = PolledPipe(HostSession(Ramtek9300()), pop_of([b""]), None)
     assert pipe.has_replied is True
