@@ -28,6 +28,7 @@ from autocolor import (
     write_picture,
 )
 from autocolor.files import picture_file
+from autocolor.files.array_file import array_file_bytes
 from autocolor.files.stamps import stamp_of
 from autocolor.files.store import store_file
 from autocolor.files.store.connections import connected_to_change
@@ -348,11 +349,10 @@ def test_a_picture_that_changes_while_it_is_made_is_not_overwritten(
     studio, _ = opened()
     path = studio.save_session(tmp_path).picture
     studio.light("key", on=False)
-    pack = picture_file.array_file_bytes
 
     def interrupted(*arguments: Any) -> bytes:
         path.write_bytes(b"theirs")
-        return pack(*arguments)
+        return array_file_bytes(*arguments)
 
     monkeypatch.setattr(picture_file, "array_file_bytes", interrupted)
     with pytest.raises(OutputError, match="another program changed"):
