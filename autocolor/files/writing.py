@@ -63,34 +63,38 @@ def write_together(
         raise OutputError(f"an output must be in an existing folder, not {folder.parent}; create it")
     if os.path.exists(folder) and not os.path.isdir(folder):
         raise OutputError(f"an output of several files must be a folder, not the file {folder}; name another")
-    with new_folder(folder, "a mesh"), _refusals_of_this_package(), _refusals_at(folder):
-        with writing.temporary_folder(folder.resolve() / "tables") as (part, names_file):
-            names = []
-            for name, pieces in files:
-                if "/" not in name:
-                    writing.refuse_output(folder / name, overwrite)
-                names.append(name)
-                with open(part / name_in_set(name), "xb") as file:
-                    file.writelines(pieces)
-                    file.flush()
-                    os.fsync(file.fileno())
-            with _saving_alone(folder):
-                _move_tables(folder)
-                for name in names:
-                    _make_folder(folder, name)
-                    writing.refuse_output(folder / name, overwrite)
-                absent = sorted(name for name in {*others} - {*names} if os.path.isfile(folder / name))
-                content = {"files": names, "absent": absent}
-                names_file.write(json.dumps(content, indent=1).encode())
-                names_file.flush()
-                os.fsync(names_file.fileno())
-                if sys.platform == "win32":
-                    # A folder of open files cannot be renamed there.
-                    names_file.close()
-                writing.sync_folder(part)
-                os.rename(part, folder / COMMITTED)
-                writing.sync_folder(folder)
-                _move_tables(folder)
+    with (
+        new_folder(folder, "a mesh"),
+        _refusals_of_this_package(),
+        _refusals_at(folder),
+        writing.temporary_folder(folder.resolve() / "tables") as (part, names_file),
+    ):
+        names = []
+        for name, pieces in files:
+            if "/" not in name:
+                writing.refuse_output(folder / name, overwrite)
+            names.append(name)
+            with open(part / name_in_set(name), "xb") as file:
+                file.writelines(pieces)
+                file.flush()
+                os.fsync(file.fileno())
+        with _saving_alone(folder):
+            _move_tables(folder)
+            for name in names:
+                _make_folder(folder, name)
+                writing.refuse_output(folder / name, overwrite)
+            absent = sorted(name for name in {*others} - {*names} if os.path.isfile(folder / name))
+            content = {"files": names, "absent": absent}
+            names_file.write(json.dumps(content, indent=1).encode())
+            names_file.flush()
+            os.fsync(names_file.fileno())
+            if sys.platform == "win32":
+                # A folder of open files cannot be renamed there.
+                names_file.close()
+            writing.sync_folder(part)
+            os.rename(part, folder / COMMITTED)
+            writing.sync_folder(folder)
+            _move_tables(folder)
     return sorted(folder / name for name in names)
 
 
