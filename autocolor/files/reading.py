@@ -20,7 +20,6 @@ from typing import Any, BinaryIO, Final, NamedTuple, NoReturn, TypeVar
 from autocolor import checks
 from autocolor.budget import allowed_memory, require_memory
 from autocolor.errors import InputError, MissingInputError, reason_of
-from ramtek_emu.writing import PART_LOCK
 
 LEAST_READ: Final = 1 << 20
 """Bytes to request even if the file system reports a smaller file."""
@@ -109,7 +108,8 @@ def read_head(path: Path) -> bytes:
 
 COMMITTED: Final = ".autocolor-tables"
 
-NAMES: Final = PART_LOCK
+NAMES: Final = "names.json"
+"""It is the locked file of the temporary folder that the folder COMMITTED was (see `ramtek_emu.writing`)."""
 
 SET_KEYS: Final = frozenset(("files", "absent"))
 

@@ -340,6 +340,10 @@ def test_scalars_are_not_written_through_a_link(tmp_path: Path) -> None:
     assert os.listdir(tmp_path / "t") == ["scalars"]
 
 
+def test_the_names_of_a_save_are_in_the_locked_file() -> None:
+    assert NAMES == writing.PART_LOCK
+
+
 def test_tables_keep_their_permissions(tmp_path: Path) -> None:
     for number in (0, 1):
         KINDS["npy tables"].save(tmp_path, number)

@@ -151,8 +151,7 @@ def test_the_planes_of_the_lights_add_up_to_the_picture(scene: Scene) -> None:
             plane = picture.planes[light.name]
             for number, surface in enumerate(scene.surfaces, 1):
                 d, s = surface.reflectance.diffuse, surface.reflectance.specular
-                with np.errstate(under="ignore"):
-                    both = light.intensity * (d * plane.diffuse + s * plane.specular)
+                both = light.intensity * (d * plane.diffuse + s * plane.specular)
                 if light.links.shines_on_surface(surface.name):
                     total += np.where(picture.surface_number == number, both, 0)
     assert picture.intensity == close_to(total, picture.ranges.whole.maximum)
