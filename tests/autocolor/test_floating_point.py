@@ -1,4 +1,4 @@
-"""Meshes of any size are rendered without an error in a program that has numpy raise floating-point errors."""
+"""Meshes of any size are rendered without an error where numpy is told to raise floating-point errors."""
 
 from __future__ import annotations
 
