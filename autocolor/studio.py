@@ -38,7 +38,7 @@ from autocolor.errors import UsageError
 from autocolor.files.stamps import stamp_of
 from autocolor.images import display_image
 from autocolor.journal.history import History, is_picture
-from autocolor.journal.places import NO_STAMP, Source, file_of, opened
+from autocolor.journal.places import NO_STAMP, Source, opened
 from autocolor.lighting.picking import highlight_of, highlight_placed
 from autocolor.lighting.picture import Picture
 from autocolor.mapping.display_image import DisplayImage, words_by_line
@@ -319,7 +319,7 @@ class Studio:
         """
         source = Source(fspath(path), up, surfaces, scale)
         with allowing(self._limit):
-            scene = opened(source, tables, checksum, self._known_scenes(source))
+            scene = opened(source, tables, checksum, (self._history.on_disk.scene_of(source),))
         self._show_scene(scene.scene)
         self._history.open(scene, source)
 
@@ -339,7 +339,7 @@ class Studio:
             raise UsageError("the scene must be in a file to be read again, and it is in none; save it")
         source = Source(str(path), surfaces="materials" if source is None else source.surfaces)
         with allowing(self._limit):
-            again = opened(source, known=(self.scene, *self._known_scenes(source)))
+            again = opened(source, known=(self.scene, self._history.on_disk.scene_of(source)))
         if again.scene.equals(self.scene):
             if again.place.stamp is not None and self._history.on_disk.was_changed(str(path)):
                 self._history.mark_saved({str(path): again.place.stamp}, is_own=False)
@@ -397,12 +397,6 @@ class Studio:
     def _mark_written(self, path: str | PathLike[str]) -> None:
         """Mark the scene as saved to a file, which gets a backup before `save_session` overwrites it."""
         self._history.mark_saved({abspath(path): stamp_of(Path(path)) or NO_STAMP}, is_own=False)
-
-    def _known_scenes(self, source: Source) -> tuple[Scene | None, ...]:
-        """The scene that the file of a source held, whose mesh is shared if the file still has it."""
-        path = file_of(source)
-        file = None if path is None else self._history.on_disk[abspath(path)]
-        return () if file is None else (file.scene,)
 
     def journal(
         self,

@@ -52,8 +52,8 @@ def write_together(
 
     The tables are written to a hidden folder in it. One rename commits them, and from then on our readers
     read the new tables; then each is moved to its name. If a program is killed before the rename, the old
-    tables are whole. If it is killed later, the next call moves the tables that are left. `others` are
-    names of tables that are removed unless they are written. Other files in the folder stay.
+    tables are whole. If it is killed later, the next call moves the tables that are left. A table
+    that `others` names is removed if it is not written now. Other files in the folder stay.
 
     Raises OutputError if a table exists and `overwrite` is false, or if the folder cannot be created, and
     WriteError if writing fails. The old or the new tables are whole then.

@@ -347,7 +347,7 @@ def _take(record: Record, history: History, meshes: dict[str, Mesh], folder: Pat
 def _opened(record: Record, history: History | None = None) -> tuple[Opened, Source]:
     """The scene that a step opens, with its tables at that time, and its source."""
     source = Source(*(record[name] for name in Source._fields))
-    known = () if history is None else (history.scene, *history.on_disk.scenes)
+    known = () if history is None else (history.on_disk.scene_of(source),)
     return opened(source, record["tables"], record["checksum"], known), source
 
 

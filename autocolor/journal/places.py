@@ -102,6 +102,12 @@ class FilesOnDisk:
         """The scenes that the files hold."""
         return tuple(file.scene for file in self._files.values() if file.scene is not None)
 
+    def scene_of(self, source: Source) -> Scene | None:
+        """The scene that a source's file held when the session read or wrote it last; None if unknown."""
+        path = file_of(source)
+        file = None if path is None else self[os.path.abspath(path)]
+        return None if file is None else file.scene
+
     def was_changed(self, path: str) -> bool:
         """Whether another program changed a file since; False for a missing or an unknown file."""
         file = self[path]

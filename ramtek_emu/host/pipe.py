@@ -59,7 +59,7 @@ class PolledPipe:
         self._pending: Iterator[bytes] = iter(())
         self._reply = b""
         self._write = write
-        # The bytes that were read, and those of them that the session has got.
+        # How many bytes were read, and how many of them were passed to the session.
         self._read_bytes = self._fed_bytes = 0
         threading.Thread(target=self._fill, args=(read,), daemon=True).start()
         if write is not None:

@@ -80,8 +80,6 @@ PACKET_BYTES: Final = 1 << 19
 """The longest packet that is read whole. Limit: more than a socket's default buffer."""
 SIOCATMARK: Final = 0x8905
 """The request that asks whether the next byte is urgent (Linux: asm-generic/sockios.h)."""
-MARKS_WORK: Final = sys.platform == "linux"
-"""Whether this system (Linux) reports the places of marks."""
 
 
 class Sign(Enum):
@@ -161,11 +159,12 @@ def waiting_bytes(file: socket.socket | int) -> int:
 
     0 on systems that do not tell.
     """
-    with suppress(OSError):
-        if sys.platform == "linux":
-            import termios
+    if sys.platform != "linux":
+        return 0
+    import termios
 
-            return answer_of(file, termios.FIONREAD)
+    with suppress(OSError):
+        return answer_of(file, termios.FIONREAD)
     return 0
 
 
@@ -252,7 +251,7 @@ class SocketPort:
         are reset; the table and the characters are not. PortError if the display does not answer in time, or
         on TCP on a system without marks.
         """
-        if not (MARKS_WORK or self.wire.keeps_writes):
+        if sys.platform != "linux" and not self.wire.keeps_writes:
             raise PortError(
                 "a hard reset over TCP must be asked for on Linux, and this is another system; "
                 "use the joystick unit of `ramtek serve --joystick`"
