@@ -54,12 +54,14 @@ def reflected(scene: Scene, normal: Vector, surface: Surface) -> float:
     low, high = scene.object_bounds
     middle = tuple((a + b) / 2 for a, b in zip(low, high, strict=True))
     to_eye = reference.unit(reference.minus(scene.view.eye, middle))
+    # The models say nothing of a normal that faces away from the eye; they divide by this cosine.
+    assume(reference.dot(normal, to_eye) > 1e-3)
     total = scene.ambient
     for light in scene.lights:
-        to_light = reference.unit(reference.minus(light.position, middle))
+        to_light = reference.ray_to(light, middle)
         cos_i = reference.dot(normal, to_light)
         assume(abs(cos_i) > 1e-5)
-        if not light.on or cos_i < 0:
+        if not light.on or cos_i < 0 or not light.links.shines_on_surface(surface.name):
             continue
         row = surface.reflectance
         specular = reference.specular_factor(row.model, tuple(to_light), normal, tuple(to_eye))
