@@ -18,9 +18,11 @@ import numpy as np
 import pytest
 
 from autocolor.budget import MEMORY, allowing
+from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError, UnavailableError
 from autocolor.files.array_file import array_file_bytes
 from autocolor.files.formats import read_mesh
+from autocolor.files.meshes import foreign
 from autocolor.files.meshes.cells import CORNERS
 from autocolor.files.meshes.foreign import (
     FOREIGN,
@@ -423,6 +425,53 @@ def test_what_an_archive_holds_is_known_before_it_is_read(tmp_path: Path) -> Non
     )
 
 
+@pytest.mark.parametrize("members", [2, 3, 4])
+def test_an_archive_has_a_limited_number_of_files(
+    tmp_path: Path, members: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(foreign, "MOST_MEMBERS", 3)
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w") as archive:
+        for number in range(members):
+            archive.writestr(f"{number}.model", b"<model/>")
+    path = write(tmp_path, packed.getvalue(), "a.3mf")
+    if members <= 3:
+        # An archive is never counted as smaller than it is on disk.
+        assert size_of_3mf(path) == len(packed.getvalue())
+    else:
+        assert f"at most 3 files and {200 * len(packed.getvalue()):,} bytes, not 4 and 32;" in refusal(path)
+
+
+@pytest.mark.parametrize("more", [-1, 0, 1])
+def test_an_archive_has_a_limited_growth(tmp_path: Path, more: int) -> None:
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w") as archive:
+        archive.writestr("a.model", b"<model/>")
+    data = packed.getvalue()
+    size = 200 * len(data) + more
+    # The size of the unpacked file stands in the directory, behind the size of the packed file.
+    at = data.index(b"PK\1\2") + 24
+    path = write(tmp_path, data[:at] + size.to_bytes(4, "little") + data[at + 4 :], "a.3mf")
+    if more <= 0:
+        assert size_of_3mf(path) == size
+    else:
+        assert f"at most 10,000 files and {size - 1:,} bytes, not 1 and {size:,};" in refusal(path)
+
+
+@pytest.mark.parametrize("values", [8, 9, 10])
+def test_the_json_of_a_gltf_file_has_a_limited_number_of_values(
+    tmp_path: Path, values: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(foreign, "MOST_VALUES", 9)
+    # What opens a table or a list, and each comma, counts as a value.
+    data = json.dumps({"extras": [0] * (values - 1)}).encode()
+    path = write(tmp_path, data, "a.gltf")
+    if values <= 9:
+        assert size_of_gltf(path) == len(data)
+    else:
+        assert refusal(path).startswith("a.gltf: a glTF file must describe its scene in JSON, not")
+
+
 def test_another_file_has_its_own_size(tmp_path: Path) -> None:
     assert size_of_file(write(tmp_path, b"12345")) == 5
 
@@ -638,6 +687,16 @@ def test_nothing_is_believed(tmp_path: Path, changes: dict[str, Any], rule: str)
     with pytest.raises(InputError) as caught:
         result(tmp_path, array_file_bytes(RESULT, header, arrays))
     assert str(caught.value) == f"a.glb: trimesh gave {rule}; correct the file, or write it as OBJ or PLY"
+
+
+def test_a_coordinate_has_a_limited_size(tmp_path: Path) -> None:
+    def changed(value: float) -> bytes:
+        return array_file_bytes(RESULT, HEADER, {**ARRAYS, "coordinates": np.full((4, 3), value)})
+
+    for value in (np.nextafter(LARGEST_COORDINATE, 0), LARGEST_COORDINATE, -LARGEST_COORDINATE):
+        assert np.all(result(tmp_path, changed(value)).polygons.coordinates == value)
+    with pytest.raises(InputError, match="not finite and at most 1e30 in size"):
+        result(tmp_path, changed(np.nextafter(LARGEST_COORDINATE, np.inf)))
 
 
 @pytest.mark.parametrize("data", [b"", b"PK", b"\x80\x04N.", foreign_mesh_bytes(MESH)[:-30]])

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from autocolor.files.meshes import foreign_worker
 from autocolor.files.meshes.foreign_worker import (
     guard,
     part_names_of,
@@ -132,6 +133,17 @@ def test_each_node_of_a_scene_is_a_part_placed_by_its_transform() -> None:
     # The mirrored triangles are turned over, so that they face the same way.
     assert polygons.corners.reshape(-1, 3).tolist() == [[0, 1, 2], [1, 3, 2], [6, 5, 4], [6, 7, 5]]
     assert found.sentences == ()
+
+
+@pytest.mark.parametrize("count", [2, 3, 4])
+def test_a_scene_has_a_limited_number_of_parts(count: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(foreign_worker, "MOST_PLACED", 3)
+    of_one_mesh = scene({"w": triangle()}, **{f"node {number}": (np.eye(4), "w") for number in range(count)})
+    if count <= 3:
+        assert len(polygons_of_trimesh(of_one_mesh, "file").polygons.part_names) == count
+    else:
+        with pytest.raises(ValueError, match="4 parts, and at most 3 are read"):
+            polygons_of_trimesh(of_one_mesh, "file")
 
 
 def test_nodes_with_different_scalars_are_not_welded() -> None:

@@ -854,6 +854,27 @@ def test_of_many_libraries_in_one_statement_a_limited_number_is_looked_for(
     assert len(looked) <= 10 * MOST_LIBRARIES
 
 
+@pytest.mark.parametrize("separator", [b" ", b""])
+def test_a_library_is_looked_for_among_the_first_alone(obj: Path, separator: bytes) -> None:
+    def found(before: int) -> bool:
+        names = [*(b"none%d.mtl" % number for number in range(before)), b"red.mtl"]
+        return bool(surfaces_of(obj, *([separator.join(names)] if separator else names))[0])
+
+    assert [found(before) for before in (MOST_LIBRARIES - 2, MOST_LIBRARIES - 1, MOST_LIBRARIES)] == [
+        True, True, False
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize("less", [-1, 0, 1])
+def test_libraries_have_a_limited_size_together(
+    obj: Path, less: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(module, "LARGEST_LIBRARIES", len(RED) + len(BLUE) - less)
+    surfaces, sentences = surfaces_of(obj, b"red.mtl", b"my blue.mtl")
+    assert len(surfaces) == (2 if less <= 0 else 1)
+    assert len(sentences) == (0 if less <= 0 else 1)
+
+
 def test_one_statement_reads_no_library_more_than_once(obj: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     opened: list[str] = []
 
