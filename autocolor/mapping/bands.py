@@ -103,7 +103,10 @@ def band_numbers(values: Singles, bands: Bands) -> Words:
     is_below, is_above = exact < low - rounding, exact > high + rounding
     # Values far beyond the limits would be beyond the integers, too.
     np.clip(exact, low, high, out=exact)
-    numbers = np.minimum(np.floor((exact - low) / (high - low) * count), count - 1).astype(np.uint16)
+    # numpy 1 tells of an overflow of numbers that are not in the array, where the limits are close together.
+    with np.errstate(over="ignore"):
+        fractions = (exact - low) / (high - low)
+    numbers = np.minimum(np.floor(fractions * count), count - 1).astype(np.uint16)
     numbers[is_below] = bands.below
     numbers[is_above] = bands.above
     numbers[is_missing] = bands.missing

@@ -138,9 +138,10 @@ def lights(draw: st.DrawFn, /, name: str = "light", **given: Any) -> Light:
             fields["inner_angle"] = draw(st.none() | numbers(0, fields["cone_angle"]))
     if draw(st.booleans()):
         fields["flaps"] = draw(flaps())
-    fields["falloff"] = draw(st.sampled_from(["none", "none", "linear", "quadratic"]))
-    fields["reach"] = draw(numbers(0.5, 9)) if fields["falloff"] != "none" else None
-    fields["at_infinity"] = "direction" in fields and fields["reach"] is None and draw(st.booleans())
+    fields["at_infinity"] = "direction" in fields and draw(st.booleans())
+    if not fields["at_infinity"]:
+        fields["falloff"] = draw(st.sampled_from(["none", "none", "linear", "quadratic"]))
+        fields["reach"] = draw(numbers(0.5, 9)) if fields["falloff"] != "none" else None
     if draw(st.booleans()):
         fields["half_spaces"] = draw(half_spaces)
     return Light(name, position, **{**fields, **given})
