@@ -129,6 +129,9 @@ def refuse_output(path: str | os.PathLike[str], overwrite: bool) -> None:
     """Refuse a path that cannot be written; call it before computing anything for the file."""
     target = Path(path)
     try:
+        # Path.exists hides that a name is too long since Python 3.14; os.stat does not.
+        with suppress(FileNotFoundError, NotADirectoryError):
+            os.stat(target)
         if target.is_dir():
             raise OutputError(f"an output must be a file, not the folder {target}; add a file name")
         if target.exists() and not target.is_file():

@@ -46,9 +46,9 @@ def _refuse(path: str, force: bool) -> None:
         raise OutputError(
             f"an output must be in an existing folder, not {folder}; create it or choose another"
         )
+    refuse_output(path, overwrite=force)
     if not os.access(folder, os.W_OK):
         raise OutputError(f"an output must be in a writable folder, not {folder}; choose another")
-    refuse_output(path, overwrite=force)
 
 
 def write_png(path: str, display: Ramtek9300, force: bool) -> None:

@@ -220,8 +220,8 @@ class History:
         if place.file is not None and place.stamp is not None:
             before = self.on_disk[place.file]
             is_own = before is not None and before.is_own and before.stamp == place.stamp
-            scene = None if place.stamp == NO_STAMP else opened.scene
-            self.on_disk.note(place.file, OnDisk(scene, place.stamp, is_own))
+            is_outdated = place.stamp == NO_STAMP
+            self.on_disk.note(place.file, OnDisk(opened.scene, place.stamp, is_own, is_outdated))
 
     def _main_file(self, place: ScenePlace) -> str | None:
         """The scene file or store of a place, else its picture file; None without files."""
@@ -231,8 +231,9 @@ class History:
         """Whether the file of its place holds a scene; without a file, whether it was marked as saved."""
         path = self._main_file(opened.place)
         file = None if path is None else self.on_disk[path]
-        scene = self._saved[opened.place].scene if file is None else file.scene
-        return scene is not None and scene.equals(opened.scene)
+        if file is None:
+            return self._saved[opened.place].scene.equals(opened.scene)
+        return not file.is_outdated and file.scene.equals(opened.scene)
 
     def _go_to(self, opened: Opened) -> None:
         """Make a scene the current one by a step to undo."""

@@ -71,13 +71,14 @@ class Opened(NamedTuple):
 class OnDisk(NamedTuple):
     """A file as a session read or wrote it last: its scene and its stamp.
 
-    The scene is None if the file holds another scene by now. `is_own` is whether `save_session` wrote the
-    file. Other files get a backup before it overwrites them.
+    `is_own` is whether `save_session` wrote the file. Other files get a backup before it overwrites them.
+    `is_outdated` is whether the file holds another scene by now.
     """
 
-    scene: Scene | None
+    scene: Scene
     stamp: str
     is_own: bool
+    is_outdated: bool = False
 
 
 class FilesOnDisk:
@@ -100,7 +101,7 @@ class FilesOnDisk:
     @property
     def scenes(self) -> tuple[Scene, ...]:
         """The scenes that the files hold."""
-        return tuple(file.scene for file in self._files.values() if file.scene is not None)
+        return tuple(file.scene for file in self._files.values() if not file.is_outdated)
 
     def scene_of(self, source: Source) -> Scene | None:
         """The scene that a source's file held when the session read or wrote it last; None if unknown."""

@@ -99,7 +99,13 @@ def terminal() -> Iterator[tuple[int, str]]:
     import pty
     import tty as terminal_modes
 
-    ours, theirs = pty.openpty()
+    try:
+        ours, theirs = pty.openpty()
+    except OSError as error:
+        raise PortError(
+            f"a program must have a pseudoterminal, and the system gives none ({reason_of(error)}); close a"
+            " terminal, or let the program write to a pipe of `ramtek serve --stdio`"
+        ) from None
     try:
         terminal_modes.setraw(theirs)
         # Keep the program's side open, so that the program may close and open it as often as it likes.

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import os
 import sys
+import warnings
 from pathlib import Path
 from typing import Final, NamedTuple
 
@@ -120,7 +121,10 @@ class Glass:
             if full_screen:
                 pygame.display.set_mode((0, 0), pygame.FULLSCREEN)
             else:
-                pygame.display.set_mode(self._window_size, pygame.RESIZABLE)
+                with warnings.catch_warnings():
+                    # pygame-ce warns where the screen, or its window manager, chooses the size.
+                    warnings.simplefilter("ignore", RuntimeWarning)
+                    pygame.display.set_mode(self._window_size, pygame.RESIZABLE)
         except pygame.error as cause:
             self.close()
             raise NoScreenError(

@@ -285,6 +285,9 @@ def take(studio: Studio, kind: str, path: Path, number: int) -> None:
 
 @settings(max_examples=15)
 @given(random_moves)
+@example(
+    [("edit", None), ("reopen", None), ("edit", None), ("undo", None), ("edit", None), ("save", FILES[0])]
+)
 @example([("edit", None), ("reopen", None), *[("edit", None)] * 2, ("session", None), *[("undo", None)] * 4])
 def test_a_scene_that_counts_as_saved_is_in_its_file_also_after_recovery(
     moves: list[tuple[str, str | None]],

@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import os
 import platform
+import pty
 import random
 import shutil
 import signal
@@ -17,7 +18,7 @@ import numpy as np
 import pytest
 
 from ramtek_emu import PortError, Ramtek9300
-from ramtek_emu.commands.tty import refuse_systems_without_pidfd
+from ramtek_emu.commands.tty import refuse_systems_without_pidfd, terminal
 from ramtek_emu.host.device import MACHINES
 from ramtek_emu.host.server import UnixServer
 from tests.ramtek_emu.processes import ROOT, environment, run, started, stream
@@ -159,6 +160,15 @@ def test_a_system_that_cannot_wait_for_a_program_is_refused_before_it_runs(
     monkeypatch.setattr(os, "pidfd_open", refused, raising=False)
     with pytest.raises(PortError, match=r"must be made on Linux 5.3 or later, not on .*; pipe the program"):
         refuse_systems_without_pidfd()
+
+
+def test_a_system_without_pseudoterminals_left_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refused() -> tuple[int, int]:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(pty, "openpty", refused)
+    with pytest.raises(PortError, match="a pseudoterminal, and the system gives none"), terminal():
+        pass
 
 
 def test_the_shell_redirects_a_program_to_the_device(display: UnixServer) -> None:

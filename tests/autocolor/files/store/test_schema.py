@@ -2,6 +2,8 @@ from __future__ import annotations
 
 import math
 import sqlite3
+from collections.abc import Iterator
+from contextlib import closing
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated
@@ -37,20 +39,24 @@ from tests.autocolor.files.store.stores import small_store
 from tests.autocolor.strategies import lights, surfaces, vectors
 
 
-def test_every_table_of_a_scene_has_a_table_and_all_are_strict() -> None:
+@pytest.fixture
+def connection() -> Iterator[sqlite3.Connection]:
+    with closing(sqlite3.connect(":memory:")) as opened:
+        yield opened
+
+
+def test_every_table_of_a_scene_has_a_table_and_all_are_strict(connection: sqlite3.Connection) -> None:
     kinds = {name: field.column.kind for name, field in fields_of(Scene).items()}
     tables = {name for name, kind in kinds.items() if isinstance(kind, (RowList, Nested))}
     assert ROW_TABLES.keys() == {"scene", *tables}
     assert DEFINITIONS.keys() == {*ROW_TABLES, *MESH_TABLES}
-    connection = sqlite3.connect(":memory:")
     for definition in DEFINITIONS.values():
         connection.execute(definition)
     strict = {row[1] for row in connection.execute("PRAGMA table_list") if row[5]}
     assert strict == DEFINITIONS.keys()
 
 
-def test_every_reference_is_to_a_column_that_is_unique() -> None:
-    connection = sqlite3.connect(":memory:")
+def test_every_reference_is_to_a_column_that_is_unique(connection: sqlite3.Connection) -> None:
     connection.execute("PRAGMA foreign_keys = ON")
     for definition in DEFINITIONS.values():
         connection.execute(definition)
@@ -149,8 +155,7 @@ def test_every_key_of_a_class_has_its_columns(cls: type[Row]) -> None:
     assert found == keys_of(cls).keys() - held_elsewhere
 
 
-def test_a_table_fills_in_the_defaults_of_the_row() -> None:
-    connection = sqlite3.connect(":memory:")
+def test_a_table_fills_in_the_defaults_of_the_row(connection: sqlite3.Connection) -> None:
     connection.execute(row_table("rows", MadeUp).definition)
     connection.execute("INSERT INTO rows (name, \"order\") VALUES ('new', 2)")
     cursor = connection.execute("SELECT * FROM rows")

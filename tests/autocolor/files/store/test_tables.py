@@ -227,7 +227,7 @@ def test_what_a_statement_would_change_is_known_before_it_is_run(connection: sql
 
 
 def test_long_rows_are_fetched_a_few_at_a_time(connection: sqlite3.Connection) -> None:
-    rows = answer_of(connection, ENDLESS + "printf('%.1000000c', 'a') FROM n").rows
+    rows = answer_of(connection, ENDLESS + "printf('%.100000c', 'a') FROM n").rows
     tracemalloc.start()
     next(rows)
     _, peak = tracemalloc.get_traced_memory()
@@ -246,8 +246,12 @@ def test_values_that_a_statement_computes_are_short_enough_to_be_searched_at_onc
     connection: sqlite3.Connection,
 ) -> None:
     def length_of(letters: int) -> object:
-        return next(answer_of(connection, f"SELECT length(printf('%.{letters}c', 'a'))").rows)[0]
+        try:
+            return next(answer_of(connection, f"SELECT length(printf('%.{letters}c', 'a'))").rows)[0]
+        except UsageError as error:
+            return str(error)
 
     assert length_of(LONGEST_COMPUTED - 1000) == LONGEST_COMPUTED - 1000
-    # A longer one is NULL, as printf has it.
-    assert length_of(LONGEST_COMPUTED + 1) is None
+    # A longer value of printf is NULL, or an error in later versions of SQLite.
+    longer = length_of(LONGEST_COMPUTED + 1)
+    assert longer is None or "string or blob too big" in str(longer)
