@@ -116,9 +116,10 @@ def read_binary(data: bytes, place: str) -> tuple[Singles, tuple[str, ...]]:
             " it is cut short or of another format, export it again"
         )
     corners = np.array(np.frombuffer(data, TRIANGLE, count, BEFORE_TRIANGLES)["corners"])
-    # A comparison with NaN is false.
-    if count and not (corners.min() >= -LARGEST_COORDINATE and corners.max() <= LARGEST_COORDINATE):
-        is_wrong = ~(np.abs(corners) <= LARGEST_COORDINATE)
+    # A comparison with NaN is false. The bound is rounded to float32 as the coordinates are.
+    most = np.float32(LARGEST_COORDINATE)
+    if count and not (corners.min() >= -most and corners.max() <= most):
+        is_wrong = ~(np.abs(corners) <= most)
         rows = np.flatnonzero(is_wrong.any(axis=(1, 2)))[:MOST_PROBLEMS]
         rule = "a coordinate must be a finite number of at most 1e30 in size"
         raise InputError(

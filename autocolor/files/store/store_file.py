@@ -83,13 +83,17 @@ def store_of(scene: Scene) -> sqlite3.Connection:
     """A store in memory with the tables of a scene. Raises InputError for a text that is not UTF-8."""
     check_scene(scene)
     connection = in_memory()
-    connection.execute("PRAGMA journal_mode = OFF")
-    connection.execute("PRAGMA page_size = 8192")
-    connection.execute(f"PRAGMA application_id = {APPLICATION}")
-    connection.execute("BEGIN")
-    _fill(connection, scene)
-    connection.execute("COMMIT")
-    connection.execute("PRAGMA journal_mode = MEMORY")
+    try:
+        connection.execute("PRAGMA journal_mode = OFF")
+        connection.execute("PRAGMA page_size = 8192")
+        connection.execute(f"PRAGMA application_id = {APPLICATION}")
+        connection.execute("BEGIN")
+        _fill(connection, scene)
+        connection.execute("COMMIT")
+        connection.execute("PRAGMA journal_mode = MEMORY")
+    except BaseException:
+        connection.close()
+        raise
     return connection
 
 

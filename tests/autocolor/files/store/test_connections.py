@@ -4,8 +4,8 @@ import os
 import shutil
 import sqlite3
 import sys
-from collections.abc import Callable
-from contextlib import closing
+from collections.abc import Callable, Iterator
+from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -294,29 +294,30 @@ REFUSED = (
 CHANGES = ("DELETE FROM nodes", "UPDATE nodes SET x = 1", "INSERT INTO nodes VALUES (2)")
 
 
-def guarded(may_change: bool) -> sqlite3.Connection:
-    connection = sqlite3.connect(":memory:", isolation_level=None)
-    connection.execute("CREATE TABLE nodes (x)")
-    connection.execute("INSERT INTO nodes VALUES (1)")
-    connection.set_authorizer(authorizer(may_change))
-    return connection
+@contextmanager
+def guarded(may_change: bool) -> Iterator[sqlite3.Connection]:
+    with closing(sqlite3.connect(":memory:", isolation_level=None)) as connection:
+        connection.execute("CREATE TABLE nodes (x)")
+        connection.execute("INSERT INTO nodes VALUES (1)")
+        connection.set_authorizer(authorizer(may_change))
+        yield connection
 
 
 @pytest.mark.parametrize("statement", [*REFUSED, *CHANGES])
 def test_a_statement_that_reads_may_do_nothing_else(statement: str) -> None:
-    with closing(guarded(may_change=False)) as connection, pytest.raises(sqlite3.DatabaseError):
+    with guarded(may_change=False) as connection, pytest.raises(sqlite3.DatabaseError):
         connection.execute(statement)
 
 
 @pytest.mark.parametrize("statement", REFUSED)
 def test_a_statement_that_changes_rows_may_change_nothing_else(statement: str) -> None:
-    with closing(guarded(may_change=True)) as connection, pytest.raises(sqlite3.DatabaseError):
+    with guarded(may_change=True) as connection, pytest.raises(sqlite3.DatabaseError):
         connection.execute(statement)
 
 
 @pytest.mark.parametrize("statement", CHANGES)
 def test_rows_are_changed_where_that_is_asked_for(statement: str) -> None:
-    with closing(guarded(may_change=True)) as connection:
+    with guarded(may_change=True) as connection:
         assert connection.execute(statement).rowcount == 1
 
 
@@ -378,15 +379,18 @@ def test_pragmas_are_allowed_that_read_and_functions_that_compute() -> None:
 
 
 def test_a_trigger_changes_nothing_whatever_the_schema_calls_it() -> None:
-    connection = guarded(may_change=True)
-    connection.set_authorizer(None)
-    connection.execute("CREATE TRIGGER evil AFTER DELETE ON nodes BEGIN INSERT INTO nodes VALUES (7); END")
-    connection.set_authorizer(authorizer(may_change=True))
-    with pytest.raises(sqlite3.DatabaseError, match="not authorized"):
-        connection.execute("DELETE FROM nodes")
+    with guarded(may_change=True) as connection:
+        connection.set_authorizer(None)
+        connection.execute(
+            "CREATE TRIGGER evil AFTER DELETE ON nodes BEGIN INSERT INTO nodes VALUES (7); END"
+        )
+        connection.set_authorizer(authorizer(may_change=True))
+        with pytest.raises(sqlite3.DatabaseError, match="not authorized"):
+            connection.execute("DELETE FROM nodes")
 
 
 def test_a_statement_may_compute() -> None:
     query = "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < 4) SELECT sum(i) FROM n"
-    assert guarded(may_change=False).execute(query).fetchall() == [(10,)]
-    assert guarded(may_change=False).execute("PRAGMA table_info(nodes)").fetchall()
+    with guarded(may_change=False) as connection:
+        assert connection.execute(query).fetchall() == [(10,)]
+        assert connection.execute("PRAGMA table_info(nodes)").fetchall()
