@@ -309,6 +309,8 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=1, help="how often each row gets each signal")
     parser.add_argument("--row", default="", help="only the rows with this text in their command or moment")
     options = parser.parse_args()
+    # A shell starts jobs in the background with SIGINT ignored, which the commands would inherit and respect.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     failed = 0
     for row in ROWS + (WINDOWS if "DISPLAY" in os.environ else ()):
         moment = getattr(row.moment, "func", row.moment).__name__
