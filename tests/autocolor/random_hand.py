@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import random
 
-from autocolor.screens.viewer import SCREENS, Viewer
+from autocolor.screens.input import Chord
+from autocolor.screens.viewer import BINDINGS, SCREENS, Viewer
 from autocolor.widgets.widget import Gap, Heading
 from ramtek_emu import Ramtek9300
+
+MENU_KEYS = ("tab", "up", "down", "left", "right", "return", "space", "escape", "backspace", "home", "end")
+TEXTS = ("0.5", "-3", "1e3", "nan", "#b01020", "red", "a name", "../x", "0", "12345678901234567890" * 4)
 
 EDGES = (0, 503, 504, 636, 639), (0, 240, 463, 464, 479)
 
@@ -83,3 +87,31 @@ class RandomHand:
 
     def _between(self, low: int, high: int) -> int:
         return self._random.randint(low, max(low, high))
+
+
+class RandomHandWithKeys(RandomHand):
+    """A hand that also presses the keys of all bindings and of the menu, and types."""
+
+    def do(self) -> None:
+        if self._random.random() < 0.7:
+            super().do()
+            return
+        viewer, chance = self.viewer, self._random.random()
+        viewer.session.leaves = False
+        if chance < 0.6:
+            binding = self._random.choice(BINDINGS)
+            self._press(self._random.choice(binding.chords), releases=self._random.random() < 0.9)
+        elif chance < 0.85:
+            self._press(Chord(self._random.choice(MENU_KEYS)))
+        else:
+            for letter in self._random.choice(TEXTS):
+                viewer.on_key(letter, typed=letter)
+            viewer.on_key(self._random.choice(("return", "escape", "tab")))
+        viewer.on_tick()
+
+    def _press(self, chord: Chord, releases: bool = True) -> None:
+        typed = chord.name if chord.is_sign or (len(chord.name) == 1 and not chord.control) else ""
+        for repeated in (False, True)[: self._random.randint(1, 2)]:
+            self.viewer.on_key(chord.name, chord.control, chord.shift, typed, repeated)
+        if releases:
+            self.viewer.on_release(chord.name)
