@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from io import BytesIO
 from os import PathLike
+from pathlib import Path
 
 import numpy as np
 from PIL import Image
 
 from ramtek_emu.arrays import Colors
+from ramtek_emu.errors import OutputExistsError
 from ramtek_emu.writing import write_atomically
 
 
@@ -22,3 +24,21 @@ def png_bytes(field: Colors) -> bytes:
 def save_png(field: Colors, path: str | PathLike[str], overwrite: bool = True) -> None:
     """Write a field to a PNG file, whole or not at all; OutputExistsError, OutputError or WriteError."""
     write_atomically(path, png_bytes(field), overwrite=overwrite)
+
+
+def save_numbered(field: Colors, folder: Path, name: str) -> Path:
+    """Write a field to NAME-0001.png or the next free number, never over a file; OutputError or WriteError.
+
+    Returns the path, links resolved.
+    """
+    number = 1
+    while True:
+        path = folder / f"{name}-{number:04d}.png"
+        number += 1
+        if path.exists():
+            continue
+        try:
+            save_png(field, path, overwrite=False)
+        except OutputExistsError:
+            continue
+        return path.resolve()

@@ -169,7 +169,6 @@ def monitor_of(
         viewer.caption,
         full_screen=full_screen,
         fit=fit,
-        screenshot_name="autocolor",
         on_key=on_key,
         on_pointer=on_pointer,
         on_release=viewer.on_release,

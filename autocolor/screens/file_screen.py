@@ -166,8 +166,8 @@ class FileScreen(Screen):
             ),
             Button(
                 "screenshot",
-                "Save the picture as an image, without menus.",
-                run=session.save_image,
+                "Save the picture as a numbered image, without menus.",
+                run=partial(self._save, session.save_image),
             ),
             Gap("list gap"),
             Pair(

@@ -11,6 +11,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Final, NamedTuple, Unpack
 
+import numpy as np
+
+from autocolor.arrays import Bytes, Words
 from autocolor.errors import InputError, UsageError
 from autocolor.files.paths import SCENE_FILE, file_stem, free_path
 from autocolor.files.rig_file import RIG_SUFFIX, is_rig, read_rig, write_rig
@@ -24,6 +27,7 @@ from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Part, Surface
 from autocolor.scene.view import View
+from autocolor.sending import shown_colors
 from autocolor.studio import Studio
 from autocolor.widgets.rows import TableNames, World
 from autocolor.widgets.widget import short_name
@@ -115,11 +119,17 @@ class Session:
             self.comparing.end()
         self.screen = screen
 
+    def words_at(self, element: int, line: int, elements: int = 1, lines: int = 1) -> Words:
+        """The words of a window, (lines, elements), read back from the display."""
+        parts = []
+        for read, count in instructions.read_image(element, line, elements, lines):
+            self.display.send(read)
+            parts.append(self.display.receive(count))
+        return np.concatenate(parts).reshape(lines, elements)
+
     def word_at(self, element: int, line: int) -> int:
         """The word of a pixel, read back from the display."""
-        ((read, count),) = instructions.read_image(element, line, 1, 1)
-        self.display.send(read)
-        return int(self.display.receive(count)[0])
+        return int(self.words_at(element, line)[0, 0])
 
     def surface_of(self, word: int) -> str:
         """The name of the surface that owns a word; empty for the background and the words of screens."""
@@ -287,13 +297,15 @@ class Session:
         self.tell(f"saved {path.name}")
 
     def save_image(self) -> None:
-        """Save the picture, without menus, as a numbered image."""
-        from autocolor.images import save_image
-
-        path = free_path(self.folder / f"{file_stem(self.scene.name)}.png")
+        """Save the picture alone, with the legend of a scalar, as the next screenshot."""
         self.studio.refine()
-        save_image(path, self.scene, self.studio.picture)
-        self.tell(f"saved {path.name}")
+        self.save_screenshot(shown_colors(self.studio.image))
+
+    def save_screenshot(self, colors: Bytes) -> None:
+        """Save (lines, elements, 3) colors as the next screenshot, "autocolor-0001.png"."""
+        from ramtek_emu.png import save_numbered
+
+        self.tell(f"saved {save_numbered(colors, self.folder, 'autocolor')}")
 
     def undo(self) -> None:
         """Undo the last step."""

@@ -35,6 +35,7 @@ from autocolor.screens.scalar_screen import ScalarScreen
 from autocolor.screens.screen import Screen
 from autocolor.screens.session import PICTURE, Session
 from autocolor.screens.variants_screen import VariantsScreen
+from autocolor.sending import configuration_of
 from autocolor.studio import Studio
 from autocolor.widgets.sheet import Sheet
 from ramtek_emu import HostPort, PortError, RamtekError, ReplyError
@@ -374,7 +375,7 @@ class Viewer:
     def escape(self) -> bool:
         """Take a drag back, close what is open, or return to the picture.
 
-        Returns False if there is nothing to take back, close or leave, and nothing is unsaved.
+        Returns False if there is nothing to take back, close or leave.
         """
         board, session = self.board, self.session
         if board.is_dragging:
@@ -388,9 +389,6 @@ class Viewer:
             return True
         if session.screen != PICTURE:
             session.turn_to(PICTURE)
-            return True
-        if session.unsaved:
-            session.warn(f"{session.unsaved}, Ctrl+Q twice discards the changes")
             return True
         return False
 
@@ -415,6 +413,14 @@ class Viewer:
         """Read the scene's file again, as one step to undo."""
         self._show_scene()
         self.session.reopen()
+
+    def save_screen(self) -> None:
+        """Save what the display shows, without message and cursors, as the next screenshot."""
+        page = self.board.page()
+        self._sheet.show(page)
+        sizes = configuration_of(self.display)
+        words = self.session.words_at(0, 0, sizes.shown_elements, sizes.shown_lines)
+        self.session.save_screenshot(page.entries[words])
 
     def clear(self) -> None:
         """Leave the picture alone on the display, without menu, message and cursors."""
@@ -558,17 +564,23 @@ BINDINGS: Final[tuple[Binding[Viewer], ...]] = (
         "save the picture with its scene",
         lambda viewer, _: viewer.session.save(),
     ),
+    Binding((Chord("f12"),), "save a numbered screenshot", lambda viewer, _: viewer.save_screen()),
+    Binding(
+        (Chord("f12", shift=True),),
+        "save the picture alone under the next number",
+        lambda viewer, _: viewer.session.save_image(),
+    ),
     Binding((Chord("r", control=True),), "read the scene's file again", lambda viewer, _: viewer.reopen()),
     Binding(
         (Chord("escape"),),
-        "leave full screen, a page, and if saved the window",
+        "take a drag back; leave full screen, a list, a page",
         lambda viewer, _: viewer.escape(),
     ),
 )
 WINDOW_KEYS: Final = (
+    ("F10", "fill the window, or show whole multiples"),
     ("F11, Alt+Enter", "full screen, and back"),
-    ("F12", "save a numbered screenshot"),
-    ("Ctrl+Q", "leave"),
+    ("Ctrl+Q", "leave; you are asked first about unsaved changes"),
     ("mouse", "drag: turn; Shift, middle: move; Ctrl, wheel: closer"),
     ("mouse, highlight", "drag it, or click, and click where it goes"),
     ("joystick unit", "ENTER picks and places; TRACK, held, drags"),

@@ -1,7 +1,7 @@
 """Glass: the pixels of a window, and the input of its user. The only module that uses pygame.
 
-What is modeled: the field at the largest whole multiple that fits, centered, each pixel a k x k block. What
-is **not**: the phosphor, the beam.
+What is modeled: the field at the largest whole multiple that fits, centered, each pixel a k x k block. A
+window that is smaller than the field shows it whole, blurred. What is **not**: the phosphor, the beam.
 
 Only lines that changed are enlarged and sent to the screen; an X server gets them directly. Measured with
 Xvfb, from an event of the mouse to the moved cursor: 0.2 ms at 640 x 480 and 0.3 ms at 1280 x 960; with whole
@@ -155,7 +155,7 @@ class Glass:
             overlay.draw(pixels, scan_out.table(), title)
         del pixels
         self._shown = None if has_overlay else (surface, place, stamp)
-        is_blurred = self.fit and place[2:] != self._size
+        is_blurred = self._is_blurred(place)
         if last is None or has_overlay or is_blurred:
             if not is_direct:
                 screen.fill((0, 0, 0))
@@ -169,6 +169,10 @@ class Glass:
                 [enlarged(run, place, self._size).clip(screen.get_rect()) for run in changed]
             )
 
+    def _is_blurred(self, place: Viewport) -> bool:
+        """Whether the field is not shown at a whole multiple."""
+        return (self.fit and place[2:] != self._size) or place.width < self._size[0]
+
     def _enlarge(self, screen: pygame.Surface, place: Viewport, run: Run) -> None:
         """Copy a run of lines of the field, enlarged, to their place in the window."""
         lines = self._field.subsurface((0, run[0], self._size[0], run[1] - run[0]))
@@ -176,7 +180,7 @@ class Glass:
         if target.size == lines.get_size():
             screen.blit(lines, target)
         else:
-            enlarge = pygame.transform.smoothscale if self.fit else pygame.transform.scale
+            enlarge = pygame.transform.smoothscale if self._is_blurred(place) else pygame.transform.scale
             if screen.get_masks() == FIELD_MASKS and screen.get_rect().contains(target):
                 # Measured: this takes two thirds of the time of enlarging into a copy.
                 enlarge(lines, target.size, screen.subsurface(target))
@@ -235,17 +239,16 @@ class Viewport(NamedTuple):
 def viewport(field: tuple[int, int], window: tuple[int, int], fit: bool = False) -> Viewport:
     """The place of a (width, height) field in a (width, height) window; a whole multiple unless `fit`.
 
-    A window that is smaller than the field shows the middle of the field.
+    A window that is smaller than the field shows the whole field, as with `fit`.
 
     >>> viewport((640, 480), (1400, 1000))
     Viewport(left=60, top=20, width=1280, height=960)
     """
     ratio = min(window[0] / field[0], window[1] / field[1])
-    if fit:
+    if fit or ratio < 1:
         width, height = (max(1, int(size * ratio + 0.5)) for size in field)
     else:
-        multiple = max(1, int(ratio))
-        width, height = field[0] * multiple, field[1] * multiple
+        width, height = field[0] * int(ratio), field[1] * int(ratio)
     return Viewport((window[0] - width) // 2, (window[1] - height) // 2, width, height)
 
 

@@ -34,9 +34,10 @@ PAGES: Final = {"f1": "help", "f4": "entries"}
 KEYS: Final = (
     ("F1", "this help, and back"),
     ("F4", "the entries of the lookup table, and back"),
+    ("F10", "fill the window, or show whole multiples"),
     ("F11, Alt+Enter", "full screen, and back"),
     ("F12", "save a numbered screenshot of the field"),
-    ("Esc", "leave full screen, then a page, then the window"),
+    ("Esc", "leave full screen, then a page"),
     ("Ctrl+Q", "close the window"),
     ("mouse", "the joystick: moves the cursors"),
     ("left button", "ENTER"),

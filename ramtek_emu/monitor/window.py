@@ -7,8 +7,8 @@ The window shows fields: programs draw words in the frame buffer, and cursors. K
 and ticks are passed as plain values to the program that uses the display. After an input that changed the
 field, the field is shown before the next input is handled, so that input never outruns the picture.
 
-A program that draws its own pages handles F1 and F4 itself. If the picture belongs to a host, the monitor
-shows pages over the field; see `overlay`.
+A program that draws its own pages handles F1, F4 and F12 itself. If the picture belongs to a host, the
+monitor shows pages over the field; see `overlay`.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import Final
 
 from ramtek_emu.display import Ramtek9300
-from ramtek_emu.errors import OutputExistsError, RamtekError
+from ramtek_emu.errors import RamtekError
 from ramtek_emu.monitor.glass import Glass
 from ramtek_emu.monitor.glass import open_screen as open_screen
 from ramtek_emu.monitor.input_queue import Close, Input, InputQueue, Release
@@ -50,7 +50,6 @@ class Monitor:
         fit: bool = False,
         full_screen: bool = False,
         screenshots: str | os.PathLike[str] = ".",
-        screenshot_name: str = "ramtek",
         on_key: Callable[[Key], object] | None = None,
         on_release: Callable[[str], object] | None = None,
         on_pointer: Callable[[Pointer], object] | None = None,
@@ -61,8 +60,8 @@ class Monitor:
     ) -> None:
         """Prepare a window; `open` opens it.
 
-        `on_key` returns whether it handled the key; if it did not, F1 and F4 show a page over the field, and
-        Esc closes that page, or else the window. In full screen, Esc first leaves full screen. `on_release`
+        `on_key` returns whether it handled the key; if it did not, F1 and F4 show a page over the field, Esc
+        closes that page, and F12 saves the field. In full screen, Esc first leaves full screen. `on_release`
         gets the name of a released key after its press was handled, also when another window gets the
         keyboard; modifiers are left out. `on_close` returns whether the window may close. `on_message` gets
         messages for the user, such as the path of a screenshot; without it they are shown in the caption, or
@@ -71,7 +70,6 @@ class Monitor:
         self.display = display
         self.full_screen = full_screen
         self.screenshots = Path(screenshots)
-        self.screenshot_name = screenshot_name
         self.on_key = on_key
         self.on_release = on_release
         self.on_pointer = on_pointer
@@ -170,21 +168,16 @@ class Monitor:
         self.full_screen = not self.full_screen
         self._glass.set_full_screen(self.full_screen)
 
+    def toggle_fit(self) -> None:
+        """Let the field fill the window, or show it at the largest whole multiple again."""
+        self._glass.fit = not self._glass.fit
+        self.tell("the picture fills the window" if self.fit else "the picture at a whole multiple")
+
     def screenshot(self) -> Path:
         """Save the field under the next free number, never over a file; OutputError or WriteError."""
-        from ramtek_emu.png import save_png
+        from ramtek_emu.png import save_numbered
 
-        number = 1
-        while True:
-            path = self.screenshots / f"{self.screenshot_name}-{number:04d}.png"
-            number += 1
-            if path.exists():
-                continue
-            try:
-                save_png(self.display.field(), path, overwrite=False)
-            except OutputExistsError:
-                continue
-            return path.resolve()
+        return save_numbered(self.display.field(), self.screenshots, "ramtek")
 
     def tell(self, message: str) -> None:
         """Show a message to the user; "" removes the last message."""
@@ -214,7 +207,8 @@ class Monitor:
     def handle_key(self, key: Key) -> None:
         """Handle a key: first the shortcuts of the window, then `on_key`, then the pages and Esc.
 
-        Esc leaves full screen before anything else. Shortcuts do not repeat while their key stays down.
+        Esc leaves full screen before anything else, and never closes the window. Shortcuts do not repeat
+        while their key stays down.
         """
         if key.name in MODIFIERS:
             return
@@ -223,23 +217,23 @@ class Monitor:
                 self.toggle_full_screen()
         elif key.name == "escape" and self.full_screen:
             self.toggle_full_screen()
-        elif key.name == "f12":
+        elif key.name == "f10":
             if not key.repeated:
-                self._tell_of_screenshot()
+                self.toggle_fit()
         elif key.name == "q" and key.control:
             # A program may take a second request in a row for consent to lose changes.
             if not key.repeated:
                 self.ask_to_close()
         elif self.on_key is not None and self.on_key(key):
             return
+        elif key.name == "f12":
+            if not key.repeated:
+                self._tell_of_screenshot()
         elif key.name in PAGES:
             if not key.repeated:
                 self.overlay.turn_to(PAGES[key.name])
-        elif key.name == "escape" and not key.repeated:
-            if self.overlay.page:
-                self.overlay.page = ""
-            else:
-                self.ask_to_close()
+        elif key.name == "escape":
+            self.overlay.page = ""
 
     def handle_release(self, release: Release) -> None:
         """Call `on_release` with the name of the key, unless it is a modifier."""

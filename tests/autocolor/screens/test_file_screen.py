@@ -210,10 +210,10 @@ def test_saving_shows_a_message_and_lists_the_saved_files(hand: Hand, folder: Pa
     assert told(hand) == ("saved boxes-rig.toml", False)
     assert set(rows_of(hand)) - before == {"boxes-rig.toml"}
     hand.pick("screenshot")
-    assert told(hand) == ("saved boxes.png", False)
     hand.pick("screenshot")
-    assert told(hand) == ("saved boxes-2.png", False)
-    assert (folder / "boxes-2.png").read_bytes() == (folder / "boxes.png").read_bytes()
+    first, second = folder / "autocolor-0001.png", folder / "autocolor-0002.png"
+    assert told(hand) == (f"saved {second.resolve()}", False)
+    assert first.read_bytes() == second.read_bytes()
 
 
 def test_a_saved_scene_is_a_recent_file_at_once(hand: Hand, folder: Path) -> None:

@@ -27,7 +27,7 @@ from autocolor.mapping.display_image import DisplayImage
 from autocolor.scene.lights import Links
 from autocolor.screens.session import BEFORE, MESSAGE_SECONDS, NOW, PICTURE, SECONDS_BETWEEN, Session
 from autocolor.screens.viewer import Viewer
-from ramtek_emu import Ramtek9300
+from ramtek_emu import Ramtek9300, RamtekError
 from tests.autocolor.files.store.stores import run, small_scene
 from tests.autocolor.meshes import wall_scene
 from tests.autocolor.screens.ball import MIDDLE, ball_scene, hand_before, seen_on
@@ -206,20 +206,20 @@ def test_rigs_and_images_get_free_names(session: Session, tmp_path: Path) -> Non
         session.save_rig()
         session.save_image()
     assert sorted(path.name for path in tmp_path.iterdir()) == [
-        "boxes-2.png",
+        "autocolor-0001.png",
+        "autocolor-0002.png",
         "boxes-rig-2.toml",
         "boxes-rig.toml",
-        "boxes.png",
     ]
     assert read_rig(tmp_path / "boxes-rig.toml").lights == (KEY, boxes().light("fill"))
-    with Image.open(tmp_path / "boxes.png") as image:
+    with Image.open(tmp_path / "autocolor-0001.png") as image:
         assert image.size == (640, 480)
 
 
 def test_saving_into_an_unwritable_place_is_refused(session: Session) -> None:
     session.folder = session.folder / "gone"
-    for save in (session.save_rig, session.save_image):
-        with pytest.raises(OutputError):
+    for save, error in ((session.save_rig, OutputError), (session.save_image, RamtekError)):
+        with pytest.raises(error, match="there is no folder"):
             save()
 
 

@@ -114,10 +114,16 @@ def test_the_parts_that_are_sent_are_seen_on_the_screen(
 @given(st.integers(1, 700), st.integers(1, 500), st.integers(1, 4000), st.integers(1, 3000))
 def test_the_field_is_placed_at_the_largest_whole_multiple(w: int, h: int, width: int, height: int) -> None:
     left, top, across, down = viewport((w, h), (width, height))
+    if width < w or height < h:
+        # A window that is smaller than the field shows it whole.
+        assert (left, top, across, down) == viewport((w, h), (width, height), fit=True)
+        assert (across, down) == (width, down) or (across, down) == (across, height)
+        return
     multiple = across // w
     assert (across, down) == (multiple * w, multiple * h)
     assert (multiple + 1) * w > width or (multiple + 1) * h > height
-    assert multiple == 1 or (across <= width and down <= height)
+    assert across <= width
+    assert down <= height
     assert abs(2 * left + across - width) <= 1
     assert abs(2 * top + down - height) <= 1
 
@@ -154,6 +160,20 @@ def test_the_mouse_has_the_modifiers_of_the_keyboard(glass: Glass, shift: bool, 
     finally:
         pygame.key.set_mods(0)
     assert (pointer.shift, pointer.control) == (shift, control)
+
+
+def test_a_window_smaller_than_the_field_shows_it_whole(glass: Glass) -> None:
+    assert viewport((640, 480), (700, 300)) == (150, 0, 400, 300)
+    display = Ramtek9300()
+    display.send(instructions.load_entries(9, [[255, 255, 255]]))
+    for corner in ((0, 0, 9, 9), (630, 470, 639, 479)):
+        display.send(instructions.erase(corner, 9))
+    pygame.display.set_mode((700, 300), pygame.RESIZABLE)
+    glass.show(display.scan_out, Overlay(), "", hides_mouse=False)
+    pixels = pygame.surfarray.array3d(pygame.display.get_surface())[:, :, 0]
+    assert (pixels[150:154, :4] > 200).all()
+    assert (pixels[546:550, 296:] > 200).all()
+    assert (pixels[200:500, 50:250] == 0).all()
 
 
 def test_a_fitted_field_fills_one_side() -> None:
