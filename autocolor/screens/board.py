@@ -11,7 +11,8 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
 from operator import itemgetter
-from typing import Final
+from textwrap import wrap
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -34,7 +35,6 @@ from autocolor.widgets.items import (
     Area,
     Item,
     filled,
-    fitted,
     text,
 )
 from autocolor.widgets.menu import (
@@ -171,8 +171,8 @@ class Board:
         self._wide = ""
         """The key of the number whose wide bar is shown."""
         self._menu_page = 0
-        self._has_message = False
-        """Whether the message line covers the screen below it."""
+        self._message: list[Item] = []
+        """The message on the page; it covers the screen below it."""
         self._grabbed: Widget | Handle | Screen | None = None
         """The thing that is dragged, from the grab to the drop."""
         self._start = self._last = Gesture("grab", -1, -1)
@@ -229,7 +229,8 @@ class Board:
 
     def is_covered(self, element: int, line: int) -> bool:
         """Whether the menu, its wide bar, a panel or the message line covers the screen at a place."""
-        return (self._has_message and MESSAGE.has(element, line)) or self.layout.is_covered(element, line)
+        has_message = any(item.area.has(element, line) for item in self._message)
+        return has_message or self.layout.is_covered(element, line)
 
     def handle_at(self, element: int, line: int) -> Handle | None:
         """The nearest handle within reach of a place; None if something covers the handle or the place."""
@@ -259,9 +260,12 @@ class Board:
     # Gestures.
 
     def take(self, gesture: Gesture) -> None:
-        """Handle a gesture."""
+        """Handle a gesture. Over another thing, a message that had its time gives way to the hint."""
+        hint = self._hint() if gesture.kind == "hover" and self.session.news_may_go else ""
         self._pointer = Place(gesture.element, gesture.line)
         getattr(self, f"_{gesture.kind}")(gesture)
+        if hint and hint != self._hint():
+            self.session.tell("")
 
     def point_at(self, gesture: Gesture) -> None:
         """Move the pointer to the place of a gesture, and do nothing else."""
@@ -453,27 +457,27 @@ class Board:
         items = list(screen.items())
         for widget in (*layout.beside, *reversed(layout.over)):
             items += widget.items(widget is lit and not widget.why_not)
-        (line, ink), has_menu = self.message, bool(layout.rows)
-        self._has_message = has_menu or self.typing.is_on or self.session.has_news
-        if self._has_message:
-            items += message_items(line, ink, ends=self.typing.is_on)
-        if has_menu:
+        if layout.rows:
             items += menu_items(layout.rows, lit)
         if layout.wide is not None:
             items += layout.wide.items(lit=False)
+        has_message = bool(layout.rows) or self.typing.is_on or self.session.has_news
+        end = MENU.left if layout.rows else WIDTH
+        self._message = message_items(self.messages, end) if has_message else []
+        items += self._message
         return Page(screen.base(), items, with_loads(self.session.studio.entries, screen.loads()))
 
     @property
-    def message(self) -> tuple[str, int]:
-        """The text of the message line, and the word of its color."""
+    def messages(self) -> Sequence[MessagePart]:
+        """The parts of the message: a refusal stands over the typed text that is refused."""
         session = self.session
-        has_news = session.has_news
-        is_warned = has_news and session.news.is_warning
-        if self.typing.is_on and not is_warned:
-            return self.typing.shown, YELLOW
-        if has_news:
-            return session.message, ORANGE if is_warned else WHITE
-        return (self._hint() if self.layout.rows else "", WHITE)
+        is_warned = session.has_news and session.news.is_warning
+        parts = []
+        if is_warned or (session.has_news and not self.typing.is_on):
+            parts.append(MessagePart(session.message, ORANGE if is_warned else WHITE))
+        if self.typing.is_on:
+            parts.append(self.typing.shown)
+        return parts or [MessagePart(self._hint() if self.layout.rows else "", WHITE)]
 
     def _hint(self) -> str:
         lit, (element, line) = self._lit_widget(), self._pointer
@@ -497,20 +501,65 @@ def with_loads(entries: Bytes, loads: Sequence[tuple[int, Bytes]]) -> Bytes:
     return table
 
 
-# The message line: the bottom lines of every screen, for errors, results, hints and what is typed.
+# The message line: the bottom lines of every screen, for errors, results, hints and what is typed. A message
+# that does not fit takes further lines over the screen while it stands.
 
 MESSAGE: Final = Area(0, HEIGHT - MESSAGE_LINES, WIDTH - 1, HEIGHT - 1)
 MOST_CHARACTERS: Final = (WIDTH - 16) // CHARACTER
+LINE_STEP: Final = 12
+"""Lines from one line of a message to the next."""
+
+MOST_LINES: Final = 2
+"""Assumed: lines of a message, and of a typed text; longer texts are cut."""
 
 
-def message_items(line: str, ink: int, ends: bool = False) -> list[Item]:
-    """A message, or an empty line. A long message is cut at its end, or with `ends` at its beginning."""
+class MessagePart(NamedTuple):
+    """A part of a message: its text, and the word of its color."""
+
+    text: str
+    ink: int
+    selected: int | None = None
+    """Of a typed text, the number of the first character that is selected; None for other texts."""
+
+
+def message_items(parts: Sequence[MessagePart], end: int = WIDTH) -> list[Item]:
+    """The parts of a message one below the other, the last line in the message line.
+
+    Lines above the message line end before element `end`.
+    """
+    is_short = len(parts) == 1 and len(parts[0].text) <= MOST_CHARACTERS
+    most = MOST_CHARACTERS if is_short else (end - 16) // CHARACTER
+    lines = [line for part in parts for line in lines_of_message(part, most)]
+    top = MESSAGE.top - LINE_STEP * (len(lines) - 1)
     items = [filled(MESSAGE, BLACK)]
-    if ends and len(line) > MOST_CHARACTERS:
-        line = f"..{line[2 - MOST_CHARACTERS :]}"
-    if line:
-        items.append(text(fitted(line, MOST_CHARACTERS), 8, MESSAGE.top + 3, ink, BLACK))
+    if top < MESSAGE.top:
+        items.append(filled(Area(0, top, end - 1, MESSAGE.top - 1), BLACK))
+    for line, ink, selected in lines:
+        left, right = line, ""
+        if selected is not None:
+            left, right = line[:selected], line[selected:]
+        if left:
+            items.append(text(left, 8, top + 3, ink, BLACK))
+        if right:
+            items.append(text(right, 8 + CHARACTER * len(left), top + 3, BLACK, ink))
+        top += LINE_STEP
     return items
+
+
+def lines_of_message(part: MessagePart, most: int) -> list[MessagePart]:
+    """A part of a message in lines of at most `most` characters.
+
+    A long text is cut at its end; a typed text at its beginning, so that the last typed letters are seen.
+    """
+    line, ink, selected = part
+    if selected is None:
+        rows = wrap(line, most, max_lines=MOST_LINES, placeholder="..", tabsize=1) or [""]
+        return [MessagePart(row, ink) for row in rows]
+    cut = max(0, len(line) - MOST_LINES * most)
+    if cut:
+        line, selected = f"..{line[cut + 2 :]}", max(2, selected - cut)
+    firsts = range(0, len(line), most)
+    return [MessagePart(line[first : first + most], ink, max(0, selected - first)) for first in firsts]
 
 
 NUMBERS: Final = "0123456789.-+"
@@ -533,9 +582,12 @@ class TypingLine:
         return self._typed is not None
 
     @property
-    def shown(self) -> str:
-        """The text for the message line."""
-        return f"{self._label}: {self._text}_"
+    def shown(self) -> MessagePart:
+        """The text for the message line. The next character replaces the part that is selected."""
+        selected = len(self._label) + 2
+        if self._is_fresh and self._text:
+            return MessagePart(f"{self._label}: {self._text}", YELLOW, selected)
+        return MessagePart(f"{self._label}: {self._text}_", YELLOW, selected + len(self._text) + 1)
 
     def would_begin(self, widget: Widget, typed: str) -> bool:
         """Whether typing a character over a widget begins to type into it."""
@@ -556,8 +608,9 @@ class TypingLine:
         self._typed = None
 
     def take(self) -> None:
-        """Take the text if it was changed. A refused text raises an error and stays, to be corrected."""
+        """Take the text if it was changed. A refused text raises an error and stays, selected."""
         if self._typed is not None and self._text != self._typed.text:
+            self._is_fresh = True
             self._typed.take(self._text)
         self.end()
 
@@ -569,6 +622,8 @@ class TypingLine:
             self.take()
         elif name == "backspace":
             self._text, self._is_fresh = ("" if self._is_fresh else self._text[:-1]), False
+        elif name in ("end", "right"):
+            self._is_fresh = False
         elif typed and typed.isprintable():
             self._text, self._is_fresh = (typed if self._is_fresh else self._text + typed), False
 

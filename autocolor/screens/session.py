@@ -40,6 +40,9 @@ PICTURE: Final = "picture"
 MESSAGE_SECONDS: Final = 5.0
 """Assumed: how long a message is shown."""
 
+LEAST_SECONDS: Final = 1.0
+"""Assumed: how long a message is shown at least while the pointer moves from thing to thing."""
+
 LONGEST_NAME: Final = 24
 """Assumed: letters of a scene's name in a message that must also say what to do."""
 
@@ -148,6 +151,13 @@ class Session:
         """Whether there is a message whose time has not passed. While states are compared, no time passes."""
         is_recent = time.monotonic() - self.news.shown_at < MESSAGE_SECONDS
         return bool(self.news.text) and (is_recent or self.news.persistent or self.comparing.is_on)
+
+    @property
+    def news_may_go(self) -> bool:
+        """Whether a hint may take the place of the message: it is no warning, and was shown for a while."""
+        news = self.news
+        is_old = time.monotonic() - news.shown_at >= LEAST_SECONDS
+        return self.has_news and is_old and not (news.is_warning or news.persistent)
 
     def tell(self, message: str, is_warning: bool = False, persistent: bool = False) -> None:
         """Show a message for some seconds; with `persistent`, until the next action.

@@ -56,7 +56,7 @@ def hint_of(hand: Hand, label: str) -> str:
     left, top, right, bottom = hand.widget(label).area
     hand.viewer.tell("")
     hand.move((left + right) / 2, (top + bottom) / 2)
-    return hand.viewer.board.message[0]
+    return hand.viewer.board.messages[-1].text
 
 
 def undo(hand: Hand) -> None:

@@ -15,9 +15,11 @@ from autocolor.screens.board import (
     REACH,
     Board,
     Layout,
+    MessagePart,
     TypingLine,
     handles_near,
     last_rows,
+    lines_of_message,
     message_items,
     rows_of_menu,
     with_loads,
@@ -27,7 +29,20 @@ from autocolor.screens.screen import Handle, Screen
 from autocolor.screens.session import MESSAGE_SECONDS, Session
 from autocolor.screens.viewer import Viewer
 from autocolor.widgets.bars import Bar
-from autocolor.widgets.items import BLACK, GRAY, NIGHT, ORANGE, SCREEN, SLATE, WHITE, WIDTH, filled, text
+from autocolor.widgets.items import (
+    BLACK,
+    GRAY,
+    NIGHT,
+    ORANGE,
+    SCREEN,
+    SLATE,
+    WHITE,
+    WIDTH,
+    YELLOW,
+    Area,
+    filled,
+    text,
+)
 from autocolor.widgets.menu import MENU, WIDE_BAR, laid_out, page_of_menu
 from autocolor.widgets.sheet import Sheet
 from autocolor.widgets.widget import Button, Entry, Place, Widget
@@ -66,7 +81,7 @@ def test_the_row_under_the_pointer_is_lit_and_few_words_are_written(viewer: View
     assert display_of(viewer).words[place[1] - 6, place[0]] == SLATE
     # A row, and the hint in the message line.
     assert display_of(viewer).frame_buffer.written - written < 3 * (136 * 16 + WIDTH * 16)
-    assert board.message[0] == "The light from everywhere."
+    assert board.messages[-1].text == "The light from everywhere."
     point(viewer, "hover", 100, 100)
     assert display_of(viewer).words[place[1] - 6, place[0]] != SLATE
     assert is_drawn_whole(viewer)
@@ -74,11 +89,11 @@ def test_the_row_under_the_pointer_is_lit_and_few_words_are_written(viewer: View
 
 def test_a_gap_says_nothing_and_a_dim_row_says_why(viewer: Viewer, board: Board) -> None:
     point(viewer, "hover", *middle_of(board, "a gap"))
-    assert board.message[0] == "the desk"
+    assert board.messages[-1].text == "the desk"
     point(viewer, "hover", *middle_of(board, "do it"))
-    assert board.message[0] == "not today"
+    assert board.messages[-1].text == "not today"
     point(viewer, "pick", *middle_of(board, "do it"))
-    assert board.message == ("do it: not today", ORANGE)
+    assert board.messages[0][:2] == ("do it: not today", ORANGE)
 
 
 def test_of_two_rows_with_one_name_the_one_under_the_pointer_is_lit(
@@ -121,7 +136,7 @@ def test_a_place_that_is_refused_is_told_and_the_handle_still_held(
     point(viewer, "pick", element, line)
     monkeypatch.setattr(board.screen, "place", refuse)
     point(viewer, "pick", 250, 170)
-    assert board.message == ("an eye must be elsewhere", ORANGE)
+    assert board.messages[0][:2] == ("an eye must be elsewhere", ORANGE)
     assert board.held is not None
     assert viewer.on_key("escape")
     assert board.held is None
@@ -232,7 +247,7 @@ def test_a_number_is_typed_over_its_bar(viewer: Viewer, board: Board) -> None:
     point(viewer, "hover", *middle_of(board, "ambient"))
     for sign in "0.25":
         viewer.on_key(sign, typed=sign)
-    assert board.message[0] == "ambient: 0.25_"
+    assert board.messages[-1].text == "ambient: 0.25_"
     viewer.on_key("return", typed="\r")
     assert viewer.studio.scene.ambient == 0.25
     viewer.on_key("z", control=True)
@@ -247,15 +262,19 @@ def test_a_text_that_is_no_number_is_refused_and_can_be_corrected(
     for sign in "0.x":
         viewer.on_key(sign, typed=sign)
     viewer.on_key("return", typed="\r")
-    assert board.message == ("ambient must be a number, not '0.x'; type one, such as 1.5", ORANGE)
-    assert (display_of(viewer).words[MESSAGE.top :] == ORANGE).any()
+    assert board.messages[0][:2] == ("ambient must be a number, not '0.x'; type one, such as 1.5", ORANGE)
+    assert (display_of(viewer).words[MESSAGE.top - 12 :] == ORANGE).any()
     assert viewer.studio.scene is before
+    # The refused text stands below the refusal, selected.
+    assert board.messages[1] == MessagePart("ambient: 0.x", YELLOW, len("ambient: "))
+    _, ground, *_ = message_items(board.messages, MENU.left)
+    assert ground.area.top < MESSAGE.top
     now = time.monotonic()
     monkeypatch.setattr("time.monotonic", lambda: now + MESSAGE_SECONDS + 1)
-    assert board.message[0] == "ambient: 0.x_"
-    for name, typed in (("backspace", "\b"), ("5", "5"), ("return", "\r")):
+    assert [each.text for each in board.messages] == ["ambient: 0.x"]
+    for name, typed in (("5", "5"), ("return", "\r")):
         viewer.on_key(name, typed=typed)
-    assert viewer.studio.scene.ambient == 0.5
+    assert viewer.studio.scene.ambient == 5.0
     assert not board.typing.is_on
 
 
@@ -268,7 +287,7 @@ def test_a_click_elsewhere_takes_the_typed_text_unless_it_is_refused(viewer: Vie
     for sign in "-3":
         viewer.on_key(sign, typed=sign)
     point(viewer, "pick", 100, 100)
-    assert board.message[1] == ORANGE
+    assert board.messages[0].ink == ORANGE
     assert board.typing.is_on
     viewer.on_key("escape")
     assert not board.typing.is_on
@@ -277,7 +296,7 @@ def test_a_click_elsewhere_takes_the_typed_text_unless_it_is_refused(viewer: Vie
 
 def test_an_entry_is_typed_after_a_pick_where_there_is_a_keyboard(viewer: Viewer, board: Board) -> None:
     point(viewer, "pick", *middle_of(board, "name"))
-    assert board.message == ("name: typing needs a keyboard", ORANGE)
+    assert board.messages[0][:2] == ("name: typing needs a keyboard", ORANGE)
     element, line = middle_of(board, "name")
     viewer.on_pointer(element, line, "press", 1)
     viewer.on_pointer(element, line, "release", 1)
@@ -357,7 +376,7 @@ def test_a_click_that_slips_along_the_undo_row_undoes_nothing(viewer: Viewer, bo
 
 
 def test_without_a_pointer_the_hint_is_that_of_the_screen(viewer: Viewer, board: Board) -> None:
-    assert board.message[0] == "the desk"
+    assert board.messages[-1].text == "the desk"
 
 
 def test_the_whole_of_a_larger_display_shows_the_picture(tmp_path: Path) -> None:
@@ -501,29 +520,76 @@ def test_a_handle_is_held_and_placed_and_the_screen_dragged_step_by_step(viewer:
 # How long a message stands, and what it leaves, is tried through the viewer, in test_viewer.py.
 
 
-def test_a_message_fills_its_line_and_nothing_else() -> None:
+def test_a_message_that_fits_fills_its_line_and_nothing_else() -> None:
     display = Ramtek9300()
-    for item in message_items("x" * 200, WHITE):
+    for item in message_items([MessagePart("x" * MOST_CHARACTERS, WHITE)], MENU.left):
         assert MESSAGE.covers(item.area)
         display.send(np.frombuffer(item.stream, np.uint16))
     assert not display.words[: MESSAGE.top].any()
     assert set(np.unique(display.words[MESSAGE.top :])) == {BLACK, WHITE}
 
 
-def test_a_message_that_is_too_long_is_cut() -> None:
-    assert message_items("x" * 200, WHITE) == message_items("x" * (MOST_CHARACTERS - 2) + "..", WHITE)
+@pytest.mark.parametrize("end", [WIDTH, MENU.left])
+def test_a_longer_message_takes_a_second_line_that_ends_at_the_menu(end: int) -> None:
+    _, ground, *lines = message_items([MessagePart("word " * 24, WHITE)], end)
+    assert len(lines) == 2
+    assert ground.area == Area(0, MESSAGE.top - 12, end - 1, MESSAGE.top - 1)
+    assert all(item.area.right < end for item in lines)
+    assert len(message_items([MessagePart("word " * 200, WHITE)], end)) == 4
 
 
-def test_of_a_long_text_that_is_typed_the_end_is_seen() -> None:
-    line = "name: " + "a" * MOST_CHARACTERS + "the end_"
-    shown = ".." + line[-(MOST_CHARACTERS - 2) :]
-    assert message_items(line, WHITE, ends=True) == message_items(shown, WHITE)
-    assert message_items("short", WHITE, ends=True) == message_items("short", WHITE)
+def test_the_words_below_a_second_line_come_back(viewer: Viewer) -> None:
+    viewer.session.turn_to("picture")
+    viewer.tell("")
+    words = display_of(viewer).words.copy()
+    viewer.tell("a long message " * 8)
+    assert (display_of(viewer).words[MESSAGE.top - 10] != words[MESSAGE.top - 10]).any()
+    assert is_drawn_whole(viewer)
+    viewer.tell("")
+    assert np.array_equal(display_of(viewer).words, words)
+
+
+@given(st.text("ab ", max_size=300), st.integers(0, 40), st.integers(10, 80))
+def test_a_typed_text_is_shown_whole_or_to_its_end_with_its_selection(
+    text: str, label: int, most: int
+) -> None:
+    line = "n" * label + ": " + text
+    rows = lines_of_message(MessagePart(line, YELLOW, label + 2), most)
+    shown = "".join(row.text for row in rows)
+    assert all(len(row.text) <= most for row in rows)
+    assert len(rows) <= 2
+    if len(line) <= 2 * most:
+        assert shown == line
+        assert "".join(row.text[row.selected :] for row in rows) == text
+    else:
+        assert shown == ".." + line[2 - 2 * most :]
+
+
+def test_a_message_gives_way_to_the_hint_of_another_thing(
+    viewer: Viewer, board: Board, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    point(viewer, "hover", *middle_of(board, "ambient"))
+    viewer.studio.edit(viewer.studio.scene.replace(ambient=0.5))
+    now = time.monotonic()
+    viewer.on_key("z", control=True)
+    point(viewer, "hover", *middle_of(board, "name"))
+    assert board.messages[0].text == "undone"
+    monkeypatch.setattr("time.monotonic", lambda: now + 1.5)
+    element, line = middle_of(board, "name")
+    point(viewer, "hover", element + 1, line)
+    assert board.messages[0].text == "undone"
+    point(viewer, "hover", *middle_of(board, "ambient"))
+    assert board.messages[0].text == "The light from everywhere."
+    # A warning stands its whole time.
+    viewer.session.warn("careful")
+    monkeypatch.setattr("time.monotonic", lambda: now + 4)
+    point(viewer, "hover", *middle_of(board, "name"))
+    assert board.messages[0].text == "careful"
 
 
 def test_an_empty_message_is_an_empty_line() -> None:
-    assert message_items("", WHITE) == [filled(MESSAGE, BLACK)]
-    assert text("a", 8, MESSAGE.top + 3, WHITE, BLACK) in message_items("a", WHITE)
+    assert message_items([MessagePart("", WHITE)]) == [filled(MESSAGE, BLACK)]
+    assert text("a", 8, MESSAGE.top + 3, WHITE, BLACK) in message_items([MessagePart("a", WHITE)])
 
 
 @pytest.fixture
@@ -542,7 +608,7 @@ def test_the_first_character_replaces_the_text_and_an_arrowless_edit_keeps_it(ty
     taken: list[str] = []
     entry = Entry("name", value="key", take=taken.append)
     typing.begin(entry)
-    assert typing.shown == "name: key_"
+    assert typing.shown == MessagePart("name: key", YELLOW, 6)
     typed(typing, "ab")
     typing.key("backspace", "\b")
     typing.key("return", "\r")
@@ -566,7 +632,9 @@ def test_a_text_that_is_refused_stays(typing: TypingLine) -> None:
     typed(typing, "z")
     with pytest.raises(UsageError):
         typing.key("return", "\r")
-    assert typing.shown == "ambient: -z_"
+    assert typing.shown == MessagePart("ambient: -z", YELLOW, 9)
+    typed(typing, "5")
+    assert typing.shown.text == "ambient: 5_"
 
 
 def test_numbers_begin_over_bars_that_can_be_used_alone(typing: TypingLine) -> None:

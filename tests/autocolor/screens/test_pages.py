@@ -17,19 +17,19 @@ from tests.autocolor.screens.boxes import boxes
 from tests.autocolor.widgets.drawing import checksum
 
 PAGES = {
-    "picture": 818944094,
-    "light and view": 4278437345,
-    "lights": 762500052,
-    "reflectance": 1918282790,
-    "mixing": 943779901,
+    "picture": 2488882130,
+    "light and view": 2470440211,
+    "lights": 906126466,
+    "reflectance": 790683841,
+    "mixing": 779791442,
     "blending": 3756060397,
-    "mapping": 2510185100,
-    "scalar": 3447545316,
-    "kept": 1018747720,
-    "file": 826649456,
+    "mapping": 3763509967,
+    "scalar": 769110931,
+    "kept": 2040449627,
+    "file": 2904581995,
     "tutorial": 2372431904,
     "entries": 3253356514,
-    "help": 1182376081,
+    "help": 3524971317,
 }
 
 

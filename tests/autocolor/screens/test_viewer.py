@@ -739,9 +739,9 @@ def test_the_first_message_stands_until_the_menu_comes_or_something_is_done(
     monkeypatch.setattr("autocolor.screens.session.time.monotonic", lambda: now + 100 * MESSAGE_SECONDS)
     viewer.on_tick()
     viewer.on_pointer(100, 100, "move")
-    assert viewer.board.message[0] == welcome
+    assert viewer.board.messages[-1].text == welcome
     viewer.on_pointer(638, 0, "move")
-    assert viewer.board.message[0] == viewer.screens["picture"].help
+    assert viewer.board.messages[-1].text == viewer.screens["picture"].help
     viewer.tell(welcome, persistent=True)
     viewer.on_key("c", typed="c")
     assert viewer.message != welcome
@@ -895,7 +895,7 @@ def test_a_key_goes_to_the_typed_text_then_to_the_screen_then_to_its_binding(
     viewer.on_key("1", typed="1")
     viewer.on_key("e", typed="e")
     assert before == ["c", "e"]
-    assert viewer.board.message[0] == "ambient: 1e_"
+    assert viewer.board.messages[-1].text == "ambient: 1e_"
 
 
 def test_a_key_with_control_is_never_typed(tmp_path: Path) -> None:

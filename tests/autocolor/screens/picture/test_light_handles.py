@@ -295,7 +295,7 @@ def test_what_can_be_grabbed_is_marked_before(at_lights: Hand) -> None:
     assert mark is not None
     assert max(abs(mark[0] - element - 2), abs(mark[1] - line)) <= REACH
     assert mark[::-1] in {(a, b) for a, b in rims(hand.viewer.studio.sight, "key")["cone"].tolist()}
-    assert hand.viewer.board.message[0] == "end of the cone of key"
+    assert hand.viewer.board.messages[-1].text == "end of the cone of key"
 
 
 def test_the_highlight_of_a_light_that_follows_or_is_at_infinity_goes_where_it_is_picked(

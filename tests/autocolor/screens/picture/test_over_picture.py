@@ -77,9 +77,9 @@ def test_beside_an_open_menu_what_is_pointed_at_is_named(hand: Hand) -> None:
     hand.viewer.on_key("tab")
     hand.viewer.tell("")
     hand.move(*MIDDLE)
-    assert hand.viewer.board.message[0] == f"ball - paint, {level_at(hand, *MIDDLE)}"
+    assert hand.viewer.board.messages[-1].text == f"ball - paint, {level_at(hand, *MIDDLE)}"
     hand.move(*BACKGROUND)
-    assert hand.viewer.board.message[0] == hand.viewer.board.screen.help
+    assert hand.viewer.board.messages[-1].text == hand.viewer.board.screen.help
 
 
 def test_what_is_pointed_at_is_named_as_soon_as_the_picture_is_back(hand: Hand) -> None:
@@ -91,7 +91,7 @@ def test_what_is_pointed_at_is_named_as_soon_as_the_picture_is_back(hand: Hand) 
     hand.move(*MIDDLE)
     viewer.session.turn_to("reflectance")
     viewer.on_key("a key that does nothing")
-    assert viewer.board.message[0] == f"ball - paint, {level_at(hand, *MIDDLE)}"
+    assert viewer.board.messages[-1].text == f"ball - paint, {level_at(hand, *MIDDLE)}"
     whole = Ramtek9300()
     Sheet(whole).show(viewer.board.page())
     assert isinstance(viewer.display, Ramtek9300)
@@ -110,7 +110,7 @@ def test_what_is_under_the_menu_or_a_message_is_not_the_picture(hand: Hand) -> N
         hand.viewer.tell("a message")
         hand.click(*place)
         assert hand.viewer.session.part_name == before
-        assert "level" not in hand.viewer.board.message[0]
+        assert "level" not in hand.viewer.board.messages[-1].text
 
 
 HELD: dict[str, tuple[dict[str, bool], int, Callable[[Scene], View]]] = {
