@@ -18,7 +18,7 @@ from tests.autocolor.widgets.drawing import checksum
 
 PAGES = {
     "picture": 2488882130,
-    "light and view": 2470440211,
+    "light and view": 498516100,
     "lights": 906126466,
     "reflectance": 790683841,
     "mixing": 779791442,
