@@ -54,7 +54,8 @@ class MappingScreen(OverPicture):
     title = "mapping"
     help = "How intensities become levels; click a surface in the picture to show its curve"
 
-    has_room_at_left = False
+    # The panel of the curve is at the lower left.
+    corners = ((1.0, 0.0),)
 
     def __init__(self, session: Session) -> None:
         super().__init__(session)
