@@ -16,6 +16,7 @@ from autocolor.arrays import Booleans, Bytes, Indices, Singles, chunks, dot, und
 from autocolor.checks import either, nearest, shown
 from autocolor.errors import UsageError
 from autocolor.lighting.controls import Axis, Cone, FlapEnd, flap_sides, flaps_of, half_space_sides, is_inside
+from autocolor.lighting.picture import Picture
 from autocolor.lighting.rays import (
     CameraLight,
     camera_light,
@@ -25,6 +26,7 @@ from autocolor.lighting.rays import (
     middle_of,
     rays_to,
 )
+from autocolor.lighting.shading import SPECULAR
 from autocolor.scene.following import light_frame
 from autocolor.scene.lights import Flap, Light
 from autocolor.scene.scene import NORMALS, Scene
@@ -49,6 +51,9 @@ LEAST_CONE: Final = 0.03
 LARGEST_GAP: Final = 4.0
 """Assumed: in pixels at their distance; a neighbor farther before or behind the tangent plane belongs to
 another surface, or is behind the silhouette."""
+
+CELL: Final = 16
+"""Assumed: pixels across the squares in which the light of a highlight is added up."""
 
 CONE: Final = "cone"
 
@@ -142,6 +147,52 @@ def cosines_from_afar(scene: Scene, light: Light, points: VisiblePoints, pixels:
     cosines: Singles = 2 * along_eye * along_light - np.float32(to_eye @ to_light)
     cosines[along_light <= 0] = -1
     return cosines
+
+
+# What is seen of a highlight: its share of the picture, with all controls of the light.
+
+
+def seen_highlight(picture: Picture, light: str, surface: str | None = None) -> tuple[int, int] | None:
+    """The line and the element where the highlight of a light is seen, on one surface or on all.
+
+    Assumed: this is the brightest pixel of the light's specular plane in the square of CELL pixels that has
+    the largest sum. A bright edge of a few pixels has the largest cos(E), but a broad reflection is what the
+    eye sees. None for a light without planes, or without specular reflection there. Measured on the coupe:
+    0.6 ms.
+    """
+    planes = picture.light_planes.get(light)
+    if planes is None:
+        return None
+    number = None if surface is None else picture.surfaces.index(surface) + 1
+    best, largest = None, 0.0
+    across = -(-picture.elements // CELL)
+    for each in picture.slices:
+        if number is not None and each.surface_number != number:
+            continue
+        weight = planes.weights.get(each.surface_number, (0.0, 0.0))[SPECULAR]
+        values, pixels = planes.values[SPECULAR, each.pixels], picture.pixels[each.pixels]
+        lines, elements = np.divmod(pixels, picture.elements)
+        cells = lines // CELL * across + elements // CELL
+        sums = weight * np.bincount(cells, weights=values)
+        cell = int(sums.argmax())
+        if sums[cell] > largest:
+            inside = np.flatnonzero(cells == cell)
+            best, largest = int(pixels[inside[values[inside].argmax()]]), float(sums[cell])
+    return None if best is None else divmod(best, picture.elements)
+
+
+def specular_shares(picture: Picture, line: int, element: int) -> Mapping[str, float]:
+    """The specular part of each light with planes at a pixel, in proportion; empty on the background."""
+    flat = line * picture.elements + element
+    for each in picture.slices:
+        places = np.flatnonzero(picture.pixels[each.pixels] == flat)
+        if len(places):
+            place, number = each.start + int(places[0]), each.surface_number
+            return {
+                name: float(planes.weights.get(number, (0.0, 0.0))[SPECULAR] * planes.values[SPECULAR, place])
+                for name, planes in picture.light_planes.items()
+            }
+    return {}
 
 
 def highlight_placed(scene: Scene, seen: Seen | None, light: str) -> Scene:

@@ -61,7 +61,7 @@ from autocolor.widgets.widget import (
 EDGE: Final = 4
 """Assumed: elements at the right edge of the screen that bring the menu."""
 
-REACH: Final = 7
+REACH: Final = 8
 """Assumed: elements or lines from a handle within which it is grabbed."""
 
 
@@ -234,7 +234,7 @@ class Board:
         """The nearest handle within reach of a place; None if something covers the handle or the place."""
         if self.is_covered(element, line):
             return None
-        near = handles_near(self.layout.handles, element, line)
+        near = self.screen.preferred(handles_near(self.layout.handles, element, line), element, line)
         return next((each for each in near if not self.is_covered(each.element, each.line)), None)
 
     def turn(self) -> bool:

@@ -60,6 +60,12 @@ class LightsScreen(OverPicture):
     def leave(self) -> None:
         self._picking.end()
 
+    def preferred(self, near: Sequence[Handle], element: int, line: int) -> Sequence[Handle]:
+        return self._handles.preferred(near, element, line)
+
+    def hold(self, handle: Handle) -> None:
+        self._handles.hold(handle)
+
     def place(self, handle: Handle, element: int, line: int) -> None:
         self._handles.place(handle, element, line)
 

@@ -84,6 +84,10 @@ class Screen:
 
     # Gestures and keys.
 
+    def preferred(self, near: Sequence[Handle], element: int, line: int) -> Sequence[Handle]:
+        """The handles within reach of a place, nearest first, in the order in which they are taken."""
+        return near
+
     def hold(self, handle: Handle) -> None:
         """Note the handle that was picked or grabbed; `place` will move it."""
 

@@ -7,7 +7,6 @@ The user drags a highlight or a rim to a pixel, and the light is placed so that 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import chain
 from typing import Final, Literal, NamedTuple
 
 import numpy as np
@@ -24,13 +23,16 @@ from autocolor.lighting.picking import (
     half_space_placed,
     highlight_placed,
     rims,
+    seen_highlight,
+    specular_shares,
 )
 from autocolor.scene.lights import Light
+from autocolor.scene.scene import NORMALS
 from autocolor.screens.screen import Handle
 from autocolor.screens.session import Session
 from autocolor.visibility.visible_points import VisiblePoints
 from autocolor.widgets.bars import number_text
-from autocolor.widgets.items import BLACK, SCREEN, YELLOW, Area, Item, area_of, segments
+from autocolor.widgets.items import BLACK, SCREEN, WHITE, YELLOW, Area, Item, area_of, segments
 from autocolor.widgets.rows import World
 
 HIGHLIGHT: Final = "highlight"
@@ -60,44 +62,68 @@ Source = tuple[Vector, Vector | None]
 
 
 class LightHandles:
-    """The handles of the chosen light in an area of the picture; without `has_rims`, its highlight alone."""
+    """The highlights of all lights, and with `has_rims` the rims of the chosen light, in an area."""
 
     def __init__(self, session: Session, area: Area, has_rims: bool) -> None:
         self.session = session
         self._area = area
         self._has_rims = has_rims
-        self._highlight: tuple[Source, VisiblePoints, str, tuple[int, int] | None] | None = None
-        """The source of a light, the visible points, the chosen surface, and the line and element of the
-        highlight. A placed highlight is at its pixel without a search: other pixels may be as bright."""
+        self._placed: tuple[str, Source, VisiblePoints, tuple[int, int]] | None = None
+        """A light, its source, the visible points, and the line and element where the highlight was placed.
+        It is there without a search: other pixels may be as bright."""
+        self._searched: dict[str, tuple[object, str, tuple[int, int] | None]] = {}
+        """The planes of each light, the chosen surface, and the line and element of the highlight."""
         self._rims: tuple[Light, VisiblePoints, Sequence[Handle], Sequence[Item]] | None = None
         """A light, the visible points, and the handles and marks at its rims."""
 
     def handles(self) -> Sequence[Handle]:
-        """The handles of the chosen light; none if it is off, or while something moves."""
-        light = self._seen_light()
-        if light is None or self.session.moving:
+        """The handles of the lights that are on; none while something moves."""
+        lights = self._seen_lights()
+        if self.session.moving:
             return ()
+        chosen = [light for light in lights if light.name == self.session.light_name]
         # Of several handles at the same distance, the last is grabbed.
-        return [*self._at_rims(light)[0], *self._at_highlight(light)]
+        rims_seen = [each for light in chosen for each in self._at_rims(light)[0]]
+        return [*rims_seen, *(each for light in lights for each in self._at_highlight(light))]
+
+    def preferred(self, near: Sequence[Handle], element: int, line: int) -> Sequence[Handle]:
+        """Handles near a place; of several highlights, that of the light which shines there most is first."""
+        numbers = [number for number, each in enumerate(near) if _is_highlight(each)]
+        if len(numbers) < 2:
+            return near
+        shares = specular_shares(self.session.studio.picture, line, element)
+        brightest = sorted(numbers, key=lambda number: -shares.get(_key_of(near[number]).light, 0.0))
+        handles = list(near)
+        for number, other in zip(numbers, brightest, strict=True):
+            handles[number] = near[other]
+        return handles
+
+    def hold(self, handle: Handle) -> None:
+        """Choose the light of a handle."""
+        self.session.choose_light(_key_of(handle).light)
 
     def items(self) -> Sequence[Item]:
-        """The marks at the handles: dotted lines along the rims, and a cross at the highlight.
+        """The marks at the handles: dotted lines along the rims, and crosses at the highlights.
 
-        While something moves, only a dragged highlight is marked: the light in the picture itself shows the
-        rest, and the picture comes sooner. Measured on the coupe: five rims take 8 of 20 ms, and a highlight
-        a third of a light's drag.
+        The cross of the chosen light is yellow. While something moves, only a dragged highlight is marked:
+        the light in the picture itself shows the rest, and the picture comes sooner. Measured on the coupe:
+        five rims take 8 of 20 ms, and a highlight a third of a light's drag.
         """
-        light = self._seen_light()
-        if light is None:
-            return ()
-        rims_seen = () if self.session.moving else self._at_rims(light)[1]
-        crosses = (highlight_items(each.element, each.line, self._area) for each in self._at_highlight(light))
-        return [*rims_seen, *chain.from_iterable(crosses)]
+        items: list[Item] = []
+        for light in self._seen_lights():
+            is_chosen = light.name == self.session.light_name
+            if is_chosen and not self.session.moving:
+                items += self._at_rims(light)[1]
+            if is_chosen or not self.session.moving:
+                for each in self._at_highlight(light):
+                    items += highlight_items(
+                        each.element, each.line, self._area, YELLOW if is_chosen else WHITE
+                    )
+        return items
 
     def place(self, handle: Handle, element: int, line: int) -> None:
         """Let the light follow a handle to a place. Raises UsageError on the background."""
-        key, session = handle.key, self.session
-        assert isinstance(key, HandleKey)
+        key, session = _key_of(handle), self.session
         # The menu covers the places beside the area.
         element, line = min(element, self._area.right), min(line, self._area.bottom)
         scene, seen = session.scene, session.studio.seen_at(line, element)
@@ -113,32 +139,48 @@ class LightHandles:
         light = scene.light_in_world(key.light)
         if key.what == HIGHLIGHT:
             points = session.studio.sight.points
-            self._highlight = _source_of(light), points, session.surface_name, (line, element)
+            self._placed = light.name, _source_of(light), points, (line, element)
         session.tell(message_of(light, key.what, session.world))
 
-    def _seen_light(self) -> Light | None:
-        """The chosen light in world coordinates, if it is on and the finished picture is shown."""
-        session, light = self.session, self.session.chosen_light
-        if light is None or not light.on or session.studio.is_coarse or session.comparing.is_on:
-            return None
-        return session.scene.light_in_world(light.name)
+    def _seen_lights(self) -> list[Light]:
+        """The lights that are on, in world coordinates, the chosen light last; none of a coarse picture."""
+        session, chosen = self.session, self.session.light_name
+        if session.studio.is_coarse or session.comparing.is_on:
+            return []
+        lights = [light for light in session.scene.lights_in_world if light.on]
+        return sorted(lights, key=lambda light: light.name == chosen)
 
     def _at_highlight(self, light: Light) -> list[Handle]:
         """The handle at the highlight on the chosen surface, else on any surface, if it is in the area."""
-        studio, surface = self.session.studio, self.session.surface_name
-        points = studio.sight.points
-        cached = self._highlight
-        source = _source_of(light)
-        if cached is None or cached[0] != source or cached[1] is not points or cached[2] != surface:
-            if self.session.moving:
-                return []
-            place = (surface and studio.highlight_of(light.name, surface)) or studio.highlight_of(light.name)
-            cached = self._highlight = source, points, surface, place
-        if cached[3] is None:
+        placed, points = self._placed, self.session.studio.sight.points
+        if placed is not None and placed[:2] == (light.name, _source_of(light)) and placed[2] is points:
+            place: tuple[int, int] | None = placed[3]
+        elif self.session.moving:
             return []
-        line, element = cached[3]
+        else:
+            place = self._search(light.name)
+        if place is None:
+            return []
+        line, element = place
         handle = Handle(HandleKey(light.name, HIGHLIGHT), element, line, f"highlight of {light.name}")
         return [handle] if self._area.has(element, line) else []
+
+    def _search(self, light: str) -> tuple[int, int] | None:
+        """Where the highlight of a light is: where it is seen, else the pixel with the largest cos(E)."""
+        studio, surface = self.session.studio, self.session.surface_name
+        planes = studio.picture.light_planes.get(light)
+        # Where words stand for normals, or there are no planes, the place depends on all of the scene.
+        is_seen = planes is not None and studio.scene.words != NORMALS
+        source = planes.values if planes is not None and is_seen else studio.scene
+        searched = self._searched.get(light)
+        if searched is None or searched[0] is not source or searched[1] != surface:
+            place = None
+            for name in (surface, None) if surface else (None,):
+                if is_seen:
+                    place = place or seen_highlight(studio.picture, light, name)
+                place = place or studio.highlight_of(light, name)
+            searched = self._searched[light] = source, surface, place
+        return searched[2]
 
     def _at_rims(self, light: Light) -> tuple[Sequence[Handle], Sequence[Item]]:
         """The handles and the marks at the rims in the area."""
@@ -178,14 +220,23 @@ def rim_items(pixels: Indices, area: Area) -> list[Item]:
     return [segments(np.concatenate([places, places], axis=1), YELLOW, area_of(places, limit=area))]
 
 
-def highlight_items(element: int, line: int, area: Area) -> list[Item]:
+def highlight_items(element: int, line: int, area: Area, word: int = YELLOW) -> list[Item]:
     """A diagonal cross at a highlight, which the upright pointer does not hide, with a shadow on white."""
     arms = np.array([(-1, -1), (1, -1), (-1, 1), (1, 1)], np.float64)
     middle = np.array((element, line), np.float64)
     strokes = np.concatenate([middle + 2 * arms, middle + ARM * arms], axis=1)
     around = area_of(strokes.reshape(-1, 2), margin=1, limit=area)
     shadow = strokes + np.array((1, 0, 1, 0))
-    return [segments(shadow, BLACK, around), segments(strokes, YELLOW, around)]
+    return [segments(shadow, BLACK, around), segments(strokes, word, around)]
+
+
+def _key_of(handle: Handle) -> HandleKey:
+    assert isinstance(handle.key, HandleKey)
+    return handle.key
+
+
+def _is_highlight(handle: Handle) -> bool:
+    return isinstance(handle.key, HandleKey) and handle.key.what == HIGHLIGHT
 
 
 def _source_of(light: Light) -> Source:

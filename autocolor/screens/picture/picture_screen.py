@@ -39,6 +39,12 @@ class PictureScreen(OverPicture):
     def handles(self) -> Sequence[Handle]:
         return self._handles.handles()
 
+    def preferred(self, near: Sequence[Handle], element: int, line: int) -> Sequence[Handle]:
+        return self._handles.preferred(near, element, line)
+
+    def hold(self, handle: Handle) -> None:
+        self._handles.hold(handle)
+
     def place(self, handle: Handle, element: int, line: int) -> None:
         if self.session.word_at(element, line) >= SCREENS.first:
             raise UsageError(

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -38,8 +39,12 @@ from autocolor.lighting.picking import (
     highlight_placed,
     rims,
     seen_from_afar,
+    seen_highlight,
+    specular_shares,
 )
+from autocolor.lighting.picture import Picture
 from autocolor.lighting.rays import direction_between
+from autocolor.lighting.shading import LightPlanes
 from autocolor.rendering import Rendering, rendering
 from autocolor.scene.columns import with_values
 from autocolor.scene.following import detached
@@ -780,3 +785,29 @@ def test_any_number_of_half_spaces_have_rims_of_their_own() -> None:
         alone = light.replace(half_spaces=(plane,), flaps=Flaps())
         rim = rims(wall_sight(wall_scene(wall(half=2.0), view=FILLING, lights=[alone])), "light")
         assert found[Plane(plane.name)].tolist() == rim[Plane(plane.name)].tolist() != []
+
+
+@cache
+def wall_picture() -> Picture:
+    return render(wall_scene(lights=[Light("key", (0, -4, 0))]), 480, 640)
+
+
+@given(st.integers(120, 300), st.integers(220, 400))
+def test_a_highlight_is_seen_where_much_of_it_is_and_not_at_a_brighter_edge(line: int, element: int) -> None:
+    picture = wall_picture()
+    planes = picture.light_planes["key"]
+    raster = np.zeros((480, 640), np.float32)
+    # A broad reflection, and a brighter pixel elsewhere.
+    raster[line : line + 32, element : element + 32] = 0.5
+    raster[line + 20, element + 20] = 0.6
+    raster[100, 200] = 1.0
+    values = np.stack([planes.values[0], raster.ravel()[picture.pixels]])
+    weights = {number: (np.float32(1), np.float32(1)) for number in planes.weights}
+    changed = replace(picture, light_planes={"key": LightPlanes(values, weights)})
+    found = seen_highlight(changed, "key")
+    assert found is not None
+    assert 0 <= found[0] - line < 32
+    assert 0 <= found[1] - element < 32
+    assert specular_shares(changed, 100, 200)["key"] == 1
+    assert specular_shares(changed, 0, 0) == {}
+    assert seen_highlight(changed, "none") is None

@@ -19,7 +19,7 @@ from tests.autocolor.widgets.drawing import checksum
 PAGES = {
     "picture": 2117192989,
     "light and view": 498516100,
-    "lights": 595658517,
+    "lights": 2197996008,
     "reflectance": 2046627297,
     "mixing": 779791442,
     "blending": 3756060397,
