@@ -47,14 +47,20 @@ ROW_LINES: Final = 12
 """Lines from one line of the title, or of the other colors, to the next."""
 
 LEAST_APART: Final = 22
-"""Assumed: lines from one number to the next."""
+"""Assumed: lines from one number to the next; at least half of it from a limit that is written."""
+
+TICK: Final = 3
+"""Elements of the mark between the bar and a number."""
+
+NO_VALUE: Final = "no value"
+"""The text beside the color of missing values."""
 
 MOST_TITLE: Final = 12
 MOST_TITLES: Final = 3
 """Characters of a line of the title, and lines of it."""
 
-CORNERS: Final = ((False, False), (True, False), (False, True), (True, True))
-"""The corners of a picture: at the left or not, and at the foot or not."""
+CORNERS: Final = ((1.0, 0.0), (0.0, 0.0), (1.0, 1.0), (0.0, 1.0))
+"""The corners of a picture as places: upper right, upper left, lower right, lower left."""
 
 MOST_SHARE: Final = 0.4
 """Assumed: the largest part of the width of the picture for a legend; a smaller picture has no legend."""
@@ -89,10 +95,19 @@ class Label(NamedTuple):
 
 @dataclass(frozen=True)
 class Legend:
-    """The areas and the texts of a legend, the lowest layer first; the first area is the whole legend."""
+    """The areas and the texts of a legend, the lowest layer first; the first area is the whole legend.
+
+    `room` are the elements and lines that the legend can be moved by, from the left and the top.
+    """
 
     swatches: tuple[Swatch, ...]
     labels: tuple[Label, ...]
+    room: tuple[int, int]
+
+    def place_at(self, left: int, top: int) -> Corner:
+        """The place at which its upper left corner is at an element and a line, as far as there is room."""
+        x, y = ((at - MARGIN) / (room or 1) for at, room in zip((left, top), self.room, strict=True))
+        return round(min(max(x, 0.0), 1.0), 4), round(min(max(y, 0.0), 1.0), 4)
 
     def has(self, element: int, line: int) -> bool:
         """Whether the legend covers a pixel."""
@@ -100,12 +115,16 @@ class Legend:
         return left <= element <= right and top <= line <= bottom
 
 
-def legend(image: DisplayImage, end: int | None = None, at_left: bool | None = None) -> Legend | None:
+Corner = tuple[float, float]
+"""A place in the room of a legend, from the left and from the top, 0 to 1 each."""
+
+
+def legend(image: DisplayImage, end: int | None = None, corners: Sequence[Corner] = CORNERS) -> Legend | None:
     """The legend of an image; None without a scalar, if its legend is off, and if it would not fit.
 
-    Assumed: `at_left` puts the legend in the upper left or the upper right corner. With None it is in the
-    corner where it hides the fewest pixels of the object; ties go to the upper right. With `end`, it is
-    placed as if the picture ended before that element.
+    Its place is the scalar's `legend_place`. Assumed: without one, it is in the corner of `corners` where it
+    hides the fewest pixels of the object; ties go to the first. With `end`, it is placed as if the picture
+    ended before that element.
     """
     scalar = image.scene.scalar
     if scalar is None or not scalar.legend:
@@ -118,9 +137,12 @@ def legend(image: DisplayImage, end: int | None = None, at_left: bool | None = N
     # A surface with missing values has all bands.
     name = max(bands, key=lambda name: bands[name].has_missing)
     size = lines, elements if end is None else min(end, elements)
-    corners = CORNERS if at_left is None else [(at_left, False)]
+    # Of all values, those beyond the limits are in the end bands, or in bands of their own.
+    low, high = image.picture.scalar_limits or (math.inf, -math.inf)
+    beyond = low < bands[name].low, high > bands[name].high
     first = image.ranges[name].first
-    legends = [laid_out(scalar.name, bands[name], first, size, *corner) for corner in corners]
+    places = corners if scalar.legend_place is None else [scalar.legend_place]
+    legends = [laid_out(scalar.name, bands[name], first, size, place, beyond) for place in places]
     return min(filter(None, legends), key=lambda legend: _hidden(image, legend), default=None)
 
 
@@ -135,14 +157,37 @@ def _hidden(image: DisplayImage, legend: Legend) -> int:
 
 
 def laid_out(
-    name: str, bands: Bands, first: int, size: tuple[int, int], at_left: bool, at_foot: bool = False
+    name: str,
+    bands: Bands,
+    first: int,
+    size: tuple[int, int],
+    place: Corner,
+    beyond: tuple[bool, bool] = (False, False),
 ) -> Legend | None:
-    """The legend of a scalar with bands from a first word on, in a corner of a picture of a size."""
+    """The legend of a scalar with bands from a first word on, at a place of a picture of a size.
+
+    `beyond` is whether values are below and above the limits. If so, the limit is written after "<" or ">".
+    """
     height = lines_of_band(bands.bands)
     numbers, exponent, places = numbers_beside(bands.low, bands.high, bands.bands, height, LEAST_APART)
     title = [*title_lines(name), *([f"x 1e{exponent}"] if exponent else [])]
-    above = [("above", bands.above)] * bands.has_above
-    below = [("below", bands.below)] * bands.has_below + [("missing", bands.missing)] * bands.has_missing
+    # The power of ten alone may be too small for a number.
+    half = 10.0 ** (exponent // 2)
+    limits = [
+        f"{sign} {value / half / 10.0 ** (exponent - exponent // 2):.4g}"
+        for sign, value in (("<", bands.low), (">", bands.high))
+    ]
+    above = [(limits[1], bands.above)] * bands.has_above
+    below = [(limits[0], bands.below)] * bands.has_below + [(NO_VALUE, bands.missing)] * bands.has_missing
+
+    # A limit that values exceed is written at its end of the bar, unless these values have their own color.
+    at = dict(zip(places, numbers, strict=True))
+    ends = (0, beyond[0] and not bands.has_below), (height * bands.bands, beyond[1] and not bands.has_above)
+    for (height_of_end, is_written), limit in zip(ends, limits, strict=True):
+        if is_written:
+            at = {each: text for each, text in at.items() if 2 * abs(each - height_of_end) >= LEAST_APART}
+            at[height_of_end] = limit
+    numbers = list(at.values())
 
     # Measure the whole legend.
     beside = max(map(len, (*numbers, *(label for label, _ in (*above, *below)))))
@@ -153,8 +198,8 @@ def laid_out(
     if inner + 3 * MARGIN > MOST_SHARE * size[1] or inside + 4 * MARGIN > size[0]:
         return None
 
-    left = 2 * MARGIN if at_left else size[1] - 2 * MARGIN - inner
-    top = size[0] - 2 * MARGIN - inside if at_foot else 2 * MARGIN
+    left = 2 * MARGIN + round(place[0] * (size[1] - 4 * MARGIN - inner))
+    top = 2 * MARGIN + round(place[1] * (size[0] - 4 * MARGIN - inside))
     frame = Swatch(left - MARGIN, top - MARGIN, left + inner + MARGIN - 1, top + inside + MARGIN - 1, FRAME)
     ground = Swatch(frame.left + 1, frame.top + 1, frame.right - 1, frame.bottom - 1, GROUND)
     swatches, labels = [frame, ground], []
@@ -178,14 +223,17 @@ def laid_out(
     foot = top + BAR_GAP + bar_lines
     for band in range(bands.bands):
         put(band, foot - (band + 1) * height, height)
-    for place, number in zip(places, numbers, strict=True):
-        put_text(foot - place, number)
+    for above_foot, number in at.items():
+        mark, middle = left + BAR_ELEMENTS, foot - above_foot
+        swatches.append(Swatch(mark, middle, mark + TICK - 1, middle, INK))
+        put_text(middle, number)
     top = foot + BAR_GAP
     for label, band in below:
         put(band, top, LETTER_LINES)
         put_text(top + LETTER_LINES // 2, label)
         top += ROW_LINES
-    return Legend(tuple(swatches), tuple(labels))
+    room = size[1] - 4 * MARGIN - inner, size[0] - 4 * MARGIN - inside
+    return Legend(tuple(swatches), tuple(labels), room)
 
 
 def title_lines(name: str) -> Sequence[str]:
@@ -221,11 +269,12 @@ class PlacedNumbers(NamedTuple):
 def numbers_beside(low: float, high: float, bands: int, lines: int, least: int) -> PlacedNumbers:
     """The numbers beside a bar, from the lowest up, at least `least` lines apart; a band has `lines` lines.
 
-    Numbers are limits of bands. But bands around whole numbers, such as kinds or counts, have the whole
-    number beside their middle. Such numbers may be half as far apart, because each number names its band.
+    Numbers are round: multiples of 1, 2 or 5 times a power of ten. If fewer than two of them are between the
+    limits, the limits are the numbers. But bands around whole numbers, such as kinds or counts, have the
+    whole number beside their middle. Such numbers may be half as far apart, because each names its band.
 
     >>> numbers_beside(0, 100, 4, 24, 22)
-    PlacedNumbers(texts=['0', '25', '50', '75', '100'], exponent=0, places=[0, 24, 48, 72, 96])
+    PlacedNumbers(texts=['0', '50', '100'], exponent=0, places=[0, 48, 96])
     >>> numbers_beside(0.5, 3.5, 3, 24, 22)
     PlacedNumbers(texts=['1', '2', '3'], exponent=0, places=[12, 36, 60])
     """
@@ -234,22 +283,32 @@ def numbers_beside(low: float, high: float, bands: int, lines: int, least: int) 
         middles = range(0, bands, step)
         texts = [str(round(low + 0.5) + band) for band in middles]
         return PlacedNumbers(texts, 0, [band * lines + lines // 2 for band in middles])
-    step = bands_apart(bands, lines, least)
-    count = bands // step
-    numbers = numbers_between(low, high, count)
-    return PlacedNumbers(*numbers, [place * step * lines for place in range(count + 1)])
+    values = round_numbers(low, high, max(1, bands * lines // least))
+    written, exponent = in_few_digits(values, values[1] - values[0])
+    places = [round((value - low) / (high - low) * bands * lines) for value in values]
+    return PlacedNumbers(written, exponent, places)
 
 
-def bands_apart(bands: int, lines: int, least: int) -> int:
-    """The bands from one number to the next: the fewest that divide all bands and have `least` lines or more.
+def round_numbers(low: float, high: float, count: int) -> list[float]:
+    """The multiples of 1, 2 or 5 times a power of ten from low to high, at most `count` + 1 of them.
 
-    `lines` are the lines of a band. If no number of bands fits, it is all bands: only the ends have numbers.
+    If there are fewer than two, they are low and high.
 
-    >>> bands_apart(16, 14, 22), bands_apart(5, 24, 22), bands_apart(13, 17, 22)
-    (2, 1, 13)
+    >>> round_numbers(0.13, 0.87, 10), round_numbers(0.13, 0.87, 1)
+    ([0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8], [0.13, 0.87])
     """
-    dividing = (step for step in range(1, bands) if bands % step == 0 and step * lines >= least)
-    return next(dividing, bands)
+    least = (high - low) / count
+    power = math.floor(math.log10(least)) if least > 0 else 0
+    for factor, exponent in ((1, power), (2, power), (5, power), (1, power + 1)):
+        # An exact quotient: 0.1 times 3 is not 0.3.
+        step, divisor = factor * 10.0 ** max(exponent, 0), 10.0 ** max(-exponent, 0)
+        if step / divisor < least * (1 - EXACT) or not math.isfinite(divisor):
+            continue
+        first = math.ceil(low * divisor / step - EXACT)
+        last = math.floor(high * divisor / step + EXACT)
+        if last > first:
+            return [number * step / divisor for number in range(first, last + 1)]
+    return [low, high]
 
 
 class ScaledNumbers(NamedTuple):
@@ -259,30 +318,27 @@ class ScaledNumbers(NamedTuple):
     exponent: int
 
 
-def numbers_between(low: float, high: float, count: int) -> ScaledNumbers:
-    """Numbers at `count` equal distances from low to high, both included.
+def in_few_digits(values: Sequence[float], distance: float) -> ScaledNumbers:
+    """Numbers at a distance from each other, with as few decimals as are exact.
 
-    They have as few decimals as are exact. If four digits of the distance are not exact, all numbers have the
-    decimals of three digits. Very large and very small numbers are in thousands, millions or the like.
+    If four digits of the distance are not exact, all numbers have the decimals of three digits. Very large
+    and very small numbers are in thousands, millions or the like.
 
-    >>> numbers_between(0, 250, 4).texts, numbers_between(0, 1.2, 7).texts[:5]
-    (['0', '62.5', '125', '187.5', '250'], ['0', '0.171', '0.343', '0.514', '0.686'])
-    >>> numbers_between(0, 5e6, 2)
+    >>> in_few_digits([0, 2.5e6, 5e6], 2.5e6)
     ScaledNumbers(texts=['0', '2.5', '5'], exponent=6)
     """
-    if max(abs(low), abs(high)) < LEAST_SCALED:
-        texts, exponent = numbers_between(low * 1e60, high * 1e60, count)
+    largest = max(map(abs, values))
+    if largest < LEAST_SCALED:
+        texts, exponent = in_few_digits([value * 1e60 for value in values], distance * 1e60)
         return ScaledNumbers(texts, exponent - 60)
-    distance = (high - low) / count
-    values = [low + (high - low) * number / count for number in range(count)] + [high]
     # A number that is zero up to rounding is written as zero.
-    values = [0.0 if abs(value) < distance * EXACT else value for value in values]
+    rounded = [0.0 if abs(value) < distance * EXACT else value for value in values]
     exponent = 0
-    before, after = (math.floor(math.log10(each)) for each in (max(abs(low), abs(high)), distance))
+    before, after = (math.floor(math.log10(each)) for each in (largest, distance))
     if before >= MOST_DIGITS or after < 3 - MOST_DIGITS:
         exponent = before // 3 * 3
     unit = 10.0**exponent
-    return ScaledNumbers(_texts([value / unit for value in values], distance / unit), exponent)
+    return ScaledNumbers(_texts([value / unit for value in rounded], distance / unit), exponent)
 
 
 def _texts(values: Sequence[float], distance: float) -> Sequence[str]:

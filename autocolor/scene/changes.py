@@ -149,6 +149,7 @@ class ScalarChanges(TypedDict, total=False):
     above: str | Sequence[int] | None
     missing: str | Sequence[int]
     legend: bool
+    legend_place: Sequence[float] | None
     surfaces: Sequence[str] | None
     direction: Sequence[float]
     stripes: float

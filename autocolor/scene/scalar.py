@@ -55,6 +55,25 @@ class LimitsKind(Kind):
 
 
 @dataclass(frozen=True)
+class PlaceKind(Kind):
+    """Two numbers from 0 to 1."""
+
+    def rule(self) -> str:
+        return "must be two numbers from 0 to 1"
+
+    def accepts(self) -> str:
+        return "Sequence[float]"
+
+    def accepted(self, value: Any) -> tuple[float, float]:
+        require(not isinstance(value, UNORDERED))
+        x, y = map(Number(at_least=0, at_most=1).accepted, value)
+        return x, y
+
+    def to_plain(self, name: str, value: Any) -> Mapping[str, object]:
+        return {name: list(value)}
+
+
+@dataclass(frozen=True)
 class EndColor(ColorKind):
     """The color of values beyond a limit. It has its own band, so adding or removing it changes levels."""
 
@@ -154,6 +173,15 @@ class Scalar(Row):
         128,
     )
     legend: Annotated[bool, Column(Boolean(), Tier.NOTHING, "Whether the display shows the legend.")] = True
+    legend_place: Annotated[
+        tuple[float, float] | None,
+        Column(
+            PlaceKind(),
+            Tier.NOTHING,
+            "The place of the legend from left to right and from top to bottom, 0 to 1; if absent, the corner"
+            " where it hides least.",
+        ),
+    ] = None
     surfaces: Annotated[
         tuple[str, ...] | None,
         Column(

@@ -120,9 +120,7 @@ class Layout:
     def widget_at(self, element: int, line: int) -> Widget | None:
         """The topmost widget at a place; headings and gaps are left out."""
         for widget in self.widgets:
-            left, top, right, bottom = widget.area
-            is_there = left <= element <= right and top <= line <= bottom
-            if is_there and not isinstance(widget, (Heading, Gap)):
+            if widget.has(element, line) and not isinstance(widget, (Heading, Gap)):
                 return widget
         return None
 
@@ -481,6 +479,8 @@ class Board:
 
     def _hint(self) -> str:
         lit, (element, line) = self._lit_widget(), self._pointer
+        if lit is not None and self.layout.wide is not None and lit.key == self._wide:
+            return f"{lit.label}: pick a value on the wide bar; a pick on the row takes the bar away"
         if lit is not None:
             return lit.why_not or lit.help or lit.label
         if self.held is not None:
@@ -488,7 +488,9 @@ class Board:
         if min(element, line) < 0 or self.is_covered(element, line):
             return self.screen.help
         handle = self.handle_at(element, line)
-        return handle.label if handle is not None else self.screen.hint(element, line)
+        if handle is None:
+            return self.screen.hint(element, line)
+        return f"{handle.label}: drag it, or click here and where it goes"
 
 
 def with_loads(entries: Bytes, loads: Sequence[tuple[int, Bytes]]) -> Bytes:

@@ -27,7 +27,7 @@ from autocolor.visibility.projection import focal_length
 from autocolor.widgets.bars import Bar
 from autocolor.widgets.items import SCREEN, YELLOW, Area, Item, area_of, lines
 from autocolor.widgets.menu import WORK
-from autocolor.widgets.widget import Button, Choice, Gap, Pair, Switch, Widget
+from autocolor.widgets.widget import Button, Choice, Gap, Pair, Switch, Widget, titled
 
 
 class LightsScreen(OverPicture):
@@ -134,12 +134,12 @@ class LightsScreen(OverPicture):
         before = self.session.light_name
         self.session.edit(self.session.scene.replace(lights=lights))
         self.session.choose_light(lights[-1].name)
-        self.session.tell(f"light {before} {done}: {lights[-1].name}")
+        self.session.tell(f"{titled('light', before)} {done}: {lights[-1].name}")
 
     def _remove(self) -> None:
         name = self.session.light_name
         self.session.edit(self.session.scene.without_light(name))
-        self.session.tell(f"light {name} removed; undo brings it back")
+        self.session.tell(f"{titled('light', name)} removed; undo brings it back")
 
 
 # Picking a plane: three points of the object, one after the other, for the plane of a new half-space.
@@ -327,4 +327,4 @@ def _put_row(session: Session, light: Light, half_space: HalfSpace) -> None:
 
 def _remove(session: Session, light: Light, name: str) -> None:
     session.change_light(light.name, half_spaces={name: None})
-    session.tell(f"half-space {name} removed; undo brings it back")
+    session.tell(f"{titled('half-space', name)} removed; undo brings it back")

@@ -54,7 +54,8 @@ class MappingScreen(OverPicture):
     title = "mapping"
     help = "How intensities become levels; click a surface in the picture to show its curve"
 
-    has_room_at_left = False
+    # The panel of the curve is at the lower left.
+    corners = ((1.0, 0.0),)
 
     def __init__(self, session: Session) -> None:
         super().__init__(session)
@@ -121,25 +122,23 @@ class MappingScreen(OverPicture):
             self._touched = handle.key
 
     def place(self, handle: Handle, element: int, line: int) -> None:
-        points, number = self._points(), handle.key
-        if isinstance(number, int) and number < len(points):
-            points = moved(points, number, *fractions_of(element, line))
-            self._put_points(points)
-            x, y = points[number]
-            self.session.tell(f"intensity {x:.2f}, level {y:.2f}")
+        if isinstance(handle.key, int):
+            self._move(handle.key, element, line)
 
     def pick(self, gesture: Gesture) -> None:
         if not PANEL.has(gesture.element, gesture.line):
             super().pick(gesture)
             return
-        points = self._points() or self._points_of_curve()
-        points, self._touched = added(points, *fractions_of(gesture.element, gesture.line))
-        self._put_points(points)
+        self._add(gesture)
 
     def drag(self, start: Gesture, last: Gesture, now: Gesture) -> None:
-        # A drag on the panel beside its points does not turn the object behind it.
         if not PANEL.has(start.element, start.line):
             super().drag(start, last, now)
+            return
+        if last is start:
+            self._add(start)
+        if self._touched is not None:
+            self._move(self._touched, now.element, now.line)
 
     def wheel(self, gesture: Gesture) -> None:
         if not PANEL.has(gesture.element, gesture.line):
@@ -149,7 +148,7 @@ class MappingScreen(OverPicture):
         if not PANEL.has(element, line):
             return super().hint(element, line)
         x, y = fractions_of(element, line)
-        return f"intensity {x:.2f}, level {y:.2f}: a click adds a point; points are dragged"
+        return f"intensity {x:.2f}, level {y:.2f}: a click or a drag makes a point here"
 
     def _points(self) -> CurvePoints:
         """The points of the curve; none if the curve has a name."""
@@ -158,6 +157,20 @@ class MappingScreen(OverPicture):
 
     def _put_points(self, points: CurvePoints) -> None:
         self._put({"mapping": points})
+
+    def _add(self, gesture: Gesture) -> None:
+        """Make a point at the place of a gesture. A curve with a name gets points first."""
+        points = self._points() or self._points_of_curve()
+        points, self._touched = added(points, *fractions_of(gesture.element, gesture.line))
+        self._put_points(points)
+
+    def _move(self, number: int, element: int, line: int) -> None:
+        """Move a point to a place, if the curve still has the point."""
+        if number < len(self._points()):
+            points = moved(self._points(), number, *fractions_of(element, line))
+            self._put_points(points)
+            x, y = points[number]
+            self.session.tell(f"intensity {x:.2f}, level {y:.2f}")
 
     def _points_of_curve(self) -> CurvePoints:
         """Points on the curve that is shown."""
@@ -348,16 +361,19 @@ def moved(points: CurvePoints, number: int, x: float, y: float) -> CurvePoints:
 def added(points: CurvePoints, x: float, y: float) -> tuple[CurvePoints, int]:
     """The points with a new point at fractions of intensity and level, and its number.
 
-    Its level is kept between the levels of its neighbors. If another point is closer than LEAST_APART, no
-    point is added, and the number of the other point is returned.
+    If another point is closer than LEAST_APART along the intensities, that point gets the new level instead.
+    Points below get at most the new level, and points above at least the new level.
     """
-    nearest = min(range(len(points)), key=lambda number: abs(points[number][0] - x))
-    if abs(points[nearest][0] - x) < LEAST_APART:
-        return points, nearest
-    number = sum(other < x for other, _ in points)
-    between = points[:number], points[number:]
-    y = min(max(y, between[0][-1][1]), between[1][0][1])
-    return (*between[0], (round(x, DIGITS), round(y, DIGITS)), *between[1]), number
+    number = min(range(len(points)), key=lambda number: abs(points[number][0] - x))
+    if abs(points[number][0] - x) < LEAST_APART:
+        x, above = points[number][0], points[number + 1 :]
+    else:
+        number = sum(other < x for other, _ in points)
+        above = points[number:]
+    x, y = round(x, DIGITS), round(y, DIGITS)
+    low = [(other, min(level, y)) for other, level in points[:number]]
+    high = [(other, max(level, y)) for other, level in above]
+    return (*low, (x, y), *high), number
 
 
 def removed(points: CurvePoints, number: int) -> CurvePoints:

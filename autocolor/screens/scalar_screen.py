@@ -13,6 +13,7 @@ import numpy as np
 
 from autocolor.checks import Color
 from autocolor.mapping.bands import colored_surfaces, own_limits
+from autocolor.mapping.legend import CORNERS
 from autocolor.scene.color_scales import COLOR_SCALES, REVERSED
 from autocolor.scene.columns import bar_within
 from autocolor.scene.kinds import in_digits
@@ -67,9 +68,21 @@ class ScalarScreen(OverPicture):
             *self._color_rows(scalar),
             Gap("bands gap"),
             *rows_of(scalar, self._put, self.session.world, leave_out=(*WITH_ROWS, *unused)),
+            self._place_row(scalar),
             Gap("surfaces gap"),
             *self._surface_rows(),
         ]
+
+    def _place_row(self, scalar: Scalar) -> Widget:
+        """Whether the legend has a place of its own."""
+        is_placed = scalar.legend_place is not None
+        return Switch(
+            "legend placed",
+            "The legend stays where it was dragged in the picture; else it stands where it hides least.",
+            "" if is_placed or scalar.legend else "the scalar shows no legend; switch it on first",
+            is_on=is_placed,
+            flip=lambda: self._put({"legend_place": None if is_placed else CORNERS[0]}),
+        )
 
     def _scale_rows(self, scalar: Scalar) -> list[Widget]:
         """The color scale, and whether it is reversed."""

@@ -32,7 +32,7 @@ from autocolor.scene.view import View
 from autocolor.sending import shown_colors
 from autocolor.studio import Studio
 from autocolor.widgets.rows import TableNames, World
-from autocolor.widgets.widget import short_name
+from autocolor.widgets.widget import short_name, titled
 from ramtek_emu import HostPort, instructions
 from ramtek_emu.errors import escaped
 
@@ -114,7 +114,9 @@ class Session:
         """The bounds of the object, from which bars get their range, and the names of the tables."""
         scene = self.scene
         if self._world is None or self._world[0] is not scene.mesh or self._world[1] != scene.parts:
-            self._world = scene.mesh, scene.parts, World(*scene.object_bounds, self._names)
+            low, high = (tuple(corner.tolist()) for corner in scene.mesh.bounds)
+            world = World(*scene.object_bounds, self._names, (low, high))
+            self._world = scene.mesh, scene.parts, world
         return self._world[2]
 
     def _names_in(self, table: str) -> tuple[str, ...]:
@@ -249,7 +251,7 @@ class Session:
     def light_alone(self, name: str) -> None:
         """Switch one light on and all others off."""
         self.edit(self.scene.only_lights(name))
-        self.tell(f"light {name} alone")
+        self.tell(f"{titled('light', name)} alone")
 
     def all_lights_on(self) -> None:
         """Switch all lights on."""

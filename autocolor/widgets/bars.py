@@ -66,7 +66,7 @@ class Bar(Widget):
 
     @property
     def typed(self) -> Typed:
-        return Typed(self.number, self._take)
+        return Typed("" if self.value is None else f"{self.value:.9g}", self._take)
 
     def _take(self, line: str) -> object:
         try:
@@ -92,7 +92,7 @@ class Bar(Widget):
 
     def _row_items(self, lit: bool) -> list[Item]:
         background = SLATE if lit else NIGHT
-        value = self._row_number + ("" if self.flip is None else BESIDE_BOX)
+        value = self.number + ("" if self.flip is None else BESIDE_BOX)
         items = self.labeled_row(lit, value)
         if self.flip is not None:
             items += box_items(self._box, self.value is not None, self.ink, background)
@@ -102,15 +102,6 @@ class Bar(Widget):
             end = track.left + round(self.share * (track.width - 1))
             items.append(filled(track._replace(right=end), YELLOW if lit else self.word))
         return items
-
-    @property
-    def _row_number(self) -> str:
-        """The number as it stands in a row: rounded to its step if more digits would cut the label."""
-        room = self.characters - len(self.label) - 1
-        number = self.number
-        if self.value is None or len(number) <= room - (0 if self.flip is None else len(BESIDE_BOX)):
-            return number
-        return number_text(rounded_to(self.value, self.step), self.step)
 
     def _wide_items(self, lit: bool) -> list[Item]:
         left, top, right, bottom = self.area
@@ -189,18 +180,22 @@ def rounded_to(value: float, step: float) -> float:
 
 
 def number_text(value: float, step: float) -> str:
-    """A number with as many decimals as its step, or as it needs, up to six significant digits.
+    """A number with as many decimals as its step, and a further decimal if it is not a whole number of steps.
 
-    >>> number_text(0.5, 0.01), number_text(20.0, 1), number_text(1.5, 1), number_text(1234567.0, 1)
-    ('0.50', '20', '1.5', '1.23457e+06')
+    So it is exact to a twentieth of a step or better; only a number that would be shown as 0 has more.
+
+    >>> [number_text(value, 0.1) for value in (20.0, 0.78, -1.60813, 0.00031, 1234567.0)]
+    ['20.0', '0.78', '-1.61', '0.00031', '1.23457e+06']
     """
     # Without a sign before zero.
     value += 0.0
     if abs(value) >= 1e6 or not math.isfinite(value):
         return f"{value:g}"
-    if rounded_to(value, step) != round(value, 9):
-        return f"{value:.6g}"
-    return f"{value:.{digits_of(step)}f}"
+    digits = digits_of(step)
+    text = f"{value:.{digits + 1}f}"
+    if value and not float(text):
+        return f"{value:.2g}"
+    return text[:-1].removesuffix(".") if text.endswith("0") else text
 
 
 def digits_of(step: float) -> int:
@@ -282,7 +277,7 @@ class LevelBar(Widget):
     """The levels of a surface, from the left or, of an upright bar, from below; a pick or a drag selects one.
 
     `words` has the word that shows each level. The area holds the levels and the lanes of the handle: above
-    and below, or at the left of an upright bar. The number stands beyond that lane.
+    and below, or at the left of an upright bar. The number stands beyond that lane; it is part of the handle.
     """
 
     words: Words = field(default_factory=lambda: np.zeros(2, np.uint16))
@@ -299,6 +294,25 @@ class LevelBar(Widget):
             return Area(left + LANE, top, right, bottom)
         return Area(left, top + LANE, right, bottom - LANE)
 
+    def has(self, element: int, line: int) -> bool:
+        return super().has(element, line) or self._number_area.has(element, line)
+
+    @property
+    def _number_area(self) -> Area:
+        """The area of the number, at the left of an upright bar."""
+        line = self.strip.bottom - self._along
+        return Area(
+            self.area.left - CHARACTER * len(self.number),
+            line - REACH,
+            self.area.left - 1,
+            line - REACH + CHARACTER_LINES - 1,
+        )
+
+    @property
+    def _along(self) -> int:
+        """The elements or lines from the lowest level to the handle."""
+        return half_up(self.level * (self._length - 1) / (len(self.words) - 1))
+
     def level_at(self, place: Place) -> int:
         """The level at a place; beyond the ends of the bar, the lowest or the highest level."""
         levels = levels_along(self._length, len(self.words))
@@ -311,7 +325,7 @@ class LevelBar(Widget):
 
     def items(self, lit: bool) -> list[Item]:
         strip, ink = self.strip, YELLOW if lit else WHITE
-        along = half_up(self.level * (self._length - 1) / (len(self.words) - 1))
+        along = self._along
         # The frame is seen beside dark levels, over a dark picture.
         items = [filled(strip.inset(-1), GRAY), level_strip(self.words.tobytes(), strip, self.upright)]
         if not self.upright:
@@ -321,8 +335,7 @@ class LevelBar(Widget):
         line = strip.bottom - along
         items.append(pointer(strip.left - 2, line, RIGHT, ink))
         if self.number:
-            left = self.area.left - CHARACTER * len(self.number)
-            items.append(text(self.number, left, line - REACH, ink, NIGHT))
+            items.append(text(self.number, *self._number_area[:2], ink, NIGHT))
         return items
 
     def pick(self, place: Place) -> object:

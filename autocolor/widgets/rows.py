@@ -29,7 +29,7 @@ from autocolor.scene.kinds import (
     in_digits,
 )
 from autocolor.scene.row_kinds import NamedRows, Nested, OneRowOf, Reference, References, Referring
-from autocolor.widgets.bars import Bar
+from autocolor.widgets.bars import Bar, rounded_to
 from autocolor.widgets.widget import Choice, Entry, Heading, Switch, Widget, short_label
 
 Put = Callable[[Mapping[str, object]], object]
@@ -65,6 +65,8 @@ class World(NamedTuple):
     low: Vector
     high: Vector
     names: TableNames = TableNames(lambda _: (), {})
+    everything: tuple[Vector, Vector] | None = None
+    """The bounds of the object with the stage; None for those of the object."""
 
     @property
     def size(self) -> float:
@@ -81,6 +83,18 @@ class World(NamedTuple):
             low, high = self.low[AXES.index(axis)], self.high[AXES.index(axis)]
         return bar_within(low - self.size, high + self.size)
 
+    def end_beyond(self, axis: str, sign: float, margin: float) -> float:
+        """A coordinate beyond which nothing is: below everything, or with a positive sign above it.
+
+        It is at least `margin` and less than two steps of the axis's bar away.
+        """
+        low, high = self.everything or (self.low, self.high)
+        step = self.range_of(axis).step
+        number = AXES.index(axis)
+        farthest = high[number] if sign > 0 else -low[number]
+        end = rounded_to((math.floor((farthest + margin) / step) + 1) * step, step)
+        return end if sign > 0 else -end
+
     def range_of_lengths(self, is_zero_left_out: bool) -> BarRange:
         """The usual range of a length: up to the whole size of the object."""
         usual = bar_within(0, self.size)
@@ -90,13 +104,14 @@ class World(NamedTuple):
 class _Menu(NamedTuple):
     """The context of the rows of a table row; `label` stands before the names of its columns.
 
-    `axis` is the axis of its coordinates, if it is a row for one axis.
+    `axis` is the axis of its coordinates, if it is a row for one axis, and `edge` the width of its edges.
     """
 
     put: Put
     world: World
     label: str = ""
     axis: str = ""
+    edge: float = 0.0
 
 
 def rows_of(row: Row, put: Put, world: World, leave_out: Sequence[str] = ()) -> list[Widget]:
@@ -140,9 +155,9 @@ def _rows_of_field(menu: _Menu, name: str, field: Field, value: Any) -> Iterator
     elif isinstance(kind, Nested) and kind.inline:
         yield from _rows_in(menu, value)
     elif isinstance(kind, Nested):
-        axis = name if name in AXES else ""
+        axis, edge = name if name in AXES else "", vars(value).get("edge_width", 0.0) if value else 0.0
         # The menu is narrow: put only the row's own name before the names of its fields.
-        inside = _Menu(put, menu.world, f"{name} ", axis)
+        inside = _Menu(put, menu.world, f"{name} ", axis, edge)
         yield from _rows_of_row(inside, shown, help, value)
     elif isinstance(kind, NamedRows):
         if value:
@@ -180,7 +195,7 @@ def _bar(menu: _Menu, label: str, name: str, field: Field, value: float | None) 
     flip: Callable[[], object] | None = None
     present = value
     if endless is not None:
-        limit = (menu.world.low if endless < 0 else menu.world.high)[AXES.find(axis)] if axis else 0.0
+        limit = menu.world.end_beyond(axis, endless, menu.edge) if axis else 0.0
         present = None if value == endless else value
         flip = partial(_put, put, name, limit if present is None else endless)
     elif field.is_optional:

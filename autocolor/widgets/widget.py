@@ -83,6 +83,11 @@ class Widget:
         """The text that can be typed over; None if there is none."""
         return None
 
+    def has(self, element: int, line: int) -> bool:
+        """Whether a place belongs to the widget."""
+        left, top, right, bottom = self.area
+        return left <= element <= right and top <= line <= bottom
+
     def at(self: SomeWidget, area: Area) -> SomeWidget:
         """The same widget at an area."""
         # All widgets are placed for each event; `replace` would take most of that time.
@@ -342,6 +347,15 @@ def short_label(label: str, most: int) -> str:
         if len(stem) + 1 < len(word):
             words[number] = f"{stem}."
     return " ".join(words)
+
+
+def titled(noun: str, name: str) -> str:
+    """A name after its noun; the name alone if it begins with the noun.
+
+    >>> titled("light", "key"), titled("light", "light 2")
+    ('light key', 'light 2')
+    """
+    return name if name.startswith(noun) else f"{noun} {name}"
 
 
 def short_name(name: str, most: int) -> str:

@@ -247,6 +247,7 @@ def scalars() -> st.SearchStrategy[Scalar]:
         above=st.none() | colors,
         missing=colors,
         legend=st.booleans(),
+        legend_place=st.none() | st.tuples(st.floats(0, 1), st.floats(0, 1)),
         surfaces=st.none() | st.sampled_from([("body",), ("glass", "body"), ()]),
         direction=directions,
         stripes=st.sampled_from([1.0, 12.0]),

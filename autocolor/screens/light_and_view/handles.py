@@ -110,7 +110,7 @@ def _handles(movable: MovablePoint, scene: Scene, views: OrthographicViews) -> I
     """The handles of a point in the views that show it."""
     point = movable.point_in(scene, views)
     assert point is not None
-    label = f"{movable.label}: {point_text(point)}"
+    label = f"{movable.label}: {point_text(point, views)}"
     for side in SIDES:
         element, line = (round(each) for each in views.position(side, point))
         if side.area.has(element, line):
@@ -129,13 +129,13 @@ def _handles_of_flaps(light: Light, views: OrthographicViews) -> Iterator[Handle
                 yield Handle(movable, *place, movable.label)
 
 
-def point_text(point: Vector) -> str:
-    """The coordinates of a point, for the message line.
+def point_text(point: Vector, views: OrthographicViews) -> str:
+    """The coordinates of a point, for the message line, as exact as the views can place it.
 
-    >>> point_text((4.02, -6.1, 5.0))
-    'x 4.02  y -6.1  z 5'
+    >>> point_text((4.02, -1.60813, 5.0), OrthographicViews((0.0, 0.0, 0.0), 20.0))
+    'x 4.02  y -1.61  z 5'
     """
-    return "  ".join(f"{axis} {value:.6g}" for axis, value in zip(AXES, point, strict=True))
+    return "  ".join(f"{axis} {views.rounded(value):g}" for axis, value in zip(AXES, point, strict=True))
 
 
 def _step(start: Vector, end: Vector) -> Vector:

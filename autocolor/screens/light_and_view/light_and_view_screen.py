@@ -49,7 +49,18 @@ from autocolor.widgets.items import (
     outline,
     text,
 )
-from autocolor.widgets.widget import Button, Choice, Gap, Pair, Place, Steps, Switch, Widget, box_items
+from autocolor.widgets.widget import (
+    Button,
+    Choice,
+    Gap,
+    Pair,
+    Place,
+    Steps,
+    Switch,
+    Widget,
+    box_items,
+    titled,
+)
 
 CLOSER: Final = 1.25
 """Assumed: the ratio of scales for each step of RESCALE."""
@@ -171,9 +182,9 @@ class LightAndViewScreen(Screen):
         self._moved = point
         if movable.what == FLAP:
             now = movable.point_in(session.scene, views) or point
-            session.tell(f"{movable.label} {now[AXES.index(movable.axis)]:g}")
+            session.tell(f"{movable.label} {views.rounded(now[AXES.index(movable.axis)]):g}")
         else:
-            session.tell(f"{movable.label}: {point_text(point)}")
+            session.tell(f"{movable.label}: {point_text(point, views)}")
 
     def pick(self, gesture: Gesture) -> None:
         if PICTURE_AREA.has(gesture.element, gesture.line):
@@ -396,7 +407,7 @@ def light_rows(
         rows.append(
             Switch(
                 f"{number} {light.name}",
-                f"Switch light {light.name} on or off; beside the box: choose it.",
+                f"Switch {titled('light', light.name)} on or off; beside the box: choose it.",
                 is_on=light.on,
                 flip=partial(edits.switch_light, number - 1),
                 choose=partial(choose, light.name),

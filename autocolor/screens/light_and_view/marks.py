@@ -390,11 +390,15 @@ class SideItems:
         taken = [self._label.area, area_of(LIDS + views.position(side, view.eye))]
 
         def compute() -> list[Numeral]:
-            return numerals([cross_of(views, side, *each) for each in others], side.area, taken)
+            return numerals(
+                [cross for each in others for cross in crosses_of(views, side, *each)], side.area, taken
+            )
 
         placed = self._numerals.of(compute, views, view, *chain.from_iterable(others))
         around = [area for cross, area in placed] + [cross.area for cross, _ in placed]
-        own = numerals([cross_of(views, side, *each) for each in ours], side.area, [*taken, *around])
+        own = numerals(
+            [cross for each in ours for cross in crosses_of(views, side, *each)], side.area, [*taken, *around]
+        )
         is_on = {number: light.on for number, light in others}
         return [
             *[numeral_item(each, WHITE if is_on[each.cross.number] else GRAY) for each in placed],
@@ -440,8 +444,11 @@ def numeral_item(numeral: Numeral, word: int) -> Item:
     return text(str(numeral.cross.number), numeral.area.left, numeral.area.top, word)
 
 
-def cross_of(views: OrthographicViews, side: ViewSide, number: int, light: Light) -> Cross:
-    """The cross of a light in one of the views, with the direction of its arrow."""
+def crosses_of(views: OrthographicViews, side: ViewSide, number: int, light: Light) -> list[Cross]:
+    """The cross of a light in one of the views, with the direction of its arrow, and the place of its aim.
+
+    Aims have numerals, too, because they may be closer together than their handles reach.
+    """
     element, line = views.position(side, light.position)
     end, arrow = arrow_end(views, light), (0.0, 0.0)
     if end is not None:
@@ -451,7 +458,10 @@ def cross_of(views: OrthographicViews, side: ViewSide, number: int, light: Light
         # An arrow that points at the viewer or away covers no place.
         if length > SHORTEST:
             arrow = right / length, down / length
-    return Cross(number, round(element), round(line), arrow)
+    crosses = [Cross(number, round(element), round(line), arrow)]
+    if light.aim is not None and end is not None:
+        crosses.append(Cross(number, round(to_element), round(to_line), (-arrow[0], -arrow[1])))
+    return crosses
 
 
 def lines_across(views: OrthographicViews, side: ViewSide, point: Vector) -> Item:

@@ -133,10 +133,10 @@ class OrthographicViews:
             (side.up, -1.0, line, middle[1], present[1]),
         ):
             if abs(now - picked) > 0.5:
-                moved[axis] = self._rounded(self.center[axis] + sign * (picked - center) / self.scale)
+                moved[axis] = self.rounded(self.center[axis] + sign * (picked - center) / self.scale)
         return (moved[0], moved[1], moved[2])
 
-    def _rounded(self, coordinate: float) -> float:
+    def rounded(self, coordinate: float) -> float:
         """The coordinate, bounded and rounded to decimals that tell tenths of a pixel; 0 has no sign."""
         rounded = round(coordinate, math.ceil(math.log10(5 * self.scale))) + 0.0
         return max(-LARGEST_COORDINATE, min(LARGEST_COORDINATE, rounded))

@@ -29,7 +29,9 @@ from autocolor.scene.lights import Light
 from autocolor.screens.screen import Handle
 from autocolor.screens.session import Session
 from autocolor.visibility.visible_points import VisiblePoints
+from autocolor.widgets.bars import number_text
 from autocolor.widgets.items import BLACK, SCREEN, YELLOW, Area, Item, area_of, segments
+from autocolor.widgets.rows import World
 
 HIGHLIGHT: Final = "highlight"
 
@@ -112,7 +114,7 @@ class LightHandles:
         if key.what == HIGHLIGHT:
             points = session.studio.sight.points
             self._highlight = _source_of(light), points, session.surface_name, (line, element)
-        session.tell(message_of(light, key.what))
+        session.tell(message_of(light, key.what, session.world))
 
     def _seen_light(self) -> Light | None:
         """The chosen light in world coordinates, if it is on and the finished picture is shown."""
@@ -197,18 +199,22 @@ def name_of(rim: Rim) -> str:
     return f"half-space {rim.half_space}" if isinstance(rim, Plane) else f"flap {rim[0]}, {rim[1]},"
 
 
-def message_of(light: Light, what: Literal["highlight"] | Rim) -> str:
-    """The message while a part of a light is placed."""
+def message_of(light: Light, what: Literal["highlight"] | Rim, world: World) -> str:
+    """The message while a part of a light is placed; coordinates have the digits of their bars."""
+
+    def shown(axis: str, value: float) -> str:
+        return number_text(value, world.range_of(axis).step)
+
     if what == HIGHLIGHT:
         places = zip("xyz", light.position, strict=True)
-        return f"{light.name}: " + "  ".join(f"{axis} {place:.2f}" for axis, place in places)
+        return f"{light.name}: " + "  ".join(f"{axis} {shown(axis, place)}" for axis, place in places)
     if what == CONE:
         return f"{light.name}: cone angle {light.cone_angle:.1f} degrees"
     if isinstance(what, Plane):
         half_space = next(each for each in light.half_spaces if each.name == what.half_space)
         places = zip("xyz", half_space.point, strict=True)
-        return f"{what.half_space}: " + "  ".join(f"{axis} {place:.2f}" for axis, place in places)
+        return f"{what.half_space}: " + "  ".join(f"{axis} {shown(axis, place)}" for axis, place in places)
     axis, end = what
     flap = flaps_of(light)[axis]
     assert flap is not None
-    return f"{light.name}: flap {axis}, {end} {getattr(flap, end):.2f}"
+    return f"{light.name}: flap {axis}, {end} {shown(axis, getattr(flap, end))}"

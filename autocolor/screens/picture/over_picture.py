@@ -12,7 +12,7 @@ from dataclasses import replace
 from typing import Any, ClassVar, NamedTuple
 
 from autocolor.arrays import Bytes, Words
-from autocolor.mapping.legend import GROUND, INK, Legend, legend
+from autocolor.mapping.legend import CORNERS, GROUND, INK, Corner, Legend, legend
 from autocolor.scene.surfaces import Paint
 from autocolor.screens.input import MIDDLE, Gesture, turn_between, wheel_ratio
 from autocolor.screens.picture.picture_edits import PictureEdits
@@ -28,8 +28,8 @@ class OverPicture(Screen):
     """A screen whose base is the picture at full size, or the picture of the state to compare with."""
 
     shows_picture = True
-    has_room_at_left: ClassVar[bool] = True
-    """Whether the legend stands at the left where the menu is at the right."""
+    corners: ClassVar[Sequence[Corner]] = CORNERS
+    """The corners where the legend may stand until it is moved."""
 
     def __init__(self, session: Session) -> None:
         super().__init__(session)
@@ -37,6 +37,8 @@ class OverPicture(Screen):
         self._items: Cached[Sequence[Item]] = Cached()
         self._legend: Legend | None = None
         """The legend that is shown."""
+        self._grip: tuple[int, int] | None = None
+        """From the pointer to the upper left corner of the legend, if the present drag moves the legend."""
 
     def base(self) -> Words:
         image = self.session.comparing.image
@@ -48,8 +50,7 @@ class OverPicture(Screen):
         is_beside_menu = self.has_menu or self.is_under_menu
 
         def draw() -> Sequence[Item]:
-            end, at_left = (MENU.left, self.has_room_at_left) if is_beside_menu else (None, False)
-            self._legend = legend(image, end, at_left)
+            self._legend = legend(image, MENU.left if is_beside_menu else None, self.corners)
             return legend_items(self._legend)
 
         return self._items.of(draw, image, is_beside_menu)
@@ -60,7 +61,9 @@ class OverPicture(Screen):
 
     def hint(self, element: int, line: int) -> str:
         pointed = self._pointed(element, line)
-        return self.help if pointed is None else pointed.message
+        if pointed is not None:
+            return pointed.message
+        return "the legend: drag it" if self._is_on_legend(element, line) else self.help
 
     def pick(self, gesture: Gesture) -> None:
         session = self.session
@@ -69,17 +72,26 @@ class OverPicture(Screen):
             return
         pointed = self._pointed(gesture.element, gesture.line)
         if pointed is None:
-            session.tell("the legend" if self._is_on_legend(gesture) else "the background")
+            on_legend = self._is_on_legend(gesture.element, gesture.line)
+            session.tell("the legend: drag it" if on_legend else "the background")
             return
         session.choose_surface(pointed.surface)
         session.part_name = pointed.part
         session.tell(pointed.message)
 
-    def _is_on_legend(self, gesture: Gesture) -> bool:
-        return self._legend is not None and self._legend.has(gesture.element, gesture.line)
+    def _is_on_legend(self, element: int, line: int) -> bool:
+        return self._legend is not None and self._legend.has(element, line)
 
     def drag(self, start: Gesture, last: Gesture, now: Gesture) -> None:
-        if start.button == MIDDLE or start.shift:
+        if last is start:
+            self._grip = None
+            if self._legend is not None and self._legend.has(start.element, start.line):
+                left, top, *_ = self._legend.swatches[0]
+                self._grip = left - start.element, top - start.line
+        if self._grip is not None and self._legend is not None:
+            place = self._legend.place_at(now.element + self._grip[0], now.line + self._grip[1])
+            self.session.edit(self.session.scene.with_scalar(legend_place=place))
+        elif start.button == MIDDLE or start.shift:
             self.edits.pan(now.element - last.element, now.line - last.line)
         elif start.control:
             self.edits.move(wheel_ratio((last.line - now.line) / 8))

@@ -14,6 +14,7 @@ from autocolor.scene.defaults import OBJECT_COLORS, default_view, framed, object
 from autocolor.scene.scene import Exposure, Scene
 from autocolor.scene.view import View
 from autocolor.screens.session import Session
+from autocolor.widgets.widget import titled
 
 # The object colors that a key steps through: the default colors of new surfaces, and a surface's own color.
 
@@ -208,7 +209,7 @@ class PictureEdits:
             return
         light = lights[number]
         self.session.edit(self.session.scene.with_light(light.name, on=not light.on))
-        self.session.tell(f"light {light.name} {'off' if light.on else 'on'}")
+        self.session.tell(f"{titled('light', light.name)} {'off' if light.on else 'on'}")
 
     def switch_exposure(self) -> None:
         """Hold the intensity ranges of the picture; if this method held them, restore the exposure before."""
@@ -228,7 +229,7 @@ class PictureEdits:
         count = max(1, len(self.session.studio.level_ranges))
         self.session.surface = (self.session.surface + step) % count
         self.session.tell(
-            f"surface {self.session.surface_name}"
+            titled("surface", self.session.surface_name)
             if self.session.surface_name
             else "the scene has no surface"
         )

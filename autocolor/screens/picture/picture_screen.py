@@ -14,7 +14,7 @@ from autocolor.screens.picture.picture_edits import SIDES
 from autocolor.screens.screen import Handle
 from autocolor.screens.session import PICTURE, Session
 from autocolor.widgets.items import SCREEN
-from autocolor.widgets.widget import Button, Choice, Gap, Pair, Steps, Switch, Widget
+from autocolor.widgets.widget import Button, Choice, Gap, Pair, Steps, Switch, Widget, titled
 
 TURN: Final = 5.0
 """Degrees for each step of a menu row that turns."""
@@ -110,7 +110,7 @@ class PictureScreen(OverPicture):
         switches: list[Widget] = [
             Switch(
                 light.name,
-                f"Switch light {light.name} on or off; beside the box: choose it.",
+                f"Switch {titled('light', light.name)} on or off; beside the box: choose it.",
                 is_on=light.on,
                 flip=partial(self.edits.switch_light, number),
                 choose=partial(self._choose_light, light.name),
@@ -123,7 +123,7 @@ class PictureScreen(OverPicture):
             return switches
         alone = Pair(
             "alone",
-            f"Switch on light {chosen} alone; or all lights.",
+            f"Switch on {titled('light', chosen)} alone; or all lights.",
             run=partial(session.light_alone, chosen),
             other="all on",
             run_other=session.all_lights_on,
@@ -132,4 +132,4 @@ class PictureScreen(OverPicture):
 
     def _choose_light(self, name: str) -> None:
         self.session.choose_light(name)
-        self.session.tell(f"light {name}")
+        self.session.tell(titled("light", name))

@@ -22,11 +22,12 @@ from autocolor.mapping.legend import (
     LETTER_LINES,
     MOST_TITLE,
     Legend,
-    bands_apart,
+    in_few_digits,
     laid_out,
     legend,
+    lines_of_band,
     numbers_beside,
-    numbers_between,
+    round_numbers,
     title_lines,
 )
 from autocolor.mapping.ranges import SCREENS
@@ -70,10 +71,10 @@ def test_it_tells_the_name_and_the_limits_beside_the_ends_of_the_bar() -> None:
 
 # If the legend changes on purpose, look at it, and copy the new numbers from the failure.
 PLACED = [
-    ({"limits": [-2, 6], "bands": 8}, 4236150687),
-    ({"limits": [0, 1], "bands": 3, "below": "red", "above": "blue"}, 3464469761),
-    ({"bands": 64, "scale": "turbo"}, 3575307316),
-    ({"name": "mean curvature", "bands": 5}, 2952231849),
+    ({"limits": [-2, 6], "bands": 8}, 107314004),
+    ({"limits": [0, 1], "bands": 3, "below": "red", "above": "blue"}, 3762902172),
+    ({"bands": 64, "scale": "turbo"}, 1305216673),
+    ({"name": "mean curvature", "bands": 5}, 1901399814),
 ]
 
 
@@ -99,18 +100,36 @@ def test_a_picture_has_a_legend_if_it_takes_at_most_two_fifths_of_its_width(limi
 
 def test_large_numbers_are_written_in_millions() -> None:
     labels = legend_of(shown(ball(limits=[0, 8e6], bands=2))).labels
-    assert [each.text for each in labels] == ["z", "x 1e6", "0", "4", "8"]
+    assert [each.text for each in labels] == ["z", "x 1e6", "5", "< 0"]
 
 
 def test_the_legend_names_the_colors_beyond_the_limits_if_they_are_used() -> None:
     texts = [each.text for each in legend_of(shown(ball(limits=[-1, 1], below="red", above="blue"))).labels]
-    assert {"above", "below"} <= set(texts)
-    assert not {"above", "below", "missing"} & {each.text for each in legend_of(shown(ball())).labels}
+    assert {"> 1", "< -1"} <= set(texts)
+    assert all(each.text[0] not in "<>" for each in legend_of(shown(ball())).labels)
+
+
+def test_a_limit_that_values_exceed_is_written_at_its_end_of_the_bar() -> None:
+    found = legend_of(shown(ball(limits=[-0.53, 0.53])))
+    bar = [each for each in found.swatches if each.word < SCREENS.first]
+    at = {each.text: each.top + LETTER_LINES // 2 for each in found.labels[1:]}
+    assert (at["< -0.53"], at["> 0.53"]) == (bar[0].bottom + 1, bar[-1].top)
+    assert {"-0.4", "0", "0.4"} <= set(at)
+    within = {each.text for each in legend_of(shown(ball(limits=[-1.5, 1.5]))).labels}
+    assert all(text[0] not in "<>" for text in within)
+
+
+def test_the_color_of_missing_values_is_named() -> None:
+    found = laid_out("z", Bands(0, 1, 4, 1, has_missing=True), 1, (480, 640), (0, 0))
+    assert found is not None
+    assert found.labels[-1].text == "no value"
 
 
 @given(st.integers(2, 256), st.sampled_from(["z", "gaussian curvature", "x" * 40, "a b c d e " * 9]))
 def test_all_of_it_is_inside_its_frame_and_the_frame_inside_the_picture(bands: int, name: str) -> None:
-    found = laid_out(name, Bands(-1234.5, 6789.1, bands, 1, True, True, True), 1, (480, 640), False)
+    found = laid_out(
+        name, Bands(-1234.5, 6789.1, bands, 1, True, True, True), 1, (480, 640), (1, 0), (True, True)
+    )
     assert found is not None
     frame = found.swatches[0]
     assert frame.left >= 0
@@ -153,8 +172,8 @@ def test_another_color_scale_leaves_it_and_other_limits_change_its_numbers_alone
 
 def test_it_stands_where_there_is_room() -> None:
     image = shown(ball())
-    right, left = legend_of(image).swatches[0], legend(image, at_left=True)
-    beside = legend(image, 504, False)
+    right, left = legend_of(image).swatches[0], legend(image, corners=[(0, 0)])
+    beside = legend(image, 504, [(1, 0)])
     assert left is not None
     assert beside is not None
     assert right.right == 640 - 9
@@ -166,7 +185,7 @@ def test_it_stands_where_there_is_room() -> None:
 
 @pytest.mark.parametrize(
     ("left", "right", "low", "corner"),
-    [(-9, 0, -9, (580, 8)), (0, 9, -9, (8, 8)), (-9, 9, 0, (580, 233))],
+    [(-9, 0, -9, (566, 8)), (0, 9, -9, (8, 8)), (-9, 9, 0, (573, 233))],
 )
 def test_it_hides_as_little_of_the_object_as_it_can(
     left: float, right: float, low: float, corner: tuple[int, int]
@@ -197,8 +216,8 @@ def test_bands_around_whole_numbers_have_these_beside_their_middles() -> None:
     found = legend_of(shown(ball(limits=[0.5, 4.5], bands=4)))
     bar = [each for each in found.swatches if each.word < SCREENS.first]
     _, *numbers = found.labels
-    assert [each.text for each in numbers] == ["1", "2", "3", "4"]
-    for number, band in zip(numbers, bar, strict=True):
+    assert [each.text for each in numbers] == ["1", "2", "3", "4", "< 0.5"]
+    for number, band in zip(numbers, bar, strict=False):
         assert abs(number.top + LETTER_LINES // 2 - (band.top + band.bottom) // 2) <= 1
 
 
@@ -210,15 +229,6 @@ def test_a_title_has_at_most_three_lines_that_fit(name: str) -> None:
     assert name.startswith(lines[0].removesuffix(".."))
 
 
-def test_bands_that_stand_for_whole_numbers_have_them_beside_their_middles() -> None:
-    found = legend_of(shown(ball(limits=[0.5, 4.5], bands=4)))
-    bar = [each for each in found.swatches if each.word < SCREENS.first]
-    _, *numbers = found.labels
-    assert [each.text for each in numbers] == ["1", "2", "3", "4"]
-    for number, band in zip(numbers, bar, strict=True):
-        assert abs(number.top + LETTER_LINES // 2 - (band.top + band.bottom) / 2) <= 1
-
-
 def test_it_goes_to_the_left_where_it_hides_far_less_of_the_object() -> None:
     scene = ball()
     x, y, z = scene.view.eye
@@ -228,51 +238,65 @@ def test_it_goes_to_the_left_where_it_hides_far_less_of_the_object() -> None:
         assert (legend_of(shown(moved)).swatches[0].left == 8) is is_left
 
 
-@given(st.integers(2, 256), st.integers(1, 24))
-def test_numbers_are_at_limits_of_bands_and_far_enough_apart_or_at_the_ends_alone(
-    bands: int, lines: int
-) -> None:
-    apart = bands_apart(bands, lines, 22)
-    assert bands % apart == 0
-    assert apart == bands or apart * lines >= 22
-
-
 @pytest.mark.parametrize(
-    ("low", "high", "count", "told", "exponent"),
+    ("values", "told", "exponent"),
     [
-        (0, 250, 4, ["0", "62.5", "125", "187.5", "250"], 0),
-        (-1, 1, 4, ["-1", "-0.5", "0", "0.5", "1"], 0),
-        (0, 1, 3, ["0", "0.333", "0.667", "1.000"], 0),
-        (0, 2e-6, 2, ["0", "1", "2"], -6),
-        (320.1, 8019584, 2, ["0.00", "4.01", "8.02"], 6),
-        (0, 45_000, 3, ["0", "15000", "30000", "45000"], 0),
-        (-0.3, 0.3, 2, ["-0.3", "0", "0.3"], 0),
-        (1e30, 3e30, 2, ["1", "2", "3"], 30),
-        (0, 2e-300, 2, ["0", "1", "2"], -300),
-        (0, 5e-324, 2, ["0", "2.47", "4.94"], -324),
+        ([0, 62.5, 125], ["0", "62.5", "125"], 0),
+        ([-1, -0.5, 0, 0.5, 1], ["-1", "-0.5", "0", "0.5", "1"], 0),
+        ([0, 1 / 3, 2 / 3, 1], ["0", "0.333", "0.667", "1.000"], 0),
+        ([0, 1e-6, 2e-6], ["0", "1", "2"], -6),
+        ([0, 15_000, 30_000, 45_000], ["0", "15000", "30000", "45000"], 0),
+        ([1e30, 2e30, 3e30], ["1", "2", "3"], 30),
+        ([0, 1e-300, 2e-300], ["0", "1", "2"], -300),
     ],
 )
-def test_numbers_are_written_in_few_digits(
-    low: float, high: float, count: int, told: list[str], exponent: int
-) -> None:
-    assert numbers_between(low, high, count) == (told, exponent)
+def test_numbers_are_written_in_few_digits(values: list[float], told: list[str], exponent: int) -> None:
+    assert in_few_digits(values, values[1] - values[0]) == (told, exponent)
 
 
 numbers = st.floats(-1e9, 1e9).filter(lambda value: value == 0 or abs(value) > 1e-9)
 
 
 @given(numbers, st.floats(1e-6, 1e9), st.integers(1, 16))
-def test_every_number_is_its_limit_to_a_twentieth_of_the_distance(
+def test_round_numbers_are_multiples_of_a_round_step_within_the_limits(
     low: float, extent: float, count: int
 ) -> None:
     high = low + extent
-    assume(low < high)
-    distance = (high - low) / count
-    told, exponent = numbers_between(low, high, count)
-    assert len(told) == count + 1
-    for number, text in enumerate(told):
-        wanted = low + (high - low) * number / count
-        assert abs(float(text) * 10.0**exponent - wanted) <= distance / 20 + 1e-9 * abs(wanted)
+    assume(low < high and extent > 1e-6 * abs(low))
+    values = round_numbers(low, high, count)
+    assert 2 <= len(values) <= count + 1
+    if values == [low, high]:
+        return
+    step = (values[-1] - values[0]) / (len(values) - 1)
+    mantissa = step / 10 ** math.floor(math.log10(step) + 1e-6)
+    assert any(mantissa == pytest.approx(wanted, rel=1e-6) for wanted in (1, 2, 5))
+    assert all(value / step == pytest.approx(round(value / step), abs=1e-2) for value in values)
+    assert low - 1e-6 * step <= values[0] <= low + step * 1.0001
+    assert high - step * 1.0001 <= values[-1] <= high + 1e-6 * step
+
+
+@given(numbers, st.floats(1e-6, 1e9), st.integers(2, 256))
+def test_numbers_are_far_enough_apart_and_each_is_what_it_says(low: float, extent: float, bands: int) -> None:
+    high = low + extent
+    assume(low < high and extent > 1e-6 * abs(low))
+    lines = lines_of_band(bands)
+    texts, exponent, places = numbers_beside(low, high, bands, lines, 22)
+    assert len(places) == 2 or all(after - before >= 11 for before, after in pairwise(places))
+    for text, place in zip(texts, places, strict=True):
+        value = low + (high - low) * place / (bands * lines)
+        assert abs(float(text) * 10.0**exponent - value) <= extent / (bands * lines) + extent / 20
+
+
+@given(st.integers(-100, 700), st.integers(-100, 500))
+def test_a_legend_is_where_it_was_put_and_inside(left: int, top: int) -> None:
+    def at(place: tuple[float, float]) -> Legend:
+        found = laid_out("z", Bands(0, 1, 8, 1), 1, (480, 640), place)
+        assert found is not None
+        return found
+
+    frame = at(at((0.3, 0.7)).place_at(left, top)).swatches[0]
+    right, down = at((0, 0)).room
+    assert frame[:2] == (min(max(left, 8), 8 + right), min(max(top, 8), 8 + down))
 
 
 @given(st.integers(-40, 40), st.integers(2, 256), st.integers(1, 24))

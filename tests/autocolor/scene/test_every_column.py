@@ -70,6 +70,7 @@ EDITS: dict[str, dict[str, Values]] = {
     "scalar": {
         "name": {"name": "stress"},
         "limits": {"name": "z", "limits": [-0.25, 0.5]},
+        "legend_place": {"name": "z", "legend_place": [0.25, 0.5]},
         "scale": {"name": "z", "scale": ["#000000", "#ff8000", "#ffffff"]},
         "bands": {"name": "z", "bands": 7},
         "shades": {"name": "z", "shades": 3},

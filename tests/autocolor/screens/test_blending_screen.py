@@ -11,6 +11,7 @@ from autocolor.screens.viewer import Viewer
 from autocolor.widgets.bars import LevelBar
 from autocolor.widgets.items import Area
 from autocolor.widgets.menu import MENU
+from autocolor.widgets.widget import Place
 from ramtek_emu import Ramtek9300
 from tests.autocolor.screens.painting_hand import PaintingHand, boxes_scene
 
@@ -64,6 +65,18 @@ def test_a_pick_on_the_bar_blends_from_its_level_on_at_once(hand: PaintingHand) 
         assert np.array_equal(hand.display.entries, hand.viewer.studio.entries)
         assert bar_is_right(hand)
     assert hand.paint.blend == 1
+
+
+def test_the_number_is_part_of_the_handle(hand: PaintingHand) -> None:
+    hand.click(bar_of(hand).strip.left, 200)
+    before, strip = hand.paint.blend, bar_of(hand).strip
+    label = bar_of(hand).area.left - 12
+    assert hand.viewer.board.layout.widget_at(label, 200) is not None
+    hand.drag((label, 200), (label, 150), (label, 120))
+    levels = hand.viewer.studio.level_ranges["box 0"].levels
+    assert hand.paint.blend > before
+    assert blend_level(hand.paint.blend, levels) == bar_of(hand).level_at(Place(strip.left, 120))
+    assert hand.viewer.board.layout.widget_at(label, 200) is None
 
 
 def test_only_entries_and_the_words_of_a_handle_are_sent(hand: PaintingHand) -> None:

@@ -127,15 +127,24 @@ def test_flaps_are_made_and_switched_and_keep_their_values(hand: Hand) -> None:
     assert (flap.minimum, flap.maximum, flap.on) == (-math.inf, math.inf, True)
 
 
-def test_the_ends_of_a_flap_are_endless_or_begin_at_the_object(hand: Hand) -> None:
+def test_the_ends_of_a_flap_are_endless_or_begin_where_they_cut_nothing(hand: Hand) -> None:
+    words = hand.viewer.studio.words
     hand.pick("x minimum", BOX)
     assert light_of(hand).flaps.x.minimum == -math.inf  # type: ignore[union-attr]
     assert hand.widget("x minimum").number == ""  # type: ignore[attr-defined]
     hand.pick("x minimum", BOX)
-    assert light_of(hand).flaps.x.minimum == 0  # type: ignore[union-attr]
+    low, high = (corner.tolist()[0] for corner in hand.viewer.studio.scene.mesh.bounds)
+    assert low - 0.1 < light_of(hand).flaps.x.minimum < low  # type: ignore[union-attr]
     hand.pick("x maximum", BOX)
     hand.pick("x maximum", BOX)
-    assert light_of(hand).flaps.x.maximum == 1  # type: ignore[union-attr]
+    assert high < light_of(hand).flaps.x.maximum < high + 0.1  # type: ignore[union-attr]
+    assert np.array_equal(hand.viewer.studio.words, words)
+
+
+def test_a_light_named_light_is_not_called_so_twice(hand: Hand) -> None:
+    hand.viewer.session.edit(hand.viewer.studio.scene.with_light("key", name="light"))
+    hand.pick("mirror", 0.9)
+    assert told(hand) == ("light removed; undo brings it back", False)
 
 
 def test_a_point_source_has_neither_cone_nor_concentration_and_says_why(hand: Hand) -> None:

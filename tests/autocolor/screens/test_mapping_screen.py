@@ -173,10 +173,31 @@ def test_ends_and_named_curves_have_nothing_to_remove(hand: Hand) -> None:
     assert len(points_of(hand)) == 5
 
 
+def test_a_drag_beside_the_points_makes_a_point_there_and_moves_it(hand: Hand) -> None:
+    hand.pick("straight")
+    before = scene_of(hand)
+    hand.drag(place_of(0.6, 0.8), place_of(0.62, 0.75), place_of(0.65, 0.7))
+    assert len(points_of(hand)) == 6
+    assert points_of(hand)[3] == pytest.approx((0.65, 0.7), abs=0.01)
+    undo(hand)
+    assert scene_of(hand) is before
+
+
+def test_the_pointer_says_what_a_drag_on_the_panel_will_do(hand: Hand) -> None:
+    hand.pick("straight")
+    hand.viewer.tell("")
+    for place, hint in (
+        ((0.5, 0.5), "drag it, or click here and where it goes"),
+        ((0.6, 0.2), "a click or a drag makes a point here"),
+    ):
+        hand.move(*place_of(*place))
+        assert hint in hand.viewer.board.messages[-1].text
+
+
 def test_the_panel_does_not_turn_the_object_behind_it(hand: Hand) -> None:
     before = scene_of(hand)
     hand.drag((PANEL.left + 2, PANEL.top + 2), (PANEL.left + 90, PANEL.top + 60))
-    assert scene_of(hand) is before
+    assert scene_of(hand).view == before.view
     hand.drag((400, 100), (430, 90))
     assert scene_of(hand).view != before.view
 
@@ -301,6 +322,7 @@ def test_whatever_is_done_the_curve_rises_from_end_to_end(acts: list[tuple[str, 
         elif act == "add":
             points, number = added(points, x, y)
             assert abs(points[number][0] - x) <= LEAST_APART
+            assert points[number][1] == pytest.approx(y, abs=1e-4)
         else:
             points = removed(points, number % len(points))
         assert is_a_curve(points)
@@ -322,13 +344,19 @@ def test_a_point_between_close_neighbors_moves_up_and_down_alone() -> None:
     assert moved(close, 2, 0.9, 0.5)[2] == (0.505, 0.5)
 
 
-def test_a_new_point_has_a_level_between_its_neighbors() -> None:
+def test_a_new_point_lands_where_it_was_put_and_others_make_way() -> None:
     points, number = added(STRAIGHT, 0.3, 0.9)
-    assert (points[number], number, len(points)) == ((0.3, 0.5), 2, 6)
+    assert number == 2
+    assert points == ((0.0, 0.0), (0.25, 0.25), (0.3, 0.9), (0.5, 0.9), (0.75, 0.9), (1.0, 1.0))
+    points, number = added(STRAIGHT, 0.6, 0.1)
+    assert number == 3
+    assert points == ((0.0, 0.0), (0.25, 0.1), (0.5, 0.1), (0.6, 0.1), (0.75, 0.75), (1.0, 1.0))
 
 
 def test_a_point_too_close_to_another_is_that_one() -> None:
-    assert added(STRAIGHT, 0.252, 0.9) == (STRAIGHT, 1)
+    points, number = added(STRAIGHT, 0.252, 0.9)
+    assert number == 1
+    assert points == ((0.0, 0.0), (0.25, 0.9), (0.5, 0.9), (0.75, 0.9), (1.0, 1.0))
 
 
 def test_ends_are_not_removed() -> None:

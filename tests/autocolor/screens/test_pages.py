@@ -17,17 +17,17 @@ from tests.autocolor.screens.boxes import boxes
 from tests.autocolor.widgets.drawing import checksum
 
 PAGES = {
-    "picture": 2488882130,
-    "light and view": 2470440211,
-    "lights": 906126466,
-    "reflectance": 790683841,
+    "picture": 2117192989,
+    "light and view": 498516100,
+    "lights": 595658517,
+    "reflectance": 2046627297,
     "mixing": 779791442,
     "blending": 3756060397,
-    "mapping": 3763509967,
-    "scalar": 769110931,
+    "mapping": 3227220103,
+    "scalar": 2308390448,
     "kept": 2040449627,
     "file": 2904581995,
-    "tutorial": 2372431904,
+    "tutorial": 3473960918,
     "entries": 3253356514,
     "help": 3524971317,
 }

@@ -11,7 +11,7 @@ from autocolor.checks import Color
 from autocolor.scene.color_scales import COLOR_SCALES
 from autocolor.scene.columns import fields_of
 from autocolor.scene.scalar import MeshScalar, Scalar
-from autocolor.screens.scalar_screen import NAMED, color_choice
+from autocolor.screens.scalar_screen import NAMED, ScalarScreen, color_choice
 from tests.autocolor.screens.boxes import boxes, hand_at, undo, words_are_those_of_the_scene
 from tests.autocolor.screens.hand import Hand
 
@@ -59,7 +59,34 @@ def test_every_scalar_of_the_mesh_and_every_computed_one_is_reached_by_clicks(ha
 def test_every_column_of_the_scalar_has_a_row(hand: Hand) -> None:
     hand.viewer.session.edit(hand.viewer.studio.scene.with_scalar(name="zebra"))
     rows = {"name": "scalar", "limits": "own range", "surfaces": "colored", "direction": "direction x"}
+    rows["legend_place"] = "legend placed"
     assert {rows.get(name, name) for name in fields_of(Scalar)} <= labels_of(hand)
+
+
+def test_the_legend_is_dragged_and_let_go_again(hand: Hand) -> None:
+    hand.viewer.session.edit(hand.viewer.studio.scene.with_scalar(name="z", legend=True))
+    screen = hand.viewer.board.screen
+    assert isinstance(screen, ScalarScreen)
+
+    def place() -> tuple[int, int]:
+        hand.viewer.board.page()
+        assert screen._legend is not None
+        return screen._legend.swatches[0][:2]
+
+    before = hand.viewer.studio.scene
+    left, top = place()
+    hand.viewer.tell("")
+    hand.move(left + 5, top + 20)
+    assert hand.viewer.board.messages[-1].text == "the legend: drag it"
+    hand.drag((left + 5, top + 20), (left - 90, top + 50), (left + 105, top + 80))
+    assert place() == (left + 100, top + 60)
+    assert hand.viewer.studio.scene.view == before.view
+    hand.pick("legend placed")
+    assert place() == (left, top)
+    undo(hand)
+    assert place() == (left + 100, top + 60)
+    undo(hand)
+    assert hand.viewer.studio.scene is before
 
 
 def test_only_scalars_that_are_computed_with_them_have_a_direction_and_stripes(hand: Hand) -> None:

@@ -8,6 +8,8 @@ from dataclasses import dataclass, field
 from typing import Annotated, Any, ClassVar
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from autocolor.checks import Color, Vector
 from autocolor.scene.columns import WORLD_UNITS, BarRange, Column, Row, Tier, fields_of, replaced
@@ -250,16 +252,29 @@ def test_an_absent_row_is_made_by_its_switch_and_then_switched(table: Table) -> 
     assert table.lamp.shutters.x == Shutter(on=False)
 
 
-def test_a_number_without_limit_begins_at_the_bound_of_the_object_on_that_side(table: Table) -> None:
+def test_a_number_without_limit_begins_beyond_everything_on_that_side() -> None:
     lamp = Lamp(shutters=Shutters(z=Shutter()))
     table = Table(lamp)
-    for label, bound in (("z low", 0.0), ("z high", 1.0)):
+    for label, bound in (("z low", -0.1), ("z high", 1.1)):
         assert table.bar(label).value is None
         table.bar(label).pick(Place(632, 8))
         assert table.bar(label).value == bound
-    assert table.lamp.shutters.z == Shutter(0.0, 1.0)
+    assert table.lamp.shutters.z == Shutter(-0.1, 1.1)
     table.bar("z low").pick(Place(632, 8))
-    assert table.lamp.shutters.z == Shutter(-math.inf, 1.0)
+    assert table.lamp.shutters.z == Shutter(-math.inf, 1.1)
+
+
+@given(st.floats(-1e3, 1e3), st.floats(0.01, 1e3), st.floats(0, 5))
+def test_the_end_beyond_everything_is_less_than_two_steps_away(
+    low: float, size: float, margin: float
+) -> None:
+    bottom, top = low - 1, low + size + 1
+    world = World((low,) * 3, (low + size,) * 3, everything=((bottom,) * 3, (top,) * 3))
+    for axis in "xyz":
+        step = world.range_of(axis).step
+        below, above = bottom - world.end_beyond(axis, -1, margin), world.end_beyond(axis, 1, margin) - top
+        for distance in (below, above):
+            assert margin - 1e-6 <= distance <= margin + 2 * step + 1e-6
 
 
 def test_a_point_without_size_has_a_range_too() -> None:

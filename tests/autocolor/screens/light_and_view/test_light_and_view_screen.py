@@ -395,7 +395,7 @@ def test_a_light_becomes_a_point_source_and_is_aimed_again_by_pointing() -> None
 def test_the_message_line_tells_what_is_where_the_pointer_is() -> None:
     hand = opened(boxed(KEY))
     hand.move(*place_of(hand, MovablePoint(EYE, "top")))
-    assert hand.viewer.board.messages[-1].text == "eye: x -2  y -3  z 2"
+    assert hand.viewer.board.messages[-1].text.startswith("eye: x -2  y -3  z 2: drag it, or click")
     hand.move(20, 440)
     assert hand.viewer.board.messages[-1].text.startswith("front: x ")
     hand.move(380, 100)

@@ -25,7 +25,7 @@ from autocolor.screens.light_and_view.marks import (
     arrow_end,
     chosen_items,
     cone_outline,
-    cross_of,
+    crosses_of,
     drawn_items,
     eye_marks,
     flap_marks,
@@ -188,8 +188,8 @@ def test_a_numeral_is_written_where_it_stands() -> None:
 
 def test_an_arrow_toward_the_viewer_is_in_no_place_s_way() -> None:
     light = Light("key", (0.0, 0.0, 5.0), aim=(0.0, 0.0, 0.0))
-    assert cross_of(VIEWS, TOP, 1, light).arrow == (0.0, 0.0)
-    assert cross_of(VIEWS, FRONT, 1, light).arrow == pytest.approx((0.0, 1.0))
+    assert crosses_of(VIEWS, TOP, 1, light)[0].arrow == (0.0, 0.0)
+    assert crosses_of(VIEWS, FRONT, 1, light)[0].arrow == pytest.approx((0.0, 1.0))
 
 
 def test_strokes_are_drawn_within_their_area_and_layers_without_strokes_are_left_out() -> None:

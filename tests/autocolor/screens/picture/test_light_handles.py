@@ -8,6 +8,7 @@ import pytest
 from autocolor import Light, Scene, Studio
 from autocolor.lighting.picking import cone_placed, highlight_placed, rims
 from autocolor.screens.picture.light_handles import HandleKey
+from autocolor.widgets.bars import number_text
 from autocolor.widgets.items import YELLOW
 from autocolor.widgets.menu import WORK
 from ramtek_emu import Ramtek9300
@@ -68,7 +69,11 @@ def test_a_highlight_that_is_picked_goes_where_the_second_pick_is(hand: Hand) ->
     hand.click(*PLACE)
     studio = hand.viewer.studio
     assert studio.highlight_of("key") == PLACE[::-1]
-    position = "  ".join(f"{axis} {place:.2f}" for axis, place in zip("xyz", key(hand).position, strict=True))
+    world = hand.viewer.session.world
+    position = "  ".join(
+        f"{axis} {number_text(place, world.range_of(axis).step)}"
+        for axis, place in zip("xyz", key(hand).position, strict=True)
+    )
     assert hand.viewer.message == f"key: {position}"
     undo(hand)
     assert scene_of(hand) is before
@@ -295,7 +300,7 @@ def test_what_can_be_grabbed_is_marked_before(at_lights: Hand) -> None:
     assert mark is not None
     assert max(abs(mark[0] - element - 2), abs(mark[1] - line)) <= REACH
     assert mark[::-1] in {(a, b) for a, b in rims(hand.viewer.studio.sight, "key")["cone"].tolist()}
-    assert hand.viewer.board.messages[-1].text == "end of the cone of key"
+    assert hand.viewer.board.messages[-1].text.startswith("end of the cone of key: drag it, or click")
 
 
 def test_the_highlight_of_a_light_that_follows_or_is_at_infinity_goes_where_it_is_picked(

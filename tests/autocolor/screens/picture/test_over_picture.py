@@ -61,7 +61,7 @@ def test_a_place_beyond_the_screen_is_the_background(hand: Hand, monkeypatch: py
 def test_a_click_on_the_legend_tells_that_it_is_one(tmp_path: Path) -> None:
     hand = hand_before(ball_scene().with_scalar(name="z"), tmp_path)
     hand.click(600, 100)
-    assert hand.viewer.message == "the legend"
+    assert hand.viewer.message == "the legend: drag it"
     hand.click(*BACKGROUND)
     assert hand.viewer.message == "the background"
 
