@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
-from autocolor.commands.scenes import SceneSource, ended, read, scene_options
+from autocolor.commands.scenes import SceneSource, ended, read, scene_options, tell_up
 from ramtek_emu.command_line import tell
 
 if TYPE_CHECKING:
@@ -30,6 +30,7 @@ Examples:
 def info(context: click.Context, source: SceneSource, as_json: bool) -> None:
     """Print the nodes, polygons, scalars, parts, surfaces, lights, view and intensities of SCENE."""
     report = read(source)
+    tell_up(report, source)
     facts = facts_of(report)
     if as_json:
         click.echo(json.dumps(facts, indent=2))

@@ -21,6 +21,7 @@ from autocolor.commands.scenes import (
     reframed,
     scene_options,
     set_option,
+    tell_up,
 )
 
 EXAMPLES: Final = """\b
@@ -84,6 +85,7 @@ def render(
 
     elements, lines = size
     report = reframed(read(source), elements / lines)
+    tell_up(report, source)
     original = with_normals(report.scene, normals)
     if hold_exposure:
         from autocolor.images import display_image

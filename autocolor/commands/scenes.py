@@ -8,6 +8,7 @@ from functools import wraps
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import click
+from click.core import ParameterSource
 
 from autocolor.commands.completion import complete_scenes, complete_settings
 from autocolor.commands.options import limit_option, print_log, verbose_option
@@ -104,6 +105,16 @@ def read(source: SceneSource) -> SceneReport:
     report = read_scene_with_report(source.path, up=source.up, scale=source.scale, surfaces=source.surfaces)
     tell(*(f"autocolor: {repair}" for repair in report.repairs))
     return report
+
+
+def tell_up(report: SceneReport, source: SceneSource) -> None:
+    """Print a line on stderr if the mesh seems to lie on its side, unless the user gave `--up`."""
+    from autocolor.files.scene_sources import hinted_up
+
+    context = click.get_current_context(silent=True)
+    is_given = context is not None and context.get_parameter_source("up") is ParameterSource.COMMANDLINE
+    if up := "" if is_given else hinted_up(source.path, report.scene.mesh):
+        tell(f"autocolor: {source.path} seems to lie on its side; try --up {up}, or give --up z")
 
 
 def ended(report: SceneReport, source: SceneSource) -> int:

@@ -121,7 +121,8 @@ class MeshFormat(Format):
 
     `written` returns the content of a single file; `write` writes several files into a folder, and returns
     them. `holds` are the MESH_EXTRAS that a written mesh keeps. Files that are `mapped` into memory are read
-    page by page, so their size has no limit.
+    page by page, so their size has no limit. `prior_of_y` is how often y is up in the files of others, from
+    -1 to 1 (see `meshes.up_axis`); None if the format says which axis is up.
     """
 
     read: MeshReader
@@ -130,13 +131,21 @@ class MeshFormat(Format):
     write: MeshWriter | None = None
     holds: frozenset[str] = frozenset(MESH_EXTRAS)
     mapped: bool = False
+    prior_of_y: float | None = None
 
+
+SIMULATION: Final = 0.0
+SCANNED: Final = 0.1
+MODELED: Final = 0.2
+PRINTED: Final = -0.1
+"""Assumed: the prior of y by the use of a format. Modelers write OBJ files mostly with y up, as do many
+scanners; printers build along z."""
 
 MESH_FORMATS: Final = (
     MeshFormat(
         "CSV", (".csv",), read_csv_tables, NODES_AND_POLYGONS, in_folder=CSV_FILES, write=write_csv_tables
     ),
-    MeshFormat("Movie.BYU", (".g", ".byu"), read_byu),
+    MeshFormat("Movie.BYU", (".g", ".byu"), read_byu, prior_of_y=SIMULATION),
     MeshFormat(
         "npy",
         (".npy",),
@@ -147,13 +156,29 @@ MESH_FORMATS: Final = (
         write=write_npy_tables,
         mapped=True,
     ),
-    MeshFormat("OBJ", (".obj",), read_obj, begins=begins_as_obj, written=obj_text, holds=frozenset((PARTS,))),
-    MeshFormat("OFF", (".off",), read_off, begins=begins_as_off),
-    MeshFormat("PLY", (".ply",), read_ply, begins=begins_as_ply, written=ply_bytes),
-    MeshFormat("STL", (".stl",), read_stl, begins=begins_as_stl),
+    MeshFormat(
+        "OBJ",
+        (".obj",),
+        read_obj,
+        begins=begins_as_obj,
+        written=obj_text,
+        holds=frozenset((PARTS,)),
+        prior_of_y=MODELED,
+    ),
+    MeshFormat("OFF", (".off",), read_off, begins=begins_as_off, prior_of_y=SCANNED),
+    MeshFormat("PLY", (".ply",), read_ply, begins=begins_as_ply, written=ply_bytes, prior_of_y=SCANNED),
+    MeshFormat("STL", (".stl",), read_stl, begins=begins_as_stl, prior_of_y=PRINTED),
     MeshFormat("tables", (SUFFIX,), read_table_file, written=table_file_bytes),
-    MeshFormat("VTK", (".vtk",), read_vtk, begins=begins_as_vtk),
-    *(MeshFormat(each.name, each.suffixes, partial(read_foreign, each)) for each in FOREIGN),
+    MeshFormat("VTK", (".vtk",), read_vtk, begins=begins_as_vtk, prior_of_y=SIMULATION),
+    *(
+        MeshFormat(
+            each.name,
+            each.suffixes,
+            partial(read_foreign, each),
+            prior_of_y=None if each.library == "trimesh" else SIMULATION,
+        )
+        for each in FOREIGN
+    ),
 )
 """All mesh formats. If several formats accept the first bytes of a file, the first format is used."""
 

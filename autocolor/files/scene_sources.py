@@ -27,6 +27,7 @@ from autocolor.files.formats import (
     suffixes_of,
 )
 from autocolor.files.meshes.repair import SCALES, UPS, Placement
+from autocolor.files.meshes.up_axis import seems_to_lie
 from autocolor.files.paths import PICTURE_SUFFIX, SCENE_FILE, STORE_SUFFIXES
 from autocolor.files.picture_file import read_picture
 from autocolor.files.reading import TableFiles, status_of
@@ -34,6 +35,7 @@ from autocolor.files.scene_report import SceneReport, scene_report
 from autocolor.files.scene_toml.scene_file import read_scene_file
 from autocolor.files.scene_toml.scene_meshes import MeshSource, keep_source
 from autocolor.scene.creation import MATERIALS, PARTS, SurfaceSource
+from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import Scene
 
 PathLike = str | os.PathLike[str]
@@ -188,6 +190,20 @@ def source_format(path: Path) -> tuple[Path, SceneFormat | MeshFormat]:
         f"{path}: a scene must be a folder, or {suffix_rule(path, scene_and_mesh_suffixes())};"
         " name one of these"
     )
+
+
+def hinted_up(path: PathLike, mesh: Mesh) -> str:
+    """The axis that seems to be up in a file whose mesh was read with z up and seems to lie on its side.
+
+    Empty if the mesh seems to stand, or if the file or its format says which axis is up.
+    """
+    try:
+        _, file_format = source_format(Path(path))
+    except InputError:
+        # The file may have gone since.
+        return ""
+    prior = file_format.prior_of_y if isinstance(file_format, MeshFormat) else None
+    return "y" if prior is not None and seems_to_lie(mesh, prior) else ""
 
 
 def scene_and_mesh_suffixes() -> tuple[str, ...]:

@@ -18,8 +18,10 @@ from autocolor.errors import InputError, UsageError
 from autocolor.files.paths import SCENE_FILE, file_stem, free_path
 from autocolor.files.rig_file import RIG_SUFFIX, is_rig, read_rig, write_rig
 from autocolor.files.scene_files import MESH, kind_of
+from autocolor.files.scene_sources import hinted_up
 from autocolor.files.stamps import look_at
 from autocolor.files.state import note_file
+from autocolor.journal.places import Source
 from autocolor.mapping.display_image import DisplayImage
 from autocolor.scene.changes import LightChanges, PaintChanges, SurfaceChanges
 from autocolor.scene.lights import Light
@@ -92,6 +94,8 @@ class Session:
         """The name of the part that was pointed at last; empty at first."""
         self._light = ""
         self._world: tuple[Mesh, tuple[Part, ...], World] | None = None
+        self._up: tuple[Mesh, Source, str] | None = None
+        """The mesh and the source that were last looked at, and the axis that seems to be up."""
         self._names = TableNames(self._names_in, {})
         self._refused_to_leave: Scene | None = None
         """The scene that the user was last warned about when leaving would have discarded its changes."""
@@ -265,6 +269,28 @@ class Session:
         """Take this up axis and scale for the mesh files that are opened from now on."""
         self.mesh_up, self.mesh_scale = up, scale
 
+    @property
+    def hinted_up(self) -> str:
+        """The axis that seems to be up in the mesh file that was opened; empty if the mesh seems to stand."""
+        source, mesh = self.studio.history.place.source, self.scene.mesh
+        if source is None or source.up != "z":
+            return ""
+        if self._up is None or self._up[0] is not mesh or self._up[1] != source:
+            self._up = mesh, source, hinted_up(source.path, mesh)
+        return self._up[2]
+
+    @property
+    def lying(self) -> str:
+        """The hint of a mesh that seems to lie on its side, and the label of its row; else empty."""
+        return f"lying? up: {self.hinted_up}" if self.hinted_up else ""
+
+    def stand_up(self) -> None:
+        """Read the mesh file again with the axis up that seems to be up, as one step to undo."""
+        source, up = self.studio.history.place.source, self.hinted_up
+        if source is not None and up:
+            self.studio.open(source.path, up=up, scale=source.scale, surfaces=source.surfaces)
+            self.tell(f"read again with {up} up; undo goes back")
+
     def open(self, path: Path) -> None:
         """Open a file or a folder as one step to undo: a scene, a mesh, a picture, or a rig of lights.
 
@@ -282,7 +308,7 @@ class Session:
         else:
             self.studio.open(path)
         note_file(path.resolve())
-        self.tell(f"opened {path.name}; undo goes back")
+        self.tell("; ".join(part for part in (f"opened {path.name}", self.lying, "undo goes back") if part))
 
     def reopen(self) -> None:
         """Read the scene's file again, as one step to undo. Raises UsageError or InputError."""

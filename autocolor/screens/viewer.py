@@ -152,7 +152,8 @@ class Viewer:
         self._mouse.forget()
         self._sheet.forget()
         self._unit.show()
-        self.session.tell("F1: help; Tab or the right edge: the menu", persistent=True)
+        lying = f"; {self.session.lying}" if self.session.lying else ""
+        self.session.tell(f"F1: help; Tab or the right edge: the menu{lying}", persistent=True)
         self._update()
 
     @property

@@ -93,6 +93,29 @@ def sphere(columns: int = 32, rows: int = 16, radius: float = 1.0) -> Mesh:
     return Mesh(np.array(coordinates), np.array(quads), np.zeros(len(quads), np.intp), ("sphere",))
 
 
+LYING = """\
+v -2 0 -2
+v 2 0 -2
+v 2 0 2
+v -2 0 2
+v 0 5 0
+v -1 0 -1
+v 1 0 -1
+v 1 0 1
+v -1 0 1
+f 1 2 5
+f 2 3 5
+f 3 4 5
+f 4 1 5
+f 1 2 7 6
+f 2 3 8 7
+f 3 4 9 8
+f 4 1 6 9
+f 6 7 8 9
+"""
+"""An OBJ file: a pyramid with y up, which lies on its side when it is read with z up."""
+
+
 def ramp(count: int) -> npt.NDArray[np.float32]:
     """Intensities from 0 to 1."""
     return np.linspace(0, 1, count, dtype=np.float32)

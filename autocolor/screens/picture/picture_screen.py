@@ -55,6 +55,7 @@ class PictureScreen(OverPicture):
     def rows(self) -> Sequence[Widget]:
         session, edits = self.session, self.edits
         return [
+            *self._up_rows(),
             surface_row(
                 session,
                 "The surface whose colors and reflectance you change; a click in the picture chooses, too.",
@@ -103,6 +104,12 @@ class PictureScreen(OverPicture):
                 "leave", "Leave the program; you are asked first about unsaved changes.", run=session.leave
             ),
         ]
+
+    def _up_rows(self) -> list[Widget]:
+        """The row of a mesh that seems to lie on its side."""
+        session = self.session
+        help = f"The mesh seems to lie on its side: read it again with {session.hinted_up} up, or do nothing."
+        return [Button(session.lying, help, run=session.stand_up)] if session.lying else []
 
     def _light_rows(self) -> list[Widget]:
         session = self.session

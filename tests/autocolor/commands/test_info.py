@@ -10,7 +10,7 @@ from autocolor import read_scene, render, write_picture
 from autocolor.images import display_image
 from autocolor.scene.scalar import MeshScalar
 from tests.autocolor.commands.conftest import Run
-from tests.autocolor.meshes import wall_scene
+from tests.autocolor.meshes import LYING, wall_scene
 
 
 def test_the_facts_stand_on_stdout_and_nothing_on_stderr(folder: Path, run: Run) -> None:
@@ -99,3 +99,15 @@ def test_what_cannot_be_read_gives_no_facts(folder: Path, run: Run, name: str, c
     ran = run("info", name, "--json")
     assert (ran.code, ran.out) == (code, "")
     assert ran.err.startswith("autocolor: ")
+
+
+@pytest.mark.parametrize("command", ["info", "render"])
+def test_a_mesh_that_lies_is_hinted_unless_up_is_given(folder: Path, run: Run, command: str) -> None:
+    more = () if command == "info" else ("--save", "out.npz", "--force")
+    Path("flag.obj").write_text(LYING)
+    hint = "autocolor: flag.obj seems to lie on its side; try --up y, or give --up z"
+    assert hint in run(command, "flag.obj", *more).err.splitlines()
+    for up in "yz":
+        assert "lie" not in run(command, "flag.obj", "--up", up, *more).err
+    Path("scene.toml").write_text('[[mesh]]\nfile = "flag.obj"\n')
+    assert "lie" not in run(command, "scene.toml", *more).err

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from autocolor import Light, Scene, read_scene, write_rig, write_scene
@@ -11,7 +12,7 @@ from autocolor.screens.file_screen import LEFT, MOST_ROWS, RIGHT, FileRow
 from autocolor.screens.session import PICTURE
 from autocolor.widgets.menu import WORK
 from autocolor.widgets.widget import Choice
-from tests.autocolor.meshes import wall_scene
+from tests.autocolor.meshes import LYING, wall_scene
 from tests.autocolor.screens.boxes import boxes, hand_at, told, undo
 from tests.autocolor.screens.hand import Hand
 
@@ -43,6 +44,10 @@ def rows_of(hand: Hand, recent: bool = False) -> dict[str, FileRow]:
     column = RIGHT if recent else LEFT
     rows = hand.viewer.board.screen.widgets()
     return {row.shown: row for row in rows if isinstance(row, FileRow) and column.covers(row.area)}
+
+
+def labels(hand: Hand) -> list[str]:
+    return [widget.label for widget in hand.viewer.board.widgets()]
 
 
 def pick(hand: Hand, name: str, recent: bool = False) -> None:
@@ -79,6 +84,34 @@ def test_a_file_in_a_folder_below_is_opened(hand: Hand) -> None:
     pick(hand, "deeper")
     pick(hand, "triangle.obj")
     assert scene_of(hand).name == "triangle"
+
+
+def test_a_mesh_that_lies_is_hinted_and_set_up_by_a_row_as_one_step(hand: Hand, folder: Path) -> None:
+    before = scene_of(hand)
+    (folder / "spire.obj").write_text(LYING)
+    hand.pick("refresh")
+    pick(hand, "spire.obj")
+    lying = scene_of(hand)
+    assert told(hand) == ("opened spire.obj; lying? up: y; undo goes back", False)
+    hand.open_menu()
+    hand.pick("lying? up: y")
+    assert told(hand) == ("read again with y up; undo goes back", False)
+    assert np.ptp(scene_of(hand).mesh.coordinates, axis=0).tolist() == [4, 4, 5]
+    assert "lying? up: y" not in labels(hand)
+    undo(hand)
+    assert scene_of(hand) is lying
+    assert "lying? up: y" in labels(hand)
+    undo(hand)
+    assert scene_of(hand) is before
+    assert "lying? up: y" not in labels(hand)
+
+
+def test_a_mesh_that_is_read_with_an_axis_is_not_hinted(hand: Hand, folder: Path) -> None:
+    (folder / "spire.obj").write_text(LYING)
+    hand.viewer.session.place_meshes("y", 1.0)
+    hand.pick("refresh")
+    pick(hand, "spire.obj")
+    assert told(hand) == ("opened spire.obj; undo goes back", False)
 
 
 def test_a_rig_is_put_on_the_scene_and_fitted(hand: Hand) -> None:

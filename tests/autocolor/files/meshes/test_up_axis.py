@@ -1,0 +1,112 @@
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+from autocolor import Mesh
+from autocolor.arrays import Floats
+from autocolor.files.formats import MESH_FORMATS
+from autocolor.files.meshes.up_axis import _rests, _symmetries, seems_to_lie
+from tests.autocolor.meshes import cube, sphere
+
+OBJ = next(each.prior_of_y for each in MESH_FORMATS if each.name == "OBJ") or 0.0
+PRIORS = sorted({each.prior_of_y for each in MESH_FORMATS if each.prior_of_y is not None})
+
+
+replaced = dataclasses.replace
+
+
+def box(x: tuple[float, float], y: tuple[float, float], z: tuple[float, float]) -> Mesh:
+    ranges = np.array([x, y, z])
+    unit = cube()
+    return replaced(unit, coordinates=ranges[:, 0] + unit.coordinates * np.ptp(ranges, axis=1))
+
+
+def joined(*boxes: Mesh) -> Mesh:
+    named = [replaced(each, part_names=(f"part {number}",)) for number, each in enumerate(boxes)]
+    return Mesh.joined(named)
+
+
+def bottle() -> Mesh:
+    """A bottle with a neck, z up on the ground."""
+    turn = 2 * math.pi * np.arange(16) / 16
+    radii, heights = np.array([0.01, 0.3, 0.3, 0.1, 0.1]), np.array([0, 0, 0.7, 0.8, 1])
+    ring = np.stack([np.cos(turn), np.sin(turn)])
+    rings = [
+        np.stack([r * ring[0], r * ring[1], h + 0 * turn], axis=1)
+        for r, h in zip(radii, heights, strict=True)
+    ]
+    first = np.arange(64)
+    right = first // 16 * 16 + (first + 1) % 16
+    return Mesh(np.concatenate(rings), np.stack([first, right, right + 16, first + 16], axis=1))
+
+
+def car() -> Mesh:
+    """A body and a cabin on four wheels, along x."""
+    wheels = [box((x, x + 0.6), (y, y + 0.2), (0, 0.6)) for x in (-1.6, 1.1) for y in (-0.85, 0.65)]
+    return joined(box((-2, 2), (-0.8, 0.8), (0.3, 0.8)), box((-1.2, 1), (-0.7, 0.7), (0.8, 1.4)), *wheels)
+
+
+def chair() -> Mesh:
+    legs = [box((x, x + 0.05), (y, y + 0.05), (0, 0.5)) for x in (-0.25, 0.2) for y in (-0.25, 0.2)]
+    return joined(
+        box((-0.25, 0.25), (-0.25, 0.25), (0.5, 0.55)), box((-0.25, 0.25), (0.2, 0.25), (0.55, 1)), *legs
+    )
+
+
+def with_y_up(mesh: Mesh) -> Mesh:
+    """The mesh as a modeler with y up writes it."""
+    x, y, z = mesh.coordinates.T
+    return replaced(mesh, coordinates=np.stack([x, z, -y], axis=1))
+
+
+@pytest.mark.parametrize("standing", [bottle(), car(), chair()], ids=["bottle", "car", "chair"])
+@pytest.mark.parametrize("prior", PRIORS)
+def test_an_object_that_lies_is_noticed_and_one_that_stands_is_not(standing: Mesh, prior: float) -> None:
+    assert seems_to_lie(with_y_up(standing), prior)
+    assert not seems_to_lie(standing, prior)
+
+
+@pytest.mark.parametrize("standing", [bottle(), car(), chair()], ids=["bottle", "car", "chair"])
+def test_neither_the_size_of_an_object_nor_a_place_off_the_ground_hides_that_it_lies(standing: Mesh) -> None:
+    for lying, factor in ((with_y_up(standing), 1e-12), (with_y_up(standing), 1e12)):
+        assert seems_to_lie(replaced(lying, coordinates=lying.coordinates * factor), OBJ)
+    moved = with_y_up(standing)
+    assert seems_to_lie(replaced(moved, coordinates=moved.coordinates + np.array([3.0, 5.0, 7.0])), OBJ)
+
+
+@pytest.mark.parametrize("prior", PRIORS)
+def test_an_object_without_clues_is_not_hinted(prior: float) -> None:
+    for mesh in (sphere(), joined(cube(), cube(2.0)), Mesh(np.eye(3), np.array([[0, 1, 2]]))):
+        assert not seems_to_lie(mesh, prior)
+
+
+def centered(mesh: Mesh) -> Floats:
+    low, high = mesh.bounds
+    points: Floats = (mesh.coordinates - (low + high) / 2) / (high - low).max()
+    return points
+
+
+def test_the_symmetry_of_a_mirrored_object_is_1_and_of_a_pyramid_less() -> None:
+    assert _symmetries(centered(sphere())) == [1, 1, 1]
+    x, y, z = _symmetries(centered(bottle()))
+    assert (x, y) == (1, 1)
+    assert z < 0.2
+
+
+def test_the_rest_of_a_box_is_the_root_of_its_faces() -> None:
+    # The faces are 2, 4 and 8; the rest is face / sqrt(face * 8), at both ends.
+    rests = _rests(centered(box((0, 4), (0, 2), (0, 1))))
+    assert np.array(rests) == pytest.approx(np.sqrt([[2 / 8, 2 / 8], [4 / 8, 4 / 8], [1.0, 1.0]]))
+    assert _rests(centered(bottle()))[2] == pytest.approx(
+        (math.sqrt(0.36 / 0.6), 0.04 / math.sqrt(0.36 * 0.6))
+    )
+
+
+def test_only_files_of_others_have_a_prior() -> None:
+    assert {each.name for each in MESH_FORMATS if each.prior_of_y is None} == {
+        "CSV", "npy", "tables", "glTF", "glTF text", "3MF",
+    }  # fmt: skip
