@@ -87,6 +87,15 @@ def object_bounds(mesh: Mesh, parts: Sequence[Part]) -> tuple[Floats, Floats]:
     return mesh.bounds if numbers is None else bounds_of(mesh.coordinates_of_parts(numbers))
 
 
+def stage_top(mesh: Mesh, parts: Sequence[Part]) -> float:
+    """The largest z coordinate of the stage; minus infinity without a stage beside the object."""
+    numbers = _object_parts(mesh, parts)
+    if numbers is None:
+        return -math.inf
+    stage = [number for number in mesh.parts_in_use if number not in numbers]
+    return float(mesh.coordinates_of_parts(stage)[:, 2].max())
+
+
 def _object_parts(mesh: Mesh, parts: Sequence[Part]) -> Sequence[int] | None:
     """The part numbers of the object; None for the whole mesh."""
     numbers = [number for number in mesh.parts_in_use if not parts[number].stage]

@@ -235,6 +235,7 @@ class LightAndViewScreen(Screen):
             ),
             Steps("angle", "ANGLE: turn the picture.", step=self._tilt, signs=("<", ">")),
             Button("frame", "Move the eye so that the object fills the picture.", run=self.edits.rescale),
+            Button("as opened", "Look as the scene's file says.", run=self.edits.as_opened),
         ]
 
     def fit(self) -> None:

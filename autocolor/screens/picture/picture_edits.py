@@ -10,9 +10,10 @@ import numpy as np
 
 from autocolor.arrays import Floats
 from autocolor.checks import Vector
-from autocolor.scene.defaults import OBJECT_COLORS, default_view, framed, object_bounds
+from autocolor.scene.defaults import OBJECT_COLORS, default_view, framed, object_bounds, stage_top
 from autocolor.scene.scene import Exposure, Scene
 from autocolor.scene.view import View
+from autocolor.screens.screen import Cached
 from autocolor.screens.session import Session
 from autocolor.widgets.widget import titled
 
@@ -40,6 +41,9 @@ def color_after(present: str, own: str, step: int) -> str:
 HIGHEST: Final = math.radians(85)
 """Assumed: the largest elevation; closer to the vertical, a small step would spin the picture."""
 
+ABOVE_STAGE: Final = 0.01
+"""Assumed: how far an eye stays above the stage, as a part of its distance from the target."""
+
 SIDES: Final[dict[str, Vector | None]] = {
     "front": (0.0, -1.0, 0.0),
     "side": (1.0, 0.0, 0.0),
@@ -54,15 +58,20 @@ in the side view, x to the right and y up in the top view.
 """
 
 
-def turned(scene: Scene, right: float, up: float) -> View:
-    """The view with the eye moved around the target by degrees to the right and up, at the same distance."""
+def turned(scene: Scene, right: float, up: float, top: float = -math.inf) -> View:
+    """The view with the eye moved around the target by degrees to the right and up, at the same distance.
+
+    An eye above the z coordinate `top`, that of the stage, stays above it, as in `moved` and `panned`.
+    """
     target = np.array(target_of(scene))
     away = np.array(scene.view.eye) - target
     distance = float(np.linalg.norm(away)) or 1.0
     azimuth = _azimuth(scene.view, away) + math.radians(right)
     before = math.asin(max(-1.0, min(1.0, float(away[2]) / distance)))
+    lowest = max(-1.0, (lowest_eye(scene, top) - float(target[2])) / distance)
     elevation = max(-HIGHEST, min(HIGHEST, before + math.radians(up)))
-    # At the highest elevation, rounding would make a slightly different view.
+    elevation = max(elevation, min(before, math.asin(min(1.0, lowest))))
+    # At the highest and lowest elevation, rounding would make a slightly different view.
     if up and math.isclose(elevation, before, abs_tol=1e-9):
         return scene.view
     horizontal = math.cos(elevation)
@@ -81,13 +90,26 @@ def _azimuth(view: View, away: Floats) -> float:
     return math.atan2(away[1], away[0])
 
 
-def moved(scene: Scene, ratio: float) -> View:
-    """The view with the distance of the eye from the target multiplied by a ratio."""
+def lowest_eye(scene: Scene, top: float) -> float:
+    """The least z coordinate that the eye may move to, for a stage with this `top`."""
+    eye = scene.view.eye
+    if eye[2] <= top:
+        return -math.inf
+    return min(eye[2], top + ABOVE_STAGE * math.dist(eye, target_of(scene)))
+
+
+def moved(scene: Scene, ratio: float, top: float = -math.inf) -> View:
+    """The view with the distance of the eye from the target multiplied by a ratio.
+
+    At the stage, the eye slides along it.
+    """
     target = np.array(target_of(scene))
-    return scene.view.replace(eye=_vector(target + (np.array(scene.view.eye) - target) * ratio))
+    eye = target + (np.array(scene.view.eye) - target) * ratio
+    eye[2] = max(eye[2], lowest_eye(scene, top))
+    return scene.view.replace(eye=_vector(eye))
 
 
-def panned(scene: Scene, right: float, down: float, lines: int) -> View:
+def panned(scene: Scene, right: float, down: float, lines: int, top: float = -math.inf) -> View:
     """The view moved sideways, so that the target point moves by elements and lines in the picture.
 
     `lines` is the number of lines of the picture.
@@ -98,6 +120,11 @@ def panned(scene: Scene, right: float, down: float, lines: int) -> View:
     depth = float((target - eye) @ axes[2])
     step = 2 * depth * math.tan(math.radians(view.field_of_view) / 2) / lines
     shift = -step * (right * axes[0] + down * axes[1])
+    missing = lowest_eye(scene, top) - float(eye[2] + shift[2])
+    if missing > 0:
+        # The steepest direction in the picture plane: only a shift along it changes the height.
+        steepest = np.array([0.0, 0.0, 1.0]) - axes[2, 2] * axes[2]
+        shift += steepest * missing / steepest[2]
     return view.replace(eye=_vector(eye + shift), target=_vector(target + shift))
 
 
@@ -138,22 +165,45 @@ class PictureEdits:
         """The exposure before `switch_exposure` held it, and the exposure that holds."""
         self._own_colors: dict[str, str] = {}
         """The object colors of surfaces before a key changed them, by the surface's name."""
+        self._top: Cached[float] = Cached()
 
     def look(self, view: View) -> None:
         """Change the view."""
         self.session.edit(self.session.scene.replace(view=view))
 
+    @property
+    def stage_top(self) -> float:
+        """The largest z coordinate of the stage; minus infinity without a stage."""
+        scene = self.session.scene
+        return self._top.of(lambda: stage_top(scene.mesh, scene.parts), scene.mesh, scene.parts)
+
     def turn(self, right: float, up: float) -> None:
         """Move the eye around the object, in degrees."""
-        self.look(turned(self.session.scene, right, up))
+        before = self.session.scene.view.eye[2]
+        self.look(turned(self.session.scene, right, up, self.stage_top))
+        self._tell_of_stage(up < 0, before)
 
     def move(self, ratio: float) -> None:
         """Multiply the distance of the eye by a ratio."""
-        self.look(moved(self.session.scene, ratio))
+        self.look(moved(self.session.scene, ratio, self.stage_top))
 
     def pan(self, right: float, down: float) -> None:
         """Move the picture by elements and lines."""
-        self.look(panned(self.session.scene, right, down, len(self.session.studio.words)))
+        before = self.session.scene.view.eye[2]
+        lines = len(self.session.studio.words)
+        self.look(panned(self.session.scene, right, down, lines, self.stage_top))
+        self._tell_of_stage(down < 0, before)
+
+    def _tell_of_stage(self, is_lowered: bool, before: float) -> None:
+        """Say why an eye that was to be lowered kept its height `before`."""
+        after = self.session.scene.view.eye[2]
+        if is_lowered and after > self.stage_top > -math.inf and math.isclose(before, after, rel_tol=1e-9):
+            self.session.tell("the eye stays above the stage")
+
+    def as_opened(self) -> None:
+        """Look as the scene's file says: the view that was opened or saved last."""
+        self.look(self.session.studio.history.saved.scene.view)
+        self.session.tell("the view as opened")
 
     def see_from(self, side: str) -> None:
         """Look at the object from a side of `SIDES`."""

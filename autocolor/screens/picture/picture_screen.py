@@ -88,6 +88,7 @@ class PictureScreen(OverPicture):
                 other="surface",
                 run_other=lambda: edits.rescale(True),
             ),
+            Button("as opened", "Look as the scene's file says.", run=edits.as_opened),
             Button(
                 "rescale part",
                 f"Fill the picture with {session.part_name}, the part that was clicked.",

@@ -17,8 +17,8 @@ from tests.autocolor.screens.boxes import boxes
 from tests.autocolor.widgets.drawing import checksum
 
 PAGES = {
-    "picture": 2117192989,
-    "light and view": 498516100,
+    "picture": 3007665088,
+    "light and view": 875136867,
     "lights": 2197996008,
     "reflectance": 2046627297,
     "mixing": 779791442,
@@ -29,7 +29,7 @@ PAGES = {
     "file": 2904581995,
     "tutorial": 3473960918,
     "entries": 3253356514,
-    "help": 3524971317,
+    "help": 1192430204,
 }
 
 

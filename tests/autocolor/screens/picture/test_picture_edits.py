@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Mesh, View, scene_of
-from autocolor.scene.defaults import OBJECT_COLORS
+from autocolor.scene.defaults import OBJECT_COLORS, stage_top
 from autocolor.screens.picture.picture_edits import (
     PictureEdits,
     color_after,
@@ -140,6 +140,73 @@ def test_the_eye_goes_around_the_object_and_not_around_its_stage() -> None:
     scene = scene_of(Mesh.joined([cube(), floor]), view=view, parts={"floor": {"stage": True}})
     assert target_of(scene) == target_of(alone) == (0.5, 0.5, 0.5)
     assert target_of(scene.with_part("floor", stage=False))[1] > 1
+
+
+STAGED = scene_of(
+    Mesh.joined([cube(), grid(1, 1, (-5, -5, 0.2), (10, 0, 0), (0, 10, 0), "floor")]),
+    view=View((3, -4, 2), target=(0.5, 0.5, 0.5)),
+    parts={"floor": {"stage": True}},
+)
+"""A cube on a floor at z 0.2."""
+
+
+@given(
+    st.lists(
+        st.tuples(
+            st.floats(-400, 400), st.floats(-400, 400), st.sampled_from(["turn", "pan", "move", "tilt"])
+        )
+    )
+)
+def test_an_eye_above_the_stage_stays_above_it(steps: list[tuple[float, float, str]]) -> None:
+    scene, top = STAGED, stage_top(STAGED.mesh, STAGED.parts)
+    assert top == 0.2
+    for right, down, kind in steps:
+        if kind == "tilt":
+            view = scene.view.replace(angle=right)
+        elif kind == "move":
+            view = moved(scene, 2 ** (right / 200), top)
+        else:
+            view = (
+                turned(scene, right, -down, top) if kind == "turn" else panned(scene, right, down, 480, top)
+            )
+        scene = scene.replace(view=view)
+        assert view.eye[2] > top
+
+
+def test_at_the_stage_a_turn_ends_and_the_session_says_why(tmp_path: Path) -> None:
+    display = Ramtek9300()
+    session = Session(Studio(STAGED, display), display, tmp_path)
+    edits = PictureEdits(session)
+    edits.turn(0, -80)
+    lowest = session.scene.view.eye[2]
+    assert 0.2 < lowest < 0.3
+    assert session.message == ""
+    edits.turn(3, -5)
+    assert session.message == "the eye stays above the stage"
+    assert session.scene.view.eye[2] == pytest.approx(lowest)
+    session.tell("")
+    edits.turn(0, 5)
+    assert session.scene.view.eye[2] > lowest
+    assert session.message == ""
+    edits.as_opened()
+    assert session.scene.view == STAGED.view
+
+
+def test_an_eye_below_the_stage_and_scenes_without_stage_are_free(tmp_path: Path) -> None:
+    free = STAGED.with_part("floor", stage=False)
+    assert stage_top(free.mesh, free.parts) == -math.inf
+    for scene in (free, STAGED.replace(view=View((3, -4, 0.1), target=(0.5, 0.5, 0.5)))):
+        top = stage_top(scene.mesh, scene.parts)
+        assert turned(scene, 0, -40, top).eye[2] < 0
+        assert panned(scene, 0, -900, 480, top).eye[2] < 0
+
+
+def test_a_pan_at_the_stage_stays_in_the_picture_plane() -> None:
+    view = panned(STAGED, 30, -900, 480, 0.2)
+    shift = np.array(view.eye) - np.array(STAGED.view.eye)
+    assert float(shift @ STAGED.view.axes[2]) == pytest.approx(0, abs=1e-9)
+    free = np.array(panned(STAGED, 30, -900, 480).eye) - np.array(STAGED.view.eye)
+    assert float((shift - free) @ STAGED.view.axes[0]) == pytest.approx(0, abs=1e-9)
 
 
 def place(view: View, point: npt.ArrayLike) -> tuple[float, float]:
