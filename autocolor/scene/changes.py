@@ -169,6 +169,7 @@ class SceneFields(TypedDict, total=False):
     division: Literal["covered", "equal"]
     words: Literal["levels", "normals"]
     background: str | Sequence[int]
+    front: Literal["x", "-x", "y", "-y"] | None
     scalar: Row | ScalarChanges | None
     name: str
 

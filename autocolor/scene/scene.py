@@ -66,6 +66,7 @@ SCALINGS: Final = ("surface", "object")
 CONTRASTS: Final = ("stretch", "floor")
 DIVISIONS: Final = ("covered", "equal")
 DITHERS: Final = ("off", "ordered")
+FRONTS: Final = ("x", "-x", "y", "-y")
 LEVELS: Final = "levels"
 NORMALS: Final = "normals"
 """The meanings of words."""
@@ -166,6 +167,14 @@ class Scene(Row):
         0,
         0,
     )
+    front: Annotated[
+        str | None,
+        Column(
+            OneOf(FRONTS),
+            Tier.NOTHING,
+            "The axis toward which the object faces; it names the views from the sides.",
+        ),
+    ] = None
     scalar: Annotated[
         Scalar | None,
         Column(Nested(Scalar), Tier.MIX, "The scalar that colors the surfaces, if any."),

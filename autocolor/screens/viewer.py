@@ -27,7 +27,7 @@ from autocolor.screens.light_and_view.light_and_view_screen import LightAndViewS
 from autocolor.screens.lights_screen import LightsScreen
 from autocolor.screens.mapping_screen import MappingScreen
 from autocolor.screens.mixing_screen import MixingScreen
-from autocolor.screens.picture.picture_edits import SIDES, PictureEdits
+from autocolor.screens.picture.picture_edits import PictureEdits, sides_of
 from autocolor.screens.picture.picture_screen import PictureScreen
 from autocolor.screens.picture.watching import ENDING, MESSAGE, Watching
 from autocolor.screens.reflectance_screen import ReflectanceScreen
@@ -502,9 +502,9 @@ BINDINGS: Final[tuple[Binding[Viewer], ...]] = (
         held=True,
     ),
     Binding(
-        tuple(Chord(f"f{number}") for number in range(5, 10)),
-        "view from the front, side, back, top, three quarters",
-        lambda viewer, number: viewer.edits.see_from(tuple(SIDES)[number]),
+        (*(Chord(f"f{number}") for number in range(5, 10)), Chord("f6", shift=True)),
+        "view from front, left (Shift: right), back, top, corner",
+        lambda viewer, number: viewer.edits.see_from(tuple(sides_of(viewer.session.scene))[number]),
         label="F5 to F9",
     ),
     Binding(

@@ -277,6 +277,7 @@ def scenes(draw: st.DrawFn) -> Scene:
         dither=draw(st.sampled_from(["off", "ordered"])),
         division=draw(st.sampled_from(["covered", "equal"])),
         background=draw(colors),
+        front=draw(st.sampled_from([None, "x", "-x", "y", "-y"])),
         scalar=draw(st.none() | scalars()),
     )
 

@@ -16,6 +16,7 @@ from autocolor.arrays import Words
 from autocolor.checks import Vector
 from autocolor.errors import UsageError
 from autocolor.scene.lights import Light
+from autocolor.scene.scene import FRONTS
 from autocolor.screens.input import Gesture, turn_between, wheel_ratio
 from autocolor.screens.light_and_view.handles import FLAP, handles_in, movable_of, point_text
 from autocolor.screens.light_and_view.marks import SideItems, drawn_items, flap_marks
@@ -25,13 +26,14 @@ from autocolor.screens.light_and_view.orthographic_views import (
     PICTURE_AREA,
     SIDES,
     OrthographicViews,
+    ViewSide,
     area_of_picture,
     fitted_views,
     shown_points,
     side_at,
 )
 from autocolor.screens.light_parameters import parameter_rows, put_light
-from autocolor.screens.picture.picture_edits import PictureEdits, target_of
+from autocolor.screens.picture.picture_edits import PictureEdits, side_name, target_of
 from autocolor.screens.screen import Cached, Handle, Screen
 from autocolor.screens.session import Session
 from autocolor.visibility.visible_points import VisiblePoints
@@ -67,6 +69,9 @@ CLOSER: Final = 1.25
 
 ANGLE: Final = 5.0
 """Degrees for each step of ANGLE."""
+
+UNKNOWN: Final = "unknown"
+"""The choice of no front."""
 
 LINES_BETWEEN: Final = (Area(251, 0, 252, 463), Area(0, 227, 503, 228))
 """The lines between the quarters."""
@@ -152,7 +157,10 @@ class LightAndViewScreen(Screen):
             return self.help
         point = self.views.placed(side, (0.0, 0.0, 0.0), element, line)
         shown = "  ".join(f"{AXES[axis]} {point[axis]:g}" for axis in (side.right, side.up))
-        return f"{side.name}: {shown}"
+        return f"{self._name_of(side)}: {shown}"
+
+    def _name_of(self, side: ViewSide) -> str:
+        return side_name(self.session.scene, side.toward)
 
     # Gestures.
 
@@ -173,7 +181,9 @@ class LightAndViewScreen(Screen):
             element = min(max(element, area.left), area.right)
             line = min(max(line, area.top), area.bottom)
         elif not area.has(element, line):
-            raise UsageError(f"{movable.label}: its new place must be in the {side.name} view; pick it there")
+            raise UsageError(
+                f"{movable.label}: its new place must be in the {self._name_of(side)} view; pick it there"
+            )
         point = self._moved or movable.point_in(session.scene, views)
         if point is None:
             return
@@ -225,6 +235,13 @@ class LightAndViewScreen(Screen):
                 run_other=self.fit_object,
             ),
             Button("fit surface", f"Show the chosen surface: {session.surface_name}.", run=self.fit_surface),
+            Choice(
+                "front",
+                "Toward which axis the object faces: it names the views from the sides.",
+                names=(UNKNOWN, *FRONTS),
+                present=session.scene.front or UNKNOWN,
+                choose=self._face,
+            ),
             Gap("display gap"),
             Choice(
                 "display",
@@ -255,6 +272,10 @@ class LightAndViewScreen(Screen):
         if numbers:
             self._views = fitted_views(scene.mesh.coordinates_of_parts(numbers))
             self.session.tell(f"the views show {name}")
+
+    def _face(self, front: str) -> None:
+        changes: dict[str, Any] = {"front": None if front == UNKNOWN else front}
+        self.session.edit(self.session.scene.replace(**changes))
 
     def zoom(self, steps: float) -> None:
         """Move nearer, or farther."""

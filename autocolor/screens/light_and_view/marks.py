@@ -25,6 +25,7 @@ from autocolor.screens.light_and_view.orthographic_views import (
     OrthographicViews,
     ViewSide,
 )
+from autocolor.screens.picture.picture_edits import side_name
 from autocolor.screens.screen import Cached
 from autocolor.widgets.items import (
     BLUE,
@@ -342,8 +343,7 @@ class SideItems:
         self._chosen: Cached[list[Item]] = Cached()
         self._numerals: Cached[list[Numeral]] = Cached()
         self._lights: Cached[tuple[Light, ...]] = Cached()
-        title = f"{side.name}   {AXES[side.right]} >  {AXES[side.up]} ^"
-        self._label = text(title, side.area.left + 8, side.area.top + 4, GRAY)
+        self._label: Cached[Item] = Cached()
 
     def items(
         self,
@@ -367,6 +367,10 @@ class SideItems:
         tables = [light for _, light in others]
         eye = self._eye.of(lambda: eye_marks(views, side, view, target), views, view, strokes)
 
+        def title() -> Item:
+            name = f"{side_name(scene, side.toward)}   {AXES[side.right]} >  {AXES[side.up]} ^"
+            return text(name, side.area.left + 8, side.area.top + 4, GRAY)
+
         def still() -> list[Item]:
             return still_items(views, side, eye, strokes, tables, bool(ours))
 
@@ -374,20 +378,26 @@ class SideItems:
             light_items = [item for _, light in ours for item in chosen_items(views, side, light)]
             return light_items or drawn_items({YELLOW: [eye.direction, eye.eye]})
 
+        label = self._label.of(title, scene.front)
         return [
-            self._label,
+            label,
             *([] if moved is None else [lines_across(views, side, moved)]),
             *self._still.of(still, views, eye, strokes, bool(ours), *tables),
             *self._chosen.of(above, views, eye, *[light for _, light in ours]),
-            *self._numeral_items(views, view, others, ours),
+            *self._numeral_items(views, view, label.area, others, ours),
         ]
 
     def _numeral_items(
-        self, views: OrthographicViews, view: View, others: Sequence[Numbered], ours: Sequence[Numbered]
+        self,
+        views: OrthographicViews,
+        view: View,
+        label: Area,
+        others: Sequence[Numbered],
+        ours: Sequence[Numbered],
     ) -> list[Item]:
         """The numerals of the lights. The chosen light's makes way for the others, which stay in place."""
         side = self._side
-        taken = [self._label.area, area_of(LIDS + views.position(side, view.eye))]
+        taken = [label, area_of(LIDS + views.position(side, view.eye))]
 
         def compute() -> list[Numeral]:
             return numerals(

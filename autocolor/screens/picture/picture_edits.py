@@ -10,6 +10,7 @@ import numpy as np
 
 from autocolor.arrays import Floats
 from autocolor.checks import Vector
+from autocolor.errors import UsageError
 from autocolor.scene.defaults import OBJECT_COLORS, default_view, framed, object_bounds, stage_top
 from autocolor.scene.scene import Exposure, Scene
 from autocolor.scene.view import View
@@ -44,18 +45,44 @@ HIGHEST: Final = math.radians(85)
 ABOVE_STAGE: Final = 0.01
 """Assumed: how far an eye stays above the stage, as a part of its distance from the target."""
 
-SIDES: Final[dict[str, Vector | None]] = {
-    "front": (0.0, -1.0, 0.0),
-    "side": (1.0, 0.0, 0.0),
-    "back": (0.0, 1.0, 0.0),
-    "top": (0.0, 0.0, 1.0),
-    "three quarters": None,
-}
-"""The directions toward the eye of the named views. Three quarters is the direction of a created view.
+SIDE_NAMES: Final = ("front", "left", "back", "right")
+"""The sides of an object whose front is known. Left and right are the object's own."""
 
-Assumed: as on an engineering drawing, x is to the right and z up in the front view, y to the right and z up
-in the side view, x to the right and y up in the top view.
-"""
+AXIS_NAMES: Final = {
+    (0.0, -1.0, 0.0): "from -y",
+    (1.0, 0.0, 0.0): "from x",
+    (0.0, 1.0, 0.0): "from y",
+    (-1.0, 0.0, 0.0): "from -x",
+}
+"""The sides of other objects, by the direction toward the eye."""
+
+TOP: Final = "top"
+THREE_QUARTERS: Final = "three quarters"
+
+
+def front_of(scene: Scene) -> Vector:
+    """The direction toward which the object faces; -y, as on an engineering drawing, if that is not known."""
+    sign = -1.0 if (scene.front or "-y").startswith("-") else 1.0
+    return (sign, 0.0, 0.0) if (scene.front or "").endswith("x") else (0.0, sign, 0.0)
+
+
+def sides_of(scene: Scene) -> dict[str, Vector | None]:
+    """The directions toward the eye of the named views, in the order of their keys.
+
+    Three quarters, which is None, is the direction of a created view, turned with the front.
+    Assumed: as on an engineering drawing, x is to the right and z up in the view from -y, y to the right and
+    z up in the view from x, x to the right and y up in the top view.
+    """
+    x, y, _ = front_of(scene)
+    ring = ((x, y, 0.0), (0.0 - y, x, 0.0), (0.0 - x, 0.0 - y, 0.0), (y, 0.0 - x, 0.0))
+    names = SIDE_NAMES if scene.front else [AXIS_NAMES[toward] for toward in ring]
+    front, left, back, right = zip(names, ring, strict=True)
+    return dict([front, left, back, (TOP, (0.0, 0.0, 1.0)), (THREE_QUARTERS, None), right])
+
+
+def side_name(scene: Scene, toward_eye: Vector) -> str:
+    """The name of the view from a direction along an axis."""
+    return next(name for name, toward in sides_of(scene).items() if toward == toward_eye)
 
 
 def turned(scene: Scene, right: float, up: float, top: float = -math.inf) -> View:
@@ -129,10 +156,12 @@ def panned(scene: Scene, right: float, down: float, lines: int, top: float = -ma
 
 
 def seen_from(scene: Scene, side: str) -> View:
-    """The upright view of the object from a side of `SIDES`, in which it fills the picture."""
-    toward_eye = SIDES[side]
+    """The upright view of the object from a side of `sides_of`, in which it fills the picture."""
+    toward_eye: Vector | Floats | None = sides_of(scene)[side]
     if toward_eye is None:
-        toward_eye = default_view(scene.object_coordinates).axes[2] * -1
+        right, toward, up = default_view(scene.object_coordinates).axes[2] * -1
+        x, y, _ = front_of(scene)
+        toward_eye = (-right * y - toward * x, right * x - toward * y, up)
     eye, target = _vector(toward_eye), (0.0, 0.0, 0.0)
     # The angle is 0, so that the view is upright, as on a drawing.
     view = scene.view.replace(eye=eye, direction=None, target=target, angle=0.0)
@@ -206,7 +235,7 @@ class PictureEdits:
         self.session.tell("the view as opened")
 
     def see_from(self, side: str) -> None:
-        """Look at the object from a side of `SIDES`."""
+        """Look at the object from a side of `sides_of`."""
         view = seen_from(self.session.scene, side)
         self.look(view)
         self.session.named_view = view, side
@@ -237,9 +266,13 @@ class PictureEdits:
         return [part for part in scene.mesh.parts_in_use if scene.parts[part].name == name]
 
     def rescale_part(self) -> None:
-        """Move the eye so that the part that was pointed at last, if any, fills the picture."""
-        if self.chosen_parts:
-            self._fill(self.chosen_parts)
+        """Move the eye so that the part that was clicked last fills the picture.
+
+        Raises UsageError if no part was clicked.
+        """
+        if not self.chosen_parts:
+            raise UsageError("no part was clicked yet; click a part in the picture first")
+        self._fill(self.chosen_parts)
 
     def _fill(self, parts: Sequence[int]) -> None:
         """Move the eye so that some parts, by their numbers, fill the picture."""

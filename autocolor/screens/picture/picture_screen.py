@@ -10,7 +10,7 @@ from autocolor.errors import UsageError
 from autocolor.mapping.ranges import SCREENS
 from autocolor.screens.picture.light_handles import LightHandles
 from autocolor.screens.picture.over_picture import OverPicture, surface_row
-from autocolor.screens.picture.picture_edits import SIDES
+from autocolor.screens.picture.picture_edits import sides_of
 from autocolor.screens.screen import Handle
 from autocolor.screens.session import PICTURE, Session
 from autocolor.widgets.items import SCREEN
@@ -65,7 +65,7 @@ class PictureScreen(OverPicture):
             Choice(
                 "view",
                 "A click looks from the next side; at the left end, from the side before.",
-                names=tuple(SIDES),
+                names=tuple(sides_of(session.scene)),
                 present=edits.side,
                 choose=edits.see_from,
             ),
@@ -88,12 +88,12 @@ class PictureScreen(OverPicture):
                 other="surface",
                 run_other=lambda: edits.rescale(True),
             ),
-            Button("as opened", "Look as the scene's file says.", run=edits.as_opened),
-            Button(
-                "rescale part",
-                f"Fill the picture with {session.part_name}, the part that was clicked.",
-                "" if edits.chosen_parts else "click at a part in the picture first",
-                run=edits.rescale_part,
+            Pair(
+                "as opened",
+                f"Look as the scene's file says; or fill the picture with {session.part_name or 'a part'}.",
+                run=edits.as_opened,
+                other="part",
+                run_other=edits.rescale_part,
             ),
             Button(
                 "watch",

@@ -53,6 +53,7 @@ columns_of_scenes = st.fixed_dictionaries(
         "dither": st.sampled_from(["off", "ordered"]),
         "division": st.sampled_from(["covered", "equal"]),
         "background": colors,
+        "front": st.sampled_from([None, "x", "-y"]),
         "name": st.sampled_from(["scene", "a 'name'\n", "\N{SNOWMAN}"]),
     },
 )

@@ -58,6 +58,7 @@ EDITS: dict[str, dict[str, Values]] = {
         "dither": {"dither": "ordered"},
         "division": {"division": "equal"},
         "words": {"words": "normals"},
+        "front": {"front": "-x"},
         "background": {"background": "#102030"},
     },
     "view": {

@@ -660,9 +660,9 @@ def test_named_views_look_from_the_sides(viewer: Viewer) -> None:
         assert is_true_to(viewer, viewer.studio.scene)
         seen.append((viewer.message, np.round(viewer.studio.scene.view.axes[2], 2).tolist()))
     assert seen[:4] == [
-        ("view: front", [0, 1, 0]),
-        ("view: side", [-1, 0, 0]),
-        ("view: back", [0, -1, 0]),
+        ("view: from -y", [0, 1, 0]),
+        ("view: from x", [-1, 0, 0]),
+        ("view: from y", [0, -1, 0]),
         ("view: top", [0, 0, -1]),
     ]
     assert seen[4][0] == "view: three quarters"

@@ -397,7 +397,7 @@ def test_the_message_line_tells_what_is_where_the_pointer_is() -> None:
     hand.move(*place_of(hand, MovablePoint(EYE, "top")))
     assert hand.viewer.board.messages[-1].text.startswith("eye: x -2  y -3  z 2: drag it, or click")
     hand.move(20, 440)
-    assert hand.viewer.board.messages[-1].text.startswith("front: x ")
+    assert hand.viewer.board.messages[-1].text.startswith("from -y: x ")
     hand.move(380, 100)
     assert hand.viewer.board.messages[-1].text.startswith("The view: ")
     hand.move(250, 228)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -13,12 +14,15 @@ from hypothesis import strategies as st
 
 from autocolor import Mesh, View, scene_of
 from autocolor.scene.defaults import OBJECT_COLORS, stage_top
+from autocolor.scene.scene import FRONTS
 from autocolor.screens.picture.picture_edits import (
     PictureEdits,
     color_after,
     moved,
     panned,
     seen_from,
+    side_name,
+    sides_of,
     target_of,
     turned,
 )
@@ -231,9 +235,10 @@ def test_the_target_moves_with_the_picture(right: float, down: float, angle: flo
 @pytest.mark.parametrize(
     ("side", "right", "down"),
     [
-        ("front", (1, 0, 0), (0, 0, -1)),
-        ("side", (0, 1, 0), (0, 0, -1)),
-        ("back", (-1, 0, 0), (0, 0, -1)),
+        ("from -y", (1, 0, 0), (0, 0, -1)),
+        ("from x", (0, 1, 0), (0, 0, -1)),
+        ("from y", (-1, 0, 0), (0, 0, -1)),
+        ("from -x", (0, -1, 0), (0, 0, -1)),
         ("top", (1, 0, 0), (0, -1, 0)),
     ],
 )
@@ -246,6 +251,25 @@ def test_a_named_view_has_the_axes_of_a_drawing_and_the_object_fills_it(
     assert view.field_of_view == 20
     places = np.array([place(view, node) for node in cube().coordinates])
     assert np.abs(places).max() == pytest.approx(0.86 * 240)
+
+
+@pytest.mark.parametrize("front", FRONTS)
+def test_sides_have_the_names_that_the_front_gives_them(front: Any) -> None:
+    scene = scene_of(cube(), front=front)
+    sign, axis = -1 if "-" in front else 1, "xyz".index(front[-1])
+    seen = {side: seen_from(scene, side) for side in sides_of(scene)}
+    # The object faces the eye, and its left is at the right of the picture.
+    assert seen["front"].axes[2][axis] == -sign
+    assert np.allclose(seen["front"].axes[0], -seen["left"].axes[2])
+    assert np.allclose(seen["back"].axes[2], -seen["front"].axes[2])
+    assert np.allclose(seen["right"].axes[2], -seen["left"].axes[2])
+    plain = seen_from(scene_of(cube()), "three quarters")
+    corner = seen["three quarters"]
+    assert float(corner.axes[2] @ seen["front"].axes[2]) == pytest.approx(plain.axes[2][1])
+    assert corner.axes[2][2] == pytest.approx(plain.axes[2][2])
+    for side in ("front", "left", "back", "right"):
+        toward = -seen[side].axes[2]
+        assert side_name(scene, (round(toward[0]), round(toward[1]), 0.0)) == side
 
 
 def test_three_quarters_is_the_direction_of_a_created_view() -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from autocolor import Scene, View
-from autocolor.screens.picture.picture_edits import SIDES, moved, panned, seen_from, turned
+from autocolor.screens.picture.picture_edits import moved, panned, seen_from, sides_of, turned
 from autocolor.screens.picture.picture_screen import CLOSER, PAN, TURN
 from autocolor.widgets.widget import Choice, Switch
 from tests.autocolor.screens.ball import MIDDLE, ball_scene, hand_before
@@ -30,13 +30,13 @@ ROWS: dict[str, tuple[float, Callable[[Scene], View]]] = {
     "closer": (0.9, lambda scene: moved(scene, CLOSER)),
     "move": (0.9, lambda scene: panned(scene, PAN, 0, 480)),
     "lift": (0.9, lambda scene: panned(scene, 0, -PAN, 480)),
-    "view": (0.9, lambda scene: seen_from(scene, "front")),
+    "view": (0.9, lambda scene: seen_from(scene, "from -y")),
 }
 
 
 def test_the_row_of_the_view_goes_around_all_sides(hand: Hand) -> None:
     start = scene_of(hand)
-    for side in (*SIDES, "front"):
+    for side in (*sides_of(start), "from -y"):
         hand.open_menu()
         area = next(row.area for row in hand.viewer.board.layout.rows if row.label == "view")
         hand.click(area.right - 8, area.top + 8)
@@ -85,12 +85,13 @@ def test_a_light_is_switched_by_its_box_and_chosen_beside_it(hand: Hand) -> None
 
 def test_object_surface_and_part_fill_the_picture(hand: Hand) -> None:
     start = scene_of(hand)
-    hand.pick("rescale part")
-    assert hand.viewer.message == "rescale part: click at a part in the picture first"
+    hand.open_menu()
+    hand.pick("as opened", 0.9)
+    assert hand.viewer.message == "no part was clicked yet; click a part in the picture first"
     assert scene_of(hand) is start
     hand.click(*MIDDLE)
     views = []
-    for label, share in (("rescale", 0.2), ("rescale", 0.9), ("rescale part", 0.5)):
+    for label, share in (("rescale", 0.2), ("rescale", 0.9), ("as opened", 0.9)):
         hand.open_menu()
         hand.pick(label, share)
         views.append(scene_of(hand).view)
