@@ -121,6 +121,11 @@ def _targets(history: History, folder: Path) -> _Targets:
     )
 
 
+def free_name(name: str, folder: Path) -> str:
+    """A name like that of a scene, which no scene and no picture in a folder has."""
+    return _new_names(name, folder, False, False)[0].parent.name
+
+
 def new_files(folder: Path, name: str) -> tuple[Path, Path]:
     """The scene file and the picture file of a name, neither of which exists.
 
