@@ -89,8 +89,16 @@ LONGEST_KIND: Final = 7
 FRAME: Final = 4
 THUMBNAIL_LINES: Final = 168
 THUMBNAIL_ELEMENTS: Final = 224
-THUMBNAIL: Final = Area(RIGHT.left + MARGIN - FRAME, 272, RIGHT.right - MARGIN, RIGHT.bottom - 8)
-"""The size and the place of the small picture of a picture file; it stands on the foot of its area."""
+THUMBNAIL: Final = Area(
+    RIGHT.left + MARGIN - FRAME,
+    RIGHT.bottom + 1 - MARGIN - THUMBNAIL_LINES - 2 * FRAME,
+    RIGHT.left + MARGIN + THUMBNAIL_ELEMENTS + FRAME - 1,
+    RIGHT.bottom - MARGIN,
+)
+"""The largest size of the small picture of a picture file, and its area with a frame.
+
+Smaller pictures stand at the lower left.
+"""
 
 FIRST_BORROWED: Final = BACKGROUND + 1
 MOST_COLORS: Final = 500
@@ -161,15 +169,11 @@ class FileScreen(Screen):
 
     def items(self) -> Sequence[Item]:
         down, left = LEFT.top + TEXT_DOWN, LEFT.left + MARGIN
+        folder = short_name(self._shown_path(self.session.folder), ACROSS)
         items = [
             text("OPEN", left, TEXT_DOWN, YELLOW),
             text("RECENT", RIGHT.left + MARGIN, TEXT_DOWN, YELLOW),
-            text(
-                short_name(self._shown_path(self.session.folder), ACROSS),
-                left,
-                ROW_LINES + TEXT_DOWN,
-                LIGHT_GRAY,
-            ),
+            text(folder, left, ROW_LINES + TEXT_DOWN, LIGHT_GRAY),
             filled(Area(251, LEFT.top, 251, LEFT.bottom), SLATE),
         ]
         if not self._files:
@@ -280,10 +284,8 @@ class FileScreen(Screen):
         files = " and ".join(short_path(Path(name), True) for name in session.studio.history.files)
         saves = f"Save to {files}; new files go to" if files else "Save the scene and the picture in"
         size = written_size(self._size)
-        elements, lines = self._own_size
-        sizes = {
-            (times * elements, times * lines) for times in SIZES if times * max(elements, lines) <= LARGEST
-        }
+        sizes = [(times * self._own_size[0], times * self._own_size[1]) for times in SIZES]
+        sizes = sorted({self._size, *(each for each in sizes if max(each) <= LARGEST)})
         return [
             Button(
                 "save",
@@ -316,15 +318,14 @@ class FileScreen(Screen):
             ),
             Choice(
                 "size",
-                "The elements and lines of the exported image: those of the display, twice or four times them.",
-                names=[written_size(each) for each in sorted({*sizes, self._size})],
+                "The elements and lines of an exported image: of the display, or two or four times as many.",
+                names=[written_size(each) for each in sizes],
                 present=size,
                 choose=self._choose_size,
             ),
             Entry(
                 "other size",
-                f"Any elements and lines of the exported image, up to {LARGEST}, as in 1920x1080.",
-                value=size,
+                f"Other elements and lines of an exported image, up to {LARGEST}, as in 1920x1080.",
                 take=self._choose_size,
             ),
             Choice(
@@ -385,9 +386,8 @@ class FileScreen(Screen):
 
     def _begin_export(self) -> None:
         self._ticks_to_export = TICKS_TO_EXPORT
-        self.session.tell(
-            f"exporting {written_size(self._size)}, smoothness {self._smooth} ..", persistent=True
-        )
+        size = written_size(self._size)
+        self.session.tell(f"exporting {size}, smoothness {self._smooth} ...", persistent=True)
 
     def _export(self) -> None:
         """Export the image; a message says its name, or why there is none."""

@@ -191,13 +191,8 @@ class PanelButton(Button):
     """A button of a panel over the screen, with its label in the middle."""
 
     def items(self, lit: bool) -> list[Item]:
-        left, top = (
-            low + (size - text_size) // 2
-            for low, size, text_size in (
-                (self.area.left, self.area.width, CHARACTER * len(self.label)),
-                (self.area.top, self.area.height, CHARACTER_LINES),
-            )
-        )
+        left = self.area.left + (self.area.width - CHARACTER * len(self.label)) // 2
+        top = self.area.top + (self.area.height - CHARACTER_LINES + 1) // 2
         ground = SLATE if lit else NIGHT
         return [filled(self.area, ground), text(self.label, left, top, WHITE, ground)]
 
