@@ -374,15 +374,20 @@ class Studio:
         *_, file = write_scene_with_tables(path, self.scene, overwrite=overwrite, complete=False, guard=guard)
         self._mark_written(file)
 
-    def save_session(self, folder: str | PathLike[str] = ".") -> SavedFiles:
+    def save_session(self, folder: str | PathLike[str] = ".", name: str | None = None) -> SavedFiles:
         """Save the scene and the picture to their files, or to new files in the folder; returns the files.
 
-        No file of another program is lost (see `journal.saving`).
+        With a `name`, both files are new: `NAME/scene.toml` and `NAME.npz`. The scene takes the name, as one
+        step to undo, and is saved to these files from then on. No file of another program is lost (see
+        `journal.saving`). Raises UsageError for an invalid name, OutputError if a file has the name.
         """
-        from autocolor.journal.saving import save_session
+        from autocolor.journal.saving import new_files, save_session
 
         self.refine()
-        return save_session(self._history, self.picture, Path(folder))
+        if name is not None:
+            new_files(Path(folder), name)
+            self.edit(self.scene.replace(name=name))
+        return save_session(self._history, self.picture, Path(folder), name)
 
     def mark_saved(self, files: Mapping[str, str] | None = None) -> None:
         """Mark the current scene as saved to files, by their paths and stamps (see `files.stamps`).

@@ -37,6 +37,8 @@ from autocolor.widgets.items import (
     filled,
     text,
 )
+from autocolor.widgets.letters import PANEL as LETTER_PANEL
+from autocolor.widgets.letters import letter_panel
 from autocolor.widgets.menu import (
     MENU,
     MESSAGE_LINES,
@@ -205,10 +207,12 @@ class Board:
     def layout(self) -> Layout:
         """The layout that is shown, until `forget` or another state of the board."""
         session, has_menu = self.session, self.has_menu
-        state = session.screen, session.moving, has_menu, self._menu_page, self._wide, self.over
+        by_letters = self.typing.is_by_letters
+        state = session.screen, session.moving, has_menu, self._menu_page, self._wide, self.over, by_letters
         if self._layout is None or self._layout[0] != state:
             rows = self._menu_rows() if has_menu else ()
-            self._layout = state, Layout(self.screen, rows, self.over(), self._wide)
+            letters = letter_panel(self.typing.key) if by_letters else ()
+            self._layout = state, Layout(self.screen, rows, (*letters, *self.over()), self._wide)
         return self._layout[1]
 
     def forget(self) -> None:
@@ -229,6 +233,10 @@ class Board:
         """Whether the menu, its wide bar, a panel or the message line covers the screen at a place."""
         has_message = any(item.area.has(element, line) for item in self._message)
         return has_message or self.layout.is_covered(element, line)
+
+    def is_on_letters(self, element: int, line: int) -> bool:
+        """Whether a place is on the letter panel."""
+        return self.typing.is_by_letters and LETTER_PANEL.has(element, line)
 
     def handle_at(self, element: int, line: int) -> Handle | None:
         """The nearest handle within reach of a place; None if something covers the handle or the place."""
@@ -450,7 +458,7 @@ class Board:
     def page(self) -> Page:
         """The page to show now: the screen, its widgets, the message line and the menu, bottom to top."""
         screen = self.screen
-        screen.is_under_menu = self.has_menu and not screen.has_menu
+        screen.is_under_menu, screen.lit = self.has_menu and not screen.has_menu, self._lit
         layout, lit = self.layout, self._lit_widget()
         items = list(screen.items())
         for widget in (*layout.beside, *reversed(layout.over)):
@@ -584,6 +592,11 @@ class TypingLine:
         return self._typed is not None
 
     @property
+    def is_by_letters(self) -> bool:
+        """Whether a text is typed by the letter panel, because there is no keyboard."""
+        return self.is_on and not self._session.has_keyboard
+
+    @property
     def shown(self) -> MessagePart:
         """The text for the message line. The next character replaces the part that is selected."""
         selected = len(self._label) + 2
@@ -597,9 +610,6 @@ class TypingLine:
 
     def begin(self, widget: Widget, typed: str = "") -> None:
         """Begin with the widget's text, which the first character replaces."""
-        if not self._session.has_keyboard:
-            self._session.tell(f"{widget.label}: typing needs a keyboard", is_warning=True)
-            return
         self._typed = widget.typed
         self._label = widget.label
         self._text = typed or (self._typed.text if self._typed is not None else "")
@@ -610,11 +620,18 @@ class TypingLine:
         self._typed = None
 
     def take(self) -> None:
-        """Take the text if it was changed. A refused text raises an error and stays, selected."""
-        if self._typed is not None and self._text != self._typed.text:
+        """Take the text if it was changed or proposed. A refused text raises an error and stays, selected."""
+        typed = self._typed
+        if typed is not None and (typed.is_proposed or self._text != typed.text):
             self._is_fresh = True
-            self._typed.take(self._text)
+            typed.take(self._text)
         self.end()
+
+    def leave(self) -> None:
+        """Take the text as `take` does, but give up a text that was proposed."""
+        if self._typed is not None and self._typed.is_proposed:
+            self.end()
+        self.take()
 
     def key(self, name: str, typed: str) -> None:
         """Take a key. Raises the errors of the function that takes the text."""

@@ -49,6 +49,8 @@ class Screen:
         self.session = session
         self.is_under_menu = False
         """Whether the menu covers its right part, because the user asked for the menu."""
+        self.lit = ""
+        """The key of the widget under the pointer; empty if there is none."""
 
     # How it looks.
 

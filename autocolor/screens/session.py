@@ -17,12 +17,14 @@ from autocolor.arrays import Bytes, Words
 from autocolor.errors import InputError, UsageError
 from autocolor.files.paths import SCENE_FILE, file_stem, free_path
 from autocolor.files.rig_file import RIG_SUFFIX, is_rig, read_rig, write_rig
-from autocolor.files.scene_files import MESH, kind_of
+from autocolor.files.scene_files import MESH, kind_of, stays_within
 from autocolor.files.scene_sources import hinted_up
 from autocolor.files.stamps import look_at
 from autocolor.files.state import note_file
+from autocolor.images import save_image
 from autocolor.journal.places import Source
 from autocolor.mapping.display_image import DisplayImage
+from autocolor.rendering import render
 from autocolor.scene.changes import LightChanges, PaintChanges, SurfaceChanges
 from autocolor.scene.lights import Light
 from autocolor.scene.mesh import Mesh
@@ -60,12 +62,15 @@ class Message(NamedTuple):
 
 
 class Session:
-    """The state that the screens share. New files are saved to `folder`."""
+    """The state that the screens share.
+
+    New files are saved to `folder`, which the file screen shows. It begins as `root`.
+    """
 
     def __init__(self, studio: Studio, display: HostPort, folder: Path) -> None:
         self.studio = studio
         self.display = display
-        self.folder = folder
+        self.root = self.folder = folder.resolve()
         self.comparing = Comparing(studio)
         """Another state that is shown in place of the present one."""
         self.screen = PICTURE
@@ -83,7 +88,7 @@ class Session:
         self.keys: Sequence[tuple[str, str]] = ()
         """Each key and what it does, for the help page."""
         self.is_at_hand = False
-        """Whether the user sits at this machine; a pointer from elsewhere keeps to the folder."""
+        """Whether the user sits at this machine; a pointer from elsewhere stays within `root`."""
         self.mesh_up, self.mesh_scale = "z", 1.0
         """The up axis and the scale of mesh files that are opened; other files give their own."""
         self.surface = 0
@@ -322,17 +327,44 @@ class Session:
             self.tell(message, is_warning=self.studio.is_changed, persistent=True)
         return bool(message)
 
-    def save(self) -> None:
-        """Save the scene and the picture; the message says the names of the files."""
-        saved = self.studio.save_session(self.folder)
+    def may_reach(self, path: Path) -> bool:
+        """Whether the user may open a path, or save in it: from elsewhere, no link may lead out of `root`."""
+        return self.is_at_hand or stays_within(path, self.root)
+
+    def check_reach(self, path: Path, noun: str) -> None:
+        """Raise UsageError if the user may not open a path, or save in it; `noun` says for what it is."""
+        if not self.may_reach(path):
+            raise UsageError(
+                f"{path.name}: {noun} must be in the folder {self.root.name}, and not a link to elsewhere;"
+                " choose another"
+            )
+
+    def _shown_folder(self) -> Path:
+        """The folder for new files. Raises UsageError if it became a link that leads out of `root`."""
+        self.check_reach(self.folder, "a folder to save in")
+        return self.folder
+
+    def save(self, name: str | None = None) -> None:
+        """Save the scene and the picture; the message says the names of the files.
+
+        With a `name`, they are saved as new files of this name. Raises as `Studio.save_session`.
+        """
+        saved = self.studio.save_session(self._shown_folder(), name)
         note_file(saved.scene)
-        self.tell(saved.message(self.folder))
+        self.tell(saved.message(self.root))
 
     def save_rig(self) -> None:
         """Save the lights, to put them on another scene."""
-        path = free_path(self.folder / f"{file_stem(self.scene.name)}-rig{RIG_SUFFIX}")
+        path = free_path(self._shown_folder() / f"{file_stem(self.scene.name)}-rig{RIG_SUFFIX}")
         write_rig(path, self.scene)
         self.tell(f"saved {path.name}")
+
+    def export(self, elements: int, lines: int, smooth: int) -> None:
+        """Save the picture at a size as a new PNG file, named after the scene, with a smoothness."""
+        path = free_path(self._shown_folder() / f"{file_stem(self.scene.name)}.png")
+        picture = render(self.scene, smooth * lines, smooth * elements)
+        save_image(path, self.scene, picture, smooth=smooth)
+        self.tell(f"saved {path.name}: {elements}x{lines}, smoothness {smooth}")
 
     def save_image(self) -> None:
         """Save the picture alone, with the legend of a scalar, as the next screenshot."""
@@ -343,7 +375,7 @@ class Session:
         """Save (lines, elements, 3) colors as the next screenshot, "autocolor-0001.png"."""
         from ramtek_emu.png import save_numbered
 
-        self.tell(f"saved {save_numbered(colors, self.folder, 'autocolor')}")
+        self.tell(f"saved {save_numbered(colors, self._shown_folder(), 'autocolor')}")
 
     def undo(self) -> None:
         """Undo the last step."""

@@ -258,16 +258,18 @@ class Viewer:
             self._do((WHEEL, board.lit), lambda: board.take(gesture), True, True)
         elif kind == "drag":
             self._do((DRAG, self._drags), lambda: board.take(gesture), True, True)
-        elif not (kind == "pick" and board.is_dragging) and self._has_taken_text():
+        elif not (kind == "pick" and board.is_dragging) and (
+            board.is_on_letters(gesture.element, gesture.line) or self._has_left_text()
+        ):
             # ENTER during a drag does nothing, or it would end the step.
             self._drags += 1
             self._do((DRAG, self._drags), lambda: board.take(gesture))
         self._update()
 
-    def _has_taken_text(self) -> bool:
-        """Take the text that is being typed, if any; returns False if the text is refused and stays open."""
+    def _has_left_text(self) -> bool:
+        """Leave the text that is being typed, if any; returns False if the text is refused and stays open."""
         if self.board.typing.is_on:
-            self._do(None, self.board.typing.take)
+            self._do(None, self.board.typing.leave)
         return not self.board.typing.is_on
 
     def on_tick(self, is_at_rest: bool = True) -> None:

@@ -13,6 +13,7 @@ from typing import Any, ClassVar, Final, NamedTuple, TypeVar
 from autocolor.widgets.items import (
     BLACK,
     CHARACTER,
+    CHARACTER_LINES,
     GRAY,
     LIGHT_GRAY,
     NIGHT,
@@ -54,10 +55,14 @@ class Place(NamedTuple):
 
 
 class Typed(NamedTuple):
-    """The text of a widget that can be typed over, and the function that takes the new text."""
+    """The text of a widget that can be typed over, and the function that takes the new text.
+
+    If it `is_proposed`, Return takes the text even if it was not changed, and a pick elsewhere gives it up.
+    """
 
     text: str
     take: Callable[[str], object]
+    is_proposed: bool = False
 
 
 @dataclass(frozen=True)
@@ -182,6 +187,17 @@ class Button(Widget):
 
 
 @dataclass(frozen=True)
+class PanelButton(Button):
+    """A button of a panel over the screen, with its label in the middle."""
+
+    def items(self, lit: bool) -> list[Item]:
+        left = self.area.left + (self.area.width - CHARACTER * len(self.label)) // 2
+        top = self.area.top + (self.area.height - CHARACTER_LINES + 1) // 2
+        ground = SLATE if lit else NIGHT
+        return [filled(self.area, ground), text(self.label, left, top, WHITE, ground)]
+
+
+@dataclass(frozen=True)
 class Switch(Widget):
     """A box that is full while `is_on`. Beside the box, a pick calls `choose`, if given."""
 
@@ -278,14 +294,15 @@ def page_choice(help: str, page: int, pages: int, turn: Callable[[int], object])
 
 @dataclass(frozen=True)
 class Entry(Widget):
-    """A text that can be typed over, where there is a keyboard."""
+    """A text that can be typed over; see `Typed` for a text that is proposed."""
 
     value: str = ""
     take: Callable[[str], Any] = lambda _: None
+    is_proposed: bool = False
 
     @property
     def typed(self) -> Typed:
-        return Typed(self.value, self.take)
+        return Typed(self.value, self.take, self.is_proposed)
 
     def items(self, lit: bool) -> list[Item]:
         return self.labeled_row(lit, self.value)

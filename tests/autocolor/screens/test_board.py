@@ -43,6 +43,7 @@ from autocolor.widgets.items import (
     filled,
     text,
 )
+from autocolor.widgets.letters import PANEL as LETTER_PANEL
 from autocolor.widgets.menu import MENU, WIDE_BAR, laid_out, page_of_menu
 from autocolor.widgets.sheet import Sheet
 from autocolor.widgets.widget import Button, Entry, Place, Widget
@@ -294,9 +295,55 @@ def test_a_click_elsewhere_takes_the_typed_text_unless_it_is_refused(viewer: Vie
     assert viewer.studio.scene.ambient == 1.0
 
 
+CORNER = LETTER_PANEL.left + 2, LETTER_PANEL.top + 2
+"""A place of the letter panel beside its keys."""
+
+
+def pick_letters(viewer: Viewer, board: Board, *labels: str) -> None:
+    for label in labels:
+        point(viewer, "pick", *middle_of(board, label))
+
+
+def test_letters_are_picked_where_there_is_no_keyboard(viewer: Viewer, board: Board) -> None:
+    assert not board.is_on_letters(*CORNER)
+    pick_letters(viewer, board, "name")
+    assert board.typing.shown == MessagePart("name: scene", YELLOW, 6)
+    assert board.is_on_letters(*CORNER)
+    assert board.is_covered(*CORNER)
+    pick_letters(viewer, board, "end", "back", "back", "space", "2", "-", "x")
+    assert board.typing.shown.text == "name: sce 2-x_"
+    # Between the keys nothing is picked, and nothing taken.
+    point(viewer, "pick", *CORNER)
+    point(viewer, "grab", *CORNER)
+    point(viewer, "drop", *CORNER)
+    assert viewer.studio.scene.name == "scene"
+    pick_letters(viewer, board, "OK")
+    assert viewer.studio.scene.name == "sce 2-x"
+    assert not board.is_on_letters(*CORNER)
+
+
+def test_picked_letters_are_given_up_by_cancel_and_taken_by_a_pick_elsewhere(
+    viewer: Viewer, board: Board
+) -> None:
+    pick_letters(viewer, board, "name", "a", "cancel")
+    assert not board.typing.is_on
+    assert viewer.studio.scene.name == "scene"
+    pick_letters(viewer, board, "name", "b")
+    point(viewer, "pick", 100, 100)
+    assert viewer.studio.scene.name == "b"
+    assert not board.typing.is_on
+
+
+def test_the_letters_go_when_a_key_is_pressed(viewer: Viewer, board: Board) -> None:
+    pick_letters(viewer, board, "name", "a")
+    viewer.on_key("b", typed="b")
+    assert not board.is_on_letters(*CORNER)
+    assert "OK" not in [widget.label for widget in board.widgets()]
+    viewer.on_key("return")
+    assert viewer.studio.scene.name == "ab"
+
+
 def test_an_entry_is_typed_after_a_pick_where_there_is_a_keyboard(viewer: Viewer, board: Board) -> None:
-    point(viewer, "pick", *middle_of(board, "name"))
-    assert board.messages[0][:2] == ("name: typing needs a keyboard", ORANGE)
     element, line = middle_of(board, "name")
     viewer.on_pointer(element, line, "press", 1)
     viewer.on_pointer(element, line, "release", 1)
@@ -625,6 +672,19 @@ def test_a_text_that_was_not_changed_and_one_that_is_given_up_are_not_taken(typi
         typing.key(key, "")
         assert not typing.is_on
     assert taken == []
+
+
+def test_a_proposed_text_is_taken_unchanged_but_not_by_a_pick_elsewhere(typing: TypingLine) -> None:
+    taken: list[str] = []
+    entry = Entry("save as", value="car-2", take=taken.append, is_proposed=True)
+    typing.begin(entry)
+    typing.key("return", "")
+    assert taken == ["car-2"]
+    typing.begin(entry)
+    typed(typing, "x")
+    typing.leave()
+    assert not typing.is_on
+    assert taken == ["car-2"]
 
 
 def test_a_text_that_is_refused_stays(typing: TypingLine) -> None:

@@ -5,6 +5,7 @@ If a screen changes on purpose, look at it, and copy the new number from the fai
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 from autocolor.screens.board import rows_of_menu
@@ -26,7 +27,7 @@ PAGES = {
     "mapping": 3227220103,
     "scalar": 2308390448,
     "kept": 2040449627,
-    "file": 2904581995,
+    "file": 3651760609,
     "tutorial": 3473960918,
     "entries": 3253356514,
     "help": 1192430204,
@@ -37,6 +38,8 @@ def test_every_screen_is_drawn_as_it_was(tmp_path: Path) -> None:
     folder = tmp_path / "scenes"
     (folder / "more").mkdir(parents=True)
     (folder / "car.obj").touch()
+    # A row shows the year of an old file.
+    os.utime(folder / "car.obj", (1e9, 1e9))
     viewer = Viewer(boxes().with_scalar(name="z"), Ramtek9300(), folder)
     viewer.studio.keep_variant("first")
     viewer.studio.keep_variant()
