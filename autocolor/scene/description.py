@@ -1,7 +1,7 @@
 """The description of the difference of two scenes, in the words of the columns.
 
     key: intensity 1 -> 0.8
-    body: object color #b01020 -> #1040c0; view: eye
+    body: object color #b01020; view: eye
     light fill added
 
 It is derived from the columns, so a new column is described without a line here.
@@ -194,12 +194,12 @@ def _changes_of_value(label: str, kind: Kind, one: Any, other: Any, path: str = 
 
 
 def _arrow(kind: Kind, one: Any, other: Any) -> str:
-    """Two values with an arrow between them; the second alone if the first is long; empty if that is."""
+    """Two values with an arrow between them; a color or another long value alone; empty for a list."""
     if isinstance(one, (int, float)) and isinstance(other, (int, float)):
         texts: Sequence[str] = _numbers(one, other)
     else:
         texts = [_text(kind, value) for value in (one, other)]
-    return " -> ".join(texts) if all(texts) else texts[1]
+    return " -> ".join(texts) if all(texts) and not isinstance(kind, ColorKind) else texts[1]
 
 
 def _text(kind: Kind, value: Any) -> str:

@@ -19,7 +19,7 @@ import numpy as np
 from autocolor.arrays import Bytes
 from autocolor.screens.input import MIDDLE, Gesture
 from autocolor.screens.screen import Handle, Screen
-from autocolor.screens.session import PICTURE, Session
+from autocolor.screens.session import HISTORY, PICTURE, Session
 from autocolor.widgets.bars import Bar
 from autocolor.widgets.items import (
     BLACK,
@@ -52,6 +52,7 @@ from autocolor.widgets.widget import (
     Button,
     Gap,
     Heading,
+    Pair,
     Place,
     Steps,
     Typed,
@@ -258,12 +259,12 @@ class Board:
     # Gestures.
 
     def take(self, gesture: Gesture) -> None:
-        """Handle a gesture. Over another thing, a message that had its time gives way to the hint."""
+        """Handle a gesture. Over another thing, a message gives way to the hint when it had its time."""
         hint = self._hint() if gesture.kind == "hover" and self.session.news_may_go else ""
         self._pointer = Place(gesture.element, gesture.line)
         getattr(self, f"_{gesture.kind}")(gesture)
         if hint and hint != self._hint():
-            self.session.tell("")
+            self.session.shorten_news()
 
     def point_at(self, gesture: Gesture) -> None:
         """Move the pointer to the place of a gesture, and do nothing else."""
@@ -633,9 +634,13 @@ class TypingLine:
 # The main menu: the rows that stand in every menu before and after the rows of its screen.
 
 
+STEPS: Final = "steps"
+"""The word between undo and redo that leads to the list of steps."""
+
+
 @dataclass(frozen=True)
 class UndoRow(Steps):
-    """Undo at the left and redo at the right; a word is dim while there is no step for it.
+    """Undo at the left, redo at the right, the list of steps between; a word is dim while it does nothing.
 
     It takes picks alone, and no drags: every pick is a step.
     """
@@ -643,17 +648,29 @@ class UndoRow(Steps):
     signs: tuple[str, str] = ("undo", "redo")
     can_undo: bool = True
     can_redo: bool = True
+    show_history: Callable[[], object] = lambda: None
 
     def items(self, lit: bool) -> list[Item]:
-        left, top, right, _ = self.area
         background = SLATE if lit else NIGHT
-        undo, redo = self.signs
-        end = right + 1 - MARGIN - CHARACTER * len(redo)
-        return [
-            filled(self.area, background),
-            text(undo, left + MARGIN, top + TEXT_DOWN, WHITE if self.can_undo else GRAY, background),
-            text(redo, end, top + TEXT_DOWN, WHITE if self.can_redo else GRAY, background),
-        ]
+        can = self.can_undo, self.can_undo or self.can_redo, self.can_redo
+        words = zip((self.signs[0], STEPS, self.signs[1]), self._places, can, strict=True)
+        top = self.area.top + TEXT_DOWN
+        texts = [text(word, left, top, WHITE if is_on else GRAY, background) for word, left, is_on in words]
+        return [filled(self.area, background), *texts]
+
+    @property
+    def _places(self) -> tuple[int, int, int]:
+        """Where the three words begin."""
+        left, _, right, _ = self.area
+        end = right + 1 - MARGIN - CHARACTER * len(self.signs[1])
+        start = left + MARGIN
+        return start, (start + CHARACTER * len(self.signs[0]) + end - CHARACTER * len(STEPS)) // 2, end
+
+    def pick(self, place: Place) -> object:
+        _, middle, end = self._places
+        if middle <= place.element < end:
+            return self.show_history()
+        return super().pick(place)
 
     def drag(self, start: Place, last: Place, place: Place) -> object:
         return None
@@ -678,23 +695,26 @@ def last_rows(session: Session, screen: Screen) -> list[Widget]:
     can_undo, can_redo = bool(history.to_undo), bool(history.to_redo)
     undo = UndoRow(
         " ",
-        "Undo the last step, or redo it.",
+        "Undo the last step, or redo it; between, the list of all steps.",
         "" if can_undo or can_redo else "there is no step to undo",
         step=lambda amount: session.undo() if amount < 0 else session.redo(),
         can_undo=can_undo,
         can_redo=can_redo,
+        show_history=partial(session.turn_to, PICTURE if session.screen == HISTORY else HISTORY),
     )
     return [Gap("undo gap"), undo, *([compare_row(session)] if screen.shows_picture else [])]
 
 
 def compare_row(session: Session) -> Widget:
-    """The row that shows the state to compare with, and the present one again."""
+    """The row that shows the state to compare with, and the present one again, or both side by side."""
     other = session.comparing.other
     if other is None:
         return Button("compare", why_not="there is no step to undo")
-    return Button(
+    return Pair(
         "compare",
-        f"Show {other.name} in place of the present state, and back.",
+        f"Show {other.name}, and the present state again; or both, left and right of a line.",
         run=session.switch_comparing,
+        other="split",
+        run_other=session.switch_split,
         is_chosen=session.comparing.is_on,
     )

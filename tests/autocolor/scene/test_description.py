@@ -61,7 +61,7 @@ SCENES = {
     "key: position z 3 -> 2.5": start().with_light("key", position=(2, -4, 2.5)),
     "key: position": start().with_light("key", position=(0, 0, 5)),
     "key: off; rim: off": start().only_lights(),
-    "body: object color #b0b0b0 -> #b01020": start().with_paint("body", object_color="#b01020"),
+    "body: object color #b01020": start().with_paint("body", object_color="#b01020"),
     "part cube: surface body -> glass": start().with_part("cube", surface="glass"),
     "light fill added": start().with_new_light("fill", position=(0, 0, 1)),
     "light rim removed": start().without_light("rim"),
