@@ -139,10 +139,14 @@ class Layout:
 
 
 def handles_near(handles: Sequence[Handle], element: int, line: int) -> list[Handle]:
-    """The handles within reach of a place, the nearest first; at equal distances, the last first."""
+    """The handles within reach of a place, the nearest first; at equal distances, the last first.
+
+    A handle whose sign is at the place comes before all others.
+    """
     near = []
     for handle in handles:
-        distance = max(abs(handle.element - element), abs(handle.line - line))
+        is_at_sign = handle.sign.has(element, line)
+        distance = -1 if is_at_sign else max(abs(handle.element - element), abs(handle.line - line))
         if distance <= REACH:
             near.append((distance, handle))
     return [handle for _, handle in sorted(reversed(near), key=itemgetter(0))]
@@ -176,6 +180,8 @@ class Board:
         """The thing that is dragged, from the grab to the drop."""
         self._start = self._last = Gesture("grab", -1, -1)
         """The gesture that began the drag, and the last one."""
+        self._from_handle = Place(0, 0)
+        """From the handle that is dragged to the pointer."""
         self._pointer = Place(-1, -1)
         self._layout: tuple[object, Layout] | None = None
         """The layout, and the state of the board that it was made for."""
@@ -350,6 +356,10 @@ class Board:
             self._grabbed = None if widget.why_not else widget
         elif handle is not None:
             self._grabbed = handle
+            # A handle comes to the pointer, but a handle that was grabbed at its sign stays away from it.
+            element, line = self._pointer
+            at_sign = Place(element - handle.element, line - handle.line)
+            self._from_handle = at_sign if handle.sign.has(element, line) else Place(0, 0)
             self.screen.hold(handle)
         elif not self.is_covered(*self._pointer):
             self._grabbed = self.screen
@@ -363,7 +373,8 @@ class Board:
                 start = Place(self._start.element, self._start.line)
                 self._grabbed.drag(start, Place(last.element, last.line), self._pointer)
         elif isinstance(self._grabbed, Handle):
-            self.screen.place(self._grabbed, gesture.element, gesture.line)
+            element, line = self._from_handle
+            self.screen.place(self._grabbed, gesture.element - element, gesture.line - line)
         elif self._grabbed is not None:
             self._grabbed.drag(self._start, last, gesture)
 
