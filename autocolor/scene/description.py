@@ -56,14 +56,14 @@ class RowChange(NamedTuple):
             return self.text(has_values=False)
         return self.name if self.name.startswith(self.noun) else f"{self.noun} {self.name}"
 
+    @property
+    def label(self) -> str:
+        """The name before its columns. Parts often have the names of surfaces, so they keep their noun."""
+        return self.title if self.noun == "part" else self.name
+
     def text(self, has_values: bool) -> str:
-        """The row with its columns, and their values or not."""
-        if self.verb:
-            return f"{self.title} {self.verb}"
-        columns = ", ".join(str(each) if has_values else each.column for each in self.columns)
-        # Parts often have the names of surfaces.
-        label = self.title if self.noun == "part" else self.name
-        return f"{label}: {columns}" if label else columns
+        """The columns and their values or not; of a row without columns, what happened to it."""
+        return self.verb or ", ".join(str(each) if has_values else each.column for each in self.columns)
 
 
 def describe(before: Scene, after: Scene, most: int = 80) -> str:
@@ -78,12 +78,24 @@ def describe(before: Scene, after: Scene, most: int = 80) -> str:
         return f"scene {after.name}"
     rows = list(_changed_rows(before, after))
     lines = [
-        "; ".join(row.text(has_values=True) for row in rows),
-        "; ".join(row.text(has_values=False) for row in rows),
+        "; ".join(_with_columns(rows, has_values=True)),
+        "; ".join(_with_columns(rows, has_values=False)),
         ", ".join(row.title for row in rows),
         ", ".join(_counted(rows)),
     ]
     return next((line for line in lines if len(line) <= most), lines[-1])
+
+
+def _with_columns(rows: Sequence[RowChange], has_values: bool) -> Iterator[str]:
+    """The rows with their columns; neighboring rows with the same text have it once: "key, rim: off"."""
+    for text, group in groupby(rows, key=lambda row: row.text(has_values)):
+        same = list(group)
+        if same[0].verb:
+            yield f"{', '.join(row.title for row in same)} {text}"
+        elif same[0].name:
+            yield f"{', '.join(row.label for row in same)}: {text}"
+        else:
+            yield text
 
 
 def _counted(rows: Sequence[RowChange]) -> Iterator[str]:

@@ -40,7 +40,7 @@ class HistoryScreen(OverPicture):
     """The steps of the session, the newest at the bottom."""
 
     name = HISTORY
-    title = "history"
+    title = "steps"
     help = "Click a step to go there; undone steps are dim until another edit forgets them"
 
     is_in_menu = False

@@ -60,7 +60,7 @@ SCENES = {
     "key: intensity 1 -> 1.00001": start().with_light("key", intensity=1.00001),
     "key: position z 3 -> 2.5": start().with_light("key", position=(2, -4, 2.5)),
     "key: position": start().with_light("key", position=(0, 0, 5)),
-    "key: off; rim: off": start().only_lights(),
+    "key, rim: off": start().only_lights(),
     "body: object color #b01020": start().with_paint("body", object_color="#b01020"),
     "part cube: surface body -> glass": start().with_part("cube", surface="glass"),
     "light fill added": start().with_new_light("fill", position=(0, 0, 1)),
@@ -91,7 +91,7 @@ def test_less_room_leaves_out_values_then_columns_then_names() -> None:
     assert lines == [
         "body: blend 0.6 -> 0.25; key: intensity 1 -> 0.5; rim: intensity 1 -> 0.25; view: angle 0 -> 5;"
         " ambient 0.1 -> 0.3",
-        "body: blend; key: intensity; rim: intensity; view: angle; ambient",
+        "body: blend; key, rim: intensity; view: angle; ambient",
         "surface body, light key, light rim, view, ambient",
         "surface body, 2 lights, view, settings",
     ]
