@@ -19,7 +19,7 @@ import numpy as np
 from autocolor.arrays import Bytes
 from autocolor.screens.input import MIDDLE, Gesture
 from autocolor.screens.screen import Handle, Screen
-from autocolor.screens.session import PICTURE, Session
+from autocolor.screens.session import HISTORY, PICTURE, Session
 from autocolor.widgets.bars import Bar
 from autocolor.widgets.items import (
     BLACK,
@@ -54,6 +54,7 @@ from autocolor.widgets.widget import (
     Button,
     Gap,
     Heading,
+    Pair,
     Place,
     Steps,
     Typed,
@@ -140,10 +141,14 @@ class Layout:
 
 
 def handles_near(handles: Sequence[Handle], element: int, line: int) -> list[Handle]:
-    """The handles within reach of a place, the nearest first; at equal distances, the last first."""
+    """The handles within reach of a place, the nearest first; at equal distances, the last first.
+
+    A handle whose sign is at the place comes before all others.
+    """
     near = []
     for handle in handles:
-        distance = max(abs(handle.element - element), abs(handle.line - line))
+        is_at_sign = handle.sign.has(element, line)
+        distance = -1 if is_at_sign else max(abs(handle.element - element), abs(handle.line - line))
         if distance <= REACH:
             near.append((distance, handle))
     return [handle for _, handle in sorted(reversed(near), key=itemgetter(0))]
@@ -177,6 +182,8 @@ class Board:
         """The thing that is dragged, from the grab to the drop."""
         self._start = self._last = Gesture("grab", -1, -1)
         """The gesture that began the drag, and the last one."""
+        self._from_handle = Place(0, 0)
+        """From the handle that is dragged to the pointer."""
         self._pointer = Place(-1, -1)
         self._layout: tuple[object, Layout] | None = None
         """The layout, and the state of the board that it was made for."""
@@ -266,12 +273,12 @@ class Board:
     # Gestures.
 
     def take(self, gesture: Gesture) -> None:
-        """Handle a gesture. Over another thing, a message that had its time gives way to the hint."""
+        """Handle a gesture. Over another thing, a message gives way to the hint when it had its time."""
         hint = self._hint() if gesture.kind == "hover" and self.session.news_may_go else ""
         self._pointer = Place(gesture.element, gesture.line)
         getattr(self, f"_{gesture.kind}")(gesture)
         if hint and hint != self._hint():
-            self.session.tell("")
+            self.session.shorten_news()
 
     def point_at(self, gesture: Gesture) -> None:
         """Move the pointer to the place of a gesture, and do nothing else."""
@@ -357,6 +364,10 @@ class Board:
             self._grabbed = None if widget.why_not else widget
         elif handle is not None:
             self._grabbed = handle
+            # A handle comes to the pointer, but a handle that was grabbed at its sign stays away from it.
+            element, line = self._pointer
+            at_sign = Place(element - handle.element, line - handle.line)
+            self._from_handle = at_sign if handle.sign.has(element, line) else Place(0, 0)
             self.screen.hold(handle)
         elif not self.is_covered(*self._pointer):
             self._grabbed = self.screen
@@ -370,7 +381,8 @@ class Board:
                 start = Place(self._start.element, self._start.line)
                 self._grabbed.drag(start, Place(last.element, last.line), self._pointer)
         elif isinstance(self._grabbed, Handle):
-            self.screen.place(self._grabbed, gesture.element, gesture.line)
+            element, line = self._from_handle
+            self.screen.place(self._grabbed, gesture.element - element, gesture.line - line)
         elif self._grabbed is not None:
             self._grabbed.drag(self._start, last, gesture)
 
@@ -650,9 +662,13 @@ class TypingLine:
 # The main menu: the rows that stand in every menu before and after the rows of its screen.
 
 
+STEPS: Final = "steps"
+"""The word between undo and redo that leads to the list of steps."""
+
+
 @dataclass(frozen=True)
 class UndoRow(Steps):
-    """Undo at the left and redo at the right; a word is dim while there is no step for it.
+    """Undo at the left, redo at the right, the list of steps between; a word is dim while it does nothing.
 
     It takes picks alone, and no drags: every pick is a step.
     """
@@ -660,17 +676,29 @@ class UndoRow(Steps):
     signs: tuple[str, str] = ("undo", "redo")
     can_undo: bool = True
     can_redo: bool = True
+    show_history: Callable[[], object] = lambda: None
 
     def items(self, lit: bool) -> list[Item]:
-        left, top, right, _ = self.area
         background = SLATE if lit else NIGHT
-        undo, redo = self.signs
-        end = right + 1 - MARGIN - CHARACTER * len(redo)
-        return [
-            filled(self.area, background),
-            text(undo, left + MARGIN, top + TEXT_DOWN, WHITE if self.can_undo else GRAY, background),
-            text(redo, end, top + TEXT_DOWN, WHITE if self.can_redo else GRAY, background),
-        ]
+        can = self.can_undo, self.can_undo or self.can_redo, self.can_redo
+        words = zip((self.signs[0], STEPS, self.signs[1]), self._places, can, strict=True)
+        top = self.area.top + TEXT_DOWN
+        texts = [text(word, left, top, WHITE if is_on else GRAY, background) for word, left, is_on in words]
+        return [filled(self.area, background), *texts]
+
+    @property
+    def _places(self) -> tuple[int, int, int]:
+        """Where the three words begin."""
+        left, _, right, _ = self.area
+        end = right + 1 - MARGIN - CHARACTER * len(self.signs[1])
+        start = left + MARGIN
+        return start, (start + CHARACTER * len(self.signs[0]) + end - CHARACTER * len(STEPS)) // 2, end
+
+    def pick(self, place: Place) -> object:
+        _, middle, end = self._places
+        if middle <= place.element < end:
+            return self.show_history()
+        return super().pick(place)
 
     def drag(self, start: Place, last: Place, place: Place) -> object:
         return None
@@ -695,23 +723,26 @@ def last_rows(session: Session, screen: Screen) -> list[Widget]:
     can_undo, can_redo = bool(history.to_undo), bool(history.to_redo)
     undo = UndoRow(
         " ",
-        "Undo the last step, or redo it.",
+        "Undo the last step, or redo it; between, the list of all steps.",
         "" if can_undo or can_redo else "there is no step to undo",
         step=lambda amount: session.undo() if amount < 0 else session.redo(),
         can_undo=can_undo,
         can_redo=can_redo,
+        show_history=partial(session.turn_to, PICTURE if session.screen == HISTORY else HISTORY),
     )
     return [Gap("undo gap"), undo, *([compare_row(session)] if screen.shows_picture else [])]
 
 
 def compare_row(session: Session) -> Widget:
-    """The row that shows the state to compare with, and the present one again."""
+    """The row that shows the state to compare with, and the present one again, or both side by side."""
     other = session.comparing.other
     if other is None:
         return Button("compare", why_not="there is no step to undo")
-    return Button(
+    return Pair(
         "compare",
-        f"Show {other.name} in place of the present state, and back.",
+        f"Show {other.name}, and the present state again; or both, left and right of a line.",
         run=session.switch_comparing,
+        other="split",
+        run_other=session.switch_split,
         is_chosen=session.comparing.is_on,
     )

@@ -26,6 +26,7 @@ from autocolor.journal.places import Source
 from autocolor.mapping.display_image import DisplayImage
 from autocolor.rendering import render
 from autocolor.scene.changes import LightChanges, PaintChanges, SurfaceChanges
+from autocolor.scene.description import describe
 from autocolor.scene.lights import Light
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import Scene
@@ -41,11 +42,20 @@ from ramtek_emu.errors import escaped
 PICTURE: Final = "picture"
 """The name of the screen that a session begins with, and comes back to."""
 
+HISTORY: Final = "history"
+"""The name of the screen with the steps of the session."""
+
+SPLIT: Final = "split"
+"""The name of the screen with two states, left and right of a line."""
+
 MESSAGE_SECONDS: Final = 5.0
 """Assumed: how long a message is shown."""
 
 LEAST_SECONDS: Final = 1.0
 """Assumed: how long a message is shown at least while the pointer moves from thing to thing."""
+
+MOST_DESCRIBED: Final = 70
+"""Assumed: letters of a difference of two scenes, so that it fits in a message line with what it is of."""
 
 LONGEST_NAME: Final = 24
 """Assumed: letters of a scene's name in a message that must also say what to do."""
@@ -59,6 +69,8 @@ class Message(NamedTuple):
     shown_at: float
     persistent: bool = False
     """Whether it is shown until the next action, or until the menu comes."""
+    seconds: float = MESSAGE_SECONDS
+    """How long it is shown if it is not persistent."""
 
 
 class Session:
@@ -160,15 +172,17 @@ class Session:
     @property
     def has_news(self) -> bool:
         """Whether there is a message whose time has not passed. While states are compared, no time passes."""
-        is_recent = time.monotonic() - self.news.shown_at < MESSAGE_SECONDS
+        is_recent = time.monotonic() - self.news.shown_at < self.news.seconds
         return bool(self.news.text) and (is_recent or self.news.persistent or self.comparing.is_on)
 
     @property
     def news_may_go(self) -> bool:
-        """Whether a hint may take the place of the message: it is no warning, and was shown for a while."""
-        news = self.news
-        is_old = time.monotonic() - news.shown_at >= LEAST_SECONDS
-        return self.has_news and is_old and not (news.is_warning or news.persistent)
+        """Whether a hint may take the place of the message: it is no warning, and need not stay."""
+        return self.has_news and not (self.news.is_warning or self.news.persistent)
+
+    def shorten_news(self) -> None:
+        """Let the message go as soon as it was shown for LEAST_SECONDS."""
+        self.news = self.news._replace(seconds=LEAST_SECONDS)
 
     def tell(self, message: str, is_warning: bool = False, persistent: bool = False) -> None:
         """Show a message for some seconds; with `persistent`, until the next action.
@@ -176,7 +190,7 @@ class Session:
         An empty message takes the last message away. Letters that cannot be printed, as in names of files,
         are escaped.
         """
-        self.news = Message(escaped(message), is_warning, time.monotonic(), persistent)
+        self.news = Message(escaped(message), is_warning, time.monotonic(), persistent, MESSAGE_SECONDS)
 
     def warn(self, message: object) -> None:
         """Show an error in one line; of several problems, the first and the number of the others."""
@@ -225,7 +239,7 @@ class Session:
     def compare(self) -> None:
         """Show the state to compare with, over the picture, until the present one is edited."""
         if not self.comparing.is_on:
-            self.tell(f"shown: {self.comparing.begin()}")
+            self.tell(f"shown: {self.comparing.begin()}; {self.comparing.difference}")
 
     def end_comparing(self) -> None:
         """Show the present state again."""
@@ -235,6 +249,10 @@ class Session:
     def switch_comparing(self) -> None:
         """Show the state to compare with, or the present one again."""
         (self.end_comparing if self.comparing.is_on else self.compare)()
+
+    def switch_split(self) -> None:
+        """Show both states, left and right of a line, or the picture again."""
+        self.turn_to(PICTURE if self.screen == SPLIT else SPLIT)
 
     # Edits.
 
@@ -377,13 +395,25 @@ class Session:
 
         self.tell(f"saved {save_numbered(colors, self._shown_folder(), 'autocolor')}")
 
-    def undo(self) -> None:
-        """Undo the last step."""
-        self.tell("undone" if self.studio.undo() else "nothing to undo")
+    def undo(self, steps: int = 1) -> None:
+        """Undo the last step, or some steps at once."""
+        after = self.scene
+        if self.studio.undo(steps):
+            self._tell_steps("undone", steps, describe(self.scene, after, MOST_DESCRIBED))
+        else:
+            self.tell("nothing to undo")
 
-    def redo(self) -> None:
-        """Redo the last undone step."""
-        self.tell("redone" if self.studio.redo() else "nothing to redo")
+    def redo(self, steps: int = 1) -> None:
+        """Redo the last undone step, or some steps at once."""
+        before = self.scene
+        if self.studio.redo(steps):
+            self._tell_steps("redone", steps, describe(before, self.scene, MOST_DESCRIBED))
+        else:
+            self.tell("nothing to redo")
+
+    def _tell_steps(self, verb: str, steps: int, difference: str) -> None:
+        count = f"{steps} steps " if steps > 1 else ""
+        self.tell(f"{count}{verb}: {difference or 'no change'}")
 
     # The end.
 
@@ -451,6 +481,17 @@ class Comparing:
         """Compare with the state before the last step again if this scene was chosen."""
         if self._chosen is not None and self._chosen.scene is scene:
             self.choose(None)
+
+    @property
+    def difference(self) -> str:
+        """How the present state differs from the other state, for a message."""
+        difference = describe(self.other.scene, self._studio.scene, MOST_DESCRIBED) if self.other else ""
+        return f"now: {difference}" if difference else "now the same"
+
+    @property
+    def other_image(self) -> DisplayImage | None:
+        """The image of the state to compare with, if there is one; the present image is refined first."""
+        return None if self.other is None else self._image_of(self.other.scene)
 
     @property
     def image(self) -> DisplayImage | None:

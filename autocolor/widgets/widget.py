@@ -315,12 +315,16 @@ class Pair(Widget):
     run: Callable[[], object] = lambda: None
     other: str = ""
     run_other: Callable[[], object] = lambda: None
+    is_chosen: bool = False
+    """Whether the left button is chosen."""
 
     def items(self, lit: bool) -> list[Item]:
         background = SLATE if lit else NIGHT
         middle = self._middle
         most = (middle - self.area.left - MARGIN) // 7
-        items = self.row(lit, fitted(self.label, most))
+        items = self.row(lit, fitted(self.label, most), chosen=self.is_chosen)
+        if self.is_chosen:
+            items.append(filled(self.area._replace(left=middle - MARGIN // 2), background))
         other = fitted(self.other, most)
         return [*items, text(other, middle, self.area.top + TEXT_DOWN, self.ink, background)]
 

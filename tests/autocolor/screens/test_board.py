@@ -418,7 +418,13 @@ def test_a_click_that_slips_along_the_undo_row_undoes_nothing(viewer: Viewer, bo
         point(viewer, "drag", element - step, line)
     point(viewer, "drop", element, line)
     assert viewer.studio.scene is scene
-    point(viewer, "pick", element - 20, line)
+    point(viewer, "pick", element, line)
+    assert (viewer.page, viewer.studio.scene) == ("history", scene)
+    point(viewer, "pick", *middle_of(board, " "))
+    assert (viewer.page, viewer.studio.scene) == ("picture", scene)
+    viewer.session.turn_to("desk")
+    viewer.tell("")
+    point(viewer, "pick", element - 40, line)
     assert viewer.studio.scene is not scene
 
 
@@ -615,16 +621,15 @@ def test_a_typed_text_is_shown_whole_or_to_its_end_with_its_selection(
 def test_a_message_gives_way_to_the_hint_of_another_thing(
     viewer: Viewer, board: Board, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    point(viewer, "hover", *middle_of(board, "ambient"))
     viewer.studio.edit(viewer.studio.scene.replace(ambient=0.5))
+    undone = "undone: ambient 0 -> 0.5"
+    element, line = middle_of(board, "name")
+    point(viewer, "hover", element, line)
     now = time.monotonic()
     viewer.on_key("z", control=True)
-    point(viewer, "hover", *middle_of(board, "name"))
-    assert board.messages[0].text == "undone"
     monkeypatch.setattr("time.monotonic", lambda: now + 1.5)
-    element, line = middle_of(board, "name")
     point(viewer, "hover", element + 1, line)
-    assert board.messages[0].text == "undone"
+    assert board.messages[0].text == undone
     point(viewer, "hover", *middle_of(board, "ambient"))
     assert board.messages[0].text == "The light from everywhere."
     # A warning stands its whole time.
@@ -632,6 +637,21 @@ def test_a_message_gives_way_to_the_hint_of_another_thing(
     monkeypatch.setattr("time.monotonic", lambda: now + 4)
     point(viewer, "hover", *middle_of(board, "name"))
     assert board.messages[0].text == "careful"
+
+
+def test_a_message_is_shown_a_while_even_if_the_pointer_rests_elsewhere_at_once(
+    viewer: Viewer, board: Board, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    viewer.studio.edit(viewer.studio.scene.replace(ambient=0.5))
+    point(viewer, "hover", *middle_of(board, "name"))
+    viewer.on_key("z", control=True)
+    now = time.monotonic()
+    point(viewer, "hover", *middle_of(board, "ambient"))
+    assert board.messages[0].text == "undone: ambient 0 -> 0.5"
+    monkeypatch.setattr("time.monotonic", lambda: now + 1.5)
+    viewer.on_tick()
+    assert board.messages[0].text == "The light from everywhere."
+    assert is_drawn_whole(viewer)
 
 
 def test_an_empty_message_is_an_empty_line() -> None:
@@ -775,13 +795,13 @@ def test_undo_and_redo_are_dim_while_there_is_no_step_for_them(tmp_path: Path) -
                 for word in (WHITE, GRAY)
                 if text(label, item.area.left, item.area.top, word, NIGHT) == item
             )
-            for label, item in zip(("undo", "redo"), undo.items(lit=False)[1:], strict=True)
+            for label, item in zip(("undo", "steps", "redo"), undo.items(lit=False)[1:], strict=True)
         ]
 
     undo = last_rows(session, viewer.screens["desk"])[1]
-    assert (inks(), undo.why_not) == ([GRAY, GRAY], "there is no step to undo")
+    assert (inks(), undo.why_not) == ([GRAY] * 3, "there is no step to undo")
     session.edit(session.scene.replace(ambient=0.7))
-    assert inks() == [WHITE, GRAY]
+    assert inks() == [WHITE, WHITE, GRAY]
     session.undo()
-    assert inks() == [GRAY, WHITE]
+    assert inks() == [GRAY, WHITE, WHITE]
     assert not last_rows(session, viewer.screens["desk"])[1].why_not

@@ -127,7 +127,7 @@ def test_a_drag_is_one_step_to_undo(hand: PaintingHand) -> None:
         area = hand.widget(" ").area
         hand.click(area.left + 16, area.top + 4)
         assert hand.viewer.studio.scene is scene
-        assert hand.viewer.message == "undone"
+        assert hand.viewer.message.startswith("undone: ")
         hand.click(area.left + 16, area.top + 4)
         assert hand.viewer.message == "nothing to undo"
         assert ramps_are_right(hand)

@@ -18,19 +18,21 @@ from tests.autocolor.screens.boxes import boxes
 from tests.autocolor.widgets.drawing import checksum
 
 PAGES = {
-    "picture": 3007665088,
-    "light and view": 875136867,
-    "lights": 2197996008,
-    "reflectance": 2046627297,
-    "mixing": 779791442,
+    "picture": 2507620187,
+    "light and view": 4154763223,
+    "lights": 3146043858,
+    "reflectance": 712072731,
+    "mixing": 3752329455,
     "blending": 3756060397,
-    "mapping": 3227220103,
-    "scalar": 2308390448,
-    "kept": 2040449627,
-    "file": 3651760609,
-    "tutorial": 3473960918,
+    "mapping": 3566559567,
+    "scalar": 872320251,
+    "kept": 3078224984,
+    "history": 1158757711,
+    "file": 2662656724,
+    "split": 1133462600,
     "entries": 3253356514,
-    "help": 1192430204,
+    "help": 2738257719,
+    "tutorial": 3473960918,
 }
 
 
