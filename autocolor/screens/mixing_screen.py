@@ -198,7 +198,8 @@ class MixingScreen(Screen):
         name = sample.surface
         is_chosen = name == self.session.surface_name
         if self._taking == COLOR:
-            return f"pick the color {in_digits(sample.color)} of {name or 'the background'}; Esc ends"
+            where = name or "the background"
+            return f"pick {in_digits(sample.color)} of {where} as the {self._chosen.title} color; Esc ends"
         if self._taking and name and not is_chosen:
             paint = self.session.scene.surface(name).paint
             colors = f"{in_digits(paint.object_color)} and {in_digits(paint.light_color)}"

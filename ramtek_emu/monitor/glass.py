@@ -101,7 +101,9 @@ class Glass:
         """Close the window if it is open."""
         if self.is_open:
             self.is_open = False
-            pygame.display.quit()
+            # The clipboard of pygame opens the display once more.
+            while pygame.display.get_init():
+                pygame.display.quit()
 
     def set_title(self, title: str) -> None:
         """Change the text of the window's title bar; letters that cannot be printed are escaped."""
@@ -111,6 +113,8 @@ class Glass:
 
     def copy(self, text: str) -> bool:
         """Put a text into the clipboard; returns False if the screen has none, or the window is closed."""
+        if not self.is_open:
+            return False
         try:
             if hasattr(pygame.scrap, "put_text"):
                 # pygame-ce has functions of its own, and warns of the others.
@@ -124,6 +128,8 @@ class Glass:
 
     def paste(self) -> str:
         """The text in the clipboard; empty if there is none, or the window is closed."""
+        if not self.is_open:
+            return ""
         try:
             if hasattr(pygame.scrap, "get_text"):
                 return str(pygame.scrap.get_text())

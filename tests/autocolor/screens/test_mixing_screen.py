@@ -10,6 +10,7 @@ from autocolor.checks import Color
 from autocolor.errors import UsageError
 from autocolor.files.state import recent_colors
 from autocolor.mapping.colors import Hsv, blend_level, color_of_hsv, hsv_of
+from autocolor.scene.kinds import in_digits
 from autocolor.scene.swatches import COLUMNS, FINISHES, ROWS, finished, swatches
 from autocolor.screens.mixing_palette import Crop, crop_of
 from autocolor.screens.mixing_screen import (
@@ -555,12 +556,13 @@ def test_the_unit_takes_a_color_as_it_is_seen(hand: PaintingHand, title: str) ->
     hand.pick("take color")
     assert hand.viewer.message == f"pick a pixel: its color as you see it becomes the {title} color; Esc ends"
     element, line = place_in_picture(hand, "box 1", whole_picture(hand))
-    color = tuple(hand.colors(Area(element, line, element, line))[0, 0].tolist())
+    red, green, blue = hand.colors(Area(element, line, element, line))[0, 0].tolist()
+    color = red, green, blue
     hint = hand.viewer.board.screen.hint(element, line)
-    assert hint == "pick the color #{:02x}{:02x}{:02x} of box 1; Esc ends".format(*color)
+    assert hint == f"pick {in_digits(color)} of box 1 as the {title} color; Esc ends"
     hand.click(element, line)
     assert (hand.paint.object_color if title == OBJECT else hand.paint.light_color) == color
-    assert hand.viewer.message == "{}: #{:02x}{:02x}{:02x}".format(title, *color)
+    assert hand.viewer.message == f"{title}: {in_digits(color)}"
     assert ramps_are_right(hand)
 
 

@@ -21,7 +21,7 @@ PAGES = {
     "light and view": 875136867,
     "lights": 2197996008,
     "reflectance": 2046627297,
-    "mixing": 779791442,
+    "mixing": 733341594,
     "blending": 3756060397,
     "mapping": 3227220103,
     "scalar": 2308390448,
