@@ -574,7 +574,6 @@ BINDINGS: Final[tuple[Binding[Viewer], ...]] = (
         (Chord("p"), Chord("p", shift=True)),
         "take the paint, the color that is under the pointer",
         lambda viewer, number: viewer.take_sample(number == 1),
-        label="p, Shift+p",
     ),
     Binding(
         (Chord("c", control=True),),
