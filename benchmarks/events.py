@@ -242,6 +242,7 @@ CASES: Sequence[Case] = (
     Case("blend, by a key", "picture", 4, key("[", "]")),
     Case("color mixing: red, dragged", "mixing", 4, drag("object, red")),
     Case("color mixing: white, dragged", "mixing", 4, drag("object, white")),
+    Case("color mixing: hue, dragged", "mixing", 4, drag("object, hue")),
     Case("color mixing: blend, dragged", "mixing", 4, drag("blend bar")),
     Case("light blending: level, dragged", "blending", 4, drag("blend level", (0.5, 0.3), (0.5, 0.7))),
     Case("mapping: a point, dragged", "mapping", 8, drag("intensity 0."), pick("straight")),

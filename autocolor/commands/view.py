@@ -147,6 +147,7 @@ def monitor_of(
 
     `update` is called at every tick.
     """
+    from autocolor.screens.session import Clipboard
     from ramtek_emu.monitor.window import Key, Monitor, Pointer
 
     def on_key(key: Key) -> bool:
@@ -177,4 +178,5 @@ def monitor_of(
         on_close=viewer.on_close,
         on_message=viewer.tell,
     )
+    viewer.session.clipboard = Clipboard(monitor.copy, monitor.paste)
     return monitor

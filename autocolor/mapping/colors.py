@@ -1,4 +1,4 @@
-"""The lookup table entries of a surface: its object color, blended with the light color; and tints of colors.
+"""The lookup table entries of a surface: its object color, blended with the light color; and colors by hue.
 
 Paper: "Light Source Color Blending", Figure 12. Levels up to the blend level are taken as
 purely diffuse; above it the color shifts to the specular color in N equal steps. The method assumes that the
@@ -7,8 +7,9 @@ brightest points have the color of the light; it is not a physical prediction of
 
 from __future__ import annotations
 
+import colorsys
 from functools import lru_cache
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -123,4 +124,33 @@ def with_white(color: Color, white: int) -> Color:
     """
     tints = np.clip(np.array(color) + AMOUNTS[:, None], 0, FULL)
     red, green, blue = tints[np.abs(tints.sum(axis=1) - 3 * white).argmin()].tolist()
+    return red, green, blue
+
+
+class Hsv(NamedTuple):
+    """A color by its hue in degrees, 0 to 360, and its saturation and value in percent, 0 to 100."""
+
+    hue: float
+    saturation: float
+    value: float
+
+
+def hsv_of(color: Color) -> Hsv:
+    """The hue, saturation and value of a color, not rounded; the hue of a gray is 0.
+
+    >>> hsv_of((255, 128, 0)).saturation, hsv_of((64, 64, 64)).hue
+    (100.0, 0.0)
+    """
+    hue, saturation, value = colorsys.rgb_to_hsv(*[part / FULL for part in color])
+    return Hsv(360 * hue, 100 * saturation, 100 * value)
+
+
+def color_of_hsv(hsv: Hsv) -> Color:
+    """The color that is nearest to a hue, saturation and value; `hsv_of` of a color gives the color back.
+
+    >>> color_of_hsv(Hsv(210, 100, 50)), color_of_hsv(Hsv(360, 100, 100))
+    ((0, 64, 128), (255, 0, 0))
+    """
+    parts = colorsys.hsv_to_rgb(hsv.hue / 360, hsv.saturation / 100, hsv.value / 100)
+    red, green, blue = [half_up(FULL * part) for part in parts]
     return red, green, blue

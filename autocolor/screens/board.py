@@ -17,8 +17,10 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from autocolor.arrays import Bytes
+from autocolor.checks import Color
+from autocolor.scene.kinds import in_digits
 from autocolor.screens.input import MIDDLE, Gesture
-from autocolor.screens.screen import Handle, Screen
+from autocolor.screens.screen import Handle, Sample, Screen
 from autocolor.screens.session import HISTORY, PICTURE, Session
 from autocolor.widgets.bars import Bar
 from autocolor.widgets.items import (
@@ -52,6 +54,7 @@ from autocolor.widgets.widget import (
     NOWHERE,
     TEXT_DOWN,
     Button,
+    Entry,
     Gap,
     Heading,
     Pair,
@@ -271,6 +274,41 @@ class Board:
         return True
 
     # Gestures.
+
+    @property
+    def sample(self) -> Sample | None:
+        """The pixel of the picture under the pointer; None where something covers the picture."""
+        element, line = self._pointer
+        is_free = self.layout.widget_at(element, line) is None and not self.is_covered(element, line)
+        return self.screen.sample(element, line) if is_free else None
+
+    @property
+    def text_to_copy(self) -> str:
+        """The typed text, the text of the row under the pointer, or the color there; empty without any."""
+        lit = self._lit_widget()
+        if self.typing.is_on:
+            return self.typing.text
+        if isinstance(lit, Entry):
+            return lit.value
+        color = self.screen.color_at(*self._pointer)
+        return "" if color is None else in_digits(color)
+
+    def paste(self, text: str) -> None:
+        """Put a text into the typed text or the row under the pointer, or let the screen take it as a color.
+
+        Raises UsageError or InputError if it is refused.
+        """
+        lit = self._lit_widget()
+        if self.typing.is_on:
+            self.typing.insert(text)
+        elif isinstance(lit, Entry) and not lit.why_not:
+            lit.take(text)
+        else:
+            self.take_color(text)
+
+    def take_color(self, color: Color | str) -> None:
+        """Let the screen take a color, with the pointer where it is."""
+        self.screen.take_color(color, *self._pointer)
 
     def take(self, gesture: Gesture) -> None:
         """Handle a gesture. Over another thing, a message gives way to the hint when it had its time."""
@@ -609,6 +647,15 @@ class TypingLine:
         return self.is_on and not self._session.has_keyboard
 
     @property
+    def text(self) -> str:
+        """The text that is being typed."""
+        return self._text
+
+    def insert(self, text: str) -> None:
+        """Append a text, or replace the selected text by it."""
+        self._text, self._is_fresh = (text if self._is_fresh else self._text + text), False
+
+    @property
     def shown(self) -> MessagePart:
         """The text for the message line. The next character replaces the part that is selected."""
         selected = len(self._label) + 2
@@ -656,7 +703,7 @@ class TypingLine:
         elif name in ("end", "right"):
             self._is_fresh = False
         elif typed and typed.isprintable():
-            self._text, self._is_fresh = (typed if self._is_fresh else self._text + typed), False
+            self.insert(typed)
 
 
 # The main menu: the rows that stand in every menu before and after the rows of its screen.

@@ -2,8 +2,11 @@
 
 Paper: Figure 13. The light source color is above, the object color below, each with all its intensities at
 the left of its bars; in the horizontal bar between them, intensity rises to the right. Mixing shows its
-result at once: only entries change, and the words of the small picture stay. "This array is simply
-retransmitted to the display after color mixing is completed."
+result at once: only entries change, and the words of the picture stay. "This array is simply retransmitted to
+the display after color mixing is completed."
+
+Hue, saturation and value have bars below those of the paper. The picture below the bars shows the surface as
+large as the screen allows; paints and colors can be taken from it.
 """
 
 from __future__ import annotations
@@ -11,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache, partial
-from typing import Final, NamedTuple
+from typing import ClassVar, Final, NamedTuple
 
 import numpy as np
 
@@ -19,81 +22,80 @@ from autocolor.arrays import Bytes, Words
 from autocolor.checks import Color
 from autocolor.errors import UsageError
 from autocolor.files.state import note_color, recent_colors
-from autocolor.immutable import read_only
-from autocolor.mapping.colors import FULL, blend_from, blend_level, entries_of, white_of, with_white
-from autocolor.mapping.ranges import WORDS, LevelRange, borrowed_words, without_words
+from autocolor.mapping.colors import (
+    FULL,
+    Hsv,
+    blend_from,
+    blend_level,
+    color_of_hsv,
+    hsv_of,
+    white_of,
+    with_white,
+)
+from autocolor.mapping.ranges import LevelRange
 from autocolor.scene.changes import PaintChanges
 from autocolor.scene.kinds import in_digits
 from autocolor.scene.surfaces import Paint, Surface
 from autocolor.scene.swatches import COLUMNS, FINISHES, ROWS, finished, swatches
 from autocolor.screens.input import Gesture
+from autocolor.screens.mixing_palette import Crop, Palette, crop_of, palette_of
 from autocolor.screens.picture.over_picture import paint_rows, surface_row
-from autocolor.screens.screen import Cached, Screen
+from autocolor.screens.screen import Cached, Sample, Screen
 from autocolor.screens.session import Session
 from autocolor.widgets.bars import ComponentBar, LevelBar, level_strip
 from autocolor.widgets.items import (
     BLUE,
     CHARACTER,
     GREEN,
-    HEIGHT,
     LIGHT_GRAY,
     NIGHT,
     RED,
     WHITE,
-    WIDTH,
     Area,
     Item,
-    fitted,
     image,
     text,
 )
+from autocolor.widgets.menu import WORK
 from autocolor.widgets.widget import MARGIN, ROW_LINES, TEXT_DOWN, Button, Entry, Gap, Place, Widget
 
 LEFT: Final = 8
-LEFT_END: Final = 167
+LEFT_END: Final = 172
 """The column of the ramps."""
 
 RIGHT: Final = 176
 RIGHT_END: Final = 495
 """The column of the bars."""
 
-BAR_LINES: Final = 24
-"""The height of each of the four bars."""
+BAR_LINES: Final = 11
+"""The height of each of the seven bars of a color."""
 
-LIGHT_TOP: Final = 8
-BLEND_TOP: Final = 120
-OBJECT_TOP: Final = 176
-"""The first lines of the sections and of the bar, each with a heading of ROW_LINES."""
+SECTION_LINES: Final = 7 * BAR_LINES
 
-BLEND: Final = Area(LEFT, BLEND_TOP + ROW_LINES, RIGHT_END, OBJECT_TOP - 1)
-"""The blend bar."""
+LIGHT_TOP: Final = 4
+BLEND_TOP: Final = LIGHT_TOP + SECTION_LINES + 1
+BLEND: Final = Area(LEFT, BLEND_TOP + 12, RIGHT_END, BLEND_TOP + 42)
+"""The blend bar, below its heading."""
 
-TOP: Final = 296
-"""The first line of the small picture's heading and of the choices."""
+OBJECT_TOP: Final = BLEND.bottom + 3
+FINISHES_TOP: Final = OBJECT_TOP + SECTION_LINES + 2
+"""The first lines of the sections, of the heading of the bar between, and of the row of finishes."""
 
-HALF: Final = (RIGHT_END + 1 - RIGHT) // 2
-"""The elements of a heading, and of a finish."""
+PICTURE: Final = Area(LEFT, FINISHES_TOP + ROW_LINES + 2, RIGHT_END, WORK.bottom)
+"""The room for the picture of the surface."""
 
-SWATCH_ELEMENTS: Final = 16
-SWATCH_LINES: Final = 14
-SWATCHES: Final = Area(RIGHT, TOP + ROW_LINES, RIGHT_END, TOP + ROW_LINES + ROWS * SWATCH_LINES - 1)
-"""The field of swatches, and the size of a swatch."""
-
-RECENT: Final = Area(RIGHT, 392, RIGHT_END, 415)
-RECENT_ELEMENTS: Final = 26
-"""The recent colors, and the width of a color."""
-
-SCALE: Final = 4
-"""Lines and elements of the picture for one of the small picture."""
-
-SMALL: Final = Area(LEFT, TOP + ROW_LINES, LEFT + WIDTH // SCALE - 1, TOP + ROW_LINES + HEIGHT // SCALE - 1)
-"""The small picture."""
+HEX_ELEMENTS: Final = CHARACTER * len("#rrggbb") + 2 * MARGIN
+"""The width of the number of a color at the end of its heading."""
 
 COMPONENTS: Final = (("red", RED), ("green", GREEN), ("blue", BLUE))
 
 OBJECT: Final = "object"
 LIGHT_SOURCE: Final = "light source"
 """The names of the two colors for users."""
+
+PAINT: Final = "paint"
+COLOR: Final = "color"
+"""The things that can be taken from the picture."""
 
 
 class MixingScreen(Screen):
@@ -110,12 +112,16 @@ class MixingScreen(Screen):
         self._chosen = self.object
         """The section of the color that swatches are for."""
         self.choices = PaintChoices(session, self._take)
-        self._small: Cached[Item] = Cached()
+        self._taking = ""
+        """The thing that the user picks in the whole picture: PAINT, COLOR, or nothing."""
+        self._crop: Cached[Crop] = Cached()
+        self._picture: Cached[Item] = Cached()
 
     def enter(self) -> None:
         self.choices.begin()
 
     def leave(self) -> None:
+        self._taking = ""
         self.choices.end()
 
     # Widgets and items.
@@ -130,65 +136,86 @@ class MixingScreen(Screen):
             self.light.row(surface.paint),
             self.object.row(surface.paint),
             *paint_rows(self.session, surface.paint),
+            Gap("taking gap"),
+            *(self._taking_row(thing) for thing in (PAINT, COLOR)),
+            *(() if self._taking else self.choices.rows(self._palette.swatches, self._chosen.title)),
         ]
+
+    def _taking_row(self, thing: str) -> Button:
+        is_on = self._taking == thing
+        return Button(
+            f"take {thing}",
+            "Stop picking." if is_on else f"{self._prompt(thing)}.",
+            run=self.escape if is_on else partial(self._begin_taking, thing),
+            is_chosen=is_on,
+        )
 
     def widgets(self) -> Sequence[Widget]:
         surface = self.session.chosen_surface
-        if surface is None:
+        if surface is None or self._taking:
             return []
+        palette = self._palette
         at_levels = self.session.studio.image.words_at_levels(surface.name)
         blend_bar = LevelBar(
             "blend bar",
             "Above the handle the object color gives way to the light color.",
-            words=self._palette.shown[at_levels],
+            words=palette.shown[at_levels],
             level=blend_level(surface.paint.blend, self._levels.levels),
             put=self._put_level,
         )
         return [
-            *self.light.widgets(surface.paint, self._chosen is self.light),
+            *self.light.widgets(surface.paint, self._chosen is self.light, palette.hues),
             blend_bar.at(BLEND),
-            *self.object.widgets(surface.paint, self._chosen is self.object),
-            *self.choices.widgets(surface, self._palette.swatches, self._chosen.title),
+            *self.object.widgets(surface.paint, self._chosen is self.object, palette.hues),
+            *self.choices.finishes(surface),
         ]
 
     def items(self) -> Sequence[Item]:
         surface = self.session.chosen_surface
         if surface is None:
             return [text("The scene has no surface in use.", LEFT, LIGHT_TOP + TEXT_DOWN, LIGHT_GRAY)]
+        if self._taking:
+            return [self._picture_item()]
         palette, blend = self._palette, self._blend_text(surface.paint)
         return [
             *self.light.items(palette.light_ramp),
             *self.object.items(palette.object_ramp),
             text("blend", LEFT + MARGIN, BLEND_TOP + TEXT_DOWN, LIGHT_GRAY),
             text(blend, RIGHT_END + 1 - CHARACTER * len(blend), BLEND_TOP + TEXT_DOWN),
-            text(
-                fitted(surface.name, SMALL.width // CHARACTER - 1),
-                LEFT + MARGIN,
-                TOP + TEXT_DOWN,
-                LIGHT_GRAY,
-            ),
-            self._small_picture(),
-            *self.choices.items(),
+            self._picture_item(),
         ]
 
     def loads(self) -> Sequence[tuple[int, Bytes]]:
         surface = self.session.chosen_surface
-        if surface is None:
+        if surface is None or self._taking:
             return []
         return self._palette.loads(surface.paint.light_color, surface.paint.object_color, self.choices.colors)
 
     def hint(self, element: int, line: int) -> str:
-        if self.session.chosen_surface is None or not SMALL.has(element, line):
-            return self.help
-        words = self.session.studio.words[::SCALE, ::SCALE]
-        down, across = line - SMALL.top, element - SMALL.left
-        levels = self._levels
-        if down < words.shape[0] and across < words.shape[1]:
-            level = int(words[down, across]) - levels.first
-            if 0 <= level < levels.levels:
-                what = self.session.studio.image.meaning
-                return f"{self.session.surface_name}, {what} {level} of {levels.levels - 1}"
-        return f"Only {self.session.surface_name} is shown here"
+        sample = self.sample(element, line)
+        if sample is None:
+            return self._prompt(self._taking) if self._taking else self.help
+        name = sample.surface
+        is_chosen = name == self.session.surface_name
+        if self._taking == COLOR:
+            where = name or "the background"
+            return f"pick {in_digits(sample.color)} of {where} as the {self._chosen.title} color; Esc ends"
+        if self._taking and name and not is_chosen:
+            paint = self.session.scene.surface(name).paint
+            colors = f"{in_digits(paint.object_color)} and {in_digits(paint.light_color)}"
+            return f"pick the paint of {name}: {colors}, blend {paint.blend:.2f}; Esc ends"
+        if self._taking:
+            return self._prompt(PAINT)
+        if is_chosen:
+            return f"{name}, {self.session.studio.image.meaning} {sample.level} of {self._levels.levels - 1}"
+        return f"{name}: click to mix its colors; P: take its paint" if name else self.help
+
+    def _prompt(self, thing: str) -> str:
+        """The message that says what a pick in the picture will do."""
+        name = self.session.surface_name
+        if thing == PAINT:
+            return f"pick a surface: {name} takes both its colors, blend and percentage; Esc ends"
+        return f"pick a pixel: its color as you see it becomes the {self._chosen.title} color; Esc ends"
 
     @property
     def _levels(self) -> LevelRange:
@@ -199,26 +226,88 @@ class MixingScreen(Screen):
         ranges = tuple(self.session.studio.level_ranges.items())
         return palette_of(ranges, self.session.surface_name, self.choices.count)
 
-    def _small_picture(self) -> Item:
-        """The chosen surface in the picture, at a quarter of its size; the same item until it changes."""
-        words, stand_ins = self.session.studio.words, self._palette.shown
+    @property
+    def _present_crop(self) -> Crop:
+        """The part of the picture that is shown: the chosen surface, or the whole picture to take from it."""
+        words, levels = self.session.studio.words, self._levels
+
+        def compute() -> Crop:
+            if self._taking:
+                return crop_of(np.ones(words.shape, np.bool_), WORK)
+            return crop_of((words >= levels.first) & (words <= levels.last), PICTURE)
+
+        return self._crop.of(compute, words, self._taking, self.session.surface_name)
+
+    def _picture_item(self) -> Item:
+        """The picture in the words that stand for its words; the same item until it changes."""
+        studio, crop = self.session.studio, self._present_crop
+        stand_ins = None if self._taking else self._palette.dimmed(studio.entries)
 
         def draw() -> Item:
-            small = stand_ins[words[::SCALE, ::SCALE][: SMALL.height, : SMALL.width]]
-            return image(small, SMALL.left, SMALL.top)
+            words = crop.of(studio.words)
+            return image(words if stand_ins is None else stand_ins[words], crop.area.left, crop.area.top)
 
-        return self._small.of(draw, words, stand_ins)
+        return self._picture.of(draw, crop, stand_ins)
 
     def _blend_text(self, paint: Paint) -> str:
         levels = self._levels.levels
         return f"{paint.blend:.2f}, from level {blend_level(paint.blend, levels)} of {levels - 1}"
 
+    def sample(self, element: int, line: int) -> Sample | None:
+        if self.session.chosen_surface is None:
+            return None
+        pixel, studio = self._present_crop.pixel_at(element, line), self.session.studio
+        if pixel is None:
+            return None
+        word = int(studio.words[pixel])
+        name = self.session.surface_of(word)
+        red, green, blue = studio.entries[word].tolist()
+        return Sample(name, (red, green, blue), word - studio.level_ranges[name].first if name else 0)
+
     # Actions.
 
     def pick(self, gesture: Gesture) -> None:
-        for section in (self.light, self.object):
-            if section.ramp.has(gesture.element, gesture.line):
-                self._choose(section)
+        element, line = gesture.element, gesture.line
+        sample, section = self.sample(element, line), self._section_at(element, line)
+        if self._taking:
+            self._pick_to_take(sample)
+        elif section is not None:
+            self._choose(section)
+        elif sample is not None and sample.surface:
+            self._choose_surface(sample.surface)
+            self.session.tell(f"surface {self.session.surface_name}")
+
+    def _pick_to_take(self, sample: Sample | None) -> None:
+        """Take the paint or the color of a sample. Raises UsageError beside the surfaces; picking goes on."""
+        if sample is None or (self._taking == PAINT and not sample.surface):
+            raise UsageError(f"no surface is there; {self._prompt(self._taking)}")
+        if self._taking == PAINT:
+            self.session.take_paint(sample.surface)
+        else:
+            self._take(sample.color)
+        self._taking = ""
+
+    def _begin_taking(self, thing: str) -> None:
+        self._taking = thing
+        self.session.tell(self._prompt(thing))
+
+    def escape(self) -> bool:
+        was_taking, self._taking = bool(self._taking), ""
+        return was_taking
+
+    def take_color(self, color: Color | str, element: int, line: int) -> None:
+        section = self._section_at(element, line)
+        if section is not None:
+            self._chosen = section
+        self._take(color)
+
+    def color_at(self, element: int, line: int) -> Color | None:
+        surface, section = self.session.chosen_surface, self._section_at(element, line) or self._chosen
+        return None if surface is None else section.color_of(surface.paint)
+
+    def _section_at(self, element: int, line: int) -> ColorSection | None:
+        sections = () if self._taking else (self.light, self.object)
+        return next((section for section in sections if section.area.has(element, line)), None)
 
     def _choose(self, section: ColorSection) -> None:
         self._chosen = section
@@ -237,9 +326,12 @@ class MixingScreen(Screen):
     def _put_level(self, level: int) -> None:
         self.session.paint(blend=blend_from(level, self._levels.levels))
 
-    def _take(self, color: Color) -> None:
+    def _take(self, color: Color | str) -> None:
+        """Give the chosen color of the chosen surface a value."""
         self._paint(self._chosen, color)
-        self.session.tell(f"{self._chosen.title}: {in_digits(color)}")
+        surface = self.session.chosen_surface
+        if surface is not None:
+            self.session.tell(f"{self._chosen.title}: {in_digits(self._chosen.color_of(surface.paint))}")
 
 
 # A section: one of the two colors of the chosen surface, with its ramp and bars.
@@ -251,6 +343,17 @@ class Raised(NamedTuple):
     surface: str
     start: Color
     to: Color
+
+
+class Mixed(NamedTuple):
+    """The last use of the bars of hue, saturation and value, and the color that they gave."""
+
+    hsv: Hsv
+    to: Color
+
+
+HSV: Final = (("hue", 360, "degrees"), ("saturation", 100, "percent"), ("value", 100, "percent"))
+"""The names, the largest numbers and the units of the bars of `Hsv`."""
 
 
 class ColorSection:
@@ -270,8 +373,11 @@ class ColorSection:
         self.session, self.title = session, title
         self._give, self._choose = partial(give, self), partial(choose, self)
         self._raised = Raised("", (0, 0, 0), (0, 0, 0))
+        self._mixed = Mixed(Hsv(0, 0, 0), (0, 0, 0))
         self._heading = Area(LEFT, top, LEFT_END, top + ROW_LINES - 1)
-        self.ramp = Area(LEFT, top + ROW_LINES, LEFT_END, top + ROW_LINES + 4 * BAR_LINES - 1)
+        self.ramp = Area(LEFT, top + ROW_LINES, LEFT_END, top + SECTION_LINES - 1)
+        self.area = Area(LEFT, top, RIGHT_END, top + SECTION_LINES - 1)
+        """The heading, the ramp and the bars."""
 
     def color_of(self, paint: Paint) -> Color:
         """The color in a paint."""
@@ -285,12 +391,14 @@ class ColorSection:
         """The ramp in its words, from the lowest intensity at the left."""
         return [level_strip(ramp.tobytes(), self.ramp)]
 
-    def widgets(self, paint: Paint, is_chosen: bool) -> list[Widget]:
-        """The heading, and the bars."""
+    def widgets(self, paint: Paint, is_chosen: bool, hues: Words) -> list[Widget]:
+        """The heading with the number of the color, and the bars; `hues` are the words of the hue bar."""
         color = self.color_of(paint)
-        help = f"The {self.title} color: click to pick swatches for it."
         heading = SectionHeading(
-            self.title, help, run=self._choose, value=in_digits(color), is_chosen=is_chosen
+            self.title,
+            f"The {self.title} color: click to pick swatches for it; Ctrl+C copies it.",
+            run=self._choose,
+            is_chosen=is_chosen,
         )
         bars = [
             ComponentBar(
@@ -311,18 +419,34 @@ class ColorSection:
             word=WHITE,
             letter="W",
         )
+        hsv = self._hsv_of(color)
+        by_hue = [
+            ComponentBar(
+                f"{self.title}, {name}",
+                f"{name.capitalize()} of the {self.title} color, 0 to {most} {unit}.",
+                value=hsv[number],
+                high=most,
+                put=partial(self._put_hsv, number),
+                word=LIGHT_GRAY,
+                letter=name[0].upper(),
+                strip=hues.tobytes() if name == "hue" else b"",
+            )
+            for number, (name, most, unit) in enumerate(HSV)
+        ]
         return [
-            heading.at(self._heading),
-            *(bar.at(self._bar_area(number)) for number, bar in enumerate([*bars, white])),
+            heading.at(self._heading._replace(right=LEFT_END - HEX_ELEMENTS)),
+            self.row(paint, "heading").at(self._heading._replace(left=LEFT_END + 1 - HEX_ELEMENTS)),
+            *(bar.at(self._bar_area(number)) for number, bar in enumerate([*bars, white, *by_hue])),
         ]
 
-    def row(self, paint: Paint) -> Entry:
-        """The row of a menu in which the color is typed, by its name or number."""
+    def row(self, paint: Paint, within: str = "") -> Entry:
+        """The row of a menu, or the number `within` the heading, over which the color is typed."""
         help = f"The {self.title} color by its name or number, such as teal or #b01020."
-        return Entry(self.title.split()[0], help, value=in_digits(self.color_of(paint)), take=self._give)
+        value = in_digits(self.color_of(paint))
+        return Entry(self.title.split()[0], help, within=within, value=value, take=self._give)
 
     def _bar_area(self, number: int) -> Area:
-        top = self.ramp.top + number * BAR_LINES
+        top = self.area.top + number * BAR_LINES
         return Area(RIGHT, top, RIGHT_END, top + BAR_LINES - 1)
 
     def _put_component(self, number: int, value: float) -> None:
@@ -340,6 +464,22 @@ class ColorSection:
         to = with_white(self._raised.start, whole("white", value))
         self._raised = self._raised._replace(to=to)
         self._give(to)
+
+    def _hsv_of(self, color: Color) -> Hsv:
+        """The hue, saturation and value of a color: as the bars gave it, if they gave it.
+
+        Assumed: so a gray keeps the hue from which it came by these bars, and black its saturation, too.
+        """
+        return self._mixed.hsv if color == self._mixed.to else hsv_of(color)
+
+    def _put_hsv(self, number: int, value: float) -> None:
+        name, most, _ = HSV[number]
+        if not 0 <= value <= most:
+            raise UsageError(f"{name} must be a number from 0 to {most}, not {value:g}; type another")
+        hsv = list(self._hsv_of(self._present))
+        hsv[number] = value
+        self._mixed = Mixed(Hsv(*hsv), color_of_hsv(Hsv(*hsv)))
+        self._give(self._mixed.to)
 
     @property
     def _present(self) -> Color:
@@ -363,7 +503,14 @@ def whole(name: str, value: float) -> int:
     return int(value)
 
 
-# The choices below the bars: finishes and recent colors, or a field of swatches.
+# The choices: finishes, and in the menu recent colors and swatches.
+
+CELL_ELEMENTS: Final = 12
+CELL_LINES: Final = 10
+"""The size of a swatch. The hues go down, so that the field fits into the menu."""
+
+MOST_RECENT: Final = ROWS
+"""Recent colors in their row, which is as wide as the swatches."""
 
 
 class PaintChoices:
@@ -372,64 +519,60 @@ class PaintChoices:
     def __init__(self, session: Session, take: Callable[[Color], object]) -> None:
         self.session = session
         self._take = take
-        self._has_swatches = False
-        """Whether the field of swatches is shown, instead of finishes and recent colors."""
         self._recent: tuple[Color, ...] = ()
+        self._colors = np.empty((0, 3), np.uint8)
         self._before: dict[str, Paint] = {}
         """The paints of all surfaces when the mixing began."""
 
     @property
     def count(self) -> int:
         """The number of colors that can be picked."""
-        return len(swatches() if self._has_swatches else self._recent)
+        return len(self._colors)
 
     @property
     def colors(self) -> Bytes:
-        """The colors that can be picked, (n, 3) uint8."""
-        return swatches() if self._has_swatches else np.array(self._recent, np.uint8).reshape(-1, 3)
+        """The colors that can be picked, (n, 3) uint8: the swatches, and then the recent colors."""
+        return self._colors
 
-    def widgets(self, surface: Surface, words: Words, title: str) -> list[Widget]:
-        """The headings and the choices. `words` show colors for the color that `title` names."""
-        headings = [
-            Button(
-                "finishes",
-                "Kinds of surfaces, and the colors that were mixed last.",
-                area=half_row(0, 0),
-                run=partial(self._show, False),
-                is_chosen=not self._has_swatches,
-            ),
-            Button(
-                "swatches",
-                f"A field of {len(swatches())} paints to pick from.",
-                area=half_row(0, 1),
-                run=partial(self._show, True),
-                is_chosen=self._has_swatches,
-            ),
-        ]
-        if not self._has_swatches:
-            return [*headings, *self._finishes(surface), *self._recent_colors(words, title)]
-        field = SwatchField(
+    def rows(self, words: Words, title: str) -> list[Widget]:
+        """The rows of the colors. `words` show them; `title` names the color that they are for."""
+        count = len(swatches())
+        recent = SwatchField(
+            "recent colors",
+            f"The colors that were mixed last; click one for the {title}.",
+            words=words[count:],
+            across=MOST_RECENT,
+            take=lambda number: self._take_number(count + number),
+        )
+        paints = PaintField(
             "paints",
             f"Paints for the {title}: click one, or drag over them.",
-            area=SWATCHES,
-            words=words,
-            across=COLUMNS,
-            width=SWATCH_ELEMENTS,
-            height=SWATCH_LINES,
+            words=words[:count],
+            across=ROWS,
             take=self._take_number,
         )
-        return [*headings, field]
+        return [Gap("swatches gap"), *((recent, Gap("recent gap")) if self._recent else ()), paints]
 
-    def items(self) -> list[Item]:
-        """The heading of the recent colors, if they are shown."""
-        if self._has_swatches or not self._recent:
-            return []
-        return [text("recent colors", RIGHT + MARGIN, RECENT.top - 12, LIGHT_GRAY)]
+    def finishes(self, surface: Surface) -> list[Widget]:
+        """The row of finishes."""
+        width = (RIGHT_END + 1 - LEFT) // len(FINISHES)
+        area = Area(LEFT, FINISHES_TOP, LEFT + width - 1, FINISHES_TOP + ROW_LINES - 1)
+        return [
+            Button(
+                name,
+                f"Let the surface look like {name}, in its object color.",
+                area=area._replace(left=area.left + number * width, right=area.right + number * width),
+                run=partial(self._finish, surface, name),
+            )
+            for number, name in enumerate(FINISHES)
+        ]
 
     def begin(self) -> None:
         """Mixing begins: note the paints, and look up the recent colors."""
         self._before = {each.name: each.paint for each in self.session.scene.surfaces}
-        self._recent = recent_colors()
+        self._recent = recent_colors()[:MOST_RECENT]
+        hues_down = swatches().reshape(ROWS, COLUMNS, 3).swapaxes(0, 1).reshape(-1, 3)
+        self._colors = np.concatenate([hues_down, np.array(self._recent, np.uint8).reshape(-1, 3)])
 
     def end(self) -> None:
         """Mixing ends: note the new colors of the surfaces as recent colors."""
@@ -440,36 +583,6 @@ class PaintChoices:
             if before.object_color != now.object_color:
                 note_color(now.object_color)
 
-    def _finishes(self, surface: Surface) -> Sequence[Widget]:
-        return [
-            Button(
-                name,
-                f"Let the surface look like {name}, in its object color.",
-                area=half_row(1 + number // 2, number % 2),
-                run=partial(self._finish, surface, name),
-            )
-            for number, name in enumerate(FINISHES)
-        ]
-
-    def _recent_colors(self, words: Words, title: str) -> Sequence[Widget]:
-        if not self._recent:
-            return []
-        return [
-            SwatchField(
-                "recent colors",
-                f"The colors that were mixed last; click one for the {title}.",
-                area=RECENT,
-                words=words,
-                across=len(self._recent),
-                width=RECENT_ELEMENTS,
-                height=RECENT.height,
-                take=self._take_number,
-            )
-        ]
-
-    def _show(self, has_swatches: bool) -> None:
-        self._has_swatches = has_swatches
-
     def _take_number(self, number: int) -> None:
         red, green, blue = self.colors[number].tolist()
         self._take((red, green, blue))
@@ -479,19 +592,13 @@ class PaintChoices:
         self.session.tell(f"{surface.name}: {name}")
 
 
-def half_row(row: int, column: int) -> Area:
-    """The left or the right half of a row, counted from the headings."""
-    left, top = RIGHT + column * HALF, TOP + row * ROW_LINES
-    return Area(left, top, left + HALF - 1, top + ROW_LINES - 1)
-
-
 GROUT: Final = 1
 """Lines and elements of the ground at the right and lower edge of each cell."""
 
 
 @dataclass(frozen=True)
 class SwatchField(Widget):
-    """Cells, each filled with a word of its own, row by row from the upper left corner of the area.
+    """Cells, each filled with a word of its own, row by row from the top of the area.
 
     `take` is called with the number of a cell that is picked, or that a drag reaches. There may be fewer
     cells than fit.
@@ -500,18 +607,25 @@ class SwatchField(Widget):
     words: Words = field(default_factory=lambda: np.empty(0, np.uint16))
     across: int = 1
     """Cells in a row."""
-    width: int = 16
-    height: int = 16
+    width: int = CELL_ELEMENTS
+    height: int = CELL_LINES
     """Elements and lines of a cell."""
     take: Callable[[int], object] = lambda _: None
+    row_lines: ClassVar[int] = CELL_LINES
+
+    @property
+    def _left(self) -> int:
+        """The first element of the cells, which are in the middle of the area."""
+        return self.area.left + (self.area.width - self.across * self.width) // 2
 
     def items(self, lit: bool) -> list[Item]:
-        return list(_cells(self.words.tobytes(), self.area, self.across, self.width, self.height))
+        place = self._left, self.area.top
+        return list(_cells(self.words.tobytes(), place, self.across, self.width, self.height))
 
     def cell_at(self, place: Place) -> int | None:
         """The number of the cell at a place, if there is one."""
         column, row = (
-            (place.element - self.area.left) // self.width,
+            (place.element - self._left) // self.width,
             (place.line - self.area.top) // self.height,
         )
         number = row * self.across + column
@@ -526,8 +640,15 @@ class SwatchField(Widget):
         return self.pick(place)
 
 
+@dataclass(frozen=True)
+class PaintField(SwatchField):
+    """All swatches as a row of the menu."""
+
+    row_lines: ClassVar[int] = COLUMNS * CELL_LINES
+
+
 @lru_cache(maxsize=8)
-def _cells(data: bytes, area: Area, across: int, width: int, height: int) -> tuple[Item, ...]:
+def _cells(data: bytes, place: tuple[int, int], across: int, width: int, height: int) -> tuple[Item, ...]:
     words = np.frombuffer(data, np.uint16)
     if not len(words):
         return ()
@@ -538,70 +659,4 @@ def _cells(data: bytes, area: Area, across: int, width: int, height: int) -> tup
     for edge in range(GROUT):
         cells[height - 1 - edge :: height] = NIGHT
         cells[:, width - 1 - edge :: width] = NIGHT
-    return (image(cells, area.left, area.top),)
-
-
-# The words that the screen borrows for the ramps of the two colors and for swatches. The surfaces may own
-# nearly all words, so the screen borrows words of surfaces; see `borrowed_words`. If the chosen surface must
-# lend words, too, they are spread over its levels, and the level beside each lent level is shown instead.
-
-RAMP_STEPS: Final = 64
-"""The intensities of a ramp, from black to the color itself."""
-
-Ranges = tuple[tuple[str, LevelRange], ...]
-"""The level ranges of the surfaces in use by name, so that they can be a key."""
-
-
-class Palette(NamedTuple):
-    """The words that show a surface and the colors beside it."""
-
-    borrowed: Words
-    """The words for colors, rising: two ramps of RAMP_STEPS each, then the swatches."""
-    runs: tuple[slice, ...]
-    """The runs of consecutive words in `borrowed`."""
-    shown: Words
-    """The word that stands for each word of the picture, (1024,): NIGHT for words of other surfaces."""
-
-    @property
-    def light_ramp(self) -> Words:
-        """The words of the intensities of the light color, from the lowest."""
-        return self.borrowed[:RAMP_STEPS]
-
-    @property
-    def object_ramp(self) -> Words:
-        """The words of the intensities of the object color, from the lowest."""
-        return self.borrowed[RAMP_STEPS : 2 * RAMP_STEPS]
-
-    @property
-    def swatches(self) -> Words:
-        """The words of the swatches."""
-        return self.borrowed[2 * RAMP_STEPS :]
-
-    def loads(self, light: Color, object_color: Color, swatches: Bytes) -> list[tuple[int, Bytes]]:
-        """The entries of the words, as runs of colors from a first entry on; `swatches` has (n, 3)."""
-        colors = np.concatenate([ramp_of(light), ramp_of(object_color), swatches])
-        return [(int(self.borrowed[run.start]), colors[run]) for run in self.runs]
-
-
-@lru_cache(maxsize=8)
-def palette_of(ranges: Ranges, surface: str, swatches: int) -> Palette:
-    """The palette for a surface in use and a number of swatches.
-
-    Raises UsageError if there are not so many words to borrow.
-    """
-    levels = dict(ranges)[surface]
-    borrowed = borrowed_words(dict(ranges), {surface}, 2 * RAMP_STEPS + swatches)
-    ends = np.flatnonzero(np.diff(borrowed) != 1) + 1
-    bounds = [0, *ends.tolist(), len(borrowed)]
-    own = np.arange(levels.first, levels.last + 1, dtype=np.uint16)
-    shown = np.full(WORDS, NIGHT, np.uint16)
-    shown[own] = without_words(own, borrowed, {surface: levels})
-    return Palette(borrowed, tuple(map(slice, bounds, bounds[1:])), read_only(shown))
-
-
-def ramp_of(color: Color) -> Bytes:
-    """The intensities of a color, (RAMP_STEPS, 3) uint8: step k is k / (RAMP_STEPS - 1) of it, half up.
-
-    They are the entries of a surface of that color alone, with as many levels.
-    """
-    return entries_of(Paint(color, color, blend=1.0), RAMP_STEPS)
+    return (image(cells, *place),)

@@ -11,6 +11,8 @@ from operator import is_
 from typing import ClassVar, Generic, NamedTuple, TypeVar
 
 from autocolor.arrays import Bytes, Words
+from autocolor.checks import Color
+from autocolor.errors import UsageError
 from autocolor.screens.input import Gesture
 from autocolor.screens.session import Session
 from autocolor.widgets.items import NIGHT, Area, Item
@@ -29,6 +31,17 @@ class Handle(NamedTuple):
     line: int
     label: str
     sign: Area = NOWHERE
+
+
+class Sample(NamedTuple):
+    """A pixel of the picture: its surface, its color, and its level.
+
+    On the background the surface is empty and the level is 0.
+    """
+
+    surface: str
+    color: Color
+    level: int
 
 
 class Screen:
@@ -85,6 +98,20 @@ class Screen:
     def hint(self, element: int, line: int) -> str:
         """The text of the message line for a place without widget and handle."""
         return self.help
+
+    # Colors.
+
+    def sample(self, element: int, line: int) -> Sample | None:
+        """The pixel of the picture that is seen at a place; None where no picture is seen."""
+        return None
+
+    def color_at(self, element: int, line: int) -> Color | None:
+        """The color to copy at a place; None if there is none."""
+        return None
+
+    def take_color(self, color: Color | str, element: int, line: int) -> None:
+        """Take a pasted or sampled color, with the pointer at a place. Raises UsageError if it cannot."""
+        raise UsageError("this screen takes no color; turn to color mixing")
 
     # Gestures and keys.
 

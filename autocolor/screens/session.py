@@ -7,7 +7,7 @@ until it ends. At the foot are the comparison with another state, and the file o
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Final, NamedTuple, Unpack
 
@@ -73,6 +73,13 @@ class Message(NamedTuple):
     """How long it is shown if it is not persistent."""
 
 
+class Clipboard(NamedTuple):
+    """The clipboard of the user's window. `copy` returns whether it took a text; `paste` returns its text."""
+
+    copy: Callable[[str], bool]
+    paste: Callable[[], str]
+
+
 class Session:
     """The state that the screens share.
 
@@ -97,6 +104,8 @@ class Session:
         """Whether the next edit is part of a movement, whose pictures may be coarse."""
         self.has_keyboard = False
         """Whether the user has a keyboard."""
+        self.clipboard: Clipboard | None = None
+        """The clipboard; None on a display elsewhere."""
         self.keys: Sequence[tuple[str, str]] = ()
         """Each key and what it does, for the help page."""
         self.is_at_hand = False
@@ -285,6 +294,17 @@ class Session:
         """Change the colors of the chosen surface, if there is one."""
         if self.surface_name:
             self.edit(self.scene.with_paint(self.surface_name, **changes))
+
+    def take_paint(self, name: str) -> None:
+        """Give the chosen surface the paint of another: both colors, the blend and the percentage.
+
+        Raises UsageError if that is the chosen surface.
+        """
+        chosen = self.surface_name
+        if name == chosen:
+            raise UsageError(f"{name} is the chosen surface; point at another, whose paint it takes")
+        self.paint(**vars(self.scene.surface(name).paint))
+        self.tell(f"{chosen}: the paint of {name}; undo goes back")
 
     # Files.
 

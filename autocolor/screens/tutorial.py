@@ -141,7 +141,7 @@ LESSONS: Final = (
         "mix a color",
         (
             "Paint the car: pick < picture, pick the body, then color mixing in",
-            "the menu. The bars are red, green, blue, and white for all three.",
+            "the menu. Drag its bars, or pick one of the paints in the menu.",
         ),
         _mixed,
     ),

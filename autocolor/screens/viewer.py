@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Final
 
 from autocolor.arrays import Words
-from autocolor.errors import AutocolorError
+from autocolor.errors import AutocolorError, UsageError
 from autocolor.journal.history import History
 from autocolor.scene.columns import Tier
 from autocolor.scene.scene import Scene, cost_of_edit
@@ -428,6 +428,38 @@ class Viewer:
         self._show_scene()
         self.session.reopen()
 
+    def take_sample(self, is_color: bool) -> None:
+        """Take the paint of the surface under the pointer, or the color that is seen there.
+
+        Raises UsageError if there is none.
+        """
+        sample = self.board.sample
+        if sample is None or not sample.surface:
+            raise UsageError("no surface is under the pointer; point at it in the picture")
+        if is_color:
+            self.board.take_color(sample.color)
+        else:
+            self.session.take_paint(sample.surface)
+
+    def copy(self) -> None:
+        """Copy the color or the text under the pointer to the clipboard; UsageError if there is none."""
+        text, clipboard = self.board.text_to_copy, self.session.clipboard
+        if not text:
+            raise UsageError("nothing is there to copy; point at a color")
+        if clipboard is None or not clipboard.copy(text):
+            raise UsageError(f"{text} is not copied, because this display has no clipboard; write it down")
+        self.session.tell(f"copied {text}")
+
+    def paste(self) -> None:
+        """Paste the first line of the clipboard's text; UsageError without a clipboard or a text."""
+        clipboard = self.session.clipboard
+        if clipboard is None:
+            raise UsageError("this display has no clipboard; type the color")
+        lines = clipboard.paste().split("\n")
+        if not lines[0].strip():
+            raise UsageError("the clipboard has no text; copy a color first")
+        self.board.paste(lines[0].strip())
+
     def save_screen(self) -> None:
         """Save what the display shows, without message and cursors, as the next screenshot."""
         page = self.board.page()
@@ -553,6 +585,17 @@ BINDINGS: Final[tuple[Binding[Viewer], ...]] = (
         lambda viewer, number: viewer.edits.repaint((1, -1)[number]),
         repeats=True,
     ),
+    Binding(
+        (Chord("p"), Chord("p", shift=True)),
+        "take the paint, the color that is under the pointer",
+        lambda viewer, number: viewer.take_sample(number == 1),
+    ),
+    Binding(
+        (Chord("c", control=True),),
+        "copy the color under the pointer",
+        lambda viewer, _: viewer.copy(),
+    ),
+    Binding((Chord("v", control=True),), "paste a color", lambda viewer, _: viewer.paste()),
     Binding(
         (Chord("e"),),
         "hold the exposure (less light is darker), release it",

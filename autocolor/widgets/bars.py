@@ -13,6 +13,7 @@ import numpy as np
 from autocolor.arrays import Booleans, Numbers, Words, half_up
 from autocolor.errors import UsageError
 from autocolor.widgets.items import (
+    BLACK,
     CHARACTER,
     CHARACTER_LINES,
     GRAY,
@@ -208,7 +209,8 @@ def digits_of(step: float) -> int:
     return len(digits) - digits.index(".") - 1
 
 
-# Component bars: red, green, blue and white of a color, one element for each value of the component.
+# Component bars: red, green, blue and white of a color, one element for each value of the component. Hue,
+# saturation and value have bars of the same length.
 #
 # Paper: Figure 13, the color bars.
 
@@ -218,20 +220,22 @@ STEPS: Final = 256
 LETTER: Final = 16
 """Elements from the left edge to the track, where the letter stands."""
 
-UP_DOWN: Final = 5
+UP_DOWN: Final = 2
 """Lines above and below the track."""
 
 
 @dataclass(frozen=True)
 class ComponentBar(Bar):
-    """A bar from 0 to 255 with its letter at the left and its number at the right.
+    """A bar from 0 to 255, or to `high`, with its letter at the left and its number at the right.
 
-    Its area is at least 308 elements wide, and stands on a ground of NIGHT.
+    Its area is at least 312 elements wide, and stands on a ground of NIGHT.
     """
 
     high: float = STEPS - 1
     step: float = 1
     letter: str = ""
+    strip: bytes = b""
+    """The words along the track as the bytes of `Words`, instead of a bar of one color; see `level_strip`."""
 
     @property
     def _track(self) -> Area:
@@ -242,15 +246,32 @@ class ComponentBar(Bar):
         track = self._track
         end = track.left + round(self.share * (track.width - 1))
         middle = (self.area.top + self.area.bottom + 1 - CHARACTER_LINES) // 2
-        # The bar keeps its color when it is lit: it is one of four.
-        number, ink = fitted(self.number, 4), YELLOW if lit else WHITE
+        # The bar keeps its color when it is lit, which distinguishes it from the other bars.
+        number, ink = fitted(self.number, 5), YELLOW if lit else WHITE
         return [
             text(self.letter, self.area.left, middle, ink),
-            filled(track, SLATE),
-            filled(track._replace(right=end), self.word),
-            filled(Area(end, track.top - 2, end, track.bottom + 2), WHITE),
+            component_track(track, end, self.word, self.strip),
             text(number, self.area.right + 1 - CHARACTER * len(number), middle, ink),
         ]
+
+    def nudge(self, steps: float) -> object:
+        value = rounded_to((self.value or 0.0) + steps * self.step, self.step)
+        return self.put(min(max(value, self.low), self.high))
+
+
+@lru_cache(maxsize=1024)
+def component_track(track: Area, end: int, word: int, strip: bytes) -> Item:
+    """The bar of a component up to an element, or its strip with a mark there."""
+    # One image is drawn faster than a bar, the rest of its track and the mark, and covers those before.
+    along = np.full(track.width, SLATE, np.uint16)
+    mark = end - track.left
+    if strip:
+        along[:] = np.frombuffer(strip, np.uint16)[levels_along(track.width, len(strip) // 2)]
+        along[max(0, mark - 1) : mark + 2] = BLACK
+    else:
+        along[:mark] = word
+    along[mark] = WHITE
+    return image(np.broadcast_to(along, (track.height, track.width)), track.left, track.top)
 
 
 # Level bars: the levels of a surface in its own words, with a handle at the blend level.
@@ -384,6 +405,7 @@ def levels_along(length: int, levels: int) -> Numbers:
     return (np.arange(length) * (levels - 1) * 2 // (length - 1) + 1) // 2
 
 
+@lru_cache(maxsize=1024)
 def pointer(element: int, line: int, towards: int, word: int) -> Item:
     """A triangle whose tip is at an element and a line."""
     shape = _POINTERS[towards]

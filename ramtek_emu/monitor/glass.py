@@ -36,6 +36,8 @@ FIELD_MASKS: Final = (0xFF0000, 0x00FF00, 0x0000FF, 0)
 REDRAWN_ON: Final = frozenset(
     (pygame.WINDOWEXPOSED, pygame.WINDOWSIZECHANGED, pygame.WINDOWRESTORED, pygame.WINDOWSHOWN)
 )
+CLIPBOARD_TEXT: Final = "text/plain;charset=utf-8"
+"""The only type of text that pygame's clipboard takes."""
 CONTROL: Final = pygame.KMOD_CTRL | pygame.KMOD_META
 
 
@@ -99,13 +101,42 @@ class Glass:
         """Close the window if it is open."""
         if self.is_open:
             self.is_open = False
-            pygame.display.quit()
+            # The clipboard of pygame opens the display once more.
+            while pygame.display.get_init():
+                pygame.display.quit()
 
     def set_title(self, title: str) -> None:
         """Change the text of the window's title bar; letters that cannot be printed are escaped."""
         if self.is_open:
             # Names of files may contain bytes that are not text; pygame refuses them.
             pygame.display.set_caption(escaped(title))
+
+    def copy(self, text: str) -> bool:
+        """Put a text into the clipboard; returns False if the screen has none, or the window is closed."""
+        if not self.is_open:
+            return False
+        try:
+            if hasattr(pygame.scrap, "put_text"):
+                # pygame-ce has functions of its own, and warns of the others.
+                pygame.scrap.put_text(text)
+            else:
+                pygame.scrap.init()
+                pygame.scrap.put(CLIPBOARD_TEXT, text.encode())
+        except pygame.error:
+            return False
+        return True
+
+    def paste(self) -> str:
+        """The text in the clipboard; empty if there is none, or the window is closed."""
+        if not self.is_open:
+            return ""
+        try:
+            if hasattr(pygame.scrap, "get_text"):
+                return str(pygame.scrap.get_text())
+            pygame.scrap.init()
+            return (pygame.scrap.get(CLIPBOARD_TEXT) or b"").decode(errors="replace")
+        except pygame.error:
+            return ""
 
     def set_full_screen(self, full_screen: bool) -> None:
         """Fill the screen, or go back to a window of the previous size; NoScreenError if that fails."""

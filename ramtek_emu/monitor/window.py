@@ -179,6 +179,14 @@ class Monitor:
 
         return save_numbered(self.display.field(), self.screenshots, "ramtek")
 
+    def copy(self, text: str) -> bool:
+        """Put a text into the clipboard; returns False if the screen has none, or the window is closed."""
+        return self._glass.copy(text)
+
+    def paste(self) -> str:
+        """The text in the clipboard; empty if there is none."""
+        return self._glass.paste()
+
     def tell(self, message: str) -> None:
         """Show a message to the user; "" removes the last message."""
         if self.on_message is not None:

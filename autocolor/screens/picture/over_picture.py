@@ -12,11 +12,13 @@ from dataclasses import replace
 from typing import Any, ClassVar, NamedTuple
 
 from autocolor.arrays import Bytes, Words
+from autocolor.checks import Color
 from autocolor.mapping.legend import CORNERS, GROUND, INK, Corner, Legend, legend
+from autocolor.scene.kinds import in_digits
 from autocolor.scene.surfaces import Paint
 from autocolor.screens.input import MIDDLE, Gesture, turn_between, wheel_ratio
 from autocolor.screens.picture.picture_edits import PictureEdits
-from autocolor.screens.screen import Cached, Screen
+from autocolor.screens.screen import Cached, Sample, Screen
 from autocolor.screens.session import Session
 from autocolor.widgets.items import Area, Item, filled, text
 from autocolor.widgets.menu import MENU
@@ -78,6 +80,25 @@ class OverPicture(Screen):
         session.choose_surface(pointed.surface)
         session.part_name = pointed.part
         session.tell(pointed.message)
+
+    def sample(self, element: int, line: int) -> Sample | None:
+        pointed, studio = self._pointed(element, line), self.session.studio
+        if pointed is None:
+            return None
+        word = int(studio.words[line, element])
+        red, green, blue = studio.entries[word].tolist()
+        first = studio.level_ranges[pointed.surface].first
+        return Sample(pointed.surface, (red, green, blue), word - first)
+
+    def color_at(self, element: int, line: int) -> Color | None:
+        sample = self.sample(element, line)
+        return None if sample is None else sample.color
+
+    def take_color(self, color: Color | str, element: int, line: int) -> None:
+        self.session.paint(object_color=color)
+        surface = self.session.chosen_surface
+        if surface is not None:
+            self.session.tell(f"{surface.name}: object color {in_digits(surface.paint.object_color)}")
 
     def _is_on_legend(self, element: int, line: int) -> bool:
         return self._legend is not None and self._legend.has(element, line)

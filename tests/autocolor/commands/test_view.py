@@ -148,6 +148,28 @@ def test_leaving_by_the_menu_closes_the_window(monkeypatch: pytest.MonkeyPatch) 
     assert closed == [True]
 
 
+def test_the_clipboard_of_the_window_is_that_of_the_viewer(monkeypatch: pytest.MonkeyPatch) -> None:
+    from autocolor.commands.view import monitor_of
+    from autocolor.screens.viewer import Viewer
+    from ramtek_emu import Ramtek9300
+    from tests.autocolor.sessions import car
+
+    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
+    display = Ramtek9300()
+    viewer = Viewer(car(), display)
+    monitor = monitor_of(viewer, display)
+    monitor.open()
+    try:
+        viewer.session.turn_to("mixing")
+        viewer.on_key("c", control=True)
+        assert viewer.message == f"copied {monitor.paste()}"
+        assert monitor.copy("teal")
+        viewer.on_key("v", control=True)
+        assert viewer.message == "object: #008080"
+    finally:
+        monitor.close()
+
+
 def test_modifiers_and_released_keys_reach_the_viewer(folder: Path, run: Run, monitors: list[Any]) -> None:
     from ramtek_emu.monitor.window import Key, Pointer
 

@@ -7,7 +7,16 @@ from hypothesis import strategies as st
 
 from autocolor import Paint
 from autocolor.checks import Color
-from autocolor.mapping.colors import blend_from, blend_level, entries_of, white_of, with_white
+from autocolor.mapping.colors import (
+    Hsv,
+    blend_from,
+    blend_level,
+    color_of_hsv,
+    entries_of,
+    hsv_of,
+    white_of,
+    with_white,
+)
 from tests.autocolor.reference import entry_of
 from tests.autocolor.strategies import numbers, paints
 
@@ -121,3 +130,33 @@ def test_the_ends_are_black_and_white_alone(color: Color) -> None:
 def test_a_full_red_has_tints_and_shades() -> None:
     assert with_white((255, 0, 0), 170) == (255, 127, 127)
     assert with_white((255, 0, 0), 50) == (150, 0, 0)
+
+
+@given(st.tuples(*(st.integers(0, 255),) * 3))
+def test_hue_saturation_and_value_give_the_color_back(color: Color) -> None:
+    hsv = hsv_of(color)
+    assert color_of_hsv(hsv) == color
+    assert 0 <= hsv.hue <= 360
+    assert 0 <= hsv.saturation <= 100
+    assert hsv.value == pytest.approx(max(color) / 255 * 100)
+
+
+@given(st.tuples(st.floats(0, 360), st.floats(0, 100), st.floats(0, 100)))
+def test_a_color_by_hue_has_the_components_of_its_definition(hsv: tuple[float, float, float]) -> None:
+    # The definition by the distance of the hue from those of red, green and blue.
+    hue, saturation, value = hsv[0], hsv[1] / 100, hsv[2] / 100
+    for component, number in zip(color_of_hsv(Hsv(*hsv)), (5, 3, 1), strict=True):
+        sixth = (number + hue / 60) % 6
+        exact = 255 * (value - value * saturation * max(0, min(sixth, 4 - sixth, 1)))
+        assert abs(component - exact) <= 0.5 + 1e-9
+
+
+@pytest.mark.parametrize("hue", [0, 60, 120, 180, 240, 300, 360])
+def test_the_ends_of_the_hues_are_the_same_color(hue: int) -> None:
+    color = color_of_hsv(Hsv(hue, 100, 100))
+    assert set(color) == {0, 255}
+    assert color_of_hsv(Hsv(hue % 360, 100, 100)) == color
+
+
+def test_a_gray_has_no_saturation_and_hue_0() -> None:
+    assert [hsv_of((gray, gray, gray))[:2] for gray in (0, 1, 128, 255)] == [(0, 0)] * 4

@@ -4,41 +4,35 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from autocolor import Mesh, Paint, scene_of
 from autocolor.checks import Color
 from autocolor.errors import UsageError
 from autocolor.files.state import recent_colors
-from autocolor.mapping.colors import blend_level
-from autocolor.mapping.ranges import BACKGROUND, SCREENS, LevelRange
-from autocolor.scene.swatches import COLUMNS, FINISHES, finished, swatches
+from autocolor.mapping.colors import Hsv, blend_level, color_of_hsv, hsv_of
+from autocolor.scene.kinds import in_digits
+from autocolor.scene.swatches import COLUMNS, FINISHES, ROWS, finished, swatches
+from autocolor.screens.mixing_palette import Crop, crop_of
 from autocolor.screens.mixing_screen import (
+    CELL_ELEMENTS,
+    CELL_LINES,
     LIGHT_SOURCE,
     OBJECT,
-    RAMP_STEPS,
-    RECENT,
-    SCALE,
-    SMALL,
-    SWATCH_LINES,
-    SWATCHES,
+    PICTURE,
     ColorSection,
     MixingScreen,
-    Palette,
-    Ranges,
     SwatchField,
-    palette_of,
-    ramp_of,
     whole,
 )
+from autocolor.screens.session import Clipboard
 from autocolor.screens.viewer import Viewer
 from autocolor.widgets.bars import ComponentBar
-from autocolor.widgets.items import BLUE, GREEN, NIGHT, RED, WHITE, Area
-from autocolor.widgets.widget import Place
+from autocolor.widgets.items import BLUE, GREEN, LIGHT_GRAY, NIGHT, RED, WHITE, Area
+from autocolor.widgets.menu import WORK
+from autocolor.widgets.widget import Place, Widget
 from ramtek_emu import Ramtek9300
 from tests.autocolor.screens.mixing import STRIP, ZERO, bar_is_right, line_of, mixing, ramps_are_right
-from tests.autocolor.screens.painting_hand import PaintingHand, boxes_scene
+from tests.autocolor.screens.painting_hand import PAINTS, PaintingHand, boxes_scene
 
 BARS = {
     "light source, red": ("light_color", 0),
@@ -72,14 +66,45 @@ def test_the_bar_between_shows_the_entries_of_the_surface(hand: PaintingHand) ->
     assert bar_is_right(hand)
 
 
-def test_the_small_picture_shows_the_chosen_surface_alone_in_its_words(hand: PaintingHand) -> None:
+def crop(hand: PaintingHand) -> Crop:
+    """The part of the picture that shows the chosen surface."""
+    first, levels = hand.viewer.studio.level_ranges[hand.viewer.session.surface_name]
+    words = hand.viewer.studio.words
+    return crop_of((first <= words) & (words < first + levels), PICTURE)
+
+
+def place_in_picture(hand: PaintingHand, surface: str, shown: Crop | None = None) -> tuple[int, int]:
+    """An element and a line of the screen where the picture shows a surface."""
+    shown = shown or crop(hand)
+    first, levels = hand.viewer.studio.level_ranges[surface]
+    words = shown.of(hand.viewer.studio.words)
+    places = np.argwhere((first <= words) & (words < first + levels))
+    line, element = places[len(places) // 2].tolist()
+    return shown.area.left + element, shown.area.top + line
+
+
+def test_the_picture_shows_the_chosen_surface_in_its_words_and_the_others_in_grays(
+    hand: PaintingHand,
+) -> None:
     hand.pick("surface")
     assert hand.viewer.session.surface_name == "box 1"
     first, levels = hand.viewer.studio.level_ranges["box 1"]
-    words = hand.viewer.studio.words[::SCALE, ::SCALE]
+    words = crop(hand).of(hand.viewer.studio.words)
     is_own = (first <= words) & (words < first + levels)
     assert is_own.any()
-    assert np.array_equal(hand.words(SMALL), np.where(is_own, words, NIGHT))
+    assert (words[~is_own] > 0).any()
+    seen, colors = hand.words(crop(hand).area), hand.colors(crop(hand).area).astype(int)
+    assert np.array_equal(seen[is_own], words[is_own])
+    assert (seen[words == 0] == NIGHT).all()
+    assert np.ptp(colors[~is_own], axis=1).max() < 16
+    assert colors[~is_own].max() < 128
+
+
+def test_the_picture_fills_its_room_in_one_direction(hand: PaintingHand) -> None:
+    for _ in range(2):
+        area = crop(hand).area
+        assert area.width == PICTURE.width or area.height == PICTURE.height
+        hand.pick("surface")
 
 
 @pytest.mark.parametrize("bar", BARS)
@@ -95,21 +120,23 @@ def test_an_element_of_a_bar_is_one_value_of_its_component(hand: PaintingHand, b
     ]
 
 
-def test_a_drag_is_seen_at_once_and_writes_no_word_of_the_small_picture(hand: PaintingHand) -> None:
-    line = line_of(hand, "object, red")
-    hand.spoil(SMALL)
+@pytest.mark.parametrize("bar", ["object, red", "object, white", "object, hue", "object, value"])
+def test_a_drag_is_seen_at_once_and_writes_no_word_of_the_picture(hand: PaintingHand, bar: str) -> None:
+    line = line_of(hand, bar)
+    hand.spoil(PICTURE)
     hand.move(ZERO + 176, line)
     hand.joystick.track = True
     hand.viewer.poll()
     for value in (170, 90, 20):
         before = hand.display.frame_buffer.written
+        color = hand.paint.object_color
         hand.move(ZERO + value, line)
-        assert hand.paint.object_color == (value, 16, 32)
+        assert hand.paint.object_color != color
         assert ramps_are_right(hand)
         assert bar_is_right(hand)
-        # The bar, the white one, their numbers, and the color's number twice.
-        assert hand.display.frame_buffer.written - before < 25_000
-    assert (hand.words(SMALL) == 5).all()
+        # The bars, their numbers, and the color's number twice.
+        assert hand.display.frame_buffer.written - before < 20_000
+    assert (hand.words(PICTURE) == 5).all()
 
 
 def test_a_drag_is_one_step_to_undo(hand: PaintingHand) -> None:
@@ -174,8 +201,7 @@ def test_leaving_restores_words_and_entries_byte_for_byte(
     hand.leave()
     assert hand.is_as_sent(before)
     hand.turn_to("color mixing")
-    hand.pick("swatches")
-    hand.click(SWATCHES.left + 60, SWATCHES.top + 60)
+    hand.pick("paints")
     hand.drag((100, STRIP.top), (200, STRIP.top), (250, STRIP.top))
     assert hand.viewer.studio.scene is not before
     hand.leave()
@@ -189,18 +215,15 @@ def test_a_surface_that_owns_nearly_all_words_is_at_most_a_level_off(
     hand = mixing(boxes_scene(count, levels), tmp_path)
     first, owned = hand.viewer.studio.level_ranges["box 0"]
     assert owned >= 1005
-    words = hand.viewer.studio.words[::SCALE, ::SCALE].astype(int)
+    words = crop(hand).of(hand.viewer.studio.words).astype(int)
     is_own = (first <= words) & (words < first + owned)
-    for label in ("finishes", "swatches"):
-        hand.pick(label)
-        seen = hand.words(SMALL).astype(int)
-        assert np.abs(seen - words)[is_own].max() <= 1
-        assert (seen[~is_own] == NIGHT).all()
-        # So its colors are those of the picture, or of the neighboring level.
-        entries = hand.viewer.studio.entries
-        assert np.array_equal(hand.colors(SMALL)[is_own], entries[seen[is_own]])
-        assert ramps_are_right(hand)
-        assert bar_is_right(hand, most_off=1)
+    seen = hand.words(crop(hand).area).astype(int)
+    assert np.abs(seen - words)[is_own].max() <= 1
+    # So its colors are those of the picture, or of the neighboring level.
+    entries = hand.viewer.studio.entries
+    assert np.array_equal(hand.colors(crop(hand).area)[is_own], entries[seen[is_own]])
+    assert ramps_are_right(hand)
+    assert bar_is_right(hand, most_off=1)
 
 
 def test_sixty_surfaces_are_chosen_in_turn(tmp_path: Path) -> None:
@@ -255,23 +278,28 @@ def test_a_component_that_is_typed_must_be_a_whole_number(
     assert hand.viewer.studio.scene is scene
 
 
-def test_pointing_at_the_small_picture_tells_the_level(hand: PaintingHand) -> None:
+def test_pointing_at_the_picture_tells_the_level_or_the_other_surface(hand: PaintingHand) -> None:
     first, levels = hand.viewer.studio.level_ranges["box 0"]
     screen = hand.viewer.board.screen
     assert isinstance(screen, MixingScreen)
-    line, element = np.argwhere(hand.words(SMALL) != NIGHT)[0].tolist()
-    word = int(hand.words(SMALL)[line, element])
-    told = screen.hint(SMALL.left + element, SMALL.top + line)
-    assert told == f"box 0, level {word - first} of {levels - 1}"
-    assert screen.hint(SMALL.left, SMALL.top) == "Only box 0 is shown here"
-    assert screen.hint(300, 290) == screen.help
+    element, line = place_in_picture(hand, "box 0")
+    word = int(hand.display.words[line, element])
+    assert screen.hint(element, line) == f"box 0, level {word - first} of {levels - 1}"
+    there = place_in_picture(hand, "box 1")
+    assert screen.hint(*there) == "box 1: click to mix its colors; P: take its paint"
+    assert screen.hint(PICTURE.left, PICTURE.top) == screen.help
+    hand.click(*there)
+    assert hand.viewer.session.surface_name == "box 1"
+    assert hand.viewer.message == "surface box 1"
 
 
 def test_a_scene_without_surfaces_in_use_says_so(tmp_path: Path) -> None:
     empty = scene_of(Mesh(np.zeros((0, 3)), np.zeros((0, 4), int)), name="empty")
     hand = mixing(empty, tmp_path)
     assert [row.label for row in hand.viewer.board.screen.rows()] == []
-    assert hand.viewer.board.screen.hint(SMALL.left, SMALL.top) == hand.viewer.board.screen.help
+    assert hand.viewer.board.screen.hint(300, 300) == hand.viewer.board.screen.help
+    hand.viewer.on_key("p", typed="p")
+    assert hand.viewer.message == "no surface is under the pointer; point at it in the picture"
     hand.click(30, 60)
     hand.turn_to("light blending")
     hand.move(20, 20)
@@ -294,29 +322,98 @@ def section_of(viewer: Viewer, title: str, given: list[object]) -> ColorSection:
     )  # fmt: skip
 
 
-@pytest.mark.parametrize(("title", "values"), [(OBJECT, [10, 20, 31, 20]), (LIGHT_SOURCE, [255, 0, 0, 85])])
-def test_it_has_a_heading_and_a_bar_for_each_component_and_for_white(
-    viewer: Viewer, title: str, values: list[int]
-) -> None:
-    heading, *bars = section_of(viewer, title, []).widgets(PAINT, is_chosen=False)
+HUE_WORDS = np.arange(200, 237, dtype=np.uint16)
+
+
+def widgets_of(section: ColorSection, is_chosen: bool = False) -> list[Widget]:
+    return section.widgets(PAINT, is_chosen, HUE_WORDS)
+
+
+@pytest.mark.parametrize(
+    ("title", "values"),
+    [
+        (OBJECT, [10, 20, 31, 20, *hsv_of((10, 20, 31))]),
+        (LIGHT_SOURCE, [255, 0, 0, 85, 0, 100, 100]),
+    ],
+)
+def test_it_has_a_heading_a_number_and_seven_bars(viewer: Viewer, title: str, values: list[float]) -> None:
+    heading, number, *bars = widgets_of(section_of(viewer, title, []))
     assert heading.label == title
+    assert number.typed is not None
+    assert number.typed.text == ("#0a141f" if title == OBJECT else "#ff0000")
     assert all(isinstance(bar, ComponentBar) for bar in bars)
     found = [(bar.letter, bar.word, bar.value) for bar in bars if isinstance(bar, ComponentBar)]
-    assert found == list(zip("RGBW", (RED, GREEN, BLUE, WHITE), values, strict=True))
+    words = (RED, GREEN, BLUE, WHITE, *(LIGHT_GRAY,) * 3)
+    assert found == list(zip("RGBWHSV", words, values, strict=True))
 
 
 def test_bars_and_ramp_stand_beside_each_other_without_overlapping(viewer: Viewer) -> None:
     section = section_of(viewer, OBJECT, [])
-    widgets = section.widgets(PAINT, is_chosen=True)
+    widgets = widgets_of(section, is_chosen=True)
     areas = [section.ramp, *(each.area for each in widgets)]
     for number, area in enumerate(areas):
+        assert section.area.covers(area)
         assert not any(area.overlaps(other) for other in areas[number + 1 :])
-    assert (section.ramp.top, section.ramp.bottom) == (widgets[1].area.top, widgets[-1].area.bottom)
+    assert section.ramp.bottom == widgets[-1].area.bottom
+    assert section.ramp.right < min(each.area.left for each in widgets[2:])
+
+
+def test_bars_of_hue_saturation_and_value_set_the_color(hand: PaintingHand) -> None:
+    hand.click(ZERO, line_of(hand, "object, hue"))
+    red, green, blue = hand.paint.object_color
+    assert (red, green) == (176, blue)
+    hand.click(ZERO + 85, line_of(hand, "object, hue"))
+    assert hand.paint.object_color == (green, red, green)
+    hand.click(ZERO + 255, line_of(hand, "object, saturation"))
+    assert hand.paint.object_color == (0, 176, 0)
+    hand.drag((ZERO + 10, line_of(hand, "light source, value")), (ZERO, 0), (ZERO - 40, 0))
+    assert hand.paint.light_color == (0, 0, 0)
+    assert ramps_are_right(hand)
+
+
+@pytest.mark.parametrize("color", [(176, 16, 32), (3, 1, 2), (255, 255, 254)])
+@pytest.mark.parametrize("bar", ["saturation", "value"])
+def test_a_color_that_passes_through_gray_or_black_keeps_its_hue(
+    hand: PaintingHand, color: Color, bar: str
+) -> None:
+    hand.viewer.session.paint(object_color=color)
+    line = line_of(hand, f"object, {bar}")
+    hand.drag((ZERO + 200, line), (ZERO + 4, line), (ZERO, line))
+    assert len(set(hand.paint.object_color)) == 1
+    hue = hand.widget("object, hue")
+    assert isinstance(hue, ComponentBar)
+    assert hue.value == hsv_of(color).hue
+    # The bar brings back the same hue.
+    hand.drag((ZERO + 1, line), (ZERO + 100, line), (ZERO + 255, line))
+    hsv = list(hsv_of(color))
+    hsv[1 if bar == "saturation" else 2] = 100
+    assert hand.paint.object_color == color_of_hsv(Hsv(*hsv))
+
+
+@pytest.mark.parametrize("bar", ["hue", "saturation", "value"])
+def test_another_color_sets_the_bars_anew(hand: PaintingHand, bar: str) -> None:
+    hand.click(ZERO + 100, line_of(hand, f"object, {bar}"))
+    hand.click(ZERO + 60, line_of(hand, "object, green"))
+    values = [hand.widget(f"object, {name}") for name in ("hue", "saturation", "value")]
+    assert [each.value for each in values if isinstance(each, ComponentBar)] == list(
+        hsv_of(hand.paint.object_color)
+    )
+
+
+@pytest.mark.parametrize(("bar", "most"), [("hue", 360), ("saturation", 100), ("value", 100)])
+def test_a_number_beyond_the_bar_is_refused(hand: PaintingHand, bar: str, most: int) -> None:
+    scene = hand.viewer.studio.scene
+    hand.move(ZERO + 100, line_of(hand, f"object, {bar}"))
+    for letter in "361":
+        hand.viewer.on_key(letter, typed=letter)
+    hand.viewer.on_key("return")
+    assert hand.viewer.message == f"{bar} must be a number from 0 to {most}, not 361; type another"
+    assert hand.viewer.studio.scene is scene
 
 
 def test_a_component_is_put_into_the_color_that_the_surface_has_now(viewer: Viewer) -> None:
     given: list[object] = []
-    bars = section_of(viewer, OBJECT, given).widgets(PAINT, is_chosen=True)[1:]
+    bars = widgets_of(section_of(viewer, OBJECT, given))[2:]
     assert isinstance(bars[1], ComponentBar)
     bars[1].put(99.0)
     assert given == [(OBJECT, (176, 99, 32))]
@@ -325,7 +422,7 @@ def test_a_component_is_put_into_the_color_that_the_surface_has_now(viewer: View
 def test_a_pick_on_the_heading_chooses_the_color(viewer: Viewer) -> None:
     given: list[object] = []
     section = section_of(viewer, OBJECT, given)
-    heading, *_ = section.widgets(PAINT, is_chosen=False)
+    heading, *_ = widgets_of(section)
     heading.pick(Place(10, 104))
     assert given == [OBJECT]
 
@@ -333,7 +430,7 @@ def test_a_pick_on_the_heading_chooses_the_color(viewer: Viewer) -> None:
 def test_the_heading_and_the_row_have_different_keys(viewer: Viewer) -> None:
     for title in (OBJECT, LIGHT_SOURCE):
         section = section_of(viewer, title, [])
-        keys = [each.key for each in (*section.widgets(PAINT, is_chosen=False), section.row(PAINT))]
+        keys = [each.key for each in (*widgets_of(section), section.row(PAINT))]
         assert len(set(keys)) == len(keys)
 
 
@@ -364,93 +461,30 @@ def test_a_value_that_is_no_component_is_refused(value: float) -> None:
     assert str(told.value) == f"green must be a whole number from 0 to 255, not {value:g}; type another"
 
 
-COMPONENTS = st.integers(0, 255)
-COLORS = st.tuples(COMPONENTS, COMPONENTS, COMPONENTS)
-
-ALONE: Ranges = (("body", LevelRange(1, 1007)),)
-LARGE: Ranges = (("body", LevelRange(1, 1000)), ("glass", LevelRange(1001, 7)))
-TWO_RANGES: Ranges = (("glass", LevelRange(1, 600)), ("body", LevelRange(601, 407)))
-
-
-@given(COLORS)
-def test_step_k_of_a_ramp_is_k_of_63_parts_of_the_color_rounded_half_up(color: Color) -> None:
-    expected = [[(2 * part * step + 63) // 126 for part in color] for step in range(64)]
-    assert ramp_of(color).tolist() == expected
-
-
-@pytest.mark.parametrize("ranges", [ALONE, LARGE, TWO_RANGES])
-@pytest.mark.parametrize("swatches", [0, 12, 200])
-def test_all_words_differ_and_none_is_of_the_background_of_the_screens_or_shown(
-    ranges: Ranges, swatches: int
-) -> None:
-    palette = palette_of(ranges, "body", swatches)
-    words = np.concatenate([palette.light_ramp, palette.object_ramp, palette.swatches])
-    assert len(palette.light_ramp) == len(palette.object_ramp) == RAMP_STEPS
-    assert len(palette.swatches) == swatches
-    assert len(set(words.tolist())) == len(words)
-    assert words.min() > BACKGROUND
-    assert words.max() < SCREENS.first
-    own = dict(ranges)["body"]
-    assert not np.isin(words, palette.shown[own.first : own.last + 1]).any()
-
-
-@pytest.mark.parametrize("ranges", [ALONE, LARGE, TWO_RANGES])
-def test_the_surface_is_shown_by_its_own_words_or_their_neighbors_and_the_others_by_the_ground(
-    ranges: Ranges,
-) -> None:
-    palette = palette_of(ranges, "body", 200)
-    levels = dict(ranges)["body"]
-    own = np.arange(levels.first, levels.last + 1)
-    off = np.abs(palette.shown[levels.first : levels.last + 1].astype(int) - own)
-    assert off.max() == (0 if ranges is TWO_RANGES else 1)
-    assert (np.delete(palette.shown, own) == NIGHT).all()
-
-
-@pytest.mark.parametrize("ranges", [ALONE, LARGE, TWO_RANGES])
-def test_loads_put_each_color_into_its_word(ranges: Ranges) -> None:
-    palette = palette_of(ranges, "body", 12)
-    swatches = np.random.default_rng(1).integers(0, 256, (12, 3)).astype(np.uint8)
-    table = np.full((1024, 3), 7, np.uint8)
-    for first, colors in palette.loads((200, 100, 50), (1, 2, 3), swatches):
-        table[first : first + len(colors)] = colors
-    assert np.array_equal(table[palette.light_ramp], ramp_of((200, 100, 50)))
-    assert np.array_equal(table[palette.object_ramp], ramp_of((1, 2, 3)))
-    assert np.array_equal(table[palette.swatches], swatches)
-    assert (np.delete(table, palette.borrowed, axis=0) == 7).all()
-
-
-def test_words_that_follow_each_other_are_one_load() -> None:
-    palette = palette_of(TWO_RANGES, "body", 12)
-    assert len(palette.loads((0, 0, 0), (0, 0, 0), np.zeros((12, 3), np.uint8))) == 1
-
-
-def test_equal_surfaces_have_the_same_palette() -> None:
-    palette = palette_of(TWO_RANGES, "body", 12)
-    assert isinstance(palette, Palette)
-    assert palette_of(tuple(TWO_RANGES), "body", 12) is palette
+def swatch_cell(hand: PaintingHand, shade: int, hue: int) -> Area:
+    """The cell of a swatch in the menu, without its grout."""
+    area = hand.widget("paints").area
+    left = area.left + (area.width - ROWS * CELL_ELEMENTS) // 2 + CELL_ELEMENTS * shade
+    top = area.top + CELL_LINES * hue
+    return Area(left, top, left + CELL_ELEMENTS - 2, top + CELL_LINES - 2)
 
 
 def test_a_swatch_is_a_paint_for_the_chosen_color(hand: PaintingHand) -> None:
-    hand.pick("swatches")
-    hand.click(SWATCHES.left + 16 * 3 + 4, SWATCHES.top + SWATCH_LINES * 4 + 4)
+    hand.click(*swatch_cell(hand, 4, 3).middle)
     assert hand.paint.object_color == tuple(swatches()[4 * COLUMNS + 3])
     hand.pick("light source heading")
-    hand.click(SWATCHES.left + 16 * 19 + 4, SWATCHES.top + 4)
+    hand.click(*swatch_cell(hand, 0, 19).middle)
     assert hand.paint.light_color == tuple(swatches()[COLUMNS - 1])
     # A click on the ramp chooses, too.
-    hand.click(30, 220)
-    hand.drag((SWATCHES.left + 4, SWATCHES.top + 4), (SWATCHES.left + 40, SWATCHES.top + 20))
+    hand.click(30, 160)
+    hand.drag(swatch_cell(hand, 0, 0).middle, swatch_cell(hand, 1, 2).middle)
     assert hand.paint.object_color == tuple(swatches()[COLUMNS + 2])
     assert hand.paint.light_color == tuple(swatches()[COLUMNS - 1])
 
 
 def test_every_swatch_is_shown_in_its_color(hand: PaintingHand) -> None:
-    hand.pick("swatches")
     for number, color in enumerate(swatches()):
-        row, column = divmod(number, COLUMNS)
-        left, top = SWATCHES.left + 16 * column, SWATCHES.top + SWATCH_LINES * row
-        cell = Area(left, top, left + 14, top + SWATCH_LINES - 2)
-        assert (hand.colors(cell) == color).all()
+        assert (hand.colors(swatch_cell(hand, *divmod(number, COLUMNS))) == color).all()
     assert ramps_are_right(hand)
     assert bar_is_right(hand)
 
@@ -474,10 +508,10 @@ def test_mixed_colors_are_recent_colors_when_the_mixing_ends(hand: PaintingHand)
     hand.turn_to("color mixing")
     # Another surface takes it over.
     hand.pick("surface")
-    assert (
-        hand.colors(Area(RECENT.left, RECENT.top, RECENT.left + 20, RECENT.top + 20)) == [176, 100, 32]
-    ).all()
-    hand.click(RECENT.left + 5, RECENT.top + 5)
+    recent = hand.widget("recent colors").area
+    place = swatch_cell(hand, 0, 0).left + 4, recent.top + 4
+    assert (hand.colors(Area(*place, place[0] + 4, place[1] + 4)) == [176, 100, 32]).all()
+    hand.click(*place)
     assert hand.paint.object_color == (176, 100, 32)
 
 
@@ -494,6 +528,176 @@ def test_choosing_another_surface_ends_the_mixing(hand: PaintingHand) -> None:
     assert recent_colors() == ((255, 99, 240),)
     hand.leave()
     assert recent_colors() == ((255, 99, 240),)
+
+
+def whole_picture(hand: PaintingHand) -> Crop:
+    """The whole picture, from which paints and colors are taken."""
+    return crop_of(np.ones(hand.viewer.studio.words.shape, np.bool_), WORK)
+
+
+def test_the_unit_takes_the_paint_of_a_surface_that_it_picks_in_the_whole_picture(hand: PaintingHand) -> None:
+    before, entries = hand.viewer.studio.scene, hand.viewer.studio.entries
+    hand.pick("take paint")
+    assert (
+        hand.viewer.message == "pick a surface: box 0 takes both its colors, blend and percentage; Esc ends"
+    )
+    # The picture is seen in its own colors.
+    shown = whole_picture(hand)
+    assert np.array_equal(hand.words(shown.area), shown.of(hand.viewer.studio.words))
+    assert np.array_equal(hand.display.entries, entries)
+    there = place_in_picture(hand, "box 1", shown)
+    told = "pick the paint of box 1: #1e5ac8 and #ffffff, blend 0.70; Esc ends"
+    assert hand.viewer.board.screen.hint(*there) == told
+    hand.click(*there)
+    assert hand.paint == PAINTS[1]
+    assert hand.viewer.message == "box 0: the paint of box 1; undo goes back"
+    assert ramps_are_right(hand)
+    assert bar_is_right(hand)
+    hand.pick(" ", 0.1)
+    assert hand.viewer.studio.scene is before
+
+
+@pytest.mark.parametrize("title", [OBJECT, LIGHT_SOURCE])
+def test_the_unit_takes_a_color_as_it_is_seen(hand: PaintingHand, title: str) -> None:
+    hand.pick(f"{title} heading")
+    hand.pick("take color")
+    assert hand.viewer.message == f"pick a pixel: its color as you see it becomes the {title} color; Esc ends"
+    element, line = place_in_picture(hand, "box 1", whole_picture(hand))
+    red, green, blue = hand.colors(Area(element, line, element, line))[0, 0].tolist()
+    color = red, green, blue
+    hint = hand.viewer.board.screen.hint(element, line)
+    assert hint == f"pick {in_digits(color)} of box 1 as the {title} color; Esc ends"
+    hand.click(element, line)
+    assert (hand.paint.object_color if title == OBJECT else hand.paint.light_color) == color
+    assert hand.viewer.message == f"{title}: {in_digits(color)}"
+    assert ramps_are_right(hand)
+
+
+@pytest.mark.parametrize("end", ["the row", "escape", "leaving"])
+def test_taking_ends_without_a_pick(hand: PaintingHand, end: str) -> None:
+    scene = hand.viewer.studio.scene
+    hand.pick("take paint")
+    if end == "the row":
+        hand.pick("take paint")
+    elif end == "escape":
+        hand.viewer.on_key("escape")
+    else:
+        hand.leave()
+        hand.turn_to("color mixing")
+    assert hand.viewer.page == "mixing"
+    assert hand.viewer.studio.scene is scene
+    assert ramps_are_right(hand)
+
+
+def test_a_paint_is_not_taken_from_the_background_or_the_chosen_surface(hand: PaintingHand) -> None:
+    scene = hand.viewer.studio.scene
+    hand.pick("take paint")
+    hand.click(20, 60)
+    assert hand.viewer.message.startswith("no surface is there; pick a surface")
+    hand.click(*place_in_picture(hand, "box 0", whole_picture(hand)))
+    assert hand.viewer.message == "box 0 is the chosen surface; point at another, whose paint it takes"
+    assert hand.viewer.studio.scene is scene
+    # The user still picks.
+    hand.click(*place_in_picture(hand, "box 1", whole_picture(hand)))
+    assert hand.paint == PAINTS[1]
+
+
+def test_keys_take_the_paint_and_the_color_under_the_pointer(hand: PaintingHand) -> None:
+    hand.move(*place_in_picture(hand, "box 1"))
+    pixel = crop(hand).pixel_at(*place_in_picture(hand, "box 1"))
+    color = tuple(hand.viewer.studio.entries[hand.viewer.studio.words[pixel]].tolist())
+    hand.viewer.on_key("p", typed="P", shift=True)
+    assert hand.paint == PAINTS[0].replace(object_color=color)
+    hand.viewer.on_key("p", typed="p")
+    assert hand.paint == PAINTS[1]
+    hand.move(30, 160)
+    hand.viewer.on_key("p", typed="p")
+    assert hand.viewer.message == "no surface is under the pointer; point at it in the picture"
+
+
+class FakeClipboard:
+    """A clipboard that holds a text."""
+
+    def __init__(self, text: str = "") -> None:
+        self.text = text
+
+    def copy(self, text: str) -> bool:
+        self.text = text
+        return True
+
+
+@pytest.fixture
+def clipboard(hand: PaintingHand) -> FakeClipboard:
+    held = FakeClipboard()
+    hand.viewer.session.clipboard = Clipboard(held.copy, lambda: held.text)
+    return held
+
+
+@pytest.mark.parametrize(
+    ("place", "color"),
+    [((400, 10), "#fffaf0"), ((30, 40), "#fffaf0"), ((400, 150), "#b01020"), ((300, 300), "#b01020")],
+)
+def test_a_color_is_copied_over_its_section_and_elsewhere_the_chosen_color(
+    hand: PaintingHand, clipboard: FakeClipboard, place: tuple[int, int], color: str
+) -> None:
+    hand.move(*place)
+    hand.viewer.on_key("c", control=True)
+    assert clipboard.text == color
+    assert hand.viewer.message == f"copied {color}"
+
+
+@pytest.mark.parametrize("text", ["#102030", " teal\nmore", "rgb(1, 2, 3)\r\n"])
+@pytest.mark.parametrize(("place", "title"), [((400, 10), LIGHT_SOURCE), ((300, 300), OBJECT)])
+def test_a_color_is_pasted_into_the_section_or_the_chosen_color(
+    hand: PaintingHand, clipboard: FakeClipboard, text: str, place: tuple[int, int], title: str
+) -> None:
+    clipboard.text = text
+    hand.move(*place)
+    hand.viewer.on_key("v", control=True)
+    color = {"#": (16, 32, 48), " ": (0, 128, 128), "r": (1, 2, 3)}[text[0]]
+    assert (hand.paint.object_color if title == OBJECT else hand.paint.light_color) == color
+    assert ramps_are_right(hand)
+
+
+def test_a_text_that_is_no_color_is_refused(hand: PaintingHand, clipboard: FakeClipboard) -> None:
+    scene = hand.viewer.studio.scene
+    clipboard.text = "tael"
+    hand.viewer.on_key("v", control=True)
+    assert "did you mean 'teal'" in hand.viewer.message
+    clipboard.text = " \n#102030"
+    hand.viewer.on_key("v", control=True)
+    assert hand.viewer.message == "the clipboard has no text; copy a color first"
+    assert hand.viewer.studio.scene is scene
+
+
+def test_the_number_in_the_heading_is_typed_pasted_and_copied(
+    hand: PaintingHand, clipboard: FakeClipboard
+) -> None:
+    hand.viewer.on_key("left")
+    for letters, pasted, color in (("#10", "2030", (16, 32, 48)), ("", "navy", (0, 0, 128))):
+        hand.pick("heading.object")
+        for letter in letters:
+            hand.viewer.on_key(letter, typed=letter)
+        clipboard.text = pasted
+        hand.viewer.on_key("v", control=True)
+        hand.viewer.on_key("c", control=True)
+        assert clipboard.text == letters + pasted
+        hand.viewer.on_key("return")
+        assert hand.paint.object_color == color
+    hand.move(*hand.widget("heading.light").area[:2])
+    hand.viewer.on_key("c", control=True)
+    assert clipboard.text == "#fffaf0"
+
+
+def test_without_a_clipboard_the_message_has_the_color(hand: PaintingHand) -> None:
+    scene = hand.viewer.studio.scene
+    hand.viewer.on_key("c", control=True)
+    assert (
+        hand.viewer.message == "#b01020 is not copied, because this display has no clipboard; write it down"
+    )
+    hand.viewer.on_key("v", control=True)
+    assert hand.viewer.message == "this display has no clipboard; type the color"
+    assert hand.viewer.studio.scene is scene
 
 
 AREA = Area(176, 312, 255, 367)

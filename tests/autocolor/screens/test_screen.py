@@ -2,6 +2,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
+from autocolor.errors import UsageError
 from autocolor.screens.input import Gesture
 from autocolor.screens.screen import Cached, Handle, Screen
 from tests.autocolor.screens.boards import desk_viewer
@@ -24,6 +27,10 @@ def test_a_plain_screen_shows_nothing_and_does_nothing(tmp_path: Path) -> None:
     screen.leave()
     assert not screen.key("a", "a")
     assert not screen.idle()
+    assert screen.sample(1, 1) is None
+    assert screen.color_at(1, 1) is None
+    with pytest.raises(UsageError, match=r"^this screen takes no color; turn to color mixing$"):
+        screen.take_color("red", 1, 1)
     assert session.scene is scene
 
 

@@ -96,7 +96,6 @@ def switch_a_light(hand: Hand) -> None:
 
 def choose_any_paint(hand: Hand) -> None:
     go_to(hand, "color mixing")
-    hand.pick("swatches")
     hand.pick("paints", 0.7)
     assert hand.viewer.studio.scene.surface("body").paint.object_color in set(map(tuple, swatches().tolist()))
 

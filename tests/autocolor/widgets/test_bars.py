@@ -343,7 +343,7 @@ DRAWN = [
     (Bar("bar", area=ROW, value=0.3, why_not="not now", word=RED), 2965018818, 496825007),
     (Bar("bar", area=WIDE_BAR, value=0.3, unit="degrees", word=RED), 1594393171, 1561743892),
     (Bar("bar", area=ROW._replace(bottom=60), value=0.3), 1982306133, 1325038702),
-    (ComponentBar("red", area=COMPONENT, value=77, letter="R", word=RED), 4277067857, 1323743011),
+    (ComponentBar("red", area=COMPONENT, value=77, letter="R", word=RED), 1317594259, 3894026590),
     (LevelBar("levels", area=Area(20, 20, 219, 60), words=LEVELS, level=5), 1359616466, 3955108515),
     (LevelBar("levels", area=TALL, words=LEVELS, level=5, number="5", upright=True), 3848373696, 4287666951),
     (PercentBar("percent", area=TALL, value=30), 3844272778, 3672469405),

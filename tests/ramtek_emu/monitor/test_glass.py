@@ -52,6 +52,18 @@ def test_a_title_of_any_text_is_shown(glass: Glass, title: str) -> None:
     assert pygame.display.get_caption()[0] == escaped(title)
 
 
+@pytest.mark.parametrize("text", ["#b01020", "grün"])
+def test_a_copied_text_can_be_pasted(glass: Glass, text: str) -> None:
+    assert glass.copy(text)
+    assert glass.paste() == text
+
+
+def test_a_closed_window_has_no_clipboard() -> None:
+    closed = Glass((640, 480))
+    assert not closed.copy("#b01020")
+    assert closed.paste() == ""
+
+
 @pytest.mark.parametrize("scale", [1, 2])
 def test_after_a_cursor_moved_only_its_old_and_new_lines_go_to_the_screen(
     glass: Glass, monkeypatch: pytest.MonkeyPatch, scale: int

@@ -6,11 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from autocolor import Scene, View
+from autocolor import Paint, Scene, View
 from autocolor.mapping.legend import legend
 from autocolor.screens.input import turn_between, wheel_ratio
 from autocolor.screens.picture.over_picture import legend_items, surface_row
 from autocolor.screens.picture.picture_edits import moved, panned, turned
+from autocolor.screens.session import Clipboard
 from autocolor.screens.viewer import Viewer
 from autocolor.sending import drawn_legend
 from autocolor.studio import Studio
@@ -183,3 +184,81 @@ def test_the_row_has_the_surfaces_in_use_and_chooses_one(tmp_path: Path) -> None
     surface_row(session, "which", chosen.append).nudge(1)
     assert chosen == ["wheels"]
     assert session.surface_name == "glass"
+
+
+def color_seen(hand: Hand, element: int, line: int) -> tuple[int, ...]:
+    studio = hand.viewer.studio
+    return tuple(studio.entries[studio.words[line, element]].tolist())
+
+
+def paint_of(hand: Hand, surface: str) -> Paint:
+    return hand.viewer.studio.scene.surface(surface).paint
+
+
+def test_a_key_takes_the_paint_under_the_pointer_for_the_chosen_surface(hand: Hand) -> None:
+    hand.viewer.studio.recolor("paint", object_color="#123456", blend=0.25)
+    before, words = hand.viewer.studio.scene, hand.viewer.studio.words
+    paint = paint_of(hand, "paint")
+    assert paint_of(hand, "floor") != paint
+    hand.click(*FLOOR)
+    hand.move(*MIDDLE)
+    hand.viewer.on_key("p", typed="p")
+    assert hand.viewer.message == "floor: the paint of paint; undo goes back"
+    assert (paint_of(hand, "floor"), paint_of(hand, "paint")) == (paint, paint)
+    assert np.array_equal(hand.viewer.studio.words, words)
+    hand.viewer.on_key("z", control=True)
+    assert hand.viewer.studio.scene is before
+
+
+def test_with_shift_the_key_takes_the_color_that_is_seen(hand: Hand) -> None:
+    hand.click(*FLOOR)
+    hand.move(*MIDDLE)
+    color, before = color_seen(hand, *MIDDLE), paint_of(hand, "floor")
+    hand.viewer.on_key("p", typed="P", shift=True)
+    assert hand.viewer.message == "floor: object color #{:02x}{:02x}{:02x}".format(*color)
+    assert paint_of(hand, "floor") == before.replace(object_color=color)
+
+
+@pytest.mark.parametrize("shift", [False, True])
+def test_nothing_is_taken_from_the_background_the_menu_or_the_chosen_surface(hand: Hand, shift: bool) -> None:
+    scene = hand.viewer.studio.scene
+    hand.click(*FLOOR)
+    hand.move(*BACKGROUND)
+    hand.viewer.on_key("p", typed="p", shift=shift)
+    nowhere = "no surface is under the pointer; point at it in the picture"
+    assert hand.viewer.message == nowhere
+    hand.open_menu()
+    hand.move(570, 430)
+    hand.viewer.on_key("p", typed="p", shift=shift)
+    assert hand.viewer.message == nowhere
+    hand.move(*FLOOR)
+    hand.viewer.on_key("p", typed="p")
+    assert hand.viewer.message == "floor is the chosen surface; point at another, whose paint it takes"
+    assert hand.viewer.studio.scene is scene
+
+
+def test_the_color_under_the_pointer_is_copied_and_pasted_as_the_object_color(hand: Hand) -> None:
+    held = [""]
+
+    def copy(text: str) -> bool:
+        held[0] = text
+        return True
+
+    hand.viewer.session.clipboard = Clipboard(copy, lambda: held[0])
+    hand.click(*FLOOR)
+    hand.move(*MIDDLE)
+    hand.viewer.on_key("c", control=True)
+    color = color_seen(hand, *MIDDLE)
+    assert held == ["#{:02x}{:02x}{:02x}".format(*color)]
+    hand.viewer.on_key("v", control=True)
+    assert paint_of(hand, "floor").object_color == color
+    hand.move(*BACKGROUND)
+    hand.viewer.on_key("c", control=True)
+    assert hand.viewer.message == "nothing is there to copy; point at a color"
+
+
+def test_a_clipboard_that_refuses_a_color_is_told(hand: Hand) -> None:
+    hand.viewer.session.clipboard = Clipboard(lambda _: False, lambda: "")
+    hand.move(*MIDDLE)
+    hand.viewer.on_key("c", control=True)
+    assert "is not copied, because this display has no clipboard" in hand.viewer.message

@@ -1,0 +1,191 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from autocolor.arrays import Bytes
+from autocolor.checks import Color
+from autocolor.mapping.ranges import BACKGROUND, SCREENS, LevelRange
+from autocolor.screens.mixing_palette import (
+    GRAYS,
+    HUES,
+    RAMP_STEPS,
+    Palette,
+    Ranges,
+    crop_of,
+    palette_of,
+    ramp_of,
+)
+from autocolor.widgets.items import NIGHT, Area
+
+COMPONENTS = st.integers(0, 255)
+COLORS = st.tuples(COMPONENTS, COMPONENTS, COMPONENTS)
+
+ALONE: Ranges = (("body", LevelRange(1, 1007)),)
+LARGE: Ranges = (("body", LevelRange(1, 1000)), ("glass", LevelRange(1001, 7)))
+TWO_RANGES: Ranges = (("glass", LevelRange(1, 600)), ("body", LevelRange(601, 407)))
+
+
+@given(COLORS)
+def test_step_k_of_a_ramp_is_k_of_63_parts_of_the_color_rounded_half_up(color: Color) -> None:
+    expected = [[(2 * part * step + 63) // 126 for part in color] for step in range(64)]
+    assert ramp_of(color).tolist() == expected
+
+
+@pytest.mark.parametrize("ranges", [ALONE, LARGE, TWO_RANGES])
+@pytest.mark.parametrize("swatches", [0, 12, 200])
+def test_all_words_differ_and_none_is_of_the_background_of_the_screens_or_shown(
+    ranges: Ranges, swatches: int
+) -> None:
+    palette = palette_of(ranges, "body", swatches)
+    parts = [palette.light_ramp, palette.object_ramp, palette.grays, palette.hues, palette.swatches]
+    words = np.concatenate(parts)
+    assert len(palette.light_ramp) == len(palette.object_ramp) == RAMP_STEPS
+    assert (len(palette.grays), len(palette.hues)) == (len(GRAYS), len(HUES))
+    assert len(palette.swatches) == swatches
+    assert len(set(words.tolist())) == len(words)
+    assert words.min() > BACKGROUND
+    assert words.max() < SCREENS.first
+    own = dict(ranges)["body"]
+    assert not np.isin(words, palette.shown[own.first : own.last + 1]).any()
+
+
+@pytest.mark.parametrize("ranges", [ALONE, LARGE, TWO_RANGES])
+def test_the_surface_is_shown_by_its_own_words_or_their_neighbors_and_the_others_by_the_ground(
+    ranges: Ranges,
+) -> None:
+    palette = palette_of(ranges, "body", 200)
+    levels = dict(ranges)["body"]
+    own = np.arange(levels.first, levels.last + 1)
+    off = np.abs(palette.shown[levels.first : levels.last + 1].astype(int) - own)
+    assert off.max() == (0 if ranges is TWO_RANGES else 1)
+    assert (np.delete(palette.shown, own) == NIGHT).all()
+
+
+@pytest.mark.parametrize("ranges", [ALONE, LARGE, TWO_RANGES])
+def test_loads_put_each_color_into_its_word(ranges: Ranges) -> None:
+    palette = palette_of(ranges, "body", 12)
+    swatches = np.random.default_rng(1).integers(0, 256, (12, 3)).astype(np.uint8)
+    table = np.full((1024, 3), 7, np.uint8)
+    for first, colors in palette.loads((200, 100, 50), (1, 2, 3), swatches):
+        table[first : first + len(colors)] = colors
+    assert np.array_equal(table[palette.light_ramp], ramp_of((200, 100, 50)))
+    assert np.array_equal(table[palette.object_ramp], ramp_of((1, 2, 3)))
+    assert np.array_equal(table[palette.grays], GRAYS)
+    assert np.array_equal(table[palette.hues], HUES)
+    assert np.array_equal(table[palette.swatches], swatches)
+    assert (np.delete(table, palette.borrowed, axis=0) == 7).all()
+
+
+def test_words_that_follow_each_other_are_one_load() -> None:
+    palette = palette_of(TWO_RANGES, "body", 12)
+    assert len(palette.loads((0, 0, 0), (0, 0, 0), np.zeros((12, 3), np.uint8))) == 1
+
+
+def test_equal_surfaces_have_the_same_palette() -> None:
+    palette = palette_of(TWO_RANGES, "body", 12)
+    assert isinstance(palette, Palette)
+    assert palette_of(tuple(TWO_RANGES), "body", 12) is palette
+
+
+def random_entries(seed: int) -> Bytes:
+    return np.random.default_rng(seed).integers(0, 256, (1024, 3)).astype(np.uint8)
+
+
+def test_the_hues_go_once_around_in_equal_steps() -> None:
+    assert HUES[0].tolist() == HUES[-1].tolist() == [255, 0, 0]
+    assert HUES[len(HUES) // 3].tolist() == [0, 255, 0]
+    assert HUES[2 * len(HUES) // 3].tolist() == [0, 0, 255]
+
+
+@pytest.mark.parametrize("ranges", [ALONE, LARGE, TWO_RANGES])
+def test_other_surfaces_are_dim_and_the_lighter_color_never_has_the_darker_gray(ranges: Ranges) -> None:
+    palette, entries = palette_of(ranges, "body", 200), random_entries(1)
+    words, own = palette.dimmed(entries), dict(ranges)["body"]
+    mine = slice(own.first, own.last + 1)
+    assert np.array_equal(words[mine], palette.shown[mine])
+    others = np.setdiff1d(np.arange(1, SCREENS.first), np.arange(own.first, own.last + 1))
+    light = entries[others] @ np.array((0.299, 0.587, 0.114))
+    grays = np.searchsorted(palette.grays, words[others])
+    assert np.isin(words[others], palette.grays).all()
+    assert (np.diff(grays[np.argsort(light)]) >= 0).all()
+    # The background and the words of the screens are the ground.
+    assert words[BACKGROUND] == NIGHT
+    assert (words[SCREENS.first :] == NIGHT).all()
+
+
+def test_recoloring_the_surface_leaves_the_grays_of_the_others_alone() -> None:
+    palette, entries = palette_of(TWO_RANGES, "body", 200), random_entries(2)
+    before = palette.dimmed(entries)
+    recolored = entries.copy()
+    recolored[601:] = random_entries(3)[601:]
+    assert palette.dimmed(recolored) is before
+    recolored[:601] = 255
+    assert not np.array_equal(palette.dimmed(recolored), before)
+
+
+ROOM = Area(8, 224, 495, 463)
+SIZES = st.tuples(st.integers(40, 700), st.integers(40, 900))
+SHARES = st.floats(0, 1)
+
+
+@given(SIZES, SHARES, SHARES, SHARES, SHARES)
+def test_a_crop_shows_the_surface_as_large_as_the_room_allows(
+    size: tuple[int, int], down: float, across: float, height: float, width: float
+) -> None:
+    lines, elements = size
+    top, left = int(down * (lines - 1)), int(across * (elements - 1))
+    bottom = top + int(height * (lines - 1 - top))
+    right = left + int(width * (elements - 1 - left))
+    is_shown = np.zeros(size, np.bool_)
+    is_shown[top, left] = is_shown[bottom, right] = True
+    crop = crop_of(is_shown, ROOM)
+    assert ROOM.covers(crop.area)
+    assert (len(crop.lines), len(crop.elements)) == (crop.area.height, crop.area.width)
+    steps = [np.diff(crop.lines), np.diff(crop.elements)]
+    # No pixel comes twice, and none of the surface is beyond the edges.
+    scale = max(int(step.max(initial=1)) for step in steps)
+    assert all(step.min(initial=1) >= 1 for step in steps)
+    assert crop.lines[0] - scale < top <= bottom < crop.lines[-1] + scale
+    assert crop.elements[0] - scale < left <= right < crop.elements[-1] + scale
+    if scale > 1:
+        # It could not be larger: with a margin of four, the surface needs the whole room in one direction.
+        needed = [
+            (min(lines, bottom + 5) - max(0, top - 4)) / ROOM.height,
+            (min(elements, right + 5) - max(0, left - 4)) / ROOM.width,
+        ]
+        assert max(needed) > 1
+        assert crop.area.height == ROOM.height or crop.area.width == ROOM.width
+
+
+def test_a_whole_picture_is_shown_at_half_its_size() -> None:
+    crop = crop_of(np.ones((480, 640), np.bool_), ROOM)
+    assert (crop.area.width, crop.area.height) == (320, 240)
+    assert np.diff(crop.lines).tolist() == [2] * 239
+    assert np.diff(crop.elements).tolist() == [2] * 319
+
+
+def test_a_small_surface_is_shown_at_its_full_size() -> None:
+    is_shown = np.zeros((480, 640), np.bool_)
+    is_shown[200:210, 300:420] = True
+    crop = crop_of(is_shown, ROOM)
+    assert crop.area == ROOM
+    assert np.diff(crop.lines).tolist() == [1] * 239
+    assert np.diff(crop.elements).tolist() == [1] * 487
+    # The surface is in the middle.
+    assert crop.pixel_at(8 + 244, 224 + 120) == (205, 360)
+
+
+def test_without_pixels_of_the_surface_the_whole_picture_is_shown() -> None:
+    crop = crop_of(np.zeros((480, 640), np.bool_), ROOM)
+    assert (crop.lines[0], crop.elements[0], crop.area.width) == (1, 1, 320)
+
+
+def test_a_place_beside_a_crop_has_no_pixel() -> None:
+    crop = crop_of(np.ones((480, 640), np.bool_), ROOM)
+    assert crop.pixel_at(crop.area.left - 1, crop.area.top) is None
+    assert crop.pixel_at(crop.area.left, crop.area.top) == (crop.lines[0], crop.elements[0])
+    words = np.arange(480 * 640).reshape(480, 640).astype(np.uint16)
+    assert crop.of(words)[3, 5] == words[crop.lines[3], crop.elements[5]]
