@@ -11,7 +11,6 @@ from hypothesis import strategies as st
 from autocolor.errors import UsageError
 from autocolor.screens.board import (
     MESSAGE,
-    MOST_CHARACTERS,
     REACH,
     Board,
     Layout,
@@ -43,7 +42,7 @@ from autocolor.widgets.items import (
     filled,
     text,
 )
-from autocolor.widgets.menu import MENU, WIDE_BAR, laid_out, page_of_menu
+from autocolor.widgets.menu import MENU, MESSAGE_CHARACTERS, WIDE_BAR, laid_out, page_of_menu
 from autocolor.widgets.sheet import Sheet
 from autocolor.widgets.widget import Button, Entry, Place, Widget
 from ramtek_emu import PRINCETON_9300, Ramtek9300
@@ -435,12 +434,12 @@ def test_the_nearest_handle_within_reach_comes_first_the_last_of_those_as_near(
 def test_the_wide_bar_covers_what_is_below_it(tmp_path: Path) -> None:
     screen = desk_viewer(tmp_path).board.screen
     rows = laid_out([Bar("ambient"), Button("go")])
-    closed, opened = (Layout(screen, rows, wide_key=key) for key in ("", "ambient"))
+    closed, opened = (Layout(screen, rows, opened=key) for key in ("", "ambient"))
     place = (100, WIDE_BAR.top + 3)
     assert not closed.is_covered(*place)
     assert opened.is_covered(*place)
     assert opened.widget_at(*place) is opened.wide
-    assert Layout(screen, rows, wide_key="gone").wide is None
+    assert Layout(screen, rows, opened="gone").wide is None
 
 
 def test_a_widget_is_found_again_by_its_key_and_stays_where_it_was_grabbed(board: Board) -> None:
@@ -522,7 +521,7 @@ def test_a_handle_is_held_and_placed_and_the_screen_dragged_step_by_step(viewer:
 
 def test_a_message_that_fits_fills_its_line_and_nothing_else() -> None:
     display = Ramtek9300()
-    for item in message_items([MessagePart("x" * MOST_CHARACTERS, WHITE)], MENU.left):
+    for item in message_items([MessagePart("x" * MESSAGE_CHARACTERS, WHITE)], MENU.left):
         assert MESSAGE.covers(item.area)
         display.send(np.frombuffer(item.stream, np.uint16))
     assert not display.words[: MESSAGE.top].any()

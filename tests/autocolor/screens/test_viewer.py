@@ -16,7 +16,7 @@ from autocolor.errors import UsageError
 from autocolor.scene.changes import PartChanges
 from autocolor.scene.columns import Tier
 from autocolor.scene.defaults import framed
-from autocolor.screens.board import MESSAGE, MOST_CHARACTERS
+from autocolor.screens.board import MESSAGE
 from autocolor.screens.input import Binding, Chord, Gesture
 from autocolor.screens.picture.picture_edits import panned
 from autocolor.screens.screen import Screen
@@ -24,6 +24,7 @@ from autocolor.screens.session import MESSAGE_SECONDS, Session
 from autocolor.screens.viewer import BINDINGS, SCREENS, WHEEL, WINDOW_KEYS, Action, Viewer
 from autocolor.studio import Studio
 from autocolor.widgets.items import ORANGE
+from autocolor.widgets.menu import MESSAGE_CHARACTERS
 from autocolor.widgets.sheet import Sheet
 from ramtek_emu import Ramtek9300
 from tests.autocolor.meshes import cube, grid, wall_scene
@@ -753,7 +754,7 @@ def test_a_screen_without_a_menu_tells_how_to_bring_it(viewer: Viewer, name: str
     viewer.session.turn_to(name)
     viewer.on_pointer(100, 100, "move")
     assert viewer.message == f"{viewer.screens[name].help}; the right edge: the menu"
-    assert len(viewer.message) <= MOST_CHARACTERS
+    assert len(viewer.message) <= MESSAGE_CHARACTERS
 
 
 @pytest.mark.parametrize("page", ["f1", "f4"])
