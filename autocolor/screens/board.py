@@ -318,7 +318,7 @@ class Board:
         """The row that hides the panels over a picture, or shows them again."""
         if self.hides_panels:
             return [Button("show panels", "Show the menu and all panels again.", run=self.switch_panels)]
-        if not (self.screen.shows_picture and self.screen.has_menu):
+        if self.screen.name == PICTURE or not self.screen.shows_picture:
             return []
         help = "Show the whole picture, without menu and panels; the right edge brings this row back."
         return [Button("hide panels", help, run=self.switch_panels)]
@@ -795,7 +795,7 @@ def rows_of_menu(session: Session, screen: Screen, screens: Iterable[Screen]) ->
             for each in screens
             if each.is_in_menu and each is not screen
         ]
-        return [Heading("AUTOCOLOR"), *ways, Gap("ways"), *screen.rows()]
+        return [*ways, Gap("ways"), *screen.rows()]
     back = Button("< picture", "Back to the picture.", run=partial(session.turn_to, PICTURE))
     return [Heading(screen.title.upper()), back, Gap("ways"), *screen.rows()]
 
