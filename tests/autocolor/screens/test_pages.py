@@ -17,19 +17,19 @@ from tests.autocolor.screens.boxes import boxes
 from tests.autocolor.widgets.drawing import checksum
 
 PAGES = {
-    "picture": 3007665088,
-    "light and view": 875136867,
-    "lights": 2197996008,
-    "reflectance": 2046627297,
+    "picture": 937580163,
+    "light and view": 3750900862,
+    "lights": 1246765450,
+    "reflectance": 3763609684,
     "mixing": 779791442,
     "blending": 3756060397,
-    "mapping": 3227220103,
-    "scalar": 2308390448,
+    "mapping": 3532937624,
+    "scalar": 2334188299,
     "kept": 2040449627,
-    "file": 2904581995,
+    "file": 4055351956,
     "tutorial": 3473960918,
     "entries": 3253356514,
-    "help": 1192430204,
+    "help": 3851190049,
 }
 
 

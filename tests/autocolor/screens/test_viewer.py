@@ -742,7 +742,7 @@ def test_the_first_message_stands_until_the_menu_comes_or_something_is_done(
     viewer.on_pointer(100, 100, "move")
     assert viewer.board.messages[-1].text == welcome
     viewer.on_pointer(638, 0, "move")
-    assert viewer.board.messages[-1].text == viewer.screens["picture"].help
+    assert viewer.board.messages[-1].text == viewer.screens["light and view"].help
     viewer.tell(welcome, persistent=True)
     viewer.on_key("c", typed="c")
     assert viewer.message != welcome
