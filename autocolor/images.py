@@ -6,14 +6,22 @@ which `display_image` makes.
 
 from __future__ import annotations
 
+import dataclasses
+import re
+from itertools import product
+from numbers import Integral
 from os import PathLike
+from typing import Final
 
-from autocolor.arrays import Bytes
+import numpy as np
+
+from autocolor.arrays import Bytes, Floats
 from autocolor.checks import shown
 from autocolor.errors import InputError, UsageError
 from autocolor.files.writing import check_suffix, write_atomically
 from autocolor.lighting.picture import Picture
 from autocolor.mapping.display_image import DisplayImage, LevelImage
+from autocolor.mapping.legend import legend
 from autocolor.mapping.normal_words import NormalImage
 from autocolor.scene.scene import NORMALS, Scene, check_scene
 from autocolor.sending import configuration_of, send_image, shown_colors
@@ -62,19 +70,98 @@ def image(scene: Scene, picture: Picture) -> Bytes:
     return display_image(scene, picture).colors
 
 
-def save_image(path: str | PathLike[str], scene: Scene, picture: Picture, *, overwrite: bool = False) -> None:
+def save_image(
+    path: str | PathLike[str],
+    scene: Scene,
+    picture: Picture,
+    *,
+    overwrite: bool = False,
+    smooth: int = 1,
+) -> None:
     """Write the picture as a display shows it to a PNG file, atomically, with the legend of a scalar.
 
-    Without a legend it has the colors of `image`.
+    Without a legend it has the colors of `image`. With `smooth`, each pixel of the file is the mean of a
+    square of `smooth` pixels a side: render the picture with `smooth` times the lines and elements.
 
-    Raises UsageError for a name that ends as another kind of file does; OutputError if the file exists and
-    `overwrite` is false, or if it cannot be created; WriteError if writing fails.
+        picture = autocolor.render(scene, 4 * 480, 4 * 640)
+        autocolor.save_image("coupe.png", scene, picture, smooth=4)   # 640 x 480 pixels
+
+    Raises UsageError for a name that ends as another kind of file does, and if the lines or elements are no
+    multiple of `smooth`; OutputError if the file exists and `overwrite` is false, or if it cannot be created;
+    WriteError if writing fails.
     """
     from ramtek_emu.png import png_bytes
 
     check_suffix(path, ".png", "an image")
     check_surfaces(scene, picture)
-    write_atomically(path, png_bytes(shown_colors(display_image(scene, picture))), overwrite=overwrite)
+    _check_smooth(smooth, picture)
+    shown_image = display_image(scene, picture)
+    colors = shown_colors(shown_image) if smooth == 1 else smoothed(shown_image, smooth)
+    write_atomically(path, png_bytes(colors), overwrite=overwrite)
+
+
+def _check_smooth(smooth: int, picture: Picture) -> None:
+    if isinstance(smooth, bool) or not isinstance(smooth, Integral) or smooth < 1:
+        raise UsageError(
+            f"smooth must be a whole number of at least 1, not {shown(smooth)}; give one such as 4"
+        )
+    if picture.lines % smooth or picture.elements % smooth:
+        raise UsageError(
+            f"the lines and elements of a picture must be multiples of smooth, {smooth}, not {picture.lines}"
+            f" and {picture.elements}; render {smooth} times those of the image"
+        )
+
+
+def decoded(codes: Floats) -> Floats:
+    """The light of components of sRGB colors, from 0 to 255: 0 to 1.
+
+    Assumed: monitors show colors as sRGB does, IEC 61966-2-1, so light is averaged by its formula. The mean
+    of the components themselves would make the edges of bright surfaces too dark.
+    """
+    shares = codes / 255
+    light: Floats = np.where(shares <= 0.04045, shares / 12.92, ((shares + 0.055) / 1.055) ** 2.4)
+    return light
+
+
+def smoothed(image: DisplayImage, smooth: int) -> Bytes:
+    """The colors of a display image, averaged as light over squares of `smooth` pixels a side, uint8.
+
+    The legend of a scalar is drawn at the size of the result.
+    """
+    light = decoded(image.entries.astype(np.float64))
+    small = dataclasses.replace(image, words=image.words[::smooth, ::smooth])
+    total = np.zeros((*small.words.shape, 3))
+    for down, across in product(range(smooth), repeat=2):
+        total += light[image.words[down::smooth, across::smooth]]
+    # The nearest color of each mean is found by the light between two neighbors.
+    between = decoded(np.linspace(0.5, 254.5, 255))
+    colors = np.searchsorted(between, total / smooth**2, side="right").astype(np.uint8)
+    key = legend(small)
+    if key is not None:
+        left, top, right, bottom, _ = key.swatches[0]
+        area = slice(top, bottom + 1), slice(left, right + 1)
+        colors[area] = shown_colors(small)[area]
+    return colors
+
+
+LARGEST: Final = 4096
+"""The most elements and lines of an image: the size of the largest display memory."""
+
+
+def size_of(text: str) -> tuple[int, int]:
+    """The elements and the lines in the text of a size. Raises UsageError.
+
+    >>> size_of("1280x960")
+    (1280, 960)
+    """
+    match = re.fullmatch(r"([0-9]{1,5})[xX]([0-9]{1,5})", text)
+    size = (int(match[1]), int(match[2])) if match else (0, 0)
+    if not all(1 <= count <= LARGEST for count in size):
+        raise UsageError(
+            f"a size must be ELEMENTSxLINES, each from 1 to {LARGEST}, not {text[:60]!r}; write it as in"
+            " 1280x960"
+        )
+    return size
 
 
 def check_surfaces(scene: Scene, picture: Picture) -> None:

@@ -33,7 +33,7 @@ from typing import TYPE_CHECKING, NoReturn, Unpack
 
 from autocolor.arrays import Bytes, Words
 from autocolor.budget import allowing, validated_limit
-from autocolor.checks import nearest
+from autocolor.checks import nearest, shown
 from autocolor.errors import UsageError
 from autocolor.files.stamps import stamp_of
 from autocolor.images import display_image
@@ -259,13 +259,13 @@ class Studio:
         if self.is_coarse:
             self._show(self.scene, Tier.FRAME)
 
-    def undo(self) -> bool:
-        """Undo the last step; returns False if there is no step."""
-        return self._step(self._history.to_undo, self._history.undo)
+    def undo(self, steps: int = 1) -> bool:
+        """Undo the last step, or some steps at once; returns False if there are not so many."""
+        return self._step(self._history.to_undo, self._history.undo, steps)
 
-    def redo(self) -> bool:
-        """Redo the last undone step; returns False if there is no step."""
-        return self._step(self._history.to_redo, self._history.redo)
+    def redo(self, steps: int = 1) -> bool:
+        """Redo the next undone step, or some steps at once; returns False if there are not so many."""
+        return self._step(self._history.to_redo, self._history.redo, steps)
 
     @property
     def is_changed(self) -> bool:
@@ -374,15 +374,20 @@ class Studio:
         *_, file = write_scene_with_tables(path, self.scene, overwrite=overwrite, complete=False, guard=guard)
         self._mark_written(file)
 
-    def save_session(self, folder: str | PathLike[str] = ".") -> SavedFiles:
+    def save_session(self, folder: str | PathLike[str] = ".", name: str | None = None) -> SavedFiles:
         """Save the scene and the picture to their files, or to new files in the folder; returns the files.
 
-        No file of another program is lost (see `journal.saving`).
+        With a `name`, both files are new: `NAME/scene.toml` and `NAME.npz`. The scene takes the name, as one
+        step to undo, and is saved to these files from then on. No file of another program is lost (see
+        `journal.saving`). Raises UsageError for an invalid name, OutputError if a file has the name.
         """
-        from autocolor.journal.saving import save_session
+        from autocolor.journal.saving import new_files, save_session
 
         self.refine()
-        return save_session(self._history, self.picture, Path(folder))
+        if name is not None:
+            new_files(Path(folder), name)
+            self.edit(self.scene.replace(name=name))
+        return save_session(self._history, self.picture, Path(folder), name)
 
     def mark_saved(self, files: Mapping[str, str] | None = None) -> None:
         """Mark the current scene as saved to files, by their paths and stamps (see `files.stamps`).
@@ -444,12 +449,20 @@ class Studio:
         self._show(scene, costs, moving)
         self._history.take(scene, same_step)
 
-    def _step(self, scenes: Sequence[Scene], move: Callable[[], None]) -> bool:
-        """Show the last scene, if any, and move there in the history; returns whether there was one."""
-        if not scenes:
+    def _step(self, scenes: Sequence[Scene], move: Callable[[], None], steps: int) -> bool:
+        """Show the scene that is some steps from the end, and move there in the history by these steps.
+
+        Returns False if there are not so many.
+        """
+        if not isinstance(steps, int) or steps < 1:
+            raise UsageError(
+                f"steps must be a whole number of at least 1, not {shown(steps)}; leave it out for 1"
+            )
+        if steps > len(scenes):
             return False
-        self._show_scene(scenes[-1])
-        move()
+        self._show_scene(scenes[-steps])
+        for _ in range(steps):
+            move()
         return True
 
     def _show_scene(self, scene: Scene) -> None:

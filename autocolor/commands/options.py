@@ -5,7 +5,6 @@ An invalid value of an option is a UsageError, not an InputError.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Final
@@ -48,24 +47,13 @@ def with_normals(scene: Scene, normals: bool) -> Scene:
         return scene.replace(words="normals")
 
 
-LARGEST: Final = 4096
-"""The most elements and lines of a picture: the size of the largest display memory."""
+def _size(_context: click.Context, _parameter: click.Parameter, text: str) -> tuple[int, int]:
+    from autocolor.images import size_of
 
-
-def size_of(text: str) -> tuple[int, int]:
-    """The elements and the lines in the text of a size. Raises click.BadParameter.
-
-    >>> size_of("1280x960")
-    (1280, 960)
-    """
-    match = re.fullmatch(r"([0-9]{1,5})[xX]([0-9]{1,5})", text)
-    size = (int(match[1]), int(match[2])) if match else (0, 0)
-    if not all(1 <= count <= LARGEST for count in size):
-        raise click.BadParameter(
-            f"a size must be ELEMENTSxLINES, each from 1 to {LARGEST}, not {text[:60]!r}; write it as in"
-            " 1280x960"
-        )
-    return size
+    try:
+        return size_of(text)
+    except UsageError as error:
+        raise click.BadParameter(str(error)) from None
 
 
 size_option = click.option(
@@ -73,7 +61,7 @@ size_option = click.option(
     metavar="ELEMENTSxLINES",
     default="640x480",
     show_default=True,
-    callback=lambda _context, _parameter, text: size_of(text),
+    callback=_size,
     help="Width and height of the picture, up to 4096x4096.",
 )
 

@@ -80,7 +80,7 @@ def _mention_left_sessions(viewer: Viewer) -> None:
         err=True,
     )
     viewer.tell(
-        "a session was not closed: autocolor view --recover opens it; the right edge: the menu",
+        f"a session was not closed: autocolor view --recover opens it; {viewer.message}",
         persistent=True,
     )
 

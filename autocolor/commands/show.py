@@ -32,6 +32,10 @@ Examples:
 """
 
 
+BUTTONS: Final = "the right edge brings the menu; ENTER (left button) picks, TRACK (right button) drags"
+"""The first message on the display. In the window of `ramtek serve`, the mouse is the joystick unit."""
+
+
 @click.command(epilog=EXAMPLES)
 @partial(scene_options, required=False)
 @set_option
@@ -62,8 +66,9 @@ def show(
     """Show SCENE on another display, such as `ramtek serve`, and follow its joystick.
 
     All functions of `view` are available by pointing: ENTER picks, TRACK drags, and the right edge opens the
-    menu. Files are opened and saved only in the folder of the scene. To end the command, pick `leave` in the
-    menu, or press Ctrl+C.
+    menu. In the window of `ramtek serve`, the left button is ENTER, and the right button is TRACK. Files are
+    opened and saved only in the folder of the scene. To end the command, pick `leave` in the menu, or press
+    Ctrl+C.
     """
     refuse_address(address)
     if (source is None) == (recover is None):
@@ -164,7 +169,7 @@ def session_elsewhere(
         try:
             viewer = Viewer(history, port, folder)
             require_display(port, address, viewer.studio.entries)
-            viewer.tell("the right edge brings the menu; ENTER picks, TRACK drags", persistent=True)
+            viewer.tell(BUTTONS, persistent=True)
             prepare(viewer)
             tell(f"shown on {address}; pick `leave` in the menu there, or press Ctrl+C here")
             with autosaved_session(viewer, left) as update:

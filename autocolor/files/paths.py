@@ -6,6 +6,7 @@ import os
 from pathlib import Path, PureWindowsPath
 from typing import Final
 
+from autocolor.errors import UsageError
 from autocolor.files.reading import shown
 
 SCENE_FILE: Final = "scene.toml"
@@ -66,6 +67,18 @@ def file_stem(name: str) -> str:
     stem = "".join("_" if letter in REFUSED or ord(letter) < 32 else letter for letter in Path(name).name)
     stem = stem.strip()[:LONGEST_STEM].strip()
     return stem if stem.strip(" .") else "scene"
+
+
+def check_stem(name: str) -> None:
+    """Raise UsageError unless a name can be the name of a new file, without an ending.
+
+    Hidden files are refused, too: the lists of files leave them out.
+    """
+    if file_stem(name) != name or name.startswith(".") or not name.isprintable():
+        raise UsageError(
+            f"a file name must be 1 to {LONGEST_STEM} characters, with none of {''.join(sorted(REFUSED))} and"
+            f" no period or space first, not {shown(name)}; choose another"
+        )
 
 
 def free_path(path: Path) -> Path:

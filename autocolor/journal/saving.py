@@ -4,7 +4,8 @@ A scene that was opened from a scene file or a store, or a picture that was open
 saved to that file, unless another program changed the file since. Content that the session did not write is
 first copied to a backup beside the file, under a numbered name. Otherwise new files are made in a folder:
 `coupe/scene.toml` and `coupe.npz`, or `coupe-2/scene.toml` and `coupe-2.npz` if one of those exists. Later
-saves overwrite these files, unless another program changed them since.
+saves overwrite these files, unless another program changed them since. A name that the user gives is for new
+files alone.
 """
 
 from __future__ import annotations
@@ -15,7 +16,15 @@ from itertools import count
 from pathlib import Path
 from typing import NamedTuple
 
-from autocolor.files.paths import PICTURE_SUFFIX, SCENE_FILE, STORE_SUFFIXES, file_stem, free_path
+from autocolor.errors import OutputError
+from autocolor.files.paths import (
+    PICTURE_SUFFIX,
+    SCENE_FILE,
+    STORE_SUFFIXES,
+    check_stem,
+    file_stem,
+    free_path,
+)
 from autocolor.files.picture_file import write_picture
 from autocolor.files.scene_writing import write_scene_with_tables
 from autocolor.files.stamps import stamp_of
@@ -62,12 +71,14 @@ class _Targets(NamedTuple):
     changed: tuple[Path, ...]
 
 
-def save_session(history: History, picture: Picture, folder: Path) -> SavedFiles:
+def save_session(history: History, picture: Picture, folder: Path, name: str | None = None) -> SavedFiles:
     """Save the current scene of a session and its picture, and mark the scene as saved.
 
-    New files are made in `folder`. If it raises OutputError or WriteError, no file is lost.
+    New files are made in `folder`. With a `name`, both files are new files of this name; see `new_files`. If
+    it raises OutputError or WriteError, no file is lost.
     """
-    scene_file, picture_file, overwritten, changed = _targets(history, folder)
+    targets = _targets(history, folder) if name is None else _Targets(*new_files(folder, name), (), ())
+    scene_file, picture_file, overwritten, changed = targets
     guard, backups = history.on_disk.guard, list[Path]()
     try:
         for path in overwritten:
@@ -108,6 +119,27 @@ def _targets(history: History, folder: Path) -> _Targets:
         tuple(unchanged[kind] for kind in sorted(unchanged)),
         tuple(changed),
     )
+
+
+def free_name(name: str, folder: Path) -> str:
+    """A name like that of a scene, which no scene and no picture in a folder has."""
+    return _new_names(name, folder, False, False)[0].parent.name
+
+
+def new_files(folder: Path, name: str) -> tuple[Path, Path]:
+    """The scene file and the picture file of a name, neither of which exists.
+
+    Raises UsageError for an invalid name, OutputError if a file has it.
+    """
+    check_stem(name)
+    path = Path(os.path.abspath(folder)) / name
+    picture = path.with_name(f"{name}{PICTURE_SUFFIX}")
+    for each in (path, picture):
+        if os.path.lexists(each):
+            raise OutputError(
+                f"a new file must have a name of its own, and {each.name} exists; choose another"
+            )
+    return path / SCENE_FILE, picture
 
 
 def _new_names(name: str, folder: Path, has_scene: bool, has_picture: bool) -> tuple[Path, Path]:

@@ -19,7 +19,7 @@ import numpy as np
 from autocolor.arrays import Bytes
 from autocolor.screens.input import MIDDLE, Gesture
 from autocolor.screens.screen import Handle, Screen
-from autocolor.screens.session import PICTURE, Session
+from autocolor.screens.session import HISTORY, PICTURE, Session
 from autocolor.widgets.bars import Bar
 from autocolor.widgets.items import (
     BLACK,
@@ -37,6 +37,8 @@ from autocolor.widgets.items import (
     filled,
     text,
 )
+from autocolor.widgets.letters import PANEL as LETTER_PANEL
+from autocolor.widgets.letters import letter_panel
 from autocolor.widgets.menu import (
     MENU,
     MESSAGE_CHARACTERS,
@@ -59,6 +61,7 @@ from autocolor.widgets.widget import (
     Choice,
     Gap,
     Heading,
+    Pair,
     Place,
     Steps,
     Typed,
@@ -170,10 +173,14 @@ def opens(row: Widget) -> bool:
 
 
 def handles_near(handles: Sequence[Handle], element: int, line: int) -> list[Handle]:
-    """The handles within reach of a place, the nearest first; at equal distances, the last first."""
+    """The handles within reach of a place, the nearest first; at equal distances, the last first.
+
+    A handle whose sign is at the place comes before all others.
+    """
     near = []
     for handle in handles:
-        distance = max(abs(handle.element - element), abs(handle.line - line))
+        is_at_sign = handle.sign.has(element, line)
+        distance = -1 if is_at_sign else max(abs(handle.element - element), abs(handle.line - line))
         if distance <= REACH:
             near.append((distance, handle))
     return [handle for _, handle in sorted(reversed(near), key=itemgetter(0))]
@@ -213,6 +220,8 @@ class Board:
         """The thing that is dragged, from the grab to the drop."""
         self._start = self._last = Gesture("grab", -1, -1)
         """The gesture that began the drag, and the last one."""
+        self._from_handle = Place(0, 0)
+        """From the handle that is dragged to the pointer."""
         self._pointer = Place(-1, -1)
         self._layout: tuple[object, Layout] | None = None
         """The layout, and the state of the board that it was made for."""
@@ -248,13 +257,15 @@ class Board:
     def layout(self) -> Layout:
         """The layout that is shown, until `forget` or another state of the board."""
         session, has_menu = self.session, self.has_menu
-        shown = has_menu, self.hides_panels, self._menu_page, self._opened, self._list_page
+        by_letters = self.typing.is_by_letters
+        shown = has_menu, self.hides_panels, self._menu_page, self._opened, self._list_page, by_letters
         folds = self._folds.get(session.screen, {})
         state = session.screen, session.moving, shown, tuple(folds.items()), self.over
         if self._layout is None or self._layout[0] != state:
             self.screen.is_under_menu, self.screen.has_panels = has_menu, not self.hides_panels
             rows = self._menu_rows() if has_menu else ()
-            over = () if self.hides_panels else self.over()
+            letters = letter_panel(self.typing.key) if by_letters else ()
+            over = (*letters, *(() if self.hides_panels else self.over()))
             self._layout = state, Layout(self.screen, rows, over, self._opened, self._list_of)
         return self._layout[1]
 
@@ -318,7 +329,8 @@ class Board:
         """The row that hides the panels over a picture, or shows them again."""
         if self.hides_panels:
             return [Button("show panels", "Show the menu and all panels again.", run=self.switch_panels)]
-        if self.screen.name == PICTURE or not self.screen.shows_picture:
+        screen = self.screen
+        if not screen.shows_picture or not (screen.has_menu or screen.widgets()):
             return []
         help = "Show the whole picture, without menu and panels; the right edge brings this row back."
         return [Button("hide panels", help, run=self.switch_panels)]
@@ -331,6 +343,10 @@ class Board:
         """Whether the menu, its wide bar, a panel or the message line covers the screen at a place."""
         has_message = any(item.area.has(element, line) for item in self._message)
         return has_message or self.layout.is_covered(element, line)
+
+    def is_on_letters(self, element: int, line: int) -> bool:
+        """Whether a place is on the letter panel."""
+        return self.typing.is_by_letters and LETTER_PANEL.has(element, line)
 
     def handle_at(self, element: int, line: int) -> Handle | None:
         """The nearest handle within reach of a place; None if something covers the handle or the place."""
@@ -360,12 +376,12 @@ class Board:
     # Gestures.
 
     def take(self, gesture: Gesture) -> None:
-        """Handle a gesture. Over another thing, a message that had its time gives way to the hint."""
+        """Handle a gesture. Over another thing, a message gives way to the hint when it had its time."""
         hint = self._hint() if gesture.kind == "hover" and self.session.news_may_go else ""
         self._pointer = Place(gesture.element, gesture.line)
         getattr(self, f"_{gesture.kind}")(gesture)
         if hint and hint != self._hint():
-            self.session.tell("")
+            self.session.shorten_news()
 
     def point_at(self, gesture: Gesture) -> None:
         """Move the pointer to the place of a gesture, and do nothing else."""
@@ -471,6 +487,10 @@ class Board:
             self._use(widget)
         elif handle is not None:
             self._grabbed = handle
+            # A handle comes to the pointer, but a handle that was grabbed at its sign stays away from it.
+            element, line = self._pointer
+            at_sign = Place(element - handle.element, line - handle.line)
+            self._from_handle = at_sign if handle.sign.has(element, line) else Place(0, 0)
             self.screen.hold(handle)
         elif not self.is_covered(*self._pointer):
             self._grabbed = self.screen
@@ -484,7 +504,8 @@ class Board:
                 start = Place(self._start.element, self._start.line)
                 self._grabbed.drag(start, Place(last.element, last.line), self._pointer)
         elif isinstance(self._grabbed, Handle):
-            self.screen.place(self._grabbed, gesture.element, gesture.line)
+            element, line = self._from_handle
+            self.screen.place(self._grabbed, gesture.element - element, gesture.line - line)
         elif self._grabbed is not None:
             self._grabbed.drag(self._start, last, gesture)
 
@@ -577,6 +598,7 @@ class Board:
     def page(self) -> Page:
         """The page to show now: the screen, its widgets, the message line and the menu, bottom to top."""
         screen = self.screen
+        screen.lit = self._lit
         layout, lit = self.layout, self._lit_widget()
         items = list(screen.items())
         for widget in (*layout.beside, *reversed(layout.over)):
@@ -712,6 +734,11 @@ class TypingLine:
         return self._typed is not None
 
     @property
+    def is_by_letters(self) -> bool:
+        """Whether a text is typed by the letter panel, because there is no keyboard."""
+        return self.is_on and not self._session.has_keyboard
+
+    @property
     def shown(self) -> MessagePart:
         """The text for the message line. The next character replaces the part that is selected."""
         selected = len(self._label) + 2
@@ -725,9 +752,6 @@ class TypingLine:
 
     def begin(self, widget: Widget, typed: str = "") -> None:
         """Begin with the widget's text, which the first character replaces."""
-        if not self._session.has_keyboard:
-            self._session.tell(f"{widget.label}: typing needs a keyboard", is_warning=True)
-            return
         self._typed = widget.typed
         self._label = widget.label
         self._text = typed or (self._typed.text if self._typed is not None else "")
@@ -738,11 +762,18 @@ class TypingLine:
         self._typed = None
 
     def take(self) -> None:
-        """Take the text if it was changed. A refused text raises an error and stays, selected."""
-        if self._typed is not None and self._text != self._typed.text:
+        """Take the text if it was changed or proposed. A refused text raises an error and stays, selected."""
+        typed = self._typed
+        if typed is not None and (typed.is_proposed or self._text != typed.text):
             self._is_fresh = True
-            self._typed.take(self._text)
+            typed.take(self._text)
         self.end()
+
+    def leave(self) -> None:
+        """Take the text as `take` does, but give up a text that was proposed."""
+        if self._typed is not None and self._typed.is_proposed:
+            self.end()
+        self.take()
 
     def key(self, name: str, typed: str) -> None:
         """Take a key. Raises the errors of the function that takes the text."""
@@ -761,9 +792,13 @@ class TypingLine:
 # The main menu: the rows that stand in every menu before and after the rows of its screen.
 
 
+STEPS: Final = "steps"
+"""The word between undo and redo that leads to the list of steps."""
+
+
 @dataclass(frozen=True)
 class UndoRow(Steps):
-    """Undo at the left and redo at the right; a word is dim while there is no step for it.
+    """Undo at the left, redo at the right, the list of steps between; a word is dim while it does nothing.
 
     It takes picks alone, and no drags: every pick is a step.
     """
@@ -771,17 +806,29 @@ class UndoRow(Steps):
     signs: tuple[str, str] = ("undo", "redo")
     can_undo: bool = True
     can_redo: bool = True
+    show_history: Callable[[], object] = lambda: None
 
     def items(self, lit: bool) -> list[Item]:
-        left, top, right, _ = self.area
         background = SLATE if lit else NIGHT
-        undo, redo = self.signs
-        end = right + 1 - MARGIN - CHARACTER * len(redo)
-        return [
-            filled(self.area, background),
-            text(undo, left + MARGIN, top + TEXT_DOWN, WHITE if self.can_undo else GRAY, background),
-            text(redo, end, top + TEXT_DOWN, WHITE if self.can_redo else GRAY, background),
-        ]
+        can = self.can_undo, self.can_undo or self.can_redo, self.can_redo
+        words = zip((self.signs[0], STEPS, self.signs[1]), self._places, can, strict=True)
+        top = self.area.top + TEXT_DOWN
+        texts = [text(word, left, top, WHITE if is_on else GRAY, background) for word, left, is_on in words]
+        return [filled(self.area, background), *texts]
+
+    @property
+    def _places(self) -> tuple[int, int, int]:
+        """Where the three words begin."""
+        left, _, right, _ = self.area
+        end = right + 1 - MARGIN - CHARACTER * len(self.signs[1])
+        start = left + MARGIN
+        return start, (start + CHARACTER * len(self.signs[0]) + end - CHARACTER * len(STEPS)) // 2, end
+
+    def pick(self, place: Place) -> object:
+        _, middle, end = self._places
+        if middle <= place.element < end:
+            return self.show_history()
+        return super().pick(place)
 
     def drag(self, start: Place, last: Place, place: Place) -> object:
         return None
@@ -806,23 +853,26 @@ def last_rows(session: Session, screen: Screen) -> list[Widget]:
     can_undo, can_redo = bool(history.to_undo), bool(history.to_redo)
     undo = UndoRow(
         " ",
-        "Undo the last step, or redo it.",
+        "Undo the last step, or redo it; between, the list of all steps.",
         "" if can_undo or can_redo else "there is no step to undo",
         step=lambda amount: session.undo() if amount < 0 else session.redo(),
         can_undo=can_undo,
         can_redo=can_redo,
+        show_history=partial(session.turn_to, PICTURE if session.screen == HISTORY else HISTORY),
     )
     return [Gap("undo gap"), undo, *([compare_row(session)] if screen.shows_picture else [])]
 
 
 def compare_row(session: Session) -> Widget:
-    """The row that shows the state to compare with, and the present one again."""
+    """The row that shows the state to compare with, and the present one again, or both side by side."""
     other = session.comparing.other
     if other is None:
         return Button("compare", why_not="there is no step to undo")
-    return Button(
+    return Pair(
         "compare",
-        f"Show {other.name} in place of the present state, and back.",
+        f"Show {other.name}, and the present state again; or both, left and right of a line.",
         run=session.switch_comparing,
+        other="split",
+        run_other=session.switch_split,
         is_chosen=session.comparing.is_on,
     )

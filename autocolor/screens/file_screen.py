@@ -1,32 +1,58 @@
-"""The file screen: scenes, meshes, pictures and rigs to open, recent files, and saving.
+"""The file screen: scenes, meshes, pictures and rigs to open, recent files, saving and exporting.
 
 A pointer opens what is in the session's folder and below, links resolved; on the machine of the window, also
-everything else. Opening is one step to undo, so the scene before is not lost.
+everything else. Opening is one step to undo, so the scene before is not lost. New files are saved in the
+folder that is shown. The screen shows no surface, so the small picture of the picture file under the pointer
+borrows the words of all surfaces.
 """
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from datetime import datetime
 from functools import partial
 from pathlib import Path
 from typing import Final
 
-from autocolor.errors import InputError, UsageError
+from autocolor.arrays import Bytes
+from autocolor.errors import AutocolorError, InputError
 from autocolor.files.meshes.repair import UPS
 from autocolor.files.paths import SCENE_FILE
+from autocolor.files.picture_file import read_picture
 from autocolor.files.rig_file import RIG_SUFFIX, is_rig
-from autocolor.files.scene_files import FOLDER, Openable, kind_of, openables_of, stays_within
+from autocolor.files.scene_files import FOLDER, Openable, kind_of, openables_of
 from autocolor.files.state import recent_files
+from autocolor.images import LARGEST, display_image, size_of
+from autocolor.journal.saving import free_name
+from autocolor.mapping.palette import thumbnail
+from autocolor.mapping.ranges import BACKGROUND
 from autocolor.screens.screen import Screen
 from autocolor.screens.session import PICTURE, Session
-from autocolor.widgets.items import CHARACTER, GRAY, LIGHT_GRAY, SLATE, YELLOW, Area, Item, filled, text
+from autocolor.sending import configuration_of
+from autocolor.widgets.items import (
+    CHARACTER,
+    CHARACTER_LINES,
+    GRAY,
+    LIGHT_GRAY,
+    NIGHT,
+    SLATE,
+    YELLOW,
+    Area,
+    Item,
+    SmallPicture,
+    filled,
+    outline,
+    text,
+)
 from autocolor.widgets.widget import (
     MARGIN,
     ROW_LINES,
     TEXT_DOWN,
     Button,
     Choice,
+    Entry,
     Gap,
     Pair,
     Widget,
@@ -47,6 +73,45 @@ MESH_SCALES: Final = ("0.001", "0.01", "0.0254", "0.3048", "1", "10", "100", "10
 
 UP: Final = ".."
 RIG: Final = "rig"
+PICTURE_KIND: Final = "picture"
+
+RECENT: Final = "recent "
+"""The beginning of the keys of recent files."""
+
+FOLDER_LETTERS: Final = 36
+"""Letters of the folder in a hint."""
+
+MONTHS: Final = ("Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec")
+LONGEST_DATE: Final = 6
+LONGEST_KIND: Final = 7
+"""Letters of a date, and of a kind."""
+
+FRAME: Final = 4
+THUMBNAIL_LINES: Final = 168
+THUMBNAIL_ELEMENTS: Final = 224
+THUMBNAIL: Final = Area(
+    RIGHT.left + MARGIN - FRAME,
+    RIGHT.bottom + 1 - MARGIN - THUMBNAIL_LINES - 2 * FRAME,
+    RIGHT.left + MARGIN + THUMBNAIL_ELEMENTS + FRAME - 1,
+    RIGHT.bottom - MARGIN,
+)
+"""The largest size of the small picture of a picture file, and its area with a frame.
+
+Smaller pictures stand at the lower left.
+"""
+
+FIRST_BORROWED: Final = BACKGROUND + 1
+MOST_COLORS: Final = 500
+"""Assumed: the most colors of the small picture; more take longer, and are not seen."""
+
+PART_OF_BUDGET: Final = 0.1
+"""Limit: the part of the memory budget to read a picture file for its small picture."""
+
+SIZES: Final = (1, 2, 4)
+SMOOTHNESSES: Final = ("1", "2", "3", "4")
+"""The sizes of exported images, in sizes of the display, and how smooth they are."""
+
+TICKS_TO_EXPORT: Final = 2
 
 
 class FileScreen(Screen):
@@ -59,66 +124,131 @@ class FileScreen(Screen):
 
     def __init__(self, session: Session) -> None:
         super().__init__(session)
-        self._root = session.folder.resolve()
-        self._folder = self._root
         self._files: list[Openable] = []
         self._recent: list[Openable] = []
-        self._rigs: dict[Path, bool] = {}
-        """Whether the scene files that were shown are rigs."""
+        self._notes: dict[Path, tuple[bool, str]] = {}
+        """Whether each file that was shown is a rig, and the date of its last change."""
         self._page = 0
+        self._thumbnail: tuple[Path, str, SmallPicture | None] | None = None
+        """The picture file that was read last, its caption, and its small picture, if it could be read."""
+        self._size = self._own_size = size_of_display(session)
+        self._smooth = 1
+        self._ticks_to_export = 0
+        """How many ticks remain until the image is exported; 0 if none is to be exported."""
 
     def enter(self) -> None:
         self._look_up_recent()
         try:
-            self._list(self._folder)
+            self._list(self.session.folder)
         except InputError as error:
             self.session.warn(error)
 
+    def leave(self) -> None:
+        if self._ticks_to_export:
+            self._export()
+
     def _look_up_recent(self) -> None:
-        recent = [Openable(path, kind_of(path)) for path in recent_files() if self._may_open(path)]
+        recent = [Openable(path, kind_of(path)) for path in recent_files() if self.session.may_reach(path)]
         self._recent = [each for each in recent if each.kind]
 
     def _list(self, folder: Path) -> None:
         """Show a folder as it is now. Raises InputError if it cannot be read."""
-        self._files = [each for each in openables_of(folder) if self._may_open(each.path)]
-        self._folder, self._page, self._rigs = folder, 0, {}
-
-    def _may_open(self, path: Path) -> bool:
-        """Whether the pointer of this session may open a file or a folder."""
-        return self.session.is_at_hand or stays_within(path, self._root)
+        self._files = [each for each in openables_of(folder) if self.session.may_reach(each.path)]
+        self.session.folder = folder
+        self._page, self._notes, self._thumbnail = 0, {}, None
 
     def _shown_path(self, path: Path) -> str:
         """A path as text. Users of another machine do not see the folders above the session's."""
+        root = self.session.root
         if self.session.is_at_hand:
             return str(path)
-        below = path.relative_to(self._root) if path.is_relative_to(self._root) else path.name
-        return str(Path(self._root.name or "/", below))
+        below = path.relative_to(root) if path.is_relative_to(root) else path.name
+        return str(Path(root.name or "/", below))
 
     # Items and widgets.
 
     def items(self) -> Sequence[Item]:
         down, left = LEFT.top + TEXT_DOWN, LEFT.left + MARGIN
+        folder = short_name(self._shown_path(self.session.folder), ACROSS)
         items = [
             text("OPEN", left, TEXT_DOWN, YELLOW),
             text("RECENT", RIGHT.left + MARGIN, TEXT_DOWN, YELLOW),
-            text(short_name(self._shown_path(self._folder), ACROSS), left, ROW_LINES + TEXT_DOWN, LIGHT_GRAY),
+            text(folder, left, ROW_LINES + TEXT_DOWN, LIGHT_GRAY),
             filled(Area(251, LEFT.top, 251, LEFT.bottom), SLATE),
         ]
         if not self._files:
             items.append(text("no scene, mesh or picture", left, down + ROW_LINES * self._has_way_up, GRAY))
         if not self._recent:
             items.append(text("nothing was opened yet", RIGHT.left + MARGIN, down, GRAY))
+        if (shown := self._shown_thumbnail) is not None:
+            caption, small = shown
+            lines, elements = small.full.shape[:2]
+            left, top = THUMBNAIL.left + FRAME, THUMBNAIL.bottom + 1 - FRAME - lines
+            around = Area(left - FRAME, top - FRAME, left + elements + FRAME - 1, THUMBNAIL.bottom)
+            items += [
+                text(caption, left, around.top - CHARACTER_LINES - FRAME, LIGHT_GRAY),
+                outline(around, SLATE),
+                small.item(FIRST_BORROWED, left, top),
+            ]
         return items
+
+    def loads(self) -> Sequence[tuple[int, Bytes]]:
+        shown = self._shown_thumbnail
+        return [] if shown is None else [(FIRST_BORROWED, shown[1].colors)]
+
+    @property
+    def _shown_thumbnail(self) -> tuple[str, SmallPicture] | None:
+        """The caption and the small picture of the picture file under the pointer, if it was read."""
+        if self._thumbnail is None:
+            return None
+        path, caption, small = self._thumbnail
+        return None if small is None or path != self._pointed_picture else (caption, small)
+
+    @property
+    def _pointed_picture(self) -> Path | None:
+        """The picture file under the pointer."""
+        pointed = self.lit.removeprefix(RECENT)
+        pictures = (path for path, kind in (*self._files, *self._recent) if kind == PICTURE_KIND)
+        return next((path for path in pictures if str(path) == pointed), None)
+
+    def idle(self) -> bool:
+        """Export an image, or read the picture file under the pointer."""
+        if self._ticks_to_export:
+            # A window shows the message after the first tick.
+            self._ticks_to_export -= 1
+            if not self._ticks_to_export:
+                self._export()
+                return True
+            return False
+        path = self._pointed_picture
+        if path is None or (self._thumbnail is not None and self._thumbnail[0] == path):
+            return False
+        self._thumbnail = path, *self._read_thumbnail(path)
+        return self._thumbnail[2] is not None
+
+    def _read_thumbnail(self, path: Path) -> tuple[str, SmallPicture | None]:
+        """The caption and the small picture of a picture file; no picture if the file cannot be read."""
+        try:
+            self._check(path)
+            picture, scene = read_picture(path, limit=PART_OF_BUDGET)
+            shown = display_image(scene, picture)
+        except AutocolorError:
+            return "", None
+        shrunk = max(picture.lines / THUMBNAIL_LINES, picture.elements / THUMBNAIL_ELEMENTS, 1)
+        lines, elements = (max(1, round(size / shrunk)) for size in (picture.lines, picture.elements))
+        size = f"{picture.elements}x{picture.lines}"
+        caption = f"{short_name(path.name, CHARACTERS - len(size) - 2)}  {size}"
+        return caption, SmallPicture(thumbnail(shown, lines, elements), MOST_COLORS)
 
     @property
     def _has_way_up(self) -> bool:
-        above = self._folder.parent
-        return above != self._folder and self._may_open(above)
+        folder = self.session.folder
+        return folder.parent != folder and self.session.may_reach(folder.parent)
 
     def widgets(self) -> Sequence[Widget]:
         rows: list[Widget] = []
         if self._has_way_up:
-            above = Openable(self._folder.parent, FOLDER)
+            above = Openable(self.session.folder.parent, FOLDER)
             rows.append(self._row(above, UP))
         room = MOST_ROWS - len(rows)
         if len(self._files) > room:
@@ -129,7 +259,7 @@ class FileScreen(Screen):
         if len(pages) > 1:
             help = "A click turns to the next page of files; at the left end, to the page before."
             rows.append(page_choice(help, page, len(pages), partial(setattr, self, "_page")))
-        recent = [self._row(each, key="recent ") for each in self._recent]
+        recent = [self._row(each, key=RECENT) for each in self._recent]
         return [*_placed(rows, LEFT), *_placed(recent, RIGHT)]
 
     def _row(self, openable: Openable, shown: str = "", key: str = "") -> Widget:
@@ -138,44 +268,80 @@ class FileScreen(Screen):
             help, run = f"Look into {self._shown_path(path)}", partial(self._go_to, path)
         else:
             help, run = f"Open {self._shown_path(path)}", partial(self._open, path)
-        if path.suffix.lower() == RIG_SUFFIX and path.name != SCENE_FILE:
-            if path not in self._rigs:
-                self._rigs[path] = is_rig(path)
-            kind = RIG if self._rigs[path] else kind
-        if not shown:
-            # Every scene file has this name: show its folder, too.
-            shown = f"{path.parent.name}/{path.name}" if key and path.name == SCENE_FILE else path.name
-        return FileRow(f"{key}{path}", help, run=run, value=kind, shown=shown)
+        if path not in self._notes:
+            may_be_rig = path.suffix.lower() == RIG_SUFFIX and path.name != SCENE_FILE
+            self._notes[path] = may_be_rig and is_rig(path), date_of(path, kind)
+        rig, date = self._notes[path]
+        shown = shown or short_path(path, bool(key))
+        return FileRow(f"{key}{path}", help, run=run, value=RIG if rig else kind, shown=shown, date=date)
 
     def rows(self) -> Sequence[Widget]:
         session = self.session
         changed = "changed" if session.studio.is_changed else ""
         scale = f"{session.mesh_scale:g}"
         scales = tuple(sorted({*MESH_SCALES, scale}, key=float))
+        folder = short_name(self._shown_path(session.folder), FOLDER_LETTERS)
+        files = " and ".join(short_path(Path(name), True) for name in session.studio.history.files)
+        saves = f"Save to {files}; new files go to" if files else "Save the scene and the picture in"
+        size = written_size(self._size)
+        sizes = [(times * self._own_size[0], times * self._own_size[1]) for times in SIZES]
+        sizes = sorted({self._size, *(each for each in sizes if max(each) <= LARGEST)})
         return [
             Button(
                 "save",
-                "Save the scene and the picture.",
+                f"{saves} {folder}",
                 run=partial(self._save, session.save),
                 value=changed,
             ),
+            Entry(
+                "save as",
+                f"Save under another name in {folder}; from then on, save writes these files.",
+                value=free_name(session.scene.name, session.folder),
+                take=lambda name: self._save(lambda: session.save(name.strip())),
+                is_proposed=True,
+            ),
             Button(
                 "save the rig",
-                "Save all lights, to put them on another scene.",
+                f"Save all lights in {folder}, to put them on another scene.",
                 run=partial(self._save, session.save_rig),
             ),
             Button(
                 "screenshot",
-                "Save the picture as a numbered image, without menus.",
+                f"Save the picture as a numbered image in {folder}, without menus.",
                 run=partial(self._save, session.save_image),
+            ),
+            Gap("export gap"),
+            Button(
+                "export",
+                f"Save the picture at this size and smoothness as an image in {folder}.",
+                run=self._begin_export,
+            ),
+            Choice(
+                "size",
+                "The elements and lines of an exported image: of the display, or two or four times as many.",
+                names=[written_size(each) for each in sizes],
+                present=size,
+                choose=self._choose_size,
+            ),
+            Entry(
+                "other size",
+                f"Other elements and lines of an exported image, up to {LARGEST}, as in 1920x1080.",
+                take=self._choose_size,
+            ),
+            Choice(
+                "smoothness",
+                "From 2 on, edges are smooth: each pixel is the mean of 4, 9 or 16, which takes longer.",
+                names=SMOOTHNESSES,
+                present=str(self._smooth),
+                choose=self._choose_smoothness,
             ),
             Gap("list gap"),
             Pair(
                 "refresh",
                 "Read the folder again, or go to the folder where files are saved.",
-                run=lambda: self._list(self._folder),
+                run=lambda: self._list(session.folder),
                 other="home",
-                run_other=partial(self._go_to, self._root),
+                run_other=partial(self._go_to, session.root),
             ),
             Choice(
                 "mesh up",
@@ -205,17 +371,73 @@ class FileScreen(Screen):
         self.session.turn_to(PICTURE)
 
     def _check(self, path: Path) -> None:
-        """Raise UsageError if the pointer of this session may not open a path."""
-        if not self._may_open(path):
-            raise UsageError(
-                f"{path.name}: a file to open must be in the folder {self._root.name}, and not a link to"
-                " elsewhere; choose another"
-            )
+        self.session.check_reach(path, "a file to open")
 
     def _save(self, save: Callable[[], object]) -> None:
         save()
         self._look_up_recent()
-        self._list(self._folder)
+        self._list(self.session.folder)
+
+    def _choose_size(self, text: str) -> None:
+        self._size = size_of(text.strip())
+
+    def _choose_smoothness(self, name: str) -> None:
+        self._smooth = int(name)
+
+    def _begin_export(self) -> None:
+        self._ticks_to_export = TICKS_TO_EXPORT
+        size = written_size(self._size)
+        self.session.tell(f"exporting {size}, smoothness {self._smooth} ...", persistent=True)
+
+    def _export(self) -> None:
+        """Export the image; a message says its name, or why there is none."""
+        self._ticks_to_export = 0
+        try:
+            self.session.export(*self._size, self._smooth)
+        except AutocolorError as error:
+            self.session.warn(error)
+
+
+def size_of_display(session: Session) -> tuple[int, int]:
+    """The elements and lines that the display shows."""
+    sizes = configuration_of(session.display)
+    return sizes.shown_elements, sizes.shown_lines
+
+
+def written_size(size: tuple[int, int]) -> str:
+    """Elements and lines as text, as in "640x480"."""
+    return "{}x{}".format(*size)
+
+
+def short_path(path: Path, with_folder: bool) -> str:
+    """The name of a file. Every scene file has the same name: `with_folder` shows its folder, too."""
+    return f"{path.parent.name}/{path.name}" if with_folder and path.name == SCENE_FILE else path.name
+
+
+def date_of(path: Path, kind: str) -> str:
+    """The date of the last change of a file, or of the scene file in a scene's folder; empty for folders."""
+    if kind == FOLDER:
+        return ""
+    file = path / SCENE_FILE if path.is_dir() else path
+    try:
+        return short_date(file.stat().st_mtime, time.time())
+    except (OSError, OverflowError, ValueError):
+        return ""
+
+
+def short_date(seconds: float, now: float) -> str:
+    """A local time in at most six characters: the hour today, the day this year, else the year.
+
+    Both times are in seconds since 1970. Raises OSError, OverflowError or ValueError for a year that the
+    system cannot compute.
+
+    >>> short_date(86_400 * 400, now=86_400 * 20_000)
+    '1971'
+    """
+    then, today = datetime.fromtimestamp(seconds), datetime.fromtimestamp(now)
+    if then.date() == today.date():
+        return f"{then:%H:%M}"
+    return f"{then.day} {MONTHS[then.month - 1]}" if then.year == today.year else str(then.year)
 
 
 def _placed(rows: Sequence[Widget], area: Area) -> list[Widget]:
@@ -229,9 +451,16 @@ def _placed(rows: Sequence[Widget], area: Area) -> list[Widget]:
 
 @dataclass(frozen=True)
 class FileRow(Button):
-    """A file, with its kind at the right."""
+    """A file, with its kind at the right, and before it the date, unless the name needs the room."""
 
     shown: str = ""
+    date: str = ""
 
     def items(self, lit: bool) -> list[Item]:
-        return self.row(lit, short_name(self.shown, CHARACTERS - len(self.value) - 1), self.value)
+        items = self.row(lit, short_name(self.shown, CHARACTERS - len(self.value) - 1), self.value)
+        left, top, right, _ = self.area
+        end = right + 1 - MARGIN - CHARACTER * (LONGEST_KIND + 1)
+        start = end - CHARACTER * len(self.date)
+        if self.date and left + MARGIN + CHARACTER * (len(self.shown) + 1) <= end - CHARACTER * LONGEST_DATE:
+            items.append(text(self.date, start, top + TEXT_DOWN, GRAY, SLATE if lit else NIGHT))
+        return items

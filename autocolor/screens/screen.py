@@ -13,20 +13,22 @@ from typing import ClassVar, Generic, NamedTuple, TypeVar
 from autocolor.arrays import Bytes, Words
 from autocolor.screens.input import Gesture
 from autocolor.screens.session import Session
-from autocolor.widgets.items import NIGHT, Item
-from autocolor.widgets.widget import Widget
+from autocolor.widgets.items import NIGHT, Area, Item
+from autocolor.widgets.widget import NOWHERE, Widget
 
 
 class Handle(NamedTuple):
     """A place on a screen that can be grabbed and put elsewhere.
 
-    By its `key` the screen recognizes the handle; `label` is for the message line.
+    By its `key` the screen recognizes the handle; `label` is for the message line. Its `sign` is a numeral on
+    the screen that can be grabbed in its place.
     """
 
     key: object
     element: int
     line: int
     label: str
+    sign: Area = NOWHERE
 
 
 class Screen:
@@ -51,6 +53,8 @@ class Screen:
         """Whether the menu covers its right part."""
         self.has_panels = True
         """Whether its panels are shown; else the user hides them to see the whole picture."""
+        self.lit = ""
+        """The key of the widget under the pointer; empty if there is none."""
 
     # How it looks.
 

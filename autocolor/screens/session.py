@@ -17,13 +17,16 @@ from autocolor.arrays import Bytes, Words
 from autocolor.errors import InputError, UsageError
 from autocolor.files.paths import SCENE_FILE, file_stem, free_path
 from autocolor.files.rig_file import RIG_SUFFIX, is_rig, read_rig, write_rig
-from autocolor.files.scene_files import MESH, kind_of
+from autocolor.files.scene_files import MESH, kind_of, stays_within
 from autocolor.files.scene_sources import hinted_up
 from autocolor.files.stamps import look_at
 from autocolor.files.state import note_file
+from autocolor.images import save_image
 from autocolor.journal.places import Source
 from autocolor.mapping.display_image import DisplayImage
+from autocolor.rendering import render
 from autocolor.scene.changes import LightChanges, PaintChanges, SurfaceChanges
+from autocolor.scene.description import describe
 from autocolor.scene.lights import Light
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import Scene
@@ -39,11 +42,20 @@ from ramtek_emu.errors import escaped
 PICTURE: Final = "picture"
 """The name of the screen that a session begins with, and comes back to."""
 
+HISTORY: Final = "history"
+"""The name of the screen with the steps of the session."""
+
+SPLIT: Final = "split"
+"""The name of the screen with two states, left and right of a line."""
+
 MESSAGE_SECONDS: Final = 5.0
 """Assumed: how long a message is shown."""
 
 LEAST_SECONDS: Final = 1.0
 """Assumed: how long a message is shown at least while the pointer moves from thing to thing."""
+
+MOST_DESCRIBED: Final = 70
+"""Assumed: letters of a difference of two scenes, so that it fits in a message line with what it is of."""
 
 LONGEST_NAME: Final = 24
 """Assumed: letters of a scene's name in a message that must also say what to do."""
@@ -57,6 +69,8 @@ class Message(NamedTuple):
     shown_at: float
     persistent: bool = False
     """Whether it is shown until the next action, or until the menu comes."""
+    seconds: float = MESSAGE_SECONDS
+    """How long it is shown if it is not persistent."""
 
 
 class Solo(NamedTuple):
@@ -67,12 +81,15 @@ class Solo(NamedTuple):
 
 
 class Session:
-    """The state that the screens share. New files are saved to `folder`."""
+    """The state that the screens share.
+
+    New files are saved to `folder`, which the file screen shows. It begins as `root`.
+    """
 
     def __init__(self, studio: Studio, display: HostPort, folder: Path) -> None:
         self.studio = studio
         self.display = display
-        self.folder = folder
+        self.root = self.folder = folder.resolve()
         self.comparing = Comparing(studio)
         """Another state that is shown in place of the present one."""
         self.screen = PICTURE
@@ -90,7 +107,7 @@ class Session:
         self.keys: Sequence[tuple[str, str]] = ()
         """Each key and what it does, for the help page."""
         self.is_at_hand = False
-        """Whether the user sits at this machine; a pointer from elsewhere keeps to the folder."""
+        """Whether the user sits at this machine; a pointer from elsewhere stays within `root`."""
         self.mesh_up, self.mesh_scale = "z", 1.0
         """The up axis and the scale of mesh files that are opened; other files give their own."""
         self.surface = 0
@@ -164,15 +181,17 @@ class Session:
     @property
     def has_news(self) -> bool:
         """Whether there is a message whose time has not passed. While states are compared, no time passes."""
-        is_recent = time.monotonic() - self.news.shown_at < MESSAGE_SECONDS
+        is_recent = time.monotonic() - self.news.shown_at < self.news.seconds
         return bool(self.news.text) and (is_recent or self.news.persistent or self.comparing.is_on)
 
     @property
     def news_may_go(self) -> bool:
-        """Whether a hint may take the place of the message: it is no warning, and was shown for a while."""
-        news = self.news
-        is_old = time.monotonic() - news.shown_at >= LEAST_SECONDS
-        return self.has_news and is_old and not (news.is_warning or news.persistent)
+        """Whether a hint may take the place of the message: it is no warning, and need not stay."""
+        return self.has_news and not (self.news.is_warning or self.news.persistent)
+
+    def shorten_news(self) -> None:
+        """Let the message go as soon as it was shown for LEAST_SECONDS."""
+        self.news = self.news._replace(seconds=LEAST_SECONDS)
 
     def tell(self, message: str, is_warning: bool = False, persistent: bool = False) -> None:
         """Show a message for some seconds; with `persistent`, until the next action.
@@ -180,7 +199,7 @@ class Session:
         An empty message takes the last message away. Letters that cannot be printed, as in names of files,
         are escaped.
         """
-        self.news = Message(escaped(message), is_warning, time.monotonic(), persistent)
+        self.news = Message(escaped(message), is_warning, time.monotonic(), persistent, MESSAGE_SECONDS)
 
     def warn(self, message: object) -> None:
         """Show an error in one line; of several problems, the first and the number of the others."""
@@ -229,7 +248,7 @@ class Session:
     def compare(self) -> None:
         """Show the state to compare with, over the picture, until the present one is edited."""
         if not self.comparing.is_on:
-            self.tell(f"shown: {self.comparing.begin()}")
+            self.tell(f"shown: {self.comparing.begin()}; {self.comparing.difference}")
 
     def end_comparing(self) -> None:
         """Show the present state again."""
@@ -239,6 +258,10 @@ class Session:
     def switch_comparing(self) -> None:
         """Show the state to compare with, or the present one again."""
         (self.end_comparing if self.comparing.is_on else self.compare)()
+
+    def switch_split(self) -> None:
+        """Show both states, left and right of a line, or the picture again."""
+        self.turn_to(PICTURE if self.screen == SPLIT else SPLIT)
 
     # Edits.
 
@@ -346,17 +369,44 @@ class Session:
             self.tell(message, is_warning=self.studio.is_changed, persistent=True)
         return bool(message)
 
-    def save(self) -> None:
-        """Save the scene and the picture; the message says the names of the files."""
-        saved = self.studio.save_session(self.folder)
+    def may_reach(self, path: Path) -> bool:
+        """Whether the user may open a path, or save in it: from elsewhere, no link may lead out of `root`."""
+        return self.is_at_hand or stays_within(path, self.root)
+
+    def check_reach(self, path: Path, noun: str) -> None:
+        """Raise UsageError if the user may not open a path, or save in it; `noun` says for what it is."""
+        if not self.may_reach(path):
+            raise UsageError(
+                f"{path.name}: {noun} must be in the folder {self.root.name}, and not a link to elsewhere;"
+                " choose another"
+            )
+
+    def _shown_folder(self) -> Path:
+        """The folder for new files. Raises UsageError if it became a link that leads out of `root`."""
+        self.check_reach(self.folder, "a folder to save in")
+        return self.folder
+
+    def save(self, name: str | None = None) -> None:
+        """Save the scene and the picture; the message says the names of the files.
+
+        With a `name`, they are saved as new files of this name. Raises as `Studio.save_session`.
+        """
+        saved = self.studio.save_session(self._shown_folder(), name)
         note_file(saved.scene)
-        self.tell(saved.message(self.folder))
+        self.tell(saved.message(self.root))
 
     def save_rig(self) -> None:
         """Save the lights, to put them on another scene."""
-        path = free_path(self.folder / f"{file_stem(self.scene.name)}-rig{RIG_SUFFIX}")
+        path = free_path(self._shown_folder() / f"{file_stem(self.scene.name)}-rig{RIG_SUFFIX}")
         write_rig(path, self.scene)
         self.tell(f"saved {path.name}")
+
+    def export(self, elements: int, lines: int, smooth: int) -> None:
+        """Save the picture at a size as a new PNG file, named after the scene, with a smoothness."""
+        path = free_path(self._shown_folder() / f"{file_stem(self.scene.name)}.png")
+        picture = render(self.scene, smooth * lines, smooth * elements)
+        save_image(path, self.scene, picture, smooth=smooth)
+        self.tell(f"saved {path.name}: {elements}x{lines}, smoothness {smooth}")
 
     def save_image(self) -> None:
         """Save the picture alone, with the legend of a scalar, as the next screenshot."""
@@ -367,15 +417,27 @@ class Session:
         """Save (lines, elements, 3) colors as the next screenshot, "autocolor-0001.png"."""
         from ramtek_emu.png import save_numbered
 
-        self.tell(f"saved {save_numbered(colors, self.folder, 'autocolor')}")
+        self.tell(f"saved {save_numbered(colors, self._shown_folder(), 'autocolor')}")
 
-    def undo(self) -> None:
-        """Undo the last step."""
-        self.tell("undone" if self.studio.undo() else "nothing to undo")
+    def undo(self, steps: int = 1) -> None:
+        """Undo the last step, or some steps at once."""
+        after = self.scene
+        if self.studio.undo(steps):
+            self._tell_steps("undone", steps, describe(self.scene, after, MOST_DESCRIBED))
+        else:
+            self.tell("nothing to undo")
 
-    def redo(self) -> None:
-        """Redo the last undone step."""
-        self.tell("redone" if self.studio.redo() else "nothing to redo")
+    def redo(self, steps: int = 1) -> None:
+        """Redo the last undone step, or some steps at once."""
+        before = self.scene
+        if self.studio.redo(steps):
+            self._tell_steps("redone", steps, describe(before, self.scene, MOST_DESCRIBED))
+        else:
+            self.tell("nothing to redo")
+
+    def _tell_steps(self, verb: str, steps: int, difference: str) -> None:
+        count = f"{steps} steps " if steps > 1 else ""
+        self.tell(f"{count}{verb}: {difference or 'no change'}")
 
     # The end.
 
@@ -443,6 +505,17 @@ class Comparing:
         """Compare with the state before the last step again if this scene was chosen."""
         if self._chosen is not None and self._chosen.scene is scene:
             self.choose(None)
+
+    @property
+    def difference(self) -> str:
+        """How the present state differs from the other state, for a message."""
+        difference = describe(self.other.scene, self._studio.scene, MOST_DESCRIBED) if self.other else ""
+        return f"now: {difference}" if difference else "now the same"
+
+    @property
+    def other_image(self) -> DisplayImage | None:
+        """The image of the state to compare with, if there is one; the present image is refined first."""
+        return None if self.other is None else self._image_of(self.other.scene)
 
     @property
     def image(self) -> DisplayImage | None:

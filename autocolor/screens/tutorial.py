@@ -17,7 +17,6 @@ from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Surface
 from autocolor.screens.session import Session
 from autocolor.widgets.items import (
-    CHARACTER,
     GREEN,
     NIGHT,
     SLATE,
@@ -30,7 +29,7 @@ from autocolor.widgets.items import (
     text,
 )
 from autocolor.widgets.menu import WIDE_BAR, WORK
-from autocolor.widgets.widget import MARGIN, Button, Place, Widget
+from autocolor.widgets.widget import MARGIN, PanelButton, Place, Widget
 
 # The lessons. A function compares two scenes to see whether the task was done: by a screen, a bar, a key,
 # or in the picture itself.
@@ -250,7 +249,7 @@ class Tutorial:
         right = area.right - 1
         for label, help, run in buttons:
             place = Area(right - BUTTON + 1, area.top + 1, right, area.top + HEAD_LINES - 2)
-            panel.append(PanelButton(label, help, area=place, run=run))
+            panel.append(PanelButton(label, help, area=place, run=run, within="tutorial"))
             right -= BUTTON
         task = Task(
             "tutorial",
@@ -269,23 +268,6 @@ class Tutorial:
         if self.lesson is None:
             return f"{done}end of the tutorial"
         return f"{done}{self._number + 1} of {len(self._lessons)}: {self.lesson.name}"
-
-
-@dataclass(frozen=True)
-class PanelButton(Button):
-    """A button in the first line of the panel; its key differs from that of a row of the menu."""
-
-    @property
-    def key(self) -> str:
-        return f"tutorial {self.label}"
-
-    def items(self, lit: bool) -> list[Item]:
-        left = self.area.left + (self.area.width - CHARACTER * len(self.label)) // 2
-        ground = SLATE if lit else NIGHT
-        return [
-            filled(self.area, ground),
-            text(self.label, left, self.area.top + 3, WHITE, ground),
-        ]
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ import numpy as np
 from autocolor.arrays import Bytes
 from autocolor.errors import InputError
 from autocolor.images import display_image
-from autocolor.mapping.palette import in_palette, thumbnail
+from autocolor.mapping.palette import thumbnail
 from autocolor.mapping.ranges import BACKGROUND, SCREENS
 from autocolor.rendering import Rendering, rendering
 from autocolor.scene.scene import Scene
@@ -31,8 +31,8 @@ from autocolor.widgets.items import (
     YELLOW,
     Area,
     Item,
+    SmallPicture,
     filled,
-    image,
     outline,
     text,
 )
@@ -130,7 +130,9 @@ class VariantsScreen(Screen):
                     "keep the scene as it is now, and come back to it later", 16, ROW_LINES + TEXT_DOWN, GRAY
                 ),
             ]
-        return [small.item(first, area) for area, first, small in self._shown()]
+        return [
+            small.item(first, area.left + FRAME, area.top + FRAME) for area, first, small in self._shown()
+        ]
 
     def widgets(self) -> Sequence[Widget]:
         return [
@@ -262,20 +264,3 @@ class VariantButton(Button):
 
     def pick(self, place: Place) -> object:
         return self.run()
-
-
-class SmallPicture:
-    """A picture in at most `most` colors; `full` has all of them, (84, 112, 3)."""
-
-    def __init__(self, full: Bytes, most: int) -> None:
-        self.full = full
-        self.most = most
-        self._places, self.colors = in_palette(full, most)
-        self._item: tuple[int, Area, Item] | None = None
-
-    def item(self, first: int, area: Area) -> Item:
-        """The picture in its frame, with words from a first one on."""
-        if self._item is None or self._item[:2] != (first, area):
-            words = (self._places + np.uint16(first)).astype(np.uint16)
-            self._item = first, area, image(words, area.left + FRAME, area.top + FRAME)
-        return self._item[2]

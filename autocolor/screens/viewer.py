@@ -22,6 +22,7 @@ from autocolor.screens.board import Board
 from autocolor.screens.entries_screen import EntriesScreen
 from autocolor.screens.file_screen import FileScreen
 from autocolor.screens.help_screen import HelpScreen
+from autocolor.screens.history_screen import HistoryScreen
 from autocolor.screens.input import Binding, Chord, Gesture, Mouse, Unit, bound_to
 from autocolor.screens.light_and_view.light_and_view_screen import LightAndViewScreen
 from autocolor.screens.lights_screen import LightsScreen
@@ -34,6 +35,7 @@ from autocolor.screens.reflectance_screen import ReflectanceScreen
 from autocolor.screens.scalar_screen import ScalarScreen
 from autocolor.screens.screen import Screen
 from autocolor.screens.session import PICTURE, Session
+from autocolor.screens.split_screen import SplitScreen
 from autocolor.screens.variants_screen import VariantsScreen
 from autocolor.sending import configuration_of
 from autocolor.studio import Studio
@@ -243,12 +245,22 @@ class Viewer:
             self.point(gesture)
 
     def poll(self) -> None:
-        """Handle the gestures of the joystick unit since the last poll."""
-        for gesture in self._unit.poll():
-            self.point(gesture)
+        """Handle the gestures of the joystick unit since the last poll, and show one page for all of them.
+
+        The next poll waits until the display has drawn the page, so that the pointer is never further ahead.
+        """
+        gestures = self._unit.poll()
+        for gesture in gestures:
+            self._point(gesture)
+        if gestures:
+            self._update()
 
     def point(self, gesture: Gesture) -> None:
         """Handle a gesture of the mouse or of the joystick unit."""
+        self._point(gesture)
+        self._update()
+
+    def _point(self, gesture: Gesture) -> None:
         board, kind = self.board, gesture.kind
         if kind in ("hover", "drop"):
             board.take(gesture)
@@ -258,16 +270,17 @@ class Viewer:
             self._do((WHEEL, board.lit), lambda: board.take(gesture), True, True)
         elif kind == "drag":
             self._do((DRAG, self._drags), lambda: board.take(gesture), True, True)
-        elif not (kind == "pick" and board.is_dragging) and self._has_taken_text():
+        elif not (kind == "pick" and board.is_dragging) and (
+            board.is_on_letters(gesture.element, gesture.line) or self._has_left_text()
+        ):
             # ENTER during a drag does nothing, or it would end the step.
             self._drags += 1
             self._do((DRAG, self._drags), lambda: board.take(gesture))
-        self._update()
 
-    def _has_taken_text(self) -> bool:
-        """Take the text that is being typed, if any; returns False if the text is refused and stays open."""
+    def _has_left_text(self) -> bool:
+        """Leave the text that is being typed, if any; returns False if the text is refused and stays open."""
         if self.board.typing.is_on:
-            self._do(None, self.board.typing.take)
+            self._do(None, self.board.typing.leave)
         return not self.board.typing.is_on
 
     def on_tick(self, is_at_rest: bool = True) -> None:
@@ -445,7 +458,9 @@ SCREENS: Final[tuple[type[Screen], ...]] = (
     MappingScreen,
     ScalarScreen,
     VariantsScreen,
+    HistoryScreen,
     FileScreen,
+    SplitScreen,
     EntriesScreen,
     HelpScreen,
 )
@@ -590,7 +605,7 @@ WINDOW_KEYS: Final = (
     ("Ctrl+Q", "leave; you are asked first about unsaved changes"),
     ("mouse", "drag: turn; Shift, middle: move; Ctrl, wheel: closer"),
     ("mouse, highlight", "drag it, or click, and click where it goes"),
-    ("joystick unit", "ENTER picks and places; TRACK, held, drags"),
+    ("joystick unit", "ENTER (left button): pick, place; TRACK (right), held: drag"),
     ("a file dropped", "open it: a scene, a mesh or a picture file"),
 )
 """The keys that the window itself handles, and the mouse."""

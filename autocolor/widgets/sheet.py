@@ -74,7 +74,7 @@ class Sheet:
             parts += _restored(page.base, whole)
             redrawn = list(page.items)
         else:
-            drawn = [area for area in [differing_lines(before.base, page.base, whole)] if not area.is_empty]
+            drawn = [area for area in [differing_area(before.base, page.base, whole)] if not area.is_empty]
             restored, redrawn = changed_items(before.items, page.items, drawn)
             for area in (*drawn, *restored):
                 parts += _restored(page.base, area.within(self._whole))
@@ -151,8 +151,8 @@ def _overlapping(columns: Numbers, area: Area) -> Booleans:
     return overlaps
 
 
-def differing_lines(before: Words | int, now: Words | int, area: Area) -> Area:
-    """The lines of an area in which two bases differ; an empty area if they are the same."""
+def differing_area(before: Words | int, now: Words | int, area: Area) -> Area:
+    """The smallest part of an area in which two bases differ; an empty area if they are the same."""
     nowhere = area._replace(bottom=area.top - 1)
     if isinstance(before, int) or isinstance(now, int):
         is_same = isinstance(before, int) and isinstance(now, int) and before == now
@@ -162,10 +162,16 @@ def differing_lines(before: Words | int, now: Words | int, area: Area) -> Area:
     if before.shape != now.shape:
         return area
     places = slice(area.top, area.bottom + 1), slice(area.left, area.right + 1)
-    lines = np.flatnonzero((before[places] != now[places]).any(axis=1))
+    differs = before[places] != now[places]
+    lines, elements = (np.flatnonzero(differs.any(axis=axis)) for axis in (1, 0))
     if not len(lines):
         return nowhere
-    return area._replace(top=area.top + int(lines[0]), bottom=area.top + int(lines[-1]))
+    return Area(
+        area.left + int(elements[0]),
+        area.top + int(lines[0]),
+        area.left + int(elements[-1]),
+        area.top + int(lines[-1]),
+    )
 
 
 def _restored(base: Words | int, area: Area) -> list[Words]:

@@ -13,6 +13,7 @@ from typing import Any, ClassVar, Final, NamedTuple, TypeVar
 from autocolor.widgets.items import (
     BLACK,
     CHARACTER,
+    CHARACTER_LINES,
     GRAY,
     LEFT,
     LIGHT_GRAY,
@@ -59,10 +60,14 @@ class Place(NamedTuple):
 
 
 class Typed(NamedTuple):
-    """The text of a widget that can be typed over, and the function that takes the new text."""
+    """The text of a widget that can be typed over, and the function that takes the new text.
+
+    If it `is_proposed`, Return takes the text even if it was not changed, and a pick elsewhere gives it up.
+    """
 
     text: str
     take: Callable[[str], object]
+    is_proposed: bool = False
 
 
 @dataclass(frozen=True)
@@ -192,6 +197,17 @@ class Button(Widget):
 
 
 @dataclass(frozen=True)
+class PanelButton(Button):
+    """A button of a panel over the screen, with its label in the middle."""
+
+    def items(self, lit: bool) -> list[Item]:
+        left = self.area.left + (self.area.width - CHARACTER * len(self.label)) // 2
+        top = self.area.top + (self.area.height - CHARACTER_LINES + 1) // 2
+        ground = SLATE if lit else NIGHT
+        return [filled(self.area, ground), text(self.label, left, top, WHITE, ground)]
+
+
+@dataclass(frozen=True)
 class Switch(Widget):
     """A box that is full while `is_on`. Beside the box, a pick calls `choose`, if given."""
 
@@ -314,14 +330,15 @@ def page_choice(help: str, page: int, pages: int, turn: Callable[[int], object])
 
 @dataclass(frozen=True)
 class Entry(Widget):
-    """A text that can be typed over, where there is a keyboard."""
+    """A text that can be typed over; see `Typed` for a text that is proposed."""
 
     value: str = ""
     take: Callable[[str], Any] = lambda _: None
+    is_proposed: bool = False
 
     @property
     def typed(self) -> Typed:
-        return Typed(self.value, self.take)
+        return Typed(self.value, self.take, self.is_proposed)
 
     def items(self, lit: bool) -> list[Item]:
         return self.labeled_row(lit, self.value)
@@ -334,12 +351,16 @@ class Pair(Widget):
     run: Callable[[], object] = lambda: None
     other: str = ""
     run_other: Callable[[], object] = lambda: None
+    is_chosen: bool = False
+    """Whether the left button is chosen."""
 
     def items(self, lit: bool) -> list[Item]:
         background = SLATE if lit else NIGHT
         middle = self._middle
         most = (middle - self.area.left - MARGIN) // 7
-        items = self.row(lit, fitted(self.label, most))
+        items = self.row(lit, fitted(self.label, most), chosen=self.is_chosen)
+        if self.is_chosen:
+            items.append(filled(self.area._replace(left=middle - MARGIN // 2), background))
         other = fitted(self.other, most)
         return [*items, text(other, middle, self.area.top + TEXT_DOWN, self.ink, background)]
 

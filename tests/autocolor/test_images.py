@@ -1,6 +1,9 @@
 from __future__ import annotations
 
+import dataclasses
+import math
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 import pytest
@@ -20,7 +23,11 @@ from autocolor import (
     scene_of,
     send_picture,
 )
-from ramtek_emu import Ramtek9300
+from autocolor.images import LARGEST, display_image, size_of, smoothed
+from autocolor.mapping.legend import legend
+from autocolor.mapping.ranges import SCREENS
+from ramtek_emu import GMR_9300, Configuration, ConfigurationError, Ramtek9300
+from ramtek_emu.arrays import Colors
 from tests.autocolor.meshes import STRETCHED, cube, wall_scene
 from tests.autocolor.sessions import SMALL, held, opened
 from tests.autocolor.strategies import scenes
@@ -131,3 +138,129 @@ def test_a_picture_larger_than_the_display_is_refused_and_a_smaller_one_is_shown
     shown = display.words != 0
     assert (shown[: lines // 2, : elements // 2] == (small.surface_number != 0)).all()
     assert shown.sum() == (small.surface_number != 0).sum()
+
+
+@pytest.mark.parametrize(
+    ("text", "size"), [("640x480", (640, 480)), ("1X1", (1, 1)), ("4096x4096", (4096, 4096))]
+)
+def test_a_size_is_its_elements_and_its_lines(text: str, size: tuple[int, int]) -> None:
+    assert size_of(text) == size
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", "640", "640x", "x480", "640,480", "0x5", "5x0", "4097x1", "-1x5", "1.5x2", "\uff11x1", "1x1\n"],
+)
+def test_what_is_no_size_is_refused_in_a_sentence(text: str) -> None:
+    with pytest.raises(UsageError) as refusal:
+        size_of(text)
+    assert str(refusal.value) == (
+        f"a size must be ELEMENTSxLINES, each from 1 to 4096, not {text!r}; write it as in 1280x960"
+    )
+
+
+def test_the_largest_size_is_that_of_the_largest_display() -> None:
+    def display(size: int) -> Configuration:
+        return Configuration(name="large", elements=size, lines=size, planes=GMR_9300.planes)
+
+    assert display(LARGEST).lines == LARGEST
+    with pytest.raises(ConfigurationError):
+        display(LARGEST + 1)
+
+
+def light_of(component: int) -> float:
+    """The light of a component of sRGB, IEC 61966-2-1."""
+    share = component / 255
+    return share / 12.92 if share <= 0.04045 else ((share + 0.055) / 1.055) ** 2.4
+
+
+def component_of(light: float) -> int:
+    """The nearest component for some light, halves up."""
+    share = 12.92 * light if light <= 0.0031308 else 1.055 * light ** (1 / 2.4) - 0.055
+    return math.floor(255 * share + 0.5)
+
+
+def saved(path: Path, scene: Scene, lines: int, elements: int, smooth: int) -> Colors:
+    """The colors of a saved image."""
+    picture = render(scene, smooth * lines, smooth * elements)
+    save_image(path, scene, picture, overwrite=True, smooth=smooth)
+    return np.asarray(Image.open(path))
+
+
+@pytest.mark.parametrize("words", ["levels", "normals"])
+@pytest.mark.parametrize("smooth", [1, 2, 3])
+def test_a_smooth_image_has_the_mean_light_of_the_squares_of_a_larger_image(
+    tmp_path: Path, smooth: int, words: Literal["levels", "normals"]
+) -> None:
+    scene = scene_of(cube(), background="#203040").replace(words=words)
+    lines, elements = 12, 16
+    large = image(scene, render(scene, smooth * lines, smooth * elements)).tolist()
+    expected = [
+        [
+            [
+                component_of(
+                    sum(
+                        light_of(large[smooth * line + down][smooth * element + across][component])
+                        for down in range(smooth)
+                        for across in range(smooth)
+                    )
+                    / smooth**2
+                )
+                for component in range(3)
+            ]
+            for element in range(elements)
+        ]
+        for line in range(lines)
+    ]
+    colors = saved(tmp_path / "cube.png", scene, lines, elements, smooth)
+    assert colors.tolist() == expected
+    assert (colors[0, 0] == scene.background).all()
+
+
+@pytest.mark.parametrize("level", range(0, 256, 15))
+def test_a_constant_picture_stays_constant(tmp_path: Path, level: int) -> None:
+    scene = wall_scene().replace(background=(level, 255 - level, 7))
+    scene = scene.with_view(eye=(0, -2, 50), target=(0, -2, 100))
+    assert (saved(tmp_path / "empty.png", scene, 5, 4, 4) == scene.background).all()
+
+
+def test_the_mean_of_black_and_white_is_half_of_the_light() -> None:
+    scene = wall_scene().replace(background="white")
+    shown_image = display_image(scene, render(scene, 2, 2))
+    black = SCREENS.first
+    words = np.array([[0, black], [black, 0]], np.uint16)
+    # Half of the light of white; the mean of the components would be 128.
+    assert (smoothed(dataclasses.replace(shown_image, words=words), 2) == 188).all()
+
+
+def test_the_legend_of_a_smooth_image_is_as_sharp_as_on_a_display_of_its_size(tmp_path: Path) -> None:
+    scene = scene_of(cube(), scalar={"name": "z", "legend_place": (1.0, 0.0)})
+    lines, elements = 480, 640
+    plain = saved(tmp_path / "plain.png", scene, lines, elements, 1)
+    smooth = saved(tmp_path / "smooth.png", scene, lines, elements, 2)
+    key = legend(display_image(scene, render(scene, lines, elements)))
+    assert key is not None
+    left, top, right, bottom, _ = key.swatches[0]
+    inside = slice(top, bottom + 1), slice(left, right + 1)
+    assert (smooth[inside] == plain[inside]).all()
+
+
+@pytest.mark.parametrize("smooth", [0, -1, 1.0, True, "4", None])
+def test_a_smoothness_that_is_no_whole_number_is_refused(tmp_path: Path, smooth: object) -> None:
+    scene = wall_scene()
+    with pytest.raises(UsageError, match="smooth must be a whole number of at least 1, not"):
+        save_image(tmp_path / "wall.png", scene, render(scene, 4, 4), smooth=smooth)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(("lines", "elements"), [(6, 8), (8, 6), (2, 2)])
+def test_a_picture_that_cannot_be_divided_into_squares_is_refused(
+    tmp_path: Path, lines: int, elements: int
+) -> None:
+    scene = wall_scene()
+    with pytest.raises(UsageError) as refusal:
+        save_image(tmp_path / "wall.png", scene, render(scene, lines, elements), smooth=4)
+    assert str(refusal.value) == (
+        f"the lines and elements of a picture must be multiples of smooth, 4, not {lines} and {elements};"
+        " render 4 times those of the image"
+    )
+    assert not (tmp_path / "wall.png").exists()

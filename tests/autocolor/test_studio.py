@@ -341,6 +341,32 @@ def test_any_scene_is_shown_as_its_words_and_entries_say(scene: Scene) -> None:
     assert studio._repr_png_() == display._repr_png_()
 
 
+def test_several_steps_are_undone_and_redone_at_once_and_sent_once() -> None:
+    studio, display = opened()
+    scenes = [studio.scene]
+    for diffuse in (0.2, 0.3, 0.4):
+        studio.surface("body", diffuse=diffuse)
+        scenes.append(studio.scene)
+    written = display.frame_buffer.written
+    assert studio.undo(3)
+    assert studio.scene is scenes[0]
+    assert studio.redo(2)
+    assert studio.scene is scenes[2]
+    assert display.frame_buffer.written == written + 2 * studio.words.size
+    assert held(display) == fresh(studio.scene)
+    assert not studio.undo(3)
+    assert not studio.redo(2)
+    assert studio.scene is scenes[2]
+    assert studio.history.steps[3:] == ["undo"] * 3 + ["redo"] * 2
+
+
+@pytest.mark.parametrize("steps", [0, -1, 1.5, "2"])
+def test_steps_must_be_a_whole_number(steps: int) -> None:
+    studio, _ = opened()
+    with pytest.raises(UsageError, match="steps must be a whole number of at least 1, not"):
+        studio.undo(steps)
+
+
 def test_a_new_edit_forgets_what_was_undone() -> None:
     studio, _ = opened()
     studio.recolor("body", blend=0.1)

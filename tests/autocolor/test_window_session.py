@@ -173,7 +173,7 @@ def test_the_window_shows_the_field_after_every_key(session: Session, tmp_path: 
         session.wait_for_the_field()
     session.press("ctrl+y", "y", control=True)
     session.wait_for_the_field()
-    assert session.caption() == "autocolor - box* - [front] - redone"
+    assert session.caption() == "autocolor - box* - [front] - redone: front: object color #2f5fa8"
 
     session.press("F12")
     session.wait_for(lambda: "saved" in session.caption())
@@ -200,7 +200,7 @@ def test_the_state_before_is_shown_while_its_key_is_held(session: Session) -> No
     # Longer than a key takes to be repeated, and to be released between two repetitions.
     time.sleep(1.0)
     session.wait_for_the_field()
-    assert session.caption().endswith("shown: the state before the last step")
+    assert "shown: the state before the last step; now: front: object color" in session.caption()
     session.tool("keyup", "b")
     session.viewer.on_release("b")
     session.wait_for_the_field()
@@ -211,7 +211,7 @@ def test_a_key_held_down_is_undone_at_once(session: Session) -> None:
     session.hold_right()
     session.press("ctrl+z")
     session.wait_for_the_field()
-    assert session.caption() == "autocolor - box - [front] - undone"
+    assert session.caption().startswith("autocolor - box - [front] - undone: view: ")
     session.press("ctrl+q")
     assert session.end() == (0, "", "")
 
@@ -257,7 +257,7 @@ def test_a_drag_turns_the_object_and_is_undone_at_once(session: Session) -> None
     session.wait_for(lambda: session.caption().startswith("autocolor - box*"))
     session.press("ctrl+z")
     session.wait_for_the_field()
-    assert session.caption() == "autocolor - box - [front] - undone"
+    assert session.caption().startswith("autocolor - box - [front] - undone: view: ")
 
 
 def test_in_full_screen_a_message_stands_on_the_display_and_escape_leaves(session: Session) -> None:

@@ -18,7 +18,15 @@ from autocolor.errors import UsageError
 from autocolor.scene.lights import Light
 from autocolor.scene.scene import FRONTS
 from autocolor.screens.input import Gesture, turn_between, wheel_ratio
-from autocolor.screens.light_and_view.handles import FLAP, handles_in, movable_of, point_text
+from autocolor.screens.light_and_view.handles import (
+    AIM,
+    FLAP,
+    LIGHT,
+    MovablePoint,
+    handles_in,
+    movable_of,
+    point_text,
+)
 from autocolor.screens.light_and_view.marks import SideItems, drawn_items, flap_marks
 from autocolor.screens.light_and_view.object_lines import ObjectLines, ObjectStrokes, visible_depths
 from autocolor.screens.light_and_view.orthographic_views import (
@@ -53,6 +61,7 @@ from autocolor.widgets.items import (
 )
 from autocolor.widgets.menu import Section
 from autocolor.widgets.widget import (
+    NOWHERE,
     Button,
     Choice,
     Pair,
@@ -147,7 +156,14 @@ class LightAndViewScreen(Screen):
 
     def handles(self) -> Sequence[Handle]:
         scene, views, chosen = self.session.scene, self.views, self.chosen
-        return self._handles.of(lambda: handles_in(scene, views, chosen), scene, views, chosen)
+        handles = self._handles.of(lambda: handles_in(scene, views, chosen), scene, views, chosen)
+        signs = {
+            MovablePoint(AIM if cross.is_aim else LIGHT, side.name, scene.lights[cross.number - 1].name): area
+            for side, items in self._sides.items()
+            for cross, area in items.numerals
+            if cross.number <= len(scene.lights)
+        }
+        return [handle._replace(sign=signs.get(movable_of(handle), NOWHERE)) for handle in handles]
 
     def hint(self, element: int, line: int) -> str:
         if PICTURE_AREA.has(element, line):

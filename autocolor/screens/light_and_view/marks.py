@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from itertools import chain
+from itertools import chain, product
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -268,12 +268,16 @@ AWAY: Final = 2
 NEAR_ARROW: Final = math.cos(math.radians(50))
 """Assumed: a place within 50 degrees of the light's arrow is taken only if all other places are worse."""
 
+RINGS: Final = 2
+RING: Final = 7
+"""Assumed: the rings of places around a cross, and the elements or lines between them."""
+
 PLACES: Final = ((1, -1), (-1, -1), (1, 1), (-1, 1), (1, 0), (-1, 0), (0, -1), (0, 1))
 """The places around a cross, to the right and down, in order of preference."""
 
 
 class Cross(NamedTuple):
-    """A light in one of the views: its number, its element and line, and the direction of its arrow.
+    """A light or its aim in a view: the light's number, the element and line, the direction of the arrow.
 
     `arrow` is a unit vector to the right and down, and zero without an arrow.
     """
@@ -282,6 +286,7 @@ class Cross(NamedTuple):
     element: int
     line: int
     arrow: tuple[float, float] = (0.0, 0.0)
+    is_aim: bool = False
 
     @property
     def area(self) -> Area:
@@ -289,10 +294,10 @@ class Cross(NamedTuple):
         element, line = self.element, self.line
         return Area(element - REACH, line - REACH, element + REACH, line + REACH)
 
-    def numeral(self, right: int, down: int) -> Area:
-        """The area of its numeral at one of the places."""
+    def numeral(self, right: int, down: int, ring: int = 0) -> Area:
+        """The area of its numeral at one of the places, nearest in ring 0."""
         width = CHARACTER * len(str(self.number))
-        gap = REACH + AWAY if right and down else REACH + 2 * AWAY
+        gap = (REACH + AWAY if right and down else REACH + 2 * AWAY) + ring * RING
         left = self.element + (gap if right > 0 else -gap - width + 1 if right < 0 else -(width // 2))
         line = self.line - CHARACTER_LINES // 2
         top = line + down * (CHARACTER_LINES // 2 + gap)
@@ -313,12 +318,13 @@ def numerals(crosses: Sequence[Cross], area: Area, taken: Sequence[Area]) -> lis
     placed = []
     for cross in seen:
         best, least = None, math.inf
-        for right, down in PLACES:
-            place = cross.numeral(right, down)
+        for ring, (right, down) in product(range(RINGS), PLACES):
+            place = cross.numeral(right, down, ring)
             if not area.covers(place):
                 continue
             toward = (right * cross.arrow[0] + down * cross.arrow[1]) / math.hypot(right, down)
-            burden = sum(map(place.overlaps, filled)) + (toward > NEAR_ARROW) / 2
+            # Farther away, it is less clear to which cross a numeral belongs.
+            burden = sum(map(place.overlaps, filled)) + (toward > NEAR_ARROW) / 2 + ring * 3 / 4
             if burden < least:
                 best, least = place, burden
             if least == 0:
@@ -342,6 +348,8 @@ class SideItems:
         self._still: Cached[list[Item]] = Cached()
         self._chosen: Cached[list[Item]] = Cached()
         self._numerals: Cached[list[Numeral]] = Cached()
+        self.numerals: Sequence[Numeral] = ()
+        """The numerals of the last items."""
         self._lights: Cached[tuple[Light, ...]] = Cached()
         self._label: Cached[Item] = Cached()
 
@@ -409,6 +417,7 @@ class SideItems:
         own = numerals(
             [cross for each in ours for cross in crosses_of(views, side, *each)], side.area, [*taken, *around]
         )
+        self.numerals = [*placed, *own]
         is_on = {number: light.on for number, light in others}
         return [
             *[numeral_item(each, WHITE if is_on[each.cross.number] else GRAY) for each in placed],
@@ -470,7 +479,7 @@ def crosses_of(views: OrthographicViews, side: ViewSide, number: int, light: Lig
             arrow = right / length, down / length
     crosses = [Cross(number, round(element), round(line), arrow)]
     if light.aim is not None and end is not None:
-        crosses.append(Cross(number, round(to_element), round(to_line), (-arrow[0], -arrow[1])))
+        crosses.append(Cross(number, round(to_element), round(to_line), (-arrow[0], -arrow[1]), is_aim=True))
     return crosses
 
 

@@ -16,10 +16,11 @@ import pytest
 
 from autocolor import Studio, UnavailableError, UsageError, read_journal, read_scene
 from autocolor.commands.demo import demo_folder
-from autocolor.commands.show import attend, folder_of, port_to, refuse_address, session_elsewhere
+from autocolor.commands.show import BUTTONS, attend, folder_of, port_to, refuse_address, session_elsewhere
 from autocolor.journal.autosave import JOURNAL, left_sessions
 from autocolor.journal.history import History
 from autocolor.journal.places import Source
+from autocolor.screens.board import MessagePart, lines_of_message
 from autocolor.screens.viewer import Viewer
 from ramtek_emu import PortError, Ramtek9300, TcpPort
 from ramtek_emu.host.server import Server, TcpServer, UnixServer
@@ -282,6 +283,36 @@ def test_it_is_left_by_the_menu_and_the_picture_stays(
     assert (display.words == seen[0].studio.words).all()
     assert not any(cursor.is_visible for cursor in display.cursors.all)
     assert left_sessions() == []
+
+
+@pytest.mark.parametrize("was_left", [False, True])
+def test_the_first_message_names_the_buttons_also_beside_a_session_that_was_left(
+    server: Served, tmp_path: Path, state: Path, was_left: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    seen: list[Viewer] = []
+    first: list[MessagePart] = []
+
+    def crash(_: Ramtek9300) -> None:
+        raise RuntimeError
+
+    def note(_: Ramtek9300) -> None:
+        first.extend(seen[-1].board.messages)
+
+    if was_left:
+        prepare = acting(server, seen, menu, on(seen, "turn", 0.9), crash)
+        with pytest.raises(RuntimeError):
+            session_elsewhere(History(car()), server.address, tmp_path, None, prepare)
+        # This process still runs.
+        folders = [path.parent for path in state.glob(f"sessions/*/{JOURNAL}")]
+        monkeypatch.setattr("autocolor.commands.sessions.left_sessions", lambda: folders)
+        seen.clear()
+    prepare = acting(server, seen, note, menu, on(seen, "leave"))
+    session_elsewhere(History(car()), server.address, tmp_path, None, prepare)
+    (part,) = first
+    assert part.text.endswith(BUTTONS)
+    assert ("a session was not closed" in part.text) == was_left
+    # The message is shown whole.
+    assert lines_of_message(part, 89)[-1].text.endswith("TRACK (right button) drags")
 
 
 def test_unsaved_changes_are_told_before_it_is_left(server: Served, tmp_path: Path) -> None:

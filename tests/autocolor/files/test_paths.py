@@ -6,7 +6,8 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from autocolor.files.paths import file_stem, free_path, path_within
+from autocolor.errors import UsageError
+from autocolor.files.paths import check_stem, file_stem, free_path, path_within
 
 
 @pytest.mark.parametrize("name", ["a.obj", "parts/a.obj", "./a.obj", "a b.obj", "é.obj", "..a.obj"])
@@ -126,3 +127,42 @@ def test_a_stem_has_at_most_100_letters() -> None:
         assert file_stem("a" * letters) == "a" * kept
     # A space at the cut goes, too.
     assert file_stem("a" * 99 + " b") == "a" * 99
+
+
+@pytest.mark.parametrize("name", ["coupe", "red coupe 2", "a.b", "Škoda", "coupe-2_b", "x" * 100])
+def test_a_stem_is_accepted_as_the_name_of_a_new_file(name: str) -> None:
+    check_stem(name)
+    assert file_stem(name) == name
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "",
+        " ",
+        ".",
+        "..",
+        ".hidden",
+        "a/b",
+        "../a",
+        "/a",
+        "a\\b",
+        "C:a",
+        "a\nb",
+        "a\0",
+        "\u202ea",
+        " a",
+        "a ",
+        "x" * 101,
+    ],
+)
+def test_a_name_that_cannot_be_the_stem_of_a_listed_file_is_refused(name: str) -> None:
+    with pytest.raises(UsageError, match=r"^a file name must be 1 to 100 characters, .*; choose another$"):
+        check_stem(name)
+
+
+@given(st.text())
+def test_the_stem_of_any_name_is_accepted_unless_it_is_hidden_or_unprintable(name: str) -> None:
+    stem = file_stem(name)
+    if stem.isprintable() and not stem.startswith("."):
+        check_stem(stem)

@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import autocolor
-from autocolor import OutputError, Studio, read_picture, read_scene, write_picture
+from autocolor import OutputError, Studio, UsageError, read_picture, read_scene, write_picture
 from autocolor.journal.history import History
 from autocolor.journal.places import PACKAGE, ScenePlace, Source, opened
 from autocolor.journal.saving import SavedFiles
@@ -69,6 +69,56 @@ def test_new_names_are_those_that_neither_file_has(work: Path, there: str) -> No
     saved = studio.save_session(work)
     assert saved == SavedFiles(work / "car-2" / "scene.toml", work / "car-2.npz")
     assert (work / there).read_text() == "mine"
+
+
+def test_a_scene_saved_under_a_name_belongs_to_the_new_files(scene_file: Path, work: Path) -> None:
+    before = contents(scene_file.parent)
+    studio = studio_of(scene_file)
+    studio.recolor("body", blend=0.25)
+    saved = studio.save_session(work, "red")
+    assert saved == SavedFiles(work / "red" / "scene.toml", work / "red.npz")
+    assert contents(scene_file.parent) == before
+    assert (studio.scene.name, studio.file, studio.is_changed) == ("red", saved.scene, False)
+    assert not studio.reopen()
+    studio.recolor("body", blend=0.5)
+    assert studio.save_session(scene_file.parent) == saved
+    assert read_scene(saved.scene).surface("body").paint.blend == 0.5
+    assert read_picture(saved.picture).scene.name == "red"
+    assert contents(scene_file.parent) == before
+
+
+@pytest.mark.parametrize("there", ["red", "red.npz"])
+def test_a_name_that_a_file_has_is_refused_and_nothing_is_written(
+    scene_file: Path, work: Path, there: str
+) -> None:
+    (work / there).symlink_to(work / "nowhere")
+    studio = studio_of(scene_file)
+    before = studio.scene
+    with pytest.raises(OutputError) as refusal:
+        studio.save_session(work, "red")
+    assert str(refusal.value) == (
+        f"a new file must have a name of its own, and {there} exists; choose another"
+    )
+    assert [path.name for path in work.iterdir()] == [there]
+    assert studio.scene is before
+    assert studio.file == scene_file
+
+
+@pytest.mark.parametrize("name", ["", "..", "a/b", ".a", "a\nb", "x" * 101])
+def test_an_invalid_name_is_refused_and_nothing_is_written(work: Path, name: str) -> None:
+    studio = Studio(car(), Ramtek9300(SMALL))
+    with pytest.raises(UsageError, match="a file name must be"):
+        studio.save_session(work, name)
+    assert not list(work.parent.rglob("*.npz"))
+    assert list(work.iterdir()) == []
+
+
+def test_undo_after_saving_under_a_name_brings_the_old_name_back(work: Path) -> None:
+    studio = Studio(car().replace(name="car"), Ramtek9300(SMALL))
+    studio.save_session(work, "red")
+    studio.undo()
+    assert (studio.scene.name, studio.is_changed) == ("car", True)
+    assert studio.save_session(work) == SavedFiles(work / "red" / "scene.toml", work / "red.npz")
 
 
 def test_a_scene_file_keeps_its_comments_and_has_one_backup(scene_file: Path, work: Path) -> None:

@@ -43,6 +43,7 @@ from autocolor.widgets.items import (
     filled,
     text,
 )
+from autocolor.widgets.letters import PANEL as LETTER_PANEL
 from autocolor.widgets.menu import MENU, MESSAGE_CHARACTERS, WIDE_BAR, Section, laid_out, page_of_menu
 from autocolor.widgets.sheet import Sheet
 from autocolor.widgets.widget import Button, Choice, Entry, Place, Widget
@@ -294,9 +295,55 @@ def test_a_click_elsewhere_takes_the_typed_text_unless_it_is_refused(viewer: Vie
     assert viewer.studio.scene.ambient == 1.0
 
 
+CORNER = LETTER_PANEL.left + 2, LETTER_PANEL.top + 2
+"""A place of the letter panel beside its keys."""
+
+
+def pick_letters(viewer: Viewer, board: Board, *labels: str) -> None:
+    for label in labels:
+        point(viewer, "pick", *middle_of(board, label))
+
+
+def test_letters_are_picked_where_there_is_no_keyboard(viewer: Viewer, board: Board) -> None:
+    assert not board.is_on_letters(*CORNER)
+    pick_letters(viewer, board, "name")
+    assert board.typing.shown == MessagePart("name: scene", YELLOW, 6)
+    assert board.is_on_letters(*CORNER)
+    assert board.is_covered(*CORNER)
+    pick_letters(viewer, board, "end", "back", "back", "space", "2", "-", "x")
+    assert board.typing.shown.text == "name: sce 2-x_"
+    # Between the keys nothing is picked, and nothing taken.
+    point(viewer, "pick", *CORNER)
+    point(viewer, "grab", *CORNER)
+    point(viewer, "drop", *CORNER)
+    assert viewer.studio.scene.name == "scene"
+    pick_letters(viewer, board, "OK")
+    assert viewer.studio.scene.name == "sce 2-x"
+    assert not board.is_on_letters(*CORNER)
+
+
+def test_picked_letters_are_given_up_by_cancel_and_taken_by_a_pick_elsewhere(
+    viewer: Viewer, board: Board
+) -> None:
+    pick_letters(viewer, board, "name", "a", "cancel")
+    assert not board.typing.is_on
+    assert viewer.studio.scene.name == "scene"
+    pick_letters(viewer, board, "name", "b")
+    point(viewer, "pick", 100, 100)
+    assert viewer.studio.scene.name == "b"
+    assert not board.typing.is_on
+
+
+def test_the_letters_go_when_a_key_is_pressed(viewer: Viewer, board: Board) -> None:
+    pick_letters(viewer, board, "name", "a")
+    viewer.on_key("b", typed="b")
+    assert not board.is_on_letters(*CORNER)
+    assert "OK" not in [widget.label for widget in board.widgets()]
+    viewer.on_key("return")
+    assert viewer.studio.scene.name == "ab"
+
+
 def test_an_entry_is_typed_after_a_pick_where_there_is_a_keyboard(viewer: Viewer, board: Board) -> None:
-    point(viewer, "pick", *middle_of(board, "name"))
-    assert board.messages[0][:2] == ("name: typing needs a keyboard", ORANGE)
     element, line = middle_of(board, "name")
     viewer.on_pointer(element, line, "press", 1)
     viewer.on_pointer(element, line, "release", 1)
@@ -371,7 +418,13 @@ def test_a_click_that_slips_along_the_undo_row_undoes_nothing(viewer: Viewer, bo
         point(viewer, "drag", element - step, line)
     point(viewer, "drop", element, line)
     assert viewer.studio.scene is scene
-    point(viewer, "pick", element - 20, line)
+    point(viewer, "pick", element, line)
+    assert (viewer.page, viewer.studio.scene) == ("history", scene)
+    point(viewer, "pick", *middle_of(board, " "))
+    assert (viewer.page, viewer.studio.scene) == ("picture", scene)
+    viewer.session.turn_to("desk")
+    viewer.tell("")
+    point(viewer, "pick", element - 40, line)
     assert viewer.studio.scene is not scene
 
 
@@ -568,16 +621,15 @@ def test_a_typed_text_is_shown_whole_or_to_its_end_with_its_selection(
 def test_a_message_gives_way_to_the_hint_of_another_thing(
     viewer: Viewer, board: Board, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    point(viewer, "hover", *middle_of(board, "ambient"))
     viewer.studio.edit(viewer.studio.scene.replace(ambient=0.5))
+    undone = "undone: ambient 0 -> 0.5"
+    element, line = middle_of(board, "name")
+    point(viewer, "hover", element, line)
     now = time.monotonic()
     viewer.on_key("z", control=True)
-    point(viewer, "hover", *middle_of(board, "name"))
-    assert board.messages[0].text == "undone"
     monkeypatch.setattr("time.monotonic", lambda: now + 1.5)
-    element, line = middle_of(board, "name")
     point(viewer, "hover", element + 1, line)
-    assert board.messages[0].text == "undone"
+    assert board.messages[0].text == undone
     point(viewer, "hover", *middle_of(board, "ambient"))
     assert board.messages[0].text == "The light from everywhere."
     # A warning stands its whole time.
@@ -585,6 +637,21 @@ def test_a_message_gives_way_to_the_hint_of_another_thing(
     monkeypatch.setattr("time.monotonic", lambda: now + 4)
     point(viewer, "hover", *middle_of(board, "name"))
     assert board.messages[0].text == "careful"
+
+
+def test_a_message_is_shown_a_while_even_if_the_pointer_rests_elsewhere_at_once(
+    viewer: Viewer, board: Board, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    viewer.studio.edit(viewer.studio.scene.replace(ambient=0.5))
+    point(viewer, "hover", *middle_of(board, "name"))
+    viewer.on_key("z", control=True)
+    now = time.monotonic()
+    point(viewer, "hover", *middle_of(board, "ambient"))
+    assert board.messages[0].text == "undone: ambient 0 -> 0.5"
+    monkeypatch.setattr("time.monotonic", lambda: now + 1.5)
+    viewer.on_tick()
+    assert board.messages[0].text == "The light from everywhere."
+    assert is_drawn_whole(viewer)
 
 
 def test_an_empty_message_is_an_empty_line() -> None:
@@ -625,6 +692,19 @@ def test_a_text_that_was_not_changed_and_one_that_is_given_up_are_not_taken(typi
         typing.key(key, "")
         assert not typing.is_on
     assert taken == []
+
+
+def test_a_proposed_text_is_taken_unchanged_but_not_by_a_pick_elsewhere(typing: TypingLine) -> None:
+    taken: list[str] = []
+    entry = Entry("save as", value="car-2", take=taken.append, is_proposed=True)
+    typing.begin(entry)
+    typing.key("return", "")
+    assert taken == ["car-2"]
+    typing.begin(entry)
+    typed(typing, "x")
+    typing.leave()
+    assert not typing.is_on
+    assert taken == ["car-2"]
 
 
 def test_a_text_that_is_refused_stays(typing: TypingLine) -> None:
@@ -715,15 +795,15 @@ def test_undo_and_redo_are_dim_while_there_is_no_step_for_them(tmp_path: Path) -
                 for word in (WHITE, GRAY)
                 if text(label, item.area.left, item.area.top, word, NIGHT) == item
             )
-            for label, item in zip(("undo", "redo"), undo.items(lit=False)[1:], strict=True)
+            for label, item in zip(("undo", "steps", "redo"), undo.items(lit=False)[1:], strict=True)
         ]
 
     undo = last_rows(session, viewer.screens["desk"])[1]
-    assert (inks(), undo.why_not) == ([GRAY, GRAY], "there is no step to undo")
+    assert (inks(), undo.why_not) == ([GRAY] * 3, "there is no step to undo")
     session.edit(session.scene.replace(ambient=0.7))
-    assert inks() == [WHITE, GRAY]
+    assert inks() == [WHITE, WHITE, GRAY]
     session.undo()
-    assert inks() == [GRAY, WHITE]
+    assert inks() == [GRAY, WHITE, WHITE]
     assert not last_rows(session, viewer.screens["desk"])[1].why_not
 
 

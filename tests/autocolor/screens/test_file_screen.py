@@ -1,19 +1,52 @@
 from __future__ import annotations
 
+import os
+from datetime import datetime
+from itertools import combinations
 from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 
-from autocolor import Light, Scene, read_scene, write_rig, write_scene
+from autocolor import (
+    Light,
+    Scene,
+    image,
+    read_picture,
+    read_scene,
+    render,
+    save_image,
+    write_picture,
+    write_rig,
+    write_scene,
+)
+from autocolor.budget import allowing
 from autocolor.errors import AutocolorError
-from autocolor.files.state import note_file
-from autocolor.screens.file_screen import LEFT, MOST_ROWS, RIGHT, FileRow
+from autocolor.files.picture_file import SavedPicture
+from autocolor.files.state import MOST_FILES, note_file
+from autocolor.mapping.ranges import SCREENS
+from autocolor.screens import file_screen
+from autocolor.screens.file_screen import (
+    FRAME,
+    LEFT,
+    LONGEST_DATE,
+    MOST_ROWS,
+    RIGHT,
+    THUMBNAIL,
+    THUMBNAIL_LINES,
+    TICKS_TO_EXPORT,
+    FileRow,
+    date_of,
+    short_date,
+)
 from autocolor.screens.session import PICTURE
+from autocolor.widgets.items import Area
 from autocolor.widgets.menu import WORK
-from autocolor.widgets.widget import Choice
+from autocolor.widgets.widget import ROW_LINES, Choice
+from ramtek_emu import Ramtek9300
 from tests.autocolor.meshes import LYING, wall_scene
-from tests.autocolor.screens.boxes import boxes, hand_at, told, undo
+from tests.autocolor.screens.boxes import boxes, hand_at, hint_of, told, undo
 from tests.autocolor.screens.hand import Hand
 
 
@@ -340,3 +373,356 @@ def test_the_scale_of_the_command_line_can_be_pointed_at(hand: Hand) -> None:
     assert choice.names == ("0.001", "0.01", "0.0254", "0.3048", "1", "10", "25.4", "100", "1000")
     hand.choose("mesh scale", "100")
     assert (hand.viewer.session.mesh_up, hand.viewer.session.mesh_scale) == ("y", 100)
+
+
+# Saving in the folder that is shown.
+
+
+def test_new_files_go_to_the_folder_that_is_shown(hand: Hand, folder: Path) -> None:
+    pick(hand, "deeper")
+    hand.pick("save")
+    assert told(hand) == (f"saved {Path('deeper/boxes/scene.toml')} and {Path('deeper/boxes.npz')}", False)
+    for label in ("save the rig", "screenshot", "export"):
+        hand.pick(label)
+    settle(hand)
+    assert sorted(path.name for path in (folder / "deeper").iterdir()) == [
+        "autocolor-0001.png",
+        "boxes",
+        "boxes-rig.toml",
+        "boxes.npz",
+        "boxes.png",
+        "triangle.obj",
+    ]
+    assert sorted(path.name for path in folder.iterdir()) == ["broken.obj", "deeper", "rig.toml", "wall"]
+    assert hint_of(hand, "save").startswith(
+        "Save to boxes/scene.toml and boxes.npz; new files go to inside/deeper"
+    )
+    # From now on the scene has its own files, whichever folder is shown.
+    hand.pick("refresh", 0.75)
+    hand.viewer.studio.recolor("low", object_color="#123456")
+    hand.pick("save")
+    assert told(hand)[0].startswith("saved deeper")
+    assert sorted(path.name for path in folder.iterdir()) == ["broken.obj", "deeper", "rig.toml", "wall"]
+
+
+def test_a_shown_folder_that_became_a_link_out_is_not_saved_to(hand: Hand, folder: Path) -> None:
+    pick(hand, "deeper")
+    (folder / "deeper").rename(folder / "old")
+    (folder / "deeper").symlink_to(folder.parent)
+    before = sorted(folder.parent.rglob("*"))
+    for label in ("save", "save the rig", "screenshot", "export"):
+        hand.pick(label)
+        settle(hand)
+        assert told(hand) == (
+            "deeper: a folder to save in must be in the folder inside, and not a link to elsewhere;"
+            " choose another",
+            True,
+        )
+    assert sorted(folder.parent.rglob("*")) == before
+
+
+def test_the_user_of_the_machine_saves_in_any_folder(hand: Hand, folder: Path) -> None:
+    hand.viewer.session.is_at_hand = True
+    hand.pick("refresh", 0.75)
+    pick(hand, "..")
+    hand.pick("save the rig")
+    assert (folder.parent / "boxes-rig.toml").exists()
+
+
+# Save as.
+
+
+def save_as(hand: Hand, *keys: str) -> None:
+    """Type a name for the scene by picking letters."""
+    hand.pick("save as")
+    for key in (*keys, "OK"):
+        hand.pick(key)
+
+
+def test_a_scene_is_saved_under_a_name_of_picked_letters(hand: Hand, folder: Path) -> None:
+    save_as(hand, *"red-1")
+    assert told(hand) == (f"saved {Path('red-1/scene.toml')} and red-1.npz", False)
+    assert {"red-1", "red-1.npz"} <= set(rows_of(hand))
+    assert hand.viewer.caption.startswith("autocolor - red-1 - ")
+    hand.viewer.studio.recolor("low", object_color="#123456")
+    hand.pick("save")
+    assert read_scene(folder / "red-1").surface("low").paint.object_color == (18, 52, 86)
+    assert "boxes" not in rows_of(hand)
+
+
+def test_a_free_name_is_proposed_and_taken_by_ok(hand: Hand, folder: Path) -> None:
+    hand.pick("save")
+    save_as(hand)
+    assert (folder / "boxes-2" / "scene.toml").exists()
+    assert scene_of(hand).name == "boxes-2"
+
+
+def test_a_pick_beside_the_letters_saves_nothing(hand: Hand, folder: Path) -> None:
+    before = set(folder.iterdir())
+    hand.pick("save as")
+    hand.pick("x")
+    hand.pick("mesh up")
+    assert not hand.viewer.board.typing.is_on
+    assert set(folder.iterdir()) == before
+
+
+@pytest.mark.parametrize(
+    ("name", "sentence"),
+    [
+        ("wall", "a new file must have a name of its own, and wall exists; choose another"),
+        (
+            "..",
+            'a file name must be 1 to 100 characters, with none of "*/:<>?\\| and no period or space first,'
+            " not '..'; choose another",
+        ),
+    ],
+)
+def test_a_refused_name_stays_selected_and_the_next_letter_replaces_it(
+    hand: Hand, folder: Path, name: str, sentence: str
+) -> None:
+    before = set(folder.iterdir())
+    save_as(hand, *name)
+    assert told(hand) == (sentence, True)
+    typing = hand.viewer.board.typing
+    assert typing.shown.text == f"save as: {name}"
+    assert set(folder.iterdir()) == before
+    hand.pick("a")
+    assert typing.shown.text == "save as: a_"
+    hand.pick("OK")
+    assert (folder / "a" / "scene.toml").exists()
+
+
+def test_a_name_is_typed_with_a_keyboard(hand: Hand, folder: Path) -> None:
+    hand.viewer.session.has_keyboard = True
+    hand.pick("save as")
+    for letter in "Red Car":
+        hand.viewer.on_key(letter.lower(), typed=letter)
+    hand.viewer.on_key("return")
+    assert (folder / "Red Car" / "scene.toml").exists()
+
+
+# Export.
+
+
+def settle(hand: Hand) -> None:
+    """Let everything happen that waits until nothing moves."""
+    for _ in range(TICKS_TO_EXPORT + 1):
+        hand.viewer.on_tick()
+
+
+def row_of(hand: Hand, label: str) -> Choice:
+    row = next(each for each in hand.viewer.board.layout.rows if each.label == label)
+    assert isinstance(row, Choice)
+    return row
+
+
+def test_an_image_is_exported_as_a_display_shows_it_and_never_over_a_file(hand: Hand, folder: Path) -> None:
+    hand.pick("export")
+    assert told(hand) == ("exporting 640x480, smoothness 1 ...", False)
+    assert not (folder / "boxes.png").exists()
+    settle(hand)
+    assert told(hand) == ("saved boxes.png: 640x480, smoothness 1", False)
+    scene = scene_of(hand)
+    assert (np.asarray(Image.open(folder / "boxes.png")) == image(scene, render(scene))).all()
+    first = (folder / "boxes.png").read_bytes()
+    hand.pick("export")
+    settle(hand)
+    assert told(hand)[0].startswith("saved boxes-2.png")
+    assert (folder / "boxes.png").read_bytes() == first
+
+
+def test_an_image_is_exported_at_another_size_and_smoothness(hand: Hand, folder: Path) -> None:
+    hand.pick("other size")
+    for key in (*"60x40", "OK"):
+        hand.pick(key)
+    assert row_of(hand, "size").present == "60x40"
+    assert row_of(hand, "size").names == ["60x40", "640x480", "1280x960", "2560x1920"]
+    row_of(hand, "smoothness").choose("3")
+    hand.pick("export")
+    settle(hand)
+    assert told(hand) == ("saved boxes.png: 60x40, smoothness 3", False)
+    scene = scene_of(hand)
+    save_image(folder / "expected.png", scene, render(scene, 120, 180), smooth=3)
+    assert (folder / "boxes.png").read_bytes() == (folder / "expected.png").read_bytes()
+
+
+def test_a_size_that_is_none_is_refused(hand: Hand) -> None:
+    hand.pick("other size")
+    for key in ("5", "x", "OK"):
+        hand.pick(key)
+    assert told(hand) == (
+        "a size must be ELEMENTSxLINES, each from 1 to 4096, not '5x'; write it as in 1280x960",
+        True,
+    )
+    assert row_of(hand, "size").present == "640x480"
+
+
+def test_an_image_that_needs_too_much_memory_is_refused(hand: Hand, folder: Path) -> None:
+    with allowing(0.001):
+        hand.pick("export")
+        settle(hand)
+    assert told(hand)[1]
+    assert told(hand)[0].startswith("a picture of 640 x 480 pixels must take at most 4.0 MB of memory")
+    assert not (folder / "boxes.png").exists()
+
+
+def test_an_image_is_exported_although_the_screen_is_left_at_once(hand: Hand, folder: Path) -> None:
+    hand.pick("export")
+    hand.pick("< picture")
+    assert (folder / "boxes.png").exists()
+
+
+# Dates.
+
+
+@pytest.mark.parametrize(
+    ("then", "shown"),
+    [
+        (datetime(2026, 11, 24, 14, 5), "14:05"),
+        (datetime(2026, 11, 24), "00:00"),
+        (datetime(2026, 11, 23, 23, 59), "23 Nov"),
+        (datetime(2026, 1, 1), "1 Jan"),
+        (datetime(2025, 12, 31, 23, 59), "2025"),
+        (datetime(1999, 5, 5), "1999"),
+        (datetime(2027, 1, 1), "2027"),
+    ],
+)
+def test_a_date_is_short(then: datetime, shown: str) -> None:
+    now = datetime(2026, 11, 24, 18, 30).timestamp()
+    assert short_date(then.timestamp(), now) == shown
+    assert len(shown) <= LONGEST_DATE
+
+
+def test_rows_show_when_a_file_was_changed(hand: Hand, folder: Path) -> None:
+    for name in ("broken.obj", "rig.toml", "wall/scene.toml"):
+        os.utime(folder / name, (0, datetime(2001, 6, 1).timestamp()))
+    hand.pick("refresh")
+    rows = rows_of(hand)
+    assert {name: row.date for name, row in rows.items()} == {
+        "broken.obj": "2001",
+        "rig.toml": "2001",
+        "wall": "2001",
+        "deeper": "",
+    }
+    assert dates_in(rows["wall"]) == 1
+    assert dates_in(rows["deeper"]) == 0
+    assert date_of(folder / "gone.obj", "mesh") == ""
+
+
+def dates_in(row: FileRow) -> int:
+    """How many texts a row has beside its name and its kind."""
+    return len(row.items(lit=False)) - 3
+
+
+@pytest.mark.parametrize("letters", range(12, 25))
+def test_a_long_name_is_whole_and_has_no_date_where_there_is_no_room(letters: int) -> None:
+    row = FileRow("row", value="picture", shown="x" * letters, date="24 Nov").at(
+        LEFT._replace(bottom=LEFT.top + 15)
+    )
+    ground, *texts = row.items(lit=False)
+    assert not any(one.area.overlaps(other.area) for one, other in combinations(texts, 2))
+    assert all(ground.area.covers(each.area) for each in texts)
+    assert dates_in(row) == (letters <= 17)
+
+
+# Small pictures.
+
+
+@pytest.fixture
+def saved_hand(folder: Path) -> Hand:
+    """A hand before the file screen of a folder with a saved picture and a damaged one."""
+    scene = wall_scene(name="wall")
+    write_picture(folder / "wall.npz", render(scene, 48, 96), scene)
+    (folder / "damaged.npz").write_bytes((folder / "wall.npz").read_bytes()[:2000])
+    return hand_at(folder, "file")
+
+
+def point_at(hand: Hand, name: str, recent: bool = False) -> None:
+    area = rows_of(hand, recent)[name].area
+    hand.move(area.left + 40, area.top + 8)
+
+
+def small_picture(hand: Hand) -> Area | None:
+    """The area of the small picture; None without borrowed entries."""
+    screen = hand.viewer.board.screen
+    return screen.items()[-1].area if screen.loads() else None
+
+
+@pytest.mark.parametrize("recent", [False, True])
+def test_the_picture_of_the_file_under_the_pointer_is_shown_in_borrowed_entries(
+    saved_hand: Hand, folder: Path, recent: bool
+) -> None:
+    hand = saved_hand
+    note_file(folder / "wall.npz")
+    hand.pick("refresh")
+    hand.viewer.screens["file"].enter()
+    hand.viewer.tell("")
+    point_at(hand, "wall.npz", recent)
+    assert small_picture(hand) is None
+    settle(hand)
+    area = small_picture(hand)
+    assert area is not None
+    assert (area.width, area.height) == (96, 48)
+    assert THUMBNAIL.covers(area)
+    saved = read_picture(folder / "wall.npz")
+    display = hand.viewer.display
+    assert isinstance(display, Ramtek9300)
+    shown = display.field()[area.top : area.bottom + 1, area.left : area.right + 1]
+    errors = np.abs(shown.astype(int) - image(saved.scene, saved.picture).astype(int))
+    assert errors.max() <= 2
+    # On another row the entries are those of the scene again.
+    point_at(hand, "wall")
+    assert small_picture(hand) is None
+    assert np.array_equal(display.entries, hand.viewer.studio.entries)
+
+
+def test_a_damaged_picture_file_has_no_small_picture_and_is_read_once(
+    saved_hand: Hand, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    reads: list[Path] = []
+
+    def count(path: Path, limit: float) -> SavedPicture:
+        reads.append(path)
+        return read_picture(path, limit=limit)
+
+    monkeypatch.setattr(file_screen, "read_picture", count)
+    point_at(saved_hand, "damaged.npz")
+    before = saved_hand.viewer.message
+    settle(saved_hand)
+    settle(saved_hand)
+    assert small_picture(saved_hand) is None
+    assert len(reads) == 1
+    assert saved_hand.viewer.message == before
+
+
+def test_a_picture_that_was_saved_again_is_read_again(saved_hand: Hand, folder: Path) -> None:
+    point_at(saved_hand, "wall.npz")
+    settle(saved_hand)
+    scene = wall_scene(name="wall")
+    write_picture(folder / "wall.npz", render(scene, 30, 40), scene, overwrite=True)
+    saved_hand.pick("refresh")
+    point_at(saved_hand, "wall.npz")
+    settle(saved_hand)
+    area = small_picture(saved_hand)
+    assert area is not None
+    assert (area.width, area.height) == (40, 30)
+
+
+@pytest.mark.parametrize(("lines", "elements"), [(480, 640), (400, 100), (20, 700), (168, 224)])
+def test_a_small_picture_of_any_shape_is_in_its_place(folder: Path, lines: int, elements: int) -> None:
+    scene = wall_scene(name="wall")
+    write_picture(folder / "wall.npz", render(scene, lines, elements), scene)
+    hand = hand_at(folder, "file")
+    point_at(hand, "wall.npz")
+    settle(hand)
+    ((first, colors),) = hand.viewer.board.screen.loads()
+    assert first > 0
+    assert first + len(colors) <= SCREENS.first
+    area = small_picture(hand)
+    assert area is not None
+    assert THUMBNAIL.inset(FRAME).covers(area)
+    assert area.width / area.height == pytest.approx(elements / lines, rel=0.2)
+
+
+def test_the_last_recent_file_is_above_the_small_picture() -> None:
+    assert RIGHT.top + ROW_LINES * MOST_FILES <= THUMBNAIL.bottom - THUMBNAIL_LINES - 2 * FRAME - ROW_LINES

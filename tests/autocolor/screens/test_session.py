@@ -25,7 +25,15 @@ from autocolor.journal.history import History
 from autocolor.journal.places import Source, place_of
 from autocolor.mapping.display_image import DisplayImage
 from autocolor.scene.lights import Links
-from autocolor.screens.session import BEFORE, MESSAGE_SECONDS, NOW, PICTURE, SECONDS_BETWEEN, Session
+from autocolor.screens.session import (
+    BEFORE,
+    LEAST_SECONDS,
+    MESSAGE_SECONDS,
+    NOW,
+    PICTURE,
+    SECONDS_BETWEEN,
+    Session,
+)
 from autocolor.screens.viewer import Viewer
 from ramtek_emu import Ramtek9300, RamtekError
 from tests.autocolor.files.store.stores import run, small_scene
@@ -115,7 +123,7 @@ def test_edits_of_the_same_step_are_undone_together(session: Session) -> None:
     session.paint(object_color="#123456")
     session.undo()
     assert session.scene is before
-    assert session.message == "undone"
+    assert session.message.startswith("undone: ")
     session.redo()
     assert session.scene.light("key").intensity == 2
     session.redo()
@@ -326,7 +334,7 @@ def test_the_state_before_is_shown_while_the_key_is_held(hand: Hand) -> None:
     for _ in range(2):
         press(hand)
         hand.viewer.on_key("b", typed="b", repeated=True)
-        assert hand.viewer.message == f"shown: {BEFORE}"
+        assert hand.viewer.message.startswith(f"shown: {BEFORE}; now: ")
         assert shown(hand) == alone(ball_scene())
         assert hand.viewer.studio.scene is not hand.viewer.studio.history.to_undo[-1]
         release(hand)
@@ -335,10 +343,42 @@ def test_the_state_before_is_shown_while_the_key_is_held(hand: Hand) -> None:
     assert now == alone(hand.viewer.studio.scene)
 
 
+@pytest.mark.parametrize("by_key", [True, False])
+def test_after_undo_the_pointer_names_the_surface_below_it_again(
+    hand: Hand, by_key: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    hand.open_menu()
+    hand.viewer.on_key("tab")
+    hand.move(320, 240)
+    if by_key:
+        hand.viewer.on_key("z", control=True)
+    else:
+        hand.pick(" ", 0.1)
+    board, now = hand.viewer.board, time.monotonic()
+    assert board.messages[0].text.startswith("undone: key: position")
+    hand.move(325, 245)
+    monkeypatch.setattr("time.monotonic", lambda: now + LEAST_SECONDS)
+    hand.viewer.on_tick()
+    studio = hand.viewer.studio
+    level = studio.words[245, 325] - studio.level_ranges["paint"].first
+    assert board.messages[0].text.startswith(f"ball - paint, level {level} of ")
+
+
+def test_a_comparison_says_how_the_present_state_differs(hand: Hand) -> None:
+    press(hand)
+    assert hand.viewer.message == f"shown: {BEFORE}; now: key: position, aim"
+    release(hand)
+    hand.viewer.studio.keep_variant("A")
+    hand.open_menu()
+    hand.pick("kept")
+    hand.pick("compare")
+    assert hand.viewer.message == "shown: variant A; now the same"
+
+
 def test_each_pick_of_the_row_shows_the_other_state(hand: Hand) -> None:
     now = shown(hand)
     switch(hand)
-    assert hand.viewer.message == f"shown: {BEFORE}"
+    assert hand.viewer.message.startswith(f"shown: {BEFORE}; now: ")
     assert shown(hand) == alone(ball_scene())
     switch(hand)
     assert hand.viewer.message == f"shown: {NOW}"
@@ -494,7 +534,7 @@ def test_a_variant_is_compared_until_comparing_ends(kept: Hand) -> None:
     go_to_kept(hand)
     hand.pick("compare")
     assert hand.viewer.page == "picture"
-    assert hand.viewer.message == "shown: variant A"
+    assert hand.viewer.message.startswith("shown: variant A; now: ")
     assert shown(hand) == alone(variant)
     switch(hand)
     assert shown(hand) == now
@@ -517,7 +557,7 @@ def test_a_variant_that_was_dropped_is_compared_no_longer(kept: Hand) -> None:
     hand.pick("drop")
     hand.pick("< picture")
     press(hand)
-    assert hand.viewer.message == f"shown: {BEFORE}"
+    assert hand.viewer.message.startswith(f"shown: {BEFORE}; now: ")
 
 
 BRIGHTER = "UPDATE lights SET intensity = 3 WHERE name = 'key'"

@@ -1,4 +1,4 @@
-"""Thirteen tasks of a lighting designer, each by the joystick unit alone, with the number of its steps.
+"""Tasks of a lighting designer, each by the joystick unit alone, with the number of its steps.
 
 The table of docs/STUDIO.md tells the same numbers.
 """
@@ -142,6 +142,27 @@ def undo(hand: Hand) -> None:
     assert hand.viewer.studio.scene is coupe()
 
 
+def go_back_several_steps(hand: Hand) -> None:
+    for _ in range(3):
+        hand.drag((300, 60), (340, 60))
+    hand.steps = 0
+    hand.open_menu()
+    hand.pick(" ", 0.5)
+    hand.pick("step 0")
+    assert hand.viewer.studio.scene is coupe()
+
+
+def compare_side_by_side(hand: Hand) -> None:
+    hand.drag((300, 60), (340, 60))
+    hand.steps = 0
+    hand.open_menu()
+    hand.pick("compare", 0.75)
+    scene, words = hand.viewer.studio.scene, hand.viewer.board.screen.base()
+    hand.drag((320, 200), (200, 200))
+    assert not np.array_equal(hand.viewer.board.screen.base(), words)
+    assert hand.viewer.studio.scene is scene
+
+
 def compare(hand: Hand) -> None:
     hand.drag((300, 60), (340, 60))
     hand.steps = 0
@@ -164,7 +185,9 @@ TASKS: dict[str, Callable[[Hand], None]] = {
     "turn and move the view": turn_and_move_the_view,
     "save": save,
     "undo": undo,
+    "go back several steps": go_back_several_steps,
     "compare": compare,
+    "compare side by side": compare_side_by_side,
 }
 
 

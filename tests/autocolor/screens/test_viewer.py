@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from autocolor import InputError, Light, Mesh, Scene, Surface, View, read_picture, scene_of
+from autocolor.arrays import Words
 from autocolor.errors import UsageError
 from autocolor.scene.changes import PartChanges
 from autocolor.scene.columns import Tier
@@ -26,7 +27,7 @@ from autocolor.studio import Studio
 from autocolor.widgets.items import ORANGE
 from autocolor.widgets.menu import MESSAGE_CHARACTERS
 from autocolor.widgets.sheet import Sheet
-from ramtek_emu import Ramtek9300
+from ramtek_emu import GMR_9300, Ramtek9300
 from tests.autocolor.meshes import cube, grid, wall_scene
 from tests.autocolor.screens.boards import Desk, desk_viewer, middle_of, point
 
@@ -110,11 +111,11 @@ def test_each_edit_is_shown_undone_and_done_again(viewer: Viewer, name: str) -> 
     assert is_true_to(viewer, after)
     control(viewer, "z")
     assert viewer.studio.scene is before
-    assert viewer.message == "undone"
+    assert viewer.message.startswith("undone: ")
     assert is_true_to(viewer, before)
     control(viewer, "y")
     assert viewer.studio.scene is after
-    assert viewer.message == "redone"
+    assert viewer.message.startswith("redone: ")
     control(viewer, "z")
     control(viewer, "z", shift=True)
     assert viewer.studio.scene is after
@@ -393,7 +394,7 @@ def test_the_caption_marks_unsaved_changes(viewer: Viewer) -> None:
     press_c(viewer)
     assert viewer.caption.startswith("autocolor - box* - [low]")
     control(viewer, "z")
-    assert viewer.caption == "autocolor - box - [low] - undone"
+    assert viewer.caption == "autocolor - box - [low] - undone: low: object color #b3202c"
 
 
 def test_saving_names_its_files_and_overwrites_none(viewer: Viewer, tmp_path: Path) -> None:
@@ -962,6 +963,76 @@ PRESSES = [(binding, number, chord) for binding in BINDINGS for number, chord in
 def test_no_two_keys_are_the_same() -> None:
     chords = Counter(chord for binding in BINDINGS for chord in binding.chords)
     assert not [chord for chord, count in chords.items() if count > 1]
+
+
+class SlowDisplay:
+    """A display elsewhere that draws only when a reply is awaited, while the pointer moves on.
+
+    Transfers of more words than LARGE are counted as pages.
+    """
+
+    LARGE = 4_000
+    configuration = GMR_9300
+
+    def __init__(self) -> None:
+        self.display = Ramtek9300()
+        self.waiting: list[Words] = []
+        self.most_waiting = self.pages = 0
+        self.step = 0
+        """How far the pointer moves while a page is drawn, in 50 movements."""
+
+    def send(self, words: Words) -> None:
+        self.waiting.append(np.array(words))
+        self.most_waiting = max(self.most_waiting, sum(len(each) > self.LARGE for each in self.waiting))
+
+    def receive(self, count: int) -> Words:
+        for words in self.waiting:
+            self.display.send(words)
+            if len(words) > self.LARGE:
+                self.pages += 1
+                element, line = self.place
+                for number in range(50):
+                    self.display.joystick.move_to(element + self.step * number // 50, line)
+        self.waiting.clear()
+        return self.display.receive(count)
+
+    @property
+    def place(self) -> tuple[int, int]:
+        cursor = self.display.cursors.all[0]
+        return cursor.element, cursor.line
+
+
+@pytest.mark.parametrize("screen", ["picture", "light and view", "split"])
+def test_a_moving_pointer_is_at_most_one_page_ahead_of_a_slow_display(screen: str) -> None:
+    port = SlowDisplay()
+    viewer = Viewer(box_scene(), port)
+    viewer.studio.edit(viewer.studio.scene.replace(ambient=0.5))
+    viewer.session.turn_to(screen)
+    viewer.tell("")
+    viewer.poll()
+    port.display.joystick.move_to(300, 100)
+    viewer.poll()
+    port.display.joystick.track = True
+    before, port.pages, port.most_waiting, port.step = port.place, 0, 0, 20
+    port.display.joystick.move_to(310, 100)
+    for _ in range(6):
+        viewer.poll()
+    assert port.most_waiting == 1
+    assert 4 <= port.pages <= 6
+    # The pointer stops: the page of its last place is the last one.
+    port.step = 0
+    port.receive(0)
+    drawn = port.pages
+    for _ in range(6):
+        viewer.poll()
+    port.receive(0)
+    assert port.pages <= drawn + 1
+    assert viewer.board._pointer == port.place != before
+    shown = port.display.words.copy()
+    viewer._sheet.forget()
+    viewer.tell("")
+    port.receive(0)
+    assert np.array_equal(port.display.words, shown)
 
 
 @pytest.mark.parametrize(("binding", "number", "chord"), PRESSES, ids=[str(chord) for _, _, chord in PRESSES])

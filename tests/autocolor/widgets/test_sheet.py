@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from autocolor.arrays import Words
 from autocolor.widgets.items import WHITE, Area, Item, filled, lines, text
-from autocolor.widgets.sheet import Page, Sheet, differing_lines, uncovered
+from autocolor.widgets.sheet import Page, Sheet, differing_area, uncovered
 from ramtek_emu import GMR_9300, PRINCETON_9300, Configuration, EntryFormat, PortError, Ramtek9300
 from tests.autocolor.widgets.drawing import TINY, items
 
@@ -142,34 +142,34 @@ def test_a_page_that_could_not_be_sent_is_drawn_whole_the_next_time() -> None:
     assert (display.words == 3).all()
 
 
-def test_where_a_picture_changed_its_lines_are_sent_and_what_stands_beside_stays() -> None:
+def test_where_a_picture_changed_that_area_is_sent_and_what_stands_beside_stays() -> None:
     picture = np.full((480, 640), 3, np.uint16)
     other = picture.copy()
     other[100:110, 20:30] = 4
     display = Ramtek9300()
     sheet = Sheet(display)
-    menu, mark = filled(Area(504, 0, 639, 479), 5), filled(Area(50, 104, 53, 107), 6)
+    menu, mark = filled(Area(504, 0, 639, 479), 5), filled(Area(25, 104, 28, 107), 6)
     far, row = filled(Area(50, 200, 53, 203), 7), filled(Area(520, 100, 630, 115), 8)
     sheet.show(Page(picture, [menu, row, mark, far], TABLES[0]))
     written = display.frame_buffer.written
     sheet.show(Page(other, [menu, row, mark, far], TABLES[0]))
-    assert display.frame_buffer.written - written == 10 * 504 + 4 * 4
+    assert display.frame_buffer.written - written == 10 * 10 + 4 * 4
     assert (display.words[100:104, 20:30] == 4).all()
-    assert (display.words[104:108, 50:54] == 6).all()
+    assert (display.words[104:108, 25:29] == 6).all()
     written = display.frame_buffer.written
     sheet.show(Page(other.copy(), [menu, row, mark, far], TABLES[0]))
     assert display.frame_buffer.written == written
 
 
-def test_bases_differ_in_the_lines_between_the_first_and_the_last_difference() -> None:
+def test_bases_differ_from_the_first_to_the_last_line_and_element_with_a_difference() -> None:
     whole = Area(0, 0, 47, 39)
-    assert differing_lines(PICTURE, OTHER, whole) == (0, 12, 47, 19)
-    assert differing_lines(PICTURE, OTHER, Area(30, 5, 47, 30)).is_empty
-    assert differing_lines(PICTURE, PICTURE.copy(), whole).is_empty
-    assert differing_lines(3, 3, whole).is_empty
-    assert differing_lines(3, 4, whole) == whole
-    assert differing_lines(3, PICTURE, whole) == whole
-    assert differing_lines(PICTURE[:30], PICTURE, whole) == whole
+    assert differing_area(PICTURE, OTHER, whole) == (10, 12, 29, 19)
+    assert differing_area(PICTURE, OTHER, Area(30, 5, 47, 30)).is_empty
+    assert differing_area(PICTURE, PICTURE.copy(), whole).is_empty
+    assert differing_area(3, 3, whole).is_empty
+    assert differing_area(3, 4, whole) == whole
+    assert differing_area(3, PICTURE, whole) == whole
+    assert differing_area(PICTURE[:30], PICTURE, whole) == whole
 
 
 def test_below_the_menu_no_word_of_the_base_is_sent() -> None:

@@ -1,6 +1,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import combinations
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -8,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor import Flap, Flaps, Light, Mesh, Scene, View, scene_of
+from autocolor import Flap, Flaps, Light, Mesh, Scene, View, read_scene, scene_of
 from autocolor.screens.light_and_view.handles import AIM, DIRECTION, EYE, FLAP, LIGHT, TARGET, MovablePoint
 from autocolor.screens.light_and_view.light_and_view_screen import (
     MESH,
@@ -31,6 +33,7 @@ from autocolor.screens.light_and_view.orthographic_views import (
     OrthographicViews,
     ViewSide,
 )
+from autocolor.screens.screen import Handle
 from autocolor.studio import Studio
 from autocolor.widgets.items import GRAY, NIGHT, ORANGE, SLATE, YELLOW, Area, filled
 from autocolor.widgets.widget import Button, Place, Switch, Widget
@@ -682,3 +685,61 @@ def test_all_rows_of_sixteen_lights_can_be_reached() -> None:
     for label in (*(f"{n} light {n}" for n in range(1, 17)), "flaps z", "rescale", "angle", "1 light 1"):
         assert hand.widget(label) in hand.viewer.board.layout.rows
         assert "more" not in {row.label for row in hand.viewer.board.layout.rows}
+
+
+# The aims of the coupe's lights are a few pixels from each other when the screen opens.
+
+
+@pytest.fixture
+def coupe() -> Hand:
+    return opened(read_scene(Path(__file__).parents[4] / "scenes/coupe"))
+
+
+def signs_of(hand: Hand) -> list[Handle]:
+    return [each for each in screen_of(hand).handles() if not each.sign.is_empty]
+
+
+def test_lights_and_aims_that_are_close_together_are_told_apart_by_numerals(coupe: Hand) -> None:
+    aims = [each for each in signs_of(coupe) if each.key.what == AIM]  # type: ignore[attr-defined]
+    assert len(aims) == 4 * len(SIDES)
+    close = [
+        (one, other)
+        for one, other in combinations(aims, 2)
+        if max(abs(one.element - other.element), abs(one.line - other.line)) <= 10
+    ]
+    assert len(close) > 5
+    for one, other in combinations(signs_of(coupe), 2):
+        assert not one.sign.overlaps(other.sign)
+    for handle in signs_of(coupe):
+        left, top, right, bottom = handle.sign
+        for place in ((left, top), (right, bottom), ((left + right) // 2, (top + bottom) // 2)):
+            coupe.move(*place)
+            assert coupe.viewer.board.handle_at(*place) == handle
+            # The second cursor marks the point itself.
+            assert coupe.viewer.board.mark == (handle.element, handle.line)
+            assert coupe.viewer.board.messages[0].text.startswith(handle.label)
+
+
+@pytest.mark.parametrize("light", ["key", "side", "back", "rim"])
+def test_a_drag_of_a_numeral_moves_its_point_as_far_as_the_pointer(coupe: Hand, light: str) -> None:
+    before = scene_of_hand(coupe)
+    handle = handle_of(coupe, MovablePoint(AIM, "side", light))
+    element, line = handle.sign.left + 3, handle.sign.top + 4
+    coupe.drag((element, line), (element + 9, line - 7), (element + 20, line - 15))
+    scene = scene_of_hand(coupe)
+    assert scene.lights != before.lights
+    at = screen_of(coupe).views.position(SIDE, scene.light_in_world(light).aim or (0, 0, 0))
+    assert (round(at[0]), round(at[1])) == (handle.element + 20, handle.line - 15)
+    assert [each for each in scene.lights if each.name != light] == [
+        each for each in before.lights if each.name != light
+    ]
+    assert is_undone_at_once(coupe, before)
+
+
+def test_a_pick_on_a_numeral_puts_its_point_at_the_next_pick(coupe: Hand) -> None:
+    handle = handle_of(coupe, MovablePoint(AIM, "top", "rim"))
+    coupe.click(handle.sign.left + 1, handle.sign.top + 1)
+    assert coupe.viewer.message.startswith("rim: aim: ")
+    coupe.click(100, 60)
+    at = screen_of(coupe).views.position(TOP, scene_of_hand(coupe).light_in_world("rim").aim or (0, 0, 0))
+    assert (round(at[0]), round(at[1])) == (100, 60)

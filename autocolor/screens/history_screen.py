@@ -1,0 +1,156 @@
+"""The history screen: the steps of the session over the picture; a click on a step goes there.
+
+The list begins with the state that was opened. The present state is marked, and undone steps are dim.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from itertools import pairwise
+from typing import Final
+
+from autocolor.scene.description import describe
+from autocolor.scene.scene import Scene
+from autocolor.screens.picture.over_picture import OverPicture
+from autocolor.screens.screen import Cached
+from autocolor.screens.session import HISTORY, MOST_DESCRIBED, Session
+from autocolor.widgets.items import CHARACTER, GRAY, Area, Item, fitted
+from autocolor.widgets.widget import MARGIN, ROW_LINES, Button, Gap, Pair, Widget
+
+LEFT: Final = 8
+TOP: Final = 8
+WIDTH: Final = 248
+"""The list, at the left of the picture."""
+
+MOST_ROWS: Final = 26
+"""The steps that are shown at once."""
+
+DIGITS: Final = 3
+"""Characters of a step's number; longer numbers move their line to the right."""
+
+MOST_LETTERS: Final = (WIDTH - 2 * MARGIN) // CHARACTER - DIGITS - 2
+
+BEGIN: Final = "as the session began"
+NO_CHANGE: Final = "no change"
+
+
+class HistoryScreen(OverPicture):
+    """The steps of the session, the newest at the bottom."""
+
+    name = HISTORY
+    title = "steps"
+    help = "Click a step to go there; undone steps are dim until another edit forgets them"
+
+    is_in_menu = False
+
+    # The list is at the left.
+    corners = ((1.0, 0.0), (1.0, 1.0))
+
+    def __init__(self, session: Session) -> None:
+        super().__init__(session)
+        self._first: int | None = None
+        """The number of the first step that is shown; None to show the present step in the middle."""
+        self._lines: Cached[Sequence[tuple[str, str]]] = Cached()
+
+    def enter(self) -> None:
+        self._first = None
+
+    @property
+    def _scenes(self) -> tuple[Scene, ...]:
+        """The scenes of the session from the first on, with those that can be redone."""
+        history = self.session.studio.history
+        return (*history.to_undo, history.scene, *reversed(history.to_redo))
+
+    @property
+    def _present(self) -> int:
+        """The number of the present state."""
+        return len(self.session.studio.history.to_undo)
+
+    @property
+    def _shown(self) -> range:
+        """The numbers of the steps that are shown."""
+        count = len(self._scenes)
+        first = self._present - MOST_ROWS // 2 if self._first is None else self._first
+        first = max(0, min(first, count - MOST_ROWS))
+        return range(first, min(count, first + MOST_ROWS))
+
+    def widgets(self) -> Sequence[Widget]:
+        """The steps, each a row."""
+        shown, present = self._shown, self._present
+        rows = []
+        for place, (number, (line, whole)) in enumerate(zip(shown, self._texts(shown), strict=True)):
+            top = TOP + ROW_LINES * place
+            steps = number - present
+            row = StepRow(
+                f"step {number}",
+                f"Go to step {number}: {whole}" if steps else f"The present state, by step {number}: {whole}",
+                run=partial(self._go, steps),
+                is_chosen=not steps,
+                shown=f"{number:{DIGITS}}  {line}",
+                is_undone=steps > 0,
+                scroll=self._scroll,
+            )
+            rows.append(row.at(Area(LEFT, top, LEFT + WIDTH - 1, top + ROW_LINES - 1)))
+        return rows
+
+    def _texts(self, shown: range) -> Sequence[tuple[str, str]]:
+        """The difference that each of some steps made: for a row, and in more detail for the message line."""
+        scenes = self._scenes[max(0, shown.start - 1) : shown.stop]
+
+        def lines() -> Sequence[tuple[str, str]]:
+            steps = [
+                (describe(*pair, MOST_LETTERS) or NO_CHANGE, describe(*pair, MOST_DESCRIBED) or NO_CHANGE)
+                for pair in pairwise(scenes)
+            ]
+            return [(BEGIN, BEGIN), *steps] if shown.start == 0 else steps
+
+        return self._lines.of(lines, *scenes)
+
+    def rows(self) -> Sequence[Widget]:
+        count = len(self._scenes)
+        if count <= MOST_ROWS:
+            return []
+        return [
+            Pair(
+                "older",
+                f"Show older steps, or newer steps; there are {count - 1}.",
+                run=partial(self._scroll, 1),
+                other="newer",
+                run_other=partial(self._scroll, -1),
+            ),
+            Gap("list gap"),
+        ]
+
+    def _scroll(self, pages: float) -> None:
+        """Show older steps, by some pages; newer ones by a negative number."""
+        self._first = self._shown.start
+        self._first = max(0, min(self._first - round(pages * (MOST_ROWS - 2)), len(self._scenes) - MOST_ROWS))
+
+    def _go(self, steps: int) -> None:
+        """Undo or redo some steps at once. The list stays where it is."""
+        self._first = self._shown.start
+        if steps < 0:
+            self.session.undo(-steps)
+        elif steps > 0:
+            self.session.redo(steps)
+
+
+@dataclass(frozen=True)
+class StepRow(Button):
+    """A step, dim if it is undone."""
+
+    shown: str = ""
+    is_undone: bool = False
+    scroll: Callable[[float], object] = lambda _: None
+
+    @property
+    def ink(self) -> int:
+        return GRAY if self.is_undone else super().ink
+
+    def items(self, lit: bool) -> list[Item]:
+        return self.row(lit, fitted(self.shown, self.characters), chosen=self.is_chosen)
+
+    def nudge(self, steps: float) -> object:
+        return self.scroll(steps / 8)
