@@ -36,7 +36,7 @@ class BlendingScreen(OverPicture):
 
     def items(self) -> Sequence[Item]:
         # The bar takes the legend's place.
-        return ()
+        return () if self.has_panels else super().items()
 
     def rows(self) -> Sequence[Widget]:
         surface = self.session.chosen_surface

@@ -43,8 +43,14 @@ from autocolor.widgets.letters import PANEL as LETTER_PANEL
 from autocolor.widgets.letters import letter_panel
 from autocolor.widgets.menu import (
     MENU,
+    MESSAGE_CHARACTERS,
     MESSAGE_LINES,
     WIDE_BAR,
+    NameList,
+    Section,
+    folded,
+    lines_of,
+    list_of,
     menu_items,
     page_of_menu,
 )
@@ -54,6 +60,7 @@ from autocolor.widgets.widget import (
     NOWHERE,
     TEXT_DOWN,
     Button,
+    Choice,
     Entry,
     Gap,
     Heading,
@@ -63,6 +70,9 @@ from autocolor.widgets.widget import (
     Typed,
     Widget,
 )
+
+HIDDEN: Final = "the panels are hidden: H shows them again, or the last row of the menu at the right edge"
+"""The message that says how hidden panels come back."""
 
 EDGE: Final = 4
 """Assumed: elements at the right edge of the screen that bring the menu."""
@@ -80,21 +90,35 @@ class Layout:
     """The rows of the menu with their areas; none while the menu is away."""
     over: Sequence[Widget] = ()
     """The widgets over every screen, the topmost first."""
-    wide_key: str = ""
-    """The key of the row whose wide bar is shown, if that row is on this page of the menu."""
+    opened: str = ""
+    """The key of the row whose wide bar or list is open, if that row is on this page of the menu."""
+    list_names: Callable[[Choice], NameList] | None = None
+    """Gives the open list of a choice."""
+
+    @cached_property
+    def opened_row(self) -> Widget | None:
+        """The row whose wide bar or list is open."""
+        if not self.opened:
+            return None
+        return next((row for row in self.rows if row.key == self.opened and opens(row)), None)
 
     @cached_property
     def wide(self) -> Widget | None:
         """The wide bar of a row, if it is shown."""
-        if not self.wide_key:
-            return None
-        bars = (row for row in self.rows if isinstance(row, Bar) and row.key == self.wide_key)
-        return next((row.at(WIDE_BAR) for row in bars), None)
+        row = self.opened_row
+        return row.at(WIDE_BAR) if isinstance(row, Bar) else None
+
+    @cached_property
+    def listed(self) -> NameList | None:
+        """The list of a row, if it is shown."""
+        row = self.opened_row
+        return self.list_names(row) if isinstance(row, Choice) and self.list_names is not None else None
 
     @cached_property
     def beside(self) -> Sequence[Widget]:
         """The widgets of the screen beside the menu."""
-        return self.screen.widgets()
+        is_hidden = self.screen.shows_picture and not self.screen.has_panels
+        return () if is_hidden else self.screen.widgets()
 
     @cached_property
     def handles(self) -> Sequence[Handle]:
@@ -105,7 +129,8 @@ class Layout:
     def widgets(self) -> Sequence[Widget]:
         """Everything that can be pointed at, the topmost first."""
         wide = () if self.wide is None else (self.wide,)
-        return (*wide, *self.over, *self.rows, *self.beside)
+        listed = () if self.listed is None else self.listed.rows
+        return (*listed, *wide, *self.over, *self.rows, *self.beside)
 
     @cached_property
     def by_key(self) -> Mapping[str, Sequence[Widget]]:
@@ -116,10 +141,12 @@ class Layout:
         return by_key
 
     def is_covered(self, element: int, line: int) -> bool:
-        """Whether the menu, its wide bar or a panel over every screen is at a place of the screen."""
+        """Whether the menu, what it opened, or a panel over every screen is at a place of the screen."""
         if self.rows and MENU.has(element, line):
             return True
         if self.wide is not None and WIDE_BAR.has(element, line):
+            return True
+        if self.listed is not None and self.listed.area.has(element, line):
             return True
         return any(widget.area.has(element, line) for widget in self.over)
 
@@ -141,6 +168,11 @@ class Layout:
         if not widgets:
             return None
         return next((each for each in widgets if each.area == grabbed.area), widgets[0]).at(grabbed.area)
+
+
+def opens(row: Widget) -> bool:
+    """Whether a row of a menu can open a wide bar or a list."""
+    return isinstance(row, Bar) or (isinstance(row, Choice) and row.has_list)
 
 
 def handles_near(handles: Sequence[Handle], element: int, line: int) -> list[Handle]:
@@ -168,6 +200,8 @@ class Board:
         """Gives the widgets over every screen, the topmost first, such as the tutorial's panel."""
         self.is_pinned = False
         """Whether the menu was asked for; else it goes when the pointer leaves it."""
+        self.hides_panels = False
+        """Whether the menu and all panels are hidden; the menu then comes on demand."""
         self.has_focus = False
         """Whether keys go to the menu."""
         self.held: Handle | None = None
@@ -176,9 +210,13 @@ class Board:
         self._is_open = False
         self._lit, self._lit_area = "", NOWHERE
         """The key and the area of the widget that is lit."""
-        self._wide = ""
-        """The key of the number whose wide bar is shown."""
+        self._opened = ""
+        """The key of the row whose wide bar or list is open."""
+        self._list_page: int | None = None
+        """The page of the list; None for the page of the present name."""
         self._menu_page = 0
+        self._folds: dict[str, dict[str, bool]] = {}
+        """By screen, whether the user opened or folded a section of its menu, the last used at the end."""
         self._message: list[Item] = []
         """The message on the page; it covers the screen below it."""
         self._grabbed: Widget | Handle | Screen | None = None
@@ -201,7 +239,12 @@ class Board:
     @property
     def has_menu(self) -> bool:
         """Whether the menu is shown."""
-        return self.screen.has_menu or self._is_open or self.is_pinned
+        return not self._comes_and_goes or self._is_open or self.is_pinned
+
+    @property
+    def _comes_and_goes(self) -> bool:
+        """Whether the menu comes on demand."""
+        return self.hides_panels or not self.screen.has_menu
 
     @property
     def is_dragging(self) -> bool:
@@ -218,11 +261,15 @@ class Board:
         """The layout that is shown, until `forget` or another state of the board."""
         session, has_menu = self.session, self.has_menu
         by_letters = self.typing.is_by_letters
-        state = session.screen, session.moving, has_menu, self._menu_page, self._wide, self.over, by_letters
+        shown = has_menu, self.hides_panels, self._menu_page, self._opened, self._list_page, by_letters
+        folds = self._folds.get(session.screen, {})
+        state = session.screen, session.moving, shown, tuple(folds.items()), self.over
         if self._layout is None or self._layout[0] != state:
+            self.screen.is_under_menu, self.screen.has_panels = has_menu, not self.hides_panels
             rows = self._menu_rows() if has_menu else ()
             letters = letter_panel(self.typing.key) if by_letters else ()
-            self._layout = state, Layout(self.screen, rows, (*letters, *self.over()), self._wide)
+            over = (*letters, *(() if self.hides_panels else self.over()))
+            self._layout = state, Layout(self.screen, rows, over, self._opened, self._list_of)
         return self._layout[1]
 
     def forget(self) -> None:
@@ -232,8 +279,64 @@ class Board:
     def _menu_rows(self) -> list[Widget]:
         """The rows of this page of the menu, laid out."""
         rows = rows_of_menu(self.session, self.screen, self.screens.values())
-        last = last_rows(self.session, self.screen)
+        last = [*last_rows(self.session, self.screen), *self._hiding_rows()]
+        folds = self._folds.get(self.session.screen, {})
+        rows = folded(rows, folds, self._fold, MENU.height - lines_of(last))
         return page_of_menu(rows, last, self._menu_page, partial(setattr, self, "_menu_page"))
+
+    def _fold(self, section: str, is_open: bool) -> None:
+        """Open or fold a section of this menu, and note that it was used last."""
+        folds = self._folds.setdefault(self.session.screen, {})
+        folds.pop(section, None)
+        folds[section] = is_open
+
+    def _use(self, widget: Widget) -> None:
+        """Note that the section of a widget was used last, so that the section stays open if it grows."""
+        section = ""
+        for row in self.layout.rows:
+            if isinstance(row, Section):
+                section = row.label
+            elif isinstance(row, Gap):
+                # The last rows of the menu are in no section.
+                section = ""
+            elif row.key == widget.key and section:
+                self._fold(section, True)
+                return
+
+    def _list_of(self, choice: Choice) -> NameList:
+        return list_of(
+            choice, self._list_page, partial(self._take, choice), partial(setattr, self, "_list_page")
+        )
+
+    def _take(self, choice: Choice, name: str) -> None:
+        """Take a name from the list; a list whose name is refused stays open."""
+        if name != choice.present:
+            choice.choose(name)
+        self._close_opened()
+
+    def _close_opened(self) -> None:
+        """Take the wide bar or the list away."""
+        if self.has_focus and self.layout.listed is not None:
+            self._lit, self._lit_area = self._opened, NOWHERE
+        self._opened = ""
+
+    # Hiding.
+
+    def switch_panels(self) -> None:
+        """Hide the menu and all panels, or show them again. Another screen shows its panels."""
+        self.hides_panels = not self.hides_panels
+        self.close()
+        self.session.tell(HIDDEN if self.hides_panels else "the panels are shown")
+
+    def _hiding_rows(self) -> list[Widget]:
+        """The row that hides the panels over a picture, or shows them again."""
+        if self.hides_panels:
+            return [Button("show panels", "Show the menu and all panels again.", run=self.switch_panels)]
+        screen = self.screen
+        if not screen.shows_picture or not (screen.has_menu or screen.widgets()):
+            return []
+        help = "Show the whole picture, without menu and panels; the right edge brings this row back."
+        return [Button("hide panels", help, run=self.switch_panels)]
 
     def widgets(self) -> Sequence[Widget]:
         """Everything that can be pointed at, the topmost first."""
@@ -262,7 +365,7 @@ class Board:
             return False
         self.release()
         self.screens[self._shown].leave()
-        self._shown, self._wide, self._menu_page = wanted, "", 0
+        self._shown, self._opened, self._menu_page, self.hides_panels = wanted, "", 0, False
         self._light(None)
         self.close()
         self.screens[wanted].enter()
@@ -340,11 +443,11 @@ class Board:
 
     def _hover(self, gesture: Gesture) -> None:
         element, line = self._pointer
-        if not self.screen.has_menu:
+        if self._comes_and_goes:
             was_open = self._is_open
             if WIDTH - EDGE <= element < WIDTH and line <= MENU.bottom:
                 self._is_open = True
-            elif not MENU.left <= element < WIDTH and self.layout.wide is None:
+            elif not MENU.left <= element < WIDTH and self.layout.opened_row is None:
                 self._is_open = False
             if self._is_open and not was_open and self.session.news.persistent:
                 # Beside the menu, hints stand in its place.
@@ -358,6 +461,9 @@ class Board:
         self._hover(gesture)
         element, line = self._pointer
         widget = self.layout.widget_at(element, line)
+        if self._leaves_list() and not MENU.has(element, line):
+            # Beside the menu, this pick does no more.
+            return
         if widget is not None:
             self._let_go()
             self.pick_widget(widget, self._pointer)
@@ -376,15 +482,30 @@ class Board:
             self.screen.hold(handle)
             self.session.tell(f"{handle.label}: pick its new place")
 
+    def _leaves_list(self) -> bool:
+        """Close the list if the pointer is neither on it nor on its row; returns whether that was so."""
+        listed, row = self.layout.listed, self.layout.opened_row
+        if listed is None or listed.area.has(*self._pointer) or (row and row.has(*self._pointer)):
+            return False
+        self._close_opened()
+        self._hover(Gesture("hover", *self._pointer))
+        return True
+
     def pick_widget(self, widget: Widget, place: Place | None = None) -> None:
-        """Pick a widget at a place; without a place, at the widget's middle."""
+        """Pick a widget at a place; without a place, by a key, at the widget's middle."""
         if widget.why_not:
             self.session.tell(f"{widget.label}: {widget.why_not}", is_warning=True)
             return
+        by_key = place is None
         if place is None:
             place = Place((widget.area.left + widget.area.right) // 2, widget.area.top)
-        if isinstance(widget, Bar) and MENU.covers(widget.area) and not widget.is_switched_at(place):
-            self._wide = "" if self._wide == widget.key else widget.key
+        self._use(widget)
+        is_switched = isinstance(widget, Bar) and widget.is_switched_at(place)
+        if opens(widget) and MENU.covers(widget.area) and not is_switched:
+            self._opened = "" if self._opened == widget.key else widget.key
+            self._list_page = None
+            if by_key and self.layout.listed is not None:
+                self._light(self.layout.listed.chosen)
         elif widget.typed is not None and not isinstance(widget, Bar):
             self.typing.begin(widget)
         else:
@@ -393,6 +514,7 @@ class Board:
     def _grab(self, gesture: Gesture) -> None:
         self._let_go()
         self._start = self._last = gesture
+        self._leaves_list()
         widget = self.layout.widget_at(*self._pointer)
         self._light(widget)
         # Modifiers and the middle button are for the screen.
@@ -400,6 +522,7 @@ class Board:
         handle = self.handle_at(*self._pointer) if is_plain else None
         if widget is not None:
             self._grabbed = None if widget.why_not else widget
+            self._use(widget)
         elif handle is not None:
             self._grabbed = handle
             # A handle comes to the pointer, but a handle that was grabbed at its sign stays away from it.
@@ -431,6 +554,7 @@ class Board:
         widget = self.layout.widget_at(*self._pointer)
         if widget is not None:
             if not widget.why_not:
+                self._use(widget)
                 widget.nudge(gesture.steps)
         elif not self.is_covered(*self._pointer):
             self.screen.wheel(gesture)
@@ -440,12 +564,12 @@ class Board:
     def close(self) -> None:
         """Take the menu away where it comes on demand."""
         self.is_pinned = self._is_open = self.has_focus = False
-        if not self.screen.has_menu:
-            self._wide = ""
+        if self._comes_and_goes:
+            self._opened = ""
 
     def toggle_menu(self) -> None:
         """Bring the menu and give it the keys, or take it away."""
-        if self.has_focus or (self.is_pinned and not self.screen.has_menu):
+        if self.has_focus or (self.is_pinned and self._comes_and_goes):
             self.close()
             return
         self.is_pinned = self.has_focus = True
@@ -453,14 +577,15 @@ class Board:
             self._move_light(1)
 
     def escape(self) -> bool:
-        """Let go of a picked handle, or close the wide bar or the menu; returns False if there is none."""
-        comes_and_goes = not self.screen.has_menu
+        """Let go of a picked handle, close what is open, or show hidden panels; returns False if none is."""
         if self.held is not None:
             self._let_go()
-        elif self.layout.wide is not None:
-            self._wide = ""
-        elif self.has_focus or (comes_and_goes and (self.is_pinned or self._is_open)):
+        elif self.layout.opened_row is not None:
+            self._close_opened()
+        elif self.has_focus or (self._comes_and_goes and (self.is_pinned or self._is_open)):
             self.close()
+        elif self.hides_panels:
+            self.switch_panels()
         else:
             return self.screen.escape()
         return True
@@ -476,6 +601,7 @@ class Board:
         if name in ("up", "down"):
             self._move_light(1 if name == "down" else -1)
         elif row is not None and name in ("left", "right") and not row.why_not:
+            self._use(row)
             row.nudge(1 if name == "right" else -1)
         elif row is not None and name in ("return", "space", "enter"):
             self.pick_widget(row)
@@ -485,7 +611,9 @@ class Board:
 
     def _move_light(self, step: int) -> None:
         lit = self._lit_widget()
-        rows = [each for each in self.layout.rows if not isinstance(each, (Heading, Gap))]
+        listed = self.layout.listed
+        shown = self.layout.rows if listed is None else listed.rows
+        rows = [each for each in shown if not isinstance(each, (Heading, Gap))]
         if rows:
             start = next((n for n, each in enumerate(rows) if each is lit), -1 if step > 0 else 0)
             self._light(rows[(start + step) % len(rows)])
@@ -508,7 +636,7 @@ class Board:
     def page(self) -> Page:
         """The page to show now: the screen, its widgets, the message line and the menu, bottom to top."""
         screen = self.screen
-        screen.is_under_menu, screen.lit = self.has_menu and not screen.has_menu, self._lit
+        screen.lit = self._lit
         layout, lit = self.layout, self._lit_widget()
         items = list(screen.items())
         for widget in (*layout.beside, *reversed(layout.over)):
@@ -517,6 +645,8 @@ class Board:
             items += menu_items(layout.rows, lit)
         if layout.wide is not None:
             items += layout.wide.items(lit=False)
+        if layout.listed is not None:
+            items += layout.listed.items(lit)
         has_message = bool(layout.rows) or self.typing.is_on or self.session.has_news
         end = MENU.left if layout.rows else WIDTH
         self._message = message_items(self.messages, end) if has_message else []
@@ -537,10 +667,11 @@ class Board:
 
     def _hint(self) -> str:
         lit, (element, line) = self._lit_widget(), self._pointer
-        if lit is not None and self.layout.wide is not None and lit.key == self._wide:
-            return f"{lit.label}: pick a value on the wide bar; a pick on the row takes the bar away"
+        if lit is not None and lit is self.layout.opened_row:
+            of, what = ("value", "the wide bar") if isinstance(lit, Bar) else ("name", "the list")
+            return f"{lit.label}: pick a {of} on {what}; a pick on the row takes it away"
         if lit is not None:
-            return lit.why_not or lit.help or lit.label
+            return lit.hint
         if self.held is not None:
             return f"{self.held.label}: pick its new place"
         if min(element, line) < 0 or self.is_covered(element, line):
@@ -565,7 +696,6 @@ def with_loads(entries: Bytes, loads: Sequence[tuple[int, Bytes]]) -> Bytes:
 # that does not fit takes further lines over the screen while it stands.
 
 MESSAGE: Final = Area(0, HEIGHT - MESSAGE_LINES, WIDTH - 1, HEIGHT - 1)
-MOST_CHARACTERS: Final = (WIDTH - 16) // CHARACTER
 LINE_STEP: Final = 12
 """Lines from one line of a message to the next."""
 
@@ -587,8 +717,8 @@ def message_items(parts: Sequence[MessagePart], end: int = WIDTH) -> list[Item]:
 
     Lines above the message line end before element `end`.
     """
-    is_short = len(parts) == 1 and len(parts[0].text) <= MOST_CHARACTERS
-    most = MOST_CHARACTERS if is_short else (end - 16) // CHARACTER
+    is_short = len(parts) == 1 and len(parts[0].text) <= MESSAGE_CHARACTERS
+    most = MESSAGE_CHARACTERS if is_short else (end - 16) // CHARACTER
     lines = [line for part in parts for line in lines_of_message(part, most)]
     top = MESSAGE.top - LINE_STEP * (len(lines) - 1)
     items = [filled(MESSAGE, BLACK)]
@@ -759,7 +889,7 @@ def rows_of_menu(session: Session, screen: Screen, screens: Iterable[Screen]) ->
             for each in screens
             if each.is_in_menu and each is not screen
         ]
-        return [Heading("AUTOCOLOR"), *ways, Gap("ways"), *screen.rows()]
+        return [*ways, Gap("ways"), *screen.rows()]
     back = Button("< picture", "Back to the picture.", run=partial(session.turn_to, PICTURE))
     return [Heading(screen.title.upper()), back, Gap("ways"), *screen.rows()]
 

@@ -21,6 +21,9 @@ DIRECTION: Final = "direction"
 AIM: Final = "aim"
 """The kinds of lights: those with an axis have a direction, or an aim."""
 
+KIND: Final = "kind"
+"""Stands for the kind of a light among its columns."""
+
 WORLD: Final = "world"
 """The choice for a light that follows nothing."""
 
@@ -46,25 +49,34 @@ def kind_of(light: Light) -> str:
     return DIRECTION if light.direction is not None else AIM if light.aim is not None else POINT
 
 
-def parameter_rows(session: Session, light: Light, leave_out: Sequence[str] = ()) -> list[Widget]:
-    """The rows of a light's columns without `leave_out`, and its kind before the columns of that kind."""
-    rows = rows_of(light, partial(_put_with_reach, session, light), session.world, leave_out)
+def parameter_rows(session: Session, light: Light, columns: Sequence[str]) -> list[Widget]:
+    """The rows of some columns of a light, in their order; KIND stands for the row of its kind."""
+    put, world = partial(_put_with_reach, session, light), session.world
+    rows = [
+        row
+        for name in columns
+        for row in (
+            [_kind_row(session, light)] if name == KIND else rows_of(light, put, world, columns=[name])
+        )
+    ]
     # A light can follow only some lights, and keeps its place when it begins to follow.
     rows = [_follows_row(session, light) if row.label == "follows" else row for row in rows]
     # A point source has no axis: rows that need an axis cannot be used, and say so.
     if kind_of(light) == POINT:
         needing = [name.replace("_", " ") for name in AXIS_CONTROLS]
         rows = [replace(row, why_not=NEEDS_AXIS) if row.label in needing else row for row in rows]
-    axis = ("direction", "aim", "concentration")
-    before = next((number for number, row in enumerate(rows) if row.label.startswith(axis)), len(rows))
-    choice = Choice(
+    return rows
+
+
+def _kind_row(session: Session, light: Light) -> Choice:
+    """The choice of the kind of a light."""
+    return Choice(
         "kind",
         "A point source shines to all sides; others along a direction, or at an aim.",
         names=(POINT, AIM, DIRECTION),
         present=kind_of(light),
         choose=partial(choose_kind, session, light),
     )
-    return [*rows[:before], choice, *rows[before:]]
 
 
 def put_light(session: Session, name: str, changes: Mapping[str, Any]) -> None:

@@ -1,10 +1,11 @@
-"""The lights screen: every parameter of the chosen light, over the picture; lights added, copied, removed."""
+"""The lights screen: a list of all lights and every parameter of the chosen light, over the picture."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from itertools import chain
 from typing import Final
 
 import numpy as np
@@ -12,41 +13,103 @@ import numpy as np
 from autocolor.arrays import Floats
 from autocolor.checks import Vector
 from autocolor.errors import InputError
-from autocolor.scene.columns import fields_of
+from autocolor.mapping.legend import CORNERS
+from autocolor.scene.columns import bar_of, fields_of
 from autocolor.scene.creation import new_light_of
 from autocolor.scene.following import attached, detached
 from autocolor.scene.lights import HalfSpace, Light, free_name
 from autocolor.scene.view import View
 from autocolor.screens.input import Gesture
-from autocolor.screens.light_parameters import parameter_rows
+from autocolor.screens.light_parameters import KIND, parameter_rows
 from autocolor.screens.picture.light_handles import LightHandles, highlight_items
 from autocolor.screens.picture.over_picture import OverPicture
 from autocolor.screens.screen import Handle
 from autocolor.screens.session import Session
 from autocolor.visibility.projection import focal_length
 from autocolor.widgets.bars import Bar
-from autocolor.widgets.items import SCREEN, YELLOW, Area, Item, area_of, lines
-from autocolor.widgets.menu import WORK
-from autocolor.widgets.widget import Button, Choice, Gap, Pair, Switch, Widget, titled
+from autocolor.widgets.items import (
+    BLACK,
+    CHARACTER,
+    GRAY,
+    LIGHT_GRAY,
+    NIGHT,
+    SCREEN,
+    SLATE,
+    WHITE,
+    YELLOW,
+    Area,
+    Item,
+    area_of,
+    filled,
+    fitted,
+    lines,
+    text,
+)
+from autocolor.widgets.menu import WORK, Section
+from autocolor.widgets.widget import (
+    BOX,
+    MARGIN,
+    NOWHERE,
+    ROW_LINES,
+    TEXT_DOWN,
+    Button,
+    Choice,
+    Pair,
+    Place,
+    Switch,
+    Widget,
+    box_items,
+    page_choice,
+    short_name,
+    titled,
+)
+
+FIRST: Final = ("on", "intensity", "concentration", "cone_angle", "inner_angle", "flaps")
+"""The columns of a light that are edited most; their rows are always shown."""
+
+SECTIONS: Final[Mapping[str, Sequence[str]]] = {
+    "place & aim": (KIND, "position", "direction", "aim", "at_infinity", "follows"),
+    "links": ("links",),
+}
+"""The columns of the sections of the menu. Further columns are in a section of their own."""
+
+APART: Final = ("half_spaces",)
+"""The columns whose rows are not derived."""
 
 
 class LightsScreen(OverPicture):
-    """The lights, one at a time."""
+    """The lights, in a list, and the chosen light in the menu."""
 
     name = "lights"
     title = "lights"
     help = "The chosen light: drag its highlight, and where its cone, flaps and half-spaces end"
 
+    # The light list is at the upper left.
+    corners = tuple(corner for corner in CORNERS if corner != (0.0, 0.0))
+
     def __init__(self, session: Session) -> None:
         super().__init__(session)
         self._handles = LightHandles(session, WORK, has_rims=True)
         self._picking = PlanePicking(session, WORK)
+        self._list = LightList(session)
 
     def items(self) -> Sequence[Item]:
-        return [*super().items(), *(self._picking if self._picking.is_on else self._handles).items()]
+        return [*super().items(), *(self._picking if self._picking.is_on else self._marks).items()]
+
+    @property
+    def _marks(self) -> LightHandles:
+        """The marks and handles of the lights in the picture, as far as the menu does not cover it."""
+        self._handles.area = WORK if self.is_under_menu else SCREEN
+        return self._handles
+
+    def widgets(self) -> Sequence[Widget]:
+        return self._list.widgets()
 
     def handles(self) -> Sequence[Handle]:
-        return () if self._picking.is_on else self._handles.handles()
+        # The list covers handles, also where they are within reach of a place beside it.
+        covered = self._list.area if self.has_panels else NOWHERE
+        handles = () if self._picking.is_on else self._marks.handles()
+        return [each for each in handles if not covered.has(each.element, each.line)]
 
     def pick(self, gesture: Gesture) -> None:
         if self._picking.is_on:
@@ -77,31 +140,27 @@ class LightsScreen(OverPicture):
                     "add a light", "A light above the side of the eye, aimed at the object.", run=self._add
                 )
             ]
-        return [
+        session, first = self.session, parameter_rows(self.session, light, FIRST)
+        shown = {*FIRST, *APART, *chain.from_iterable(SECTIONS.values())}
+        others = [name for name in fields_of(Light) if name not in shown]
+        rows: list[Widget] = [
             Choice(
                 "light",
                 "The light whose parameters are shown.",
-                names=tuple(each.name for each in self.session.scene.lights),
+                names=tuple(each.name for each in session.scene.lights),
                 present=light.name,
-                choose=self.session.choose_light,
+                choose=session.choose_light,
             ),
-            *self._verbs(light),
-            Gap("parameters gap"),
-            *parameter_rows(self.session, light, leave_out=("half_spaces",)),
-            Gap("half-spaces gap"),
-            *half_space_rows(self.session, light, self._picking),
+            *first,
         ]
+        for title, columns in {**SECTIONS, "other settings": others}.items():
+            rows += [Section(title), *parameter_rows(session, light, columns)]
+        rows += [Section("half-spaces"), *half_space_rows(session, light, self._picking)]
+        return [*rows, Section("add & remove"), *self._verbs()]
 
-    def _verbs(self, light: Light) -> list[Widget]:
+    def _verbs(self) -> list[Widget]:
         session = self.session
         return [
-            Pair(
-                "alone",
-                "Switch on this light alone; or all lights.",
-                run=partial(session.light_alone, light.name),
-                other="all on",
-                run_other=session.all_lights_on,
-            ),
             Pair(
                 "add",
                 "Add another light, or a copy of this light.",
@@ -146,6 +205,174 @@ class LightsScreen(OverPicture):
         name = self.session.light_name
         self.session.edit(self.session.scene.without_light(name))
         self.session.tell(f"{titled('light', name)} removed; undo brings it back")
+
+
+# The light list: a panel over the picture with a row for each light.
+
+LIST_AT: Final = Place(8, 8)
+"""The upper left corner of the list."""
+
+NAME_CHARACTERS: Final = 12
+NUMBER_CHARACTERS: Final = 5
+TRACK: Final = 56
+"""Elements of the bar of an intensity."""
+
+SOLO: Final = "solo"
+SPACE: Final = 6
+"""Elements between the parts of a row."""
+
+LIST_ELEMENTS: Final = (
+    2 * MARGIN + CHARACTER * (3 + NAME_CHARACTERS + NUMBER_CHARACTERS + len(SOLO)) + BOX + TRACK + 4 * SPACE
+)
+
+LIGHTS_A_PAGE: Final = 12
+"""Assumed: lights of a page of the list; more would cover too much of the picture."""
+
+
+class LightList:
+    """The list of the lights of a session. It can be folded, so that its heading alone remains."""
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._is_open = True
+        self._page: tuple[str, int] | None = None
+        """The light that was chosen when the user turned to another page, and the page."""
+
+    @property
+    def area(self) -> Area:
+        """The area of the list; empty without lights."""
+        areas = [each.area for each in self.widgets()]
+        return Area(*areas[0][:2], *areas[-1][2:]) if areas else NOWHERE
+
+    def widgets(self) -> list[Widget]:
+        """The rows of the list with their areas: the heading, the lights, and the rows for all lights."""
+        lights = self._session.scene.lights
+        if not lights:
+            return []
+        help = "Fold the list of all lights, or show it."
+        rows: list[Widget] = [Section("light list", help, is_open=self._is_open, fold=self._fold)]
+        if self._is_open:
+            pages = -(-len(lights) // LIGHTS_A_PAGE)
+            page = min(self._shown_page, pages - 1)
+            first = page * LIGHTS_A_PAGE
+            for number, light in enumerate(lights[first : first + LIGHTS_A_PAGE], start=first + 1):
+                rows.append(self._row(number, light))
+            if pages > 1:
+                rows.append(page_choice("The next page of lights.", page, pages, self._turn))
+            rows.append(Button("all lights on", "Switch all lights on.", run=self._session.all_lights_on))
+        left, top = LIST_AT
+        right = left + LIST_ELEMENTS - 1
+        return [
+            row.at(Area(left, top + ROW_LINES * number, right, top + ROW_LINES * (number + 1) - 1))
+            for number, row in enumerate(rows)
+        ]
+
+    def _row(self, number: int, light: Light) -> LightRow:
+        session, name = self._session, light.name
+        bar = bar_of(fields_of(Light)["intensity"].column)
+        assert bar is not None
+        return LightRow(
+            name,
+            f"{name}: name: choose it; box: on, off; bar: intensity; {SOLO}: alone, again: as before",
+            within="light list",
+            value=light.intensity,
+            **bar._asdict(),
+            put=lambda intensity: session.change_light(name, intensity=intensity),
+            numeral=number,
+            is_on=light.on,
+            is_chosen=name == session.light_name,
+            is_solo=name == session.solo,
+            choose=partial(session.choose_light, name),
+            switch=lambda: session.change_light(name, on=not light.on),
+            solo=partial(session.light_alone, name),
+        )
+
+    @property
+    def _shown_page(self) -> int:
+        """The page that the user turned to, until another light is chosen; else the chosen light's page."""
+        session = self._session
+        if self._page is not None and self._page[0] == session.light_name:
+            return self._page[1]
+        names = [light.name for light in session.scene.lights]
+        return names.index(session.light_name) // LIGHTS_A_PAGE
+
+    def _turn(self, page: int) -> None:
+        self._page = self._session.light_name, page
+
+    def _fold(self, is_open: bool) -> None:
+        self._is_open = is_open
+
+
+@dataclass(frozen=True)
+class LightRow(Bar):
+    """A light in the list: its numeral and name, its switch, its intensity with a bar, and solo.
+
+    A pick on the name calls `choose`, on the box `switch`, on the bar `put`, and on the word at the end
+    `solo`. A drag that begins on the bar sets the intensity.
+    """
+
+    numeral: int = 1
+    is_on: bool = True
+    is_chosen: bool = False
+    is_solo: bool = False
+    choose: Callable[[], object] = lambda: None
+    switch: Callable[[], object] = lambda: None
+    solo: Callable[[], object] = lambda: None
+
+    @property
+    def _name_end(self) -> int:
+        """The element after the numeral and the name."""
+        return self.area.left + MARGIN + CHARACTER * (3 + NAME_CHARACTERS) + SPACE // 2
+
+    @property
+    def _box(self) -> Area:
+        left, top = self._name_end + SPACE // 2, self.area.top + (ROW_LINES - BOX) // 2
+        return Area(left, top, left + BOX - 1, top + BOX - 1)
+
+    @property
+    def _track(self) -> Area:
+        left, middle = self._box.right + 1 + SPACE, self.area.top + ROW_LINES // 2
+        return Area(left, middle - 3, left + TRACK - 1, middle + 2)
+
+    @property
+    def _solo_start(self) -> int:
+        return self.area.right + 1 - MARGIN - CHARACTER * len(SOLO)
+
+    def items(self, lit: bool) -> list[Item]:
+        left, top, *_ = self.area
+        ground, ink = SLATE if lit else NIGHT, WHITE if self.is_on else GRAY
+        named = self.area._replace(right=self._name_end - 1)
+        name_ground, name_ink = (WHITE, BLACK) if self.is_chosen else (ground, ink)
+        name = f"{self.numeral:2} {short_name(self.label, NAME_CHARACTERS)}"
+        track, down = self._track, top + TEXT_DOWN
+        end = track.left + round(self.share * (track.width - 1))
+        number = fitted(self.number, NUMBER_CHARACTERS)
+        return [
+            filled(self.area, ground),
+            filled(named, name_ground),
+            text(name, left + MARGIN, down, name_ink, name_ground),
+            *box_items(self._box, self.is_on, ink, ground),
+            filled(track, GRAY if lit else SLATE),
+            filled(track._replace(right=end), YELLOW if lit else LIGHT_GRAY if self.is_on else GRAY),
+            text(number, self._solo_start - SPACE - CHARACTER * len(number), down, ink, ground),
+            text(SOLO, self._solo_start, down, YELLOW if self.is_solo else LIGHT_GRAY, ground),
+        ]
+
+    def pick(self, place: Place) -> object:
+        element = place.element
+        if element < self._name_end:
+            return self.choose()
+        if element < self._track.left - SPACE // 2:
+            return self.switch()
+        if element < self._solo_start - SPACE // 2:
+            return self.put(self.value_at(element)) if self._is_on_track(element) else None
+        return self.solo()
+
+    def drag(self, start: Place, last: Place, place: Place) -> object:
+        return self.put(self.value_at(place.element)) if self._is_on_track(start.element) else None
+
+    def _is_on_track(self, element: int) -> bool:
+        return self._track.left - SPACE // 2 <= element <= self._track.right + SPACE // 2
 
 
 # Picking a plane: three points of the object, one after the other, for the plane of a new half-space.

@@ -109,12 +109,12 @@ class MappingScreen(OverPicture):
     # The curve.
 
     def items(self) -> Sequence[Item]:
-        return [*super().items(), *panel_items(self._curve())]
+        return [*super().items(), *(panel_items(self._curve()) if self.has_panels else ())]
 
     def handles(self) -> Sequence[Handle]:
         return [
             Handle(number, *place_of(x, y), f"intensity {x:.2f}, level {y:.2f}")
-            for number, (x, y) in enumerate(self._points())
+            for number, (x, y) in enumerate(self._points() if self.has_panels else ())
         ]
 
     def hold(self, handle: Handle) -> None:
@@ -126,13 +126,13 @@ class MappingScreen(OverPicture):
             self._move(handle.key, element, line)
 
     def pick(self, gesture: Gesture) -> None:
-        if not PANEL.has(gesture.element, gesture.line):
+        if not self._is_on_panel(gesture.element, gesture.line):
             super().pick(gesture)
             return
         self._add(gesture)
 
     def drag(self, start: Gesture, last: Gesture, now: Gesture) -> None:
-        if not PANEL.has(start.element, start.line):
+        if not self._is_on_panel(start.element, start.line):
             super().drag(start, last, now)
             return
         if last is start:
@@ -141,14 +141,17 @@ class MappingScreen(OverPicture):
             self._move(self._touched, now.element, now.line)
 
     def wheel(self, gesture: Gesture) -> None:
-        if not PANEL.has(gesture.element, gesture.line):
+        if not self._is_on_panel(gesture.element, gesture.line):
             super().wheel(gesture)
 
     def hint(self, element: int, line: int) -> str:
-        if not PANEL.has(element, line):
+        if not self._is_on_panel(element, line):
             return super().hint(element, line)
         x, y = fractions_of(element, line)
         return f"intensity {x:.2f}, level {y:.2f}: a click or a drag makes a point here"
+
+    def _is_on_panel(self, element: int, line: int) -> bool:
+        return self.has_panels and PANEL.has(element, line)
 
     def _points(self) -> CurvePoints:
         """The points of the curve; none if the curve has a name."""

@@ -62,8 +62,10 @@ class Screen:
 
     def __init__(self, session: Session) -> None:
         self.session = session
-        self.is_under_menu = False
-        """Whether the menu covers its right part, because the user asked for the menu."""
+        self.is_under_menu = self.has_menu
+        """Whether the menu covers its right part."""
+        self.has_panels = True
+        """Whether its panels are shown; else the user hides them to see the whole picture."""
         self.lit = ""
         """The key of the widget under the pointer; empty if there is none."""
 

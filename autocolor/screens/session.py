@@ -7,7 +7,7 @@ until it ends. At the foot are the comparison with another state, and the file o
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Final, NamedTuple, Unpack
 
@@ -80,6 +80,13 @@ class Clipboard(NamedTuple):
     paste: Callable[[], str]
 
 
+class Solo(NamedTuple):
+    """A light that was switched on alone, and whether each light was on before, by name."""
+
+    name: str
+    switches: Mapping[str, bool]
+
+
 class Session:
     """The state that the screens share.
 
@@ -119,6 +126,8 @@ class Session:
         self.part_name = ""
         """The name of the part that was pointed at last; empty at first."""
         self._light = ""
+        self._before_solo: Solo | None = None
+        """The light that was switched on alone last, and the switches before."""
         self._world: tuple[Mesh, tuple[Part, ...], World] | None = None
         self._up: tuple[Mesh, Source, str] | None = None
         """The mesh and the source that were last looked at, and the axis that seems to be up."""
@@ -280,10 +289,25 @@ class Session:
         """Change fields of a surface."""
         self.edit(self.scene.with_surface(name, **changes))
 
+    @property
+    def solo(self) -> str:
+        """The name of the light that was switched on alone, while it still is; else empty."""
+        on = [light.name for light in self.scene.lights if light.on]
+        return on[0] if self._before_solo is not None and on == [self._before_solo.name] else ""
+
     def light_alone(self, name: str) -> None:
-        """Switch one light on and all others off."""
-        self.edit(self.scene.only_lights(name))
-        self.tell(f"{titled('light', name)} alone")
+        """Switch one light on and all others off; if it is alone, switch all as before."""
+        scene, before, alone = self.scene, self._before_solo, self.solo
+        if before is not None and alone == name:
+            switches = [before.switches.get(light.name, light.on) for light in scene.lights]
+            lights = zip(scene.lights, switches, strict=True)
+            self.edit(scene.replace(lights=tuple([light.replace(on=on) for light, on in lights])))
+            self.tell("the lights are switched as before")
+            return
+        self.edit(scene.only_lights(name))
+        switches_now = {light.name: light.on for light in scene.lights}
+        self._before_solo = Solo(name, before.switches if before is not None and alone else switches_now)
+        self.tell(f"{titled('light', name)} alone; again: the lights as before")
 
     def all_lights_on(self) -> None:
         """Switch all lights on."""

@@ -521,6 +521,11 @@ BINDINGS: Final[tuple[Binding[Viewer], ...]] = (
         lambda viewer, _: viewer.board.toggle_menu(),
     ),
     Binding(
+        (Chord("h"),),
+        "hide the menu and all panels, and bring them back",
+        lambda viewer, _: viewer.board.switch_panels(),
+    ),
+    Binding(
         (Chord("left"), Chord("right"), Chord("left", shift=True), Chord("right", shift=True)),
         "turn around the object; finely with Shift",
         lambda viewer, number: viewer.edits.turn((-TURN, TURN, -FINE_TURN, FINE_TURN)[number], 0),

@@ -10,16 +10,21 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Booleans, Numbers, Words, half_up
+from autocolor.arrays import Numbers, Words, half_up
 from autocolor.errors import UsageError
 from autocolor.widgets.items import (
     BLACK,
     CHARACTER,
     CHARACTER_LINES,
+    DOWN,
     GRAY,
+    LEFT,
     LIGHT_GRAY,
     NIGHT,
+    REACH,
+    RIGHT,
     SLATE,
+    UP,
     WHITE,
     YELLOW,
     Area,
@@ -27,6 +32,7 @@ from autocolor.widgets.items import (
     filled,
     fitted,
     image,
+    pointer,
     text,
 )
 from autocolor.widgets.widget import (
@@ -283,15 +289,6 @@ def component_track(track: Area, end: int, word: int, strip: bytes) -> Item:
 LANE: Final = 8
 """Elements or lines beside the levels, for the handle."""
 
-REACH: Final = 4
-"""Elements or lines from the middle of a handle to its ends."""
-
-RIGHT: Final = 0
-DOWN: Final = 1
-LEFT: Final = 2
-UP: Final = 3
-"""The directions of a pointer."""
-
 
 @dataclass(frozen=True)
 class LevelBar(Widget):
@@ -403,26 +400,6 @@ class PercentBar(Widget):
 def levels_along(length: int, levels: int) -> Numbers:
     """The level at each element of a bar, (length,): the ends are the lowest and the highest level."""
     return (np.arange(length) * (levels - 1) * 2 // (length - 1) + 1) // 2
-
-
-@lru_cache(maxsize=1024)
-def pointer(element: int, line: int, towards: int, word: int) -> Item:
-    """A triangle whose tip is at an element and a line."""
-    shape = _POINTERS[towards]
-    down, across = shape.shape
-    left = element - (across - 1, REACH, 0, REACH)[towards]
-    top = line - (REACH, down - 1, REACH, 0)[towards]
-    return image(np.where(shape, word, NIGHT).astype(np.uint16), left, top)
-
-
-def _triangle() -> Booleans:
-    across, down = np.arange(REACH + 1), np.arange(-REACH, REACH + 1)
-    shape: Booleans = across + np.abs(down)[:, None] <= REACH
-    return shape
-
-
-_RIGHT: Final = _triangle()
-_POINTERS: Final = (_RIGHT, _RIGHT.T, _RIGHT[:, ::-1], _RIGHT.T[::-1])
 
 
 @lru_cache(maxsize=16)

@@ -12,7 +12,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Bytes, Floats, Numbers, Words
+from autocolor.arrays import Booleans, Bytes, Floats, Numbers, Words
 from autocolor.checks import printable
 from autocolor.mapping.palette import in_palette
 from autocolor.mapping.ranges import SCREENS
@@ -313,6 +313,38 @@ def image(words: Words, left: int, top: int) -> Item:
     if area.is_empty or not DRAWABLE.covers(area):
         return Item(area, b"")
     return Item(area, instructions.write_image(words, left, top).tobytes(), is_solid=True)
+
+
+# Pointers: triangles that show where a handle stands, and where something opens.
+
+REACH: Final = 4
+"""Elements or lines from the middle of a pointer to its ends."""
+
+RIGHT: Final = 0
+DOWN: Final = 1
+LEFT: Final = 2
+UP: Final = 3
+"""The directions of a pointer."""
+
+
+@lru_cache(maxsize=1024)
+def pointer(element: int, line: int, towards: int, word: int, ground: int = NIGHT) -> Item:
+    """A triangle whose tip is at an element and a line, on a ground."""
+    shape = _POINTERS[towards]
+    down, across = shape.shape
+    left = element - (across - 1, REACH, 0, REACH)[towards]
+    top = line - (REACH, down - 1, REACH, 0)[towards]
+    return image(np.where(shape, word, ground).astype(np.uint16), left, top)
+
+
+def _triangle() -> Booleans:
+    across, down = np.arange(REACH + 1), np.arange(-REACH, REACH + 1)
+    shape: Booleans = across + np.abs(down)[:, None] <= REACH
+    return shape
+
+
+_RIGHT: Final = _triangle()
+_POINTERS: Final = (_RIGHT, _RIGHT.T, _RIGHT[:, ::-1], _RIGHT.T[::-1])
 
 
 class SmallPicture:

@@ -1,16 +1,39 @@
-"""The menu: a column of rows at the right edge of the screen, and the wide bar above the message line."""
+"""The menu: a column of rows at the right edge of the screen, and what its rows open beside it.
+
+A number opens a wide bar above the message line, a choice of many names a list, and a section its rows.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
-from typing import Final
+from typing import Final, NamedTuple
 
-from autocolor.widgets.items import HEIGHT, NIGHT, SLATE, WIDTH, Area, Item, filled
-from autocolor.widgets.widget import ROW_LINES, Button, Heading, Widget
+from autocolor.widgets.items import (
+    CHARACTER,
+    DOWN,
+    HEIGHT,
+    NIGHT,
+    RIGHT,
+    SLATE,
+    WIDTH,
+    YELLOW,
+    Area,
+    Item,
+    filled,
+    fitted,
+    outline,
+    pointer,
+    text,
+)
+from autocolor.widgets.widget import MARGIN, ROW_LINES, TEXT_DOWN, Button, Choice, Heading, Place, Widget
 
 MESSAGE_LINES: Final = 16
 """The height of the message line, at the bottom of every screen."""
+
+MESSAGE_CHARACTERS: Final = (WIDTH - 2 * MARGIN) // CHARACTER
+"""The characters of the message line."""
 
 MENU_ELEMENTS: Final = 136
 MENU: Final = Area(WIDTH - MENU_ELEMENTS, 0, WIDTH - 1, HEIGHT - MESSAGE_LINES - 1)
@@ -57,12 +80,17 @@ def pages_of(rows: Sequence[Widget], lines: int = MOST_LINES) -> list[list[Widge
     for row in rows:
         if used + row.row_lines > lines - ROW_LINES:
             # A heading goes with the row below it.
-            headings = [pages[-1].pop()] if len(pages[-1]) > 1 and isinstance(pages[-1][-1], Heading) else []
+            headings = [pages[-1].pop()] if len(pages[-1]) > 1 and is_over_rows(pages[-1][-1]) else []
             pages.append(headings)
             used = lines_of(headings)
         pages[-1].append(row)
         used += row.row_lines
     return pages
+
+
+def is_over_rows(row: Widget) -> bool:
+    """Whether a row is a heading, or an open section."""
+    return isinstance(row, Heading) or (isinstance(row, Section) and row.is_open)
 
 
 def page_of_menu(
@@ -84,3 +112,157 @@ def page_of_menu(
         value=f"{number + 1} of {len(pages)}",
     )
     return laid_out([*pages[number], more, *last])
+
+
+# The list of a choice with many names: at the left of its row, in as many columns as it needs.
+
+LIST_ROWS: Final = MENU.height // ROW_LINES
+"""The most rows of a column."""
+
+
+class NameList(NamedTuple):
+    """An open list: its area, and its rows with their areas."""
+
+    area: Area
+    rows: Sequence[Widget]
+
+    @property
+    def chosen(self) -> Widget:
+        """The row of the present name; the first row if it is on another page."""
+        return next((row for row in self.rows if isinstance(row, Button) and row.is_chosen), self.rows[0])
+
+    def items(self, lit: Widget | None) -> list[Item]:
+        """The items of the list. The row `lit` is lit."""
+        items = [filled(self.area, NIGHT)]
+        for row in self.rows:
+            items += row.items(row is lit)
+        return [*items, outline(self.area, SLATE)]
+
+
+def list_of(
+    choice: Choice, page: int | None, take: Callable[[str], object], turn: Callable[[int], object]
+) -> NameList:
+    """The list of a choice in a menu; `take` is called with the name that is picked.
+
+    The present name stands beside the row, if there is room. Names that do not fit are on further pages,
+    counted from 0; `turn` is called with the number of another page. None is the page of the present name.
+    """
+    names, present = list(choice.names), choice.present
+    width = min(2 * MARGIN + CHARACTER * max(map(len, names)), WORK.width)
+    most = LIST_ROWS * (WORK.width // width)
+    size = len(names) if len(names) <= most else most - 1
+    pages = [names[first : first + size] for first in range(0, len(names), size)]
+    if page is None:
+        page = names.index(present) // size if present in names else 0
+    cells = [
+        Button(
+            name,
+            f"{choice.label}: {name}. A click elsewhere closes the list.",
+            within=choice.key,
+            run=partial(take, name),
+            is_chosen=name == present,
+        )
+        for name in pages[page]
+    ]
+    if len(pages) > 1:
+        turns = partial(turn, (page + 1) % len(pages))
+        value = f"{page + 1} of {len(pages)}"
+        cells.append(Button("more", "The other names.", within=choice.key, run=turns, value=value))
+    columns = -(-len(cells) // LIST_ROWS)
+    rows = -(-len(cells) // columns)
+    beside = next((number for number, cell in enumerate(cells) if cell.is_chosen), 0) % rows
+    top = max(MENU.top, min(choice.area.top - ROW_LINES * beside, MENU.bottom + 1 - ROW_LINES * rows))
+    left = MENU.left - columns * width
+    placed = []
+    for number, cell in enumerate(cells):
+        column, row = divmod(number, rows)
+        x, y = left + width * column, top + ROW_LINES * row
+        placed.append(cell.at(Area(x, y, x + width - 1, y + ROW_LINES - 1)))
+    return NameList(Area(left, top, MENU.left - 1, top + ROW_LINES * rows - 1), placed)
+
+
+# Sections: headings that fold and unfold the rows below them, so that a long menu fits in one page.
+
+
+@dataclass(frozen=True)
+class Section(Widget):
+    """A heading over the rows up to the next section; a pick folds or unfolds them."""
+
+    is_open: bool = True
+    fold: Callable[[bool], object] = lambda _: None
+    """Called with whether the section is to be open."""
+
+    @property
+    def key(self) -> str:
+        return f"section {self.label}"
+
+    def items(self, lit: bool) -> list[Item]:
+        left, top, *_ = self.area
+        ground = SLATE if lit else NIGHT
+        middle = top + ROW_LINES // 2 - 1
+        sign = (left + MARGIN + 4, middle + 3, DOWN) if self.is_open else (left + MARGIN + 6, middle, RIGHT)
+        label = fitted(self.label, self.characters - 2)
+        return [
+            filled(self.area, ground),
+            pointer(*sign, YELLOW, ground),
+            text(label, left + MARGIN + 2 * CHARACTER, top + TEXT_DOWN, YELLOW, ground),
+        ]
+
+    def pick(self, place: Place) -> object:
+        return self.fold(not self.is_open)
+
+    def nudge(self, steps: float) -> object:
+        return self.fold(steps > 0)
+
+
+def folded(
+    rows: Sequence[Widget], folds: Mapping[str, bool], fold: Callable[[str, bool], object], lines: int
+) -> list[Widget]:
+    """The rows of a menu without the rows of its folded sections, which fit in `lines` if possible.
+
+    `folds` is for `open_sections`; `fold` is called with the label of a section and whether to open it.
+    """
+    sections = sections_of(rows)
+    if len(sections) == 1:
+        return list(rows)
+    always, *others = sections
+    heights = {section[0].label: lines_of(section[1:]) for section in others}
+    is_open = open_sections(heights, folds, lines - lines_of(always) - ROW_LINES * len(others))
+    shown = list(always)
+    for section, *inside in others:
+        assert isinstance(section, Section)
+        label = section.label
+        help = "A click folds these rows."
+        if label not in is_open:
+            labels = ", ".join(row.label for row in inside)
+            help = fitted(f"A click shows {labels}", MESSAGE_CHARACTERS)
+        shown.append(replace(section, help=help, is_open=label in is_open, fold=partial(fold, label)))
+        shown += inside if label in is_open else []
+    return shown
+
+
+def sections_of(rows: Sequence[Widget]) -> list[list[Widget]]:
+    """The rows before the first section, and each section with its rows."""
+    sections: list[list[Widget]] = [[]]
+    for row in rows:
+        if isinstance(row, Section):
+            sections.append([])
+        sections[-1].append(row)
+    return sections
+
+
+def open_sections(heights: Mapping[str, int], folds: Mapping[str, bool], room: int) -> set[str]:
+    """The sections that are open, by the heights of their rows and the lines of room for all of these rows.
+
+    `folds` has whether the user opened or folded a section, the last used section at the end. The section
+    used last is open in any case; the others are open while there is room: first the sections that the user
+    opened, the last used first, then the sections that the user has not touched, from the top.
+    """
+    used = [name for name in reversed(list(folds)) if folds[name] and name in heights]
+    is_open = set(used[:1])
+    room -= sum(heights[name] for name in is_open)
+    for name in (*used[1:], *(name for name in heights if name not in folds)):
+        if heights[name] <= room:
+            is_open.add(name)
+            room -= heights[name]
+    return is_open

@@ -114,18 +114,24 @@ class _Menu(NamedTuple):
     edge: float = 0.0
 
 
-def rows_of(row: Row, put: Put, world: World, leave_out: Sequence[str] = ()) -> list[Widget]:
+def rows_of(
+    row: Row, put: Put, world: World, leave_out: Sequence[str] = (), columns: Sequence[str] | None = None
+) -> list[Widget]:
     """The rows for a row of a table, in the order of its columns; `put` is called with the changed fields.
 
-    Columns of `leave_out`, tables, held ranges and absent vectors have no rows.
+    With `columns`, only these columns have rows, in this order. Columns of `leave_out`, tables, held ranges
+    and absent vectors have no rows.
     """
-    return list(_rows_in(_Menu(put, world), row, leave_out))
+    return list(_rows_in(_Menu(put, world), row, leave_out, columns))
 
 
-def _rows_in(menu: _Menu, row: Row, leave_out: Sequence[str] = ()) -> Iterator[Widget]:
-    for name, field in fields_of(type(row)).items():
+def _rows_in(
+    menu: _Menu, row: Row, leave_out: Sequence[str] = (), columns: Sequence[str] | None = None
+) -> Iterator[Widget]:
+    fields = fields_of(type(row))
+    for name in fields if columns is None else columns:
         if name not in leave_out:
-            yield from _rows_of_field(menu, name, field, vars(row)[name])
+            yield from _rows_of_field(menu, name, fields[name], vars(row)[name])
 
 
 def _rows_of_field(menu: _Menu, name: str, field: Field, value: Any) -> Iterator[Widget]:
@@ -290,6 +296,7 @@ def _list_rows(
             names=titles,
             present=titles[page],
             choose=lambda title: pages.__setitem__(what, titles.index(title)),
+            turns_pages=True,
         )
     for name in names[page * NAMES_A_PAGE : (page + 1) * NAMES_A_PAGE]:
         wanted = {*value} ^ {name}

@@ -15,6 +15,7 @@ from autocolor.widgets.items import (
     CHARACTER,
     CHARACTER_LINES,
     GRAY,
+    LEFT,
     LIGHT_GRAY,
     NIGHT,
     SLATE,
@@ -24,6 +25,7 @@ from autocolor.widgets.items import (
     Item,
     filled,
     fitted,
+    pointer,
     text,
 )
 
@@ -41,6 +43,9 @@ BOX: Final = 8
 
 LABEL_LETTERS: Final = 4
 """The fewest characters of a label that is cut."""
+
+MOST_IN_TURN: Final = 3
+"""Assumed: names that picks take one after the other; more names are shown in a list."""
 
 NOWHERE: Final = Area(0, 0, -1, -1)
 
@@ -82,6 +87,11 @@ class Widget:
     def key(self) -> str:
         """The name by which the widget is recognized on its screen when it is made again."""
         return f"{self.within}.{self.label}" if self.within else self.label
+
+    @property
+    def hint(self) -> str:
+        """The text of the message line while the pointer is over it."""
+        return self.why_not or self.help or self.label
 
     @property
     def typed(self) -> Typed | None:
@@ -258,15 +268,34 @@ class Steps(Widget):
 class Choice(Widget):
     """One of several names. A pick goes to the next name; at the left end of the row, to the name before.
 
-    A drag along the row runs through all names, from the first at the left end to the last.
+    In a menu, a pick on a choice that `has_list` opens a list instead. A drag along the row runs through all
+    names, from the first at the left end to the last.
     """
 
     names: Sequence[str] = ()
     present: str = ""
     choose: Callable[[str], object] = lambda _: None
+    turns_pages: bool = False
+    """Whether the names are pages, which are turned one after the other."""
+
+    @property
+    def has_list(self) -> bool:
+        """Whether a menu shows its names in a list."""
+        return len(self.names) > MOST_IN_TURN and not self.turns_pages
+
+    @property
+    def hint(self) -> str:
+        if self.why_not or not self.has_list:
+            return super().hint
+        return f"{super().hint.removesuffix('.')}; a click lists all {len(self.names)}."
 
     def items(self, lit: bool) -> list[Item]:
-        return self.labeled_row(lit, self.present)
+        items = self.labeled_row(lit, self.present)
+        if not self.has_list:
+            return items
+        left, top, *_ = self.area
+        sign = pointer(left + 1, top + ROW_LINES // 2 - 1, LEFT, LIGHT_GRAY, SLATE if lit else NIGHT)
+        return [*items, sign]
 
     def pick(self, place: Place) -> object:
         return self.nudge(-1 if place.element < self.area.left + 3 * MARGIN else 1)
@@ -289,7 +318,14 @@ class Choice(Widget):
 def page_choice(help: str, page: int, pages: int, turn: Callable[[int], object]) -> Choice:
     """A row that turns pages, counted from 0; `turn` is called with the number of another page."""
     names = [f"{number} of {pages}" for number in range(1, pages + 1)]
-    return Choice("page", help, names=names, present=names[page], choose=lambda name: turn(names.index(name)))
+    return Choice(
+        "page",
+        help,
+        names=names,
+        present=names[page],
+        choose=lambda name: turn(names.index(name)),
+        turns_pages=True,
+    )
 
 
 @dataclass(frozen=True)

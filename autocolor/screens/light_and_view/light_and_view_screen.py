@@ -40,7 +40,7 @@ from autocolor.screens.light_and_view.orthographic_views import (
     shown_points,
     side_at,
 )
-from autocolor.screens.light_parameters import parameter_rows, put_light
+from autocolor.screens.light_parameters import KIND, parameter_rows, put_light
 from autocolor.screens.picture.picture_edits import PictureEdits, side_name, target_of
 from autocolor.screens.screen import Cached, Handle, Screen
 from autocolor.screens.session import Session
@@ -59,11 +59,11 @@ from autocolor.widgets.items import (
     outline,
     text,
 )
+from autocolor.widgets.menu import Section
 from autocolor.widgets.widget import (
     NOWHERE,
     Button,
     Choice,
-    Gap,
     Pair,
     Place,
     Steps,
@@ -241,7 +241,7 @@ class LightAndViewScreen(Screen):
         session = self.session
         return [
             *light_rows(session, self.edits, self.chosen, self.choose),
-            Gap("view gap"),
+            Section("three views"),
             Steps("rescale", "RESCALE: move the three views farther or nearer.", step=self.zoom),
             Pair(
                 "fit all",
@@ -258,7 +258,7 @@ class LightAndViewScreen(Screen):
                 present=session.scene.front or UNKNOWN,
                 choose=self._face,
             ),
-            Gap("display gap"),
+            Section("display view"),
             Choice(
                 "display",
                 "DISPLAY VIEW: the picture, or the mesh, as the eye sees it.",
@@ -422,8 +422,8 @@ def flap_switches(
 
 # The menu's rows for the eye and the lights, and for columns of the chosen light that have no handle.
 
-COLUMNS: Final = ("concentration", "cone_angle", "flaps")
-"""The columns that have rows beside the kind; others have handles, or rows on the lights screen."""
+COLUMNS: Final = (KIND, "concentration", "cone_angle", "flaps")
+"""The columns that have rows; others have handles, or rows on the lights screen."""
 
 
 def light_rows(
@@ -434,12 +434,13 @@ def light_rows(
     `chosen` is the name of a light, or empty for the eye; `choose` is called with another name.
     """
     rows: list[Widget] = [
+        Section("eye & lights"),
         Button(
             "eye",
             "Choose the eye: its target can then be grabbed where a light's aim is, too.",
             run=partial(choose, ""),
             is_chosen=not chosen,
-        )
+        ),
     ]
     for number, light in enumerate(session.scene.lights, start=1):
         rows.append(
@@ -454,6 +455,5 @@ def light_rows(
         )
     if chosen:
         light = session.scene.light(chosen)
-        others = [name for name in vars(light) if name not in COLUMNS]
-        rows += [Gap("light gap"), *parameter_rows(session, light, others)]
+        rows += [Section("chosen light"), *parameter_rows(session, light, COLUMNS)]
     return rows

@@ -62,19 +62,19 @@ Source = tuple[Vector, Vector | None]
 
 
 class LightHandles:
-    """The highlights of all lights, and with `has_rims` the rims of the chosen light, in an area."""
+    """The highlights of all lights, and with `has_rims` the rims of the chosen light, in `area`."""
 
     def __init__(self, session: Session, area: Area, has_rims: bool) -> None:
         self.session = session
-        self._area = area
+        self.area = area
         self._has_rims = has_rims
         self._placed: tuple[str, Source, VisiblePoints, tuple[int, int]] | None = None
         """A light, its source, the visible points, and the line and element where the highlight was placed.
         It is there without a search: other pixels may be as bright."""
         self._searched: dict[str, tuple[object, str, tuple[int, int] | None]] = {}
         """The planes of each light, the chosen surface, and the line and element of the highlight."""
-        self._rims: tuple[Light, VisiblePoints, Sequence[Handle], Sequence[Item]] | None = None
-        """A light, the visible points, and the handles and marks at its rims."""
+        self._rims: tuple[Light, VisiblePoints, Area, Sequence[Handle], Sequence[Item]] | None = None
+        """A light, the visible points, the area, and the handles and marks at the light's rims there."""
 
     def handles(self) -> Sequence[Handle]:
         """The handles of the lights that are on; none while something moves."""
@@ -117,7 +117,7 @@ class LightHandles:
             if is_chosen or not self.session.moving:
                 for each in self._at_highlight(light):
                     items += highlight_items(
-                        each.element, each.line, self._area, YELLOW if is_chosen else WHITE
+                        each.element, each.line, self.area, YELLOW if is_chosen else WHITE
                     )
         return items
 
@@ -125,7 +125,7 @@ class LightHandles:
         """Let the light follow a handle to a place. Raises UsageError on the background."""
         key, session = _key_of(handle), self.session
         # The menu covers the places beside the area.
-        element, line = min(element, self._area.right), min(line, self._area.bottom)
+        element, line = min(element, self.area.right), min(line, self.area.bottom)
         scene, seen = session.scene, session.studio.seen_at(line, element)
         if key.what == HIGHLIGHT:
             scene = highlight_placed(scene, seen, key.light)
@@ -163,7 +163,7 @@ class LightHandles:
             return []
         line, element = place
         handle = Handle(HandleKey(light.name, HIGHLIGHT), element, line, f"highlight of {light.name}")
-        return [handle] if self._area.has(element, line) else []
+        return [handle] if self.area.has(element, line) else []
 
     def _search(self, light: str) -> tuple[int, int] | None:
         """Where the highlight of a light is: where it is seen, else the pixel with the largest cos(E)."""
@@ -184,19 +184,19 @@ class LightHandles:
 
     def _at_rims(self, light: Light) -> tuple[Sequence[Handle], Sequence[Item]]:
         """The handles and the marks at the rims in the area."""
-        sight, area = self.session.studio.sight, self._area
+        sight, area = self.session.studio.sight, self.area
         if not self._has_rims:
             return (), ()
         cached = self._rims
-        if cached is None or cached[0] != light or cached[1] is not sight.points:
+        if cached is None or cached[0] != light or cached[1] is not sight.points or cached[2] != area:
             handles: list[Handle] = []
             items: list[Item] = []
             for rim, pixels in rims(sight, light.name).items():
                 seen = pixels[(pixels <= (area.bottom, area.right)).all(axis=1)]
                 handles += rim_handles(light.name, rim, seen)
                 items += rim_items(seen, area)
-            cached = self._rims = light, sight.points, handles, items
-        return cached[2:]
+            cached = self._rims = light, sight.points, area, handles, items
+        return cached[3:]
 
 
 def rim_handles(light: str, rim: Rim, pixels: Indices) -> list[Handle]:

@@ -49,13 +49,13 @@ class OverPicture(Screen):
     def items(self) -> Sequence[Item]:
         """The legend of a scalar."""
         image = self.session.comparing.image or self.session.studio.image
-        is_beside_menu = self.has_menu or self.is_under_menu
+        is_under_menu = self.is_under_menu
 
         def draw() -> Sequence[Item]:
-            self._legend = legend(image, MENU.left if is_beside_menu else None, self.corners)
+            self._legend = legend(image, MENU.left if is_under_menu else None, self.corners)
             return legend_items(self._legend)
 
-        return self._items.of(draw, image, is_beside_menu)
+        return self._items.of(draw, image, is_under_menu)
 
     def loads(self) -> Sequence[tuple[int, Bytes]]:
         image = self.session.comparing.image

@@ -14,7 +14,8 @@ from autocolor.screens.picture.picture_edits import sides_of
 from autocolor.screens.screen import Handle
 from autocolor.screens.session import PICTURE, Session
 from autocolor.widgets.items import SCREEN
-from autocolor.widgets.widget import Button, Choice, Gap, Pair, Steps, Switch, Widget, titled
+from autocolor.widgets.menu import Section
+from autocolor.widgets.widget import Button, Choice, Pair, Steps, Switch, Widget, titled
 
 TURN: Final = 5.0
 """Degrees for each step of a menu row that turns."""
@@ -58,13 +59,14 @@ class PictureScreen(OverPicture):
             *self._up_rows(),
             surface_row(
                 session,
-                "The surface whose colors and reflectance you change; a click in the picture chooses, too.",
+                "The surface that you edit; a click in the picture chooses, too.",
             ),
+            Section("light switches"),
             *self._light_rows(),
-            Gap("view gap"),
+            Section("turn & move"),
             Choice(
                 "view",
-                "A click looks from the next side; at the left end, from the side before.",
+                "Look at the object from a side.",
                 names=tuple(sides_of(session.scene)),
                 present=edits.side,
                 choose=edits.see_from,
@@ -81,6 +83,7 @@ class PictureScreen(OverPicture):
                 signs=("<", ">"),
             ),
             Steps("lift", "Move the picture down or up.", step=lambda n: edits.pan(0, -n * PAN)),
+            Section("other actions"),
             Pair(
                 "rescale",
                 "Fill the picture with the object, or with the chosen surface.",
@@ -100,7 +103,6 @@ class PictureScreen(OverPicture):
                 "Let the picture come in line by line, as in 1983.",
                 run=partial(setattr, session, "watches", True),
             ),
-            Gap("leave gap"),
             Button(
                 "leave", "Leave the program; you are asked first about unsaved changes.", run=session.leave
             ),
@@ -130,7 +132,7 @@ class PictureScreen(OverPicture):
             return switches
         alone = Pair(
             "alone",
-            f"Switch on {titled('light', chosen)} alone; or all lights.",
+            f"Switch on {titled('light', chosen)} alone, and again: the lights as before; or all lights.",
             run=partial(session.light_alone, chosen),
             other="all on",
             run_other=session.all_lights_on,

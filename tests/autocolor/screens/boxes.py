@@ -65,9 +65,11 @@ def undo(hand: Hand) -> None:
 
 
 def words_are_those_of_the_scene(hand: Hand) -> bool:
-    """Whether the display has the words of the picture, but for the lines that stand over it."""
+    """Whether the display has the words of the picture beside panels, but for lines over it."""
     display, studio = hand.viewer.display, hand.viewer.studio
     assert isinstance(display, Ramtek9300)
-    shown, words = display.words[:200, :500], studio.words[:200, :500]
+    shown, words = np.array(display.words[:200, :500]), studio.words[:200, :500]
+    for left, top, right, bottom in (widget.area for widget in hand.viewer.board.layout.beside):
+        shown[top : bottom + 1, left : right + 1] = words[top : bottom + 1, left : right + 1]
     others = shown[shown != words]
     return len(others) < words.size // 50 and bool((others >= SCREENS.first).all())

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from autocolor.screens.board import rows_of_menu
 from autocolor.screens.viewer import Viewer
+from autocolor.widgets.menu import Section, sections_of
 from autocolor.widgets.widget import Widget
 from ramtek_emu import Ramtek9300
 
@@ -46,15 +48,32 @@ class Hand:
         self.move(639, 200)
 
     def widget(self, label: str) -> Widget:
-        """A widget that can be seen, by its label; pages of the menu are turned as far as needed."""
+        """A widget that can be seen, by its label.
+
+        If needed, its section of the menu is opened, and pages are turned; these are steps, too.
+        """
         for _ in range(8):
             for each in self.viewer.board.widgets():
                 if each.label == label:
                     return each
+            folded = self._folded_section_of(label)
             if label == "more":
                 break
-            self.pick("more")
+            self.pick(folded or "more")
         raise AssertionError(f"{label!r} is not among {[each.label for each in self.viewer.board.widgets()]}")
+
+    def _folded_section_of(self, label: str) -> str:
+        """The label of the folded section of the menu with a row; empty if there is none."""
+        board = self.viewer.board
+        folded = [row.label for row in board.layout.rows if isinstance(row, Section) and not row.is_open]
+        rows = rows_of_menu(self.viewer.session, board.screen, self.viewer.screens.values())
+        sections = [section for section in sections_of(rows)[1:] if section[0].label in folded]
+        return next((s[0].label for s in sections if any(row.label == label for row in s[1:])), "")
+
+    def choose(self, label: str, name: str) -> None:
+        """Choose a name from the list of a row."""
+        self.pick(label)
+        self.pick(name)
 
     def pick(self, label: str, share: float = 0.25) -> None:
         """Click a widget at a share of its width."""

@@ -169,3 +169,18 @@ def test_leaving_restores_words_and_entries_byte_for_byte(tmp_path: Path, count:
     assert hand.viewer.studio.scene is not before
     hand.leave()
     assert hand.is_as_sent(hand.viewer.studio.scene)
+
+
+def test_hidden_panels_take_the_bar_away_and_bring_the_legend(tmp_path: Path) -> None:
+    hand = blending(boxes_scene().with_scalar(name="z", legend=True), tmp_path)
+    screen = hand.viewer.board.screen
+    assert not screen.items()
+    hand.open_menu()
+    hand.pick("hide panels")
+    hand.move(20, 20)
+    assert "blend level" not in {each.label for each in hand.viewer.board.widgets()}
+    assert screen.items()
+    hand.open_menu()
+    hand.pick("show panels")
+    assert bar_of(hand)
+    assert not screen.items()

@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from autocolor.arrays import Words
 from autocolor.errors import UsageError
 from autocolor.screens.board import (
     MESSAGE,
-    MOST_CHARACTERS,
     REACH,
     Board,
     Layout,
@@ -44,9 +44,9 @@ from autocolor.widgets.items import (
     text,
 )
 from autocolor.widgets.letters import PANEL as LETTER_PANEL
-from autocolor.widgets.menu import MENU, WIDE_BAR, laid_out, page_of_menu
+from autocolor.widgets.menu import MENU, MESSAGE_CHARACTERS, WIDE_BAR, Section, laid_out, page_of_menu
 from autocolor.widgets.sheet import Sheet
-from autocolor.widgets.widget import Button, Entry, Place, Widget
+from autocolor.widgets.widget import Button, Choice, Entry, Place, Widget
 from ramtek_emu import PRINCETON_9300, Ramtek9300
 from tests.autocolor.screens.boards import Desk, desk_viewer, middle_of, point
 from tests.autocolor.sessions import car
@@ -488,12 +488,12 @@ def test_the_nearest_handle_within_reach_comes_first_the_last_of_those_as_near(
 def test_the_wide_bar_covers_what_is_below_it(tmp_path: Path) -> None:
     screen = desk_viewer(tmp_path).board.screen
     rows = laid_out([Bar("ambient"), Button("go")])
-    closed, opened = (Layout(screen, rows, wide_key=key) for key in ("", "ambient"))
+    closed, opened = (Layout(screen, rows, opened=key) for key in ("", "ambient"))
     place = (100, WIDE_BAR.top + 3)
     assert not closed.is_covered(*place)
     assert opened.is_covered(*place)
     assert opened.widget_at(*place) is opened.wide
-    assert Layout(screen, rows, wide_key="gone").wide is None
+    assert Layout(screen, rows, opened="gone").wide is None
 
 
 def test_a_widget_is_found_again_by_its_key_and_stays_where_it_was_grabbed(board: Board) -> None:
@@ -575,7 +575,7 @@ def test_a_handle_is_held_and_placed_and_the_screen_dragged_step_by_step(viewer:
 
 def test_a_message_that_fits_fills_its_line_and_nothing_else() -> None:
     display = Ramtek9300()
-    for item in message_items([MessagePart("x" * MOST_CHARACTERS, WHITE)], MENU.left):
+    for item in message_items([MessagePart("x" * MESSAGE_CHARACTERS, WHITE)], MENU.left):
         assert MESSAGE.covers(item.area)
         display.send(np.frombuffer(item.stream, np.uint16))
     assert not display.words[: MESSAGE.top].any()
@@ -805,3 +805,284 @@ def test_undo_and_redo_are_dim_while_there_is_no_step_for_them(tmp_path: Path) -
     session.undo()
     assert inks() == [GRAY, WHITE, WHITE]
     assert not last_rows(session, viewer.screens["desk"])[1].why_not
+
+
+# Lists, sections and hiding.
+
+NAMES = ("matte", "gloss", "chrome", "satin", "glass")
+
+
+class Room(Screen):
+    """A screen over the picture with a list, sections, and a panel."""
+
+    name = "room"
+    title = "room"
+    help = "the room"
+    shows_picture = True
+
+    def __init__(self, session: Session) -> None:
+        super().__init__(session)
+        self.chosen = "chrome"
+        self.rows_of: dict[str, int] = {"near": 3, "far": 15, "farther": 15}
+        self.did: list[str] = []
+
+    def base(self) -> Words:
+        return self.session.studio.words
+
+    def rows(self) -> list[Widget]:
+        def choose(name: str) -> None:
+            if name == "glass":
+                raise UsageError("a finish must not be glass; choose another")
+            self.chosen = name
+
+        rows: list[Widget] = [
+            Choice("finish", "The finish.", names=NAMES, present=self.chosen, choose=choose),
+            Choice("page", names=("1", "2", "3", "4"), present="1", choose=self.did.append, turns_pages=True),
+        ]
+        for title, count in self.rows_of.items():
+            rows += [Section(title), *(self._button(f"{title} {number}") for number in range(count))]
+        return rows
+
+    def widgets(self) -> list[Widget]:
+        return [self._button("panel").at(Area(8, 8, 99, 23))]
+
+    def handles(self) -> list[Handle]:
+        return [Handle("covered", 470, 30, "?"), Handle("free", 300, 200, "a handle")]
+
+    def pick(self, gesture: Gesture) -> None:
+        self.did.append("pick")
+
+    def drag(self, start: Gesture, last: Gesture, now: Gesture) -> None:
+        self.did.append("drag")
+
+    def _button(self, label: str) -> Button:
+        return Button(label, run=lambda: self.did.append(label))
+
+
+@pytest.fixture
+def room(viewer: Viewer) -> Room:
+    room = viewer.screens["room"] = Room(viewer.session)
+    viewer.session.turn_to("room")
+    viewer.tell("")
+    return room
+
+
+def labels(board: Board) -> list[str]:
+    return [widget.label for widget in board.widgets()]
+
+
+def pick(viewer: Viewer, label: str) -> None:
+    point(viewer, "pick", *middle_of(viewer.board, label))
+
+
+def hint_at(viewer: Viewer, label: str) -> str:
+    point(viewer, "hover", *middle_of(viewer.board, label))
+    return viewer.board.messages[-1].text
+
+
+def test_a_row_of_many_names_opens_a_list_from_which_a_name_is_taken(viewer: Viewer, room: Room) -> None:
+    board = viewer.board
+    assert hint_at(viewer, "finish") == "The finish; a click lists all 5."
+    assert "gloss" not in labels(board)
+    pick(viewer, "finish")
+    assert room.chosen == "chrome"
+    assert labels(board)[: len(NAMES)] == list(NAMES)
+    assert board.messages[-1].text == "finish: pick a name on the list; a pick on the row takes it away"
+    assert hint_at(viewer, "gloss") == "finish: gloss. A click elsewhere closes the list."
+    assert is_drawn_whole(viewer)
+    pick(viewer, "gloss")
+    assert room.chosen == "gloss"
+    assert "gloss" not in labels(board)
+    assert is_drawn_whole(viewer)
+
+
+def test_rows_that_turn_pages_and_drags_and_the_wheel_open_no_list(viewer: Viewer, room: Room) -> None:
+    pick(viewer, "page")
+    assert room.did == ["2"]
+    element, line = middle_of(viewer.board, "finish")
+    viewer.point(Gesture("wheel", element, line, steps=1))
+    assert room.chosen == "satin"
+    for kind, place in (("grab", element), ("drag", MENU.left), ("drop", MENU.left)):
+        point(viewer, kind, place, line)
+    assert room.chosen == "matte"
+    assert "gloss" not in labels(viewer.board)
+
+
+def test_the_row_and_escape_and_a_pick_elsewhere_close_a_list(viewer: Viewer, room: Room) -> None:
+    board = viewer.board
+    for close in (
+        lambda: pick(viewer, "finish"),
+        lambda: viewer.on_key("escape"),
+        # Beside the menu, this pick does nothing else: neither the screen, nor its panel or handle has it.
+        lambda: point(viewer, "pick", 200, 300),
+        lambda: pick(viewer, "panel"),
+        lambda: point(viewer, "pick", 302, 200),
+    ):
+        pick(viewer, "finish")
+        assert "gloss" in labels(board)
+        close()
+        assert "gloss" not in labels(board)
+        assert (room.chosen, room.did, board.held) == ("chrome", [], None)
+        assert is_drawn_whole(viewer)
+    pick(viewer, "finish")
+    pick(viewer, "near 1")
+    assert room.did == ["near 1"]
+    assert "gloss" not in labels(board)
+    pick(viewer, "finish")
+    for kind, element in (("grab", 100), ("drag", 120), ("drop", 120)):
+        point(viewer, kind, element, 300)
+    assert room.did == ["near 1", "drag"]
+    assert "gloss" not in labels(board)
+
+
+def test_a_list_over_a_picture_covers_what_is_below_it(viewer: Viewer, room: Room) -> None:
+    assert viewer.board.handle_at(470, 30) is not None
+    pick(viewer, "finish")
+    (area,) = {viewer.board.layout.listed.area} if viewer.board.layout.listed else {SCREEN}
+    assert area.has(470, 30)
+    assert viewer.board.handle_at(470, 30) is None
+
+
+def test_a_name_that_is_refused_leaves_the_list_open(viewer: Viewer, room: Room) -> None:
+    pick(viewer, "finish")
+    pick(viewer, "glass")
+    assert viewer.message == "a finish must not be glass; choose another"
+    assert room.chosen == "chrome"
+    pick(viewer, "satin")
+    assert room.chosen == "satin"
+
+
+def test_keys_go_through_a_list_and_back_to_its_row(viewer: Viewer, room: Room) -> None:
+    board = viewer.board
+    viewer.on_key("tab")
+    while board.lit != "finish":
+        viewer.on_key("down")
+    viewer.on_key("return")
+    assert board.lit == "finish.chrome"
+    viewer.on_key("down")
+    assert board.lit == "finish.satin"
+    viewer.on_key("down")
+    viewer.on_key("down")
+    assert board.lit == "finish.matte"
+    viewer.on_key("return")
+    assert room.chosen == "matte"
+    assert board.lit == "finish"
+    viewer.on_key("return")
+    assert board.lit == "finish.matte"
+    viewer.on_key("escape")
+    assert (board.lit, room.chosen) == ("finish", "matte")
+    assert board.has_focus
+
+
+def test_the_menu_of_the_picture_stays_while_its_list_is_open(viewer: Viewer) -> None:
+    board = viewer.board
+    viewer.session.turn_to("picture")
+    viewer.tell("")
+    point(viewer, "hover", 638, 100)
+    pick(viewer, "view")
+    assert board.layout.listed is not None
+    point(viewer, "hover", 100, 100)
+    assert board.has_menu
+    point(viewer, "pick", 100, 100)
+    assert not board.has_menu
+
+
+def test_sections_fold_and_unfold_and_each_screen_keeps_its_own(viewer: Viewer, room: Room) -> None:
+    board = viewer.board
+    assert {"near 0", "far 14"} <= set(labels(board))
+    assert "farther 0" not in labels(board)
+    assert hint_at(viewer, "farther").startswith("A click shows farther 0, farther 1, ")
+    assert hint_at(viewer, "far") == "A click folds these rows."
+    pick(viewer, "farther")
+    assert {"near 0", "farther 14"} <= set(labels(board))
+    assert "far 0" not in labels(board)
+    pick(viewer, "near")
+    assert "near 0" not in labels(board)
+    assert is_drawn_whole(viewer)
+    viewer.session.turn_to("desk")
+    viewer.tell("")
+    viewer.session.turn_to("room")
+    viewer.tell("")
+    assert not {"near 0", "far 0"} & set(labels(board))
+    assert "farther 14" in labels(board)
+    assert "more" not in labels(board)
+
+
+def test_the_section_of_a_row_that_was_used_stays_open_when_it_grows(viewer: Viewer, room: Room) -> None:
+    pick(viewer, "far 3")
+    room.rows_of["far"] = 18
+    viewer.tell("")
+    assert "far 17" in labels(viewer.board)
+    assert "near 0" not in labels(viewer.board)
+
+
+def test_the_rows_at_the_end_of_the_menu_are_in_no_section(viewer: Viewer, room: Room) -> None:
+    pick(viewer, "compare")
+    assert "farther 0" not in labels(viewer.board)
+    assert "far 0" in labels(viewer.board)
+
+
+def test_a_section_that_is_too_long_alone_comes_in_pages(viewer: Viewer, room: Room) -> None:
+    room.rows_of["farther"] = 40
+    viewer.tell("")
+    pick(viewer, "farther")
+    seen: set[str] = set()
+    for _ in range(3):
+        seen |= set(labels(viewer.board))
+        pick(viewer, "more")
+    assert {f"farther {number}" for number in range(40)} <= seen
+
+
+def test_one_key_hides_the_menu_and_all_panels_and_brings_them_back(viewer: Viewer, room: Room) -> None:
+    board = viewer.board
+    assert "panel" in labels(board)
+    viewer.on_key("h", typed="h")
+    assert labels(board) == []
+    assert not board.has_menu
+    assert "H shows them again" in viewer.message
+    viewer.tell("")
+    assert np.array_equal(display_of(viewer).words, viewer.studio.words)
+    # The picture below is free, and the menu comes on demand.
+    point(viewer, "pick", 20, 15)
+    assert room.did == ["pick"]
+    point(viewer, "hover", 638, 100)
+    assert board.has_menu
+    assert "panel" not in labels(board)
+    viewer.on_key("h", typed="h")
+    assert "panel" in labels(board)
+    assert board.has_menu
+    assert is_drawn_whole(viewer)
+
+
+def test_a_row_hides_the_panels_and_a_row_at_the_right_edge_brings_them_back(
+    viewer: Viewer, room: Room
+) -> None:
+    board = viewer.board
+    pick(viewer, "hide panels")
+    assert labels(board) == []
+    point(viewer, "hover", 100, 100)
+    point(viewer, "hover", 638, 100)
+    pick(viewer, "show panels")
+    assert "panel" in labels(board)
+
+
+def test_escape_and_another_screen_bring_hidden_panels_back(viewer: Viewer, room: Room) -> None:
+    viewer.on_key("h", typed="h")
+    viewer.on_key("escape")
+    assert "panel" in labels(viewer.board)
+    assert viewer.page == "room"
+    viewer.on_key("h", typed="h")
+    viewer.session.turn_to("desk")
+    viewer.tell("")
+    assert "ambient" in labels(viewer.board)
+    assert "hide panels" not in labels(viewer.board)
+
+
+def test_hidden_widgets_over_every_screen_come_back_too(viewer: Viewer, room: Room) -> None:
+    viewer.board.over = lambda: [Button("over", area=Area(100, 400, 200, 415))]
+    viewer.tell("")
+    assert "over" in labels(viewer.board)
+    viewer.on_key("h", typed="h")
+    assert "over" not in labels(viewer.board)
+    viewer.on_key("h", typed="h")
+    assert "over" in labels(viewer.board)

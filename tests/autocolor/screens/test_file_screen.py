@@ -360,10 +360,7 @@ def test_the_up_axis_of_a_mesh_is_chosen_before_it_is_opened(hand: Hand, folder:
 
 
 def test_the_scale_of_a_mesh_is_chosen_before_it_is_opened(hand: Hand) -> None:
-    row = next(each for each in hand.viewer.board.layout.rows if each.label == "mesh scale")
-    # From 1 to 10 and 100.
-    for _ in range(2):
-        hand.click(row.area.right - 8, row.area.top + 8)
+    hand.choose("mesh scale", "100")
     pick(hand, "deeper")
     pick(hand, "triangle.obj")
     assert scene_of(hand).mesh.coordinates.max() == 100
@@ -371,11 +368,10 @@ def test_the_scale_of_a_mesh_is_chosen_before_it_is_opened(hand: Hand) -> None:
 
 def test_the_scale_of_the_command_line_can_be_pointed_at(hand: Hand) -> None:
     hand.viewer.session.place_meshes("y", 25.4)
-    row = next(each for each in hand.viewer.board.layout.rows if each.label == "mesh scale")
     choice = next(each for each in hand.viewer.board.screen.rows() if each.label == "mesh scale")
     assert isinstance(choice, Choice)
     assert choice.names == ("0.001", "0.01", "0.0254", "0.3048", "1", "10", "25.4", "100", "1000")
-    hand.click(row.area.right - 8, row.area.top + 8)
+    hand.choose("mesh scale", "100")
     assert (hand.viewer.session.mesh_up, hand.viewer.session.mesh_scale) == ("y", 100)
 
 

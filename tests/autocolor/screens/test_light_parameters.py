@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from autocolor import Light, Scene, scene_of
+from autocolor.scene.columns import fields_of
 from autocolor.screens.light_parameters import (
     AIM,
     DIRECTION,
@@ -35,7 +36,7 @@ def session_of(light: Light) -> Session:
 
 def row_of(session: Session, label: str, name: str = "key") -> Choice:
     """A choice among the rows of a light."""
-    rows = parameter_rows(session, session.scene.light(name))
+    rows = parameter_rows(session, session.scene.light(name), ["kind", "follows", "falloff"])
     (row,) = [row for row in rows if isinstance(row, Choice) and row.label == label]
     return row
 
@@ -46,13 +47,10 @@ def test_the_kind_of_a_light_is_told_by_what_it_has() -> None:
     assert kind_of(Light("key", (0.0, 0.0, 0.0))) == POINT
 
 
-def test_the_row_of_the_kind_stands_before_what_only_some_kinds_have() -> None:
+def test_the_rows_are_in_the_order_of_the_columns_with_the_kind_among_them() -> None:
     session = session_of(AIMED)
-    for leave_out in ([], ["name", "position"]):
-        labels = [row.label for row in parameter_rows(session, AIMED, leave_out)]
-        assert labels[labels.index("kind") - 1 : labels.index("kind") + 2] == ["on", "kind", "aim x"]
-    without = parameter_rows(session, AIMED, ["aim", "concentration", "cone_angle", "flaps"])
-    assert [row.label for row in without][-1] == "kind"
+    labels = [row.label for row in parameter_rows(session, AIMED, ["on", "kind", "aim", "intensity"])]
+    assert labels == ["on", "kind", "aim x", "aim y", "aim z", "intensity"]
 
 
 def test_every_kind_can_be_chosen_from_every_other() -> None:
@@ -83,9 +81,10 @@ def test_a_point_source_has_no_concentration_and_no_cone() -> None:
     choose_kind(session, AIMED, POINT)
     light = session.scene.light("key")
     assert (light.concentration, light.cone_angle) == (0.0, None)
-    dim = {row.label for row in parameter_rows(session, light) if row.why_not == NEEDS_AXIS}
+    columns = tuple(fields_of(Light))
+    dim = {row.label for row in parameter_rows(session, light, columns) if row.why_not == NEEDS_AXIS}
     assert dim == {"concentration", "cone angle", "inner angle", "at infinity"}
-    assert not any(row.why_not for row in parameter_rows(session, AIMED))
+    assert not any(row.why_not for row in parameter_rows(session, AIMED, columns))
 
 
 def test_the_row_of_the_kind_goes_on_to_the_next() -> None:

@@ -7,14 +7,25 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from autocolor import HalfSpace, Light, View, read_rig
+from autocolor import HalfSpace, Light, Scene, View, read_rig
 from autocolor.scene.columns import keys_of
 from autocolor.scene.following import detached
 from autocolor.scene.lights import Links
 from autocolor.screens.light_parameters import AIM, DIRECTION, POINT
-from autocolor.screens.lights_screen import is_lit_side, places_of, turned
+from autocolor.screens.lights_screen import (
+    LIGHTS_A_PAGE,
+    LightList,
+    LightRow,
+    LightsScreen,
+    is_lit_side,
+    places_of,
+    turned,
+)
+from autocolor.screens.session import Session
 from autocolor.widgets.bars import Bar
-from autocolor.widgets.items import SCREEN
+from autocolor.widgets.items import SCREEN, Area
+from autocolor.widgets.menu import WORK
+from autocolor.widgets.widget import Button, Place, Widget
 from tests.autocolor.screens.boxes import (
     KEY,
     boxes,
@@ -172,14 +183,6 @@ def test_the_kind_goes_back_at_the_left_end_of_its_row(hand: Hand) -> None:
     assert hand.widget("kind").present == DIRECTION  # type: ignore[attr-defined]
 
 
-def test_one_light_alone_and_all(hand: Hand) -> None:
-    hand.pick("alone")
-    assert [light.on for light in hand.viewer.studio.scene.lights] == [True, False]
-    assert told(hand) == ("light key alone", False)
-    hand.pick("alone", 0.75)
-    assert all(light.on for light in hand.viewer.studio.scene.lights)
-
-
 def test_one_light_alone_from_the_menu_of_the_picture(hand: Hand) -> None:
     hand.pick("< picture")
     hand.open_menu()
@@ -261,11 +264,10 @@ def test_sixteen_lights_with_long_names_are_all_reached(tmp_path: Path) -> None:
     lights = [KEY.replace(name=f"studio light above the roof, number {each}") for each in range(16)]
     hand = hand_at(tmp_path, "lights", boxes().replace(lights=lights))
     seen = []
-    for _ in range(len(lights)):
+    for light in lights:
+        hand.choose("light", light.name)
         seen.append(hand.viewer.session.light_name)
-        hand.pick("light")
     assert seen == [light.name for light in lights]
-    assert hand.viewer.session.light_name == lights[0].name
     hand.pull("light", 0.0, 1.0)
     assert hand.viewer.session.light_name == lights[-1].name
     hand.pull("light", 1.0, 0.45)
@@ -487,7 +489,7 @@ def test_another_screen_ends_the_picking(hand: Hand) -> None:
 def test_nothing_else_is_grabbed_while_points_are_picked(hand: Hand) -> None:
     assert hand.viewer.board.screen.handles()
     hand.pick("half spaces")
-    assert hand.viewer.board.screen.handles() == ()
+    assert not hand.viewer.board.screen.handles()
 
 
 def test_a_point_of_the_picture_is_marked_where_it_is_seen(hand: Hand) -> None:
@@ -518,3 +520,150 @@ def test_the_lit_side_faces_the_light_or_else_the_eye() -> None:
         assert is_lit_side(turned(plane), light, view) != lit
     on_both = view.replace(eye=(3.0, 0.0, 0.0))
     assert is_lit_side(plane, Light("light", (3.0, 0.0, 0.0)), on_both)
+
+
+# The light list.
+
+
+def row_of(hand: Hand, name: str) -> LightRow:
+    rows = [each for each in hand.viewer.board.widgets() if isinstance(each, LightRow) and each.label == name]
+    return rows[0]
+
+
+def click_at(hand: Hand, name: str, element: int) -> None:
+    hand.click(element, row_of(hand, name).area.top + 8)
+
+
+def many_lights(count: int) -> Scene:
+    return boxes().replace(lights=[KEY.replace(name=f"lamp {each}") for each in range(count)])
+
+
+def test_the_list_shows_and_sets_every_light(hand: Hand) -> None:
+    before = hand.viewer.studio.scene
+    fill = row_of(hand, "fill")
+    assert (fill.numeral, fill.is_on, fill.value) == (2, True, 0.5)
+    assert not fill.is_chosen
+    assert not fill.is_solo
+    click_at(hand, "fill", fill.area.left + 30)
+    assert hand.viewer.session.light_name == "fill"
+    assert row_of(hand, "fill").is_chosen
+    assert hand.viewer.studio.scene is before
+    click_at(hand, "fill", fill._box.left + 3)
+    assert not light_of(hand, "fill").on
+    assert light_of(hand) == KEY
+    undo(hand)
+    click_at(hand, "key", fill._track.left + fill._track.width // 4)
+    assert light_of(hand).intensity == pytest.approx(0.5, abs=0.05)
+    assert light_of(hand, "fill").intensity == 0.5
+
+
+def test_a_drag_along_a_bar_of_the_list_is_one_step_and_other_drags_do_nothing(hand: Hand) -> None:
+    before, row = hand.viewer.studio.scene, row_of(hand, "fill")
+    track, line = row._track, row.area.top + 8
+    hand.drag((track.left, line), (track.left + 9, line), (track.right + 200, line + 90))
+    assert light_of(hand, "fill") == before.light("fill").replace(intensity=2.0)
+    undo(hand)
+    assert hand.viewer.studio.scene is before
+    for start in (row.area.left + 20, row._box.left + 3, row.area.right - 12):
+        hand.drag((start, line), (start + 9, line), (start + 30, line))
+        assert hand.viewer.studio.scene is before
+
+
+def test_solo_shows_a_light_alone_and_again_the_lights_as_before(hand: Hand) -> None:
+    hand.viewer.session.change_light("key", on=False)
+    hand.viewer.tell("")
+    end = row_of(hand, "key").area.right - 12
+    click_at(hand, "key", end)
+    assert [light.on for light in hand.viewer.studio.scene.lights] == [True, False]
+    assert row_of(hand, "key").is_solo
+    click_at(hand, "key", end)
+    assert [light.on for light in hand.viewer.studio.scene.lights] == [False, True]
+    assert not row_of(hand, "key").is_solo
+    hand.pick("all lights on")
+    assert all(light.on for light in hand.viewer.studio.scene.lights)
+
+
+def test_every_place_of_a_row_of_the_list_does_one_thing(hand: Hand) -> None:
+    did: list[object] = []
+    row = LightRow(
+        "key",
+        area=row_of(hand, "key").area,
+        high=2.0,
+        put=lambda value: did.append("put"),
+        choose=lambda: did.append("choose"),
+        switch=lambda: did.append("switch"),
+        solo=lambda: did.append("solo"),
+    )
+    for element in range(row.area.left, row.area.right + 1):
+        count = len(did)
+        row.pick(Place(element, row.area.top))
+        # Between the bar and solo is the number, which does nothing.
+        assert len(did) <= count + 1
+    assert list(dict.fromkeys(did)) == ["choose", "switch", "put", "solo"]
+    assert did.count("switch") >= 12
+    assert did.count("solo") >= 28
+
+
+def test_the_list_has_pages_and_shows_the_chosen_light(tmp_path: Path) -> None:
+    hand = hand_at(tmp_path, "lights", many_lights(30))
+    assert [each.label for each in hand.viewer.board.layout.beside if isinstance(each, LightRow)] == [
+        f"lamp {number}" for number in range(LIGHTS_A_PAGE)
+    ]
+    assert WORK.covers(hand.viewer.board.layout.beside[-1].area)
+    hand.choose("light", "lamp 25")
+    assert row_of(hand, "lamp 25").is_chosen
+    assert row_of(hand, "lamp 29").numeral == 30
+    hand.pick("page", 0.05)
+    click_at(hand, "lamp 13", row_of(hand, "lamp 13").area.left + 30)
+    assert row_of(hand, "lamp 13").is_chosen
+
+
+def test_the_list_folds_to_its_heading(hand: Hand) -> None:
+    hand.pick("light list")
+    assert [each.label for each in hand.viewer.board.layout.beside] == ["light list"]
+    hand.pick("light list")
+    assert row_of(hand, "key")
+
+
+def test_a_number_is_typed_over_a_row_of_the_list(hand: Hand) -> None:
+    area = row_of(hand, "fill").area
+    hand.move(area.left + 20, area.top + 5)
+    for letter in "1.25":
+        hand.viewer.on_key(letter, typed=letter)
+    hand.viewer.on_key("return")
+    assert light_of(hand, "fill").intensity == 1.25
+
+
+def test_the_list_covers_handles_which_are_free_when_panels_are_hidden(hand: Hand) -> None:
+    screen = hand.viewer.board.screen
+    assert isinstance(screen, LightsScreen)
+    handle = screen.handles()[-1]
+    covered = Area(handle.element - 20, handle.line - 20, handle.element + 20, handle.line + 20)
+    screen._list = ListAt(hand.viewer.session, covered)
+    hand.viewer.tell("")
+    assert handle.key not in {each.key for each in screen.handles()}
+    hand.pick("hide panels")
+    assert handle.key in {each.key for each in screen.handles()}
+    assert hand.viewer.board.handle_at(handle.element, handle.line) is not None
+    assert hand.viewer.board.screen._handles.area == SCREEN  # type: ignore[attr-defined]
+
+
+class ListAt(LightList):
+    """A list of an area."""
+
+    def __init__(self, session: Session, area: Area) -> None:
+        super().__init__(session)
+        self._area = area
+
+    def widgets(self) -> list[Widget]:
+        return [Button("list", area=self._area)]
+
+
+def test_a_new_column_of_lights_appears_in_the_menu_by_itself(
+    hand: Hand, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("autocolor.screens.lights_screen.FIRST", ("on",))
+    labels = [row.label for row in hand.viewer.board.screen.rows()]
+    start, end = labels.index("other settings"), labels.index("half-spaces")
+    assert {"intensity", "cone angle", "flaps x", "falloff"} <= set(labels[start:end])
+    assert len(labels) == len(set(labels))

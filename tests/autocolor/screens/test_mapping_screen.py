@@ -78,19 +78,18 @@ def test_ambient_light_is_set_along_its_bar_in_one_step(hand: Hand) -> None:
 
 def test_every_curve_is_reached_by_clicks(hand: Hand) -> None:
     seen = []
-    for _ in range(len(CURVES) + 1):
-        hand.pick("mapping")
+    for name in (*CURVES, "points"):
+        hand.choose("mapping", name)
         mapping = scene_of(hand).mapping
         seen.append(mapping if isinstance(mapping, str) else "points")
     assert sorted(seen) == sorted([*CURVES, "points"])
 
 
 def test_the_points_of_a_named_curve_lie_on_it(hand: Hand) -> None:
-    hand.viewer.session.edit(scene_of(hand).replace(mapping="gamma"))
-    for _ in range(3):
-        hand.pick("mapping")
+    # Equalize depends on the picture.
+    hand.viewer.session.edit(scene_of(hand).replace(mapping="equalize"))
+    hand.choose("mapping", "points")
     for x, y in points_of(hand):
-        # The last curve before the points is equalize, which depends on the picture.
         assert 0 <= x <= 1
         assert 0 <= y <= 1
     curve = curve_of(
@@ -428,3 +427,20 @@ def test_a_dark_scene_can_hold_a_range_too(tmp_path: Path) -> None:
     hand = hand_at(tmp_path, "mapping", dark)
     hand.pull("maximum", 0.2, 0.4)
     assert limits_of(hand, "low")[1] != 0.5
+
+
+def test_hidden_panels_leave_the_picture_below_the_curve_free(hand: Hand) -> None:
+    hand.pick("straight")
+    before = scene_of(hand)
+    assert len(hand.viewer.board.screen.handles()) == 5
+    hand.pick("hide panels")
+    screen = hand.viewer.board.screen
+    assert not screen.handles()
+    assert not screen.items()
+    middle = place_of(0.5, 0.5)
+    assert "makes a point" not in screen.hint(*middle)
+    hand.click(*middle)
+    assert scene_of(hand) is before
+    hand.drag(middle, (middle[0] + 20, middle[1]))
+    assert scene_of(hand).view != before.view
+    assert scene_of(hand).mapping == before.mapping

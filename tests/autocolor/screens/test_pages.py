@@ -18,20 +18,20 @@ from tests.autocolor.screens.boxes import boxes
 from tests.autocolor.widgets.drawing import checksum
 
 PAGES = {
-    "picture": 2507620187,
-    "light and view": 4154763223,
-    "lights": 3146043858,
-    "reflectance": 712072731,
+    "picture": 2093769645,
+    "light and view": 3456210261,
+    "lights": 3299975529,
+    "reflectance": 571573069,
     "mixing": 3752329455,
     "blending": 3756060397,
-    "mapping": 3566559567,
-    "scalar": 872320251,
+    "mapping": 630875359,
+    "scalar": 648425415,
     "kept": 3078224984,
-    "history": 1158757711,
-    "file": 2662656724,
+    "history": 158829111,
+    "file": 643607629,
     "split": 1133462600,
     "entries": 3253356514,
-    "help": 2738257719,
+    "help": 3851190049,
     "tutorial": 3473960918,
 }
 

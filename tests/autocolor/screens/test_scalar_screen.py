@@ -40,20 +40,17 @@ def labels_of(hand: Hand) -> set[str]:
 def test_without_a_scalar_there_is_the_choice_of_one_alone(tmp_path: Path) -> None:
     hand = hand_at(tmp_path, "scalar", boxes_with_stress())
     assert labels_of(hand) == {"scalar"}
-    hand.pick("scalar")
+    hand.choose("scalar", "stress")
     assert scalar_of(hand).name == "stress"
-    hand.pick("scalar", 0.05)
+    hand.choose("scalar", "none")
     assert hand.viewer.studio.scene.scalar is None
 
 
 def test_every_scalar_of_the_mesh_and_every_computed_one_is_reached_by_clicks(hand: Hand) -> None:
     names = hand.viewer.studio.scene.scalar_names
-    seen = []
-    for _ in names:
-        seen.append(scalar_of(hand).name)
-        if len(seen) < len(names):
-            hand.pick("scalar")
-    assert seen == list(names)
+    for name in names:
+        hand.choose("scalar", name)
+        assert scalar_of(hand).name == name
 
 
 def test_every_column_of_the_scalar_has_a_row(hand: Hand) -> None:
@@ -97,8 +94,8 @@ def test_only_scalars_that_are_computed_with_them_have_a_direction_and_stripes(h
 
 def test_another_scale_sends_no_word_and_is_one_step(hand: Hand) -> None:
     before, words = hand.viewer.studio.scene, hand.viewer.studio.words
-    hand.pick("scale")
-    assert scalar_of(hand).scale != "viridis"
+    hand.choose("scale", "turbo")
+    assert scalar_of(hand).scale == "turbo"
     assert scalar_of(hand).scale in COLOR_SCALES
     assert hand.viewer.studio.words is words
     undo(hand)
@@ -108,7 +105,7 @@ def test_another_scale_sends_no_word_and_is_one_step(hand: Hand) -> None:
 def test_a_scale_is_reversed_and_stays_so_when_another_is_chosen(hand: Hand) -> None:
     hand.pick("reversed")
     assert scalar_of(hand).scale == "viridis_r"
-    hand.pick("scale")
+    hand.choose("scale", "turbo")
     assert str(scalar_of(hand).scale).endswith("_r")
     hand.pick("reversed")
     assert not str(scalar_of(hand).scale).endswith("_r")
@@ -120,7 +117,7 @@ def test_a_list_of_colors_has_no_name_to_reverse(hand: Hand) -> None:
     assert hand.widget("reversed").why_not
     hand.pick("reversed")
     assert scalar_of(hand).scale == ((255, 0, 0), (0, 0, 255))
-    hand.pick("scale")
+    hand.choose("scale", "turbo")
     assert scalar_of(hand).scale in COLOR_SCALES
 
 
@@ -138,8 +135,8 @@ def test_bands_and_shades_are_set_along_their_bars(hand: Hand, label: str) -> No
 @pytest.mark.parametrize("label", ["below", "above", "missing"])
 def test_the_other_colors_are_chosen_by_clicks(hand: Hand, label: str) -> None:
     before: Any = vars(scalar_of(hand))[label]
-    hand.pick(label)
-    assert vars(scalar_of(hand))[label] != before
+    hand.choose(label, "cyan")
+    assert vars(scalar_of(hand))[label] == (0, 255, 255) != before
 
 
 def test_the_legend_is_switched(hand: Hand) -> None:

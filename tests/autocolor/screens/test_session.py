@@ -138,11 +138,43 @@ def test_an_edit_that_changes_nothing_begins_no_step(session: Session) -> None:
 def test_one_light_alone_and_all(session: Session) -> None:
     session.light_alone("fill")
     assert [light.on for light in session.scene.lights] == [False, True]
-    assert session.message == "light fill alone"
+    assert session.message == "light fill alone; again: the lights as before"
     session.same_step = False
     session.all_lights_on()
     assert all(light.on for light in session.scene.lights)
     assert session.message == "all lights on"
+
+
+def test_a_light_that_is_alone_gives_the_switches_of_all_lights_back(session: Session) -> None:
+    def switches() -> list[bool]:
+        session.same_step = False
+        return [light.on for light in session.scene.lights]
+
+    session.edit(session.scene.with_light("key", on=False).with_new_light("rim", position=(0, 0, 9)))
+    before = switches()
+    assert (before, session.solo) == ([False, True, True], "")
+    session.light_alone("key")
+    assert (switches(), session.solo) == ([True, False, False], "key")
+    # Alone with another light, and back to the switches before both.
+    session.light_alone("rim")
+    assert (switches(), session.solo) == ([False, False, True], "rim")
+    session.light_alone("rim")
+    assert (switches(), session.solo) == (before, "")
+    assert session.message == "the lights are switched as before"
+    session.undo()
+    assert session.solo == "rim"
+    session.light_alone("rim")
+    assert switches() == before
+
+
+def test_a_light_is_no_longer_alone_when_another_is_switched_on(session: Session) -> None:
+    session.light_alone("key")
+    session.change_light("fill", on=True)
+    assert session.solo == ""
+    session.change_light("key", on=False)
+    session.light_alone("key")
+    session.light_alone("key")
+    assert [light.on for light in session.scene.lights] == [False, True]
 
 
 def test_the_world_knows_the_names_in_the_tables_as_they_are_now(session: Session) -> None:

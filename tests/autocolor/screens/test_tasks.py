@@ -109,9 +109,9 @@ def blend(hand: Hand) -> None:
 
 def color_by_a_scalar(hand: Hand) -> None:
     go_to(hand, "scalar")
-    # A drag along the choice goes through all names; a color scale is one click further.
+    # A drag along a choice goes through all names.
     hand.pull("scalar", 0.3, 0.7)
-    hand.pick("scale")
+    hand.pull("scale", 0.3, 0.7)
     scalar = hand.viewer.studio.scene.scalar
     assert scalar is not None
     assert scalar.scale != Scalar(scalar.name).scale

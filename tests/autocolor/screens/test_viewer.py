@@ -17,7 +17,7 @@ from autocolor.errors import UsageError
 from autocolor.scene.changes import PartChanges
 from autocolor.scene.columns import Tier
 from autocolor.scene.defaults import framed
-from autocolor.screens.board import MESSAGE, MOST_CHARACTERS
+from autocolor.screens.board import MESSAGE
 from autocolor.screens.input import Binding, Chord, Gesture
 from autocolor.screens.picture.picture_edits import panned
 from autocolor.screens.screen import Screen
@@ -25,6 +25,7 @@ from autocolor.screens.session import MESSAGE_SECONDS, Session
 from autocolor.screens.viewer import BINDINGS, SCREENS, WHEEL, WINDOW_KEYS, Action, Viewer
 from autocolor.studio import Studio
 from autocolor.widgets.items import ORANGE
+from autocolor.widgets.menu import MESSAGE_CHARACTERS
 from autocolor.widgets.sheet import Sheet
 from ramtek_emu import GMR_9300, Ramtek9300
 from tests.autocolor.meshes import cube, grid, wall_scene
@@ -742,7 +743,7 @@ def test_the_first_message_stands_until_the_menu_comes_or_something_is_done(
     viewer.on_pointer(100, 100, "move")
     assert viewer.board.messages[-1].text == welcome
     viewer.on_pointer(638, 0, "move")
-    assert viewer.board.messages[-1].text == viewer.screens["picture"].help
+    assert viewer.board.messages[-1].text == viewer.screens["light and view"].help
     viewer.tell(welcome, persistent=True)
     viewer.on_key("c", typed="c")
     assert viewer.message != welcome
@@ -754,7 +755,7 @@ def test_a_screen_without_a_menu_tells_how_to_bring_it(viewer: Viewer, name: str
     viewer.session.turn_to(name)
     viewer.on_pointer(100, 100, "move")
     assert viewer.message == f"{viewer.screens[name].help}; the right edge: the menu"
-    assert len(viewer.message) <= MOST_CHARACTERS
+    assert len(viewer.message) <= MESSAGE_CHARACTERS
 
 
 @pytest.mark.parametrize("page", ["f1", "f4"])

@@ -8,11 +8,7 @@ from hypothesis import strategies as st
 from autocolor.arrays import half_up
 from autocolor.errors import UsageError
 from autocolor.widgets.bars import (
-    DOWN,
     LANE,
-    LEFT,
-    RIGHT,
-    UP,
     Bar,
     ComponentBar,
     LevelBar,
@@ -20,7 +16,6 @@ from autocolor.widgets.bars import (
     digits_of,
     levels_along,
     number_text,
-    pointer,
     rounded_to,
 )
 from autocolor.widgets.items import GRAY, RED, SLATE, WHITE, YELLOW, Area
@@ -290,20 +285,6 @@ def test_the_handle_points_at_its_level_and_leaves_the_levels_uncovered(
     assert not np.isin(
         words[strip.top : strip.bottom + 1, strip.left : strip.right + 1], [WHITE, YELLOW]
     ).any()
-
-
-@pytest.mark.parametrize("towards", [RIGHT, DOWN, LEFT, UP])
-def test_the_tip_of_a_pointer_is_at_its_place(towards: int) -> None:
-    item = pointer(100, 50, towards, WHITE)
-    display = Ramtek9300()
-    display.send(np.frombuffer(item.stream, np.uint16))
-    lines, elements = np.nonzero(display.words == WHITE)
-    # It is as wide as two steps from its base to the tip, and on the other side of it.
-    assert len(lines) == 25
-    across, down = ((-1, 0), (0, -1), (1, 0), (0, 1))[towards]
-    assert display.words[50, 100] == WHITE
-    assert elements.mean() == pytest.approx(100 + across * 2.8)
-    assert lines.mean() == pytest.approx(50 + down * 2.8)
 
 
 def test_a_percentage_is_a_share_of_the_height() -> None:

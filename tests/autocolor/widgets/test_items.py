@@ -11,9 +11,13 @@ from autocolor.arrays import Booleans, Floats
 from autocolor.mapping.ranges import SCREENS
 from autocolor.widgets import items as colors
 from autocolor.widgets.items import (
+    DOWN,
     DRAWABLE,
+    LEFT,
     NIGHT,
+    RIGHT,
     SCREEN,
+    UP,
     WHITE,
     Area,
     Item,
@@ -26,6 +30,7 @@ from autocolor.widgets.items import (
     joined,
     lines,
     outline,
+    pointer,
     text,
     together,
 )
@@ -290,3 +295,17 @@ def test_a_mesh_smaller_than_a_pixel_is_a_point() -> None:
 def test_of_too_many_strokes_the_longest_are_drawn() -> None:
     strokes = np.array([(0, line, line + 1, line) for line in range(100)], np.float64)
     assert drawn(strokes, most=10).tolist() == strokes[90:].tolist()
+
+
+@pytest.mark.parametrize("towards", [RIGHT, DOWN, LEFT, UP])
+def test_the_tip_of_a_pointer_is_at_its_place(towards: int) -> None:
+    item = pointer(100, 50, towards, WHITE)
+    display = Ramtek9300()
+    display.send(np.frombuffer(item.stream, np.uint16))
+    lines, elements = np.nonzero(display.words == WHITE)
+    # It is as wide as two steps from its base to the tip, and on the other side of it.
+    assert len(lines) == 25
+    across, down = ((-1, 0), (0, -1), (1, 0), (0, 1))[towards]
+    assert display.words[50, 100] == WHITE
+    assert elements.mean() == pytest.approx(100 + across * 2.8)
+    assert lines.mean() == pytest.approx(50 + down * 2.8)

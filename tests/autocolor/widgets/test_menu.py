@@ -3,8 +3,24 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor.widgets.menu import MENU, MOST_LINES, WIDE_BAR, WORK, laid_out, menu_items, pages_of
-from autocolor.widgets.widget import ROW_LINES, Button, Gap, Heading, Widget
+from autocolor.widgets.items import Area
+from autocolor.widgets.menu import (
+    MENU,
+    MESSAGE_CHARACTERS,
+    MOST_LINES,
+    WIDE_BAR,
+    WORK,
+    Section,
+    folded,
+    laid_out,
+    lines_of,
+    list_of,
+    menu_items,
+    open_sections,
+    pages_of,
+    sections_of,
+)
+from autocolor.widgets.widget import ROW_LINES, Button, Choice, Gap, Heading, Widget
 
 rows = st.lists(st.sampled_from([Button, Gap, Heading]), max_size=120).map(
     lambda kinds: [kind(str(number)) for number, kind in enumerate(kinds)]
@@ -50,3 +66,156 @@ def test_the_row_that_is_lit_alone_looks_different() -> None:
         item.area for item in lit if rows[1].area.covers(item.area)
     }
     assert dim == dark
+
+
+# Lists.
+
+
+def choice_of(names: list[str], present: str, top: int = 160) -> Choice:
+    area = Area(MENU.left + 1, top, MENU.right, top + ROW_LINES - 1)
+    return Choice("surface", names=names, present=present, area=area)
+
+
+@given(
+    st.lists(st.text("abcdefgh ", min_size=1, max_size=90), min_size=1, max_size=400, unique=True), st.data()
+)
+def test_the_pages_of_a_list_have_every_name_once_beside_the_menu(
+    names: list[str], data: st.DataObject
+) -> None:
+    present = data.draw(st.sampled_from(names))
+    choice = choice_of(names, present, ROW_LINES * data.draw(st.integers(0, 28)))
+    taken: list[str] = []
+    turned: list[int] = []
+    seen: list[str] = []
+    page = 0
+    while True:
+        shown = list_of(choice, page, taken.append, turned.append)
+        assert WORK.covers(shown.area)
+        assert shown.area.right == WORK.right
+        areas = [row.area for row in shown.rows]
+        assert all(shown.area.covers(area) for area in areas)
+        assert not any(a.overlaps(b) for number, a in enumerate(areas) for b in areas[:number])
+        for row in shown.rows:
+            assert row.within == choice.key
+            row.pick(row.area)  # type: ignore[arg-type]
+        seen += taken
+        if not turned or turned[-1] == 0:
+            break
+        page = turned[-1]
+        taken.clear()
+    assert seen == names
+    first = list_of(choice, None, taken.append, turned.append)
+    assert first.chosen.label == present
+    room = len(first.rows) <= first.area.height // ROW_LINES and first.area.top > 0
+    if room and first.area.bottom < MENU.bottom:
+        assert first.chosen.area.top == choice.area.top
+
+
+def test_a_list_without_the_present_name_begins_at_its_first() -> None:
+    shown = list_of(choice_of(["a", "b", "c", "d"], "another"), None, lambda _: None, lambda _: None)
+    assert shown.chosen.label == "a"
+    assert not any(row.is_chosen for row in shown.rows if isinstance(row, Button))
+
+
+def test_the_row_of_a_list_that_is_lit_alone_looks_different() -> None:
+    shown = list_of(choice_of(["a", "b", "c", "d"], "b"), None, lambda _: None, lambda _: None)
+    dark, lit = set(shown.items(None)), set(shown.items(shown.rows[3]))
+    assert lit != dark
+    assert all(shown.rows[3].area.covers(item.area) for item in lit ^ dark)
+    assert shown.rows[1] is shown.chosen
+
+
+# Sections.
+
+heights = st.lists(st.integers(0, 40), max_size=8).map(
+    lambda sizes: {f"s{n}": size for n, size in enumerate(sizes)}
+)
+folds = st.lists(st.tuples(st.sampled_from([f"s{n}" for n in range(10)]), st.booleans()), max_size=8)
+
+
+def after(uses: list[tuple[str, bool]]) -> dict[str, bool]:
+    """Whether sections were opened or folded, the last used at the end."""
+    folds: dict[str, bool] = {}
+    for name, is_open in uses:
+        folds.pop(name, None)
+        folds[name] = is_open
+    return folds
+
+
+@given(heights, folds, st.integers(-20, 120))
+def test_the_open_sections_fit_but_for_the_section_that_was_used_last(
+    heights: dict[str, int], uses: list[tuple[str, bool]], room: int
+) -> None:
+    folds = after(uses)
+    is_open = open_sections(heights, folds, room)
+    used = [name for name in folds if folds[name] and name in heights]
+    assert set(used[-1:]) <= is_open <= {name for name in heights if folds.get(name, True)}
+    total = sum(heights[name] for name in is_open)
+    assert total <= room or is_open - {name for name in heights if not heights[name]} <= set(used[-1:])
+    # A section stays folded only if the user folded it, or there is no room for it.
+    for name in set(heights) - is_open:
+        assert not folds.get(name, True) or total + heights[name] > room
+
+
+@given(heights, folds, st.integers(0, 120), st.data())
+def test_a_row_that_is_used_folds_no_section(
+    heights: dict[str, int], uses: list[tuple[str, bool]], room: int, data: st.DataObject
+) -> None:
+    is_open = open_sections(heights, after(uses), room)
+    if is_open and sum(heights[name] for name in is_open) <= room:
+        used = data.draw(st.sampled_from(sorted(is_open)))
+        assert is_open == open_sections(heights, after([*uses, (used, True)]), room)
+
+
+def test_sections_that_nobody_used_are_open_from_the_top() -> None:
+    assert open_sections({"a": 10, "b": 10, "c": 10}, {}, 25) == {"a", "b"}
+    assert open_sections({"a": 10, "b": 30, "c": 10}, {}, 25) == {"a", "c"}
+    assert open_sections({"a": 10, "b": 30, "c": 10}, {"b": True}, 25) == {"b"}
+    assert open_sections({"a": 10, "b": 10, "c": 10}, {"a": False}, 25) == {"b", "c"}
+    assert open_sections({"a": 10, "b": 10, "c": 10}, {"b": True, "c": True, "a": True}, 25) == {"a", "c"}
+
+
+def menu_of(*sizes: int) -> list[Widget]:
+    """Two rows, and sections with so many rows."""
+    menu: list[Widget] = [Heading("menu"), Button("first")]
+    for number, size in enumerate(sizes):
+        menu += [Section(f"s{number}"), *(Button(f"row {number}, {row}") for row in range(size))]
+    return menu
+
+
+@given(st.lists(st.integers(0, 30), max_size=6), folds)
+def test_folding_leaves_rows_out_and_changes_no_order(sizes: list[int], uses: list[tuple[str, bool]]) -> None:
+    rows, did = menu_of(*sizes), list[tuple[str, bool]]()
+    shown = folded(rows, after(uses), lambda name, is_open: did.append((name, is_open)), MOST_LINES)
+    labels = [row.label for row in rows]
+    places = [labels.index(row.label) for row in shown]
+    assert places == sorted(places)
+    assert labels[:2] == [row.label for row in shown][:2]
+    whole = {section[0].label: section[1:] for section in sections_of(rows)[1:]}
+    for section, *inside in sections_of(shown)[1:]:
+        assert isinstance(section, Section)
+        assert inside == (whole[section.label] if section.is_open else [])
+        assert len(section.hint) <= MESSAGE_CHARACTERS
+        section.pick(None)  # type: ignore[arg-type]
+        assert did[-1] == (section.label, not section.is_open)
+        section.nudge(1)
+        section.nudge(-1)
+        assert did[-2:] == [(section.label, True), (section.label, False)]
+    assert len(whole) == len(sections_of(shown)) - 1
+    used = [name for name, is_open in after(uses).items() if is_open and name in whole]
+    fixed = 2 + len(sizes)
+    if fixed + max([len(whole[name]) for name in used[-1:]], default=0) <= MOST_LINES // ROW_LINES:
+        assert lines_of(shown) <= MOST_LINES
+
+
+def test_a_menu_without_sections_stays_as_it_is() -> None:
+    rows = [Button(str(number)) for number in range(60)]
+    assert folded(rows, {}, lambda *_: None, MOST_LINES) == rows
+
+
+def test_an_open_section_is_on_the_page_of_its_first_row() -> None:
+    rows = [*(Button(str(number)) for number in range(60))]
+    rows_a_page = len(pages_of(rows)[0])
+    for is_open, label in ((True, "section"), (False, str(rows_a_page - 1))):
+        headed = [*rows[: rows_a_page - 1], Section("section", is_open=is_open), *rows[rows_a_page - 1 :]]
+        assert pages_of(headed)[1][0].label == label

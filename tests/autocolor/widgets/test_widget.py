@@ -1,10 +1,13 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor.widgets.items import LIGHT_GRAY, NIGHT, Area, text
+from autocolor.widgets.menu import Section
 from autocolor.widgets.widget import (
     STEM_LETTERS,
     Button,
@@ -95,6 +98,19 @@ def test_a_drag_along_a_choice_runs_through_all_names() -> None:
     assert abs(done.did.count("a") - done.did.count("c")) <= 1
 
 
+@pytest.mark.parametrize(
+    ("names", "turns_pages", "has_list"),
+    [("abc", False, False), ("abcd", False, True), ("abcd", True, False), ("", False, False)],
+)
+def test_a_choice_of_many_names_has_a_list_and_says_so(names: str, turns_pages: bool, has_list: bool) -> None:
+    choice = Choice("curve", "The curve.", names=names, turns_pages=turns_pages, area=ROW)
+    assert choice.has_list == has_list
+    assert choice.hint == ("The curve; a click lists all 4." if has_list else "The curve.")
+    assert replace(choice, why_not="not now").hint == "not now"
+    plain = replace(choice, names="ab")
+    assert (choice.items(lit=False) != plain.items(lit=False)) == has_list
+
+
 def test_a_choice_of_nothing_chooses_nothing() -> None:
     done = Done()
     choice = Choice("curve", choose=done, area=ROW)
@@ -123,6 +139,9 @@ def test_an_entry_takes_what_is_typed() -> None:
         Switch(LONG, is_chosen=True),
         Steps(LONG),
         Choice(LONG, present=LONG),
+        Choice(LONG, names="abcd", present=LONG),
+        Section(LONG),
+        Section(LONG, is_open=False),
         Entry(LONG, value="12"),
     ],
     ids=lambda widget: type(widget).__name__,

@@ -51,11 +51,14 @@ def undo(hand: Hand) -> None:
 
 
 def yellow(hand: Hand) -> set[tuple[int, int]]:
-    """The lines and elements of the yellow pixels beside the menu."""
+    """The lines and elements of the yellow pixels beside the menu and the light list."""
     display = hand.viewer.display
     assert isinstance(display, Ramtek9300)
     found = np.argwhere(display.words[: WORK.bottom + 1, : WORK.right + 1] == YELLOW)
-    return {(line, element) for line, element in found.tolist()}
+    listed = [widget.area for widget in hand.viewer.board.layout.beside]
+    return {
+        (line, element) for line, element in found.tolist() if not any(a.has(element, line) for a in listed)
+    }
 
 
 # The highlight.
@@ -239,7 +242,7 @@ def test_the_marks_are_at_the_handles_and_leave_the_picture_as_it_was(at_lights:
     assert not yellow(hand)
     display = hand.viewer.display
     assert isinstance(display, Ramtek9300)
-    beside = np.s_[: WORK.bottom + 1, : WORK.right + 1]
+    beside = np.s_[hand.viewer.board.layout.beside[-1].area.bottom + 1 : WORK.bottom + 1, : WORK.right + 1]
     assert np.array_equal(display.words[beside], studio.words[beside])
 
 
