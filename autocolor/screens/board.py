@@ -647,7 +647,7 @@ class Board:
             items += layout.wide.items(lit=False)
         if layout.listed is not None:
             items += layout.listed.items(lit)
-        has_message = bool(layout.rows) or self.typing.is_on or self.session.has_news
+        has_message = self._has_hint or self.typing.is_on or self.session.has_news
         end = MENU.left if layout.rows else WIDTH
         self._message = message_items(self.messages, end) if has_message else []
         items += self._message
@@ -663,7 +663,23 @@ class Board:
             parts.append(MessagePart(session.message, ORANGE if is_warned else WHITE))
         if self.typing.is_on:
             parts.append(self.typing.shown)
-        return parts or [MessagePart(self._hint() if self.layout.rows else "", WHITE)]
+        return parts or [MessagePart(self._hint() if self._has_hint else "", WHITE)]
+
+    @property
+    def _has_hint(self) -> bool:
+        """Whether a hint stands in the message line: always beside a menu, else at the handles of a picture."""
+        if self.layout.rows:
+            return True
+        element, line = self._pointer
+        if (
+            self._grabbed is not None
+            or line >= MESSAGE.top
+            or self.layout.widget_at(element, line) is not None
+        ):
+            return False
+        handle = self.held or self.handle_at(element, line)
+        # A hint would cover a handle at the foot of the picture.
+        return handle is not None and handle.line < MESSAGE.top
 
     def _hint(self) -> str:
         lit, (element, line) = self._lit_widget(), self._pointer

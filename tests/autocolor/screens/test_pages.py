@@ -22,7 +22,7 @@ PAGES = {
     "light and view": 3456210261,
     "lights": 3299975529,
     "reflectance": 571573069,
-    "mixing": 3752329455,
+    "mixing": 1030339630,
     "blending": 3756060397,
     "mapping": 630875359,
     "scalar": 648425415,
@@ -31,7 +31,7 @@ PAGES = {
     "file": 643607629,
     "split": 1133462600,
     "entries": 3253356514,
-    "help": 3851190049,
+    "help": 1281695192,
     "tutorial": 3473960918,
 }
 

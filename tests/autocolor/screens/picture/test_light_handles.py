@@ -7,6 +7,7 @@ import pytest
 
 from autocolor import Light, Scene, Studio
 from autocolor.lighting.picking import cone_placed, highlight_placed, rims, specular_shares
+from autocolor.screens.board import MESSAGE
 from autocolor.screens.picture.light_handles import HandleKey
 from autocolor.widgets.bars import number_text
 from autocolor.widgets.items import WHITE, YELLOW
@@ -272,6 +273,22 @@ def test_the_picture_has_the_highlights_of_all_lights_and_no_mark(hand: Hand) ->
     labels = [each.label for each in hand.viewer.board.screen.handles()]
     assert labels == ["highlight of fill", "highlight of key"]
     assert not yellow(hand)
+
+
+def test_without_a_menu_the_message_line_names_a_highlight_under_the_pointer_and_nothing_else(
+    hand: Hand,
+) -> None:
+    foot = slice(MESSAGE.top, MESSAGE.bottom + 1)
+    hand.viewer.tell("")
+    hand.move(20, 20)
+    display, picture = hand.viewer.display, hand.viewer.studio.words
+    assert isinstance(display, Ramtek9300)
+    assert (display.words[foot] == picture[foot]).all()
+    hand.move(*hand.handle("highlight of key"))
+    assert hand.viewer.board.messages[-1].text.startswith("highlight of key: drag it")
+    assert (display.words[foot] != picture[foot]).any()
+    hand.move(20, 20)
+    assert (display.words[foot] == picture[foot]).all()
 
 
 def test_the_lights_screen_marks_all_highlights_at_rest_and_the_chosen_one_is_yellow(at_lights: Hand) -> None:
