@@ -667,7 +667,7 @@ class Board:
 
     @property
     def _has_hint(self) -> bool:
-        """Whether a hint stands in the message line: always beside a menu, else at the handles of a picture."""
+        """Whether a hint is in the message line: always beside a menu, else at the handles of a picture."""
         if self.layout.rows:
             return True
         element, line = self._pointer
