@@ -36,6 +36,8 @@ def run(name: str, seed: int, gestures: int = GESTURES) -> str:
             hand = RandomHandWithKeys(viewer, display, seed)
             for done in range(gestures):  # noqa: B007
                 hand.do()
+            # A picture that comes in line by line is shown whole.
+            viewer.on_key("escape")
             whole = Ramtek9300()
             Sheet(whole).show(viewer.board.page())
             if held(display) != held(whole):
