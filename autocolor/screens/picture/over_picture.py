@@ -21,7 +21,7 @@ from autocolor.screens.session import Session
 from autocolor.widgets.items import Area, Item, filled, text
 from autocolor.widgets.menu import MENU
 from autocolor.widgets.rows import rows_of
-from autocolor.widgets.widget import Choice, Widget
+from autocolor.widgets.widget import Button, Choice, Pair, Widget
 
 
 class OverPicture(Screen):
@@ -157,6 +157,30 @@ def paint_rows(session: Session, paint: Paint) -> list[Widget]:
     rows = rows_of(paint, put, session.world, leave_out=("object_color", "light_color"))
     # Shorten labels so that they fit beside their numbers.
     return [replace(row, label=row.label.replace("percentage", "percent")) for row in rows]
+
+
+def camera_rows(edits: PictureEdits) -> list[Widget]:
+    """The rows of the named views: to take one, to save the present view, and to remove the shown one."""
+    views = edits.session.scene.views
+    save = "Save the present view under a new name, with the scene"
+    if not views:
+        return [Button("save view", f"{save}; the row camera comes back to it.", run=edits.save_view)]
+    return [
+        Choice(
+            "camera",
+            "A click takes the next saved view; at the left end, the one before.",
+            names=tuple(row.name for row in views),
+            present=edits.camera,
+            choose=edits.take_view,
+        ),
+        Pair(
+            "save view",
+            f"{save}; or remove the camera that is shown.",
+            run=edits.save_view,
+            other="remove",
+            run_other=edits.remove_view,
+        ),
+    ]
 
 
 def surface_row(session: Session, help: str, choose: Callable[[str], object] | None = None) -> Choice:
