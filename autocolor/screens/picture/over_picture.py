@@ -168,7 +168,7 @@ def camera_rows(edits: PictureEdits) -> list[Widget]:
     return [
         Choice(
             "camera",
-            "A click takes the next saved view; at the left end, the one before.",
+            "Look through a saved view.",
             names=tuple(row.name for row in views),
             present=edits.camera,
             choose=edits.take_view,
