@@ -20,7 +20,7 @@ from autocolor.scene.view import View
 from autocolor.screens.input import Gesture
 from autocolor.screens.light_parameters import parameter_rows
 from autocolor.screens.picture.light_handles import LightHandles, highlight_items
-from autocolor.screens.picture.over_picture import OverPicture
+from autocolor.screens.picture.over_picture import OverPicture, exposure_row
 from autocolor.screens.screen import Handle
 from autocolor.screens.session import Session
 from autocolor.visibility.projection import focal_length
@@ -90,6 +90,7 @@ class LightsScreen(OverPicture):
             *parameter_rows(self.session, light, leave_out=("half_spaces",)),
             Gap("half-spaces gap"),
             *half_space_rows(self.session, light, self._picking),
+            exposure_row(self.edits),
         ]
 
     def _verbs(self, light: Light) -> list[Widget]:

@@ -165,7 +165,7 @@ def completed(data: bytes, scene: Scene) -> bytes:
     document = parsed_toml(data, "scene.toml")
     text = TomlText(data.decode(), FILE_TABLES)
     tables: dict[str, Any] = to_plain(scene)
-    _complete(text, (), document, {key: tables[key] for key in tables if key not in (*FILE_TABLES, "name")})
+    _complete(text, (), document, _without_tables(tables))
     _complete(text, ("view",), document.get("view", {}), tables["view"])
     if "scalar" in tables:
         _complete(text, ("scalar",), document.get("scalar", {}), tables["scalar"])
@@ -235,11 +235,7 @@ def _edited(data: bytes, old: Scene, new: Scene) -> bytes:
     after: dict[str, Any] = to_plain(new)
     sparse = sparse_tables(new)
 
-    old_keys, new_keys = (
-        {key: value for key, value in tables.items() if key not in (*FILE_TABLES, "name")}
-        for tables in (before, after)
-    )
-    _change(text, (), old_keys, new_keys, after)
+    _change(text, (), _without_tables(before), _without_tables(after), after)
     if "view" in document:
         _change(text, ("view",), before["view"], after["view"], sparse["view"])
     elif before["view"] != after["view"]:
@@ -256,6 +252,11 @@ def _edited(data: bytes, old: Scene, new: Scene) -> bytes:
         if before[key] != after[key]:
             _change_rows(text, document, key, before[key], after[key], sparse[key])
     return text.text.encode()
+
+
+def _without_tables(plain: Tables) -> Tables:
+    """The keys of a scene that stand before all tables, with their values."""
+    return {key: value for key, value in plain.items() if key not in (*FILE_TABLES, "name")}
 
 
 def _change(text: TomlText, path: KeyPath, before: Tables, after: Tables, sparse: Tables) -> None:

@@ -9,10 +9,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, ClassVar, Final, NamedTuple
 
 from autocolor.arrays import Bytes, Words
+from autocolor.mapping.intensity import held_name
 from autocolor.mapping.legend import CORNERS, GROUND, INK, Corner, Legend, legend
+from autocolor.scene.scene import AUTO
 from autocolor.scene.surfaces import Paint
 from autocolor.screens.input import MIDDLE, Gesture, turn_between, wheel_ratio
 from autocolor.screens.picture.picture_edits import PictureEdits
@@ -157,6 +159,26 @@ def paint_rows(session: Session, paint: Paint) -> list[Widget]:
     rows = rows_of(paint, put, session.world, leave_out=("object_color", "light_color"))
     # Shorten labels so that they fit beside their numbers.
     return [replace(row, label=row.label.replace("percentage", "percent")) for row in rows]
+
+
+HELD: Final = "held"
+ALL_HELD: Final = "all held"
+SOME_HELD: Final = "some held"
+"""How many of the ranges of surfaces are held."""
+
+
+def exposure_row(edits: PictureEdits) -> Choice:
+    """The row that says whether the ranges of the surfaces are held, and holds or releases all of them."""
+    scene = edits.session.scene
+    held = [bool(held_name(scene.exposure, name)) for name in edits.session.studio.level_ranges]
+    present = AUTO if scene.exposure == AUTO else ALL_HELD if all(held) else SOME_HELD
+    return Choice(
+        "exposure",
+        "Auto: ranges of intensities follow the picture. Held: ranges stay, so that less light is darker.",
+        names=(ALL_HELD, AUTO),
+        present=present,
+        choose=lambda name: edits.release_exposure() if name == AUTO else edits.hold_exposure(),
+    )
 
 
 def camera_rows(edits: PictureEdits) -> list[Widget]:

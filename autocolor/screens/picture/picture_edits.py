@@ -12,7 +12,7 @@ from autocolor.arrays import Floats
 from autocolor.checks import Vector
 from autocolor.errors import UsageError
 from autocolor.scene.defaults import OBJECT_COLORS, default_view, framed, object_bounds, stage_top
-from autocolor.scene.scene import Exposure, Scene
+from autocolor.scene.scene import AUTO, Exposure, Scene
 from autocolor.scene.view import View
 from autocolor.screens.screen import Cached
 from autocolor.screens.session import Session
@@ -321,6 +321,21 @@ class PictureEdits:
         light = lights[number]
         self.session.edit(self.session.scene.with_light(light.name, on=not light.on))
         self.session.tell(f"{titled('light', light.name)} {'off' if light.on else 'on'}")
+
+    def hold_exposure(self) -> None:
+        """Hold the intensity ranges of all surfaces as they are in the picture."""
+        self.session.studio.hold_exposure()
+        if self.session.scene.exposure == AUTO:
+            raise UsageError(
+                "to hold the exposure, a surface must have different intensities, and none has;"
+                " switch a light on"
+            )
+        self.session.tell("exposure held: less light is darker")
+
+    def release_exposure(self) -> None:
+        """Let the intensity ranges of all surfaces follow the picture."""
+        self.session.edit(self.session.scene.replace(exposure=AUTO))
+        self.session.tell("the exposure follows the picture")
 
     def switch_exposure(self) -> None:
         """Hold the intensity ranges of the picture; if this method held them, restore the exposure before."""
