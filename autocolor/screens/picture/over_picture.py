@@ -163,7 +163,7 @@ def paint_rows(session: Session, paint: Paint) -> list[Widget]:
 
 HELD: Final = "held"
 ALL_HELD: Final = "all held"
-SOME_HELD: Final = "some held"
+MIXED: Final = "mixed"
 """How many of the ranges of surfaces are held."""
 
 
@@ -171,7 +171,7 @@ def exposure_row(edits: PictureEdits) -> Choice:
     """The row that says whether the ranges of the surfaces are held, and holds or releases all of them."""
     scene = edits.session.scene
     held = [bool(held_name(scene.exposure, name)) for name in edits.session.studio.level_ranges]
-    present = AUTO if scene.exposure == AUTO else ALL_HELD if all(held) else SOME_HELD
+    present = AUTO if scene.exposure == AUTO else ALL_HELD if all(held) else MIXED
     return Choice(
         "exposure",
         "Auto: ranges of intensities follow the picture. Held: ranges stay, so that less light is darker.",

@@ -443,11 +443,11 @@ def test_a_row_for_each_surface_says_whether_its_range_is_held_and_flips_it(tmp_
     assert states() == [False, False, "auto"]
     hand.pick("high", 0.95)
     assert told(hand) == ("the range of high: held", False)
-    assert states() == [False, True, "some held"]
+    assert states() == [False, True, "mixed"]
     hand.pick("exposure", 0.5)
     assert states() == [True, True, "all held"]
     hand.pick("high", 0.95)
-    assert states() == [True, False, "some held"]
+    assert states() == [True, False, "mixed"]
     assert "object" not in dict(scene_of(hand).exposure)  # type: ignore[arg-type]
     hand.pick("low", 0.95)
     assert states() == [False, False, "auto"]

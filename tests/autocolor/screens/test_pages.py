@@ -17,19 +17,19 @@ from tests.autocolor.screens.boxes import boxes
 from tests.autocolor.widgets.drawing import checksum
 
 PAGES = {
-    "picture": 3007665088,
-    "light and view": 875136867,
-    "lights": 2197996008,
+    "picture": 4241378841,
+    "light and view": 731188606,
+    "lights": 2122270420,
     "reflectance": 2046627297,
     "mixing": 779791442,
     "blending": 3756060397,
-    "mapping": 3227220103,
+    "mapping": 2460607494,
     "scalar": 2308390448,
     "kept": 2040449627,
     "file": 2904581995,
     "tutorial": 3473960918,
     "entries": 3253356514,
-    "help": 1192430204,
+    "help": 2738257719,
 }
 
 
