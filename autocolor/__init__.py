@@ -55,6 +55,7 @@ if TYPE_CHECKING:
     from autocolor.scene.surfaces import Part as Part
     from autocolor.scene.surfaces import Reflectance as Reflectance
     from autocolor.scene.surfaces import Surface as Surface
+    from autocolor.scene.view import NamedView as NamedView
     from autocolor.scene.view import View as View
     from autocolor.studio import Studio as Studio
 
@@ -73,6 +74,7 @@ _HOME: Final = {
     "Mesh": "scene.mesh",
     "MeshScalar": "scene.scalar",
     "MissingInputError": "errors",
+    "NamedView": "scene.view",
     "OutputError": "errors",
     "Paint": "scene.surfaces",
     "Part": "scene.surfaces",

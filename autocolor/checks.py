@@ -62,7 +62,7 @@ def either(names: Iterable[str]) -> str:
     return f"{', '.join(others)} or {last}" if others else last
 
 
-FEW: Final = 16
+FEW: Final = 20
 """Limit: names that a message lists."""
 
 OTHER_WORDS: Final = {

@@ -199,6 +199,23 @@ class Studio:
         """Change fields of the view; everything is recomputed."""
         self.edit(self.scene.with_view(**changes))
 
+    def save_view(self, name: str | None = None) -> str:
+        """Save the view under a name, to come back to by `take_view`; returns the name.
+
+        A named view of this name is replaced. Without a name it is a new one, like "view 1". Nothing is sent.
+        """
+        scene = self.scene.with_saved_view(name)
+        self.edit(scene)
+        return scene.views[-1].name if name is None else name
+
+    def take_view(self, name: str) -> None:
+        """Make a named view the view. Raises UsageError for an unknown name."""
+        self.edit(self.scene.with_taken_view(name))
+
+    def remove_view(self, name: str) -> None:
+        """Remove a named view; the view stays. Raises UsageError for an unknown name."""
+        self.edit(self.scene.without_named_view(name))
+
     def scalar(self, *none: None, **changes: Unpack[ScalarChanges]) -> None:
         """Change fields of the scalar that colors the surfaces; after `scalar(None)` they have their paint.
 

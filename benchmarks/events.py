@@ -22,7 +22,7 @@ from typing import Any, NamedTuple
 
 import autocolor
 from autocolor.commands.demo import demo_folder
-from autocolor.commands.view import monitor_of
+from autocolor.commands.view import connected
 from autocolor.screens.viewer import Viewer
 from benchmarks.hills import hills, side_of
 from benchmarks.movement import screen
@@ -60,7 +60,7 @@ class Bench:
     def __init__(self, scene: autocolor.Scene, folder: Path) -> None:
         display = Ramtek9300()
         self.viewer = Viewer(scene, display, folder)
-        self.monitor: Monitor = monitor_of(self.viewer, display)
+        self.monitor: Monitor = connected(Monitor(display), self.viewer)
         self.monitor.open()
         self._settle()
 

@@ -21,11 +21,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import autocolor
-from autocolor.commands.view import monitor_of
+from autocolor.commands.view import connected
 from autocolor.screens.viewer import Viewer
 from benchmarks.cases import Spread, spread
 from benchmarks.hills import hills, side_of
 from ramtek_emu import Ramtek9300
+from ramtek_emu.monitor.window import Monitor
 
 POLYGONS = 88_000
 DRAGGED_POLYGONS = 100_000
@@ -133,7 +134,7 @@ def session() -> Log:
     """A window with a mesh, and a user who holds a key and drags the mouse."""
     display, log = Ramtek9300(), Log()
     viewer = Viewer(autocolor.scene_of(hills(side_of(POLYGONS))), display)
-    monitor = monitor_of(viewer, display)
+    monitor = connected(Monitor(display), viewer)
     user = Thread(target=move, args=(log,))
     scene, was_coarse = viewer.studio.scene, False
     monitor.open()

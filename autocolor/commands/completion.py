@@ -72,6 +72,12 @@ def complete_lights(context: click.Context, parameter: click.Parameter, incomple
 
 
 @_silent
+def complete_views(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[str]:
+    """The names of the named views of the scene on the command line."""
+    return [row.name for row in _scene(context).views if row.name.startswith(incomplete)]
+
+
+@_silent
 def complete_surfaces(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[str]:
     """The names of the surfaces of the scene or picture on the command line."""
     return [surface.name for surface in _scene(context).surfaces if surface.name.startswith(incomplete)]

@@ -71,6 +71,7 @@ def facts_of(report: SceneReport) -> dict[str, Any]:
         },
         "lights": [light.name for light in scene.lights if light.on],
         "view": {"eye": scene.view.eye, "forward": scene.view.axes[2].tolist()},
+        "views": [row.name for row in scene.views],
         "pixels": len(picture.pixels),
         "intensities": picture.ranges.whole,
         "repairs": list(report.repairs),
@@ -104,6 +105,7 @@ def lines_of(facts: dict[str, Any]) -> list[str]:
         f" intensities {facts['intensities'].minimum:.4g} to {facts['intensities'].maximum:.4g}",
         f"parts: {', '.join(f'{part} ({surface})' for part, surface in facts['parts'].items())}",
         f"view: from {_point(facts['view']['eye'])} toward {_point(facts['view']['forward'])}",
+        *([f"named views: {', '.join(facts['views'])}"] if facts["views"] else []),
         f"lights: {', '.join(facts['lights']) or 'none'}",
         "surfaces:",
     ]

@@ -10,7 +10,7 @@ from typing import Final
 
 import click
 
-from autocolor.commands.completion import complete_lights
+from autocolor.commands.completion import complete_lights, complete_views
 from autocolor.commands.options import normals_option, size_option, with_normals
 from autocolor.commands.outputs import refuse_outputs, tell_written, write_png
 from autocolor.commands.scenes import (
@@ -30,6 +30,7 @@ Examples:
   autocolor render car.obj --up y
   autocolor render scenes/coupe --light key -o key.png
   autocolor render scenes/coupe --light key --hold-exposure -o key-alone.png
+  autocolor render scenes/coupe --view hood -o hood.png
   autocolor render scenes/coupe --set lights.key.concentration=40 --set ambient=0.2
   autocolor render scenes/coupe --set surfaces.body.object_color=navy --size 1280x960
 """
@@ -58,6 +59,13 @@ Examples:
     shell_complete=complete_lights,
     help="Switch off all lights but this one; repeatable.",
 )
+@click.option(
+    "--view",
+    "view_name",
+    metavar="NAME",
+    shell_complete=complete_views,
+    help="Render a named view of the scene.",
+)
 @set_option
 @normals_option
 @size_option
@@ -74,6 +82,7 @@ def render(
     output: str | None,
     save: str | None,
     lights: tuple[str, ...],
+    view_name: str | None,
     settings: tuple[str, ...],
     normals: bool,
     size: tuple[int, int],
@@ -87,6 +96,8 @@ def render(
     report = reframed(read(source), elements / lines)
     tell_up(report, source)
     original = with_normals(report.scene, normals)
+    if view_name is not None:
+        original = original.with_taken_view(view_name)
     if hold_exposure:
         from autocolor.images import display_image
         from autocolor.mapping.intensity import held_exposure

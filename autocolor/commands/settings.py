@@ -69,6 +69,7 @@ def _replaced(scene: Scene, table: str, name: str, fields: Changes) -> Scene:
         "": scene.replace,
         "scalar": scene.with_scalar,
         "view": scene.with_view,
+        "views": partial(scene.with_named_view, name),
         "lights": partial(scene.with_light, name),
         "surfaces": partial(scene.with_surface, name),
         "parts": partial(scene.with_part, name),
@@ -148,6 +149,7 @@ def _put(fields: Changes, path: tuple[str, ...], value: Any, key: str) -> None:
 
 EXAMPLES: Final = {
     "view": "view.angle=10",
+    "views": "views.hood.angle=10",
     "scalar": "scalar.name=z",
     "lights": "lights.key.intensity=2",
     "surfaces": "surfaces.body.blend=0.3",

@@ -37,10 +37,10 @@ def tutorial(address: str | None, full_screen: bool, fit: bool) -> None:
     from pathlib import Path
 
     from autocolor.commands.demo import demo_session
-    from autocolor.commands.view import show
+    from autocolor.commands.view import show_demo
 
     if address is None:
-        show(demo_session(), full_screen, fit, prepare=teach)
+        show_demo(full_screen, fit, teach)
         return
     refuse_address(address)
     session_elsewhere(demo_session(), address, Path.cwd(), prepare=teach)

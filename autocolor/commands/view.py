@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import threading
+import time
+from contextlib import nullcontext
+from contextvars import copy_context
 from functools import partial
-from typing import TYPE_CHECKING, Final
+from pathlib import Path
+from typing import TYPE_CHECKING, Final, TypeVar
 
 import click
 
@@ -13,12 +18,14 @@ from autocolor.errors import UsageError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from pathlib import Path
 
+    from autocolor.arrays import Words
+    from autocolor.files.scene_report import SceneReport
     from autocolor.journal.history import History
+    from autocolor.journal.journal import JournalSession
     from autocolor.screens.viewer import Viewer
     from ramtek_emu import Ramtek9300
-    from ramtek_emu.monitor.window import Monitor
+    from ramtek_emu.monitor.window import Key, Monitor, Pointer
 
 EXAMPLES: Final = """\b
 Examples:
@@ -71,84 +78,190 @@ def view(
 
         list_sessions() if forget is None else forget_session(forget)
     elif recover is not None:
-        from autocolor.commands.sessions import chosen_session
-
-        folder, session = chosen_session(recover)
-        show(session.history, full_screen, fit, folder)
+        waiting = Waiting("the session", full_screen, fit)
+        folder, session = waiting.until("reading", lambda: left_session(recover))
+        show(session.history, left=folder, waiting=waiting)
     elif source is not None:
-        from autocolor.commands.settings import with_settings
-        from autocolor.files.state import note_file
-        from autocolor.journal.history import History
-        from autocolor.journal.places import Source, place_of
-
-        place = place_of(Source(source.path, source.up, source.surfaces, source.scale))
-        report = read(source)
-        edited = created_again(report, with_normals(with_settings(report.scene, settings), normals))
-        note_file(source.path)
-        history = History(report.scene, place)
-        if edited is not report.scene:
-            history.take(edited)
+        waiting = Waiting(Path(source.path).name or source.path, full_screen, fit)
+        report, history = waiting.until("reading", lambda: session_of(source, settings, normals))
         # Meshes that the user opens later get the same up axis and scale.
         show(
             history,
-            full_screen,
-            fit,
             prepare=lambda viewer: viewer.session.place_meshes(source.up, source.scale),
+            waiting=waiting,
         )
         context.exit(ended(report, source))
 
 
-def show_demo() -> None:
-    """Show the built-in demo in a window."""
+def left_session(name: str) -> tuple[Path, JournalSession]:
+    """The folder of a session that was not closed, and the session; see `chosen_session`."""
+    from autocolor.commands.sessions import chosen_session
+
+    return chosen_session(name)
+
+
+def session_of(source: SceneSource, settings: tuple[str, ...], normals: bool) -> tuple[SceneReport, History]:
+    """The report of reading a scene, and a session with it, in which the settings are a step."""
+    from autocolor.commands.settings import with_settings
+    from autocolor.files.state import note_file
+    from autocolor.journal.history import History
+    from autocolor.journal.places import Source, place_of
+
+    place = place_of(Source(source.path, source.up, source.surfaces, source.scale))
+    report = read(source)
+    edited = created_again(report, with_normals(with_settings(report.scene, settings), normals))
+    note_file(source.path)
+    history = History(report.scene, place)
+    if edited is not report.scene:
+        history.take(edited)
+    return report, history
+
+
+def show_demo(
+    full_screen: bool = False, fit: bool = False, prepare: Callable[[Viewer], object] = lambda _: None
+) -> None:
+    """Show the built-in demo in a window; `prepare` is as in `show`."""
     from autocolor.commands.demo import demo_session
 
-    show(demo_session())
+    waiting = Waiting("the coupe", full_screen, fit)
+    show(waiting.until("reading", demo_session), prepare=prepare, waiting=waiting)
 
 
 def show(
     history: History,
-    full_screen: bool = False,
-    fit: bool = False,
     left: Path | None = None,
     prepare: Callable[[Viewer], object] = lambda _: None,
+    waiting: Waiting | None = None,
 ) -> None:
     """Show the scene of a session in a window, until the window is closed.
 
     `left` is the folder of a recovered session's journal. `prepare` is called with the viewer at the
-    beginning. Raises UnavailableError without a screen.
+    beginning. `waiting` is the window in which the user waited for the session. Raises UnavailableError
+    without a screen.
     """
-    from autocolor.commands.sessions import autosaved_session
     from autocolor.errors import UnavailableError
-    from autocolor.screens.viewer import Viewer
-    from ramtek_emu import NoScreenError, Ramtek9300
+    from ramtek_emu import NoScreenError
     from ramtek_emu.monitor.window import open_screen
 
+    waiting = waiting or Waiting(history.scene.name)
     try:
         # Fail before rendering if there is no screen.
         open_screen()
-        display = Ramtek9300()
-        viewer = Viewer(history, display)
-        viewer.session.is_at_hand = True
+        viewer, display = waiting.until("rendering", lambda: viewer_of(history))
         prepare(viewer)
+        waiting.monitor.display = display
+        # Importing it takes long; the thread did.
+        from autocolor.commands.sessions import autosaved_session
+
         with autosaved_session(viewer, left) as update:
-            monitor_of(viewer, display, full_screen, fit, update).run()
+            connected(waiting.monitor, viewer, update).run()
     except NoScreenError as error:
         raise UnavailableError(f"{error}; `autocolor render SCENE -o PNG` renders without a screen") from None
 
 
-def monitor_of(
-    viewer: Viewer,
-    display: Ramtek9300,
-    full_screen: bool = False,
-    fit: bool = False,
-    update: Callable[[], None] = lambda: None,
-) -> Monitor:
-    """A window, not yet open, that shows the display of a viewer and passes keys and the mouse to the viewer.
+def viewer_of(history: History) -> tuple[Viewer, Ramtek9300]:
+    """The viewer of a session, and its display, which shows the picture."""
+    from autocolor.screens.viewer import Viewer
+    from ramtek_emu import Ramtek9300
 
-    `update` is called at every tick.
+    display = Ramtek9300()
+    viewer = Viewer(history, display)
+    viewer.session.is_at_hand = True
+    return viewer, display
+
+
+# Reading a large scene takes seconds, and so does its first picture. They are computed in a thread, while the
+# main thread shows a window with a message, answers the user who closes it, and gets the signals.
+
+FIRST_SIGN_SECONDS: Final = 0.2
+"""Assumed: after this time the window opens. Most errors are found before, so that no window flashes up."""
+
+TICK_MILLISECONDS: Final = 15
+TEXT_ELEMENTS: Final = 7
+"""The elements of a character."""
+
+Result = TypeVar("Result")
+
+
+class Waiting:
+    """The window in which the user waits for the picture of a scene of this name.
+
+    `monitor` shows a display of its own; it is opened when the work takes a while.
     """
+
+    def __init__(self, name: str, full_screen: bool = False, fit: bool = False) -> None:
+        from ramtek_emu import Ramtek9300
+        from ramtek_emu.monitor.window import Monitor
+
+        self.monitor = Monitor(Ramtek9300(), full_screen=full_screen, fit=fit, on_key=lambda _: True)
+        self._name = name
+        self._opens_at = time.monotonic() + FIRST_SIGN_SECONDS
+
+    def until(self, doing: str, work: Callable[[], Result]) -> Result:
+        """The result of a function, while the window says what it is doing, such as "reading".
+
+        An error of the function closes the window and is raised. If the user closes the window, the command
+        ends; the thread is abandoned, and ends with the process.
+        """
+        context = click.get_current_context(silent=True)
+        results: list[Result] = []
+        errors: list[BaseException] = []
+
+        def run() -> None:
+            try:
+                with nullcontext() if context is None else context.scope(cleanup=False):
+                    results.append(work())
+            except BaseException as error:
+                errors.append(error)
+
+        thread = threading.Thread(target=copy_context().run, args=(run,), daemon=True)
+        thread.start()
+        thread.join(max(0.0, self._opens_at - time.monotonic()))
+        try:
+            if thread.is_alive():
+                self._wait(f"{doing} {self._name} ...", thread)
+            if errors:
+                raise errors[0]
+        except BaseException:
+            self.monitor.close()
+            raise
+        return results[0]
+
+    def _wait(self, message: str, thread: threading.Thread) -> None:
+        """Show a message until the thread ends. Without a screen, wait for its errors, which come first."""
+        from ramtek_emu import NoScreenError
+
+        monitor = self.monitor
+        try:
+            if not monitor.is_open:
+                monitor.open()
+        except NoScreenError:
+            thread.join()
+            return
+        monitor.caption = f"autocolor - {message}"
+        monitor.display.send(message_alone(message))
+        while thread.is_alive():
+            if not monitor.step(TICK_MILLISECONDS):
+                raise click.exceptions.Exit(0)
+
+
+def message_alone(message: str) -> Words:
+    """The instructions that show a message in the middle of a black field; its end, if it is too long."""
+    from ramtek_emu import GMR_9300, instructions
+
+    elements, lines = GMR_9300.shown_elements, GMR_9300.shown_lines
+    text = message[-(elements // TEXT_ELEMENTS) :]
+    left, top = (elements - TEXT_ELEMENTS * len(text)) // 2, lines // 2
+    return instructions.concatenate(
+        instructions.load_entries(0, ((0, 0, 0), (255, 255, 255))),
+        instructions.erase((0, 0, elements - 1, lines - 1), 0),
+        instructions.write_text(text, left, top, 1, 0),
+    )
+
+
+def connected(monitor: Monitor, viewer: Viewer, update: Callable[[], None] = lambda: None) -> Monitor:
+    """The monitor, which then passes its input to a viewer; `update` is called at every tick."""
     from autocolor.screens.session import Clipboard
-    from ramtek_emu.monitor.window import Key, Monitor, Pointer
 
     def on_key(key: Key) -> bool:
         return viewer.on_key(key.name, key.control, key.shift, key.text, key.repeated)
@@ -165,18 +278,9 @@ def monitor_of(
         if viewer.session.leaves:
             monitor.close()
 
-    monitor = Monitor(
-        display,
-        viewer.caption,
-        full_screen=full_screen,
-        fit=fit,
-        on_key=on_key,
-        on_pointer=on_pointer,
-        on_release=viewer.on_release,
-        on_drop=viewer.on_drop,
-        on_tick=on_tick,
-        on_close=viewer.on_close,
-        on_message=viewer.tell,
-    )
+    monitor.caption = viewer.caption
+    monitor.on_key, monitor.on_release = on_key, viewer.on_release
+    monitor.on_pointer, monitor.on_drop = on_pointer, viewer.on_drop
+    monitor.on_tick, monitor.on_close, monitor.on_message = on_tick, viewer.on_close, viewer.tell
     viewer.session.clipboard = Clipboard(monitor.copy, monitor.paste)
     return monitor

@@ -162,7 +162,8 @@ def _of_scene(scene: Scene, output: OutputFormat) -> Iterator[str]:
         count = len(scene.lights)
         yield f"{count:,} light{'s' if count > 1 else ''} ({_named([each.name for each in scene.lights])})"
     if VIEW not in output.holds:
-        yield "the view"
+        count = len(scene.views)
+        yield f"the view and {count} named view{'s' if count > 1 else ''}" if count else "the view"
     if SETTINGS not in output.holds and (names := _settings(scene)):
         yield f"{len(names)} setting{'s' if len(names) > 1 else ''} ({_named(names)})"
 
@@ -172,7 +173,7 @@ def _settings(scene: Scene) -> list[str]:
     return [
         name
         for name, field in fields_of(Scene).items()
-        if name not in ("name", "view", "lights", "parts", "surfaces")
+        if name not in ("name", "view", "views", "lights", "parts", "surfaces")
         and field.default is not None
         and vars(scene)[name] != field.default()
     ]

@@ -81,7 +81,7 @@ def write_scene_with_tables(
         return [Path(path)]
     target = _target(path)
     check_scene(scene)
-    refuse_names((*scene.parts, *scene.surfaces, *scene.lights))
+    refuse_names((*scene.parts, *scene.surfaces, *scene.lights, *scene.views))
     with new_folder(target.parent, "a scene"), _removed_on_failure() as written:
         refuse_output(target, overwrite=overwrite)
         check = guard(target)

@@ -69,6 +69,13 @@ def mapped_ranges(picture: Picture, scaling: str, exposure: Exposure) -> Mapping
     return ranges
 
 
+def held_name(exposure: Exposure, surface: str) -> str:
+    """The name of the held range by which a surface is mapped: its own or the object's; empty without any."""
+    held = () if isinstance(exposure, str) else [name for name, _ in exposure]
+    own = surface if surface != OBJECT else ""
+    return next((name for name in (own, OBJECT) if name and name in held), "")
+
+
 def held_exposure(picture: Picture, scaling: str, exposure: Exposure = AUTO) -> Exposure:
     """The exposure that holds the ranges that are mapped now, so that no word changes.
 

@@ -137,6 +137,18 @@ class ViewChanges(TypedDict, total=False):
     field_of_view: float
 
 
+class NamedViewChanges(TypedDict, total=False):
+    """Changes of a NamedView."""
+
+    name: str
+    view: Row | ViewChanges
+    eye: Sequence[float]
+    direction: Sequence[float] | None
+    target: Sequence[float] | None
+    angle: float
+    field_of_view: float
+
+
 class ScalarChanges(TypedDict, total=False):
     """Changes of a Scalar."""
 
@@ -170,6 +182,7 @@ class SceneFields(TypedDict, total=False):
     words: Literal["levels", "normals"]
     background: str | Sequence[int]
     front: Literal["x", "-x", "y", "-y"] | None
+    views: Sequence[Row]
     scalar: Row | ScalarChanges | None
     name: str
 

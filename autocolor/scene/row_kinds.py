@@ -196,7 +196,9 @@ class RowList(Kind):
         return {name: [to_plain(row) for row in value]}
 
     def cost(self, one: Any, other: Any, own: Tier) -> Tier | None:
-        return _cost_of_rows(one, other) if len(one) == len(other) else own
+        costs = _cost_of_rows(one, other) if len(one) == len(other) else own
+        # No edit of a table costs anything if the table is not rendered.
+        return own if costs is not None and own is Tier.NOTHING else costs
 
 
 def _cost_of_rows(ones: Sequence[Row], others: Sequence[Row]) -> Tier | None:

@@ -18,6 +18,7 @@ from autocolor.errors import InputError, UsageError
 from autocolor.immutable import read_only
 from autocolor.scene.changes import (
     LightChanges,
+    NamedViewChanges,
     PaintChanges,
     PartChanges,
     ScalarChanges,
@@ -58,9 +59,9 @@ from autocolor.scene.rigs import Rig, axis_number, mirrored
 from autocolor.scene.row_kinds import Nested, RangesByName, ReferenceAt, RowList, references_of
 from autocolor.scene.scalar import COMPUTED, Scalar, name_problems
 from autocolor.scene.surfaces import MOST_SURFACES, Part, Surface
-from autocolor.scene.view import View
+from autocolor.scene.view import MOST_VIEWS, NamedView, View
 
-SomeTableRow = TypeVar("SomeTableRow", Part, Surface, Light)
+SomeTableRow = TypeVar("SomeTableRow", Part, Surface, Light, NamedView)
 
 SCALINGS: Final = ("surface", "object")
 CONTRASTS: Final = ("stretch", "floor")
@@ -175,6 +176,10 @@ class Scene(Row):
             "The axis toward which the object faces; it names the views from the sides.",
         ),
     ] = None
+    views: Annotated[
+        tuple[NamedView, ...],
+        Column(RowList(NamedView), Tier.NOTHING, "The named views, each of which can become the view."),
+    ] = ()
     scalar: Annotated[
         Scalar | None,
         Column(Nested(Scalar), Tier.MIX, "The scalar that colors the surfaces, if any."),
@@ -185,7 +190,7 @@ class Scene(Row):
     ] = "scene"
 
     def rules(self) -> Iterator[Problem]:
-        """The parts match the mesh, all references are valid, and there are at most MOST_SURFACES surfaces.
+        """The parts match the mesh, all references are valid, and there are few enough surfaces and views.
 
         If a scalar colors surfaces, words cannot stand for normals: the color of a point depends on its
         position, too.
@@ -209,6 +214,9 @@ class Scene(Row):
                 ("surfaces",),
                 f"must be at most {MOST_SURFACES}, not {len(self.surfaces)}; let parts share a surface",
             )
+        if self.views is not REFUSED and len(self.views) > MOST_VIEWS:
+            text = f"must be at most {MOST_VIEWS}, not {len(self.views)}; remove named views"
+            yield Problem(("views",), text)
 
     def _reference_problems(self) -> Iterator[Problem]:
         """The problems of references to rows that are not in their tables."""
@@ -307,6 +315,33 @@ class Scene(Row):
     def with_view(self, /, **changes: Unpack[ViewChanges]) -> Scene:
         """The scene with some fields of the view changed."""
         return with_values(self, {"view": self.view.replace(**changes)})
+
+    def named_view(self, name: str) -> NamedView:
+        """The named view of that name. Raises UsageError, with the closest name, if it does not exist."""
+        return self.views[_place("named view", self.views, name)]
+
+    def with_named_view(self, name: str, /, **changes: Unpack[NamedViewChanges]) -> Scene:
+        """The scene with some fields of a named view changed; the view itself stays."""
+        return self._with_row("views", _place("named view", self.views, name), changes)
+
+    def with_saved_view(self, name: str | None = None) -> Scene:
+        """The scene with its view under a name: of a new named view at the end, or in place of an old one.
+
+        Without a name it is a new one, like "view 1".
+        """
+        if name is None:
+            name = free_name("view 1", [row.name for row in self.views])
+        rows = {row.name: row for row in self.views}
+        return replaced(self, {"views": tuple({**rows, name: NamedView(name, self.view)}.values())})
+
+    def with_taken_view(self, name: str) -> Scene:
+        """The scene with a named view as its view. Raises UsageError if the named view does not exist."""
+        return with_values(self, {"view": self.named_view(name).view})
+
+    def without_named_view(self, name: str) -> Scene:
+        """The scene without a named view. Raises UsageError if the named view does not exist."""
+        place = _place("named view", self.views, name)
+        return with_values(self, {"views": (*self.views[:place], *self.views[place + 1 :])})
 
     def with_scalar(self, /, **changes: Unpack[ScalarChanges]) -> Scene:
         """The scene with some fields of its scalar changed. A new scalar must have a name."""

@@ -1,4 +1,4 @@
-"""The view: eye position, view direction, rotation of the picture plane, and field of view.
+"""The view: eye position, view direction, rotation of the picture plane, and field of view; named views.
 
 Paper: "Light Direction and Concentration", Figure 5 (eye, view direction, RESCALE, ANGLE).
 """
@@ -9,16 +9,20 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Annotated, ClassVar, Unpack
+from typing import Annotated, ClassVar, Final, Unpack
 
 import numpy as np
 
 from autocolor.arrays import Floats
 from autocolor.checks import Vector
 from autocolor.immutable import read_only
-from autocolor.scene.changes import ViewChanges
+from autocolor.scene.changes import NamedViewChanges, ViewChanges
 from autocolor.scene.columns import WORLD_UNITS, BarRange, Column, Problem, Row, Tier, replaced
-from autocolor.scene.kinds import Number, VectorKind
+from autocolor.scene.kinds import Number, Text, VectorKind
+from autocolor.scene.row_kinds import Nested
+
+MOST_VIEWS: Final = 64
+"""Limit: named views of a scene."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -105,4 +109,18 @@ class View(Row):
 
     def replace(self, /, **changes: Unpack[ViewChanges]) -> View:
         """The view with some fields changed; a new direction removes the target, and vice versa."""
+        return replaced(self, changes)
+
+
+@dataclass(frozen=True, repr=False)
+class NamedView(Row):
+    """A view with a name, to come back to."""
+
+    noun: ClassVar[str] = "named view"
+
+    name: Annotated[str, Column(Text(), Tier.NOTHING, "The name, unique among the named views.")]
+    view: Annotated[View, Column(Nested(View, inline=True), Tier.NOTHING, "The view.")]
+
+    def replace(self, /, **changes: Unpack[NamedViewChanges]) -> NamedView:
+        """The named view with some fields changed, also fields of its view."""
         return replaced(self, changes)

@@ -22,7 +22,7 @@ from autocolor.scene.view import View
 from autocolor.screens.input import Gesture
 from autocolor.screens.light_parameters import KIND, parameter_rows
 from autocolor.screens.picture.light_handles import LightHandles, highlight_items
-from autocolor.screens.picture.over_picture import OverPicture
+from autocolor.screens.picture.over_picture import OverPicture, exposure_row
 from autocolor.screens.screen import Handle
 from autocolor.screens.session import Session
 from autocolor.visibility.projection import focal_length
@@ -152,6 +152,7 @@ class LightsScreen(OverPicture):
                 choose=session.choose_light,
             ),
             *first,
+            exposure_row(self.edits),
         ]
         for title, columns in {**SECTIONS, "other settings": others}.items():
             rows += [Section(title), *parameter_rows(session, light, columns)]

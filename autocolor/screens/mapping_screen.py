@@ -13,13 +13,14 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from autocolor.arrays import Floats, Singles
+from autocolor.errors import UsageError
 from autocolor.lighting.picture import Picture
-from autocolor.mapping.intensity import fractions_by_surface, mapped_ranges
+from autocolor.mapping.intensity import fractions_by_surface, has_extent, held_name, mapped_ranges
 from autocolor.scene.columns import bar_within
 from autocolor.scene.curves import CURVES, CurvePoints
 from autocolor.scene.scene import AUTO, OBJECT, Exposure
 from autocolor.screens.input import Gesture
-from autocolor.screens.picture.over_picture import OverPicture
+from autocolor.screens.picture.over_picture import HELD, OverPicture, exposure_row
 from autocolor.screens.screen import Handle
 from autocolor.screens.session import Session
 from autocolor.widgets.bars import Bar
@@ -41,10 +42,9 @@ from autocolor.widgets.items import (
 )
 from autocolor.widgets.menu import WORK
 from autocolor.widgets.rows import rows_of
-from autocolor.widgets.widget import Button, Choice, Gap, Widget, short_name
+from autocolor.widgets.widget import Button, Choice, Gap, Switch, Widget, short_name
 
 POINTS: Final = "points"
-HELD: Final = "held"
 
 
 class MappingScreen(OverPicture):
@@ -66,7 +66,7 @@ class MappingScreen(OverPicture):
 
     def rows(self) -> Sequence[Widget]:
         scene, session = self.session.scene, self.session
-        others = ("name", "view", "scalar")
+        others = ("name", "view", "scalar", "front")
         return [
             Choice(
                 "mapping",
@@ -78,13 +78,8 @@ class MappingScreen(OverPicture):
             Button("straight", "A straight curve with five points.", run=partial(self._put_points, STRAIGHT)),
             self._remove_row(),
             Gap("exposure gap"),
-            Choice(
-                "exposure",
-                "Auto: the picture's range of intensities. Held: the range stays; less light is darker.",
-                names=(AUTO, HELD),
-                present=AUTO if scene.exposure == AUTO else HELD,
-                choose=self._expose,
-            ),
+            exposure_row(self.edits),
+            *surface_rows(session, self._put),
             *held_rows(session, self._put),
             Gap("scene gap"),
             *rows_of(scene, self._put, session.world, leave_out=others),
@@ -188,7 +183,8 @@ class MappingScreen(OverPicture):
             session.studio.image.mapped, scene.scaling, scene.mapping, scene.exposure, session.surface_name
         )
         levels, shares = (ACROSS, np.zeros_like(ACROSS)) if curve is None else curve
-        return Curve(session.surface_name, levels, shares, self._points(), self._touched)
+        is_held = bool(held_name(scene.exposure, session.surface_name))
+        return Curve(session.surface_name, levels, shares, self._points(), self._touched, is_held)
 
     # The actions of the rows.
 
@@ -202,20 +198,6 @@ class MappingScreen(OverPicture):
         if self._touched is not None:
             self._put_points(removed(self._points(), self._touched))
             self._touched = None
-
-    def _expose(self, how: str) -> None:
-        if how == AUTO:
-            self._put({"exposure": AUTO})
-            self.session.tell("the exposure follows the picture")
-            return
-        self.session.studio.hold_exposure()
-        if self.session.scene.exposure == AUTO:
-            self.session.warn(
-                "to hold the exposure, a surface must have different intensities, and none has;"
-                " switch a light on"
-            )
-        else:
-            self.session.tell("exposure held: less light is darker")
 
     def _put(self, changes: Mapping[str, Any]) -> None:
         self.session.edit(self.session.scene.replace(**changes))
@@ -259,7 +241,7 @@ CURVE: Final = Area(PANEL.left + 8, PANEL.top + 16, PANEL.right - 8, PANEL.botto
 ACROSS: Final = np.linspace(0, 1, CURVE.width, dtype=np.float32)
 """The fraction of the intensities at each element of the curve."""
 
-MOST_CHARACTERS: Final = (CURVE.width - 2 * CHARACTER) // CHARACTER - len("level")
+MOST_CHARACTERS: Final = (CURVE.width - 2 * CHARACTER) // CHARACTER - len("level: held")
 MOST_COUNTED: Final = 20_000
 """Assumed: intensities that are counted; the panel cannot tell more apart."""
 
@@ -276,11 +258,17 @@ class Curve(NamedTuple):
     points: CurvePoints
     touched: int | None
     """The number of the point that was touched last."""
+    is_held: bool = False
+    """Whether the range of the surface is held."""
 
 
 def panel_items(curve: Curve) -> list[Item]:
     """The items of the panel."""
-    name = short_name(curve.surface, MOST_CHARACTERS)
+    title = (
+        f"{short_name(curve.surface, MOST_CHARACTERS)}: {HELD if curve.is_held else AUTO}"
+        if curve.surface
+        else ""
+    )
     top = PANEL.top + 4
     items = [
         filled(PANEL, NIGHT),
@@ -290,8 +278,7 @@ def panel_items(curve: Curve) -> list[Item]:
         outline(CURVE, SLATE),
         lines([_places_of(ACROSS, curve.levels)], YELLOW, CURVE),
     ]
-    if name:
-        items.append(text(name, CURVE.right + 1 - CHARACTER * len(name), top, GRAY))
+    items.append(text(title, CURVE.right + 1 - CHARACTER * len(title), top, GRAY))
     for number, (x, y) in enumerate(curve.points):
         element, line = place_of(x, y)
         word = YELLOW if number == curve.touched else WHITE
@@ -384,13 +371,60 @@ def removed(points: CurvePoints, number: int) -> CurvePoints:
     return (*points[:number], *points[number + 1 :]) if 0 < number < len(points) - 1 else points
 
 
-# The rows of the menu for the range of intensities that the exposure holds.
+# The rows of the menu for the ranges of intensities that the exposure holds.
+
+MOST_LISTED: Final = 10
+"""Assumed: surfaces that have a row; the exposure of more surfaces is held or released as a whole."""
 
 LEAST_SHARE: Final = 1e-3
 """Assumed: the smallest distance of minimum and maximum, as a share of the bar's range."""
 
 BEYOND: Final = 2.0
 """Assumed: the bars go to twice the largest intensity of the picture."""
+
+
+def surface_rows(session: Session, put: Callable[[Mapping[str, object]], object]) -> list[Widget]:
+    """A row for each surface in use, whose box says whether its range is held; none for many surfaces."""
+    names = [name for name in session.studio.level_ranges if name != OBJECT]
+    return [
+        Switch(
+            name,
+            f"Hold the range of {name}, or let it follow the picture; beside the box: show its curve.",
+            within="exposure",
+            is_on=bool(held_name(session.scene.exposure, name)),
+            flip=partial(_flip, session, name, put),
+            choose=partial(session.choose_surface, name),
+            is_chosen=name == session.surface_name,
+        )
+        for name in (names if len(names) <= MOST_LISTED else ())
+    ]
+
+
+def _flip(session: Session, name: str, put: Callable[[Mapping[str, object]], object]) -> None:
+    put({"exposure": flipped(session, name)})
+    state = HELD if held_name(session.scene.exposure, name) else AUTO
+    session.tell(f"the range of {name}: {state}")
+
+
+def flipped(session: Session, name: str) -> Exposure:
+    """The exposure with the range of a surface released if it is held, else held as it is mapped now.
+
+    The surfaces that are mapped by the object's held range keep it. Raises UsageError if the surface has no
+    range to hold.
+    """
+    studio, scene = session.studio, session.scene
+    held = {} if isinstance(scene.exposure, str) else dict(scene.exposure)
+    if held_name(scene.exposure, name):
+        of_object = held.pop(OBJECT, None)
+        others = [other for other in studio.level_ranges if other != OBJECT]
+        held = {**(dict.fromkeys(others, of_object) if of_object else {}), **held}
+        held.pop(name)
+        return tuple(held.items()) or AUTO
+    picture = studio.image.mapped
+    extent = mapped_ranges(picture, scene.scaling, scene.exposure)[picture.surfaces.index(name) + 1]
+    if not has_extent(extent):
+        raise UsageError(f"{name} has no range to hold, as all its points have one intensity; light it first")
+    return (*held.items(), (name, (extent.minimum * picture.scale, extent.maximum * picture.scale)))
 
 
 def held_rows(session: Session, put: Callable[[Mapping[str, object]], object]) -> list[Widget]:
@@ -425,10 +459,3 @@ def held_rows(session: Session, put: Callable[[Mapping[str, object]], object]) -
             put=lambda value: hold(low, max(value, low + least)),
         ),
     ]
-
-
-def held_name(exposure: Exposure, surface: str) -> str:
-    """The name of the held range by which a surface is mapped: its own or the object's; empty without any."""
-    held = () if isinstance(exposure, str) else [name for name, _ in exposure]
-    own = surface if surface != OBJECT else ""
-    return next((name for name in (own, OBJECT) if name and name in held), "")

@@ -299,6 +299,8 @@ class Viewer:
             self._update()
         elif (rests and self.board.screen.idle()) or self._had_news != self.session.has_news:
             self._update()
+        if rests and not self.board.is_dragging and self.session.tell_effect():
+            self._update()
 
     def _take_changes(self) -> None:
         """Show the changes that another program made to the scene's file."""

@@ -357,17 +357,22 @@ class Pair(Widget):
     def items(self, lit: bool) -> list[Item]:
         background = SLATE if lit else NIGHT
         middle = self._middle
-        most = (middle - self.area.left - MARGIN) // 7
-        items = self.row(lit, fitted(self.label, most), chosen=self.is_chosen)
+        items = self.row(
+            lit,
+            fitted(self.label, (middle - self.area.left - MARGIN) // CHARACTER - 1),
+            chosen=self.is_chosen,
+        )
         if self.is_chosen:
             items.append(filled(self.area._replace(left=middle - MARGIN // 2), background))
-        other = fitted(self.other, most)
+        other = fitted(self.other, (self.area.right + 1 - middle) // CHARACTER)
         return [*items, text(other, middle, self.area.top + TEXT_DOWN, self.ink, background)]
 
     @property
     def _middle(self) -> int:
-        """Where the right button begins."""
-        return self.area.left + MARGIN + (self.area.width - MARGIN) // 2
+        """Where the right button begins: in the middle, or a letter after it if the left label is long."""
+        left = self.area.left + MARGIN
+        middle = left + (self.area.width - MARGIN) // 2
+        return min(max(middle, left + CHARACTER * (len(self.label) + 1)), middle + CHARACTER)
 
     def pick(self, place: Place) -> object:
         return self.run_other() if place.element >= self._middle - MARGIN // 2 else self.run()

@@ -14,7 +14,7 @@ from autocolor.scene.row_kinds import Nested, OneRowOf
 from autocolor.scene.scalar import Scalar
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Paint, Part, Reflectance, Surface
-from autocolor.scene.view import View
+from autocolor.scene.view import NamedView, View
 
 ROOT = Path(__file__).resolve().parents[2]
 WRITTEN = ROOT / "autocolor" / "scene" / "changes.py"
@@ -30,6 +30,7 @@ CLASSES: tuple[type[Row], ...] = (
     Paint,
     Surface,
     View,
+    NamedView,
     Scalar,
 )
 

@@ -18,7 +18,7 @@ from autocolor.scene.row_kinds import Nested, OneRowOf
 from autocolor.scene.scalar import Scalar
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Part, Surface
-from autocolor.scene.view import View
+from autocolor.scene.view import MOST_VIEWS, NamedView, View
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -35,6 +35,12 @@ typed numbers may be any that the value's own rule allows. The last column says 
 TABLES: tuple[tuple[str, str, type[Row]], ...] = (
     ("Keys outside of all tables", "", Scene),
     ("`[view]`", "", View),
+    (
+        "`[[views]]`",
+        "Named views: rows with a name and the keys of `[view]`, in any number up to"
+        f" {MOST_VIEWS}. Any of them can become the view; an edit of them costs nothing.",
+        NamedView,
+    ),
     ("`[scalar]`", "It colors the surfaces by a scalar of the mesh, or by a computed one.", Scalar),
     ("`[[mesh]]`", "A mesh: a `file`, or `nodes` and `polygons`.", MeshEntry),
     ("`[parts.NAME]`", "", Part),
@@ -51,7 +57,8 @@ TABLES: tuple[tuple[str, str, type[Row]], ...] = (
 )
 
 LEFT_OUT = {
-    Scene: ("mesh", "parts", "surfaces", "lights", "view", "scalar", "name"),
+    Scene: ("mesh", "parts", "surfaces", "lights", "view", "views", "scalar", "name"),
+    NamedView: tuple(keys_of(View)),
     Part: ("name",),
     Surface: ("name",),
     HalfSpace: ("name",),

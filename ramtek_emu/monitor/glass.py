@@ -162,10 +162,10 @@ class Glass:
                 f"a window must have a screen, and this screen refuses it ({cause}); "
                 "ask for a picture file instead"
             ) from cause
-        self._forget_shown()
+        self.forget_shown()
 
-    def _forget_shown(self) -> None:
-        """Note that the window has lost the field."""
+    def forget_shown(self) -> None:
+        """Note that the window has lost the field, or has another field to show."""
         self._redrawn += 1
         self._shown = None
 
@@ -228,7 +228,7 @@ class Glass:
     def _note(self, event: pygame.event.Event, queue: InputQueue) -> None:
         """Put the input of an event into the queue, or note that the window has lost the field."""
         if event.type in REDRAWN_ON:
-            self._forget_shown()
+            self.forget_shown()
         elif event.type == pygame.QUIT:
             queue.add(Close())
         elif event.type == pygame.KEYDOWN:

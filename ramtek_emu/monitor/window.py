@@ -67,7 +67,7 @@ class Monitor:
         messages for the user, such as the path of a screenshot; without it they are shown in the caption, or
         in full screen over the field.
         """
-        self.display = display
+        self._display = display
         self.full_screen = full_screen
         self.screenshots = Path(screenshots)
         self.on_key = on_key
@@ -86,6 +86,16 @@ class Monitor:
         self._caption = caption
         self._glass = Glass((display.scan_out.elements, display.scan_out.lines), fit)
         self._shown: tuple[object, ...] | None = None
+
+    @property
+    def display(self) -> Ramtek9300:
+        """The display that is shown; a display that takes its place must have as many lines and elements."""
+        return self._display
+
+    @display.setter
+    def display(self, display: Ramtek9300) -> None:
+        self._display = display
+        self._glass.forget_shown()
 
     @property
     def fit(self) -> bool:
@@ -130,8 +140,9 @@ class Monitor:
         self._glass.set_title(" - ".join(part for part in (self._caption, message) if part))
 
     def run(self) -> None:
-        """Open the window and keep it open until it is closed."""
-        self.open()
+        """Keep the window open until it is closed; open it first if it is not."""
+        if not self.is_open:
+            self.open()
         try:
             while self.is_open:
                 self.step(TICK_MILLISECONDS)

@@ -12,7 +12,20 @@ from typing import Any
 import numpy as np
 from hypothesis import strategies as st
 
-from autocolor import Flap, Flaps, HalfSpace, Light, Mesh, Paint, Part, Reflectance, Scene, Surface, View
+from autocolor import (
+    Flap,
+    Flaps,
+    HalfSpace,
+    Light,
+    Mesh,
+    NamedView,
+    Paint,
+    Part,
+    Reflectance,
+    Scene,
+    Surface,
+    View,
+)
 from autocolor.scene.curves import CURVES
 from autocolor.scene.lights import Links
 from autocolor.scene.reflection_models import MODELS, BlinnPhong, CookTorrance, Phong, SpecularGrowth
@@ -88,6 +101,12 @@ def outside_views(draw: st.DrawFn) -> View:
     far = 6.0 / float(np.linalg.norm(eye))
     return View((eye[0] * far, eye[1] * far, eye[2] * far), target=(0.0, 0.0, 0.0), field_of_view=40.0)
 
+
+named_views = st.lists(
+    st.builds(NamedView, st.sampled_from(["hood", "view 1", 'a "b".c']), views() | outside_views()),
+    max_size=2,
+    unique_by=lambda row: row.name,
+).map(tuple)
 
 rasters = st.tuples(st.integers(1, 24), st.integers(1, 24))
 
@@ -278,6 +297,7 @@ def scenes(draw: st.DrawFn) -> Scene:
         division=draw(st.sampled_from(["covered", "equal"])),
         background=draw(colors),
         front=draw(st.sampled_from([None, "x", "-x", "y", "-y"])),
+        views=draw(named_views),
         scalar=draw(st.none() | scalars()),
     )
 

@@ -619,12 +619,34 @@ def test_the_same_scene_again_is_no_step_and_sends_nothing() -> None:
     assert written == (display.frame_buffer.written, display.lookup_table.written)
 
 
+def test_named_views_are_saved_taken_and_removed_by_steps_and_only_taking_sends() -> None:
+    studio, display = opened()
+    start = studio.scene
+    written = display.frame_buffer.written, display.lookup_table.written
+    assert [studio.save_view("hood"), studio.save_view(), studio.save_view("hood")] == [
+        "hood",
+        "view 1",
+        "hood",
+    ]
+    assert written == (display.frame_buffer.written, display.lookup_table.written)
+    studio.view(angle=4)
+    studio.take_view("hood")
+    assert studio.scene.view == start.view
+    studio.remove_view("hood")
+    assert [row.name for row in studio.scene.views] == ["view 1"]
+    with pytest.raises(UsageError, match="there is no named view 'hood'"):
+        studio.take_view("hood")
+    assert [studio.undo() for _ in range(6)] == [True] * 5 + [False]
+    assert studio.scene is start
+
+
 @pytest.mark.parametrize(
     ("edit", "words_sent"),
     [
         (lambda studio: studio.recolor("body", object_color="#010203"), False),
         (lambda studio: studio.edit(studio.scene.replace(contrast="floor")), False),
         (lambda studio: studio.edit(studio.scene.replace(background="#010203")), False),
+        (lambda studio: studio.save_view("hood"), False),
         (lambda studio: studio.edit(studio.scene.replace(scaling="object")), True),
         (lambda studio: studio.edit(studio.scene.replace(mapping="gamma")), True),
         (lambda studio: studio.surface("body", levels=40), True),

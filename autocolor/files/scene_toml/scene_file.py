@@ -3,7 +3,7 @@
 The keys are the columns of the tables, which docs/COLUMNS.md lists; `[[mesh]]` names the mesh files.
 Everything but a mesh is optional and created with defaults when omitted; `lights = []` means no lights. Parts
 of the same name in several meshes become one part. All problems of the file are reported together; messages
-count the rows of `lights` and `mesh` from 1.
+count the rows of `lights`, `views` and `mesh` from 1.
 """
 
 from __future__ import annotations

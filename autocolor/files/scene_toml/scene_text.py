@@ -21,9 +21,9 @@ from autocolor.scene.row_kinds import NamedRows, Nested, RangesByName, RowList, 
 from autocolor.scene.scalar import Scalar
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Part, Surface
-from autocolor.scene.view import View
+from autocolor.scene.view import NamedView, View
 
-FILE_TABLES: Final = ("view", "scalar", "mesh", "parts", "surfaces", "lights")
+FILE_TABLES: Final = ("view", "views", "scalar", "mesh", "parts", "surfaces", "lights")
 """The tables of a scene file, in the order in which they are written."""
 
 ALWAYS_WRITTEN: Final[dict[type[Row], tuple[str, ...]]] = {
@@ -32,6 +32,7 @@ ALWAYS_WRITTEN: Final[dict[type[Row], tuple[str, ...]]] = {
     Surface: ("name", "object_color"),
     Light: ("name", "position"),
     View: ("eye", "direction", "target"),
+    NamedView: ("name", "eye", "direction", "target"),
     Flap: (),
     HalfSpace: ("name", "point", "direction"),
     Scalar: ("name",),
@@ -55,15 +56,24 @@ def scene_text(
         if key != "name" and (not isinstance(kinds[key], (Nested, RowList)) or (key, value) == ("lights", []))
     }
     blocks = [table_text("", keys)] if keys else []
-    nested = [name for name, kind in kinds.items() if isinstance(kind, Nested) and name in tables]
-    blocks.extend(table_text(f"[{name}]", tables[name]) for name in nested)
+    for name in FILE_TABLES:
+        kind = kinds[name]
+        if name == "mesh":
+            blocks.extend(_mesh_tables(scene, mesh_files, without_defaults))
+        elif isinstance(kind, RowList):
+            blocks.extend(_rows(name, kind, tables[name]))
+        elif name in tables:
+            blocks.append(table_text(f"[{name}]", tables[name]))
+    return "\n".join(blocks)
+
+
+def _mesh_tables(
+    scene: Scene, mesh_files: Sequence[Mapping[str, str]], without_defaults: bool
+) -> Iterator[str]:
+    """The `[[mesh]]` tables; the first one has the crease angle."""
     for row, files in enumerate(mesh_files):
         entry = {**files} if row else {**files, "crease_angle": scene.mesh.crease_angle}
-        blocks.append(table_text("[[mesh]]", sparse_entry(entry) if without_defaults else entry))
-    for name, kind in kinds.items():
-        if isinstance(kind, RowList):
-            blocks.extend(_rows(name, kind, tables[name]))
-    return "\n".join(blocks)
+        yield table_text("[[mesh]]", sparse_entry(entry) if without_defaults else entry)
 
 
 def sparse_tables(scene: Scene) -> dict[str, Any]:
@@ -121,7 +131,7 @@ MOST_ROUNDS: Final = 6
 """Limit: a text needs at most three rounds: for written keys, for their order, for created keys."""
 
 NEW_ROW: Final = 1 << 20
-"""The number of the first new row of `[[lights]]` or `[[mesh]]`; larger than any row of the text."""
+"""The number of the first new row of a table such as `[[lights]]`; larger than any row of the text."""
 
 ORDERED: Final = tuple(
     (name,) for name, field in fields_of(Scene).items() if isinstance(field.column.kind, RangesByName)
@@ -164,10 +174,11 @@ def completed(data: bytes, scene: Scene) -> bytes:
             name = row.pop("name")
             _complete(text, (table, name), document.get(table, {}).get(name, {}), row)
     text.arrange("surfaces", [surface.name for surface in scene.surfaces])
-    if text.has(("lights", 0)) or "lights" not in document:
-        written = document.get("lights", [{}] * len(scene.lights))
-        for number, row in enumerate(tables["lights"]):
-            _complete(text, ("lights", number), written[number], row)
+    for table in ("views", "lights"):
+        if text.has((table, 0)) or table not in document:
+            written = document.get(table, [{}] * len(tables[table]))
+            for number, row in enumerate(tables[table]):
+                _complete(text, (table, number), written[number], row)
     return text.text.encode()
 
 
@@ -237,8 +248,9 @@ def _edited(data: bytes, old: Scene, new: Scene) -> bytes:
         _set_all(text, ("scalar",), sparse["scalar"])
     for key in ("parts", "surfaces"):
         _change_named(text, document, key, before[key], after[key], sparse[key])
-    if before["lights"] != after["lights"]:
-        _change_lights(text, document, before["lights"], after["lights"], sparse["lights"])
+    for key in ("views", "lights"):
+        if before[key] != after[key]:
+            _change_rows(text, document, key, before[key], after[key], sparse[key])
     return text.text.encode()
 
 
@@ -297,38 +309,40 @@ def _change_named(
                 _set_all(text, (table, name), without_name(keys))
 
 
-def _change_lights(
+def _change_rows(
     text: TomlText,
     document: Tables,
+    table: str,
     before: list[dict[str, Any]],
     after: list[dict[str, Any]],
     sparse: list[dict[str, Any]],
 ) -> None:
-    """Change the lights that differ; if the text has no lights, all lights are written."""
-    written = document.get("lights", [])
-    if not after or not text.has(("lights", 0)):
-        text.remove(("lights",))
-        if not after or written:
-            text.set(("lights",), sparse)
+    """Change the rows that differ in a table such as `[[lights]]`; if the text has none, write all rows."""
+    written = document.get(table, [])
+    if not after or not text.has((table, 0)):
+        text.remove((table,))
+        # Without the key, lights would be created.
+        if (after and written) or (not after and table == "lights"):
+            text.set((table,), sparse)
+        if written or not after:
             return
-        written = []
     olds = {row["name"]: row for row in before}
     number_of = {row["name"]: number for number, row in enumerate(written)}
     names = dict.fromkeys(row["name"] for row in after)
     if len(written) == len(names):
-        # A light with another name in the same place was renamed.
+        # A row with another name in the same place was renamed.
         for old, new in zip(tuple(number_of), names, strict=True):
             if new not in number_of and old not in names:
                 number_of[new], olds[new] = number_of.pop(old), olds[old]
-    text.remove(*(("lights", number) for name, number in number_of.items() if name not in names))
+    text.remove(*((table, number) for name, number in number_of.items() if name not in names))
     for row, keys in zip(after, sparse, strict=True):
         name = row["name"]
         if name in number_of:
-            _change(text, ("lights", number_of[name]), olds[name], row, keys)
+            _change(text, (table, number_of[name]), olds[name], row, keys)
         else:
             number_of[name] = NEW_ROW + len(number_of)
-            _set_all(text, ("lights", number_of[name]), keys)
-    text.arrange("lights", [number_of[name] for name in names])
+            _set_all(text, (table, number_of[name]), keys)
+    text.arrange(table, [number_of[name] for name in names])
 
 
 def _set_all(text: TomlText, path: KeyPath, keys: Tables) -> None:

@@ -305,7 +305,7 @@ class SceneProblems:
 
         Rows are counted from 1.
         """
-        if len(path) > 1 and path[0] in ("lights", "mesh") and isinstance(path[1], int):
+        if len(path) > 1 and path[0] in ("lights", "views", "mesh") and isinstance(path[1], int):
             rows = self.document.get(str(path[0]))
             row = rows[path[1]] if isinstance(rows, list) else None
             name = row.get("name") if isinstance(row, dict) else None

@@ -41,6 +41,7 @@ from autocolor.screens.light_and_view.orthographic_views import (
     side_at,
 )
 from autocolor.screens.light_parameters import KIND, parameter_rows, put_light
+from autocolor.screens.picture.over_picture import camera_rows
 from autocolor.screens.picture.picture_edits import PictureEdits, side_name, target_of
 from autocolor.screens.screen import Cached, Handle, Screen
 from autocolor.screens.session import Session
@@ -269,6 +270,7 @@ class LightAndViewScreen(Screen):
             Steps("angle", "ANGLE: turn the picture.", step=self._tilt, signs=("<", ">")),
             Button("frame", "Move the eye so that the object fills the picture.", run=self.edits.rescale),
             Button("as opened", "Look as the scene's file says.", run=self.edits.as_opened),
+            *camera_rows(self.edits),
         ]
 
     def fit(self) -> None:

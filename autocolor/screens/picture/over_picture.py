@@ -9,12 +9,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, ClassVar, Final, NamedTuple
 
 from autocolor.arrays import Bytes, Words
 from autocolor.checks import Color
+from autocolor.mapping.intensity import held_name
 from autocolor.mapping.legend import CORNERS, GROUND, INK, Corner, Legend, legend
 from autocolor.scene.kinds import in_digits
+from autocolor.scene.scene import AUTO
 from autocolor.scene.surfaces import Paint
 from autocolor.screens.input import MIDDLE, Gesture, turn_between, wheel_ratio
 from autocolor.screens.picture.picture_edits import PictureEdits
@@ -23,7 +25,7 @@ from autocolor.screens.session import Session
 from autocolor.widgets.items import Area, Item, filled, text
 from autocolor.widgets.menu import MENU
 from autocolor.widgets.rows import rows_of
-from autocolor.widgets.widget import Choice, Widget
+from autocolor.widgets.widget import Button, Choice, Pair, Widget
 
 
 class OverPicture(Screen):
@@ -178,6 +180,50 @@ def paint_rows(session: Session, paint: Paint) -> list[Widget]:
     rows = rows_of(paint, put, session.world, leave_out=("object_color", "light_color"))
     # Shorten labels so that they fit beside their numbers.
     return [replace(row, label=row.label.replace("percentage", "percent")) for row in rows]
+
+
+HELD: Final = "held"
+ALL_HELD: Final = "all held"
+MIXED: Final = "mixed"
+"""How many of the ranges of surfaces are held."""
+
+
+def exposure_row(edits: PictureEdits) -> Choice:
+    """The row that says whether the ranges of the surfaces are held, and holds or releases all of them."""
+    scene = edits.session.scene
+    held = [bool(held_name(scene.exposure, name)) for name in edits.session.studio.level_ranges]
+    present = AUTO if scene.exposure == AUTO else ALL_HELD if all(held) else MIXED
+    return Choice(
+        "exposure",
+        "Auto: ranges of intensities follow the picture. Held: ranges stay, so that less light is darker.",
+        names=(ALL_HELD, AUTO),
+        present=present,
+        choose=lambda name: edits.release_exposure() if name == AUTO else edits.hold_exposure(),
+    )
+
+
+def camera_rows(edits: PictureEdits) -> list[Widget]:
+    """The rows of the named views: to take one, to save the present view, and to remove the shown one."""
+    views = edits.session.scene.views
+    save = "Save the present view under a new name, with the scene"
+    if not views:
+        return [Button("save view", f"{save}; the row camera comes back to it.", run=edits.save_view)]
+    return [
+        Choice(
+            "camera",
+            "Look through a saved view.",
+            names=tuple(row.name for row in views),
+            present=edits.camera,
+            choose=edits.take_view,
+        ),
+        Pair(
+            "save view",
+            f"{save}; or remove the camera that is shown.",
+            run=edits.save_view,
+            other="remove",
+            run_other=edits.remove_view,
+        ),
+    ]
 
 
 def surface_row(session: Session, help: str, choose: Callable[[str], object] | None = None) -> Choice:

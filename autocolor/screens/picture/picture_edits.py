@@ -12,7 +12,7 @@ from autocolor.arrays import Floats
 from autocolor.checks import Vector
 from autocolor.errors import UsageError
 from autocolor.scene.defaults import OBJECT_COLORS, default_view, framed, object_bounds, stage_top
-from autocolor.scene.scene import Exposure, Scene
+from autocolor.scene.scene import AUTO, Exposure, Scene
 from autocolor.scene.view import View
 from autocolor.screens.screen import Cached
 from autocolor.screens.session import Session
@@ -67,7 +67,7 @@ def front_of(scene: Scene) -> Vector:
 
 
 def sides_of(scene: Scene) -> dict[str, Vector | None]:
-    """The directions toward the eye of the named views, in the order of their keys.
+    """The directions toward the eye of the views from the sides, in the order of their keys.
 
     Three quarters, which is None, is the direction of a created view, turned with the front.
     Assumed: as on an engineering drawing, x is to the right and z up in the view from -y, y to the right and
@@ -247,6 +247,34 @@ class PictureEdits:
         named = self.session.named_view
         return named[1] if named is not None and named[0] == self.session.scene.view else ""
 
+    @property
+    def camera(self) -> str:
+        """The name of the named view that equals the present view; empty if there is none."""
+        scene = self.session.scene
+        return next((row.name for row in scene.views if row.view == scene.view), "")
+
+    def take_view(self, name: str) -> None:
+        """Make a named view the present view."""
+        self.session.edit(self.session.scene.with_taken_view(name))
+        self.session.tell(f"camera: {name}")
+
+    def save_view(self) -> None:
+        """Save the present view under a free name, unless a named view equals it."""
+        if self.camera:
+            self.session.tell(f"this view is saved already: {self.camera}")
+            return
+        scene = self.session.scene.with_saved_view()
+        self.session.edit(scene)
+        self.session.tell(f"view saved: {scene.views[-1].name}")
+
+    def remove_view(self) -> None:
+        """Remove the named view that equals the present view. Raises UsageError if there is none."""
+        name = self.camera
+        if not name:
+            raise UsageError("only the camera that is shown can be removed; take one from the row camera")
+        self.session.edit(self.session.scene.without_named_view(name))
+        self.session.tell(f"{titled('camera', name)} removed; undo brings it back")
+
     def rescale(self, is_surface: bool = False) -> None:
         """Move the eye so that the object, or the selected surface, fills the picture.
 
@@ -293,6 +321,21 @@ class PictureEdits:
         light = lights[number]
         self.session.edit(self.session.scene.with_light(light.name, on=not light.on))
         self.session.tell(f"{titled('light', light.name)} {'off' if light.on else 'on'}")
+
+    def hold_exposure(self) -> None:
+        """Hold the intensity ranges of all surfaces as they are in the picture."""
+        self.session.studio.hold_exposure()
+        if self.session.scene.exposure == AUTO:
+            raise UsageError(
+                "to hold the exposure, a surface must have different intensities, and none has;"
+                " switch a light on"
+            )
+        self.session.tell("exposure held: less light is darker")
+
+    def release_exposure(self) -> None:
+        """Let the intensity ranges of all surfaces follow the picture."""
+        self.session.edit(self.session.scene.replace(exposure=AUTO))
+        self.session.tell("the exposure follows the picture")
 
     def switch_exposure(self) -> None:
         """Hold the intensity ranges of the picture; if this method held them, restore the exposure before."""

@@ -9,7 +9,7 @@ from typing import Final
 from autocolor.errors import UsageError
 from autocolor.mapping.ranges import SCREENS
 from autocolor.screens.picture.light_handles import LightHandles
-from autocolor.screens.picture.over_picture import OverPicture, surface_row
+from autocolor.screens.picture.over_picture import OverPicture, camera_rows, surface_row
 from autocolor.screens.picture.picture_edits import sides_of
 from autocolor.screens.screen import Handle
 from autocolor.screens.session import PICTURE, Session
@@ -98,6 +98,7 @@ class PictureScreen(OverPicture):
                 other="part",
                 run_other=edits.rescale_part,
             ),
+            *camera_rows(edits),
             Button(
                 "watch",
                 "Let the picture come in line by line, as in 1983.",

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from click.shell_completion import BashComplete
 
-from autocolor import read_scene, render, write_picture
+from autocolor import read_scene, render, write_picture, write_scene
 from autocolor.commands import completion
 from autocolor.commands.autocolor import autocolor
 from autocolor.commands.completion import narrowed
@@ -88,6 +88,15 @@ def test_lights_are_those_of_the_scene_on_the_line(folder: Path) -> None:
     assert completed("render", "scene", "--light", "") == ["key", "key.2"]
     assert completed("render", "--up", "y", "two.obj", "--light", "t") == ["top"]
     assert completed("render", "--light", "") == []
+
+
+def test_views_are_those_of_the_scene_on_the_line(folder: Path) -> None:
+    write_scene("views", read_scene("scene").with_saved_view("hood").with_saved_view("roof"))
+    assert completed("render", "views", "--view", "") == ["hood", "roof"]
+    assert completed("render", "views", "--view", "r") == ["roof"]
+    assert completed("render", "views", "--set", "views.h") == [
+        f"views.hood.{key}=" for key in ("eye", "direction", "target", "angle", "field_of_view")
+    ]
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from autocolor import Studio, read_picture, read_scene
+from autocolor import Studio, read_picture, read_scene, write_scene
 from ramtek_emu import Ramtek9300
 from tests.autocolor.commands.conftest import Run
 
@@ -62,6 +62,21 @@ def test_one_light_alone_is_the_scene_with_the_others_off(folder: Path, run: Run
     assert (folder / "one.png").read_bytes() == (folder / "two.png").read_bytes()
     assert (folder / "one.png").read_bytes() != (folder / "both.png").read_bytes()
     assert (folder / "all.png").read_bytes() == (folder / "both.png").read_bytes()
+
+
+def test_a_named_view_is_rendered(folder: Path, run: Run) -> None:
+    scene = read_scene("scene")
+    write_scene(
+        "scene", scene.with_view(angle=30).with_saved_view("tilted").replace(view=scene.view), overwrite=True
+    )
+    assert run("render", "scene", "--view", "tilted", "-o", "one.png").code == 0
+    assert run("render", "scene", "--set", "view.angle=30", "-o", "two.png").code == 0
+    assert run("render", "scene", "-o", "three.png").code == 0
+    assert (folder / "one.png").read_bytes() == (folder / "two.png").read_bytes()
+    assert (folder / "one.png").read_bytes() != (folder / "three.png").read_bytes()
+    expected = "autocolor: there is no named view 'tited'; did you mean 'tilted'?\n"
+    assert run("render", "scene", "--view", "tited") == (2, "", expected)
+    assert "\nnamed views: tilted\n" in run("info", "scene").out
 
 
 def test_a_picture_has_the_size_that_is_asked_for(folder: Path, run: Run) -> None:

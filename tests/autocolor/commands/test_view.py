@@ -1,10 +1,12 @@
 from __future__ import annotations
 
 import os
+import threading
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from autocolor.files.state import recent_files
@@ -130,14 +132,15 @@ def test_the_mouse_reaches_the_viewer(
 
 
 def test_leaving_by_the_menu_closes_the_window(monkeypatch: pytest.MonkeyPatch) -> None:
-    from autocolor.commands.view import monitor_of
+    from autocolor.commands.view import connected
     from autocolor.screens.viewer import Viewer
     from ramtek_emu import Ramtek9300
+    from ramtek_emu.monitor.window import Monitor
     from tests.autocolor.sessions import car
 
     display = Ramtek9300()
     viewer = Viewer(car(), display)
-    monitor = monitor_of(viewer, display)
+    monitor = connected(Monitor(display), viewer)
     closed: list[bool] = []
     monkeypatch.setattr(monitor, "close", lambda: closed.append(True))
     assert monitor.on_tick is not None
@@ -149,15 +152,16 @@ def test_leaving_by_the_menu_closes_the_window(monkeypatch: pytest.MonkeyPatch) 
 
 
 def test_the_clipboard_of_the_window_is_that_of_the_viewer(monkeypatch: pytest.MonkeyPatch) -> None:
-    from autocolor.commands.view import monitor_of
+    from autocolor.commands.view import connected
     from autocolor.screens.viewer import Viewer
     from ramtek_emu import Ramtek9300
+    from ramtek_emu.monitor.window import Monitor
     from tests.autocolor.sessions import car
 
     monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
     display = Ramtek9300()
     viewer = Viewer(car(), display)
-    monitor = monitor_of(viewer, display)
+    monitor = connected(Monitor(display), viewer)
     monitor.open()
     try:
         viewer.session.turn_to("mixing")
@@ -242,3 +246,131 @@ def test_a_screen_that_does_not_answer_is_no_screen(process: Run, folder: Path) 
     assert (ran.code, ran.out) == (69, "")
     assert ran.err.count("\n") == 1
     assert "autocolor render SCENE -o PNG" in ran.err
+
+
+# The window in which the user waits.
+
+
+class Waited:
+    """What a window showed while the user waited; `on_step` is called at each step with the monitor."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        from ramtek_emu.monitor import window
+
+        self.captions: list[str] = []
+        self.fields: list[bytes] = []
+        self.on_step: Callable[[Any], object] = lambda monitor: None
+        waited = self
+
+        class Stepped(window.Monitor):
+            opened = False
+
+            @property
+            def is_open(self) -> bool:
+                return self.opened
+
+            def open(self) -> None:
+                self.opened = True
+
+            def close(self) -> None:
+                self.opened = False
+
+            def step(self, wait: int = 0) -> bool:
+                if waited.captions[-1:] != [self.caption]:
+                    waited.captions.append(self.caption)
+                    waited.fields.append(self.display.field().tobytes())
+                waited.on_step(self)
+                return self.is_open
+
+            def run(self) -> None:
+                waited.captions.append(f"run: {self.caption}, open: {self.is_open}")
+
+        monkeypatch.setattr(window, "Monitor", Stepped)
+        monkeypatch.setattr(window, "open_screen", lambda: None)
+        monkeypatch.setattr("autocolor.commands.view.FIRST_SIGN_SECONDS", 0.0)
+
+
+@pytest.fixture
+def slow(monkeypatch: pytest.MonkeyPatch) -> threading.Event:
+    """Reading a scene waits for this event."""
+    import autocolor.files.scene_sources as module
+
+    event, read = threading.Event(), module.read_scene_with_report
+
+    def slowly(*arguments: Any, **options: Any) -> Any:
+        assert event.wait(60)
+        return read(*arguments, **options)
+
+    monkeypatch.setattr(module, "read_scene_with_report", slowly)
+    return event
+
+
+def test_while_a_scene_is_read_and_rendered_the_window_says_so(
+    folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch, slow: threading.Event
+) -> None:
+    waited = Waited(monkeypatch)
+    waited.on_step = lambda monitor: slow.set()
+    assert run("view", "scene") == (0, "", "")
+    assert waited.captions[0] == "autocolor - reading scene ..."
+    assert waited.captions[-1].startswith("run: autocolor - scene - [front.low] - ")
+    assert waited.captions[-1].endswith(", open: True")
+    (elements, lines), field = (640, 480), np.frombuffer(waited.fields[0], np.uint8)
+    at = np.argwhere(field.reshape(lines, elements, 3).any(axis=2))
+    assert set(field) == {0, 255}
+    assert (at.max(axis=0) + at.min(axis=0)).tolist() == pytest.approx([lines, elements], abs=14)
+
+
+def test_closing_the_window_ends_the_command_while_a_scene_is_read(
+    folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch, slow: threading.Event
+) -> None:
+    waited = Waited(monkeypatch)
+    waited.on_step = lambda monitor: monitor.close()
+    assert run("view", "scene") == (0, "", "")
+    assert waited.captions == ["autocolor - reading scene ..."]
+    slow.set()
+
+
+def test_an_error_that_is_found_while_the_user_waits_closes_the_window(
+    folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch, slow: threading.Event
+) -> None:
+    waited = Waited(monkeypatch)
+    monitors: list[Any] = []
+
+    def note(monitor: Any) -> None:
+        monitors.append(monitor)
+        slow.set()
+
+    waited.on_step = note
+    (folder / "two.obj").write_text("v 0 0\n")
+    ran = run("view", "two.obj")
+    assert (ran.code, ran.out) == (65, "")
+    assert ran.err.startswith("autocolor: two.obj, line 1")
+    assert ran.err.count("\n") == 1
+    assert not monitors[0].is_open
+
+
+def test_a_signal_ends_the_command_while_a_scene_is_read(
+    folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch, slow: threading.Event
+) -> None:
+    def interrupt(monitor: Any) -> None:
+        raise KeyboardInterrupt
+
+    Waited(monkeypatch).on_step = interrupt
+    assert run("view", "scene") == (130, "", "autocolor: interrupted\n")
+    slow.set()
+
+
+def test_without_a_screen_an_error_of_the_scene_comes_first(
+    folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch, slow: threading.Event
+) -> None:
+    from ramtek_emu import NoScreenError
+    from ramtek_emu.monitor import window
+
+    Waited(monkeypatch)
+
+    def refuse(_: Any) -> None:
+        slow.set()
+        raise NoScreenError("a window must have a screen, and there is none")
+
+    monkeypatch.setattr(window.Monitor, "open", refuse)
+    assert run("view", "none.obj").code == 66

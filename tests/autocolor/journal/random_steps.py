@@ -17,7 +17,16 @@ from autocolor.journal.places import Source, checksum_of
 from tests.autocolor.linked_scenes import linked
 from tests.autocolor.meshes import cube
 from tests.autocolor.sessions import car
-from tests.autocolor.strategies import MAPPINGS, colors, exposures, lights, numbers, surfaces, views
+from tests.autocolor.strategies import (
+    MAPPINGS,
+    colors,
+    exposures,
+    lights,
+    named_views,
+    numbers,
+    surfaces,
+    views,
+)
 from tests.autocolor.test_studio import any_edits, apply, recolorings
 
 OBJ = "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 1 1\ng a\nf 1 2 3\ng b\nf 1 3 4\n"
@@ -45,6 +54,7 @@ columns_of_scenes = st.fixed_dictionaries(
             lambda three: st.integers(0, 3).flatmap(lambda count: linked_lights(three[:count]))
         ),
         "view": views(),
+        "views": named_views,
         "ambient": numbers(0, 1),
         "scaling": st.sampled_from(["surface", "object"]),
         "mapping": st.sampled_from(MAPPINGS),

@@ -19,6 +19,7 @@ from autocolor import (
     Light,
     Mesh,
     MeshScalar,
+    NamedView,
     Scene,
     Studio,
     read_journal,
@@ -62,6 +63,13 @@ EDITS: dict[str, dict[str, Values]] = {
         "background": {"background": "#102030"},
     },
     "view": {
+        "eye": {"eye": [1, -5, 2]},
+        "direction": {"direction": [0, 1, 0.25]},
+        "target": {"target": [0.25, 0, 0.5]},
+        "angle": {"angle": 12},
+        "field_of_view": {"field_of_view": 50},
+    },
+    "views": {
         "eye": {"eye": [1, -5, 2]},
         "direction": {"direction": [0, 1, 0.25]},
         "target": {"target": [0.25, 0, 0.5]},
@@ -143,6 +151,7 @@ EDITS: dict[str, dict[str, Values]] = {
 CLASSES: dict[str, type[Row]] = {
     "": Scene,
     "view": View,
+    "views": NamedView,
     "scalar": Scalar,
     "parts": Part,
     "surfaces": Surface,
@@ -151,11 +160,12 @@ CLASSES: dict[str, type[Row]] = {
     "half_spaces": HalfSpace,
 }
 
-ROWS = {"parts": "cube", "surfaces": "body", "lights": "key"}
+ROWS = {"views": "hood", "parts": "cube", "surfaces": "body", "lights": "key"}
 """The row of each table that is edited."""
 
 NOT_EDITED = {
-    "": {"mesh", "parts", "surfaces", "lights", "view", "scalar", "name"},
+    "": {"mesh", "parts", "surfaces", "lights", "view", "views", "scalar", "name"},
+    "views": {"name"},
     "parts": {"name"},
     "surfaces": {"name"},
     "lights": {"name"},
@@ -180,6 +190,7 @@ def start() -> Scene:
         surfaces=[Surface("body"), Surface("glass")],
         lights=[Light("key", (2, -4, 3), aim=(0, 0, 0)), Light("rim", (-3, 2, 1), aim=(0, 0, 0.5))],
         view=View((1, -4, 1), target=(0, 0, 0)),
+        views=[NamedView("hood", View((1, -4, 1), target=(0, 0, 0)))],
     )
 
 
@@ -190,6 +201,8 @@ def edited(scene: Scene, table: str, key: str) -> Scene:
         return scene.replace(**values)
     if table == "view":
         return scene.with_view(**values)
+    if table == "views":
+        return scene.with_named_view("hood", **values)
     if table == "scalar":
         return scene.with_scalar(**values)
     if table == "parts":
@@ -406,6 +419,7 @@ def test_the_random_scenes_have_other_values_in_every_column() -> None:
         tables: dict[str, list[Row]] = {
             "": [scene],
             "view": [scene.view],
+            "views": list(scene.views),
             "scalar": [] if scene.scalar is None else [scene.scalar],
             "parts": list(scene.parts),
             "surfaces": list(scene.surfaces),

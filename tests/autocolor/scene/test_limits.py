@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from autocolor import HalfSpace, Light, Surface
+from autocolor import HalfSpace, Light, NamedView, Surface
 from autocolor.errors import InputError
 from autocolor.scene.columns import Row, RowError, replaced
 from autocolor.scene.following import _in_words
@@ -30,9 +30,14 @@ def half_spaces(count: int) -> Light:
     return LIGHT.replace(half_spaces=[HalfSpace(f"{n}", (0, 0, 0), (0, 0, 1)) for n in range(count)])
 
 
+def views(count: int) -> Row:
+    return SCENE.replace(views=[NamedView(f"{number}", SCENE.view) for number in range(count)])
+
+
 LIMITS: list[tuple[Callable[[int], Row], int, int, str]] = [
     (surfaces, 1, 255, "surfaces must be at most 255, not 256;"),
     (half_spaces, 0, 64, "must be at most 64, not 65;"),
+    (views, 0, 64, "views must be at most 64, not 65; remove named views"),
     (lambda n: Scalar("z", scale=((1, 2, 3),) * n), 2, 256, "a list of 2 to 256 colors"),
     (lambda n: Scalar("z", bands=n), 2, 256, "bands must be a whole number from 2 to 256, not "),
     (lambda n: Scalar("z", shades=n), 1, 256, "shades must be a whole number from 1 to 256, not "),

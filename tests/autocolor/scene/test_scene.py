@@ -28,7 +28,7 @@ def car_scene() -> Scene:
 @given(scenes())
 def test_a_scene_replaced_by_nothing_shares_everything(scene: Scene) -> None:
     same = scene.replace()
-    for name in ("mesh", "parts", "surfaces", "lights", "view"):
+    for name in ("mesh", "parts", "surfaces", "lights", "view", "views"):
         assert getattr(same, name) is getattr(scene, name)
 
 
@@ -51,6 +51,24 @@ def test_a_light_is_added_after_the_others_and_removed_by_its_name() -> None:
     assert [light.name for light in more.without_light(names[0]).lights] == [*names[1:], "lamp"]
     assert more.mesh is scene.mesh
     assert cost_of_edit(scene, more) is Tier.MIX
+
+
+def test_named_views_are_saved_taken_changed_and_removed_at_no_cost() -> None:
+    scene = car_scene()
+    saved = scene.with_saved_view("hood").with_view(angle=5).with_saved_view().with_saved_view()
+    assert [row.name for row in saved.views] == ["hood", "view 1", "view 2"]
+    assert [row.view.angle for row in saved.views] == [0, 5, 5]
+    assert saved.with_taken_view("hood").view == scene.view
+    again = saved.with_saved_view("hood")
+    assert [(row.name, row.view.angle) for row in again.views] == [("hood", 5), ("view 1", 5), ("view 2", 5)]
+    turned = saved.with_named_view("view 1", angle=7)
+    assert [row.view.angle for row in turned.views] == [0, 7, 5]
+    assert turned.view == saved.view
+    fewer = turned.without_named_view("view 1")
+    assert [row.name for row in fewer.views] == ["hood", "view 2"]
+    edits = [(saved, again), (saved, turned), (turned, fewer), (scene, scene.with_saved_view())]
+    assert {cost_of_edit(*edit) for edit in edits} == {Tier.NOTHING}
+    assert cost_of_edit(saved, saved.with_named_view("hood", angle=0)) is None
 
 
 def test_a_copied_light_stands_after_the_others_under_a_free_name() -> None:
@@ -115,6 +133,10 @@ def test_every_row_is_changed_by_its_name() -> None:
         (lambda scene: scene.part("x"), "there is no part 'x'; choose 'door', 'hood' or 'pane'"),
         (lambda scene: scene.only_lights("kee"), "there is no light 'kee'; did you mean 'key'?"),
         (lambda scene: scene.without_light("kee"), "there is no light 'kee'; did you mean 'key'?"),
+        (
+            lambda scene: scene.with_saved_view("hood").with_taken_view("hod"),
+            "there is no named view 'hod'; did you mean 'hood'?",
+        ),
     ],
 )
 def test_an_unknown_name_is_refused_with_the_nearest_right_one(ask: Any, sentence: str) -> None:

@@ -8,7 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor import Scene
+import autocolor
+from autocolor import Mesh, Scene
+from autocolor.mapping.intensity import held_name
 from autocolor.scene.columns import fields_of
 from autocolor.scene.curves import CURVES, CurvePoints
 from autocolor.screens.mapping_screen import (
@@ -22,7 +24,6 @@ from autocolor.screens.mapping_screen import (
     added,
     curve_of,
     fractions_of,
-    held_name,
     moved,
     panel_items,
     place_of,
@@ -32,6 +33,7 @@ from autocolor.screens.mapping_screen import (
 from autocolor.widgets.items import YELLOW
 from autocolor.widgets.menu import WORK
 from ramtek_emu import Ramtek9300
+from tests.autocolor.meshes import grid
 from tests.autocolor.screens.boxes import boxes, hand_at, hint_of, told, undo, words_are_those_of_the_scene
 from tests.autocolor.screens.hand import Hand
 
@@ -53,7 +55,7 @@ def points_of(hand: Hand) -> CurvePoints:
 
 def test_every_parameter_of_the_mapping_has_a_row(hand: Hand) -> None:
     labels = {row.label for row in hand.viewer.board.screen.rows()}
-    tables = {"mesh", "parts", "surfaces", "lights", "view", "scalar", "name", "background"}
+    tables = {"mesh", "parts", "surfaces", "lights", "view", "views", "scalar", "name", "background"}
     assert labels >= set(fields_of(Scene)) - tables
 
 
@@ -205,7 +207,7 @@ def test_the_exposure_is_held_and_released_and_the_row_shows_which(hand: Hand) -
     words = hand.viewer.studio.words
     assert hand.widget("exposure").present == "auto"  # type: ignore[attr-defined]
     hand.pick("exposure")
-    assert hand.widget("exposure").present == "held"  # type: ignore[attr-defined]
+    assert hand.widget("exposure").present == "all held"  # type: ignore[attr-defined]
     assert told(hand) == ("exposure held: less light is darker", False)
     assert np.array_equal(hand.viewer.studio.words, words)
     hand.pull("ambient", 0.2, 0.0)
@@ -444,3 +446,55 @@ def test_hidden_panels_leave_the_picture_below_the_curve_free(hand: Hand) -> Non
     hand.drag(middle, (middle[0] + 20, middle[1]))
     assert scene_of(hand).view != before.view
     assert scene_of(hand).mapping == before.mapping
+
+
+def test_a_row_for_each_surface_says_whether_its_range_is_held_and_flips_it(tmp_path: Path) -> None:
+    hand = hand_at(tmp_path, "mapping", boxes())
+    words = hand.viewer.studio.words
+
+    def states() -> list[object]:
+        rows = [hand.widget(name) for name in ("low", "high", "exposure")]
+        return [vars(row).get("is_on", vars(row).get("present")) for row in rows]
+
+    assert states() == [False, False, "auto"]
+    hand.pick("high", 0.95)
+    assert told(hand) == ("the range of high: held", False)
+    assert states() == [False, True, "mixed"]
+    hand.pick("exposure", 0.5)
+    assert states() == [True, True, "all held"]
+    hand.pick("high", 0.95)
+    assert states() == [True, False, "mixed"]
+    assert "object" not in dict(scene_of(hand).exposure)  # type: ignore[arg-type]
+    hand.pick("low", 0.95)
+    assert states() == [False, False, "auto"]
+    assert scene_of(hand).exposure == "auto"
+    assert np.array_equal(hand.viewer.studio.words, words)
+    hand.pick("high", 0.2)
+    assert hand.viewer.session.surface_name == "high"
+
+
+def test_a_surface_that_leaves_the_range_of_the_object_leaves_it_to_the_others(tmp_path: Path) -> None:
+    hand = hand_at(tmp_path, "mapping", boxes().replace(exposure={"object": (0, 2)}))
+    hand.pick("low", 0.95)
+    assert scene_of(hand).exposure == (("high", (0, 2)),)
+
+
+def test_a_surface_of_one_intensity_has_no_range_to_hold(tmp_path: Path) -> None:
+    hand = hand_at(tmp_path, "mapping", boxes().replace(lights=(), ambient=0.2))
+    hand.pick("low", 0.95)
+    message, is_warning = told(hand)
+    assert is_warning
+    assert message == "low has no range to hold, as all its points have one intensity; light it first"
+
+
+def test_many_surfaces_have_no_rows(tmp_path: Path) -> None:
+    hand = hand_at(tmp_path, "mapping", strips(11))
+    assert "strip 0" not in labels_of(hand)
+    assert "strip 0" in labels_of(hand_at(tmp_path, "mapping", strips(10)))
+    assert hand.widget("exposure").present == "auto"  # type: ignore[attr-defined]
+
+
+def strips(count: int) -> Scene:
+    """Strips side by side, each of its own surface."""
+    strips = [grid(1, 1, (number, 0, 0), (1, 0, 0), (0, 0, 9), f"strip {number}") for number in range(count)]
+    return autocolor.scene_of(Mesh.joined(strips), surfaces="parts")

@@ -734,3 +734,107 @@ def test_a_look_takes_no_time(store: Path) -> None:
         disk.was_changed()
         seconds.append(time.process_time() - begun)
     assert np.median(seconds) < 0.002
+
+
+# An edit of a light that changes nothing that is seen.
+
+AUTOMATIC = "no change: automatic exposure maps the brightest to the highest level; "
+ALONE = boxes().only_lights("key").replace(ambient=0)
+UNSEEN: dict[str, tuple[Scene, Callable[[Scene], Scene], str]] = {
+    "brighter": (ALONE, lambda scene: scene.with_light("key", intensity=2), f"{AUTOMATIC}E holds all"),
+    "off": (ALONE, lambda scene: scene.with_light("fill", intensity=2), "no change: light fill is off"),
+    "without intensity": (
+        boxes().with_light("fill", intensity=0),
+        lambda scene: scene.with_light("fill", position=(0, -5, 0)),
+        "no change: light fill has the intensity 0",
+    ),
+    "behind": (
+        boxes().with_light("fill", position=(0.5, 9, 0.5)),
+        lambda scene: scene.with_light("fill", on=False),
+        "no change: light fill shines on nothing that is seen",
+    ),
+    "two off": (
+        ALONE.only_lights(),
+        lambda scene: scene.replace(lights=[light.replace(intensity=3) for light in scene.lights]),
+        "no change: every edited light is off",
+    ),
+    "as bright": (
+        ALONE.replace(exposure={"object": (0, 1000)}),
+        lambda scene: scene.with_light("key", intensity=1.000001),
+        "no change: no point that is seen gets another level",
+    ),
+    "brighter, with words for normals": (
+        ball_scene().only_lights("fill").replace(ambient=0, words="normals"),
+        lambda scene: scene.with_light("fill", intensity=2),
+        f"{AUTOMATIC}E holds all",
+    ),
+    "added": (
+        boxes(),
+        lambda scene: scene.with_new_light("far", position=(0.5, 9, 0.5)),
+        "no change: light far shines on nothing that is seen",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", UNSEEN)
+def test_an_edit_of_a_light_that_changes_nothing_says_why(tmp_path: Path, case: str) -> None:
+    scene, edit, message = UNSEEN[case]
+    viewer = Viewer(scene, Ramtek9300(), tmp_path)
+    viewer.session.has_keyboard = True
+    viewer.session.edit(edit(viewer.studio.scene))
+    viewer.on_tick()
+    assert (viewer.message, viewer.session.news.is_warning) == (message, True)
+    viewer.tell("")
+    viewer.on_tick()
+    assert viewer.message == ""
+
+
+SEEN: dict[str, Callable[[Scene], Scene]] = {
+    "a light moved": lambda scene: scene.with_light("key", position=(-2, -3, 4)),
+    "a light removed": lambda scene: scene.without_light("fill"),
+    "no light": lambda scene: scene.with_surface("low", blend=0.123),
+    "a light and the view": lambda scene: scene.with_light("fill", intensity=2).with_saved_view(),
+    "the name": lambda scene: scene.replace(name="other"),
+}
+
+
+@pytest.mark.parametrize("case", SEEN)
+def test_other_edits_do_not_say_that_nothing_changed(tmp_path: Path, case: str) -> None:
+    viewer = Viewer(ALONE, Ramtek9300(), tmp_path)
+    viewer.session.edit(SEEN[case](viewer.studio.scene))
+    viewer.tell("edited")
+    viewer.on_tick()
+    assert viewer.message == "edited"
+
+
+def test_with_the_exposure_held_the_same_edit_has_an_effect(tmp_path: Path) -> None:
+    hand = hand_before(ALONE, tmp_path)
+    hand.open_menu()
+    hand.pick("lights")
+    hand.pull("intensity", 0.2, 0.4)
+    assert hand.viewer.message == f"{AUTOMATIC}hold the exposure in the menu of lights"
+    hand.pick("exposure")
+    hand.pull("intensity", 0.2, 0.3)
+    assert not hand.viewer.message.startswith("no change")
+
+
+def test_the_whole_drag_is_compared_when_it_ends(tmp_path: Path) -> None:
+    viewer = Viewer(ALONE, Ramtek9300(), tmp_path)
+    session = viewer.session
+    viewer.board.is_pinned = True
+    session.turn_to("lights")
+    viewer.tell("")
+    (row,) = (row for row in viewer.board.widgets() if row.label == "intensity")
+    places = [(row.area.left + share, row.area.top + 8) for share in (20, 40, 60)]
+    viewer.on_pointer(*places[0], "press", 1)
+    for place in places[1:]:
+        viewer.on_pointer(*place, "move", 1)
+        viewer.on_tick(is_at_rest=False)
+        assert not viewer.message.startswith("no change")
+    viewer.on_pointer(*places[-1], "release", 1)
+    viewer.on_tick()
+    assert viewer.message == f"{AUTOMATIC}E holds all"
+    assert len(viewer.studio.history.to_undo) == 1
+    viewer.on_key("z", control=True)
+    viewer.on_tick()
+    assert viewer.message == "undone"

@@ -400,6 +400,27 @@ def test_a_running_window_ticks_until_it_is_closed(display: Ramtek9300) -> None:
     assert not pygame.display.get_init()
 
 
+def test_another_display_takes_the_place_of_the_first_in_the_open_window(monitor: Monitor) -> None:
+    resize(monitor, (640, 480))
+    other = Ramtek9300()
+    other.send(pattern())
+    other.send(instructions.erase((0, 0, 99, 99), 1))
+    assert not np.array_equal(other.field(), monitor.display.field())
+    monitor.display = other
+    monitor.step()
+    assert np.array_equal(shown(), other.field())
+    window = pygame.display.get_wm_info()["window"]
+    ticks: list[object] = []
+
+    def tick() -> None:
+        ticks.append(pygame.display.get_wm_info()["window"])
+        monitor.close()
+
+    monitor.on_tick = tick
+    monitor.run()
+    assert ticks == [window]
+
+
 def test_a_real_key_of_a_real_screen_arrives(monitor: Monitor) -> None:
     if shutil.which("xdotool") is None:
         pytest.skip("xdotool is not installed; no key can be pressed for real")

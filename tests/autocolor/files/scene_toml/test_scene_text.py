@@ -142,6 +142,7 @@ lights = [ {name="key", position=[1,2,3]}, {name="b", position=[1,2,3], flaps={x
  only_parts=["part 0"], follows="eye"} ]
 mesh = [ {file="car.obj"} ]
 view = { eye = [1,2,3], target=[0,0,0] }
+views = [ {name="hood", eye=[1,2,3], target=[0,0,0]} ]
 parts = { "part 0" = {surface="body"}, "part 1".surface = "glass" }
 surfaces = { body = { diffuse = 0.5, model="blinn", exponent = 3 }, glass = {} }
 scalar = { name = "z", limits = [0, 1] }
@@ -177,6 +178,14 @@ except_surfaces = ["glass", "body"]
 HEADERS = """\
 # Mine.
 [view]
+eye = [1,2,3]
+target = [0,0,0]
+[[views]]
+name = "view 1"
+eye = [1,2,3]
+direction = [1,0,0]
+[[views]]
+name = "hood"
 eye = [1,2,3]
 target = [0,0,0]
 [parts]
@@ -255,6 +264,20 @@ def test_a_scalar_is_edited_in_place_with_its_comments(meshes: list[MeshReport])
     assert edited(HEADERS, read(HEADERS.encode(), meshes).with_scalar(name="z"), meshes) == HEADERS.replace(
         "[parts]\n", '\n[scalar]\nname = "z"\n\n[parts]\n'
     )
+
+
+def test_named_views_come_and_go_with_their_comments(meshes: list[MeshReport]) -> None:
+    start = '[[mesh]]\nfile = "car.obj"\n'
+    scene = read(start.encode(), meshes)
+    more = edited(start, scene.with_saved_view("hood").with_saved_view("roof"), meshes)
+    assert more.startswith('[[views]]\nname = "hood"\neye = [')
+    mine = more.replace('"roof"\n', '"roof" # from above\n').replace('"hood"\n', '"hood" # mine\n')
+    turned = edited(mine, read(mine.encode(), meshes).with_named_view("roof", angle=3), meshes)
+    assert turned == mine.replace("[[mesh]]", "angle = 3.0\n\n[[mesh]]", 1).replace("\n\nangle", "\nangle")
+    fewer = edited(mine, read(mine.encode(), meshes).without_named_view("hood"), meshes)
+    assert "# from above" in fewer
+    assert "hood" not in fewer
+    assert edited(fewer, scene, meshes) == start
 
 
 @pytest.mark.parametrize(

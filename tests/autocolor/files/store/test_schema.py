@@ -34,7 +34,7 @@ from autocolor.scene.row_kinds import Nested, OneRowOf, Reference, References, R
 from autocolor.scene.scalar import Scalar
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Part
-from autocolor.scene.view import View
+from autocolor.scene.view import NamedView, View
 from tests.autocolor.files.store.stores import small_store
 from tests.autocolor.strategies import lights, surfaces, vectors
 
@@ -148,9 +148,9 @@ def test_a_row_of_any_class_comes_back_from_its_table(row: Row) -> None:
     assert from_plain(type(row), plain_row(columns_of(type(row)), through_a_table(row))) == row
 
 
-@pytest.mark.parametrize("cls", [Scene, View, Scalar, Light, Surface, Part, Flap, Flaps, MadeUp])
+@pytest.mark.parametrize("cls", [Scene, View, NamedView, Scalar, Light, Surface, Part, Flap, Flaps, MadeUp])
 def test_every_key_of_a_class_has_its_columns(cls: type[Row]) -> None:
-    held_elsewhere = {"mesh", "parts", "surfaces", "lights"} if cls is Scene else set()
+    held_elsewhere = {"mesh", "parts", "surfaces", "lights", "views"} if cls is Scene else set()
     found = {column.path[0] for column in columns_of(cls)}
     assert found == keys_of(cls).keys() - held_elsewhere
 

@@ -189,9 +189,9 @@ REFUSALS = (
     ),
     (
         (
-            "CREATE TABLE views AS SELECT * FROM view",
+            "CREATE TABLE two AS SELECT * FROM view",
             "DROP TABLE view",
-            "ALTER TABLE views RENAME TO view",
+            "ALTER TABLE two RENAME TO view",
             "INSERT INTO view SELECT * FROM view",
         ),
         "view must have one row, not 2; leave one",

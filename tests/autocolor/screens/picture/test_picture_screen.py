@@ -81,6 +81,39 @@ def test_a_light_is_switched_by_its_box_and_chosen_beside_it(hand: Hand) -> None
     assert chosen() == ["fill"]
 
 
+def test_a_view_is_saved_taken_and_removed_as_a_camera(hand: Hand) -> None:
+    session, start = hand.viewer.session, scene_of(hand)
+
+    def cameras() -> tuple[list[str], str]:
+        row = hand.widget("camera")
+        assert isinstance(row, Choice)
+        return list(row.names), row.present
+
+    hand.pick("save view")
+    assert session.message == "view saved: view 1"
+    assert cameras() == (["view 1"], "view 1")
+    hand.pick("save view", 0.2)
+    assert session.message == "this view is saved already: view 1"
+    hand.pick("turn", 0.9)
+    hand.pick("save view", 0.2)
+    hand.pick("turn", 0.9)
+    assert cameras() == (["view 1", "view 2"], "")
+    turned = scene_of(hand)
+    hand.pick("save view", 0.9)
+    assert session.message == "only the camera that is shown can be removed; take one from the row camera"
+    hand.pick("camera", 0.9)
+    assert session.message == "camera: view 1"
+    assert cameras()[1] == "view 1"
+    assert scene_of(hand).view == start.view
+    hand.pick(" ", 0.1)
+    assert scene_of(hand) is turned
+    hand.pick("camera", 0.02)
+    assert cameras()[1] == "view 2"
+    hand.pick("save view", 0.9)
+    assert session.message == "camera view 2 removed; undo brings it back"
+    assert cameras() == (["view 1"], "")
+
+
 def test_object_surface_and_part_fill_the_picture(hand: Hand) -> None:
     start = scene_of(hand)
     hand.open_menu()
