@@ -11,8 +11,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
 from operator import itemgetter
-from textwrap import wrap
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 
@@ -20,20 +19,18 @@ from autocolor.arrays import Bytes
 from autocolor.checks import Color
 from autocolor.scene.kinds import in_digits
 from autocolor.screens.input import MIDDLE, Gesture
+from autocolor.screens.message_line import MESSAGE, MessagePart, TypingLine, message_items
 from autocolor.screens.screen import Handle, Sample, Screen
 from autocolor.screens.session import HISTORY, PICTURE, Session
 from autocolor.widgets.bars import Bar
 from autocolor.widgets.items import (
-    BLACK,
     CHARACTER,
     GRAY,
-    HEIGHT,
     NIGHT,
     ORANGE,
     SLATE,
     WHITE,
     WIDTH,
-    YELLOW,
     Area,
     Item,
     filled,
@@ -43,8 +40,6 @@ from autocolor.widgets.letters import PANEL as LETTER_PANEL
 from autocolor.widgets.letters import letter_panel
 from autocolor.widgets.menu import (
     MENU,
-    MESSAGE_CHARACTERS,
-    MESSAGE_LINES,
     WIDE_BAR,
     NameList,
     Section,
@@ -67,7 +62,6 @@ from autocolor.widgets.widget import (
     Pair,
     Place,
     Steps,
-    Typed,
     Widget,
 )
 
@@ -706,150 +700,6 @@ def with_loads(entries: Bytes, loads: Sequence[tuple[int, Bytes]]) -> Bytes:
     for first, colors in loads:
         table[first : first + len(colors)] = colors
     return table
-
-
-# The message line: the bottom lines of every screen, for errors, results, hints and what is typed. A message
-# that does not fit takes further lines over the screen while it stands.
-
-MESSAGE: Final = Area(0, HEIGHT - MESSAGE_LINES, WIDTH - 1, HEIGHT - 1)
-LINE_STEP: Final = 12
-"""Lines from one line of a message to the next."""
-
-MOST_LINES: Final = 2
-"""Assumed: lines of a message, and of a typed text; longer texts are cut."""
-
-
-class MessagePart(NamedTuple):
-    """A part of a message: its text, and the word of its color."""
-
-    text: str
-    ink: int
-    selected: int | None = None
-    """Of a typed text, the number of the first character that is selected; None for other texts."""
-
-
-def message_items(parts: Sequence[MessagePart], end: int = WIDTH) -> list[Item]:
-    """The parts of a message one below the other, the last line in the message line.
-
-    Lines above the message line end before element `end`.
-    """
-    is_short = len(parts) == 1 and len(parts[0].text) <= MESSAGE_CHARACTERS
-    most = MESSAGE_CHARACTERS if is_short else (end - 16) // CHARACTER
-    lines = [line for part in parts for line in lines_of_message(part, most)]
-    top = MESSAGE.top - LINE_STEP * (len(lines) - 1)
-    items = [filled(MESSAGE, BLACK)]
-    if top < MESSAGE.top:
-        items.append(filled(Area(0, top, end - 1, MESSAGE.top - 1), BLACK))
-    for line, ink, selected in lines:
-        left, right = line, ""
-        if selected is not None:
-            left, right = line[:selected], line[selected:]
-        if left:
-            items.append(text(left, 8, top + 3, ink, BLACK))
-        if right:
-            items.append(text(right, 8 + CHARACTER * len(left), top + 3, BLACK, ink))
-        top += LINE_STEP
-    return items
-
-
-def lines_of_message(part: MessagePart, most: int) -> list[MessagePart]:
-    """A part of a message in lines of at most `most` characters.
-
-    A long text is cut at its end; a typed text at its beginning, so that the last typed letters are seen.
-    """
-    line, ink, selected = part
-    if selected is None:
-        rows = wrap(line, most, max_lines=MOST_LINES, placeholder="..", tabsize=1) or [""]
-        return [MessagePart(row, ink) for row in rows]
-    cut = max(0, len(line) - MOST_LINES * most)
-    if cut:
-        line, selected = f"..{line[cut + 2 :]}", max(2, selected - cut)
-    firsts = range(0, len(line), most)
-    return [MessagePart(line[first : first + most], ink, max(0, selected - first)) for first in firsts]
-
-
-NUMBERS: Final = "0123456789.-+"
-"""The characters that begin a number."""
-
-
-class TypingLine:
-    """The text that is being typed, if any."""
-
-    def __init__(self, session: Session) -> None:
-        self._session = session
-        self._label = ""
-        self._text = ""
-        self._typed: Typed | None = None
-        self._is_fresh = False
-
-    @property
-    def is_on(self) -> bool:
-        """Whether a text is being typed."""
-        return self._typed is not None
-
-    @property
-    def is_by_letters(self) -> bool:
-        """Whether a text is typed by the letter panel, because there is no keyboard."""
-        return self.is_on and not self._session.has_keyboard
-
-    @property
-    def text(self) -> str:
-        """The text that is being typed."""
-        return self._text
-
-    def insert(self, text: str) -> None:
-        """Append a text, or replace the selected text by it."""
-        self._text, self._is_fresh = (text if self._is_fresh else self._text + text), False
-
-    @property
-    def shown(self) -> MessagePart:
-        """The text for the message line. The next character replaces the part that is selected."""
-        selected = len(self._label) + 2
-        if self._is_fresh and self._text:
-            return MessagePart(f"{self._label}: {self._text}", YELLOW, selected)
-        return MessagePart(f"{self._label}: {self._text}_", YELLOW, selected + len(self._text) + 1)
-
-    def would_begin(self, widget: Widget, typed: str) -> bool:
-        """Whether typing a character over a widget begins to type into it."""
-        return isinstance(widget, Bar) and not widget.why_not and typed != "" and typed in NUMBERS
-
-    def begin(self, widget: Widget, typed: str = "") -> None:
-        """Begin with the widget's text, which the first character replaces."""
-        self._typed = widget.typed
-        self._label = widget.label
-        self._text = typed or (self._typed.text if self._typed is not None else "")
-        self._is_fresh = not typed
-
-    def end(self) -> None:
-        """End typing without taking the text."""
-        self._typed = None
-
-    def take(self) -> None:
-        """Take the text if it was changed or proposed. A refused text raises an error and stays, selected."""
-        typed = self._typed
-        if typed is not None and (typed.is_proposed or self._text != typed.text):
-            self._is_fresh = True
-            typed.take(self._text)
-        self.end()
-
-    def leave(self) -> None:
-        """Take the text as `take` does, but give up a text that was proposed."""
-        if self._typed is not None and self._typed.is_proposed:
-            self.end()
-        self.take()
-
-    def key(self, name: str, typed: str) -> None:
-        """Take a key. Raises the errors of the function that takes the text."""
-        if name == "escape":
-            self.end()
-        elif name in ("return", "enter", "tab"):
-            self.take()
-        elif name == "backspace":
-            self._text, self._is_fresh = ("" if self._is_fresh else self._text[:-1]), False
-        elif name in ("end", "right"):
-            self._is_fresh = False
-        elif typed and typed.isprintable():
-            self.insert(typed)
 
 
 # The main menu: the rows that stand in every menu before and after the rows of its screen.

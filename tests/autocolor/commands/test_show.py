@@ -20,7 +20,7 @@ from autocolor.commands.show import BUTTONS, attend, folder_of, port_to, refuse_
 from autocolor.journal.autosave import JOURNAL, left_sessions
 from autocolor.journal.history import History
 from autocolor.journal.places import Source
-from autocolor.screens.board import MessagePart, lines_of_message
+from autocolor.screens.message_line import MessagePart, lines_of_message
 from autocolor.screens.viewer import Viewer
 from ramtek_emu import PortError, Ramtek9300, TcpPort
 from ramtek_emu.host.server import Server, TcpServer, UnixServer

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from autocolor.screens.board import MESSAGE
 from autocolor.screens.help_screen import LEFT, LIMITS, MIDDLE, ROWS_A_PAGE, STEP, TITLE, TOP, help_items
+from autocolor.screens.message_line import MESSAGE
 from autocolor.screens.viewer import Viewer, rows_of_help
 from autocolor.widgets.items import ORANGE, SCREEN, WHITE, text
 from ramtek_emu import Ramtek9300

@@ -18,13 +18,13 @@ from tests.autocolor.screens.boxes import boxes
 from tests.autocolor.widgets.drawing import checksum
 
 PAGES = {
-    "picture": 2093769645,
-    "light and view": 3456210261,
-    "lights": 3299975529,
+    "picture": 3386239231,
+    "light and view": 3377998962,
+    "lights": 2772155723,
     "reflectance": 571573069,
     "mixing": 1030339630,
     "blending": 3756060397,
-    "mapping": 630875359,
+    "mapping": 4242948932,
     "scalar": 648425415,
     "kept": 3078224984,
     "history": 158829111,

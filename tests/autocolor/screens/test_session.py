@@ -837,4 +837,4 @@ def test_the_whole_drag_is_compared_when_it_ends(tmp_path: Path) -> None:
     assert len(viewer.studio.history.to_undo) == 1
     viewer.on_key("z", control=True)
     viewer.on_tick()
-    assert viewer.message == "undone"
+    assert viewer.message.startswith("undone: key: intensity")

@@ -17,8 +17,8 @@ from autocolor.errors import UsageError
 from autocolor.scene.changes import PartChanges
 from autocolor.scene.columns import Tier
 from autocolor.scene.defaults import framed
-from autocolor.screens.board import MESSAGE
 from autocolor.screens.input import Binding, Chord, Gesture
+from autocolor.screens.message_line import MESSAGE
 from autocolor.screens.picture.picture_edits import panned
 from autocolor.screens.screen import Screen
 from autocolor.screens.session import MESSAGE_SECONDS, Session

@@ -7,7 +7,7 @@ import pytest
 
 from autocolor import Light, Scene, Studio
 from autocolor.lighting.picking import cone_placed, highlight_placed, rims, specular_shares
-from autocolor.screens.board import MESSAGE
+from autocolor.screens.message_line import MESSAGE
 from autocolor.screens.picture.light_handles import HandleKey
 from autocolor.widgets.bars import number_text
 from autocolor.widgets.items import WHITE, YELLOW
