@@ -175,18 +175,6 @@ def hover(*labels: str) -> Callable[..., Iterator[Shown]]:
     return shown
 
 
-def picks(*labels: str, share: Share = (0.5, 0.5)) -> Callable[..., Iterator[Shown]]:
-    """Widgets that are clicked in turns."""
-
-    def shown(bench: Bench, rounds: int) -> Iterator[Shown]:
-        for number in range(rounds):
-            place = bench.place(labels[number % len(labels)], share)
-            bench.do(at(place), at(place, "press", LEFT))
-            yield bench.shown(at(place, "release", LEFT))
-
-    return shown
-
-
 def menu(bench: Bench, rounds: int) -> Iterator[Shown]:
     """The pointer touches the right edge, and the menu comes; it goes before the next time."""
     for _ in range(rounds):
@@ -208,12 +196,55 @@ def turn(title: str) -> Callable[..., Iterator[Shown]]:
     return shown
 
 
-def turned(bench: Bench, rounds: int) -> Iterator[Shown]:
-    """The object is turned by a drag over the picture."""
-    bench.do(at((250, 60), "press", LEFT), at((256, 60)))
-    for number in range(rounds):
-        yield bench.shown(at((256 + 3 * (number + 1), 60 + number % 2)))
-    bench.monitor.input.add(at((256 + 3 * rounds, 60), "release", LEFT))
+def across(start: Callable[[Bench], tuple[int, int]]) -> Callable[..., Iterator[Shown]]:
+    """A drag over the picture that goes to the right from a place."""
+
+    def shown(bench: Bench, rounds: int) -> Iterator[Shown]:
+        element, line = start(bench)
+        bench.do(at((element, line), "press", LEFT), at((element + 6, line)))
+        for number in range(rounds):
+            place = element + 6 + 3 * (number + 1), line + number % 2
+            yield bench.shown(at(place))
+        bench.monitor.input.add(at(place, "release", LEFT))
+
+    return shown
+
+
+def background(bench: Bench) -> tuple[int, int]:
+    """A place where a drag turns the object."""
+    return 250, 60
+
+
+def legend_of(bench: Bench) -> tuple[int, int]:
+    """A place on the legend of a scalar, which is in the upper left corner of the picture."""
+    session, screen = bench.viewer.session, bench.viewer.board.screen
+    session.edit(session.scene.with_scalar(name="z", legend_place=(0.0, 0.0)))
+    bench.viewer.tell("")
+    return next(
+        (element, line)
+        for line in range(0, 200, 4)
+        for element in range(0, 200, 4)
+        if screen.hint(element, line).startswith("the legend")
+    )
+
+
+def split(bench: Bench) -> None:
+    """A color that is compared with the color before, side by side."""
+    session = bench.viewer.session
+    session.paint(object_color="#2040b0")
+    session.switch_split()
+    bench.viewer.tell("")
+
+
+def wheel(label: str) -> Callable[..., Iterator[Shown]]:
+    """The wheel goes to and fro over a widget."""
+
+    def shown(bench: Bench, rounds: int) -> Iterator[Shown]:
+        place = bench.place(label)
+        for number in range(rounds):
+            yield bench.shown(at(place, ("wheel up", "wheel down")[number % 2]))
+
+    return shown
 
 
 def pick(label: str, share: Share = (0.5, 0.5)) -> Callable[[Bench], object]:
@@ -246,10 +277,15 @@ CASES: Sequence[Case] = (
     Case("color mixing: blend, dragged", "mixing", 4, drag("blend bar")),
     Case("light blending: level, dragged", "blending", 4, drag("blend level", (0.5, 0.3), (0.5, 0.7))),
     Case("mapping: a point, dragged", "mapping", 8, drag("intensity 0."), pick("straight")),
-    Case("mapping: equalize", "mapping", 20, picks("mapping"), curve("logarithm")),
+    Case("mapping: equalize", "mapping", 20, wheel("mapping"), curve("logarithm")),
     Case("lights: intensity, dragged", "lights", 10, drag("intensity")),
+    Case("lights: intensity, dragged in the list", "lights", 10, drag("back", (0.52, 0.5), (0.68, 0.5))),
+    Case("lights: a highlight, dragged", "lights", 20, drag("highlight of back")),
     Case("lights: position, dragged", "lights", 10, drag("position x")),
     Case("light & view: a light, dragged", "light and view", 10, drag("key: x")),
+    Case("light & view: an aim, dragged", "light and view", 10, drag("key: aim")),
+    Case("scalar: the legend, dragged", "picture", 20, across(legend_of)),
+    Case("split: the line, dragged", "picture", 10, across(background), split),
     Case("the menu comes", "picture", 20, menu),
     Case("the menu: over its rows", "lights", 20, hover("intensity", "on", "cone angle")),
     Case("the lights screen comes", "picture", 20, turn("lights")),
@@ -261,7 +297,7 @@ CASES: Sequence[Case] = (
 CASES_OF_MANY: Sequence[Case] = (
     Case("a light, dragged by its bar", "lights", 33, drag("position x")),
     Case("a light, dragged in a view", "light and view", 33, drag("key: x")),
-    Case("the view, dragged", "picture", 33, turned),
+    Case("the view, dragged", "picture", 33, across(background)),
 )
 """On a mesh of 100,000 polygons; the picture may be coarse while it moves."""
 

@@ -68,7 +68,7 @@ FIRST: Final = ("on", "intensity", "concentration", "cone_angle", "inner_angle",
 """The columns of a light that are edited most; their rows are always shown."""
 
 SECTIONS: Final[Mapping[str, Sequence[str]]] = {
-    "place & aim": (KIND, "position", "direction", "aim", "at_infinity", "follows"),
+    "place & aim": (KIND, "position", "direction", "aim", "follows"),
     "links": ("links",),
 }
 """The columns of the sections of the menu. Further columns are in a section of their own."""
