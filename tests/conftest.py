@@ -35,9 +35,11 @@ settings.load_profile(
     os.environ.get("HYPOTHESIS_PROFILE", "ci" if os.environ.get("CI") == "true" else "desk")
 )
 
-# A shell that starts a command in the background has it ignore interrupts, and so all that it starts in turn.
-if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
-    signal.signal(signal.SIGINT, signal.default_int_handler)
+# A shell that starts a command in the background has it ignore interrupts, and nohup has it ignore hang-ups.
+# So do all processes that the command starts in turn, but tests send them these signals.
+for number in (signal.SIGINT, getattr(signal, "SIGHUP", signal.SIGINT)):
+    if signal.getsignal(number) is signal.SIG_IGN:
+        signal.signal(number, signal.default_int_handler if number == signal.SIGINT else lambda *_: None)
 
 # If Python may not write compiled modules beside the sources, each of the hundreds of processes that tests
 # start would compile all modules again. They share a folder of compiled modules instead.

@@ -309,8 +309,9 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=1, help="how often each row gets each signal")
     parser.add_argument("--row", default="", help="only the rows with this text in their command or moment")
     options = parser.parse_args()
-    # A shell starts jobs in the background with SIGINT ignored, which the commands would inherit and respect.
+    # Jobs in a shell's background ignore SIGINT, and nohup ignores SIGHUP. The commands would respect that.
     signal.signal(signal.SIGINT, signal.default_int_handler)
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
     failed = 0
     for row in ROWS + (WINDOWS if "DISPLAY" in os.environ else ()):
         moment = getattr(row.moment, "func", row.moment).__name__

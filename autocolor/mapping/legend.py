@@ -9,6 +9,7 @@ letters have words of the screens.
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final, NamedTuple
@@ -292,17 +293,21 @@ def numbers_beside(low: float, high: float, bands: int, lines: int, least: int) 
 def round_numbers(low: float, high: float, count: int) -> list[float]:
     """The multiples of 1, 2 or 5 times a power of ten from low to high, at most `count` + 1 of them.
 
-    If there are fewer than two, they are low and high.
+    If there are fewer than two, or if rounding would move them, they are low and high.
 
     >>> round_numbers(0.13, 0.87, 10), round_numbers(0.13, 0.87, 1)
     ([0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8], [0.13, 0.87])
     """
     least = (high - low) / count
-    power = math.floor(math.log10(least)) if least > 0 else 0
+    if least * EXACT <= sys.float_info.epsilon * max(-low, high):
+        return [low, high]
+    power = math.floor(math.log10(least))
     for factor, exponent in ((1, power), (2, power), (5, power), (1, power + 1)):
+        if -exponent > sys.float_info.max_10_exp:
+            continue
         # An exact quotient: 0.1 times 3 is not 0.3.
         step, divisor = factor * 10.0 ** max(exponent, 0), 10.0 ** max(-exponent, 0)
-        if step / divisor < least * (1 - EXACT) or not math.isfinite(divisor):
+        if step / divisor < least * (1 - EXACT):
             continue
         first = math.ceil(low * divisor / step - EXACT)
         last = math.floor(high * divisor / step + EXACT)

@@ -458,25 +458,26 @@ def deafness(host: socket.socket) -> None:
 
 @pytest.mark.parametrize("interactive", [False, True])
 @pytest.mark.parametrize(
-    ("serve", "sentence"),
+    ("serve", "seconds", "sentence"),
     [
-        (banner, "must answer within 0.3 seconds, and"),
-        (silence, "must answer within 0.3 seconds, and"),
-        (echo, "and another server does; check the address, or start `ramtek serve` there"),
-        (garbage, "and another server does"),
-        (zeros, "and another server does"),
-        (deafness, ""),
+        (banner, 0.3, "must answer within 0.3 seconds, and"),
+        (silence, 0.3, "must answer within 0.3 seconds, and"),
+        (echo, 60.0, "and another server does; check the address, or start `ramtek serve` there"),
+        (garbage, 60.0, "and another server does"),
+        (zeros, 60.0, "and another server does"),
+        (deafness, 0.3, ""),
     ],
 )
 def test_a_server_that_is_no_display_is_refused(
     serve: Callable[[socket.socket], None],
+    seconds: float,
     sentence: str,
     interactive: bool,
     folder: Path,
     run: Run,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(TcpPort.__init__, "__defaults__", (0.3,))
+    monkeypatch.setattr(TcpPort.__init__, "__defaults__", (seconds,))
     with socket.create_server(("127.0.0.1", 0)) as listening:
 
         def accept() -> None:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
+from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
 from autocolor import Mesh, Scene, View, render, scene_of
@@ -285,6 +285,24 @@ def test_numbers_are_far_enough_apart_and_each_is_what_it_says(low: float, exten
     for text, place in zip(texts, places, strict=True):
         value = low + (high - low) * place / (bands * lines)
         assert abs(float(text) * 10.0**exponent - value) <= extent / (bands * lines) + extent / 20
+
+
+limits = st.floats(-1e30, 1e30, allow_subnormal=True)
+
+
+@given(limits, limits, st.integers(1, 256))
+@example(0, 5e-324, 8)
+@example(-1e-323, 5e-324, 7)
+@example(0, 1e-320, 8)
+@example(0, 3e-308, 8)
+@example(-1e30, 1e30, 1)
+def test_limits_may_be_any_two_numbers(low: float, high: float, bands: int) -> None:
+    assume(low < high)
+    lines = lines_of_band(bands)
+    texts, _, places = numbers_beside(low, high, bands, lines, 22)
+    assert all(math.isfinite(float(text)) for text in texts)
+    assert places == sorted(places)
+    assert 0 <= places[0] < places[-1] <= bands * lines
 
 
 @given(st.integers(-100, 700), st.integers(-100, 500))

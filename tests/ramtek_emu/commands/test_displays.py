@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import threading
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,7 @@ import pytest
 from click.shell_completion import BashComplete
 from click.testing import CliRunner
 
-from ramtek_emu import PRINCETON_9300, Ramtek9300, TcpPort, UnixPort, WriteError, read_snapshot
+from ramtek_emu import PRINCETON_9300, PortError, Ramtek9300, TcpPort, UnixPort, WriteError, read_snapshot
 from ramtek_emu.command_line import ENDING
 from ramtek_emu.commands.displays import running
 from ramtek_emu.commands.ramtek import ramtek
@@ -158,9 +159,17 @@ def test_a_recording_that_fails_is_reported_once_and_the_display_goes_on_without
     def fail(output: Output, _: bytes) -> None:
         raise WriteError(f"{output.path.name} is full")
 
+    ports: list[UnixPort] = []
+
+    def is_reached() -> bool:
+        # The socket's file is there before the server listens.
+        with suppress(PortError):
+            ports.append(UnixPort("display"))
+        return bool(ports)
+
     def draw() -> None:
-        until((tmp_path / "display").exists)
-        with UnixPort("display") as port:
+        until(is_reached)
+        with ports[0] as port:
             for part in np.array_split(OUTLINE, 3):
                 port.send(part)
 

@@ -18,6 +18,7 @@ from ramtek_emu.monitor.input_queue import Close, Release
 from ramtek_emu.monitor.pattern import pattern
 from ramtek_emu.monitor.window import Key, Monitor, Pointer
 from tests.ramtek_emu.displays import shown
+from tests.ramtek_emu.serving import until
 
 pygame = pytest.importorskip("pygame")
 
@@ -426,12 +427,15 @@ def test_a_real_key_of_a_real_screen_arrives(monitor: Monitor) -> None:
         pytest.skip("xdotool is not installed; no key can be pressed for real")
     keys: list[Key] = []
     monitor.on_key = keys.append
-    subprocess.run(["xdotool", "key", "b"], check=True)
-    for _ in range(100):
-        if keys:
-            break
-        monitor.step(10)
-    assert keys == [Key("b", "b")]
+
+    def has_arrived() -> bool:
+        # Until the window has the keyboard, keys are lost.
+        subprocess.run(["xdotool", "key", "b"], check=True)
+        settle(monitor)
+        return bool(keys)
+
+    until(has_arrived)
+    assert keys[0] == Key("b", "b")
 
 
 def test_no_screen_is_refused_and_a_driver_that_was_asked_for_is_taken(
