@@ -20,7 +20,7 @@ from tests.autocolor.widgets.drawing import checksum
 PAGES = {
     "picture": 3386239231,
     "light and view": 3377998962,
-    "lights": 2772155723,
+    "lights": 826864479,
     "reflectance": 571573069,
     "mixing": 1030339630,
     "blending": 3756060397,
