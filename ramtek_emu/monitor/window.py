@@ -89,11 +89,15 @@ class Monitor:
 
     @property
     def display(self) -> Ramtek9300:
-        """The display that is shown; a display that takes its place must have as many lines and elements."""
+        """The display that is shown.
+
+        A display that takes its place gets the joystick's position; it must have as many lines and elements.
+        """
         return self._display
 
     @display.setter
     def display(self, display: Ramtek9300) -> None:
+        display.joystick.move_to(*self._display.joystick.position)
         self._display = display
         self._glass.forget_shown()
 

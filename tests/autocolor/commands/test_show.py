@@ -31,6 +31,8 @@ SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\ng lid\nf 1 2 3 4\n"
 
 
 Act = Callable[[Ramtek9300], object]
+AGAIN = "again"
+"""The result of an act that is not yet done."""
 
 
 class Served:
@@ -249,8 +251,8 @@ def acting(server: Served, viewer_of: list[Viewer], *acts: Act) -> Callable[[Vie
 
         def polled() -> None:
             poll()
-            if waiting:
-                waiting.pop(0)(server.display)
+            if waiting and waiting[0](server.display) is not AGAIN:
+                waiting.pop(0)
 
         viewer.poll = polled  # type: ignore[method-assign]
 
@@ -262,11 +264,13 @@ def menu(display: Ramtek9300) -> None:
 
 
 def on(viewer_of: list[Viewer], label: str, share: float = 0.5) -> Act:
-    """Point at a row of the menu, and press ENTER."""
+    """Point at a row of the menu, and press ENTER; first turn to its page."""
 
-    def act(display: Ramtek9300) -> None:
-        display.joystick.move_to(*place_of(viewer_of[0], label, share))
+    def act(display: Ramtek9300) -> str:
+        is_here = label in [row.label for row in viewer_of[0].board.layout.rows]
+        display.joystick.move_to(*place_of(viewer_of[0], label if is_here else "more", share))
         display.joystick.press_enter()
+        return "" if is_here else AGAIN
 
     return act
 

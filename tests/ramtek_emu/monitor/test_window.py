@@ -407,9 +407,11 @@ def test_another_display_takes_the_place_of_the_first_in_the_open_window(monitor
     other.send(pattern())
     other.send(instructions.erase((0, 0, 99, 99), 1))
     assert not np.array_equal(other.field(), monitor.display.field())
+    monitor.display.joystick.move_to(123, 45)
     monitor.display = other
     monitor.step()
     assert np.array_equal(shown(), other.field())
+    assert other.joystick.position == (123, 45)
     window = pygame.display.get_wm_info()["window"]
     ticks: list[object] = []
 
