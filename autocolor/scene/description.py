@@ -113,7 +113,7 @@ def _changed_rows(before: Scene, after: Scene) -> Iterator[RowChange]:
     own: list[ColumnChange] = []
     for name, field in fields_of(Scene).items():
         one, other, kind = vars(before)[name], vars(after)[name], field.column.kind
-        if one is other or name == "mesh":
+        if name == "mesh" or one is other or one == other:
             continue
         if isinstance(kind, RowList):
             yield from _changed_rows_of(kind.row_class.noun, one, other)

@@ -55,6 +55,13 @@ def test_equal_scenes_have_no_difference() -> None:
     assert describe(start(), start()) == describe(start(), copy) == ""
 
 
+def test_columns_of_the_scene_that_are_equal_as_values_are_no_difference() -> None:
+    again = start().replace(ambient=float("0.1"), background=(0, 0, 0), exposure={"object": (0, 1)})
+    before = start().replace(exposure={"object": (0.0, 1.0)})
+    assert (again.ambient, again.background) == (before.ambient, before.background)
+    assert describe(before, again) == ""
+
+
 SCENES = {
     "key: intensity 1 -> 0.8": start().with_light("key", intensity=0.8),
     "key: intensity 1 -> 1.00001": start().with_light("key", intensity=1.00001),
