@@ -122,7 +122,8 @@ class Glass:
             else:
                 pygame.scrap.init()
                 pygame.scrap.put(CLIPBOARD_TEXT, text.encode())
-        except pygame.error:
+        except (pygame.error, UnicodeError):
+            # Names of files may contain bytes that are not text.
             return False
         return True
 

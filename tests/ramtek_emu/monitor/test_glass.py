@@ -58,6 +58,10 @@ def test_a_copied_text_can_be_pasted(glass: Glass, text: str) -> None:
     assert glass.paste() == text
 
 
+def test_a_text_that_is_no_unicode_is_not_copied(glass: Glass) -> None:
+    assert not glass.copy("car\udcff")
+
+
 def test_a_closed_window_has_no_clipboard() -> None:
     closed = Glass((640, 480))
     assert not closed.copy("#b01020")
