@@ -12,7 +12,7 @@ import numpy as np
 
 from autocolor.arrays import Floats
 from autocolor.checks import Vector
-from autocolor.errors import InputError
+from autocolor.errors import InputError, UsageError
 from autocolor.mapping.legend import CORNERS
 from autocolor.scene.columns import bar_of, fields_of
 from autocolor.scene.creation import new_light_of
@@ -417,7 +417,8 @@ class PlanePicking:
     def pick(self, element: int, line: int) -> None:
         """Take the point that is seen at a place; the third one makes the half-space of the chosen light.
 
-        Raises InputError if the three points are in one line; the third must then be picked again.
+        Raises InputError if the three points are in one line, and UsageError without a light; the third must
+        then be picked again.
         """
         session, seen = self.session, self.session.studio.seen_at(line, element)
         if seen is None:
@@ -429,7 +430,7 @@ class PlanePicking:
             return
         try:
             self._add()
-        except InputError:
+        except (InputError, UsageError):
             self._points.pop()
             raise
         self.is_on, self._points = False, []
@@ -444,6 +445,8 @@ class PlanePicking:
 
     def _add(self) -> None:
         session, scene = self.session, self.session.scene
+        if not session.light_name:
+            raise UsageError("to have a half-space, there must be a light; add one")
         light = scene.light_in_world(session.light_name)
         name = free_name(NAME, [each.name for each in light.half_spaces])
         half_space = HalfSpace.through(name, *self._points)

@@ -459,6 +459,20 @@ def test_a_third_point_in_one_line_is_refused_and_picked_again(hand: Hand) -> No
     assert [plane.name for plane in planes_of(hand)] == ["plane"]
 
 
+def test_points_for_a_light_that_is_gone_are_refused_until_there_is_a_light(hand: Hand) -> None:
+    pick_points(hand, PLACES[:2])
+    session = hand.viewer.session
+    session.edit(session.scene.replace(lights=()))
+    for _ in range(2):
+        hand.click(*PLACES[2])
+        assert told(hand) == ("to have a half-space, there must be a light; add one", True)
+    hand.click(5, 5)
+    assert told(hand)[0].startswith("no point is seen there; pick the third point")
+    session.edit(boxes())
+    hand.click(*PLACES[2])
+    assert [plane.name for plane in planes_of(hand)] == ["plane"]
+
+
 def test_escape_ends_the_picking_and_then_the_screen(hand: Hand) -> None:
     pick_points(hand, PLACES[:2])
     assert hand.viewer.escape()
