@@ -92,6 +92,9 @@ class SplitScreen(OverPicture):
     def hint(self, element: int, line: int) -> str:
         return self.help
 
+    def sample(self, element: int, line: int) -> None:
+        """None: the borrowed words say nothing about surfaces."""
+
     # Gestures: every click and drag moves the line.
 
     def pick(self, gesture: Gesture) -> None:

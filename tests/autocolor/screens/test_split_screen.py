@@ -147,6 +147,14 @@ def test_the_whole_other_state_is_shown_while_its_key_is_held(tmp_path: Path) ->
     assert np.array_equal(colors_on(hand), shown)
 
 
+def test_nothing_is_sampled_from_borrowed_words(tmp_path: Path) -> None:
+    hand = hand_after("paint", tmp_path)
+    split(hand)
+    words = np.asarray(colors_on(hand)[..., 0])
+    places = [(element, line) for line in range(0, len(words), 9) for element in range(0, 640, 9)]
+    assert not any(hand.viewer.board.screen.sample(*place) for place in places)
+
+
 def test_a_variant_is_split_as_it_is_compared(tmp_path: Path) -> None:
     hand = hand_before(ball_scene(), tmp_path)
     hand.viewer.studio.keep_variant("A")
