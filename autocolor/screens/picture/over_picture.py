@@ -103,12 +103,15 @@ class OverPicture(Screen):
             self.session.tell(f"{surface.name}: object color {in_digits(surface.paint.object_color)}")
 
     def _is_on_legend(self, element: int, line: int) -> bool:
-        return self._legend is not None and self._legend.has(element, line)
+        if self._legend is None or self.session.comparing.is_on:
+            # The legend of another state cannot be moved.
+            return False
+        return self._legend.has(element, line)
 
     def drag(self, start: Gesture, last: Gesture, now: Gesture) -> None:
         if last is start:
             self._grip = None
-            if self._legend is not None and self._legend.has(start.element, start.line):
+            if self._legend is not None and self._is_on_legend(start.element, start.line):
                 left, top, *_ = self._legend.swatches[0]
                 self._grip = left - start.element, top - start.line
         if self._grip is not None and self._legend is not None:

@@ -67,6 +67,19 @@ def test_a_click_on_the_legend_tells_that_it_is_one(tmp_path: Path) -> None:
     assert hand.viewer.message == "the background"
 
 
+def test_the_legend_of_another_state_is_not_moved(tmp_path: Path) -> None:
+    hand = hand_before(ball_scene().with_scalar(name="z"), tmp_path)
+    session = hand.viewer.session
+    session.edit(session.scene.replace(scalar=None))
+    before = session.scene
+    hand.viewer.compare()
+    hand.move(600, 100)
+    assert hand.viewer.board.screen.hint(600, 100) == hand.viewer.board.screen.help
+    hand.drag((600, 100), (500, 150))
+    assert session.scene.view != before.view
+    assert not session.news.is_warning
+
+
 def test_the_background_changes_no_choice(hand: Hand) -> None:
     hand.click(*FLOOR)
     hand.click(*BACKGROUND)
