@@ -125,6 +125,8 @@ class Session:
         """The number of the chosen surface among the surfaces in use; see `surface_name`."""
         self.named_view: tuple[View, str] | None = None
         """The view from a named side that was taken last, and the name of the side."""
+        self.camera = ""
+        """The name of the named view that was taken last."""
         self.part_name = ""
         """The name of the part that was pointed at last; empty at first."""
         self._light = ""
@@ -660,6 +662,20 @@ def looks_equal(one: DisplayImage, other: DisplayImage) -> bool:
     return not (np.abs(differences) > 1).any() and np.array_equal(one.entries, other.entries)
 
 
+def is_edited(before: Light | None, after: Light) -> bool:
+    """Whether an edit of a light is meant to change what is seen; None is for a new light.
+
+    A light that is to follow another stays where it is, and so does a half-space that is to be carried.
+    """
+    if before is None:
+        return after.on
+    one, other = (
+        (light.follows, {plane.name: plane.carried for plane in light.half_spaces})
+        for light in (before, after)
+    )
+    return before != after and one == other
+
+
 def reason_of_no_change(studio: Studio, before: DisplayImage) -> str:
     """Why edits of lights since an image changed nothing that is seen; empty if they did, or were others."""
     scene, start = studio.scene, before.scene
@@ -667,8 +683,9 @@ def reason_of_no_change(studio: Studio, before: DisplayImage) -> str:
         vars(scene)[name] is not vars(start)[name] for name in fields_of(Scene) if name != "lights"
     )
     olds = {light.name: light for light in start.lights}
-    edited = [light for light in scene.lights if olds.get(light.name) != light]
-    if is_other or not edited or not looks_equal(before, studio.image):
+    edited = [light for light in scene.lights if is_edited(olds.get(light.name), light)]
+    is_renamed = len(scene.lights) == len(olds) and olds.keys() != {light.name for light in scene.lights}
+    if is_other or is_renamed or not edited or not looks_equal(before, studio.image):
         return ""
     which = titled("light", edited[0].name) if len(edited) == 1 else "every edited light"
     versions = [version for light in edited for version in (light, olds.get(light.name, light))]

@@ -249,13 +249,18 @@ class PictureEdits:
 
     @property
     def camera(self) -> str:
-        """The name of the named view that equals the present view; empty if there is none."""
-        scene = self.session.scene
-        return next((row.name for row in scene.views if row.view == scene.view), "")
+        """The name of the named view that equals the present view; empty if there is none.
+
+        Of several equal ones, it is the one that was taken last, else the first.
+        """
+        scene, taken = self.session.scene, self.session.camera
+        names = [row.name for row in scene.views if row.view == scene.view]
+        return taken if taken in names else next(iter(names), "")
 
     def take_view(self, name: str) -> None:
         """Make a named view the present view."""
         self.session.edit(self.session.scene.with_taken_view(name))
+        self.session.camera = name
         self.session.tell(f"camera: {name}")
 
     def save_view(self) -> None:

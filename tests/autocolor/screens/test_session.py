@@ -9,6 +9,7 @@ import pytest
 from PIL import Image
 
 from autocolor import (
+    HalfSpace,
     InputError,
     Light,
     OutputError,
@@ -19,6 +20,7 @@ from autocolor import (
     write_rig,
     write_scene,
 )
+from autocolor.files.paths import SCENE_FILE
 from autocolor.files.state import recent_files
 from autocolor.files.store.store_file import write_store
 from autocolor.journal.history import History
@@ -601,6 +603,21 @@ def test_a_change_of_another_program_is_shown_as_one_step_to_undo(store: Path) -
     assert viewer.studio.scene is before
 
 
+def test_a_change_of_another_program_lets_go_of_a_picked_handle(tmp_path: Path) -> None:
+    write_scene(tmp_path / "ball", ball_scene())
+    hand = Hand(viewer_of(tmp_path / "ball"))
+    hand.click(*hand.handle("highlight of key"))
+    assert hand.viewer.board.held
+    tick(hand.viewer)
+    assert hand.viewer.board.held
+    file = tmp_path / "ball" / SCENE_FILE
+    file.write_text(file.read_text().replace('"key"', '"main"'))
+    tick(hand.viewer)
+    assert "changed elsewhere" in hand.viewer.message
+    hand.click(*MIDDLE)
+    assert hand.viewer.message.startswith("ball - paint, ")
+
+
 def test_a_change_of_lights_reuses_the_visible_points_of_the_mesh(store: Path) -> None:
     viewer = viewer_of(store)
     mesh = viewer.studio.scene.mesh
@@ -795,12 +812,18 @@ SEEN: dict[str, Callable[[Scene], Scene]] = {
     "no light": lambda scene: scene.with_surface("low", blend=0.123),
     "a light and the view": lambda scene: scene.with_light("fill", intensity=2).with_saved_view(),
     "the name": lambda scene: scene.replace(name="other"),
+    "a light renamed": lambda scene: scene.with_light("key", name="main"),
+    "a light follows": lambda scene: scene.with_light_following("key", "eye"),
+    "a light copied that is off": lambda scene: scene.with_copied_light("fill"),
+    "a half-space carried": lambda scene: scene.with_light("fill", half_spaces={"cut": {"carried": True}}),
 }
 
 
 @pytest.mark.parametrize("case", SEEN)
 def test_other_edits_do_not_say_that_nothing_changed(tmp_path: Path, case: str) -> None:
-    viewer = Viewer(ALONE, Ramtek9300(), tmp_path)
+    plane = HalfSpace("cut", point=(0, 0, -9), direction=(0, 0, 1))
+    scene = ALONE.with_light("fill", half_spaces=[plane])
+    viewer = Viewer(scene, Ramtek9300(), tmp_path)
     viewer.session.edit(SEEN[case](viewer.studio.scene))
     viewer.tell("edited")
     viewer.on_tick()

@@ -276,3 +276,17 @@ def test_three_quarters_is_the_direction_of_a_created_view() -> None:
     scene = scene_of(cube())
     turned_away = scene.replace(view=turned(scene, 50, 10))
     assert seen_from(turned_away, "three quarters").eye == pytest.approx(scene.view.eye)
+
+
+def test_of_equal_named_views_the_one_that_was_taken_is_shown_and_removed(session: Session) -> None:
+    scene = session.scene
+    for name in ("front", "door", "far"):
+        scene = scene.with_saved_view(name)
+    session.edit(scene)
+    edits = PictureEdits(session)
+    assert edits.camera == "front"
+    edits.take_view("door")
+    assert edits.camera == "door"
+    edits.remove_view()
+    assert [row.name for row in edits.session.scene.views] == ["front", "far"]
+    assert edits.camera == "front"
