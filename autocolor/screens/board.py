@@ -347,7 +347,7 @@ class Board:
 
     def handle_at(self, element: int, line: int) -> Handle | None:
         """The nearest handle within reach of a place; None if something covers the handle or the place."""
-        if self.is_covered(element, line):
+        if min(element, line) < 0 or self.is_covered(element, line):
             return None
         near = self.screen.preferred(handles_near(self.layout.handles, element, line), element, line)
         return next((each for each in near if not self.is_covered(each.element, each.line)), None)
@@ -393,9 +393,11 @@ class Board:
     def paste(self, text: str) -> None:
         """Put a text into the typed text or the row under the pointer, or let the screen take it as a color.
 
-        Raises UsageError or InputError if it is refused.
+        Over a row with a proposed text, typing begins. Raises UsageError or InputError if it is refused.
         """
         lit = self._lit_widget()
+        if isinstance(lit, Entry) and lit.is_proposed and not self.typing.is_on:
+            self.typing.begin(lit)
         if self.typing.is_on:
             self.typing.insert(text)
         elif isinstance(lit, Entry) and not lit.why_not:
@@ -442,7 +444,8 @@ class Board:
             if WIDTH - EDGE <= element < WIDTH and line <= MENU.bottom:
                 self._is_open = True
             elif not MENU.left <= element < WIDTH and self.layout.opened_row is None:
-                self._is_open = False
+                # A row that has gone leaves its list to be opened again.
+                self._is_open, self._opened = False, ""
             if self._is_open and not was_open and self.session.news.persistent:
                 # Beside the menu, hints stand in its place.
                 self.session.tell("")

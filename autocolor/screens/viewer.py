@@ -304,8 +304,17 @@ class Viewer:
 
     def _take_changes(self) -> None:
         """Show the changes that another program made to the scene's file."""
-        if self.session.disk.was_changed() and self._do(None, self.session.take_changes):
+        if self.session.disk.was_changed() and self._reopen_by(self.session.take_changes):
             self._update()
+
+    def _reopen_by(self, run: Callable[[], object]) -> bool:
+        """Run an action that may open a scene without the user's pointing; returns as `_do`."""
+        before = self.session.scene
+        taken = self._do(None, run)
+        if self.session.scene is not before:
+            # The thing that is picked or typed into may be gone.
+            self.board.release()
+        return taken
 
     def tell(self, message: str, persistent: bool = False) -> None:
         """Show a message of the window; an empty one takes the last one away at once.
@@ -356,7 +365,7 @@ class Viewer:
 
     def on_drop(self, path: Path) -> None:
         """Open a file that was dropped on the window, as one step to undo."""
-        self._do(None, lambda: self.session.open(path))
+        self._reopen_by(lambda: self.session.open(path))
         self._update()
 
     def on_close(self) -> bool:
@@ -453,14 +462,19 @@ class Viewer:
         self.session.tell(f"copied {text}")
 
     def paste(self) -> None:
-        """Paste the first line of the clipboard's text; UsageError without a clipboard or a text."""
+        """Paste the first line of the clipboard's text, without letters that cannot be typed.
+
+        Raises UsageError without a clipboard or a text.
+        """
         clipboard = self.session.clipboard
         if clipboard is None:
             raise UsageError("this display has no clipboard; type the color")
-        lines = clipboard.paste().split("\n")
-        if not lines[0].strip():
+        line = clipboard.paste().split("\n")[0]
+        # Some systems end the text by a character 0.
+        text = "".join(letter for letter in line if letter.isprintable()).strip()
+        if not text:
             raise UsageError("the clipboard has no text; copy a color first")
-        self.board.paste(lines[0].strip())
+        self.board.paste(text)
 
     def save_screen(self) -> None:
         """Save what the display shows, without message and cursors, as the next screenshot."""
@@ -471,7 +485,7 @@ class Viewer:
         self.session.save_screenshot(page.entries[words])
 
     def clear(self) -> None:
-        """Leave the picture alone on the display, without menu, message and cursors."""
+        """Leave the picture alone on the display, with its legend, without panels, message and cursors."""
         self._watching.end()
         self.session.turn_to(PICTURE)
         self.session.comparing.end()
@@ -479,6 +493,7 @@ class Viewer:
         self.board.close()
         self.session.tell("")
         self._update()
+        self._sheet.show(self.board.page()._replace(items=self.board.screen.items()))
         self._unit.hide()
 
 

@@ -874,6 +874,28 @@ def test_the_menu_of_the_picture_stays_while_its_list_is_open(viewer: Viewer) ->
     assert not board.has_menu
 
 
+def test_a_list_whose_row_went_is_not_open_when_the_row_is_back(viewer: Viewer) -> None:
+    board, session = viewer.board, viewer.session
+    named = session.scene
+    for angle in range(4):
+        named = named.with_view(angle=angle).with_saved_view()
+    session.edit(named)
+    session.turn_to("picture")
+    viewer.tell("")
+    point(viewer, "hover", 638, 100)
+    pick(viewer, "other actions")
+    pick(viewer, "camera")
+    assert board.layout.listed is not None
+    session.edit(named.replace(views=()))
+    viewer.tell("")
+    point(viewer, "hover", 100, 100)
+    assert not board.has_menu
+    session.edit(named)
+    point(viewer, "hover", 638, 100)
+    assert board.has_menu
+    assert board.layout.listed is None
+
+
 def test_sections_fold_and_unfold_and_each_screen_keeps_its_own(viewer: Viewer, room: Room) -> None:
     board = viewer.board
     assert {"near 0", "far 14"} <= set(labels(board))

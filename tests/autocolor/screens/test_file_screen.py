@@ -40,7 +40,7 @@ from autocolor.screens.file_screen import (
     date_of,
     short_date,
 )
-from autocolor.screens.session import PICTURE
+from autocolor.screens.session import PICTURE, Clipboard
 from autocolor.widgets.items import Area
 from autocolor.widgets.menu import WORK
 from autocolor.widgets.widget import ROW_LINES, Choice
@@ -455,6 +455,17 @@ def test_a_free_name_is_proposed_and_taken_by_ok(hand: Hand, folder: Path) -> No
     save_as(hand)
     assert (folder / "boxes-2" / "scene.toml").exists()
     assert scene_of(hand).name == "boxes-2"
+
+
+def test_a_pasted_name_saves_nothing_before_return(hand: Hand, folder: Path) -> None:
+    before = set(folder.iterdir())
+    hand.viewer.session.clipboard = Clipboard(lambda _: True, lambda: "red car")
+    hand.move(*hand.widget("save as").area[:2])
+    hand.viewer.on_key("v", control=True)
+    assert hand.viewer.board.typing.text == "red car"
+    assert set(folder.iterdir()) == before
+    hand.viewer.on_key("return")
+    assert (folder / "red car" / "scene.toml").exists()
 
 
 def test_a_pick_beside_the_letters_saves_nothing(hand: Hand, folder: Path) -> None:

@@ -646,7 +646,7 @@ def test_a_color_is_copied_over_its_section_and_elsewhere_the_chosen_color(
     assert hand.viewer.message == f"copied {color}"
 
 
-@pytest.mark.parametrize("text", ["#102030", " teal\nmore", "rgb(1, 2, 3)\r\n"])
+@pytest.mark.parametrize("text", ["#102030", " teal\0\nmore", "rgb(1, 2, 3)\r\n"])
 @pytest.mark.parametrize(("place", "title"), [((400, 10), LIGHT_SOURCE), ((300, 300), OBJECT)])
 def test_a_color_is_pasted_into_the_section_or_the_chosen_color(
     hand: PaintingHand, clipboard: FakeClipboard, text: str, place: tuple[int, int], title: str

@@ -24,9 +24,10 @@ from autocolor.screens.screen import Screen
 from autocolor.screens.session import MESSAGE_SECONDS, Session
 from autocolor.screens.viewer import BINDINGS, SCREENS, WHEEL, WINDOW_KEYS, Action, Viewer
 from autocolor.studio import Studio
-from autocolor.widgets.items import ORANGE
+from autocolor.widgets.items import ORANGE, Area
 from autocolor.widgets.menu import MESSAGE_CHARACTERS
 from autocolor.widgets.sheet import Sheet
+from autocolor.widgets.widget import Button
 from ramtek_emu import GMR_9300, Ramtek9300
 from tests.autocolor.meshes import cube, grid, wall_scene
 from tests.autocolor.screens.boards import Desk, desk_viewer, middle_of, point
@@ -816,6 +817,25 @@ def test_the_display_ends_with_the_present_state_though_another_was_compared(vie
     assert not is_true_to(viewer, viewer.studio.scene)
     viewer.clear()
     assert is_true_to(viewer, viewer.studio.scene)
+
+
+def test_the_display_ends_without_panels_and_without_the_hint_of_a_handle(viewer: Viewer) -> None:
+    handle = viewer.board.layout.handles[0]
+    viewer.board.over = lambda: [Button("panel", area=Area(8, 8, 99, 23))]
+    viewer.on_pointer(handle.element, handle.line, "move")
+    viewer.tell("")
+    assert viewer.board.messages[0].text.startswith("highlight of fill")
+    viewer.clear()
+    assert np.array_equal(display_of(viewer).words, viewer.studio.words)
+
+
+def test_a_pointer_that_was_not_moved_yet_reaches_no_handle(viewer: Viewer) -> None:
+    viewer.screens["desk"] = Desk(viewer.session)
+    viewer.session.edit(viewer.studio.scene.with_view(eye=(-19.8, -19.8, 2)))
+    viewer.session.turn_to("desk")
+    viewer.tell("")
+    assert viewer.board.handle_at(2, 2) is not None
+    assert viewer.board.handle_at(-1, -1) is None
 
 
 def test_every_screen_has_a_name_and_a_title_of_its_own_and_help() -> None:
