@@ -108,7 +108,7 @@ def _check_smooth(smooth: int, picture: Picture) -> None:
     if picture.lines % smooth or picture.elements % smooth:
         raise UsageError(
             f"the lines and elements of a picture must be multiples of smooth, {smooth}, not {picture.lines}"
-            f" and {picture.elements}; render {smooth} times those of the image"
+            f" and {picture.elements}; render {smooth} times as many"
         )
 
 

@@ -122,7 +122,7 @@ def _targets(history: History, folder: Path) -> _Targets:
 
 
 def free_name(name: str, folder: Path) -> str:
-    """A name like that of a scene, which no scene and no picture in a folder has."""
+    """The name of a scene, with a number if a scene or a picture in the folder has that name."""
     return _new_names(name, folder, False, False)[0].parent.name
 
 

@@ -138,7 +138,7 @@ def legend(image: DisplayImage, end: int | None = None, corners: Sequence[Corner
     # A surface with missing values has all bands.
     name = max(bands, key=lambda name: bands[name].has_missing)
     size = lines, elements if end is None else min(end, elements)
-    # Of all values, those beyond the limits are in the end bands, or in bands of their own.
+    # Values beyond the limits are in the end bands, or in bands of their own.
     low, high = image.picture.scalar_limits or (math.inf, -math.inf)
     beyond = low < bands[name].low, high > bands[name].high
     first = image.ranges[name].first

@@ -41,7 +41,7 @@ class ColumnChange(NamedTuple):
 class RowChange(NamedTuple):
     """A row that differs: the noun of its table, its name, and its columns that differ.
 
-    Without columns, `verb` says what happened to the row.
+    Without columns, `verb` is "added" or "removed".
     """
 
     noun: str
@@ -51,7 +51,7 @@ class RowChange(NamedTuple):
 
     @property
     def title(self) -> str:
-        """The noun and the name of the row; the columns of the scene itself, which has neither."""
+        """The noun and the name of the row. The scene's own columns have no row, so they stand for it."""
         if not self.name:
             return self.text(has_values=False)
         return self.name if self.name.startswith(self.noun) else f"{self.noun} {self.name}"
@@ -62,7 +62,7 @@ class RowChange(NamedTuple):
         return self.title if self.noun == "part" else self.name
 
     def text(self, has_values: bool) -> str:
-        """The columns and their values or not; of a row without columns, what happened to it."""
+        """The columns, with or without their values; for a row without columns, the verb."""
         return self.verb or ", ".join(str(each) if has_values else each.column for each in self.columns)
 
 
@@ -154,7 +154,7 @@ def _changed_rows_of(noun: str, before: Sequence[Any], after: Sequence[Any]) -> 
 def _changes(before: Row | None, after: Row, path: str = "") -> Iterator[ColumnChange]:
     """The columns in which two rows of a class differ.
 
-    Without a row before, these are the columns of the new row that have not their defaults.
+    Without a row before, the new row is compared with the defaults of its columns.
     """
     for name, field in fields_of(type(after)).items():
         other, kind = vars(after)[name], field.column.kind

@@ -178,7 +178,7 @@ class Scene(Row):
     ] = None
     views: Annotated[
         tuple[NamedView, ...],
-        Column(RowList(NamedView), Tier.NOTHING, "The named views, each of which can become the view."),
+        Column(RowList(NamedView), Tier.NOTHING, "The named views, which can become the view."),
     ] = ()
     scalar: Annotated[
         Scalar | None,

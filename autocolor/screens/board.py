@@ -135,7 +135,7 @@ class Layout:
         return by_key
 
     def is_covered(self, element: int, line: int) -> bool:
-        """Whether the menu, what it opened, or a panel over every screen is at a place of the screen."""
+        """Whether the menu, its list or wide bar, or a panel over every screen covers a place."""
         if self.rows and MENU.has(element, line):
             return True
         if self.wide is not None and WIDE_BAR.has(element, line):
@@ -574,7 +574,10 @@ class Board:
             self._move_light(1)
 
     def escape(self) -> bool:
-        """Let go of a picked handle, close what is open, or show hidden panels; returns False if none is."""
+        """Let go of a picked handle, close a list or the menu, or show hidden panels.
+
+        Returns False if there is nothing to do.
+        """
         if self.held is not None:
             self._let_go()
         elif self.layout.opened_row is not None:

@@ -59,7 +59,7 @@ class HistoryScreen(OverPicture):
 
     @property
     def _scenes(self) -> tuple[Scene, ...]:
-        """The scenes of the session from the first on, with those that can be redone."""
+        """The scenes of the session in order, from the first to the last scene that can be redone."""
         history = self.session.studio.history
         return (*history.to_undo, history.scene, *reversed(history.to_redo))
 
@@ -96,7 +96,7 @@ class HistoryScreen(OverPicture):
         return rows
 
     def _texts(self, shown: range) -> Sequence[tuple[str, str]]:
-        """The difference that each of some steps made: for a row, and in more detail for the message line."""
+        """The descriptions of some steps: short for a row, and in more detail for the message line."""
         scenes = self._scenes[max(0, shown.start - 1) : shown.stop]
 
         def lines() -> Sequence[tuple[str, str]]:
@@ -124,7 +124,7 @@ class HistoryScreen(OverPicture):
         ]
 
     def _scroll(self, pages: float) -> None:
-        """Show older steps, by some pages; newer ones by a negative number."""
+        """Scroll by some pages to older steps; a negative number scrolls to newer steps."""
         self._first = self._shown.start
         self._first = max(0, min(self._first - round(pages * (MOST_ROWS - 2)), len(self._scenes) - MOST_ROWS))
 

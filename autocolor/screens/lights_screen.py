@@ -231,7 +231,7 @@ LIGHTS_A_PAGE: Final = 12
 
 
 class LightList:
-    """The list of the lights of a session. It can be folded, so that its heading alone remains."""
+    """The list of the lights of a session. Folded, it shows its heading alone."""
 
     def __init__(self, session: Session) -> None:
         self._session = session

@@ -2,7 +2,7 @@
 
 The surfaces may own nearly all words, so the screen borrows words of surfaces; see `borrowed_words`. If the
 chosen surface must lend words, too, they are spread over its levels, and the level beside each lent level is
-shown instead. The other surfaces are shown in some grays, which are borrowed as well.
+shown instead. The other surfaces are shown in GRAYS, whose words are borrowed, too.
 """
 
 from __future__ import annotations
@@ -92,7 +92,7 @@ class Palette(NamedTuple):
 def palette_of(ranges: Ranges, surface: str, swatches: int) -> Palette:
     """The palette for a surface in use and a number of swatches.
 
-    Raises UsageError if there are not so many words to borrow.
+    Raises UsageError if there are too few words to borrow.
     """
     levels = dict(ranges)[surface]
     count = 2 * RAMP_STEPS + len(GRAYS) + len(HUES) + swatches

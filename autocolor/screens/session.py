@@ -57,7 +57,7 @@ LEAST_SECONDS: Final = 1.0
 """Assumed: how long a message is shown at least while the pointer moves from thing to thing."""
 
 MOST_DESCRIBED: Final = 70
-"""Assumed: letters of a difference of two scenes, so that it fits in a message line with what it is of."""
+"""Assumed: letters of the description of a difference, which leaves room in the message line for a verb."""
 
 LONGEST_NAME: Final = 24
 """Assumed: letters of a scene's name in a message that must also say what to do."""
@@ -123,7 +123,7 @@ class Session:
         """The up axis and the scale of mesh files that are opened; other files give their own."""
         self.surface = 0
         """The number of the chosen surface among the surfaces in use; see `surface_name`."""
-        self.named_view: tuple[View, str] | None = None
+        self.side_view: tuple[View, str] | None = None
         """The view from a named side that was taken last, and the name of the side."""
         self.camera = ""
         """The name of the named view that was taken last."""
@@ -131,7 +131,7 @@ class Session:
         """The name of the part that was pointed at last; empty at first."""
         self._light = ""
         self._before_solo: Solo | None = None
-        """The light that was switched on alone last, and the switches before."""
+        """The light that was last switched on alone, and the switches before."""
         self._world: tuple[Mesh, tuple[Part, ...], World] | None = None
         self._up: tuple[Mesh, Source, str] | None = None
         """The mesh and the source that were last looked at, and the axis that seems to be up."""
@@ -415,7 +415,7 @@ class Session:
         return self.is_at_hand or stays_within(path, self.root)
 
     def check_reach(self, path: Path, noun: str) -> None:
-        """Raise UsageError if the user may not open a path, or save in it; `noun` says for what it is."""
+        """Raise UsageError if the user may not open a path, or save in it; `noun` names the path."""
         if not self.may_reach(path):
             raise UsageError(
                 f"{path.name}: {noun} must be in the folder {self.root.name}, and not a link to elsewhere;"
@@ -665,7 +665,7 @@ def looks_equal(one: DisplayImage, other: DisplayImage) -> bool:
 def is_edited(before: Light | None, after: Light) -> bool:
     """Whether an edit of a light is meant to change what is seen; None is for a new light.
 
-    A light that is to follow another stays where it is, and so does a half-space that is to be carried.
+    Changing `follows` alone leaves the light where it is, and changing `carried` its half-space.
     """
     if before is None:
         return after.on

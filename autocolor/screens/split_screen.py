@@ -51,7 +51,7 @@ class SplitScreen(OverPicture):
 
     @property
     def halves(self) -> Halves:
-        """The two pictures; twice the present one if there is no other state any more."""
+        """The two pictures. Without another state, both are the present picture."""
         other = self.session.comparing.other_image
         present = self.session.studio.image
         return self._halves.of(lambda: halves_of(other or present, present), other, present)
@@ -116,7 +116,7 @@ class Halves(NamedTuple):
     off: int
 
     def words(self, line: int) -> Words:
-        """The words of the left picture up to an element, and from there on those of the right picture."""
+        """The words of the left picture before an element, and of the right picture from there on."""
         return read_only(np.hstack([self.left[:, :line], self.right[:, line:]]))
 
 

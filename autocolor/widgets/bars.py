@@ -189,7 +189,7 @@ def rounded_to(value: float, step: float) -> float:
 def number_text(value: float, step: float) -> str:
     """A number with as many decimals as its step, and a further decimal if it is not a whole number of steps.
 
-    So it is exact to a twentieth of a step or better; only a number that would be shown as 0 has more.
+    So the text is exact to a twentieth of a step. A small number that would be shown as 0 has more digits.
 
     >>> [number_text(value, 0.1) for value in (20.0, 0.78, -1.60813, 0.00031, 1234567.0)]
     ['20.0', '0.78', '-1.61', '0.00031', '1.23457e+06']
@@ -268,7 +268,7 @@ class ComponentBar(Bar):
 @lru_cache(maxsize=1024)
 def component_track(track: Area, end: int, word: int, strip: bytes) -> Item:
     """The bar of a component up to an element, or its strip with a mark there."""
-    # One image is drawn faster than a bar, the rest of its track and the mark, and covers those before.
+    # One image is drawn faster than a bar, the rest of its track and a mark, and covers the bar before.
     along = np.full(track.width, SLATE, np.uint16)
     mark = end - track.left
     if strip:

@@ -66,7 +66,7 @@ class World(NamedTuple):
     high: Vector
     names: TableNames = TableNames(lambda _: (), {})
     everything: tuple[Vector, Vector] | None = None
-    """The bounds of the object with the stage; None for those of the object."""
+    """The bounds of the object with the stage; None if there is no stage."""
 
     @property
     def size(self) -> float:

@@ -261,6 +261,6 @@ def test_a_picture_that_cannot_be_divided_into_squares_is_refused(
         save_image(tmp_path / "wall.png", scene, render(scene, lines, elements), smooth=4)
     assert str(refusal.value) == (
         f"the lines and elements of a picture must be multiples of smooth, 4, not {lines} and {elements};"
-        " render 4 times those of the image"
+        " render 4 times as many"
     )
     assert not (tmp_path / "wall.png").exists()

@@ -76,7 +76,7 @@ def seems_to_lie(mesh: Mesh, prior: float = 0.0) -> bool:
 def _symmetries(points: Floats) -> list[float]:
     """How equal the points of a centered object of unit size are to their mirror image along each axis.
 
-    It is the number of cells that both have, over the number of cells that one of them has.
+    It is the number of cells that are full in both, over the number of cells that are full in either.
     """
     is_full = np.zeros((CELLS + 1,) * 3, np.bool_)
     # Rounding, unlike cutting, puts mirrored points into mirrored cells.

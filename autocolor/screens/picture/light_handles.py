@@ -87,7 +87,7 @@ class LightHandles:
         return [*rims_seen, *(each for light in lights for each in self._at_highlight(light))]
 
     def preferred(self, near: Sequence[Handle], element: int, line: int) -> Sequence[Handle]:
-        """Handles near a place; of several highlights, that of the light which shines there most is first."""
+        """Handles near a place. Of several highlights, the light that shines most at the place is first."""
         numbers = [number for number, each in enumerate(near) if _is_highlight(each)]
         if len(numbers) < 2:
             return near

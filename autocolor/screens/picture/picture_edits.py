@@ -88,7 +88,7 @@ def side_name(scene: Scene, toward_eye: Vector) -> str:
 def turned(scene: Scene, right: float, up: float, top: float = -math.inf) -> View:
     """The view with the eye moved around the target by degrees to the right and up, at the same distance.
 
-    An eye above the z coordinate `top`, that of the stage, stays above it, as in `moved` and `panned`.
+    An eye above `top`, the z coordinate of the stage, stays above it, as in `moved` and `panned`.
     """
     target = np.array(target_of(scene))
     away = np.array(scene.view.eye) - target
@@ -224,7 +224,7 @@ class PictureEdits:
         self._tell_of_stage(down < 0, before)
 
     def _tell_of_stage(self, is_lowered: bool, before: float) -> None:
-        """Say why an eye that was to be lowered kept its height `before`."""
+        """Say why the eye did not go below its height `before`."""
         after = self.session.scene.view.eye[2]
         if is_lowered and after > self.stage_top > -math.inf and math.isclose(before, after, rel_tol=1e-9):
             self.session.tell("the eye stays above the stage")
@@ -238,20 +238,20 @@ class PictureEdits:
         """Look at the object from a side of `sides_of`."""
         view = seen_from(self.session.scene, side)
         self.look(view)
-        self.session.named_view = view, side
+        self.session.side_view = view, side
         self.session.tell(f"view: {side}")
 
     @property
     def side(self) -> str:
         """The side that `see_from` took the present view from; empty if it is another view."""
-        named = self.session.named_view
-        return named[1] if named is not None and named[0] == self.session.scene.view else ""
+        taken = self.session.side_view
+        return taken[1] if taken is not None and taken[0] == self.session.scene.view else ""
 
     @property
     def camera(self) -> str:
         """The name of the named view that equals the present view; empty if there is none.
 
-        Of several equal ones, it is the one that was taken last, else the first.
+        If several are equal, the named view that was taken last comes before the first.
         """
         scene, taken = self.session.scene, self.session.camera
         names = [row.name for row in scene.views if row.view == scene.view]
