@@ -566,7 +566,12 @@ BINDINGS: Final[tuple[Binding[Viewer], ...]] = (
         "rescale: fill the picture with the object, the surface",
         lambda viewer, number: viewer.edits.rescale(number == 1),
     ),
-    Binding((Chord("home"),), "the view as opened", lambda viewer, _: viewer.edits.as_opened()),
+    Binding(
+        (Chord("home"),),
+        "the view as opened",
+        lambda viewer, _: viewer.edits.as_opened(),
+        label="Home",
+    ),
     Binding(
         tuple(Chord(str(digit)) for digit in range(1, 10)),
         "switch a light on or off",

@@ -362,10 +362,16 @@ class Pair(Widget):
             fitted(self.label, (middle - self.area.left - MARGIN) // CHARACTER - 1),
             chosen=self.is_chosen,
         )
+        edge, top = middle - MARGIN // 2, self.area.top + TEXT_DOWN
         if self.is_chosen:
-            items.append(filled(self.area._replace(left=middle - MARGIN // 2), background))
+            items.append(filled(self.area._replace(left=edge), background))
         other = fitted(self.other, (self.area.right + 1 - middle) // CHARACTER)
-        return [*items, text(other, middle, self.area.top + TEXT_DOWN, self.ink, background)]
+        between = Area(edge, top, edge, top + CHARACTER_LINES - 1)
+        return [
+            *items,
+            filled(between, GRAY if lit else SLATE),
+            text(other, middle, top, self.ink, background),
+        ]
 
     @property
     def _middle(self) -> int:

@@ -18,20 +18,20 @@ from tests.autocolor.screens.boxes import boxes
 from tests.autocolor.widgets.drawing import checksum
 
 PAGES = {
-    "picture": 3386239231,
-    "light and view": 3377998962,
-    "lights": 826864479,
+    "picture": 4047065127,
+    "light and view": 3442920221,
+    "lights": 2635481227,
     "reflectance": 571573069,
     "mixing": 1030339630,
     "blending": 3756060397,
     "mapping": 4242948932,
     "scalar": 648425415,
-    "kept": 3078224984,
+    "kept": 3802267977,
     "history": 158829111,
-    "file": 643607629,
+    "file": 1579571161,
     "split": 1133462600,
     "entries": 3253356514,
-    "help": 1281695192,
+    "help": 3796583346,
     "tutorial": 3473960918,
 }
 

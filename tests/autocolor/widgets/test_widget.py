@@ -167,8 +167,8 @@ DRAWN = [
     (Steps("turn"), 317012268, 489188201),
     (Choice("curve", present="linear"), 1101980339, 1951774414),
     (Entry("name", value="key"), 1773502175, 1538077327),
-    (Pair("add", other="copy"), 1561964572, 1862401100),
-    (Pair("add", why_not="not now", other="copy"), 1084517321, 1924933529),
+    (Pair("add", other="copy"), 1500010668, 3980865222),
+    (Pair("add", why_not="not now", other="copy"), 2391159186, 984172536),
 ]
 
 
