@@ -54,6 +54,9 @@ if sys.dont_write_bytecode and sys.pycache_prefix is None:
 if len(tempfile.gettempdir()) > 20 and os.access("/tmp", os.W_OK):
     os.environ.setdefault("PYTEST_DEBUG_TEMPROOT", "/tmp")
 
+# The width of help.
+os.environ["COLUMNS"] = "80"
+
 _NUMBERS = itertools.count()
 
 
