@@ -9,6 +9,7 @@ import itertools
 import os
 import signal
 import sys
+import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -48,6 +49,13 @@ if sys.dont_write_bytecode and sys.pycache_prefix is None:
     sys.pycache_prefix = str(Path(__file__).parents[1] / ".pytest_cache" / "compiled")
     os.environ["PYTHONPYCACHEPREFIX"] = sys.pycache_prefix
     del os.environ["PYTHONDONTWRITEBYTECODE"]
+
+# The address of a Unix socket has at most 107 bytes, and the name of a test's folder takes 80 of them.
+if len(tempfile.gettempdir()) > 20 and os.access("/tmp", os.W_OK):
+    os.environ.setdefault("PYTEST_DEBUG_TEMPROOT", "/tmp")
+
+# The width of help.
+os.environ["COLUMNS"] = "80"
 
 _NUMBERS = itertools.count()
 

@@ -24,6 +24,7 @@ from autocolor.screens.screen import Handle, Sample, Screen
 from autocolor.screens.session import HISTORY, PICTURE, Session
 from autocolor.widgets.bars import Bar
 from autocolor.widgets.items import (
+    BLACK,
     CHARACTER,
     GRAY,
     NIGHT,
@@ -422,6 +423,12 @@ class Board:
         self._pointer = Place(gesture.element, gesture.line)
         self._hover(gesture)
 
+    def clear(self) -> None:
+        """Take the menu, the pointer and its hint away."""
+        self._pointer = Place(-1, -1)
+        self._light(None)
+        self.close()
+
     def release(self) -> None:
         """Let go of a grabbed or picked thing, and end typing."""
         self._let_go()
@@ -647,6 +654,8 @@ class Board:
             items += layout.wide.items(lit=False)
         if layout.listed is not None:
             items += layout.listed.items(lit)
+        # The last message, which may go now, must not decide whether there is a hint.
+        self._message = [filled(MESSAGE, BLACK)] if layout.rows else []
         has_message = self._has_hint or self.typing.is_on or self.session.has_news
         end = MENU.left if layout.rows else WIDTH
         self._message = message_items(self.messages, end) if has_message else []

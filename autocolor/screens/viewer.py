@@ -490,7 +490,7 @@ class Viewer:
         self.session.turn_to(PICTURE)
         self.session.comparing.end()
         self.board.turn()
-        self.board.close()
+        self.board.clear()
         self.session.tell("")
         self._update()
         self._sheet.show(self.board.page()._replace(items=self.board.screen.items()))

@@ -12,6 +12,7 @@ from autocolor import Light, Mesh, Scene, Studio, Surface, read_journal, read_sc
 from autocolor.journal.autosave import JOURNAL, Autosave
 from autocolor.journal.history import History
 from autocolor.journal.places import Source, place_of
+from autocolor.screens.picture.watching import MESSAGE
 from autocolor.screens.session import PICTURE
 from autocolor.screens.viewer import Viewer
 from autocolor.widgets.sheet import Sheet
@@ -99,11 +100,13 @@ def test_a_random_session_is_shown_recovered_run_as_a_script_undone_and_redone(
         if number % 3 == 0:
             autosave.update(viewer.studio.history, at_once=True)
             assert is_true_to_its_file(viewer.studio), f"gesture {number}"
-        if number % 4 == 0:
-            # What was sent is what the whole page would be.
+        if number % 4 == 0 and not viewer.caption.endswith(MESSAGE):
+            # What was sent is what the whole page would be, unless a picture comes in line by line.
             whole = Ramtek9300()
             Sheet(whole).show(viewer.board.page())
-            assert held(display) == held(whole), f"on the screen {viewer.page}, gesture {number}"
+            # Asserted apart: pytest would compare millions of bytes for its message.
+            is_whole = held(display) == held(whole)
+            assert is_whole, f"on the screen {viewer.page}, gesture {number}"
     hand.let_go()
     viewer.clear()
     studio = viewer.studio

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import os
 import shutil
 import signal
 import subprocess
@@ -386,6 +387,8 @@ def test_bash_takes_the_candidates_without_their_quotes_for_words() -> None:
     shown = "_paint_completion paint; printf '<%s>' \"${COMPREPLY[@]}\""
     ran = subprocess.run(
         ["bash", "--norc", "-c", f"{script}{stub}COMP_WORDS=(paint); COMP_CWORD=1; {shown}"],
+        # A locale that is not installed is a warning of bash.
+        env={**os.environ, "LC_ALL": "C"},
         check=True,
         capture_output=True,
         text=True,

@@ -25,6 +25,7 @@ from autocolor.screens.viewer import Viewer
 from ramtek_emu import PortError, Ramtek9300, TcpPort
 from ramtek_emu.host.server import Server, TcpServer, UnixServer
 from tests.autocolor.commands.conftest import Run
+from tests.autocolor.screens.hand import folded_section_of
 from tests.autocolor.sessions import car
 
 SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\ng lid\nf 1 2 3 4\n"
@@ -264,11 +265,13 @@ def menu(display: Ramtek9300) -> None:
 
 
 def on(viewer_of: list[Viewer], label: str, share: float = 0.5) -> Act:
-    """Point at a row of the menu, and press ENTER; first turn to its page."""
+    """Point at a row of the menu, and press ENTER; first open its section, or turn to its page."""
 
     def act(display: Ramtek9300) -> str:
-        is_here = label in [row.label for row in viewer_of[0].board.layout.rows]
-        display.joystick.move_to(*place_of(viewer_of[0], label if is_here else "more", share))
+        viewer = viewer_of[0]
+        is_here = label in [row.label for row in viewer.board.layout.rows]
+        before = folded_section_of(viewer, label) or "more"
+        display.joystick.move_to(*place_of(viewer, label if is_here else before, share))
         display.joystick.press_enter()
         return "" if is_here else AGAIN
 

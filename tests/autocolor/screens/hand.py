@@ -56,19 +56,11 @@ class Hand:
             for each in self.viewer.board.widgets():
                 if each.label == label:
                     return each
-            folded = self._folded_section_of(label)
+            folded = folded_section_of(self.viewer, label)
             if label == "more":
                 break
             self.pick(folded or "more")
         raise AssertionError(f"{label!r} is not among {[each.label for each in self.viewer.board.widgets()]}")
-
-    def _folded_section_of(self, label: str) -> str:
-        """The label of the folded section of the menu with a row; empty if there is none."""
-        board = self.viewer.board
-        folded = [row.label for row in board.layout.rows if isinstance(row, Section) and not row.is_open]
-        rows = rows_of_menu(self.viewer.session, board.screen, self.viewer.screens.values())
-        sections = [section for section in sections_of(rows)[1:] if section[0].label in folded]
-        return next((s[0].label for s in sections if any(row.label == label for row in s[1:])), "")
 
     def choose(self, label: str, name: str) -> None:
         """Choose a name from the list of a row."""
@@ -93,3 +85,12 @@ class Hand:
                 return each.element, each.line
         labels = [each.label for each in self.viewer.board.screen.handles()]
         raise AssertionError(f"{label!r} is not among {labels}")
+
+
+def folded_section_of(viewer: Viewer, label: str) -> str:
+    """The label of the folded section of the menu with a row; empty if there is none."""
+    board = viewer.board
+    folded = [row.label for row in board.layout.rows if isinstance(row, Section) and not row.is_open]
+    rows = rows_of_menu(viewer.session, board.screen, viewer.screens.values())
+    sections = [section for section in sections_of(rows)[1:] if section[0].label in folded]
+    return next((s[0].label for s in sections if any(row.label == label for row in s[1:])), "")

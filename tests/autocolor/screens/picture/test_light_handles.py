@@ -291,6 +291,21 @@ def test_without_a_menu_the_message_line_names_a_highlight_under_the_pointer_and
     assert (display.words[foot] == picture[foot]).all()
 
 
+def test_the_hint_of_a_highlight_does_not_depend_on_the_message_before_and_goes_with_the_pointer(
+    hand: Hand,
+) -> None:
+    viewer, place = hand.viewer, hand.handle("highlight of key")
+    display, picture = viewer.display, viewer.studio.words
+    assert isinstance(display, Ramtek9300)
+    hand.move(*place)
+    viewer.tell("a long message " * 8)
+    viewer.tell("")
+    assert viewer.board.page() == viewer.board.page()
+    assert viewer.board.messages[-1].text.startswith("highlight of key")
+    viewer.clear()
+    assert (display.words == picture).all()
+
+
 def test_the_lights_screen_marks_all_highlights_at_rest_and_the_chosen_one_is_yellow(at_lights: Hand) -> None:
     hand = at_lights
     display = hand.viewer.display
