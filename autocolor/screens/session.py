@@ -22,13 +22,13 @@ from autocolor.files.scene_sources import hinted_up
 from autocolor.files.stamps import look_at
 from autocolor.files.state import note_file
 from autocolor.images import save_image
+from autocolor.journal.description import describe
 from autocolor.journal.places import Source
 from autocolor.mapping.display_image import DisplayImage
 from autocolor.mapping.intensity import held_exposure
 from autocolor.rendering import render
 from autocolor.scene.changes import LightChanges, PaintChanges, SurfaceChanges
 from autocolor.scene.columns import fields_of
-from autocolor.scene.description import describe
 from autocolor.scene.lights import Light
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import AUTO, LEVELS, Scene

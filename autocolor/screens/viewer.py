@@ -17,25 +17,25 @@ from autocolor.errors import AutocolorError, UsageError
 from autocolor.journal.history import History
 from autocolor.scene.columns import Tier
 from autocolor.scene.scene import Scene, cost_of_edit
-from autocolor.screens.blending_screen import BlendingScreen
 from autocolor.screens.board import Board
 from autocolor.screens.entries_screen import EntriesScreen
 from autocolor.screens.file_screen import FileScreen
 from autocolor.screens.help_screen import HelpScreen
-from autocolor.screens.history_screen import HistoryScreen
 from autocolor.screens.input import Binding, Chord, Gesture, Mouse, Unit, bound_to
 from autocolor.screens.light_and_view.light_and_view_screen import LightAndViewScreen
 from autocolor.screens.lights_screen import LightsScreen
 from autocolor.screens.mapping_screen import MappingScreen
-from autocolor.screens.mixing_screen import MixingScreen
+from autocolor.screens.picture.history_screen import HistoryScreen
 from autocolor.screens.picture.picture_edits import PictureEdits, sides_of
 from autocolor.screens.picture.picture_screen import PictureScreen
+from autocolor.screens.picture.split_screen import SplitScreen
 from autocolor.screens.picture.watching import ENDING, MESSAGE, Watching
-from autocolor.screens.reflectance_screen import ReflectanceScreen
 from autocolor.screens.scalar_screen import ScalarScreen
 from autocolor.screens.screen import Screen
 from autocolor.screens.session import PICTURE, Session
-from autocolor.screens.split_screen import SplitScreen
+from autocolor.screens.surface.blending_screen import BlendingScreen
+from autocolor.screens.surface.mixing_screen import MixingScreen
+from autocolor.screens.surface.reflectance_screen import ReflectanceScreen
 from autocolor.screens.variants_screen import VariantsScreen
 from autocolor.sending import configuration_of
 from autocolor.studio import Studio

@@ -1,4 +1,4 @@
-"""The picture, and what all screens over it share: pointing, turning, dragging a highlight, watching.
+"""The picture and the screens over it: pointing, turning, dragging highlights, watching, steps, and a split.
 
 Uses the session, the interface of screens, and `input`.
 """

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from autocolor import Scene
-from autocolor.screens.mixing_screen import BLEND
+from autocolor.screens.surface.mixing_screen import BLEND
 from autocolor.screens.viewer import Viewer
 from autocolor.widgets.bars import LANE
 from autocolor.widgets.items import Area

@@ -12,8 +12,9 @@ from autocolor.files.state import recent_colors
 from autocolor.mapping.colors import Hsv, blend_level, color_of_hsv, hsv_of
 from autocolor.scene.kinds import in_digits
 from autocolor.scene.swatches import COLUMNS, FINISHES, ROWS, finished, swatches
-from autocolor.screens.mixing_palette import Crop, crop_of
-from autocolor.screens.mixing_screen import (
+from autocolor.screens.session import Clipboard
+from autocolor.screens.surface.mixing_palette import Crop, crop_of
+from autocolor.screens.surface.mixing_screen import (
     CELL_ELEMENTS,
     CELL_LINES,
     LIGHT_SOURCE,
@@ -24,7 +25,6 @@ from autocolor.screens.mixing_screen import (
     SwatchField,
     whole,
 )
-from autocolor.screens.session import Clipboard
 from autocolor.screens.viewer import Viewer
 from autocolor.widgets.bars import ComponentBar
 from autocolor.widgets.items import BLUE, GREEN, LIGHT_GRAY, NIGHT, RED, WHITE, Area

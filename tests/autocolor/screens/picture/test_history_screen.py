@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from autocolor.screens.history_screen import BEGIN, MOST_LETTERS, MOST_ROWS, StepRow
+from autocolor.screens.picture.history_screen import BEGIN, MOST_LETTERS, MOST_ROWS, StepRow
 from autocolor.screens.viewer import Viewer
 from autocolor.studio import Studio
 from autocolor.widgets.items import GRAY, WHITE

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import pytest
 
 from autocolor import Scene
+from autocolor.journal.description import describe
 from autocolor.scene.columns import with_values
-from autocolor.scene.description import describe
 from tests.autocolor.meshes import cube
 from tests.autocolor.scene.test_every_column import EDITS, ROWS, edited, every_column, start
 

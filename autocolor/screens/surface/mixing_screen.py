@@ -38,10 +38,10 @@ from autocolor.scene.kinds import in_digits
 from autocolor.scene.surfaces import Paint, Surface
 from autocolor.scene.swatches import COLUMNS, FINISHES, ROWS, finished, swatches
 from autocolor.screens.input import Gesture
-from autocolor.screens.mixing_palette import Crop, Palette, crop_of, palette_of
 from autocolor.screens.picture.over_picture import paint_rows, surface_row
 from autocolor.screens.screen import Cached, Sample, Screen
 from autocolor.screens.session import Session
+from autocolor.screens.surface.mixing_palette import Crop, Palette, crop_of, palette_of
 from autocolor.widgets.bars import ComponentBar, LevelBar, level_strip
 from autocolor.widgets.items import (
     BLUE,

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from autocolor.arrays import Bytes
 from autocolor.checks import Color
 from autocolor.mapping.ranges import BACKGROUND, SCREENS, LevelRange
-from autocolor.screens.mixing_palette import (
+from autocolor.screens.surface.mixing_palette import (
     GRAYS,
     HUES,
     RAMP_STEPS,

@@ -11,7 +11,7 @@ from functools import partial
 from itertools import pairwise
 from typing import Final
 
-from autocolor.scene.description import describe
+from autocolor.journal.description import describe
 from autocolor.scene.scene import Scene
 from autocolor.screens.picture.over_picture import OverPicture
 from autocolor.screens.screen import Cached

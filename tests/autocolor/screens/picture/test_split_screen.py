@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from autocolor import Scene
 from autocolor.mapping.display_image import DisplayImage
 from autocolor.mapping.ranges import SCREENS, SURFACE_WORDS
-from autocolor.screens.split_screen import FIRST, MIDDLE, halves_of
+from autocolor.screens.picture.split_screen import FIRST, MIDDLE, halves_of
 from autocolor.studio import Studio
 from autocolor.widgets.items import HEIGHT, WHITE
 from ramtek_emu import Ramtek9300
@@ -197,7 +197,7 @@ def test_no_color_is_farther_off_than_is_said(seed: int, one: int, other: int) -
 
 
 def test_halves_with_too_many_colors_say_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("autocolor.screens.split_screen.SURFACE_WORDS", 200)
+    monkeypatch.setattr("autocolor.screens.picture.split_screen.SURFACE_WORDS", 200)
     hand = hand_after("all paints", tmp_path)
     split(hand)
     off = hand.viewer.screens["split"].halves.off  # type: ignore[attr-defined]
