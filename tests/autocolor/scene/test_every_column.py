@@ -413,7 +413,7 @@ NOT_DRAWN = {("", "words")}
 def test_the_random_scenes_have_other_values_in_every_column() -> None:
     seen: set[tuple[str, str]] = set()
 
-    @settings(max_examples=60, derandomize=True, database=None)
+    @settings(max_examples=100, derandomize=True, database=None)
     @given(linked_scenes())
     def draw(scene: Scene) -> None:
         tables: dict[str, list[Row]] = {
