@@ -34,7 +34,7 @@ from typing import TYPE_CHECKING, NoReturn, Unpack
 from autocolor.arrays import Bytes, Words
 from autocolor.budget import allowing, validated_limit
 from autocolor.checks import nearest, shown
-from autocolor.errors import UsageError
+from autocolor.errors import AutocolorError, UsageError
 from autocolor.files.stamps import stamp_of
 from autocolor.images import display_image
 from autocolor.journal.history import History, is_picture
@@ -401,10 +401,17 @@ class Studio:
         from autocolor.journal.saving import new_files, save_session
 
         self.refine()
+        before = self.scene
         if name is not None:
             new_files(Path(folder), name)
-            self.edit(self.scene.replace(name=name))
-        return save_session(self._history, self.picture, Path(folder), name)
+            self.edit(before.replace(name=name))
+        try:
+            return save_session(self._history, self.picture, Path(folder), name)
+        except AutocolorError:
+            # A scene that was not saved keeps its former name.
+            if self.scene is not before:
+                self.undo()
+            raise
 
     def mark_saved(self, files: Mapping[str, str] | None = None) -> None:
         """Mark the current scene as saved to files, by their paths and stamps (see `files.stamps`).

@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import autocolor
-from autocolor import OutputError, Studio, UsageError, read_picture, read_scene, write_picture
+from autocolor import OutputError, Studio, UsageError, WriteError, read_picture, read_scene, write_picture
 from autocolor.journal.history import History
 from autocolor.journal.places import PACKAGE, ScenePlace, Source, opened
 from autocolor.journal.saving import SavedFiles
@@ -111,6 +111,25 @@ def test_an_invalid_name_is_refused_and_nothing_is_written(work: Path, name: str
         studio.save_session(work, name)
     assert not list(work.parent.rglob("*.npz"))
     assert list(work.iterdir()) == []
+
+
+def test_a_scene_that_could_not_be_saved_under_a_name_keeps_its_own(
+    scene_file: Path, work: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(*_: object, **__: object) -> None:
+        raise WriteError("the disk is full")
+
+    studio = studio_of(scene_file)
+    studio.recolor("body", blend=0.25)
+    before, steps = studio.scene, len(studio.history.to_undo)
+    for name in ("red", before.name):
+        with monkeypatch.context() as patch:
+            patch.setattr("autocolor.journal.saving.write_scene_with_tables", fail)
+            with pytest.raises(WriteError, match="full"):
+                studio.save_session(work, name)
+        assert studio.scene is before
+        assert len(studio.history.to_undo) == steps
+        assert (studio.file, studio.is_changed) == (scene_file, True)
 
 
 def test_undo_after_saving_under_a_name_brings_the_old_name_back(work: Path) -> None:
