@@ -116,12 +116,12 @@ THE_PAPER = (
     ),
     (
         "Light Source Color Blending: Figure 13, color mixing",
-        ("screens.mixing_screen",),
+        ("screens.surface.mixing_screen",),
         "test_a_color_is_mixed_by_bars_and_then_the_picture_is_sent_again",
     ),
     (
         "Light Source Color Blending: Figure 14, light blending",
-        ("screens.blending_screen",),
+        ("screens.surface.blending_screen",),
         "test_the_blend_is_picked_on_a_bar_beside_the_picture_and_shows_at_once",
     ),
 )
