@@ -421,7 +421,10 @@ def flipped(session: Session, name: str) -> Exposure:
         held.pop(name)
         return tuple(held.items()) or AUTO
     picture = studio.image.mapped
-    extent = mapped_ranges(picture, scene.scaling, scene.exposure)[picture.surfaces.index(name) + 1]
+    number = picture.surfaces.index(name) + 1
+    extent = mapped_ranges(picture, scene.scaling, scene.exposure).get(number)
+    if extent is None:
+        raise UsageError(f"{name} has no range to hold, as no point of it is seen; turn it to the eye first")
     if not has_extent(extent):
         raise UsageError(f"{name} has no range to hold, as all its points have one intensity; light it first")
     return (*held.items(), (name, (extent.minimum * picture.scale, extent.maximum * picture.scale)))

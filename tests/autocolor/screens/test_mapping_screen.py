@@ -487,6 +487,16 @@ def test_a_surface_of_one_intensity_has_no_range_to_hold(tmp_path: Path) -> None
     assert message == "low has no range to hold, as all its points have one intensity; light it first"
 
 
+def test_a_surface_that_is_not_seen_has_no_range_to_hold(tmp_path: Path) -> None:
+    away = boxes().with_view(eye=(0, -9, 0), direction=(0, -1, 0))
+    hand = hand_at(tmp_path, "mapping", away)
+    hand.pick("low", 0.95)
+    message, is_warning = told(hand)
+    assert is_warning
+    assert message == "low has no range to hold, as no point of it is seen; turn it to the eye first"
+    assert scene_of(hand) is away
+
+
 def test_many_surfaces_have_no_rows(tmp_path: Path) -> None:
     hand = hand_at(tmp_path, "mapping", strips(11))
     assert "strip 0" not in labels_of(hand)
