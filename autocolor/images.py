@@ -145,7 +145,10 @@ def smoothed(image: DisplayImage, smooth: int) -> Bytes:
 
 
 LARGEST: Final = 4096
-"""The most elements and lines of an image: the size of the largest display memory."""
+"""The most elements and lines of an image: the size of the largest display memory.
+
+`render` goes up to `LARGEST_RASTER`.
+"""
 
 
 def size_of(text: str) -> tuple[int, int]:

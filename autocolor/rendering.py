@@ -77,7 +77,7 @@ def render(
     *,
     limit: float | None = None,
 ) -> Picture:
-    """The picture of a scene, (lines, elements).
+    """The picture of a scene, (lines, elements), up to 16,384 of each; a display ends at 4,096.
 
     `algorithm` is "batch", which processes all lines at once, or "watkins", the literal scan-line algorithm,
     which gives the same picture some fifteen times slower. `limit` is a factor for the memory budget. Raises

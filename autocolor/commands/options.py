@@ -62,7 +62,7 @@ size_option = click.option(
     default="640x480",
     show_default=True,
     callback=_size,
-    help="Width and height of the picture, up to 4096x4096.",
+    help="Width and height of the picture, up to 4096x4096, as on the largest display.",
 )
 
 

@@ -124,7 +124,8 @@ def ended(report: SceneReport, source: SceneSource) -> int:
 
 def reframed(report: SceneReport, aspect: float) -> SceneReport:
     """The report; a created view frames the object for a picture of an aspect, its width over its height."""
-    from autocolor.scene.defaults import ASPECT, framed
+    from autocolor.scene.defaults import framed
+    from autocolor.scene.view import ASPECT
 
     scene = report.scene
     if not report.is_view_created or aspect == ASPECT:
@@ -140,7 +141,8 @@ def created_again(report: SceneReport, edited: Scene, aspect: float | None = Non
     the eye, the direction or the target. An edit of `stage` makes created lights be created again. `aspect`
     is the aspect of the picture, by default the display's.
     """
-    from autocolor.scene.defaults import ASPECT, default_lights, framed
+    from autocolor.scene.defaults import default_lights, framed
+    from autocolor.scene.view import ASPECT
 
     original = report.scene
     is_same_object = [part.stage for part in original.parts] == [part.stage for part in edited.parts]

@@ -334,7 +334,8 @@ def _are_on_one_surface(points: VisiblePoints, one: Indices, other: Indices) -> 
     at_one, at_other = (points.rows[POINT].take(places, axis=1) for places in (one, other))
     between = at_other - at_one
     depth = at_one[2] + np.float32(points.middle[2])
-    most = depth * np.float32(LARGEST_GAP / focal_length(points.lines, points.view.field_of_view))
+    focal = focal_length(points.lines, points.elements, points.view.field_of_view)
+    most = depth * np.float32(LARGEST_GAP / focal)
     close = np.ones(len(one), np.bool_)
     for places in (one, other):
         close &= np.abs(dot(points.rows[NORMAL].take(places, axis=1), between)) <= most

@@ -17,13 +17,10 @@ from autocolor.checks import Color
 from autocolor.scene.lights import Light
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.surfaces import Paint, Part, Reflectance, Surface
-from autocolor.scene.view import View
+from autocolor.scene.view import ASPECT, View
 
 FILLED: Final = 0.86
 """Assumed: the fraction of the width or height of the picture that a framed object fills."""
-
-ASPECT: Final = 640 / 480
-"""Assumed: the width over the height of the paper's display."""
 
 POINT: Final = 1e-12
 """Assumed: an object smaller than this fraction of its distance from the origin is treated as a point."""
@@ -149,7 +146,7 @@ def framed(view: View, coordinates: Floats, aspect: float = ASPECT) -> View:
     # If the eye moves sideways by `shift` and back by `distance`, a point is within the picture if
     # |x - shift| <= slope * (depth + distance), and likewise for y. The two extreme points of an axis give
     # its shift and its least distance. Use the larger of the two distances.
-    slope_y = FILLED * math.tan(math.radians(view.field_of_view) / 2)
+    slope_y = FILLED * view.half_height(aspect)
     slopes = np.array([slope_y * aspect, slope_y])
     least, most, nearest, size = np.full(2, np.inf), np.full(2, -np.inf), np.inf, 0.0
     for chunk in chunks(points.shape[1], POINTS_AT_ONCE):

@@ -24,6 +24,9 @@ from autocolor.scene.row_kinds import Nested
 MOST_VIEWS: Final = 64
 """Limit: named views of a scene."""
 
+ASPECT: Final = 640 / 480
+"""Assumed: the width over the height of the paper's display."""
+
 
 @dataclass(frozen=True, repr=False)
 class View(Row):
@@ -60,7 +63,8 @@ class View(Row):
         Column(
             Number(at_least=0.01, at_most=179),
             Tier.FRAME,
-            "The vertical field of view.",
+            "The vertical field of view of a picture of 4:3 or wider; a narrower picture has the horizontal"
+            " field of view of 4:3.",
             "degrees",
             bar=BarRange(5, 120, 1),
         ),
@@ -106,6 +110,14 @@ class View(Row):
             ]
         )
         return read_only(axes)
+
+    def half_height(self, aspect: float) -> float:
+        """Half the height of a picture at a depth of 1; `aspect` is its width over its height.
+
+        Assumed: a picture that is narrower than 4:3 shows more above and below. With the same height it would
+        cut off the sides of the object.
+        """
+        return math.tan(math.radians(self.field_of_view) / 2) * max(1.0, ASPECT / aspect)
 
     def replace(self, /, **changes: Unpack[ViewChanges]) -> View:
         """The view with some fields changed; a new direction removes the target, and vice versa."""

@@ -479,7 +479,7 @@ def places_of(points: Floats, view: View) -> Floats:
     """The elements and lines, (n, 2), of points, (n, 3), in the picture, without points behind the eye."""
     camera = (points - np.array(view.eye)) @ view.axes.T
     camera = camera[camera[:, 2] > 0]
-    focal = focal_length(SCREEN.height, view.field_of_view)
+    focal = focal_length(SCREEN.height, SCREEN.width, view.field_of_view)
     middle = np.array([SCREEN.width, SCREEN.height]) / 2 - 0.5
     places: Floats = middle + focal * camera[:, :2] / camera[:, 2:]
     return places

@@ -132,7 +132,7 @@ class Projection:
 
 def projection(mesh: Mesh, view: View, lines: int, elements: int) -> Projection:
     """The polygons of the mesh that may be visible, each crossed at most twice by any line."""
-    raster = Raster(lines, elements, focal_length(lines, view.field_of_view))
+    raster = Raster(lines, elements, focal_length(lines, elements, view.field_of_view))
     is_large = len(mesh.node_numbers) >= LARGE
     camera = clipped_at_near_plane(preselected(mesh, view, raster) if is_large else camera_space(mesh, view))
     nodes = on_raster(camera.positions, camera.near, raster)
@@ -169,13 +169,16 @@ def projection(mesh: Mesh, view: View, lines: int, elements: int) -> Projection:
     )
 
 
-def focal_length(lines: int, field_of_view: float) -> float:
-    """The focal length in pixels of a raster with a vertical field of view in degrees.
+def focal_length(lines: int, elements: int, field_of_view: float) -> float:
+    """The focal length in pixels of a raster and a field of view in degrees.
+
+    The field of view is the vertical one of a raster of 4:3 or wider. A narrower raster sees as far to the
+    left and to the right as a raster of 4:3 (see `View.half_height`).
 
     The ray through the center of pixel (line, element) is ((element + 1/2 - elements / 2) / focal length,
     (line + 1/2 - lines / 2) / focal length, 1) in camera space.
     """
-    return lines / 2 / math.tan(math.radians(field_of_view) / 2)
+    return min(lines, elements * 480 / 640) / 2 / math.tan(math.radians(field_of_view) / 2)
 
 
 class OnRaster(NamedTuple):

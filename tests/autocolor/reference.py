@@ -57,7 +57,8 @@ def ray(view: View, lines: int, elements: int, line: int, element: int) -> list[
     angle = math.radians(view.angle)
     across_axis = plus(times(math.cos(angle), right), times(math.sin(angle), top))
     up_axis = plus(times(math.cos(angle), top), times(-math.sin(angle), right))
-    pixel = 2 * math.tan(math.radians(view.field_of_view) / 2) / lines
+    # A picture narrower than 4:3 is as wide as a picture of 4:3.
+    pixel = 2 * math.tan(math.radians(view.field_of_view) / 2) / min(lines, 0.75 * elements)
     across = (element + 0.5 - elements / 2) * pixel
     up_by = (lines / 2 - line - 0.5) * pixel
     return plus(forward, plus(times(across, across_axis), times(up_by, up_axis)))

@@ -121,7 +121,7 @@ def picture_corners(view: View, target: Vector, aspect: float = PICTURE_ASPECT) 
     """
     right, down, forward = view.axes
     depth = float(forward @ (np.array(target) - np.array(view.eye)))
-    half = math.tan(math.radians(view.field_of_view) / 2)
+    half = view.half_height(aspect)
     rays = [forward + half * (aspect * x * right + y * down) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
     return np.array(view.eye) + depth * np.array(rays)
 

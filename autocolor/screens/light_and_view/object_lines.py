@@ -122,7 +122,7 @@ def _are_visible(points: Floats, depths: VisibleDepths) -> Booleans:
     lines, elements = depths.farthest.shape
     x, y, depth = rotated(depths.view.axes / depths.unit, points, depths.view.eye)
     before = depth > 0
-    scale = focal_length(lines, depths.view.field_of_view) / np.where(before, depth, 1.0)
+    scale = focal_length(lines, elements, depths.view.field_of_view) / np.where(before, depth, 1.0)
     element, line = np.floor(x * scale + elements / 2), np.floor(y * scale + lines / 2)
     inside = before & (element >= 0) & (element < elements) & (line >= 0) & (line < lines)
     visible = np.ones(len(depth), np.bool_)
@@ -260,8 +260,8 @@ def _longest(edges: Indices, coordinates: Floats) -> Indices:
 def perspective_strokes(coordinates: Floats, edges: Indices, view: View, area: Area) -> Floats:
     """The strokes of edges in the picture of a view that fills an area, (strokes, 4).
 
-    `coordinates` is (nodes, 3), `edges` (n, 2) the nodes that each edge joins. The height of the area is the
-    vertical field of view. Edges are clipped at a near plane first, NEAR as a fraction of the depth of the
+    `coordinates` is (nodes, 3), `edges` (n, 2) the nodes that each edge joins. The picture has the lines and
+    elements of the area. Edges are clipped at a near plane first, NEAR as a fraction of the depth of the
     farthest node, and their strokes by the area.
     """
     camera = rotated(view.axes, coordinates.T, view.eye)
@@ -269,7 +269,7 @@ def perspective_strokes(coordinates: Floats, edges: Indices, view: View, area: A
     farthest = float(max(starts[2].max(initial=0.0), ends[2].max(initial=0.0)))
     near = NEAR * farthest or 1.0
     starts, ends = _beyond(near, starts, ends)
-    focal = focal_length(area.height, view.field_of_view)
+    focal = focal_length(area.height, area.width, view.field_of_view)
     middle = np.array(area.middle)
     return clipped(between(*(middle + (focal * points[:2] / points[2]).T for points in (starts, ends))), area)
 

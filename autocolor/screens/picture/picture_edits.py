@@ -16,6 +16,7 @@ from autocolor.scene.scene import AUTO, Exposure, Scene
 from autocolor.scene.view import View
 from autocolor.screens.screen import Cached
 from autocolor.screens.session import Session
+from autocolor.visibility.projection import focal_length
 from autocolor.widgets.widget import titled
 
 # The object colors that a key steps through: the default colors of new surfaces, and a surface's own color.
@@ -136,16 +137,18 @@ def moved(scene: Scene, ratio: float, top: float = -math.inf) -> View:
     return scene.view.replace(eye=_vector(eye))
 
 
-def panned(scene: Scene, right: float, down: float, lines: int, top: float = -math.inf) -> View:
+def panned(
+    scene: Scene, right: float, down: float, lines: int, elements: int, top: float = -math.inf
+) -> View:
     """The view moved sideways, so that the target point moves by elements and lines in the picture.
 
-    `lines` is the number of lines of the picture.
+    `lines` and `elements` are the size of the picture.
     """
     view, target = scene.view, np.array(target_of(scene))
     eye = np.array(view.eye)
     axes = view.axes
     depth = float((target - eye) @ axes[2])
-    step = 2 * depth * math.tan(math.radians(view.field_of_view) / 2) / lines
+    step = depth / focal_length(lines, elements, view.field_of_view)
     shift = -step * (right * axes[0] + down * axes[1])
     missing = lowest_eye(scene, top) - float(eye[2] + shift[2])
     if missing > 0:
@@ -219,8 +222,8 @@ class PictureEdits:
     def pan(self, right: float, down: float) -> None:
         """Move the picture by elements and lines."""
         before = self.session.scene.view.eye[2]
-        lines = len(self.session.studio.words)
-        self.look(panned(self.session.scene, right, down, lines, self.stage_top))
+        lines, elements = self.session.studio.words.shape
+        self.look(panned(self.session.scene, right, down, lines, elements, self.stage_top))
         self._tell_of_stage(down < 0, before)
 
     def _tell_of_stage(self, is_lowered: bool, before: float) -> None:

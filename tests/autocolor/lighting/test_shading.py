@@ -335,10 +335,10 @@ def test_half_of_a_directed_light_is_left_at_the_angle_of_its_concentration(
 def test_a_cone_of_more_than_90_degrees_lights_behind_a_light_without_concentration() -> None:
     # The light shines away from the wall; the wall is at 180 degrees and less from its direction.
     away = Light("light", (0.0, -1.0, 0.0), direction=(0.0, -1.0, 0.0), cone_angle=170.0)
-    picture = render(wall_scene(lights=[away]), 51, 51)
-    assert picture.intensity[25, 25] == 0
-    assert picture.intensity[25, 50] > 0
-    concentrated = render(wall_scene(lights=[away.replace(concentration=0.01)]), 51, 51)
+    picture = render(wall_scene(lights=[away]), 51, 69)
+    assert picture.intensity[25, 34] == 0
+    assert picture.intensity[25, 59] > 0
+    concentrated = render(wall_scene(lights=[away.replace(concentration=0.01)]), 51, 69)
     assert concentrated.ranges.whole.maximum == 0
     narrow = render(wall_scene(lights=[away.replace(cone_angle=90.0)]), 51, 51)
     assert narrow.ranges.whole.maximum == 0

@@ -639,7 +639,7 @@ def test_a_drag_with_the_middle_button_moves_the_picture_and_is_one_step(viewer:
     viewer.on_pointer(330, 190, "move")
     viewer.on_pointer(330, 190, "release", 2)
     viewer.on_pointer(400, 400, "move")
-    once = panned(before, 30, -10, 480)
+    once = panned(before, 30, -10, 480, 640)
     assert viewer.studio.scene.view.eye == pytest.approx(once.eye)
     assert is_true_to(viewer, viewer.studio.scene)
     control(viewer, "z")

@@ -190,7 +190,7 @@ def test_the_segments_of_some_polygons_are_among_the_segments_of_all_polygons(
 
 def test_a_rectangle_has_one_segment_on_each_of_its_lines() -> None:
     # The eye is as far as the lens is long: one unit of the plane is one pixel.
-    view = View((4.0, -4 / math.tan(math.radians(15)), 4.0), direction=(0.0, 1.0, 0.0), field_of_view=30.0)
+    view = View((4.0, -3 / math.tan(math.radians(15)), 4.0), direction=(0.0, 1.0, 0.0), field_of_view=30.0)
     corners = np.array([(1.4, 0, 2.4), (4.6, 0, 2.4), (4.6, 0, 5.6), (1.4, 0, 5.6)])
     panel = Mesh(corners, np.array([[0, 1, 2, 3]]), np.array([0]), ("panel",))
     _, _, segments = all_segments(panel, view, (8, 8))

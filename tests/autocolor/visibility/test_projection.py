@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -32,7 +33,7 @@ def test_the_rays_of_the_lens_go_through_the_centers_of_the_pixels(
     eye: Vector, direction: Vector, raster: tuple[int, int]
 ) -> None:
     view = View(eye, direction=direction, field_of_view=50)
-    focal = focal_length(raster[0], 50.0)
+    focal = focal_length(*raster, 50.0)
     for pixel in range(raster[0] * raster[1]):
         expected = view.axes @ np.array(ray(view, *raster, *divmod(pixel, raster[1])))
         line, element = divmod(pixel, raster[1])
@@ -46,6 +47,32 @@ def test_pixels_are_square_and_the_field_of_view_is_the_vertical_one() -> None:
     projected = projection(panel, view, 100, 300)
     assert np.sort(projected.x) == pytest.approx([100, 100, 200, 200])
     assert np.sort(projected.y) == pytest.approx([0, 0, 100, 100])
+
+
+@given(st.integers(1, 40), st.integers(0, 20), st.floats(0.01, 179))
+def test_a_raster_of_4_to_3_or_wider_has_the_vertical_field_of_view_bit_for_bit(
+    lines: int, wider: int, field_of_view: float
+) -> None:
+    elements = math.ceil(4 * lines / 3) + wider
+    expected = lines / 2 / math.tan(math.radians(field_of_view) / 2)
+    assert focal_length(lines, elements, field_of_view) == expected
+
+
+@given(st.integers(1, 400), st.integers(0, 400), st.floats(0.01, 179))
+def test_a_narrow_raster_has_a_raster_of_4_to_3_in_its_middle(
+    size: int, more: int, field_of_view: float
+) -> None:
+    lines, elements = 3 * size, 4 * size
+    usual = focal_length(lines, elements, field_of_view)
+    assert focal_length(lines + more, elements, field_of_view) == usual
+
+
+@pytest.mark.parametrize(("lines", "elements"), [(100, 100), (120, 40), (60, 80), (60, 200)])
+def test_a_created_view_shows_the_whole_object_in_a_picture_of_any_shape(lines: int, elements: int) -> None:
+    numbers = render(scene_of(sphere()), lines, elements).surface_number
+    assert numbers.any()
+    assert not numbers[[0, -1]].any()
+    assert not numbers[:, [0, -1]].any()
 
 
 RASTER = Raster(10, 16, 20.0)
@@ -263,7 +290,7 @@ def test_a_mesh_around_the_eye_is_clipped_in_two_steps_to_the_same_bits(
 def test_only_polygons_that_may_be_visible_are_put_into_camera_space() -> None:
     fine = grid(60, 60, (-1, 0, -1), (2, 0, 0), (0, 0, 2))
     view = View((0, -3, 0), direction=(0, 1, 0), field_of_view=60)
-    raster = Raster(12, 16, focal_length(12, 60))
+    raster = Raster(12, 16, focal_length(12, 16, 60))
     camera = preselected(fine, view, raster)
     # Seven lines of seven pixel centers lie on the square; each is in one polygon, or at the edge of a few.
     seen = np.unique(visible_surfaces(fine, view, (1,), 12, 16).polygon_numbers)

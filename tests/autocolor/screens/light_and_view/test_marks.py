@@ -317,7 +317,7 @@ def test_the_renderer_has_the_corners_at_the_corners_of_its_raster(view: View) -
     target = np.array(view.eye) + view.axes[2]
     corners = picture_corners(view, tuple(target.tolist()))
     x, y, depth = view.axes @ (corners - np.array(view.eye)).T
-    focal = focal_length(lines, view.field_of_view)
+    focal = focal_length(lines, elements, view.field_of_view)
     assert x / depth * focal == pytest.approx(np.array([-1, 1, 1, -1]) * elements / 2)
     assert y / depth * focal == pytest.approx(np.array([-1, -1, 1, 1]) * lines / 2)
 

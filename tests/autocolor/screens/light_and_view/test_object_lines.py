@@ -363,12 +363,15 @@ def test_edges_are_where_the_renderer_has_their_pixels() -> None:
     assert found == pytest.approx(places[edges.features].reshape(-1, 4))
 
 
-def test_the_height_of_the_area_is_the_field_of_view() -> None:
+@pytest.mark.parametrize(("width", "half"), [(200, 50), (134, 50), (80, 30), (40, 15)])
+def test_the_height_of_a_wide_area_is_the_field_of_view(width: int, half: float) -> None:
     view = View((0.0, -1.0, 0.0), target=(0.0, 0.0, 0.0), field_of_view=90.0)
     edges = mesh_edges(wall(half=0.98))
-    found = perspective_strokes(edges.coordinates, edges.features, view, Area(0, 0, 99, 99))
-    # At 45 degrees a unit is half the height: the outer pixels end at -0.5 and 99.5.
-    assert (found.min(), found.max()) == pytest.approx((49.5 - 49, 49.5 + 49))
+    found = perspective_strokes(edges.coordinates, edges.features, view, Area(0, 0, width - 1, 99))
+    # At 45 degrees a unit is half the height of a picture of 4:3, unless the area is cropped.
+    assert (found[:, 1::2].min(), found[:, 1::2].max()) == pytest.approx(
+        (49.5 - 0.98 * half, 49.5 + 0.98 * half)
+    )
     assert len(found) == 4
 
 

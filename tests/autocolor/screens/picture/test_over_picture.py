@@ -129,8 +129,8 @@ def test_what_is_under_the_menu_or_a_message_is_not_the_picture(hand: Hand) -> N
 
 HELD: dict[str, tuple[dict[str, bool], int, Callable[[Scene], View]]] = {
     "plain": ({}, 1, lambda scene: turned(scene, *turn_between(400, 100, 430, 110))),
-    "Shift": ({"shift": True}, 1, lambda scene: panned(scene, 30, 10, 480)),
-    "middle": ({}, 2, lambda scene: panned(scene, 30, 10, 480)),
+    "Shift": ({"shift": True}, 1, lambda scene: panned(scene, 30, 10, 480, 640)),
+    "middle": ({}, 2, lambda scene: panned(scene, 30, 10, 480, 640)),
     "Ctrl": ({"control": True}, 1, lambda scene: moved(scene, wheel_ratio(-10 / 8))),
 }
 

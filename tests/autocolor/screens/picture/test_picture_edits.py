@@ -171,7 +171,9 @@ def test_an_eye_above_the_stage_stays_above_it(steps: list[tuple[float, float, s
             view = moved(scene, 2 ** (right / 200), top)
         else:
             view = (
-                turned(scene, right, -down, top) if kind == "turn" else panned(scene, right, down, 480, top)
+                turned(scene, right, -down, top)
+                if kind == "turn"
+                else panned(scene, right, down, 480, 640, top)
             )
         scene = scene.replace(view=view)
         assert view.eye[2] > top
@@ -202,14 +204,14 @@ def test_an_eye_below_the_stage_and_scenes_without_stage_are_free(tmp_path: Path
     for scene in (free, STAGED.replace(view=View((3, -4, 0.1), target=(0.5, 0.5, 0.5)))):
         top = stage_top(scene.mesh, scene.parts)
         assert turned(scene, 0, -40, top).eye[2] < 0
-        assert panned(scene, 0, -900, 480, top).eye[2] < 0
+        assert panned(scene, 0, -900, 480, 640, top).eye[2] < 0
 
 
 def test_a_pan_at_the_stage_stays_in_the_picture_plane() -> None:
-    view = panned(STAGED, 30, -900, 480, 0.2)
+    view = panned(STAGED, 30, -900, 480, 640, 0.2)
     shift = np.array(view.eye) - np.array(STAGED.view.eye)
     assert float(shift @ STAGED.view.axes[2]) == pytest.approx(0, abs=1e-9)
-    free = np.array(panned(STAGED, 30, -900, 480).eye) - np.array(STAGED.view.eye)
+    free = np.array(panned(STAGED, 30, -900, 480, 640).eye) - np.array(STAGED.view.eye)
     assert float((shift - free) @ STAGED.view.axes[0]) == pytest.approx(0, abs=1e-9)
 
 
@@ -225,7 +227,7 @@ def test_the_target_moves_with_the_picture(right: float, down: float, angle: flo
     aim = {"target": (0.3, 0.1, 0.5)} if has_target else {"direction": (-3, 4, -1)}
     scene = wall_scene(view=View((3, -4, 1), angle=angle, field_of_view=40, **aim))
     before = target_of(scene)
-    view = panned(scene, right, down, 480)
+    view = panned(scene, right, down, 480, 640)
     assert np.allclose(view.axes, scene.view.axes)
     old = place(scene.view, before)
     assert place(view, before) == pytest.approx((old[0] + right, old[1] + down), abs=1e-6)

@@ -28,8 +28,8 @@ ROWS: dict[str, tuple[float, Callable[[Scene], View]]] = {
     "turn": (0.9, lambda scene: turned(scene, TURN, 0)),
     "rise": (0.1, lambda scene: turned(scene, 0, -TURN)),
     "closer": (0.9, lambda scene: moved(scene, CLOSER)),
-    "move": (0.9, lambda scene: panned(scene, PAN, 0, 480)),
-    "lift": (0.9, lambda scene: panned(scene, 0, -PAN, 480)),
+    "move": (0.9, lambda scene: panned(scene, PAN, 0, 480, 640)),
+    "lift": (0.9, lambda scene: panned(scene, 0, -PAN, 480, 640)),
 }
 
 
