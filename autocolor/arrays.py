@@ -297,3 +297,23 @@ def halves_up(values: Singles, out: Singles | None = None) -> Singles:
     """The nearest integers of an array, as float32; halves are rounded up. `out` may be `values`."""
     rounded = np.add(values, np.float32(HALF), out=out)
     return np.floor(rounded, out=rounded)
+
+
+# Components of colors, and their light as a fraction of the light of white.
+#
+# Assumed: monitors show colors as sRGB does, IEC 61966-2-1. The mean of the components themselves would make
+# the edges of bright surfaces too dark.
+
+
+def light_of(components: Floats) -> Floats:
+    """The light of components of colors, 0 to 255, not rounded: 0 to 1."""
+    shares = components / 255
+    light: Floats = np.where(shares <= 0.04045, shares / 12.92, ((shares + 0.055) / 1.055) ** 2.4)
+    return light
+
+
+def components_of(light: Floats) -> Bytes:
+    """The components of colors for light, 0 to 1: uint8, rounded half up."""
+    encoded = np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
+    components: Bytes = np.floor(encoded * 255 + HALF).astype(np.uint8)
+    return components

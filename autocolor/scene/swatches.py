@@ -15,7 +15,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Bytes, Floats
+from autocolor.arrays import Bytes, Floats, components_of
 from autocolor.checks import Color, nearest, shown
 from autocolor.errors import UsageError
 from autocolor.immutable import read_only
@@ -117,11 +117,8 @@ def _linear(oklab: Floats) -> Floats:
 
 
 def _bytes(oklab: Floats) -> Bytes:
-    """The colors in sRGB, (n, 3) uint8, rounded half up."""
-    linear = np.clip(_linear(oklab), 0, 1)
-    encoded = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
-    colors: Bytes = np.floor(encoded * 255 + 0.5).astype(np.uint8)
-    return colors
+    """The colors, (n, 3) uint8, rounded half up."""
+    return components_of(np.clip(_linear(oklab), 0, 1))
 
 
 WHITE: Final = (255, 255, 255)
