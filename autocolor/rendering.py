@@ -28,7 +28,7 @@ from autocolor.budget import allowing, require_memory
 from autocolor.checks import nearest, shown
 from autocolor.errors import UsageError
 from autocolor.lighting.illumination import Previous, illuminate
-from autocolor.lighting.picture import Picture
+from autocolor.lighting.picture import Picture, check_smooth
 from autocolor.logs import logger_of, timed
 from autocolor.scalars.computed import scalar_values
 from autocolor.scene.columns import Tier, cost, with_values
@@ -76,23 +76,37 @@ def render(
     algorithm: str = "batch",
     *,
     limit: float | None = None,
+    smooth: int = 1,
 ) -> Picture:
     """The picture of a scene, (lines, elements), up to 16,384 of each; a display ends at 4,096.
+
+    With `smooth`, the picture has `smooth` times the lines and elements: `image` and `save_image` average
+    squares of its pixels, so that edges are smooth.
 
     `algorithm` is "batch", which processes all lines at once, or "watkins", the literal scan-line algorithm,
     which gives the same picture some fifteen times slower. `limit` is a factor for the memory budget. Raises
     InputError if an intensity exceeds the range of float32, or if the picture needs more memory than the
-    budget allows; UsageError for an invalid size, algorithm or limit.
+    budget allows; UsageError for an invalid size, algorithm, limit or `smooth`.
     """
+    check_smooth(smooth)
     for what, size in (("lines", lines), ("elements", elements)):
-        if isinstance(size, bool) or not isinstance(size, Integral) or not 1 <= size <= LARGEST_RASTER:
+        most = LARGEST_RASTER // smooth
+        if isinstance(size, bool) or not isinstance(size, Integral) or not 1 <= size <= most:
+            where = f" where smooth is {smooth}" if smooth > 1 else ""
             raise UsageError(
-                f"{what} must be a whole number from 1 to {LARGEST_RASTER}, not {shown(size)}; choose another"
+                f"{what} must be a whole number from 1 to {most}{where}, not {shown(size)}; choose another"
             )
     if not isinstance(algorithm, str) or algorithm not in ALGORITHMS:
         raise UsageError(f"there is no algorithm {shown(algorithm)}{nearest(algorithm, ALGORITHMS)}")
     with allowing(limit):
-        return rendering(scene, lines, elements, algorithm=algorithm).picture
+        if smooth > 1:
+            require_memory(
+                BYTES_OF_PIXEL * lines * elements * smooth**2,
+                f"a picture of {elements} x {lines} pixels, each the mean of {smooth} x {smooth},",
+                "render fewer lines and elements, or with a smaller `smooth`",
+            )
+        picture = rendering(scene, smooth * lines, smooth * elements, algorithm=algorithm).picture
+    return picture if smooth == 1 else dataclasses.replace(picture, smooth=smooth)
 
 
 def rendering(

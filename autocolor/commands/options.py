@@ -66,6 +66,15 @@ size_option = click.option(
 )
 
 
+smooth_option = click.option(
+    "--smooth",
+    type=click.Choice(["1", "2", "3", "4"]),
+    default="2",
+    show_default=True,
+    help="Smooth edges: each pixel is the mean light of 1, 4, 9 or 16. 1 is the picture of a display.",
+)
+
+
 def _allow(context: click.Context, _: click.Parameter, limit: float | None) -> None:
     """Allow the command this multiple of the memory budget."""
     if limit is not None and not context.resilient_parsing:

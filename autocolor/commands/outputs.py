@@ -11,7 +11,8 @@ from ramtek_emu.command_line import tell
 from ramtek_emu.writing import same_outputs
 
 if TYPE_CHECKING:
-    from ramtek_emu import Ramtek9300
+    from autocolor.lighting.picture import Picture
+    from autocolor.scene.scene import Scene
 
 
 def refuse_outputs(output: str | None, save: str | None, force: bool) -> None:
@@ -51,12 +52,14 @@ def _refuse(path: str, force: bool) -> None:
         raise OutputError(f"an output must be in a writable folder, not {folder}; choose another")
 
 
-def write_png(path: str, display: Ramtek9300, force: bool) -> None:
-    """Write the field of a display to a PNG file, atomically."""
+def write_image(path: str, scene: Scene, picture: Picture, force: bool) -> None:
+    """Write a picture in the colors of a scene to a PNG file of any name, atomically; see `save_image`."""
     from autocolor.files.writing import write_atomically
+    from autocolor.images import display_image, smoothed
     from ramtek_emu.png import png_bytes
 
-    write_atomically(path, png_bytes(display.field()), overwrite=force)
+    colors = smoothed(display_image(scene, picture), picture.smooth)
+    write_atomically(path, png_bytes(colors), overwrite=force)
 
 
 def tell_written(*paths: str | None) -> None:

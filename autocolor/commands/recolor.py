@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -11,7 +10,7 @@ import click
 
 from autocolor.commands.completion import complete_colors, complete_pictures, complete_surfaces
 from autocolor.commands.options import as_usage, limit_option, verbose_option
-from autocolor.commands.outputs import refuse_outputs, tell_written, write_png
+from autocolor.commands.outputs import refuse_outputs, tell_written, write_image
 from autocolor.commands.scenes import set_option
 from autocolor.errors import UsageError
 
@@ -84,6 +83,8 @@ def recolor(
 ) -> None:
     """Change the colors of SURFACE in PICTURE, a picture file, without rendering it again.
 
+    Edges are as smooth as `--smooth` of `render` made them.
+
     --set changes any field that needs no rendering: paints, the mapping, and the color scale, limits and
     bands of a scalar.
     """
@@ -106,9 +107,7 @@ def recolor(
     refuse_outputs(output, save, force)
 
     from autocolor.files.picture_file import read_picture, write_picture
-    from autocolor.images import send_picture
     from autocolor.logs import logger_of, timed
-    from ramtek_emu import GMR_9300, Ramtek9300
 
     logger = logger_of(__name__)
     with timed(logger, f"read {picture}"):
@@ -118,11 +117,8 @@ def recolor(
     if save is not None:
         write_picture(save, saved.picture, scene, overwrite=force)
     if output is not None:
-        lines, elements = saved.picture.lines, saved.picture.elements
-        display = Ramtek9300(dataclasses.replace(GMR_9300, lines=lines, elements=elements))
-        with timed(logger, "words and entries sent"):
-            send_picture(scene, saved.picture, display)
-        write_png(output, display, force)
+        with timed(logger, "image written"):
+            write_image(output, scene, saved.picture, force)
     tell_written(output, save)
 
 

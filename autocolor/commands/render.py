@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import dataclasses
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import click
 
 from autocolor.commands.completion import complete_lights, complete_views
-from autocolor.commands.options import normals_option, size_option, with_normals
-from autocolor.commands.outputs import refuse_outputs, tell_written, write_png
+from autocolor.commands.options import normals_option, size_option, smooth_option, with_normals
+from autocolor.commands.outputs import refuse_outputs, tell_written, write_image
 from autocolor.commands.scenes import (
     SceneSource,
     created_again,
@@ -24,6 +23,10 @@ from autocolor.commands.scenes import (
     tell_up,
 )
 
+if TYPE_CHECKING:
+    from autocolor.lighting.picture import Picture
+    from autocolor.scene.scene import Scene
+
 EXAMPLES: Final = """\b
 Examples:
   autocolor render scenes/coupe -o coupe.png --save coupe.npz
@@ -32,7 +35,7 @@ Examples:
   autocolor render scenes/coupe --light key --hold-exposure -o key-alone.png
   autocolor render scenes/coupe --view hood -o hood.png
   autocolor render scenes/coupe --set lights.key.concentration=40 --set ambient=0.2
-  autocolor render scenes/coupe --set surfaces.body.object_color=navy --size 1280x960
+  autocolor render scenes/coupe --set surfaces.body.object_color=navy --size 1280x960 --smooth 4
 """
 
 
@@ -69,6 +72,7 @@ Examples:
 @set_option
 @normals_option
 @size_option
+@smooth_option
 @click.option(
     "--hold-exposure",
     is_flag=True,
@@ -86,11 +90,17 @@ def render(
     settings: tuple[str, ...],
     normals: bool,
     size: tuple[int, int],
+    smooth: str,
     hold_exposure: bool,
     force: bool,
 ) -> None:
     """Render SCENE: a folder, a scene.toml, a mesh file or a picture file."""
     from autocolor.commands.settings import with_settings
+
+    def rendered(scene: Scene) -> Picture:
+        from autocolor.rendering import render
+
+        return render(scene, lines, elements, smooth=int(smooth))
 
     elements, lines = size
     report = reframed(read(source), elements / lines)
@@ -101,9 +111,8 @@ def render(
     if hold_exposure:
         from autocolor.images import display_image
         from autocolor.mapping.intensity import held_exposure
-        from autocolor.rendering import render as rendered
 
-        mapped = display_image(original, rendered(original, lines, elements)).mapped
+        mapped = display_image(original, rendered(original)).mapped
         original = original.replace(exposure=held_exposure(mapped, original.scaling, original.exposure))
     edited = created_again(report, with_settings(original, settings), elements / lines)
     if lights:
@@ -116,19 +125,16 @@ def render(
 
     with progress(4) as step:
         from autocolor.files.picture_file import write_picture
-        from autocolor.studio import Studio
-        from ramtek_emu import GMR_9300, Ramtek9300
 
         _ = edited.mesh.normals
         step()
-        display = Ramtek9300(dataclasses.replace(GMR_9300, lines=lines, elements=elements))
-        studio = Studio(edited, display)
+        picture = rendered(edited)
         step()
         if save is not None:
-            write_picture(save, studio.picture, studio.scene, overwrite=force)
+            write_picture(save, picture, edited, overwrite=force)
         step()
         if output is not None:
-            write_png(output, display, force)
+            write_image(output, edited, picture, force)
         step()
     tell_written(output, save)
     context.exit(ended(report, source))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 from autocolor.checks import Color
-from autocolor.commands.outputs import refuse_outputs, tell_written, write_png
+from autocolor.commands.outputs import refuse_outputs, tell_written, write_image
 from autocolor.commands.scenes import REPAIRED, SceneSource, ended, read, scene_options
 from autocolor.errors import InputError, UsageError
 from ramtek_emu.command_line import tell
@@ -79,12 +79,10 @@ def show_scene(scene: Scene, output: str | None, force: bool) -> None:
 
         show(History(scene))
         return
-    from autocolor.studio import Studio
-    from ramtek_emu import Ramtek9300
+    from autocolor.images import SMOOTHNESS
+    from autocolor.rendering import render
 
-    display = Ramtek9300()
-    Studio(scene, display)
-    write_png(output, display, force)
+    write_image(output, scene, render(scene, smooth=SMOOTHNESS), force)
     tell_written(output)
 
 

@@ -64,7 +64,7 @@ class ArrayFileKind:
     Messages use `noun`, and `advice` for damaged files. `formats` are the readable values of `format` in the
     header; the first is written. `keys` are the other keys of the header. `arrays` has the types of the
     members by name, and `series` the series by the key of their list in the header. The `plain` formats have
-    no series. Only the first format has the arrays `added`.
+    no series. Only the first format has the arrays `added`. The keys `optional` may be absent.
     """
 
     noun: str
@@ -75,6 +75,7 @@ class ArrayFileKind:
     series: Mapping[str, Series] = field(default_factory=dict)
     plain: tuple[str, ...] = ()
     added: frozenset[str] = frozenset()
+    optional: frozenset[str] = frozenset()
 
     def types(self, header: Mapping[str, Any]) -> dict[str, ArrayType]:
         """The types of all members but the header, for a file with this header."""
@@ -194,7 +195,7 @@ def _header(kind: ArrayFileKind, source: Path, data: AnyArray) -> dict[str, Any]
     if not isinstance(header, dict) or header.get("format") not in formats:
         raise InputError(f"{place}: its format must be {kind.formats[0]!r}; {kind.advice}")
     series = {} if header["format"] in kind.plain else kind.series
-    if set(header) != {"format", *kind.keys, *series}:
+    if set(header) - kind.optional != {"format", *kind.keys, *series}:
         raise InputError(f"{place}: it must have exactly the keys of its format; {kind.advice}")
     for key, rows in series.items():
         if not isinstance(header[key], list) or len(header[key]) > rows.most:

@@ -5,7 +5,8 @@ elements) float32, to be multiplied by the header's scale, `surface_number` (lin
 `part_number` (lines, elements) int32, where k means row k - 1 of the part table, and the mesh:
 `coordinates` (nodes, 3) float64, `node_numbers` (polygons, 4) and `part_numbers` (polygons,) int32, and
 `mesh_scalar_0` and so on, the values of its scalars, float64. If the scene shows a scalar, its values
-at the pixels are `scalar_0`, (lines, elements) float32; NaN is a missing value.
+at the pixels are `scalar_0`, (lines, elements) float32; NaN is a missing value. If the picture is smooth, the
+header has the number `smooth`: each pixel of an image is the mean of a square of so many pixels a side.
 
 Before version 4 there were no part numbers: the picture of such a file does not know its parts. Written
 again, its part numbers are all 0. `array_file` reads and writes the members.
@@ -69,6 +70,7 @@ PICTURE_FILE: Final = ArrayFileKind(
     },
     series={KEY: MESH_SCALARS, SHOWN: Series("scalar", ("<f4", 2), most=1)},
     added=frozenset(("part_number",)),
+    optional=frozenset(("smooth",)),
 )
 
 
@@ -104,6 +106,7 @@ def write_picture(
         "scene": plain_scene(scene),
         KEY: scalar_rows(scene.mesh.scalars),
         SHOWN: [] if picture.scalar is None else [{"limits": picture.scalar_limits}],
+        **({"smooth": picture.smooth} if picture.smooth > 1 else {}),
     }
     relative = np.zeros(picture.lines * picture.elements, np.float32)
     relative[picture.pixels] = picture.relative
@@ -158,6 +161,12 @@ def _picture(header: Mapping[str, Any], scene: Scene, arrays: Mapping[str, AnyAr
         raise InputError(
             f"intensities must stay below {LARGEST_SINGLE:.3g}, not reach {scale:g} times their own"
         )
+    smooth = header.get("smooth", 1)
+    if type(smooth) is not int or smooth < 1 or any(size % smooth for size in numbers.shape):
+        raise InputError(
+            f"smooth must be a whole number that divides its lines and elements, {numbers.shape}, not"
+            f" {shown(smooth)}"
+        )
     in_use = set(scene.mesh.parts_in_use)
     owned = {number for part, number in enumerate(scene.surface_number_of_part) if part in in_use}
     invalid = set(np.flatnonzero(np.bincount(numbers.ravel())).tolist()) - owned - {0}
@@ -174,6 +183,7 @@ def _picture(header: Mapping[str, Any], scene: Scene, arrays: Mapping[str, AnyAr
         limits,
         parts,
         scene.mesh.part_names,
+        smooth,
     )
 
 

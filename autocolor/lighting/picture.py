@@ -10,12 +10,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from numbers import Integral
 from typing import NamedTuple
 
 import numpy as np
 
 from autocolor.arrays import AnyArray, Bytes, Indices, PartNumbers, Singles, underflowing
 from autocolor.budget import require_memory
+from autocolor.checks import shown
+from autocolor.errors import UsageError
 from autocolor.immutable import Immutable, read_only
 from autocolor.lighting.shading import DIFFUSE, SPECULAR, LightPlanes
 from autocolor.visibility.visible_points import SurfaceSlice, VisibleParts, surface_slices
@@ -63,6 +66,8 @@ class Picture(Immutable):
 
     `normals`, (3, n) float32 in the order of `pixels`, are unit vectors in camera space; None unless the
     words of the scene stand for normals.
+
+    If `smooth` is more than 1, each pixel of an image is the mean of a square of `smooth` pixels a side.
     """
 
     lines: int
@@ -77,6 +82,7 @@ class Picture(Immutable):
     scalar_limits: tuple[float, float] | None = None
     visible_parts: VisibleParts | None = field(default=None, repr=False)
     normals: Singles | None = field(default=None, repr=False)
+    smooth: int = 1
 
     @classmethod
     def from_rasters(
@@ -89,6 +95,7 @@ class Picture(Immutable):
         scalar_limits: tuple[float, float] | None = None,
         part_number: PartNumbers | None = None,
         parts: tuple[str, ...] = (),
+        smooth: int = 1,
     ) -> Picture:
         """A picture of relative intensities and surface numbers, both (lines, elements), without planes.
 
@@ -115,6 +122,7 @@ class Picture(Immutable):
             visible_parts=None
             if part_number is None
             else VisibleParts.of_points(parts, part_number.ravel()[pixels]),
+            smooth=smooth,
         )
 
     @cached_property
@@ -209,9 +217,18 @@ class Picture(Immutable):
 
     def __repr__(self) -> str:
         whole = self.ranges.whole
+        smooth = f"smooth {self.smooth}, " if self.smooth > 1 else ""
         return (
-            f"Picture({self.lines} x {self.elements}, {len(self.pixels)} pixels of {len(self.slices)}"
+            f"Picture({self.lines} x {self.elements}, {smooth}{len(self.pixels)} pixels of {len(self.slices)}"
             f" surfaces, intensities {whole.minimum:.4g} to {whole.maximum:.4g})"
+        )
+
+
+def check_smooth(smooth: int) -> None:
+    """Raise UsageError unless `smooth` is a whole number of at least 1."""
+    if isinstance(smooth, bool) or not isinstance(smooth, Integral) or smooth < 1:
+        raise UsageError(
+            f"smooth must be a whole number of at least 1, not {shown(smooth)}; give one such as 4"
         )
 
 

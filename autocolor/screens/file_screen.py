@@ -24,7 +24,7 @@ from autocolor.files.picture_file import read_picture
 from autocolor.files.rig_file import RIG_SUFFIX, is_rig
 from autocolor.files.scene_files import FOLDER, Openable, kind_of, openables_of
 from autocolor.files.state import recent_files
-from autocolor.images import LARGEST, display_image, size_of
+from autocolor.images import LARGEST, SMOOTHNESS, SMOOTHNESSES, display_image, size_of
 from autocolor.journal.saving import free_name
 from autocolor.mapping.palette import thumbnail
 from autocolor.mapping.ranges import BACKGROUND
@@ -108,8 +108,7 @@ PART_OF_BUDGET: Final = 0.1
 """Limit: the part of the memory budget to read a picture file for its small picture."""
 
 SIZES: Final = (1, 2, 4)
-SMOOTHNESSES: Final = ("1", "2", "3", "4")
-"""The sizes of exported images, in sizes of the display, and how smooth they are."""
+"""The sizes of exported images, in sizes of the display."""
 
 TICKS_TO_EXPORT: Final = 2
 
@@ -132,7 +131,7 @@ class FileScreen(Screen):
         self._thumbnail: tuple[Path, str, SmallPicture | None] | None = None
         """The picture file that was read last, its caption, and its small picture, if it could be read."""
         self._size = self._own_size = size_of_display(session)
-        self._smooth = 1
+        self._smooth = SMOOTHNESS
         self._ticks_to_export = 0
         """How many ticks remain until the image is exported; 0 if none is to be exported."""
 
@@ -236,7 +235,7 @@ class FileScreen(Screen):
             return "", None
         shrunk = max(picture.lines / THUMBNAIL_LINES, picture.elements / THUMBNAIL_ELEMENTS, 1)
         lines, elements = (max(1, round(size / shrunk)) for size in (picture.lines, picture.elements))
-        size = f"{picture.elements}x{picture.lines}"
+        size = written_size((picture.elements // picture.smooth, picture.lines // picture.smooth))
         caption = f"{short_name(path.name, CHARACTERS - len(size) - 2)}  {size}"
         return caption, SmallPicture(thumbnail(shown, lines, elements), MOST_COLORS)
 
@@ -331,7 +330,7 @@ class FileScreen(Screen):
             Choice(
                 "smoothness",
                 "From 2 on, edges are smooth: each pixel is the mean of 4, 9 or 16, which takes longer.",
-                names=SMOOTHNESSES,
+                names=[str(each) for each in SMOOTHNESSES],
                 present=str(self._smooth),
                 choose=self._choose_smoothness,
             ),

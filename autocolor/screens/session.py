@@ -445,8 +445,7 @@ class Session:
     def export(self, elements: int, lines: int, smooth: int) -> None:
         """Save the picture at a size as a new PNG file, named after the scene, with a smoothness."""
         path = free_path(self._shown_folder() / f"{file_stem(self.scene.name)}.png")
-        picture = render(self.scene, smooth * lines, smooth * elements)
-        save_image(path, self.scene, picture, smooth=smooth)
+        save_image(path, self.scene, render(self.scene, lines, elements, smooth=smooth))
         self.tell(f"saved {path.name}: {elements}x{lines}, smoothness {smooth}")
 
     def save_image(self) -> None:

@@ -3,11 +3,13 @@ from __future__ import annotations
 import dataclasses
 import math
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 import pytest
 from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
 from PIL import Image
 
 from autocolor import (
@@ -18,14 +20,16 @@ from autocolor import (
     Surface,
     UsageError,
     image,
+    images,
     render,
     save_image,
     scene_of,
     send_picture,
 )
-from autocolor.images import LARGEST, display_image, size_of, smoothed
+from autocolor.images import LARGEST, averaged, display_image, size_of, smoothed
 from autocolor.mapping.legend import legend
 from autocolor.mapping.ranges import SCREENS
+from autocolor.sending import shown_colors
 from ramtek_emu import GMR_9300, Configuration, ConfigurationError, Ramtek9300
 from ramtek_emu.arrays import Colors
 from tests.autocolor.meshes import STRETCHED, cube, wall_scene
@@ -168,7 +172,7 @@ def test_the_largest_size_is_that_of_the_largest_display() -> None:
         display(LARGEST + 1)
 
 
-def light_of(component: int) -> float:
+def light_of(component: float) -> float:
     """The light of a component of sRGB, IEC 61966-2-1."""
     share = component / 255
     return share / 12.92 if share <= 0.04045 else ((share + 0.055) / 1.055) ** 2.4
@@ -245,11 +249,66 @@ def test_the_legend_of_a_smooth_image_is_as_sharp_as_on_a_display_of_its_size(tm
     assert (smooth[inside] == plain[inside]).all()
 
 
-@pytest.mark.parametrize("smooth", [0, -1, 1.0, True, "4", None])
-def test_a_smoothness_that_is_no_whole_number_is_refused(tmp_path: Path, smooth: object) -> None:
+@pytest.mark.parametrize("smooth", [0, -1, 1.0, True, "4"])
+def test_a_smoothness_that_is_no_whole_number_is_refused(tmp_path: Path, smooth: Any) -> None:
     scene = wall_scene()
-    with pytest.raises(UsageError, match="smooth must be a whole number of at least 1, not"):
-        save_image(tmp_path / "wall.png", scene, render(scene, 4, 4), smooth=smooth)  # type: ignore[arg-type]
+    picture = render(scene, 4, 4)
+    for refused in (
+        lambda: save_image(tmp_path / "wall.png", scene, picture, smooth=smooth),
+        lambda: image(scene, picture, smooth=smooth),
+        lambda: render(scene, 4, 4, smooth=smooth),
+    ):
+        with pytest.raises(UsageError, match="smooth must be a whole number of at least 1, not"):
+            refused()
+
+
+def test_a_picture_beyond_the_largest_raster_is_refused_with_the_size_that_was_asked_for() -> None:
+    with pytest.raises(UsageError) as refusal:
+        render(wall_scene(), 4097, 4, smooth=4)
+    assert str(refusal.value) == (
+        "lines must be a whole number from 1 to 4096 where smooth is 4, not 4097; choose another"
+    )
+
+
+@pytest.mark.parametrize("chunk", [1, 40, 1 << 14])
+@given(arrays(np.uint8, (1024, 3)), st.integers(1, 4), st.data())
+def test_averaging_takes_the_mean_light_of_each_square_whatever_is_done_at_once(
+    chunk: int, entries: Colors, smooth: int, data: st.DataObject
+) -> None:
+    lines, elements = data.draw(st.tuples(st.integers(1, 5), st.integers(1, 5)))
+    words = data.draw(arrays(np.uint16, (smooth * lines, smooth * elements), elements=st.integers(0, 1023)))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(images, "PIXELS_AT_ONCE", chunk)
+        colors = averaged(entries, words, smooth)
+    squares = entries[words].reshape(lines, smooth, elements, smooth, 3).swapaxes(1, 2)
+    for square, color in zip(squares.reshape(-1, smooth**2, 3), colors.reshape(-1, 3), strict=True):
+        for components, component in zip(square.T.tolist(), color.tolist(), strict=True):
+            mean = sum(map(light_of, components)) / smooth**2
+            assert light_of(component - 0.5) - 1e-12 <= mean <= light_of(component + 0.5) + 1e-12
+
+
+def test_a_picture_has_its_smoothness_and_its_image_is_smooth_unless_another_is_asked_for() -> None:
+    scene = scene_of(cube(), background="#203040")
+    smooth, plain = render(scene, 12, 16, smooth=4), render(scene, 48, 64)
+    assert (smooth.smooth, plain.smooth) == (4, 1)
+    assert (smooth.intensity == plain.intensity).all()
+    assert (image(scene, smooth) == image(scene, plain, smooth=4)).all()
+    assert image(scene, smooth).shape == (12, 16, 3)
+    assert (image(scene, smooth, smooth=1) == image(scene, plain)).all()
+
+
+@pytest.mark.parametrize("smooth", [2, 3])
+def test_a_display_shows_the_middle_of_each_square_of_a_smooth_picture(smooth: int) -> None:
+    scene = scene_of(cube(), scalar={"name": "z"})
+    lines, elements = GMR_9300.shown_lines, GMR_9300.shown_elements
+    picture = render(scene, lines, elements, smooth=smooth)
+    display = Ramtek9300()
+    send_picture(scene.with_scalar(legend=False), picture, display)
+    large = display_image(scene, picture)
+    assert (display.words == large.words[smooth // 2 :: smooth, smooth // 2 :: smooth]).all()
+    send_picture(scene, picture, display)
+    small = dataclasses.replace(large, words=large.words[smooth // 2 :: smooth, smooth // 2 :: smooth])
+    assert (display.field() == shown_colors(small)).all()
 
 
 @pytest.mark.parametrize(("lines", "elements"), [(6, 8), (8, 6), (2, 2)])
@@ -261,6 +320,6 @@ def test_a_picture_that_cannot_be_divided_into_squares_is_refused(
         save_image(tmp_path / "wall.png", scene, render(scene, lines, elements), smooth=4)
     assert str(refusal.value) == (
         f"the lines and elements of a picture must be multiples of smooth, 4, not {lines} and {elements};"
-        " render 4 times as many"
+        " render with smooth=4"
     )
     assert not (tmp_path / "wall.png").exists()

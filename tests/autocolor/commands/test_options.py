@@ -72,7 +72,7 @@ def test_what_is_recolored_is_told(folder: Path, run: Run) -> None:
     assert [line.partition("(")[0].split(":")[1] for line in told[:-1]] == [
         " read saved.npz",
         " Picture",
-        " words and entries sent",
+        " image written",
     ]
     assert told[-1] == "wrote side.png"
 

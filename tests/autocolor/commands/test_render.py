@@ -6,11 +6,14 @@ import signal
 import sys
 from pathlib import Path
 
+import click
 import numpy as np
 import pytest
 from PIL import Image
 
-from autocolor import Studio, read_picture, read_scene, write_scene
+from autocolor import Studio, image, read_picture, read_scene, render, write_scene
+from autocolor.commands.render import render as command
+from autocolor.images import SMOOTHNESS, SMOOTHNESSES
 from ramtek_emu import Ramtek9300
 from tests.autocolor.commands.conftest import Run
 
@@ -22,9 +25,61 @@ def pixels(path: Path) -> np.ndarray[tuple[int, ...], np.dtype[np.uint8]]:
 
 def test_a_bare_mesh_becomes_a_picture_of_its_name(folder: Path, run: Run) -> None:
     assert run("render", "two.obj") == (0, "", "wrote two.png\n")
+    scene = read_scene("two.obj")
+    assert (pixels(folder / "two.png") == image(scene, render(scene, smooth=2))).all()
+
+
+def test_without_smooth_edges_a_picture_is_the_field_of_a_display(folder: Path, run: Run) -> None:
+    assert run("render", "two.obj", "--smooth", "1") == (0, "", "wrote two.png\n")
     display = Ramtek9300()
     Studio(read_scene("two.obj"), display)
     assert (pixels(folder / "two.png") == display.field()).all()
+
+
+@pytest.mark.parametrize("smooth", [2, 3, 4])
+def test_a_picture_with_smooth_edges_is_saved_and_recolored_with_them(
+    folder: Path, run: Run, smooth: int
+) -> None:
+    common = ("--size", "90x60", "--smooth", str(smooth))
+    assert run("render", "scene", *common, "-o", "a.png", "--save", "a.npz").code == 0
+    scene = read_scene("scene")
+    assert (pixels(folder / "a.png") == image(scene, render(scene, 60, 90, smooth=smooth))).all()
+    picture = read_picture("a.npz").picture
+    assert (picture.smooth, picture.lines, picture.elements) == (smooth, 60 * smooth, 90 * smooth)
+    color = "surfaces.side.object_color=navy"
+    assert run("recolor", "a.npz", "--set", color, "-o", "b.png", "--save", "b.npz").code == 0
+    assert run("render", "scene", *common, "--set", color, "-o", "c.png").code == 0
+    assert run("recolor", "b.npz", "side", "-o", "d.png").code == 0
+    assert (folder / "b.png").read_bytes() == (folder / "c.png").read_bytes()
+    assert (folder / "b.png").read_bytes() == (folder / "d.png").read_bytes()
+    assert (folder / "b.png").read_bytes() != (folder / "a.png").read_bytes()
+
+
+def test_the_smoothness_of_the_command_is_one_of_those_of_images() -> None:
+    (option,) = [each for each in command.params if each.name == "smooth"]
+    assert isinstance(option.type, click.Choice)
+    assert [int(choice) for choice in option.type.choices] == list(SMOOTHNESSES)
+    assert option.default == str(SMOOTHNESS)
+
+
+@pytest.mark.parametrize("smooth", ["5", "0", "x", "-1", "2.0", ""])
+def test_an_impossible_smoothness_is_refused_in_a_sentence(folder: Path, run: Run, smooth: str) -> None:
+    ran = run("render", "scene", "--smooth", smooth)
+    assert (ran.code, ran.out) == (2, "")
+    assert ran.err.endswith(f"Invalid value for '--smooth': {smooth!r} is not one of '1', '2', '3', '4'.\n")
+    assert not (folder / "scene.png").exists()
+
+
+def test_a_picture_that_is_too_large_with_smooth_edges_is_refused_with_its_own_size(
+    folder: Path, run: Run
+) -> None:
+    assert run("render", "scene", "--size", "1600x1200", "--smooth", "4", "--limit", "0.5") == (
+        65,
+        "",
+        "autocolor: a picture of 1600 x 1200 pixels, each the mean of 4 x 4, must take at most 2,000.0 MB of"
+        " memory, not 2,949.2 MB; render fewer lines and elements, or with a smaller `smooth`, or allow it"
+        " with --limit 0.8 (limit=0.8 in Python)\n",
+    )
 
 
 def test_a_folder_with_a_scene_becomes_a_picture_of_its_name(folder: Path, run: Run) -> None:
@@ -82,7 +137,7 @@ def test_a_named_view_is_rendered(folder: Path, run: Run) -> None:
 def test_a_picture_has_the_size_that_is_asked_for(folder: Path, run: Run) -> None:
     assert run("render", "scene", "--size", "90x60", "-o", "a.png", "--save", "a.npz").code == 0
     assert pixels(folder / "a.png").shape == (60, 90, 3)
-    assert read_picture("a.npz").picture.intensity.shape == (60, 90)
+    assert read_picture("a.npz").picture.intensity.shape == (2 * 60, 2 * 90)
     assert run("render", "scene", "--size", "90x60", "--hold-exposure", "-o", "b.png").code == 0
     assert (folder / "a.png").read_bytes() == (folder / "b.png").read_bytes()
 
@@ -264,7 +319,7 @@ Ks 0
 def test_a_mesh_is_rendered_in_the_colors_of_its_materials(folder: Path, run: Run) -> None:
     (folder / "car.obj").write_text(CAR)
     (folder / "car.mtl").write_text(LIBRARY)
-    assert run("render", "car.obj", "--save", "car.npz", "-o", "car.png") == (
+    assert run("render", "car.obj", "--smooth", "1", "--save", "car.npz", "-o", "car.png") == (
         0,
         "",
         "wrote car.png\nwrote car.npz\n",
@@ -333,7 +388,7 @@ def test_a_picture_too_large_for_the_memory_ends_with_what_was_being_done(folder
     import resource
 
     ran = process(
-        *("render", "scene", "--size", "4096x4096"),
+        *("render", "scene", "--size", "4096x4096", "--smooth", "1"),
         preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (500 << 20, 500 << 20)),
     )
     assert (ran.code, ran.out) == (71, "")

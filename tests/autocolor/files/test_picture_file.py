@@ -28,12 +28,14 @@ from autocolor import (
     Mesh,
     Scene,
     UsageError,
+    image,
     read_picture,
     read_scene,
     render,
     scene_of,
     write_picture,
 )
+from autocolor.checks import shown
 from autocolor.errors import MissingInputError, OutputError, WriteError
 from autocolor.files.array_file import array_file_bytes, read_array_file
 from autocolor.files.picture_file import PICTURE_FILE, SavedPicture, plain_scene, scene_of_plain
@@ -231,6 +233,21 @@ def test_numpy_can_open_a_picture_file(tmp_path: Path) -> None:
         assert (arrays["coordinates"] == scene.mesh.coordinates).all()
 
 
+def test_a_smooth_picture_comes_back_with_its_smoothness(tmp_path: Path) -> None:
+    scene = lit_wall()
+    picture = render(scene, LINES // 3, ELEMENTS // 3, smooth=3)
+    write_picture(tmp_path / "wall.npz", picture, scene)
+    again = read_picture(tmp_path / "wall.npz")
+    assert again.picture.smooth == 3
+    assert (image(*again[::-1]) == image(scene, picture)).all()
+    # The file is that of a plain picture with one number more.
+    plain = saved(tmp_path / "plain.npz", scene).picture
+    assert plain.smooth == 1
+    assert (plain.intensity == again.picture.intensity).all()
+    header, plain_header = (header_of((tmp_path / name).read_bytes()) for name in ("wall.npz", "plain.npz"))
+    assert header == {**plain_header, "smooth": 3}
+
+
 def test_the_same_picture_gives_the_same_bytes(tmp_path: Path) -> None:
     saved(tmp_path / "one.npz", lit_wall())
     saved(tmp_path / "two.npz", lit_wall())
@@ -393,6 +410,14 @@ def change_scene(table: str, row: int | None = None, **fields: Any) -> Callable[
     [
         (change(format="autocolor picture 5"), "its format must be 'autocolor picture 4'"),
         (change(format="autocolor picture 2"), "it must have exactly the keys of its format"),
+        *(
+            (
+                change(smooth=smooth),
+                "smooth must be a whole number that divides its lines and elements, (9, 12), not"
+                f" {shown(smooth)}",
+            )
+            for smooth in (0, -3, 2, 4, 9, 1.0, 3.0, True, "3", None, [3])
+        ),
         (change(scale=0), "its scale must be a number above 0, not 0"),
         (change(scale=-1.5), "its scale must be a number above 0, not -1.5"),
         (change(scale=True), "its scale must be a number above 0, not True"),
