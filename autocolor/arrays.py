@@ -300,13 +300,14 @@ def halves_up(values: Singles, out: Singles | None = None) -> Singles:
 
 
 # Components of colors, and their light as a fraction of the light of white.
-#
-# Assumed: monitors show colors as sRGB does, IEC 61966-2-1. The mean of the components themselves would make
-# the edges of bright surfaces too dark.
 
 
 def light_of(components: Floats) -> Floats:
-    """The light of components of colors, 0 to 255, not rounded: 0 to 1."""
+    """The light of components of colors, 0 to 255, whole or not: 0 to 1.
+
+    Assumed: monitors show colors as sRGB does, IEC 61966-2-1. The mean of the components themselves would
+    make the edges of bright surfaces too dark.
+    """
     shares = components / 255
     light: Floats = np.where(shares <= 0.04045, shares / 12.92, ((shares + 0.055) / 1.055) ** 2.4)
     return light

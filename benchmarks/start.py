@@ -65,7 +65,7 @@ def starts(folder: Path) -> dict[str, tuple[str, ...]]:
         "autocolor --help": ("-m", "autocolor", "--help"),
         "autocolor --version": ("-m", "autocolor", "--version"),
         "autocolor render scenes/coupe": (
-            "-m", "autocolor", "render", COUPE, "-o", str(folder / "coupe.png"), "--force",
+            "-m", "autocolor", "render", COUPE, "-o", str(folder / "coupe.png"), "--force", "--smooth", "1",
         ),
     }  # fmt: skip
 

@@ -73,6 +73,7 @@ COMMANDS = (
     (1, "autocolor validate torn.obj --strict"),
     (2, "autocolor rendr car"),
     (2, "autocolor render car --size 1280"),
+    (2, "autocolor render car --smooth 5"),
     (2, "autocolor render car --set ambient=abc"),
     (2, "autocolor render car --set lights.kye.on=false"),
     (2, "autocolor render car --set ambient=none"),
