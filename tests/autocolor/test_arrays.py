@@ -12,12 +12,14 @@ from autocolor import arrays
 from autocolor.arrays import (
     chunks,
     chunks_of_runs,
+    components_of,
     cross,
     dot,
     half_up,
     halves_up,
     least_of_four,
     lengths,
+    light_of,
     most_of_four,
     normalized,
     power,
@@ -167,3 +169,14 @@ def test_vectors_are_divided_by_their_lengths_and_zero_stays_zero() -> None:
         [0.6, 0.0, 0.8],
         [0, 0, 0],
     ]
+
+
+def test_the_component_of_the_light_of_a_component_is_the_component() -> None:
+    components = np.arange(256)
+    light = light_of(components.astype(np.float64))
+    assert (components_of(light) == components).all()
+    assert (light[0], light[255]) == (0, 1)
+    # Halves of the steps between two components round up.
+    halves = light_of(np.linspace(0.5, 254.5, 255))
+    assert (components_of(halves * (1 + 1e-12)) == components[1:]).all()
+    assert (components_of(halves * (1 - 1e-12)) == components[:-1]).all()
