@@ -24,10 +24,13 @@ def outward_at(grid: Array) -> Array:
 def raised(parts: Parts, part: str, grid: Array, low: float, high: float, edging: str) -> None:
     """Add a pad that stands out from the skin by `low` at its foot and `high` at its top, and its edging."""
     base, normal = skin(grid), outward_at(grid)
+    normal[np.abs(base[..., 1]) < 1e-9, 1] = 0.0
     middle = base.reshape(-1, 3).mean(axis=0)
     face = base + normal * np.linspace(low, high, grid.shape[1])[None, :, None]
     parts.grid(part, face)
     sunk = base - normal * 0.004
+    x, y, z = -normal.reshape(-1, 3).mean(axis=0)
+    parts.grid(edging, sunk[:, [0, -1]], outward=(float(x), float(y), float(z)))
     strips = [np.stack([sunk[:, k], face[:, k]], axis=1) for k in (0, -1)]
     # An end on the center line needs no edging: the mirror image goes on there.
     strips += [np.stack([sunk[k], face[k]], axis=1) for k in (0, -1) if abs(base[k, 0, 1]) > 1e-9]
@@ -51,7 +54,8 @@ def spoiler(parts: Parts) -> None:
     for reach, lift in ((0.03, 0.98), (0.12, 1.0), (0.28, 0.76), (0.52, 0.40), (0.78, 0.14), (1.0, -0.10)):
         rows.append(edge + inward * (deep * reach)[:, None] + up * (high * lift + 0.010 * reach)[:, None])
     points = np.stack(rows, axis=1)
-    parts.grid("spoiler", points, outward=(0.0, 0.0, 1.0))
+    # From side to side as one closed bar.
+    parts.closed("spoiler", np.concatenate([points[:0:-1] * [1, -1, 1], points]), mirror=False)
 
 
 def mirrors(parts: Parts) -> None:
@@ -72,9 +76,9 @@ def mirrors(parts: Parts) -> None:
     parts.grid("mirror_glass", np.stack([inner, middle]), outward=(1, 0, 0))
     front, rear = flank([-0.40, -0.33], 0.892) - [0, 0.01, 0.02]
     up = np.array([0, 0, 0.045])
-    root = np.array([front, front + up, rear + up, rear, front])
-    tip = np.array([(-0.375, 0.90), (-0.375, 0.935), (-0.32, 0.935), (-0.32, 0.90), (-0.375, 0.90)])
-    parts.grid("mirrors", np.stack([root, np.insert(tip, 1, 0.93, axis=1)]), flip=True)
+    root = np.array([front, front + up, rear + up, rear])
+    tip = np.array([(-0.375, 0.90), (-0.375, 0.935), (-0.32, 0.935), (-0.32, 0.90)])
+    parts.closed("mirrors", np.stack([root, np.insert(tip, 1, 0.93, axis=1)]))
 
 
 def wipers(parts: Parts) -> None:
@@ -84,7 +88,7 @@ def wipers(parts: Parts) -> None:
         w, t = np.linspace(w0, w1, 7), np.linspace(t0, t1, 7)
         low, high = crown(t, w), crown(t + 0.05, w)
         blade = np.stack([low, low + lift, high + lift, high], axis=1)
-        parts.grid("wipers", blade, outward=(-0.5, 0, 1), mirror=False)
+        parts.closed("wipers", blade, mirror=False)
 
 
 def strips(parts: Parts) -> None:
