@@ -6,7 +6,8 @@ to tail, y to the right, z up; the wheels stand on z = 0. Each run makes the sam
 Assumed: the paper's mesh is GM's own design data; this car only has its kind and size, and about as many
 nodes. The three files of the car are closed surfaces: the body with its recesses and wheel wells, the
 lamps, and the wheels. Mirrors, moldings and other small things are solids that stick in the body and share
-no node with it. """
+no node with it.
+"""
 
 from __future__ import annotations
 
