@@ -17,6 +17,8 @@ WHEEL_HEIGHT = 0.325
 ARCH_HEIGHT, ARCH_RADIUS = 0.335, 0.375
 GAP = 0.018
 """The width of a shut line: 1.5 pixels of a picture 480 lines high, where the line runs across the view."""
+TAIL_GAP = 0.026
+"""It lies where the skin turns toward the tail, and is seen at a slant from the front."""
 # Upright cuts between panels, at these x.
 FASCIA_CUT, DOOR_FRONT, DOOR_REAR, TAIL_CUT = -1.86, -0.56, 0.63, 1.97
 COWL = -0.61
@@ -85,7 +87,7 @@ def top(x: ArrayLike, y: ArrayLike) -> Array:
     across = np.abs(np.asarray(y, dtype=float))
     crown = (across / 0.86) ** 2.4
     height: Array = center_height(x) + (shoulder_height(x) - center_height(x)) * crown
-    bulge = 0.016 * ease(x, -2.15, -1.2) * (1 - ease(x, -0.7, -0.3)) * (1 - ease(across, 0.30, 0.40))
+    bulge = 0.018 * ease(x, -2.15, -1.2) * (1 - ease(x, -0.7, -0.3)) * (1 - ease(across, 0.22, 0.46))
     height += bulge
     return height
 

@@ -96,7 +96,7 @@ LINES = np.concatenate([
 # fmt: on
 """The t of the columns of nodes beside and above the glass; narrow cells bound the dark borders."""
 SHIELD, POST, ROOF = (int(np.abs(LINES - t).argmin()) for t in (HEADER, BEFORE_POST, REAR_HEADER))
-SAIL = ROOF + 4
+SAIL = ROOF + 3
 
 
 def feet() -> Array:

@@ -85,7 +85,7 @@ def wipers(parts: Parts) -> None:
     """Add two wipers, at rest low on the windshield."""
     lift = np.array([-0.008, 0, 0.014])
     for w0, w1, t0, t1 in ((-0.02, 0.58, 0.34, 0.30), (-0.66, -0.10, 0.26, 0.34)):
-        w, t = np.linspace(w0, w1, 7), np.linspace(t0, t1, 7)
+        w, t = np.linspace(w0, w1, 5), np.linspace(t0, t1, 5)
         low, high = crown(t, w), crown(t + 0.05, w)
         blade = np.stack([low, low + lift, high + lift, high], axis=1)
         parts.closed("wipers", blade, mirror=False)
@@ -94,10 +94,10 @@ def wipers(parts: Parts) -> None:
 def strips(parts: Parts) -> None:
     """Add the dark rub strip round the car, a little below the side crease."""
     front, rear = float(s_at(-1.88, STRIP[0])), float(s_at(1.85, STRIP[0]))
-    for end, cut, count in ((0.0, front, 11), (S_END, rear, 10)):
+    for end, cut, count in ((0.0, front, 10), (S_END, rear, 9)):
         s, v = np.meshgrid(np.linspace(end, cut, count + 1), STRIP, indexing="ij")
         raised(parts, "moldings", np.stack([s, v], axis=-1), 0.009, 0.009, "moldings")
-    for start, end, count in ((-0.965, -0.572, 4), (-0.548, 0.617, 12), (0.642, 0.80, 2)):
+    for start, end, count in ((-0.965, -0.575, 2), (-0.545, 0.615, 6), (0.645, 0.80, 1)):
         grid = columns_at(np.linspace(start, end, count + 1), STRIP)
         raised(parts, "moldings", grid, 0.009, 0.009, "moldings")
 
@@ -108,7 +108,7 @@ def build(parts: Parts) -> None:
     mirrors(parts)
     wipers(parts)
     strips(parts)
-    handle = columns_at(np.linspace(0.40, 0.56, 5), np.array([6.35, 6.75]))
+    handle = columns_at(np.linspace(0.40, 0.56, 3), np.array([6.35, 6.75]))
     raised(parts, "handles", handle, 0.008, 0.008, "handles")
     for x, foot, head in ((-2.08, 2.4, 2.8), (2.0, 2.25, 2.7)):
         lamp = columns_at(np.linspace(x, x + 0.13, 3), np.array([foot, head]))

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from scenes.modeling.coupe.body import FASCIA_CUT, GAP, ROWS, S_END, TAIL_CUT, s_at
+from scenes.modeling.coupe.body import FASCIA_CUT, GAP, ROWS, S_END, TAIL_CUT, TAIL_GAP, s_at
 from scenes.modeling.coupe.curves import Array, spaced
 from scenes.modeling.coupe.parts import Names, Parts
 
@@ -38,7 +38,7 @@ def nose_columns() -> Array:
 def tail_columns() -> Array:
     """Return the parameters (columns, rows, 2) of the tail, from the center line."""
     s = spaced(S_END, S_END - 0.45, S_END - 0.58, 15.62, 15.25, 13.9, counts=(3, 1, 6, 3, 2))
-    return fascia(s, TAIL_CUT + GAP / 2)
+    return fascia(s, TAIL_CUT + TAIL_GAP / 2)
 
 
 def cut_holes(names: Names) -> None:

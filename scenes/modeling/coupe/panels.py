@@ -24,6 +24,7 @@ from scenes.modeling.coupe.body import (
     ROWS,
     SHOULDER,
     TAIL_CUT,
+    TAIL_GAP,
     columns_at,
     s_at,
     skin,
@@ -37,7 +38,7 @@ FOOT_ROW, CREASE_ROW, SHOULDER_ROW = (
     int(row) for row in np.searchsorted(ROWS, (DOOR_FOOT, CREASE, SHOULDER))
 )
 EDGE_ROW = len(ROWS) - 1
-RING_WIDTH = 0.13
+RING_WIDTH = 0.11
 WELL = 0.50
 
 
@@ -49,7 +50,7 @@ class Skin:
         half, x = GAP / 2, canopy.feet()
         front = AXLES[0] + ARCH_RADIUS + RING_WIDTH
         fender = spaced(FASCIA_CUT + half, front, COWL, DOOR_FRONT - half, counts=(12, 3, 1))
-        rear = spaced(x[-1], TAIL_CUT - half, counts=(1,))
+        rear = spaced(x[-1], TAIL_CUT - TAIL_GAP / 2, counts=(1,))
         stations = np.concatenate([fender, [DOOR_FRONT + half], x, rear[1:]])
         nose, tail = ends.nose_columns(), ends.tail_columns()
         self.nose, self.tail = len(nose), len(nose) + len(stations)
@@ -110,7 +111,7 @@ def arch(parts: Parts, part: str, skin_: Skin, columns: tuple[int, int], axle: f
     circle = np.stack([np.cos(angles), np.sin(angles)], axis=1) * ARCH_RADIUS + [axle, ARCH_HEIGHT]
     guess = np.stack([s_at(circle[:, 0], CREASE), circle[:, 1] * 9 - 1], axis=1)
     inner = invert(wall, circle, (0, 2), guess)
-    steps = np.array([0.0, 0.2, 0.55, 1.0])
+    steps = np.array([0.0, 0.15, 0.38, 0.66, 1.0])
     ring = skin(inner[:, None] * (1 - steps[:, None]) + outer[:, None] * steps[:, None])
     parts.grid(part, ring)
 
