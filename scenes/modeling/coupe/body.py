@@ -15,8 +15,8 @@ from scenes.modeling.coupe.curves import Array, basis, ease, smooth
 AXLES = (-1.365, 1.205)
 WHEEL_HEIGHT = 0.325
 ARCH_HEIGHT, ARCH_RADIUS = 0.335, 0.375
-GAP = 0.018
-"""The width of a shut line: 1.5 pixels of a picture 480 lines high, where the line runs across the view."""
+GAP = 0.020
+"""The width of a shut line: 1.5 pixels across a door in the first view at 480 lines."""
 TAIL_GAP = 0.026
 """It lies where the skin turns toward the tail, and is seen at a slant from the front."""
 # Upright cuts between panels, at these x.

@@ -27,7 +27,7 @@ RAIL = np.array([
 # fmt: on
 T_END = float(len(CENTER) - 3)
 HEADER, REAR_HEADER = 2.25, 5.45
-BORDER, RIM, DROP, GLASS_FOOT = 0.90, 0.935, 0.036, 0.016
+BORDER, RIM, DROP, GLASS_FOOT = 0.88, 0.935, 0.036, 0.016
 HATCH_SIDE, HATCH_END = 0.88, 1.90
 # Lines across the crown, from the center to the rim; the outermost cell is the dark border of the glass.
 ACROSS = np.append(np.linspace(0.0, BORDER, 9), RIM)
@@ -88,10 +88,10 @@ BEFORE_POST, BEHIND_POST = (t_of_lower_edge(POST_TOP + side * GAP / 2) for side 
 """The columns on both sides of the post behind the side window, which goes on with the door's shut line."""
 # fmt: off
 LINES = np.concatenate([
-    [0.0], np.linspace(0.16, HEADER - 0.10, 10), [HEADER],
+    [0.0], np.linspace(0.16, HEADER - 0.15, 10), [HEADER],
     np.linspace(HEADER + 0.1, BEFORE_POST, 6),
     np.linspace(BEHIND_POST, REAR_HEADER - 0.1, 4), [REAR_HEADER],
-    np.linspace(REAR_HEADER + 0.10, T_END - 0.16, 10), [T_END],
+    np.linspace(REAR_HEADER + 0.15, T_END - 0.16, 10), [T_END],
 ])
 # fmt: on
 """The t of the columns of nodes beside and above the glass; narrow cells bound the dark borders."""
