@@ -40,6 +40,8 @@ FOOT_ROW, CREASE_ROW, SHOULDER_ROW = (
 EDGE_ROW = len(ROWS) - 1
 RING_WIDTH = 0.11
 WELL = 0.50
+LIFT = 0.005
+"""The hood is this much higher than `top`: its shut line shows on the near side and hides on the far one."""
 
 
 class Skin:
@@ -148,10 +150,10 @@ def hood(parts: Parts, skin_: Skin, shield: Array) -> None:
     front, side = edge[: ends.CORNER + 1], edge[ends.CORNER : skin_.cowl + 1]
     y = np.linspace(0, 1, len(front)) * side[-1, 1]
     x = -0.76 + (side[-1, 0] + 0.76) * (y / y[-1]) ** 2
-    rear = np.stack([x, y, top(x, y)], axis=1)
+    rear = np.stack([x, y, top(x, y) + LIFT], axis=1)
     rear[-1] = side[-1]
     points = coons(front, rear, segment(front[0], rear[0], len(side) - 1), side)
-    points[..., 2] = top(points[..., 0], points[..., 1])
+    points[..., 2] = top(points[..., 0], points[..., 1]) + LIFT
     parts.grid("hood", points, outward=(0, 0, 1))
     side = edge[skin_.cowl : skin_.glass + 1]
     middle = segment(rear[0], shield[0], len(side) - 1)
@@ -172,6 +174,7 @@ def build(parts: Parts) -> None:
     beside = canopy.columns()
     # The fillet between quarter panel and hatch belongs to the columns beside the glass.
     skin_.points[skin_.glass : skin_.deck + 1] = beside[:, : EDGE_ROW + 1]
+    skin_.points[: skin_.cowl + 1, EDGE_ROW, 2] += LIFT
     parts.grid(side_names(skin_), skin_.points)
     parts.grid(canopy.names(), beside[:, EDGE_ROW:])
     for part, columns, axle in zip(("fender_{side}", "quarter_{side}"), skin_.arches, AXLES, strict=True):
