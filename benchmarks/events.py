@@ -21,11 +21,11 @@ from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
 
 import autocolor
-from autocolor.commands.demo import demo_folder
 from autocolor.commands.view import connected
 from autocolor.screens.viewer import Viewer
 from benchmarks.hills import hills, side_of
 from benchmarks.movement import screen
+from benchmarks.points import COUPE
 from ramtek_emu import Ramtek9300
 from ramtek_emu.monitor.input_queue import Input, Key, Pointer
 from ramtek_emu.monitor.window import Monitor
@@ -310,7 +310,7 @@ def measure(rounds: int = ROUNDS, quick: bool = False) -> dict[str, Any]:
         if missing:
             os.environ["SDL_VIDEODRIVER"] = "dummy"
         scenes: list[tuple[str, autocolor.Scene, Sequence[Case]]] = [
-            ("the coupe", autocolor.read_scene(demo_folder()), CASES)
+            ("the coupe", autocolor.read_scene(COUPE), CASES)
         ]
         if not quick:
             many = autocolor.scene_of(hills(side_of(MANY_POLYGONS)))

@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 from benchmarks.cases import Case, spread, timed
 
 ROOT = Path(__file__).parents[1]
-COUPE = str(ROOT / "scenes" / "coupe")
+COUPE = str(ROOT / "benchmarks" / "coupe")
 ROUNDS = 11
 FLOOR = "python with nothing to do"
 RENDERER = "import autocolor; autocolor.render"
@@ -64,7 +64,7 @@ def starts(folder: Path) -> dict[str, tuple[str, ...]]:
         "ramtek --help": ("-m", "ramtek_emu", "--help"),
         "autocolor --help": ("-m", "autocolor", "--help"),
         "autocolor --version": ("-m", "autocolor", "--version"),
-        "autocolor render scenes/coupe": (
+        "autocolor render benchmarks/coupe": (
             "-m", "autocolor", "render", COUPE, "-o", str(folder / "coupe.png"), "--force", "--smooth", "1",
         ),
     }  # fmt: skip

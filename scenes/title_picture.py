@@ -19,7 +19,7 @@ def main() -> None:
     FOLDER.mkdir(exist_ok=True)
     coupe, display = open_scene("coupe")
     red = display.field()
-    coupe.recolor("body", object_color="#1f3f8f", blend=0.5)
+    coupe.recolor("body", object_color="#2348c8")
     save_png(np.hstack([red, display.field()]), FOLDER / "coupe.png")
     bracket, display = open_scene("bracket")
     metal = display.field()

@@ -25,7 +25,10 @@ PROFILES: Final = {
             (0.05, 1.25), (0.07, 1.3), (0.0, 1.34)],
 }
 # fmt: on
-"""Control points (radius, height) of the curves that are turned, from the middle of the foot upward."""
+"""Control points (radius, height) of the curves that are turned, from the middle of the foot upward.
+
+Vase, bowl and bottle are shells, open at the top.
+"""
 
 APART: Final = 1.25
 SIDES, RINGS = 36, 30
@@ -44,7 +47,10 @@ def turned(profile: list[tuple[float, float]]) -> tuple[Array, list[tuple[int, .
         for low in range(0, RINGS * SIDES, SIDES)
         for side in range(SIDES)
     ]
-    return nodes, [tuple(dict.fromkeys(_merged(polygon, curve))) for polygon in polygons]
+    merged = [tuple(dict.fromkeys(_merged(polygon, curve))) for polygon in polygons]
+    used = sorted({node for polygon in merged for node in polygon})
+    numbers = {node: number for number, node in enumerate(used)}
+    return nodes[used], [tuple(numbers[node] for node in polygon) for polygon in merged]
 
 
 def _merged(polygon: tuple[int, ...], curve: Array) -> list[int]:

@@ -15,7 +15,15 @@ from scenes.modeling.coupe.curves import Array, basis, ease, smooth
 AXLES = (-1.365, 1.205)
 WHEEL_HEIGHT = 0.325
 ARCH_HEIGHT, ARCH_RADIUS = 0.335, 0.375
-CREASE, LEDGE = 4.0, 9.0
+GAP = 0.020
+"""The width of a shut line: 1.5 pixels across a door in the first view at 480 lines."""
+TAIL_GAP = 0.026
+"""It lies where the skin turns toward the tail, and is seen at a slant from the front."""
+# Upright cuts between panels, at these x.
+FASCIA_CUT, DOOR_FRONT, DOOR_REAR, TAIL_CUT = -1.86, -0.56, 0.63, 1.97
+COWL = -0.61
+# Lines along the car, at these v.
+SILL, DOOR_FOOT, CREASE, SHOULDER, QUARTER_TOP, LEDGE, EDGE = 0.35, 1.0, 4.0, 7.0, 8.55, 9.0, 9.1
 
 # fmt: off
 # Plan outline: control points of the widest line, nose center to tail center.
@@ -67,13 +75,19 @@ center_height = smooth([
 # fmt: on
 S_END = float(len(OUTLINE) - 3)
 
+# The v of the rows of the skin: close where it bends, for a highlight shows each false normal.
+ROWS = np.array([
+    SILL, 0.65, DOOR_FOOT, 1.22, 1.7, 2.8, 3.4, 3.7, CREASE, 4.3, 4.6, 5.1, 5.4, 6.7, SHOULDER,
+    7.5, 7.77, 8.03, 8.3, QUARTER_TOP, 8.88, EDGE,
+])  # fmt: skip
+
 
 def top(x: ArrayLike, y: ArrayLike) -> Array:
     """Return the height of the hood, ledge and deck above (x, y)."""
     across = np.abs(np.asarray(y, dtype=float))
     crown = (across / 0.86) ** 2.4
     height: Array = center_height(x) + (shoulder_height(x) - center_height(x)) * crown
-    bulge = 0.016 * ease(x, -2.15, -1.2) * (1 - ease(x, -0.7, -0.3)) * (1 - ease(across, 0.30, 0.40))
+    bulge = 0.018 * ease(x, -2.15, -1.2) * (1 - ease(x, -0.7, -0.3)) * (1 - ease(across, 0.22, 0.46))
     height += bulge
     return height
 
@@ -111,8 +125,8 @@ def wall(s: ArrayLike, v: ArrayLike) -> Array:
     # Swell out about the wheel openings.
     for axle in AXLES:
         distance = np.hypot(points[..., 0] - axle, points[..., 2] - ARCH_HEIGHT)
-        swell = np.exp(-(((distance - ARCH_RADIUS) / 0.10) ** 2)) * (1 - ease(up, 6, 8.5))
-        points[..., 1] += 0.017 * swell * ease(points[..., 1], 0.4, 0.8)
+        swell = np.exp(-(((distance - ARCH_RADIUS) / 0.14) ** 2)) * (1 - ease(up, 6, 8.5))
+        points[..., 1] += 0.014 * swell * ease(points[..., 1], 0.4, 0.8)
     return points
 
 

@@ -1,4 +1,4 @@
-"""The canopy: windshield, roof, hatch glass, side glass, pillars, and the deck and cowl that meet them.
+"""The canopy: windshield, roof, hatch glass, side glass and pillars.
 
 Two surfaces carry it. `crown(t, w)` runs from the cowl (t = 0) over the roof to the end of the hatch (T_END),
 and from the center (w = 0) to the rail (w = 1). `flank(x, z)` is the side above the ledge, leaning inward.
@@ -10,10 +10,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from scenes.modeling.coupe.body import LEDGE, S_END, s_at, wall
-from scenes.modeling.coupe.curves import Array, bezier, bspline, coons, ease, segment
-from scenes.modeling.coupe.panels import COWL, DOOR_FRONT, DOOR_REAR, QUARTER_TOP, hood_rear
-from scenes.modeling.coupe.parts import Parts
+from scenes.modeling.coupe.body import DOOR_REAR, EDGE, GAP, QUARTER_TOP, ROWS, columns_at, s_at, skin, wall
+from scenes.modeling.coupe.curves import Array, bezier, bspline, ease
+from scenes.modeling.coupe.parts import Names
 
 # fmt: off
 # Side views (x, z) of the center line and of the rail; the same count of control points.
@@ -28,19 +27,18 @@ RAIL = np.array([
 # fmt: on
 T_END = float(len(CENTER) - 3)
 HEADER, REAR_HEADER = 2.25, 5.45
-BORDER, RIM, DROP, GLASS_FOOT = 0.90, 0.935, 0.036, 0.016
+BORDER, RIM, DROP, GLASS_FOOT = 0.88, 0.935, 0.036, 0.016
 HATCH_SIDE, HATCH_END = 0.88, 1.90
-# Lines of the crown: across, and along the windshield, roof and hatch; the outermost bound the dark borders.
-ACROSS = np.append(np.linspace(0.0, BORDER, 10), RIM)
-SHIELD_LINES = np.concatenate([[0.0], np.linspace(0.16, HEADER - 0.10, 10), [HEADER]])
-ROOF_LINES = np.linspace(HEADER, REAR_HEADER, 11)
-HATCH_LINES = np.concatenate([[REAR_HEADER], np.linspace(REAR_HEADER + 0.10, T_END - 0.16, 14), [T_END]])
-SAIL_LINES = 5
+# Lines across the crown, from the center to the rim; the outermost cell is the dark border of the glass.
+ACROSS = np.append(np.linspace(0.0, BORDER, 9), RIM)
+BAND = (0.0, 0.14, 0.5, 0.86, 1.0)
+"""Of the arcs of the band. The narrow cells keep normals right at its ends, where another part begins."""
+FLANK = 5
 
 
 def ledge(x: ArrayLike) -> Array:
-    """Return points of the ledge at these x."""
-    return wall(s_at(x, LEDGE), LEDGE)
+    """Return points of the edge of the skin at these x."""
+    return wall(s_at(x, EDGE), EDGE)
 
 
 def flank(x: ArrayLike, z: ArrayLike) -> Array:
@@ -76,30 +74,6 @@ def lower_edge(t: ArrayLike) -> Array:
     return flank(middle[..., 0] + along[..., 1] * drop, middle[..., 1] - along[..., 0] * drop)
 
 
-def band(t: Array) -> Array:
-    """Return the rounded edge, (t, 4, 3), from the crown down to the flank."""
-    return bezier(crown(t, RIM), rail(t), lower_edge(t), 3)
-
-
-def hollow_top(x: Array) -> Array:
-    """Return where the hollow strip above the quarter panel meets the flank; it runs out with the hatch."""
-    rise = (GLASS_FOOT + 0.016 * ease(x, DOOR_REAR, HATCH_SIDE)) * np.clip((2.03 - x) / 0.5, 0.0, 1.0)
-    return flank(x, ledge(x)[:, 2] + rise)
-
-
-def hollow(x: Array) -> Array:
-    """Return the hollow strip, (x, 5, 3), from the quarter panel's top up into the flank."""
-    return bezier(wall(s_at(x, QUARTER_TOP), QUARTER_TOP), ledge(x), hollow_top(x), 4)
-
-
-def sheet(foot: Array, head: Array) -> Array:
-    """Return the piece of flank, (n, 6, 3), between two lines of n points."""
-    u = np.linspace(0, 1, 6)[None, :]
-    x = foot[:, None, 0] * (1 - u) + head[:, None, 0] * u
-    z = foot[:, None, 2] * (1 - u) + head[:, None, 2] * u
-    return flank(x, z)
-
-
 def t_of_lower_edge(x: float) -> float:
     """Return the t at which the band's lower edge has this x."""
     low, high = 0.0, T_END
@@ -109,65 +83,72 @@ def t_of_lower_edge(x: float) -> float:
     return (low + high) / 2
 
 
-def crown_panels(parts: Parts) -> None:
-    """Add windshield, roof and hatch glass with their dark borders, and the band beside them."""
-    parts.grid("roof", crown(ROOF_LINES[:, None], ACROSS[None]))
-    for part, lines in (("windshield", SHIELD_LINES), ("hatch_glass", HATCH_LINES)):
-        parts.grid(part, crown(lines[1:-1, None], ACROSS[None, :-1]))
-        parts.grid("glass_trim", crown(lines[1:-1, None], ACROSS[None, -2:]))
-        for edge in (lines[:2], lines[-2:]):
-            parts.grid("glass_trim", crown(edge[:, None], ACROSS[None]))
-    parts.grid("pillar_{side}", band(SHIELD_LINES))
-    parts.grid("roof", band(ROOF_LINES))
-    parts.grid("sail_{side}", band(HATCH_LINES[:SAIL_LINES]))
-    parts.grid("hatch_glass", band(HATCH_LINES[SAIL_LINES - 1 :]))
+POST_TOP = 0.47
+BEFORE_POST, BEHIND_POST = (t_of_lower_edge(POST_TOP + side * GAP / 2) for side in (-1, 1))
+"""The columns on both sides of the post behind the side window, which goes on with the door's shut line."""
+# fmt: off
+LINES = np.concatenate([
+    [0.0], np.linspace(0.16, HEADER - 0.15, 10), [HEADER],
+    np.linspace(HEADER + 0.1, BEFORE_POST, 6),
+    np.linspace(BEHIND_POST, REAR_HEADER - 0.1, 4), [REAR_HEADER],
+    np.linspace(REAR_HEADER + 0.15, T_END - 0.16, 10), [T_END],
+])
+# fmt: on
+"""The t of the columns of nodes beside and above the glass; narrow cells bound the dark borders."""
+SHIELD, POST, ROOF = (int(np.abs(LINES - t).argmin()) for t in (HEADER, BEFORE_POST, REAR_HEADER))
+SAIL = ROOF + 3
 
 
-def side_panels(parts: Parts) -> None:
-    """Add door glass, sail panel and the side of the hatch glass, down to the ledge."""
-    top_rear = t_of_lower_edge(0.47)
-    x = np.linspace(DOOR_FRONT + 0.09, DOOR_REAR + 0.005, 13)
-    foot = ledge(x)
-    low = flank(x, foot[:, 2] + GLASS_FOOT)
-    high = lower_edge(np.linspace(0.12, top_rear, 13))
-    parts.grid("window_{side}", sheet(low[3:], high[3:]))
-    parts.grid("glass_trim", sheet(low[:4], high[:4]))
-    parts.grid("glass_trim", np.stack([foot, low], axis=1))
-
-    glass = HATCH_LINES[SAIL_LINES - 1 :]
-    post, aft = np.linspace(DOOR_REAR + 0.005, HATCH_SIDE, 4), np.linspace(HATCH_SIDE, HATCH_END, len(glass))
-    parts.grid("sail_{side}", sheet(hollow_top(post), lower_edge(np.linspace(top_rear, glass[0], 4))))
-    parts.grid("hatch_glass", sheet(hollow_top(aft), lower_edge(glass)))
-    parts.grid("quarter_{side}", hollow(np.concatenate([post, aft[1:]])))
+def feet() -> Array:
+    """Return the x at which each column leaves the edge of the skin."""
+    head: Array = lower_edge(LINES)[:, 0]
+    half = GAP / 2
+    stops = [head[0], DOOR_REAR - half, DOOR_REAR + half, HATCH_SIDE, HATCH_END]
+    x: Array = np.interp(head, head[[0, POST, POST + 1, SAIL, -1]], stops)
+    return x
 
 
-def crown_end(t: float) -> Array:
-    """Return the crown's line at t, from the center over the band to the flank."""
-    return np.concatenate([crown(t, ACROSS), band(np.array([t]))[0, 1:]])
+def columns() -> Array:
+    """Return the columns of nodes (columns, rows, 3) from the sill over the roof to the center line."""
+    x, head = feet(), lower_edge(LINES)
+    skin_rows = skin(columns_at(x, ROWS))
+    foot = skin_rows[:, -1]
+    # A low rise below the side glass; behind the door it is a fillet, which runs out with the hatch.
+    rise = (GLASS_FOOT + 0.016 * ease(x, DOOR_REAR, HATCH_SIDE)) * np.clip((HATCH_END - x) / 0.5, 0.0, 1.0)
+    low = flank(x, foot[:, 2] + rise)
+    fillet = bezier(wall(s_at(x, QUARTER_TOP), QUARTER_TOP), ledge(x), low, (0.0, 0.4, 0.85, 1.0))
+
+    skin_rows[POST + 1 : -1, -2:] = fillet[POST + 1 : -1, 1:3]
+    # Glass and sail begin and end in points on the edge of the skin.
+    low[[0, -1]], head[[0, -1]] = foot[[0, -1]], foot[[0, -1]]
+    u = np.linspace(0, 1, FLANK)[None, :]
+    side = flank(
+        low[:, None, 0] * (1 - u) + head[:, None, 0] * u, low[:, None, 2] * (1 - u) + head[:, None, 2] * u
+    )
+    side[[0, -1]] = foot[[0, -1], None]
+    band = bezier(crown(LINES, RIM), rail(LINES), head, BAND)[:, ::-1]
+    over = crown(LINES[:, None], ACROSS[None, ::-1])
+    return np.concatenate([skin_rows, side, band[:, 1:], over[:, 1:]], axis=1)
 
 
-def deck(parts: Parts) -> None:
-    """Add the short deck behind the hatch glass."""
-    front = np.concatenate([crown_end(T_END), hollow(np.array([HATCH_END]))[0, ::-1]])
-    corner = float(s_at(2.16, QUARTER_TOP))
-    side = wall(np.linspace(float(s_at(HATCH_END, QUARTER_TOP)), corner, 5), QUARTER_TOP)
-    rear = wall(np.linspace(S_END, corner, len(front)), QUARTER_TOP)
-    parts.grid("deck", coons(front, rear, segment(front[0], rear[0], 4), side), outward=(0, 0, 1))
-
-
-def cowl(parts: Parts) -> None:
-    """Add the dark vent panel between hood and windshield."""
-    shield = crown_end(0.0)
-    rear = hood_rear(len(shield) - 1)
-    middle = (rear + shield) / 2 - [0, 0, 0.004]
-    parts.grid("cowl", np.stack([rear, middle, shield], axis=1), outward=(0, 0, 1))
-    corner = np.stack([ledge(np.linspace(COWL, -0.47, 4)), segment(rear[-1], shield[-1], 3)], axis=1)
-    parts.grid("cowl", corner, outward=(0, 0, 1))
-
-
-def build(parts: Parts) -> None:
-    """Add everything above the ledge."""
-    crown_panels(parts)
-    side_panels(parts)
-    deck(parts)
-    cowl(parts)
+def names() -> Names:
+    """Return the parts of the cells (columns - 1, rows - 1) above the edge of the skin."""
+    of_cells = np.full((len(LINES) - 1, FLANK + len(BAND) + len(ACROSS) - 2), "hatch_glass", dtype="<U16")
+    band, over = slice(FLANK, FLANK + len(BAND) - 1), slice(FLANK + len(BAND) - 1, None)
+    shield, roof, sail = slice(0, SHIELD), slice(SHIELD, ROOF), slice(POST + 1, SAIL)
+    of_cells[: POST + 1, :FLANK] = "glass_trim"
+    of_cells[3:POST, 1:FLANK] = "window_{side}"
+    of_cells[POST + 1 : SAIL, :FLANK] = "sail_{side}"
+    of_cells[POST + 1 :, 0] = "quarter_{side}"
+    of_cells[shield, band], of_cells[roof, band], of_cells[sail, band] = (
+        "pillar_{side}",
+        "roof",
+        "sail_{side}",
+    )
+    of_cells[shield, over], of_cells[roof, over] = "windshield", "roof"
+    # The dark borders of windshield and hatch.
+    for glass in (shield, slice(ROOF, None)):
+        of_cells[glass, over.start] = "glass_trim"
+        for line in (glass.start, (glass.stop or 0) - 1):
+            of_cells[line, over] = "glass_trim"
+    return of_cells

@@ -108,8 +108,8 @@ def invert(surface: Surface, target: Array, axes: tuple[int, int], guess: Array)
     return at
 
 
-def bezier(start: Array, corner: Array, end: Array, steps: int) -> Array:
-    """Return quadratic Bezier arcs (n, steps + 1, 3) from start to end, tangent to the lines to corner."""
-    u = np.linspace(0, 1, steps + 1)[None, :, None]
+def bezier(start: Array, corner: Array, end: Array, at: Sequence[float]) -> Array:
+    """Return quadratic Bezier arcs (n, len(at), 3) from start to end, tangent to the lines to corner."""
+    u = np.array(at)[None, :, None]
     arc: Array = start[:, None] * (1 - u) ** 2 + corner[:, None] * 2 * u * (1 - u) + end[:, None] * u**2
     return arc

@@ -24,10 +24,13 @@ def outward_at(grid: Array) -> Array:
 def raised(parts: Parts, part: str, grid: Array, low: float, high: float, edging: str) -> None:
     """Add a pad that stands out from the skin by `low` at its foot and `high` at its top, and its edging."""
     base, normal = skin(grid), outward_at(grid)
+    normal[np.abs(base[..., 1]) < 1e-9, 1] = 0.0
     middle = base.reshape(-1, 3).mean(axis=0)
     face = base + normal * np.linspace(low, high, grid.shape[1])[None, :, None]
     parts.grid(part, face)
     sunk = base - normal * 0.004
+    x, y, z = -normal.reshape(-1, 3).mean(axis=0)
+    parts.grid(edging, sunk[:, [0, -1]], outward=(float(x), float(y), float(z)))
     strips = [np.stack([sunk[:, k], face[:, k]], axis=1) for k in (0, -1)]
     # An end on the center line needs no edging: the mirror image goes on there.
     strips += [np.stack([sunk[k], face[k]], axis=1) for k in (0, -1) if abs(base[k, 0, 1]) > 1e-9]
@@ -51,7 +54,8 @@ def spoiler(parts: Parts) -> None:
     for reach, lift in ((0.03, 0.98), (0.12, 1.0), (0.28, 0.76), (0.52, 0.40), (0.78, 0.14), (1.0, -0.10)):
         rows.append(edge + inward * (deep * reach)[:, None] + up * (high * lift + 0.010 * reach)[:, None])
     points = np.stack(rows, axis=1)
-    parts.grid("spoiler", points, outward=(0.0, 0.0, 1.0))
+    # From side to side as one closed bar.
+    parts.closed("spoiler", np.concatenate([points[:0:-1] * [1, -1, 1], points]), mirror=False)
 
 
 def mirrors(parts: Parts) -> None:
@@ -72,28 +76,28 @@ def mirrors(parts: Parts) -> None:
     parts.grid("mirror_glass", np.stack([inner, middle]), outward=(1, 0, 0))
     front, rear = flank([-0.40, -0.33], 0.892) - [0, 0.01, 0.02]
     up = np.array([0, 0, 0.045])
-    root = np.array([front, front + up, rear + up, rear, front])
-    tip = np.array([(-0.375, 0.90), (-0.375, 0.935), (-0.32, 0.935), (-0.32, 0.90), (-0.375, 0.90)])
-    parts.grid("mirrors", np.stack([root, np.insert(tip, 1, 0.93, axis=1)]), flip=True)
+    root = np.array([front, front + up, rear + up, rear])
+    tip = np.array([(-0.375, 0.90), (-0.375, 0.935), (-0.32, 0.935), (-0.32, 0.90)])
+    parts.closed("mirrors", np.stack([root, np.insert(tip, 1, 0.93, axis=1)]))
 
 
 def wipers(parts: Parts) -> None:
     """Add two wipers, at rest low on the windshield."""
     lift = np.array([-0.008, 0, 0.014])
     for w0, w1, t0, t1 in ((-0.02, 0.58, 0.34, 0.30), (-0.66, -0.10, 0.26, 0.34)):
-        w, t = np.linspace(w0, w1, 7), np.linspace(t0, t1, 7)
+        w, t = np.linspace(w0, w1, 5), np.linspace(t0, t1, 5)
         low, high = crown(t, w), crown(t + 0.05, w)
         blade = np.stack([low, low + lift, high + lift, high], axis=1)
-        parts.grid("wipers", blade, outward=(-0.5, 0, 1), mirror=False)
+        parts.closed("wipers", blade, mirror=False)
 
 
 def strips(parts: Parts) -> None:
     """Add the dark rub strip round the car, a little below the side crease."""
     front, rear = float(s_at(-1.88, STRIP[0])), float(s_at(1.85, STRIP[0]))
-    for end, cut, count in ((0.0, front, 11), (S_END, rear, 10)):
+    for end, cut, count in ((0.0, front, 10), (S_END, rear, 9)):
         s, v = np.meshgrid(np.linspace(end, cut, count + 1), STRIP, indexing="ij")
         raised(parts, "moldings", np.stack([s, v], axis=-1), 0.009, 0.009, "moldings")
-    for start, end, count in ((-0.965, -0.572, 4), (-0.548, 0.617, 12), (0.642, 0.80, 2)):
+    for start, end, count in ((-0.965, -0.575, 2), (-0.545, 0.615, 6), (0.645, 0.80, 1)):
         grid = columns_at(np.linspace(start, end, count + 1), STRIP)
         raised(parts, "moldings", grid, 0.009, 0.009, "moldings")
 
@@ -104,7 +108,7 @@ def build(parts: Parts) -> None:
     mirrors(parts)
     wipers(parts)
     strips(parts)
-    handle = columns_at(np.linspace(0.40, 0.56, 5), np.array([6.35, 6.75]))
+    handle = columns_at(np.linspace(0.40, 0.56, 3), np.array([6.35, 6.75]))
     raised(parts, "handles", handle, 0.008, 0.008, "handles")
     for x, foot, head in ((-2.08, 2.4, 2.8), (2.0, 2.25, 2.7)):
         lamp = columns_at(np.linspace(x, x + 0.13, 3), np.array([foot, head]))

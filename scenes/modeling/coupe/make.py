@@ -3,7 +3,10 @@
 The car is a sports coupe of the early 1980s with a long hood and a glass hatch, in meters: x runs from nose
 to tail, y to the right, z up; the wheels stand on z = 0. Each run makes the same meshes to the last digit.
 
-Assumed: the paper's mesh is GM's own design data; this car only has its kind, size and number of polygons.
+Assumed: the paper's mesh is GM's own design data; this car only has its kind and size, and about as many
+nodes. The three files of the car are closed surfaces: the body with its recesses and wheel wells, the
+lamps, and the wheels. Mirrors, moldings and other small things are solids that stick in the body and share
+no node with it.
 """
 
 from __future__ import annotations
@@ -13,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from scenes.modeling.coupe import canopy, details, ends, panels, wheels
+from scenes.modeling.coupe import details, panels, wheels
 from scenes.modeling.coupe.curves import spaced
 from scenes.modeling.coupe.parts import Parts
 
@@ -24,12 +27,12 @@ FILES = {
         "sill_left", "sill_right", "wheel_arches", "front_fascia", "rear_fascia", "roof", "pillar_left",
         "pillar_right", "sail_left", "sail_right", "deck", "spoiler", "mirrors", "windshield", "window_left",
         "window_right", "hatch_glass", "mirror_glass", "glass_trim", "gaps", "cowl", "wipers", "handles",
-        "moldings",
+        "moldings", "recesses", "turn_lamps", "wheel_wells", "underbody",
     ),
     "lamps.obj": (
-        "grille", "lamp_frames", "head_lamps", "turn_lamps", "tail_lamps", "side_markers", "license_plate",
+        "grille", "lamp_frames", "head_lamps", "tail_lamps", "side_markers", "license_plate",
     ),
-    "chassis.obj": ("tires", "wheels", "brakes", "wheel_wells", "underbody"),
+    "chassis.obj": ("tires", "wheels", "brakes"),
 }
 # fmt: on
 
@@ -38,15 +41,16 @@ def car() -> Parts:
     """Return all parts of the car."""
     parts = Parts()
     panels.build(parts)
-    canopy.build(parts)
-    ends.build(parts)
     details.build(parts)
     wheels.build(parts)
     return parts
 
 
 def ground() -> Parts:
-    """Return the studio floor, a disc, and the dark patch of shade below the car."""
+    """Return the studio floor, a disc, and the dark patch of shade below the car.
+
+    Both are sheets that nobody sees from below, so they are open along their rims.
+    """
     parts = Parts()
     angle = np.linspace(0, 2 * np.pi, 33)[:, None]
     radius = spaced(0.0, 4.0, 11.0, counts=(3, 4))

@@ -1,16 +1,30 @@
-"""The painted panels below the glass, their gaps, wheel arches and the underbody."""
+"""The closed skin of the car: columns of nodes from nose to tail, whose cells become panels and shut lines.
+
+A column runs from the sill (row 0) over the crease and the shoulder to the edge of hood, glass and deck
+(row EDGE_ROW). The columns beside the glass go on over the roof to the center line. Neighboring panels
+share the nodes of the shut line between them: a dark strip in the skin, wide enough to be seen at 640 x
+480. So no panel has a border, and nothing shows through a crack.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 
+from scenes.modeling.coupe import canopy, ends
 from scenes.modeling.coupe.body import (
     ARCH_HEIGHT,
     ARCH_RADIUS,
     AXLES,
+    COWL,
     CREASE,
-    LEDGE,
-    S_END,
+    DOOR_FOOT,
+    DOOR_FRONT,
+    FASCIA_CUT,
+    GAP,
+    ROWS,
+    SHOULDER,
+    TAIL_CUT,
+    TAIL_GAP,
     columns_at,
     s_at,
     skin,
@@ -18,135 +32,158 @@ from scenes.modeling.coupe.body import (
     wall,
 )
 from scenes.modeling.coupe.curves import Array, coons, invert, segment, spaced
-from scenes.modeling.coupe.parts import Parts
+from scenes.modeling.coupe.parts import Names, Parts
 
-GAP, GAP_DEPTH = 0.011, 0.005
-# Upright cuts between panels, at these x.
-FASCIA_CUT, DOOR_FRONT, DOOR_REAR, TAIL_CUT = -1.86, -0.56, 0.63, 1.83
-# Lines along the car, at these v.
-SILL, DOOR_FOOT, SHOULDER, QUARTER_TOP, HOOD_EDGE = 0.35, 1.0, 7.0, 8.55, 9.09
-COWL = -0.61
-RING_TOP, RING_WIDTH = 10, 0.13
-UPPER_ROWS = spaced(SHOULDER, 7.5, 8.3, QUARTER_TOP, LEDGE, counts=(1, 3, 1, 1))
-LOWER_ROWS = spaced(SILL, CREASE, SHOULDER, counts=(6, 3))
-SIDE_ROWS = spaced(SILL, DOOR_FOOT, 3.2, CREASE, 4.8, SHOULDER, counts=(1, 4, 2, 2, 4))
-GAP_ROWS = spaced(SILL, 6.5, counts=(8,))
-HOOD_CELLS = (10, 18)
+FOOT_ROW, CREASE_ROW, SHOULDER_ROW = (
+    int(row) for row in np.searchsorted(ROWS, (DOOR_FOOT, CREASE, SHOULDER))
+)
+EDGE_ROW = len(ROWS) - 1
+RING_WIDTH = 0.11
+WELL = 0.50
+LIFT = 0.005
+"""The hood is this much higher than `top`: its shut line shows on the near side and hides on the far one."""
 
 
-def around_arch(axle: float, front: float, rear: float) -> Array:
-    """Return the parameters of the ring round a wheel opening, from its front line to its rear line."""
+class Skin:
+    """The columns of the right side, in parameters (columns, rows, 2), and the numbers of some columns."""
+
+    def __init__(self) -> None:
+        """Lay out the columns."""
+        half, x = GAP / 2, canopy.feet()
+        front = AXLES[0] + ARCH_RADIUS + RING_WIDTH
+        fender = spaced(FASCIA_CUT + half, front, COWL, DOOR_FRONT - half, counts=(12, 3, 1))
+        rear = spaced(x[-1], TAIL_CUT - TAIL_GAP / 2, counts=(1,))
+        stations = np.concatenate([fender, [DOOR_FRONT + half], x, rear[1:]])
+        nose, tail = ends.nose_columns(), ends.tail_columns()
+        self.nose, self.tail = len(nose), len(nose) + len(stations)
+        self.cowl = self.nose + len(fender) - 2
+        self.door = self.nose + len(fender)
+        self.glass, self.deck = self.door + 1, self.door + len(x)
+        self.quarter = self.glass + canopy.POST + 1
+        self.grid = np.concatenate([nose, columns_at(stations, ROWS), tail[::-1]])
+        self.points = skin(self.grid)
+        self.arches = (self.nose, self.nose + 12), self.arch_at(AXLES[1])
+
+    def arch_at(self, axle: float) -> tuple[int, int]:
+        """Return the columns that are nearest to the ring round the opening of the rear wheel."""
+        x = self.points[self.quarter : self.deck, SHOULDER_ROW, 0]
+        reach = ARCH_RADIUS + RING_WIDTH
+        front, rear = (int(np.abs(x - at).argmin()) + self.quarter for at in (axle - reach, axle + reach))
+        return front, rear
+
+
+def side_names(skin_: Skin) -> Names:
+    """Return the parts of the cells (columns - 1, rows - 1) below hood, glass and deck."""
+    names = np.full((len(skin_.grid) - 1, EDGE_ROW), "quarter_{side}", dtype="<U16")
+    names[: skin_.nose - 1] = "front_fascia"
+    names[skin_.nose : skin_.door - 1] = "fender_{side}"
+    names[skin_.door : skin_.quarter - 1] = "door_{side}"
+    names[skin_.door - 1 : skin_.quarter, :FOOT_ROW] = "sill_{side}"
+    for cut in (skin_.nose - 1, skin_.door - 1, skin_.quarter - 1, skin_.tail - 1):
+        names[cut, FOOT_ROW if skin_.nose < cut < skin_.tail - 1 else 0 :] = "gaps"
+    names[skin_.door - 1 : skin_.quarter, FOOT_ROW] = "gaps"
+    names[skin_.tail :] = "rear_fascia"
+    # The shut line of the hood, and the edge of the deck.
+    names[: skin_.glass, -1] = "gaps"
+    names[skin_.deck :, -1] = "deck"
+    ends.cut_holes(names)
+    for front, rear in skin_.arches:
+        names[front:rear, :SHOULDER_ROW] = ""
+    return names
+
+
+def arch(parts: Parts, part: str, skin_: Skin, columns: tuple[int, int], axle: float) -> None:
+    """Add the ring round a wheel opening, its lip and the wheel well."""
+    front, rear = columns
+    lower = slice(0, SHOULDER_ROW + 1)
+    outer = np.concatenate(
+        [
+            skin_.grid[front, lower],
+            skin_.grid[front + 1 : rear, SHOULDER_ROW],
+            skin_.grid[rear, lower][::-1],
+        ]
+    )
     foot = np.arcsin((0.215 - ARCH_HEIGHT) / ARCH_RADIUS)
     crease = np.arcsin((0.557 - ARCH_HEIGHT) / ARCH_RADIUS)
-    angles = spaced(np.pi - foot, np.pi - crease, 2.2, 0.94, crease, foot, counts=(6, 3, RING_TOP, 3, 6))
+    over = SHOULDER_ROW - CREASE_ROW
+    angles = spaced(
+        np.pi - foot, np.pi - crease, 2.2, 0.94, crease, foot,
+        counts=(CREASE_ROW, over, rear - front, over, CREASE_ROW),
+    )  # fmt: skip
     circle = np.stack([np.cos(angles), np.sin(angles)], axis=1) * ARCH_RADIUS + [axle, ARCH_HEIGHT]
     guess = np.stack([s_at(circle[:, 0], CREASE), circle[:, 1] * 9 - 1], axis=1)
     inner = invert(wall, circle, (0, 2), guess)
-    ahead, behind = columns_at(np.array([front, rear]), LOWER_ROWS)
-    above = columns_at(np.linspace(front, rear, RING_TOP + 1)[1:-1], np.array([SHOULDER]))[:, 0]
-    outer = np.concatenate([ahead, above, behind[::-1]])
-    steps = np.array([0.0, 0.16, 0.40, 0.68, 1.0])[None, :, None]
-    ring: Array = inner[:, None] * (1 - steps) + outer[:, None] * steps
-    return ring
-
-
-def wheel_panel(parts: Parts, part: str, axle: float, cuts: tuple[float, float], rows: Array) -> None:
-    """Add a fender or quarter panel: a ring about the wheel, upright columns beside it, rows above."""
-    front = max(cuts[0], axle - ARCH_RADIUS - RING_WIDTH)
-    rear = min(cuts[1], axle + ARCH_RADIUS + RING_WIDTH)
-    ahead = np.linspace(cuts[0], front, 1 + int(np.ceil((front - cuts[0]) / 0.08)))
-    behind = np.linspace(rear, cuts[1], 1 + int(np.ceil((cuts[1] - rear) / 0.08)))
-    over = np.linspace(front, rear, RING_TOP + 1)
-    parts.grid(part, skin(columns_at(np.concatenate([ahead[:-1], over, behind[1:]]), rows)))
-    for stations in (ahead, behind):
-        parts.grid(part, skin(columns_at(stations, LOWER_ROWS)))
-    ring = skin(around_arch(axle, front, rear))
+    steps = np.array([0.0, 0.15, 0.38, 0.66, 1.0])
+    ring = skin(inner[:, None] * (1 - steps[:, None]) + outer[:, None] * steps[:, None])
     parts.grid(part, ring)
-    opening(parts, ring[:, 0], axle)
 
-
-def opening(parts: Parts, edge: Array, axle: float) -> None:
-    """Add the turned-in lip of a wheel opening in body color and the dark wheel well behind it."""
-    lip = np.stack([edge, edge - [0, 0.012, 0], edge - [0, 0.045, 0]], axis=1)
-    lip[:, 1:] += (np.array([axle, 0, ARCH_HEIGHT]) - lip[:, 1:]) * [0.012, 0, 0.012]
+    edge = ring[:, 0]
+    lip = np.stack([edge, edge - [0, 0.045, 0]], axis=1)
+    lip[:, 1] += (np.array([axle, 0, ARCH_HEIGHT]) - lip[:, 1]) * [0.012, 0, 0.012]
     parts.grid("wheel_arches", lip, flip=False)
-    rim = lip[::2, -1]
-    deep = rim * [1, 0, 1] + [0, 0.50, 0]
-    parts.grid("wheel_wells", np.stack([rim, deep], axis=1), flip=False)
-    foot = segment(deep[0], deep[-1], len(deep) - 1)
-    parts.grid("wheel_wells", np.stack([deep, foot], axis=1), outward=(0, 1, 0))
+    deep = lip[:, -1] * [1, 0, 1] + [0, WELL, 0]
+    parts.grid("wheel_wells", np.stack([lip[:, -1], deep], axis=1), flip=False)
+    bottom = segment(deep[0], deep[-1], len(deep) - 1)
+    parts.grid("wheel_wells", np.stack([deep, bottom], axis=1), outward=(0, 1, 0))
+    parts.grid("underbody", np.stack([bottom, bottom * [1, 0, 1]], axis=1), outward=(0, 0, -1))
+
+    # Close the skin below the ring: from the column beside it to the end of lip and well.
+    for end, column in ((0, front), (-1, rear)):
+        rim = np.concatenate([lip[end], [deep[end], deep[end] * [1, 0, 1]]])
+        share = np.linspace(0, 1, len(steps))[:, None, None]
+        strip = turned_under(skin_, column)[None] * (1 - share) + rim[None] * share
+        strip[:, 0] = ring[end, ::-1]
+        parts.grid("underbody", strip, outward=(0, 0, -1))
 
 
-def side(parts: Parts) -> None:
-    """Add fenders, doors, sills and quarter panels with the gaps between them."""
-    half = GAP / 2
-    wheel_panel(parts, "fender_{side}", AXLES[0], (FASCIA_CUT + half, DOOR_FRONT - half), UPPER_ROWS)
-    wheel_panel(parts, "quarter_{side}", AXLES[1], (DOOR_REAR + half, TAIL_CUT - half), UPPER_ROWS[:-1])
-    door_rows = np.concatenate([[DOOR_FOOT + 0.06], SIDE_ROWS[2:-1], UPPER_ROWS])
-    stations = np.linspace(DOOR_FRONT + half, DOOR_REAR - half, 17)
-    parts.grid("door_{side}", skin(columns_at(stations, door_rows)))
-    stations = np.linspace(DOOR_FRONT - half, DOOR_REAR + half, 9)
-    parts.grid("sill_{side}", skin(columns_at(stations, np.array([SILL, 0.7, DOOR_FOOT]))))
-
-    gap(parts, FASCIA_CUT, np.concatenate([GAP_ROWS, UPPER_ROWS]))
-    gap(parts, DOOR_FRONT, np.concatenate([SIDE_ROWS[:-1], UPPER_ROWS]))
-    gap(parts, DOOR_REAR, np.concatenate([SIDE_ROWS[:-1], UPPER_ROWS[:-1]]))
-    gap(parts, TAIL_CUT, np.concatenate([GAP_ROWS, UPPER_ROWS[:-1]]))
-    below_door = columns_at(stations, np.array([DOOR_FOOT - 0.05, DOOR_FOOT + 0.11]))
-    parts.grid("gaps", skin(below_door) - [0, GAP_DEPTH, 0])
+def turned_under(skin_: Skin, column: int) -> Array:
+    """Return the nodes (4, 3) of a column below the car, from the sill to the center line."""
+    sill = skin_.points[column, 0]
+    inner = np.array([0.985 * sill[0], 0.94 * sill[1], 0.2])
+    pan = np.array([inner[0], min(WELL, 0.9 * inner[1]), 0.2])
+    return np.stack([sill, inner, pan, pan * [1, 0, 1]])
 
 
-def gap(parts: Parts, cut: float, rows: Array) -> None:
-    """Add the dark bottom of an upright gap: a strip behind the skin, wider than the gap."""
-    points = skin(columns_at(np.array([cut - 2 * GAP, cut + 2 * GAP]), rows))
-    inward = np.stack([0 * rows, -np.ones(len(rows)), -1.6 * (rows > 7.6)], axis=-1)
-    parts.grid("gaps", points + GAP_DEPTH * inward)
-
-
-def hood_outline(v: float) -> tuple[Array, Array]:
-    """Return the hood's front edge (center to corner) and side edge (corner to cowl) on the line v."""
-    fine = np.linspace(0, float(s_at(COWL, v)), 400)
-    along = np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(wall(fine, v), axis=0), axis=1))])
-    corner = float(np.interp(2.75, fine, along))
-    front = np.interp(np.linspace(0, corner, HOOD_CELLS[0] + 1), along, fine)
-    side_edge = np.interp(np.linspace(corner, along[-1], HOOD_CELLS[1] + 1), along, fine)
-    return wall(front, v), wall(side_edge, v)
-
-
-def hood_rear(count: int) -> Array:
-    """Return count + 1 points of the hood's rear edge, center to side."""
-    y = np.linspace(0, float(wall(s_at(COWL, HOOD_EDGE), HOOD_EDGE)[1]), count + 1)
-    x = -0.76 + (COWL + 0.76) * (y / y[-1]) ** 2
-    return np.stack([x, y, top(x, y)], axis=1)
-
-
-def hood(parts: Parts) -> None:
-    """Add the hood and the bottom of the gap about it."""
-    front, side_edge = hood_outline(HOOD_EDGE)
-    rear = hood_rear(HOOD_CELLS[0])
-    center = segment(front[0], rear[0], HOOD_CELLS[1])
-    points = coons(front, rear, center, side_edge)
-    points[..., 2] = top(points[..., 0], points[..., 1])
+def hood(parts: Parts, skin_: Skin, shield: Array) -> None:
+    """Add the hood, and the dark vent panel between hood and windshield, whose foot is `shield`."""
+    edge = skin_.points[:, EDGE_ROW]
+    front, side = edge[: ends.CORNER + 1], edge[ends.CORNER : skin_.cowl + 1]
+    y = np.linspace(0, 1, len(front)) * side[-1, 1]
+    x = -0.76 + (side[-1, 0] + 0.76) * (y / y[-1]) ** 2
+    rear = np.stack([x, y, top(x, y) + LIFT], axis=1)
+    rear[-1] = side[-1]
+    points = coons(front, rear, segment(front[0], rear[0], len(side) - 1), side)
+    points[..., 2] = top(points[..., 0], points[..., 1]) + LIFT
     parts.grid("hood", points, outward=(0, 0, 1))
-    inner, outer = (np.concatenate([a, b[1:]]) for a, b in map(hood_outline, (9.3, 8.85)))
-    parts.grid("gaps", np.stack([inner, outer], axis=1) - [0, 0, GAP_DEPTH], outward=(0, 0, 1))
+    side = edge[skin_.cowl : skin_.glass + 1]
+    middle = segment(rear[0], shield[0], len(side) - 1)
+    parts.grid("cowl", coons(rear, shield, middle, side), outward=(0, 0, 1))
 
 
-def underbody(parts: Parts) -> None:
-    """Add the turned-under edge, leaving out the wheel openings, and a flat floor pan."""
-    at = [float(s_at(x, 0.2)) for x in (FASCIA_CUT, -1.73, -0.99, 0.82, 1.58, TAIL_CUT)]
-    for start, end in ((0.0, at[0]), (at[0], at[1]), (at[2], at[3]), (at[4], at[5]), (at[5], S_END)):
-        edge = wall(np.linspace(start, end, 7)[:, None], np.array([0.0, SILL])[None])
-        parts.grid("underbody", edge)
-        pan = np.stack([edge[:, 0], edge[:, 0] * [1, 0, 1]], axis=1)
-        parts.grid("underbody", pan, outward=(0, 0, -1))
-    center = segment((-1.73, 0, 0.2), (1.58, 0, 0.2), 10)
-    beside = center + np.array([0, 0.505, 0])
-    parts.grid("underbody", np.stack([center, beside], axis=1), outward=(0, 0, -1))
+def deck(parts: Parts, skin_: Skin, front: Array) -> None:
+    """Add the short deck behind the hatch glass, which ends at `front`."""
+    edge = skin_.points[:, EDGE_ROW]
+    corner = len(edge) - 1 - ends.CORNER
+    rear, side = edge[corner:][::-1], edge[skin_.deck : corner + 1]
+    parts.grid("deck", coons(front, rear, segment(front[0], rear[0], len(side) - 1), side), outward=(0, 0, 1))
 
 
 def build(parts: Parts) -> None:
-    """Add the painted panels below the glass."""
-    side(parts)
-    hood(parts)
-    underbody(parts)
+    """Add the whole skin."""
+    skin_ = Skin()
+    beside = canopy.columns()
+    # The fillet between quarter panel and hatch belongs to the columns beside the glass.
+    skin_.points[skin_.glass : skin_.deck + 1] = beside[:, : EDGE_ROW + 1]
+    skin_.points[: skin_.cowl + 1, EDGE_ROW, 2] += LIFT
+    parts.grid(side_names(skin_), skin_.points)
+    parts.grid(canopy.names(), beside[:, EDGE_ROW:])
+    for part, columns, axle in zip(("fender_{side}", "quarter_{side}"), skin_.arches, AXLES, strict=True):
+        arch(parts, part, skin_, columns, axle)
+    shield, hatch = beside[[0, -1], EDGE_ROW + canopy.FLANK :][:, ::-1]
+    hood(parts, skin_, shield)
+    deck(parts, skin_, hatch)
+    ends.lamps(parts, skin_.points)
+    (a, b), (c, d) = skin_.arches
+    for first, last in ((0, a), (b, c), (d, len(skin_.grid) - 1)):
+        pan = np.stack([turned_under(skin_, column) for column in range(first, last + 1)])
+        parts.grid("underbody", pan, outward=(0, 0, -1))

@@ -1,4 +1,7 @@
-"""Wheels: tires turned from a profile, and alloy discs of five spokes before a dark brake."""
+"""Wheels: tires turned from a profile, and alloy discs of five spokes before a dark brake.
+
+Each wheel with its tire is a closed solid.
+"""
 
 from __future__ import annotations
 
@@ -15,16 +18,15 @@ SPOKES = 5
 # fmt: off
 # (outward offset from the wheel's middle plane, radius), from the outside bead round to the inside.
 TIRE = (
-    (0.088, 0.207), (0.1055, 0.238), (0.1065, 0.278), (0.097, 0.308), (0.078, 0.3225), (-0.078, 0.3225),
-    (-0.104, 0.26),
+    (0.088, 0.207), (0.1055, 0.238), (0.097, 0.308), (0.078, 0.3225), (-0.078, 0.3225),
+    (-0.104, 0.26), (-0.090, 0.0),
 )
 RIM = ((0.088, 0.207), (0.094, 0.201), (0.056, 0.182))
 # From the rim to the hub cap; cells between rows 1 and 3 are open between the spokes.
 DISC = (
-    (0.056, 0.182), (0.062, 0.170), (0.074, 0.130), (0.082, 0.080), (0.082, 0.050), (0.068, 0.044),
+    (0.056, 0.182), (0.062, 0.170), (0.074, 0.130), (0.082, 0.080), (0.082, 0.050),
     (0.072, 0.0),
 )
-BRAKE = ((0.040, 0.185), (0.044, 0.07))
 # fmt: on
 OPEN_ROWS = (1, 3)
 
@@ -44,9 +46,12 @@ def build(parts: Parts) -> None:
         parts.grid("tires", turned(TIRE, axle), flip=False)
         parts.grid("wheels", turned(RIM, axle), flip=True)
         disc = turned(DISC, axle)
-        windows = tuple((k * cells + 1, k * cells + cells - 1, *OPEN_ROWS) for k in range(SPOKES))
-        parts.grid("wheels", disc, flip=True, holes=windows)
+        windows = [(k * cells + 1, k * cells + cells - 1, *OPEN_ROWS) for k in range(SPOKES)]
+        names = np.full((AROUND, len(DISC) - 1), "wheels", dtype="<U6")
         for i0, i1, j0, j1 in windows:
-            loop = border(disc[i0 : i1 + 1, j0 : j1 + 1])
-            parts.grid("wheels", np.stack([loop, loop - [0, 0.028, 0]], axis=1), flip=True)
-        parts.grid("brakes", turned(BRAKE, axle)[::2], flip=True)
+            names[i0:i1, j0:j1] = ""
+            opening = disc[i0 : i1 + 1, j0 : j1 + 1]
+            brake = opening - [0, 0.034, 0]
+            parts.grid("wheels", np.stack([border(opening), border(brake)], axis=1), flip=True)
+            parts.grid("brakes", brake, flip=True)
+        parts.grid(names, disc, flip=True)

@@ -195,7 +195,7 @@ def test_the_coupe_keeps_its_comments(tmp_path: Path) -> None:
     write_scene(tmp_path / "coupe" / "scene.toml", scene, overwrite=True)
     after = (tmp_path / "coupe" / "scene.toml").read_text()
     assert changed_lines((COUPE / "scene.toml").read_text(), after) == [
-        '-object_color = "#b01020"',
+        '-object_color = "#d8142c"',
         '+object_color = "#0000ff"',
         "-intensity = 0.7",
         "+intensity = 0.9",
