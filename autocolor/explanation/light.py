@@ -96,7 +96,7 @@ def light_at(light: Light, number: int, scene: Scene, surface: Surface, at: Poin
     )
 
 
-def direction_to(light: Light, point: Vector) -> Vector:
+def direction_to(light: Light, point: Sequence[float]) -> Vector:
     """The unit vector from a point to a light; the rays of a light at infinity are parallel."""
     if light.at_infinity and light.axis is not None:
         return times(-1, light.axis)
@@ -152,7 +152,9 @@ def edge_share(inside: float, width: float, slack: float = 0.0) -> float:
     return 3 * fraction**2 - 2 * fraction**3
 
 
-def specular_factor(model: ReflectionModel, light: Vector, normal: Vector, eye: Vector) -> float:
+def specular_factor(
+    model: ReflectionModel, light: Sequence[float], normal: Sequence[float], eye: Sequence[float]
+) -> float:
     """The factor in the place of cos^N(E) under a model, for unit vectors to the light and to the eye.
 
     The models are described in `scene.reflection_models`.
