@@ -20,11 +20,11 @@ from autocolor.explanation.light import along_points
 from autocolor.explanation.point import (
     PointExplained,
     between,
+    corner_rows,
     cross,
     dot,
     length,
     minus,
-    rows_of_corners,
     times,
     unit,
 )
@@ -238,7 +238,7 @@ def scalar_value(mesh: Mesh, scalar: Scalar, at: PointExplained) -> float:
         across = length(minus(normal, times(along, direction)))
         upright = math.degrees(math.atan2(across, abs(along)))
         return upright if scalar.name == "slope" else math.degrees(math.atan2(along, across))
-    bends = [curvature(scalar.name, mesh, row) for _, row in rows_of_corners(mesh, polygon)]
+    bends = [curvature(scalar.name, mesh, row) for _, row in corner_rows(mesh, polygon)]
     return dot(weights, [min(max(each, -LARGEST_SCALAR), LARGEST_SCALAR) for each in bends])
 
 

@@ -119,7 +119,7 @@ def point_at(scene: Scene, raster: Raster, polygon: int, line: int, element: int
     surface = next(row for row in scene.surfaces if row.name == part.surface)
     corners = [
         Corner(node + 1, vector_of(mesh.coordinates[node]), vector_of(mesh.normals.vectors[normal]))
-        for node, normal in rows_of_corners(mesh, polygon)
+        for node, normal in corner_rows(mesh, polygon)
     ]
     found, is_behind = _found(corners, raster, mesh, line, element)
     point = raster.in_world(line, element, 1 / found.inverse_depth)
@@ -144,7 +144,7 @@ def point_at(scene: Scene, raster: Raster, polygon: int, line: int, element: int
     )
 
 
-def rows_of_corners(mesh: Mesh, polygon: int) -> list[tuple[int, int]]:
+def corner_rows(mesh: Mesh, polygon: int) -> list[tuple[int, int]]:
     """The node and the row of the mesh's normals at each corner of a polygon. A triangle repeats a node."""
     nodes, normals = mesh.node_numbers[polygon].tolist(), mesh.normals.numbers[polygon].tolist()
     rows = list(zip(nodes, normals, strict=True))
