@@ -18,7 +18,7 @@ from tests.autocolor.screens.boxes import boxes
 from tests.autocolor.widgets.drawing import checksum
 
 PAGES = {
-    "picture": 4047065127,
+    "picture": 622091577,
     "light and view": 3442920221,
     "lights": 2635481227,
     "reflectance": 571573069,
@@ -28,6 +28,7 @@ PAGES = {
     "scalar": 648425415,
     "kept": 3802267977,
     "history": 158829111,
+    "explain": 1275798972,
     "file": 1579571161,
     "split": 1133462600,
     "entries": 3253356514,
