@@ -50,13 +50,17 @@ class ExplainScreen(Screen):
 
     name = EXPLAIN
     title = "explain"
-    help = "Why this pixel looks so; arrows or a click at the upper right: a neighbor; Esc: the picture"
+    help = "why this pixel looks so; a click at the upper right: a neighbor"
     has_menu = False
     is_in_menu = False
 
     def __init__(self, session: Session) -> None:
         super().__init__(session)
         self._items: Cached[Sequence[Item]] = Cached()
+
+    def enter(self) -> None:
+        more = "; so do arrows; Esc: back" if self.session.has_keyboard else "; the right edge: the menu"
+        self.session.tell(f"{self.help}{more}", persistent=True)
 
     def items(self) -> Sequence[Item]:
         """The rows of the explanation, and the magnifier."""
