@@ -15,9 +15,10 @@ from typing import Any
 from autocolor.checks import Color
 from autocolor.explanation.level import LevelExplained, color_of, level_at, word_of
 from autocolor.explanation.light import LightExplained, light_at
-from autocolor.explanation.point import PointExplained, Raster, point_at
+from autocolor.explanation.point import Camera, PointExplained, point_at
 from autocolor.mapping.display_image import DisplayImage
 from autocolor.mapping.ranges import BACKGROUND
+from autocolor.scene.columns import to_plain
 from autocolor.visibility.visible_points import Sight, seen_at
 
 
@@ -43,7 +44,12 @@ class Explanation:
 
     def to_plain(self) -> dict[str, Any]:
         """The explanation as dictionaries, lists and numbers, which JSON can hold."""
-        return asdict(self)
+        plain = asdict(self)
+        if self.point is not None:
+            plain["point"]["reflectance"] = to_plain(self.point.reflectance)
+        for row, light in zip(plain["lights"], self.lights, strict=True):
+            row["controls"] = dict(light.controls)
+        return plain
 
 
 def explain(sight: Sight, image: DisplayImage, line: int, element: int) -> Explanation:
@@ -55,15 +61,22 @@ def explain(sight: Sight, image: DisplayImage, line: int, element: int) -> Expla
     seen = seen_at(sight, line, element)
     if seen is None:
         return Explanation(
-            scene.name, line, element, None, scene.ambient, (), None, None, BACKGROUND, scene.background
+            scene=scene.name,
+            line=line,
+            element=element,
+            point=None,
+            ambient=scene.ambient,
+            lights=(),
+            intensity=None,
+            level=None,
+            word=BACKGROUND,
+            color=scene.background,
         )
-    raster = Raster(scene.view, sight.points.lines, sight.points.elements)
+    camera = Camera(scene.view, sight.points.lines, sight.points.elements)
     at_pixel = line // sight.block, element // sight.block
-    point = point_at(scene, raster, seen.polygon, *at_pixel)
-    surface = scene.surfaces[point.surface - 1]
+    point = point_at(scene, camera, seen.polygon, *at_pixel)
     lights = [
-        light_at(light, number, scene, surface, point)
-        for number, light in enumerate(scene.lights_in_world, start=1)
+        light_at(light, number, scene, point) for number, light in enumerate(scene.lights_in_world, start=1)
     ]
     lights.sort(key=lambda each: -each.contribution)
     intensity = scene.ambient + math.fsum(each.contribution for each in lights)
@@ -75,5 +88,14 @@ def explain(sight: Sight, image: DisplayImage, line: int, element: int) -> Expla
         level = level_at(image, point, intensity, at_pixel)
         word, color = word_of(level), color_of(level)
     return Explanation(
-        scene.name, line, element, point, scene.ambient, tuple(lights), intensity, level, word, color
+        scene=scene.name,
+        line=line,
+        element=element,
+        point=point,
+        ambient=scene.ambient,
+        lights=tuple(lights),
+        intensity=intensity,
+        level=level,
+        word=word,
+        color=color,
     )

@@ -39,6 +39,9 @@ from autocolor.scene.scalar import LARGEST_SCALAR, Scalar
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Paint
 
+DARKEST_SHADE: Final = 0.5
+"""The brightness of the lowest shade of a band, so that its color can be recognized."""
+
 ROUNDING: Final = 2.0**-20
 """The rounding of intensities and scalars in the picture, as a fraction of the largest."""
 
@@ -90,52 +93,53 @@ def level_at(
 ) -> LevelExplained:
     """The level of an intensity at a pixel of an image whose words stand for levels."""
     scene, picture = image.scene, image.mapped
+    paint = scene.surfaces[at.surface - 1].paint
+    first, levels = image.ranges[at.surface_name]
+
+    # The fraction of the range that is mapped.
     extents = mapped_ranges(picture, scene.scaling, scene.exposure)
     extent = extents[at.surface]
     low, high = (float(end * picture.scale) for end in extent)
-    of_object = extent is extents[WHOLE]
-    is_mapped = has_extent(extent)
-    fraction = min(max((intensity - low) / (high - low), 0.0), 1.0) if is_mapped else 0.5
-    if not is_mapped:
-        mapped = 0.5
-    elif scene.mapping == "equalize":
-        own = [
-            picture.relative[each.pixels]
-            for each in picture.slices
-            if of_object or each.surface_number == at.surface
-        ]
-        everything = np.concatenate(own).astype(np.float64) * picture.scale
-        mapped = equalized(everything, low, high, intensity)
-    else:
-        mapped = curved(scene.mapping, fraction)
-    first, levels = image.ranges[at.surface_name]
-    surface = scene.surfaces[at.surface - 1]
-    bands, scalar = image.bands.get(at.surface_name), None
-    darkest = low / high if scene.contrast == "floor" and high > 0 else 0.0
+    of_object, is_mapped = extent is extents[WHOLE], has_extent(extent)
+    fraction = mapped = 0.5
+    if is_mapped:
+        fraction = mapped = min(max((intensity - low) / (high - low), 0.0), 1.0)
+        if scene.mapping == "equalize":
+            relative = [
+                picture.relative[each.pixels]
+                for each in picture.slices
+                if of_object or each.surface_number == at.surface
+            ]
+            everything = np.concatenate(relative).astype(np.float64) * picture.scale
+            mapped = equalized(everything, low, high, intensity)
+        else:
+            mapped = curved(scene.mapping, fraction)
+
+    # The levels: of the surface, or of the shades of a band.
+    bands, scalar, darkest = image.bands.get(at.surface_name), None, 0.0
     if bands is not None and scene.scalar is not None:
-        scalar = scalar_at(scene, at, bands)
-        levels = bands.shades
-        darkest = darkest if scene.contrast == "floor" else 0.5
+        scalar, levels, darkest = scalar_at(scene, at, bands), bands.shades, DARKEST_SHADE
+    if scene.contrast == "floor":
+        darkest = low / high if high > 0 else 0.0
     threshold = ordered_threshold(*at_pixel) if scene.dither == "ordered" and is_mapped else 0.5
     level = math.floor(mapped * (levels - 1) + threshold)
     brightness = darkest + (1 - darkest) * level / (levels - 1) if levels > 1 else 1.0
-    paint = surface.paint
     return LevelExplained(
-        "object" if of_object else "surface",
-        bool(held_name(scene.exposure, at.surface_name)),
-        low,
-        high,
-        fraction,
-        mapped,
-        threshold,
-        level,
-        levels,
-        first,
-        scalar,
-        paint.object_color,
-        paint.light_color,
-        0.0 if scalar is not None else light_share(paint, level, levels),
-        brightness,
+        range_of="object" if of_object else "surface",
+        is_held=bool(held_name(scene.exposure, at.surface_name)),
+        minimum=low,
+        maximum=high,
+        fraction=fraction,
+        mapped_fraction=mapped,
+        threshold=threshold,
+        level=level,
+        levels=levels,
+        first_word=first,
+        scalar=scalar,
+        object_color=paint.object_color,
+        light_color=paint.light_color,
+        light_share=0.0 if scalar is not None else light_share(paint, level, levels),
+        brightness=brightness,
     )
 
 

@@ -7,7 +7,7 @@ where cos(I) > 0. The intensity at a point is the sum over all lights and the am
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Final
@@ -24,7 +24,6 @@ from autocolor.scene.reflection_models import (
     SpecularGrowth,
 )
 from autocolor.scene.scene import Scene
-from autocolor.scene.surfaces import Surface
 
 ON_THE_EDGE: Final = 1e-9
 """Assumed: a point this close to the edge of a control, as a fraction of the sizes, counts as on the edge.
@@ -40,8 +39,8 @@ class LightExplained:
     """The contribution of one light, which is `diffuse` + `specular`.
 
     `cos_incidence`, `cos_eye` and `cos_light` are the cosines of I, E and L; the last is None for a light
-    without a direction. `controls` has the share that each control of the light leaves, 0 to 1, by its name.
-    `specular_factor` is cos^N(E), or what takes its place under another reflection model.
+    without a direction. `controls` has the name of each control of the light, and the share that it leaves,
+    0 to 1. `specular_factor` is cos^N(E), or what takes its place under another reflection model.
     """
 
     light: int
@@ -50,7 +49,7 @@ class LightExplained:
     cos_incidence: float
     cos_eye: float
     cos_light: float | None
-    controls: Mapping[str, float]
+    controls: tuple[tuple[str, float], ...]
     specular_factor: float
     diffuse: float
     specular: float
@@ -58,7 +57,7 @@ class LightExplained:
     @property
     def share(self) -> float:
         """The share of the light that all controls leave, 0 to 1."""
-        return math.prod(self.controls.values())
+        return math.prod(share for _, share in self.controls)
 
     @property
     def contribution(self) -> float:
@@ -66,7 +65,7 @@ class LightExplained:
         return self.diffuse + self.specular
 
 
-def light_at(light: Light, number: int, scene: Scene, surface: Surface, at: PointExplained) -> LightExplained:
+def light_at(light: Light, number: int, scene: Scene, at: PointExplained) -> LightExplained:
     """The contribution of a light of the world, the row `number` of the light table, at a point."""
     to_light = direction_to(light, at.point)
     cos_incidence, cos_eye = dot(at.normal, to_light), dot(at.reflected_view, to_light)
@@ -75,24 +74,22 @@ def light_at(light: Light, number: int, scene: Scene, surface: Surface, at: Poin
         controls["surfaces"] = float(light.links.shines_on_surface(at.surface_name))
     if light.links.depend_on_parts:
         controls["parts"] = float(bool(light.links.lit_parts([at.part_name])))
-    reflectance, factor = surface.reflectance, 0.0
-    reaches = light.intensity * math.prod(controls.values())
+    reflectance, reaches, factor = at.reflectance, 0.0, 0.0
     if cos_incidence > (GRAZING if light.at_infinity else 0.0):
+        reaches = light.intensity * math.prod(controls.values())
         to_eye = unit(minus(scene.view.eye, at.point))
         factor = specular_factor(reflectance.model, to_light, at.normal, to_eye)
-    else:
-        reaches = 0.0
     return LightExplained(
-        number,
-        light.name,
-        light.intensity,
-        cos_incidence,
-        cos_eye,
-        None if light.axis is None else cos_light_of(light, at.point),
-        controls,
-        factor,
-        reaches * reflectance.diffuse * cos_incidence if reaches else 0.0,
-        reaches * reflectance.specular * factor,
+        light=number,
+        name=light.name,
+        intensity=light.intensity,
+        cos_incidence=cos_incidence,
+        cos_eye=cos_eye,
+        cos_light=None if light.axis is None else cos_light_of(light, at.point),
+        controls=tuple(controls.items()),
+        specular_factor=factor,
+        diffuse=reaches * reflectance.diffuse * max(cos_incidence, 0.0),
+        specular=reaches * reflectance.specular * factor,
     )
 
 

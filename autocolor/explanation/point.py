@@ -8,7 +8,7 @@ interpolated on the surface, not in the picture.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, NamedTuple
@@ -16,9 +16,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from autocolor.checks import Vector
-from autocolor.scene.columns import to_plain
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import Scene
+from autocolor.scene.surfaces import Reflectance
 from autocolor.scene.view import View
 
 
@@ -35,7 +35,7 @@ class Corner:
 class PointExplained:
     """The visible point: the rows of the tables that lead to it, and its vectors in object coordinates.
 
-    `reflectance` has the columns of the surface's reflectance. `normal` is the unit normal N; it is
+    `reflectance` is the surface's. `normal` is the unit normal N; it is
     interpolated with the length `normal_length`, normalized, and turned to the eye if `is_turned`.
     `reflected_view` is R = 2 (N.V) N - V. `distance` leads from the eye to the point.
     """
@@ -46,7 +46,7 @@ class PointExplained:
     part_name: str
     surface: int
     surface_name: str
-    reflectance: Mapping[str, object]
+    reflectance: Reflectance
     point: Vector
     distance: float
     normal: Vector
@@ -55,7 +55,7 @@ class PointExplained:
     reflected_view: Vector
 
 
-class Raster(NamedTuple):
+class Camera(NamedTuple):
     """A view and the lines and elements of a picture. Pixels are square, their centers at half-integers."""
 
     view: View
@@ -94,14 +94,14 @@ class Vertex(NamedTuple):
         )
 
 
-class Crossing(NamedTuple):
+class LinePoint(NamedTuple):
     """A place on a line of the picture: x in pixels, the inverse depth, and the interpolated normal."""
 
     x: float
     inverse_depth: float
     normal: Vector
 
-    def toward(self, other: Crossing, fraction: float) -> Crossing:
+    def toward(self, other: LinePoint, fraction: float) -> LinePoint:
         """The place at a fraction of the way to another in the picture.
 
         The inverse depth is linear in the picture. The normal is linear on the surface, where the fraction is
@@ -110,10 +110,10 @@ class Crossing(NamedTuple):
         inverse_depth = (1 - fraction) * self.inverse_depth + fraction * other.inverse_depth
         on_surface = fraction * other.inverse_depth / inverse_depth
         x = self.x + fraction * (other.x - self.x)
-        return Crossing(x, inverse_depth, between(self.normal, other.normal, on_surface))
+        return LinePoint(x, inverse_depth, between(self.normal, other.normal, on_surface))
 
 
-def point_at(scene: Scene, raster: Raster, polygon: int, line: int, element: int) -> PointExplained:
+def point_at(scene: Scene, camera: Camera, polygon: int, line: int, element: int) -> PointExplained:
     """The point of a polygon, a row of the polygon table counted from 0, that is seen at a pixel."""
     mesh, part = scene.mesh, scene.parts[scene.mesh.part_numbers[polygon]]
     surface = next(row for row in scene.surfaces if row.name == part.surface)
@@ -121,26 +121,26 @@ def point_at(scene: Scene, raster: Raster, polygon: int, line: int, element: int
         Corner(node + 1, vector_of(mesh.coordinates[node]), vector_of(mesh.normals.vectors[normal]))
         for node, normal in corner_rows(mesh, polygon)
     ]
-    found, is_behind = _found(corners, raster, mesh, line, element)
-    point = raster.in_world(line, element, 1 / found.inverse_depth)
+    found, is_behind = _found(corners, camera, mesh, line, element)
+    point = camera.in_world(line, element, 1 / found.inverse_depth)
     is_turned = is_behind and surface.two_sided
     normal = unit(times(-1 if is_turned else 1, found.normal))
     # The view direction V, from the point to the eye, reflected at the normal.
-    to_eye = unit(minus(raster.view.eye, point))
+    to_eye = unit(minus(camera.view.eye, point))
     return PointExplained(
-        polygon + 1,
-        tuple(corners),
-        int(mesh.part_numbers[polygon]) + 1,
-        part.name,
-        scene.surfaces.index(surface) + 1,
-        surface.name,
-        to_plain(surface.reflectance),
-        point,
-        math.dist(raster.view.eye, point),
-        normal,
-        length(found.normal),
-        is_turned,
-        minus(times(2 * dot(normal, to_eye), normal), to_eye),
+        polygon=polygon + 1,
+        corners=tuple(corners),
+        part=int(mesh.part_numbers[polygon]) + 1,
+        part_name=part.name,
+        surface=scene.surfaces.index(surface) + 1,
+        surface_name=surface.name,
+        reflectance=surface.reflectance,
+        point=point,
+        distance=math.dist(camera.view.eye, point),
+        normal=normal,
+        normal_length=length(found.normal),
+        is_turned=is_turned,
+        reflected_view=minus(times(2 * dot(normal, to_eye), normal), to_eye),
     )
 
 
@@ -153,53 +153,66 @@ def corner_rows(mesh: Mesh, polygon: int) -> list[tuple[int, int]]:
 
 
 def _found(
-    corners: Sequence[Corner], raster: Raster, mesh: Mesh, line: int, element: int
-) -> tuple[Crossing, bool]:
-    """What the scan line finds at the center of a pixel, and whether the eye sees the back of the polygon.
+    corners: Sequence[Corner], camera: Camera, mesh: Mesh, line: int, element: int
+) -> tuple[LinePoint, bool]:
+    """The point on the scan line at the center of a pixel, and whether the eye sees the polygon's back.
 
     Of the pieces of a polygon, the nearest that covers the pixel is seen. If rounding put the pixel beside
-    all of them, it is the least distant.
+    all of them, any may be.
     """
-    vertices = [Vertex(raster.in_camera(corner.coordinates), corner.normal) for corner in corners]
+    vertices = [Vertex(camera.in_camera(corner.coordinates), corner.normal) for corner in corners]
+    pieces = list(pieces_of(vertices, near_plane(mesh, camera.view), camera))
     candidates = []
+    # A line through a corner may cross no edge by rounding; then the lines a little below and above do.
     for aside in (0.0, 1e-6, -1e-6):
-        for quad in before_the_eye(vertices, near_plane(mesh, raster.view)):
-            is_behind = _is_seen_from_behind([on_raster(each, raster)[:2] for each in quad])
-            for piece in without_zigzag(quad, raster):
-                crossings = crossings_of(piece, raster, line + 0.5 + aside)
-                if len(crossings) == 2 and crossings[0].x < crossings[1].x:
-                    left, right = crossings
-                    fraction = (element + 0.5 - left.x) / (right.x - left.x)
-                    outside = max(-fraction, fraction - 1, 0.0) * (right.x - left.x)
-                    at_pixel = left.toward(right, fraction)
-                    candidates.append((outside > 1e-6, -at_pixel.inverse_depth, is_behind, at_pixel))
+        for piece, is_behind in pieces:
+            crossings = crossings_of(piece, camera, line + 0.5 + aside)
+            if len(crossings) == 2 and crossings[0].x < crossings[1].x:
+                left, right = crossings
+                fraction = (element + 0.5 - left.x) / (right.x - left.x)
+                outside = max(-fraction, fraction - 1, 0.0) * (right.x - left.x)
+                at_pixel = left.toward(right, fraction)
+                candidates.append((outside > 1e-6, -at_pixel.inverse_depth, is_behind, at_pixel))
         if candidates:
             break
     if not candidates:
-        # A sliver of less than a rounding.
-        x, _, inverse_depth = on_raster(vertices[0], raster)
-        return Crossing(x, abs(inverse_depth), vertices[0].normal), False
+        # A sliver that is thinner than a rounding: any of its points.
+        x, _, inverse_depth = on_raster(vertices[0], camera)
+        return LinePoint(x, abs(inverse_depth), vertices[0].normal), False
     *_, is_behind, at_pixel = min(candidates, key=lambda each: each[:2])
     return at_pixel, is_behind
 
 
-def on_raster(vertex: Vertex, raster: Raster) -> tuple[float, float, float]:
+def pieces_of(
+    vertices: Sequence[Vertex], near: float, camera: Camera
+) -> Iterator[tuple[Sequence[Vertex], bool]]:
+    """The pieces of a polygon that the scan line interpolates, and whether the eye sees the back of each.
+
+    A line crosses the edges of each piece at most twice.
+    """
+    for polygon in before_the_eye(vertices, near):
+        is_behind = _is_seen_from_behind([on_raster(vertex, camera)[:2] for vertex in polygon])
+        for piece in without_zigzag(polygon, camera):
+            yield piece, is_behind
+
+
+def on_raster(vertex: Vertex, camera: Camera) -> tuple[float, float, float]:
     """The x and y of a vertex in the picture, in pixels from its upper left, and the inverse depth."""
     right, down, depth = vertex.place
-    scale = raster.focal_length / depth
-    return scale * right + raster.elements / 2, scale * down + raster.lines / 2, 1 / depth
+    scale = camera.focal_length / depth
+    return scale * right + camera.elements / 2, scale * down + camera.lines / 2, 1 / depth
 
 
-def crossings_of(piece: Sequence[Vertex], raster: Raster, y: float) -> list[Crossing]:
+def crossings_of(piece: Sequence[Vertex], camera: Camera, y: float) -> list[LinePoint]:
     """Where a line of the picture crosses the edges of a polygon, from left to right."""
     crossings = []
     for one, other in zip(piece, [*piece[1:], piece[0]], strict=True):
         (x, top, inverse_depth), (other_x, bottom, other_inverse_depth) = (
-            on_raster(vertex, raster) for vertex in (one, other)
+            on_raster(vertex, camera) for vertex in (one, other)
         )
         if min(top, bottom) <= y < max(top, bottom):
-            start = Crossing(x, inverse_depth, one.normal)
-            end = Crossing(other_x, other_inverse_depth, other.normal)
+            start = LinePoint(x, inverse_depth, one.normal)
+            end = LinePoint(other_x, other_inverse_depth, other.normal)
             crossings.append(start.toward(end, (y - top) / (bottom - top)))
     return sorted(crossings, key=lambda each: each.x)
 
@@ -241,14 +254,14 @@ def before_the_eye(vertices: Sequence[Vertex], near: float) -> list[list[Vertex]
     return [[rest[0], *rest[number : number + 3]] for number in range(1, len(rest) - 1, 2)]
 
 
-def without_zigzag(quad: list[Vertex], raster: Raster) -> list[list[Vertex]]:
+def without_zigzag(quad: list[Vertex], camera: Camera) -> list[list[Vertex]]:
     """The quad, or two triangles of a quad around which the lines fall, rise, fall and rise.
 
     A line would cross such a quad four times. It is cut along the diagonal that divides its other corners in
     the picture; if both diagonals do or neither does, along the shorter one.
     """
-    places = [on_raster(vertex, raster)[:2] for vertex in quad]
-    lines = [min(max(math.ceil(y - 0.5), 0), raster.lines) for _, y in places]
+    places = [on_raster(vertex, camera)[:2] for vertex in quad]
+    lines = [min(max(math.ceil(y - 0.5), 0), camera.lines) for _, y in places]
     falls = [(after > line) - (after < line) for line, after in pairwise([*lines, lines[0]])]
     if len(quad) < 4 or falls[0] == 0 or falls != [falls[0], -falls[0], falls[0], -falls[0]]:
         return [quad]

@@ -15,6 +15,7 @@ from autocolor.explanation.explain import Explanation
 from autocolor.explanation.level import LevelExplained
 from autocolor.explanation.light import LightExplained
 from autocolor.explanation.point import PointExplained
+from autocolor.scene.columns import to_plain
 from autocolor.scene.kinds import in_digits
 
 LABEL: Final = 13
@@ -64,7 +65,9 @@ def _point_rows(at: PointExplained) -> Iterable[TextRow]:
     """The rows of the tables, and the point."""
     decimals = _decimals([*(corner.coordinates for corner in at.corners), at.point])
     nodes = ", ".join(str(corner.node) for corner in at.corners)
-    columns = ", ".join(f"{name.replace('_', ' ')} {_value(value)}" for name, value in at.reflectance.items())
+    columns = ", ".join(
+        f"{name.replace('_', ' ')} {_value(value)}" for name, value in to_plain(at.reflectance).items()
+    )
     yield TextRow("surface", f"{at.surface}  {at.surface_name}: {columns}")
     yield TextRow("part", f"{at.part}  {at.part_name}")
     yield TextRow("polygon", f"{at.polygon}  nodes {nodes}")
@@ -120,7 +123,7 @@ def _control_rows(light: LightExplained) -> Sequence[TextRow]:
     """The factors of the controls of a light, if it has any."""
     if not light.controls:
         return ()
-    factors = " x ".join(f"{name} {share:.4g}" for name, share in light.controls.items())
+    factors = " x ".join(f"{name} {share:.4g}" for name, share in light.controls)
     return (TextRow("", f"   {factors}"),)
 
 

@@ -18,7 +18,7 @@ from autocolor.explanation.level import (
     scalar_value,
     word_of,
 )
-from autocolor.explanation.point import Raster, point_at
+from autocolor.explanation.point import Camera, point_at
 from autocolor.images import display_image
 from autocolor.mapping.bands import Bands, band_numbers
 from autocolor.mapping.intensity import ordered_thresholds
@@ -44,10 +44,10 @@ def test_every_computed_scalar_is_that_of_the_picture(name: str) -> None:
     values, points = both.picture.scalar_values, both.points
     assert values is not None
     assert scene.scalar is not None
-    raster = Raster(view, LINES, ELEMENTS)
+    camera = Camera(view, LINES, ELEMENTS)
     for place in range(0, len(points.pixels), 7):
         pixel = int(points.pixels[place])
-        at = point_at(scene, raster, int(points.polygon_numbers[place]), *divmod(pixel, ELEMENTS))
+        at = point_at(scene, camera, int(points.polygon_numbers[place]), *divmod(pixel, ELEMENTS))
         found, expected = scalar_value(scene.mesh, scene.scalar, at), float(values[place])
         if name == "zebra":
             # The phase goes around.

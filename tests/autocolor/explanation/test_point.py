@@ -7,8 +7,8 @@ import pytest
 
 from autocolor import Mesh, Scene, View, scene_of
 from autocolor.explanation.point import (
+    Camera,
     PointExplained,
-    Raster,
     corner_rows,
     dot,
     length,
@@ -26,9 +26,9 @@ LINES, ELEMENTS = 24, 32
 def every_point(scene: Scene) -> list[PointExplained]:
     """The points at all pixels that see a polygon."""
     points = visible_surfaces(scene.mesh, scene.view, (1,), LINES, ELEMENTS)
-    raster = Raster(scene.view, LINES, ELEMENTS)
+    camera = Camera(scene.view, LINES, ELEMENTS)
     return [
-        point_at(scene, raster, polygon, *divmod(pixel, ELEMENTS))
+        point_at(scene, camera, polygon, *divmod(pixel, ELEMENTS))
         for pixel, polygon in zip(points.pixels.tolist(), points.polygon_numbers.tolist(), strict=True)
     ]
 
