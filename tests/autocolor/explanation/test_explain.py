@@ -77,7 +77,8 @@ def test_an_explanation_agrees_with_the_picture(scene: Scene, seed: int) -> None
         most = 1 + (level.levels * rounding / extent if extent > 0 else 0)
         if level.scalar is None or level.scalar.shades > 1:
             assert abs(explanation.word - int(image.words[line, element])) <= most
-        assert explanation.color == tuple(image.entries[explanation.word].tolist())
+        # Rounding decides about halves of a component, and of a band between two colors.
+        assert explanation.color == pytest.approx(image.entries[explanation.word].astype(int), abs=1)
 
 
 def test_all_lights_and_the_ambient_light_add_up_to_the_intensity() -> None:

@@ -80,7 +80,10 @@ def test_bands_are_those_of_the_picture(count: int, beyond: tuple[bool, bool], v
 
 @given(scales | st.sampled_from(list(COLOR_SCALES)), st.integers(1, 40))
 def test_the_colors_of_bands_are_those_of_the_scale(scale: str, count: int) -> None:
-    assert [list(color) for color in band_colors(scale, count)] == scale_colors(scale, count).tolist()
+    # Rounding decides about halves.
+    found, expected = np.array([*band_colors(scale, count)]), scale_colors(scale, count).astype(int)
+    assert np.abs(found - expected).max() <= 1
+    assert found[[0, -1]].tolist() == expected[[0, -1]].tolist()
 
 
 def test_the_thresholds_are_those_of_the_picture() -> None:
