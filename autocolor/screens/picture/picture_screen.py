@@ -106,8 +106,8 @@ class PictureScreen(OverPicture):
                 run=partial(setattr, session, "watches", True),
             ),
             Button(
-                "explain",
-                "Click a pixel then: every number that leads to its color; also Shift and a click.",
+                "explain a pixel",
+                "Click a pixel next: every number that leads to its color; also Shift and a click.",
                 run=self._explain,
             ),
             Button(

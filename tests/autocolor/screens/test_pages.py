@@ -18,7 +18,7 @@ from tests.autocolor.screens.boxes import boxes
 from tests.autocolor.widgets.drawing import checksum
 
 PAGES = {
-    "picture": 622091577,
+    "picture": 2590435057,
     "light and view": 3442920221,
     "lights": 2635481227,
     "reflectance": 571573069,

@@ -57,7 +57,7 @@ def test_shift_and_a_click_at_a_highlight_explain_it_and_do_not_pick_it(hand: Ha
 def test_the_unit_explains_by_a_row_of_the_menu_and_a_click(hand: Hand) -> None:
     element, line = hand.handle("highlight of key")
     hand.open_menu()
-    hand.pick("explain")
+    hand.pick("explain a pixel")
     assert hand.viewer.message == "click the pixel to explain"
     hand.click(element, line)
     assert (hand.viewer.page, hand.viewer.session.pixel) == ("explain", (line, element))
@@ -69,7 +69,7 @@ def test_the_unit_explains_by_a_row_of_the_menu_and_a_click(hand: Hand) -> None:
 
 def test_escape_takes_the_row_of_the_menu_back(hand: Hand) -> None:
     hand.open_menu()
-    hand.pick("explain")
+    hand.pick("explain a pixel")
     hand.viewer.on_key("escape")
     hand.viewer.on_key("escape")
     hand.click(ELEMENT, LINE)
