@@ -59,7 +59,8 @@ class ExplainScreen(Screen):
         self._items: Cached[Sequence[Item]] = Cached()
 
     def enter(self) -> None:
-        more = "; so do arrows; Esc: back" if self.session.has_keyboard else "; the right edge: the menu"
+        keys = "; the arrow keys, too; Esc: back"
+        more = keys if self.session.has_keyboard else "; the right edge: the menu"
         self.session.tell(f"{self.help}{more}", persistent=True)
 
     def items(self) -> Sequence[Item]:
