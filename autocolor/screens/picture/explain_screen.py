@@ -59,7 +59,7 @@ class ExplainScreen(Screen):
         self._items: Cached[Sequence[Item]] = Cached()
 
     def enter(self) -> None:
-        keys = "; the arrow keys, too; Esc: back"
+        keys = "; arrows, too; Esc: back"
         more = keys if self.session.has_keyboard else "; the right edge: the menu"
         self.session.tell(f"{self.help}{more}", persistent=True)
 
