@@ -35,6 +35,7 @@ from autocolor.arrays import Bytes, Words
 from autocolor.budget import allowing, validated_limit
 from autocolor.checks import nearest, shown
 from autocolor.errors import AutocolorError, UsageError
+from autocolor.explanation.explain import Explanation, explain
 from autocolor.files.stamps import stamp_of
 from autocolor.images import display_image
 from autocolor.journal.history import History, is_picture
@@ -143,6 +144,15 @@ class Studio:
     def seen_at(self, line: int, element: int) -> Seen | None:
         """The point, normal and surface that a pixel of the display shows; None on the background."""
         return seen_at(self.sight, line, element)
+
+    def explain(self, line: int, element: int) -> Explanation:
+        """Why a pixel of the display looks as it does: every number from the nodes to the color.
+
+        A coarse picture is refined first. `to_plain` makes dictionaries of the explanation. Raises UsageError
+        if there is no such line or element.
+        """
+        self.refine()
+        return explain(self.sight, self._shown, line, element)
 
     def highlight_of(self, light: str, surface: str | None = None) -> tuple[int, int] | None:
         """The line and element of a light's highlight, on one surface or on all; None without a highlight.

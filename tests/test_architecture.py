@@ -36,7 +36,7 @@ PUBLIC_NAMES = {
 WINGS = {
     "autocolor": (
         "errors", "logs", "arrays", "immutable", "checks", "budget", "scene", "visibility", "scalars",
-        "lighting", "mapping", "files", "rendering", "sending", "images", "journal", "studio",
+        "lighting", "mapping", "files", "rendering", "sending", "images", "explanation", "journal", "studio",
         "widgets", "screens", "commands", "__main__",
     ),
     "ramtek_emu": (

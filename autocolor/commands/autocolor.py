@@ -27,6 +27,7 @@ class AutocolorGroup(CommandGroup):
         "recolor": "change the colors of a saved picture, without rendering it again",
         "view": "show a scene in an interactive window",
         "info": "print the counts, sizes and ranges of a scene",
+        "explain": "explain a pixel of a scene, from the nodes to the color",
         "validate": "list every problem of a scene and every fault of its mesh",
         "convert": "write a mesh or a scene in another format",
         "show": "show a scene on another display, and work there with its joystick",

@@ -478,7 +478,8 @@ class Board:
             self.screen.place(self.held, element, line)
             self._let_go()
         else:
-            handle = self.handle_at(element, line)
+            # Modifiers are for the screen.
+            handle = None if gesture.shift else self.handle_at(element, line)
             if handle is None:
                 self.screen.pick(gesture)
                 return

@@ -50,6 +50,9 @@ HISTORY: Final = "history"
 SPLIT: Final = "split"
 """The name of the screen with two states, left and right of a line."""
 
+EXPLAIN: Final = "explain"
+"""The name of the screen that explains a pixel."""
+
 MESSAGE_SECONDS: Final = 5.0
 """Assumed: how long a message is shown."""
 
@@ -105,6 +108,10 @@ class Session:
         """The name of the screen that is shown; setting it turns to another screen."""
         self.watches = False
         """Whether the user asked to see the picture come in line by line."""
+        self.explains = False
+        """Whether the next click in the picture explains its pixel."""
+        self.pixel = (0, 0)
+        """The line and the element of the pixel that is explained."""
         self.leaves = False
         """Whether the user asked to leave the program."""
         self.same_step = False
@@ -168,6 +175,11 @@ class Session:
         if screen != self.screen:
             self.comparing.end()
         self.screen = screen
+
+    def explain(self, line: int, element: int) -> None:
+        """Turn to the explanation of a pixel."""
+        self.explains, self.pixel = False, (line, element)
+        self.turn_to(EXPLAIN)
 
     def words_at(self, element: int, line: int, elements: int = 1, lines: int = 1) -> Words:
         """The words of a window, (lines, elements), read back from the display."""

@@ -25,6 +25,7 @@ from autocolor.screens.input import Binding, Chord, Gesture, Mouse, Unit, bound_
 from autocolor.screens.light_and_view.light_and_view_screen import LightAndViewScreen
 from autocolor.screens.lights_screen import LightsScreen
 from autocolor.screens.mapping_screen import MappingScreen
+from autocolor.screens.picture.explain_screen import ExplainScreen
 from autocolor.screens.picture.history_screen import HistoryScreen
 from autocolor.screens.picture.picture_edits import PictureEdits, sides_of
 from autocolor.screens.picture.picture_screen import PictureScreen
@@ -508,6 +509,7 @@ SCREENS: Final[tuple[type[Screen], ...]] = (
     ScalarScreen,
     VariantsScreen,
     HistoryScreen,
+    ExplainScreen,
     FileScreen,
     SplitScreen,
     EntriesScreen,
@@ -669,6 +671,7 @@ WINDOW_KEYS: Final = (
     ("F11, Alt+Enter", "full screen, and back"),
     ("Ctrl+Q", "leave; you are asked first about unsaved changes"),
     ("mouse", "drag: turn; Shift, middle: move; Ctrl, wheel: closer"),
+    ("mouse, Shift+click", "explain the pixel: every number that leads to its color"),
     ("mouse, highlight", "drag it, or click, and click where it goes"),
     ("joystick unit", "ENTER (left button): pick, place; TRACK (right), held: drag"),
     ("a file dropped", "open it: a scene, a mesh or a picture file"),

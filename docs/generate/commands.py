@@ -78,6 +78,7 @@ COMMANDS = (
     (2, "autocolor render car --set lights.kye.on=false"),
     (2, "autocolor render car --set ambient=none"),
     (2, "autocolor render car --light kye"),
+    (2, "autocolor explain car 480 0"),
     (2, "autocolor recolor car.npz body --object rde"),
     (2, "autocolor recolor car.npz bodi --object red"),
     (2, "autocolor show car --to 127.0.0.1:9300"),

@@ -1,51 +1,28 @@
 """Slow, obvious twins, made from the paper and from a scene's values alone: no function of the renderer's.
 
-Every formula is written for one point, one intensity or one level, in plain Python floats.
+Every formula is written for one point, one intensity or one level, in plain Python floats. More such twins
+are in `autocolor.explanation`, which is computed apart from the renderer.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from autocolor import Light, Mesh, Paint, Reflectance, View
-from autocolor.scene.reflection_models import BlinnPhong, CookTorrance, Phong, ReflectionModel, SpecularGrowth
+from autocolor.explanation.light import direction_to, edge_share
+from autocolor.explanation.point import cross, dot, minus, plus, times, unit
 
 Vector = Sequence[float]
 
 WORLD_AXES: list[Vector] = [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)]
 
 
-def plus(a: Vector, b: Vector) -> list[float]:
-    return [x + y for x, y in zip(a, b, strict=True)]
-
-
-def minus(a: Vector, b: Vector) -> list[float]:
-    return [x - y for x, y in zip(a, b, strict=True)]
-
-
-def times(factor: float, a: Vector) -> list[float]:
-    return [factor * x for x in a]
-
-
-def dot(a: Vector, b: Vector) -> float:
-    return math.fsum(x * y for x, y in zip(a, b, strict=True))
-
-
-def cross(a: Vector, b: Vector) -> list[float]:
-    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-
-
-def unit(a: Vector) -> list[float]:
-    return times(1 / math.sqrt(dot(a, a)), a)
-
-
-def ray(view: View, lines: int, elements: int, line: int, element: int) -> list[float]:
+def ray(view: View, lines: int, elements: int, line: int, element: int) -> tuple[float, float, float]:
     """The direction from the eye through the center of a pixel, as long as it is 1 deep."""
     assert view.direction is not None or view.target is not None
     toward = view.direction if view.direction is not None else minus(view.target or (), view.eye)
@@ -80,7 +57,7 @@ def light_at(light: Light, point: Vector, normal: Vector, eye: Vector, reflectan
         return Lit(0.0, math.inf)
     left = controlled(light, point)
     # Figure 1: the angle of incidence I.
-    to_light = ray_to(light, point)
+    to_light = direction_to(light, point)
     cos_i = dot(normal, to_light)
     from_jump = min(left.from_jump, abs(cos_i))
     if left.intensity == 0 or cos_i <= 0:
@@ -95,7 +72,7 @@ def light_at(light: Light, point: Vector, normal: Vector, eye: Vector, reflectan
 def controlled(light: Light, point: Vector) -> Lit:
     """What all controls leave of a light of intensity 1 at a point."""
     jumps = [math.inf]
-    to_light = ray_to(light, point)
+    to_light = direction_to(light, point)
     multiplier = 1.0
     toward = light.direction
     if light.aim is not None:
@@ -117,7 +94,7 @@ def controlled(light: Light, point: Vector) -> Lit:
             inside.append((dot(from_plane, unit(half_space.direction)), half_space.edge_width))
     for distance, width in inside:
         jumps.append(abs(distance))
-        multiplier *= soft(distance, width)
+        multiplier *= edge_share(distance, width)
     # Figure 3: the angle L between the light's direction and the ray from the light to the point.
     if toward is not None:
         cos_l = -dot(unit(toward), to_light)
@@ -129,7 +106,7 @@ def controlled(light: Light, point: Vector) -> Lit:
         if light.cone_angle is not None:
             rim = math.cos(math.radians(light.cone_angle))
             inner = rim if light.inner_angle is None else math.cos(math.radians(light.inner_angle))
-            multiplier *= soft(cos_l - rim, inner - rim)
+            multiplier *= edge_share(cos_l - rim, inner - rim)
             if light.cone_angle < 180:
                 jumps.append(abs(cos_l - rim))
     if light.falloff != "none":
@@ -139,29 +116,11 @@ def controlled(light: Light, point: Vector) -> Lit:
     return Lit(multiplier, min(jumps))
 
 
-def soft(inside: float, width: float) -> float:
-    """What an edge leaves of the light at a distance inside: all of it from the width on."""
-    if inside >= width:
-        return 1.0
-    if inside <= 0:
-        return 0.0
-    fraction = inside / width
-    return 3 * fraction**2 - 2 * fraction**3
-
-
 def frame(toward: Vector) -> list[Vector]:
     """The axes of a light: horizontal to the right of its direction, along it, and up."""
     x, y, z = along = unit(toward)
     right = unit((y, -x, 0.0) if x or y else (-z, 0.0, x))
     return [right, along, cross(right, along)]
-
-
-def ray_to(light: Light, point: Vector) -> list[float]:
-    """The unit vector from a point to a light, which is the same everywhere if the light is at infinity."""
-    if light.at_infinity:
-        assert light.axis is not None
-        return times(-1, light.axis)
-    return unit(minus(light.position, point))
 
 
 def level_of(fraction: float, levels: int) -> int:
@@ -236,90 +195,3 @@ def _meetings(
     before = depth > 0
     rows = (number[real][before], depth[before], inside[before])
     return list(zip(*(row.tolist() for row in rows), strict=True))
-
-
-def mapped(mapping: str | Sequence[Vector], fraction: float) -> float:
-    """The fraction of the levels at a fraction of the range, under any mapping curve but "equalize"."""
-    if not isinstance(mapping, str):
-        for (x, y), (x_next, y_next) in pairwise(mapping):
-            if fraction <= x_next:
-                return y + (fraction - x) / (x_next - x) * (y_next - y)
-        raise AssertionError(f"beyond the curve: {fraction}")
-    curves = {
-        "linear": fraction,
-        "gamma": math.pow(fraction, 1 / 2.2),
-        "logarithm": math.log1p(15 * fraction) / math.log(16),
-    }
-    return curves[mapping]
-
-
-def specular_factor(model: ReflectionModel, light: Vector, normal: Vector, eye: Vector) -> float:
-    """What stands in the place of cos^N(E) under a model, for unit vectors to the light and to the eye."""
-    n_l, n_v = dot(normal, light), dot(normal, eye)
-    half = unit(plus(light, eye))
-    n_h, v_h = dot(normal, half), dot(eye, half)
-    if isinstance(model, Phong):
-        reflected = minus(times(2 * n_v, normal), eye)
-        return specular_growth(model.growth, n_l) * math.pow(max(dot(reflected, light), 0.0), model.exponent)
-    if isinstance(model, BlinnPhong):
-        return specular_growth(model.growth, n_l) * math.pow(max(n_h, 0.0), model.exponent)
-    assert isinstance(model, CookTorrance)
-    m, f0 = model.roughness, model.normal_reflectance
-
-    def beckmann(cosine: float) -> float:
-        tangent = math.tan(math.acos(min(cosine, 1.0)))
-        return math.exp(-((tangent / m) ** 2)) / (m * m * cosine**4)
-
-    def fresnel(cosine: float) -> float:
-        if f0 == 1:
-            return 1.0
-        index = (1 + math.sqrt(f0)) / (1 - math.sqrt(f0))
-        # Fresnel's two equations, from the angles on both sides of the surface.
-        outside = math.acos(min(cosine, 1.0))
-        inside = math.asin(math.sin(outside) / index)
-        across = (math.cos(outside) - index * math.cos(inside)) / (
-            math.cos(outside) + index * math.cos(inside)
-        )
-        along = (math.cos(inside) - index * math.cos(outside)) / (
-            math.cos(inside) + index * math.cos(outside)
-        )
-        return (across * across + along * along) / 2
-
-    attenuation = min(1.0, 2 * n_h * n_v / v_h, 2 * n_h * n_l / v_h)
-    # No silhouette is divided by less than three tenths.
-    factor = fresnel(v_h) * beckmann(n_h) * attenuation / max(n_v, 0.3)
-    return factor / (fresnel(1.0) * beckmann(1.0))
-
-
-def specular_growth(growth: SpecularGrowth, cosine: float) -> float:
-    """How many times its value at normal incidence S is, at a cosine of the angle of incidence."""
-    cosine = min(max(cosine, 0.0), 1.0)
-    if growth.fresnel_curve is not None:
-        angle = math.degrees(math.acos(cosine))
-        for (left, low), (right, high) in pairwise(growth.fresnel_curve):
-            if left <= angle <= right:
-                share = low + (high - low) * (angle - left) / (right - left)
-                return share / growth.fresnel_curve[0][1]
-    f0 = growth.base_reflectance
-    if growth.refractive_index is not None:
-        f0 = ((growth.refractive_index - 1) / (growth.refractive_index + 1)) ** 2
-    if f0 is None:
-        return 1.0
-    return (f0 + (1 - f0) * (1 - cosine) ** 5) / f0
-
-
-def weights_in(corners: Sequence[Vector], point: Vector) -> list[float]:
-    """The weights of a convex polygon's corners at a point in it, by Wachspress' quotient of areas."""
-    count = len(corners)
-    normal = cross(minus(corners[2], corners[0]), minus(corners[-1], corners[1]))
-
-    def area(a: Vector, b: Vector, c: Vector) -> float:
-        return dot(normal, cross(minus(b, a), minus(c, a)))
-
-    quotients = [
-        area(corners[at - 1], corners[at], corners[(at + 1) % count])
-        / area(corners[at - 1], corners[at], point)
-        / area(corners[at], corners[(at + 1) % count], point)
-        for at in range(count)
-    ]
-    return times(1 / math.fsum(quotients), quotients)

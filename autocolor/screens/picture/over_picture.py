@@ -74,6 +74,10 @@ class OverPicture(Screen):
         if session.comparing.is_on:
             session.end_comparing()
             return
+        lines, elements = session.studio.words.shape
+        if (gesture.shift or session.explains) and gesture.line < lines and gesture.element < elements:
+            session.explain(gesture.line, gesture.element)
+            return
         pointed = self._pointed(gesture.element, gesture.line)
         if pointed is None:
             on_legend = self._is_on_legend(gesture.element, gesture.line)

@@ -38,7 +38,8 @@ class PictureScreen(OverPicture):
         self._handles = LightHandles(session, SCREEN, has_rims=False)
 
     def handles(self) -> Sequence[Handle]:
-        return self._handles.handles()
+        # A click that explains a pixel picks no handle.
+        return () if self.session.explains else self._handles.handles()
 
     def preferred(self, near: Sequence[Handle], element: int, line: int) -> Sequence[Handle]:
         return self._handles.preferred(near, element, line)
@@ -105,9 +106,26 @@ class PictureScreen(OverPicture):
                 run=partial(setattr, session, "watches", True),
             ),
             Button(
+                "explain a pixel",
+                "Click a pixel next: every number that leads to its color; also Shift and a click.",
+                run=self._explain,
+            ),
+            Button(
                 "leave", "Leave the program; you are asked first about unsaved changes.", run=session.leave
             ),
         ]
+
+    def _explain(self) -> None:
+        """Let the next click in the picture explain its pixel."""
+        self.session.explains = True
+        self.session.tell("click the pixel to explain", persistent=True)
+
+    def escape(self) -> bool:
+        explains, self.session.explains = self.session.explains, False
+        return explains
+
+    def leave(self) -> None:
+        self.session.explains = False
 
     def _up_rows(self) -> list[Widget]:
         """The row of a mesh that seems to lie on its side."""

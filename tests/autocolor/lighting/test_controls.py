@@ -10,6 +10,8 @@ from hypothesis import strategies as st
 
 from autocolor import Flap, Flaps, HalfSpace, InputError, Light, Scene, View, render
 from autocolor.arrays import Booleans, Floats, Singles
+from autocolor.explanation.light import edge_share
+from autocolor.explanation.point import dot, unit
 from autocolor.lighting import controls as light_controls
 from autocolor.lighting.controls import (
     CONTROLS,
@@ -35,7 +37,6 @@ from autocolor.scene.lights import Links
 from autocolor.visibility.visible_points import POINT, VisiblePoints
 from autocolor.visibility.visible_surfaces import visible_surfaces
 from tests.autocolor.meshes import sphere, wall, wall_scene
-from tests.autocolor.reference import dot, soft, unit
 from tests.autocolor.strategies import Vector, directions, lights, numbers, scenes, some_of, vectors, views
 
 
@@ -396,7 +397,7 @@ def test_a_soft_half_space_on_a_wall_is_the_closed_form(
     light = Light("light", (0.3, -2.0, 0.2), half_spaces=(HalfSpace("left", point, direction, width),))
     left, points = ratio(light)
     distance = (points.world_points - point) @ direction / np.linalg.norm(direction)
-    assert left == pytest.approx([soft(each, width) for each in distance.tolist()], abs=1e-4)
+    assert left == pytest.approx([edge_share(each, width) for each in distance.tolist()], abs=1e-4)
 
 
 @given(numbers(-1, 0.5), numbers(0.1, 1.5), numbers(0.05, 2), st.sampled_from("xz"))
@@ -406,7 +407,9 @@ def test_a_soft_flap_goes_from_nothing_at_its_ends_to_all_of_it_inside(
     flap = Flap(least, least + extent, edge_width=width)
     left, points = ratio(Light("light", (0.3, -2.0, 0.2), flaps=Flaps(**{axis: flap})))
     coordinates = points.world_points[:, "xyz".index(axis)].tolist()
-    expected = [soft(each - least, width) * soft(least + extent - each, width) for each in coordinates]
+    expected = [
+        edge_share(each - least, width) * edge_share(least + extent - each, width) for each in coordinates
+    ]
     assert left == pytest.approx(expected, abs=1e-4)
 
 
@@ -553,7 +556,7 @@ def test_a_soft_cone_on_a_wall_is_the_closed_form(
     rim, width = cosine(cone_angle), cosine(inner) - cosine(cone_angle)
     # Each rounding of a cosine counts as many times as the edge is steep.
     rounding = 1e-4 + 1e-6 / width
-    expected = [soft(each - rim, width) * each**concentration for each in cosines.tolist()]
+    expected = [edge_share(each - rim, width) * each**concentration for each in cosines.tolist()]
     assert lit.astype(np.float64) / whole == pytest.approx(expected, abs=rounding)
 
 

@@ -26,6 +26,7 @@ from autocolor import (
     read_scene,
     render,
 )
+from autocolor.explanation.point import dot, minus, plus, times, unit
 from autocolor.lighting.controls import Axis, FlapEnd
 from autocolor.lighting.picking import (
     LEAST_CONE,
@@ -52,7 +53,6 @@ from autocolor.scene.reflection_models import BlinnPhong, CookTorrance, Phong, R
 from autocolor.visibility.visible_points import Seen, Sight, seen_at
 from ramtek_emu import Ramtek9300
 from tests.autocolor.meshes import cube, grid, sphere, wall, wall_scene
-from tests.autocolor.reference import dot, minus, plus, times, unit
 from tests.autocolor.sessions import car
 from tests.autocolor.strategies import Vector, directions, lights, numbers, outside_views, vectors
 

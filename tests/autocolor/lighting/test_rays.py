@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Light, View
+from autocolor.explanation.point import dot, minus, times, unit
 from autocolor.lighting.rays import (
     FARTHEST,
     camera_light,
@@ -20,7 +21,6 @@ from autocolor.lighting.rays import (
 from autocolor.visibility.visible_points import NORMAL, REFLECTED_VIEW, VisiblePoints
 from autocolor.visibility.visible_surfaces import visible_surfaces
 from tests.autocolor.meshes import cube, sphere, wall, wall_scene
-from tests.autocolor.reference import dot, minus, times, unit
 from tests.autocolor.strategies import Vector, directions, numbers, outside_views, vectors
 
 BALL = sphere(12, 8)

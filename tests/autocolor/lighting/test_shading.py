@@ -25,6 +25,8 @@ from autocolor import (
     render,
 )
 from autocolor.arrays import Floats, Singles
+from autocolor.explanation.light import specular_factor
+from autocolor.explanation.point import minus, plus, times, unit
 from autocolor.lighting.shading import DIFFUSE, SPECULAR, LightPlanes, controlled_light, light_mix, mix, shade
 from autocolor.scene.kinds import AngleCurve
 from autocolor.scene.lights import Links
@@ -32,17 +34,7 @@ from autocolor.scene.reflection_models import BlinnPhong, CookTorrance, Phong, R
 from autocolor.visibility.visible_points import VisiblePoints, point_chunks, surface_slices
 from autocolor.visibility.visible_surfaces import visible_surfaces
 from tests.autocolor.meshes import cube, sphere, wall, wall_scene
-from tests.autocolor.reference import (
-    Lit,
-    controlled,
-    light_at,
-    minus,
-    plus,
-    ray,
-    specular_factor,
-    times,
-    unit,
-)
+from tests.autocolor.reference import Lit, controlled, light_at, ray
 from tests.autocolor.strategies import flaps, lights, numbers, reflectances, surfaces
 from tests.closeness import all_close
 
@@ -81,7 +73,7 @@ def expected_on_wall(scene: Scene, lines: int, elements: int) -> dict[tuple[int,
             point = plus(eye, times(eye[1] / -direction[1], direction))
             if max(abs(point[0]), abs(point[2])) > 1 - 1e-6:
                 continue
-            point[1] = 0.0
+            point = (point[0], 0.0, point[2])
             facing = 1.0 if surface.two_sided and eye[1] > 0 else -1.0
             each = [
                 light_at(light, point, (0.0, facing, 0.0), eye, surface.reflectance) for light in scene.lights

@@ -11,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import InputError, LevelRange, Light, Picture, Scene, render
+from autocolor.explanation.level import curved
 from autocolor.images import display_image
 from autocolor.lighting.picture import IntensityRange
 from autocolor.mapping.intensity import (
@@ -27,7 +28,7 @@ from autocolor.mapping.intensity import (
 from autocolor.mapping.ranges import level_ranges
 from autocolor.visibility.visible_points import SurfaceSlice
 from tests.autocolor.meshes import wall_scene
-from tests.autocolor.reference import level_of, mapped
+from tests.autocolor.reference import level_of
 from tests.autocolor.strategies import MAPPINGS, scenes
 
 
@@ -70,7 +71,7 @@ def test_every_level_agrees_with_the_slow_twin(steps: list[int], mapping: Any, l
         if least == most:
             assert level == levels // 2
             continue
-        exact = mapped(mapping, (intensity - least) / (most - least)) * (levels - 1) + 0.5
+        exact = curved(mapping, (intensity - least) / (most - least)) * (levels - 1) + 0.5
         if abs(exact - round(exact)) > 1e-3:
             assert level == level_of((exact - 0.5) / (levels - 1), levels)
 

@@ -12,6 +12,10 @@ from hypothesis import strategies as st
 from autocolor import Flap, Flaps, InputError, Light, Scene, Surface, View, render, scene_of
 from autocolor.arrays import Singles
 from autocolor.checks import Vector
+from autocolor.explanation import point as plain
+from autocolor.explanation.level import curved
+from autocolor.explanation.light import direction_to, specular_factor
+from autocolor.explanation.point import dot, minus
 from autocolor.images import display_image
 from autocolor.lighting.picture import Picture
 from autocolor.mapping.normal_words import (
@@ -53,18 +57,18 @@ def reflected(scene: Scene, normal: Vector, surface: Surface) -> float:
     """The paper's formula at a normal; lights and eye are far away, in their directions from the middle."""
     low, high = scene.object_bounds
     middle = tuple((a + b) / 2 for a, b in zip(low, high, strict=True))
-    to_eye = reference.unit(reference.minus(scene.view.eye, middle))
+    to_eye = plain.unit(minus(scene.view.eye, middle))
     # The models say nothing of a normal that faces away from the eye; they divide by this cosine.
-    assume(reference.dot(normal, to_eye) > 1e-3)
+    assume(dot(normal, to_eye) > 1e-3)
     total = scene.ambient
     for light in scene.lights:
-        to_light = reference.ray_to(light, middle)
-        cos_i = reference.dot(normal, to_light)
+        to_light = direction_to(light, middle)
+        cos_i = dot(normal, to_light)
         assume(abs(cos_i) > 1e-5)
         if not light.on or cos_i < 0 or not light.links.shines_on_surface(surface.name):
             continue
         row = surface.reflectance
-        specular = reference.specular_factor(row.model, tuple(to_light), normal, tuple(to_eye))
+        specular = specular_factor(row.model, tuple(to_light), normal, tuple(to_eye))
         total += light.intensity * (row.diffuse * cos_i + row.specular * specular)
     return total
 
@@ -73,7 +77,7 @@ def fraction(scene: Scene, intensity: float, low: float, high: float) -> float:
     if high - low <= 2.0**-20 * high:
         return 0.5
     along = (min(max(intensity, low), high) - low) / (high - low)
-    return reference.mapped(scene.mapping, along)
+    return curved(scene.mapping, along)
 
 
 def entries(image: NormalImage) -> dict[int, tuple[int, ...]]:

@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Mesh, View
+from autocolor.explanation.level import corner_weights
 from autocolor.rendering import rendering
 from autocolor.scalars.computed import (
     _RANGES,
@@ -34,7 +35,6 @@ from autocolor.scalars.computed import (
 from autocolor.scene.scalar import COMPUTED, MeshScalar, Scalar
 from autocolor.visibility.visible_points import VisiblePoints
 from tests.autocolor.meshes import cube, grid, sphere, wall, wall_scene
-from tests.autocolor.reference import weights_in
 from tests.autocolor.strategies import numbers
 
 
@@ -432,7 +432,7 @@ def test_values_of_nodes_agree_with_the_slow_twin(at_nodes: list[float]) -> None
     values, _ = values_of(mesh, "stress", points)
     for value, point, polygon in zip(values, points.world_points, points.polygon_numbers, strict=True):
         nodes = list(dict.fromkeys(mesh.node_numbers[polygon].tolist()))
-        weights = weights_in(mesh.coordinates[nodes].tolist(), point.tolist())
+        weights = corner_weights(mesh.coordinates[nodes].tolist(), point.tolist())
         expected = np.dot(weights, mesh.scalars[0].values[nodes])
         assert value == pytest.approx(expected, abs=2e-4)
 

@@ -8,11 +8,11 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from autocolor.explanation import level as plain
 from autocolor.rendering import rendering
 from autocolor.scalars import interpolation
 from autocolor.scalars.interpolation import corner_weights, interpolated, polygon_runs, weighted_points
 from tests.autocolor.meshes import sphere, wall, wall_scene
-from tests.autocolor.reference import weights_in
 from tests.autocolor.strategies import numbers, vectors
 
 
@@ -77,7 +77,7 @@ def test_weights_in_a_convex_quad_are_wachspress_coordinates(around: list[float]
     corners = on_a_circle(around)
     point = np.array(share) @ corners / sum(share)
     assert weights_at(corners, [point])[0] == pytest.approx(
-        weights_in(corners.tolist(), point.tolist()), abs=1e-9
+        plain.corner_weights(corners.tolist(), point.tolist()), abs=1e-9
     )
 
 

@@ -19,6 +19,7 @@ from autocolor import (
     render,
     write_scene,
 )
+from autocolor.explanation.point import dot, minus, unit
 from autocolor.rendering import rendering
 from autocolor.scene.following import (
     DOWN_TO_UP,
@@ -34,7 +35,6 @@ from autocolor.scene.following import (
     names_to_follow,
 )
 from tests.autocolor.meshes import wall_scene
-from tests.autocolor.reference import dot, minus, unit
 from tests.autocolor.sessions import car, fresh, held, opened
 from tests.autocolor.strategies import Vector, directions, lights, outside_views, vectors, views
 

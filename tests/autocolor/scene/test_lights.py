@@ -28,6 +28,7 @@ from autocolor import (
     write_rig,
     write_scene,
 )
+from autocolor.explanation.point import cross, dot, minus
 from autocolor.journal.history import History
 from autocolor.journal.places import Source, place_of
 from autocolor.scene.columns import Tier
@@ -36,7 +37,6 @@ from autocolor.scene.scene import cost_of_edit
 from ramtek_emu import Ramtek9300
 from tests.autocolor.journal.random_steps import journal_of
 from tests.autocolor.meshes import grid
-from tests.autocolor.reference import cross, dot, minus
 from tests.autocolor.strategies import Vector, directions, lights, numbers, some_of, vectors
 
 

@@ -13,6 +13,8 @@ from hypothesis import strategies as st
 
 from autocolor import InputError, Surface
 from autocolor.arrays import Singles, power
+from autocolor.explanation.light import specular_factor, specular_growth
+from autocolor.explanation.point import dot, plus
 from autocolor.scene.columns import Field, Tier, cost, difference, fields_of, to_plain
 from autocolor.scene.kinds import AngleCurve
 from autocolor.scene.reflection_models import (
@@ -26,7 +28,6 @@ from autocolor.scene.reflection_models import (
     ReflectionModel,
     SpecularGrowth,
 )
-from tests.autocolor import reference
 from tests.autocolor.meshes import ramp
 from tests.autocolor.strategies import angle_curves, growths, numbers
 from tests.closeness import all_close
@@ -61,7 +62,7 @@ def directions(polar: float, turn: float) -> list[float]:
 def factor_at(model: ReflectionModel, light: list[float], eye: list[float]) -> float:
     """The factor where the normal is z."""
     reflected = [-eye[0], -eye[1], eye[2]]
-    return specular(model, [light[2]], [reference.dot(light, reflected)], [eye[2]])[0]
+    return specular(model, [light[2]], [dot(light, reflected)], [eye[2]])[0]
 
 
 @given(
@@ -71,10 +72,10 @@ def test_the_factor_is_that_of_the_slow_twin(
     model: ReflectionModel, polar: float, eye_polar: float, turn: float, eye_turn: float
 ) -> None:
     light, eye = directions(polar, turn), directions(eye_polar, eye_turn)
-    together = reference.plus(light, eye)
+    together = plus(light, eye)
     # Where the half vector is hardly defined, float32 rounds as much as it says.
-    assume(reference.dot(together, together) > 0.05)
-    expected = reference.specular_factor(model, light, [0.0, 0.0, 1.0], eye)
+    assume(dot(together, together) > 0.05)
+    expected = specular_factor(model, light, [0.0, 0.0, 1.0], eye)
     if isinstance(model, CookTorrance):
         # The slope of the distribution is the steeper the smoother the surface is.
         error = 1e-4 + 1e-5 / model.roughness**2
@@ -82,7 +83,7 @@ def test_the_factor_is_that_of_the_slow_twin(
     else:
         # So much does a growth of S change where the cosine is rounded to float32.
         growth = vars(model).get("growth", SpecularGrowth())
-        low, high = (reference.specular_growth(growth, light[2] + step) for step in (-2e-7, 2e-7))
+        low, high = (specular_growth(growth, light[2] + step) for step in (-2e-7, 2e-7))
         error = 2e-5 * model.largest + 2 * abs(high - low)
         assert factor_at(model, light, eye) == pytest.approx(expected, rel=2e-3, abs=error)
 
@@ -95,7 +96,7 @@ def test_cook_torrance_is_the_slow_twin_all_around(roughness: float, normal_refl
         (0.1, 0.5, 0.9, 1.3), (0.0, 0.3, 0.7, 1.1, 1.5), (0, 1, 2, 3)
     ):
         light, eye = directions(polar, turn), directions(eye_polar, 0.0)
-        expected = reference.specular_factor(model, light, [0.0, 0.0, 1.0], eye)
+        expected = specular_factor(model, light, [0.0, 0.0, 1.0], eye)
         assert factor_at(model, light, eye) == pytest.approx(expected, rel=1e-3, abs=1e-6)
 
 
@@ -328,7 +329,7 @@ def test_a_curve_through_points_of_schlicks_is_close_to_it() -> None:
 def test_the_growth_is_that_of_the_slow_twin(growth: SpecularGrowth, cosine: float) -> None:
     single = np.array([cosine], np.float32)
     found = growth.factor(single)
-    expected = reference.specular_growth(growth, float(single[0]))
+    expected = specular_growth(growth, float(single[0]))
     assert (1.0 if found is None else float(found[0])) == pytest.approx(expected, rel=1e-5, abs=1e-6)
 
 
@@ -354,7 +355,7 @@ def test_the_factor_is_1_at_normal_incidence_and_its_largest_is_reached(growth: 
         return
     assert found[0] == pytest.approx(1, abs=1e-6)
     # The cosine of an angle of a steep curve is rounded: the twin is asked at the same cosines.
-    at_cosines = max(reference.specular_growth(growth, cosine) for cosine in cosines.tolist())
+    at_cosines = max(specular_growth(growth, cosine) for cosine in cosines.tolist())
     assert found.max() == pytest.approx(at_cosines, rel=2e-5)
     if growth.fresnel_curve is None:
         assert found.max() == pytest.approx(growth.largest, rel=2e-5)

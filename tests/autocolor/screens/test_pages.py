@@ -18,7 +18,7 @@ from tests.autocolor.screens.boxes import boxes
 from tests.autocolor.widgets.drawing import checksum
 
 PAGES = {
-    "picture": 4047065127,
+    "picture": 2590435057,
     "light and view": 3442920221,
     "lights": 2635481227,
     "reflectance": 571573069,
@@ -29,6 +29,7 @@ PAGES = {
     "kept": 3802267977,
     "history": 158829111,
     "file": 2987804811,
+    "explain": 4211328274,
     "split": 1133462600,
     "entries": 3253356514,
     "help": 3796583346,

@@ -151,6 +151,13 @@ def go_back_several_steps(hand: Hand) -> None:
     assert hand.viewer.studio.scene is coupe()
 
 
+def explain_a_pixel(hand: Hand) -> None:
+    hand.open_menu()
+    hand.pick("explain a pixel")
+    hand.click(200, 240)
+    assert (hand.viewer.page, hand.viewer.session.pixel) == ("explain", (240, 200))
+
+
 def compare_side_by_side(hand: Hand) -> None:
     hand.drag((300, 60), (340, 60))
     hand.steps = 0
@@ -186,6 +193,7 @@ TASKS: dict[str, Callable[[Hand], None]] = {
     "undo": undo,
     "go back several steps": go_back_several_steps,
     "compare": compare,
+    "explain a pixel": explain_a_pixel,
     "compare side by side": compare_side_by_side,
 }
 

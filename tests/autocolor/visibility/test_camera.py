@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from autocolor import Mesh, View
 from autocolor.arrays import Floats
+from autocolor.explanation.point import dot, minus
 from autocolor.visibility import camera as camera_module
 from autocolor.visibility.camera import (
     CameraPolygons,
@@ -17,7 +18,6 @@ from autocolor.visibility.camera import (
     clipped_at_near_plane,
     rotated,
 )
-from tests.autocolor import reference
 from tests.autocolor.meshes import cube, grid, sphere
 from tests.autocolor.strategies import Vector, meshes, outside_views, vectors, views
 
@@ -26,8 +26,8 @@ from tests.autocolor.strategies import Vector, meshes, outside_views, vectors, v
 def test_positions_are_along_right_down_and_forward_from_the_eye(mesh: Mesh, view: View) -> None:
     camera = camera_space(mesh, view)
     for node, coordinates in enumerate(mesh.coordinates.tolist()):
-        from_eye = reference.minus(coordinates, view.eye)
-        expected = [reference.dot(axis, from_eye) for axis in view.axes.tolist()]
+        from_eye = minus(coordinates, view.eye)
+        expected = [dot(axis, from_eye) for axis in view.axes.tolist()]
         assert (camera.positions[:, node] * camera.unit).tolist() == pytest.approx(expected, abs=1e-12)
 
 
@@ -36,7 +36,7 @@ def test_normals_are_turned_and_not_moved(mesh: Mesh, view: View) -> None:
     camera = camera_space(mesh, view)
     assert camera.normals.dtype == np.float32
     for number, normal in enumerate(mesh.normals.vectors.tolist()):
-        expected = [reference.dot(axis, normal) for axis in view.axes.tolist()]
+        expected = [dot(axis, normal) for axis in view.axes.tolist()]
         assert camera.normals[:, number].tolist() == pytest.approx(expected, abs=1e-6)
 
 

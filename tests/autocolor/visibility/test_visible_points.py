@@ -11,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Light, Mesh, Scene, UsageError, View
+from autocolor.explanation.point import dot, minus, plus, times, unit
 from autocolor.lighting.picking import highlight_placed
 from autocolor.rendering import rendering
 from autocolor.visibility.visible_points import (
@@ -28,7 +29,7 @@ from autocolor.visibility.visible_points import (
 from autocolor.visibility.visible_surfaces import visible_surfaces
 from autocolor.visibility.watkins import watkins
 from tests.autocolor.meshes import cube, grid, sphere, wall, wall_scene
-from tests.autocolor.reference import dot, first_hit, minus, plus, ray, times, unit
+from tests.autocolor.reference import first_hit, ray
 from tests.autocolor.sessions import car
 from tests.autocolor.strategies import Vector, meshes, outside_views, soups, vectors
 

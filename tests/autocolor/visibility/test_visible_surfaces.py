@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 
 from autocolor import Mesh, View
 from autocolor.arrays import Numbers, runs
+from autocolor.explanation.point import dot, minus, times, unit
 from autocolor.visibility import visible_surfaces as module
 from autocolor.visibility.depth import depth_scale, polygons_of_numbers
 from autocolor.visibility.projection import projection
@@ -29,7 +30,6 @@ from autocolor.visibility.visible_surfaces import (
     visible_surfaces,
 )
 from autocolor.visibility.watkins import watkins
-from tests.autocolor import reference
 from tests.autocolor.meshes import ROUNDINGS, cube, decal_on_ground, grid, sphere
 from tests.autocolor.reference import first_hit, ray
 from tests.autocolor.strategies import (
@@ -612,9 +612,9 @@ def test_the_view_direction_is_reflected_at_the_normal(
     points = visible_surfaces(mesh, view, (1, 2), *raster)
     reflected = points.rows[REFLECTED_VIEW].T.astype(np.float64) @ view.axes
     for number, pixel in enumerate(points.pixels.tolist()):
-        to_eye = reference.unit(reference.times(-1, ray(view, *raster, *divmod(pixel, raster[1]))))
+        to_eye = unit(times(-1, ray(view, *raster, *divmod(pixel, raster[1]))))
         normal = points.world_normals[number].tolist()
-        expected = reference.minus(reference.times(2 * reference.dot(normal, to_eye), normal), to_eye)
+        expected = minus(times(2 * dot(normal, to_eye), normal), to_eye)
         assert reflected[number].tolist() == pytest.approx(expected, abs=1e-5)
 
 

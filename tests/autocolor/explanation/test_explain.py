@@ -1,0 +1,169 @@
+from __future__ import annotations
+
+import json
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from autocolor import Scene, UsageError
+from autocolor.errors import InputError
+from autocolor.explanation.explain import Explanation, explain
+from autocolor.explanation.light import controls_at
+from autocolor.images import display_image
+from autocolor.mapping.display_image import DisplayImage
+from autocolor.rendering import Rendering, rendering
+from autocolor.visibility.visible_points import Sight
+from tests.autocolor.meshes import wall_scene
+from tests.autocolor.sessions import car, opened
+from tests.autocolor.strategies import scenes
+
+LINES, ELEMENTS = 24, 32
+
+
+def rendered(scene: Scene) -> tuple[Rendering, DisplayImage]:
+    both = rendering(scene, LINES, ELEMENTS)
+    return both, display_image(scene, both.picture)
+
+
+def jumps_nearby(scene: Scene, explanation: Explanation) -> bool:
+    """Whether float32 may have put the point on the other side of an edge, or hardly knows its normal."""
+    at = explanation.point
+    assert at is not None
+    if at.normal_length < 0.05 or at.distance < 0.05:
+        return True
+    if any(abs(light.cos_incidence) < 1e-4 for light in explanation.lights):
+        return True
+    for light in scene.lights_in_world:
+        here = controls_at(light, at.point, scene)
+        for step in np.concatenate([np.eye(3), -np.eye(3)]) * 4e-6:
+            x, y, z = (at.point + step).tolist()
+            beside = controls_at(light, (x, y, z), scene)
+            if any(abs(share - beside[name]) > 0.4 for name, share in here.items()):
+                return True
+    return False
+
+
+@given(scenes(), st.integers(0, 1 << 30))
+def test_an_explanation_agrees_with_the_picture(scene: Scene, seed: int) -> None:
+    try:
+        both, image = rendered(scene)
+    except InputError:
+        # The bands and levels of some random scenes do not fit into the words.
+        return
+    picture, sight = both.picture, Sight(scene, both.points)
+    rounding = 2**-18 * picture.ranges.whole.maximum
+    for place in np.random.default_rng(seed).permutation(len(picture.pixels))[:3].tolist():
+        pixel = int(picture.pixels[place])
+        line, element = divmod(pixel, ELEMENTS)
+        explanation = explain(sight, image, line, element)
+        level, intensity = explanation.level, explanation.intensity
+        assert level is not None
+        assert intensity is not None
+        assert explanation.point is not None
+        number = picture.surface_number[line, element]
+        assert (explanation.point.surface, explanation.point.part) == (
+            number,
+            picture.part_number[line, element],
+        )
+        if jumps_nearby(scene, explanation):
+            continue
+        whole = picture.ranges.whole.maximum
+        assert intensity == pytest.approx(float(picture.intensity[line, element]), abs=1e-4 * whole)
+        # Within one level, or where the whole range is hardly more than rounding, within the rounding.
+        extent = level.maximum - level.minimum
+        most = 1 + (level.levels * rounding / extent if extent > 0 else 0)
+        if level.scalar is None or level.scalar.shades > 1:
+            assert abs(explanation.word - int(image.words[line, element])) <= most
+        # Rounding decides about halves of a component, and of a band between two colors.
+        assert explanation.color == pytest.approx(image.entries[explanation.word].astype(int), abs=1)
+
+
+def test_all_lights_and_the_ambient_light_add_up_to_the_intensity() -> None:
+    studio, _ = opened()
+    explanation = studio.explain(12, 16)
+    assert explanation.intensity == pytest.approx(
+        studio.scene.ambient + sum(light.contribution for light in explanation.lights)
+    )
+    contributions = [light.contribution for light in explanation.lights]
+    assert contributions == sorted(contributions, reverse=True)
+    assert {light.name for light in explanation.lights} == {light.name for light in studio.scene.lights}
+    for light in explanation.lights:
+        assert light.light == [row.name for row in studio.scene.lights].index(light.name) + 1
+
+
+def test_rows_are_counted_from_1_and_lead_from_the_nodes_to_the_surface() -> None:
+    studio, _ = opened()
+    scene, at = studio.scene, studio.explain(12, 16).point
+    assert at is not None
+    seen = studio.seen_at(12, 16)
+    assert seen is not None
+    assert at.polygon == seen.polygon + 1
+    nodes = dict.fromkeys(scene.mesh.node_numbers[seen.polygon].tolist())
+    assert [corner.node - 1 for corner in at.corners] == list(nodes)
+    for corner in at.corners:
+        assert corner.coordinates == tuple(scene.mesh.coordinates[corner.node - 1].tolist())
+    assert scene.parts[at.part - 1].name == at.part_name == seen.part
+    assert scene.surfaces[at.surface - 1].name == at.surface_name == seen.surface
+    assert at.point == pytest.approx(seen.point, abs=1e-5)
+    assert at.normal == pytest.approx(seen.normal, abs=1e-5)
+    assert at.reflected_view == pytest.approx(seen.reflected_view, abs=1e-5)
+
+
+def test_on_the_background_nothing_is_seen() -> None:
+    studio, _ = opened(car().replace(background="#102030"))
+    explanation = studio.explain(0, 0)
+    assert (explanation.point, explanation.level, explanation.intensity) == (None, None, None)
+    assert (explanation.word, explanation.color) == (0, (16, 32, 48))
+
+
+@pytest.mark.parametrize(("line", "element"), [(24, 0), (0, 32), (-1, 0), (0.5, 0)])
+def test_a_pixel_outside_of_the_picture_is_refused(line: int, element: int) -> None:
+    with pytest.raises(UsageError, match=r"an? (line|element) must be 0 to (23|31), not"):
+        opened()[0].explain(line, element)
+
+
+def test_where_words_stand_for_normals_the_entry_is_the_words() -> None:
+    studio, _ = opened()
+    studio.normals()
+    studio.light("key", intensity=2.0)
+    explanation = studio.explain(12, 16)
+    assert explanation.level is None
+    assert explanation.word == studio.words[12, 16]
+    assert explanation.color == tuple(studio.entries[explanation.word].tolist())
+    # The intensity is that of the point, in the light of now.
+    assert explanation.intensity == pytest.approx(float(studio.picture.intensity[12, 16]), rel=1e-4)
+
+
+def test_a_coarse_picture_is_explained_by_its_blocks_and_refined_by_the_studio() -> None:
+    scene = car()
+    both = rendering(scene, LINES // 2, ELEMENTS // 2)
+    image = display_image(scene, both.picture, block=2)
+    sight = Sight(scene, both.points, 2)
+    pixels = [(12, 16), (13, 16), (12, 17), (13, 17)]
+    found = [explain(sight, image, line, element) for line, element in pixels]
+    assert {each.word for each in found} == {int(image.words[12, 16])}
+    assert len({each.point for each in found}) == 1
+
+
+def test_json_can_hold_everything() -> None:
+    scene = car().with_scalar(name="stress", missing="#010203")
+    studio, _ = opened(scene)
+    plain = studio.explain(12, 16).to_plain()
+    assert json.loads(json.dumps(plain, allow_nan=False))["level"]["scalar"]["value"] is None
+    assert plain["color"] == (1, 2, 3) or plain["level"]["brightness"] < 1
+    assert opened()[0].explain(0, 0).to_plain()["point"] is None
+
+
+def test_an_edit_changes_the_numbers_that_it_should() -> None:
+    studio, _ = opened(wall_scene())
+    before = studio.explain(12, 16)
+    studio.light(studio.scene.lights[0].name, intensity=3 * studio.scene.lights[0].intensity)
+    after = studio.explain(12, 16)
+    assert after.point == before.point
+    name = studio.scene.lights[0].name
+    one, three = (next(light for light in each.lights if light.name == name) for each in (before, after))
+    assert three.contribution == pytest.approx(3 * one.contribution)
+    assert math.isclose(three.cos_incidence, one.cos_incidence)

@@ -1,0 +1,133 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from autocolor.explanation.text import PAGE, rows_of_text
+from autocolor.screens.message_line import MESSAGE
+from autocolor.screens.picture.explain_screen import MAGNIFIER, SIDE, TOP, items_of_row, magnifier_items
+from autocolor.widgets.items import SCREEN
+from ramtek_emu import Ramtek9300
+from tests.autocolor.screens.ball import MIDDLE, ball_scene, hand_before
+from tests.autocolor.screens.hand import Hand
+
+ELEMENT, LINE = MIDDLE
+
+
+@pytest.fixture
+def hand(tmp_path: Path) -> Hand:
+    return hand_before(ball_scene(), tmp_path)
+
+
+def click_with_shift(hand: Hand, element: int, line: int) -> None:
+    for action in ("move", "press", "release"):
+        hand.viewer.on_pointer(element, line, action, 1, shift=True)
+
+
+def shown(hand: Hand) -> object:
+    return hand.viewer.board.screen.items()
+
+
+def expected(hand: Hand, line: int, element: int) -> object:
+    studio = hand.viewer.studio
+    rows = rows_of_text(studio.explain(line, element))
+    items = [item for number, row in enumerate(rows) for item in items_of_row(row, number)]
+    return items + magnifier_items(studio.words, line, element)
+
+
+def test_shift_and_a_click_explain_a_pixel(hand: Hand) -> None:
+    before = hand.viewer.studio.scene
+    click_with_shift(hand, ELEMENT + 9, LINE - 5)
+    assert hand.viewer.page == "explain"
+    assert shown(hand) == expected(hand, LINE - 5, ELEMENT + 9)
+    hand.viewer.on_key("escape")
+    assert hand.viewer.page == "picture"
+    assert hand.viewer.studio.scene is before
+
+
+def test_shift_and_a_click_at_a_highlight_explain_it_and_do_not_pick_it(hand: Hand) -> None:
+    element, line = hand.handle("highlight of key")
+    click_with_shift(hand, element, line)
+    assert hand.viewer.page == "explain"
+    assert hand.viewer.session.pixel == (line, element)
+    assert hand.viewer.board.held is None
+
+
+def test_the_unit_explains_by_a_row_of_the_menu_and_a_click(hand: Hand) -> None:
+    element, line = hand.handle("highlight of key")
+    hand.open_menu()
+    hand.pick("explain a pixel")
+    assert hand.viewer.message == "click the pixel to explain"
+    hand.click(element, line)
+    assert (hand.viewer.page, hand.viewer.session.pixel) == ("explain", (line, element))
+    # The next click in the picture is a plain one.
+    hand.viewer.on_key("escape")
+    hand.click(ELEMENT + 40, LINE + 40)
+    assert hand.viewer.page == "picture"
+
+
+def test_escape_takes_the_row_of_the_menu_back(hand: Hand) -> None:
+    hand.open_menu()
+    hand.pick("explain a pixel")
+    hand.viewer.on_key("escape")
+    hand.viewer.on_key("escape")
+    hand.click(ELEMENT, LINE)
+    assert hand.viewer.page == "picture"
+
+
+def test_arrows_and_a_click_in_the_magnifier_explain_a_neighbor(hand: Hand) -> None:
+    session = hand.viewer.session
+    click_with_shift(hand, ELEMENT, LINE)
+    for key, pixel in (
+        ("right", (LINE, ELEMENT + 1)),
+        ("down", (LINE + 1, ELEMENT + 1)),
+        ("left", (LINE + 1, ELEMENT)),
+        ("up", (LINE, ELEMENT)),
+    ):
+        hand.viewer.on_key(key)
+        assert session.pixel == pixel
+        assert shown(hand) == expected(hand, *pixel)
+    hand.click(MAGNIFIER.right, MAGNIFIER.top)
+    assert session.pixel == (LINE - 2, ELEMENT + 4)
+    hand.click(20, 300)
+    assert session.pixel == (LINE - 2, ELEMENT + 4)
+
+
+def test_a_neighbor_stays_in_the_picture(hand: Hand) -> None:
+    click_with_shift(hand, 0, 0)
+    for key in ("up", "left"):
+        hand.viewer.on_key(key)
+    assert hand.viewer.session.pixel == (0, 0)
+    # The pixels beside the picture are those at its edge.
+    hand.click(MAGNIFIER.left + SIDE // 2, MAGNIFIER.top + SIDE // 2)
+    assert hand.viewer.session.pixel == (0, 0)
+
+
+def test_an_edit_is_explained_at_once(hand: Hand) -> None:
+    click_with_shift(hand, ELEMENT, LINE)
+    before = shown(hand)
+    hand.viewer.on_key("2", typed="2")
+    assert hand.viewer.page == "explain"
+    assert shown(hand) == expected(hand, LINE, ELEMENT) != before
+
+
+def test_a_page_of_rows_stands_above_the_message_line(hand: Hand) -> None:
+    row = rows_of_text(hand.viewer.studio.explain(LINE, ELEMENT))[0]
+    for number in range(PAGE):
+        for item in items_of_row(row._replace(says="long " * 40), number):
+            assert SCREEN.covers(item.area)
+            assert not MESSAGE.overlaps(item.area)
+            assert not MAGNIFIER.overlaps(item.area)
+            assert item.area.top >= TOP
+
+
+def test_the_magnifier_shows_the_words_around_the_pixel(hand: Hand) -> None:
+    click_with_shift(hand, ELEMENT, LINE)
+    display, words = hand.viewer.display, hand.viewer.studio.words
+    assert isinstance(display, Ramtek9300)
+    for down in range(-2, 3):
+        for across in range(-4, 5):
+            top = MAGNIFIER.top + SIDE * (down + 2) + SIDE // 2
+            left = MAGNIFIER.left + SIDE * (across + 4) + SIDE // 2
+            assert display.words[top, left] == words[LINE + down, ELEMENT + across]
