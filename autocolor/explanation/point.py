@@ -64,8 +64,13 @@ class Camera(NamedTuple):
 
     @property
     def focal_length(self) -> float:
-        """The distance of the picture plane from the eye in pixels."""
-        return self.lines / 2 / math.tan(math.radians(self.view.field_of_view) / 2)
+        """The distance of the picture plane from the eye in pixels.
+
+        The field of view is the vertical one of the largest picture of 4:3 that the picture holds.
+        """
+        return (
+            min(self.lines, self.elements * 3 / 4) / 2 / math.tan(math.radians(self.view.field_of_view) / 2)
+        )
 
     def in_camera(self, point: Vector) -> Vector:
         """A point of the world by how far it is to the right of the eye, below it, and ahead of it."""

@@ -23,8 +23,8 @@ from tests.autocolor.strategies import scenes
 LINES, ELEMENTS = 24, 32
 
 
-def rendered(scene: Scene) -> tuple[Rendering, DisplayImage]:
-    both = rendering(scene, LINES, ELEMENTS)
+def rendered(scene: Scene, elements: int = ELEMENTS) -> tuple[Rendering, DisplayImage]:
+    both = rendering(scene, LINES, elements)
     return both, display_image(scene, both.picture)
 
 
@@ -46,10 +46,10 @@ def jumps_nearby(scene: Scene, explanation: Explanation) -> bool:
     return False
 
 
-@given(scenes(), st.integers(0, 1 << 30))
-def test_an_explanation_agrees_with_the_picture(scene: Scene, seed: int) -> None:
+@given(scenes(), st.sampled_from([20, ELEMENTS, 40]), st.integers(0, 1 << 30))
+def test_an_explanation_agrees_with_the_picture(scene: Scene, elements: int, seed: int) -> None:
     try:
-        both, image = rendered(scene)
+        both, image = rendered(scene, elements)
     except InputError:
         # The bands and levels of some random scenes do not fit into the words.
         return
@@ -57,7 +57,7 @@ def test_an_explanation_agrees_with_the_picture(scene: Scene, seed: int) -> None
     rounding = 2**-18 * picture.ranges.whole.maximum
     for place in np.random.default_rng(seed).permutation(len(picture.pixels))[:3].tolist():
         pixel = int(picture.pixels[place])
-        line, element = divmod(pixel, ELEMENTS)
+        line, element = divmod(pixel, elements)
         explanation = explain(sight, image, line, element)
         level, intensity = explanation.level, explanation.intensity
         assert level is not None
