@@ -7,8 +7,21 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Floats, Indices, Real, RealArray, Singles, chunks_of_runs, cross, normalized
+from autocolor.arrays import (
+    Bytes,
+    Floats,
+    Indices,
+    Real,
+    RealArray,
+    Singles,
+    chunks_of_runs,
+    cross,
+    dot,
+    normalized,
+)
+from autocolor.scene.geometry.diagonals import NO_DIAGONAL
 from autocolor.scene.mesh import Mesh
+from autocolor.scene.scene import INVARIANT
 from autocolor.visibility.visible_points import POINT, VisiblePoints
 
 POINTS_AT_ONCE: Final = 1 << 14
@@ -60,12 +73,19 @@ def weighted_points(mesh: Mesh, points: VisiblePoints) -> Iterator[WeightedPoint
     The corners are transformed to camera space, which is less work than all points to the world.
     """
     polygons, counts = polygon_runs(points)
+    if points.interpolation == INVARIANT:
+        # A span lies in one triangle, a run may lie in two.
+        polygons, counts = points.span_polygons, points.span_lengths
     coordinate_rows, node_rows = mesh.coordinates.T, mesh.node_numbers.T
     eye, middle = np.array(points.view.eye)[:, None], points.middle[:, None]
     for part, pixels in chunks_of_runs(counts, POINTS_AT_ONCE):
         nodes = np.take(node_rows, polygons[part], axis=1)
         world = np.take(coordinate_rows, nodes.ravel(), axis=1) - eye
         corners = (points.view.axes @ world / points.unit - middle).reshape(3, 4, -1)
+        if points.interpolation == INVARIANT:
+            middles = pixels.start + np.cumsum(counts[part]) - 1 - counts[part] // 2
+            starts = mesh.diagonals.of(polygons[part]).starts
+            cut_to_triangles(corners, starts, np.take(points.rows[POINT], middles, axis=1))
         weights = corner_weights(corners, counts[part], points.rows[POINT, pixels])
         yield WeightedPoints(pixels, polygons[part], counts[part], weights)
 
@@ -81,13 +101,30 @@ def interpolated(mesh: Mesh, points: VisiblePoints, corner_values: Callable[[Ind
     return values
 
 
+def cut_to_triangles(corners: Floats, starts: Bytes, points: Singles) -> None:
+    """Cut quads along their diagonals to the triangles that contain a point of each, (3, quads).
+
+    `corners`, (3, 4, quads), is changed: the corner beyond the diagonal becomes the corner before it.
+    `starts`, (quads,), is as in `Diagonals`.
+    """
+    quads = np.flatnonzero(starts != NO_DIAGONAL)
+    start = starts[quads].astype(np.intp)
+    first, second, last, fourth = (corners[:, (start + turn) & 3, quads] for turn in range(4))
+    diagonal = last - first
+    inward = cross(cross(diagonal, fourth - second), diagonal)
+    is_beyond = dot(inward, np.take(points, quads, axis=1) - first) > 0
+    cut_off = (start + np.where(is_beyond, 1, 3)) & 3
+    corners[:, cut_off, quads] = corners[:, cut_off - 1, quads]
+
+
 # The weights of corners.
 #
-# Assumed: in a triangle the weights are the barycentric coordinates, and in a convex quad the generalized
-# barycentric coordinates of Wachspress, which reproduce linear functions. Weights are never negative and add
-# up to 1, so a value is never beyond the values of the corners. A quad with a notch is split there into two
-# triangles. A warped quad counts as its projection along the normal of its diagonals. A quad that crosses
-# itself, or a polygon without area, has weights that are merely not negative.
+# Assumed: in a triangle the weights are the barycentric coordinates. If the scene's interpolation is invariant,
+# a quad is two triangles. If it follows the scan lines, the weights in a convex quad are the generalized
+# barycentric coordinates of Wachspress, which reproduce linear functions; a quad with a notch is split there
+# into two triangles. Weights are never negative and add up to 1, so a value is never beyond the values of the
+# corners. A warped quad counts as its projection along the normal of its diagonals. A quad that crosses itself,
+# or a polygon without area, has weights that are merely not negative.
 #
 # Numbers that all points of a polygon share are computed once a polygon, in float64, and repeated row by row.
 # Measured: repeating several rows at once takes three times as long.
@@ -105,9 +142,10 @@ def corner_weights(corners: Floats, counts: Indices, points: RealArray[Real]) ->
     if no_side[2].all():
         _weigh_in_triangles(corners[:, :3], counts, points, weights)
         return _adding_up_to_1(weights)
-    # Measured: if some are triangles, weighing them twice takes less time than dividing the polygons.
-    _weigh_in_quads(corners, counts, points, weights)
     triangles = np.flatnonzero(no_side.any(axis=0))
+    # Measured: if some are triangles, weighing them twice takes less time than dividing the polygons.
+    if len(triangles) < len(counts):
+        _weigh_in_quads(corners, counts, points, weights)
     if len(triangles):
         three = (no_side[:, triangles].argmax(axis=0) + np.arange(2, 5)[:, None]) % 4
         columns = np.flatnonzero(np.repeat(no_side.any(axis=0), counts))
