@@ -119,12 +119,12 @@ def cut_to_triangles(corners: Floats, starts: Bytes, points: Singles) -> None:
 
 # The weights of corners.
 #
-# Assumed: in a triangle the weights are the barycentric coordinates. If the scene's interpolation is invariant,
-# a quad is two triangles. If it follows the scan lines, the weights in a convex quad are the generalized
-# barycentric coordinates of Wachspress, which reproduce linear functions; a quad with a notch is split there
-# into two triangles. Weights are never negative and add up to 1, so a value is never beyond the values of the
-# corners. A warped quad counts as its projection along the normal of its diagonals. A quad that crosses itself,
-# or a polygon without area, has weights that are merely not negative.
+# Assumed: in a triangle the weights are the barycentric coordinates. If the scene's interpolation is
+# invariant, a quad is two triangles. If it follows the scan lines, the weights in a convex quad are the
+# generalized barycentric coordinates of Wachspress, which reproduce linear functions; a quad with a notch is
+# split there into two triangles. Weights are never negative and add up to 1, so a value is never beyond the
+# values of the corners. A warped quad counts as its projection along the normal of its diagonals. A quad that
+# crosses itself, or a polygon without area, has weights that are merely not negative.
 #
 # Numbers that all points of a polygon share are computed once a polygon, in float64, and repeated row by row.
 # Measured: repeating several rows at once takes three times as long.

@@ -171,8 +171,8 @@ class Scene(Row):
         Column(
             OneOf(INTERPOLATIONS),
             Tier.FRAME,
-            "Whether quads are interpolated along scan lines, as in the paper, or as two triangles each, so that"
-            " they look the same when the camera rolls.",
+            "Whether quads are interpolated along scan lines, as in the paper, or as two triangles: a roll of"
+            " the camera then changes nothing.",
         ),
     ] = SCAN_LINE
     background: Annotated[Color, Column(ColorKind(), Tier.ENTRIES, "The color where nothing is visible.")] = (

@@ -57,6 +57,15 @@ CUBE_NODES = [(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)]
 CUBE_QUADS = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
 
 
+def uneven_wall(seed: int) -> Mesh:
+    """A wall of 6 x 5 warped quads, six units wide."""
+    flat = grid(6, 5, (-3, 0, -3), (6, 0, 0), (0, 0, 6))
+    moved = flat.coordinates.copy()
+    inner = (np.abs(moved[:, 0]) < 2.9) & (np.abs(moved[:, 2]) < 2.9)
+    moved[inner] += np.random.default_rng(seed).uniform(-0.3, 0.3, (inner.sum(), 3))
+    return Mesh(moved, flat.node_numbers, flat.part_numbers, flat.part_names)
+
+
 def cube(size: float = 1.0) -> Mesh:
     """The cube from the origin to (size, size, size), facing outward."""
     return Mesh(
