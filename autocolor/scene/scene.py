@@ -171,8 +171,7 @@ class Scene(Row):
         Column(
             OneOf(INTERPOLATIONS),
             Tier.FRAME,
-            "Whether quads are interpolated along scan lines, as in the paper, or as two triangles: a roll of"
-            " the camera then changes nothing.",
+            "Whether quads are interpolated along scan lines, or as triangles, unchanged as the camera rolls.",
         ),
     ] = SCAN_LINE
     background: Annotated[Color, Column(ColorKind(), Tier.ENTRIES, "The color where nothing is visible.")] = (

@@ -49,7 +49,8 @@ class QuadDiagonals:
     """
 
     def __init__(self, coordinates: Floats, node_numbers: Indices) -> None:
-        self._coordinate_rows, self._node_rows = coordinates.T, node_numbers.T
+        # The tables of the mesh themselves: they are pickled once with it.
+        self._coordinates, self._node_numbers = coordinates, node_numbers
         # Pages of zeros take no memory until they are written. A start is stored plus 1, so 0 is unknown.
         self._starts = np.zeros(len(node_numbers), np.uint8)
         self._warps = np.zeros(len(node_numbers), np.float32)
@@ -61,8 +62,8 @@ class QuadDiagonals:
             missing = polygons[starts == 0]
             for chunk in chunks(len(missing), POLYGONS_AT_ONCE):
                 some = missing[chunk]
-                nodes = np.take(self._node_rows, some, axis=1)
-                computed = diagonals_of(np.take(self._coordinate_rows, nodes, axis=1), nodes)
+                nodes = np.take(self._node_numbers.T, some, axis=1)
+                computed = diagonals_of(np.take(self._coordinates.T, nodes, axis=1), nodes)
                 # Another thread may compute the same rows: a start comes last, when its warp is valid.
                 self._warps[some] = computed.warps
                 self._starts[some] = computed.starts + 1
