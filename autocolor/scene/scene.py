@@ -171,7 +171,8 @@ class Scene(Row):
         Column(
             OneOf(INTERPOLATIONS),
             Tier.FRAME,
-            "Whether quads are interpolated along scan lines, or as triangles, unchanged as the camera rolls.",
+            "Whether quads are interpolated along scan lines, or as two triangles, unchanged as the camera"
+            " rolls.",
         ),
     ] = SCAN_LINE
     background: Annotated[Color, Column(ColorKind(), Tier.ENTRIES, "The color where nothing is visible.")] = (
