@@ -84,7 +84,7 @@ def weighted_points(mesh: Mesh, points: VisiblePoints) -> Iterator[WeightedPoint
         corners = (points.view.axes @ world / points.unit - middle).reshape(3, 4, -1)
         if points.interpolation == INVARIANT:
             middles = pixels.start + np.cumsum(counts[part]) - 1 - counts[part] // 2
-            starts = mesh.diagonals.of(polygons[part]).starts
+            starts = mesh.diagonals.some(polygons[part]).starts
             cut_to_triangles(corners, starts, np.take(points.rows[POINT], middles, axis=1))
         weights = corner_weights(corners, counts[part], points.rows[POINT, pixels])
         yield WeightedPoints(pixels, polygons[part], counts[part], weights)

@@ -15,7 +15,7 @@ import numpy as np
 
 from autocolor.arrays import Booleans, Floats, Indices, Real, RealArray, Singles, chunks
 from autocolor.checks import Vector
-from autocolor.scene.geometry.diagonals import NO_DIAGONAL, QuadDiagonals
+from autocolor.scene.geometry.diagonals import NO_DIAGONAL, Diagonals
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.view import View
 
@@ -121,7 +121,7 @@ def rotated(axes: Floats, points: RealArray[Real], origin: Vector = (0.0, 0.0, 0
     return out
 
 
-def clipped_at_near_plane(polygons: CameraPolygons, diagonals: QuadDiagonals | None = None) -> CameraPolygons:
+def clipped_at_near_plane(polygons: CameraPolygons, diagonals: Diagonals | None = None) -> CameraPolygons:
     """The polygons clipped at the near plane. Clipping adds nodes and normals.
 
     Each edge is clipped once, from its lower to its higher node number. So polygons that share an edge share
@@ -138,7 +138,7 @@ def clipped_at_near_plane(polygons: CameraPolygons, diagonals: QuadDiagonals | N
     clipped = _Clipped(polygons)
     starts = np.full(len(crossing), NO_DIAGONAL)
     if diagonals is not None:
-        starts = diagonals.of(polygons.polygon_numbers[crossing]).starts
+        starts = diagonals.some(polygons.polygon_numbers[crossing]).starts
     for column, start in zip(crossing.tolist(), starts.tolist(), strict=True):
         for piece in PIECES[start]:
             clipped.add(column, piece)

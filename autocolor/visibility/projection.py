@@ -27,7 +27,7 @@ from autocolor.arrays import (
     most_of_four,
     used_rows,
 )
-from autocolor.scene.geometry.diagonals import NO_DIAGONAL, QuadDiagonals
+from autocolor.scene.geometry.diagonals import NO_DIAGONAL, Diagonals
 from autocolor.scene.geometry.planes import SharedPlanes
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import INVARIANT, SCAN_LINE
@@ -63,12 +63,12 @@ LARGE: Final = 1 << 21
 Measured: without preselection, a smaller mesh takes two thirds of the time and at most 150 MB.
 """
 
-MOST_WARP: Final = 0.02
+MOST_WARP: Final = 0.1
 """Assumed: the warp in pixels from which on a quad is cut before it is known what is visible.
 
-Less warped quads are whole until then: where two surfaces pass through each other, their border may be off by
-this much. Measured: 22 % of the quads of the coupe are cut before, and none of a million quads of hills. If
-all are, the visible surfaces take a quarter longer than along scan lines, for either mesh.
+Less warped quads are whole until then: where two surfaces pass through each other, and along a silhouette,
+the border may be off by this much. Measured: 5 % of the quads of the coupe are cut before, and none of a
+million quads of hills. If all are, the visible surfaces take a quarter longer than along scan lines.
 """
 
 POLYGONS_AT_ONCE: Final = 1 << 15
@@ -252,7 +252,7 @@ class PolygonsOnRaster(NamedTuple):
 
 
 def _polygons_on_raster(
-    camera: CameraPolygons, nodes: OnRaster, raster: Raster, diagonals: QuadDiagonals | None
+    camera: CameraPolygons, nodes: OnRaster, raster: Raster, diagonals: Diagonals | None
 ) -> PolygonsOnRaster:
     """The polygons that may be visible, without quads that some line crosses four times.
 
@@ -313,7 +313,7 @@ def _cut_at_diagonals(polygons: PolygonsOnRaster, quads: Indices, nodes: OnRaste
 
 
 def _cover_pixels(
-    camera: CameraPolygons, nodes: OnRaster, raster: Raster, diagonals: QuadDiagonals | None, chunk: slice
+    camera: CameraPolygons, nodes: OnRaster, raster: Raster, diagonals: Diagonals | None, chunk: slice
 ) -> PolygonsOnRaster:
     """The polygons of a chunk that cross a line and may cover the center of a pixel."""
     corners = camera.corners[:, chunk]
@@ -330,7 +330,7 @@ def _cover_pixels(
     splits = (fall[0] * fall[1] < 0) & (fall[1] * fall[2] < 0) & ((fall[0] + fall[1] + fall[2]) * fall[2] > 0)
     starts = np.full(len(columns), NO_DIAGONAL, np.uint8)
     if diagonals is not None:
-        starts, warps = diagonals.of(polygon_numbers)
+        starts, warps = diagonals.some(polygon_numbers)
         if camera.is_cut is not None:
             # The pieces of cut triangles are flat.
             pieces = np.flatnonzero(camera.is_cut[chunk].take(columns))

@@ -448,7 +448,8 @@ def _find_triangles(
     start, polygon, count = starts.take(rows), spans.polygon[chunk].take(rows), left.take(rows)
     line, element = np.divmod(spans.first_pixel[chunk].take(rows), projected.elements)
     # The diagonal leads from the first corner of the triangle to the last.
-    (x, beside_x, end_x), (y, beside_y, end_y) = _corners_around(projected, start, polygon, line, element)
+    corners = _corners_of_triangles(projected, start, polygon, line, element)
+    (x, beside_x, end_x), (y, beside_y, end_y) = corners.x, corners.y
     across, down = end_x - x, end_y - y
     of_corner = across * (beside_y - y) - down * (beside_x - x)
     at_first = down * x - across * y
@@ -461,39 +462,55 @@ def _find_triangles(
     left[rows[cut]] = np.clip(pixels, 1, count.take(cut) - 1)
 
 
-def _corners_around(
+class TriangleCorners(NamedTuple):
+    """The three corners of triangles, each (triangles,).
+
+    `places` are flat corners of the projection, and `nodes` the nodes there. `x` and `y` are in pixels,
+    around the center of a pixel of each triangle.
+    """
+
+    places: list[Indices]
+    nodes: list[Indices]
+    x: list[Floats]
+    y: list[Floats]
+
+
+def _corners_of_triangles(
     projected: Projection, triangle: Bytes, polygon: Indices, line: Indices, element: Indices
-) -> tuple[list[Floats], list[Floats]]:
-    """The screen x and y of the three corners of triangles, around the center of a pixel each."""
-    places = _corners_of_triangles(projected, triangle, polygon)
-    nodes = [projected.corners.ravel().take(place) for place in places]
-    return (
-        [projected.x.take(node) - (element + 0.5) for node in nodes],
-        [projected.y.take(node) - (line + 0.5) for node in nodes],
+) -> TriangleCorners:
+    """The corners of triangles, around the centers of pixels."""
+    count, flat = projected.corners.shape[1], projected.corners.ravel()
+    first = triangle.astype(np.intp)
+    places = [((first + turn) & 3) * count + polygon for turn in range(3)]
+    nodes = [flat.take(place) for place in places]
+    center_x, center_y = element + 0.5, line + 0.5
+    return TriangleCorners(
+        places,
+        nodes,
+        [projected.x.take(node) - center_x for node in nodes],
+        [projected.y.take(node) - center_y for node in nodes],
     )
-
-
-def _corners_of_triangles(projected: Projection, triangle: Bytes, polygon: Indices) -> list[Indices]:
-    """The three corners of triangles, in the flat corners of the projection."""
-    return [((triangle + np.intp(turn)) & 3) * projected.corners.shape[1] + polygon for turn in range(3)]
 
 
 def _fill_in_triangles(
     start: Singles, step: Singles, projected: Projection, spans: VisibleSpans, triangle: Bytes, chunk: slice
 ) -> None:
     """Fill in the values and the steps of a chunk of spans, each in a triangle."""
-    polygon = spans.polygon[chunk]
     line, element = np.divmod(spans.first_pixel[chunk], projected.elements)
-    x, y = _corners_around(projected, triangle[chunk], polygon, line, element)
+    places, nodes, x, y = _corners_of_triangles(
+        projected, triangle[chunk], spans.polygon[chunk], line, element
+    )
+    # Mirror the triangles that run the other way, so that all areas are positive.
+    mirrored = (x[1] - x[0]) * (y[2] - y[0]) < (x[2] - x[0]) * (y[1] - y[0])
+    for row in y:
+        np.negative(row, out=row, where=mirrored)
     # The weight of a corner is the area between the pixel and the opposite side.
     first = [x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]]
-    sign = np.where(first[0] + first[1] + first[2] < 0, -1.0, 1.0)
     after_first = spans.count[chunk] - 1
     last = [area + after_first * (y[at - 2] - y[at - 1]) for at, area in enumerate(first)]
-    places = _corners_of_triangles(projected, triangle[chunk], polygon)
-    inverse_depths = [projected.inverse_depth.take(projected.corners.ravel().take(place)) for place in places]
+    inverse_depths = [projected.inverse_depth.take(node) for node in nodes]
     at_first, at_last = (
-        [weight * depth for weight, depth in zip(_weights(areas, sign), inverse_depths, strict=True)]
+        [weight * depth for weight, depth in zip(_weights(areas), inverse_depths, strict=True)]
         for areas in (first, last)
     )
     # Inverse depth is linear in the picture; so are weights over depth.
@@ -508,21 +525,25 @@ def _fill_in_triangles(
         rate = (at_last[corner] - at_first[corner]) * steps - weight * depth_step
         difference = np.take(projected.normals, normals.take(places[corner]), axis=1) - of_first
         start[NORMALS] += weight.astype(np.float32) * difference
-        step[NORMALS] += rate.astype(np.float32) * difference
+        difference *= rate.astype(np.float32)
+        step[NORMALS] += difference
     _fill_points(start, step, projected, line, element, inverse_depth, depth_step)
 
 
-def _weights(areas: list[Floats], sign: Floats) -> list[Floats]:
-    """The weights of the corners of triangles: areas of either sign, as fractions of their sum.
+def _weights(areas: list[Floats]) -> list[Floats]:
+    """The weights of the corners of triangles: areas as fractions of their sum, which are changed.
 
     A pixel may lie outside of its triangle by rounding; no weight is negative.
     """
-    areas = [np.maximum(area * sign, 0.0) for area in areas]
+    for area in areas:
+        np.maximum(area, 0.0, out=area)
     total = areas[0] + areas[1] + areas[2]
     if not total.all():
         nothing = total == 0
         areas, total = [area + nothing for area in areas], total + 3 * nothing
-    return [area / total for area in areas]
+    for area in areas:
+        area /= total
+    return areas
 
 
 def along_spans(projected: Projection, spans: VisibleSpans) -> tuple[Singles, Singles]:

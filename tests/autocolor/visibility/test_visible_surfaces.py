@@ -633,7 +633,7 @@ def test_every_quad_is_two_triangles_if_interpolation_is_invariant(
     mesh: Mesh, view: View, raster: tuple[int, int]
 ) -> None:
     points = visible_surfaces(mesh, view, (1, 2), *raster, interpolation=INVARIANT)
-    starts = mesh.diagonals.of(points.polygon_numbers).starts % 2
+    starts = mesh.diagonals.some(points.polygon_numbers).starts % 2
     depths = (points.world_points - np.array(view.eye)) @ view.axes[2]
     for number, polygon in enumerate(points.polygon_numbers.tolist()):
         corners = mesh.coordinates[mesh.node_numbers[polygon]].tolist()

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from autocolor import Mesh
 from autocolor.scene.geometry import diagonals as module
-from autocolor.scene.geometry.diagonals import NO_DIAGONAL
+from autocolor.scene.geometry.diagonals import NO_DIAGONAL, quad_diagonals
 from tests.autocolor.meshes import grid, sphere
 from tests.autocolor.strategies import Vector, meshes, vectors
 
@@ -19,7 +19,7 @@ STRAIGHT = [(0.0, 0.0, 0.0), (3.0, 0.0, 0.0), (6.0, 0.0, 0.0), (3.0, 20.0, 0.0)]
 
 def ends_and_warp(corners: list[Vector], polygon: list[int]) -> tuple[set[int], float]:
     """The nodes at the ends of the diagonal of one quad, and its warp."""
-    (start,), (warp,) = Mesh(np.array(corners), np.array([polygon])).diagonals.of(np.array([0]))
+    (start,), (warp,) = Mesh(np.array(corners), np.array([polygon])).diagonals
     return {polygon[int(start)], polygon[int(start) + 2]}, float(warp)
 
 
@@ -59,7 +59,7 @@ def test_the_diagonal_does_not_depend_on_the_corner_that_is_written_first(
 @pytest.mark.parametrize("size", [1e-30, 1.0, 1e30])
 def test_the_warp_is_the_distance_between_the_diagonals(size: float) -> None:
     warped = [(x * size, y * size, z * size) for x, y, z in [*SQUARE[:2], (1.0, 1.0, 0.0), (0.0, 1.0, 0.1)]]
-    (_,), (warp,) = Mesh(np.array(warped), np.array([[0, 1, 2, 3]])).diagonals.of(np.array([0]))
+    (_,), (warp,) = Mesh(np.array(warped), np.array([[0, 1, 2, 3]])).diagonals
     # The lines from (0, 0, 0) along (1, 1, 0), and from (1, 0, 0) along (-1, 1, 0.1).
     normal = np.cross((1, 1, 0), (-1, 1, 0.1))
     assert warp == pytest.approx(size * abs(normal[0]) / np.linalg.norm(normal), rel=1e-6)
@@ -68,7 +68,7 @@ def test_the_warp_is_the_distance_between_the_diagonals(size: float) -> None:
 @pytest.mark.parametrize("place", range(4))
 def test_a_triangle_is_not_cut_whichever_node_it_repeats(place: int) -> None:
     polygon = np.roll([0, 1, 2, 2], place)
-    (start,), (warp,) = Mesh(np.array(SQUARE), polygon[None]).diagonals.of(np.array([0]))
+    (start,), (warp,) = Mesh(np.array(SQUARE), polygon[None]).diagonals
     halves = (
         [[0, 1, 2]]
         if start == NO_DIAGONAL
@@ -80,21 +80,16 @@ def test_a_triangle_is_not_cut_whichever_node_it_repeats(place: int) -> None:
 
 def test_a_regular_grid_is_cut_in_one_direction() -> None:
     mesh = grid(9, 7, (-1, 0.1, -1), (2, 0.3, 0), (-0.3 / 7, 2 / 7, 0.7))
-    assert len(set(mesh.diagonals.of(np.arange(63)).starts.tolist())) == 1
+    assert len(set(mesh.diagonals.starts.tolist())) == 1
 
 
-@given(meshes(), st.data())
-def test_diagonals_are_the_same_whichever_are_asked_for_first(mesh: Mesh, data: st.DataObject) -> None:
-    count = len(mesh.node_numbers)
-    expected = mesh.diagonals.of(np.arange(count))
-    again = Mesh(mesh.coordinates, mesh.node_numbers, mesh.part_numbers, mesh.part_names)
-    rows = np.array(data.draw(st.lists(st.integers(0, count - 1) if count else st.nothing())), np.intp)
+@given(meshes())
+def test_diagonals_do_not_depend_on_the_chunks(mesh: Mesh) -> None:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(module, "POLYGONS_AT_ONCE", 2)
-        for asked in (rows, np.arange(count)[::-1]):
-            diagonals = again.diagonals.of(asked)
-            assert diagonals.starts.tolist() == expected.starts[asked].tolist()
-            assert diagonals.warps.tolist() == expected.warps[asked].tolist()
+        in_chunks = quad_diagonals(mesh.coordinates, mesh.node_numbers)
+    assert in_chunks.starts.tolist() == mesh.diagonals.starts.tolist()
+    assert in_chunks.warps.tolist() == mesh.diagonals.warps.tolist()
 
 
 def test_diagonals_are_shared_with_a_mesh_of_other_scalars() -> None:
