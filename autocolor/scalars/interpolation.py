@@ -33,13 +33,15 @@ ROUNDING: Final = 1e-9
 class WeightedPoints(NamedTuple):
     """A chunk of the visible points, the slice `pixels`, with the weights of the corners of their polygons.
 
-    `polygons` and `counts` are as in `polygon_runs`; `weights` is (4, n).
+    `polygons` and `counts` are as in `polygon_runs`; `weights` is (4, n). If quads are two triangles,
+    `triangles`, (3, polygons), has the corners of a triangle in each polygon, and `weights` is (3, n).
     """
 
     pixels: slice
     polygons: Indices
     counts: Indices
     weights: Singles
+    triangles: Indices | None
 
     def interpolated(self, corner_values: Floats) -> Singles:
         """Values at the points, (n,), interpolated from the corners of the polygons, (4, polygons).
@@ -47,6 +49,10 @@ class WeightedPoints(NamedTuple):
         NaN is a missing value. A polygon with a missing corner has no value at any point.
         """
         # The weights are rounded. Weigh the differences from the first corner: a constant stays constant.
+        if self.triangles is not None:
+            missing = np.isnan(corner_values).any(axis=0)
+            corner_values = np.take_along_axis(corner_values, self.triangles, axis=0)
+            corner_values[:, missing] = np.nan
         first = corner_values[0].astype(np.float32)
         values = np.repeat(first, self.counts)
         for weight, difference in zip(self.weights[1:], corner_values[1:] - first, strict=True):
@@ -82,12 +88,17 @@ def weighted_points(mesh: Mesh, points: VisiblePoints) -> Iterator[WeightedPoint
         nodes = np.take(node_rows, polygons[part], axis=1)
         world = np.take(coordinate_rows, nodes.ravel(), axis=1) - eye
         corners = (points.view.axes @ world / points.unit - middle).reshape(3, 4, -1)
+        within = points.rows[POINT, pixels]
         if points.interpolation == INVARIANT:
-            middles = pixels.start + np.cumsum(counts[part]) - 1 - counts[part] // 2
-            starts = mesh.diagonals.some(polygons[part]).starts
-            cut_to_triangles(corners, starts, np.take(points.rows[POINT], middles, axis=1))
-        weights = corner_weights(corners, counts[part], points.rows[POINT, pixels])
-        yield WeightedPoints(pixels, polygons[part], counts[part], weights)
+            middles = np.cumsum(counts[part]) - 1 - counts[part] // 2
+            starts = mesh.diagonals.starts.take(polygons[part])
+            triangles = triangles_at(corners, starts, np.take(within, middles, axis=1))
+            weights = triangle_weights(
+                np.take_along_axis(corners, triangles[None], axis=1), counts[part], within
+            )
+        else:
+            triangles, weights = None, corner_weights(corners, counts[part], within)
+        yield WeightedPoints(pixels, polygons[part], counts[part], weights, triangles)
 
 
 def interpolated(mesh: Mesh, points: VisiblePoints, corner_values: Callable[[Indices], Floats]) -> Singles:
@@ -101,20 +112,19 @@ def interpolated(mesh: Mesh, points: VisiblePoints, corner_values: Callable[[Ind
     return values
 
 
-def cut_to_triangles(corners: Floats, starts: Bytes, points: Singles) -> None:
-    """Cut quads along their diagonals to the triangles that contain a point of each, (3, quads).
+def triangles_at(corners: Floats, starts: Bytes, points: Singles) -> Indices:
+    """The corners, (3, polygons), of the triangle that contains a point of each polygon.
 
-    `corners`, (3, 4, quads), is changed: the corner beyond the diagonal becomes the corner before it.
-    `starts`, (quads,), is as in `Diagonals`.
+    `corners` is (3, 4, polygons), and `starts`, (polygons,), is as in `Diagonals`.
     """
-    quads = np.flatnonzero(starts != NO_DIAGONAL)
-    start = starts[quads].astype(np.intp)
-    first, second, last, fourth = (corners[:, (start + turn) & 3, quads] for turn in range(4))
-    diagonal = last - first
+    first = np.where(starts == NO_DIAGONAL, 0, starts).astype(np.intp)
+    column = np.arange(len(first))
+    start, second, end, fourth = (corners[:, (first + turn) & 3, column] for turn in range(4))
+    diagonal = end - start
     inward = cross(cross(diagonal, fourth - second), diagonal)
-    is_beyond = dot(inward, np.take(points, quads, axis=1) - first) > 0
-    cut_off = (start + np.where(is_beyond, 1, 3)) & 3
-    corners[:, cut_off, quads] = corners[:, cut_off - 1, quads]
+    is_beyond = (dot(inward, points - start) > 0) & (starts != NO_DIAGONAL)
+    triangles: Indices = (first + 2 * is_beyond + np.arange(3)[:, None]) & 3
+    return triangles
 
 
 # The weights of corners.
@@ -142,10 +152,9 @@ def corner_weights(corners: Floats, counts: Indices, points: RealArray[Real]) ->
     if no_side[2].all():
         _weigh_in_triangles(corners[:, :3], counts, points, weights)
         return _adding_up_to_1(weights)
-    triangles = np.flatnonzero(no_side.any(axis=0))
     # Measured: if some are triangles, weighing them twice takes less time than dividing the polygons.
-    if len(triangles) < len(counts):
-        _weigh_in_quads(corners, counts, points, weights)
+    _weigh_in_quads(corners, counts, points, weights)
+    triangles = np.flatnonzero(no_side.any(axis=0))
     if len(triangles):
         three = (no_side[:, triangles].argmax(axis=0) + np.arange(2, 5)[:, None]) % 4
         columns = np.flatnonzero(np.repeat(no_side.any(axis=0), counts))
@@ -157,14 +166,24 @@ def corner_weights(corners: Floats, counts: Indices, points: RealArray[Real]) ->
     return _adding_up_to_1(weights)
 
 
+def triangle_weights(corners: Floats, counts: Indices, points: RealArray[Real]) -> RealArray[Real]:
+    """The weights of the corners of triangles, (3, 3, triangles), at each point, (3, points).
+
+    `counts` and `points` are as in `corner_weights`.
+    """
+    weights = np.empty((3, points.shape[1]), points.dtype)
+    _weigh_in_triangles(corners, counts, points, weights)
+    return _adding_up_to_1(weights)
+
+
 def _adding_up_to_1(weights: RealArray[Real]) -> RealArray[Real]:
-    """The weights, in their own array, divided by their sums; a quarter each where the sum is 0."""
+    """The weights, in their own array, divided by their sums; all equal where the sum is 0."""
     sums: RealArray[Real] = weights[0] + weights[1]
     for weight in weights[2:]:
         sums += weight
     if not sums.all():
         nothing = np.flatnonzero(sums == 0)
-        weights[:, nothing], sums[nothing] = 0.25, 1.0
+        weights[:, nothing], sums[nothing] = 1 / len(weights), 1.0
     weights /= sums
     return weights
 
