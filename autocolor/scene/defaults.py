@@ -63,7 +63,7 @@ MAPPING_FIELDS: Final = {
     "ambient": 0.13,
     "interpolation": "invariant",
 }
-"""Assumed: the mapping and the ambient light of a bare mesh.
+"""Assumed: the mapping, the ambient light and the interpolation of a bare mesh.
 
 Measured with the lights and the reflectance of this module: `python -m benchmarks.form` renders 24 meshes
 from three sides, and bounds the share of a picture that is too dark or too bright, and the difference between
