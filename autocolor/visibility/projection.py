@@ -266,30 +266,16 @@ def _polygons_on_raster(
     quads = np.flatnonzero(polygons.splits)
     if not len(quads):
         return polygons
-    if diagonals is None:
-        split = _split(polygons, quads, camera.positions, nodes)
-    else:
-        split = _cut_at_diagonals(polygons, quads, nodes)
-    # A triangle may lie between two lines.
-    return split.some(np.flatnonzero(split.line_counts))
-
-
-def _split(
-    polygons: PolygonsOnRaster, quads: Indices, positions: Floats, nodes: OnRaster
-) -> PolygonsOnRaster:
-    """The polygons with some quads split so that no line crosses a polygon four times."""
+    if diagonals is not None:
+        return _cut_at_diagonals(polygons, quads, nodes)
     corners, corner_normals, parents = split_quads(
-        quads, nodes.x, nodes.y, positions, polygons.corners, polygons.corner_normals
+        quads, nodes.x, nodes.y, camera.positions, polygons.corners, polygons.corner_normals
     )
     lines = nodes.first_line[corners]
-    return polygons._replace(
+    return polygons.some(parents)._replace(
         corners=corners,
         corner_normals=corner_normals,
-        polygon_numbers=polygons.polygon_numbers[parents],
-        from_behind=polygons.from_behind[parents],
         line_counts=most_of_four(lines) - least_of_four(lines),
-        diagonals=polygons.diagonals[parents],
-        splits=polygons.splits[parents],
     )
 
 
@@ -309,7 +295,8 @@ def _cut_at_diagonals(polygons: PolygonsOnRaster, quads: Indices, nodes: OnRaste
         # Each triangle has a side of its own.
         cut.from_behind[places] = _are_from_behind(nodes.x.take(corners), nodes.y.take(corners))
     cut.diagonals[cut.splits] = NO_DIAGONAL
-    return cut
+    # A triangle may lie between two lines.
+    return cut.some(np.flatnonzero(cut.line_counts))
 
 
 def _cover_pixels(
