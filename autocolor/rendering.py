@@ -2,7 +2,7 @@
 
 | changed | recomputed |
 |---|---|
-| mesh, view, the surface of a part, two_sided | everything |
+| mesh, view, interpolation, the surface of a part, two_sided | everything |
 | a light's position, aim, controls, links to parts | the two planes of the light, the sum |
 | the aim of a light that others follow | the two planes of the light and of its followers, the sum |
 | a surface's reflection model | all lights, for the chunks of points that contain the surface; the sum |
@@ -140,7 +140,13 @@ def rendering(
         one_sided = frozenset(row + 1 for row, surface in enumerate(scene.surfaces) if not surface.two_sided)
         with timed(LOG, f"visible surfaces, {elements} x {lines}"):
             points = ALGORITHMS[algorithm](
-                scene.mesh, scene.view, scene.surface_number_of_part, lines, elements, one_sided
+                scene.mesh,
+                scene.view,
+                scene.surface_number_of_part,
+                lines,
+                elements,
+                one_sided,
+                scene.interpolation,
             )
     if before is not None and _is_lit_the_same(before.scene, scene):
         picture = before.picture

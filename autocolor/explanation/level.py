@@ -224,7 +224,10 @@ def scalar_value(mesh: Mesh, scalar: Scalar, at: PointExplained) -> float:
     of_mesh = {each.name: each for each in mesh.scalars}.get(scalar.name)
     if of_mesh is not None and of_mesh.of == "polygon":
         return float(of_mesh.values[polygon])
-    weights = corner_weights([corner.coordinates for corner in at.corners], at.point)
+    within = corner_weights([at.corners[place].coordinates for place in at.between], at.point)
+    weights = [0.0] * len(at.corners)
+    for place, weight in zip(at.between, within, strict=True):
+        weights[place] = weight
     if of_mesh is not None:
         values = [float(of_mesh.values[corner.node - 1]) for corner in at.corners]
         return math.nan if any(map(math.isnan, values)) else dot(weights, values)

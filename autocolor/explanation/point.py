@@ -2,7 +2,7 @@
 
 Paper: "The Lighting Model". The normal is interpolated between the normals of the nodes, along the edges of
 the polygon to the scan line and then along the scan line. So is the depth of the point. Departs: both are
-interpolated on the surface, not in the picture.
+interpolated on the surface, not in the picture. Where a scene asks for it, a quad is two triangles.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import numpy as np
 
 from autocolor.checks import Vector
 from autocolor.scene.mesh import Mesh
-from autocolor.scene.scene import Scene
+from autocolor.scene.scene import INVARIANT, Scene
 from autocolor.scene.surfaces import Reflectance
 from autocolor.scene.view import View
 
@@ -35,13 +35,15 @@ class Corner:
 class PointExplained:
     """The visible point: the rows of the tables that lead to it, and its vectors in object coordinates.
 
-    `reflectance` is the surface's. `normal` is the unit normal N; it is
-    interpolated with the length `normal_length`, normalized, and turned to the eye if `is_turned`.
+    `between` has the places, from 0, of the corners between which the point is interpolated: all corners of
+    the polygon, or those of one of its triangles. `reflectance` is the surface's. `normal` is the unit normal
+    N; it is interpolated with the length `normal_length`, normalized, and turned to the eye if `is_turned`.
     `reflected_view` is R = 2 (N.V) N - V. `distance` leads from the eye to the point.
     """
 
     polygon: int
     corners: tuple[Corner, ...]
+    between: tuple[int, ...]
     part: int
     part_name: str
     surface: int
@@ -126,7 +128,15 @@ def point_at(scene: Scene, camera: Camera, polygon: int, line: int, element: int
         Corner(node + 1, vector_of(mesh.coordinates[node]), vector_of(mesh.normals.vectors[normal]))
         for node, normal in corner_rows(mesh, polygon)
     ]
-    found, is_behind = _found(corners, camera, mesh, line, element)
+    vertices = [Vertex(camera.in_camera(corner.coordinates), corner.normal) for corner in corners]
+    near = near_plane(mesh, camera.view)
+    groups = triangles_of(mesh, polygon) if scene.interpolation == INVARIANT else [range(len(corners))]
+    pieces = [
+        (tuple(group), piece, is_behind)
+        for group in groups
+        for piece, is_behind in pieces_of([vertices[place] for place in group], near, camera)
+    ]
+    found, is_behind, group = _found(pieces, vertices, camera, line, element)
     point = camera.in_world(line, element, 1 / found.inverse_depth)
     is_turned = is_behind and surface.two_sided
     normal = unit(times(-1 if is_turned else 1, found.normal))
@@ -135,6 +145,7 @@ def point_at(scene: Scene, camera: Camera, polygon: int, line: int, element: int
     return PointExplained(
         polygon=polygon + 1,
         corners=tuple(corners),
+        between=group,
         part=int(mesh.part_numbers[polygon]) + 1,
         part_name=part.name,
         surface=scene.surfaces.index(surface) + 1,
@@ -157,35 +168,46 @@ def corner_rows(mesh: Mesh, polygon: int) -> list[tuple[int, int]]:
     return corners or rows[:1]
 
 
+def triangles_of(mesh: Mesh, polygon: int) -> list[tuple[int, ...]]:
+    """The places of the corners of both triangles of a quad; for a triangle, its own."""
+    count, start = len(corner_rows(mesh, polygon)), int(mesh.diagonals.starts[polygon])
+    if count < 4:
+        return [tuple(range(count))]
+    return [tuple((start + step) % 4 for step in steps) for steps in ((0, 1, 2), (2, 3, 0))]
+
+
+Piece = tuple[tuple[int, ...], Sequence["Vertex"], bool]
+"""The places of the corners that a piece is interpolated between, the piece, and whether its back is seen."""
+
+
 def _found(
-    corners: Sequence[Corner], camera: Camera, mesh: Mesh, line: int, element: int
-) -> tuple[LinePoint, bool]:
-    """The point on the scan line at the center of a pixel, and whether the eye sees the polygon's back.
+    pieces: Sequence[Piece], vertices: Sequence[Vertex], camera: Camera, line: int, element: int
+) -> tuple[LinePoint, bool, tuple[int, ...]]:
+    """The point on the scan line at the center of a pixel, whether its back is seen, and its corners' places.
 
     Of the pieces of a polygon, the nearest that covers the pixel is seen. If rounding put the pixel beside
-    all of them, any may be.
+    all of them, the piece is seen from which it is least far.
     """
-    vertices = [Vertex(camera.in_camera(corner.coordinates), corner.normal) for corner in corners]
-    pieces = list(pieces_of(vertices, near_plane(mesh, camera.view), camera))
     candidates = []
     # A line through a corner may cross no edge by rounding; then the lines a little below and above do.
     for aside in (0.0, 1e-6, -1e-6):
-        for piece, is_behind in pieces:
+        for places, piece, is_behind in pieces:
             crossings = crossings_of(piece, camera, line + 0.5 + aside)
             if len(crossings) == 2 and crossings[0].x < crossings[1].x:
                 left, right = crossings
                 fraction = (element + 0.5 - left.x) / (right.x - left.x)
                 outside = max(-fraction, fraction - 1, 0.0) * (right.x - left.x)
                 at_pixel = left.toward(right, fraction)
-                candidates.append((outside > 1e-6, -at_pixel.inverse_depth, is_behind, at_pixel))
+                is_outside = outside if outside > 1e-6 else 0.0
+                candidates.append((is_outside, -at_pixel.inverse_depth, is_behind, places, at_pixel))
         if candidates:
             break
     if not candidates:
         # A sliver that is thinner than a rounding: any of its points.
         x, _, inverse_depth = on_raster(vertices[0], camera)
-        return LinePoint(x, abs(inverse_depth), vertices[0].normal), False
-    *_, is_behind, at_pixel = min(candidates, key=lambda each: each[:2])
-    return at_pixel, is_behind
+        return LinePoint(x, abs(inverse_depth), vertices[0].normal), False, tuple(range(len(vertices)))
+    *_, is_behind, places, at_pixel = min(candidates, key=lambda each: each[:2])
+    return at_pixel, is_behind, places
 
 
 def pieces_of(

@@ -280,6 +280,6 @@ def words_by_line(image: DisplayImage) -> Iterator[tuple[int, Words]]:
 
 def _lines_of(image: DisplayImage) -> Iterator[tuple[int, Words]]:
     scene, picture = image.scene, image.picture
-    projected = projection(scene.mesh, scene.view, picture.lines, picture.elements)
+    projected = projection(scene.mesh, scene.view, picture.lines, picture.elements, scene.interpolation)
     for line, numbers in enumerate(numbers_by_line(projected)):
         yield line, np.where(numbers > 0, image.words[line], np.uint16(BACKGROUND))[np.newaxis]

@@ -7,8 +7,21 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Floats, Indices, Real, RealArray, Singles, chunks_of_runs, cross, normalized
+from autocolor.arrays import (
+    Bytes,
+    Floats,
+    Indices,
+    Real,
+    RealArray,
+    Singles,
+    chunks_of_runs,
+    cross,
+    dot,
+    normalized,
+)
+from autocolor.scene.geometry.diagonals import NO_DIAGONAL
 from autocolor.scene.mesh import Mesh
+from autocolor.scene.scene import INVARIANT
 from autocolor.visibility.visible_points import POINT, VisiblePoints
 
 POINTS_AT_ONCE: Final = 1 << 14
@@ -20,13 +33,15 @@ ROUNDING: Final = 1e-9
 class WeightedPoints(NamedTuple):
     """A chunk of the visible points, the slice `pixels`, with the weights of the corners of their polygons.
 
-    `polygons` and `counts` are as in `polygon_runs`; `weights` is (4, n).
+    `polygons` and `counts` are as in `polygon_runs`; `weights` is (4, n). If quads are two triangles,
+    `triangles`, (3, polygons), has the corners of a triangle in each polygon, and `weights` is (3, n).
     """
 
     pixels: slice
     polygons: Indices
     counts: Indices
     weights: Singles
+    triangles: Indices | None
 
     def interpolated(self, corner_values: Floats) -> Singles:
         """Values at the points, (n,), interpolated from the corners of the polygons, (4, polygons).
@@ -34,6 +49,10 @@ class WeightedPoints(NamedTuple):
         NaN is a missing value. A polygon with a missing corner has no value at any point.
         """
         # The weights are rounded. Weigh the differences from the first corner: a constant stays constant.
+        if self.triangles is not None:
+            missing = np.isnan(corner_values).any(axis=0)
+            corner_values = np.take_along_axis(corner_values, self.triangles, axis=0)
+            corner_values[:, missing] = np.nan
         first = corner_values[0].astype(np.float32)
         values = np.repeat(first, self.counts)
         for weight, difference in zip(self.weights[1:], corner_values[1:] - first, strict=True):
@@ -60,14 +79,26 @@ def weighted_points(mesh: Mesh, points: VisiblePoints) -> Iterator[WeightedPoint
     The corners are transformed to camera space, which is less work than all points to the world.
     """
     polygons, counts = polygon_runs(points)
+    if points.interpolation == INVARIANT:
+        # A span lies in one triangle, a run may lie in two.
+        polygons, counts = points.span_polygons, points.span_lengths
     coordinate_rows, node_rows = mesh.coordinates.T, mesh.node_numbers.T
     eye, middle = np.array(points.view.eye)[:, None], points.middle[:, None]
     for part, pixels in chunks_of_runs(counts, POINTS_AT_ONCE):
         nodes = np.take(node_rows, polygons[part], axis=1)
         world = np.take(coordinate_rows, nodes.ravel(), axis=1) - eye
         corners = (points.view.axes @ world / points.unit - middle).reshape(3, 4, -1)
-        weights = corner_weights(corners, counts[part], points.rows[POINT, pixels])
-        yield WeightedPoints(pixels, polygons[part], counts[part], weights)
+        within = points.rows[POINT, pixels]
+        if points.interpolation == INVARIANT:
+            middles = np.cumsum(counts[part]) - 1 - counts[part] // 2
+            starts = mesh.diagonals.starts.take(polygons[part])
+            triangles = triangles_at(corners, starts, np.take(within, middles, axis=1))
+            weights = triangle_weights(
+                np.take_along_axis(corners, triangles[None], axis=1), counts[part], within
+            )
+        else:
+            triangles, weights = None, corner_weights(corners, counts[part], within)
+        yield WeightedPoints(pixels, polygons[part], counts[part], weights, triangles)
 
 
 def interpolated(mesh: Mesh, points: VisiblePoints, corner_values: Callable[[Indices], Floats]) -> Singles:
@@ -81,13 +112,29 @@ def interpolated(mesh: Mesh, points: VisiblePoints, corner_values: Callable[[Ind
     return values
 
 
+def triangles_at(corners: Floats, starts: Bytes, points: Singles) -> Indices:
+    """The corners, (3, polygons), of the triangle that contains a point of each polygon.
+
+    `corners` is (3, 4, polygons), and `starts`, (polygons,), is as in `Diagonals`.
+    """
+    first = np.where(starts == NO_DIAGONAL, 0, starts).astype(np.intp)
+    column = np.arange(len(first))
+    start, second, end, fourth = (corners[:, (first + turn) & 3, column] for turn in range(4))
+    diagonal = end - start
+    inward = cross(cross(diagonal, fourth - second), diagonal)
+    is_beyond = (dot(inward, points - start) > 0) & (starts != NO_DIAGONAL)
+    triangles: Indices = (first + 2 * is_beyond + np.arange(3)[:, None]) & 3
+    return triangles
+
+
 # The weights of corners.
 #
-# Assumed: in a triangle the weights are the barycentric coordinates, and in a convex quad the generalized
-# barycentric coordinates of Wachspress, which reproduce linear functions. Weights are never negative and add
-# up to 1, so a value is never beyond the values of the corners. A quad with a notch is split there into two
-# triangles. A warped quad counts as its projection along the normal of its diagonals. A quad that crosses
-# itself, or a polygon without area, has weights that are merely not negative.
+# Assumed: in a triangle the weights are the barycentric coordinates. If the scene's interpolation is
+# invariant, a quad is two triangles. If it follows the scan lines, the weights in a convex quad are the
+# generalized barycentric coordinates of Wachspress, which reproduce linear functions; a quad with a notch is
+# split there into two triangles. Weights are never negative and add up to 1, so a value is never beyond the
+# values of the corners. A warped quad counts as its projection along the normal of its diagonals. A quad that
+# crosses itself, or a polygon without area, has weights that are merely not negative.
 #
 # Numbers that all points of a polygon share are computed once a polygon, in float64, and repeated row by row.
 # Measured: repeating several rows at once takes three times as long.
@@ -119,14 +166,24 @@ def corner_weights(corners: Floats, counts: Indices, points: RealArray[Real]) ->
     return _adding_up_to_1(weights)
 
 
+def triangle_weights(corners: Floats, counts: Indices, points: RealArray[Real]) -> RealArray[Real]:
+    """The weights of the corners of triangles, (3, 3, triangles), at each point, (3, points).
+
+    `counts` and `points` are as in `corner_weights`.
+    """
+    weights = np.empty((3, points.shape[1]), points.dtype)
+    _weigh_in_triangles(corners, counts, points, weights)
+    return _adding_up_to_1(weights)
+
+
 def _adding_up_to_1(weights: RealArray[Real]) -> RealArray[Real]:
-    """The weights, in their own array, divided by their sums; a quarter each where the sum is 0."""
+    """The weights, in their own array, divided by their sums; all equal where the sum is 0."""
     sums: RealArray[Real] = weights[0] + weights[1]
     for weight in weights[2:]:
         sums += weight
     if not sums.all():
         nothing = np.flatnonzero(sums == 0)
-        weights[:, nothing], sums[nothing] = 0.25, 1.0
+        weights[:, nothing], sums[nothing] = 1 / len(weights), 1.0
     weights /= sums
     return weights
 

@@ -70,8 +70,9 @@ def scene_of(
     `parts` has fields of parts by name, such as `{"floor": {"stage": True}}`; `fields` are the other fields
     of Scene. Raises InputError, or UsageError for any word but "materials" and "parts".
 
-    Assumed: the mapping belongs to the lights. If the lights are created, then ambient, scaling, mapping and
-    contrast are chosen so that the form of the mesh is visible. With given lights they have Scene's defaults.
+    Assumed: the mapping belongs to the lights. If the lights are created, then ambient, scaling, mapping,
+    contrast and interpolation are chosen so that the form of the mesh is visible. With given lights they have
+    Scene's defaults.
     """
     mesh = Mesh.of(mesh, polygons)
     if isinstance(surfaces, str) and surfaces not in (MATERIALS, PARTS):

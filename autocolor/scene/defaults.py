@@ -58,8 +58,9 @@ MAPPING_FIELDS: Final = {
     "contrast": "floor",
     "mapping": ((0.0, 0.04), (0.12, 0.22), (0.3, 0.32), (0.55, 0.57), (0.8, 0.86), (1.0, 0.93)),
     "ambient": 0.13,
+    "interpolation": "invariant",
 }
-"""Assumed: the mapping and the ambient light of a bare mesh.
+"""Assumed: the mapping, the ambient light and the interpolation of a bare mesh.
 
 Measured with the lights and the reflectance of this module: `python -m benchmarks.form` renders 24 meshes
 from three sides, and bounds the share of a picture that is too dark or too bright, and the difference between

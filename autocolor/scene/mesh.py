@@ -23,6 +23,7 @@ from autocolor.immutable import Immutable, read_only
 from autocolor.logs import logger_of, timed
 from autocolor.scene.columns import Problem
 from autocolor.scene.geometry.curvature import Curvatures, curvatures
+from autocolor.scene.geometry.diagonals import Diagonals, quad_diagonals
 from autocolor.scene.geometry.foreign_meshes import foreign_tables
 from autocolor.scene.geometry.normals import CREASE_ANGLE, NodeNormals, edge_keys, node_normals
 from autocolor.scene.geometry.planes import SharedPlanes, shared_planes
@@ -141,6 +142,11 @@ class Mesh(Immutable):
     def shared_planes(self) -> SharedPlanes | None:
         """The planes in which polygons may overlap; None if there are none."""
         return shared_planes(self.coordinates, self.node_numbers)
+
+    @cached_property
+    def diagonals(self) -> Diagonals:
+        """The diagonals along which quads are cut, if a picture must not change as the camera rolls."""
+        return quad_diagonals(self.coordinates, self.node_numbers)
 
     @property
     def used_coordinates(self) -> Floats:

@@ -67,6 +67,9 @@ SCALINGS: Final = ("surface", "object")
 CONTRASTS: Final = ("stretch", "floor")
 DIVISIONS: Final = ("covered", "equal")
 DITHERS: Final = ("off", "ordered")
+SCAN_LINE: Final = "scan line"
+INVARIANT: Final = "invariant"
+INTERPOLATIONS: Final = (SCAN_LINE, INVARIANT)
 FRONTS: Final = ("x", "-x", "y", "-y")
 LEVELS: Final = "levels"
 NORMALS: Final = "normals"
@@ -163,6 +166,15 @@ class Scene(Row):
             "Whether words stand for levels, or for normals: lights then change entries only.",
         ),
     ] = LEVELS
+    interpolation: Annotated[
+        str,
+        Column(
+            OneOf(INTERPOLATIONS),
+            Tier.FRAME,
+            "Whether quads are interpolated along scan lines, or as two triangles, unchanged as the camera"
+            " rolls.",
+        ),
+    ] = SCAN_LINE
     background: Annotated[Color, Column(ColorKind(), Tier.ENTRIES, "The color where nothing is visible.")] = (
         0,
         0,

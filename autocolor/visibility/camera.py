@@ -13,8 +13,9 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Floats, Indices, Real, RealArray, Singles, chunks
+from autocolor.arrays import Booleans, Floats, Indices, Real, RealArray, Singles, chunks
 from autocolor.checks import Vector
+from autocolor.scene.geometry.diagonals import NO_DIAGONAL, Diagonals
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.view import View
 
@@ -35,6 +36,13 @@ LEAST_UNIT: Final = 2.0**-800
 """Assumed: the least unit of a view, far below the size of any object. The coordinates of the farthest light
 stay finite in it."""
 
+PIECES: Final = {
+    0: ((0, 1, 2), (2, 3, 0)),
+    1: ((1, 2, 3), (3, 0, 1)),
+    NO_DIAGONAL: ((0, 1, 2, 3),),
+}
+"""The corners of the pieces into which a diagonal cuts a polygon."""
+
 POINTS_AT_ONCE: Final = 1 << 14
 
 
@@ -44,7 +52,9 @@ class CameraPolygons:
 
     `positions` is (3, nodes) float64, `normals` (3, normals) float32. `corners` and `corner_normals` are (4,
     polygons) intp: the node and the normal at each corner. `polygon_numbers` are rows of the mesh's polygon
-    table. The near plane is at depth `near`; `nearest` is the least depth of a node of the mesh.
+    table. The near plane is at depth `near`; `nearest` is the least depth of a node of the mesh. `is_cut`,
+    (polygons,), tells which polygons are pieces of triangles that were cut from quads; None if there are no
+    such polygons.
     """
 
     unit: float
@@ -55,6 +65,7 @@ class CameraPolygons:
     corners: Indices
     corner_normals: Indices
     polygon_numbers: Indices
+    is_cut: Booleans | None = None
 
 
 def camera_space(mesh: Mesh, view: View) -> CameraPolygons:
@@ -110,11 +121,11 @@ def rotated(axes: Floats, points: RealArray[Real], origin: Vector = (0.0, 0.0, 0
     return out
 
 
-def clipped_at_near_plane(polygons: CameraPolygons) -> CameraPolygons:
+def clipped_at_near_plane(polygons: CameraPolygons, diagonals: Diagonals | None = None) -> CameraPolygons:
     """The polygons clipped at the near plane. Clipping adds nodes and normals.
 
     Each edge is clipped once, from its lower to its higher node number. So polygons that share an edge share
-    the clipped edge, too.
+    the clipped edge, too. With `diagonals`, quads that cross the near plane are cut into triangles first.
     """
     positions, near = polygons.positions, polygons.near
     if positions[2].min(initial=near) >= near:
@@ -125,8 +136,12 @@ def clipped_at_near_plane(polygons: CameraPolygons) -> CameraPolygons:
     beyond, crossing = np.flatnonzero(~some_before), np.flatnonzero(some_before & ~all_before)
 
     clipped = _Clipped(polygons)
-    for column in crossing.tolist():
-        clipped.add(column)
+    starts = np.full(len(crossing), NO_DIAGONAL)
+    if diagonals is not None:
+        starts = diagonals.some(polygons.polygon_numbers[crossing]).starts
+    for column, start in zip(crossing.tolist(), starts.tolist(), strict=True):
+        for piece in PIECES[start]:
+            clipped.add(column, piece)
 
     normals = polygons.normals
     if clipped.new_positions:
@@ -142,6 +157,7 @@ def clipped_at_near_plane(polygons: CameraPolygons) -> CameraPolygons:
         corners=_merged(polygons.corners, beyond, clipped.corners, order),
         corner_normals=_merged(polygons.corner_normals, beyond, clipped.corner_normals, order),
         polygon_numbers=polygons.polygon_numbers[columns[order]],
+        is_cut=None if diagonals is None else order >= len(beyond),
     )
 
 
@@ -161,19 +177,20 @@ class _Clipped:
         self.corner_normals: list[list[int]] = []
         self.columns: list[int] = []
 
-    def add(self, column: int) -> None:
-        """Clip the polygon in a column, and divide the rest of it into polygons of four corners."""
+    def add(self, column: int, piece: tuple[int, ...]) -> None:
+        """Clip some corners of the polygon in a column, and divide the rest into polygons of four corners."""
         polygons, near = self._polygons, self._polygons.near
         nodes, rows = polygons.corners[:, column].tolist(), polygons.corner_normals[:, column].tolist()
         depths = polygons.positions[2, polygons.corners[:, column]].tolist()
         left_nodes: list[int] = []
         left_rows: list[int] = []
         # Begin at the edge that comes out of the near plane, whichever corner is written first.
-        steps = [(corner, (corner + 1) % 4) for corner in range(4)]
+        steps = list(zip(piece, (*piece[1:], piece[0]), strict=True))
         begin = min(
-            (step for step in steps if depths[step[0]] < near <= depths[step[1]]),
-            key=lambda step: polygons.positions[:, [nodes[step[1]], nodes[step[0]]]].T.tolist(),
-        )[0]
+            (at for at, (here, there) in enumerate(steps) if depths[here] < near <= depths[there]),
+            key=lambda at: polygons.positions[:, [nodes[corner] for corner in steps[at][::-1]]].T.tolist(),
+            default=0,
+        )
         for corner, following in steps[begin:] + steps[:begin]:
             # A triangle repeats a node.
             if nodes[corner] == nodes[following]:

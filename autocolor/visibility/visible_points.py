@@ -20,7 +20,7 @@ from autocolor.arrays import Floats, Indices, Numbers, PartNumbers, Singles
 from autocolor.checks import Vector, shown
 from autocolor.errors import UsageError
 from autocolor.immutable import Immutable, read_only
-from autocolor.scene.scene import Scene
+from autocolor.scene.scene import SCAN_LINE, Scene
 from autocolor.scene.view import View
 
 PIXELS_AT_ONCE: Final = 1 << 17
@@ -44,7 +44,8 @@ class VisiblePoints:
 
     `rows` is (12, n) float32: the point in camera space around `middle`, the unit normal, and the view
     direction reflected at the normal, each with its dot product with the point, so that every cosine to a
-    light is one matrix product. All lengths in camera space are in `unit`.
+    light is one matrix product. All lengths in camera space are in `unit`. `interpolation` is the scene's; if
+    it is INVARIANT, no span crosses the diagonal of a quad.
     """
 
     view: View
@@ -58,6 +59,7 @@ class VisiblePoints:
     span_lengths: Indices
     rows: Singles
     parts: VisibleParts
+    interpolation: str = SCAN_LINE
 
     @cached_property
     def chunks(self) -> tuple[PointChunk, ...]:

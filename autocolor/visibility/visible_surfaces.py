@@ -36,7 +36,9 @@ from autocolor.arrays import (
     underflowing,
 )
 from autocolor.immutable import read_only
+from autocolor.scene.geometry.diagonals import NO_DIAGONAL
 from autocolor.scene.mesh import Mesh
+from autocolor.scene.scene import INVARIANT, SCAN_LINE
 from autocolor.scene.view import View
 from autocolor.visibility.depth import (
     DepthScale,
@@ -90,14 +92,15 @@ def visible_surfaces(
     lines: int = 480,
     elements: int = 640,
     one_sided: frozenset[int] = frozenset(),
+    interpolation: str = SCAN_LINE,
 ) -> VisiblePoints:
     """The visible points of a mesh in a view.
 
     `surface_numbers` has the surface number of each part of the mesh; `one_sided` are the surface numbers
-    whose normals are not turned to the eye on polygons seen from behind.
+    whose normals are not turned to the eye on polygons seen from behind. `interpolation` is the scene's.
     """
     # Project the nodes, and keep the polygons that may be visible.
-    projected = projection(mesh, view, lines, elements)
+    projected = projection(mesh, view, lines, elements, interpolation)
     scale = depth_scale(projected)
     depth_buffer = np.zeros(lines * elements, np.int64)
     # Test the polygons that face the eye.
@@ -261,6 +264,8 @@ def interpolated_points(
     `surface_numbers` and `one_sided` are as in `visible_surfaces`.
     """
     spans = visible_spans(projected, number_at_pixel, surface_numbers)
+    if projected.diagonals is not None:
+        spans = spans_in_triangles(projected, projected.diagonals, spans)
     start, step = along_spans(projected, spans)
     # Turn the normals of polygons seen from behind to the eye.
     behind = projected.from_behind[spans.polygon]
@@ -291,6 +296,7 @@ def interpolated_points(
         count,
         read_only(rows),
         VisibleParts(projected.mesh.part_names, projected.mesh.part_numbers, spans.polygon_number, count),
+        SCAN_LINE if projected.diagonals is None else INVARIANT,
     )
 
 
@@ -331,7 +337,8 @@ class VisibleSpans:
 
     A span has `count` pixels from `first_pixel` on, a flat place in the raster. `polygon` is the polygon's
     column in the projection, `polygon_number` its row in the mesh's polygon table, `surface` its surface
-    number.
+    number. `triangle`, (spans,) uint8, is the first of the three corners between which the span lies, 0 to 3;
+    None if interpolation follows the scan lines.
     """
 
     first_pixel: Indices
@@ -339,6 +346,7 @@ class VisibleSpans:
     polygon: Indices
     polygon_number: Indices
     surface: Bytes
+    triangle: Bytes | None = None
 
 
 class Crossing(NamedTuple):
@@ -394,6 +402,150 @@ def _by_number(number: Numbers) -> Indices:
     return order
 
 
+# Interpolation within triangles.
+#
+# Departs: in a scene with `interpolation = "invariant"`, every quad is two triangles. In a triangle all that
+# is interpolated is linear on the surface, so the direction of the scan lines does not matter. Warped quads
+# are cut in the projection. All others are whole until it is known what is visible; then each span is cut
+# where its line crosses the diagonal.
+#
+# Measured and rejected: the diagonal as a third edge between the two edges that a line crosses. The visible
+# surfaces of the coupe take a quarter longer than along scan lines, and of a million quads a third.
+
+
+def spans_in_triangles(projected: Projection, diagonals: Bytes, spans: VisibleSpans) -> VisibleSpans:
+    """The spans, each in one triangle: a span is cut in two where its line crosses a diagonal."""
+    triangle, left = np.zeros(len(spans.count), np.uint8), spans.count.copy()
+    for chunk in chunks(len(left), SPANS_AT_ONCE):
+        _find_triangles(triangle[chunk], left[chunk], projected, diagonals, spans, chunk)
+    source = np.repeat(np.arange(len(left)), 1 + (left < spans.count))
+    right = np.flatnonzero(source[1:] == source[:-1]) + 1
+    first_pixel, count = spans.first_pixel.take(source), left.take(source)
+    first_pixel[right] += count[right]
+    count[right] = spans.count.take(source[right]) - count[right]
+    # The other triangle begins at the opposite corner.
+    triangle = triangle.take(source)
+    triangle[right] ^= 2
+    return VisibleSpans(
+        first_pixel,
+        count,
+        spans.polygon.take(source),
+        spans.polygon_number.take(source),
+        spans.surface.take(source),
+        triangle,
+    )
+
+
+def _find_triangles(
+    triangle: Bytes, left: Indices, projected: Projection, diagonals: Bytes, spans: VisibleSpans, chunk: slice
+) -> None:
+    """Fill in the triangle at the first pixel of each span of a chunk, and the number of pixels in it.
+
+    For polygons that are triangles, both are already filled in: 0, and all pixels of the span.
+    """
+    starts = diagonals.take(spans.polygon[chunk])
+    rows = np.flatnonzero(starts != NO_DIAGONAL)
+    start, polygon, count = starts.take(rows), spans.polygon[chunk].take(rows), left.take(rows)
+    line, element = np.divmod(spans.first_pixel[chunk].take(rows), projected.elements)
+    # The diagonal leads from the first corner of the triangle to the last.
+    corners = _corners_of_triangles(projected, start, polygon, line, element)
+    (x, beside_x, end_x), (y, beside_y, end_y) = corners.x, corners.y
+    across, down = end_x - x, end_y - y
+    of_corner = across * (beside_y - y) - down * (beside_x - x)
+    at_first = down * x - across * y
+    at_last = at_first - (count - 1) * down
+    # A triangle without area has no pixels.
+    in_first, in_last = (side * of_corner > 0 for side in (at_first, at_last))
+    triangle[rows] = start + np.where(in_first, np.uint8(0), np.uint8(2))
+    cut = np.flatnonzero(in_first != in_last)
+    pixels = np.ceil(at_first.take(cut) / down.take(cut)).astype(np.intp)
+    left[rows[cut]] = np.clip(pixels, 1, count.take(cut) - 1)
+
+
+class TriangleCorners(NamedTuple):
+    """The three corners of triangles, each (triangles,).
+
+    `places` are flat corners of the projection, and `nodes` the nodes there. `x` and `y` are in pixels,
+    around the center of a pixel of each triangle.
+    """
+
+    places: list[Indices]
+    nodes: list[Indices]
+    x: list[Floats]
+    y: list[Floats]
+
+
+def _corners_of_triangles(
+    projected: Projection, triangle: Bytes, polygon: Indices, line: Indices, element: Indices
+) -> TriangleCorners:
+    """The corners of triangles, around the centers of pixels."""
+    count, flat = projected.corners.shape[1], projected.corners.ravel()
+    first = triangle.astype(np.intp)
+    places = [((first + turn) & 3) * count + polygon for turn in range(3)]
+    nodes = [flat.take(place) for place in places]
+    center_x, center_y = element + 0.5, line + 0.5
+    return TriangleCorners(
+        places,
+        nodes,
+        [projected.x.take(node) - center_x for node in nodes],
+        [projected.y.take(node) - center_y for node in nodes],
+    )
+
+
+def _fill_in_triangles(
+    start: Singles, step: Singles, projected: Projection, spans: VisibleSpans, triangle: Bytes, chunk: slice
+) -> None:
+    """Fill in the values and the steps of a chunk of spans, each in a triangle."""
+    line, element = np.divmod(spans.first_pixel[chunk], projected.elements)
+    places, nodes, x, y = _corners_of_triangles(
+        projected, triangle[chunk], spans.polygon[chunk], line, element
+    )
+    # Mirror the triangles that run the other way, so that all areas are positive.
+    mirrored = (x[1] - x[0]) * (y[2] - y[0]) < (x[2] - x[0]) * (y[1] - y[0])
+    for row in y:
+        np.negative(row, out=row, where=mirrored)
+    # The weight of a corner is the area between the pixel and the opposite side.
+    first = [x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]]
+    after_first = spans.count[chunk] - 1
+    last = [area + after_first * (y[at - 2] - y[at - 1]) for at, area in enumerate(first)]
+    inverse_depths = [projected.inverse_depth.take(node) for node in nodes]
+    at_first, at_last = (
+        [weight * depth for weight, depth in zip(_weights(areas), inverse_depths, strict=True)]
+        for areas in (first, last)
+    )
+    # Inverse depth is linear in the picture; so are weights over depth.
+    inverse_depth = at_first[0] + at_first[1] + at_first[2]
+    steps = 1 / np.maximum(after_first, 1)
+    depth_step = (at_last[0] + at_last[1] + at_last[2] - inverse_depth) * steps
+    normals = projected.corner_normals.ravel()
+    of_first = np.take(projected.normals, normals.take(places[0]), axis=1)
+    start[NORMALS], step[NORMALS] = of_first, 0
+    for corner in (1, 2):
+        weight = at_first[corner] / inverse_depth
+        rate = (at_last[corner] - at_first[corner]) * steps - weight * depth_step
+        difference = np.take(projected.normals, normals.take(places[corner]), axis=1) - of_first
+        start[NORMALS] += weight.astype(np.float32) * difference
+        difference *= rate.astype(np.float32)
+        step[NORMALS] += difference
+    _fill_points(start, step, projected, line, element, inverse_depth, depth_step)
+
+
+def _weights(areas: list[Floats]) -> list[Floats]:
+    """The weights of the corners of triangles: areas as fractions of their sum, which are changed.
+
+    A pixel may lie outside of its triangle by rounding; no weight is negative.
+    """
+    for area in areas:
+        np.maximum(area, 0.0, out=area)
+    total = areas[0] + areas[1] + areas[2]
+    if not total.all():
+        nothing = total == 0
+        areas, total = [area + nothing for area in areas], total + 3 * nothing
+    for area in areas:
+        area /= total
+    return areas
+
+
 def along_spans(projected: Projection, spans: VisibleSpans) -> tuple[Singles, Singles]:
     """The values at the first pixel of each span, and the steps from pixel to pixel.
 
@@ -404,7 +556,10 @@ def along_spans(projected: Projection, spans: VisibleSpans) -> tuple[Singles, Si
     count = len(spans.count)
     start, step = np.empty((10, count), np.float32), np.empty((7, count), np.float32)
     for chunk in chunks(count, SPANS_AT_ONCE):
-        _fill_along(start[:, chunk], step[:, chunk], projected, spans, chunk)
+        if spans.triangle is None:
+            _fill_along(start[:, chunk], step[:, chunk], projected, spans, chunk)
+        else:
+            _fill_in_triangles(start[:, chunk], step[:, chunk], projected, spans, spans.triangle, chunk)
     return start, step
 
 
@@ -412,7 +567,6 @@ def _fill_along(
     start: Singles, step: Singles, projected: Projection, spans: VisibleSpans, chunk: slice
 ) -> None:
     """Fill in the values and the steps of a chunk of spans."""
-    focal, middle = projected.focal_length, projected.middle
     line, element = np.divmod(spans.first_pixel[chunk], projected.elements)
     down, up = (
         _crossing(projected, *edges_on_lines(projected, spans.polygon[chunk], line, side), line)
@@ -422,7 +576,6 @@ def _fill_along(
     width, offset = up.x - down.x, element + 0.5 - down.x
     depth_step = (up.inverse_depth - down.inverse_depth) / width
     inverse_depth = down.inverse_depth + depth_step * offset
-    start[DEPTH], step[DEPTH] = inverse_depth, depth_step
     # The normal is linear on the surface, not in the picture.
     weight = offset / width * up.inverse_depth / inverse_depth
     rate = ((1 - weight) * up.inverse_depth + weight * down.inverse_depth) / width
@@ -431,6 +584,21 @@ def _fill_along(
     difference *= weight.astype(np.float32)
     np.add(down.normal, difference, out=start[NORMALS])
 
+    _fill_points(start, step, projected, line, element, inverse_depth, depth_step)
+
+
+def _fill_points(
+    start: Singles,
+    step: Singles,
+    projected: Projection,
+    line: Indices,
+    element: Indices,
+    inverse_depth: Floats,
+    depth_step: Floats,
+) -> None:
+    """Fill in the points, inverse depths and rays of spans, given the inverse depths and their steps."""
+    focal, middle = projected.focal_length, projected.middle
+    start[DEPTH], step[DEPTH] = inverse_depth, depth_step
     # The point is the ray over the inverse depth; from pixel to pixel the ray changes by `ray_step`.
     ray = ((element + 0.5 - projected.elements / 2) / focal, (line + 0.5 - projected.lines / 2) / focal, 1.0)
     depth = 1 / inverse_depth

@@ -15,6 +15,7 @@ import numpy as np
 
 from autocolor.arrays import Numbers, underflowing
 from autocolor.scene.mesh import Mesh
+from autocolor.scene.scene import SCAN_LINE
 from autocolor.scene.view import View
 from autocolor.visibility.depth import (
     DepthScale,
@@ -78,9 +79,10 @@ def watkins(
     lines: int = 480,
     elements: int = 640,
     one_sided: frozenset[int] = frozenset(),
+    interpolation: str = SCAN_LINE,
 ) -> VisiblePoints:
     """The visible points of a mesh in a view; the arguments are as in `visible_surfaces`."""
-    projected = projection(mesh, view, lines, elements)
+    projected = projection(mesh, view, lines, elements, interpolation)
     number_at_pixel = np.concatenate(list(numbers_by_line(projected)))
     return interpolated_points(projected, number_at_pixel, surface_numbers, one_sided)
 

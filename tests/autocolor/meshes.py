@@ -11,7 +11,12 @@ from autocolor import Mesh, Reflectance, Scene, Surface, View, scene_of
 from autocolor.scene.changes import SceneFields
 from tests.autocolor.strategies import Vector
 
-STRETCHED: SceneFields = {"scaling": "surface", "contrast": "stretch", "mapping": "linear"}
+STRETCHED: SceneFields = {
+    "scaling": "surface",
+    "contrast": "stretch",
+    "mapping": "linear",
+    "interpolation": "scan line",
+}
 """How intensities are shown where a test rests on it: as in a scene file that does not say it."""
 
 
@@ -55,6 +60,15 @@ def wall_scene(
 
 CUBE_NODES = [(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)]
 CUBE_QUADS = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+
+
+def uneven_wall(seed: int) -> Mesh:
+    """A wall of 6 x 5 warped quads, six units wide."""
+    flat = grid(6, 5, (-3, 0, -3), (6, 0, 0), (0, 0, 6))
+    moved = flat.coordinates.copy()
+    inner = (np.abs(moved[:, 0]) < 2.9) & (np.abs(moved[:, 2]) < 2.9)
+    moved[inner] += np.random.default_rng(seed).uniform(-0.3, 0.3, (inner.sum(), 3))
+    return Mesh(moved, flat.node_numbers, flat.part_numbers, flat.part_names)
 
 
 def cube(size: float = 1.0) -> Mesh:

@@ -195,3 +195,40 @@ def _meetings(
     before = depth > 0
     rows = (number[real][before], depth[before], inside[before])
     return list(zip(*(row.tolist() for row in rows), strict=True))
+
+
+class OnTriangle(NamedTuple):
+    """Where a ray meets a quad of two triangles: depth, weights of the corners, whether it meets the front.
+
+    `clear` is the least distance, in weights, from a side of a triangle.
+    """
+
+    depth: float
+    weights: list[float]
+    meets_front: bool
+    clear: float
+
+
+def on_triangles(corners: Sequence[Vector], start: int, eye: Vector, direction: Vector) -> OnTriangle | None:
+    """Where a ray first meets a quad that is cut from corner `start` to the opposite corner, or None."""
+    hits, clear = [], math.inf
+    for places in ([start, start + 1, start + 2], [start + 2, start + 3, start]):
+        places = [place % 4 for place in places]
+        first, second, third = (corners[place] for place in places)
+        along, across, away = minus(second, first), minus(third, first), minus(eye, first)
+        normal = cross(along, across)
+        slope = dot(direction, normal)
+        if abs(slope) < 1e-3 * math.sqrt(dot(normal, normal)) or dot(normal, normal) < 1e-12:
+            return None
+        depth = -dot(away, normal) / slope
+        from_first = plus(away, times(depth, direction))
+        weight = dot(cross(from_first, across), normal) / dot(normal, normal)
+        other = dot(cross(along, from_first), normal) / dot(normal, normal)
+        of_three = [1 - weight - other, weight, other]
+        clear = min(clear, *map(abs, of_three))
+        if depth > 0 and min(of_three) >= 0:
+            weights = [0.0] * 4
+            for place, share in zip(places, of_three, strict=True):
+                weights[place] = share
+            hits.append(OnTriangle(depth, weights, slope < 0, 0.0))
+    return min(hits)._replace(clear=clear) if hits else None

@@ -108,6 +108,8 @@ named_views = st.lists(
     unique_by=lambda row: row.name,
 ).map(tuple)
 
+interpolations = st.sampled_from(["scan line", "invariant"])
+
 rasters = st.tuples(st.integers(1, 24), st.integers(1, 24))
 
 
@@ -295,6 +297,7 @@ def scenes(draw: st.DrawFn) -> Scene:
         exposure=draw(exposures),  # type: ignore[arg-type]
         dither=draw(st.sampled_from(["off", "ordered"])),
         division=draw(st.sampled_from(["covered", "equal"])),
+        interpolation=draw(interpolations),
         background=draw(colors),
         front=draw(st.sampled_from([None, "x", "-x", "y", "-y"])),
         views=draw(named_views),

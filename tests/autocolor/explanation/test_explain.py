@@ -29,9 +29,14 @@ def rendered(scene: Scene, elements: int = ELEMENTS) -> tuple[Rendering, Display
 
 
 def jumps_nearby(scene: Scene, explanation: Explanation) -> bool:
-    """Whether float32 may have put the point on the other side of an edge, or hardly knows its normal."""
+    """Whether float32 may have put the point on the other side of an edge, or hardly knows its normal.
+
+    Where two corners are at the same place, a scalar has two values there.
+    """
     at = explanation.point
     assert at is not None
+    if len({corner.coordinates for corner in at.corners}) < len(at.corners):
+        return True
     if at.normal_length < 0.05 or at.distance < 0.05:
         return True
     if any(abs(light.cos_incidence) < 1e-4 for light in explanation.lights):

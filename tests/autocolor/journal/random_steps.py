@@ -62,6 +62,7 @@ columns_of_scenes = st.fixed_dictionaries(
         "exposure": exposures,
         "dither": st.sampled_from(["off", "ordered"]),
         "division": st.sampled_from(["covered", "equal"]),
+        "interpolation": st.sampled_from(["scan line", "invariant"]),
         "background": colors,
         "front": st.sampled_from([None, "x", "-y"]),
         "name": st.sampled_from(["scene", "a 'name'\n", "\N{SNOWMAN}"]),

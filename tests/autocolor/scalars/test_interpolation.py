@@ -12,7 +12,9 @@ from autocolor.explanation import level as plain
 from autocolor.rendering import rendering
 from autocolor.scalars import interpolation
 from autocolor.scalars.interpolation import corner_weights, interpolated, polygon_runs, weighted_points
-from tests.autocolor.meshes import sphere, wall, wall_scene
+from autocolor.scene.scene import INVARIANT
+from tests.autocolor.meshes import sphere, uneven_wall, wall, wall_scene
+from tests.autocolor.reference import on_triangles, ray
 from tests.autocolor.strategies import numbers, vectors
 
 
@@ -47,6 +49,38 @@ def test_values_do_not_depend_on_the_chunks(monkeypatch: pytest.MonkeyPatch) -> 
     assert len(chunks) > 10
     # A sphere of polygons is hardly within the true one.
     assert in_one == pytest.approx(points.world_points[:, 2], abs=0.03)
+
+
+@given(st.integers(0, 99), vectors())
+def test_a_linear_scalar_is_linear_on_warped_quads_if_interpolation_is_invariant(
+    seed: int, factors: tuple[float, float, float]
+) -> None:
+    scene = wall_scene(uneven_wall(seed)).replace(interpolation=INVARIANT)
+    points = rendering(scene, 24, 32).points
+    values = scene.mesh.coordinates @ np.array(factors)
+    node_rows = scene.mesh.node_numbers.T
+    found = interpolated(scene.mesh, points, lambda polygons: values[node_rows[:, polygons]])
+    assert found == pytest.approx(points.world_points @ np.array(factors), abs=2e-5)
+
+
+def test_scalars_are_weighted_as_the_triangles_of_quads_are() -> None:
+    scene = wall_scene(uneven_wall(7)).replace(interpolation=INVARIANT)
+    points = rendering(scene, 24, 32).points
+    values = np.random.default_rng(1).uniform(-1, 1, len(scene.mesh.coordinates))
+    node_rows = scene.mesh.node_numbers.T
+    found = interpolated(scene.mesh, points, lambda polygons: values[node_rows[:, polygons]])
+    starts = scene.mesh.diagonals.some(points.polygon_numbers).starts
+    checked = 0
+    for number, polygon in enumerate(points.polygon_numbers.tolist()):
+        corners = scene.mesh.coordinates[node_rows[:, polygon]].tolist()
+        direction = ray(scene.view, 24, 32, *divmod(int(points.pixels[number]), 32))
+        hit = on_triangles(corners, int(starts[number]), scene.view.eye, direction)
+        if hit is not None and hit.clear > 1e-4:
+            assert found[number] == pytest.approx(
+                np.array(hit.weights) @ values[node_rows[:, polygon]], abs=1e-5
+            )
+            checked += 1
+    assert checked > 300
 
 
 Array = npt.NDArray[np.float64]

@@ -59,6 +59,7 @@ EDITS: dict[str, dict[str, Values]] = {
         "dither": {"dither": "ordered"},
         "division": {"division": "equal"},
         "words": {"words": "normals"},
+        "interpolation": {"interpolation": "invariant"},
         "front": {"front": "-x"},
         "background": {"background": "#102030"},
     },

@@ -59,7 +59,7 @@ def test_every_parameter_of_the_mapping_has_a_row(hand: Hand) -> None:
     assert labels >= set(fields_of(Scene)) - tables
 
 
-@pytest.mark.parametrize("label", ["scaling", "contrast", "dither", "division"])
+@pytest.mark.parametrize("label", ["scaling", "contrast", "dither", "division", "interpolation"])
 def test_a_choice_goes_to_the_other_and_back(hand: Hand, label: str) -> None:
     before = vars(scene_of(hand))[label]
     hand.pick(label)

@@ -24,7 +24,7 @@ PAGES = {
     "reflectance": 571573069,
     "mixing": 1030339630,
     "blending": 3756060397,
-    "mapping": 4242948932,
+    "mapping": 2296462326,
     "scalar": 648425415,
     "kept": 3802267977,
     "history": 158829111,

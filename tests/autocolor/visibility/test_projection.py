@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Mesh, View, render, scene_of
+from autocolor.scene.scene import SCAN_LINE
 from autocolor.visibility import projection as projection_module
 from autocolor.visibility.projection import (
     Projection,
@@ -25,7 +26,16 @@ from autocolor.visibility.projection import (
 from autocolor.visibility.visible_surfaces import visible_surfaces
 from tests.autocolor.meshes import cube, decal_on_ground, grid, sphere
 from tests.autocolor.reference import ray
-from tests.autocolor.strategies import Vector, directions, meshes, outside_views, rasters, vectors, views
+from tests.autocolor.strategies import (
+    Vector,
+    directions,
+    interpolations,
+    meshes,
+    outside_views,
+    rasters,
+    vectors,
+    views,
+)
 
 
 @given(vectors(), directions, rasters)
@@ -227,13 +237,15 @@ def test_a_mesh_without_shared_planes_has_none_on_the_raster() -> None:
     assert projected.planes is None
 
 
-def in_two_steps(mesh: Mesh, view: View, lines: int, elements: int) -> Projection:
+def in_two_steps(
+    mesh: Mesh, view: View, lines: int, elements: int, interpolation: str = SCAN_LINE
+) -> Projection:
     """The projection as that of a large mesh, in chunks of a few polygons and nodes."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(projection_module, "LARGE", 0)
         patch.setattr(projection_module, "POLYGONS_AT_ONCE", 3)
         patch.setattr(projection_module, "NODES_AT_ONCE", 5)
-        return projection(mesh, view, lines, elements)
+        return projection(mesh, view, lines, elements, interpolation)
 
 
 def same(one: Projection, other: Projection) -> bool:
@@ -250,6 +262,7 @@ def same(one: Projection, other: Projection) -> bool:
             each.from_behind,
             each.line_counts,
             *([] if each.planes is None else each.planes),
+            *([] if each.diagonals is None else [each.diagonals]),
             np.array([each.nearest, each.unit, each.focal_length]),
         ]
         for each in (one, other)
@@ -261,11 +274,13 @@ def same(one: Projection, other: Projection) -> bool:
     )
 
 
-@given(meshes(), views() | outside_views(), rasters)
+@given(meshes(), views() | outside_views(), rasters, interpolations)
 def test_a_large_mesh_is_projected_in_two_steps_to_the_same_bits(
-    mesh: Mesh, view: View, raster: tuple[int, int]
+    mesh: Mesh, view: View, raster: tuple[int, int], interpolation: str
 ) -> None:
-    assert same(in_two_steps(mesh, view, *raster), projection(mesh, view, *raster))
+    projected = projection(mesh, view, *raster, interpolation)
+    assert same(in_two_steps(mesh, view, *raster, interpolation), projected)
+    assert (projected.line_counts > 0).all()
 
 
 @given(st.integers(0, 1 << 32))

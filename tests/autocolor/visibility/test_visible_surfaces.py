@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 from autocolor import Mesh, View
 from autocolor.arrays import Numbers, runs
 from autocolor.explanation.point import dot, minus, times, unit
+from autocolor.scene.scene import INVARIANT, SCAN_LINE
 from autocolor.visibility import visible_surfaces as module
 from autocolor.visibility.depth import depth_scale, polygons_of_numbers
 from autocolor.visibility.projection import projection
@@ -30,8 +31,8 @@ from autocolor.visibility.visible_surfaces import (
     visible_surfaces,
 )
 from autocolor.visibility.watkins import watkins
-from tests.autocolor.meshes import ROUNDINGS, cube, decal_on_ground, grid, sphere
-from tests.autocolor.reference import first_hit, ray
+from tests.autocolor.meshes import ROUNDINGS, cube, decal_on_ground, grid, sphere, uneven_wall
+from tests.autocolor.reference import first_hit, on_triangles, ray
 from tests.autocolor.strategies import (
     Vector,
     directions,
@@ -152,11 +153,7 @@ def test_a_closed_mesh_has_no_crack_from_within(mesh: Mesh, data: st.DataObject)
 
 @given(st.integers(0, 1 << 32), st.integers(1, 30))
 def test_a_wall_of_uneven_polygons_has_no_crack(seed: int, lines: int) -> None:
-    flat = grid(6, 5, (-3, 0, -3), (6, 0, 0), (0, 0, 6))
-    moved = flat.coordinates.copy()
-    inner = (np.abs(moved[:, 0]) < 2.9) & (np.abs(moved[:, 2]) < 2.9)
-    moved[inner] += np.random.default_rng(seed).uniform(-0.3, 0.3, (inner.sum(), 3))
-    uneven = Mesh(moved, flat.node_numbers, flat.part_numbers, flat.part_names)
+    uneven = uneven_wall(seed)
     view = View((0.1, -4.0, 0.2), target=(0.0, 0.0, 0.0), field_of_view=30.0)
     points = visible_surfaces(uneven, view, (1,), lines, lines)
     assert len(points.pixels) == lines * lines
@@ -478,6 +475,7 @@ def test_spans_are_the_runs_of_pixels_of_a_line_at_which_one_polygon_is_visible(
     depth_test(number_at_pixel, projected, scale, np.arange(projected.corners.shape[1]))
     number_at_pixel &= scale.number_limit - 1
     spans = visible_spans(projected, number_at_pixel, (2, 1))
+    assert spans.triangle is None
 
     expected = []
     pixel = 0
@@ -490,7 +488,8 @@ def test_spans_are_the_runs_of_pixels_of_a_line_at_which_one_polygon_is_visible(
             surface = (2, 1)[mesh.part_numbers[row]]
             expected.append((pixel, count, polygon, row, surface))
         pixel += count
-    found = list(zip(*(table.tolist() for table in vars(spans).values()), strict=True))
+    tables = [table.tolist() for name, table in vars(spans).items() if name != "triangle"]
+    found = list(zip(*tables, strict=True))
     assert sorted(found) == expected
     assert (np.diff(spans.surface.astype(int)) >= 0).all()
     # Within a surface the spans of a polygon follow each other.
@@ -627,3 +626,64 @@ def test_points_of_a_flat_polygon_lie_in_its_plane(view: View, raster: tuple[int
     assert (points.world_points - slope.coordinates[0]) @ normal == pytest.approx(
         np.zeros(len(points.pixels)), abs=2e-5
     )
+
+
+@given(meshes() | st.integers(0, 99).map(uneven_wall), views() | outside_views(), rasters)
+def test_every_quad_is_two_triangles_if_interpolation_is_invariant(
+    mesh: Mesh, view: View, raster: tuple[int, int]
+) -> None:
+    points = visible_surfaces(mesh, view, (1, 2), *raster, interpolation=INVARIANT)
+    starts = mesh.diagonals.some(points.polygon_numbers).starts % 2
+    depths = (points.world_points - np.array(view.eye)) @ view.axes[2]
+    for number, polygon in enumerate(points.polygon_numbers.tolist()):
+        corners = mesh.coordinates[mesh.node_numbers[polygon]].tolist()
+        direction = ray(view, *raster, *divmod(int(points.pixels[number]), raster[1]))
+        hit = on_triangles(corners, int(starts[number]), view.eye, direction)
+        if hit is None or hit.clear < 1e-3 or hit.depth < 1e-2:
+            continue
+        assert depths[number] == pytest.approx(hit.depth, rel=1e-4, abs=1e-5)
+        normals = mesh.normals.vectors[mesh.normals.numbers[polygon]].astype(np.float64)
+        normal = np.array(hit.weights) @ normals * (1 if hit.meets_front else -1)
+        if np.linalg.norm(normal) > 0.1:
+            assert points.world_normals[number] == pytest.approx(normal / np.linalg.norm(normal), abs=1e-4)
+
+
+def rolled(view: View, degrees: int) -> View:
+    return view.replace(angle=view.angle + degrees)
+
+
+def normals_on_raster(mesh: Mesh, view: View, size: int, interpolation: str) -> npt.NDArray[np.float64]:
+    """The polygon and the world normal at each pixel, (size, size, 4)."""
+    points = visible_surfaces(mesh, view, (1, 2), size, size, interpolation=interpolation)
+    raster = np.full((size * size, 4), -1.0)
+    raster[points.pixels] = np.column_stack([points.polygon_numbers, points.world_normals])
+    return raster.reshape(size, size, 4)
+
+
+FLOOR = Mesh(uneven_wall(5).coordinates[:, [0, 2, 1]] * (1, 1, -0.3), uneven_wall(5).node_numbers)
+
+
+@pytest.mark.parametrize("degrees", [90, 180, 270])
+@pytest.mark.parametrize(
+    ("mesh", "view"),
+    [
+        (uneven_wall(3), View((0.4, -8.0, 0.7), target=(0.0, 0.0, 0.0), field_of_view=50)),
+        # These quads are flat.
+        (sphere(12, 8), View((2.0, -3.0, 1.0), target=(0.0, 0.0, 0.0))),
+        # The floor reaches behind the eye.
+        (FLOOR, View((0.1, 0.05, 0.4), direction=(0.05, 1.0, -0.2), field_of_view=80)),
+    ],
+    ids=["warped", "flat", "clipped"],
+)
+def test_the_picture_does_not_change_as_the_camera_rolls(mesh: Mesh, view: View, degrees: int) -> None:
+    differences = {}
+    for interpolation in (SCAN_LINE, INVARIANT):
+        before = normals_on_raster(mesh, view, 120, interpolation)
+        after = normals_on_raster(mesh, rolled(view, degrees), 120, interpolation)
+        # If the camera turns, the picture turns the other way.
+        after = np.rot90(after, degrees // 90)
+        same = before[..., 0] == after[..., 0]
+        assert same.mean() > 0.9999
+        differences[interpolation] = float(np.abs(before - after)[same].max())
+    assert differences[INVARIANT] < 1e-5
+    assert degrees == 180 or differences[SCAN_LINE] > 1e-3

@@ -17,7 +17,7 @@ from autocolor.visibility.visible_points import VisiblePoints
 from autocolor.visibility.visible_surfaces import visible_surfaces
 from autocolor.visibility.watkins import numbers_by_line, watkins
 from tests.autocolor.meshes import ROUNDINGS, cube, decal_on_ground, grid, sphere
-from tests.autocolor.strategies import meshes, outside_views, rasters, soups, views
+from tests.autocolor.strategies import interpolations, meshes, outside_views, rasters, soups, views
 
 
 def assert_same(one: VisiblePoints, other: VisiblePoints) -> None:
@@ -29,11 +29,17 @@ def assert_same(one: VisiblePoints, other: VisiblePoints) -> None:
     assert one.rows.tobytes() == other.rows.tobytes()
 
 
-@given(meshes(), views() | outside_views(), rasters, st.sampled_from([frozenset[int](), frozenset({1})]))
+@given(
+    meshes(),
+    views() | outside_views(),
+    rasters,
+    st.sampled_from([frozenset[int](), frozenset({1})]),
+    interpolations,
+)
 def test_batch_and_watkins_agree_on_any_mesh(
-    mesh: Mesh, view: View, raster: tuple[int, int], one_sided: frozenset[int]
+    mesh: Mesh, view: View, raster: tuple[int, int], one_sided: frozenset[int], interpolation: str
 ) -> None:
-    arguments = (mesh, view, (1, 2), *raster, one_sided)
+    arguments = (mesh, view, (1, 2), *raster, one_sided, interpolation)
     assert_same(visible_surfaces(*arguments), watkins(*arguments))
 
 
@@ -44,12 +50,18 @@ def test_batch_and_watkins_agree_where_polygons_pass_through_each_other(
     assert_same(visible_surfaces(mesh, view, (1,), *raster), watkins(mesh, view, (1,), *raster))
 
 
-@given(st.integers(0, 1 << 32), st.sampled_from(ROUNDINGS), rasters, outside_views() | st.none())
+@given(
+    st.integers(0, 1 << 32),
+    st.sampled_from(ROUNDINGS),
+    rasters,
+    outside_views() | st.none(),
+    interpolations,
+)
 def test_batch_and_watkins_agree_on_decals(
-    seed: int, rounding: str, raster: tuple[int, int], view: View | None
+    seed: int, rounding: str, raster: tuple[int, int], view: View | None, interpolation: str
 ) -> None:
     mesh, before = decal_on_ground(seed, rounding)
-    arguments = (mesh, view or before, (1, 2), *raster)
+    arguments = (mesh, view or before, (1, 2), *raster, frozenset[int](), interpolation)
     assert_same(visible_surfaces(*arguments), watkins(*arguments))
 
 
@@ -76,14 +88,14 @@ def test_batch_and_watkins_find_nothing_in_an_empty_mesh() -> None:
     assert len(visible_surfaces(empty, view, (), 4, 5).pixels) == 0
 
 
-@given(meshes() | soups(), views() | outside_views(), rasters)
+@given(meshes() | soups(), views() | outside_views(), rasters, interpolations)
 def test_the_lines_one_after_the_other_have_the_polygons_of_the_batch(
-    mesh: Mesh, view: View, raster: tuple[int, int]
+    mesh: Mesh, view: View, raster: tuple[int, int], interpolation: str
 ) -> None:
-    batch = visible_surfaces(mesh, view, (1, 2), *raster)
+    batch = visible_surfaces(mesh, view, (1, 2), *raster, interpolation=interpolation)
     expected = np.full(raster, -1).ravel()
     expected[batch.pixels] = batch.polygon_numbers
-    projected = projection(mesh, view, *raster)
+    projected = projection(mesh, view, *raster, interpolation)
     for numbers, of_batch in zip(numbers_by_line(projected), expected.reshape(raster), strict=True):
         polygons = np.full(raster[1], -1)
         seen = numbers > 0

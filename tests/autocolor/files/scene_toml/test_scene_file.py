@@ -211,7 +211,7 @@ concentration = -1
         " x = 0 to x = 1, not 'linea'; did you mean 'linear'?",
         f"{place} 4, there is no field 'colour'; choose 'mesh', 'parts', 'surfaces', 'lights', 'view',"
         " 'ambient', 'scaling', 'mapping', 'contrast', 'exposure', 'dither', 'division', 'words',"
-        " 'background', 'front', 'views' or 'scalar'",
+        " 'interpolation', 'background', 'front', 'views' or 'scalar'",
         f'{place} 5, background must be "#rrggbb", a name such as "red", or three whole numbers from 0 to'
         " 255, not '#12'; write three or six hexadecimal digits after the #",
         f"{place} 7, [view]: eye must be three finite numbers of at most 1e36, not [0, 0]",
