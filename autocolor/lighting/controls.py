@@ -37,10 +37,10 @@ ROUNDING: Final = float(np.finfo(np.float32).eps)
 ABOVE_ZERO: Final = float(np.finfo(np.float32).smallest_subnormal)
 """The least positive float32: the least cos(L) in front of a light."""
 
-FARTHEST_PLANE: Final = 1e30
-"""The largest distance of a plane, in units: farther than any point, and float32 can hold it."""
+FARTHEST_PLANE: Final = 1e15
+"""The largest distance of a plane, in units: farther than any point."""
 
-LEAST_WIDTH: Final = 1e-8
+LEAST_WIDTH: Final = 1e-20
 """The least edge width, in units: far below the rounding of points, and float32 holds any quotient by it."""
 
 LEAST_REACH: Final = 1e-20
@@ -52,7 +52,7 @@ class LitPoints(NamedTuple):
 
     `cos_light` is cos(L), (points,), or None if no control of the light is `directed`. `distance()` is the
     distance to the light, (points,); `positions()` are the points in camera space around
-    `VisiblePoints.middle`, (3, points). Both are in `VisiblePoints.unit` and must not be modified.
+    `VisiblePoints.origin`, (3, points). Both are in `VisiblePoints.unit` and must not be modified.
     """
 
     cos_light: Singles | None
@@ -313,8 +313,8 @@ def side_of(points: VisiblePoints, direction: Vector, least: float, edge_width: 
     coordinates = np.array([points.world_coordinate(axis) for axis in range(3)])
     in_units = min(max(least / points.unit, -FARTHEST_PLANE), FARTHEST_PLANE)
     # A surface that lies on a sharp side is lit: allow for the rounding of its points to float32.
-    slack = 0.0 if edge_width > 0 else 4 * ROUNDING * points.radius
-    row = np.array(direction) @ coordinates - np.array([0, 0, 0, in_units - slack])
+    slack = 0.0 if edge_width > 0 else 4 * ROUNDING * points.largest_distance
+    row = np.array(direction) @ coordinates - (np.array([0, 0, 0, in_units]) - slack)
     return LitSide(row, edge_width / points.unit)
 
 

@@ -333,7 +333,7 @@ def _are_on_one_surface(points: VisiblePoints, one: Indices, other: Indices) -> 
     """Whether each of two neighboring points is close to the tangent plane of the other."""
     at_one, at_other = (points.rows[POINT].take(places, axis=1) for places in (one, other))
     between = at_other - at_one
-    depth = at_one[2] + np.float32(points.middle[2])
+    depth = at_one[2] + np.float32(points.origin[2])
     most = depth * np.float32(LARGEST_GAP / focal_length(points.lines, points.view.field_of_view))
     close = np.ones(len(one), np.bool_)
     for places in (one, other):

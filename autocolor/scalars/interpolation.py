@@ -61,11 +61,11 @@ def weighted_points(mesh: Mesh, points: VisiblePoints) -> Iterator[WeightedPoint
     """
     polygons, counts = polygon_runs(points)
     coordinate_rows, node_rows = mesh.coordinates.T, mesh.node_numbers.T
-    eye, middle = np.array(points.view.eye)[:, None], points.middle[:, None]
+    eye, origin = np.array(points.view.eye)[:, None], points.origin[:, None]
     for part, pixels in chunks_of_runs(counts, POINTS_AT_ONCE):
         nodes = np.take(node_rows, polygons[part], axis=1)
         world = np.take(coordinate_rows, nodes.ravel(), axis=1) - eye
-        corners = (points.view.axes @ world / points.unit - middle).reshape(3, 4, -1)
+        corners = (points.view.axes @ world / points.unit - origin).reshape(3, 4, -1)
         weights = corner_weights(corners, counts[part], points.rows[POINT, pixels])
         yield WeightedPoints(pixels, polygons[part], counts[part], weights)
 
