@@ -9,7 +9,7 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Callable, Iterator, Sequence
-from typing import Any, Final, ParamSpec, TypeVar
+from typing import Any, Final, NamedTuple, ParamSpec, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -82,6 +82,15 @@ MOST_MULTIPLIED: Final = 64
 """The largest exponent for which repeated squaring is exact to 1e-5."""
 
 NUMBERS_AT_ONCE: Final = 1 << 16
+
+POWER_ERROR: Final = 4e-5
+"""Assumed: how far the rounding of a cosine may put a share of the light, 0 to 1: a hundredth of a level."""
+
+NEGLIGIBLE: Final = 16.0
+"""Powers below exp(-NEGLIGIBLE), which is the rounding of 1 in float32, are 0 if they are steep."""
+
+FEW: Final = 0.25
+"""The fraction of cosines up to which it takes less time to pick them."""
 
 
 def runs(first: Numbers, count: Numbers, step: Numbers | None = None) -> Numbers:
@@ -245,10 +254,35 @@ def normalized(vectors: Floats) -> Floats:
     return vectors / sizes
 
 
-def power(cosines: Singles, exponent: float, out: Singles | None = None) -> Singles:
+class NearOne(NamedTuple):
+    """What tells cosines near 1 apart, where float32 has few digits.
+
+    The cosines are off by at most `rounding`. `gaps` returns 1 - cosine, (k,), at k of their places, exact in
+    proportion to itself.
+    """
+
+    rounding: float
+    gaps: Callable[[Indices], Floats]
+
+
+def gaps_of(differences: Floats) -> Floats:
+    """1 - cosine of the angles between unit vectors, (n,), given the differences of the vectors, (3, n).
+
+    It is half of the square of the difference. Where the angle is small, a unit vector that is rounded to
+    another length hardly changes the difference, but it changes the cosine.
+    """
+    gaps = dot(differences, differences)
+    gaps /= 2
+    return gaps
+
+
+def power(
+    cosines: Singles, exponent: float, out: Singles | None = None, near: NearOne | None = None
+) -> Singles:
     """The cosines to a power, in [0, 1]; negative cosines count as 0, and every cosine to the power 0 is 1.
 
-    `out` may be `cosines`.
+    `out` may be `cosines`. Given what tells cosines `near` 1 apart, a power is off by at most POWER_ERROR,
+    however steep it is.
 
     >>> power(np.array([0.5, -1.0, 1.0], np.float32), 2).tolist()
     [0.25, 0.0, 1.0]
@@ -258,6 +292,8 @@ def power(cosines: Singles, exponent: float, out: Singles | None = None) -> Sing
     takes a quarter of the time of a minimum and a maximum.
     """
     out = np.empty_like(cosines) if out is None else out
+    if near is not None and exponent * near.rounding > POWER_ERROR:
+        return _steep_power(cosines, exponent, out, near)
     single = np.float32(min(exponent, LARGEST_SINGLE))
     if single == 0:
         out[:] = 1
@@ -270,6 +306,28 @@ def power(cosines: Singles, exponent: float, out: Singles | None = None) -> Sing
         np.log(out, out=out)
         out *= single
         return np.exp(out, out=out)
+
+
+def _steep_power(cosines: Singles, exponent: float, out: Singles, near: NearOne) -> Singles:
+    """As `power`, for an exponent by which the rounding of the cosines grows too large."""
+    # Pick the cosines whose powers are not negligible, or take all of them if they are many.
+    places = np.flatnonzero(cosines > math.exp(-NEGLIGIBLE / exponent) - near.rounding)
+    if len(places) > FEW * len(cosines):
+        places = np.arange(len(cosines))
+    picked = cosines.take(places)
+    # A power c^N is off by N c^N times the rounding of c.
+    steep = math.log(exponent * near.rounding / POWER_ERROR)
+    exact = np.flatnonzero(picked > math.exp(-steep / exponent) - near.rounding)
+    powers = power(picked, exponent, out=picked)
+    if len(exact):
+        gap = near.gaps(places.take(exact))
+        # The logarithm of 1 - gap, whose further terms are below 1e-5 where a power is not small.
+        logarithm = -gap * (1 + gap * (1 / 2 + gap / 3))
+        with np.errstate(under="ignore"):
+            powers[exact] = np.exp((exponent * logarithm).astype(np.float32))
+    out[:] = 0
+    out[places] = powers
+    return out
 
 
 def _multiplied(out: Singles, exponent: int) -> Singles:

@@ -25,14 +25,21 @@ from typing import Final, Literal, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Booleans, Floats, PartNumbers, Singles, power, unit_vector
+from autocolor.arrays import (
+    POWER_ERROR,
+    Booleans,
+    Floats,
+    NearOne,
+    PartNumbers,
+    Singles,
+    power,
+    unit_vector,
+)
 from autocolor.checks import Vector
-from autocolor.lighting.rays import FARTHEST, camera_light
+from autocolor.lighting.rays import FARTHEST, ROUNDING, Rays, camera_light
 from autocolor.scene.following import detached
 from autocolor.scene.lights import Flap, Light
 from autocolor.visibility.visible_points import POINT, POINT_SQUARED, VisiblePoints
-
-ROUNDING: Final = float(np.finfo(np.float32).eps)
 
 ABOVE_ZERO: Final = float(np.finfo(np.float32).smallest_subnormal)
 """The least positive float32: the least cos(L) in front of a light."""
@@ -53,11 +60,13 @@ class LitPoints(NamedTuple):
     `cos_light` is cos(L), (points,), or None if no control of the light is `directed`. `distance()` is the
     distance to the light, (points,); `positions()` are the points in camera space around
     `VisiblePoints.origin`, (3, points). Both are in `VisiblePoints.unit` and must not be modified.
+    `near_axis` tells cosines near 1 apart; None if they are exact.
     """
 
     cos_light: Singles | None
     distance: Callable[[], Singles]
     positions: Callable[[], Singles]
+    near_axis: NearOne | None = None
 
 
 class LightControl(ABC):
@@ -118,7 +127,7 @@ class Concentration(LightControl):
     def factor(self, lit: LitPoints, out: Singles) -> Singles:
         """cos^C(L)."""
         assert lit.cos_light is not None
-        return power(lit.cos_light, self.exponent, out=out)
+        return power(lit.cos_light, self.exponent, out, lit.near_axis)
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,10 +144,41 @@ class Cone(LightControl):
 
     @classmethod
     def of(cls, light: Light, points: VisiblePoints) -> Cone | None:
-        """The cone, widened by a rounding of float32: a rim along a line of pixels does not fray."""
+        """The cone, widened by a rounding of float32: a rim along a line of pixels does not fray.
+
+        The rim of a narrow cone is widened by `within`.
+        """
         if light.cone_angle is None:
             return None
-        return cls(math.cos(math.radians(light.cone_angle)) - ROUNDING)
+        least = math.cos(math.radians(light.cone_angle))
+        return cls(least if is_narrow(least) else least - ROUNDING)
+
+
+NARROW: Final = 2.5e-3
+"""Assumed: a cone is narrow if sin^2(A) is below this: up to 2.9 degrees, or less than that from 180.
+
+The rounding of a cosine would move its rim by a ten thousandth of the angle, or more."""
+
+RIM_ROUNDING: Final = 2e-7
+"""Assumed: in radians; a rim along a line of pixels does not fray."""
+
+
+def is_narrow(least_cosine: float) -> bool:
+    """Whether a cone with the least cosine cos(A) has a rim that depends on the rounding of cosines."""
+    return 1 - least_cosine**2 < NARROW
+
+
+def within(rays: Rays, least_cosine: float) -> Booleans:
+    """Whether cos(L) of each ray of a directed light is at least the least cosine of its controls."""
+    assert rays.cos_light is not None
+    lit: Booleans = rays.cos_light >= np.float32(least_cosine)
+    near = rays.near_axis
+    if near is not None and is_narrow(least_cosine):
+        from_rim = np.abs(rays.cos_light - np.float32(least_cosine))
+        places = np.flatnonzero(from_rim <= near.rounding + ROUNDING)
+        slack = RIM_ROUNDING * math.sqrt(1 - least_cosine**2)
+        lit[places] = near.gaps(places) <= 1 - least_cosine + slack
+    return lit
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,6 +192,7 @@ class SoftCone(LightControl):
 
     rim: float
     width: float
+    gaps: tuple[float, float]
     directed = True
 
     @classmethod
@@ -162,14 +203,27 @@ class SoftCone(LightControl):
             return None
         # Rounded like the cosines that it is subtracted from.
         rim = float(np.float32(math.cos(math.radians(outer))))
-        return cls(rim, max(math.cos(math.radians(inner)) - rim, ROUNDING))
+        width = max(math.cos(math.radians(inner)) - rim, ROUNDING)
+        return cls(rim, width, (gap_of_angle(inner), gap_of_angle(outer)))
 
     def factor(self, lit: LitPoints, out: Singles) -> Singles:
         """The share that is left between the two angles."""
         assert lit.cos_light is not None
         np.subtract(lit.cos_light, np.float32(self.rim), out=out)
         out *= np.float32(1 / self.width)
+        near = lit.near_axis
+        if near is not None and near.rounding > POWER_ERROR * self.width:
+            # Choose the places in the edge, by the rounded cosines.
+            margin = np.float32(near.rounding / self.width + 1)
+            places = np.flatnonzero((out > -margin) & (out < 1 + margin))
+            inner, outer = self.gaps
+            out[places] = (outer - near.gaps(places)) / (outer - inner)
         return soften(out)
+
+
+def gap_of_angle(angle: float) -> float:
+    """1 - cos of an angle in degrees, exact in proportion to itself."""
+    return 2 * math.sin(math.radians(angle) / 2) ** 2
 
 
 def soften(fraction: Singles) -> Singles:

@@ -305,7 +305,7 @@ def interpolated_points(
     )
 
 
-MOST_HEIGHTS: Final = 32.0
+MOST_HEIGHTS: Final = 16.0
 """Assumed: how far the points may be from the middle of the object, or the farthest visible point behind the
 nearest, in heights of the picture at the depth of the nearest visible point.
 
