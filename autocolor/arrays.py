@@ -89,8 +89,8 @@ POWER_ERROR: Final = 4e-5
 NEGLIGIBLE: Final = 16.0
 """Powers below exp(-NEGLIGIBLE), which is the rounding of 1 in float32, are 0 if they are steep."""
 
-FEW: Final = 0.25
-"""The fraction of cosines up to which it takes less time to pick them."""
+FEW: Final = 0.1
+"""The fraction of powers that are not negligible up to which it takes less time to compute only these."""
 
 
 def runs(first: Numbers, count: Numbers, step: Numbers | None = None) -> Numbers:
@@ -265,6 +265,14 @@ class NearOne(NamedTuple):
     gaps: Callable[[Indices], Floats]
 
 
+def columns(rows: RealArray[Real], places: Indices) -> RealArray[Real]:
+    """Some columns of an array, (rows, places).
+
+    Measured: `take` along the second axis of an array that is not contiguous copies the whole array first.
+    """
+    return np.stack([row.take(places) for row in rows])
+
+
 def gaps_of(differences: Floats) -> Floats:
     """1 - cosine of the angles between unit vectors, (n,), given the differences of the vectors, (3, n).
 
@@ -310,23 +318,26 @@ def power(
 
 def _steep_power(cosines: Singles, exponent: float, out: Singles, near: NearOne) -> Singles:
     """As `power`, for an exponent by which the rounding of the cosines grows too large."""
-    # Pick the cosines whose powers are not negligible, or take all of them if they are many.
-    places = np.flatnonzero(cosines > math.exp(-NEGLIGIBLE / exponent) - near.rounding)
-    if len(places) > FEW * len(cosines):
-        places = np.arange(len(cosines))
-    picked = cosines.take(places)
-    # A power c^N is off by N c^N times the rounding of c.
-    steep = math.log(exponent * near.rounding / POWER_ERROR)
-    exact = np.flatnonzero(picked > math.exp(-steep / exponent) - near.rounding)
-    powers = power(picked, exponent, out=picked)
-    if len(exact):
-        gap = near.gaps(places.take(exact))
-        # The logarithm of 1 - gap, whose further terms are below 1e-5 where a power is not small.
-        logarithm = -gap * (1 + gap * (1 / 2 + gap / 3))
-        with np.errstate(under="ignore"):
-            powers[exact] = np.exp((exponent * logarithm).astype(np.float32))
-    out[:] = 0
-    out[places] = powers
+    least = math.exp(-NEGLIGIBLE / exponent) - near.rounding
+    # Measured: finding that no power counts takes a tenth of the time of finding the places of the others.
+    places = np.flatnonzero(cosines > least) if cosines.max(initial=0.0) > least else None
+    if places is None:
+        out[:] = 0
+        return out
+    if len(places) <= FEW * len(cosines):
+        # Compute only the powers that are not negligible.
+        gap = near.gaps(places)
+        out[:] = 0
+    else:
+        # Compute all powers, and those again that rounding puts off: a power c^N by N c^N times that of c.
+        steep = math.log(exponent * near.rounding / POWER_ERROR)
+        places = np.flatnonzero(cosines > math.exp(-steep / exponent) - near.rounding)
+        gap = near.gaps(places)
+        power(cosines, exponent, out)
+    # The logarithm of 1 - gap; its further terms are below 1e-5 where a power is not small.
+    logarithm = -gap * (1 + gap * (1 / 2 + gap / 3))
+    with np.errstate(under="ignore"):
+        out[places] = np.exp((exponent * logarithm).astype(np.float32))
     return out
 
 

@@ -12,7 +12,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Floats, Indices, NearOne, Singles, dot, gaps_of, unit_vector
+from autocolor.arrays import Floats, Indices, NearOne, Singles, columns, dot, gaps_of, unit_vector
 from autocolor.checks import Vector
 from autocolor.scene.lights import Light, middle_between
 from autocolor.scene.scene import Scene
@@ -92,7 +92,7 @@ class Rays(NamedTuple):
 
     def toward_light(self, places: Indices) -> Floats:
         """The unit vectors from some points to the light, (3, places), as exact as the points."""
-        toward = self.position[:, None] - self.rows[POINT].take(places, axis=1)
+        toward = self.position[:, None] - columns(self.rows[POINT], places)
         toward /= np.sqrt(np.maximum(dot(toward, toward), LEAST_SQUARE))
         return toward
 

@@ -37,7 +37,17 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import LARGEST_SINGLE, Booleans, Floats, Indices, NearOne, Singles, dot, underflowing
+from autocolor.arrays import (
+    LARGEST_SINGLE,
+    Booleans,
+    Floats,
+    Indices,
+    NearOne,
+    Singles,
+    columns,
+    dot,
+    underflowing,
+)
 from autocolor.errors import InputError
 from autocolor.immutable import Immutable
 from autocolor.lighting.controls import LightControl, LitPoints, controls_of, within
@@ -194,10 +204,10 @@ class _AtPoints(NamedTuple):
 
         def mirror_difference(places: Indices) -> Floats:
             places = self.in_chunk(places, start)
-            return self.rays.toward_light(places) - rows[REFLECTED_VIEW].take(places, axis=1)
+            return self.rays.toward_light(places) - columns(rows[REFLECTED_VIEW], places)
 
         def normal(places: Indices) -> Floats:
-            return rows[NORMAL].take(self.in_chunk(places, start), axis=1).astype(np.float64)
+            return columns(rows[NORMAL], self.in_chunk(places, start)).astype(np.float64)
 
         exact = ExactVectors(self.rays.rounding, mirror_difference, normal)
         return Cosines(self.incidence[start:end], self.eye[start:end], view, exact)

@@ -392,6 +392,8 @@ def _steep_half(half: _HalfVector, cosines: Cosines, exponent: float) -> _SteepH
     if error > 1:
         candidates |= half.normal > np.float32(1 - math.log(error) / exponent - cosines.exact.rounding)
     places = np.flatnonzero(candidates)
+    if not len(places):
+        return None
     # Pick the places with a power that is large enough for their own rounding.
     errors = error / np.minimum(4 * np.square(half.view.take(places), dtype=np.float64), 1)
     least = 1 - (np.log(errors) + errors * POWER_ERROR) / exponent
