@@ -336,7 +336,7 @@ def _steep_power(cosines: Singles, exponent: float, out: Singles, near: NearOne)
         power(cosines, exponent, out)
     # The logarithm of 1 - gap; its further terms are below 1e-5 where a power is not small.
     logarithm = -gap * (1 + gap * (1 / 2 + gap / 3))
-    with np.errstate(under="ignore"):
+    with np.errstate(over="ignore", under="ignore"):
         out[places] = np.exp((exponent * logarithm).astype(np.float32))
     return out
 

@@ -46,7 +46,7 @@ ROUNDING: Final = np.float32(1e-5)
 """Assumed: above the rounding of a cosine in float32, which many pixels around a highlight may share."""
 
 LEAST_CONE: Final = 0.03
-"""Assumed: in degrees; float32 can't tell the cosine of a narrower cone from 1."""
+"""Assumed: in degrees; a narrower cone lights hardly a point."""
 
 LARGEST_GAP: Final = 4.0
 """Assumed: in pixels at their distance; a neighbor farther before or behind the tangent plane belongs to

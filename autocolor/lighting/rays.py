@@ -28,7 +28,7 @@ LEAST_CANCELLATION: Final = 2.0
 """Assumed: at least so many units in the last place of 1 are the rounding of a cosine.
 
 A quarter is added of the square of the lengths that are subtracted, over the square of the ray. Measured:
-COSINES.
+on a ball whose light is a ninth of that sum away from it, cosines are off by 1.8e-6, where this gives 2.7e-6.
 """
 
 LEAST_SQUARE: Final = 1e-37

@@ -309,7 +309,9 @@ MOST_HEIGHTS: Final = 16.0
 """Assumed: how far the points may be from the middle of the object, or the farthest visible point behind the
 nearest, in heights of the picture at the depth of the nearest visible point.
 
-Points are then rounded by at most four millionths of that height. Measured: HEIGHTS.
+Points are then rounded by at most a few millionths of that height. Measured: the scenes that come with the
+project have 2.5 to 6.3 of these heights. With a soft edge of a thirtieth of the height, the light is off by
+8e-5 at 16 and 1.6e-4 at 30. Around the nearest point, the visible surfaces take a quarter more time.
 """
 
 

@@ -409,12 +409,21 @@ STEEP: list[ReflectionModel] = [
 
 
 @pytest.mark.parametrize("model", STEEP, ids=repr)
-@given(view=wall_views(), place=places())
+@given(
+    eye=st.tuples(numbers(-2, 2), numbers(-4, -2), numbers(-2, 2)),
+    x=numbers(-0.9, 0.9),
+    z=numbers(-0.9, 0.9),
+    away=st.sampled_from([0.3, 1.0, 4.0, 50.0, 1e4]),
+)
 def test_steep_highlights_on_a_wall_are_the_closed_form(
-    model: ReflectionModel, view: View, place: tuple[float, float, float]
+    model: ReflectionModel, eye: tuple[float, float, float], x: float, z: float, away: float
 ) -> None:
-    x, y, z = place
-    light = Light("light", (x, math.copysign(y, view.eye[1]), z))
+    # The highlight is at x, z, and fills the picture.
+    middle = (x, 0.0, z)
+    ahead = unit(minus(middle, eye))
+    light = Light("light", aimed((0, 0, 0), plus(middle, times(away, (ahead[0], -ahead[1], ahead[2])))))
+    exponent = 2 / model.roughness**2 if isinstance(model, CookTorrance) else vars(model)["exponent"]
+    view = View(eye, target=middle, field_of_view=math.degrees(2 / math.sqrt(exponent)))
     assert_exact_on_wall(light, visible_surfaces(wall(), view, (1,), 24, 32), model)
 
 
