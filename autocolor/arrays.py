@@ -89,6 +89,9 @@ POWER_ERROR: Final = 4e-5
 NEGLIGIBLE: Final = 16.0
 """Powers below exp(-NEGLIGIBLE), which is the rounding of 1 in float32, are 0 if they are steep."""
 
+LARGEST_GAP: Final = 1 - 1e-9
+"""Less than 1, so that the cosine has a logarithm."""
+
 FEW: Final = 0.1
 """The fraction of powers that are not negligible up to which it takes less time to compute only these."""
 
@@ -334,8 +337,7 @@ def _steep_power(cosines: Singles, exponent: float, out: Singles, near: NearOne)
         places = np.flatnonzero(cosines > math.exp(-steep / exponent) - near.rounding)
         gap = near.gaps(places)
         power(cosines, exponent, out)
-    # The logarithm of 1 - gap; its further terms are below 1e-5 where a power is not small.
-    logarithm = -gap * (1 + gap * (1 / 2 + gap / 3))
+    logarithm = np.log1p(-np.minimum(gap, LARGEST_GAP))
     with np.errstate(over="ignore", under="ignore"):
         out[places] = np.exp((exponent * logarithm).astype(np.float32))
     return out

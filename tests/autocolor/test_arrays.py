@@ -97,7 +97,7 @@ def test_every_cosine_is_raised_and_a_negative_one_counts_as_0(cosines: list[flo
 
 @pytest.mark.parametrize("share", [0.01, 0.5])
 @given(
-    exponent=st.floats(0.1, 100.0) | st.floats(100.0, 1e6) | st.just(1e30),
+    exponent=st.floats(1.0, 100.0) | st.floats(100.0, 1e6) | st.just(1e30),
     rounding=st.floats(1e-7, 5e-6),
     seed=st.integers(0, 1 << 32),
 )
@@ -113,9 +113,9 @@ def test_given_what_tells_cosines_apart_near_1_a_steep_power_is_exact(
     near = NearOne(rounding, lambda places: gaps[places])
     with np.errstate(under="ignore"):
         expected = np.where(gaps < 1, np.exp(exponent * np.log1p(-np.minimum(gaps, 1 - 1e-16))), 0.0)
-    assert np.abs(power(rounded, exponent, near=near) - expected).max() <= 1.5 * POWER_ERROR
+    assert np.abs(power(rounded, exponent, near=near) - expected).max() <= 1.1 * POWER_ERROR
     assert power(rounded, exponent, out=rounded, near=near) is rounded
-    assert np.abs(rounded - expected).max() <= 1.5 * POWER_ERROR
+    assert np.abs(rounded - expected).max() <= 1.1 * POWER_ERROR
 
 
 @given(st.lists(st.floats(-1.0, 1.0, width=32), min_size=1), exponents)
