@@ -303,7 +303,8 @@ def power(
     takes a quarter of the time of a minimum and a maximum.
     """
     out = np.empty_like(cosines) if out is None else out
-    if near is not None and exponent * near.rounding > POWER_ERROR:
+    # The rounding is an upper limit: up to twice the error, it does no harm.
+    if near is not None and exponent * near.rounding > 2 * POWER_ERROR:
         return _steep_power(cosines, exponent, out, near)
     single = np.float32(min(exponent, LARGEST_SINGLE))
     if single == 0:
