@@ -25,23 +25,37 @@ from typing import Final, Literal, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Booleans, Floats, PartNumbers, Singles, power, unit_vector
+from autocolor.arrays import (
+    NEGLIGIBLE,
+    POWER_ERROR,
+    Booleans,
+    Floats,
+    NearOne,
+    PartNumbers,
+    Singles,
+    power,
+    unit_vector,
+)
 from autocolor.checks import Vector
-from autocolor.lighting.rays import FARTHEST, camera_light
+from autocolor.lighting.rays import FARTHEST, ROUNDING, Rays, camera_light
 from autocolor.scene.following import detached
 from autocolor.scene.lights import Flap, Light
 from autocolor.visibility.visible_points import POINT, POINT_SQUARED, VisiblePoints
 
-ROUNDING: Final = float(np.finfo(np.float32).eps)
-
 ABOVE_ZERO: Final = float(np.finfo(np.float32).smallest_subnormal)
 """The least positive float32: the least cos(L) in front of a light."""
 
-FARTHEST_PLANE: Final = 1e30
-"""The largest distance of a plane, in units: farther than any point, and float32 can hold it."""
+FARTHEST_PLANE: Final = 1e15
+"""The largest distance of a plane, in units: farther than any point."""
 
-LEAST_WIDTH: Final = 1e-8
+LEAST_WIDTH: Final = 1e-20
 """The least edge width, in units: far below the rounding of points, and float32 holds any quotient by it."""
+
+MOST_SPREAD: Final = 100.0
+"""The largest concentration whose light counts wherever cos(L) is above 0."""
+
+ROUNDING_OF_COSINES: Final = 1e-5
+"""Above the rounding of any cosine in float32."""
 
 LEAST_REACH: Final = 1e-20
 """The least reach, in units: float32 can hold any distance as a multiple of it."""
@@ -52,12 +66,14 @@ class LitPoints(NamedTuple):
 
     `cos_light` is cos(L), (points,), or None if no control of the light is `directed`. `distance()` is the
     distance to the light, (points,); `positions()` are the points in camera space around
-    `VisiblePoints.middle`, (3, points). Both are in `VisiblePoints.unit` and must not be modified.
+    `VisiblePoints.origin`, (3, points). Both are in `VisiblePoints.unit` and must not be modified.
+    `near_axis` tells cosines near 1 apart; None if they are exact.
     """
 
     cos_light: Singles | None
     distance: Callable[[], Singles]
     positions: Callable[[], Singles]
+    near_axis: NearOne | None = None
 
 
 class LightControl(ABC):
@@ -103,22 +119,25 @@ class Concentration(LightControl):
 
     Paper: "Light Direction and Concentration". Half of the light is left at 60 degrees for C = 1, at 21.1 for
     C = 10 and at 10.6 for C = 40. With C = 0 the light is a point source, which also lights the points behind
-    it.
+    it. Outside of a narrow beam, shares that are negligible count as 0, which saves their time.
     """
 
     exponent: float
+    least_cosine: float = ABOVE_ZERO
     directed = True
-    least_cosine = ABOVE_ZERO
 
     @classmethod
     def of(cls, light: Light, points: VisiblePoints) -> Concentration | None:
         """The concentration, if the light has any."""
-        return cls(light.concentration) if light.concentration > 0 else None
+        concentration = light.concentration
+        if concentration <= MOST_SPREAD:
+            return cls(concentration) if concentration > 0 else None
+        return cls(concentration, math.exp(-NEGLIGIBLE / concentration) - ROUNDING_OF_COSINES)
 
     def factor(self, lit: LitPoints, out: Singles) -> Singles:
         """cos^C(L)."""
         assert lit.cos_light is not None
-        return power(lit.cos_light, self.exponent, out=out)
+        return power(lit.cos_light, self.exponent, out, lit.near_axis)
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,10 +154,44 @@ class Cone(LightControl):
 
     @classmethod
     def of(cls, light: Light, points: VisiblePoints) -> Cone | None:
-        """The cone, widened by a rounding of float32: a rim along a line of pixels does not fray."""
+        """The cone, widened by a rounding of float32: a rim along a line of pixels does not fray.
+
+        The rim of a narrow cone is widened by `within`.
+        """
         if light.cone_angle is None:
             return None
-        return cls(math.cos(math.radians(light.cone_angle)) - ROUNDING)
+        least = math.cos(math.radians(light.cone_angle))
+        return cls(least if is_narrow(least) else least - ROUNDING)
+
+
+NARROW: Final = 2.5e-3
+"""Assumed: a cone is narrow if sin^2(A) is below this: up to 2.9 degrees, or less than that from 180.
+
+The rounding of a cosine would move its rim by a ten thousandth of the angle, or more."""
+
+RIM_ROUNDING: Final = 2e-7
+"""Assumed: in radians; a rim along a line of pixels does not fray."""
+
+
+def is_narrow(least_cosine: float) -> bool:
+    """Whether a cone with the least cosine cos(A) has a rim that depends on the rounding of cosines."""
+    return 1 - least_cosine**2 < NARROW
+
+
+def within(rays: Rays, least_cosine: float) -> Booleans:
+    """Whether cos(L) of each ray of a directed light is at least the least cosine of its controls."""
+    assert rays.cos_light is not None
+    near = rays.near_axis
+    if near is None or not is_narrow(least_cosine):
+        lit: Booleans = rays.cos_light >= np.float32(least_cosine)
+        return lit
+    rounding = near.rounding + ROUNDING
+    lit = rays.cos_light >= np.float32(least_cosine - rounding)
+    places = np.flatnonzero(lit)
+    places = places[rays.cos_light.take(places) <= least_cosine + rounding]
+    slack = RIM_ROUNDING * math.sqrt(1 - least_cosine**2)
+    lit[places] = near.gaps(places) <= 1 - least_cosine + slack
+    return lit
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,6 +205,7 @@ class SoftCone(LightControl):
 
     rim: float
     width: float
+    gaps: tuple[float, float]
     directed = True
 
     @classmethod
@@ -162,14 +216,27 @@ class SoftCone(LightControl):
             return None
         # Rounded like the cosines that it is subtracted from.
         rim = float(np.float32(math.cos(math.radians(outer))))
-        return cls(rim, max(math.cos(math.radians(inner)) - rim, ROUNDING))
+        width = max(math.cos(math.radians(inner)) - rim, ROUNDING)
+        return cls(rim, width, (gap_of_angle(inner), gap_of_angle(outer)))
 
     def factor(self, lit: LitPoints, out: Singles) -> Singles:
         """The share that is left between the two angles."""
         assert lit.cos_light is not None
         np.subtract(lit.cos_light, np.float32(self.rim), out=out)
         out *= np.float32(1 / self.width)
+        near = lit.near_axis
+        if near is not None and near.rounding > POWER_ERROR * self.width:
+            # Choose the places in the edge, by the rounded cosines.
+            margin = np.float32(near.rounding / self.width + 1)
+            places = np.flatnonzero((out > -margin) & (out < 1 + margin))
+            inner, outer = self.gaps
+            out[places] = (outer - near.gaps(places)) / (outer - inner)
         return soften(out)
+
+
+def gap_of_angle(angle: float) -> float:
+    """1 - cos of an angle in degrees, exact in proportion to itself."""
+    return 2 * math.sin(math.radians(angle) / 2) ** 2
 
 
 def soften(fraction: Singles) -> Singles:
@@ -313,8 +380,8 @@ def side_of(points: VisiblePoints, direction: Vector, least: float, edge_width: 
     coordinates = np.array([points.world_coordinate(axis) for axis in range(3)])
     in_units = min(max(least / points.unit, -FARTHEST_PLANE), FARTHEST_PLANE)
     # A surface that lies on a sharp side is lit: allow for the rounding of its points to float32.
-    slack = 0.0 if edge_width > 0 else 4 * ROUNDING * points.radius
-    row = np.array(direction) @ coordinates - np.array([0, 0, 0, in_units - slack])
+    slack = 0.0 if edge_width > 0 else 4 * ROUNDING * points.largest_distance
+    row = np.array(direction) @ coordinates - (np.array([0, 0, 0, in_units]) - slack)
     return LitSide(row, edge_width / points.unit)
 
 

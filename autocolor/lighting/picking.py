@@ -46,7 +46,7 @@ ROUNDING: Final = np.float32(1e-5)
 """Assumed: above the rounding of a cosine in float32, which many pixels around a highlight may share."""
 
 LEAST_CONE: Final = 0.03
-"""Assumed: in degrees; float32 can't tell the cosine of a narrower cone from 1."""
+"""Assumed: in degrees; a narrower cone lights hardly a point."""
 
 LARGEST_GAP: Final = 4.0
 """Assumed: in pixels at their distance; a neighbor farther before or behind the tangent plane belongs to
@@ -333,7 +333,7 @@ def _are_on_one_surface(points: VisiblePoints, one: Indices, other: Indices) -> 
     """Whether each of two neighboring points is close to the tangent plane of the other."""
     at_one, at_other = (points.rows[POINT].take(places, axis=1) for places in (one, other))
     between = at_other - at_one
-    depth = at_one[2] + np.float32(points.middle[2])
+    depth = at_one[2] + np.float32(points.origin[2])
     focal = focal_length(points.lines, points.elements, points.view.field_of_view)
     most = depth * np.float32(LARGEST_GAP / focal)
     close = np.ones(len(one), np.bool_)

@@ -37,13 +37,23 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import LARGEST_SINGLE, Booleans, Indices, Singles, dot, underflowing
+from autocolor.arrays import (
+    LARGEST_SINGLE,
+    Booleans,
+    Floats,
+    Indices,
+    NearOne,
+    Singles,
+    columns,
+    dot,
+    underflowing,
+)
 from autocolor.errors import InputError
 from autocolor.immutable import Immutable
-from autocolor.lighting.controls import LightControl, LitPoints, controls_of
-from autocolor.lighting.rays import CameraLight, camera_light, rays_to
+from autocolor.lighting.controls import LightControl, LitPoints, controls_of, within
+from autocolor.lighting.rays import CameraLight, Rays, camera_light, rays_to
 from autocolor.scene.lights import Light
-from autocolor.scene.reflection_models import Cosines, ReflectionModel
+from autocolor.scene.reflection_models import Cosines, ExactVectors, ReflectionModel
 from autocolor.scene.surfaces import Part, Surface
 from autocolor.visibility.visible_points import NORMAL, POINT, REFLECTED_VIEW, PointChunk, VisiblePoints
 
@@ -111,16 +121,14 @@ def shade(
     facing = incidence > 0
     is_lit = facing if is_lit is None else np.logical_and(is_lit, facing, out=is_lit)
     if rays.cos_light is not None:
-        is_lit &= rays.cos_light >= np.float32(max(control.least_cosine for control in light.controls))
+        is_lit &= within(rays, max(control.least_cosine for control in light.controls))
     count = np.count_nonzero(is_lit)
     if not count:
         out[:] = 0
         return
 
     # Reflect the light there. Where few points are lit, compute only them.
-    at_points = _AtPoints(
-        incidence, rays.cosines_with(REFLECTED_VIEW), rays.cos_light, rays.length, rows, None
-    )
+    at_points = _AtPoints(incidence, rays.cosines_with(REFLECTED_VIEW), rays.cos_light, rays, None)
     ends = [each.stop for each in chunk.slices]
     of_surfaces = [models[each.surface_number] for each in chunk.slices]
     if count >= FEW * len(is_lit):
@@ -149,14 +157,13 @@ def _lit_points(controls: Sequence[LightControl], rows: Singles, pixels: slice) 
 class _AtPoints(NamedTuple):
     """cos(I), cos(E) and, for a directed light, cos(L) at some points, (points,) float32 each.
 
-    `length` and `rows` belong to the whole chunk. `places` are the places of the points in it; None for all.
+    `rays` belong to the whole chunk. `places` are the places of the points in it; None for all.
     """
 
     incidence: Singles
     eye: Singles
     light: Singles | None
-    length: Singles
-    rows: Singles
+    rays: Rays
     places: Indices | None
 
     def chosen(self, places: Indices) -> _AtPoints:
@@ -168,21 +175,42 @@ class _AtPoints(NamedTuple):
 
     def distance(self) -> Singles:
         """The distances to the light, (points,)."""
-        return self.length if self.places is None else self.length.take(self.places)
+        length = self.rays.length
+        return length if self.places is None else length.take(self.places)
 
     def positions(self) -> Singles:
         """The points in camera space, (3, points)."""
-        return self.rows[POINT] if self.places is None else self.rows[POINT].take(self.places, axis=1)
+        points = self.rays.rows[POINT]
+        return points if self.places is None else points.take(self.places, axis=1)
+
+    def near_axis(self) -> NearOne | None:
+        """What tells cos(L) apart near 1."""
+        near = self.rays.near_axis
+        return near and NearOne(near.rounding, lambda places: near.gaps(self.in_chunk(places)))
+
+    def in_chunk(self, places: Indices, start: int = 0) -> Indices:
+        """The places in the chunk of the points at some places, counted from `start`."""
+        places = places + start
+        return places if self.places is None else self.places.take(places)
 
     def cosines(self, start: int, end: int) -> Cosines:
         """The cosines for a reflection model at a slice of the points."""
+        rows = self.rays.rows
 
         def view() -> Singles:
             places = slice(start, end) if self.places is None else self.places[start:end]
             # N.V = N . R for the reflected view R.
-            return dot(self.rows[NORMAL, places], self.rows[REFLECTED_VIEW, places])
+            return dot(rows[NORMAL, places], rows[REFLECTED_VIEW, places])
 
-        return Cosines(self.incidence[start:end], self.eye[start:end], view)
+        def mirror_difference(places: Indices) -> Floats:
+            places = self.in_chunk(places, start)
+            return self.rays.toward_light(places) - columns(rows[REFLECTED_VIEW], places)
+
+        def normal(places: Indices) -> Floats:
+            return columns(rows[NORMAL], self.in_chunk(places, start)).astype(np.float64)
+
+        exact = ExactVectors(self.rays.rounding, mirror_difference, normal)
+        return Cosines(self.incidence[start:end], self.eye[start:end], view, exact)
 
 
 def _reflect(
@@ -216,7 +244,7 @@ def _reflect(
 def _multiplier(controls: Sequence[LightControl], at_points: _AtPoints) -> Singles | None:
     """The product of the factors of all controls; None if none has a factor. cos(L) may be overwritten."""
     shaping = [control for control in controls if type(control).factor is not LightControl.factor]
-    lit = LitPoints(at_points.light, at_points.distance, at_points.positions)
+    lit = LitPoints(at_points.light, at_points.distance, at_points.positions, at_points.near_axis())
     multiplier: Singles | None = None
     for control in shaping:
         # The last control may overwrite the cosines.

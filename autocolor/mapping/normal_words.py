@@ -259,7 +259,7 @@ def light_at_normals(
         lines=1,
         elements=count,
         unit=1.0,
-        middle=np.zeros(3),
+        origin=np.zeros(3),
         pixels=numbers,
         slices=slices,
         span_polygons=nothing,

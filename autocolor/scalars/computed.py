@@ -184,7 +184,7 @@ def direction_of(scalar: Scalar) -> Floats:
 def _along(direction: Floats, points: VisiblePoints) -> Singles:
     """The component of each point along a unit vector."""
     toward = points.camera_direction((direction[0], direction[1], direction[2])) * points.unit
-    start = toward @ points.middle + direction @ np.array(points.view.eye)
+    start = toward @ points.origin + direction @ np.array(points.view.eye)
     values = np.empty(len(points.pixels), np.float32)
     for chunk in chunks(len(values), PIXELS_AT_ONCE):
         right, down, ahead = points.rows[POINT, chunk].astype(np.float64)

@@ -83,11 +83,11 @@ def weighted_points(mesh: Mesh, points: VisiblePoints) -> Iterator[WeightedPoint
         # A span lies in one triangle, a run may lie in two.
         polygons, counts = points.span_polygons, points.span_lengths
     coordinate_rows, node_rows = mesh.coordinates.T, mesh.node_numbers.T
-    eye, middle = np.array(points.view.eye)[:, None], points.middle[:, None]
+    eye, origin = np.array(points.view.eye)[:, None], points.origin[:, None]
     for part, pixels in chunks_of_runs(counts, POINTS_AT_ONCE):
         nodes = np.take(node_rows, polygons[part], axis=1)
         world = np.take(coordinate_rows, nodes.ravel(), axis=1) - eye
-        corners = (points.view.axes @ world / points.unit - middle).reshape(3, 4, -1)
+        corners = (points.view.axes @ world / points.unit - origin).reshape(3, 4, -1)
         within = points.rows[POINT, pixels]
         if points.interpolation == INVARIANT:
             middles = np.cumsum(counts[part]) - 1 - counts[part] // 2

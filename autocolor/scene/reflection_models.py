@@ -26,21 +26,55 @@ from typing import Annotated, ClassVar, Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Singles, power, underflowing
+from autocolor.arrays import POWER_ERROR, Floats, Indices, NearOne, Singles, dot, gaps_of, power, underflowing
 from autocolor.scene.columns import BarRange, Column, Problem, Row, Tier
 from autocolor.scene.kinds import AngleCurve, AngleCurveKind, Number
 from autocolor.scene.row_kinds import Nested
+
+LEAST_ALONG: Final = 1e-6
+"""The least N.L + N.V to divide by, at the rim of what light and eye both reach."""
+
+
+class ExactVectors(NamedTuple):
+    """Vectors at the points, as exact as the points are, where the rounding of cosines near 1 counts.
+
+    The cosines are off by at most `rounding`. `mirror_difference` returns L - R and `normal` N, (3, k), at k
+    places of the points.
+    """
+
+    rounding: float
+    mirror_difference: Callable[[Indices], Floats]
+    normal: Callable[[Indices], Floats]
+
+    @property
+    def near_mirror(self) -> NearOne:
+        """What tells cos(E) apart near 1."""
+        return NearOne(self.rounding, lambda places: gaps_of(self.mirror_difference(places)))
+
+    def squared_half_tangent(self, places: Indices, incidence: Singles) -> Floats:
+        """tan^2 of the angle between N and H at some places of the points, given N.L there, (places,).
+
+        R is V reflected at N. So at right angles to N, L + V is L - R, and along N it is N.L + N.R.
+        """
+        apart, normal = self.mirror_difference(places), self.normal(places)
+        excess = dot(apart, normal)
+        across = dot(apart, apart) - excess**2
+        along = 2 * incidence - excess
+        square: Floats = np.maximum(across, 0) / np.maximum(along, LEAST_ALONG) ** 2
+        return square
 
 
 class Cosines(NamedTuple):
     """The cosines at some points, (points,) float32 each, -1 to 1 up to rounding.
 
-    `incidence` is N.L, `eye` is cos(E). `view()` computes N.V, which not every model needs.
+    `incidence` is N.L, `eye` is cos(E). `view()` computes N.V, which not every model needs. Without `exact`
+    vectors the cosines count as exact.
     """
 
     incidence: Singles
     eye: Singles
     view: Callable[[], Singles]
+    exact: ExactVectors | None = None
 
 
 class ReflectionModel(Row):
@@ -178,7 +212,7 @@ class _PowerOfCosine(ReflectionModel):
         Column(
             Number(at_least=0),
             Tier.LIGHT,
-            "N: the exponent, which makes the highlight narrower.",
+            "N: the exponent, which makes the highlight narrower; exact to 1e-4 up to 1,000.",
             bar=BarRange(1, 200, 1),
         ),
     ] = 20.0
@@ -206,7 +240,9 @@ class Phong(_PowerOfCosine):
             out[:] = 0
             return out
         growth = self.growth.factor(cosines.incidence)
-        return _grown(power(cosines.eye, self.exponent, out=out), growth)
+        return _grown(
+            power(cosines.eye, self.exponent, out, cosines.exact and cosines.exact.near_mirror), growth
+        )
 
 
 @dataclass(frozen=True, repr=False)
@@ -218,7 +254,11 @@ class BlinnPhong(_PowerOfCosine):
         """(N.H)^N, times the growth of S; a negative cosine counts as 0."""
         half = _half_vector(cosines.incidence, cosines.view(), cosines.eye)
         growth = self.growth.factor(cosines.incidence)
-        return _grown(power(half.normal, self.exponent, out=out), growth)
+        steep = _steep_half(half, cosines, self.exponent)
+        power(half.normal, self.exponent, out=out)
+        if steep is not None:
+            out[steep.places] = np.exp(-self.exponent / 2 * np.log1p(steep.squared_tangent))
+        return _grown(out, growth)
 
 
 LEAST_FACING: Final = 0.3
@@ -248,7 +288,7 @@ class CookTorrance(ReflectionModel):
         Column(
             Number(0.01, 1),
             Tier.LIGHT,
-            "The roughness: m, the slope of the microfacets.",
+            "The roughness: m, the slope of the microfacets; exact to 1e-4 from 0.05.",
             bar=BarRange(0.01, 1, 0.01),
         ),
     ] = 0.3
@@ -272,18 +312,23 @@ class CookTorrance(ReflectionModel):
         """F D G / (N.V), relative to normal incidence and view."""
         view = cosines.view()
         half = _half_vector(cosines.incidence, view, cosines.eye)
-        np.multiply(self._distribution(half.normal), self._fresnel(half.view), out=out)
+        np.multiply(self._distribution(half, cosines), self._fresnel(half.view), out=out)
         out *= _attenuation(cosines.incidence, view, half)
         out /= np.maximum(view, np.float32(LEAST_FACING))
         return out
 
-    def _distribution(self, cos_half: Singles) -> Singles:
+    def _distribution(self, half: _HalfVector, cosines: Cosines) -> Singles:
         """Beckmann's D over its value at cos 1: exp(-(tan / m)^2) / cos^4."""
-        square = np.maximum(cos_half * cos_half, np.float32(1e-4))
+        square = np.maximum(half.normal * half.normal, np.float32(1e-4))
         tangent = (1 - square) / square
         tangent /= np.float32(-self.roughness * self.roughness)
         distribution: Singles = np.exp(tangent, out=tangent)
         distribution /= square * square
+        # Near a cosine of 1, D falls like the cosine to the power 2 / m^2.
+        steep = _steep_half(half, cosines, 2 / self.roughness**2)
+        if steep is not None:
+            places, squares = steep
+            distribution[places] = np.exp(-squares / self.roughness**2) * (1 + squares) ** 2
         return distribution
 
     def _fresnel(self, cosine: Singles) -> Singles:
@@ -325,6 +370,37 @@ def _half_vector(incidence: Singles, view: Singles, eye: Singles) -> _HalfVector
     np.clip(normal, np.float32(0), np.float32(1), out=normal)
     length *= np.float32(0.5)
     return _HalfVector(normal, length)
+
+
+class _SteepHalf(NamedTuple):
+    """Some places of the points, and tan^2 of the angle between N and H there, (places,)."""
+
+    places: Indices
+    squared_tangent: Floats
+
+
+def _steep_half(half: _HalfVector, cosines: Cosines, exponent: float) -> _SteepHalf | None:
+    """Where the rounding of N.H puts (N.H)^exponent off by more than POWER_ERROR; None if it does nowhere.
+
+    N.H is off by the rounding of the cosines over |L + V|^2, so that it is worst at glancing angles.
+    """
+    if cosines.exact is None or exponent == 0:
+        return None
+    error = exponent * cosines.exact.rounding / POWER_ERROR
+    view = np.float32(min(math.sqrt(error), 1.0) / 2)
+    candidates = half.view < view
+    if error > 1:
+        candidates |= half.normal > np.float32(1 - math.log(error) / exponent - cosines.exact.rounding)
+    places = np.flatnonzero(candidates)
+    if not len(places):
+        return None
+    # Pick the places with a power that is large enough for their own rounding.
+    errors = error / np.minimum(4 * np.square(half.view.take(places), dtype=np.float64), 1)
+    least = 1 - (np.log(errors) + errors * POWER_ERROR) / exponent
+    places = places[half.normal.take(places) > least]
+    if not len(places):
+        return None
+    return _SteepHalf(places, cosines.exact.squared_half_tangent(places, cosines.incidence.take(places)))
 
 
 def _attenuation(incidence: Singles, view: Singles, half: _HalfVector) -> Singles:

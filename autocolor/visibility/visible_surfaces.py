@@ -21,11 +21,14 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from autocolor.arrays import (
+    AnyArray,
     Booleans,
     Bytes,
     Floats,
     Indices,
     Numbers,
+    Real,
+    RealArray,
     Singles,
     chunks,
     chunks_of_runs,
@@ -266,7 +269,14 @@ def interpolated_points(
     spans = visible_spans(projected, number_at_pixel, surface_numbers)
     if projected.diagonals is not None:
         spans = spans_in_triangles(projected, projected.diagonals, spans)
-    start, step = along_spans(projected, spans)
+    origin = projected.middle
+    start: AnyArray
+    step: AnyArray
+    start, step = along_spans(projected, spans, origin, np.float32)
+    nearest = nearest_point(projected, spans, start[DEPTH], step[DEPTH])
+    if nearest is not None:
+        origin = nearest
+        start, step = along_spans(projected, spans, origin, np.float64)
     # Turn the normals of polygons seen from behind to the eye.
     behind = projected.from_behind[spans.polygon]
     turned = np.flatnonzero(behind & ~np.isin(spans.surface, list(one_sided)))
@@ -277,11 +287,11 @@ def interpolated_points(
     count = spans.count
     pixels = runs(spans.first_pixel, count)
     rows = np.empty((ROW_COUNT, len(pixels)), np.float32)
-    ray_step = np.float32(1 / projected.focal_length)
+    ray_step = 1 / projected.focal_length
     for part, chunk in chunks_of_runs(count, PIXELS_AT_ONCE):
         start_here, step_here = (np.repeat(table[:, part], count[part], axis=1) for table in (start, step))
         along = pixels[chunk] - np.repeat(spans.first_pixel[part], count[part])
-        _fill(rows[:, chunk], start_here, step_here, along.astype(np.float32), ray_step)
+        _fill(rows[:, chunk], start_here, step_here, along.astype(start.dtype), ray_step)
 
     counts = np.bincount(spans.surface, count).astype(np.int64)
     return VisiblePoints(
@@ -289,7 +299,7 @@ def interpolated_points(
         projected.lines,
         projected.elements,
         projected.unit,
-        projected.middle,
+        origin,
         read_only(pixels),
         surface_slices(counts),
         spans.polygon_number,
@@ -297,10 +307,51 @@ def interpolated_points(
         read_only(rows),
         VisibleParts(projected.mesh.part_names, projected.mesh.part_numbers, spans.polygon_number, count),
         SCAN_LINE if projected.diagonals is None else INVARIANT,
+        starts_nearest=nearest is not None,
     )
 
 
-def _fill(rows: Singles, start: Singles, step: Singles, along: Singles, ray_step: np.float32) -> None:
+MOST_HEIGHTS: Final = 16.0
+"""Assumed: how far the points may be from the middle of the object, or the farthest visible point behind the
+nearest, in heights of the picture at the depth of the nearest visible point.
+
+Points are then rounded by at most a few millionths of that height. Measured: the scenes that come with the
+project have 2.5 to 6.3 of these heights. With a soft edge of a thirtieth of the height, the light is off by
+8e-5 at 16 and 1.6e-4 at 30. Around the nearest point, the visible surfaces take a quarter more time.
+"""
+
+
+def nearest_point(
+    projected: Projection, spans: VisibleSpans, inverse_depth: Singles, step: Singles
+) -> Floats | None:
+    """The nearest visible point in camera space, if points around it are needed to be exact; else None.
+
+    `inverse_depth` and `step`, (spans,), are values at the first pixel of each span and steps from pixel to
+    pixel. Points around the nearest point are computed in float64 and rounded once, because along a span from
+    the distance to the eye float32 would lose what is near.
+    """
+    if not len(spans.count):
+        return None
+    last = inverse_depth + (spans.count - 1) * step
+    ends = np.maximum(inverse_depth, last)
+    span = int(ends.argmax())
+    depth = 1 / float(ends[span])
+    pixel = int(spans.first_pixel[span])
+    if last[span] > inverse_depth[span]:
+        pixel += int(spans.count[span]) - 1
+    line, element = divmod(pixel, projected.elements)
+    focal = projected.focal_length
+    x, y = element + 0.5 - projected.elements / 2, line + 0.5 - projected.lines / 2
+    nearest = depth * np.array([x / focal, y / focal, 1.0])
+
+    height = depth * projected.lines / focal
+    # All depths are below 1; rounding may lose the far end of a span that begins near the eye.
+    farthest = 1 / max(float(np.minimum(inverse_depth, last).min()), 1.0)
+    extent = max(float(np.linalg.norm(nearest - projected.middle)), farthest - depth)
+    return nearest if extent > MOST_HEIGHTS * height else None
+
+
+def _fill(rows: Singles, start: AnyArray, step: AnyArray, along: AnyArray, ray_step: float) -> None:
     """Fill in the rows of pixels, which are `along` pixels from the start of their spans."""
     # Interpolate point and normal, which change in proportion to `along` over the inverse depth.
     inverse_depth = step[DEPTH] * along
@@ -493,7 +544,13 @@ def _corners_of_triangles(
 
 
 def _fill_in_triangles(
-    start: Singles, step: Singles, projected: Projection, spans: VisibleSpans, triangle: Bytes, chunk: slice
+    start: RealArray[Real],
+    step: RealArray[Real],
+    projected: Projection,
+    spans: VisibleSpans,
+    triangle: Bytes,
+    chunk: slice,
+    origin: Floats,
 ) -> None:
     """Fill in the values and the steps of a chunk of spans, each in a triangle."""
     line, element = np.divmod(spans.first_pixel[chunk], projected.elements)
@@ -527,7 +584,7 @@ def _fill_in_triangles(
         start[NORMALS] += weight.astype(np.float32) * difference
         difference *= rate.astype(np.float32)
         step[NORMALS] += difference
-    _fill_points(start, step, projected, line, element, inverse_depth, depth_step)
+    _fill_points(start, step, projected, line, element, inverse_depth, depth_step, origin)
 
 
 def _weights(areas: list[Floats]) -> list[Floats]:
@@ -546,25 +603,34 @@ def _weights(areas: list[Floats]) -> list[Floats]:
     return areas
 
 
-def along_spans(projected: Projection, spans: VisibleSpans) -> tuple[Singles, Singles]:
+def along_spans(
+    projected: Projection, spans: VisibleSpans, origin: Floats, kind: type[Real]
+) -> tuple[RealArray[Real], RealArray[Real]]:
     """The values at the first pixel of each span, and the steps from pixel to pixel.
 
-    The values are (10, spans) float32: the point around the middle and the normal, whose steps are multiplied
-    by the depth; the inverse depth; and the ray, whose step is the same for all. The steps are (7, spans).
-    The differences are computed in float64, so that a point is as exact from afar as from near.
+    The values are (10, spans) of a `kind`: the point around the origin and the normal, whose steps are
+    multiplied by the depth; the inverse depth; and the ray, whose step is the same for all. The steps are (7,
+    spans). The differences are computed in float64, so that a point is as exact from afar as from near.
     """
     count = len(spans.count)
-    start, step = np.empty((10, count), np.float32), np.empty((7, count), np.float32)
+    start, step = np.empty((10, count), kind), np.empty((7, count), kind)
     for chunk in chunks(count, SPANS_AT_ONCE):
         if spans.triangle is None:
-            _fill_along(start[:, chunk], step[:, chunk], projected, spans, chunk)
+            _fill_along(start[:, chunk], step[:, chunk], projected, spans, chunk, origin)
         else:
-            _fill_in_triangles(start[:, chunk], step[:, chunk], projected, spans, spans.triangle, chunk)
+            _fill_in_triangles(
+                start[:, chunk], step[:, chunk], projected, spans, spans.triangle, chunk, origin
+            )
     return start, step
 
 
 def _fill_along(
-    start: Singles, step: Singles, projected: Projection, spans: VisibleSpans, chunk: slice
+    start: RealArray[Real],
+    step: RealArray[Real],
+    projected: Projection,
+    spans: VisibleSpans,
+    chunk: slice,
+    origin: Floats,
 ) -> None:
     """Fill in the values and the steps of a chunk of spans."""
     line, element = np.divmod(spans.first_pixel[chunk], projected.elements)
@@ -584,27 +650,28 @@ def _fill_along(
     difference *= weight.astype(np.float32)
     np.add(down.normal, difference, out=start[NORMALS])
 
-    _fill_points(start, step, projected, line, element, inverse_depth, depth_step)
+    _fill_points(start, step, projected, line, element, inverse_depth, depth_step, origin)
 
 
 def _fill_points(
-    start: Singles,
-    step: Singles,
+    start: RealArray[Real],
+    step: RealArray[Real],
     projected: Projection,
     line: Indices,
     element: Indices,
     inverse_depth: Floats,
     depth_step: Floats,
+    origin: Floats,
 ) -> None:
     """Fill in the points, inverse depths and rays of spans, given the inverse depths and their steps."""
-    focal, middle = projected.focal_length, projected.middle
+    focal = projected.focal_length
     start[DEPTH], step[DEPTH] = inverse_depth, depth_step
     # The point is the ray over the inverse depth; from pixel to pixel the ray changes by `ray_step`.
     ray = ((element + 0.5 - projected.elements / 2) / focal, (line + 0.5 - projected.lines / 2) / focal, 1.0)
     depth = 1 / inverse_depth
     for axis, ray_step in enumerate((1 / focal, 0.0, 0.0)):
         position = ray[axis] * depth
-        start[axis] = position - middle[axis]
+        start[axis] = position - origin[axis]
         step[axis] = ray_step - position * depth_step
         start[RAY.start + axis] = ray[axis]
 

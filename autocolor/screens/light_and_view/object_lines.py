@@ -57,13 +57,13 @@ Looked at on two cars: a fourth of this and four times as much draw nearly the s
 class VisibleDepths(Immutable):
     """The depths of a picture's visible points: at each pixel, the farthest of the nine pixels around it.
 
-    `farthest` is (lines, elements) float32, relative to `middle` in camera space and in `unit`; it is
+    `farthest` is (lines, elements) float32, relative to `origin` in camera space and in `unit`; it is
     infinite at and beside the background. A point at most `behind` farther away counts as visible.
     """
 
     view: View
     unit: float
-    middle: float
+    origin: float
     behind: float
     farthest: Singles
 
@@ -79,7 +79,7 @@ def visible_depths(visible: VisiblePoints) -> VisibleDepths:
     return VisibleDepths(
         visible.view,
         visible.unit,
-        float(visible.middle[2]),
+        float(visible.origin[2]),
         BEHIND * visible.radius,
         read_only(farthest),
     )
@@ -128,7 +128,7 @@ def _are_visible(points: Floats, depths: VisibleDepths) -> Booleans:
     visible = np.ones(len(depth), np.bool_)
     rows = np.flatnonzero(inside)
     farthest = depths.farthest[line[rows].astype(np.intp), element[rows].astype(np.intp)]
-    visible[rows] = depth[rows] - depths.middle <= farthest + depths.behind
+    visible[rows] = depth[rows] - depths.origin <= farthest + depths.behind
     return visible
 
 

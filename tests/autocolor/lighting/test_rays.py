@@ -58,7 +58,7 @@ def test_the_rays_to_a_light_close_to_the_wall_are_as_exact(gap: float) -> None:
     view = View((x, -4.0, z), target=(x, 0.0, z), field_of_view=math.degrees(gap))
     points = visible_surfaces(wall(), view, (1,), 30, 40)
     rays = rays_to(camera_light(Light("light", (x, -gap, z)), points, directed=False), points.rows)
-    assert len(rays.close) > 0
+    assert points.starts_nearest or len(rays.close) > 0
     cos_incidence = rays.cosines_with(NORMAL)
     for number, point in enumerate(points.world_points.tolist()):
         aside = math.hypot(point[0] - x, point[2] - z)

@@ -17,6 +17,7 @@ from autocolor.rendering import rendering
 from autocolor.visibility.visible_points import (
     NORMAL,
     POINT,
+    POINT_SQUARED,
     ROW_COUNT,
     Seen,
     Sight,
@@ -31,7 +32,7 @@ from autocolor.visibility.watkins import watkins
 from tests.autocolor.meshes import cube, grid, sphere, wall, wall_scene
 from tests.autocolor.reference import first_hit, ray
 from tests.autocolor.sessions import car
-from tests.autocolor.strategies import Vector, meshes, outside_views, soups, vectors
+from tests.autocolor.strategies import Vector, meshes, numbers, outside_views, soups, vectors
 
 counts_of_surfaces = st.lists(st.integers(0, 40), max_size=6)
 
@@ -115,6 +116,40 @@ def test_the_radius_is_the_distance_of_the_farthest_point_from_the_middle() -> N
     assert points.radius * points.unit == pytest.approx(3**0.5, rel=0.02)
     farthest = np.linalg.norm(points.world_points - 1, axis=1).max()
     assert points.radius * points.unit == pytest.approx(farthest, rel=1e-6)
+
+
+def test_the_points_of_an_ordinary_scene_start_in_the_middle_of_the_object() -> None:
+    points = visible_surfaces(sphere(12, 8), View((3, -4, 2), target=(0, 0, 0)), (1,), 9, 12)
+    assert not points.starts_nearest
+    assert points.world_points + 0.0 == pytest.approx(
+        (points.rows[POINT].T * points.unit) @ points.view.axes, abs=1e-6
+    )
+    assert points.largest_distance.tolist() == [0, 0, 0, points.radius]
+
+
+@given(outside_views(), numbers(1.0, 8.0), st.booleans())
+def test_before_something_large_points_start_at_the_nearest_and_have_a_bound_of_their_distance(
+    view: View, power: float, reaches_behind: bool
+) -> None:
+    size = 10**power
+    near = size if reaches_behind else -20.0
+    axes = view.axes
+    corner = np.array(view.eye) - size * axes[0] + 2 * axes[1] - near * axes[2]
+    across, deep = 2 * size * axes[0], (near + 20 + size) * axes[2] + 0.1 * size * axes[1]
+    floor = grid(1, 1, tuple(corner.tolist()), tuple(across.tolist()), tuple(deep.tolist()), "floor")
+    points = visible_surfaces(Mesh.joined([sphere(12, 8), floor]), view, (1, 1), 24, 32)
+    bound = points.largest_distance
+    distance = np.sqrt(points.rows[POINT_SQUARED].astype(np.float64))
+    assert (distance <= (1 + 1e-6) * (bound[:3] @ points.rows[POINT] + bound[3]) + 1e-12).all()
+    assert points.starts_nearest or reaches_behind or power < 4
+    if points.starts_nearest:
+        depths = (points.world_points - view.eye) @ view.axes[2]
+        assert points.origin[2] * points.unit == pytest.approx(depths.min(), rel=1e-4)
+        # Every point is exact in proportion to its distance from the eye.
+        for pixel, point in zip(points.pixels.tolist(), points.world_points, strict=True):
+            direction = np.array(ray(view, 24, 32, *divmod(pixel, 32)))
+            depth = float((point - view.eye) @ view.axes[2])
+            assert point == pytest.approx(np.array(view.eye) + depth * direction, abs=3e-7 * depth)
 
 
 RASTER = (9, 12)

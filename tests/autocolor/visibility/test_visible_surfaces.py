@@ -497,7 +497,7 @@ def test_spans_are_the_runs_of_pixels_of_a_line_at_which_one_polygon_is_visible(
     assert len(pairs) == len({pair for pair, _ in pairs})
 
     # At the first pixel of a span the point is the ray over the inverse depth.
-    start, step = along_spans(projected, spans)
+    start, step = along_spans(projected, spans, projected.middle, np.float32)
     assert start.dtype == step.dtype == np.float32
     depth = 1 / start[DEPTH].astype(np.float64)
     in_camera = start[POINTS] + projected.middle[:, None]
