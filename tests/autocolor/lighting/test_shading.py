@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -120,9 +120,8 @@ def places(draw: st.DrawFn) -> tuple[float, float, float]:
     return (draw(numbers(-1, 1)) * wide, far, draw(numbers(-1, 1)) * wide)
 
 
-def aimed(position: tuple[float, float, float], aim: Vector) -> tuple[float, float, float]:
-    toward = minus(aim, position)
-    return (toward[0], toward[1], toward[2])
+def aimed(position: tuple[float, float, float], aim: Sequence[float]) -> tuple[float, float, float]:
+    return minus(aim, position)
 
 
 @pytest.mark.parametrize("mesh", WALLS, ids=["of one polygon", "of 35 polygons"])
