@@ -7,7 +7,7 @@ from scenes.figures import Sheet, open_scene
 
 def main() -> None:
     """Render once; each panel is the weighted sum again, with the other lights' weights at nothing."""
-    studio, display = open_scene("coupe")
+    studio = open_scene("coupe")
     # By the whole object: a surface that a light does not reach stays dark. With the exposure of all four
     # lights held, from the ambient light up, each panel shows what its light adds.
     exposure = {"object": (studio.scene.ambient, studio.picture.ranges.whole.maximum)}
@@ -15,7 +15,7 @@ def main() -> None:
     sheet = Sheet("08")
     for light in four.lights:
         studio.edit(four.only_lights(light.name))
-        sheet.add(display.field(), f"Light: {light.name}", light.name)
+        sheet.add(studio, f"Light: {light.name}", light.name)
     sheet.write(across=2)
 
 

@@ -34,25 +34,25 @@ def main() -> None:
     coupe = read_scene("coupe")
     side = autocolor.Light("side", (-4.0, -6.0, 4.0), aim=(0.0, 0.0, 0.6), concentration=4)
     view = coupe.view.replace(eye=(-4.9, -8.9, 1.8), target=(0.0, 0.0, 0.52))
-    studio, display = open_studio(coupe.replace(lights=(side,), view=view, ambient=0.12, **SHOWN))
+    studio = open_studio(coupe.replace(lights=(side,), view=view, ambient=0.12, **SHOWN))
     studio.light("side", half_spaces={"slant": SLANT})
-    sheet.add(display.field(), "A. A Slanted Half-Space, Sharp", "a")
+    sheet.add(studio, "A. A Slanted Half-Space, Sharp", "a")
     studio.light("side", half_spaces={"slant": {"edge_width": SOFT}})
-    sheet.add(display.field(), "B. The Same, Soft over 0.6 m", "b")
+    sheet.add(studio, "B. The Same, Soft over 0.6 m", "b")
 
     pyramid = read_scene("pyramid")
     lamp = autocolor.Light("lamp", (3.0, -5.0, 4.0), aim=(0.3, -0.3, 0.4), cone_angle=15)
     view = pyramid.view.replace(target=(0.3, -0.5, 0.5), field_of_view=24.0)
-    studio, display = open_studio(pyramid.replace(lights=(lamp,), view=view, ambient=0.2, **SHOWN))
-    sheet.add(display.field(), "C. A Cone of 15 Degrees", "c")
+    studio = open_studio(pyramid.replace(lights=(lamp,), view=view, ambient=0.2, **SHOWN))
+    sheet.add(studio, "C. A Cone of 15 Degrees", "c")
     studio.light("lamp", inner_angle=4)
-    sheet.add(display.field(), "D. Soft from 4 to 15 Degrees", "d")
+    sheet.add(studio, "D. Soft from 4 to 15 Degrees", "d")
     studio.light("lamp", cone_angle=None, inner_angle=None, half_spaces=DOORS)
-    sheet.add(display.field(), "E. Barn Doors", "e")
+    sheet.add(studio, "E. Barn Doors", "e")
     studio.light(
         "lamp", aim=(0.9, -1.3, 0.0), half_spaces={each.name: {"edge_width": 0.25} for each in DOORS}
     )
-    sheet.add(display.field(), "F. They Turn with the Light; Soft", "f")
+    sheet.add(studio, "F. They Turn with the Light; Soft", "f")
     sheet.write(across=3)
 
 

@@ -19,7 +19,7 @@ import numpy as np
 import autocolor
 from autocolor.mapping.normal_words import NormalImage
 from ramtek_emu import Ramtek9300, Recorder, instructions
-from scenes.figures import Sheet, open_studio, parser_of_figure, read_scene
+from scenes.figures import Sheet, fine_display, open_studio, parser_of_figure, read_scene
 
 STEPS: Final = 120
 """The loads of one round of the light."""
@@ -57,22 +57,23 @@ def main() -> None:
     parser = parser_of_figure("normals")
     parser.add_argument("--stream", action="store_true", help="also record a round of the light as a stream")
     arguments = parser.parse_args()
-    sheet = Sheet("normals", arguments.folder)
-    studio, display = open_studio(coupe())
-    sheet.add(display.field(), "A. Words Stand for Levels", "a")
+    sheet = Sheet("normals", arguments)
+    display = fine_display()
+    studio = open_studio(coupe(), display)
+    sheet.add(studio, "A. Words Stand for Levels", "a")
     studio.normals()
-    sheet.add(display.field(), "B. Words Stand for Normals", "b")
+    sheet.add(studio, "B. Words Stand for Normals", "b")
     show_normals(studio, display)
-    sheet.add(display.field(), "C. The Normals", "c")
+    sheet.add(sheet.panel_of(display.field()), "C. The Normals", "c")
     studio.send_everything()
     words_written = display.frame_buffer.written
     studio.light("circling", position=position(START - 102))
-    sheet.add(display.field(), "D. The Light Moved by One Load", "d")
+    sheet.add(studio, "D. The Light Moved by One Load", "d")
     assert display.frame_buffer.written == words_written
-    studio, display = open_studio(read_scene("pyramid").replace(contrast="floor"))
-    sheet.add(display.field(), "E. Flat Faces, Levels", "e")
+    studio = open_studio(read_scene("pyramid").replace(contrast="floor"))
+    sheet.add(studio, "E. Flat Faces, Levels", "e")
     studio.normals()
-    sheet.add(display.field(), "F. One Normal Each", "f")
+    sheet.add(studio, "F. One Normal Each", "f")
     sheet.write(across=3)
     if arguments.stream:
         record(sheet.folder / "figure-normals.ramtek")
