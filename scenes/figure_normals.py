@@ -27,23 +27,26 @@ STEPS: Final = 120
 START: Final = 38.0
 """Where the light stands first, in degrees from +x around the car."""
 
-SHOWN: Final[dict[str, Any]] = {"exposure": "auto", "scaling": "surface", "ambient": 0.08}
+SHOWN: Final[dict[str, Any]] = {"exposure": {"glass": (0.0, 1.7)}, "scaling": "surface", "ambient": 0.08}
 
 
 def position(angle: float) -> tuple[float, float, float]:
     """A place of the light on its circle, in meters, so far away that the car is small beside that."""
     turn = math.radians(angle)
-    return 60.0 * math.cos(turn), 60.0 * math.sin(turn), 24.0
+    return 300.0 * math.cos(turn), 300.0 * math.sin(turn), 120.0
 
 
 def coupe() -> autocolor.Scene:
-    """The coupe, seen from far away under a light that can circle it, and a fixed one."""
+    """The coupe, seen from far away under a light that can circle it, and a fixed one.
+
+    The eye and the lights are so far away because normals cannot tell that they are near.
+    """
     scene = read_scene("coupe")
     lights = (
         autocolor.Light("circling", position(START), 1.0),
-        autocolor.Light("front", (-60.0, -40.0, 40.0), 0.55),
+        autocolor.Light("front", (-300.0, -200.0, 200.0), 0.55),
     )
-    view = scene.view.replace(eye=(-27.6, -20.9, 7.0), field_of_view=6.0)
+    view = scene.view.replace(eye=(-110.4, -83.6, 28.0), field_of_view=1.5)
     return scene.replace(lights=lights, view=view, **SHOWN).with_surface("floor", light_color="#5c6670")
 
 
@@ -67,7 +70,7 @@ def main() -> None:
     sheet.add(sheet.panel_of(display.field()), "C. The Normals", "c")
     studio.send_everything()
     words_written = display.frame_buffer.written
-    studio.light("circling", position=position(START - 102))
+    studio.light("circling", position=position(START - 84))
     sheet.add(studio, "D. The Light Moved by One Load", "d")
     assert display.frame_buffer.written == words_written
     studio = open_studio(read_scene("pyramid").replace(contrast="floor"))
