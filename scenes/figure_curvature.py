@@ -31,8 +31,8 @@ MEAN: Final[dict[str, Any]] = {
 }
 """In 1/m: what is flat is gray, what bulges red and what is hollow blue."""
 
-EXPOSURE: Final = {"body": (0.0, 0.9), "glass": (0.0, 1.7), "floor": (0.0, 0.55)}
-"""As in the scene, and brighter for the body: the shades of a color end with it, without a highlight."""
+BRIGHTEST: Final = 0.9
+"""The end of the body's range: the shades of a color end with that color, without a highlight."""
 
 ZEBRA: Final[dict[str, Any]] = {
     "name": "zebra",
@@ -41,6 +41,7 @@ ZEBRA: Final[dict[str, Any]] = {
     "bands": 2,
     "stripes": 16,
     "direction": (1.0, 0.0, 0.0),
+    "legend": False,
 }
 """Lamps along the car, whose reflections run from the nose to the tail."""
 
@@ -52,7 +53,9 @@ def main() -> None:
     studio = open_studio(coupe.replace(view=view))
     sheet = Sheet("curvature")
     sheet.add(studio, "A. The Coupe", "a")
-    studio.edit(studio.scene.replace(exposure=EXPOSURE))
+    assert not isinstance(coupe.exposure, str)
+    exposure = {**dict(coupe.exposure), "body": (0.0, BRIGHTEST)}
+    studio.edit(studio.scene.replace(exposure=exposure))
     studio.scalar(**MEAN)
     sheet.add(studio, "B. Mean Curvature in 1/m", "b")
     studio.scalar(**ZEBRA)

@@ -27,7 +27,7 @@ STEPS: Final = 120
 START: Final = 38.0
 """Where the light stands first, in degrees from +x around the car."""
 
-SHOWN: Final[dict[str, Any]] = {"exposure": {"glass": (0.0, 1.7)}, "scaling": "surface", "ambient": 0.08}
+SHOWN: Final[dict[str, Any]] = {"scaling": "surface", "ambient": 0.08}
 
 
 def position(angle: float) -> tuple[float, float, float]:

@@ -343,19 +343,19 @@ def cells_of(normals: Singles, most: int) -> Cells:
     places = _bin_places(normals, most)
     counts = np.bincount(places, minlength=QUARTERS)
     used = np.flatnonzero(counts)
-    bin_at = np.cumsum(counts > 0) - 1
+    bins = (np.cumsum(counts > 0) - 1)[places]
     # Sum the normals of each bin once. All other steps work on bins, which are far fewer.
-    sums = _sums(normals, places, QUARTERS)[:, used]
+    sums = _sums(normals, bins, len(used))
     middles = read_only(normalized(sums).astype(np.float32))
     if len(used) <= most:
-        return Cells(middles, read_only(bin_at[places]), middles)
+        return Cells(middles, read_only(bins), middles)
     weights = counts[used].astype(np.float64)
     cell_of_bin = _cell_of_bin(middles, _seeds(middles, weights, most), weights)
     # A seed that is nearest to no bin is no cell.
     is_cell = np.bincount(cell_of_bin) > 0
     cell_of_bin = (np.cumsum(is_cell) - 1)[cell_of_bin]
     cells = normalized(_sums(sums, cell_of_bin, int(np.count_nonzero(is_cell)))).astype(np.float32)
-    return Cells(read_only(cells), read_only(cell_of_bin[bin_at[places]]), middles)
+    return Cells(read_only(cells), read_only(cell_of_bin[bins]), middles)
 
 
 def spread_of(normals: Singles) -> int:
@@ -383,7 +383,8 @@ def _bin_places(normals: Singles, cells: int) -> Indices:
     quarters = interleaved[columns] << 1 | interleaved[rows]
     bins = quarters >> 2
     is_divided = np.bincount(bins, minlength=BINS * BINS) > MOST_OF_CELL * len(bins) / cells
-    places: Indices = np.where(is_divided[bins], quarters, bins << 2)
+    # The last two bits of a place are those of its quarter.
+    places: Indices = quarters & np.where(is_divided, ~0, ~3)[bins]
     return places
 
 

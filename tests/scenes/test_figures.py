@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import importlib
+import re
 from pathlib import Path
 from types import ModuleType
 
@@ -76,6 +77,18 @@ def test_each_figure_leaves_its_labeled_pictures(
         assert (pixels[480 : 480 + figures.CAPTION_LINES, :640] > 200).any(), "the caption is empty"
 
 
+def test_the_page_of_figures_shows_the_picture_of_every_script() -> None:
+    folder = figures.SCENES.parent / "docs"
+    page = (folder / "FIGURES.md").read_text("utf-8")
+    shown = re.findall(r"!\[[^]]+\]\((figures/[^)]+)\)\s+`(scenes/[^`]+)`", page)
+    assert dict(shown) == {
+        f"figures/figure-{number}.png": f"scenes/figure_{number.replace('-', '_')}.py"
+        for number in figures.FIGURES
+    }
+    missing = [name for name, _ in shown if not (folder / name).exists()]
+    assert not missing, "run: python -m scenes.figures docs/figures --small"
+
+
 def test_a_small_figure_is_one_picture_of_panels_of_half_the_size(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -90,7 +103,7 @@ def test_a_small_figure_is_one_picture_of_panels_of_half_the_size(
     assert sizes == {
         "figure-04.png": (3 * 320, 240 + caption // 2),
         "figure-highlight.png": (3 * 320, 2 * (240 + caption // 2)),
-        # Of the only panel, the letters could not be read.
+        # The letters of a smaller screen could not be read.
         "figure-05.png": (640, 480 + caption),
     }
 
