@@ -15,7 +15,7 @@ LACQUER: Final = 1.5
 """The refractive index of clear lacquer, of glass, and nearly that of a wet floor."""
 
 SURFACES: Final[dict[str, dict[str, Any]]] = {
-    "body": {"specular": 0.15, "blend": 0.65},
+    "body": {"specular": 0.15, "exponent": 40, "blend": 0.65},
     "glass": {"specular": 0.2},
     "floor": {"specular": 0.11, "exponent": 30, "light_color": "#d0d8e0"},
 }
@@ -27,7 +27,7 @@ CURVE: Final = ((0.0, 0.0), (0.25, 0.42), (0.5, 0.7), (1.0, 1.0))
 """Brighter in the middle: the highlights of lacquer are several times as bright as the paint."""
 
 BRIGHTEST: Final = 1.05
-"""The end of the range, as a multiple of the brightest intensity of a coarse picture of all panels."""
+"""The end of the range, as a multiple of the brightest intensity at the size of the display."""
 
 
 def lit_coupe() -> autocolor.Scene:
@@ -39,7 +39,7 @@ def lit_coupe() -> autocolor.Scene:
     for name, changes in SURFACES.items():
         coupe = coupe.with_surface(name, **changes)
     brightest = lacquered(coupe.with_light("lamp", position=BEHIND))
-    most = BRIGHTEST * autocolor.render(brightest, 240, 320).ranges.whole.maximum
+    most = BRIGHTEST * autocolor.render(brightest).ranges.whole.maximum
     return coupe.replace(exposure={"object": (0.0, most)})
 
 

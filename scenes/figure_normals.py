@@ -67,7 +67,7 @@ def main() -> None:
     studio.normals()
     sheet.add(studio, "B. Words Stand for Normals", "b")
     show_normals(studio, display)
-    sheet.add(sheet.panel_of(display.field()), "C. The Normals", "c")
+    sheet.add(sheet.panel_of(display), "C. The Normals", "c")
     studio.send_everything()
     words_written = display.frame_buffer.written
     studio.light("circling", position=position(START - 84))

@@ -28,7 +28,7 @@ import numpy as np
 import numpy.typing as npt
 
 import autocolor
-from autocolor.images import decoded, smoothed
+from autocolor.images import averaged, smoothed
 from autocolor.screens.viewer import Viewer
 from ramtek_emu import GMR_9300, Ramtek9300, instructions
 from ramtek_emu.memory.cursors import Joystick
@@ -147,13 +147,15 @@ class Sheet:
         """A panel has this part of the lines and elements of a display."""
         self.panels: list[Field] = []
 
-    def panel_of(self, shown: autocolor.Studio | Field) -> Field:
-        """A studio, or a field of its display, at the size of a panel, with smooth edges."""
+    def panel_of(self, shown: autocolor.Studio | Ramtek9300) -> Field:
+        """A studio, or what its display shows, at the size of a panel, with smooth edges."""
         squares = SMOOTH * self.reduction
-        return averaged(shown, squares) if isinstance(shown, np.ndarray) else smoothed(shown.image, squares)
+        if isinstance(shown, autocolor.Studio):
+            return smoothed(shown.image, squares)
+        return averaged(shown.entries, shown.words, squares)
 
     def add(self, shown: autocolor.Studio | Field, caption: str, panel: str = "") -> None:
-        """Write a panel with its caption: a studio, or a field as it is, such as that of a screen."""
+        """Write a panel with its caption: a studio, or a field as it is, such as the field of a screen."""
         field = shown if isinstance(shown, np.ndarray) else self.panel_of(shown)
         self.panels.append(captioned(field, caption, 2 * field.shape[1] // GMR_9300.elements))
         if not (panel and self.reduction > 1):
@@ -173,14 +175,6 @@ class Sheet:
             field = ((field.astype(np.uint16) + 1) // 3 * 3).astype(np.uint8)
         save_png(field, self.folder / name)
         print(self.folder / name)
-
-
-def averaged(field: Field, squares: int) -> Field:
-    """The mean light of squares of so many pixels a side, as `smoothed` averages the pixels of an image."""
-    lines, elements = (size // squares for size in field.shape[:2])
-    light = decoded(np.arange(256.0))[field].reshape(lines, squares, elements, squares, 3).mean(axis=(1, 3))
-    colors: Field = np.searchsorted(decoded(np.arange(0.5, 255)), light, side="right").astype(np.uint8)
-    return colors
 
 
 def main() -> None:

@@ -11,7 +11,6 @@ from PIL import Image
 
 import autocolor
 from autocolor.files.state import note_color, recent_colors
-from autocolor.images import smoothed
 from autocolor.screens.light_and_view.handles import movable_of
 from autocolor.screens.light_and_view.orthographic_views import SIDES
 from ramtek_emu import Ramtek9300
@@ -108,12 +107,6 @@ def test_a_small_figure_is_one_picture_of_panels_of_half_the_size(
     }
 
 
-def test_a_field_is_averaged_as_the_pixels_of_its_image() -> None:
-    display = Ramtek9300()
-    studio = autocolor.Studio(autocolor.read_scene(figures.SCENES / "pyramid"), display)
-    assert figures.averaged(display.field(), 4).tolist() == smoothed(studio.image, 4).tolist()
-
-
 def test_a_click_on_a_bar_of_a_screen_mixes_a_color_and_leaves_the_words_and_the_user_s_colors() -> None:
     note_color((1, 2, 3))
     with figures.open_viewer("coupe", "mixing") as (viewer, _):
@@ -159,7 +152,7 @@ def test_no_panel_of_lacquer_is_brighter_than_the_range_of_all_panels() -> None:
     ((_, (_, most)),) = coupe.exposure
     for position in (coupe.view.eye, figure_incidence.BEHIND):
         lacquered = figure_incidence.lacquered(coupe.with_light("lamp", position=position))
-        assert autocolor.render(lacquered, 480, 640).ranges.whole.maximum < most
+        assert autocolor.render(lacquered, 960, 1280).ranges.whole.maximum < most
 
 
 def test_few_pixels_of_the_body_are_curved_beyond_the_colors() -> None:
@@ -428,7 +421,7 @@ def test_the_light_that_circles_the_car_passes_over_it() -> None:
     for angle in list(figure_normals.angles())[::20]:
         studio.light("circling", position=figure_normals.position(angle))
         changed.append((studio.entries != entries).any(axis=1).sum())
-    assert min(changed) > 300
+    assert min(changed) > 200
 
 
 def test_the_barn_doors_of_the_figure_leave_a_part_of_what_the_lamp_lights() -> None:
