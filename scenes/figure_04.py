@@ -10,13 +10,13 @@ SIDE = (0.5, 0.0, 0.9)
 
 def main() -> None:
     """Render once, then aim the one light and concentrate it."""
-    studio, display = open_scene("pyramid")
+    studio = open_scene("pyramid")
     sheet = Sheet("04")
-    sheet.add(display.field(), "A. Point Source", "a")
+    sheet.add(studio, "A. Point Source", "a")
     studio.light("lamp", aim=SIDE, concentration=1)
-    sheet.add(display.field(), "B. Directed Flood, C = 1", "b")
+    sheet.add(studio, "B. Directed Flood, C = 1", "b")
     studio.light("lamp", concentration=40)
-    sheet.add(display.field(), "C. Directed Spot, C = 40", "c")
+    sheet.add(studio, "C. Directed Spot, C = 40", "c")
     sheet.write(across=3)
 
 

@@ -7,10 +7,10 @@ from scenes.figures import Sheet, open_scene
 
 def main() -> None:
     """Render once."""
-    studio, display = open_scene("coupe")
+    studio = open_scene("coupe")
     sheet = Sheet("06")
     names = ", ".join(light.name for light in studio.scene.lights)
-    sheet.add(display.field(), f"Four Lights: {names}")
+    sheet.add(studio, f"Four Lights: {names}")
 
 
 if __name__ == "__main__":

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import autocolor
-from scenes.figures import Sheet, open_scene
+from scenes.figures import Sheet, open_studio, read_scene
+
+
+def coupe() -> autocolor.Scene:
+    """The coupe with one light in the place of four."""
+    scene = read_scene("coupe")
+    return scene.replace(lights=(autocolor.Light("eye", scene.view.eye),), mapping="gamma")
 
 
 def main() -> None:
-    """Render once, with one light in the place of four."""
-    studio, display = open_scene("coupe")
-    at_eye = autocolor.Light("eye", studio.scene.view.eye)
-    studio.edit(studio.scene.replace(lights=(at_eye,)))
-    sheet = Sheet("07")
-    sheet.add(display.field(), "Light at Eye")
+    """Render once."""
+    Sheet("07").add(open_studio(coupe()), "Light at Eye")
 
 
 if __name__ == "__main__":

@@ -20,13 +20,14 @@ def main() -> None:
     view = coupe.view.replace(eye=(-4.9, -8.9, 1.8), target=(0.0, 0.0, 0.52))
     # The floor keeps what only the ambient light reaches from going black.
     shown: dict[str, Any] = {"ambient": 0.12, "scaling": "object", "mapping": "gamma", "contrast": "floor"}
-    studio, display = open_studio(coupe.replace(lights=(side,), view=view, **shown))
+    shown["exposure"] = {"floor": (0.12, 0.7)}
+    studio = open_studio(coupe.replace(lights=(side,), view=view, **shown))
     sheet = Sheet("09")
-    sheet.add(display.field(), "A. No Flaps", "a")
+    sheet.add(studio, "A. No Flaps", "a")
     studio.light("flapped", flaps={"z": {"minimum": CREASE}})
-    sheet.add(display.field(), "B. Minimum Z Flap at the Crease", "b")
+    sheet.add(studio, "B. Minimum Z Flap at the Crease", "b")
     studio.light("flapped", flaps={"z": {"minimum": CREASE, "maximum": ROOF}})
-    sheet.add(display.field(), "C. Minimum and Maximum Z Flap", "c")
+    sheet.add(studio, "C. Minimum and Maximum Z Flap", "c")
     sheet.write(across=3)
 
 

@@ -18,7 +18,7 @@ BOWL = (0.0, 0.0, 0.5)
 
 IN_A_ROW = (
     ("d", None, "D. A Row of Objects, No Cone"),
-    ("e", 14.0, "E. Cone Angle A = 14"),
+    ("e", 13.5, "E. Cone Angle A = 13.5"),
     ("f", 5.2, "F. Cone Angle A = 5.2"),
 )
 
@@ -26,18 +26,19 @@ IN_A_ROW = (
 def main() -> None:
     """Render each scene once; each panel changes the cone of the one light."""
     sheet = Sheet("10")
-    studio, display = open_scene("coupe")
+    studio = open_scene("coupe")
     spot = autocolor.Light("spot", (-5.0, -4.0, 5.0), aim=(-0.9, -0.3, 0.8), concentration=6)
     shown: dict[str, Any] = {"ambient": 0.12, "scaling": "object", "mapping": "gamma", "contrast": "floor"}
+    shown["exposure"] = {"floor": (0.12, 0.7)}
     studio.edit(studio.scene.replace(lights=(spot,), **shown))
     for panel, angle, caption in ON_THE_COUPE:
         studio.light("spot", cone_angle=angle)
-        sheet.add(display.field(), caption, panel)
-    studio, display = open_scene("row")
+        sheet.add(studio, caption, panel)
+    studio = open_scene("row")
     studio.light("lamp", aim=BOWL)
     for panel, angle, caption in IN_A_ROW:
         studio.light("lamp", cone_angle=angle)
-        sheet.add(display.field(), caption, panel)
+        sheet.add(studio, caption, panel)
     sheet.write(across=3)
 
 

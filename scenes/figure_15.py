@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Final
 
-from scenes.figures import Sheet, open_scene
+from scenes.figures import Sheet, fine_display, open_studio, read_scene
 
 COLORS: Final[dict[str, Any]] = {"object_color": "#80081a", "light_color": "#ff9480"}
 """The same two colors in all three: a deep red, and the copper of the flakes that catch the light."""
@@ -21,13 +21,13 @@ PANELS = (
 
 def main() -> None:
     """Render once; then every panel is one range of the lookup table, and no word is written."""
-    studio, display = open_scene("coupe")
-    studio.edit(studio.scene.replace(mapping=METALLIC))
+    display = fine_display()
+    studio = open_studio(read_scene("coupe").replace(mapping=METALLIC), display)
     words_written = display.frame_buffer.written
     sheet = Sheet("15")
     for panel, blend, caption in PANELS:
         studio.recolor("body", **COLORS, blend=blend)
-        sheet.add(display.field(), caption, panel)
+        sheet.add(studio, caption, panel)
     assert display.frame_buffer.written == words_written
     sheet.write(across=3)
 

@@ -5,38 +5,61 @@ Paper: "Introduction": color coded scalar values such as curvature on the surfac
 
 from __future__ import annotations
 
+import math
 from typing import Any, Final
 
+from autocolor.scene.color_scales import COLOR_SCALES
 from scenes.figures import Sheet, open_studio, read_scene
+
+BANDS: Final = 41
+
+COOLWARM: Final = COLOR_SCALES["coolwarm"]
+
+COLORS: Final = tuple(
+    COOLWARM[round((len(COOLWARM) - 1) * (1 + math.copysign(math.sqrt(abs(share)), share)) / 2)]
+    for share in (2 * band / (BANDS - 1) - 1 for band in range(BANDS))
+)
+"""The colors of the bands. They follow the root of the curvature: panels differ, and so do fillets."""
 
 MEAN: Final[dict[str, Any]] = {
     "name": "mean curvature",
     "surfaces": ("body",),
-    "limits": (-2.0, 2.0),
-    "scale": "coolwarm",
-    "bands": 15,
-    "shades": 20,
+    "limits": (-10.0, 10.0),
+    "scale": COLORS,
+    "bands": BANDS,
+    "shades": 10,
 }
 """In 1/m: what is flat is gray, what bulges red and what is hollow blue."""
 
-EXPOSURE: Final = {"body": (0.0, 0.9), "glass": (0.0, 1.7), "floor": (0.0, 0.55)}
-"""As in the scene, and brighter for the body: the shades of a color end with it, without a highlight."""
+BRIGHTEST: Final = 0.9
+"""The end of the body's range: the shades of a color end with that color, without a highlight."""
 
-ZEBRA: Final[dict[str, Any]] = {"name": "zebra", "limits": None, "scale": "zebra", "bands": 2, "stripes": 24}
+ZEBRA: Final[dict[str, Any]] = {
+    "name": "zebra",
+    "limits": None,
+    "scale": "zebra",
+    "bands": 2,
+    "stripes": 16,
+    "direction": (1.0, 0.0, 0.0),
+    "legend": False,
+}
+"""Lamps along the car, whose reflections run from the nose to the tail."""
 
 
 def main() -> None:
     """Render once; each panel colors the body by another scalar of what is seen."""
     coupe = read_scene("coupe")
     view = coupe.view.replace(eye=(-5.6, -5.6, 2.9), target=(0.0, 0.0, 0.46), field_of_view=28.0)
-    studio, display = open_studio(coupe.replace(view=view))
+    studio = open_studio(coupe.replace(view=view))
     sheet = Sheet("curvature")
-    sheet.add(display.field(), "A. The Coupe", "a")
-    studio.edit(studio.scene.replace(exposure=EXPOSURE))
+    sheet.add(studio, "A. The Coupe", "a")
+    assert not isinstance(coupe.exposure, str)
+    exposure = {**dict(coupe.exposure), "body": (0.0, BRIGHTEST)}
+    studio.edit(studio.scene.replace(exposure=exposure))
     studio.scalar(**MEAN)
-    sheet.add(display.field(), "B. Mean Curvature in 1/m", "b")
+    sheet.add(studio, "B. Mean Curvature in 1/m", "b")
     studio.scalar(**ZEBRA)
-    sheet.add(display.field(), "C. Zebra Stripes", "c")
+    sheet.add(studio, "C. Zebra Stripes", "c")
     sheet.write(across=3)
 
 

@@ -26,26 +26,26 @@ def main() -> None:
     """Two scenes; each panel changes the view or one light."""
     sheet = Sheet("following")
 
-    studio, display = open_scene("coupe")
+    studio = open_scene("coupe")
     lamp = autocolor.Light("lamp", (0, 0, 0), follows="eye")
     studio.edit(studio.scene.replace(lights=(lamp,), **SHOWN))
-    sheet.add(display.field(), "A. Light Fixed to the Eye", "a")
+    sheet.add(studio, "A. Light Fixed to the Eye", "a")
     studio.view(**OTHER_VIEW)
-    sheet.add(display.field(), "B. The Same Light, Another View", "b")
+    sheet.add(studio, "B. The Same Light, Another View", "b")
 
     # Without the floor, the plane would be black in even light, as the darkest that there is.
-    studio, display = open_studio(read_scene("pyramid").replace(ambient=0.2, contrast="floor"))
+    studio = open_studio(read_scene("pyramid").replace(ambient=0.2, contrast="floor"))
     studio.light("lamp", aim=DOWN_TO)
-    sheet.add(display.field(), "C. Light beside the Pyramid", "c")
+    sheet.add(studio, "C. Light beside the Pyramid", "c")
     studio.light("lamp", at_infinity=True)
-    sheet.add(display.field(), "D. The Same Direction, at Infinity", "d")
+    sheet.add(studio, "D. The Same Direction, at Infinity", "d")
 
     coupe = read_scene("coupe").replace(lights=(autocolor.Light("lamp", LAMP),), **SHOWN)
-    studio, display = open_studio(coupe)
+    studio = open_studio(coupe)
     studio.hold_exposure()
-    sheet.add(display.field(), "E. Light beside the Coupe", "e")
+    sheet.add(studio, "E. Light beside the Coupe", "e")
     studio.light("lamp", falloff="quadratic", reach=8)
-    sheet.add(display.field(), "F. Quadratic Falloff, Reach 8", "f")
+    sheet.add(studio, "F. Quadratic Falloff, Reach 8", "f")
     sheet.write(across=2)
 
 

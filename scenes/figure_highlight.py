@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import Final
 
+from scenes import figures
 from scenes.figures import Field, Sheet, open_studio, read_scene
 
 ON_THE_COUPE: Final = {
@@ -49,10 +50,11 @@ def main() -> None:
     pyramid = pyramid.with_light("lamp", aim=(0.5, 0.0, 0.9), concentration=4)
     pyramid = pyramid.with_surface("pyramid", specular=0.8, exponent=40)
     for scene, places in ((coupe, ON_THE_COUPE), (pyramid, ON_THE_PYRAMID)):
-        studio, display = open_studio(scene)
+        studio = open_studio(scene)
         for caption, (line, element) in places.items():
-            studio.place_highlight("lamp", line, element)
-            sheet.add(marked(display.field(), line, element), caption, caption[0].lower())
+            studio.place_highlight("lamp", line * figures.SMOOTH, element * figures.SMOOTH)
+            place = line // sheet.reduction, element // sheet.reduction
+            sheet.add(marked(sheet.panel_of(studio), *place), caption, caption[0].lower())
     sheet.write(across=3)
 
 

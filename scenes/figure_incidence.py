@@ -15,7 +15,7 @@ LACQUER: Final = 1.5
 """The refractive index of clear lacquer, of glass, and nearly that of a wet floor."""
 
 SURFACES: Final[dict[str, dict[str, Any]]] = {
-    "body": {"specular": 0.15},
+    "body": {"specular": 0.15, "exponent": 40, "blend": 0.65},
     "glass": {"specular": 0.2},
     "floor": {"specular": 0.11, "exponent": 30, "light_color": "#d0d8e0"},
 }
@@ -23,15 +23,30 @@ SURFACES: Final[dict[str, dict[str, Any]]] = {
 
 BEHIND: Final = (9.0, 7.0, 2.7)
 
+CURVE: Final = ((0.0, 0.0), (0.25, 0.42), (0.5, 0.7), (1.0, 1.0))
+"""Brighter in the middle: the highlights of lacquer are several times as bright as the paint."""
+
+BRIGHTEST: Final = 1.05
+"""The end of the range, as a multiple of the brightest intensity at the size of the display."""
+
 
 def lit_coupe() -> autocolor.Scene:
     """The coupe in dimmed studio lights, with a lamp at the eye, exposed alike in all panels."""
     coupe = read_scene("coupe")
     dimmed = [coupe.light(name).replace(intensity=0.6) for name in ("key", "side")]
     lamp = autocolor.Light("lamp", coupe.view.eye, 0.6, aim=(0.0, 0.0, 0.6), concentration=4)
-    coupe = coupe.replace(lights=[*dimmed, lamp], scaling="object", exposure={"object": (0.0, 1.1)})
+    coupe = coupe.replace(lights=[*dimmed, lamp], scaling="object", mapping=CURVE)
     for name, changes in SURFACES.items():
         coupe = coupe.with_surface(name, **changes)
+    brightest = lacquered(coupe.with_light("lamp", position=BEHIND))
+    most = BRIGHTEST * autocolor.render(brightest).ranges.whole.maximum
+    return coupe.replace(exposure={"object": (0.0, most)})
+
+
+def lacquered(coupe: autocolor.Scene) -> autocolor.Scene:
+    """The coupe with lacquer or water on its surfaces."""
+    for name in SURFACES:
+        coupe = coupe.with_surface(name, refractive_index=LACQUER)
     return coupe
 
 
@@ -46,18 +61,18 @@ def lit_pyramid() -> autocolor.Scene:
 
 def main() -> None:
     """Render once for each row of panels; in a row, the surfaces that change are computed again."""
-    studio, display = open_studio(lit_coupe())
+    studio = open_studio(lit_coupe())
     sheet = Sheet("incidence")
     for where, position, panels in (("at the Eye", studio.scene.view.eye, "ab"), ("Behind", BEHIND, "cd")):
         studio.light("lamp", position=position)
         for panel, index, material in zip(panels, (None, LACQUER), ("Constant", "of Lacquer"), strict=True):
             for name in SURFACES:
                 studio.surface(name, refractive_index=index)
-            sheet.add(display.field(), f"{panel.upper()}. Lamp {where}, S {material}", panel)
-    studio, display = open_studio(lit_pyramid())
+            sheet.add(studio, f"{panel.upper()}. Lamp {where}, S {material}", panel)
+    studio = open_studio(lit_pyramid())
     for panel, index, material in (("e", None, "Constant"), ("f", LACQUER, "of Lacquer")):
         studio.surface("plane", refractive_index=index)
-        sheet.add(display.field(), f"{panel.upper()}. Lamp behind the Pyramid, S {material}", panel)
+        sheet.add(studio, f"{panel.upper()}. Lamp behind the Pyramid, S {material}", panel)
     sheet.write(across=2)
 
 

@@ -25,19 +25,19 @@ ON_THE_PYRAMID: Any = (
 def main() -> None:
     """Render each scene once; each panel links one light to something else."""
     sheet = Sheet("links")
-    studio, display = open_studio(coupe())
+    studio = open_studio(coupe())
     held(studio)
     for panel, links, caption in ON_THE_COUPE:
         studio.light("more", **links)
-        sheet.add(display.field(), caption, panel)
+        sheet.add(studio, caption, panel)
 
     pyramid = read_scene("pyramid")
     sky = autocolor.Light("sky", (-4.0, -6.0, 8.0), aim=(0.0, 0.0, 0.0), intensity=0.35)
-    studio, display = open_studio(pyramid.replace(lights=(*pyramid.lights, sky), **SHOWN))
+    studio = open_studio(pyramid.replace(lights=(*pyramid.lights, sky), **SHOWN))
     held(studio)
     for panel, links, caption in ON_THE_PYRAMID:
         studio.light("lamp", **links)
-        sheet.add(display.field(), caption, panel)
+        sheet.add(studio, caption, panel)
     sheet.write(across=3)
 
 

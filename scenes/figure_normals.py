@@ -19,7 +19,7 @@ import numpy as np
 import autocolor
 from autocolor.mapping.normal_words import NormalImage
 from ramtek_emu import Ramtek9300, Recorder, instructions
-from scenes.figures import Sheet, open_studio, parser_of_figure, read_scene
+from scenes.figures import Sheet, fine_display, open_studio, parser_of_figure, read_scene
 
 STEPS: Final = 120
 """The loads of one round of the light."""
@@ -27,23 +27,26 @@ STEPS: Final = 120
 START: Final = 38.0
 """Where the light stands first, in degrees from +x around the car."""
 
-SHOWN: Final[dict[str, Any]] = {"exposure": "auto", "scaling": "surface", "ambient": 0.08}
+SHOWN: Final[dict[str, Any]] = {"scaling": "surface", "ambient": 0.08}
 
 
 def position(angle: float) -> tuple[float, float, float]:
     """A place of the light on its circle, in meters, so far away that the car is small beside that."""
     turn = math.radians(angle)
-    return 60.0 * math.cos(turn), 60.0 * math.sin(turn), 24.0
+    return 300.0 * math.cos(turn), 300.0 * math.sin(turn), 120.0
 
 
 def coupe() -> autocolor.Scene:
-    """The coupe, seen from far away under a light that can circle it, and a fixed one."""
+    """The coupe, seen from far away under a light that can circle it, and a fixed one.
+
+    The eye and the lights are so far away because normals cannot tell that they are near.
+    """
     scene = read_scene("coupe")
     lights = (
         autocolor.Light("circling", position(START), 1.0),
-        autocolor.Light("front", (-60.0, -40.0, 40.0), 0.55),
+        autocolor.Light("front", (-300.0, -200.0, 200.0), 0.55),
     )
-    view = scene.view.replace(eye=(-27.6, -20.9, 7.0), field_of_view=6.0)
+    view = scene.view.replace(eye=(-110.4, -83.6, 28.0), field_of_view=1.5)
     return scene.replace(lights=lights, view=view, **SHOWN).with_surface("floor", light_color="#5c6670")
 
 
@@ -57,22 +60,23 @@ def main() -> None:
     parser = parser_of_figure("normals")
     parser.add_argument("--stream", action="store_true", help="also record a round of the light as a stream")
     arguments = parser.parse_args()
-    sheet = Sheet("normals", arguments.folder)
-    studio, display = open_studio(coupe())
-    sheet.add(display.field(), "A. Words Stand for Levels", "a")
+    sheet = Sheet("normals", arguments)
+    display = fine_display()
+    studio = open_studio(coupe(), display)
+    sheet.add(studio, "A. Words Stand for Levels", "a")
     studio.normals()
-    sheet.add(display.field(), "B. Words Stand for Normals", "b")
+    sheet.add(studio, "B. Words Stand for Normals", "b")
     show_normals(studio, display)
-    sheet.add(display.field(), "C. The Normals", "c")
+    sheet.add(sheet.panel_of(display), "C. The Normals", "c")
     studio.send_everything()
     words_written = display.frame_buffer.written
-    studio.light("circling", position=position(START - 102))
-    sheet.add(display.field(), "D. The Light Moved by One Load", "d")
+    studio.light("circling", position=position(START - 84))
+    sheet.add(studio, "D. The Light Moved by One Load", "d")
     assert display.frame_buffer.written == words_written
-    studio, display = open_studio(read_scene("pyramid").replace(contrast="floor"))
-    sheet.add(display.field(), "E. Flat Faces, Levels", "e")
+    studio = open_studio(read_scene("pyramid").replace(contrast="floor"))
+    sheet.add(studio, "E. Flat Faces, Levels", "e")
     studio.normals()
-    sheet.add(display.field(), "F. One Normal Each", "f")
+    sheet.add(studio, "F. One Normal Each", "f")
     sheet.write(across=3)
     if arguments.stream:
         record(sheet.folder / "figure-normals.ramtek")

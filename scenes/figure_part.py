@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Any, Final
 
-from scenes.figures import Sheet, open_scene
+from scenes.figures import Sheet, fine_display, open_studio, read_scene
 
 COLORS: Final = ("#3d6fb4", "#4aa5c9", "#7cc9a2", "#cfe07a", "#f3cd58", "#ec8a3a", "#cc3526")
 """From no stress to the most: all light enough for the shading to be seen in each."""
@@ -21,18 +21,19 @@ EXPOSURE: Final = {"cast": (0.4, 1.25), "machined": (0.3, 1.3), "floor": (0.0, 0
 
 def main() -> None:
     """Render once; the scalar is found in the picture, and then only levels and entries are made anew."""
-    studio, display = open_scene("bracket")
+    display = fine_display()
+    studio = open_studio(read_scene("bracket"), display)
     sheet = Sheet("part")
-    sheet.add(display.field(), "A. A Machined Part", "a")
+    sheet.add(studio, "A. A Machined Part", "a")
     studio.edit(studio.scene.replace(exposure=EXPOSURE))
     studio.scalar(**STRESS, scale=COLORS, shades=20)
-    sheet.add(display.field(), "B. Stress in MPa, 15 Bands of 20 Shades", "b")
+    sheet.add(studio, "B. Stress in MPa, 15 Bands of 20 Shades", "b")
     words_written = display.frame_buffer.written
     studio.scalar(scale="viridis")
     assert display.frame_buffer.written == words_written
-    sheet.add(display.field(), "C. Another Color Scale, No Word Written", "c")
+    sheet.add(studio, "C. Another Color Scale, No Word Written", "c")
     studio.scalar(scale=COLORS, shades=1)
-    sheet.add(display.field(), "D. Flat Color Codes", "d")
+    sheet.add(studio, "D. Flat Color Codes", "d")
     sheet.write(across=2)
 
 

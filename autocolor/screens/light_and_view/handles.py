@@ -107,12 +107,17 @@ def handles_in(scene: Scene, views: OrthographicViews, chosen: str) -> list[Hand
 
 
 def _handles(movable: MovablePoint, scene: Scene, views: OrthographicViews) -> Iterator[Handle]:
-    """The handles of a point in the views that show it."""
+    """The handles of a point in the views that show it, or a mark for it at the edge."""
     point = movable.point_in(scene, views)
     assert point is not None
     label = f"{movable.label}: {point_text(point, views)}"
     for side in SIDES:
-        element, line = (round(each) for each in views.position(side, point))
+        place = views.position(side, point)
+        if movable.what == EYE:
+            place = views.mark_position(side, point, target_of(scene))
+        elif movable.what == LIGHT:
+            place = views.mark_position(side, point, arrow_end(views, scene.light_in_world(movable.light)))
+        element, line = (round(each) for each in place)
         if side.area.has(element, line):
             yield Handle(movable._replace(side=side.name), element, line, label)
 

@@ -89,6 +89,15 @@ PUPIL: Final = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1), (-1, -1)], np.float
 """The eye: positions relative to the eye's position, joined by strokes."""
 
 
+SQUARE: Final = np.array([(-4, -4), (4, -4), (4, 4), (-4, 4), (-4, -4)], np.float64)
+"""The square around the mark of a point outside of a view, relative to the mark, joined by strokes."""
+
+
+def around(mark: tuple[float, float], position: tuple[float, float], width: int = 1) -> list[Floats]:
+    """The strokes around a mark that is not at its point's position; the square is `width` times as wide."""
+    return [] if mark == position else [joined(SQUARE * (width, 1) + mark)]
+
+
 class EyeMarks(NamedTuple):
     """The strokes of the eye, of the arrow to its target, and of the edges of the picture, each (n, 4)."""
 
@@ -102,14 +111,16 @@ def eye_marks(
 ) -> EyeMarks:
     """The marks of the eye and its view in one of the three views, clipped by its area.
 
+    An eye outside the area has its mark at the edge, with a frame around it.
+
     The arrow ends at `target`: the view's target, or a point in its direction. `aspect` is the width of the
     picture over its height. The picture is drawn at the depth of the target, as the base of a pyramid with
     the eye at its top.
     """
-    at = views.position(side, view.eye)
+    at, mark = views.position(side, view.eye), views.mark_position(side, view.eye, target)
     corners = views.positions(side, picture_corners(view, target, aspect))
     picture = together([between(np.broadcast_to(at, (4, 2)), corners), joined([*corners, corners[0]])])
-    eye = together([joined(LIDS + at), joined(PUPIL + at)])
+    eye = together([joined(LIDS + mark), joined(PUPIL + mark), *around(mark, at, 2)])
     direction = arrow(at, views.position(side, target))
     return EyeMarks(clipped(eye, side.area), clipped(direction, side.area), clipped(picture, side.area))
 
@@ -220,15 +231,20 @@ def arrow_end(views: OrthographicViews, light: Light) -> Vector | None:
 
 
 def light_marks(views: OrthographicViews, side: ViewSide, light: Light) -> LightMarks:
-    """The marks of a light in one of the views, clipped by its area, without its flaps."""
+    """The marks of a light in one of the views, clipped by its area, without its flaps.
+
+    A light outside the area has a mark at the edge, with a square around its cross.
+    """
     at = views.position(side, light.position)
     end = arrow_end(views, light)
+    mark = views.mark_position(side, light.position, end)
     shaft = cone = np.empty((0, 4))
     if end is not None:
         shaft = arrow(at, views.position(side, end))
         if light.cone_angle is not None:
             cone = together([joined(each) for each in cone_outline(views, side, light, end)])
-    cross = CROSS + np.tile(at, 2)
+    cross = CROSS + np.tile(mark, 2)
+    cross = together([cross, *around(mark, at)])
     return LightMarks(clipped(cross, side.area), clipped(shaft, side.area), clipped(cone, side.area))
 
 
@@ -392,20 +408,21 @@ class SideItems:
             *([] if moved is None else [lines_across(views, side, moved)]),
             *self._still.of(still, views, eye, strokes, bool(ours), *tables),
             *self._chosen.of(above, views, eye, *[light for _, light in ours]),
-            *self._numeral_items(views, view, label.area, others, ours),
+            *self._numeral_items(views, view, target, label.area, others, ours),
         ]
 
     def _numeral_items(
         self,
         views: OrthographicViews,
         view: View,
+        target: Vector,
         label: Area,
         others: Sequence[Numbered],
         ours: Sequence[Numbered],
     ) -> list[Item]:
         """The numerals of the lights. The chosen light's makes way for the others, which stay in place."""
         side = self._side
-        taken = [label, area_of(LIDS + views.position(side, view.eye))]
+        taken = [label, area_of(LIDS + views.mark_position(side, view.eye, target))]
 
         def compute() -> list[Numeral]:
             return numerals(
@@ -477,6 +494,7 @@ def crosses_of(views: OrthographicViews, side: ViewSide, number: int, light: Lig
         # An arrow that points at the viewer or away covers no place.
         if length > SHORTEST:
             arrow = right / length, down / length
+    element, line = views.mark_position(side, light.position, end)
     crosses = [Cross(number, round(element), round(line), arrow)]
     if light.aim is not None and end is not None:
         crosses.append(Cross(number, round(to_element), round(to_line), (-arrow[0], -arrow[1]), is_aim=True))

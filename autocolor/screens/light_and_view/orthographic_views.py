@@ -53,6 +53,9 @@ def area_of_picture(area: Area = PICTURE_AREA, aspect: float = PICTURE_ASPECT) -
 FILLED: Final = 0.84
 """Assumed: the fraction of an area that the coordinates fill, with 16 elements or more left on all sides."""
 
+EDGE: Final = 8
+"""Assumed: elements or lines between the edge of an area and the marks of points that are outside."""
+
 POINT: Final = 1e-9
 """Assumed: points closer than this fraction of the largest coordinate are the same point."""
 
@@ -118,6 +121,32 @@ class OrthographicViews:
             element + (point[side.right] - self.center[side.right]) * self.scale,
             line - (point[side.up] - self.center[side.up]) * self.scale,
         )
+
+    def mark_position(self, side: ViewSide, point: Vector, end: Vector | None) -> tuple[float, float]:
+        """The element and line of the mark of a point: its position, or a position at the edge of the area.
+
+        If the point is outside the area, its mark is where the line to `end`, the end of its arrow, comes
+        into the area. Without an arrow, the line leads to the middle of the area. Assumed: so that the lights
+        and the eye can be found and grabbed when the views are as near as the object needs.
+        """
+        at = self.position(side, point)
+        if side.area.has(*at):
+            return at
+        area = side.area.inset(EDGE)
+        to = area.middle if end is None else self.position(side, end)
+        if not area.has(*to):
+            to = area.middle
+        # Each edge that the point is beyond is met at a share of the way from `to`; the nearest one counts.
+        share = min(
+            (edge - start) / (beyond - start)
+            for start, beyond, low, high in (
+                (to[0], at[0], area.left, area.right),
+                (to[1], at[1], area.top, area.bottom),
+            )
+            for edge in (low, high)
+            if min(start, beyond) <= edge <= max(start, beyond) and start != beyond
+        )
+        return to[0] + share * (at[0] - to[0]), to[1] + share * (at[1] - to[1])
 
     def placed(self, side: ViewSide, point: Vector, element: int, line: int) -> Vector:
         """The point moved to a pixel of a view, which gives it the two coordinates that the view shows.

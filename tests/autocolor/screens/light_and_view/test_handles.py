@@ -19,7 +19,7 @@ from autocolor.screens.light_and_view.handles import (
     handles_in,
     movable_of,
 )
-from autocolor.screens.light_and_view.orthographic_views import SIDES, TOP, OrthographicViews
+from autocolor.screens.light_and_view.orthographic_views import EDGE, SIDE, SIDES, TOP, OrthographicViews
 from autocolor.screens.picture.picture_edits import target_of
 from tests.autocolor.screens.light_and_view.pointing import FILL, KEY, boxed
 
@@ -113,11 +113,19 @@ def test_handles_are_within_their_view_and_tell_the_coordinates() -> None:
         assert side.area.has(each.element, each.line)
     found = {each.label for each in handles_in(boxed(KEY), VIEWS, "key") if movable_of(each).what != "eye"}
     assert found == {"key: x 2  y -3  z 4", "key: aim: x 0.5  y 0.5  z 0.5", "target: x 0.5  y 0.5  z 0.5"}
-    far = boxed(KEY.replace(position=(1e6, 0.0, 0.0)))
-    places = [
-        movable_of(each).side for each in handles_in(far, VIEWS, "key") if movable_of(each).what == "light"
-    ]
-    assert places == ["side"]
+
+
+def test_a_light_or_an_eye_outside_of_a_view_can_be_taken_hold_of_at_its_edge() -> None:
+    far = boxed(KEY.replace(position=(1e6, 0.0, 0.0))).with_view(eye=(0.0, 0.0, 1e6))
+    places = {
+        (movable_of(each).what, movable_of(each).side): (each.element, each.line)
+        for each in handles_in(far, VIEWS, "key")
+    }
+    top, side = TOP.area.inset(EDGE), SIDE.area.inset(EDGE)
+    # In the side view, the light is far behind and within the view.
+    assert places["light", "side"] == tuple(map(round, VIEWS.position(SIDE, (1e6, 0.0, 0.0))))
+    assert places["light", "top"][0] == top.right
+    assert places["eye", "side"][1] == side.top
 
 
 def test_what_is_chosen_goes_before_the_others() -> None:

@@ -37,6 +37,7 @@ from autocolor.screens.light_and_view.marks import (
 )
 from autocolor.screens.light_and_view.object_lines import ObjectLines
 from autocolor.screens.light_and_view.orthographic_views import (
+    EDGE,
     FRONT,
     SIDE,
     SIDES,
@@ -353,7 +354,13 @@ def test_an_eye_that_looks_at_the_viewer_has_an_arrow_without_a_head() -> None:
 def test_marks_end_at_the_border_of_the_area() -> None:
     view = View((0.0, -200.0, 0.0), target=(0.0, 0.0, 0.0))
     marks = eye_marks(VIEWS, TOP, view, (0.0, 0.0, 0.0))
-    assert len(marks.eye) == 0
+    # The eye has a mark with a frame at the edge.
+    assert len(marks.eye) == len(LIDS) - 1 + len(PUPIL) - 1 + 4
+    edge = TOP.area.bottom - EDGE
+    assert marks.eye[:, 1::2].mean() == pytest.approx(edge, abs=0.5)
+    light = Light("key", (0.0, -200.0, 0.0), aim=(0.0, 0.0, 0.0))
+    assert len(light_marks(VIEWS, TOP, light).cross) == 2 + 4
+    assert len(light_marks(VIEWS, FRONT, light).cross) == 2
     assert marks.direction[0].tolist() == [TOP.area.middle[0], TOP.area.bottom, *TOP.area.middle]
 
 

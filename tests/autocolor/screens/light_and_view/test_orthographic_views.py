@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from autocolor import Light, Mesh, Part, Scene, View, scene_of
 from autocolor.checks import LARGEST_COORDINATE, Vector
 from autocolor.screens.light_and_view.orthographic_views import (
+    EDGE,
     FILLED,
     FRONT,
     FRONT_AREA,
@@ -79,6 +80,25 @@ def test_many_points_are_where_each_of_them_is(
 ) -> None:
     found = views.positions(side, np.array(many, np.float64).reshape(-1, 3))
     assert [tuple(row) for row in found.tolist()] == [views.position(side, point) for point in many]
+
+
+@given(some_views(), sides, points, points | st.none())
+def test_the_mark_of_a_point_is_at_its_position_or_where_its_arrow_comes_into_the_area(
+    views: OrthographicViews, side: ViewSide, point: Vector, end: Vector | None
+) -> None:
+    at, mark = views.position(side, point), views.mark_position(side, point, end)
+    if side.area.has(*at):
+        assert mark == at
+        return
+    area = side.area.inset(EDGE)
+    beyond = [mark[0] - area.left, area.right - mark[0], mark[1] - area.top, area.bottom - mark[1]]
+    assert min(beyond) == pytest.approx(0, abs=1e-6)
+    to = area.middle if end is None else views.position(side, end)
+    if area.has(*to):
+        arrow, way = np.subtract(at, to), np.subtract(mark, to)
+        assert arrow @ way >= 0
+        # Both lead the same way.
+        assert abs(arrow[0] * way[1] - arrow[1] * way[0]) <= 1e-6 * (np.hypot(*arrow) + 1)
 
 
 @given(st.data())

@@ -1,0 +1,23 @@
+"""Figure 5: the light and view screen, where the lights and the view of Figure 6 are set."""
+
+from __future__ import annotations
+
+from autocolor.screens.light_and_view.orthographic_views import PICTURE_AREA
+from scenes.figures import Sheet, click, click_at, open_viewer, point_at
+
+
+def main() -> None:
+    """Move nearer, so that the views show the object, and display the view as a mesh."""
+    sheet = Sheet("05")
+    with open_viewer("coupe", "light and view") as (viewer, display):
+        click(viewer, "fit all", 0.75)
+        click_at(viewer, PICTURE_AREA.right, PICTURE_AREA.bottom)
+        # The message line tells the place of the first light.
+        name = viewer.studio.scene.lights[0].name
+        light = next(each for each in viewer.board.screen.handles() if each.label.startswith(f"{name}: x"))
+        point_at(viewer, light.element, light.line)
+        sheet.add(display.field(), "Light and View Selection")
+
+
+if __name__ == "__main__":
+    main()
