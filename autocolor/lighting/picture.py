@@ -63,6 +63,8 @@ class Picture(Immutable):
 
     `normals`, (3, n) float32 in the order of `pixels`, are unit vectors in camera space; None unless the
     words of the scene stand for normals.
+
+    `counts`, (n,), are how many pixels each intensity stands for; None if each stands for one.
     """
 
     lines: int
@@ -77,6 +79,7 @@ class Picture(Immutable):
     scalar_limits: tuple[float, float] | None = None
     visible_parts: VisibleParts | None = field(default=None, repr=False)
     normals: Singles | None = field(default=None, repr=False)
+    counts: Indices | None = field(default=None, repr=False)
 
     @classmethod
     def from_rasters(

@@ -56,8 +56,12 @@ An evenly lit side may be the brightest of the object, and should still have its
 began at 0.8 of the range, the top of a red box would be pink.
 """
 
+TRIMMED: Final = "99.5 %"
+"""Assumed: the exposure of a bare mesh. Specks that are seen through cracks do not set its range."""
+
 MAPPING_FIELDS: Final = {
     "scaling": "object",
+    "exposure": TRIMMED,
     "contrast": "floor",
     "mapping": ((0.0, 0.04), (0.12, 0.22), (0.3, 0.32), (0.55, 0.57), (0.8, 0.86), (1.0, 0.93)),
     "ambient": 0.13,
