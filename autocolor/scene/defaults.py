@@ -25,6 +25,13 @@ FILLED: Final = 0.86
 ASPECT: Final = 640 / 480
 """Assumed: the width over the height of the paper's display."""
 
+LOWEST_EYE: Final = 18.0
+HIGHEST_EYE: Final = 40.0
+"""Assumed: the elevations of the eye of a new view, in degrees: above a solid object, and above a sheet."""
+
+FLAT: Final = 0.5
+"""Assumed: an object whose height over the root of its ground area is less is seen from higher."""
+
 POINT: Final = 1e-12
 """Assumed: an object smaller than this fraction of its distance from the origin is treated as a point."""
 
@@ -38,15 +45,17 @@ POINTS_AT_ONCE: Final = 1 << 14
 """Few enough that numpy multiplies in a single thread. Waiting for threads is slow on shared processors."""
 
 OBJECT_COLORS: Final = (
-    "#b3202c", "#2f5fa8", "#c9a227", "#3f7f4f", "#7d4a94", "#c8642c",
-    "#3a8c92", "#a8426a", "#7c8a3a", "#5561a8", "#8c5a3c", "#8a949e",
+    "#f07f74", "#7fa9ea", "#e2c24e", "#74c083", "#c091dc", "#f2a15e",
+    "#62c6c4", "#f392b8", "#b9c45a", "#9ea4f2", "#cf9b76", "#b7c1ca",
 )  # fmt: skip
-"""Assumed: distinguishable object colors, assigned to the surfaces in turn."""
+"""Assumed: distinguishable object colors, assigned to the surfaces in turn.
+
+They are light, with a luma of 0.63 to 0.75, because shading darkens them."""
 
 CREATED_REFLECTANCE: Final = Reflectance(0.7, 0.63, exponent=32.0)
 """Assumed: the reflectance of the surfaces of a bare mesh."""
 
-PLAIN_PAINT: Final = Paint((176, 202, 232), blend=0.8)
+PLAIN_PAINT: Final = Paint((190, 210, 234), blend=0.8)
 """Assumed: a light steel blue, for the surface that all parts without a surface share."""
 
 COLORED_PAINT: Final = Paint(PLAIN_PAINT.object_color, blend=0.88, light_percentage=60.0)
@@ -63,8 +72,8 @@ MAPPING_FIELDS: Final = {
     "scaling": "object",
     "exposure": TRIMMED,
     "contrast": "floor",
-    "mapping": ((0.0, 0.04), (0.12, 0.22), (0.3, 0.32), (0.55, 0.57), (0.8, 0.86), (1.0, 0.93)),
-    "ambient": 0.13,
+    "mapping": ((0.0, 0.06), (0.12, 0.26), (0.3, 0.45), (0.55, 0.62), (0.8, 0.8), (1.0, 0.96)),
+    "ambient": 0.07,
 }
 """Assumed: the mapping and the ambient light of a bare mesh.
 
@@ -124,17 +133,33 @@ def created_surface(name: str, object_color: str | Color | None = None) -> Surfa
 
 
 def default_view(coordinates: Floats) -> View:
-    """A view from the front left and slightly above, at the distance that frames the whole object.
+    """A view from the front left and above, at the distance that frames the whole object.
 
-    `coordinates`, here and below, are the coordinates of the object's nodes, (nodes, 3).
+    The flatter the object, the higher is the eye. `coordinates`, here and below, are the coordinates of the
+    object's nodes, (nodes, 3).
     """
-    azimuth, elevation = math.radians(-125.0), math.radians(18.0)
+    azimuth, elevation = math.radians(-125.0), math.radians(_elevation_above(*bounds_of(coordinates)))
     toward_eye = (
         math.cos(elevation) * math.cos(azimuth),
         math.cos(elevation) * math.sin(azimuth),
         math.sin(elevation),
     )
     return framed(View(eye=toward_eye, target=(0.0, 0.0, 0.0)), coordinates)
+
+
+@underflowing
+def _elevation_above(low: Floats, high: Floats) -> float:
+    """The elevation of the eye in degrees, LOWEST_EYE to HIGHEST_EYE, for the bounds of an object.
+
+    It falls with the height of the object over the square root of its ground area, down to LOWEST_EYE for an
+    object of FLAT or more. The ground area of a wall that stands is small, and it is seen from LOWEST_EYE.
+    """
+    if _is_a_point(low, high):
+        return LOWEST_EYE
+    width, depth, height = ((high - low) / (high - low).max()).tolist()
+    ground = FLAT * math.sqrt(width * depth)
+    flatness = max(0.0, 1 - height / ground) if ground else 0.0
+    return LOWEST_EYE + (HIGHEST_EYE - LOWEST_EYE) * flatness
 
 
 @underflowing
@@ -252,8 +277,8 @@ def default_lights(coordinates: Floats, view: View) -> tuple[Light, ...]:
         )  # fmt: skip
 
     return (
-        light("key", -3.2, 1.5, 2.7, 1.22, 2.5),
-        light("fill", 1.7, 2.0, 1.9, 0.31, 4.4),
-        light("top", -0.1, 4.0, -0.9, 0.74, 1.5),
-        light("rim", -1.2, 3.7, -2.9, 0.79, 3.0),
+        light("key", -3.1, 0.6, 1.8, 1.34, 1.1),
+        light("fill", 2.1, 0.7, 4.2, 0.57, 1.2),
+        light("top", -0.4, 2.9, -2.0, 0.1, 0),
+        light("rim", -0.9, 3.4, -3.2, 0.38, 0),
     )
