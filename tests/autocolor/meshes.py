@@ -11,7 +11,12 @@ from autocolor import Mesh, Reflectance, Scene, Surface, View, scene_of
 from autocolor.scene.changes import SceneFields
 from tests.autocolor.strategies import Vector
 
-STRETCHED: SceneFields = {"scaling": "surface", "contrast": "stretch", "mapping": "linear"}
+STRETCHED: SceneFields = {
+    "scaling": "surface",
+    "contrast": "stretch",
+    "mapping": "linear",
+    "exposure": "auto",
+}
 """How intensities are shown where a test rests on it: as in a scene file that does not say it."""
 
 
