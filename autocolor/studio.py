@@ -43,7 +43,7 @@ from autocolor.journal.places import NO_STAMP, Source, opened
 from autocolor.lighting.picking import highlight_of, highlight_placed
 from autocolor.lighting.picture import Picture
 from autocolor.mapping.display_image import DisplayImage, words_by_line
-from autocolor.mapping.intensity import held_exposure
+from autocolor.mapping.intensity import held_exposure, is_held
 from autocolor.mapping.ranges import LevelRange
 from autocolor.rendering import Rendering, block_for, blocks_of, rendering, sees_the_same
 from autocolor.scene.changes import LightChanges, PaintChanges, ScalarChanges, SurfaceChanges, ViewChanges
@@ -262,8 +262,20 @@ class Studio:
         self.edit(self.scene.replace(exposure=exposure))
 
     def release_exposure(self) -> None:
-        """Let the intensity ranges follow the picture again."""
-        self.edit(self.scene.replace(exposure=AUTO))
+        """Return to the exposure before the ranges were held; if there is none, ranges follow the picture."""
+        names = {surface.name for surface in self.scene.surfaces}
+        befores = [
+            exposure
+            for exposure in (AUTO, *(scene.exposure for scene in self._history.earlier))
+            if not is_held(exposure) and (isinstance(exposure, str) or dict(exposure).keys() <= names)
+        ]
+        self.edit(self.scene.replace(exposure=befores[-1]))
+
+    @property
+    def following_exposure(self) -> str:
+        """The exposure by which all ranges last followed the picture: "auto" or a percentage."""
+        exposures = (scene.exposure for scene in reversed(self._history.earlier))
+        return next((exposure for exposure in exposures if isinstance(exposure, str)), AUTO)
 
     def edit(self, scene: Scene, same_step: bool = False, moving: bool = False) -> None:
         """Make a scene the current one; nothing happens if it equals the current one.

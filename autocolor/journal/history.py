@@ -149,6 +149,11 @@ class History:
         return tuple(each.scene for each in self._undo_stack)
 
     @property
+    def earlier(self) -> tuple[Scene, ...]:
+        """The scenes of `to_undo` that belong to the place of the current scene."""
+        return tuple(each.scene for each in self._undo_stack if each.place is self.place)
+
+    @property
     def to_redo(self) -> tuple[Scene, ...]:
         """The scenes after each step that can be redone, the next step last."""
         return tuple(each.scene for each in self._redo_stack)

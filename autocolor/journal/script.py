@@ -24,7 +24,7 @@ from autocolor.journal.history import Drop, Edit, History, Keep, Open, Saved, Sh
 from autocolor.journal.journal import MeshesBeside, change_between
 from autocolor.journal.places import Source, checksum_of
 from autocolor.scene.columns import fields_of, to_plain
-from autocolor.scene.scene import AUTO, Scene
+from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Paint
 
 STUDIO_METHODS: Final = {
@@ -89,9 +89,7 @@ def _edit_statement(edit: Edit, start: Scene, meshes: MeshesBeside) -> str:
         return f"studio.{STUDIO_METHODS[method]}({arguments})"
     elif method == "without_scalar":
         return "studio.scalar(None)"
-    elif columns == {"exposure": AUTO}:
-        return "studio.release_exposure()"
-    elif columns.keys() == {"exposure"}:
+    elif columns.keys() == {"exposure"} and not isinstance(columns["exposure"], str):
         return f"studio.hold_exposure({literal(columns['exposure'])})"
     same_step = ", same_step=True" if edit.joins else ""
     return f"studio.edit(studio.scene.{method}({arguments}){same_step})"

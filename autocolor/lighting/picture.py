@@ -68,6 +68,8 @@ class Picture(Immutable):
     words of the scene stand for normals.
 
     If `smooth` is more than 1, each pixel of an image is the mean of a square of `smooth` pixels a side.
+
+    `counts`, (n,), are how many pixels each intensity stands for; None if each stands for one.
     """
 
     lines: int
@@ -83,6 +85,7 @@ class Picture(Immutable):
     visible_parts: VisibleParts | None = field(default=None, repr=False)
     normals: Singles | None = field(default=None, repr=False)
     smooth: int = 1
+    counts: Indices | None = field(default=None, repr=False)
 
     @classmethod
     def from_rasters(

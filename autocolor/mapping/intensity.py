@@ -4,12 +4,14 @@ Paper: "The Lighting Model": the unscaled intensities are mapped to integer inte
 minimum and the maximum intensity of each surface, or of the entire object, become the lowest and the highest
 level; nonlinear mappings can be tried. "Light Source Color Blending", Figure 11: a word is the first word of
 the surface's range plus the level. Departs: a scene can hold ranges of intensities, which then do not follow
-the picture, so that less light looks darker. Intensities beyond a held range are shown as its nearest end.
+the picture, so that less light looks darker. With a percentage as exposure, the brightest pixels do not set a
+range, such as specks seen through a crack. Intensities beyond a range are shown as its nearest end.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from decimal import Decimal
 from functools import lru_cache
 from types import MappingProxyType
 from typing import Final
@@ -32,6 +34,16 @@ ROUNDING: Final = 2.0**-20
 """Assumed: eight units in the last place of float32, the rounding of a sum of lights."""
 
 
+MOST_EVEN: Final = 0.6
+"""Assumed: the largest minimum of a trimmed range, as a share of its maximum.
+
+All levels for the little change of light across a flat sheet would show an edge where its highlight begins.
+"""
+
+SAMPLED: Final = 64
+"""Every SAMPLEDth intensity is in the sample of `intensity_below`."""
+
+
 def has_extent(extent: IntensityRange) -> bool:
     """Whether the minimum and the maximum differ by more than float32 rounding.
 
@@ -45,9 +57,9 @@ def mapped_ranges(picture: Picture, scaling: str, exposure: Exposure) -> Mapping
     """The range that is mapped to the levels of each visible surface, by number; the whole object's is WHOLE.
 
     Intensities are relative to the picture's scale. A surface has its held range; else the object's, if that
-    is held or the scaling is "object"; else its own in the picture. A surface without extent has the object's
-    range. Assumed: an unlit floor has the intensity of the ambient light all over, and should look as dark as
-    that is beside the rest.
+    is held or the scaling is "object"; else its own, which follows the picture. A surface without extent has
+    the object's range. Assumed: an unlit floor has the intensity of the ambient light all over, and should
+    look as dark as that is beside the rest.
     """
     held: dict[str, IntensityRange] = {}
     if not isinstance(exposure, str):
@@ -55,7 +67,7 @@ def mapped_ranges(picture: Picture, scaling: str, exposure: Exposure) -> Mapping
             # As exact as intensities: a range that is too narrow for them has no extent.
             low, high = (min(limit / picture.scale, LARGEST_SINGLE) for limit in limits)
             held[name] = IntensityRange(float(np.float32(low)), float(np.float32(high)))
-    of_picture = picture.relative_ranges
+    of_picture = following_ranges(picture, scaling, exposure)
     whole = held.get(OBJECT, of_picture[WHOLE])
     shares_whole = scaling == "object" or OBJECT in held
     ranges = {WHOLE: whole}
@@ -69,11 +81,71 @@ def mapped_ranges(picture: Picture, scaling: str, exposure: Exposure) -> Mapping
     return ranges
 
 
+def following_ranges(picture: Picture, scaling: str, exposure: Exposure) -> Mapping[int, IntensityRange]:
+    """The ranges that follow the picture, by surface number, relative to its scale; the object's is WHOLE.
+
+    With a percentage of the pixels as exposure, the ranges are trimmed; if the scaling is "object", there is
+    only WHOLE.
+    """
+    ranges = picture.relative_ranges
+    if not isinstance(exposure, str) or exposure == AUTO:
+        return ranges
+    share = Decimal(exposure.removesuffix(" %")) / 100
+    own = {surface.surface_number: surface.pixels for surface in picture.slices if scaling == "surface"}
+    relative, counts = picture.relative, picture.counts
+    return {
+        number: trimmed_range(
+            relative[pixels] if counts is None else relative[pixels].repeat(counts[pixels]),
+            ranges[number],
+            share,
+        )
+        for number, pixels in {WHOLE: slice(None), **own}.items()
+    }
+
+
+def trimmed_range(intensities: Singles, own: IntensityRange, share: Decimal) -> IntensityRange:
+    """The range of a share of some intensities, without the brightest; `own` is the range of all of them.
+
+    Of n intensities, the floor of n * (1 - share) are left out, and the maximum of the rest is the maximum of
+    the range. This order statistic is one of the intensities, so scaling all light scales the range. If it
+    does not exceed the minimum, nothing is left out, or all that is lit would be lost.
+
+    Assumed: the darkest intensities count, because nothing is darker than the ambient light. But the minimum
+    of the range is at most MOST_EVEN of its maximum.
+    """
+    maximum = own.maximum
+    above = int(len(intensities) * (1 - share))
+    if above:
+        trimmed = intensity_below(intensities, above)
+        if has_extent(IntensityRange(own.minimum, trimmed)):
+            maximum = trimmed
+    return IntensityRange(min(own.minimum, float(np.float32(MOST_EVEN * maximum))), maximum)
+
+
+def intensity_below(intensities: Singles, above: int) -> float:
+    """The intensity that is followed by `above` others in rising order.
+
+    A sample gives a threshold, and only the intensities from it on are sorted, unless they are too few.
+    Measured: for 213,000 intensities 0.1 ms; sorting all of them as far as needed takes 1.3 ms.
+    """
+    sample = np.sort(intensities[::SAMPLED])
+    candidates = intensities[intensities >= sample[max(0, len(sample) - 2 * (above // SAMPLED) - 8)]]
+    if len(candidates) <= above:
+        candidates = intensities
+    place = len(candidates) - 1 - above
+    return float(np.partition(candidates, place)[place])
+
+
 def held_name(exposure: Exposure, surface: str) -> str:
     """The name of the held range by which a surface is mapped: its own or the object's; empty without any."""
     held = () if isinstance(exposure, str) else [name for name, _ in exposure]
     own = surface if surface != OBJECT else ""
     return next((name for name in (own, OBJECT) if name and name in held), "")
+
+
+def is_held(exposure: Exposure) -> bool:
+    """Whether the range of the object is held, and with it all ranges."""
+    return not isinstance(exposure, str) and OBJECT in dict(exposure)
 
 
 def held_exposure(picture: Picture, scaling: str, exposure: Exposure = AUTO) -> Exposure:
@@ -83,7 +155,7 @@ def held_exposure(picture: Picture, scaling: str, exposure: Exposure = AUTO) -> 
     """
     held = {} if isinstance(exposure, str) else dict(exposure)
     each_has_its_own = scaling == "surface" and OBJECT not in held
-    for number, extent in picture.relative_ranges.items():
+    for number, extent in following_ranges(picture, scaling, exposure).items():
         if (number == WHOLE or each_has_its_own) and has_extent(extent):
             name = picture.surfaces[number - 1] if number else OBJECT
             if number and name == OBJECT:

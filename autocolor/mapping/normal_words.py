@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Final, NamedTuple
 
@@ -136,7 +136,7 @@ class WordNormals(NamedTuple):
     """The words in use, (n,), sorted by surface as `slices` tells, and their normals, (3, n), read-only.
 
     `samples`, (3, m), sorted by surface as `sample_slices` tells, are the normals of bins, which are more
-    than the words. All are unit vectors in camera space.
+    than the words, and `sample_counts`, (m,), the pixels of each. All are unit vectors in camera space.
     """
 
     words: Indices
@@ -144,6 +144,7 @@ class WordNormals(NamedTuple):
     slices: tuple[SurfaceSlice, ...]
     samples: Singles
     sample_slices: tuple[SurfaceSlice, ...]
+    sample_counts: Indices
 
 
 class NormalLight(NamedTuple):
@@ -165,7 +166,7 @@ def words_of_normals(picture: Picture, ranges: Mapping[str, LevelRange]) -> tupl
     assert picture.normals is not None
     raster = np.full(picture.lines * picture.elements, BACKGROUND, np.uint16)
     nothing = np.empty((3, 0), np.float32)
-    words, normals, samples = [np.empty(0, np.intp)], [nothing], [nothing]
+    words, normals, samples, counts = [np.empty(0, np.intp)], [nothing], [nothing], [np.empty(0, np.intp)]
     slices, sample_slices = [], []
     start = sample_start = 0
     for surface in picture.slices:
@@ -176,6 +177,7 @@ def words_of_normals(picture: Picture, ranges: Mapping[str, LevelRange]) -> tupl
         words.append(np.arange(first, first + count))
         normals.append(cells.normals)
         samples.append(cells.samples)
+        counts.append(cells.counts)
         slices.append(SurfaceSlice(number, start, start + count))
         start += count
         sample_slices.append(SurfaceSlice(number, sample_start, sample_start + cells.samples.shape[1]))
@@ -186,6 +188,7 @@ def words_of_normals(picture: Picture, ranges: Mapping[str, LevelRange]) -> tupl
         tuple(slices),
         read_only(np.concatenate(samples, axis=1)),
         tuple(sample_slices),
+        read_only(np.concatenate(counts)),
     )
     return read_only(raster).reshape(picture.lines, picture.elements), stand_for
 
@@ -196,9 +199,10 @@ def normal_light(scene: Scene, stand_for: WordNormals) -> NormalLight:
     Raises InputError for intensities that float32 can't hold.
     """
     count = stand_for.samples.shape[1]
+    samples = light_at_normals(scene, stand_for.samples, stand_for.sample_slices, np.arange(count), count)
     return NormalLight(
         light_at_normals(scene, stand_for.normals, stand_for.slices, stand_for.words, WORDS),
-        light_at_normals(scene, stand_for.samples, stand_for.sample_slices, np.arange(count), count),
+        replace(samples, counts=stand_for.sample_counts),
     )
 
 
@@ -326,12 +330,14 @@ BINS_AT_ONCE: Final = 1 << 11
 class Cells(NamedTuple):
     """Some normals, (3, cells) float32, and for each of the given normals the number of its cell.
 
-    `samples`, (3, bins) float32, are the normals of the bins, which are finer.
+    `samples`, (3, bins) float32, are the normals of the bins, which are finer, and `counts` the given normals
+    in each bin.
     """
 
     normals: Singles
     numbers: Indices
     samples: Singles
+    counts: Indices
 
 
 def cells_of(normals: Singles, most: int) -> Cells:
@@ -348,14 +354,14 @@ def cells_of(normals: Singles, most: int) -> Cells:
     sums = _sums(normals, bins, len(used))
     middles = read_only(normalized(sums).astype(np.float32))
     if len(used) <= most:
-        return Cells(middles, read_only(bins), middles)
+        return Cells(middles, read_only(bins), middles, counts[used])
     weights = counts[used].astype(np.float64)
     cell_of_bin = _cell_of_bin(middles, _seeds(middles, weights, most), weights)
     # A seed that is nearest to no bin is no cell.
     is_cell = np.bincount(cell_of_bin) > 0
     cell_of_bin = (np.cumsum(is_cell) - 1)[cell_of_bin]
     cells = normalized(_sums(sums, cell_of_bin, int(np.count_nonzero(is_cell)))).astype(np.float32)
-    return Cells(read_only(cells), read_only(cell_of_bin[bins]), middles)
+    return Cells(read_only(cells), read_only(cell_of_bin[bins]), middles, counts[used])
 
 
 def spread_of(normals: Singles) -> int:

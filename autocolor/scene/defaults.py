@@ -22,6 +22,13 @@ from autocolor.scene.view import ASPECT, View
 FILLED: Final = 0.86
 """Assumed: the fraction of the width or height of the picture that a framed object fills."""
 
+LOWEST_EYE: Final = 18.0
+HIGHEST_EYE: Final = 40.0
+"""Assumed: the elevations of the eye of a new view, in degrees: above a solid object, and above a sheet."""
+
+FLAT: Final = 0.5
+"""Assumed: an object whose height over the root of its ground area is less is seen from higher."""
+
 POINT: Final = 1e-12
 """Assumed: an object smaller than this fraction of its distance from the origin is treated as a point."""
 
@@ -35,15 +42,17 @@ POINTS_AT_ONCE: Final = 1 << 14
 """Few enough that numpy multiplies in a single thread. Waiting for threads is slow on shared processors."""
 
 OBJECT_COLORS: Final = (
-    "#b3202c", "#2f5fa8", "#c9a227", "#3f7f4f", "#7d4a94", "#c8642c",
-    "#3a8c92", "#a8426a", "#7c8a3a", "#5561a8", "#8c5a3c", "#8a949e",
+    "#f07f74", "#7fa9ea", "#e2c24e", "#74c083", "#c091dc", "#f2a15e",
+    "#62c6c4", "#f392b8", "#b9c45a", "#9ea4f2", "#cf9b76", "#b7c1ca",
 )  # fmt: skip
-"""Assumed: distinguishable object colors, assigned to the surfaces in turn."""
+"""Assumed: distinguishable object colors, assigned to the surfaces in turn.
+
+They are light, with a luma of 0.63 to 0.75, because shading darkens them."""
 
 CREATED_REFLECTANCE: Final = Reflectance(0.7, 0.63, exponent=32.0)
 """Assumed: the reflectance of the surfaces of a bare mesh."""
 
-PLAIN_PAINT: Final = Paint((176, 202, 232), blend=0.8)
+PLAIN_PAINT: Final = Paint((194, 212, 235), blend=0.8)
 """Assumed: a light steel blue, for the surface that all parts without a surface share."""
 
 COLORED_PAINT: Final = Paint(PLAIN_PAINT.object_color, blend=0.88, light_percentage=60.0)
@@ -53,20 +62,26 @@ An evenly lit side may be the brightest of the object, and should still have its
 began at 0.8 of the range, the top of a red box would be pink.
 """
 
+TRIMMED: Final = "99.5 %"
+"""Assumed: the exposure of a bare mesh. Specks that are seen through cracks do not set its range."""
+
 MAPPING_FIELDS: Final = {
     "scaling": "object",
+    "exposure": TRIMMED,
     "contrast": "floor",
-    "mapping": ((0.0, 0.04), (0.12, 0.22), (0.3, 0.32), (0.55, 0.57), (0.8, 0.86), (1.0, 0.93)),
-    "ambient": 0.13,
+    "mapping": ((0.0, 0.1), (0.12, 0.28), (0.3, 0.54), (0.55, 0.65), (0.8, 0.83), (1.0, 0.97)),
+    "ambient": 0.05,
     "interpolation": "invariant",
 }
 """Assumed: the mapping, the ambient light and the interpolation of a bare mesh.
 
-Measured with the lights and the reflectance of this module: `python -m benchmarks.form` renders 24 meshes
-from three sides, and bounds the share of a picture that is too dark or too bright, and the difference between
-the two sides of an edge. The curve ends below 1, or an evenly lit face would be white all over. It starts
-steep, or the unlit side would be black. With a straight line eight of the meshes break a bound, with gamma
-eleven.
+Measured with the lights, colors and reflectance of this module: `python -m benchmarks.form` renders twenty
+shapes and given meshes from three sides. It bounds the tone, the share of a picture that is too dark or too
+bright, and the difference between the two sides of an edge (docs/FORM.md). The curve ends below 1, or an
+evenly lit face would be white all over. It starts steep, or the unlit side would be black.
+
+Measured and rejected: the key and top lights high, as in most studios. A lying plate is then the brightest of
+its picture, with a tone of 0.85, and the side of a cube that is seen most has 0.2.
 """
 
 
@@ -118,17 +133,33 @@ def created_surface(name: str, object_color: str | Color | None = None) -> Surfa
 
 
 def default_view(coordinates: Floats) -> View:
-    """A view from the front left and slightly above, at the distance that frames the whole object.
+    """A view from the front left and above, at the distance that frames the whole object.
 
-    `coordinates`, here and below, are the coordinates of the object's nodes, (nodes, 3).
+    The flatter the object, the higher is the eye. `coordinates`, here and below, are the coordinates of the
+    object's nodes, (nodes, 3).
     """
-    azimuth, elevation = math.radians(-125.0), math.radians(18.0)
+    azimuth, elevation = math.radians(-125.0), math.radians(_elevation_above(*bounds_of(coordinates)))
     toward_eye = (
         math.cos(elevation) * math.cos(azimuth),
         math.cos(elevation) * math.sin(azimuth),
         math.sin(elevation),
     )
     return framed(View(eye=toward_eye, target=(0.0, 0.0, 0.0)), coordinates)
+
+
+@underflowing
+def _elevation_above(low: Floats, high: Floats) -> float:
+    """The elevation of the eye in degrees, LOWEST_EYE to HIGHEST_EYE, for the bounds of an object.
+
+    It falls with the height of the object over the square root of its ground area, down to LOWEST_EYE for an
+    object of FLAT or more. The ground area of a wall that stands is small, and it is seen from LOWEST_EYE.
+    """
+    if _is_a_point(low, high):
+        return LOWEST_EYE
+    width, depth, height = ((high - low) / (high - low).max()).tolist()
+    ground = FLAT * math.sqrt(width * depth)
+    flatness = max(0.0, 1 - height / ground) if ground else 0.0
+    return LOWEST_EYE + (HIGHEST_EYE - LOWEST_EYE) * flatness
 
 
 @underflowing
@@ -231,8 +262,9 @@ def studio_axes(view: View) -> tuple[Floats, Floats, Floats]:
 def default_lights(coordinates: Floats, view: View) -> tuple[Light, ...]:
     """Four studio lights aimed at the object, with positions relative to the view.
 
-    As seen from the eye, the key light is at the upper left, the fill light at the right, the top light above
-    and the rim light behind, as around a car in a photographer's studio (Paper: "Light Controls").
+    As seen from the eye, the key light is at the left and the fill light at the right, both slightly above
+    the object. The rim light and a faint top light are behind, as around a car in a photographer's studio
+    (Paper: "Light Controls").
     """
     center, radius = sphere_around(*bounds_of(coordinates))
     right, up, away = studio_axes(view)
@@ -246,8 +278,8 @@ def default_lights(coordinates: Floats, view: View) -> tuple[Light, ...]:
         )  # fmt: skip
 
     return (
-        light("key", -3.2, 1.5, 2.7, 1.22, 2.5),
-        light("fill", 1.7, 2.0, 1.9, 0.31, 4.4),
-        light("top", -0.1, 4.0, -0.9, 0.74, 1.5),
-        light("rim", -1.2, 3.7, -2.9, 0.79, 3.0),
+        light("key", -3.1, 0.6, 1.8, 1.44, 0.0),
+        light("fill", 1.7, 0.8, 4.0, 0.57, 1.6),
+        light("top", -0.7, 1.6, -3.2, 0.05, 1.3),
+        light("rim", -1.1, 3.0, -4.0, 0.24, 1.5),
     )

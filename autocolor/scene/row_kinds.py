@@ -7,6 +7,7 @@ another row, `NamedRows`. A column refers to rows of other tables by a `Referenc
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -275,11 +276,17 @@ class References(Referring):
         return tuple(value)
 
 
+PERCENTAGE: Final = re.compile(r"([0-9]{2,3}(?:\.[0-9]{1,2})?) ?%")
+LEAST_PERCENT: Final = 50
+"""Limit: the lowest percentage. A lower percentage would show most of a picture at one level."""
+
+
 @dataclass(frozen=True)
 class RangesByName(Referring):
-    """The word `none`, or ranges [minimum, maximum] by the names of rows; `others` names all further rows.
+    """The word `none`, a percentage, or ranges [minimum, maximum] by the names of rows.
 
-    The value is the word, or pairs (name, range). 0 <= minimum < maximum.
+    The value is the word, the percentage as text such as "99.5 %", or pairs (name, range). The name `others`
+    stands for all further rows. 0 <= minimum < maximum.
     """
 
     none: str
@@ -291,8 +298,8 @@ class RangesByName(Referring):
 
     def rule(self) -> str:
         return (
-            f"must be {self.none!r}, or a table of ranges [minimum, maximum] from 0 to 3.4e38 by the names of"
-            f" {self.table} and {self.others!r}"
+            f"must be {self.none!r}, a percentage such as '99.5 %' from {LEAST_PERCENT} to 100, or a table of"
+            f" ranges [minimum, maximum] from 0 to 3.4e38 by the names of {self.table} and {self.others!r}"
         )
 
     def accepts(self) -> str:
@@ -300,8 +307,12 @@ class RangesByName(Referring):
 
     def accepted(self, value: Any) -> str | tuple[tuple[str, tuple[float, float]], ...]:
         if isinstance(value, str):
-            require(value == self.none)
-            return self.none
+            percent = PERCENTAGE.fullmatch(value)
+            require(value == self.none or percent is not None)
+            if percent is None:
+                return self.none
+            require(LEAST_PERCENT <= float(percent[1]) <= 100)
+            return f"{float(percent[1]):g} %"
         pairs = list(value.items()) if isinstance(value, Mapping) else list(value)
         intensity = Number(at_least=0, at_most=LARGEST_SINGLE).accepted
         ranges = tuple(

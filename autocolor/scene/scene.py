@@ -80,7 +80,10 @@ OBJECT: Final = "object"
 """In `exposure`, the name of the range of the whole object. A surface of this name has no fixed range."""
 
 Exposure = str | tuple[tuple[str, tuple[float, float]], ...]
-"""AUTO, or fixed ranges: pairs (name, (minimum, maximum)), where a name is OBJECT or a surface's."""
+"""AUTO, a percentage, or fixed ranges: pairs (name, (minimum, maximum)); a name is OBJECT or a surface's.
+
+With a percentage such as "99.5 %", the brightest pixels beyond this share do not set a range.
+"""
 
 MOST_PROBLEMS: Final = 100
 """Limit: problems of references in a message, and of lights that follow each other."""
@@ -138,7 +141,8 @@ class Scene(Row):
         Column(
             RangesByName("surfaces", AUTO, OBJECT),
             Tier.LEVELS,
-            "Whether intensity ranges are automatic, or fixed: by surface, and for all other surfaces.",
+            "Whether intensity ranges are automatic, of all pixels or a percentage without the brightest, or"
+            " fixed: by surface, and for all other surfaces.",
             "intensity",
         ),
     ] = AUTO

@@ -15,7 +15,13 @@ import numpy as np
 from autocolor.arrays import Floats, Singles
 from autocolor.errors import UsageError
 from autocolor.lighting.picture import Picture
-from autocolor.mapping.intensity import fractions_by_surface, has_extent, held_name, mapped_ranges
+from autocolor.mapping.intensity import (
+    fractions_by_surface,
+    has_extent,
+    held_exposure,
+    held_name,
+    mapped_ranges,
+)
 from autocolor.scene.columns import bar_within
 from autocolor.scene.curves import CURVES, CurvePoints
 from autocolor.scene.scene import AUTO, OBJECT, Exposure
@@ -409,17 +415,18 @@ def _flip(session: Session, name: str, put: Callable[[Mapping[str, object]], obj
 def flipped(session: Session, name: str) -> Exposure:
     """The exposure with the range of a surface released if it is held, else held as it is mapped now.
 
-    The surfaces that are mapped by the object's held range keep it. Raises UsageError if the surface has no
-    range to hold.
+    The surfaces that are mapped by the object's held range keep it. With a percentage as exposure, all ranges
+    are held, because those of the other surfaces could not follow the picture as before. Raises UsageError if
+    the surface has no range to hold.
     """
     studio, scene = session.studio, session.scene
-    held = {} if isinstance(scene.exposure, str) else dict(scene.exposure)
+    held: dict[str, tuple[float, float]] = {} if isinstance(scene.exposure, str) else dict(scene.exposure)
     if held_name(scene.exposure, name):
         of_object = held.pop(OBJECT, None)
         others = [other for other in studio.level_ranges if other != OBJECT]
         held = {**(dict.fromkeys(others, of_object) if of_object else {}), **held}
         held.pop(name)
-        return tuple(held.items()) or AUTO
+        return tuple(held.items()) or studio.following_exposure
     picture = studio.image.mapped
     number = picture.surfaces.index(name) + 1
     extent = mapped_ranges(picture, scene.scaling, scene.exposure).get(number)
@@ -427,7 +434,11 @@ def flipped(session: Session, name: str) -> Exposure:
         raise UsageError(f"{name} has no range to hold, as no point of it is seen; turn it to the eye first")
     if not has_extent(extent):
         raise UsageError(f"{name} has no range to hold, as all its points have one intensity; light it first")
-    return (*held.items(), (name, (extent.minimum * picture.scale, extent.maximum * picture.scale)))
+    if isinstance(scene.exposure, str) and scene.exposure != AUTO:
+        ranges = held_exposure(picture, scene.scaling, scene.exposure)
+        held = {} if isinstance(ranges, str) else dict(ranges)
+    held[name] = (extent.minimum * picture.scale, extent.maximum * picture.scale)
+    return tuple(held.items())
 
 
 def held_rows(session: Session, put: Callable[[Mapping[str, object]], object]) -> list[Widget]:

@@ -1,4 +1,4 @@
-"""What is measured in a picture of a white object: how dark, how bright, how spread, and its creases."""
+"""Measures of a picture of an object: its tone in color; in white, its darkness, spread and creases."""
 
 from __future__ import annotations
 
@@ -23,6 +23,12 @@ MOST_EXTREME: Final = 0.02
 LEAST_SPREAD: Final = 90
 """The bound of the spread on curved shapes."""
 
+TONES: Final = (0.42, 0.58)
+"""The bounds of the tone of the created view."""
+
+LUMA: Final = (0.299, 0.587, 0.114)
+"""The weights of red, green and blue in the luma of a color (ITU-R BT.601)."""
+
 SEEN: Final = 8
 """Grays that differ by so much on both sides of a crease show it."""
 
@@ -39,7 +45,8 @@ class Measures:
 
     `spread` is the distance of the 5th from the 95th percentile of the gray. `edges_shown` and `pairs_shown`
     are the shares of edges and of pairs of pixels that differ by at least SEEN, and `faintest` the least
-    median difference along an edge; they are None where no crease is seen.
+    median difference along an edge; they are None where no crease is seen. `tone` is the median luma of the
+    object, 0 to 1, in the colors that people get, and None for other views than the created view.
     """
 
     dark: float
@@ -50,6 +57,7 @@ class Measures:
     edges_shown: float | None
     pairs_shown: float | None
     faintest: float | None
+    tone: float | None = None
 
     def broken(self, is_curved: bool) -> tuple[str, ...]:
         """The names of the bounds that are broken."""
@@ -58,6 +66,7 @@ class Measures:
             "bright": self.bright > MOST_EXTREME,
             "spread": is_curved and self.spread < LEAST_SPREAD,
             "edges": self.edges_shown is not None and self.edges_shown < LEAST_SHOWN,
+            "tone": self.tone is not None and not TONES[0] <= self.tone <= TONES[1],
         }
         return tuple(name for name, is_broken in bounds.items() if is_broken)
 
@@ -82,6 +91,11 @@ def measure(gray: Bytes, pixels: Indices, creases: Creases) -> Measures:
     )
 
 
+def tone(colors: Bytes) -> float | None:
+    """The median luma of some colors, (n, 3), from 0 to 1; None without colors."""
+    return float(np.median(colors @ np.array(LUMA))) / 255 if len(colors) else None
+
+
 def edge_medians(differences: Singles, creases: Creases) -> Singles:
     """The median difference along each edge with at least FEWEST_PAIRS pairs."""
     counts = creases.pairs_of_edge
@@ -92,7 +106,10 @@ def edge_medians(differences: Singles, creases: Creases) -> Singles:
 
 
 def worst(every: Sequence[Measures]) -> Measures:
-    """The worst of each measure among several; the mean is that of the means."""
+    """The worst of each measure among several; the mean is that of the means.
+
+    The tone is the first that is not None.
+    """
     return Measures(
         dark=max(each.dark for each in every),
         bright=max(each.bright for each in every),
@@ -102,4 +119,5 @@ def worst(every: Sequence[Measures]) -> Measures:
         edges_shown=min((each.edges_shown for each in every if each.edges_shown is not None), default=None),
         pairs_shown=min((each.pairs_shown for each in every if each.pairs_shown is not None), default=None),
         faintest=min((each.faintest for each in every if each.faintest is not None), default=None),
+        tone=next((each.tone for each in every if each.tone is not None), None),
     )

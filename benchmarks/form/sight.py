@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final, NamedTuple
 
@@ -22,7 +22,7 @@ from autocolor.images import display_image
 from autocolor.rendering import Rendering, rendering
 from autocolor.scene.defaults import default_lights, default_view, framed
 from benchmarks.form.creases import Creases, flat_normals, visible_creases
-from benchmarks.form.measures import Measures, measure
+from benchmarks.form.measures import Measures, measure, tone
 from benchmarks.shapes import shapes
 
 WHITE: Final = (255, 255, 255)
@@ -30,6 +30,9 @@ ASPECT: Final = 4 / 3
 
 SMOOTH: Final = 2.0
 """In degrees: how far the normal at a corner is from that of the polygon, where it is shaded smoothly."""
+
+CREATED: Final = "created"
+"""The view that is created for a mesh, the first that people see."""
 
 TURNED: Final = {"turned": (-5.0, 40.0), "low": (115.0, 5.0)}
 """The azimuth and elevation of the eye in degrees, 120 from each other and from the created view."""
@@ -69,7 +72,14 @@ class Sight:
 
     def measures(self, scene: Scene | None = None) -> Measures:
         """The measures under the lights and the mapping of a scene with this view."""
-        return measure(self.gray(scene), self.rendering.points.pixels, self.creases)
+        found = measure(self.gray(scene), self.rendering.points.pixels, self.creases)
+        return found if self.view_name != CREATED else replace(found, tone=self.tone())
+
+    def tone(self) -> float | None:
+        """The tone in the colors of the subject."""
+        picture = self.rendering.picture
+        colored = self.rendering.scene.replace(surfaces=self.subject.scene.surfaces)
+        return tone(display_image(colored, picture).colors.reshape(-1, 3)[picture.pixels])
 
 
 def subjects(paths: Sequence[Path] = ()) -> Iterator[Subject]:
@@ -108,7 +118,7 @@ def is_curved(mesh: Mesh) -> bool:
 def views(mesh: Mesh) -> dict[str, View]:
     """The created view of a mesh and those from two other sides, each framing it."""
     coordinates = mesh.used_coordinates
-    found = {"created": default_view(coordinates)}
+    found = {CREATED: default_view(coordinates)}
     for name, (azimuth, elevation) in TURNED.items():
         turn, rise = math.radians(azimuth), math.radians(elevation)
         eye = (math.cos(rise) * math.cos(turn), math.cos(rise) * math.sin(turn), math.sin(rise))

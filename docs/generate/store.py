@@ -51,7 +51,7 @@ memory for it; `--write` then saves to its folder, whose comments stay. In Pytho
 - A point, a direction or an axis is three columns: `position_x`, `position_y`, `position_z`.
 - A flap of a light is `flaps_z_minimum`, `flaps_z_maximum` and `flaps_z_on`. Without a flap all three are
   NULL. In an existing flap, a limit that is NULL is infinite.
-- A mapping or an exposure is a word, or JSON: `'linear'` or `'[[0, 0], [1, 1]]'`, `'auto'` or
+- A mapping or an exposure is a word, or JSON: `'linear'` or `'[[0, 0], [1, 1]]'`, `'auto'`, `'99.5 %'` or
   `'{"object": [0, 1.3]}'`. A switch is 0 or 1. Colors are written as in scene files.
 - NULL is absent. A scalar without a row for a node or polygon, or with NULL there, has no value there. Minus
   zero is 0.

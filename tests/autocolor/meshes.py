@@ -16,6 +16,7 @@ STRETCHED: SceneFields = {
     "contrast": "stretch",
     "mapping": "linear",
     "interpolation": "scan line",
+    "exposure": "auto",
 }
 """How intensities are shown where a test rests on it: as in a scene file that does not say it."""
 

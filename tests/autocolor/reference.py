@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from fractions import Fraction
 from typing import NamedTuple
 
 import numpy as np
@@ -195,6 +196,16 @@ def _meetings(
     before = depth > 0
     rows = (number[real][before], depth[before], inside[before])
     return list(zip(*(row.tolist() for row in rows), strict=True))
+
+
+def trimmed(intensities: Sequence[float], percentage: str) -> tuple[float, float]:
+    """The range of intensities without the brightest, at least as wide as from 0.6 to 1 of its maximum."""
+    rising = sorted(intensities)
+    left_out = math.floor(len(rising) * (100 - Fraction(percentage.removesuffix(" %"))) / 100)
+    maximum = rising[len(rising) - 1 - left_out]
+    if maximum - rising[0] <= 2.0**-20 * maximum:
+        maximum = rising[-1]
+    return min(rising[0], 0.6 * maximum), maximum
 
 
 class OnTriangle(NamedTuple):

@@ -233,7 +233,7 @@ def surfaces(name: str) -> st.SearchStrategy[Surface]:
 MAPPINGS: list[Any] = [*CURVES, ((0, 0.1), (0.4, 0.8), (1, 1))]
 
 held_ranges = st.tuples(numbers(0, 2), numbers(0.01, 3)).map(lambda pair: (pair[0], pair[0] + pair[1]))
-exposures = st.just("auto") | st.dictionaries(
+exposures = st.sampled_from(["auto", "99.5 %", "60 %"]) | st.dictionaries(
     st.sampled_from(["body", "glass", "object"]), held_ranges, min_size=1
 )
 

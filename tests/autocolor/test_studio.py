@@ -806,6 +806,33 @@ def test_with_the_exposure_held_less_light_looks_darker_and_the_rest_stays() -> 
     assert studio.scene.exposure == "auto"
 
 
+@pytest.mark.parametrize("before", ["auto", "99.5 %", {"glass": (0.0, 2.0)}])
+def test_a_released_exposure_is_the_exposure_before_it_was_held(before: Any) -> None:
+    studio = Studio(car().replace(exposure=before), Ramtek9300(SMALL))
+    free = studio.scene.exposure
+    words = studio.words.copy()
+    studio.hold_exposure()
+    assert (studio.words == words).all()
+    studio.hold_exposure({**dict(studio.scene.exposure), "object": (0.0, 2.0)})  # type: ignore[arg-type]
+    studio.light("key", intensity=0.3)
+    studio.release_exposure()
+    assert studio.scene.exposure == free
+    studio.hold_exposure()
+    if not isinstance(before, str):
+        # The scene does not have the surface any more.
+        pane = [
+            each.replace(name={"glass": "pane"}.get(each.name, each.name)) for each in studio.scene.surfaces
+        ]
+        parts = [
+            each.replace(surface={"glass": "pane"}.get(each.surface, each.surface))
+            for each in studio.scene.parts
+        ]
+        studio.edit(studio.scene.replace(exposure={"object": (0.0, 2.0)}, surfaces=pane, parts=parts))
+        free = "auto"
+    studio.release_exposure()
+    assert studio.scene.exposure == free
+
+
 def test_an_edit_of_light_or_color_moves_no_range_and_one_of_the_view_does() -> None:
     studio = Studio(car(), Ramtek9300(SMALL))
     ranges = studio.level_ranges

@@ -116,6 +116,18 @@ def test_the_worst_of_two_is_the_worst_of_each_measure() -> None:
     assert both.broken(is_curved=False) == ("dark", "bright", "edges")
 
 
+def test_the_tone_is_the_median_luma_of_the_colors_that_people_get(cube: Sight) -> None:
+    scene = cube.subject.scene
+    colors = autocolor.image(scene, autocolor.render(scene, LINES, 80)).reshape(-1, 3)
+    lumas = colors[cube.rendering.picture.pixels] @ (0.299, 0.587, 0.114)
+    found = cube.measures()
+    assert found.tone == pytest.approx(np.median(lumas) / 255)
+    assert "tone" not in dataclasses.replace(found, tone=0.42).broken(is_curved=False)
+    assert "tone" in dataclasses.replace(found, tone=0.41).broken(is_curved=False)
+    assert "tone" in dataclasses.replace(found, tone=0.59).broken(is_curved=False)
+    assert worst([dataclasses.replace(found, tone=None), found]).tone == found.tone
+
+
 def test_another_light_keeps_the_visible_points(cube: Sight, monkeypatch: pytest.MonkeyPatch) -> None:
     scene = cube.rendering.scene
     other = scene.with_light("key", position=(3, 3, 3), intensity=2.0).replace(mapping="gamma")

@@ -15,11 +15,12 @@ from autocolor.arrays import Bytes, Words
 from autocolor.checks import Color
 from autocolor.mapping.intensity import held_name
 from autocolor.mapping.legend import CORNERS, GROUND, INK, Corner, Legend, legend
+from autocolor.scene.defaults import TRIMMED
 from autocolor.scene.kinds import in_digits
 from autocolor.scene.scene import AUTO
 from autocolor.scene.surfaces import Paint
 from autocolor.screens.input import MIDDLE, Gesture, turn_between, wheel_ratio
-from autocolor.screens.picture.picture_edits import PictureEdits
+from autocolor.screens.picture.picture_edits import ALL_HELD, PictureEdits
 from autocolor.screens.screen import Cached, Sample, Screen
 from autocolor.screens.session import Session
 from autocolor.widgets.items import Area, Item, filled, text
@@ -190,22 +191,22 @@ def paint_rows(session: Session, paint: Paint) -> list[Widget]:
 
 
 HELD: Final = "held"
-ALL_HELD: Final = "all held"
 MIXED: Final = "mixed"
-"""How many of the ranges of surfaces are held."""
+"""Whether some of the ranges of surfaces are held."""
 
 
 def exposure_row(edits: PictureEdits) -> Choice:
     """The row that says whether the ranges of the surfaces are held, and holds or releases all of them."""
-    scene = edits.session.scene
-    held = [bool(held_name(scene.exposure, name)) for name in edits.session.studio.level_ranges]
-    present = AUTO if scene.exposure == AUTO else ALL_HELD if all(held) else MIXED
+    exposure = edits.session.scene.exposure
+    words = [exposure] if isinstance(exposure, str) else []
+    held = [bool(held_name(exposure, name)) for name in edits.session.studio.level_ranges]
     return Choice(
         "exposure",
-        "Auto: ranges of intensities follow the picture. Held: ranges stay, so that less light is darker.",
-        names=(ALL_HELD, AUTO),
-        present=present,
-        choose=lambda name: edits.release_exposure() if name == AUTO else edits.hold_exposure(),
+        "Auto: ranges of intensities follow the picture. Held: ranges stay, so that less light is darker."
+        " A percentage: the brightest pixels do not set a range.",
+        names=tuple(dict.fromkeys((ALL_HELD, TRIMMED, AUTO, *words))),
+        present=next(iter(words), ALL_HELD if all(held) else MIXED),
+        choose=edits.choose_exposure,
     )
 
 

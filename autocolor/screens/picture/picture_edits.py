@@ -11,8 +11,9 @@ import numpy as np
 from autocolor.arrays import Floats
 from autocolor.checks import Vector
 from autocolor.errors import UsageError
+from autocolor.mapping.intensity import is_held
 from autocolor.scene.defaults import OBJECT_COLORS, default_view, framed, object_bounds, stage_top
-from autocolor.scene.scene import AUTO, Exposure, Scene
+from autocolor.scene.scene import Scene
 from autocolor.scene.view import View
 from autocolor.screens.screen import Cached
 from autocolor.screens.session import Session
@@ -28,8 +29,8 @@ def color_after(present: str, own: str, step: int) -> str:
     The colors are OBJECT_COLORS, after the surface's own color if that is not among them. The first color
     follows a present color that is not among them.
 
-    >>> color_after("#ff0000", "#ff0000", 1), color_after("#b3202c", "#ff0000", -1)
-    ('#b3202c', '#ff0000')
+    >>> color_after("#ff0000", "#ff0000", 1), color_after("#f07f74", "#ff0000", -1)
+    ('#f07f74', '#ff0000')
     """
     colors = OBJECT_COLORS if own in OBJECT_COLORS else (own, *OBJECT_COLORS)
     place = colors.index(present) + step if present in colors else 0
@@ -188,13 +189,15 @@ def _vector(values: Floats | Vector) -> Vector:
     return (float(values[0]), float(values[1]), float(values[2]))
 
 
+ALL_HELD: Final = "all held"
+"""The choice of an exposure that holds the ranges of all surfaces."""
+
+
 class PictureEdits:
     """The edits of the picture of a session, one method for each key."""
 
     def __init__(self, session: Session) -> None:
         self.session = session
-        self._exposures: tuple[Exposure, Exposure] | None = None
-        """The exposure before `switch_exposure` held it, and the exposure that holds."""
         self._own_colors: dict[str, str] = {}
         """The object colors of surfaces before a key changed them, by the surface's name."""
         self._top: Cached[float] = Cached()
@@ -330,33 +333,31 @@ class PictureEdits:
         self.session.edit(self.session.scene.with_light(light.name, on=not light.on))
         self.session.tell(f"{titled('light', light.name)} {'off' if light.on else 'on'}")
 
-    def hold_exposure(self) -> None:
-        """Hold the intensity ranges of all surfaces as they are in the picture."""
-        self.session.studio.hold_exposure()
-        if self.session.scene.exposure == AUTO:
+    def choose_exposure(self, exposure: str) -> None:
+        """Hold the intensity ranges of all surfaces as they are in the picture, or let them follow it.
+
+        `exposure` is ALL_HELD, or a word of the exposure of a scene.
+        """
+        session = self.session
+        if exposure != ALL_HELD:
+            session.edit(session.scene.replace(exposure=exposure))
+            session.tell("the exposure follows the picture")
+            return
+        session.studio.hold_exposure()
+        if not is_held(session.scene.exposure):
             raise UsageError(
                 "to hold the exposure, a surface must have different intensities, and none has;"
                 " switch a light on"
             )
-        self.session.tell("exposure held: less light is darker")
-
-    def release_exposure(self) -> None:
-        """Let the intensity ranges of all surfaces follow the picture."""
-        self.session.edit(self.session.scene.replace(exposure=AUTO))
-        self.session.tell("the exposure follows the picture")
+        session.tell("exposure held: less light is darker")
 
     def switch_exposure(self) -> None:
-        """Hold the intensity ranges of the picture; if this method held them, restore the exposure before."""
-        present = self.session.scene.exposure
-        if self._exposures is not None and present == self._exposures[1]:
-            self.session.edit(self.session.scene.replace(exposure=self._exposures[0]))
+        """Hold the intensity ranges of the picture; if they are held, return to the exposure before."""
+        if is_held(self.session.scene.exposure):
+            self.session.studio.release_exposure()
             self.session.tell("exposure released")
-            return
-        self.session.studio.hold_exposure()
-        held = self.session.scene.exposure
-        if held != present:
-            self._exposures = present, held
-        self.session.tell("exposure held" if held != present else "there is nothing more to hold")
+        else:
+            self.choose_exposure(ALL_HELD)
 
     def choose_surface(self, step: int) -> None:
         """Select another surface in use for the color keys, `step` positions further."""

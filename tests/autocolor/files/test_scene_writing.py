@@ -436,7 +436,7 @@ def test_fields_at_their_defaults_are_left_out(tmp_path: Path) -> None:
         "[view]\neye = [0.0, -5.0, 0.0]\ndirection = [0.0, 1.0, 0.0]\n\n"
         '[[mesh]]\nfile = "mesh.obj"\n\n'
         '[parts.cube]\nsurface = "cube"\n\n'
-        '[surfaces.cube]\nobject_color = "#b3202c"\nblend = 0.88\nlight_percentage = 60.0\n\n'
+        '[surfaces.cube]\nobject_color = "#f07f74"\nblend = 0.88\nlight_percentage = 60.0\n\n'
         '[[lights]]\nname = "sun"\nposition = [1.0, 2.0, 3.0]\n'
     )
 
@@ -446,7 +446,8 @@ def test_what_was_created_is_written_out(tmp_path: Path) -> None:
     text = (tmp_path / "scene.toml").read_text()
     assert text.count("[[lights]]") == 4
     assert "[view]\neye" in text
-    assert "ambient = 0.13\n" in text
+    assert "ambient = 0.05\n" in text
+    assert 'exposure = "99.5 %"\n' in text
 
 
 def test_a_complete_file_has_all_keys_and_tells_what_was_written(car: Path) -> None:

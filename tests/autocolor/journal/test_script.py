@@ -151,7 +151,7 @@ def test_each_kind_of_step_has_the_narrowest_line() -> None:
         "studio.edit(studio.scene.with_part('pane', stage=True))",
         "studio.edit(studio.scene.replace(ambient=0.5, background='#000080'))",
         "studio.hold_exposure({'object': [0.1, 1.5]})",
-        "studio.release_exposure()",
+        "studio.edit(studio.scene.replace(exposure='auto'))",
     ]
 
 

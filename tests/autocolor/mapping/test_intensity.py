@@ -16,6 +16,7 @@ from autocolor.images import display_image
 from autocolor.lighting.picture import IntensityRange
 from autocolor.mapping.intensity import (
     dithered_levels,
+    following_ranges,
     fraction_of,
     fractions_by_surface,
     has_extent,
@@ -28,7 +29,7 @@ from autocolor.mapping.intensity import (
 from autocolor.mapping.ranges import level_ranges
 from autocolor.visibility.visible_points import SurfaceSlice
 from tests.autocolor.meshes import wall_scene
-from tests.autocolor.reference import level_of
+from tests.autocolor.reference import level_of, trimmed
 from tests.autocolor.strategies import MAPPINGS, scenes
 
 
@@ -258,7 +259,7 @@ def test_every_mapped_range_is_held_or_comes_from_the_picture(scene: Scene) -> N
     picture = render(scene, 9, 12)
     ranges = mapped_ranges(picture, scene.scaling, scene.exposure)
     held = {} if isinstance(scene.exposure, str) else dict(scene.exposure)
-    found = picture.relative_ranges
+    found = following_ranges(picture, "surface", scene.exposure)
 
     def in_scale(name: str) -> IntensityRange:
         low, high = held[name]
@@ -310,3 +311,63 @@ def test_a_held_range_stays_held_unchanged(scene: Scene) -> None:
         held = dict(scene.exposure)
         assert not isinstance(exposure, str)
         assert {name: limits for name, limits in exposure if name in held} == held
+
+
+values = st.lists(st.floats(0, 4, width=32), min_size=1, max_size=40)
+percentages = st.sampled_from(["50 %", "60 %", "90 %", "97.5 %", "99.5 %", "100 %"])
+
+
+@given(values, st.integers(1, 30), st.floats(0, 4, width=32), percentages)
+def test_a_trimmed_range_leaves_out_the_brightest_as_sorting_all_intensities_would(
+    some: list[float], times: int, plateau: float, percentage: str
+) -> None:
+    # Many equal intensities around others, so that a sample often misses the brightest.
+    intensities = [*some, *[plateau] * (40 * times), *some]
+    picture = picture_of(intensities)
+    expected = trimmed(intensities, percentage)
+    assert tuple(following_ranges(picture, "object", percentage)[0]) == pytest.approx(expected, rel=1e-7)
+
+
+def test_a_surface_is_trimmed_by_its_own_intensities_or_by_those_of_the_object() -> None:
+    dark, bright = [*np.linspace(0.1, 0.5, 9).tolist(), 1.0], [*np.linspace(1, 8, 9).tolist(), 9.0]
+    picture = picture_of(dark, bright)
+    of_surfaces = following_ranges(picture, "surface", "90 %")
+    assert of_surfaces[1].maximum == pytest.approx(0.5)
+    assert of_surfaces[2].maximum == pytest.approx(8)
+    assert {*following_ranges(picture, "object", "90 %")} == {0}
+    assert following_ranges(picture, "object", "90 %")[0].maximum == pytest.approx(7.125)
+
+
+def test_specks_are_at_the_highest_level_and_leave_all_other_words() -> None:
+    body = np.linspace(0.2, 1, 1000).tolist()
+    clean, specked = picture_of(body), picture_of([*body, 30.0, 40.0, 50.0])
+    words = [
+        words_of(each, {"a": LevelRange(1, 100)}, "object", exposure="99.5 %").ravel()
+        for each in (clean, specked)
+    ]
+    assert words[1][1001:-1].tolist() == [100] * 3
+    assert np.abs(words[0][1:1001].astype(int) - words[1][1:1001]).max() <= 1
+    automatic = words_of(specked, {"a": LevelRange(1, 100)}, "object").ravel()
+    assert automatic[1:1001].max() < 4
+
+
+def test_a_light_on_less_than_the_pixels_left_out_is_seen() -> None:
+    picture = picture_of([0.1] * 999 + [0.4])
+    words = words_of(picture, {"a": LevelRange(1, 100)}, "object", exposure="99.5 %").ravel()
+    assert (words[1], words[1000]) == (1, 100)
+
+
+def test_a_narrow_range_is_trimmed_continuously_to_two_fifths_of_its_maximum() -> None:
+    for least in (0.0, 0.3, 0.59, 0.61, 0.99, 1.0):
+        picture = picture_of([least, 1.0])
+        assert tuple(following_ranges(picture, "object", "99.5 %")[0]) == pytest.approx((min(least, 0.6), 1))
+
+
+@given(scenes(), st.sampled_from(["60 %", "99.5 %"]), st.sampled_from([0.125, 0.5, 2.0, 64.0]))
+def test_scaling_all_light_leaves_every_word(scene: Scene, percentage: str, factor: float) -> None:
+    lights = [light.replace(intensity=factor * light.intensity) for light in scene.lights]
+    scene = scene.replace(exposure=percentage, scalar=None)
+    scaled = scene.replace(lights=lights, ambient=factor * scene.ambient)
+    one, other = (display_image(each, render(each, 9, 12)) for each in (scene, scaled))
+    assert other.words.tolist() == one.words.tolist()
+    assert other.entries.tolist() == one.entries.tolist()

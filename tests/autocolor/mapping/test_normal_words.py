@@ -30,7 +30,7 @@ from autocolor.mapping.normal_words import (
     words_of_normals,
 )
 from autocolor.scene.columns import fields_of
-from autocolor.scene.scene import OBJECT
+from autocolor.scene.scene import AUTO, OBJECT, Exposure
 from autocolor.visibility.visible_points import SurfaceSlice
 from tests.autocolor import reference
 from tests.autocolor.meshes import sphere
@@ -73,6 +73,12 @@ def reflected(scene: Scene, normal: Vector, surface: Surface) -> float:
     return total
 
 
+def range_of(intensities: list[float], exposure: Exposure) -> tuple[float, float]:
+    if isinstance(exposure, str) and exposure != AUTO:
+        return reference.trimmed(intensities, exposure)
+    return min(intensities), max(intensities)
+
+
 def fraction(scene: Scene, intensity: float, low: float, high: float) -> float:
     if high - low <= 2.0**-20 * high:
         return 0.5
@@ -86,16 +92,21 @@ def entries(image: NormalImage) -> dict[int, tuple[int, ...]]:
     normals, samples = (in_world(scene, each) for each in (image.normals.normals, image.normals.samples))
     found = {}
     intensity_of = {}
+    counts = image.normals.sample_counts.tolist()
     for each in image.normals.sample_slices:
         surface = scene.surfaces[each.surface_number - 1]
-        intensity_of[surface.name] = [reflected(scene, normal, surface) for normal in samples[each.pixels]]
+        intensity_of[surface.name] = [
+            reflected(scene, normal, surface)
+            for normal, count in zip(samples[each.pixels], counts[each.pixels], strict=True)
+            for _ in range(count)
+        ]
     everything = [each for values in intensity_of.values() for each in values]
     held = {} if isinstance(scene.exposure, str) else dict(scene.exposure)
-    whole = held.get(OBJECT, (min(everything, default=0), max(everything, default=0)))
+    whole = held.get(OBJECT, range_of(everything or [0], scene.exposure))
     for each in image.normals.slices:
         surface = scene.surfaces[each.surface_number - 1]
         values = intensity_of[surface.name]
-        low, high = min(values), max(values)
+        low, high = range_of(values, scene.exposure)
         if scene.scaling == "object" or OBJECT in held:
             low, high = whole
         low, high = held.get(surface.name, (low, high))

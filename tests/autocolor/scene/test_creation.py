@@ -10,7 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor import InputError, Light, Mesh, Part, Scene, Surface, UsageError, View, scene_of
+from autocolor import InputError, Light, Mesh, Part, Scene, Surface, UsageError, View, render, scene_of
+from autocolor.images import display_image
 from autocolor.scene.changes import PartChanges
 from autocolor.scene.creation import DISTANCE, SHARED, TURNS, new_light_of
 from autocolor.scene.defaults import MAPPING_FIELDS, created_surface
@@ -27,6 +28,10 @@ def car(names: Sequence[str] = PARTS) -> Mesh:
     return Mesh.joined(
         [grid(1, 1, (0, place, 0), (1, 0, 0), (0, 0, 1), name) for place, name in enumerate(names)]
     )
+
+
+def shifted(mesh: Mesh, x: float) -> Mesh:
+    return dataclasses.replace(mesh, coordinates=mesh.coordinates + np.array((x, 0, 0)))
 
 
 def many_parts(count: int) -> Mesh:
@@ -428,3 +433,33 @@ def test_a_light_for_a_view_from_straight_above_is_there_too() -> None:
     light = new_light_of(scene)
     assert light.name == "light 2"
     assert light.position[2] > 0.5
+
+
+def test_what_is_seen_through_a_crack_is_bright_and_leaves_the_rest_as_bright_as_without_it() -> None:
+    cubes = Mesh.joined([shifted(cube(), -1.01), shifted(cube(), 0.01)])
+    view = View(eye=(0, -5, 0.8), target=(0, 0, 0.5))
+    closed = scene_of(cubes, view=view, mapping="linear")
+    # A plate behind the crack mirrors the key light to the eye.
+    middle = np.array((0.0, 0.5, 0.5))
+    to_key, to_eye = (np.array(each) - middle for each in (closed.lights[0].position, view.eye))
+    normal = to_key / np.linalg.norm(to_key) + to_eye / np.linalg.norm(to_eye)
+    across = np.cross(normal, (0, 0, 1))
+    up = np.cross(across, normal)
+    across, up = across / np.linalg.norm(across), 0.4 * up / np.linalg.norm(up)
+    plate = grid(1, 1, tuple(middle - (across + up) / 2), tuple(across), tuple(up), "plate")
+    cracked = scene_of(Mesh.joined([cubes, plate]), view=view, mapping="linear")
+    assert cracked.lights == closed.lights
+
+    picture = render(cracked)
+    specks = picture.part_number == 1 + picture.parts.index("plate")
+    outside = (picture.part_number > 0) & ~specks
+    assert 100 < np.count_nonzero(specks) < 0.005 * np.count_nonzero(picture.part_number)
+    assert picture.intensity[specks].min() > 1.5 * picture.intensity[outside].max()
+
+    def median(scene: Scene) -> float:
+        return float(np.median(display_image(scene, render(scene)).words[outside]))
+
+    words = display_image(cracked, picture).words
+    assert (words[specks] == words.max()).all()
+    assert median(cracked) > 0.9 * median(closed)
+    assert median(cracked.replace(exposure="auto")) < 0.7 * median(closed)

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 
 import numpy as np
 import pytest
@@ -93,30 +94,30 @@ VIEWS: list[tuple[Vector, Vector, list[tuple[str, float, Vector]]]] = [
         (1, 2, -1),
         (-0.548, -2.596, 1.674),
         [
-            ("key", 1.22, (-3.662, -0.627, 1.968)),
-            ("fill", 0.31, (1.769, -2.318, 2.541)),
-            ("top", 0.74, (1.359, 1.473, 4.833)),
-            ("rim", 0.79, (1.256, 4.086, 4.489)),
+            ("key", 1.44, (-3.099, 0.244, 0.937)),
+            ("fill", 0.57, (0.693, -4.47, 1.167)),
+            ("top", 0.05, (1.922, 4.138, 2.083)),
+            ("rim", 0.24, (1.922, 5.162, 3.687)),
         ],
     ),
     (
         (0, 0, -1),
         (1.0, 0.5, 3.755),
         [
-            ("key", 1.22, (-2.666, 2.218, 3.343)),
-            ("fill", 0.31, (2.948, 2.791, 2.427)),
-            ("top", 0.74, (0.885, 5.083, -0.781)),
-            ("rim", 0.79, (-0.375, 4.739, -3.072)),
+            ("key", 1.44, (-2.551, 1.187, 2.312)),
+            ("fill", 0.57, (2.948, 1.417, 4.833)),
+            ("top", 0.05, (0.198, 2.333, -3.416)),
+            ("rim", 0.24, (-0.26, 3.937, -4.333)),
         ],
     ),
     (
         (0.1, 0.05, 1),
         (0.489, 0.26, -4.789),
         [
-            ("key", 1.22, (-2.474, 2.862, -2.633)),
-            ("fill", 0.31, (-0.382, -2.368, -1.659)),
-            ("top", 0.74, (-3.022, -1.383, 1.784)),
-            ("rim", 0.79, (-3.053, 0.011, 4.023)),
+            ("key", 1.44, (-1.404, 3.269, -1.723)),
+            ("fill", 0.57, (0.601, -1.877, -4.202)),
+            ("top", 0.05, (-0.624, 0.585, 4.097)),
+            ("rim", 0.24, (-2.163, 0.327, 5.186)),
         ],
     ),
 ]
@@ -261,3 +262,32 @@ def test_the_bounds_of_an_object_without_stage_are_found_once() -> None:
 def test_a_scene_of_an_object_without_extent_worth_a_number_is_created(size: float) -> None:
     scene = scene_of(Mesh(np.eye(3) * size, np.array([[0, 1, 2]])))
     assert np.isfinite(scene.view.eye).all()
+
+
+def elevation_above(width: float, depth: float, height: float) -> float:
+    """The elevation in degrees of the eye of a new view of a box."""
+    box = np.array([(x, y, z) for x in (0, width) for y in (0, depth) for z in (0, height)], np.float64)
+    return math.degrees(math.asin(-default_view(box).axes[2][2]))
+
+
+@pytest.mark.parametrize(
+    ("sides", "degrees"),
+    [
+        ((1, 1, 1), 18),
+        ((1, 1, 0.5), 18),
+        ((1, 1, 0), 40),
+        ((4, 1, 0.5), 29),
+        ((9, 0, 3), 18),
+        ((2, 0, 0), 18),
+    ],
+)
+def test_the_eye_is_higher_above_flat_and_lying_objects(sides: tuple[float, ...], degrees: float) -> None:
+    for size in (1e-9, 1.0, 1e9):
+        assert elevation_above(*(size * side for side in sides)) == pytest.approx(degrees)
+
+
+def test_a_slightly_flatter_object_is_seen_from_slightly_higher() -> None:
+    heights = np.linspace(0, 1, 101)
+    elevations = [elevation_above(1, 1, height) for height in heights]
+    assert (np.diff(elevations) <= 1e-9).all()
+    assert np.abs(np.diff(elevations)).max() < 0.5

@@ -126,6 +126,20 @@ def test_every_row_is_changed_by_its_name() -> None:
 
 
 @pytest.mark.parametrize(
+    ("written", "percentage"),
+    [
+        ("99.5 %", "99.5 %"),
+        ("99.50%", "99.5 %"),
+        ("050 %", "50 %"),
+        ("100.00 %", "100 %"),
+        ("97.25%", "97.25 %"),
+    ],
+)
+def test_a_percentage_is_written_in_one_way(written: str, percentage: str) -> None:
+    assert car_scene().replace(exposure=written).exposure == percentage
+
+
+@pytest.mark.parametrize(
     ("ask", "sentence"),
     [
         (lambda scene: scene.light("keys"), "there is no light 'keys'; did you mean 'key'?"),
@@ -148,6 +162,25 @@ def test_an_unknown_name_is_refused_with_the_nearest_right_one(ask: Any, sentenc
 @pytest.mark.parametrize(
     ("fields", "sentence"),
     [
+        *(
+            (
+                {"exposure": percentage},
+                "exposure must be 'auto', a percentage such as '99.5 %' from 50 to 100, or a table of ranges"
+                " [minimum, maximum] from 0 to 3.4e38 by the names of surfaces and 'object',"
+                f" not {percentage!r}",
+            )
+            for percentage in (
+                "49 %",
+                "100.5 %",
+                "99.555 %",
+                "99.5",
+                "99,5 %",
+                "-60 %",
+                "5e1 %",
+                "99  %",
+                "none",
+            )
+        ),
         ({"ambient": -0.1}, "ambient must be a finite number of at least 0, not -0.1"),
         ({"scaling": "whole"}, "scaling must be 'surface' or 'object', not 'whole'"),
         ({"scaling": ["object"]}, "scaling must be 'surface' or 'object', not ['object']"),

@@ -213,8 +213,10 @@ def test_the_exposure_is_held_and_released_and_the_row_shows_which(hand: Hand) -
     hand.pull("ambient", 0.2, 0.0)
     assert not (hand.viewer.studio.words > words).any()
     hand.pick("exposure")
-    assert scene_of(hand).exposure == "auto"
+    assert scene_of(hand).exposure == hand.widget("exposure").present == "99.5 %"  # type: ignore[attr-defined]
     assert told(hand) == ("the exposure follows the picture", False)
+    hand.pick("exposure")
+    assert scene_of(hand).exposure == "auto"
 
 
 def test_a_picture_without_light_has_no_exposure_to_hold(tmp_path: Path) -> None:
@@ -473,6 +475,20 @@ def test_a_row_for_each_surface_says_whether_its_range_is_held_and_flips_it(tmp_
     assert hand.viewer.session.surface_name == "high"
 
 
+def test_holding_one_surface_of_a_percentage_changes_no_word_and_its_release_returns_to_it(
+    tmp_path: Path,
+) -> None:
+    for scaling in ("surface", "object"):
+        hand = hand_at(tmp_path, "mapping", boxes().replace(exposure="90 %", scaling=scaling))
+        words = hand.viewer.studio.words
+        hand.pick("low", 0.95)
+        assert {*dict(scene_of(hand).exposure)} >= {"low", "object"}  # type: ignore[arg-type]
+        assert np.array_equal(hand.viewer.studio.words, words)
+        hand.pick("low", 0.95)
+        hand.pick("high", 0.95)
+        assert scene_of(hand).exposure == "90 %"
+
+
 def test_a_surface_that_leaves_the_range_of_the_object_leaves_it_to_the_others(tmp_path: Path) -> None:
     hand = hand_at(tmp_path, "mapping", boxes().replace(exposure={"object": (0, 2)}))
     hand.pick("low", 0.95)
@@ -501,7 +517,7 @@ def test_many_surfaces_have_no_rows(tmp_path: Path) -> None:
     hand = hand_at(tmp_path, "mapping", strips(11))
     assert "strip 0" not in labels_of(hand)
     assert "strip 0" in labels_of(hand_at(tmp_path, "mapping", strips(10)))
-    assert hand.widget("exposure").present == "auto"  # type: ignore[attr-defined]
+    assert hand.widget("exposure").present == "99.5 %"  # type: ignore[attr-defined]
 
 
 def strips(count: int) -> Scene:

@@ -143,7 +143,7 @@ def test_keys_do_what_the_help_page_says(viewer: Viewer) -> None:
 def test_the_exposure_is_held_and_released(viewer: Viewer) -> None:
     words = viewer.studio.words.copy()
     viewer.on_key("e", typed="e")
-    assert viewer.message == "exposure held"
+    assert viewer.message == "exposure held: less light is darker"
     assert dict(viewer.studio.scene.exposure)["object"] == pytest.approx(  # type: ignore[arg-type]
         tuple(viewer.studio.picture.ranges.whole)
     )
@@ -395,7 +395,7 @@ def test_the_caption_marks_unsaved_changes(viewer: Viewer) -> None:
     press_c(viewer)
     assert viewer.caption.startswith("autocolor - box* - [low]")
     control(viewer, "z")
-    assert viewer.caption == "autocolor - box - [low] - undone: low: object color #b3202c"
+    assert viewer.caption == "autocolor - box - [low] - undone: low: object color #f07f74"
 
 
 def test_saving_names_its_files_and_overwrites_none(viewer: Viewer, tmp_path: Path) -> None:
