@@ -42,12 +42,12 @@ POINTS_AT_ONCE: Final = 1 << 14
 """Few enough that numpy multiplies in a single thread. Waiting for threads is slow on shared processors."""
 
 OBJECT_COLORS: Final = (
-    "#f07f74", "#7fa9ea", "#e2c24e", "#74c083", "#c091dc", "#f2a15e",
-    "#62c6c4", "#f392b8", "#b9c45a", "#9ea4f2", "#cf9b76", "#b7c1ca",
+    "#f4a39b", "#9ebeef", "#e2c24e", "#98d0a3", "#cda8e3", "#f3ab70",
+    "#83d2d0", "#f49cbe", "#bec866", "#afb4f4", "#dab195", "#b7c1ca",
 )  # fmt: skip
 """Assumed: distinguishable object colors, assigned to the surfaces in turn.
 
-They are light, with a luma of 0.63 to 0.75, because shading darkens them."""
+They are light, with a luma of 0.73 to 0.75, because shading darkens them."""
 
 CREATED_REFLECTANCE: Final = Reflectance(0.7, 0.63, exponent=32.0)
 """Assumed: the reflectance of the surfaces of a bare mesh."""

@@ -173,7 +173,7 @@ def test_the_window_shows_the_field_after_every_key(session: Session, tmp_path: 
         session.wait_for_the_field()
     session.press("ctrl+y", "y", control=True)
     session.wait_for_the_field()
-    assert session.caption() == "autocolor - box* - [front] - redone: front: object color #7fa9ea"
+    assert session.caption() == "autocolor - box* - [front] - redone: front: object color #9ebeef"
 
     session.press("F12")
     session.wait_for(lambda: "saved" in session.caption())

@@ -29,8 +29,8 @@ def color_after(present: str, own: str, step: int) -> str:
     The colors are OBJECT_COLORS, after the surface's own color if that is not among them. The first color
     follows a present color that is not among them.
 
-    >>> color_after("#ff0000", "#ff0000", 1), color_after("#f07f74", "#ff0000", -1)
-    ('#f07f74', '#ff0000')
+    >>> color_after("#ff0000", "#ff0000", 1), color_after("#f4a39b", "#ff0000", -1)
+    ('#f4a39b', '#ff0000')
     """
     colors = OBJECT_COLORS if own in OBJECT_COLORS else (own, *OBJECT_COLORS)
     place = colors.index(present) + step if present in colors else 0

@@ -436,7 +436,7 @@ def test_fields_at_their_defaults_are_left_out(tmp_path: Path) -> None:
         "[view]\neye = [0.0, -5.0, 0.0]\ndirection = [0.0, 1.0, 0.0]\n\n"
         '[[mesh]]\nfile = "mesh.obj"\n\n'
         '[parts.cube]\nsurface = "cube"\n\n'
-        '[surfaces.cube]\nobject_color = "#f07f74"\nblend = 0.88\nlight_percentage = 60.0\n\n'
+        '[surfaces.cube]\nobject_color = "#f4a39b"\nblend = 0.88\nlight_percentage = 60.0\n\n'
         '[[lights]]\nname = "sun"\nposition = [1.0, 2.0, 3.0]\n'
     )
 

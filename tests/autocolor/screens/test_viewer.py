@@ -395,7 +395,7 @@ def test_the_caption_marks_unsaved_changes(viewer: Viewer) -> None:
     press_c(viewer)
     assert viewer.caption.startswith("autocolor - box* - [low]")
     control(viewer, "z")
-    assert viewer.caption == "autocolor - box - [low] - undone: low: object color #f07f74"
+    assert viewer.caption == "autocolor - box - [low] - undone: low: object color #f4a39b"
 
 
 def test_saving_names_its_files_and_overwrites_none(viewer: Viewer, tmp_path: Path) -> None:
