@@ -212,7 +212,7 @@ def test_of_a_scene_its_surfaces_lights_view_and_settings_are_told() -> None:
         "4 lights ('key', 'fill', 'top', 'rim')",
         "the view",
     ]
-    assert told[3] == "6 settings ('ambient', 'scaling', 'mapping', 'contrast', 'exposure' and 1 more)"
+    assert told[3] == "7 settings ('ambient', 'scaling', 'mapping', 'contrast', 'exposure' and 2 more)"
 
 
 def test_what_materials_do_not_hold_of_surfaces_is_told() -> None:
