@@ -7,7 +7,7 @@ from typing import Any
 import autocolor
 from scenes.figures import Sheet, open_studio, read_scene
 
-CREASE = 0.63
+CREASE = 0.555
 """The height in meters of the line that runs along the side."""
 
 ROOF = 1.0

@@ -6,10 +6,10 @@ from typing import Any, Final
 
 from scenes.figures import Sheet, fine_display, open_studio, read_scene
 
-COLORS: Final[dict[str, Any]] = {"object_color": "#80081a", "light_color": "#ff9480"}
+COLORS: Final[dict[str, Any]] = {"object_color": "#a80c24", "light_color": "#ff9480"}
 """The same two colors in all three: a deep red, and the copper of the flakes that catch the light."""
 
-METALLIC: Final = ((0.0, 0.0), (0.25, 0.15), (0.5, 0.36), (0.75, 0.65), (1.0, 1.0))
+METALLIC: Final = ((0.0, 0.0), (0.25, 0.19), (0.5, 0.44), (0.75, 0.76), (1.0, 1.0))
 """Metallic paint is dark away from the highlight: a curve that lowers the middle of the range."""
 
 PANELS = (

@@ -54,9 +54,10 @@ def main() -> None:
     studio = open_studio(coupe.replace(view=view, interpolation="invariant"))
     sheet = Sheet("curvature")
     sheet.add(studio, "A. The Coupe", "a")
-    assert not isinstance(coupe.exposure, str)
-    exposure = {**dict(coupe.exposure), "body": (0.0, BRIGHTEST)}
-    studio.edit(studio.scene.replace(exposure=exposure))
+    studio.hold_exposure()
+    held = studio.scene.exposure
+    assert not isinstance(held, str)
+    studio.edit(studio.scene.replace(exposure={**dict(held), "body": (0.0, BRIGHTEST)}))
     studio.scalar(**MEAN)
     sheet.add(studio, "B. Mean Curvature in 1/m", "b")
     studio.scalar(**ZEBRA)

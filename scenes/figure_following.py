@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import Any
 
 import autocolor
+from scenes.figure_07 import SHOWN
 from scenes.figures import Sheet, open_scene, open_studio, read_scene
 
 OTHER_VIEW: dict[str, Any] = {"eye": (-2.9, -9.2, 3.4), "target": (-0.1, 0.0, 0.45)}
@@ -18,8 +19,6 @@ LAMP = (-3.4, -2.4, 1.6)
 
 DOWN_TO = (2.2, -0.8, 0.0)
 """A point of the plane beside the pyramid, to which its lamp shines downward."""
-
-SHOWN: dict[str, Any] = {"ambient": 0.05, "mapping": "gamma"}
 
 
 def main() -> None:

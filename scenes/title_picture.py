@@ -21,7 +21,7 @@ def main() -> None:
     display = Ramtek9300()
     coupe = open_studio(read_scene("coupe"), display)
     red = display.field()
-    coupe.recolor("body", object_color="#2348c8")
+    coupe.recolor("body", object_color="#2348c8", blend=0.6)
     save_png(np.hstack([red, display.field()]), FOLDER / "coupe.png")
     bracket = open_studio(read_scene("bracket"), display)
     metal = display.field()
