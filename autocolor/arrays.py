@@ -347,13 +347,13 @@ def _power(cosines: Singles, exponent: float, out: Singles, exact: ExactLogarith
         return np.exp(out, out=out)
 
 
-def least_steep(exponent: float, rounding: float) -> float:
-    """The cosine above which a cosine's rounding may put its power off by more than POWER_ERROR.
+def least_steep(exponent: float, rounding: float, error: float = POWER_ERROR) -> float:
+    """The cosine above which a cosine's rounding may put its power off by more than an error.
 
     A power c^N is off by at most c^N (exp(N rounding) - 1), which is below c^N N rounding exp(N rounding).
     """
     spread = exponent * rounding
-    return 1 - (math.log(spread / POWER_ERROR) + spread) / exponent
+    return 1 - (math.log(spread / error) + spread) / exponent
 
 
 def _multiplied(out: Singles, exponent: int) -> Singles:

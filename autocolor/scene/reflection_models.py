@@ -237,7 +237,7 @@ class _PowerOfCosine(ReflectionModel):
         Column(
             Number(at_least=0),
             Tier.LIGHT,
-            "N: the exponent, which makes the highlight narrower; exact to 1e-4 up to 1,000.",
+            "N: the exponent, which makes the highlight narrower; exact to 1e-4 up to 100,000.",
             bar=BarRange(1, 200, 1),
         ),
     ] = 20.0
@@ -312,7 +312,7 @@ class CookTorrance(ReflectionModel):
         Column(
             Number(0.01, 1),
             Tier.LIGHT,
-            "The roughness: m, the slope of the microfacets; exact to 1e-4 from 0.05.",
+            "The roughness: m, the slope of the microfacets; exact to 1e-4 from 0.02.",
             bar=BarRange(0.01, 1, 0.01),
         ),
     ] = 0.3
@@ -336,20 +336,25 @@ class CookTorrance(ReflectionModel):
         """F D G / (N.V), relative to normal incidence and view."""
         view = cosines.view()
         half = _half_vector(cosines.incidence, view, cosines.eye)
-        np.multiply(self._distribution(half, cosines), self._fresnel(half.view), out=out)
+        fresnel = self._fresnel(half.view)
+        gain = float(fresnel.max(initial=1)) / max(float(view.min(initial=1)), LEAST_FACING)
+        np.multiply(self._distribution(half, cosines, gain), fresnel, out=out)
         out *= _attenuation(cosines.incidence, view, half)
         out /= np.maximum(view, np.float32(LEAST_FACING))
         return out
 
-    def _distribution(self, half: _HalfVector, cosines: Cosines) -> Singles:
-        """Beckmann's D over its value at cos 1: exp(-(tan / m)^2) / cos^4."""
+    def _distribution(self, half: _HalfVector, cosines: Cosines, gain: float) -> Singles:
+        """Beckmann's D over its value at cos 1: exp(-(tan / m)^2) / cos^4.
+
+        Its error is multiplied by at most `gain`.
+        """
         square = np.maximum(half.normal * half.normal, np.float32(1e-4))
         tangent = (1 - square) / square
         tangent /= np.float32(-self.roughness * self.roughness)
         distribution: Singles = np.exp(tangent, out=tangent)
         distribution /= square * square
         # Near a cosine of 1, D falls like the cosine to the power 2 / m^2.
-        steep = _steep_half(half, cosines, 3 / self.roughness**2)
+        steep = _steep_half(half, cosines, 2 / self.roughness**2, POWER_ERROR / gain)
         if steep is not None:
             places, squares = steep
             distribution[places] = np.exp(-squares / self.roughness**2) * (1 + squares) ** 2
@@ -396,6 +401,10 @@ def _half_vector(incidence: Singles, view: Singles, eye: Singles) -> _HalfVector
     return _HalfVector(normal, length)
 
 
+ROUNDING_OF_HALF: Final = 2 * ROUNDING
+"""Assumed: the rounding of N.H itself, above that of cos(E) divided by |L + V|^2."""
+
+
 class _SteepHalf(NamedTuple):
     """Some places of the points, and tan^2 of the angle between N and H there, (places,)."""
 
@@ -403,8 +412,10 @@ class _SteepHalf(NamedTuple):
     squared_tangent: Singles
 
 
-def _steep_half(half: _HalfVector, cosines: Cosines, exponent: float) -> _SteepHalf | None:
-    """Where the rounding of N.H puts (N.H)^exponent off by more than POWER_ERROR; None if it does nowhere.
+def _steep_half(
+    half: _HalfVector, cosines: Cosines, exponent: float, error: float = POWER_ERROR
+) -> _SteepHalf | None:
+    """Where the rounding of N.H may put (N.H)^exponent off by more than an error; None if nowhere.
 
     N.H is off by the rounding of cos(E) over |L + V|^2, which is 4 (V.H)^2, so that it is worst at glancing
     angles, and by that of its own quotient.
@@ -412,13 +423,13 @@ def _steep_half(half: _HalfVector, cosines: Cosines, exponent: float) -> _SteepH
     if cosines.exact is None or exponent == 0:
         return None
     rounding, view = cosines.exact.rounding, half.view
-    worst = ROUNDING + rounding / (4 * float(view.min(initial=1)) ** 2)
-    if exponent * worst <= POWER_ERROR:
+    worst = ROUNDING_OF_HALF + rounding / (4 * float(view.min(initial=1)) ** 2)
+    if exponent * worst <= error:
         return None
-    steep = half.normal > np.float32(least_steep(exponent, worst))
-    least = ROUNDING + rounding / 4
-    if exponent * least <= POWER_ERROR:
-        steep &= view * view < np.float32(rounding / 4 / (POWER_ERROR / exponent - ROUNDING))
+    steep = half.normal > np.float32(least_steep(exponent, worst, error))
+    least = ROUNDING_OF_HALF + rounding / 4
+    if exponent * least <= error:
+        steep &= view * view < np.float32(rounding / 4 / (error / exponent - ROUNDING_OF_HALF))
     places = steep.nonzero()[0]
     if not len(places):
         return None
