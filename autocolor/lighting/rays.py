@@ -63,10 +63,10 @@ def camera_light(light: Light, points: VisiblePoints, directed: bool) -> CameraL
         return CameraLight(-FARTHEST * direction, 0.0, direction if directed else None, True)
     position = points.camera_point(light.position)
     position *= min(FARTHEST / max(float(np.abs(position).max()), 1.0), 1.0)
-    distance = math.sqrt(position @ position)
-    close = CLOSE * max(distance, points.radius) ** 2
+    square = float(position @ position)
+    close = CLOSE * max(square, points.radius**2)
     ahead = points.camera_direction(light.axis) if directed and light.axis is not None else None
-    return CameraLight(position, close, ahead, False, distance, points.radius)
+    return CameraLight(position, close, ahead, False, math.sqrt(square), points.radius)
 
 
 class Rays(NamedTuple):
@@ -98,7 +98,12 @@ class Rays(NamedTuple):
         return vectors
 
     def cos_light_logarithms(self, places: Indices) -> Singles:
-        """log(cos(L)) of some points near the light's direction, (places,) float32."""
+        """log(cos(L)) of some points near the light's direction, (places,) float32.
+
+        Measured and rejected, on the coupe under a light with C = 1000 that floods it: a cosine in float64
+        takes twice as long as this. Two more rows of the matrix product, for the distances from the light's
+        axis of all points, take a third longer for the whole light, and this an eighth to a fifth.
+        """
         assert self.direction is not None
         direction, across = self.direction.astype(np.float32), self.from_light(places)
         across -= direction[:, None] * (direction @ across)
