@@ -28,16 +28,18 @@ import numpy as np
 from autocolor.arrays import (
     NEGLIGIBLE,
     POWER_ERROR,
+    ROUNDING,
     Booleans,
+    ExactLogarithms,
     Floats,
-    NearOne,
+    Indices,
     PartNumbers,
     Singles,
     power,
     unit_vector,
 )
 from autocolor.checks import Vector
-from autocolor.lighting.rays import FARTHEST, ROUNDING, Rays, camera_light
+from autocolor.lighting.rays import FARTHEST, Rays, camera_light
 from autocolor.scene.following import detached
 from autocolor.scene.lights import Flap, Light
 from autocolor.visibility.visible_points import POINT, POINT_SQUARED, VisiblePoints
@@ -61,19 +63,29 @@ LEAST_REACH: Final = 1e-20
 """The least reach, in units: float32 can hold any distance as a multiple of it."""
 
 
+class ExactLight(NamedTuple):
+    """cos(L) with more digits than in float32.
+
+    It has the logarithms near 1. `cosines` returns cos(L), (k,) float64, at k places.
+    """
+
+    logarithms: ExactLogarithms
+    cosines: Callable[[Indices], Floats]
+
+
 class LitPoints(NamedTuple):
     """The points that may be lit: the arguments of a factor.
 
     `cos_light` is cos(L), (points,), or None if no control of the light is `directed`. `distance()` is the
     distance to the light, (points,); `positions()` are the points in camera space around
     `VisiblePoints.origin`, (3, points). Both are in `VisiblePoints.unit` and must not be modified.
-    `near_axis` tells cosines near 1 apart; None if they are exact.
+    `exact` has cos(L) with more digits; None if it is exact in float32.
     """
 
     cos_light: Singles | None
     distance: Callable[[], Singles]
     positions: Callable[[], Singles]
-    near_axis: NearOne | None = None
+    exact: ExactLight | None = None
 
 
 class LightControl(ABC):
@@ -137,7 +149,7 @@ class Concentration(LightControl):
     def factor(self, lit: LitPoints, out: Singles) -> Singles:
         """cos^C(L)."""
         assert lit.cos_light is not None
-        return power(lit.cos_light, self.exponent, out, lit.near_axis)
+        return power(lit.cos_light, self.exponent, out, lit.exact and lit.exact.logarithms)
 
 
 @dataclass(frozen=True, eq=False)
@@ -181,16 +193,16 @@ def is_narrow(least_cosine: float) -> bool:
 def within(rays: Rays, least_cosine: float) -> Booleans:
     """Whether cos(L) of each ray of a directed light is at least the least cosine of its controls."""
     assert rays.cos_light is not None
-    near = rays.near_axis
-    if near is None or not is_narrow(least_cosine):
+    if rays.are_parallel or not is_narrow(least_cosine):
         lit: Booleans = rays.cos_light >= np.float32(least_cosine)
         return lit
-    rounding = near.rounding + ROUNDING
+    rounding = rays.rounding + ROUNDING
     lit = rays.cos_light >= np.float32(least_cosine - rounding)
-    places = np.flatnonzero(lit)
+    places = lit.nonzero()[0]
     places = places[rays.cos_light.take(places) <= least_cosine + rounding]
-    slack = RIM_ROUNDING * math.sqrt(1 - least_cosine**2)
-    lit[places] = near.gaps(places) <= 1 - least_cosine + slack
+    if len(places):
+        slack = RIM_ROUNDING * math.sqrt(1 - least_cosine**2)
+        lit[places] = rays.exact_cos_light(places) >= least_cosine - slack
     return lit
 
 
@@ -205,7 +217,7 @@ class SoftCone(LightControl):
 
     rim: float
     width: float
-    gaps: tuple[float, float]
+    cosines: tuple[float, float]
     directed = True
 
     @classmethod
@@ -214,29 +226,27 @@ class SoftCone(LightControl):
         inner, outer = light.inner_angle, light.cone_angle
         if inner is None or outer is None or inner >= outer:
             return None
+        cosines = math.cos(math.radians(inner)), math.cos(math.radians(outer))
         # Rounded like the cosines that it is subtracted from.
-        rim = float(np.float32(math.cos(math.radians(outer))))
-        width = max(math.cos(math.radians(inner)) - rim, ROUNDING)
-        return cls(rim, width, (gap_of_angle(inner), gap_of_angle(outer)))
+        rim = float(np.float32(cosines[1]))
+        return cls(rim, max(cosines[0] - rim, ROUNDING), cosines)
 
     def factor(self, lit: LitPoints, out: Singles) -> Singles:
         """The share that is left between the two angles."""
         assert lit.cos_light is not None
-        np.subtract(lit.cos_light, np.float32(self.rim), out=out)
+        # The share changes by at most 3/2 of the change of the fraction.
+        exact, rounding = lit.exact, 0.0
+        if exact is not None and 1.5 * exact.logarithms.rounding > POWER_ERROR * self.width:
+            rounding = exact.logarithms.rounding + ROUNDING
+        np.subtract(lit.cos_light, np.float32(self.rim - rounding), out=out)
         out *= np.float32(1 / self.width)
-        near = lit.near_axis
-        if near is not None and near.rounding > POWER_ERROR * self.width:
-            # Choose the places in the edge, by the rounded cosines.
-            margin = np.float32(near.rounding / self.width + 1)
-            places = np.flatnonzero((out > -margin) & (out < 1 + margin))
-            inner, outer = self.gaps
-            out[places] = (outer - near.gaps(places)) / (outer - inner)
+        if exact is not None and rounding:
+            # Fractions are too large by that of the rounding. As integers, negative numbers are the largest.
+            most = np.float32(1 + 2 * rounding / self.width)
+            places = (out.view(np.uint32) < most.view(np.uint32)).nonzero()[0]
+            inner, outer = self.cosines
+            out[places] = (exact.cosines(places) - outer) / (inner - outer)
         return soften(out)
-
-
-def gap_of_angle(angle: float) -> float:
-    """1 - cos of an angle in degrees, exact in proportion to itself."""
-    return 2 * math.sin(math.radians(angle) / 2) ** 2
 
 
 def soften(fraction: Singles) -> Singles:

@@ -12,7 +12,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Floats, Indices, NearOne, Singles, columns, dot, gaps_of, unit_vector
+from autocolor.arrays import ROUNDING, Floats, Indices, Singles, columns, dot, half_logarithms, unit_vector
 from autocolor.checks import Vector
 from autocolor.scene.lights import Light, middle_between
 from autocolor.scene.scene import Scene
@@ -22,14 +22,11 @@ CLOSE: Final = 0.02
 """A point is close to a light if its squared distance is at most this fraction of the squares of the two
 positions. At close points the positions are subtracted before they are squared."""
 
-ROUNDING: Final = float(np.finfo(np.float32).eps)
-
-LEAST_CANCELLATION: Final = 2.0
-"""Assumed: at least so many units in the last place of 1 are the rounding of a cosine.
-
-A quarter is added of the square of the lengths that are subtracted, over the square of the ray. Measured:
-on a ball whose light is a ninth of that sum away from it, cosines are off by 1.8e-6, where this gives 2.7e-6.
-"""
+LEAST_ROUNDING: Final = 2.2
+CANCELLATION: Final = 0.33
+"""Measured on balls and walls, from near and far: cos(L) is off by at most the larger of the two, in units in
+the last place of 1. The second is multiplied by the square of the lengths that are subtracted, which are the
+light's and the point's distances from the origin, over the square of the ray."""
 
 LEAST_SQUARE: Final = 1e-37
 """The least squared distance of a point from a light, so that no distance is 0."""
@@ -46,15 +43,16 @@ class CameraLight(NamedTuple):
 
     `position` is relative to the origin of the points. Points at a squared distance of at most `close` are
     close to the light. `direction` is a unit vector, or None if no light control uses cos(L). A light at
-    infinity is at FARTHEST against its direction. `size` is at least the sum of the lengths of a point and of
-    the position.
+    infinity is at FARTHEST against its direction. `distance` is that of the light from the origin, and no
+    point is farther from the origin than `radius`.
     """
 
     position: Floats
     close: float
     direction: Floats | None
     is_at_infinity: bool = False
-    size: float = 0.0
+    distance: float = FARTHEST
+    radius: float = 0.0
 
 
 def camera_light(light: Light, points: VisiblePoints, directed: bool) -> CameraLight:
@@ -68,7 +66,7 @@ def camera_light(light: Light, points: VisiblePoints, directed: bool) -> CameraL
     square = float(position @ position)
     close = CLOSE * max(square, points.radius**2)
     ahead = points.camera_direction(light.axis) if directed and light.axis is not None else None
-    return CameraLight(position, close, ahead, size=math.sqrt(square) + points.radius)
+    return CameraLight(position, close, ahead, False, math.sqrt(square), points.radius)
 
 
 class Rays(NamedTuple):
@@ -76,8 +74,8 @@ class Rays(NamedTuple):
 
     `length` is never 0. `cos_light` is the cosine of L, between the light's direction and the ray from the
     light to the point, or None for a light without a direction. `rows` are the rows of the points. `close`
-    are the places of the points close to the light, and `close_rows` their rows around the light. All cosines
-    are off by at most `rounding`.
+    are the places of the points close to the light, and `close_rows` their rows around the light. Cosines of
+    L are off by at most `rounding`.
     """
 
     length: Singles
@@ -90,19 +88,38 @@ class Rays(NamedTuple):
     rounding: float
     are_parallel: bool = False
 
-    def toward_light(self, places: Indices) -> Floats:
-        """The unit vectors from some points to the light, (3, places), as exact as the points."""
-        toward = self.position[:, None] - columns(self.rows[POINT], places)
-        toward /= np.sqrt(np.maximum(dot(toward, toward), LEAST_SQUARE))
-        return toward
+    def from_light(self, places: Indices) -> Singles:
+        """The vectors from the light to some points, (3, places) float32, as exact as the points."""
+        position = self.position.astype(np.float32)
+        # The difference of two numbers that are close to each other is exact.
+        vectors: Singles = columns(self.rows[POINT], places)
+        vectors -= position[:, None]
+        vectors -= (self.position - position).astype(np.float32)[:, None]
+        return vectors
 
-    @property
-    def near_axis(self) -> NearOne | None:
-        """What tells cos(L) apart near 1; None for a light without a direction, and for parallel rays."""
-        direction = self.direction
-        if direction is None or self.are_parallel:
-            return None
-        return NearOne(self.rounding, lambda places: gaps_of(self.toward_light(places) + direction[:, None]))
+    def cos_light_logarithms(self, places: Indices) -> Singles:
+        """log(cos(L)) of some points near the light's direction, (places,) float32.
+
+        Measured and rejected, on the coupe under a light with C = 1000 that floods it: a cosine in float64
+        takes twice as long as this. Two more rows of the matrix product, for the distances from the light's
+        axis of all points, take a third longer for the whole light, and this an eighth to a fifth.
+        """
+        assert self.direction is not None
+        direction, across = self.direction.astype(np.float32), self.from_light(places)
+        across -= direction[:, None] * (direction @ across)
+        squares = dot(across, across)
+        length = self.length.take(places)
+        squares /= length
+        squares /= length
+        return half_logarithms(squares)
+
+    def exact_cos_light(self, places: Indices) -> Floats:
+        """cos(L) of some points, (places,) float64."""
+        assert self.direction is not None
+        from_light = columns(self.rows[POINT], places) - self.position[:, None]
+        cosines: Floats = self.direction @ from_light
+        cosines /= np.sqrt(np.maximum(dot(from_light, from_light), LEAST_SQUARE))
+        return cosines
 
     def cosines_with(self, vector: slice) -> Singles:
         """The cosine between each ray and the unit vector v in three of the rows; the next row has P.v."""
@@ -129,7 +146,7 @@ def rays_to(light: CameraLight, rows: Singles) -> Rays:
     if light.is_at_infinity:
         length = np.full(rows.shape[1], FARTHEST, np.float32)
         cos_light = None if direction is None else np.ones_like(length)
-        rounding = ROUNDING * LEAST_CANCELLATION
+        rounding = ROUNDING * LEAST_ROUNDING
         return Rays(
             length, cos_light, rows, light.position, close, close_rows, direction, rounding, are_parallel=True
         )
@@ -146,8 +163,10 @@ def rays_to(light: CameraLight, rows: Singles) -> Rays:
             ahead[close] = close_ahead
     length = np.sqrt(squares, out=squares)
     cos_light = None if ahead is None else np.divide(ahead, length, out=ahead)
-    cancellation = light.size**2 / max(least, light.close, LEAST_SQUARE)
-    rounding = ROUNDING * (LEAST_CANCELLATION + cancellation / 4)
+    # The nearest point is at most as far from the origin as the light and the ray together.
+    shortest = math.sqrt(max(least, light.close, LEAST_SQUARE))
+    size = light.distance + min(light.radius, light.distance + shortest)
+    rounding = ROUNDING * max(LEAST_ROUNDING, CANCELLATION * (size / shortest) ** 2)
     return Rays(length, cos_light, rows, light.position, close, close_rows, direction, rounding)
 
 

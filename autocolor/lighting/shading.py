@@ -39,10 +39,10 @@ import numpy as np
 
 from autocolor.arrays import (
     LARGEST_SINGLE,
+    ROUNDING,
     Booleans,
-    Floats,
+    ExactLogarithms,
     Indices,
-    NearOne,
     Singles,
     columns,
     dot,
@@ -50,7 +50,7 @@ from autocolor.arrays import (
 )
 from autocolor.errors import InputError
 from autocolor.immutable import Immutable
-from autocolor.lighting.controls import LightControl, LitPoints, controls_of, within
+from autocolor.lighting.controls import ExactLight, LightControl, LitPoints, controls_of, within
 from autocolor.lighting.rays import CameraLight, Rays, camera_light, rays_to
 from autocolor.scene.lights import Light
 from autocolor.scene.reflection_models import Cosines, ExactVectors, ReflectionModel
@@ -63,6 +63,9 @@ SPECULAR: Final = 1
 
 FEW: Final = 0.3
 """The fraction of lit points below which it takes less time to pick them than to compute all points."""
+
+ROUNDING_OF_EYE: Final = 4.7 * ROUNDING
+"""Measured: cos(E) is at least so uncertain, because the rounding of a reflected view changes its length."""
 
 SurfaceWeights = Mapping[int, tuple[np.float32, np.float32]]
 """The weights of a light's diffuse and specular planes, by surface number."""
@@ -183,33 +186,41 @@ class _AtPoints(NamedTuple):
         points = self.rays.rows[POINT]
         return points if self.places is None else points.take(self.places, axis=1)
 
-    def near_axis(self) -> NearOne | None:
-        """What tells cos(L) apart near 1."""
-        near = self.rays.near_axis
-        return near and NearOne(near.rounding, lambda places: near.gaps(self.in_chunk(places)))
-
-    def in_chunk(self, places: Indices, start: int = 0) -> Indices:
-        """The places in the chunk of the points at some places, counted from `start`."""
-        places = places + start
-        return places if self.places is None else self.places.take(places)
+    def exact_light(self) -> ExactLight | None:
+        """cos(L) at some of the points; None if it is exact in float32."""
+        rays, chosen = self.rays, self.places
+        if rays.direction is None or rays.are_parallel:
+            return None
+        logarithms = ExactLogarithms(rays.rounding, rays.cos_light_logarithms)
+        if chosen is None:
+            return ExactLight(logarithms, rays.exact_cos_light)
+        return ExactLight(logarithms.chosen(chosen), lambda places: rays.exact_cos_light(chosen.take(places)))
 
     def cosines(self, start: int, end: int) -> Cosines:
         """The cosines for a reflection model at a slice of the points."""
-        rows = self.rays.rows
+        rays = self.rays
+        chosen = None if self.places is None else self.places[start:end]
 
         def view() -> Singles:
-            places = slice(start, end) if self.places is None else self.places[start:end]
+            places = slice(start, end) if chosen is None else chosen
             # N.V = N . R for the reflected view R.
-            return dot(rows[NORMAL, places], rows[REFLECTED_VIEW, places])
+            return dot(rays.rows[NORMAL, places], rays.rows[REFLECTED_VIEW, places])
 
-        def mirror_difference(places: Indices) -> Floats:
-            places = self.in_chunk(places, start)
-            return self.rays.toward_light(places) - columns(rows[REFLECTED_VIEW], places)
+        def in_chunk(places: Indices) -> Indices:
+            return places + start if chosen is None else chosen.take(places)
 
-        def normal(places: Indices) -> Floats:
-            return columns(rows[NORMAL], self.in_chunk(places, start)).astype(np.float64)
+        def mirror_difference(places: Indices) -> Singles:
+            places = in_chunk(places)
+            difference = rays.from_light(places)
+            # The rounding of the lengths hardly matters where the vectors are close to each other.
+            difference /= -rays.length.take(places)
+            difference -= columns(rays.rows[REFLECTED_VIEW], places)
+            return difference
 
-        exact = ExactVectors(self.rays.rounding, mirror_difference, normal)
+        def normal(places: Indices) -> Singles:
+            return columns(rays.rows[NORMAL], in_chunk(places))
+
+        exact = ExactVectors(max(rays.rounding, ROUNDING_OF_EYE), mirror_difference, normal)
         return Cosines(self.incidence[start:end], self.eye[start:end], view, exact)
 
 
@@ -244,7 +255,7 @@ def _reflect(
 def _multiplier(controls: Sequence[LightControl], at_points: _AtPoints) -> Singles | None:
     """The product of the factors of all controls; None if none has a factor. cos(L) may be overwritten."""
     shaping = [control for control in controls if type(control).factor is not LightControl.factor]
-    lit = LitPoints(at_points.light, at_points.distance, at_points.positions, at_points.near_axis())
+    lit = LitPoints(at_points.light, at_points.distance, at_points.positions, at_points.exact_light())
     multiplier: Singles | None = None
     for control in shaping:
         # The last control may overwrite the cosines.

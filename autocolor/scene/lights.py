@@ -318,7 +318,7 @@ class Light(Row):
         Column(
             Number(at_least=0),
             Tier.LIGHT,
-            "C: the exponent of the cosine of the angle from the direction; exact to 1e-4 up to 10,000.",
+            "C: the exponent of the cosine of the angle from the direction; exact to 1e-4 up to 100,000.",
             bar=BarRange(0, 100, 1),
         ),
     ] = 0.0

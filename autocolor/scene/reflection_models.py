@@ -26,42 +26,67 @@ from typing import Annotated, ClassVar, Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import POWER_ERROR, Floats, Indices, NearOne, Singles, dot, gaps_of, power, underflowing
+from autocolor.arrays import (
+    POWER_ERROR,
+    ROUNDING,
+    SPARSE,
+    ExactLogarithms,
+    Indices,
+    Singles,
+    dot,
+    half_logarithms,
+    least_steep,
+    power,
+    underflowing,
+)
 from autocolor.scene.columns import BarRange, Column, Problem, Row, Tier
 from autocolor.scene.kinds import AngleCurve, AngleCurveKind, Number
 from autocolor.scene.row_kinds import Nested
 
-LEAST_ALONG: Final = 1e-6
+LEAST_ALONG: Final = np.float32(1e-6)
 """The least N.L + N.V to divide by, at the rim of what light and eye both reach."""
 
 
 class ExactVectors(NamedTuple):
-    """Vectors at the points, as exact as the points are, where the rounding of cosines near 1 counts.
+    """Vectors at the points, as exact as the points are, for places where the rounding of cosines counts.
 
-    The cosines are off by at most `rounding`. `mirror_difference` returns L - R and `normal` N, (3, k), at k
-    places of the points.
+    cos(E) is off by at most `rounding`. `mirror_difference` returns L - R and `normal` N, (3, k) float32, at
+    k places of the points.
     """
 
     rounding: float
-    mirror_difference: Callable[[Indices], Floats]
-    normal: Callable[[Indices], Floats]
+    mirror_difference: Callable[[Indices], Singles]
+    normal: Callable[[Indices], Singles]
 
-    @property
-    def near_mirror(self) -> NearOne:
-        """What tells cos(E) apart near 1."""
-        return NearOne(self.rounding, lambda places: gaps_of(self.mirror_difference(places)))
+    def eye(self) -> ExactLogarithms:
+        """log(cos(E)) near 1."""
+        return ExactLogarithms(self.rounding, self._logarithms)
 
-    def squared_half_tangent(self, places: Indices, incidence: Singles) -> Floats:
-        """tan^2 of the angle between N and H at some places of the points, given N.L there, (places,).
+    def _logarithms(self, places: Indices) -> Singles:
+        """log(cos(E)) at some places. For the chord c of E, the square of the sine is c^2 - c^4 / 4.
+
+        Where the angle is small, a reflected view that is rounded to another length hardly changes the chord,
+        but it changes a dot product.
+        """
+        apart = self.mirror_difference(places)
+        square: Singles = dot(apart, apart)
+        square -= square * square / 4
+        return half_logarithms(square)
+
+    def squared_half_tangent(self, places: Indices, incidence: Singles) -> Singles:
+        """tan^2 of the angle between N and H at some places of the points, given N.L at all points.
 
         R is V reflected at N. So at right angles to N, L + V is L - R, and along N it is N.L + N.R.
         """
-        apart, normal = self.mirror_difference(places), self.normal(places)
-        excess = dot(apart, normal)
-        across = dot(apart, apart) - excess**2
-        along = 2 * incidence - excess
-        square: Floats = np.maximum(across, 0) / np.maximum(along, LEAST_ALONG) ** 2
-        return square
+        apart = self.mirror_difference(places)
+        excess = dot(apart, self.normal(places))
+        square: Singles = dot(apart, apart)
+        square -= excess * excess
+        along = 2 * incidence.take(places)
+        along -= excess
+        np.maximum(along, LEAST_ALONG, out=along)
+        square /= along * along
+        return np.maximum(square, 0, out=square)
 
 
 class Cosines(NamedTuple):
@@ -212,7 +237,7 @@ class _PowerOfCosine(ReflectionModel):
         Column(
             Number(at_least=0),
             Tier.LIGHT,
-            "N: the exponent, which makes the highlight narrower; exact to 1e-4 up to 1,000.",
+            "N: the exponent, which makes the highlight narrower; exact to 1e-4 up to 100,000.",
             bar=BarRange(1, 200, 1),
         ),
     ] = 20.0
@@ -236,13 +261,12 @@ class Phong(_PowerOfCosine):
     def specular(self, cosines: Cosines, out: Singles) -> Singles:
         """cos^N(E), times the growth of S; a negative cosine counts as 0."""
         # Most surfaces reflect some of the lights away from the eye.
-        if self.exponent > 0 and cosines.eye.max(initial=0.0) <= 0:
+        if 0 < self.exponent <= SPARSE and cosines.eye.max(initial=0.0) <= 0:
             out[:] = 0
             return out
         growth = self.growth.factor(cosines.incidence)
-        return _grown(
-            power(cosines.eye, self.exponent, out, cosines.exact and cosines.exact.near_mirror), growth
-        )
+        exact = cosines.exact and cosines.exact.eye()
+        return _grown(power(cosines.eye, self.exponent, out, exact), growth)
 
 
 @dataclass(frozen=True, repr=False)
@@ -288,7 +312,7 @@ class CookTorrance(ReflectionModel):
         Column(
             Number(0.01, 1),
             Tier.LIGHT,
-            "The roughness: m, the slope of the microfacets; exact to 1e-4 from 0.05.",
+            "The roughness: m, the slope of the microfacets; exact to 1e-4 from 0.02.",
             bar=BarRange(0.01, 1, 0.01),
         ),
     ] = 0.3
@@ -312,20 +336,25 @@ class CookTorrance(ReflectionModel):
         """F D G / (N.V), relative to normal incidence and view."""
         view = cosines.view()
         half = _half_vector(cosines.incidence, view, cosines.eye)
-        np.multiply(self._distribution(half, cosines), self._fresnel(half.view), out=out)
+        fresnel = self._fresnel(half.view)
+        gain = float(fresnel.max(initial=1)) / max(float(view.min(initial=1)), LEAST_FACING)
+        np.multiply(self._distribution(half, cosines, gain), fresnel, out=out)
         out *= _attenuation(cosines.incidence, view, half)
         out /= np.maximum(view, np.float32(LEAST_FACING))
         return out
 
-    def _distribution(self, half: _HalfVector, cosines: Cosines) -> Singles:
-        """Beckmann's D over its value at cos 1: exp(-(tan / m)^2) / cos^4."""
+    def _distribution(self, half: _HalfVector, cosines: Cosines, gain: float) -> Singles:
+        """Beckmann's D over its value at cos 1: exp(-(tan / m)^2) / cos^4.
+
+        Its error is multiplied by at most `gain`.
+        """
         square = np.maximum(half.normal * half.normal, np.float32(1e-4))
         tangent = (1 - square) / square
         tangent /= np.float32(-self.roughness * self.roughness)
         distribution: Singles = np.exp(tangent, out=tangent)
         distribution /= square * square
         # Near a cosine of 1, D falls like the cosine to the power 2 / m^2.
-        steep = _steep_half(half, cosines, 2 / self.roughness**2)
+        steep = _steep_half(half, cosines, 2 / self.roughness**2, POWER_ERROR / gain)
         if steep is not None:
             places, squares = steep
             distribution[places] = np.exp(-squares / self.roughness**2) * (1 + squares) ** 2
@@ -372,35 +401,39 @@ def _half_vector(incidence: Singles, view: Singles, eye: Singles) -> _HalfVector
     return _HalfVector(normal, length)
 
 
+ROUNDING_OF_HALF: Final = 2 * ROUNDING
+"""Assumed: the rounding of N.H itself, above that of cos(E) divided by |L + V|^2."""
+
+
 class _SteepHalf(NamedTuple):
     """Some places of the points, and tan^2 of the angle between N and H there, (places,)."""
 
     places: Indices
-    squared_tangent: Floats
+    squared_tangent: Singles
 
 
-def _steep_half(half: _HalfVector, cosines: Cosines, exponent: float) -> _SteepHalf | None:
-    """Where the rounding of N.H puts (N.H)^exponent off by more than POWER_ERROR; None if it does nowhere.
+def _steep_half(
+    half: _HalfVector, cosines: Cosines, exponent: float, error: float = POWER_ERROR
+) -> _SteepHalf | None:
+    """Where the rounding of N.H may put (N.H)^exponent off by more than an error; None if nowhere.
 
-    N.H is off by the rounding of the cosines over |L + V|^2, so that it is worst at glancing angles.
+    N.H is off by the rounding of cos(E) over |L + V|^2, which is 4 (V.H)^2, so that it is worst at glancing
+    angles, and by that of its own quotient.
     """
     if cosines.exact is None or exponent == 0:
         return None
-    error = exponent * cosines.exact.rounding / POWER_ERROR
-    view = np.float32(min(math.sqrt(error), 1.0) / 2)
-    candidates = half.view < view
-    if error > 1:
-        candidates |= half.normal > np.float32(1 - math.log(error) / exponent - cosines.exact.rounding)
-    places = np.flatnonzero(candidates)
+    rounding, view = cosines.exact.rounding, half.view
+    worst = ROUNDING_OF_HALF + rounding / (4 * float(view.min(initial=1)) ** 2)
+    if exponent * worst <= error:
+        return None
+    steep = half.normal > np.float32(least_steep(exponent, worst, error))
+    least = ROUNDING_OF_HALF + rounding / 4
+    if exponent * least <= error:
+        steep &= view * view < np.float32(rounding / 4 / (error / exponent - ROUNDING_OF_HALF))
+    places = steep.nonzero()[0]
     if not len(places):
         return None
-    # Pick the places with a power that is large enough for their own rounding.
-    errors = error / np.minimum(4 * np.square(half.view.take(places), dtype=np.float64), 1)
-    least = 1 - (np.log(errors) + errors * POWER_ERROR) / exponent
-    places = places[half.normal.take(places) > least]
-    if not len(places):
-        return None
-    return _SteepHalf(places, cosines.exact.squared_half_tangent(places, cosines.incidence.take(places)))
+    return _SteepHalf(places, cosines.exact.squared_half_tangent(places, cosines.incidence))
 
 
 def _attenuation(incidence: Singles, view: Singles, half: _HalfVector) -> Singles:

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from autocolor import arrays
 from autocolor.arrays import (
     POWER_ERROR,
-    NearOne,
+    ExactLogarithms,
     chunks,
     chunks_of_runs,
     components_of,
@@ -103,7 +103,7 @@ def test_every_cosine_is_raised_and_a_negative_one_counts_as_0(cosines: list[flo
     rounding=st.floats(1e-7, 5e-6),
     seed=st.integers(0, 1 << 32),
 )
-def test_given_what_tells_cosines_apart_near_1_a_steep_power_is_exact(
+def test_given_exact_logarithms_a_steep_power_is_exact(
     share: float, exponent: float, rounding: float, seed: int
 ) -> None:
     # Some cosines, of a share of them near 1, are rounded; their gaps from 1 are not.
@@ -112,11 +112,11 @@ def test_given_what_tells_cosines_apart_near_1_a_steep_power_is_exact(
     near_1 = random.random(len(gaps)) < share
     gaps[near_1] *= 8 / max(exponent, 8.0) * random.random(int(near_1.sum()))
     rounded = (1 - gaps + random.uniform(-rounding, rounding, len(gaps)) / 2).astype(np.float32)
-    near = NearOne(rounding, lambda places: gaps[places])
+    exact = ExactLogarithms(rounding, lambda places: np.log1p(-gaps[places]).astype(np.float32))
     with np.errstate(under="ignore"):
         expected = np.where(gaps < 1, np.exp(exponent * np.log1p(-np.minimum(gaps, 1 - 1e-16))), 0.0)
-    assert np.abs(power(rounded, exponent, near=near) - expected).max() <= 1.1 * POWER_ERROR
-    assert power(rounded, exponent, out=rounded, near=near) is rounded
+    assert np.abs(power(rounded, exponent, exact=exact) - expected).max() <= 1.1 * POWER_ERROR
+    assert power(rounded, exponent, out=rounded, exact=exact) is rounded
     assert np.abs(rounded - expected).max() <= 1.1 * POWER_ERROR
 
 

@@ -65,6 +65,23 @@ def test_the_rays_to_a_light_close_to_the_wall_are_as_exact(gap: float) -> None:
         assert cos_incidence[number] == pytest.approx(gap / math.hypot(aside, gap), abs=3e-4)
 
 
+@given(numbers(1.05, 3.0) | numbers(3.0, 1000.0), directions, outside_views())
+def test_cosines_near_1_are_off_by_at_most_the_rounding_and_their_logarithms_are_exact(
+    distance: float, side: Vector, view: View
+) -> None:
+    points = visible_surfaces(BALL, view, (1,), 30, 40)
+    light = Light("light", times(distance, unit(side)), aim=(0.1, 0.0, 0.05))
+    rays = rays_to(camera_light(light, points, directed=True), points.rows)
+    assert rays.cos_light is not None
+    exact = rays.exact_cos_light(np.arange(len(points.pixels)))
+    near = np.flatnonzero(exact > 0.9)
+    assert (np.abs(rays.cos_light - exact)[near] <= 1.1 * rays.rounding).all()
+    logarithms, expected = rays.cos_light_logarithms(near), np.log(exact[near])
+    # The angle, whose square is twice the logarithm, has the rounding of float32.
+    error = 4e-7 * np.sqrt(-2 * expected) - 2 * rays.rounding * expected + 1e-13
+    assert (np.abs(logarithms - expected) <= error).all()
+
+
 def test_a_ray_to_a_light_at_the_point_itself_has_a_length() -> None:
     points = points_of(View((0, -5, 0), target=(0, 0, 0)))
     for point in points.world_points.tolist():

@@ -392,9 +392,9 @@ def test_a_floor_that_lies_on_a_flap_is_lit_to_the_horizon_and_just_beyond_the_f
 
 
 STEEP: list[ReflectionModel] = [
-    *(Phong(exponent) for exponent in (101.0, 333.3, 1000.0)),
-    *(BlinnPhong(exponent) for exponent in (101.0, 333.3, 1000.0)),
-    *(CookTorrance(roughness) for roughness in (0.2, 0.1, 0.05)),
+    *(Phong(exponent) for exponent in (101.0, 333.3, 1e3, 1e5)),
+    *(BlinnPhong(exponent) for exponent in (101.0, 333.3, 1e3, 1e5)),
+    *(CookTorrance(roughness) for roughness in (0.2, 0.05, 0.02)),
 ]
 
 
@@ -440,7 +440,7 @@ def test_steep_highlights_on_a_sphere_are_the_closed_form(
 @pytest.mark.parametrize(
     "beam",
     [
-        *({"concentration": c} for c in (101.0, 1e3, 1e4)),
+        *({"concentration": c} for c in (101.0, 1e3, 1e5)),
         *({"cone_angle": a, "inner_angle": a - 0.1} for a in (0.1, 0.3, 3.0, 20.0, 60.0)),
         *({"cone_angle": a} for a in (0.1, 0.5, 2.5)),
     ],
