@@ -100,9 +100,8 @@ class Rays(NamedTuple):
     def cos_light_logarithms(self, places: Indices) -> Singles:
         """log(cos(L)) of some points near the light's direction, (places,) float32.
 
-        Measured and rejected, on the coupe under a light with C = 1000 that floods it: a cosine in float64
-        takes twice as long as this. Two more rows of the matrix product, for the distances from the light's
-        axis of all points, take a third longer for the whole light, and this an eighth to a fifth.
+        Measured and rejected: two more rows of the matrix product, for the distances of all points from the
+        light's axis. Every light takes a third longer.
         """
         assert self.direction is not None
         direction, across = self.direction.astype(np.float32), self.from_light(places)
