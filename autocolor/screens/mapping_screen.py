@@ -323,7 +323,8 @@ def shares_of(intensities: Singles, low: float, high: float) -> Singles:
 
     Assumed: the square root, so that rare intensities are visible beside a frequent background.
     """
-    some = intensities[:: max(1, len(intensities) // MOST_COUNTED)]
+    # In float32 a narrow range has too few numbers for the ends of all bins.
+    some = intensities[:: max(1, len(intensities) // MOST_COUNTED)].astype(np.float64)
     counts, _ = np.histogram(some, bins=len(ACROSS), range=(low, high) if low < high else (low, low + 1))
     shares: Singles = np.sqrt(counts / max(1, counts.max())).astype(np.float32)
     return shares

@@ -297,6 +297,8 @@ def test_shares_tell_how_often_intensities_are_seen() -> None:
 def test_shares_of_a_range_without_extent_and_of_many_intensities_are_finite() -> None:
     assert shares_of(np.full(3 * MOST_COUNTED, 0.5, np.float32), 0.5, 0.5).max() == 1
     assert not shares_of(np.zeros(0, np.float32), 0.0, 1.0).any()
+    # A range of a few roundings of float32.
+    assert shares_of(np.float32([0.5, 0.5000005]), 0.5, 0.5000005).max() == 1
 
 
 FRACTIONS = st.floats(0, 1)
