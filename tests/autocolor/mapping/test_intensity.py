@@ -334,8 +334,14 @@ def test_a_surface_is_trimmed_by_its_own_intensities_or_by_those_of_the_object()
     of_surfaces = following_ranges(picture, "surface", "90 %")
     assert of_surfaces[1].maximum == pytest.approx(0.5)
     assert of_surfaces[2].maximum == pytest.approx(8)
-    assert {*following_ranges(picture, "object", "90 %")} == {0}
     assert following_ranges(picture, "object", "90 %")[0].maximum == pytest.approx(7.125)
+
+
+def test_a_surface_without_extent_is_not_trimmed_and_has_the_range_of_the_object() -> None:
+    picture = picture_of([0.1] * 20, np.linspace(0.1, 1, 20).tolist())
+    ranges = mapped_ranges(picture, "surface", "90 %")
+    assert ranges[1] == ranges[0]
+    assert words_of(picture, RANGES, exposure="90 %").ravel()[1] == RANGES["a"].first
 
 
 def test_specks_are_at_the_highest_level_and_leave_all_other_words() -> None:
