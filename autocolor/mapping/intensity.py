@@ -153,7 +153,7 @@ def is_held(exposure: Exposure) -> bool:
 def held_exposure(picture: Picture, scaling: str, exposure: Exposure = AUTO) -> Exposure:
     """The exposure that holds the ranges that are mapped now, so that no word changes.
 
-    A range without extent is not held; the result is AUTO if no range has an extent.
+    A range without extent is not held; if no range has an extent, the exposure stays as it is.
     """
     held = {} if isinstance(exposure, str) else dict(exposure)
     each_has_its_own = scaling == "surface" and OBJECT not in held
@@ -163,7 +163,7 @@ def held_exposure(picture: Picture, scaling: str, exposure: Exposure = AUTO) -> 
             if number and name == OBJECT:
                 continue
             held.setdefault(name, (extent.minimum * picture.scale, extent.maximum * picture.scale))
-    return tuple(held.items()) or AUTO
+    return tuple(held.items()) or exposure
 
 
 @underflowing

@@ -292,9 +292,10 @@ def test_half_the_light_is_half_as_bright_where_the_exposure_is_held() -> None:
     assert np.abs(dark[seen] * 2 - bright[seen]).max() <= 1
 
 
-def test_no_range_is_held_if_no_range_has_an_extent() -> None:
-    scene = wall_scene(lights=())
-    assert held_exposure(render(scene, 9, 12), scene.scaling) == "auto"
+@pytest.mark.parametrize("exposure", ["auto", "99.5 %"])
+def test_no_range_is_held_if_no_range_has_an_extent(exposure: str) -> None:
+    scene = wall_scene(lights=()).replace(ambient=0)
+    assert held_exposure(render(scene, 9, 12), scene.scaling, exposure) == exposure
 
 
 def test_an_extent_of_a_few_units_in_the_last_place_is_none() -> None:
