@@ -98,6 +98,8 @@ def render(
             )
     if not isinstance(algorithm, str) or algorithm not in ALGORITHMS:
         raise UsageError(f"there is no algorithm {shown(algorithm)}{nearest(algorithm, ALGORITHMS)}")
+    # Integers of numpy would change the types of arrays.
+    lines, elements, smooth = int(lines), int(elements), int(smooth)
     with allowing(limit):
         if smooth > 1:
             require_memory(

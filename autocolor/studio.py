@@ -262,7 +262,14 @@ class Studio:
         self.edit(self.scene.replace(exposure=exposure))
 
     def release_exposure(self) -> None:
-        """Return to the exposure before the ranges were held; if there is none, ranges follow the picture."""
+        """Return to the exposure before all ranges were held; if there is none, ranges follow the picture.
+
+        If only ranges of some surfaces are held, all ranges follow the picture again.
+        """
+        if not is_held(self.scene.exposure):
+            if not isinstance(self.scene.exposure, str):
+                self.edit(self.scene.replace(exposure=self.following_exposure))
+            return
         names = {surface.name for surface in self.scene.surfaces}
         befores = [
             exposure

@@ -59,6 +59,8 @@ def explain(sight: Sight, image: DisplayImage, line: int, element: int) -> Expla
     """
     scene = image.scene
     seen = seen_at(sight, line, element)
+    # JSON cannot hold integers of numpy.
+    line, element = int(line), int(element)
     if seen is None:
         return Explanation(
             scene=scene.name,

@@ -115,7 +115,7 @@ def controls_at(light: Light, point: Vector, scene: Scene) -> dict[str, float]:
     if light.axis is not None:
         cos_light = cos_light_of(light, point)
         if light.concentration > 0:
-            shares["concentration"] = math.pow(max(cos_light, 0.0), light.concentration)
+            shares["concentration"] = power(cos_light, light.concentration)
         if light.cone_angle is not None:
             rim = math.cos(math.radians(light.cone_angle))
             inner = rim if light.inner_angle is None else math.cos(math.radians(light.inner_angle))
@@ -161,9 +161,9 @@ def specular_factor(
     n_h, v_h = dot(normal, half), dot(eye, half)
     if isinstance(model, Phong):
         reflected = minus(times(2 * n_v, normal), eye)
-        return specular_growth(model.growth, n_l) * math.pow(max(dot(reflected, light), 0.0), model.exponent)
+        return specular_growth(model.growth, n_l) * power(dot(reflected, light), model.exponent)
     if isinstance(model, BlinnPhong):
-        return specular_growth(model.growth, n_l) * math.pow(max(n_h, 0.0), model.exponent)
+        return specular_growth(model.growth, n_l) * power(n_h, model.exponent)
     assert isinstance(model, CookTorrance)
     m, f0 = model.roughness, model.normal_reflectance
 
@@ -191,6 +191,11 @@ def specular_factor(
     # No silhouette is divided by less than three tenths.
     factor = fresnel(v_h) * beckmann(n_h) * attenuation / max(n_v, 0.3)
     return factor / (fresnel(1.0) * beckmann(1.0))
+
+
+def power(cosine: float, exponent: float) -> float:
+    """A cosine to a power, 0 to 1. A negative cosine counts as 0, and 1 may be exceeded by rounding."""
+    return math.pow(min(max(cosine, 0.0), 1.0), exponent)
 
 
 def specular_growth(growth: SpecularGrowth, cosine: float) -> float:

@@ -84,8 +84,8 @@ def mapped_ranges(picture: Picture, scaling: str, exposure: Exposure) -> Mapping
 def following_ranges(picture: Picture, scaling: str, exposure: Exposure) -> Mapping[int, IntensityRange]:
     """The ranges that follow the picture, by surface number, relative to its scale; the object's is WHOLE.
 
-    With a percentage of the pixels as exposure, the ranges are trimmed; if the scaling is "object", there is
-    only WHOLE.
+    With a percentage of the pixels as exposure, the ranges are trimmed, except those of surfaces without
+    extent; if the scaling is "object", only WHOLE is trimmed.
     """
     ranges = picture.relative_ranges
     if not isinstance(exposure, str) or exposure == AUTO:
@@ -93,14 +93,16 @@ def following_ranges(picture: Picture, scaling: str, exposure: Exposure) -> Mapp
     share = Decimal(exposure.removesuffix(" %")) / 100
     own = {surface.surface_number: surface.pixels for surface in picture.slices if scaling == "surface"}
     relative, counts = picture.relative, picture.counts
-    return {
+    trimmed = {
         number: trimmed_range(
             relative[pixels] if counts is None else relative[pixels].repeat(counts[pixels]),
             ranges[number],
             share,
         )
         for number, pixels in {WHOLE: slice(None), **own}.items()
+        if number == WHOLE or has_extent(ranges[number])
     }
+    return {**ranges, **trimmed}
 
 
 def trimmed_range(intensities: Singles, own: IntensityRange, share: Decimal) -> IntensityRange:
@@ -151,7 +153,7 @@ def is_held(exposure: Exposure) -> bool:
 def held_exposure(picture: Picture, scaling: str, exposure: Exposure = AUTO) -> Exposure:
     """The exposure that holds the ranges that are mapped now, so that no word changes.
 
-    A range without extent is not held; the result is AUTO if no range has an extent.
+    A range without extent is not held; if no range has an extent, the exposure stays as it is.
     """
     held = {} if isinstance(exposure, str) else dict(exposure)
     each_has_its_own = scaling == "surface" and OBJECT not in held
@@ -161,7 +163,7 @@ def held_exposure(picture: Picture, scaling: str, exposure: Exposure = AUTO) -> 
             if number and name == OBJECT:
                 continue
             held.setdefault(name, (extent.minimum * picture.scale, extent.maximum * picture.scale))
-    return tuple(held.items()) or AUTO
+    return tuple(held.items()) or exposure
 
 
 @underflowing

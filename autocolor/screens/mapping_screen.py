@@ -189,8 +189,8 @@ class MappingScreen(OverPicture):
             session.studio.image.mapped, scene.scaling, scene.mapping, scene.exposure, session.surface_name
         )
         levels, shares = (ACROSS, np.zeros_like(ACROSS)) if curve is None else curve
-        is_held = bool(held_name(scene.exposure, session.surface_name))
-        return Curve(session.surface_name, levels, shares, self._points(), self._touched, is_held)
+        state = range_state(scene.exposure, session.surface_name)
+        return Curve(session.surface_name, levels, shares, self._points(), self._touched, state)
 
     # The actions of the rows.
 
@@ -247,7 +247,7 @@ CURVE: Final = Area(PANEL.left + 8, PANEL.top + 16, PANEL.right - 8, PANEL.botto
 ACROSS: Final = np.linspace(0, 1, CURVE.width, dtype=np.float32)
 """The fraction of the intensities at each element of the curve."""
 
-MOST_CHARACTERS: Final = (CURVE.width - 2 * CHARACTER) // CHARACTER - len("level: held")
+MOST_CHARACTERS: Final = (CURVE.width - 2 * CHARACTER) // CHARACTER - len("level: 99.95 %")
 MOST_COUNTED: Final = 20_000
 """Assumed: intensities that are counted; the panel cannot tell more apart."""
 
@@ -264,17 +264,13 @@ class Curve(NamedTuple):
     points: CurvePoints
     touched: int | None
     """The number of the point that was touched last."""
-    is_held: bool = False
-    """Whether the range of the surface is held."""
+    state: str = AUTO
+    """What `range_state` says of the surface."""
 
 
 def panel_items(curve: Curve) -> list[Item]:
     """The items of the panel."""
-    title = (
-        f"{short_name(curve.surface, MOST_CHARACTERS)}: {HELD if curve.is_held else AUTO}"
-        if curve.surface
-        else ""
-    )
+    title = f"{short_name(curve.surface, MOST_CHARACTERS)}: {curve.state}" if curve.surface else ""
     top = PANEL.top + 4
     items = [
         filled(PANEL, NIGHT),
@@ -409,8 +405,14 @@ def surface_rows(session: Session, put: Callable[[Mapping[str, object]], object]
 
 def _flip(session: Session, name: str, put: Callable[[Mapping[str, object]], object]) -> None:
     put({"exposure": flipped(session, name)})
-    state = HELD if held_name(session.scene.exposure, name) else AUTO
-    session.tell(f"the range of {name}: {state}")
+    session.tell(f"the range of {name}: {range_state(session.scene.exposure, name)}")
+
+
+def range_state(exposure: Exposure, name: str) -> str:
+    """Whether the range of a surface is held, "auto", or follows the picture by a percentage."""
+    if held_name(exposure, name):
+        return HELD
+    return exposure if isinstance(exposure, str) else AUTO
 
 
 def flipped(session: Session, name: str) -> Exposure:

@@ -833,6 +833,17 @@ def test_a_released_exposure_is_the_exposure_before_it_was_held(before: Any) -> 
     assert studio.scene.exposure == free
 
 
+def test_a_release_of_ranges_of_some_surfaces_or_of_nothing_leaves_none_held() -> None:
+    studio = Studio(car().replace(exposure="auto"), Ramtek9300(SMALL))
+    studio.edit(studio.scene.replace(exposure="99.5 %"))
+    studio.release_exposure()
+    assert studio.scene.exposure == "99.5 %"
+    studio.hold_exposure({"glass": (0.0, 2.0)})
+    studio.light("key", intensity=0.3)
+    studio.release_exposure()
+    assert studio.scene.exposure == "99.5 %"
+
+
 def test_an_edit_of_light_or_color_moves_no_range_and_one_of_the_view_does() -> None:
     studio = Studio(car(), Ramtek9300(SMALL))
     ranges = studio.level_ranges

@@ -156,7 +156,8 @@ def test_a_coarse_picture_is_explained_by_its_blocks_and_refined_by_the_studio()
 def test_json_can_hold_everything() -> None:
     scene = car().with_scalar(name="stress", missing="#010203")
     studio, _ = opened(scene)
-    plain = studio.explain(12, 16).to_plain()
+    line, element = np.array([12, 16])
+    plain = studio.explain(line, element).to_plain()
     assert json.loads(json.dumps(plain, allow_nan=False))["level"]["scalar"]["value"] is None
     assert plain["color"] == (1, 2, 3) or plain["level"]["brightness"] < 1
     assert opened()[0].explain(0, 0).to_plain()["point"] is None

@@ -13,6 +13,7 @@ from autocolor.explanation.light import (
     specular_factor,
     specular_growth,
 )
+from autocolor.explanation.point import dot, unit
 from autocolor.scene.reflection_models import SpecularGrowth
 from tests.autocolor.meshes import wall_scene
 
@@ -81,6 +82,16 @@ def test_every_model_gives_1_where_light_and_eye_are_along_the_normal(model: Any
     assert specular_factor(model, up, up, up) == pytest.approx(1)
     aside = (math.sin(1.0), 0.0, math.cos(1.0))
     assert 0 <= specular_factor(model, aside, up, up) < 0.1
+
+
+def test_no_power_exceeds_1_where_a_cosine_is_rounded_above_it() -> None:
+    for components in ((1, 1, 1), (1, 1, 2), (1, 3, 7)):
+        vector = unit(components)
+        assert dot(vector, vector) > 1
+        assert specular_factor(Phong(1e20), vector, vector, vector) <= 1
+        assert specular_factor(BlinnPhong(1e20), vector, vector, vector) <= 1
+        light = Light("key", position=vector, aim=(0.0, 0.0, 0.0), concentration=1e20)
+        assert controls_at(light, (0.0, 0.0, 0.0), wall_scene())["concentration"] <= 1
 
 
 def test_growth_is_1_at_normal_incidence_and_largest_at_a_grazing_one() -> None:

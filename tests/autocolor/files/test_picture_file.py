@@ -235,7 +235,9 @@ def test_numpy_can_open_a_picture_file(tmp_path: Path) -> None:
 
 def test_a_smooth_picture_comes_back_with_its_smoothness(tmp_path: Path) -> None:
     scene = lit_wall()
-    picture = render(scene, LINES // 3, ELEMENTS // 3, smooth=3)
+    # Integers of numpy are as good as others.
+    lines, elements, smooth = np.array([LINES // 3, ELEMENTS // 3, 3])
+    picture = render(scene, lines, elements, smooth=smooth)
     write_picture(tmp_path / "wall.npz", picture, scene)
     again = read_picture(tmp_path / "wall.npz")
     assert again.picture.smooth == 3

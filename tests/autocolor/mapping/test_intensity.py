@@ -292,9 +292,10 @@ def test_half_the_light_is_half_as_bright_where_the_exposure_is_held() -> None:
     assert np.abs(dark[seen] * 2 - bright[seen]).max() <= 1
 
 
-def test_no_range_is_held_if_no_range_has_an_extent() -> None:
-    scene = wall_scene(lights=())
-    assert held_exposure(render(scene, 9, 12), scene.scaling) == "auto"
+@pytest.mark.parametrize("exposure", ["auto", "99.5 %"])
+def test_no_range_is_held_if_no_range_has_an_extent(exposure: str) -> None:
+    scene = wall_scene(lights=()).replace(ambient=0)
+    assert held_exposure(render(scene, 9, 12), scene.scaling, exposure) == exposure
 
 
 def test_an_extent_of_a_few_units_in_the_last_place_is_none() -> None:
@@ -334,8 +335,14 @@ def test_a_surface_is_trimmed_by_its_own_intensities_or_by_those_of_the_object()
     of_surfaces = following_ranges(picture, "surface", "90 %")
     assert of_surfaces[1].maximum == pytest.approx(0.5)
     assert of_surfaces[2].maximum == pytest.approx(8)
-    assert {*following_ranges(picture, "object", "90 %")} == {0}
     assert following_ranges(picture, "object", "90 %")[0].maximum == pytest.approx(7.125)
+
+
+def test_a_surface_without_extent_is_not_trimmed_and_has_the_range_of_the_object() -> None:
+    picture = picture_of([0.1] * 20, np.linspace(0.1, 1, 20).tolist())
+    ranges = mapped_ranges(picture, "surface", "90 %")
+    assert ranges[1] == ranges[0]
+    assert words_of(picture, RANGES, exposure="90 %").ravel()[1] == RANGES["a"].first
 
 
 def test_specks_are_at_the_highest_level_and_leave_all_other_words() -> None:

@@ -269,7 +269,7 @@ def drawn(curve: Curve) -> np.ndarray[tuple[int, ...], np.dtype[np.uint16]]:
 
 def test_the_panel_stays_within_its_area_however_long_the_name() -> None:
     zeros = np.zeros_like(ACROSS)
-    words = drawn(Curve("fender of the left front door", ACROSS, zeros, STRAIGHT, 0)).copy()
+    words = drawn(Curve("fender of the left front door", ACROSS, zeros, STRAIGHT, 0, "99.95 %")).copy()
     words[PANEL.top : PANEL.bottom + 1, PANEL.left : PANEL.right + 1] = 0
     assert not words.any()
     assert WORK.covers(PANEL)
@@ -298,7 +298,7 @@ def test_shares_of_a_range_without_extent_and_of_many_intensities_are_finite() -
     assert shares_of(np.full(3 * MOST_COUNTED, 0.5, np.float32), 0.5, 0.5).max() == 1
     assert not shares_of(np.zeros(0, np.float32), 0.0, 1.0).any()
     # A range of a few roundings of float32.
-    assert shares_of(np.float32([0.5, 0.5000005]), 0.5, 0.5000005).max() == 1
+    assert shares_of(np.array([0.5, 0.5000005], np.float32), 0.5, 0.5000005).max() == 1
 
 
 FRACTIONS = st.floats(0, 1)
@@ -489,6 +489,7 @@ def test_holding_one_surface_of_a_percentage_changes_no_word_and_its_release_ret
         hand.pick("low", 0.95)
         hand.pick("high", 0.95)
         assert scene_of(hand).exposure == "90 %"
+        assert told(hand) == ("the range of high: 90 %", False)
 
 
 def test_a_surface_that_leaves_the_range_of_the_object_leaves_it_to_the_others(tmp_path: Path) -> None:
