@@ -17,6 +17,7 @@ from ramtek_emu import Ramtek9300, instructions
 COPY, SCAN_OUT = "copy of one field", "scan-out"
 FIRST_RECOLOR = "first recolor after other words"
 ENTRIES, STREAM = "entries of a surface, sent", "words of a picture, sent"
+IMAGE, SMOOTH_IMAGE = "from rendering to an image", "from rendering to a smooth image"
 INTENSITY, EXPONENT, MAPPING = "a light's intensity", "a surface's exponent", "mapping curve"
 
 
@@ -73,3 +74,5 @@ def own_cases(scene: Scene) -> Iterator[Case]:
     yield Case(ONE_LIGHT, session.one_light)
     yield Case(ALL_LIGHTS, all_lights)
     yield Case(FRAME, frame)
+    yield Case(IMAGE, lambda: autocolor.image(scene, autocolor.render(scene)))
+    yield Case(SMOOTH_IMAGE, lambda: autocolor.image(scene, autocolor.render(scene, smooth=2)))

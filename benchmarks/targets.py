@@ -18,7 +18,7 @@ from benchmarks.contestants import case_of, contestants
 from benchmarks.mapped_tables import mapped_memory, mapped_times
 from benchmarks.movement import drag_seconds
 from benchmarks.once import differing_pixels, first_picture, many_polygons, memory
-from benchmarks.own_cases import COPY, SCAN_OUT, STREAM, own_cases
+from benchmarks.own_cases import COPY, IMAGE, SCAN_OUT, SMOOTH_IMAGE, STREAM, own_cases
 from benchmarks.points import ALL_LIGHTS, FRAME, ONE_LIGHT, RECOLOR
 
 ROUNDS, ROUNDS_OF_SLOW, ROUNDS_OF_MANY = 25, 5, 7
@@ -103,6 +103,7 @@ TARGETS = (
     Target(
         "a picture through the instructions", "ms", 1, lambda seconds: spread(seconds[STREAM]).times(1e3)
     ),
+    Target("an image with smooth edges, 2 x 2", "of a plain image's time", 4.5, between(SMOOTH_IMAGE, IMAGE)),
     Target("a drag on 100,000 polygons", "ms between fields", 33, lambda _: drag_seconds().times(1e3)),
     Target("a color bar of the coupe, dragged", "ms to its field", 4, dragged(COLOR_BAR)),
     Target("the blend bar of the coupe, dragged", "ms to its field", 4, dragged(BLEND_BAR)),
