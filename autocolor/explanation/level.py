@@ -180,7 +180,10 @@ def curved(mapping: str | CurvePoints, fraction: float) -> float:
 
 
 def equalized(everything: Floats, low: float, high: float, intensity: float) -> float:
-    """The share of all intensities above the minimum of a range that are at most as large as an intensity."""
+    """The share of all intensities above the minimum of a range that are at most as large as an intensity.
+
+    Where many intensities differ by little more than rounding, rounding changes the share by several levels.
+    """
     if intensity >= high:
         return 1.0
     rounding = ROUNDING * high
