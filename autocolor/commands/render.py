@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 import click
 
 from autocolor.commands.completion import complete_lights, complete_views
-from autocolor.commands.options import normals_option, size_option, smooth_option, with_normals
+from autocolor.commands.options import normals_option, size_option, smooth_of, smooth_option, with_normals
 from autocolor.commands.outputs import refuse_outputs, tell_written, write_image
 from autocolor.commands.scenes import (
     SceneSource,
@@ -90,7 +90,7 @@ def render(
     settings: tuple[str, ...],
     normals: bool,
     size: tuple[int, int],
-    smooth: str,
+    smooth: str | None,
     hold_exposure: bool,
     force: bool,
 ) -> None:
@@ -100,7 +100,7 @@ def render(
     def rendered(scene: Scene) -> Picture:
         from autocolor.rendering import render
 
-        return render(scene, lines, elements, smooth=int(smooth))
+        return render(scene, lines, elements, smooth=smooth_of(smooth, size))
 
     elements, lines = size
     report = reframed(read(source), elements / lines)

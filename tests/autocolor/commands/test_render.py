@@ -12,6 +12,7 @@ import pytest
 from PIL import Image
 
 from autocolor import Studio, image, read_picture, read_scene, render, write_scene
+from autocolor.commands.options import smooth_of
 from autocolor.commands.render import render as command
 from autocolor.images import SMOOTHNESS, SMOOTHNESSES
 from ramtek_emu import Ramtek9300
@@ -59,7 +60,9 @@ def test_the_smoothness_of_the_command_is_one_of_those_of_images() -> None:
     (option,) = [each for each in command.params if each.name == "smooth"]
     assert isinstance(option.type, click.Choice)
     assert [int(choice) for choice in option.type.choices] == list(SMOOTHNESSES)
-    assert option.default == str(SMOOTHNESS)
+    assert smooth_of(None, (3840, 2160)) == SMOOTHNESS
+    assert smooth_of(None, (4096, 4096)) == 1
+    assert smooth_of("4", (4096, 4096)) == 4
 
 
 @pytest.mark.parametrize("smooth", ["5", "0", "x", "-1", "2.0", ""])
@@ -388,7 +391,7 @@ def test_a_picture_too_large_for_the_memory_ends_with_what_was_being_done(folder
     import resource
 
     ran = process(
-        *("render", "scene", "--size", "4096x4096", "--smooth", "1"),
+        *("render", "scene", "--size", "4096x4096"),
         preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (500 << 20, 500 << 20)),
     )
     assert (ran.code, ran.out) == (71, "")
