@@ -70,7 +70,9 @@ def _point_rows(at: PointExplained) -> Iterable[TextRow]:
     )
     yield TextRow("surface", f"{at.surface}  {at.surface_name}: {columns}")
     yield TextRow("part", f"{at.part}  {at.part_name}")
-    yield TextRow("polygon", f"{at.polygon}  nodes {nodes}")
+    triangle = ", ".join(str(at.corners[place].node) for place in at.between)
+    within = f"; triangle {triangle}" if len(at.between) < len(at.corners) else ""
+    yield TextRow("polygon", f"{at.polygon}  nodes {nodes}{within}")
     for corner in at.corners:
         place, normal = _vector(corner.coordinates, decimals), _vector(corner.normal, 4)
         yield TextRow(f"node {corner.node}"[: LABEL - 1], f"{place}  normal {normal}")
@@ -83,7 +85,7 @@ def _point_rows(at: PointExplained) -> Iterable[TextRow]:
 def _light_rows(explanation: Explanation, most: int) -> Iterable[TextRow]:
     """A table of the lights, those that contribute most first, with a row of the controls of each."""
     number = _numbers(explanation)
-    columns = ("I", "E", "L", "intensity", "controls", "diffuse", "specular", "sum")
+    columns = ("I deg", "E deg", "L deg", "intensity", "controls", "diffuse", "specular", "sum")
     yield TextRow("light", _in_columns(columns))
     rows = [[_light_row(light, number), *_control_rows(light)] for light in explanation.lights]
     shown: list[TextRow] = []

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from numbers import Integral
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -227,11 +227,15 @@ class Picture(Immutable):
         )
 
 
+MOST_SMOOTH: Final = 64
+"""Limit: the pixels along a side of a square that becomes a pixel of an image."""
+
+
 def check_smooth(smooth: int) -> None:
-    """Raise UsageError unless `smooth` is a whole number of at least 1."""
-    if isinstance(smooth, bool) or not isinstance(smooth, Integral) or smooth < 1:
+    """Raise UsageError unless `smooth` is a whole number from 1 to MOST_SMOOTH."""
+    if isinstance(smooth, bool) or not isinstance(smooth, Integral) or not 1 <= smooth <= MOST_SMOOTH:
         raise UsageError(
-            f"smooth must be a whole number of at least 1, not {shown(smooth)}; give one such as 4"
+            f"smooth must be a whole number from 1 to {MOST_SMOOTH}, not {shown(smooth)}; give one such as 4"
         )
 
 

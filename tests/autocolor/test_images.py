@@ -249,7 +249,7 @@ def test_the_legend_of_a_smooth_image_is_as_sharp_as_on_a_display_of_its_size(tm
     assert (smooth[inside] == plain[inside]).all()
 
 
-@pytest.mark.parametrize("smooth", [0, -1, 1.0, True, "4"])
+@pytest.mark.parametrize("smooth", [0, -1, 65, 1.0, True, "4"])
 def test_a_smoothness_that_is_no_whole_number_is_refused(tmp_path: Path, smooth: Any) -> None:
     scene = wall_scene()
     picture = render(scene, 4, 4)
@@ -258,7 +258,7 @@ def test_a_smoothness_that_is_no_whole_number_is_refused(tmp_path: Path, smooth:
         lambda: image(scene, picture, smooth=smooth),
         lambda: render(scene, 4, 4, smooth=smooth),
     ):
-        with pytest.raises(UsageError, match="smooth must be a whole number of at least 1, not"):
+        with pytest.raises(UsageError, match="smooth must be a whole number from 1 to 64, not"):
             refused()
 
 
