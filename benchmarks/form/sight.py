@@ -34,7 +34,7 @@ SMOOTH: Final = 2.0
 CREATED: Final = "created"
 """The view that is created for a mesh, the first that people see."""
 
-TURNED: Final = {"turned": (-5.0, 40.0), "low": (115.0, 5.0)}
+TURNED: Final = {"turned": (-175.0, 40.0), "low": (65.0, 5.0)}
 """The azimuth and elevation of the eye in degrees, 120 from each other and from the created view."""
 
 

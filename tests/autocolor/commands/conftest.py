@@ -21,12 +21,12 @@ v 0 0 0
 v 1 0 0
 v 1 0 1
 v 0 0 1
-v 0 1 0
-v 0 1 1
+v 1 1 0
+v 1 1 1
 g front.low
 f 1 2 3 4
 g side
-f 1 4 6 5
+f 2 5 6 3
 """
 
 SCENE = """\

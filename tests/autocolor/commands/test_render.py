@@ -293,8 +293,8 @@ v 0 0 0
 v 1 0 0
 v 1 0 1
 v 0 0 1
-v 0 1 0
-v 0 1 1
+v 1 1 0
+v 1 1 1
 v 1 0 2
 v 0 0 2
 g front
@@ -304,7 +304,7 @@ usemtl glass
 f 4 3 7 8
 g side
 usemtl rubber
-f 1 4 6 5
+f 2 5 6 3
 """
 LIBRARY = """\
 newmtl red
