@@ -446,7 +446,7 @@ def test_what_was_created_is_written_out(tmp_path: Path) -> None:
     text = (tmp_path / "scene.toml").read_text()
     assert text.count("[[lights]]") == 4
     assert "[view]\neye" in text
-    assert "ambient = 0.05\n" in text
+    assert "ambient = 0.13\n" in text
     assert 'exposure = "99.5 %"\n' in text
 
 
