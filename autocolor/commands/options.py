@@ -73,7 +73,7 @@ smooth_option = click.option(
     " Default: 2, and 1 for more than 10 million pixels.",
 )
 
-MOST_SMOOTH: Final = 10_000_000
+MOST_SMOOTH_PIXELS: Final = 10_000_000
 """Limit: the pixels of a picture that is smooth by default. Four times as many fit in the memory budget."""
 
 
@@ -83,7 +83,7 @@ def smooth_of(given: str | None, size: tuple[int, int]) -> int:
 
     if given is not None:
         return int(given)
-    return SMOOTHNESS if size[0] * size[1] <= MOST_SMOOTH else 1
+    return SMOOTHNESS if size[0] * size[1] <= MOST_SMOOTH_PIXELS else 1
 
 
 def _allow(context: click.Context, _: click.Parameter, limit: float | None) -> None:

@@ -36,7 +36,7 @@ class PointExplained:
     """The visible point: the rows of the tables that lead to it, and its vectors in object coordinates.
 
     `between` has the places, from 0, of the corners between which the point is interpolated: all corners of
-    the polygon, or those of one of its triangles. `reflectance` is the surface's. `normal` is the unit normal
+    the polygon, or three corners of a quad. `reflectance` is the surface's. `normal` is the unit normal
     N; it is interpolated with the length `normal_length`, normalized, and turned to the eye if `is_turned`.
     `reflected_view` is R = 2 (N.V) N - V. `distance` leads from the eye to the point.
     """

@@ -91,7 +91,7 @@ class Rays(NamedTuple):
     def from_light(self, places: Indices) -> Singles:
         """The vectors from the light to some points, (3, places) float32, as exact as the points."""
         position = self.position.astype(np.float32)
-        # The difference of two numbers that are close to each other is exact.
+        # Near the light the difference is exact: both numbers are close to each other.
         vectors: Singles = columns(self.rows[POINT], places)
         vectors -= position[:, None]
         vectors -= (self.position - position).astype(np.float32)[:, None]

@@ -184,7 +184,7 @@ class _AtPoints(NamedTuple):
     def positions(self) -> Singles:
         """The points in camera space, (3, points)."""
         points = self.rays.rows[POINT]
-        return points if self.places is None else points.take(self.places, axis=1)
+        return points if self.places is None else columns(points, self.places)
 
     def exact_light(self) -> ExactLight | None:
         """cos(L) at some of the points; None if it is exact in float32."""

@@ -457,8 +457,8 @@ def _by_number(number: Numbers) -> Indices:
 #
 # Departs: in a scene with `interpolation = "invariant"`, every quad is two triangles. In a triangle all that
 # is interpolated is linear on the surface, so the direction of the scan lines does not matter. Warped quads
-# are cut in the projection. All others are whole until it is known what is visible; then each span is cut
-# where its line crosses the diagonal.
+# are cut in the projection. The depth test works on the other quads as they are, and the visible spans are
+# cut where their lines cross the diagonal.
 #
 # Measured and rejected: the diagonal as a third edge between the two edges that a line crosses. The visible
 # surfaces of the coupe take a quarter longer than along scan lines, and of a million quads a third.
