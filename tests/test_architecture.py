@@ -37,13 +37,13 @@ WINGS = {
     "autocolor": (
         "errors", "logs", "arrays", "immutable", "checks", "budget", "scene", "visibility", "scalars",
         "lighting", "mapping", "files", "rendering", "sending", "images", "explanation", "journal", "studio",
-        "widgets", "screens", "commands", "__main__",
+        "testing", "widgets", "screens", "commands", "__main__",
     ),
     "ramtek_emu": (
         "errors", "arrays", "checks", "timing", "configuration", "writing", "png",
         "command_line",
         "instruction_set", "memory", "drawing", "video", "processor", "instructions", "display",
-        "host", "monitor", "snapshot", "commands", "__main__",
+        "host", "monitor", "snapshot", "testing", "commands", "__main__",
     ),
 }  # fmt: skip
 """The wings of a package in the order of its data: each may use those before it and no other."""
@@ -59,6 +59,9 @@ DOORS_OF_THE_DISPLAY = {
     "ramtek_emu.monitor.window", "ramtek_emu.writing",
 }  # fmt: skip
 OUTSIDE = {"numpy", "click", "PIL", "pygame"}
+
+FOR_TESTS = {"hypothesis"}
+"""The packages of the extra `testing`."""
 
 READING_FOR_US = {"meshio", "trimesh"}
 """The packages of the extra `meshes`."""
@@ -142,11 +145,15 @@ def test_pillow_is_in_two_files_one_for_pictures_and_one_for_the_names_of_colors
 
 def test_nothing_is_imported_that_is_no_dependency() -> None:
     used = {top(i.target) for imports in IMPORTS.values() for i in imports}
-    assert used <= {*PUBLIC_NAMES, *OUTSIDE, *READING_FOR_US, *sys.stdlib_module_names}
+    assert used <= {*PUBLIC_NAMES, *OUTSIDE, *FOR_TESTS, *READING_FOR_US, *sys.stdlib_module_names}
 
 
 def test_the_libraries_that_read_meshes_are_in_one_file_and_loaded_when_they_are_needed() -> None:
     assert importers(READING_FOR_US) == {("autocolor.files.meshes.foreign_worker", False)}
+
+
+def test_hypothesis_is_in_the_two_modules_that_are_for_tests() -> None:
+    assert {name for name, _ in importers(FOR_TESTS)} == {"autocolor.testing", "ramtek_emu.testing"}
 
 
 def test_constants_are_final_and_array_types_stand_in_one_module() -> None:
@@ -289,10 +296,10 @@ def test_every_module_imports_alone_and_only_the_window_loads_pygame(package: st
     run(IMPORTING_ALONE.format(modules=modules), timeout=300)
 
 
-def test_the_packages_import_no_numpy_and_no_screen() -> None:
+def test_the_packages_import_no_numpy_no_screen_and_no_hypothesis() -> None:
     code = (
         "import sys, autocolor, ramtek_emu;"
-        "print([name for name in ('numpy', 'pygame', 'PIL') if name in sys.modules])"
+        "print([name for name in ('numpy', 'pygame', 'PIL', 'hypothesis') if name in sys.modules])"
     )
     assert run(code).strip() == "[]"
 

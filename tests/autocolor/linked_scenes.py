@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from autocolor import Light, Scene
 from autocolor.scene.lights import EYE, FALLOFFS, HalfSpace, Links
-from tests.autocolor.strategies import directions, numbers, scenes, vectors
+from autocolor.testing import directions, numbers, scenes, vectors
 
 half_spaces = st.builds(
     HalfSpace,

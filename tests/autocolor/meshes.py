@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from autocolor import Mesh, Reflectance, Scene, Surface, View, scene_of
+from autocolor.checks import Vector
 from autocolor.scene.changes import SceneFields
-from tests.autocolor.strategies import Vector
 
 STRETCHED: SceneFields = {
     "scaling": "surface",

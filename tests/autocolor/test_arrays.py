@@ -30,7 +30,8 @@ from autocolor.arrays import (
     used_bounds,
     used_rows,
 )
-from tests.autocolor.strategies import Vector, directions, numbers
+from autocolor.checks import Vector
+from autocolor.testing import directions, numbers
 
 whole = st.integers(-(2**63), 2**63 - 1)
 

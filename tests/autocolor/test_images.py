@@ -30,11 +30,11 @@ from autocolor.images import LARGEST, averaged, display_image, size_of, smoothed
 from autocolor.mapping.legend import legend
 from autocolor.mapping.ranges import SCREENS
 from autocolor.sending import shown_colors
+from autocolor.testing import scenes
 from ramtek_emu import GMR_9300, Configuration, ConfigurationError, Ramtek9300
 from ramtek_emu.arrays import Colors
 from tests.autocolor.meshes import STRETCHED, cube, wall_scene
 from tests.autocolor.sessions import SMALL, held, opened
-from tests.autocolor.strategies import scenes
 
 
 @given(scenes())

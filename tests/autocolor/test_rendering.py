@@ -17,9 +17,9 @@ from autocolor import Flap, Flaps, Light, Mesh, Scene, Surface, UsageError, View
 from autocolor import rendering as rendering_module
 from autocolor.lighting.shading import shade
 from autocolor.rendering import BLOCKS, PICTURE_SECONDS, Rendering, block_for, blocks_of, rendering
+from autocolor.testing import scenes
 from autocolor.visibility.visible_points import PointChunk
 from tests.autocolor.meshes import cube, grid, sphere
-from tests.autocolor.strategies import scenes
 from tests.closeness import all_close
 
 ROOT = Path(__file__).resolve().parents[2]

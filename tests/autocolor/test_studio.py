@@ -28,10 +28,10 @@ from autocolor import (
 )
 from autocolor.lighting.picking import highlight_placed
 from autocolor.mapping.ranges import SCREENS
+from autocolor.testing import colors, limits, numbers, scales, scenes, vectors
 from ramtek_emu import Ramtek9300
 from tests.autocolor.meshes import cube
 from tests.autocolor.sessions import SMALL, car, fresh, held, opened
-from tests.autocolor.strategies import colors, limits, numbers, scales, scenes, vectors
 
 Edit = tuple[str, str, dict[str, Any]]
 

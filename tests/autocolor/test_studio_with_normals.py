@@ -16,9 +16,9 @@ from hypothesis import strategies as st
 
 from autocolor import InputError, Scene, Studio, image, read_picture
 from autocolor.rendering import Rendering, rendering
+from autocolor.testing import colors, numbers
 from ramtek_emu import Ramtek9300, Recorder
 from tests.autocolor.sessions import car, fresh, held, opened
-from tests.autocolor.strategies import colors, numbers
 from tests.autocolor.test_studio import (
     SURFACES,
     Edit,

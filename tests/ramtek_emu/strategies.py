@@ -1,4 +1,4 @@
-"""Words, windows, entries and streams for the display's tests."""
+"""Strategies of the tests alone; those of `ramtek_emu.testing` are for everybody."""
 
 from __future__ import annotations
 
@@ -8,11 +8,9 @@ from collections.abc import Iterable
 import numpy as np
 from hypothesis import settings
 from hypothesis import strategies as st
-from hypothesis.extra import numpy as arrays
 from numpy.typing import NDArray
 
 from ramtek_emu import Configuration
-from ramtek_emu.instruction_set.table import FORMATS, SUBSTANTIATED
 from ramtek_emu.memory.scan_orders import Point, Window
 
 quick = settings(deadline=None, max_examples=60)
@@ -20,8 +18,6 @@ thorough = settings(deadline=None, max_examples=150)
 
 SMALL = Configuration(name="SMALL", elements=13, lines=9, planes=10)
 
-words = st.integers(0, 0xFFFF)
-ten_bit_words = st.integers(0, 1023)
 scan_codes = st.integers(0, 7)
 masks = st.integers(0, 1023) | st.just(0xFFFF)
 points = st.builds(Point, st.integers(-6, 18), st.integers(-6, 14))
@@ -32,21 +28,6 @@ def windows(draw: st.DrawFn) -> Window:
     """A window that may lie partly or wholly outside the small memory; never empty."""
     left, top = draw(st.integers(-6, 15)), draw(st.integers(-6, 11))
     return Window(left, top, left + draw(st.integers(0, 16)), top + draw(st.integers(0, 12)))
-
-
-def streams(most: int = 60) -> st.SearchStrategy[list[int]]:
-    """Random words; many of them begin an instruction."""
-    opcodes = st.sampled_from([format.opcode for format in SUBSTANTIATED]) | st.sampled_from(
-        [format.opcode for format in FORMATS]
-    )
-    begins = st.builds(lambda opcode, low: opcode << 8 | low, opcodes, st.integers(0, 255))
-    small = st.integers(0, 12)
-    return st.lists(begins | small | words, max_size=most)
-
-
-def rasters(lines: int = 9, elements: int = 13) -> st.SearchStrategy[NDArray[np.uint16]]:
-    """(lines, elements) ten-bit words."""
-    return arrays.arrays(np.uint16, (lines, elements), elements=ten_bit_words, fill=st.nothing())
 
 
 def cuts(stream: list[int], places: list[int]) -> list[NDArray[np.uint16]]:

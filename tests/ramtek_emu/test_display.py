@@ -30,9 +30,10 @@ from ramtek_emu.display import EXECUTORS
 from ramtek_emu.instruction_set.table import FORMATS, ILLEGAL
 from ramtek_emu.memory.character_rom import characters
 from ramtek_emu.snapshot import snapshot_bytes
+from ramtek_emu.testing import streams
 from tests.ramtek_emu.displays import sent
 from tests.ramtek_emu.recorded_streams import RECORDED
-from tests.ramtek_emu.strategies import SMALL, cuts, sent_words, streams, thorough
+from tests.ramtek_emu.strategies import SMALL, cuts, sent_words, thorough
 from tests.ramtek_emu.test_hostile import sessions
 
 

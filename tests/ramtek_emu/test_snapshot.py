@@ -47,9 +47,10 @@ from ramtek_emu.snapshot import (
     value_refusal,
     whole_number,
 )
+from ramtek_emu.testing import streams
 from ramtek_emu.timing import Timing
 from tests.ramtek_emu.recorded_streams import BYTE_IMAGE, DECODED, OUTLINE, words
-from tests.ramtek_emu.strategies import SMALL, quick, streams, thorough
+from tests.ramtek_emu.strategies import SMALL, quick, thorough
 
 CURSORS = words("1600 0064 0C64 1601 0032 0440")
 

@@ -15,10 +15,10 @@ from autocolor.explanation.light import controls_at
 from autocolor.images import display_image
 from autocolor.mapping.display_image import DisplayImage
 from autocolor.rendering import Rendering, rendering
+from autocolor.testing import scenes
 from autocolor.visibility.visible_points import Sight
 from tests.autocolor.meshes import wall_scene
 from tests.autocolor.sessions import car, opened
-from tests.autocolor.strategies import scenes
 
 LINES, ELEMENTS = 24, 32
 

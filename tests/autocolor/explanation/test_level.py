@@ -26,10 +26,10 @@ from autocolor.rendering import rendering
 from autocolor.scene.color_scales import COLOR_SCALES, scale_colors
 from autocolor.scene.curves import CURVES
 from autocolor.scene.scalar import COMPUTED
+from autocolor.testing import numbers, paints, scales
 from autocolor.visibility.visible_points import Sight
 from tests.autocolor.meshes import sphere
 from tests.autocolor.sessions import car, opened
-from tests.autocolor.strategies import numbers, paints, scales
 
 LINES, ELEMENTS = 24, 32
 

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from autocolor import Flap, Flaps, HalfSpace, InputError, Light, Scene, View, render
 from autocolor.arrays import Booleans, Floats, Singles
+from autocolor.checks import Vector
 from autocolor.explanation.light import edge_share
 from autocolor.explanation.point import dot, unit
 from autocolor.lighting import controls as light_controls
@@ -34,10 +35,10 @@ from autocolor.lighting.controls import (
 )
 from autocolor.scene.following import light_frame
 from autocolor.scene.lights import Links
+from autocolor.testing import directions, lights, numbers, scenes, some_of, vectors, views
 from autocolor.visibility.visible_points import POINT, VisiblePoints
 from autocolor.visibility.visible_surfaces import visible_surfaces
 from tests.autocolor.meshes import sphere, wall, wall_scene
-from tests.autocolor.strategies import Vector, directions, lights, numbers, scenes, some_of, vectors, views
 
 
 def wall_points() -> VisiblePoints:

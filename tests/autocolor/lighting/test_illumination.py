@@ -9,10 +9,10 @@ from autocolor import Light, Mesh, Scene, Surface, View, scene_of
 from autocolor.lighting.illumination import Previous, illuminate
 from autocolor.lighting.picture import Picture
 from autocolor.scene.reflection_models import BlinnPhong, CookTorrance, Phong, ReflectionModel, SpecularGrowth
+from autocolor.testing import lights, scenes
 from autocolor.visibility.visible_points import VisiblePoints
 from autocolor.visibility.visible_surfaces import visible_surfaces
 from tests.autocolor.meshes import cube, sphere
-from tests.autocolor.strategies import lights, scenes
 
 RASTER = (12, 16)
 SOME_MODELS: list[ReflectionModel] = [

@@ -26,6 +26,7 @@ from autocolor import (
     read_scene,
     render,
 )
+from autocolor.checks import Vector
 from autocolor.explanation.point import dot, minus, plus, times, unit
 from autocolor.lighting.controls import Axis, FlapEnd
 from autocolor.lighting.picking import (
@@ -50,11 +51,11 @@ from autocolor.rendering import Rendering, rendering
 from autocolor.scene.columns import with_values
 from autocolor.scene.following import detached
 from autocolor.scene.reflection_models import BlinnPhong, CookTorrance, Phong, ReflectionModel
+from autocolor.testing import directions, lights, numbers, outside_views, vectors
 from autocolor.visibility.visible_points import Seen, Sight, seen_at
 from ramtek_emu import Ramtek9300
 from tests.autocolor.meshes import cube, grid, sphere, wall, wall_scene
 from tests.autocolor.sessions import car
-from tests.autocolor.strategies import Vector, directions, lights, numbers, outside_views, vectors
 
 LINES, ELEMENTS = 60, 80
 COARSE_LINES, COARSE_ELEMENTS = 12, 16

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from autocolor import Light, Picture, Scene, render
 from autocolor.mapping.intensity import words_of
 from autocolor.mapping.ranges import level_ranges
+from autocolor.testing import lights, scenes
 from tests.autocolor.meshes import sphere, wall_scene
-from tests.autocolor.strategies import lights, scenes
 from tests.closeness import all_close
 
 

@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Light, View
+from autocolor.checks import Vector
 from autocolor.explanation.point import dot, minus, times, unit
 from autocolor.lighting.rays import (
     FARTHEST,
@@ -18,10 +19,10 @@ from autocolor.lighting.rays import (
     middle_of,
     rays_to,
 )
+from autocolor.testing import directions, numbers, outside_views, vectors
 from autocolor.visibility.visible_points import NORMAL, REFLECTED_VIEW, VisiblePoints
 from autocolor.visibility.visible_surfaces import visible_surfaces
 from tests.autocolor.meshes import cube, sphere, wall, wall_scene
-from tests.autocolor.strategies import Vector, directions, numbers, outside_views, vectors
 
 BALL = sphere(12, 8)
 

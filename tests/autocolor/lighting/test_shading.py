@@ -34,11 +34,12 @@ from autocolor.lighting.shading import DIFFUSE, SPECULAR, LightPlanes, controlle
 from autocolor.scene.kinds import AngleCurve
 from autocolor.scene.lights import Links
 from autocolor.scene.reflection_models import BlinnPhong, CookTorrance, Phong, ReflectionModel, SpecularGrowth
+from autocolor.testing import flaps, lights, numbers, outside_views, surfaces
 from autocolor.visibility.visible_points import VisiblePoints, point_chunks, surface_slices
 from autocolor.visibility.visible_surfaces import visible_surfaces
 from tests.autocolor.meshes import cube, grid, sphere, wall, wall_scene
 from tests.autocolor.reference import Lit, controlled, light_at, ray
-from tests.autocolor.strategies import flaps, lights, numbers, outside_views, reflectances, surfaces
+from tests.autocolor.strategies import reflectances
 from tests.closeness import all_close
 
 LINES, ELEMENTS = 12, 16

@@ -17,8 +17,8 @@ from autocolor.mapping.colors import (
     white_of,
     with_white,
 )
+from autocolor.testing import numbers, paints
 from tests.autocolor.reference import entry_of
-from tests.autocolor.strategies import numbers, paints
 
 
 @given(paints, st.integers(2, 300), st.just(0.0) | numbers(0, 1))

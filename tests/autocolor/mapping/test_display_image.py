@@ -18,22 +18,11 @@ from autocolor.mapping.ranges import BACKGROUND, SCREEN_COLORS, SCREENS, WORDS
 from autocolor.rendering import Rendering, rendering
 from autocolor.scene.columns import Tier
 from autocolor.scene.scene import costs_at_least
+from autocolor.testing import MAPPINGS, colors, exposures, limits, numbers, paints, scalars, scales, scenes
 from autocolor.visibility.projection import Projection
 from tests.autocolor.meshes import wall_scene
 from tests.autocolor.sessions import car
-from tests.autocolor.strategies import (
-    MAPPINGS,
-    colors,
-    exposures,
-    limits,
-    numbers,
-    paints,
-    rasters,
-    scalars,
-    scales,
-    scenes,
-    soups,
-)
+from tests.autocolor.strategies import rasters, soups
 
 LINES, ELEMENTS = 9, 12
 

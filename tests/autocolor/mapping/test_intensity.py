@@ -27,10 +27,10 @@ from autocolor.mapping.intensity import (
     words_of,
 )
 from autocolor.mapping.ranges import level_ranges
+from autocolor.testing import MAPPINGS, scenes
 from autocolor.visibility.visible_points import SurfaceSlice
 from tests.autocolor.meshes import wall_scene
 from tests.autocolor.reference import level_of, trimmed
-from tests.autocolor.strategies import MAPPINGS, scenes
 
 
 def picture_of(*intensities: list[float]) -> Picture:

@@ -31,10 +31,10 @@ from autocolor.mapping.normal_words import (
 )
 from autocolor.scene.columns import fields_of
 from autocolor.scene.scene import AUTO, OBJECT, Exposure
+from autocolor.testing import scenes
 from autocolor.visibility.visible_points import SurfaceSlice
 from tests.autocolor import reference
 from tests.autocolor.meshes import sphere
-from tests.autocolor.strategies import scenes
 
 LINES, ELEMENTS = 24, 32
 

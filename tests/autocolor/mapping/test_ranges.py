@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor import InputError, Surface, UsageError
+from autocolor import InputError, Surface, UsageError, testing
 from autocolor.mapping.ranges import (
     BACKGROUND,
     SCREENS,
@@ -116,23 +116,9 @@ Ranges = dict[str, LevelRange]
 
 
 @st.composite
-def some_ranges(draw: st.DrawFn) -> Ranges:
-    """Ranges one after the other, with or without words between them."""
-    first, ranges = 1, {}
-    for number in range(draw(st.integers(1, 12))):
-        first += draw(st.sampled_from([0, 0, 0, 7]))
-        levels = draw(st.sampled_from([2, 3, 16]) | st.integers(2, 1007))
-        if first + levels > SCREENS.first:
-            break
-        ranges[f"surface {number}"] = LevelRange(first, levels)
-        first += levels
-    return ranges or {"surface 0": LevelRange(1, 1007)}
-
-
-@st.composite
 def loans(draw: st.DrawFn) -> tuple[Ranges, list[str], int]:
     """Ranges, the surfaces that stay, and a number of words that can be borrowed."""
-    ranges = draw(some_ranges())
+    ranges = draw(testing.level_ranges())
     kept = [name for name in ranges if draw(st.booleans())]
     most = SCREENS.first - 1 - len(kept)
     return ranges, kept, draw(st.integers(0, most) | st.sampled_from([min(128, most), most]))
@@ -195,7 +181,7 @@ def test_no_pixel_moves_by_more_than_a_level_unless_more_than_half_are_borrowed(
         assert moved.max(initial=0) <= 1
 
 
-@given(some_ranges(), st.integers(1, 400))
+@given(testing.level_ranges(), st.integers(1, 400))
 def test_borrowed_words_are_spread_evenly(ranges: Ranges, count: int) -> None:
     name = max(ranges, key=lambda each: ranges[each].levels)
     levels = ranges[name].levels

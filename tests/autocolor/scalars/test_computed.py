@@ -33,9 +33,9 @@ from autocolor.scalars.computed import (
     zebra,
 )
 from autocolor.scene.scalar import COMPUTED, MeshScalar, Scalar
+from autocolor.testing import numbers
 from autocolor.visibility.visible_points import VisiblePoints
 from tests.autocolor.meshes import cube, grid, sphere, wall, wall_scene
-from tests.autocolor.strategies import numbers
 
 
 def seen(mesh: Mesh, view: View | None = None, lines: int = 30, elements: int = 40) -> VisiblePoints:

@@ -30,8 +30,8 @@ from autocolor.scene.columns import (
     to_plain,
 )
 from autocolor.scene.kinds import Number, Whole
+from autocolor.testing import lights, scenes, surfaces, views
 from tests.autocolor.scene.spans import Span, sentences
-from tests.autocolor.strategies import lights, scenes, surfaces, views
 
 
 def test_a_row_holds_its_values_as_its_kinds_do() -> None:

@@ -9,10 +9,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Mesh, Part, View, render, scene_of
+from autocolor.checks import Vector
 from autocolor.scene import defaults
 from autocolor.scene.defaults import default_lights, default_view, framed, object_bounds, object_coordinates
+from autocolor.testing import directions, meshes, numbers, vectors
 from tests.autocolor.meshes import cube, grid, sphere
-from tests.autocolor.strategies import Vector, directions, meshes, numbers, vectors
 
 
 def assert_framed(view: View, mesh: Mesh) -> None:

@@ -19,6 +19,7 @@ from autocolor import (
     render,
     write_scene,
 )
+from autocolor.checks import Vector
 from autocolor.explanation.point import dot, minus, unit
 from autocolor.rendering import rendering
 from autocolor.scene.following import (
@@ -34,9 +35,9 @@ from autocolor.scene.following import (
     lights_in_world,
     names_to_follow,
 )
+from autocolor.testing import directions, lights, outside_views, vectors, views
 from tests.autocolor.meshes import wall_scene
 from tests.autocolor.sessions import car, fresh, held, opened
-from tests.autocolor.strategies import Vector, directions, lights, outside_views, vectors, views
 
 VIEW = View((0.0, -4.0, 0.0), target=(0.0, 0.0, 0.0))
 

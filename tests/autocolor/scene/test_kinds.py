@@ -29,7 +29,7 @@ from autocolor.scene.kinds import (
     in_digits,
 )
 from autocolor.scene.row_kinds import Reference, References
-from tests.autocolor.strategies import angle_curves
+from autocolor.testing import angle_curves
 
 
 def validated(kind: Kind, value: object) -> tuple[Any, list[str]]:

@@ -28,16 +28,17 @@ from autocolor import (
     write_rig,
     write_scene,
 )
+from autocolor.checks import Vector
 from autocolor.explanation.point import cross, dot, minus
 from autocolor.journal.history import History
 from autocolor.journal.places import Source, place_of
 from autocolor.scene.columns import Tier
 from autocolor.scene.lights import Links, free_name, middle_between
 from autocolor.scene.scene import cost_of_edit
+from autocolor.testing import directions, lights, numbers, some_of, vectors
 from ramtek_emu import Ramtek9300
 from tests.autocolor.journal.random_steps import journal_of
 from tests.autocolor.meshes import grid
-from tests.autocolor.strategies import Vector, directions, lights, numbers, some_of, vectors
 
 
 @given(lights())

@@ -13,8 +13,8 @@ from autocolor import InputError, Mesh
 from autocolor.scene import mesh as mesh_module
 from autocolor.scene.mesh import has_same_tables
 from autocolor.scene.scalar import MeshScalar
+from autocolor.testing import meshes
 from tests.autocolor.meshes import cube, grid, sphere
-from tests.autocolor.strategies import meshes
 
 
 def mesh_of(**fields: Any) -> Mesh:

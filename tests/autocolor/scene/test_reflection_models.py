@@ -28,8 +28,8 @@ from autocolor.scene.reflection_models import (
     ReflectionModel,
     SpecularGrowth,
 )
+from autocolor.testing import angle_curves, growths, numbers
 from tests.autocolor.meshes import ramp
-from tests.autocolor.strategies import angle_curves, growths, numbers
 from tests.closeness import all_close
 
 exponents = st.sampled_from([0.0, 1e-3, 0.3, 1.0, 5.0, 20.0, 100.0])

@@ -13,8 +13,8 @@ from autocolor.scene.columns import WORLD_UNITS, Row, fields_of, from_plain, to_
 from autocolor.scene.following import detached
 from autocolor.scene.lights import AXES
 from autocolor.scene.rigs import mirrored
+from autocolor.testing import lights, scenes, short
 from tests.autocolor.meshes import cube, wall_scene
-from tests.autocolor.strategies import lights, scenes, short
 
 
 @given(scenes())

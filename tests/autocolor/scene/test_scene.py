@@ -10,8 +10,8 @@ from autocolor.scene.columns import Tier
 from autocolor.scene.curves import CURVES
 from autocolor.scene.defaults import object_coordinates
 from autocolor.scene.scene import cost_of_edit
+from autocolor.testing import scenes
 from tests.autocolor.meshes import cube, grid
-from tests.autocolor.strategies import scenes
 
 
 def car() -> Mesh:

@@ -24,8 +24,8 @@ from autocolor.scene.swatches import (
     mixed,
     swatches,
 )
+from autocolor.testing import colors, surfaces
 from tests.autocolor.meshes import STRETCHED, sphere
-from tests.autocolor.strategies import colors, surfaces
 
 
 def field() -> Bytes:

@@ -8,8 +8,9 @@ import pytest
 from hypothesis import given
 
 from autocolor import InputError, View
+from autocolor.checks import Vector
+from autocolor.testing import directions, numbers, vectors
 from tests.autocolor.reference import ray
-from tests.autocolor.strategies import Vector, directions, numbers, vectors
 
 
 @given(vectors(), directions, numbers(-720, 720))

@@ -10,7 +10,9 @@ from hypothesis import strategies as st
 
 from autocolor import Mesh, View
 from autocolor.arrays import Floats
+from autocolor.checks import Vector
 from autocolor.explanation.point import dot, minus
+from autocolor.testing import meshes, outside_views, vectors, views
 from autocolor.visibility import camera as camera_module
 from autocolor.visibility.camera import (
     CameraPolygons,
@@ -19,7 +21,6 @@ from autocolor.visibility.camera import (
     rotated,
 )
 from tests.autocolor.meshes import cube, grid, sphere
-from tests.autocolor.strategies import Vector, meshes, outside_views, vectors, views
 
 
 @given(meshes(), views() | outside_views())

@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Mesh, View
+from autocolor.testing import meshes, outside_views, views
 from autocolor.visibility.depth import (
     KEY_BITS,
     LEAST_NUMBER_BITS,
@@ -24,7 +25,7 @@ from autocolor.visibility.projection import LARGEST_PLANE_ERROR, Projection, pro
 from autocolor.visibility.scan_lines import extents_of_polygons
 from autocolor.visibility.visible_surfaces import visible_surfaces
 from tests.autocolor.meshes import ROUNDINGS, decal_on_ground, grid
-from tests.autocolor.strategies import meshes, outside_views, rasters, views
+from tests.autocolor.strategies import rasters
 from tests.autocolor.visibility.test_scan_lines import extent_on
 
 depths = st.floats(1e-9, 1.0)

@@ -10,7 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Mesh, View, render, scene_of
+from autocolor.checks import Vector
 from autocolor.scene.scene import SCAN_LINE
+from autocolor.testing import directions, meshes, outside_views, vectors, views
 from autocolor.visibility import projection as projection_module
 from autocolor.visibility.projection import (
     Projection,
@@ -26,16 +28,7 @@ from autocolor.visibility.projection import (
 from autocolor.visibility.visible_surfaces import visible_surfaces
 from tests.autocolor.meshes import cube, decal_on_ground, grid, sphere
 from tests.autocolor.reference import ray
-from tests.autocolor.strategies import (
-    Vector,
-    directions,
-    interpolations,
-    meshes,
-    outside_views,
-    rasters,
-    vectors,
-    views,
-)
+from tests.autocolor.strategies import interpolations, rasters
 
 
 @given(vectors(), directions, rasters)

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 
 from autocolor import Mesh, View
+from autocolor.testing import meshes, outside_views, views
 from autocolor.visibility.projection import Projection, projection
 from autocolor.visibility.scan_lines import (
     DOWN_SIDE,
@@ -15,7 +16,7 @@ from autocolor.visibility.scan_lines import (
     edges_on_lines,
     extents_of_polygons,
 )
-from tests.autocolor.strategies import meshes, outside_views, rasters, views
+from tests.autocolor.strategies import rasters
 
 
 def extent_on(projected: Projection, polygon: int, line: int) -> list[tuple[float, float]]:

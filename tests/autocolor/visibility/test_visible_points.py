@@ -11,9 +11,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Light, Mesh, Scene, UsageError, View
+from autocolor.checks import Vector
 from autocolor.explanation.point import dot, minus, plus, times, unit
 from autocolor.lighting.picking import highlight_placed
 from autocolor.rendering import rendering
+from autocolor.testing import meshes, numbers, outside_views, vectors
 from autocolor.visibility.visible_points import (
     NORMAL,
     POINT,
@@ -32,7 +34,7 @@ from autocolor.visibility.watkins import watkins
 from tests.autocolor.meshes import cube, grid, sphere, wall, wall_scene
 from tests.autocolor.reference import first_hit, ray
 from tests.autocolor.sessions import car
-from tests.autocolor.strategies import Vector, meshes, numbers, outside_views, soups, vectors
+from tests.autocolor.strategies import soups
 
 counts_of_surfaces = st.lists(st.integers(0, 40), max_size=6)
 

@@ -14,8 +14,10 @@ from hypothesis import strategies as st
 
 from autocolor import Mesh, View
 from autocolor.arrays import Numbers, runs
+from autocolor.checks import Vector
 from autocolor.explanation.point import dot, minus, times, unit
 from autocolor.scene.scene import INVARIANT, SCAN_LINE
+from autocolor.testing import directions, meshes, numbers, outside_views, vectors, views
 from autocolor.visibility import visible_surfaces as module
 from autocolor.visibility.depth import depth_scale, polygons_of_numbers
 from autocolor.visibility.projection import projection
@@ -33,17 +35,7 @@ from autocolor.visibility.visible_surfaces import (
 from autocolor.visibility.watkins import watkins
 from tests.autocolor.meshes import ROUNDINGS, cube, decal_on_ground, grid, sphere, uneven_wall
 from tests.autocolor.reference import first_hit, on_triangles, ray
-from tests.autocolor.strategies import (
-    Vector,
-    directions,
-    meshes,
-    numbers,
-    outside_views,
-    rasters,
-    soups,
-    vectors,
-    views,
-)
+from tests.autocolor.strategies import rasters, soups
 
 
 def assert_as_ray_casting(mesh: Mesh, view: View, lines: int, elements: int) -> None:

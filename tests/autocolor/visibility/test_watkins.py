@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Mesh, View
+from autocolor.testing import meshes, outside_views, views
 from autocolor.visibility import watkins as watkins_room
 from autocolor.visibility.depth import polygons_of_numbers
 from autocolor.visibility.projection import projection
@@ -17,7 +18,7 @@ from autocolor.visibility.visible_points import VisiblePoints
 from autocolor.visibility.visible_surfaces import visible_surfaces
 from autocolor.visibility.watkins import numbers_by_line, watkins
 from tests.autocolor.meshes import ROUNDINGS, cube, decal_on_ground, grid, sphere
-from tests.autocolor.strategies import interpolations, meshes, outside_views, rasters, soups, views
+from tests.autocolor.strategies import interpolations, rasters, soups
 
 
 def assert_same(one: VisiblePoints, other: VisiblePoints) -> None:

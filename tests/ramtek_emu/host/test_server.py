@@ -19,9 +19,10 @@ from ramtek_emu import HostPort, OutputError, OutputExistsError, PortError, Ramt
 from ramtek_emu.arrays import Words
 from ramtek_emu.host.port import UnixPort, Wire
 from ramtek_emu.host.server import REPLY_BYTES, Client, HostSession, TcpServer, UnixServer
+from ramtek_emu.testing import streams
 from tests.ramtek_emu.recorded_streams import OUTLINE, RECORDED, words
 from tests.ramtek_emu.serving import READ_EVERYTHING, serving, serving_at, until
-from tests.ramtek_emu.strategies import SMALL, quick, streams
+from tests.ramtek_emu.strategies import SMALL, quick
 
 
 def connected(server: TcpServer) -> socket.socket:

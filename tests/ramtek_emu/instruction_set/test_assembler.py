@@ -16,8 +16,9 @@ from ramtek_emu.instruction_set.assembler import (
     string_of,
     tokens_of,
 )
+from ramtek_emu.testing import streams
 from tests.ramtek_emu.recorded_streams import listing, words
-from tests.ramtek_emu.strategies import quick, streams, thorough
+from tests.ramtek_emu.strategies import quick, thorough
 
 
 @thorough

@@ -10,8 +10,9 @@ from ramtek_emu import GMR_9300, PRINCETON_9300
 from ramtek_emu.instruction_set.decoder import MOST_WORDS, Decoder
 from ramtek_emu.instruction_set.instruction import encode
 from ramtek_emu.instruction_set.table import ILLEGAL
+from ramtek_emu.testing import streams, words
 from tests.ramtek_emu import reference
-from tests.ramtek_emu.strategies import cuts, quick, streams, thorough, words
+from tests.ramtek_emu.strategies import cuts, quick, thorough
 
 
 def decoded(pieces: list[np.ndarray[tuple[int], np.dtype[np.uint16]]]) -> tuple[list[list[int]], Decoder]:

@@ -7,8 +7,9 @@ from hypothesis import strategies as st
 
 from ramtek_emu.instruction_set.assembler import assemble
 from ramtek_emu.instruction_set.disassembler import items
+from ramtek_emu.testing import streams
 from tests.ramtek_emu.recorded_streams import DECODED, RECORDED, listing, words
-from tests.ramtek_emu.strategies import cuts, streams, thorough
+from tests.ramtek_emu.strategies import cuts, thorough
 
 
 def texts(text: str) -> list[str]:

@@ -7,7 +7,8 @@ from hypothesis import given
 from ramtek_emu import InstructionError
 from ramtek_emu.instruction_set.decoder import Decoder
 from ramtek_emu.instruction_set.instruction import encode, normal
-from tests.ramtek_emu.strategies import quick, streams
+from ramtek_emu.testing import streams
+from tests.ramtek_emu.strategies import quick
 
 
 @quick

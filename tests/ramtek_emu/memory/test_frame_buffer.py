@@ -13,9 +13,10 @@ from numpy.typing import NDArray
 from ramtek_emu import WordsError
 from ramtek_emu.memory.frame_buffer import FrameBuffer, WriteEnable
 from ramtek_emu.memory.scan_orders import SCAN_ORDERS, Point, Window
+from ramtek_emu.testing import rasters
+from ramtek_emu.testing import words as any_words
 from tests.ramtek_emu import reference
-from tests.ramtek_emu.strategies import SMALL, masks, points, quick, rasters, scan_codes, thorough, windows
-from tests.ramtek_emu.strategies import words as any_words
+from tests.ramtek_emu.strategies import SMALL, masks, points, quick, scan_codes, thorough, windows
 
 
 def filled(raster: NDArray[np.uint16]) -> FrameBuffer:

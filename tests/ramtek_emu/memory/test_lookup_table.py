@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 
 from ramtek_emu import GMR_9300, PRINCETON_9300, ColorsError, Configuration, Ramtek9300, instructions
 from ramtek_emu.memory.lookup_table import LookupTable
-from tests.ramtek_emu.strategies import quick, words
+from ramtek_emu.testing import words
+from tests.ramtek_emu.strategies import quick
 
 
 @quick

@@ -8,10 +8,10 @@ from ramtek_emu import instructions
 from ramtek_emu.instruction_set.table import OPERANDS, Flags
 from ramtek_emu.memory.parameters import Parameters, coefficients, signed
 from ramtek_emu.memory.scan_orders import Point, Window
+from ramtek_emu.testing import words as any_words
 from tests.ramtek_emu import reference
 from tests.ramtek_emu.displays import box, sent
 from tests.ramtek_emu.strategies import SMALL, quick, scan_codes, windows
-from tests.ramtek_emu.strategies import words as any_words
 
 
 def test_operands_stay_until_they_are_set_again() -> None:

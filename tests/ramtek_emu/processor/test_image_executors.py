@@ -10,19 +10,10 @@ from numpy.typing import NDArray
 
 from ramtek_emu import PRINCETON_9300, Configuration, Ramtek9300, instructions
 from ramtek_emu.memory.scan_orders import Point, Window
+from ramtek_emu.testing import rasters
 from tests.ramtek_emu import reference
 from tests.ramtek_emu.displays import box, sent
-from tests.ramtek_emu.strategies import (
-    SMALL,
-    masks,
-    points,
-    quick,
-    rasters,
-    scan_codes,
-    sent_words,
-    thorough,
-    windows,
-)
+from tests.ramtek_emu.strategies import SMALL, masks, points, quick, scan_codes, sent_words, thorough, windows
 
 addressings = st.sampled_from([0x00, 0x40, 0x80, 0xC0])
 

@@ -22,19 +22,11 @@ from ramtek_emu import (
     instructions,
 )
 from ramtek_emu.memory.cursors import BLINK, VISIBLE, Cursors, cross
+from ramtek_emu.testing import rasters, streams, ten_bit_words
 from ramtek_emu.video.scan_out import Mark, Stamp, draw, lines_with, marks
 from tests.ramtek_emu import reference
 from tests.ramtek_emu.displays import colored
-from tests.ramtek_emu.strategies import (
-    SMALL,
-    cuts,
-    quick,
-    rasters,
-    sent_words,
-    streams,
-    ten_bit_words,
-    thorough,
-)
+from tests.ramtek_emu.strategies import SMALL, cuts, quick, sent_words, thorough
 
 
 @quick

@@ -31,10 +31,11 @@ from autocolor.files.meshes.npy_tables import (
 )
 from autocolor.files.meshes.repair import Placement
 from autocolor.scene.scalar import MeshScalar
+from autocolor.testing import meshes, outside_views, views
 from autocolor.visibility import projection as projection_room
 from tests.autocolor.files.refusals import refusal
 from tests.autocolor.meshes import cube, decal_on_ground, grid
-from tests.autocolor.strategies import meshes, outside_views, rasters, views
+from tests.autocolor.strategies import rasters
 
 
 def folder_of(folder: Path, **tables: AnyArray) -> Path:

@@ -24,7 +24,7 @@ from autocolor.files.meshes.repair import (
     repaired,
 )
 from autocolor.scene.scalar import MeshScalar
-from tests.autocolor.strategies import vectors
+from autocolor.testing import vectors
 
 SQUARE = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0, 0], [0, 0, 1]]
 

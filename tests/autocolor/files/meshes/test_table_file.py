@@ -14,8 +14,8 @@ from autocolor.files.formats import read_mesh
 from autocolor.files.meshes.repair import Placement
 from autocolor.files.meshes.table_file import TABLE_FILE, table_file_bytes
 from autocolor.scene.scalar import MeshScalar
+from autocolor.testing import meshes
 from tests.autocolor.meshes import cube
-from tests.autocolor.strategies import meshes
 
 
 @given(meshes())

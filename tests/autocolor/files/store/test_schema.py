@@ -35,8 +35,8 @@ from autocolor.scene.scalar import Scalar
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Part
 from autocolor.scene.view import NamedView, View
+from autocolor.testing import lights, surfaces, vectors
 from tests.autocolor.files.store.stores import small_store
-from tests.autocolor.strategies import lights, surfaces, vectors
 
 
 @pytest.fixture

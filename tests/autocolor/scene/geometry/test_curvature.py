@@ -10,8 +10,8 @@ from hypothesis import given
 
 from autocolor import Mesh
 from autocolor.scene.geometry import curvature
+from autocolor.testing import meshes
 from tests.autocolor.meshes import cube, grid, sphere, wall
-from tests.autocolor.strategies import meshes
 
 Array = npt.NDArray[np.float64]
 

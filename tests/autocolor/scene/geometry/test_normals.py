@@ -22,8 +22,8 @@ from autocolor.scene.geometry.normals import (
     unite,
     united_items,
 )
+from autocolor.testing import meshes
 from tests.autocolor.meshes import cube, grid, sphere
-from tests.autocolor.strategies import meshes
 
 EPSILON = float(np.finfo(np.float32).eps)
 """Normals are computed in float64 and rounded once."""

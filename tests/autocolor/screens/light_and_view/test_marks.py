@@ -48,6 +48,7 @@ from autocolor.screens.light_and_view.orthographic_views import (
     shown_points,
 )
 from autocolor.screens.picture.picture_edits import target_of
+from autocolor.testing import directions, lights, numbers, vectors, views
 from autocolor.visibility.projection import focal_length
 from autocolor.widgets.items import (
     BLUE,
@@ -64,7 +65,6 @@ from autocolor.widgets.items import (
 )
 from ramtek_emu import Ramtek9300, instructions
 from tests.autocolor.screens.light_and_view.pointing import FILL, KEY, boxed
-from tests.autocolor.strategies import directions, lights, numbers, vectors, views
 
 VIEWS = OrthographicViews((0.0, 0.0, 0.0), 10.0)
 POINT = Light("key", (1.0, 2.0, 3.0))

@@ -8,6 +8,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from autocolor import Mesh, Scene, View, scene_of
+from autocolor.checks import Vector
 from autocolor.screens.light_and_view import object_lines as module
 from autocolor.screens.light_and_view.object_lines import (
     MeshEdges,
@@ -29,11 +30,11 @@ from autocolor.screens.light_and_view.orthographic_views import (
     area_of_picture,
     fitted_views,
 )
+from autocolor.testing import directions, meshes, views
 from autocolor.visibility.projection import projection
 from autocolor.visibility.visible_surfaces import visible_surfaces
 from autocolor.widgets.items import Area
 from tests.autocolor.meshes import CUBE_NODES, CUBE_QUADS, cube, grid, sphere, wall
-from tests.autocolor.strategies import Vector, directions, meshes, views
 
 AREA = area_of_picture(PICTURE_AREA)
 EYE = View((4.0, -5.0, 3.0), target=(0.5, 0.5, 0.5))

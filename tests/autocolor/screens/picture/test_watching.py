@@ -16,11 +16,11 @@ from autocolor.mapping.ranges import BACKGROUND
 from autocolor.screens.picture.watching import MESSAGE, PICTURE_SECONDS, TICK_SECONDS
 from autocolor.screens.viewer import Viewer
 from autocolor.studio import Studio
+from autocolor.testing import scenes
 from autocolor.widgets.items import WHITE, Area, filled
 from ramtek_emu import Ramtek9300
 from tests.autocolor.screens.hand import Hand
 from tests.autocolor.sessions import SMALL, car
-from tests.autocolor.strategies import scenes
 
 CLOSE = car().with_view(field_of_view=8.0)
 """A scene that is seen on every line, so that each one that is not there is missed."""
