@@ -1,28 +1,87 @@
-"""Words, entries and streams for the tests of programs that use the display."""
+"""Strategies and a check for property tests of programs that use the display, with hypothesis.
+
+    from hypothesis import given
+    from ramtek_emu import Ramtek9300
+    from ramtek_emu.testing import check_words_within_planes, streams
+
+    @given(streams())
+    def test_any_stream_leaves_words_within_the_planes(stream):
+        display = Ramtek9300()
+        display.send(stream)
+        check_words_within_planes(display.words)
+
+Install hypothesis with `pip install 'autocolor[testing]'`. docs/TESTING.md has complete tests.
+"""
 
 from __future__ import annotations
 
 import numpy as np
-from hypothesis import strategies as st
-from hypothesis.extra import numpy as arrays
+from numpy.typing import ArrayLike
 
-from ramtek_emu.arrays import Raster
+from ramtek_emu.arrays import Colors, Raster
 from ramtek_emu.instruction_set.table import FORMATS, SUBSTANTIATED
 
-words = st.integers(0, 0xFFFF)
-ten_bit_words = st.integers(0, 1023)
+try:
+    from hypothesis import strategies as st
+    from hypothesis.extra import numpy as arrays
+except ModuleNotFoundError as error:
+    raise ModuleNotFoundError(
+        "ramtek_emu.testing needs the package hypothesis; install it with: pip install 'autocolor[testing]'",
+        name=error.name,
+    ) from error
+
+
+def words(planes: int = 10) -> st.SearchStrategy[int]:
+    """Words of so many bits: by default the words of pixels, 0 to 1023; with 16, the words of a stream."""
+    return st.integers(0, (1 << planes) - 1)
+
+
+def rasters(lines: int = 9, elements: int = 13, planes: int = 10) -> st.SearchStrategy[Raster[np.uint16]]:
+    """Words of pixels, (lines, elements) uint16."""
+    return arrays.arrays(np.uint16, (lines, elements), elements=words(planes), fill=st.nothing())
+
+
+def entries(count: int = 1024) -> st.SearchStrategy[Colors]:
+    """Lookup tables, (count, 3) uint8: the red, green and blue of each entry. Most entries are alike."""
+    return arrays.arrays(np.uint8, (count, 3))
 
 
 def streams(most: int = 60) -> st.SearchStrategy[list[int]]:
-    """Random words; many of them begin an instruction."""
+    """Lists of at most so many 16-bit words; many of them begin an instruction.
+
+    A display accepts any words, so that these streams are as good as those of a program: instructions with
+    operands that make no sense, unknown instructions, and an instruction that ends too early.
+    """
     opcodes = st.sampled_from([format.opcode for format in SUBSTANTIATED]) | st.sampled_from(
         [format.opcode for format in FORMATS]
     )
     begins = st.builds(lambda opcode, low: opcode << 8 | low, opcodes, st.integers(0, 255))
     small = st.integers(0, 12)
-    return st.lists(begins | small | words, max_size=most)
+    return st.lists(begins | small | words(16), max_size=most)
 
 
-def rasters(lines: int = 9, elements: int = 13) -> st.SearchStrategy[Raster[np.uint16]]:
-    """(lines, elements) ten-bit words."""
-    return arrays.arrays(np.uint16, (lines, elements), elements=ten_bit_words, fill=st.nothing())
+def check_words_within_planes(words: ArrayLike, planes: int = 10) -> None:
+    """Raise AssertionError if a word does not fit into the planes of a display: 0 to 1023 for ten planes.
+
+    `words` are whole numbers of any type and shape: the words of a frame buffer, or what a mapping of yours
+    makes for them. The message names the first word that does not fit.
+
+        @given(rasters())
+        def test_my_dithering_stays_within_the_planes(words):
+            check_words_within_planes(my_dithering(words))
+
+    >>> check_words_within_planes([[0, 1023], [7, 1024]])
+    Traceback (most recent call last):
+    AssertionError: words must be whole numbers from 0 to 1023, not 1024 (line 1, element 1)
+    """
+    __tracebackhide__ = True  # pytest then points to the test.
+    array = np.asarray(words)
+    rule = f"words must be whole numbers from 0 to {(1 << planes) - 1}"
+    if array.size and array.dtype.kind not in "iu":
+        raise AssertionError(f"{rule}, not {array.dtype}")
+    outside = np.argwhere((array < 0) | (array >= 1 << planes))
+    if len(outside):
+        index = tuple(outside[0].tolist())
+        place = {0: "", 1: " (at index {})", 2: " (line {}, element {})"}.get(array.ndim, f" (at {index})")
+        more = f", and {len(outside) - 1} more" if len(outside) > 1 else ""
+        raise AssertionError(f"{rule}, not {array[index]}{place.format(*index)}{more}")

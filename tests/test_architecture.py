@@ -50,7 +50,7 @@ WINGS = {
 
 KNOWING_THE_DISPLAY = (
     "autocolor.__main__", "autocolor.errors", "autocolor.files.writing", "autocolor.images",
-    "autocolor.lighting.picture", "autocolor.sending", "autocolor.studio",
+    "autocolor.lighting.picture", "autocolor.sending", "autocolor.studio", "autocolor.testing",
 )  # fmt: skip
 WINGS_KNOWING_THE_DISPLAY = ("autocolor.commands", "autocolor.screens", "autocolor.widgets")
 DOORS_OF_THE_DISPLAY = {

@@ -19,6 +19,7 @@ import pytest
 import autocolor
 from autocolor import Flap, Light, Mesh, Paint, Reflectance, Scene, Studio, View, scene_of
 from autocolor.screens.viewer import Viewer
+from autocolor.testing import Recoloring, check_entries_outside_range_stay, check_recoloring_moves_no_word
 from ramtek_emu import Configuration, Ramtek9300
 from tests.autocolor.meshes import STRETCHED, cube, grid, sphere, wall, wall_scene
 from tests.autocolor.reference import first_hit, ray
@@ -416,13 +417,13 @@ def test_each_surface_type_has_a_sequential_range_of_the_table() -> None:
 
 def test_recoloring_replaces_one_range_of_entries_and_computes_no_picture() -> None:
     studio, display = shown(two_boxes())
-    written, words, entries = display.frame_buffer.written, display.words.copy(), display.entries.copy()
-    studio.recolor("box 1", object_color="#123456", light_color="#ffeedd", blend=0.2)
-    first, levels = studio.level_ranges["box 1"]
-    changed = np.flatnonzero((display.entries != entries).any(axis=1))
-    assert first <= changed.min() <= changed.max() < first + levels
-    assert display.frame_buffer.written == written
-    assert (display.words == words).all()
+    picture, entries = studio.picture, display.entries
+    edit = Recoloring("box 1", {"object_color": "#123456", "light_color": "#ffeedd", "blend": 0.2})
+    check_recoloring_moves_no_word(
+        studio, lambda studio: check_entries_outside_range_stay(studio, edit, "box 1")
+    )
+    assert (display.entries != entries).any()
+    assert studio.picture is picture
 
 
 def blended(blend: float, percentage: float = 100.0) -> Floats:

@@ -14,7 +14,7 @@ half_spaces = st.builds(
     HalfSpace,
     st.sampled_from(["left", "right", "b", "barn door", 'a "b".c', "ü", "0"]),
     vectors(),
-    directions,
+    directions(),
     st.sampled_from([0.0, 0.25]),
     st.booleans(),
     st.booleans(),

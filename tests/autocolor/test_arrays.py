@@ -177,7 +177,7 @@ def test_bounds_leave_out_what_no_number_uses() -> None:
     assert (low.tolist(), high.tolist()) == ([np.inf] * 2, [-np.inf] * 2)
 
 
-@given(directions, numbers(1e-30, 1e30))
+@given(directions(), numbers(1e-30, 1e30))
 def test_a_unit_vector_has_the_direction_of_a_vector_of_any_length(direction: Vector, length: float) -> None:
     x, y, z = direction
     unit = unit_vector((x * length, y * length, z * length))

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from hypothesis.extra.numpy import arrays
 from PIL import Image
 
 from autocolor import (
@@ -33,6 +32,7 @@ from autocolor.sending import shown_colors
 from autocolor.testing import scenes
 from ramtek_emu import GMR_9300, Configuration, ConfigurationError, Ramtek9300
 from ramtek_emu.arrays import Colors
+from ramtek_emu.testing import entries, rasters
 from tests.autocolor.meshes import STRETCHED, cube, wall_scene
 from tests.autocolor.sessions import SMALL, held, opened
 
@@ -271,12 +271,12 @@ def test_a_picture_beyond_the_largest_raster_is_refused_with_the_size_that_was_a
 
 
 @pytest.mark.parametrize("chunk", [1, 40, 1 << 14])
-@given(arrays(np.uint8, (1024, 3)), st.integers(1, 4), st.data())
+@given(entries(), st.integers(1, 4), st.data())
 def test_averaging_takes_the_mean_light_of_each_square_whatever_is_done_at_once(
     chunk: int, entries: Colors, smooth: int, data: st.DataObject
 ) -> None:
     lines, elements = data.draw(st.tuples(st.integers(1, 5), st.integers(1, 5)))
-    words = data.draw(arrays(np.uint16, (smooth * lines, smooth * elements), elements=st.integers(0, 1023)))
+    words = data.draw(rasters(smooth * lines, smooth * elements))
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(images, "PIXELS_AT_ONCE", chunk)
         colors = averaged(entries, words, smooth)

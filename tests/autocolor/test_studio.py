@@ -25,10 +25,21 @@ from autocolor import (
     read_picture,
     read_scene,
     scene_of,
+    testing,
 )
 from autocolor.lighting.picking import highlight_placed
 from autocolor.mapping.ranges import SCREENS
-from autocolor.testing import colors, limits, numbers, scales, scenes, vectors
+from autocolor.testing import (
+    Recoloring,
+    check_entries_outside_range_stay,
+    check_recoloring_moves_no_word,
+    colors,
+    limits,
+    numbers,
+    scales,
+    scenes,
+    vectors,
+)
 from ramtek_emu import Ramtek9300
 from tests.autocolor.meshes import cube
 from tests.autocolor.sessions import SMALL, car, fresh, held, opened
@@ -38,19 +49,8 @@ Edit = tuple[str, str, dict[str, Any]]
 
 SURFACES = st.sampled_from(["body", "glass", "wheels"])
 
-recolorings = st.tuples(
-    st.just("recolor"),
-    SURFACES,
-    st.fixed_dictionaries(
-        {},
-        optional={
-            "object_color": colors,
-            "light_color": colors,
-            "blend": numbers(0, 1),
-            "light_percentage": numbers(0, 100),
-        },
-    ),
-)
+own_recolorings = testing.recolorings(["body", "glass", "wheels"])
+recolorings = own_recolorings.map(lambda each: ("recolor", each.surface, dict(each.changes)))
 surface_edits = st.tuples(
     st.just("surface"),
     SURFACES,
@@ -92,7 +92,7 @@ scene_edits = st.tuples(
             "scaling": st.sampled_from(["surface", "object"]),
             "mapping": st.sampled_from(["linear", "gamma", "equalize", ((0.0, 0.0), (0.5, 0.9), (1.0, 1.0))]),
             "contrast": st.sampled_from(["stretch", "floor"]),
-            "background": colors,
+            "background": colors(),
         },
     ),
 )
@@ -104,7 +104,7 @@ view_edits = st.tuples(
 scale_edits = st.tuples(
     st.just("scalar"),
     st.just(""),
-    st.fixed_dictionaries({}, optional={"scale": scales, "missing": colors}),
+    st.fixed_dictionaries({}, optional={"scale": scales(), "missing": colors()}),
 )
 level_edits = st.tuples(
     st.just("scalar"),
@@ -112,11 +112,11 @@ level_edits = st.tuples(
     st.fixed_dictionaries(
         {},
         optional={
-            "limits": st.none() | limits,
+            "limits": st.none() | limits(),
             "bands": st.integers(2, 200),
             "shades": st.none() | st.integers(1, 12),
-            "below": st.none() | colors,
-            "above": st.none() | colors,
+            "below": st.none() | colors(),
+            "above": st.none() | colors(),
             "surfaces": st.none() | st.lists(SURFACES, unique=True),
             "legend": st.booleans(),
         },
@@ -159,18 +159,15 @@ def apply(studio: Studio, edit: Edit) -> bool:
     return True
 
 
-@given(st.lists(recolorings, min_size=1, max_size=6))
-def test_recoloring_writes_no_word(edits: list[Edit]) -> None:
+@given(st.lists(own_recolorings, min_size=1, max_size=6))
+def test_recoloring_writes_no_word(edits: list[Recoloring]) -> None:
     studio, display = opened()
-    words, written = display.words.copy(), display.frame_buffer.written
     for edit in edits:
         entries_written = display.lookup_table.written
-        assert apply(studio, edit)
-        range_of_surface = studio.level_ranges[edit[1]]
+        check_recoloring_moves_no_word(studio, edit)
+        range_of_surface = studio.level_ranges[edit.surface]
         # Two words an entry, and at most those of the one surface.
         assert display.lookup_table.written - entries_written <= 2 * range_of_surface.levels
-    assert display.frame_buffer.written == written
-    assert (display.words == words).all()
 
 
 @given(st.sampled_from(["stress", "z"]), st.lists(scale_edits, min_size=1, max_size=4))
@@ -178,23 +175,20 @@ def test_another_color_scale_writes_no_word_and_the_entries_of_colored_surfaces_
     name: str, edits: list[Edit]
 ) -> None:
     studio, display = opened(car().with_scalar(name=name, surfaces=["body", "wheels"], below="#00ff00"))
-    words, written = display.words.copy(), display.frame_buffer.written
-    pane = display.entries[slice(*own_entries(studio, "glass"))]
-    for edit in edits:
-        entries_written = display.lookup_table.written
-        assert apply(studio, edit)
-        # Two words an entry.
-        most = 2 * sum(studio.level_ranges[name].levels for name in ("body", "wheels"))
-        assert display.lookup_table.written - entries_written <= most
-    assert display.frame_buffer.written == written
-    assert (display.words == words).all()
-    assert (display.entries[slice(*own_entries(studio, "glass"))] == pane).all()
+    colored = ("body", "wheels")
+
+    def all_edits(studio: Studio) -> None:
+        for edit in edits:
+            entries_written = display.lookup_table.written
+            assert apply(studio, edit)
+            # Two words an entry.
+            most = 2 * sum(studio.level_ranges[name].levels for name in colored)
+            assert display.lookup_table.written - entries_written <= most
+
+    check_recoloring_moves_no_word(
+        studio, lambda studio: check_entries_outside_range_stay(studio, all_edits, colored)
+    )
     assert held(display) == fresh(studio.scene)
-
-
-def own_entries(studio: Studio, name: str) -> tuple[int, int]:
-    first, levels = studio.level_ranges[name]
-    return first, first + levels
 
 
 @given(st.lists(level_edits, min_size=1, max_size=4))
@@ -264,9 +258,7 @@ def test_the_legend_follows_the_scale_by_entries_alone_and_the_limits_by_its_num
         return held(display) == held(anew)
 
     assert (display.words != studio.words).any()
-    written = display.frame_buffer.written
-    studio.scalar(scale="magma")
-    assert display.frame_buffer.written == written
+    check_recoloring_moves_no_word(studio, lambda studio: studio.scalar(scale="magma"))
     assert held_anew()
     numbers = display.words.copy()
     studio.scalar(limits=[-0.25, 0.75])
@@ -278,16 +270,13 @@ def test_the_legend_follows_the_scale_by_entries_alone_and_the_limits_by_its_num
     assert held_anew()
 
 
-@given(recolorings)
-def test_recoloring_a_surface_changes_its_own_pixels_and_entries_only(edit: Edit) -> None:
+@given(own_recolorings)
+def test_recoloring_a_surface_changes_its_own_pixels_and_entries_only(edit: Recoloring) -> None:
     studio, display = opened()
-    field, entries = display.field(), display.entries
-    apply(studio, edit)
-    first, levels = studio.level_ranges[edit[1]]
-    changed_entries = np.flatnonzero((display.entries != entries).any(axis=1))
-    assert set(changed_entries.tolist()) <= set(range(first, first + levels))
+    field = display.field()
+    check_entries_outside_range_stay(studio, edit, edit.surface)
     changed = (display.field() != field).any(axis=2)
-    number = studio.picture.surfaces.index(edit[1]) + 1
+    number = studio.picture.surfaces.index(edit.surface) + 1
     assert (studio.picture.surface_number[changed] == number).all()
 
 
@@ -499,10 +488,8 @@ def test_a_coarse_picture_has_blocks_and_the_ranges_of_the_one_before() -> None:
     assert studio.level_ranges is ranges
     assert held(display)[1] == entries
     # Colors change at once, and the picture stays as coarse as it is.
-    written = display.frame_buffer.written
-    studio.recolor("body", object_color="#123456")
+    check_recoloring_moves_no_word(studio, Recoloring("body", {"object_color": "#123456"}))
     assert studio.is_coarse
-    assert display.frame_buffer.written == written
 
 
 @pytest.mark.usefixtures("slow")
@@ -545,10 +532,8 @@ def test_an_edit_and_its_opposite_leave_nothing_to_save() -> None:
 
 def test_several_surfaces_in_other_paints_are_recolored_at_once() -> None:
     studio, display = opened()
-    written = display.frame_buffer.written
     scene = studio.scene.with_surface("body", blend=0.1).with_surface("wheels", object_color="#102030")
-    studio.edit(scene)
-    assert display.frame_buffer.written == written
+    check_recoloring_moves_no_word(studio, lambda studio: studio.edit(scene))
     assert held(display) == fresh(scene)
 
 
@@ -880,10 +865,9 @@ def test_the_lights_alone_add_up_to_all_together_where_the_exposure_is_held_from
 def test_recoloring_a_dithered_picture_writes_no_word(division: Any) -> None:
     display = Ramtek9300(SMALL)
     studio = Studio(car().replace(dither="ordered", division=division, exposure={"object": (0, 1)}), display)
-    written = display.frame_buffer.written
-    studio.recolor("body", object_color="#123456", blend=0.2)
-    studio.recolor("glass", light_color="#ffeedd", light_percentage=40)
-    assert display.frame_buffer.written == written
+    check_recoloring_moves_no_word(studio, Recoloring("body", {"object_color": "#123456", "blend": 0.2}))
+    pane = Recoloring("glass", {"light_color": "#ffeedd", "light_percentage": 40})
+    check_recoloring_moves_no_word(studio, pane)
     assert (display.field() == display.entries[display.words]).all()
 
 

@@ -40,7 +40,7 @@ shown_edits = st.tuples(
             "scaling": st.sampled_from(["surface", "object"]),
             "mapping": st.sampled_from(["linear", "gamma", "equalize"]),
             "contrast": st.sampled_from(["stretch", "floor"]),
-            "background": colors,
+            "background": colors(),
         },
     ),
 )

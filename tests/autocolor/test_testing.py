@@ -1,1 +1,244 @@
+"""The strategies and checks that other programs use, and the tests in docs/TESTING.md."""
+
 from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import find, given
+
+import ramtek_emu.testing
+from autocolor import InputError, Scene, Studio, UsageError, render, scene_of, testing
+from autocolor.mapping.ranges import LevelRange
+from autocolor.testing import (
+    Recoloring,
+    check_entries_outside_range_stay,
+    check_recoloring_moves_no_word,
+    level_ranges,
+    paints,
+    recolorings,
+    scenes,
+)
+from ramtek_emu import Ramtek9300
+from tests.autocolor.meshes import cube
+from tests.autocolor.sessions import SMALL, car, opened
+
+PAGE = Path(__file__).parents[2] / "docs" / "TESTING.md"
+
+
+def test_failing_values_shrink_to_simple_values() -> None:
+    assert find(paints(), lambda paint: paint.object_color[1] > 7).object_color == (0, 8, 0)
+    assert find(recolorings(["hood"]), lambda each: "blend" in each.changes).changes == {"blend": 0.0}
+    ranges = find(level_ranges(), lambda ranges: len(ranges) > 1)
+    assert ranges == {"surface 0": LevelRange(1, 2), "surface 1": LevelRange(3, 2)}
+
+
+@given(recolorings())
+def test_a_recoloring_of_a_scene_and_of_a_studio_are_the_same(recoloring: Recoloring) -> None:
+    studio, _ = opened()
+    assert recoloring(studio) is studio
+    recolored = recoloring(car())
+    assert isinstance(recolored, Scene)
+    assert recolored.surfaces == studio.scene.surfaces
+
+
+@given(scenes(), recolorings())
+def test_a_recoloring_moves_no_word_and_no_entry_of_another_surface(
+    scene: Scene, recoloring: Recoloring
+) -> None:
+    check_recoloring_moves_no_word(scene, recoloring)
+    check_entries_outside_range_stay(scene, recoloring, recoloring.surface)
+    picture = render(scene, 9, 12)
+    check_recoloring_moves_no_word(scene, recoloring, picture=picture)
+    check_entries_outside_range_stay(scene, recoloring, recoloring.surface, picture=picture)
+
+
+def darker(subject: Any) -> Any:
+    """An edit of a scene, or of a studio, that moves words."""
+    if isinstance(subject, Scene):
+        return subject.with_light("key", position=(3.0, -4.0, 0.0))
+    return subject.light("key", position=(3.0, -4.0, 0.0))
+
+
+def message_of(check: Callable[[], None]) -> str:
+    with pytest.raises(AssertionError) as failure:
+        check()
+    return str(failure.value)
+
+
+@pytest.mark.parametrize("subject", [car(), opened()[0]], ids=["scene", "studio"])
+def test_words_that_move_are_counted_and_the_first_is_told(subject: Any) -> None:
+    text = message_of(lambda: check_recoloring_moves_no_word(subject, darker))
+    match = re.match(
+        r"a recoloring must move no word, but (\d+) of 768 words moved, the first at line (\d+), element"
+        r" (\d+): (\d+) became (\d+)$",
+        text,
+    )
+    assert match, text
+    count, line, element, before, after = map(int, match.groups())
+    words = [opened()[1].words, opened(darker(car()))[1].words]
+    assert count == np.count_nonzero(words[0] != words[1]) > 0
+    assert [int(each[line, element]) for each in words] == [before, after]
+    assert (words[0] != words[1]).ravel().argmax() == line * 32 + element
+
+
+def test_words_that_are_written_again_without_a_change_are_counted() -> None:
+    studio, _ = opened()
+    text = message_of(lambda: check_recoloring_moves_no_word(studio, Studio.send_everything))
+    assert re.match(r"a recoloring must move no word, but \d+ words were written again$", text), text
+
+
+def test_an_edit_that_needs_another_picture_is_no_recoloring_of_a_picture() -> None:
+    picture = render(car(), 12, 16)
+    text = message_of(lambda: check_recoloring_moves_no_word(car(), darker, picture=picture))
+    assert text == "a recoloring must need no other picture, but the edited scene does"
+
+
+def test_words_of_a_picture_that_move_are_told_of_its_own_size() -> None:
+    def few_levels(scene: Scene) -> Scene:
+        return scene.with_surface("body", levels=2)
+
+    text = message_of(
+        lambda: check_recoloring_moves_no_word(car(), few_levels, picture=render(car(), 12, 16))
+    )
+    assert " of 192 words moved" in text
+
+
+@pytest.mark.parametrize(
+    ("surfaces", "named"),
+    [
+        ("wheels", "'wheels' ({wheels})"),
+        (["glass", "wheels"], "'glass' ({glass}) and 'wheels' ({wheels})"),
+        ([], "no surface"),
+    ],
+)
+@pytest.mark.parametrize("kind", ["scene", "studio"])
+def test_entries_outside_of_the_ranges_are_told(kind: str, surfaces: str | list[str], named: str) -> None:
+    studio = opened()[0]
+    ranges, before = studio.level_ranges, studio.entries
+    edit = Recoloring("body", {"object_color": "#0000ff", "light_color": "#0000ff"})
+    after = opened(car().with_paint("body", **edit.changes))[0].entries
+    subject: Any = car() if kind == "scene" else studio
+    text = message_of(lambda: check_entries_outside_range_stay(subject, edit, surfaces))
+    changed = np.flatnonzero((before != after).any(axis=1))
+    colors = ["#{:02x}{:02x}{:02x}".format(*table[changed[0]]) for table in (before, after)]
+    spans = {name: f"{levels.first} to {levels.last}" for name, levels in ranges.items()}
+    assert text == (
+        f"the entries outside the range of {named.format(**spans)} must stay, but {len(changed)} changed, the"
+        f" first is entry {changed[0]}: {colors[0]} became {colors[1]}"
+    )
+
+
+def test_the_background_is_outside_of_every_range() -> None:
+    def red(scene: Scene) -> Scene:
+        return scene.replace(background="#ff0000")
+
+    text = message_of(lambda: check_entries_outside_range_stay(car(), red, ["body", "glass", "wheels"]))
+    assert text.endswith("must stay, but 1 changed, the first is entry 0: #000000 became #ff0000")
+
+
+def test_a_range_that_moves_is_told() -> None:
+    def levels(scene: Scene) -> Scene:
+        return scene.with_surface("body", levels=20)
+
+    text = message_of(lambda: check_entries_outside_range_stay(car(), levels, "body"))
+    assert re.match(r"the range of 'body' \(1 to \d+\) must stay, but it became 1 to 20$", text), text
+
+
+def test_a_surface_of_no_part_has_no_entries_to_change() -> None:
+    scene = car()
+    scene = scene.replace(surfaces=[*scene.surfaces, scene.surfaces[0].replace(name="spare")])
+    check_entries_outside_range_stay(scene, Recoloring("spare", {"blend": 0.1}), "spare")
+    blend = Recoloring("body", {"blend": 0.1})
+    text = message_of(lambda: check_entries_outside_range_stay(scene, blend, "spare"))
+    assert text.startswith("the entries outside the range of 'spare' (no words) must stay, but ")
+
+
+class Elsewhere:
+    """A display of which only its port is at hand."""
+
+    def __init__(self) -> None:
+        self.display = Ramtek9300(SMALL)
+        self.configuration, self.send, self.receive = SMALL, self.display.send, self.display.receive
+
+
+def test_of_a_display_elsewhere_the_words_that_the_studio_has_are_compared() -> None:
+    studio = Studio(car(), Elsewhere())
+    check_recoloring_moves_no_word(studio, Recoloring("body", {"blend": 0.1}))
+    check_entries_outside_range_stay(studio, Recoloring("body", {"blend": 0.2}), "body")
+    assert " of 768 words moved" in message_of(lambda: check_recoloring_moves_no_word(studio, darker))
+
+
+@pytest.mark.parametrize(
+    ("check", "error", "message"),
+    [
+        (
+            lambda: check_recoloring_moves_no_word(car(), lambda scene: None),
+            UsageError,
+            "an edit of a scene must return the edited Scene, not None",
+        ),
+        (
+            lambda: check_recoloring_moves_no_word(opened()[0], darker, picture=render(car(), 2, 2)),
+            UsageError,
+            "a picture must come with its scene; leave it out, a studio has its own picture",
+        ),
+        (
+            lambda: check_entries_outside_range_stay(car(), Recoloring("body", {}), "bodi"),
+            UsageError,
+            "there is no surface 'bodi'; did you mean 'body'?",
+        ),
+        (
+            lambda: check_recoloring_moves_no_word(car(), darker, picture=render(scene_of(cube()), 2, 2)),
+            InputError,
+            "the surfaces of a picture must be those of the scene, ['body', 'glass', 'wheels'], not"
+            " ['surface']; render this scene, or use the scene that was rendered",
+        ),
+    ],
+)
+def test_wrong_calls_of_the_checks_are_refused(
+    check: Callable[[], None], error: type[Exception], message: str
+) -> None:
+    with pytest.raises(error) as refusal:
+        check()
+    assert str(refusal.value) == message
+
+
+@pytest.mark.parametrize("module", ["autocolor.testing", "ramtek_emu.testing"])
+def test_without_hypothesis_its_extra_is_named(monkeypatch: pytest.MonkeyPatch, module: str) -> None:
+    monkeypatch.delitem(sys.modules, module, raising=False)
+    monkeypatch.setitem(sys.modules, "hypothesis", None)
+    with pytest.raises(ModuleNotFoundError) as refusal:
+        __import__(module)
+    assert str(refusal.value) == (
+        f"{module} needs the package hypothesis; install it with: pip install 'autocolor[testing]'"
+    )
+
+
+EXAMPLES = re.findall(r"^```python\n(.*?)^```$", PAGE.read_text("utf-8"), re.DOTALL | re.MULTILINE)
+
+
+def test_the_page_has_three_examples() -> None:
+    assert len(EXAMPLES) == 3
+
+
+@pytest.mark.parametrize("example", EXAMPLES)
+def test_the_tests_of_the_page_pass(example: str) -> None:
+    names: dict[str, Any] = {}
+    exec(example, names)
+    tests = [value for name, value in names.items() if name.startswith("test_")]
+    assert tests
+    for test in tests:
+        test()
+
+
+def test_the_page_names_every_strategy_and_check() -> None:
+    text = PAGE.read_text("utf-8")
+    for module in (testing, ramtek_emu.testing):
+        for name, value in vars(module).items():
+            if getattr(value, "__module__", "") == module.__name__ and name[0].islower():
+                assert f"`{name}(" in text or f"`{name}`" in text

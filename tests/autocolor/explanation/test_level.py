@@ -78,7 +78,7 @@ def test_bands_are_those_of_the_picture(count: int, beyond: tuple[bool, bool], v
     assert [band_of(float(each), bands) for each in singles] == band_numbers(singles, bands).tolist()
 
 
-@given(scales | st.sampled_from(list(COLOR_SCALES)), st.integers(1, 40))
+@given(scales() | st.sampled_from(list(COLOR_SCALES)), st.integers(1, 40))
 def test_the_colors_of_bands_are_those_of_the_scale(scale: str, count: int) -> None:
     # Rounding decides about halves.
     found, expected = np.array([*band_colors(scale, count)]), scale_colors(scale, count).astype(int)
@@ -105,7 +105,7 @@ def test_equalized_levels_are_those_of_the_picture(given: list[float], held: boo
         assert abs(found - float(curve(np.array([each]))[0])) <= same
 
 
-@given(paints, st.integers(2, 300))
+@given(paints(), st.integers(2, 300))
 def test_the_light_color_grows_in_equal_steps_to_its_percentage(paint: Paint, levels: int) -> None:
     shares = np.array([light_share(paint, level, levels) for level in range(levels)])
     steps = np.diff(shares[shares > 0])

@@ -154,7 +154,7 @@ def test_a_factor_may_depend_on_distance_and_place_of_any_light(
 EPSILON = float(np.finfo(np.float32).eps)
 
 
-@given(directions, numbers(-2, 2))
+@given(directions(), numbers(-2, 2))
 def test_the_row_of_a_side_gives_the_distance_from_its_plane(direction: Vector, least: float) -> None:
     points = wall_points()
     x, y, z = unit(direction)
@@ -243,7 +243,7 @@ def lit_of(light: Light) -> list[bool]:
     return lit.tolist()  # type: ignore[no-any-return]
 
 
-@given(vectors(), directions)
+@given(vectors(), directions())
 def test_a_point_is_lit_on_the_side_to_which_the_direction_leads(point: Vector, direction: Vector) -> None:
     lit = np.array(lit_of(Light("light", (0, -1, 0), half_spaces=(HalfSpace("left", point, direction),))))
     distance = (wall_points().world_points - point) @ direction / np.linalg.norm(direction)
@@ -251,7 +251,7 @@ def test_a_point_is_lit_on_the_side_to_which_the_direction_leads(point: Vector, 
     assert lit[clear].tolist() == (distance[clear] > 0).tolist()
 
 
-@given(directions, numbers(1e-30, 1e30))
+@given(directions(), numbers(1e-30, 1e30))
 def test_the_length_of_the_direction_does_not_matter(direction: Vector, length: float) -> None:
     x, y, z = direction
     longer = (x * length, y * length, z * length)
@@ -317,7 +317,7 @@ def test_half_spaces_that_are_off_are_no_control() -> None:
     assert controls_of(Light("light", (0, -1, 0), half_spaces=off), wall_points()) == ()
 
 
-@given(vectors(), directions, vectors(numbers(-0.5, 0.5)), directions)
+@given(vectors(), directions(), vectors(numbers(-0.5, 0.5)), directions())
 def test_a_carried_half_space_is_in_the_frame_of_its_light(
     position: Vector, toward: Vector, point: Vector, direction: Vector
 ) -> None:
@@ -353,7 +353,7 @@ def test_barn_doors_turn_and_move_with_the_light() -> None:
         assert 0 < lit.sum() < len(lit) / 4
 
 
-@given(vectors(numbers(-1e30, 1e30)), directions, numbers(1e-30, 1e30) | st.just(0.0))
+@given(vectors(numbers(-1e30, 1e30)), directions(), numbers(1e-30, 1e30) | st.just(0.0))
 def test_planes_however_far_and_edges_of_any_width_leave_finite_light(
     point: Vector, direction: Vector, edge_width: float
 ) -> None:
@@ -391,7 +391,7 @@ def ratio(light: Light) -> tuple[Floats, VisiblePoints]:
     return lit.astype(np.float64) / whole, points
 
 
-@given(vectors(numbers(-1, 1)), directions, numbers(0.05, 2))
+@given(vectors(numbers(-1, 1)), directions(), numbers(0.05, 2))
 def test_a_soft_half_space_on_a_wall_is_the_closed_form(
     point: Vector, direction: Vector, width: float
 ) -> None:

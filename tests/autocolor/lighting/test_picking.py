@@ -74,7 +74,7 @@ def lit(light: Light) -> Scene:
     return wall_scene(lights=[Light("other", (1.0, -2.0, 3.0)), light])
 
 
-@given(outside_views(), st.integers(0, 999), st.sampled_from(MESHES), far_positions, st.none() | directions)
+@given(outside_views(), st.integers(0, 999), st.sampled_from(MESHES), far_positions, st.none() | directions())
 def test_the_light_is_where_the_view_is_reflected_to_and_as_far_as_before(
     view: View, place: int, mesh: Any, position: Vector, direction: Vector | None
 ) -> None:
@@ -99,7 +99,7 @@ def test_the_light_is_where_the_view_is_reflected_to_and_as_far_as_before(
         assert light.direction == pytest.approx(times(-1, to_light), abs=1e-9)
 
 
-@given(points, directions, far_positions)
+@given(points, directions(), far_positions)
 def test_a_light_with_an_aim_is_aimed_at_the_point_and_keeps_all_else(
     point: Vector, normal: Vector, position: Vector
 ) -> None:
@@ -247,7 +247,7 @@ def test_a_light_at_infinity_has_no_cone_to_be_dragged() -> None:
     )
 
 
-@given(points, far_positions, directions)
+@given(points, far_positions, directions())
 def test_a_cone_ends_at_the_point(point: Vector, position: Vector, direction: Vector) -> None:
     light = Light("light", position, direction=direction, cone_angle=30)
     angle = cone_placed(lit(light), at(point), "light").light("light").cone_angle
@@ -369,7 +369,7 @@ def test_the_inner_angle_of_a_cone_stays_within_it() -> None:
     assert narrow.inner_angle == narrow.cone_angle
 
 
-@given(points, vectors(), directions, st.booleans(), st.none() | directions)
+@given(points, vectors(), directions(), st.booleans(), st.none() | directions())
 def test_a_half_space_ends_at_the_point_and_moves_along_its_direction(
     point: Vector, start: Vector, direction: Vector, carried: bool, toward: Vector | None
 ) -> None:
@@ -640,7 +640,7 @@ def test_the_rim_of_a_cone_straight_above_a_plane_is_a_circle(view: View, angle:
     assert np.diff(around, append=around[0] + 2 * math.pi).max() < 3 * pixel / radius
 
 
-@given(numbers(1, 60), directions)
+@given(numbers(1, 60), directions())
 def test_the_rim_of_a_cone_is_where_the_light_ends(angle: float, direction: Vector) -> None:
     light = Light("light", (0.2, -1.0, 0.1), direction=direction, cone_angle=angle)
     scene = wall_scene(wall(3, 2, half=2.0), view=FILLING, lights=[light])

@@ -31,7 +31,7 @@ def points_of(view: View) -> VisiblePoints:
     return visible_surfaces(BALL, view, (1,), 9, 12)
 
 
-@given(outside_views(), vectors(numbers(-3, 3)), directions)
+@given(outside_views(), vectors(numbers(-3, 3)), directions())
 def test_lengths_and_cosines_agree_with_the_rays(view: View, position: Vector, direction: Vector) -> None:
     points = points_of(view)
     light = Light("light", position, direction=direction)
@@ -66,7 +66,7 @@ def test_the_rays_to_a_light_close_to_the_wall_are_as_exact(gap: float) -> None:
         assert cos_incidence[number] == pytest.approx(gap / math.hypot(aside, gap), abs=3e-4)
 
 
-@given(numbers(1.05, 3.0) | numbers(3.0, 1000.0), directions, outside_views())
+@given(numbers(1.05, 3.0) | numbers(3.0, 1000.0), directions(), outside_views())
 def test_cosines_near_1_are_off_by_at_most_the_rounding_and_their_logarithms_are_exact(
     distance: float, side: Vector, view: View
 ) -> None:
@@ -91,7 +91,7 @@ def test_a_ray_to_a_light_at_the_point_itself_has_a_length() -> None:
         assert np.isfinite(rays.cosines_with(NORMAL)).all()
 
 
-@given(directions, st.sampled_from([1e16, 1e25, 1e36]))
+@given(directions(), st.sampled_from([1e16, 1e25, 1e36]))
 def test_the_rays_to_a_light_beyond_all_are_parallel(toward: Vector, distance: float) -> None:
     points = points_of(View((1, -5, 2), target=(0, 0, 0)))
     far = times(distance, unit(toward))
@@ -102,7 +102,7 @@ def test_the_rays_to_a_light_beyond_all_are_parallel(toward: Vector, distance: f
     assert rays.cosines_with(NORMAL) == pytest.approx(expected, abs=1e-5)
 
 
-@given(outside_views(), vectors(numbers(-9, 9)), directions)
+@given(outside_views(), vectors(numbers(-9, 9)), directions())
 def test_the_rays_to_a_light_at_infinity_are_against_its_axis_wherever_it_is(
     view: View, position: Vector, direction: Vector
 ) -> None:

@@ -21,7 +21,7 @@ from autocolor.testing import numbers, paints
 from tests.autocolor.reference import entry_of
 
 
-@given(paints, st.integers(2, 300), st.just(0.0) | numbers(0, 1))
+@given(paints(), st.integers(2, 300), st.just(0.0) | numbers(0, 1))
 def test_every_entry_agrees_with_the_slow_twin(paint: Paint, levels: int, floor: float) -> None:
     entries = entries_of(paint, levels, floor)
     expected = [entry_of(paint, levels, level, floor) for level in range(levels)]
@@ -29,7 +29,7 @@ def test_every_entry_agrees_with_the_slow_twin(paint: Paint, levels: int, floor:
     assert entries.dtype == np.uint8
 
 
-@given(paints, st.integers(2, 300))
+@given(paints(), st.integers(2, 300))
 def test_the_lowest_level_is_black_and_the_highest_the_light_color_at_100_percent(
     paint: Paint, levels: int
 ) -> None:
@@ -51,7 +51,7 @@ def test_the_blend_from_a_level_has_that_level_and_no_digit_more_than_it_takes(
     assert digits <= 2 or blend_level(round(level / (levels - 1), digits - 1), levels) != level
 
 
-@given(paints, st.integers(2, 300))
+@given(paints(), st.integers(2, 300))
 def test_below_the_blend_level_there_is_only_the_object_color(paint: Paint, levels: int) -> None:
     plain = entries_of(Paint(paint.object_color, (0, 0, 0), 1.0), levels)
     upto = blend_level(paint.blend, levels) + 1
@@ -76,14 +76,14 @@ def test_the_percentage_is_how_much_of_the_light_color_is_reached(percentage: fl
     assert entries_of(Paint((50, 50, 50), (250, 250, 250), 0.5, percentage), 11)[-1].tolist() == [last] * 3
 
 
-@given(paints, st.integers(2, 300))
+@given(paints(), st.integers(2, 300))
 def test_with_two_like_colors_a_blend_changes_nothing(paint: Paint, levels: int) -> None:
     same = Paint(paint.object_color, paint.object_color, paint.blend, paint.light_percentage)
     plain = Paint(paint.object_color, paint.object_color, 1.0)
     assert entries_of(same, levels).tolist() == entries_of(plain, levels).tolist()
 
 
-@given(paints, st.integers(2, 300))
+@given(paints(), st.integers(2, 300))
 def test_a_light_color_that_is_nowhere_darker_never_makes_a_level_darker(paint: Paint, levels: int) -> None:
     light = tuple(max(pair) for pair in zip(paint.object_color, paint.light_color, strict=True))
     brighter = Paint(paint.object_color, light, paint.blend, paint.light_percentage)  # type: ignore[arg-type]

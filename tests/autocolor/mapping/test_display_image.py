@@ -53,26 +53,26 @@ def of_scalar(**fields: st.SearchStrategy[Any]) -> st.SearchStrategy[Edit]:
     )
 
 
-paint_edits = of_surface(paint=paints)
+paint_edits = of_surface(paint=paints())
 edits = st.one_of(
     paint_edits,
     of_surface(blend=numbers(0, 1)),
     of_surface(levels=st.none() | st.integers(2, 300)),
     of_surface(diffuse=numbers(0, 2)),
     of_surface(two_sided=st.booleans()),
-    of_scene(background=colors),
+    of_scene(background=colors()),
     of_scene(contrast=st.sampled_from(["stretch", "floor"])),
     of_scene(scaling=st.sampled_from(["surface", "object"])),
     of_scene(mapping=st.sampled_from(MAPPINGS)),
-    of_scene(exposure=exposures),
+    of_scene(exposure=exposures()),
     of_scene(dither=st.sampled_from(["off", "ordered"])),
     of_scene(division=st.sampled_from(["covered", "equal"])),
     of_scene(ambient=numbers(0, 1)),
     of_scene(lights=st.sampled_from([(), (Light("key", (0.0, -3.0, 2.0)),)])),
     of_scene(scalar=st.none() | scalars()),
-    of_scalar(scale=scales),
-    of_scalar(below=st.none() | colors),
-    of_scalar(limits=st.none() | limits),
+    of_scalar(scale=scales()),
+    of_scalar(below=st.none() | colors()),
+    of_scalar(limits=st.none() | limits()),
     of_scalar(bands=st.integers(2, 20)),
     of_scalar(surfaces=st.none() | st.just(("glass",))),
     of_scene(name=st.sampled_from(["scene", "another"])),
@@ -138,7 +138,7 @@ def test_the_words_are_shared_where_no_level_can_have_changed(scene: Scene, step
         assert (alone.words == before.words).all()
 
 
-@given(scenes(), names, paints)
+@given(scenes(), names, paints())
 def test_another_paint_loads_the_range_of_its_surface_alone(scene: Scene, name: str, paint: Any) -> None:
     session = Session(scene)
     is_other = scene.surface(name).paint != paint
@@ -148,7 +148,7 @@ def test_another_paint_loads_the_range_of_its_surface_alone(scene: Scene, name: 
     assert loads == ([tuple(session.image.ranges[name])] if is_other and has_words else [])
 
 
-@given(scenes(), scalars(), scales)
+@given(scenes(), scalars(), scales())
 def test_another_color_scale_loads_the_ranges_of_colored_surfaces_alone(
     scene: Scene, scalar: Any, scale: Any
 ) -> None:
@@ -169,7 +169,7 @@ def test_nothing_is_loaded_for_an_image_of_the_same_colors(scene: Scene, edit: E
     assert list(image.loads_after(display_image(image.scene.replace(name="new"), image.picture))) == []
 
 
-@given(scenes(), of_scene(background=colors) | of_scene(contrast=st.sampled_from(["stretch", "floor"])))
+@given(scenes(), of_scene(background=colors()) | of_scene(contrast=st.sampled_from(["stretch", "floor"])))
 def test_if_more_than_paints_differ_one_load_reaches_from_the_first_to_the_last_changed_entry(
     scene: Scene, edit: Edit
 ) -> None:
@@ -207,7 +207,7 @@ SPARE = Surface("spare").replace(object_color=(1, 2, 3))
 
 
 @given(
-    scenes(), paints, st.permutations([0, 1, 2]), st.lists(st.sampled_from([0, 1]), max_size=2, unique=True)
+    scenes(), paints(), st.permutations([0, 1, 2]), st.lists(st.sampled_from([0, 1]), max_size=2, unique=True)
 )
 def test_surfaces_without_parts_come_and_go_and_change_places(
     scene: Scene, paint: Any, order: list[int], paint_taken: list[int]

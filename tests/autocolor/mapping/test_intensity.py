@@ -29,6 +29,7 @@ from autocolor.mapping.intensity import (
 from autocolor.mapping.ranges import level_ranges
 from autocolor.testing import MAPPINGS, scenes
 from autocolor.visibility.visible_points import SurfaceSlice
+from ramtek_emu.testing import check_words_within_planes
 from tests.autocolor.meshes import wall_scene
 from tests.autocolor.reference import level_of, trimmed
 
@@ -166,7 +167,7 @@ def test_every_word_is_the_backgrounds_or_in_its_surfaces_range(scene: Scene) ->
     picture = render(scene, 12, 16)
     ranges = level_ranges(scene.surfaces, {part.surface: 1 for part in scene.parts})
     words = words_of(picture, ranges, scene.scaling, scene.mapping)
-    assert words.max() <= 1023
+    check_words_within_planes(words)
     assert (words[picture.surface_number == 0] == 0).all()
     for number, name in enumerate(picture.surfaces, 1):
         on_surface = words[picture.surface_number == number]

@@ -44,7 +44,7 @@ SIZES = st.sampled_from([1e-200, 1e-20, 1e-6, 1.0, 1e6, 1e20, 2e29])
     meshes(),
     SIZES,
     vectors(),
-    st.one_of(st.none(), directions),
+    st.one_of(st.none(), directions()),
     numbers(-180, 180),
     st.sampled_from([1.0, 30.0, 120.0]),
 )
@@ -61,7 +61,7 @@ def test_every_node_is_within_the_picture_with_space_on_all_sides(
         assert around.axes == pytest.approx(view.axes, abs=1e-9)
 
 
-@given(meshes(), st.one_of(st.none(), directions), st.sampled_from([10.0, 30.0, 90.0]))
+@given(meshes(), st.one_of(st.none(), directions()), st.sampled_from([10.0, 30.0, 90.0]))
 def test_a_framed_object_is_in_the_middle_of_the_picture(
     mesh: Mesh, direction: Vector | None, field_of_view: float
 ) -> None:

@@ -75,7 +75,7 @@ def test_the_frame_of_the_eye_is_that_of_the_picture(view: View) -> None:
     assert np.array_equal(DOWN_TO_UP @ DOWN_TO_UP.T, np.eye(3))
 
 
-@given(views(), vectors(), vectors(), directions)
+@given(views(), vectors(), vectors(), directions())
 def test_a_frame_converts_to_the_world_and_back(
     view: View, position: Vector, point: Vector, direction: Vector
 ) -> None:
@@ -87,7 +87,7 @@ def test_a_frame_converts_to_the_world_and_back(
         assert math.dist(frame.point_to_world(point), frame.origin) == pytest.approx(math.hypot(*point))
 
 
-@given(directions, vectors())
+@given(directions(), vectors())
 def test_a_light_carries_things_ahead_along_its_direction(direction: Vector, position: Vector) -> None:
     frame = light_frame(Light("light", position, direction=direction))
     assert frame.direction_to_world((0.0, 1.0, 0.0)) == pytest.approx(unit(direction), abs=1e-12)
@@ -400,7 +400,7 @@ def test_a_point_source_carries_along_the_axes_of_the_world() -> None:
     assert placed.direction == (1.0, 0.0, 0.0)
 
 
-@given(vectors(), directions, vectors(), directions)
+@given(vectors(), directions(), vectors(), directions())
 def test_a_half_space_attached_and_detached_again_is_where_it_was(
     position: Vector, toward: Vector, point: Vector, direction: Vector
 ) -> None:

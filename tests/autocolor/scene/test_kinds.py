@@ -168,7 +168,7 @@ def test_a_number_of_thousands_of_digits_is_refused_without_writing_it() -> None
 KIND = AngleCurveKind(0.001, ((0.0, 0.04), (60.0, 0.1), (90.0, 1.0)))
 
 
-@given(angle_curves)
+@given(angle_curves())
 def test_a_curve_is_held_as_it_is_whatever_lists_it_came_in(curve: AngleCurve) -> None:
     assert validated(KIND, [list(point) for point in curve]) == (curve, [])
     assert validated(KIND, np.array(curve)) == (curve, [])

@@ -48,7 +48,7 @@ def test_a_light_keeps_what_it_is_given(light: Light) -> None:
     assert light.replace(intensity=2).replace(intensity=light.intensity) == light
 
 
-@given(directions, st.sampled_from([1e-300, 1e-20, 1.0, 1e20]))
+@given(directions(), st.sampled_from([1e-300, 1e-20, 1.0, 1e20]))
 def test_the_axis_is_a_unit_vector_however_long_the_direction_is(
     direction: tuple[float, float, float], size: float
 ) -> None:
@@ -220,7 +220,7 @@ def test_the_plane_goes_through_all_three_points(a: Vector, b: Vector, c: Vector
         assert dot(minus(point, a), half_space.direction) == pytest.approx(0, abs=1e-12)
 
 
-@given(vectors(), vectors(), vectors(), directions)
+@given(vectors(), vectors(), vectors(), directions())
 def test_from_the_lit_side_the_points_turn_counterclockwise(
     a: Vector, b: Vector, c: Vector, eye: Vector
 ) -> None:
@@ -241,7 +241,7 @@ def test_the_size_of_the_triangle_does_not_matter(size: float) -> None:
     assert direction == pytest.approx((0, -math.sqrt(0.5), math.sqrt(0.5)))
 
 
-@given(vectors(), directions, numbers(-3, 3))
+@given(vectors(), directions(), numbers(-3, 3))
 def test_three_points_in_one_line_are_refused(a: Vector, toward: Vector, far: float) -> None:
     b, c = (tuple((np.array(a) + step * np.array(toward)).tolist()) for step in (1.0, far))
     with pytest.raises(InputError, match=r"^half-space 'left': its three points must not be in a line, "):

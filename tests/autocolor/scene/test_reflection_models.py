@@ -34,8 +34,8 @@ from tests.closeness import all_close
 
 exponents = st.sampled_from([0.0, 1e-3, 0.3, 1.0, 5.0, 20.0, 100.0])
 models: st.SearchStrategy[ReflectionModel] = st.one_of(
-    st.builds(Phong, exponents, growths),
-    st.builds(BlinnPhong, exponents, growths),
+    st.builds(Phong, exponents, growths()),
+    st.builds(BlinnPhong, exponents, growths()),
     st.builds(CookTorrance, numbers(0.01, 1), numbers(0.001, 1)),
 )
 WIDEST = float(np.nextafter(np.float32(1), np.float32(2)))
@@ -138,7 +138,7 @@ def test_phong_is_the_power_of_one_cosine_and_asks_for_no_other(
     assert got.tobytes() == power(eye, exponent).tobytes()
 
 
-@given(st.lists(st.tuples(cosines, cosines, cosines), min_size=1), exponents, growths)
+@given(st.lists(st.tuples(cosines, cosines, cosines), min_size=1), exponents, growths())
 def test_a_growth_multiplies_the_factor_without_it_by_a_function_of_incidence_alone(
     some: list[tuple[float, float, float]], exponent: float, growth: SpecularGrowth
 ) -> None:
@@ -151,7 +151,7 @@ def test_a_growth_multiplies_the_factor_without_it_by_a_function_of_incidence_al
             assert grown == (to_plain if times is None else to_plain * times).tolist()
 
 
-@given(st.lists(st.tuples(cosines, cosines, cosines), min_size=1), exponents, growths)
+@given(st.lists(st.tuples(cosines, cosines, cosines), min_size=1), exponents, growths())
 def test_the_factor_may_overwrite_the_cosines_of_incidence_too(
     some: list[tuple[float, float, float]], exponent: float, growth: SpecularGrowth
 ) -> None:
@@ -306,7 +306,7 @@ def test_glass_and_its_refractive_index_grow_alike() -> None:
     assert all_close(factor(one), factor(other), rel=1e-6)
 
 
-@given(angle_curves)
+@given(angle_curves())
 def test_a_curve_is_met_at_its_points_and_is_linear_in_the_angle_between_them(curve: AngleCurve) -> None:
     growth = SpecularGrowth(fresnel_curve=curve)
     angles, shares = zip(*curve, strict=True)
@@ -325,7 +325,7 @@ def test_a_curve_through_points_of_schlicks_is_close_to_it() -> None:
     assert all_close(factor(SpecularGrowth(fresnel_curve=curve)), schlick(0.04), rel=2e-3)
 
 
-@given(growths, numbers(0, 1))
+@given(growths(), numbers(0, 1))
 def test_the_growth_is_that_of_the_slow_twin(growth: SpecularGrowth, cosine: float) -> None:
     single = np.array([cosine], np.float32)
     found = growth.factor(single)
@@ -333,7 +333,7 @@ def test_the_growth_is_that_of_the_slow_twin(growth: SpecularGrowth, cosine: flo
     assert (1.0 if found is None else float(found[0])) == pytest.approx(expected, rel=1e-5, abs=1e-6)
 
 
-@given(growths, st.lists(numbers(-2, 2), min_size=1))
+@given(growths(), st.lists(numbers(-2, 2), min_size=1))
 def test_cosines_out_of_their_range_count_as_its_ends(growth: SpecularGrowth, cosines: list[float]) -> None:
     given_as = np.array(cosines, np.float32)
     kept = given_as.copy()
@@ -346,7 +346,7 @@ def test_cosines_out_of_their_range_count_as_its_ends(growth: SpecularGrowth, co
         assert (found <= growth.largest * 1.00001).all()
 
 
-@given(growths)
+@given(growths())
 def test_the_factor_is_1_at_normal_incidence_and_its_largest_is_reached(growth: SpecularGrowth) -> None:
     cosines = np.cos(np.radians(np.arange(91.0))).astype(np.float32)
     found = growth.factor(cosines)

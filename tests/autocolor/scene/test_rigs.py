@@ -13,7 +13,7 @@ from autocolor.scene.columns import WORLD_UNITS, Row, fields_of, from_plain, to_
 from autocolor.scene.following import detached
 from autocolor.scene.lights import AXES
 from autocolor.scene.rigs import mirrored
-from autocolor.testing import lights, scenes, short
+from autocolor.testing import coordinates, lights, scenes
 from tests.autocolor.meshes import cube, wall_scene
 
 
@@ -113,7 +113,7 @@ def test_lights_that_follow_keep_their_place_in_sizes_of_the_object() -> None:
     assert np.allclose(one, other, atol=1e-5)
 
 
-@given(lights(), st.sampled_from(AXES), short)
+@given(lights(), st.sampled_from(AXES), coordinates())
 def test_a_light_mirrored_twice_is_where_it_was(light: Light, axis: str, about: float) -> None:
     there = mirrored(light, "there", axis, about)
     back = mirrored(there, light.name, axis, about)
@@ -135,7 +135,7 @@ def test_a_light_mirrored_twice_is_where_it_was(light: Light, axis: str, about: 
         assert same == plane.replace(point=same.point)
 
 
-@given(lights(), st.sampled_from(AXES), short)
+@given(lights(), st.sampled_from(AXES), coordinates())
 def test_the_half_spaces_of_a_mirrored_light_are_mirrored_in_the_world(
     light: Light, axis: str, about: float
 ) -> None:

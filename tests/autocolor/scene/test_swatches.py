@@ -130,7 +130,7 @@ def test_the_finishes_of_a_menu_are_these() -> None:
         finished(Surface("body"), "metl")
 
 
-@given(colors, names)
+@given(colors(), names)
 def test_more_light_is_never_clearly_darker(color: tuple[int, int, int], name: str) -> None:
     surface = Surface("body").replace(object_color=color)
     paint = surface.replace(**finished(surface, name)).paint
@@ -157,7 +157,7 @@ def test_each_finish_looks_different() -> None:
     assert whitest["rubber"] < 100 < whitest["metal"] < 200
 
 
-@given(colors, colors, st.floats(0, 1))
+@given(colors(), colors(), st.floats(0, 1))
 def test_a_mixed_color_lies_between_both(
     one: tuple[int, int, int], other: tuple[int, int, int], share: float
 ) -> None:

@@ -13,7 +13,7 @@ from autocolor.testing import directions, numbers, vectors
 from tests.autocolor.reference import ray
 
 
-@given(vectors(), directions, numbers(-720, 720))
+@given(vectors(), directions(), numbers(-720, 720))
 def test_the_axes_are_a_rotation_with_the_view_direction_last(
     eye: Vector, direction: Vector, angle: float
 ) -> None:
@@ -25,7 +25,7 @@ def test_the_axes_are_a_rotation_with_the_view_direction_last(
     assert axes[2] @ np.array(direction) > 0
 
 
-@given(vectors(), directions)
+@given(vectors(), directions())
 def test_without_an_angle_the_horizon_is_level_and_up_is_up(eye: Vector, direction: Vector) -> None:
     right, down, _ = View(eye, direction=direction).axes
     if direction[0] or direction[1]:
@@ -53,7 +53,7 @@ def test_the_angle_turns_the_horizontal_axis_toward_the_top() -> None:
     assert right == pytest.approx((math.cos(math.radians(30)), 0, math.sin(math.radians(30))))
 
 
-@given(vectors(), directions, numbers(-180, 180))
+@given(vectors(), directions(), numbers(-180, 180))
 def test_the_reference_ray_agrees_with_the_axes(eye: Vector, direction: Vector, angle: float) -> None:
     view = View(eye, direction=direction, angle=angle, field_of_view=60)
     focal = 6 / 2 / math.tan(math.radians(30))

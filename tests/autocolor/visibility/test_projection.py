@@ -31,7 +31,7 @@ from tests.autocolor.reference import ray
 from tests.autocolor.strategies import interpolations, rasters
 
 
-@given(vectors(), directions, rasters)
+@given(vectors(), directions(), rasters)
 def test_the_rays_of_the_lens_go_through_the_centers_of_the_pixels(
     eye: Vector, direction: Vector, raster: tuple[int, int]
 ) -> None:

@@ -135,7 +135,7 @@ def test_a_closed_mesh_has_no_crack_from_within(mesh: Mesh, data: st.DataObject)
     place = np.array(data.draw(vectors(numbers(-0.2, 0.2))))
     view = View(
         tuple((middle + place * size).tolist()),
-        direction=data.draw(directions),
+        direction=data.draw(directions()),
         field_of_view=data.draw(st.sampled_from([20.0, 60.0, 120.0])),
     )
     lines, elements = data.draw(rasters)

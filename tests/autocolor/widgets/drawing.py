@@ -10,12 +10,12 @@ from hypothesis import strategies as st
 
 from autocolor.widgets.items import Area, Item, filled, image, lines, outline, text
 from ramtek_emu import Configuration, Ramtek9300
+from ramtek_emu.testing import words
 
 TINY = Configuration(name="tiny", elements=48, lines=40, planes=10)
 """A display on which random items often meet."""
 
 places = st.integers(-12, 60)
-words = st.integers(0, 1023)
 
 
 @st.composite
@@ -28,7 +28,7 @@ def areas(draw: st.DrawFn) -> Area:
 @st.composite
 def items(draw: st.DrawFn) -> Item:
     """Items of every kind."""
-    area, word = draw(areas()), draw(words)
+    area, word = draw(areas()), draw(words())
     kind = draw(st.sampled_from(["filled", "outline", "text", "lines", "image"]))
     if kind == "filled":
         return filled(area, word)
@@ -36,7 +36,7 @@ def items(draw: st.DrawFn) -> Item:
         return outline(area, word)
     if kind == "text":
         line = draw(st.text("aM.", max_size=4))
-        return text(line, area.left, area.top, word, draw(words), draw(st.integers(1, 2)))
+        return text(line, area.left, area.top, word, draw(words()), draw(st.integers(1, 2)))
     if kind == "lines":
         far = st.one_of(places, places, st.sampled_from([-1e30, -70000.0, 70000.0, 1e30, float("nan")]))
         polyline = st.lists(st.tuples(far, far), max_size=4)

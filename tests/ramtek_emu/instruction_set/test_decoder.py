@@ -40,7 +40,7 @@ def test_the_decoder_splits_as_a_reader_of_single_words_does(stream: list[int]) 
 
 
 @quick
-@given(st.lists(words, max_size=2000))
+@given(st.lists(words(16), max_size=2000))
 def test_pending_words_are_never_more_than_one_instruction(stream: list[int]) -> None:
     decoder = Decoder()
     for word in stream:

@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 from ramtek_emu import WordsError
 from ramtek_emu.memory.frame_buffer import FrameBuffer, WriteEnable
 from ramtek_emu.memory.scan_orders import SCAN_ORDERS, Point, Window
-from ramtek_emu.testing import rasters
-from ramtek_emu.testing import words as any_words
+from ramtek_emu.testing import rasters, words
 from tests.ramtek_emu import reference
 from tests.ramtek_emu.strategies import SMALL, masks, points, quick, scan_codes, thorough, windows
 
@@ -27,7 +26,13 @@ def filled(raster: NDArray[np.uint16]) -> FrameBuffer:
 
 @thorough
 @given(
-    rasters(), windows(), scan_codes, points, st.lists(any_words, max_size=300), masks, windows() | st.none()
+    rasters(),
+    windows(),
+    scan_codes,
+    points,
+    st.lists(words(16), max_size=300),
+    masks,
+    windows() | st.none(),
 )
 def test_writing_a_run_equals_a_walk_word_by_word(
     raster: NDArray[np.uint16],
@@ -74,7 +79,7 @@ def test_reading_a_run_equals_a_walk_word_by_word(
 
 
 @quick
-@given(rasters(), windows(), any_words, masks)
+@given(rasters(), windows(), words(16), masks)
 def test_a_fill_equals_a_run_of_a_repeated_word(
     raster: NDArray[np.uint16], window: Window, word: int, mask: int
 ) -> None:

@@ -14,7 +14,7 @@ from tests.ramtek_emu.strategies import quick
 
 
 @quick
-@given(st.integers(0, 0xFFFF), st.lists(words, max_size=40), st.integers(1, 70))
+@given(st.integers(0, 0xFFFF), st.lists(words(16), max_size=40), st.integers(1, 70))
 def test_a_load_lands_word_by_word_at_the_counter_and_wraps(first: int, row: list[int], repeats: int) -> None:
     row = (row * repeats)[:2300]
     table = LookupTable()
@@ -79,7 +79,7 @@ def test_a_read_wraps_and_moves_the_counter(first: int, count: int) -> None:
 
 
 @quick
-@given(st.integers(0, 0xFFFF), st.lists(words, min_size=1, max_size=30))
+@given(st.integers(0, 0xFFFF), st.lists(words(16), min_size=1, max_size=30))
 def test_twelve_bit_words_come_back_as_they_were_sent(first: int, row: list[int]) -> None:
     table = LookupTable(PRINCETON_9300)
     table.load(first, np.array(row, np.uint16))

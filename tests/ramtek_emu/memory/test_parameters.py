@@ -8,7 +8,7 @@ from ramtek_emu import instructions
 from ramtek_emu.instruction_set.table import OPERANDS, Flags
 from ramtek_emu.memory.parameters import Parameters, coefficients, signed
 from ramtek_emu.memory.scan_orders import Point, Window
-from ramtek_emu.testing import words as any_words
+from ramtek_emu.testing import words
 from tests.ramtek_emu import reference
 from tests.ramtek_emu.displays import box, sent
 from tests.ramtek_emu.strategies import SMALL, quick, scan_codes, windows
@@ -34,7 +34,7 @@ def test_addresses_count_from_index_registers_and_the_operating_point() -> None:
 
 
 @quick
-@given(any_words)
+@given(words(16))
 def test_a_word_is_a_number_in_two_s_complement(word: int) -> None:
     assert signed(word) & 0xFFFF == word
     assert -0x8000 <= signed(word) <= 0x7FFF

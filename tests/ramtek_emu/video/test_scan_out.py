@@ -22,7 +22,7 @@ from ramtek_emu import (
     instructions,
 )
 from ramtek_emu.memory.cursors import BLINK, VISIBLE, Cursors, cross
-from ramtek_emu.testing import rasters, streams, ten_bit_words
+from ramtek_emu.testing import rasters, streams, words
 from ramtek_emu.video.scan_out import Mark, Stamp, draw, lines_with, marks
 from tests.ramtek_emu import reference
 from tests.ramtek_emu.displays import colored
@@ -97,7 +97,7 @@ MEMORY_ACTIONS = st.one_of(
     st.tuples(st.just("load"), LOADS),
     st.tuples(st.just("load"), LOADS),
     st.tuples(st.just("write entries"), LOADS),
-    st.tuples(st.just("write words"), st.tuples(PLACES, ten_bit_words)),
+    st.tuples(st.just("write words"), st.tuples(PLACES, words())),
     st.tuples(st.just("cursor"), st.tuples(PLACES, st.integers(0, 1), st.integers(0, 3))),
     st.tuples(st.just("draw on it"), st.integers(0, 8)),
 )

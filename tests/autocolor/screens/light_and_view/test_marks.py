@@ -273,7 +273,7 @@ def test_a_cone_that_holds_everything_has_no_outline() -> None:
     assert all(cone_outline(VIEWS, side, light, (2.0, 0.0, 0.0)) == () for side in SIDES)
 
 
-@given(vectors(), directions, numbers(1, 179), st.sampled_from(SIDES))
+@given(vectors(), directions(), numbers(1, 179), st.sampled_from(SIDES))
 def test_the_lines_are_tangents_of_the_rim(
     position: Vector, direction: Vector, cone_angle: float, side: ViewSide
 ) -> None:

@@ -431,7 +431,7 @@ def test_the_silhouette_of_a_sphere_is_a_circle() -> None:
     assert abs(heights[0, 0]) < np.sin(np.pi / 17)
 
 
-@given(directions, st.integers(0, 1 << 32))
+@given(directions(), st.integers(0, 1 << 32))
 def test_a_silhouette_is_closed_whichever_way_the_polygons_run(direction: Vector, seed: int) -> None:
     toward = np.array(direction) / np.linalg.norm(direction)
     edges = mesh_edges(turned_at_random(sphere(24, 13), seed))
@@ -443,7 +443,7 @@ def test_a_silhouette_is_closed_whichever_way_the_polygons_run(direction: Vector
         assert sorted(map(sorted, found.tolist())) == sorted(map(sorted, plain.tolist()))
 
 
-@given(directions)
+@given(directions())
 def test_a_distant_eye_sees_the_silhouette_of_its_direction(direction: Vector) -> None:
     toward = np.array(direction) / np.linalg.norm(direction)
     edges = mesh_edges(sphere(24, 13))
