@@ -33,8 +33,10 @@ if TYPE_CHECKING:
     from autocolor.files.store.tables import open_tables as open_tables
     from autocolor.images import image as image
     from autocolor.images import save_image as save_image
+    from autocolor.images import save_words as save_words
     from autocolor.images import send_picture as send_picture
     from autocolor.journal.journal import read_journal as read_journal
+    from autocolor.layers import save_layers as save_layers
     from autocolor.lighting.picture import Picture as Picture
     from autocolor.mapping.ranges import LevelRange as LevelRange
     from autocolor.rendering import render as render
@@ -99,6 +101,8 @@ _HOME: Final = {
     "read_scene": "files.scene_sources",
     "render": "rendering",
     "save_image": "images",
+    "save_layers": "layers",
+    "save_words": "images",
     "scene_of": "scene.creation",
     "send_picture": "images",
     "write_picture": "files.picture_file",

@@ -1,4 +1,4 @@
-"""A picture in the colors of a scene, without a studio: on a display, as an array, or as a PNG file.
+"""A picture in the colors of a scene, without a studio: on a display, as an array, or in PNG files.
 
 A picture contains intensities but no colors. The colors come from the words and entries of a display image,
 which `display_image` makes.
@@ -23,6 +23,7 @@ from autocolor.lighting.picture import Picture, check_smooth, check_surfaces
 from autocolor.mapping.display_image import DisplayImage, LevelImage
 from autocolor.mapping.legend import legend
 from autocolor.mapping.normal_words import NormalImage
+from autocolor.mapping.ranges import FEWEST_LEVELS, WORDS
 from autocolor.scene.scene import NORMALS, Scene
 from autocolor.sending import configuration_of, send_image, shown_colors
 from ramtek_emu import HostPort
@@ -117,6 +118,51 @@ def check_png_level(level: int | None) -> None:
         raise UsageError(
             f"level must be a whole number from 0 to 9, not {shown(level)}; leave it out for the default"
         )
+
+
+MOST_INDEXED: Final = 256
+"""The colors of the palette of a PNG file."""
+
+
+def save_words(
+    path: str | PathLike[str],
+    scene: Scene,
+    picture: Picture,
+    *,
+    indexed: bool = False,
+    overwrite: bool = False,
+) -> None:
+    """Write the words of a picture with their entries to a PNG file, atomically.
+
+    The file has the lines and elements of the picture: words cannot be averaged, so a smooth picture has
+    `smooth` times those of its image. The legend of a scalar is left out. The pixels are 16-bit grays, equal
+    to the words, 0 to 1023; `word_png_bytes` tells where the 1024 entries are in the file.
+
+    If `indexed`, the pixels are indices of a palette instead. The words in use become 0, 1, 2 and so on, in
+    their order, and their entries the palette; so the colors are those of `image` with `smooth=1`.
+
+    Raises UsageError for a name that does not end in .png, and if `indexed` and more than 256 words are in
+    use; InputError if an intensity is not finite, or if the surfaces of the picture are not those of the
+    scene; OutputError and WriteError as `save_image`.
+    """
+    from ramtek_emu.png import indexed_png_bytes, word_png_bytes
+
+    check_suffix(path, ".png", "words")
+    check_surfaces(scene, picture)
+    shown_image = display_image(scene, picture)
+    if indexed:
+        is_used = np.bincount(shown_image.words.ravel(), minlength=WORDS) > 0
+        if (count := np.count_nonzero(is_used)) > MOST_INDEXED:
+            levels = max(FEWEST_LEVELS, (MOST_INDEXED - 1) // len(shown_image.ranges))
+            raise UsageError(
+                f"an indexed PNG must have at most {MOST_INDEXED} words in use, not {count:,}; set `levels`"
+                f" of each surface to {levels}, or write the words themselves"
+            )
+        index_of_word = (np.cumsum(is_used) - 1).astype(np.uint8)
+        data = indexed_png_bytes(index_of_word[shown_image.words], shown_image.entries[is_used])
+    else:
+        data = word_png_bytes(shown_image.words, shown_image.entries)
+    write_atomically(path, data, overwrite=overwrite)
 
 
 SMOOTHNESSES: Final = (1, 2, 3, 4)

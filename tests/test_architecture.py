@@ -21,7 +21,8 @@ PUBLIC_NAMES = {
         "LevelRange", "Light", "Mesh", "MeshScalar", "MissingInputError", "NamedView", "OutputError", "Paint",
         "Part", "Phong", "Picture", "Reflectance", "Rig", "Scalar", "Scene", "Studio", "Surface",
         "UnavailableError", "UsageError", "View", "WriteError", "demo", "image", "open_tables",
-        "read_journal", "read_picture", "read_rig", "read_scene", "render", "save_image", "scene_of",
+        "read_journal", "read_picture", "read_rig", "read_scene", "render", "save_image",
+        "save_layers", "save_words", "scene_of",
         "send_picture", "write_picture", "write_rig", "write_scene",
     ],
     "ramtek_emu": [
@@ -36,8 +37,8 @@ PUBLIC_NAMES = {
 WINGS = {
     "autocolor": (
         "errors", "logs", "arrays", "immutable", "checks", "budget", "scene", "visibility", "scalars",
-        "lighting", "mapping", "files", "rendering", "sending", "images", "explanation", "journal", "studio",
-        "widgets", "screens", "commands", "__main__",
+        "lighting", "mapping", "files", "rendering", "sending", "images", "layers", "explanation", "journal",
+        "studio", "widgets", "screens", "commands", "__main__",
     ),
     "ramtek_emu": (
         "errors", "arrays", "checks", "timing", "configuration", "writing", "png",
@@ -62,6 +63,10 @@ OUTSIDE = {"numpy", "click", "PIL", "pygame"}
 
 READING_FOR_US = {"meshio", "trimesh"}
 """The packages of the extra `meshes`."""
+
+
+WRITING_LAYERS = {"OpenEXR"}
+"""The package of the extra `exr`."""
 
 
 class Import(NamedTuple):
@@ -142,11 +147,15 @@ def test_pillow_is_in_two_files_one_for_pictures_and_one_for_the_names_of_colors
 
 def test_nothing_is_imported_that_is_no_dependency() -> None:
     used = {top(i.target) for imports in IMPORTS.values() for i in imports}
-    assert used <= {*PUBLIC_NAMES, *OUTSIDE, *READING_FOR_US, *sys.stdlib_module_names}
+    assert used <= {*PUBLIC_NAMES, *OUTSIDE, *READING_FOR_US, *WRITING_LAYERS, *sys.stdlib_module_names}
 
 
 def test_the_libraries_that_read_meshes_are_in_one_file_and_loaded_when_they_are_needed() -> None:
     assert importers(READING_FOR_US) == {("autocolor.files.meshes.foreign_worker", False)}
+
+
+def test_the_library_that_writes_layers_is_in_one_file_and_loaded_when_it_is_needed() -> None:
+    assert importers(WRITING_LAYERS) == {("autocolor.layers", False)}
 
 
 def test_constants_are_final_and_array_types_stand_in_one_module() -> None:

@@ -38,6 +38,7 @@ Examples:
   autocolor render scenes/coupe --view hood -o hood.png
   autocolor render scenes/coupe --set lights.key.concentration=40 --set ambient=0.2
   autocolor render scenes/coupe --set surfaces.body.object_color=navy --size 1280x960 --smooth 4
+  autocolor render scenes/coupe --layers coupe.exr --words coupe-words.png
 """
 
 
@@ -48,13 +49,31 @@ Examples:
     "--output",
     type=click.Path(),
     metavar="PNG",
-    help="PNG file to write. Default, without --save: SCENE.png, or coupe.png.",
+    help="PNG file to write. Default, without any other output: SCENE.png, or coupe.png.",
 )
 @click.option(
     "--save",
     type=click.Path(),
     metavar="PICTURE.npz",
     help="Save the picture with its scene, to recolor it later.",
+)
+@click.option(
+    "--layers",
+    type=click.Path(),
+    metavar="FILE.exr",
+    help="Write what compositors use: each light, depth, normals, positions, identities.",
+)
+@click.option(
+    "--words",
+    type=click.Path(),
+    metavar="FILE.png",
+    help="Write the words as 16-bit grays, with the lookup table.",
+)
+@click.option(
+    "--indexed",
+    type=click.Path(),
+    metavar="FILE.png",
+    help="Write the words in use, at most 256, as indices of a palette.",
 )
 @click.option(
     "--light",
@@ -87,6 +106,9 @@ def render(
     source: SceneSource | None,
     output: str | None,
     save: str | None,
+    layers: str | None,
+    words: str | None,
+    indexed: str | None,
     lights: tuple[str, ...],
     view_name: str | None,
     settings: tuple[str, ...],
@@ -96,8 +118,17 @@ def render(
     hold_exposure: bool,
     force: bool,
 ) -> None:
-    """Render SCENE: a folder, a scene.toml, a mesh file or a picture file. Without SCENE, render the demo."""
+    """Render SCENE: a folder, a scene.toml, a mesh file or a picture file. Without SCENE, render the demo.
+
+    --layers, --words and --indexed write each pixel by itself. With one of them, the default of --smooth is
+    1; with --smooth N, their files have N times the lines and elements of the PNG.
+    """
     from autocolor.commands.settings import with_settings
+
+    others = {"--layers": layers, "--words": words, "--indexed": indexed}
+    is_image_alone = not any(others.values())
+    if smooth is None and not is_image_alone:
+        smooth = "1"
 
     def rendered(scene: Scene) -> Picture:
         from autocolor.rendering import render
@@ -120,26 +151,40 @@ def render(
     edited = created_again(report, with_settings(original, settings), elements / lines)
     if lights:
         edited = edited.only_lights(*lights)
-    if output is None and save is None:
+    if output is None and save is None and is_image_alone:
         from autocolor.files.paths import file_stem
 
         output = f"{file_stem(edited.name)}.png"
-    refuse_outputs(output, save, force)
+    refuse_outputs(output, save, force, others)
+    if layers is not None:
+        from autocolor.layers import open_exr
 
-    with progress(4) as step:
+        open_exr()
+
+    with progress(5) as step:
         from autocolor.files.picture_file import write_picture
+        from autocolor.images import save_words
+        from autocolor.layers import save_layers
 
         _ = edited.mesh.normals
         step()
         picture = rendered(edited)
         step()
+        # This may be refused, so it comes first.
+        if indexed is not None:
+            save_words(indexed, edited, picture, indexed=True, overwrite=force)
         if save is not None:
             write_picture(save, edited, picture, overwrite=force)
         step()
         if output is not None:
             write_image(output, edited, picture, force)
         step()
-    tell_written(output, save)
+        if words is not None:
+            save_words(words, edited, picture, overwrite=force)
+        if layers is not None:
+            save_layers(layers, edited, picture, overwrite=force)
+        step()
+    tell_written(output, save, *others.values())
     context.exit(ended(report, source))
 
 

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import struct
 from pathlib import Path
 from typing import Any, Literal
 
@@ -15,6 +16,8 @@ from PIL import Image
 from autocolor import (
     InputError,
     OutputError,
+    Picture,
+    Scalar,
     Scene,
     Studio,
     Surface,
@@ -23,18 +26,19 @@ from autocolor import (
     images,
     render,
     save_image,
+    save_words,
     scene_of,
     send_picture,
     write_picture,
 )
-from autocolor.images import LARGEST, averaged, display_image, size_of, smoothed
+from autocolor.images import LARGEST, MOST_INDEXED, averaged, display_image, size_of, smoothed
 from autocolor.mapping.legend import legend
 from autocolor.mapping.ranges import SCREENS
 from autocolor.sending import shown_colors
 from ramtek_emu import GMR_9300, Configuration, ConfigurationError, Ramtek9300
 from ramtek_emu.arrays import Colors
 from tests.autocolor.meshes import STRETCHED, cube, wall_scene
-from tests.autocolor.sessions import SMALL, held, opened
+from tests.autocolor.sessions import SMALL, car, held, opened
 from tests.autocolor.strategies import scenes
 
 
@@ -352,3 +356,107 @@ def test_a_picture_that_cannot_be_divided_into_squares_is_refused(
         " render with smooth=4"
     )
     assert not (tmp_path / "wall.png").exists()
+
+
+def suggested_palette(data: bytes) -> bytes:
+    """The content of the chunk sPLT of a PNG file."""
+    place, content = 8, b""
+    while place < len(data):
+        (length,) = struct.unpack(">I", data[place : place + 4])
+        if data[place + 4 : place + 8] == b"sPLT":
+            content = data[place + 8 : place + 8 + length]
+        place += 12 + length
+    return content
+
+
+@pytest.mark.parametrize(
+    "changes", [{}, {"words": "normals"}, {"scalar": Scalar("stress")}, {"dither": "ordered"}]
+)
+def test_words_and_their_entries_are_read_back_from_a_png(tmp_path: Path, changes: dict[str, Any]) -> None:
+    scene = car().replace(**changes)
+    picture = render(scene, 24, 32, smooth=2)
+    shown = display_image(scene, picture)
+    path = tmp_path / "words.png"
+    save_words(path, scene, picture)
+    with Image.open(path) as file:
+        assert file.mode == "I;16"
+        words = np.asarray(file)
+        entries = np.frombuffer(bytes.fromhex(file.info["lookup table"]), np.uint8).reshape(-1, 3)
+    assert (words == shown.words).all()
+    assert words.shape == (48, 64)
+    assert (entries == shown.entries).all()
+    assert (entries[words] == image(scene, picture, smooth=1)).all()
+    name, _, palette = suggested_palette(path.read_bytes()).partition(b"\0")
+    assert (name, palette[0], len(palette)) == (b"lookup table", 8, 1 + 1024 * 6)
+    rows = np.frombuffer(palette[1:], np.uint8).reshape(-1, 6)
+    assert (rows[:, :3] == shown.entries).all()
+    assert (rows[:, 3:] == (255, 0, 0)).all()
+
+
+def test_another_reader_reads_the_same_words(tmp_path: Path) -> None:
+    reader = pytest.importorskip("OpenImageIO")
+    scene = car()
+    picture = render(scene, 24, 32)
+    save_words(tmp_path / "words.png", scene, picture)
+    file = reader.ImageInput.open(str(tmp_path / "words.png"))
+    assert (file.spec().nchannels, str(file.spec().format)) == (1, "uint16")
+    assert (file.read_image("uint16")[..., 0] == display_image(scene, picture).words).all()
+    file.close()
+
+
+@pytest.mark.parametrize(
+    "changes", [{}, {"words": "normals"}, {"scalar": Scalar("stress", bands=8, shades=4)}]
+)
+def test_an_indexed_png_has_the_words_in_use_in_their_order(tmp_path: Path, changes: dict[str, Any]) -> None:
+    scene = car().replace(**changes)
+    for surface in scene.surfaces:
+        scene = scene.with_surface(surface.name, levels=40)
+    picture = render(scene, 24, 32, smooth=2)
+    save_words(tmp_path / "words.png", scene, picture, indexed=True)
+    words = display_image(scene, picture).words
+    with Image.open(tmp_path / "words.png") as file:
+        assert file.mode == "P"
+        indices = np.asarray(file)
+        colors = np.asarray(file.convert("RGB"))
+    assert (colors == image(scene, picture, smooth=1)).all()
+    assert (np.unique(words)[indices] == words).all()
+
+
+def test_an_indexed_png_has_256_words_and_no_more(tmp_path: Path) -> None:
+    scene = wall_scene()
+    lines, elements = 48, 64
+    picture = render(scene, lines, elements)
+    (surface,) = {scene.parts[0].surface}
+    seen = np.flatnonzero(picture.surface_number)
+    for levels in (255, 256):
+        # As many intensities as levels, evenly spaced.
+        relative = np.zeros(lines * elements, np.float32)
+        relative[seen] = np.arange(len(seen)) % levels
+        raster = relative.reshape(lines, elements)
+        steps = Picture.from_rasters(raster, picture.surface_number, picture.surfaces, 1.0)
+        stepped = scene.with_surface(surface, levels=levels)
+        assert len(np.unique(display_image(stepped, steps).words)) == levels + 1
+        path = tmp_path / f"{levels}.png"
+        if levels < MOST_INDEXED:
+            save_words(path, stepped, steps, indexed=True)
+            with Image.open(path) as file:
+                assert (np.asarray(file.convert("RGB")) == image(stepped, steps)).all()
+            continue
+        with pytest.raises(UsageError) as caught:
+            save_words(path, stepped, steps, indexed=True)
+        assert str(caught.value) == (
+            "an indexed PNG must have at most 256 words in use, not 257; set `levels` of each surface to 255,"
+            " or write the words themselves"
+        )
+        assert not path.exists()
+
+
+def test_words_are_never_written_over_a_file_unasked_nor_under_another_suffix(tmp_path: Path) -> None:
+    scene = scene_of(cube())
+    picture = render(scene, 6, 8)
+    save_words(tmp_path / "cube.png", scene, picture)
+    with pytest.raises(OutputError, match="exists"):
+        save_words(tmp_path / "cube.png", scene, picture)
+    save_words(tmp_path / "cube.png", scene, picture, overwrite=True)
+    with pytest.raises(UsageError, match=r"words must be written to a file that ends in \.png"):
+        save_words(tmp_path / "cube.gif", scene, picture)
