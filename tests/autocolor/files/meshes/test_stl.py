@@ -89,6 +89,7 @@ def test_triangles_without_area_are_dropped_and_counted(path: Path) -> None:
     assert read(path, binary([*CUBE, *flat])).repairs == (
         "cube.stl: 1 polygon with fewer than three different corners was dropped",
         "cube.stl: 1 polygon without area was dropped",
+        "cube.stl: 1 node that no polygon uses was dropped",
     )
 
 
