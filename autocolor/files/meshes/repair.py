@@ -161,9 +161,9 @@ def repaired(
         raise InputError(f"{place}: a mesh must have a polygon with area, not none{causes}; add polygons")
     rows_of: dict[str, Indices | slice] = {NODE: slice(None), POLYGON: owners}
     is_used = used_rows(node_numbers.T, len(coordinates))
-    if not unused_nodes and not is_used.all():
+    dropped = 0 if unused_nodes else int(np.count_nonzero(~is_used))
+    if dropped:
         rows_of[NODE] = np.flatnonzero(is_used)
-        dropped = len(coordinates) - len(rows_of[NODE])
         repairs.append(
             f"{dropped:,} {'node' if dropped == 1 else 'nodes'} that no polygon uses"
             f" {'was' if dropped == 1 else 'were'} dropped"

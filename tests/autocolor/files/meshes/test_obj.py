@@ -928,7 +928,7 @@ def test_every_coordinate_reads_back_equal(
     for axis in (0, 1):
         sides = np.maximum(np.abs(coordinates[axis + 1 :: 3]).max(axis=1), 1)
         coordinates[axis + 1 :: 3, axis] -= np.copysign(sides, coordinates[axis + 1 :: 3, axis])
-    mesh = Mesh(coordinates, np.arange(len(coordinates)).reshape(-1, 3), None, ("a",))
+    mesh = Mesh(coordinates, np.arange(len(coordinates)).reshape(-1, 3), np.zeros(len(places), int), ("a",))
     path = tmp_path_factory.mktemp("mesh") / "mesh.obj"
     path.write_bytes(obj_text(mesh))
     again = read_mesh({"file": path}).mesh.coordinates
