@@ -20,7 +20,7 @@ from autocolor.files.meshes.vtk import (
     read_cell_lists,
     read_vtk,
 )
-from autocolor.files.meshes.vtk_cells import CellLists, VtkCells, add_cells
+from autocolor.files.meshes.vtk_cells import CellLists
 from autocolor.scene.mesh import Mesh
 from tests.autocolor.files.refusals import refusal, refused
 
@@ -577,14 +577,6 @@ def test_cells_are_the_same_in_both_forms(cells: list[list[int]]) -> None:
 )  # fmt: skip
 def test_wrong_lists_are_refused(text: str, sentence: str) -> None:
     assert refusal(lists_of, text) == sentence
-
-
-def test_a_strip_turns_every_other_triangle_over() -> None:
-    cells = VtkCells()
-    add_cells(cells, "a.vtk", CellLists(np.array([4, 5, 6, 7, 8, 0, 1]), np.array([0, 5, 7])), 6)
-    assert cells.flats[0].corners.reshape(-1, 3).tolist() == [[4, 5, 6], [6, 5, 7], [6, 7, 8]]
-    assert cells.flats[0].cells.tolist() == [0, 0, 0]
-    assert cells.count == 2
 
 
 def read_data(writer: VtkWriter) -> Attributes:

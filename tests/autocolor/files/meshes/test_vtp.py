@@ -261,7 +261,7 @@ def test_too_many_elements_are_refused(tmp_path: Path, monkeypatch: pytest.Monke
     monkeypatch.setattr(vtp, "MOST_ELEMENTS", 10)
     data = GOOD.replace(b"<Points>", b"<Points>" + b"<a/>" * 20)
     assert refusal(read, tmp_path, data) == (
-        "thing.vtp, line 5: a VTP file must have at most 10 elements, not more; divide it"
+        "thing.vtp, line 5: a VTP file must have at most 10 elements, not more; simplify it"
     )
 
 
