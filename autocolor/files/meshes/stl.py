@@ -171,6 +171,8 @@ def _records(corners: Floats) -> AnyArray:
     """The records of triangles with these corners, (triangles, 3, 3)."""
     records = np.zeros(len(corners), TRIANGLE)
     records["corners"] = corners
+    # The normals fit the corners in the file, so that a file that is read is written again the same.
+    corners = records["corners"].astype(np.float64)
     edges = np.moveaxis(corners[:, 1:] - corners[:, :1], 0, 2)
     # Unit size keeps the products of very small edges from underflow.
     sizes = np.abs(edges).max(axis=(0, 1), initial=0)

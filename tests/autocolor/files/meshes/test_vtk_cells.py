@@ -16,7 +16,9 @@ def test_a_strip_turns_every_other_triangle_over() -> None:
 
 
 def lists_of(*cells: list[int]) -> CellLists:
-    return CellLists(np.concatenate([np.array(cell, int) for cell in cells]), np.cumsum([0, *map(len, cells)]))
+    return CellLists(
+        np.concatenate([np.array(cell, int) for cell in cells]), np.cumsum([0, *map(len, cells)])
+    )
 
 
 def test_cells_of_several_types_have_their_rows_in_the_file() -> None:
