@@ -320,7 +320,7 @@ def test_a_block_of_another_size_than_its_header_says_is_refused(tmp_path: Path,
         patched.setitem(
             PACKED,
             "vtkZLibDataCompressor",
-            ("zlib", lambda data: zlib.compress(data[:change] if change < 0 else data + bytes(change))),
+            lambda data: zlib.compress(data[:change] if change < 0 else data + bytes(change)),
         )
         data = good("binary", compressor="vtkZLibDataCompressor")
     assert refusal(read, tmp_path, data) == (

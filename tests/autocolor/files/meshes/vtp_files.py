@@ -5,17 +5,19 @@ from __future__ import annotations
 import base64
 import lzma
 import zlib
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
 
 TYPES = {"Int8": "i1", "UInt8": "u1", "Int32": "i4", "Int64": "i8", "Float32": "f4", "Float64": "f8"}
 SECTIONS = ("Verts", "Lines", "Strips", "Polys")
-PACKED = {
-    "": (None, lambda data: data),
-    "vtkZLibDataCompressor": ("zlib", zlib.compress),
-    "vtkLZMADataCompressor": ("lzma", lzma.compress),
+PACKED: dict[str, Callable[[bytes], bytes]] = {
+    "": bytes,
+    "vtkZLibDataCompressor": zlib.compress,
+    "vtkLZMADataCompressor": lzma.compress,
 }
+"""The functions that pack a block, by the names of compressors."""
 
 
 @dataclass
@@ -40,7 +42,7 @@ class VtpWriter:
         if not self.compressor:
             return self.encoded(np.array([len(data)], header_type).tobytes() + data)
         blocks = [data[at : at + self.block] for at in range(0, len(data), self.block)]
-        packed = [PACKED[self.compressor][1](each) for each in blocks]
+        packed = [PACKED[self.compressor](each) for each in blocks]
         header = [len(blocks), self.block, len(data) % self.block, *map(len, packed)]
         return self.encoded(np.array(header, header_type).tobytes()) + self.encoded(b"".join(packed))
 
