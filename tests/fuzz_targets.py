@@ -799,6 +799,7 @@ NAMES_OF = {
     "PLY": ("plate.ply",),
     "STL": ("plate.stl",),
     "VTK": ("plate.vtk",),
+    "VTP": ("plate.vtp",),
 }  # fmt: skip
 """The files of the mesh formats of which samples are damaged as they are."""
 
