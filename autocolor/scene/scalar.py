@@ -109,6 +109,12 @@ class ScaleKind(Kind):
     def to_plain(self, name: str, value: Any) -> Mapping[str, object]:
         return {name: value if isinstance(value, str) else [in_digits(color) for color in value]}
 
+    def between(self, one: Any, other: Any, share: float) -> Any:
+        """Lists of equally many colors are interpolated; names hold."""
+        if isinstance(one, str) or isinstance(other, str) or len(one) != len(other):
+            return one
+        return tuple(ColorKind().between(a, b, share) for a, b in zip(one, other, strict=True))
+
 
 MOST_BANDS: Final = 256
 """Limit: bands, and levels of a band."""
