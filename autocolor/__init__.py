@@ -16,6 +16,8 @@ TYPE_CHECKING: Final = False
 if TYPE_CHECKING:
     from typing import Final
 
+    from autocolor.batches.table import Variant as Variant
+    from autocolor.batches.table import grid as grid
     from autocolor.commands.demo import demo as demo
     from autocolor.errors import AutocolorError as AutocolorError
     from autocolor.errors import InputError as InputError
@@ -88,9 +90,11 @@ _HOME: Final = {
     "Surface": "scene.surfaces",
     "UnavailableError": "errors",
     "UsageError": "errors",
+    "Variant": "batches.table",
     "View": "scene.view",
     "WriteError": "errors",
     "demo": "commands.demo",
+    "grid": "batches.table",
     "image": "images",
     "open_tables": "files.store.tables",
     "read_journal": "journal.journal",

@@ -20,7 +20,7 @@ PUBLIC_NAMES = {
         "AutocolorError", "BlinnPhong", "CookTorrance", "Flap", "Flaps", "HalfSpace", "InputError",
         "LevelRange", "Light", "Mesh", "MeshScalar", "MissingInputError", "NamedView", "OutputError", "Paint",
         "Part", "Phong", "Picture", "Reflectance", "Rig", "Scalar", "Scene", "Studio", "Surface",
-        "UnavailableError", "UsageError", "View", "WriteError", "demo", "image", "open_tables",
+        "UnavailableError", "UsageError", "Variant", "View", "WriteError", "demo", "grid", "image", "open_tables",
         "read_journal", "read_picture", "read_rig", "read_scene", "render", "save_image", "scene_of",
         "send_picture", "write_picture", "write_rig", "write_scene",
     ],
@@ -36,7 +36,7 @@ PUBLIC_NAMES = {
 WINGS = {
     "autocolor": (
         "errors", "logs", "arrays", "immutable", "checks", "budget", "scene", "visibility", "scalars",
-        "lighting", "mapping", "files", "rendering", "sending", "images", "explanation", "journal", "studio",
+        "lighting", "mapping", "files", "rendering", "sending", "images", "batches", "explanation", "journal", "studio",
         "widgets", "screens", "commands", "__main__",
     ),
     "ramtek_emu": (
