@@ -164,14 +164,17 @@ class View(Row):
         if self.target is not None and other.target is not None:
             if self.eye != other.eye:
                 away = self.polar(self.target).between(other.polar(other.target), share)
-                vars(mixed)["eye"] = away.from_point(mixed.target)
+                vars(mixed)["eye"] = away.from_point(vars(mixed)["target"])
         elif (self.direction, self.target) != (other.direction, other.target):
             x, y, z = self._away.between(other._away, share).from_point((0.0, 0.0, 0.0))
             vars(mixed).update(direction=(0.0 - x, 0.0 - y, 0.0 - z), target=None)
         return mixed
 
     def polar(self, target: Vector) -> Polar:
-        """The place of the eye as seen from a point. The azimuth of a vertical view is the picture's bottom."""
+        """The place of the eye as seen from a point.
+
+        If the eye is vertically above or below, the azimuth is that of the picture's bottom or top.
+        """
         return self._polar(*(a - b for a, b in zip(self.eye, target, strict=True)))
 
     @property

@@ -12,7 +12,7 @@ from autocolor.arrays import Floats
 from autocolor.checks import Vector
 from autocolor.errors import UsageError
 from autocolor.mapping.intensity import is_held
-from autocolor.scene.defaults import OBJECT_COLORS, default_view, framed, object_bounds, stage_top
+from autocolor.scene.defaults import OBJECT_COLORS, default_view, framed, stage_top
 from autocolor.scene.scene import Scene
 from autocolor.scene.view import View
 from autocolor.screens.screen import Cached
