@@ -16,8 +16,11 @@ TYPE_CHECKING: Final = False
 if TYPE_CHECKING:
     from typing import Final
 
+    from autocolor.batches.runs import batch as batch
+    from autocolor.batches.runs import batch_results as batch_results
     from autocolor.batches.table import Variant as Variant
     from autocolor.batches.table import grid as grid
+    from autocolor.batches.table import read_table as read_table
     from autocolor.commands.demo import demo as demo
     from autocolor.errors import AutocolorError as AutocolorError
     from autocolor.errors import InputError as InputError
@@ -93,6 +96,8 @@ _HOME: Final = {
     "Variant": "batches.table",
     "View": "scene.view",
     "WriteError": "errors",
+    "batch": "batches.runs",
+    "batch_results": "batches.runs",
     "demo": "commands.demo",
     "grid": "batches.table",
     "image": "images",
@@ -101,6 +106,7 @@ _HOME: Final = {
     "read_picture": "files.picture_file",
     "read_rig": "files.rig_file",
     "read_scene": "files.scene_sources",
+    "read_table": "batches.table",
     "render": "rendering",
     "save_image": "images",
     "scene_of": "scene.creation",

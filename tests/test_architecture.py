@@ -20,9 +20,9 @@ PUBLIC_NAMES = {
         "AutocolorError", "BlinnPhong", "CookTorrance", "Flap", "Flaps", "HalfSpace", "InputError",
         "LevelRange", "Light", "Mesh", "MeshScalar", "MissingInputError", "NamedView", "OutputError", "Paint",
         "Part", "Phong", "Picture", "Reflectance", "Rig", "Scalar", "Scene", "Studio", "Surface",
-        "UnavailableError", "UsageError", "Variant", "View", "WriteError", "demo", "grid", "image", "open_tables",
-        "read_journal", "read_picture", "read_rig", "read_scene", "render", "save_image", "scene_of",
-        "send_picture", "write_picture", "write_rig", "write_scene",
+        "UnavailableError", "UsageError", "Variant", "View", "WriteError", "demo", "grid", "image",
+        "open_tables", "read_journal", "read_picture", "read_rig", "read_scene", "render", "save_image",
+        "scene_of", "send_picture", "write_picture", "write_rig", "write_scene",
     ],
     "ramtek_emu": [
         "ColorsError", "Configuration", "ConfigurationError", "EntryFormat", "GMR_9300", "HostPort",
@@ -36,8 +36,8 @@ PUBLIC_NAMES = {
 WINGS = {
     "autocolor": (
         "errors", "logs", "arrays", "immutable", "checks", "budget", "scene", "visibility", "scalars",
-        "lighting", "mapping", "files", "rendering", "sending", "images", "batches", "explanation", "journal", "studio",
-        "widgets", "screens", "commands", "__main__",
+        "lighting", "mapping", "files", "rendering", "sending", "images", "batches", "explanation",
+        "journal", "studio", "widgets", "screens", "commands", "__main__",
     ),
     "ramtek_emu": (
         "errors", "arrays", "checks", "timing", "configuration", "writing", "png",

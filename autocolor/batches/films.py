@@ -211,9 +211,7 @@ def _images(batch: Batch, tell: Progress) -> Iterator[DisplayImage]:
         tell(Result(variant.name, variant.settings, tier=tier))
 
 
-def _check_entries_alone(
-    first: Scene, other: Scene, variants: tuple[Variant, ...], number: int
-) -> None:
+def _check_entries_alone(first: Scene, other: Scene, variants: tuple[Variant, ...], number: int) -> None:
     """Raise InputError, with the key, if a frame changes more than entries of the lookup table."""
     if not costs_at_least(first, other, Tier.LEVELS):
         return

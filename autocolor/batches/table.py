@@ -1,4 +1,4 @@
-"""Variants as data: tables of changed columns, from Python, CSV, JSON, and lists of values for a key.
+"""Variants as data: tables of changed columns, from Python, CSV, JSON, or lists of values; and of results.
 
     name,surfaces.body.object_color,lights.key.intensity
     racing,#b01020,
@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import csv
 import io
+import json
 import math
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -22,11 +23,13 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Final, NamedTuple
 
+from autocolor.arrays import Bytes
 from autocolor.checks import shown
 from autocolor.errors import InputError, UsageError
 from autocolor.files.paths import LONGEST_STEM, file_stem
 from autocolor.files.reading import bounded_json, read_bytes, text_lines
 from autocolor.immutable import Immutable
+from autocolor.scene.columns import Tier
 
 MOST_VARIANTS: Final = 100_000
 """Limit: variants of a batch."""
@@ -205,6 +208,47 @@ def text_of(value: object) -> str:
     if isinstance(value, (list, tuple)):
         return ",".join(map(text_of, value))
     return str(value)
+
+
+# Results.
+
+
+class Result(NamedTuple):
+    """What became of a variant.
+
+    `path` is its file. Without a file, `image` is its picture: the colors, (lines, elements, 3) uint8, or the
+    bytes of a file. `problem` says why there is no picture, and is empty if there is one. `seconds` is the
+    time of the processor. `tier` is the cost of the edit from the variant made before it: FRAME for a
+    first rendering, None if nothing had to be edited. `was_made` is false for a file that was there already.
+    """
+
+    name: str
+    settings: Mapping[str, object]
+    path: str | None = None
+    image: Bytes | bytes | None = None
+    problem: str = ""
+    seconds: float = 0.0
+    tier: Tier | None = None
+    was_made: bool = True
+
+
+def results_bytes(results: Sequence[Result]) -> bytes:
+    """The results as a CSV table: name, path, a column for each key, seconds, problem."""
+    keys = list(dict.fromkeys(key for result in results for key in result.settings))
+    text = io.StringIO(newline="")
+    writer = csv.writer(text)
+    writer.writerow([NAME, "path", *keys, "seconds", "problem"])
+    for result in results:
+        settings = result.settings
+        cells = [_cell(settings[key]) if key in settings else "" for key in keys]
+        writer.writerow([result.name, result.path or "", *cells, f"{result.seconds:.4f}", result.problem])
+    return text.getvalue().encode("utf-8", "backslashreplace")
+
+
+def _cell(value: object) -> str:
+    """A value as a table of variants has it."""
+    is_nested = isinstance(value, (list, tuple, Mapping))
+    return json.dumps(value, default=repr) if is_nested else text_of(value)
 
 
 # Grids.

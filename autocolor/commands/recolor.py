@@ -115,7 +115,7 @@ def recolor(
     logger.info("%r", saved.picture)
     scene = recolored(saved.scene, surface, given, settings)
     if save is not None:
-        write_picture(save, saved.picture, scene, overwrite=force)
+        write_picture(save, scene, saved.picture, overwrite=force)
     if output is not None:
         with timed(logger, "image written"):
             write_image(output, scene, saved.picture, force)

@@ -131,7 +131,7 @@ def render(
         picture = rendered(edited)
         step()
         if save is not None:
-            write_picture(save, picture, edited, overwrite=force)
+            write_picture(save, edited, picture, overwrite=force)
         step()
         if output is not None:
             write_image(output, edited, picture, force)
