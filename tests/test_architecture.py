@@ -20,8 +20,8 @@ PUBLIC_NAMES = {
         "AutocolorError", "BlinnPhong", "CookTorrance", "Flap", "Flaps", "HalfSpace", "InputError",
         "LevelRange", "Light", "Mesh", "MeshScalar", "MissingInputError", "NamedView", "OutputError", "Paint",
         "Part", "Phong", "Picture", "Reflectance", "Rig", "Scalar", "Scene", "Studio", "Surface",
-        "UnavailableError", "UsageError", "Variant", "View", "WriteError", "demo", "grid", "image",
-        "open_tables", "read_journal", "read_picture", "read_rig", "read_scene", "render", "save_image",
+        "UnavailableError", "UsageError", "Variant", "View", "WriteError", "animate", "batch",
+        "batch_results", "demo", "frames", "grid", "image", "open_tables", "read_journal", "read_picture", "read_rig", "read_scene", "render", "save_image",
         "scene_of", "send_picture", "write_picture", "write_rig", "write_scene",
     ],
     "ramtek_emu": [
@@ -40,7 +40,7 @@ WINGS = {
         "journal", "studio", "widgets", "screens", "commands", "__main__",
     ),
     "ramtek_emu": (
-        "errors", "arrays", "checks", "timing", "configuration", "writing", "png",
+        "errors", "arrays", "checks", "timing", "configuration", "writing", "png", "films",
         "command_line",
         "instruction_set", "memory", "drawing", "video", "processor", "instructions", "display",
         "host", "monitor", "snapshot", "commands", "__main__",
@@ -49,13 +49,13 @@ WINGS = {
 """The wings of a package in the order of its data: each may use those before it and no other."""
 
 KNOWING_THE_DISPLAY = (
-    "autocolor.__main__", "autocolor.errors", "autocolor.files.writing", "autocolor.images",
-    "autocolor.lighting.picture", "autocolor.sending", "autocolor.studio",
+    "autocolor.__main__", "autocolor.batches.films", "autocolor.errors", "autocolor.files.writing",
+    "autocolor.images", "autocolor.lighting.picture", "autocolor.sending", "autocolor.studio",
 )  # fmt: skip
 WINGS_KNOWING_THE_DISPLAY = ("autocolor.commands", "autocolor.screens", "autocolor.widgets")
 DOORS_OF_THE_DISPLAY = {
     "ramtek_emu", "ramtek_emu.command_line", "ramtek_emu.configuration",
-    "ramtek_emu.errors", "ramtek_emu.host.port", "ramtek_emu.instructions", "ramtek_emu.png",
+    "ramtek_emu.errors", "ramtek_emu.films", "ramtek_emu.host.port", "ramtek_emu.instructions", "ramtek_emu.png",
     "ramtek_emu.monitor.window", "ramtek_emu.writing",
 }  # fmt: skip
 OUTSIDE = {"numpy", "click", "PIL", "pygame"}
@@ -135,9 +135,10 @@ def test_pygame_is_in_one_file() -> None:
     assert {name for name, _ in importers({"pygame"})} == {"ramtek_emu.monitor.glass"}
 
 
-def test_pillow_is_in_two_files_one_for_pictures_and_one_for_the_names_of_colors() -> None:
+def test_pillow_is_in_three_files_for_pictures_films_and_the_names_of_colors() -> None:
     # Colors written as "#rrggbb" need no Pillow: it is loaded for the first name.
-    assert importers({"PIL"}) == {("ramtek_emu.png", True), ("autocolor.scene.kinds", False)}
+    encoders = {("ramtek_emu.png", True), ("ramtek_emu.films", True)}
+    assert importers({"PIL"}) == {*encoders, ("autocolor.scene.kinds", False)}
 
 
 def test_nothing_is_imported_that_is_no_dependency() -> None:

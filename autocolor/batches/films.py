@@ -161,7 +161,7 @@ def _made(results: Iterator[Result], tell: Progress) -> Iterator[Result]:
 
 
 def _colors(results: Iterator[Result], in_memory: int) -> Iterator[Bytes]:
-    """The colors of frames. Raises InputError if so many of them do not fit in memory when they are encoded."""
+    """The colors of frames. Raises InputError if `in_memory` encoded frames do not fit in memory."""
     for result in results:
         image = result.image
         assert isinstance(image, np.ndarray)

@@ -210,6 +210,7 @@ def _refusals_at(path: Path) -> Iterator[None]:
 
 @contextmanager
 def refusals_of_this_package() -> Iterator[None]:
+    """Raise OutputError and WriteError of this package instead of those of `ramtek_emu`."""
     try:
         yield
     except ramtek_emu.OutputError as refusal:
