@@ -19,10 +19,10 @@ PUBLIC_NAMES = {
     "autocolor": [
         "AutocolorError", "BlinnPhong", "CookTorrance", "Flap", "Flaps", "HalfSpace", "InputError",
         "LevelRange", "Light", "Mesh", "MeshScalar", "MissingInputError", "NamedView", "OutputError", "Paint",
-        "Part", "Phong", "Picture", "Reflectance", "Rig", "Scalar", "Scene", "Studio", "Surface",
+        "Palette", "Part", "Phong", "Picture", "Reflectance", "Rig", "Scalar", "Scene", "Studio", "Surface",
         "UnavailableError", "UsageError", "View", "WriteError", "demo", "image", "open_tables",
-        "read_journal", "read_picture", "read_rig", "read_scene", "render", "save_image", "scene_of",
-        "send_picture", "write_picture", "write_rig", "write_scene",
+        "read_journal", "read_palette", "read_picture", "read_rig", "read_scene", "render", "save_image",
+        "scene_of", "send_picture", "write_palette", "write_picture", "write_rig", "write_scene",
     ],
     "ramtek_emu": [
         "ColorsError", "Configuration", "ConfigurationError", "EntryFormat", "GMR_9300", "HostPort",
