@@ -19,10 +19,11 @@ PUBLIC_NAMES = {
     "autocolor": [
         "AutocolorError", "BlinnPhong", "CookTorrance", "Flap", "Flaps", "HalfSpace", "InputError",
         "LevelRange", "Light", "Mesh", "MeshScalar", "MissingInputError", "NamedView", "OutputError", "Paint",
-        "Part", "Phong", "Picture", "Reflectance", "Rig", "Scalar", "Scene", "Studio", "Surface",
-        "UnavailableError", "UsageError", "Variant", "View", "WriteError", "demo", "grid", "image",
-        "open_tables", "read_journal", "read_picture", "read_rig", "read_scene", "render", "save_image",
-        "scene_of", "send_picture", "write_picture", "write_rig", "write_scene",
+        "Palette", "Part", "Phong", "Picture", "Reflectance", "Rig", "Scalar", "Scene", "Studio", "Surface",
+        "UnavailableError", "UsageError", "Variant", "View", "WriteError", "batch", "batch_results", "demo",
+        "grid", "image", "open_tables", "read_journal", "read_palette", "read_picture", "read_rig",
+        "read_scene", "read_variants", "render", "save_image", "scene_of", "send_picture", "write_palette",
+        "write_picture", "write_rig", "write_scene",
     ],
     "ramtek_emu": [
         "ColorsError", "Configuration", "ConfigurationError", "EntryFormat", "GMR_9300", "HostPort",

@@ -551,7 +551,7 @@ def batch(
     `source` is a scene, a pair of a scene and its picture, what `read_picture` returns, or a path of either.
     A picture is only rendered again for variants that change the light or the view.
 
-    `variants` are a list of `Variant`s, or of tables of values by key; see `grid`, `read_table`. `output` is
+    `variants` are a list of `Variant`s, or of tables of values by key; see `grid`, `read_variants`. `output` is
     a name pattern that ends in .png or .webp (lossless); its fields are {number}, {name} and keys. Without
     it, each result has an `image`, whose `form` is "array" (the default), "png" or "webp".
 
