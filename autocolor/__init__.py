@@ -16,8 +16,8 @@ TYPE_CHECKING: Final = False
 if TYPE_CHECKING:
     from typing import Final
 
-    from autocolor.batches.runs import batch as batch
-    from autocolor.batches.runs import batch_results as batch_results
+    from autocolor.batches.making import batch as batch
+    from autocolor.batches.making import batch_results as batch_results
     from autocolor.batches.table import Variant as Variant
     from autocolor.batches.table import grid as grid
     from autocolor.batches.table import read_variants as read_variants
@@ -100,8 +100,8 @@ _HOME: Final = {
     "Variant": "batches.table",
     "View": "scene.view",
     "WriteError": "errors",
-    "batch": "batches.runs",
-    "batch_results": "batches.runs",
+    "batch": "batches.making",
+    "batch_results": "batches.making",
     "demo": "commands.demo",
     "grid": "batches.table",
     "image": "images",

@@ -323,7 +323,8 @@ def varied(text: str) -> tuple[Variant, ...]:
     """The variants of KEY=A,B,C, of KEY=START:STOP:COUNT, or of KEY=@PALETTE.
 
     START:STOP:COUNT are evenly spaced numbers from START to STOP. A palette is a file that `read_palette`
-    reads; its colors have its names. Commas in brackets and in quotes do not separate values. Raises UsageError.
+    reads; its colors have its names. Commas in brackets and in quotes do not separate values. Raises
+    UsageError, or InputError for a palette.
 
     >>> [dict(variant.settings) for variant in varied("ambient=0:1:3")]
     [{'ambient': 0.0}, {'ambient': 0.5}, {'ambient': 1.0}]
