@@ -26,7 +26,7 @@ from autocolor.budget import allowing, validated_limit
 from autocolor.checks import shown
 from autocolor.errors import OutputError, UnavailableError, UsageError, reason_of
 from autocolor.files.picture_file import SavedPicture, read_picture
-from autocolor.files.scene_sources import read_scene, source_format
+from autocolor.files.scene_sources import is_picture, read_scene
 from autocolor.files.writing import check_suffix, refuse_output, write_atomically
 from autocolor.images import check_png_level
 from autocolor.lighting.picture import Picture, check_smooth, check_surfaces
@@ -59,10 +59,6 @@ MORE_THAN_WORKERS: Final = 2
 
 WINDOW: Final = 64
 """Runs that an executor gets at once if it does not say how many workers it has."""
-
-
-PICTURE_FORMAT: Final = "picture file"
-"""The name of the format of picture files."""
 
 
 @dataclass(frozen=True)
@@ -237,7 +233,7 @@ def _unavailable(error: Exception) -> UnavailableError:
 def _source(source: Source) -> tuple[Scene, Picture | None]:
     """The scene and, if there is one, the picture of a source. Raises InputError, UsageError."""
     if isinstance(source, (str, PathLike)):
-        if source_format(Path(source))[1].name != PICTURE_FORMAT:
+        if not is_picture(Path(source)):
             return read_scene(source), None
         source = read_picture(source)
     if isinstance(source, SavedPicture):
