@@ -19,10 +19,11 @@ PUBLIC_NAMES = {
     "autocolor": [
         "AutocolorError", "BlinnPhong", "CookTorrance", "Flap", "Flaps", "HalfSpace", "InputError",
         "LevelRange", "Light", "Mesh", "MeshScalar", "MissingInputError", "NamedView", "OutputError", "Paint",
-        "Part", "Phong", "Picture", "Reflectance", "Rig", "Scalar", "Scene", "Studio", "Surface",
+        "Palette", "Part", "Phong", "Picture", "Reflectance", "Rig", "Scalar", "Scene", "Studio", "Surface",
         "UnavailableError", "UsageError", "Variant", "View", "WriteError", "animate", "batch",
-        "batch_results", "demo", "frames", "grid", "image", "open_tables", "read_journal", "read_picture", "read_rig", "read_scene", "render", "save_image",
-        "scene_of", "send_picture", "write_picture", "write_rig", "write_scene",
+        "batch_results", "demo", "frames", "grid", "image", "open_tables", "read_journal", "read_palette",
+        "read_picture", "read_rig", "read_scene", "read_variants", "render", "save_image", "scene_of",
+        "send_picture", "write_palette", "write_picture", "write_rig", "write_scene",
     ],
     "ramtek_emu": [
         "ColorsError", "Configuration", "ConfigurationError", "EntryFormat", "GMR_9300", "HostPort",
@@ -55,8 +56,8 @@ KNOWING_THE_DISPLAY = (
 WINGS_KNOWING_THE_DISPLAY = ("autocolor.commands", "autocolor.screens", "autocolor.widgets")
 DOORS_OF_THE_DISPLAY = {
     "ramtek_emu", "ramtek_emu.command_line", "ramtek_emu.configuration",
-    "ramtek_emu.errors", "ramtek_emu.films", "ramtek_emu.host.port", "ramtek_emu.instructions", "ramtek_emu.png",
-    "ramtek_emu.monitor.window", "ramtek_emu.writing",
+    "ramtek_emu.errors", "ramtek_emu.films", "ramtek_emu.host.port", "ramtek_emu.instructions",
+    "ramtek_emu.monitor.window", "ramtek_emu.png", "ramtek_emu.writing",
 }  # fmt: skip
 OUTSIDE = {"numpy", "click", "PIL", "pygame"}
 

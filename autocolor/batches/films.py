@@ -20,7 +20,8 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from autocolor.arrays import Bytes
-from autocolor.batches.runs import Batch, Source, Start, batch_results, checked_batch
+from autocolor.batches.making import Batch, Source, batch_results, checked_batch
+from autocolor.batches.runs import Start
 from autocolor.batches.table import Result, Rows, Variant, variants_of
 from autocolor.budget import require_memory
 from autocolor.checks import shown

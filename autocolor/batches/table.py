@@ -26,10 +26,12 @@ from typing import Any, Final, NamedTuple
 from autocolor.arrays import Bytes
 from autocolor.checks import shown
 from autocolor.errors import InputError, UsageError
+from autocolor.files.palette_file import read_palette
 from autocolor.files.paths import LONGEST_STEM, file_stem
 from autocolor.files.reading import bounded_json, read_bytes, text_lines
 from autocolor.immutable import Immutable
 from autocolor.scene.columns import Tier
+from autocolor.scene.kinds import in_digits
 
 MOST_VARIANTS: Final = 100_000
 """Limit: variants of a batch."""
@@ -318,9 +320,11 @@ LONGEST_LIST: Final = 1 << 20
 
 
 def varied(text: str) -> tuple[Variant, ...]:
-    """The variants of KEY=A,B,C or KEY=START:STOP:COUNT, the evenly spaced numbers from START to STOP.
+    """The variants of KEY=A,B,C, of KEY=START:STOP:COUNT, or of KEY=@PALETTE.
 
-    Commas in brackets and in quotes do not separate values. Raises UsageError.
+    START:STOP:COUNT are evenly spaced numbers from START to STOP. A palette is a file that `read_palette`
+    reads; its colors have its names. Commas in brackets and in quotes do not separate values. Raises
+    UsageError, or InputError for a palette.
 
     >>> [dict(variant.settings) for variant in varied("ambient=0:1:3")]
     [{'ambient': 0.0}, {'ambient': 0.5}, {'ambient': 1.0}]
@@ -333,6 +337,8 @@ def varied(text: str) -> tuple[Variant, ...]:
             f"--vary must be KEY=A,B,C or KEY=START:STOP:COUNT, not {shown(text)}; write it as in"
             " surfaces.body.object_color=red,navy"
         )
+    if values.startswith("@"):
+        return _of_palette(key, values[1:])
     evenly = EVENLY.fullmatch(values)
     if evenly is None:
         return variants_of([{key: value} for value in _split(values, key)])
@@ -345,6 +351,16 @@ def varied(text: str) -> tuple[Variant, ...]:
     steps = count - 1
     return variants_of(
         [{key: float(f"{start + (stop - start) * step / steps:.12g}")} for step in range(count)]
+    )
+
+
+def _of_palette(key: str, path: str) -> tuple[Variant, ...]:
+    """The variants with each color of a palette, by the names of the colors. Raises InputError."""
+    palette, names = read_palette(path), _Names()
+    colors = [in_digits(color) for color in map(tuple, palette.colors.tolist())]
+    labels = [name or color.lstrip("#") for name, color in zip(palette.names, colors, strict=True)]
+    return tuple(
+        Variant(names.free(label), {key: color}) for label, color in zip(labels, colors, strict=True)
     )
 
 
@@ -370,7 +386,7 @@ def _split(text: str, key: str) -> list[str]:
 # Tables in files.
 
 
-def read_table(path: str | PathLike[str]) -> tuple[Variant, ...]:
+def read_variants(path: str | PathLike[str]) -> tuple[Variant, ...]:
     """The variants of a table in a file: CSV with a row of keys at the top, or a JSON list of objects.
 
     Values in CSV are texts as after `--set`; an empty cell leaves a field as it is, and `none` unsets it.
