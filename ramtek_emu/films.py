@@ -35,9 +35,6 @@ from ramtek_emu.checks import checked_number
 from ramtek_emu.errors import ColorsError, OutputError
 from ramtek_emu.writing import Output
 
-FIELDS_PER_SECOND: Final = 24.0
-"""Assumed: the rate of motion pictures."""
-
 LEAST_RATE: Final = 0.1
 MOST_RATE: Final = 100.0
 MOST_GIF_RATE: Final = 50.0
@@ -63,7 +60,7 @@ def write_film(
     fields: Iterable[Colors],
     count: int,
     *,
-    fields_per_second: float = FIELDS_PER_SECOND,
+    fields_per_second: float,
     loop: bool = True,
     overwrite: bool = False,
 ) -> Loss:
@@ -117,7 +114,7 @@ def ticks(number: int, fields_per_second: float, per_second: int) -> int:
     return end - start
 
 
-class Area(NamedTuple):
+class Rectangle(NamedTuple):
     """The elements and lines of a rectangle."""
 
     left: int
@@ -131,16 +128,16 @@ class Area(NamedTuple):
         return field[lines, self.left : self.left + self.elements]
 
 
-def differing_area(field: Colors, before: Colors | None) -> Area:
+def differing_area(field: Colors, before: Colors | None) -> Rectangle:
     """The smallest rectangle of pixels that differ from the field before; one pixel if no pixel differs."""
     if before is None:
-        return Area(0, 0, field.shape[1], field.shape[0])
+        return Rectangle(0, 0, field.shape[1], field.shape[0])
     differs = (field != before).any(axis=2)
     lines, elements = np.flatnonzero(differs.any(axis=1)), np.flatnonzero(differs.any(axis=0))
     if not len(lines):
-        return Area(0, 0, 1, 1)
+        return Rectangle(0, 0, 1, 1)
     left, top = int(elements[0]), int(lines[0])
-    return Area(left, top, int(elements[-1]) - left + 1, int(lines[-1]) - top + 1)
+    return Rectangle(left, top, int(elements[-1]) - left + 1, int(lines[-1]) - top + 1)
 
 
 Write = Callable[[bytes], None]

@@ -245,7 +245,7 @@ def run(code: str, timeout: float = 60) -> str:
 
 
 WITH_PYGAME = {"ramtek_emu.monitor.glass", "ramtek_emu.monitor.window"}
-WITH_PILLOW = {"ramtek_emu.png", *WITH_PYGAME}
+WITH_PILLOW = {"ramtek_emu.films", "ramtek_emu.png", *WITH_PYGAME}
 
 IMPORTING_ALONE = """
 import importlib, sys

@@ -34,7 +34,9 @@ from autocolor.scene.columns import Tier
 from autocolor.scene.scene import NORMALS, Scene, costs_at_least
 from autocolor.sending import send_cycle
 from ramtek_emu import Recorder
-from ramtek_emu.films import FIELDS_PER_SECOND, LEAST_RATE, MOST_GIF_RATE, MOST_RATE, write_film
+
+FRAMES_PER_SECOND: Final = 24.0
+"""Assumed: the rate of motion pictures."""
 
 STREAM: Final = ".ramtek"
 FILMS: Final = (".webp", ".apng", ".gif")
@@ -63,7 +65,7 @@ def animate(
     frames: Rows,
     path: str | PathLike[str],
     *,
-    frames_per_second: float = FIELDS_PER_SECOND,
+    frames_per_second: float = FRAMES_PER_SECOND,
     loop: bool = True,
     size: tuple[int, int] | None = None,
     smooth: int | None = None,
@@ -86,6 +88,8 @@ def animate(
     than the budget allows; nothing is written then. Raises OutputError or WriteError if the file cannot be
     written.
     """
+    from ramtek_emu.films import write_film
+
     variants = variants_of(frames)
     name = fspath(path)
     kind = kind_of(name)
@@ -143,6 +147,8 @@ def kind_of(path: str) -> str:
 
 def check_rate(frames_per_second: float, kind: str) -> None:
     """Raise UsageError unless a film of this suffix can have so many frames per second."""
+    from ramtek_emu.films import LEAST_RATE, MOST_GIF_RATE, MOST_RATE
+
     most = MOST_GIF_RATE if kind == ".gif" else MOST_RATE
     is_number = isinstance(frames_per_second, (int, float)) and not isinstance(frames_per_second, bool)
     if not is_number or not LEAST_RATE <= frames_per_second <= most:

@@ -64,7 +64,7 @@ def test_a_film_is_decoded_to_the_same_fields(
     fields: list[Colors], suffix: str, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
     path = tmp_path_factory.mktemp("films") / f"film{suffix}"
-    loss = write_film(path, iter(fields), len(fields))
+    loss = write_film(path, iter(fields), len(fields), fields_per_second=24)
     shown, _ = decoded(path)
     if suffix != ".apng":
         # A WebP has equal fields once, and so does Pillow when it reads a GIF.
@@ -77,7 +77,7 @@ def test_a_film_is_decoded_to_the_same_fields(
 @pytest.mark.parametrize("suffix", LOSSLESS)
 def test_films_without_loss_keep_every_color(suffix: str, tmp_path: Path) -> None:
     fields = noise(4)
-    assert write_film(tmp_path / f"film{suffix}", fields, 4) == (0, 0)
+    assert write_film(tmp_path / f"film{suffix}", fields, 4, fields_per_second=24) == (0, 0)
     assert np.array_equal(decoded(tmp_path / f"film{suffix}")[0], fields)
 
 
@@ -86,7 +86,7 @@ def test_the_loss_of_a_gif_is_told_as_it_is(tmp_path: Path) -> None:
     few, (many, more) = np.zeros((20, 30, 3), np.uint8), noise(2)
     fields = [few, many, many.copy(), more]
     fields[2][3, 4:7] = 9
-    loss = write_film(tmp_path / "film.gif", fields, 4)
+    loss = write_film(tmp_path / "film.gif", fields, 4, fields_per_second=24)
     differences = [
         np.abs(one.astype(int) - other).max()
         for one, other in zip(decoded(tmp_path / "film.gif")[0], fields, strict=True)
@@ -114,7 +114,7 @@ def test_the_durations_of_fields_add_up(count: int, rate: float) -> None:
 @pytest.mark.parametrize("suffix", FORMATS)
 def test_a_film_begins_again_unless_it_is_shown_once(suffix: str, tmp_path: Path) -> None:
     for loop, repeats in ((True, 0), (False, 1)):
-        write_film(tmp_path / f"{loop}{suffix}", noise(2), 2, loop=loop)
+        write_film(tmp_path / f"{loop}{suffix}", noise(2), 2, fields_per_second=24, loop=loop)
         with Image.open(tmp_path / f"{loop}{suffix}") as film:
             # A GIF that is shown once has no extension that says so.
             assert film.info.get("loop", 1) == repeats
@@ -142,7 +142,7 @@ def test_fields_are_taken_one_by_one(suffix: str, tmp_path: Path) -> None:
             most = max(most, sum(reference() is not None for reference in references))
             yield copy
 
-    write_film(tmp_path / f"film{suffix}", made(), 12)
+    write_film(tmp_path / f"film{suffix}", made(), 12, fields_per_second=24)
     assert 1 <= most <= 4
 
 
@@ -165,7 +165,7 @@ def test_a_film_that_cannot_be_written_leaves_no_file(
 ) -> None:
     (tmp_path / "there.gif").write_bytes(b"old")
     with pytest.raises(error) as refusal:
-        write_film(tmp_path / name, noise(2), **{"count": 2, **options})
+        write_film(tmp_path / name, noise(2), **{"count": 2, "fields_per_second": 24, **options})
     assert sentence in str(refusal.value)
     assert os.listdir(tmp_path) == ["there.gif"]
     assert (tmp_path / "there.gif").read_bytes() == b"old"
@@ -175,13 +175,13 @@ def test_a_film_that_cannot_be_written_leaves_no_file(
 def test_fields_of_different_sizes_make_no_film(suffix: str, tmp_path: Path) -> None:
     fields = [np.zeros((2, 3, 3), np.uint8), np.zeros((3, 2, 3), np.uint8)]
     with pytest.raises(ColorsError, match=r"not field 2 of shape \(3, 2, 3\) after \(2, 3, 3\)"):
-        write_film(tmp_path / f"film{suffix}", fields, 2)
+        write_film(tmp_path / f"film{suffix}", fields, 2, fields_per_second=24)
     assert os.listdir(tmp_path) == []
 
 
 def test_an_animated_png_is_a_valid_png_of_its_first_field(tmp_path: Path) -> None:
     fields = noise(3)
-    write_film(tmp_path / "film.apng", fields, 3)
+    write_film(tmp_path / "film.apng", fields, 3, fields_per_second=24)
     data = (tmp_path / "film.apng").read_bytes()
     place, chunks = 8, [data[:8]]
     while place < len(data):
