@@ -226,7 +226,8 @@ def _check_entries_alone(first: Scene, other: Scene, variants: tuple[Variant, ..
         # Words stand for normals, so an edit of a light changes entries alone.
         return
     tier, key = max(_costs(first, other, variants))
-    by_normals = ", or let words stand for normals (words=normals)" if tier in (Tier.MIX, Tier.LIGHT) else ""
+    is_light = tier in (Tier.MIX, Tier.LIGHT)
+    by_normals = ", or let words stand for normals (--normals; words='normals' in Python)" if is_light else ""
     raise InputError(
         f"frame {number}: a frame of a stream must change entries of the lookup table alone, and an edit of"
         f" {key} computes {tier.computed} again; write a film such as .webp{by_normals}"

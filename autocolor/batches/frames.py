@@ -97,7 +97,7 @@ def frames_of_tracks(
     return tuple(made)
 
 
-def in_step(lists: Sequence[Sequence[Variant]]) -> list[Sequence[Variant]]:
+def in_step(lists: Sequence[Sequence[Variant]]) -> list[list[Variant]]:
     """Lists of variants without times as tables: lists of the same length become one table.
 
     So an eye and a target that move together are one movement of the view. Raises UsageError if two lists set
@@ -105,10 +105,13 @@ def in_step(lists: Sequence[Sequence[Variant]]) -> list[Sequence[Variant]]:
     """
     tables: dict[int, list[Variant]] = {}
     for variants in lists:
-        table = tables.setdefault(len(variants), [Variant(str(row), {}) for row in range(len(variants))])
-        for row, variant in enumerate(variants):
-            _check_new(variant.settings, table[row].settings)
-            table[row] = Variant(str(row), {**table[row].settings, **variant.settings})
+        table = tables.setdefault(len(variants), [])
+        if not table:
+            table.extend(variants)
+            continue
+        for row, (one, other) in enumerate(zip(table, variants, strict=True)):
+            _check_new(other.settings, one.settings)
+            table[row] = Variant(f"{one.name}-{other.name}", {**one.settings, **other.settings})
     return list(tables.values())
 
 
@@ -157,10 +160,11 @@ class _Track:
     def settings_at(self, share: float) -> Mapping[str, object]:
         """The settings at a share of the duration, 0 to 1."""
         start, end = self.span
-        at, same = end if share == 1 else start + (end - start) * share, SAME_TIME * (end - start)
-        after = bisect_left(self.times, at - same)
-        if abs(at - self.times[after]) <= same:
-            return self.variants[after].settings
+        at = end if share == 1 else start + (end - start) * share
+        after = bisect_left(self.times, at)
+        closest = min((max(after - 1, 0), after), key=lambda number: abs(self.times[number] - at))
+        if abs(self.times[closest] - at) <= SAME_TIME * (end - start):
+            return self.variants[closest].settings
         one, other = self.times[after - 1 : after + 1]
         between = self.scenes[after - 1].between(self.scenes[after], (at - one) / (other - one))
         return self._settings_of(between, self.variants[after - 1])
@@ -174,8 +178,9 @@ class _Track:
                 # The key is a whole inline row, which holds.
                 settings |= {key: earlier.settings[key]} if key in earlier.settings else {}
             elif value is None:
-                # A field of a row that is absent is left out.
-                settings |= {key: None} if field.is_optional else {}
+                # The field is absent, here or with the row that it is in. Unset it if the scene has it.
+                is_unset = field.is_optional and value_at(self.scene, place) is not None
+                settings |= {key: None} if is_unset else {}
             else:
                 kind, name = field.column.kind, place.path[-1]
                 plain = kind.to_plain(name, value)

@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from typing import TYPE_CHECKING, Final
 
 import click
 from click.core import ParameterSource
 
 from autocolor.commands.completion import complete_settings
-from autocolor.commands.options import normals_option, size_option, smooth_of, smooth_option, with_normals
+from autocolor.commands.options import (
+    as_usage,
+    normals_option,
+    size_option,
+    smooth_of,
+    smooth_option,
+    with_normals,
+)
 from autocolor.commands.scenes import SceneSource, scene_options, set_option
 from autocolor.commands.sweep import jobs_option, progress, refuse_keys, start_of, table_option, workers
 from autocolor.errors import UsageError
@@ -130,7 +138,8 @@ def animate(
     own = tables[: 0 if table is None else 1]
     tracks = [*own, *in_step(tables[len(own) :])]
     scene = start.scene if isinstance(start, tuple) else start
-    frames = frames_of_tracks(scene, tracks, count, turn=turn)
+    with as_usage() if table is None else nullcontext():
+        frames = frames_of_tracks(scene, tracks, count, turn=turn)
     by_size = None if is_picture or kind == films.STREAM else smooth_of(smooth, size)
     with progress(len(frames)) as step, workers(jobs) as executor:
         film = films.animate(
