@@ -332,11 +332,10 @@ def checked_batch(
     if not (overwrite or resume):
         existing = [path for path in paths if os.path.lexists(path)]
         if existing:
-            others = f" and {len(existing) - 1:,} more" if existing[1:] else ""
+            others = f" and {len(existing) - 1:,} more, which exist" if existing[1:] else ", which exists"
             raise OutputError(
-                f"the pictures of a batch must be new files, not {existing[0]}{others}, which exists; resume"
-                " the batch with --resume (resume=True in Python), or overwrite with --force"
-                " (overwrite=True)"
+                f"the pictures of a batch must be new files, not {existing[0]}{others}; resume the batch with"
+                " --resume (resume=True in Python), or overwrite with --force (overwrite=True)"
             )
     base = "" if form == ARRAY else base_mark(scene, picture, drawing.numbers)
     most = max(1, min(runs, BYTES_OF_RUN // drawing.bytes_of_picture))

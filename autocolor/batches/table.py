@@ -140,14 +140,14 @@ def _row(row: object, place: str) -> _Row:
 def _named(rows: Sequence[_Row], error: type[UsageError | InputError], file: str = "") -> tuple[Variant, ...]:
     """The variants of some rows. Raises `error`, with the row, if a row is wrong or there are too many."""
     if len(rows) > MOST_VARIANTS:
-        raise error(f"{file}a table must have at most {MOST_VARIANTS:,} variants, not more; split it")
-    names = _Names()
+        raise error(f"{file}{': ' if file else ''}a table must have at most {MOST_VARIANTS:,} variants, not more; split it")
+    within, names = f"{file}, " if file else "", _Names()
     for row in rows:
         if isinstance(row.name, str):
             other = names.places.setdefault(row.name.casefold(), row.place)
             if other != row.place:
                 text = f"a name must be unique, not {shown(row.name)} as in {other}; rename a variant"
-                raise error(f"{file}{row.place}: {text}")
+                raise error(f"{within}{row.place}: {text}")
     varying = _varying([row.settings for row in rows])
     variants = []
     for number, row in enumerate(rows, 1):
@@ -155,7 +155,7 @@ def _named(rows: Sequence[_Row], error: type[UsageError | InputError], file: str
         try:
             variants.append(Variant(name, row.settings, row.time))  # type: ignore[arg-type]
         except UsageError as problem:
-            raise error(f"{file}{row.place}: {problem}") from None
+            raise error(f"{within}{row.place}: {problem}") from None
     return tuple(variants)
 
 
@@ -286,7 +286,7 @@ def products(tables: Sequence[Sequence[Variant]]) -> tuple[Variant, ...]:
     variant with a time. Raises UsageError if two tables set the same key, if a table is empty, or for too
     many combinations.
     """
-    count = math.prod(map(len, tables))
+    count = math.prod(map(len, tables)) if tables else 0
     if not count or count > MOST_VARIANTS:
         rule = f"must have 1 to {MOST_VARIANTS:,} variants, not {count:,}"
         raise UsageError(f"a grid {rule}; give {'fewer values' if count else 'a value for each key'}")
@@ -402,7 +402,7 @@ def read_variants(path: str | PathLike[str]) -> tuple[Variant, ...]:
     rows = list(islice(read(data, source.name), MOST_VARIANTS + 1))
     if not rows:
         raise InputError(f"{source.name}: a table must have at least one variant, not none; add a row")
-    return _named(rows, InputError, f"{source.name}, ")
+    return _named(rows, InputError, source.name)
 
 
 def _csv_rows(data: bytes, file: str) -> Iterator[_Row]:

@@ -232,14 +232,11 @@ def workers(jobs: int) -> Iterator[Executor | None]:
         yield None
         return
     import multiprocessing
-    import signal
     from concurrent.futures import ProcessPoolExecutor
 
     # A process that is forked while this process has threads may hang.
     context = multiprocessing.get_context("spawn")
-    # Ctrl+C reaches all processes of a terminal; this process ends the others.
-    ignored = signal.SIGINT, signal.SIG_IGN
-    executor = ProcessPoolExecutor(jobs, context, initializer=signal.signal, initargs=ignored)
+    executor = ProcessPoolExecutor(jobs, context, initializer=_begin_worker)
     others = multiprocessing.active_children()
     try:
         yield executor
@@ -250,3 +247,23 @@ def workers(jobs: int) -> Iterator[Executor | None]:
         executor.shutdown(cancel_futures=True)
         raise
     executor.shutdown()
+
+
+def _begin_worker() -> None:
+    """Let this process end with its parent, and not by Ctrl+C, which reaches all processes of a terminal."""
+    import signal
+    from threading import Thread
+
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    """Wait for the parent to end, even if it is killed, and end this process."""
+    import os
+    from multiprocessing import parent_process
+
+    parent = parent_process()
+    assert parent is not None
+    parent.join()
+    os._exit(1)
