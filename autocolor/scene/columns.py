@@ -181,16 +181,18 @@ class Row(Immutable):
     def between(self, other: Any, share: float) -> Self:
         """The row at a share of the way to another row, unchecked; 0 < `share` < 1.
 
-        The kind of a column interpolates its values. A column that is absent in one of the rows holds, as
-        does a row of another class.
+        The kind of a column interpolates its values. A column that is absent in one of the rows holds, as do
+        alternatives of which the rows use different groups, and a row of another class.
         """
         if self is other or type(self) is not type(other):
             return self
         ones, others = vars(self), vars(other)
         copy = object.__new__(type(self))
+        has_same_groups = not self.alternatives or reset_fields(self) == reset_fields(other)
+        held = () if has_same_groups else {name for group in self.alternatives for name in group}
         for name, field in fields_of(type(self)).items():
             a, b = ones[name], others[name]
-            holds = a is b or a is None or b is None
+            holds = a is b or a is None or b is None or name in held
             vars(copy)[name] = a if holds else field.column.kind.between(a, b, share)
         return copy
 

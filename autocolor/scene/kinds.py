@@ -416,6 +416,12 @@ class ColorsKind(Kind):
     def to_plain(self, name: str, value: Any) -> Mapping[str, object]:
         return {name: [in_digits(color) for color in value]}
 
+    def between(self, one: Any, other: Any, share: float) -> Any:
+        """Lists of equally many colors are interpolated, color by color; other lists hold."""
+        if len(one) != len(other):
+            return one
+        return tuple(ColorKind().between(a, b, share) for a, b in zip(one, other, strict=True))
+
 
 def in_digits(color: Color) -> str:
     """The color as "#rrggbb".

@@ -108,10 +108,9 @@ class ScaleKind(Kind):
         return {name: value if isinstance(value, str) else [in_digits(color) for color in value]}
 
     def between(self, one: Any, other: Any, share: float) -> Any:
-        """Lists of equally many colors are interpolated; names hold."""
-        if isinstance(one, str) or isinstance(other, str) or len(one) != len(other):
-            return one
-        return tuple(ColorKind().between(a, b, share) for a, b in zip(one, other, strict=True))
+        """Lists of colors are interpolated; names hold."""
+        is_named = isinstance(one, str) or isinstance(other, str)
+        return one if is_named else ColorsKind(MOST_COLORS).between(one, other, share)
 
 
 MOST_BANDS: Final = 256

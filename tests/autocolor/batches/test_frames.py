@@ -15,7 +15,8 @@ from autocolor.files.settings import scene_with
 from tests.autocolor.meshes import wall_scene
 
 SCENE = wall_scene(lights=[Light("key", (0, -4, 2), aim=(0, 0, 0))])
-RED, BLUE = {"surfaces.wall.object_color": "red"}, {"surfaces.wall.object_color": "blue"}
+RED: dict[str, object] = {"surfaces.wall.object_color": "red"}
+BLUE: dict[str, object] = {"surfaces.wall.object_color": "blue"}
 
 
 def values(made: tuple[Variant, ...], key: str) -> list[object]:
@@ -129,6 +130,13 @@ def test_a_reflection_model_keeps_its_parameters_until_the_next_variant() -> Non
     assert middle.equals(scene_with(scene, rows[0]))
     middle = scene_with(scene, frames(scene, rows[::-1], 3)[1].settings)
     assert middle.equals(scene)
+
+
+def test_a_ramp_and_two_colors_hold_until_the_next_variant() -> None:
+    ramp: dict[str, object] = {"surfaces.wall.ramp": ["black", "red", "white"]}
+    for first, last in ((RED, ramp), (ramp, RED)):
+        middle = scene_with(SCENE, frames(SCENE, [first, last], 3)[1].settings)
+        assert middle.equals(scene_with(SCENE, first))
 
 
 def test_tables_run_together_each_over_the_whole_duration() -> None:

@@ -332,6 +332,17 @@ def test_a_column_that_is_absent_in_one_of_two_rows_holds() -> None:
     assert one.between(Surface("body", levels=20), 0.5).levels == 15
 
 
+def test_alternatives_hold_until_the_next_row_uses_another_group() -> None:
+    red, ramp = Surface("body").replace(object_color="red"), Surface("body").replace(ramp=["red", "blue"])
+    assert red.between(ramp, 0.9).paint == red.paint
+    assert ramp.between(red, 0.9).paint == ramp.paint
+    assert ramp.between(ramp.replace(ramp=["blue", "red"]), 0.5).paint.ramp == ((128, 0, 128),) * 2
+    light = Light("key", (0, 0, 0), direction=(1, 0, 0))
+    aimed = light.replace(aim=(0, 9, 0), position=(2, 0, 0))
+    between = light.between(aimed, 0.5)
+    assert (between.direction, between.aim, between.position) == ((1, 0, 0), None, (1, 0, 0))
+
+
 def test_a_row_of_another_class_and_tables_of_other_rows_hold() -> None:
     phong, cook = Surface("body"), Surface("body").replace(model="cook-torrance")
     assert phong.between(cook, 0.9).reflectance == phong.reflectance
