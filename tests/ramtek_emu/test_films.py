@@ -96,6 +96,13 @@ def test_the_loss_of_a_gif_is_told_as_it_is(tmp_path: Path) -> None:
     assert loss == (3, max(differences))
 
 
+def test_a_gif_that_is_off_by_one_has_lost_colors(tmp_path: Path) -> None:
+    numbers = np.arange(512)
+    field = np.stack([numbers % 256, numbers // 256, numbers * 0], axis=1).astype(np.uint8).reshape(16, 32, 3)
+    assert write_film(tmp_path / "film.gif", [field], 1, fields_per_second=24) == (1, 1)
+    assert np.abs(decoded(tmp_path / "film.gif")[0][0].astype(int) - field).max() == 1
+
+
 @pytest.mark.parametrize(("suffix", "unit"), [(".webp", 1), (".apng", 1), (".gif", 10)])
 @pytest.mark.parametrize("rate", [0.5, 24, 29.97, 50])
 def test_a_film_lasts_as_long_as_its_rate_says(suffix: str, unit: int, rate: float, tmp_path: Path) -> None:

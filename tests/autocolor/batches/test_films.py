@@ -71,6 +71,12 @@ def test_a_film_is_decoded_to_exactly_its_frames(
     assert np.array_equal(decoded(tmp_path / f"film{suffix}"), rendered(SCENE, made))
 
 
+def test_frames_keep_their_order_where_another_would_cost_less(tmp_path: Path) -> None:
+    back_and_forth = tuple(SWEEP[number] for number in (0, 4, 0, 4))
+    animate(SCENE, [frame.settings for frame in back_and_forth], tmp_path / "film.apng", size=SIZE)
+    assert np.array_equal(decoded(tmp_path / "film.apng"), rendered(SCENE, back_and_forth))
+
+
 @pytest.mark.parametrize(
     ("made", "renderings", "tier"),
     [(FADE, 1, Tier.ENTRIES), (SWEEP, 1, Tier.LIGHT), (AROUND, 4, Tier.FRAME)],
