@@ -50,7 +50,8 @@ WINGS = {
 """The wings of a package in the order of its data: each may use those before it and no other."""
 
 KNOWING_THE_DISPLAY = (
-    "autocolor.__main__", "autocolor.errors", "autocolor.files.writing", "autocolor.images",
+    "autocolor.__main__", "autocolor.batches.making", "autocolor.batches.outputs",
+    "autocolor.batches.sheet", "autocolor.errors", "autocolor.files.writing", "autocolor.images",
     "autocolor.lighting.picture", "autocolor.sending", "autocolor.studio",
 )  # fmt: skip
 WINGS_KNOWING_THE_DISPLAY = ("autocolor.commands", "autocolor.screens", "autocolor.widgets")
@@ -136,9 +137,10 @@ def test_pygame_is_in_one_file() -> None:
     assert {name for name, _ in importers({"pygame"})} == {"ramtek_emu.monitor.glass"}
 
 
-def test_pillow_is_in_two_files_one_for_pictures_and_one_for_the_names_of_colors() -> None:
+def test_pillow_is_in_one_file_for_pictures_in_one_for_the_names_of_colors_and_in_batches() -> None:
     # Colors written as "#rrggbb" need no Pillow: it is loaded for the first name.
-    assert importers({"PIL"}) == {("ramtek_emu.png", True), ("autocolor.scene.kinds", False)}
+    in_batches = {(f"autocolor.batches.{name}", False) for name in ("outputs", "sheet")}
+    assert importers({"PIL"}) == {("ramtek_emu.png", True), ("autocolor.scene.kinds", False), *in_batches}
 
 
 def test_nothing_is_imported_that_is_no_dependency() -> None:

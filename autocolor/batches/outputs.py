@@ -52,13 +52,14 @@ class Pattern:
         """Check the pattern. Raises UsageError for an unknown field or a brace without its counterpart."""
         self.text = os.fspath(text)
         self._own: dict[str, str] = {}
-        for key, _, _, brace in FIELD.findall(self.text):
-            if brace:
+        for match in FIELD.finditer(self.text):
+            key, _, _, brace = match.groups()
+            if brace is not None:
                 raise UsageError(
                     f"a name pattern must have each brace closed, not {shown(self.text)}; double a brace that"
                     " belongs to the name"
                 )
-            if key and key not in (NUMBER, NAME):
+            if key not in (None, NUMBER, NAME):
                 self._own[key] = _own_text(scene, key)
 
     def path(self, number: int, variant: Variant) -> str:
