@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from autocolor import Picture, Scene, image, render
 from autocolor.batches import runs
 from autocolor.batches.outputs import FORMS
-from autocolor.batches.runs import Drawing, Start, Task, make, make_run
+from autocolor.batches.runs import Drawing, Start, VariantTask, make, make_run
 from autocolor.batches.sheet import Box
 from autocolor.files.settings import scene_with
 from autocolor.rendering import Rendering, rendering
@@ -46,7 +46,7 @@ def test_each_picture_of_a_run_is_that_of_its_scene_rendered_alone(
     drawing = SMALL._replace(smooth=smooth)
     scene = wall_scene()
     picture = render(scene, 12, 16, smooth=smooth) if has_picture else None
-    tasks = [Task(number, settings, "") for number, settings in enumerate(variants)]
+    tasks = [VariantTask(number, settings, "") for number, settings in enumerate(variants)]
     results = make_run(Start(scene, picture), drawing, tasks)
     assert [made.number for made in results] == list(range(len(variants)))
     scenes = [scene_with(scene, settings) for settings in variants]
@@ -77,10 +77,12 @@ def test_light_moves_see_the_points_once_and_recolorings_of_a_picture_render_not
 ) -> None:
     counted = Counted(monkeypatch)
     scene = wall_scene()
-    moves = [Task(n, {"lights.key.position": [n, -3, 1]}, "") for n in range(5)]
+    moves = [VariantTask(n, {"lights.key.position": [n, -3, 1]}, "") for n in range(5)]
     make_run(Start(scene, None), SMALL, moves)
     assert (counted.renderings, counted.frames) == (5, 1)
-    paints = [Task(n, {"surfaces.wall.object_color": [n, n, n], "mapping": "gamma"}, "") for n in range(5)]
+    paints = [
+        VariantTask(n, {"surfaces.wall.object_color": [n, n, n], "mapping": "gamma"}, "") for n in range(5)
+    ]
     make_run(Start(scene, render(scene, 12, 16)), SMALL, paints)
     assert (counted.renderings, counted.frames) == (5, 1)
 
@@ -92,18 +94,18 @@ def test_a_picture_is_rendered_again_only_where_a_variant_changes_the_light(
     scene = wall_scene()
     start = Start(scene, render(scene, 12, 16))
     settings: list[dict[str, object]] = [{}, {"ambient": 0.5}, {"ambient": 0.6}, {"background": "red"}]
-    made = [make(start, SMALL, Task(n, each, "")) for n, each in enumerate(settings)]
+    made = [make(start, SMALL, VariantTask(n, each, "")) for n, each in enumerate(settings)]
     assert (counted.renderings, counted.frames) == (2, 1)
     assert [each.tier for each in made] == [None, Tier.FRAME, Tier.MIX, Tier.MIX]
 
 
 def test_a_wrong_variant_has_its_problem_and_loses_no_other() -> None:
     tasks = [
-        Task(0, {"ambient": -1}, ""),
-        Task(1, {"lights.kye.on": False}, ""),
-        Task(2, {"background": "red"}, ""),
-        Task(3, {"lights.key.intensity": 1e38, "surfaces.wall.diffuse": 1e38}, ""),
-        Task(4, {"ambient": None}, ""),
+        VariantTask(0, {"ambient": -1}, ""),
+        VariantTask(1, {"lights.kye.on": False}, ""),
+        VariantTask(2, {"background": "red"}, ""),
+        VariantTask(3, {"lights.key.intensity": 1e38, "surfaces.wall.diffuse": 1e38}, ""),
+        VariantTask(4, {"ambient": None}, ""),
     ]
     made = make_run(Start(wall_scene(), None), SMALL, tasks)
     assert [each.image is None for each in made] == [True, True, False, True, True]
@@ -118,7 +120,7 @@ def test_a_wrong_variant_has_its_problem_and_loses_no_other() -> None:
 
 
 def test_a_variant_that_exceeds_the_memory_budget_has_a_problem() -> None:
-    made = make(Start(wall_scene(), None), SMALL._replace(limit=1e-9), Task(0, {}, ""))
+    made = make(Start(wall_scene(), None), SMALL._replace(limit=1e-9), VariantTask(0, {}, ""))
     assert made.image is None
     assert made.problem.startswith("a picture of 16 x 12 pixels must take at most")
 
@@ -127,7 +129,7 @@ def test_the_forms_and_thumbnails_are_those_of_the_colors() -> None:
     scene = wall_scene()
     for form, each in FORMS.items():
         drawing = SMALL._replace(form=form, level=9, thumbnail=Box(8, 6))
-        made = make(Start(scene, None), drawing, Task(0, {}, "0" * 64))
+        made = make(Start(scene, None), drawing, VariantTask(0, {}, "0" * 64))
         assert made.image == each.encoded(alone(scene), 9, "0" * 64)
         assert made.thumbnail is not None
         assert made.thumbnail.shape == (6, 8, 3)
@@ -141,7 +143,7 @@ def test_a_start_travels_once_to_a_process_without_light_planes() -> None:
     assert pickle.loads(pickle.dumps(start)) is arrived
     assert isinstance(arrived.picture, Picture)
     assert not arrived.picture.light_planes
-    task = Task(0, {"background": "red"}, "")
+    task = VariantTask(0, {"background": "red"}, "")
     as_png = SMALL._replace(form="png")
     assert make(arrived, as_png, task).image == make(start, as_png, task).image
     other = pickle.loads(pickle.dumps(Start(scene, None)))
