@@ -1,6 +1,6 @@
 """Batches: what recolorings cost beside the encoder, in two processes, and light moves beside relighting.
 
-`python -m benchmarks batches` has the milliseconds of the processor that a picture takes at each level of PNG:
+`python -m benchmarks batches` has the milliseconds of the processor for a picture at each level of PNG:
 of the encoder alone, of writing the file, and of everything else.
 """
 
