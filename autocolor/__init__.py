@@ -16,6 +16,8 @@ TYPE_CHECKING: Final = False
 if TYPE_CHECKING:
     from typing import Final
 
+    from autocolor.batches.films import animate as animate
+    from autocolor.batches.frames import frames as frames
     from autocolor.batches.making import batch as batch
     from autocolor.batches.making import batch_results as batch_results
     from autocolor.batches.table import Variant as Variant
@@ -100,9 +102,11 @@ _HOME: Final = {
     "Variant": "batches.table",
     "View": "scene.view",
     "WriteError": "errors",
+    "animate": "batches.films",
     "batch": "batches.making",
     "batch_results": "batches.making",
     "demo": "commands.demo",
+    "frames": "batches.frames",
     "grid": "batches.table",
     "image": "images",
     "open_tables": "files.store.tables",

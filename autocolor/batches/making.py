@@ -296,7 +296,7 @@ def _paths(pattern: Pattern | None, variants: Sequence[Variant]) -> tuple[str, .
     return tuple(paths)
 
 
-def _batch(
+def checked_batch(
     source: Source,
     variants: Rows,
     output: str | PathLike[str] | None,
@@ -371,7 +371,7 @@ def batch_results(
     the order in which they cost least. Memory is bounded, however many variants there are. To stop a batch,
     close the generator: files are whole then, and whatever waits is canceled.
     """
-    checked = _batch(source, variants, output, **options)
+    checked = checked_batch(source, variants, output, **options)
     return _only_results(checked)
 
 
@@ -426,7 +426,7 @@ def batch(
             check_suffix(path, suffix, what)
             refuse_output(path, overwrite=options.get("overwrite", False) or options.get("resume", False))
     cells = None if sheet is None else ContactSheet(rows)
-    checked = _batch(source, rows, output, thumbnail=None if cells is None else cells.box, **options)
+    checked = checked_batch(source, rows, output, thumbnail=None if cells is None else cells.box, **options)
     results: dict[int, Result] = {}
     try:
         with closing(checked.results()) as made:
