@@ -50,8 +50,10 @@ WINGS = {
 """The wings of a package in the order of its data: each may use those before it and no other."""
 
 KNOWING_THE_DISPLAY = (
-    "autocolor.__main__", "autocolor.batches.films", "autocolor.errors", "autocolor.files.writing",
-    "autocolor.images", "autocolor.lighting.picture", "autocolor.sending", "autocolor.studio",
+    "autocolor.__main__", "autocolor.batches.films", "autocolor.batches.making",
+    "autocolor.batches.outputs", "autocolor.batches.sheet", "autocolor.errors",
+    "autocolor.files.writing", "autocolor.images", "autocolor.lighting.picture", "autocolor.sending",
+    "autocolor.studio",
 )  # fmt: skip
 WINGS_KNOWING_THE_DISPLAY = ("autocolor.commands", "autocolor.screens", "autocolor.widgets")
 DOORS_OF_THE_DISPLAY = {
@@ -136,10 +138,11 @@ def test_pygame_is_in_one_file() -> None:
     assert {name for name, _ in importers({"pygame"})} == {"ramtek_emu.monitor.glass"}
 
 
-def test_pillow_is_in_three_files_for_pictures_films_and_the_names_of_colors() -> None:
+def test_pillow_is_in_files_for_pictures_and_films_for_the_names_of_colors_and_in_batches() -> None:
     # Colors written as "#rrggbb" need no Pillow: it is loaded for the first name.
     encoders = {("ramtek_emu.png", True), ("ramtek_emu.films", True)}
-    assert importers({"PIL"}) == {*encoders, ("autocolor.scene.kinds", False)}
+    batches = {(f"autocolor.batches.{name}", False) for name in ("outputs", "sheet")}
+    assert importers({"PIL"}) == {*encoders, *batches, ("autocolor.scene.kinds", False)}
 
 
 def test_nothing_is_imported_that_is_no_dependency() -> None:

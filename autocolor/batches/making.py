@@ -19,8 +19,8 @@ from typing import Final, TypedDict, Unpack
 from autocolor.arrays import Bytes
 from autocolor.batches.order import cut, runs_of, tier_of
 from autocolor.batches.outputs import ARRAY, Pattern, base_mark, form_of, mark_in, mark_of
-from autocolor.batches.runs import Drawing, Made, Start, Task, forget, make, make_run
-from autocolor.batches.sheet import Box, Sheet, read_thumbnail
+from autocolor.batches.runs import Drawing, Made, Start, VariantTask, forget, make, make_run
+from autocolor.batches.sheet import Box, ContactSheet, read_thumbnail
 from autocolor.batches.table import Result, Rows, Variant, results_bytes, variants_of
 from autocolor.budget import allowing, validated_limit
 from autocolor.checks import shown
@@ -106,10 +106,10 @@ class Batch:
             if mark_in(path, self.drawing.form) == mark_of(self.base, variant)
         }
 
-    def _task(self, number: int) -> Task:
+    def _task(self, number: int) -> VariantTask:
         variant = self.variants[number]
         mark = "" if self.drawing.form == ARRAY else mark_of(self.base, variant)
-        return Task(number, dict(variant.settings), mark)
+        return VariantTask(number, dict(variant.settings), mark)
 
     def _made_here(
         self, runs: Iterable[Sequence[int]], present: Set[int]
@@ -197,7 +197,9 @@ class Batch:
         write_atomically(path, data, overwrite=self.overwrite or is_ours, sync=self.sync)
 
 
-def _submitted(executor: Executor, start: Start, drawing: Drawing, tasks: list[Task]) -> Future[list[Made]]:
+def _submitted(
+    executor: Executor, start: Start, drawing: Drawing, tasks: list[VariantTask]
+) -> Future[list[Made]]:
     """The future of a run. Raises UnavailableError if the executor accepts no run."""
     try:
         return executor.submit(make_run, start, drawing, tasks)
@@ -423,7 +425,7 @@ def batch(
         if path is not None:
             check_suffix(path, suffix, what)
             refuse_output(path, overwrite=options.get("overwrite", False) or options.get("resume", False))
-    cells = None if sheet is None else Sheet(rows)
+    cells = None if sheet is None else ContactSheet(rows)
     checked = checked_batch(source, rows, output, thumbnail=None if cells is None else cells.box, **options)
     results: dict[int, Result] = {}
     try:

@@ -58,7 +58,7 @@ class Drawing(NamedTuple):
         return self.lines, self.elements, self.smooth, self.form, self.level
 
 
-class Task(NamedTuple):
+class VariantTask(NamedTuple):
     """A variant to make: its number, its settings and the mark of its file."""
 
     number: int
@@ -146,12 +146,12 @@ def _arrived(token: str, pickled: bytes) -> Start:
     return start
 
 
-def make_run(start: Start, drawing: Drawing, tasks: Sequence[Task]) -> list[Made]:
+def make_run(start: Start, drawing: Drawing, tasks: Sequence[VariantTask]) -> list[Made]:
     """The pictures of a run. A variant that cannot be made has a problem, and the others are made."""
     return [make(start, drawing, task) for task in tasks]
 
 
-def make(start: Start, drawing: Drawing, task: Task) -> Made:
+def make(start: Start, drawing: Drawing, task: VariantTask) -> Made:
     """The picture of a variant."""
     begun = time.thread_time()
     image: Bytes | bytes | None = None

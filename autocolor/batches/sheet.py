@@ -12,7 +12,6 @@ from autocolor.arrays import Bytes, light_of
 from autocolor.batches.table import Variant
 from autocolor.checks import printable
 from autocolor.errors import UsageError
-from ramtek_emu.png import png_bytes
 
 GROUND: Final = 32
 """The gray of the ground."""
@@ -43,7 +42,7 @@ BOXES: Final = ((400, Box(160, 120)), (2500, Box(80, 60)), (10_000, Box(48, 36))
 """Limit: the most variants of a sheet, for each size of its thumbnails. A sheet has at most 19 MB."""
 
 
-class Sheet:
+class ContactSheet:
     """A contact sheet that is filled cell by cell."""
 
     def __init__(self, variants: Sequence[Variant]) -> None:
@@ -74,6 +73,8 @@ class Sheet:
     def png(self) -> bytes:
         """The sheet as a PNG file."""
         from PIL import Image, ImageDraw, ImageFont
+
+        from ramtek_emu.png import png_bytes
 
         image = Image.fromarray(self._colors)
         draw, font = ImageDraw.Draw(image), ImageFont.load_default()

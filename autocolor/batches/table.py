@@ -140,7 +140,8 @@ def _row(row: object, place: str) -> _Row:
 def _named(rows: Sequence[_Row], error: type[UsageError | InputError], file: str = "") -> tuple[Variant, ...]:
     """The variants of some rows. Raises `error`, with the row, if a row is wrong or there are too many."""
     if len(rows) > MOST_VARIANTS:
-        raise error(f"{file}{': ' if file else ''}a table must have at most {MOST_VARIANTS:,} variants, not more; split it")
+        text = f"a table must have at most {MOST_VARIANTS:,} variants, not more; split it"
+        raise error(f"{file}: {text}" if file else text)
     within, names = f"{file}, " if file else "", _Names()
     for row in rows:
         if isinstance(row.name, str):

@@ -31,6 +31,7 @@ Examples:
 @click.argument("surface", required=False, shell_complete=complete_surfaces)
 @click.option(
     "--object",
+    "--object-color",
     "object_color",
     metavar="COLOR",
     shell_complete=complete_colors,
@@ -38,6 +39,7 @@ Examples:
 )
 @click.option(
     "--source",
+    "--light-color",
     "light_color",
     metavar="COLOR",
     shell_complete=complete_colors,

@@ -17,7 +17,7 @@ from autocolor.batches.sheet import (
     GROUND,
     NO_PICTURE,
     Box,
-    Sheet,
+    ContactSheet,
     columns_of,
     read_thumbnail,
     thumbnail,
@@ -57,7 +57,7 @@ def test_a_sheet_has_the_shape_of_a_grid_else_it_is_nearly_square() -> None:
 
 
 def test_a_sheet_has_each_thumbnail_in_its_cell_and_a_label_below() -> None:
-    sheet = Sheet(grid({"a": [1, 2], "b": ["a name too long for a cell of so few pixels" * 3, "x"]}))
+    sheet = ContactSheet(grid({"a": [1, 2], "b": ["a name too long for a cell of so few pixels" * 3, "x"]}))
     box = sheet.box
     colors = np.full((box.lines, box.elements, 3), 200, np.uint8)
     sheet.put(3, colors)
@@ -79,9 +79,9 @@ def test_a_sheet_has_each_thumbnail_in_its_cell_and_a_label_below() -> None:
 
 
 def test_a_sheet_of_many_variants_has_smaller_thumbnails_and_of_too_many_is_refused() -> None:
-    assert Sheet(grid({"a": range(401)})).box == BOXES[1][1]
+    assert ContactSheet(grid({"a": range(401)})).box == BOXES[1][1]
     with pytest.raises(UsageError, match=r"at most 10,000 variants, not 10,001; make sheets of parts"):
-        Sheet(grid({"a": range(10_001)}))
+        ContactSheet(grid({"a": range(10_001)}))
 
 
 def test_the_thumbnail_of_a_file_is_that_of_its_colors(tmp_path: Path) -> None:

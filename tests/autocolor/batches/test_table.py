@@ -205,8 +205,8 @@ def test_a_table_of_another_kind_and_a_large_file_are_refused(tmp_path: Path) ->
 @pytest.mark.parametrize(
     ("make", "sentence"),
     [
-        (lambda: variants_of("ab"), "variants must be a list of tables or of Variants, not 'ab'"),
-        (lambda: variants_of({"a": 1}), "variants must be a list"),  # type: ignore[arg-type]
+        (lambda: variants_of("ab"), "variants must be a list of tables or of Variants, not 'ab'"),  # type: ignore[arg-type]
+        (lambda: variants_of({"a": 1}), "variants must be a list"),  # type: ignore[dict-item]
         (lambda: variants_of([3]), "row 1: a variant must be a table of values by key, not 3"),  # type: ignore[list-item]
         (lambda: variants_of([{}, {1: 2}]), "row 2: the settings of a variant must be values by key"),  # type: ignore[dict-item]
         (lambda: Variant("", {}), "a variant must have a name of at least one character, not ''"),

@@ -31,6 +31,14 @@ def test_nothing_changed_gives_the_rendered_picture_byte_for_byte(saved: Path, r
             ("surfaces.side.light_color=#ffe9c0", "surfaces.side.blend=0"),
         ),
         (
+            ("--object-color", "#123456", "--light-color", "#ffe9c0", "--blend", "0"),
+            (
+                "surfaces.side.object_color=#123456",
+                "surfaces.side.light_color=#ffe9c0",
+                "surfaces.side.blend=0",
+            ),
+        ),
+        (
             ("--object", "#123456", "--blend", "0.25", "--percentage", "50"),
             (
                 "surfaces.side.object_color=#123456",

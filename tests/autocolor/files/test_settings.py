@@ -14,7 +14,8 @@ from tests.autocolor.strategies import scenes
 
 def keys_of_scene(scene: Scene) -> list[str]:
     """All keys of fields that completion offers."""
-    starts, keys = [""], []
+    starts = [""]
+    keys: list[str] = []
     while starts:
         for each in keys_after(scene, starts.pop()):
             (keys if each.endswith("=") else starts).append(each)
