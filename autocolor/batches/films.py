@@ -133,7 +133,7 @@ def animate(
 def kind_of(path: str) -> str:
     """The suffix of an animation's file. Raises UsageError for a name of another kind."""
     suffix = Path(path).suffix.lower()
-    if suffix == ".png" and "{number" not in path:
+    if suffix == ".png" and "{" not in path:
         raise UsageError(
             f"numbered pictures must have a pattern such as frame-{{number:04}}.png, not {path!r}; or end the"
             " name in .apng for an animated PNG"

@@ -145,7 +145,7 @@ class _Track:
         if any(key in keys for key in LINE_OF_SIGHT):
             # Between a view with a target and a view with a direction, there are views with directions.
             keys |= dict.fromkeys(LINE_OF_SIGHT)
-        return cls(scene, variants, _times(variants), scenes, {key: place_of(scene, key) for key in keys})
+        return cls(scene, variants, times_of(variants), scenes, {key: place_of(scene, key) for key in keys})
 
     @property
     def span(self) -> tuple[float, float]:
@@ -199,7 +199,7 @@ def _check_keys(tracks: Sequence[_Track]) -> None:
         seen |= keys
 
 
-def _times(variants: Sequence[Variant]) -> list[float]:
+def times_of(variants: Sequence[Variant]) -> list[float]:
     """The times of variants; 0, 1, 2 and so on if no variant has a time. Raises UsageError."""
     if all(variant.time is None for variant in variants):
         return [float(number) for number in range(len(variants))]

@@ -19,7 +19,7 @@ from autocolor.commands.options import (
 )
 from autocolor.commands.scenes import SceneSource, scene_options, set_option
 from autocolor.commands.sweep import jobs_option, progress, refuse_keys, start_of, table_option, workers
-from autocolor.errors import UsageError
+from autocolor.errors import InputError, UsageError
 from ramtek_emu.command_line import tell
 
 if TYPE_CHECKING:
@@ -121,7 +121,7 @@ def animate(
     costs only what its edit changes: a fade of paint renders once.
     """
     from autocolor.batches import films
-    from autocolor.batches.frames import frames_of_tracks, in_step
+    from autocolor.batches.frames import frames_of_tracks, in_step, times_of
     from autocolor.batches.table import read_variants, varied
 
     if not varies and table is None and not turn:
@@ -130,6 +130,11 @@ def animate(
     films.check_rate(fps, kind)
     is_sized = context.get_parameter_source("size") is ParameterSource.COMMANDLINE
     tables = [] if table is None else [read_variants(table)]
+    if table is not None:
+        try:
+            times_of(tables[0])
+        except UsageError as error:
+            raise InputError(f"{table}: {error}") from None
     tables += [varied(text) for text in varies]
     start, code = start_of(source, settings, size)
     refuse_keys(start, tables, table)

@@ -108,6 +108,7 @@ REFUSED = [
     ("scene --vary ambient=0,-1 -o a.gif", 2, "variant -1: ambient must be a"),
     ("scene --turn 9 -o there.gif", 73, "an output must be a new file, not there.gif, which exists"),
     ("scene --turn 9 --smooth 2 -o a.ramtek", 2, "a stream must have smooth=1"),
+    ("scene --table bad.csv -o a.gif", 65, "bad.csv: the time of '0.2' must be later than the time of '0.1'"),
     ("none --turn 9 -o a.gif", 66, "none"),
 ]
 
@@ -117,8 +118,9 @@ def test_a_wrong_command_line_is_refused_in_a_sentence(
     folder: Path, run: Run, line: str, code: int, sentence: str
 ) -> None:
     Path("there.gif").write_bytes(b"old")
+    Path("bad.csv").write_text("time,ambient\n1,0.1\n1,0.2\n")
     ran = run("animate", *line.split())
     assert (ran.code, ran.out) == (code, "")
     assert sentence in ran.err
-    assert sorted(os.listdir()) == ["scene", "there.gif", "two.obj"]
+    assert sorted(os.listdir()) == ["bad.csv", "scene", "there.gif", "two.obj"]
     assert Path("there.gif").read_bytes() == b"old"
