@@ -31,7 +31,7 @@ Examples:
   autocolor animate scenes/coupe --turn 360 --frames 72 -o around.webp
   autocolor animate scenes/coupe --vary lights.key.position=[-8,-6,5],[2,-6,5] -o sweep.apng
   autocolor animate coupe.npz --vary surfaces.body.object_color=red,navy,red -o fade.gif
-  autocolor animate scenes/coupe --table looks.csv --frames 240 -o "looks/{number:04}.png" --jobs 4
+  autocolor animate scenes/coupe --table looks.csv -o "looks/{number:04}.png" --jobs 4
   autocolor animate coupe.npz --vary surfaces.body.object_color=red,navy -o fade.ramtek
 """
 
