@@ -51,9 +51,8 @@ WINGS = {
 
 KNOWING_THE_DISPLAY = (
     "autocolor.__main__", "autocolor.batches.films", "autocolor.batches.making",
-    "autocolor.batches.outputs", "autocolor.batches.sheet", "autocolor.errors",
-    "autocolor.files.writing", "autocolor.images", "autocolor.lighting.picture", "autocolor.sending",
-    "autocolor.studio",
+    "autocolor.batches.outputs", "autocolor.errors", "autocolor.files.writing", "autocolor.images",
+    "autocolor.lighting.picture", "autocolor.sending", "autocolor.studio",
 )  # fmt: skip
 WINGS_KNOWING_THE_DISPLAY = ("autocolor.commands", "autocolor.screens", "autocolor.widgets")
 DOORS_OF_THE_DISPLAY = {

@@ -9,10 +9,10 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Generator, Iterable, Sequence, Set
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Executor, Future, wait
-from contextlib import closing
+from contextlib import closing, suppress
 from dataclasses import dataclass
 from numbers import Integral
-from os import PathLike
+from os import PathLike, fspath
 from pathlib import Path
 from typing import Final, TypedDict, Unpack
 
@@ -21,7 +21,7 @@ from autocolor.batches.order import cut, runs_of, tier_of
 from autocolor.batches.outputs import ARRAY, Pattern, base_mark, form_of, mark_in, mark_of
 from autocolor.batches.runs import Drawing, Made, Start, VariantTask, forget, make, make_run
 from autocolor.batches.sheet import Box, ContactSheet, read_thumbnail
-from autocolor.batches.table import Result, Rows, Variant, results_bytes, variants_of
+from autocolor.batches.table import TABLE_BEGINS, Result, Rows, Variant, results_bytes, variants_of
 from autocolor.budget import allowing, validated_limit
 from autocolor.checks import shown
 from autocolor.errors import OutputError, UnavailableError, UsageError, reason_of
@@ -185,16 +185,22 @@ class Batch:
 
     def _write(self, path: str, data: bytes) -> None:
         """Write a file and, if it is missing, its folder. Raises OutputError, WriteError."""
-        try:
-            Path(path).parent.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise OutputError(
-                f"an output must have a folder, and {Path(path).parent} cannot be made ({reason_of(error)});"
-                " choose another place"
-            ) from None
+        _make_folder(path)
         # An earlier picture of a batch may be replaced, the file of a stranger never.
         is_ours = self.resume and mark_in(path, self.drawing.form) != ""
         write_atomically(path, data, overwrite=self.overwrite or is_ours, sync=self.sync)
+
+
+def _make_folder(path: str | PathLike[str]) -> None:
+    """Make the folder of a file if it is missing. Raises OutputError."""
+    folder = Path(path).parent
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OutputError(
+            f"an output must have a folder, and {folder} cannot be made ({reason_of(error)}); choose another"
+            " place"
+        ) from None
 
 
 def _submitted(
@@ -286,7 +292,7 @@ def _paths(pattern: Pattern | None, variants: Sequence[Variant]) -> tuple[str, .
     paths = [pattern.path(number, variant) for number, variant in enumerate(variants, 1)]
     first: dict[str, int] = {}
     for number, path in enumerate(paths, 1):
-        other = first.setdefault(os.path.normcase(path).casefold(), number)
+        other = first.setdefault(_same_file(path), number)
         if other != number:
             raise UsageError(
                 f"a name pattern must give each variant a file of its own, and {path} is that of"
@@ -421,12 +427,15 @@ def batch(
     cannot be written; UnavailableError if the executor fails.
     """
     rows = variants_of(variants)
+    cells = None if sheet is None else ContactSheet(rows)
+    checked = checked_batch(source, rows, output, thumbnail=None if cells is None else cells.box, **options)
     for path, suffix, what in ((sheet, ".png", "a contact sheet"), (table, ".csv", "a table of results")):
         if path is not None:
             check_suffix(path, suffix, what)
-            refuse_output(path, overwrite=options.get("overwrite", False) or options.get("resume", False))
-    cells = None if sheet is None else ContactSheet(rows)
-    checked = checked_batch(source, rows, output, thumbnail=None if cells is None else cells.box, **options)
+            if _same_file(path) in map(_same_file, checked.paths):
+                raise UsageError(f"{what} must have a file of its own, not {path}, a picture's; rename it")
+            _make_folder(path)
+            refuse_output(path, overwrite=checked.overwrite or (checked.resume and _is_of_batch(path)))
     results: dict[int, Result] = {}
     try:
         with closing(checked.results()) as made:
@@ -444,3 +453,17 @@ def batch(
         if sheet is not None and cells is not None:
             write_atomically(sheet, cells.png(), overwrite=True)
     return in_order
+
+
+def _same_file(path: str | PathLike[str]) -> str:
+    """A text that is equal for names of one file, also where capitals do not matter."""
+    return os.path.normcase(os.path.abspath(path)).casefold()
+
+
+def _is_of_batch(path: str | PathLike[str]) -> bool:
+    """Whether a file is the sheet or the table of a batch."""
+    if not fspath(path).lower().endswith(".csv"):
+        return mark_in(fspath(path), "png") != ""
+    with suppress(OSError), open(path, "rb") as file:
+        return file.read(len(TABLE_BEGINS)) == TABLE_BEGINS
+    return False

@@ -100,7 +100,8 @@ def _safe(text: str) -> str:
 
 # Forms.
 
-MARK_LETTERS: Final = 64
+SHEET_MARK: Final = 64 * "0"
+"""The mark of a contact sheet, which is made again each time."""
 
 TEXT_OF_PNG: Final = b"autocolor\0"
 END_OF_PNG: Final = b"\0\0\0\0IEND\xaeB`\x82"
@@ -109,7 +110,7 @@ PNG_TAIL: Final = re.compile(
 )
 
 
-def _png(colors: Bytes, level: int | None, mark: str) -> bytes:
+def marked_png(colors: Bytes, level: int | None, mark: str) -> bytes:
     """A PNG file with a mark in its last text chunk."""
     from ramtek_emu.png import png_bytes
 
@@ -149,7 +150,7 @@ class Form(NamedTuple):
 
 
 FORMS: Final[Mapping[str, Form]] = {
-    "png": Form(".png", _png, PNG_TAIL),
+    "png": Form(".png", marked_png, PNG_TAIL),
     "webp": Form(".webp", _webp, WEBP_TAIL),
 }
 

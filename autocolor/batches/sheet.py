@@ -9,6 +9,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from autocolor.arrays import Bytes, light_of
+from autocolor.batches.outputs import SHEET_MARK, marked_png
 from autocolor.batches.table import Variant
 from autocolor.checks import printable
 from autocolor.errors import UsageError
@@ -74,8 +75,6 @@ class ContactSheet:
         """The sheet as a PNG file."""
         from PIL import Image, ImageDraw, ImageFont
 
-        from ramtek_emu.png import png_bytes
-
         image = Image.fromarray(self._colors)
         draw, font = ImageDraw.Draw(image), ImageFont.load_default()
         for number, name in enumerate(self._names):
@@ -86,7 +85,7 @@ class ContactSheet:
             while len(label) > 1 and font.getlength(label) > self.box.elements:
                 label = f"{label.rstrip('.')[:-1]}.."
             draw.text((left, top + self.box.lines + 2), label, fill=(INK, INK, INK), font=font)
-        return png_bytes(np.asarray(image))
+        return marked_png(np.asarray(image), None, SHEET_MARK)
 
     @property
     def _step(self) -> tuple[int, int]:

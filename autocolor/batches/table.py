@@ -235,6 +235,10 @@ class Result(NamedTuple):
     was_made: bool = True
 
 
+TABLE_BEGINS: Final = b"name,path,"
+"""The first bytes of a table of results."""
+
+
 def results_bytes(results: Sequence[Result]) -> bytes:
     """The results as a CSV table: name, path, a column for each key, seconds, problem."""
     keys = list(dict.fromkeys(key for result in results for key in result.settings))

@@ -210,7 +210,7 @@ def stopped(scene: Scene, output: Path, after: int, **options: Any) -> None:
 
 def test_a_stopped_batch_is_resumed_and_loses_nothing(tmp_path: Path) -> None:
     scene, output = wall_scene(), tmp_path / "new" / "{number:03}-{name}.png"
-    table, sheet = tmp_path / "made.csv", tmp_path / "sheet.png"
+    table, sheet = tmp_path / "more" / "made.csv", tmp_path / "sheet.png"
     stopped(scene, output, 9, table=table, sheet=sheet)
     # The table and the sheet of what was made are there, too.
     assert len(rows_of(table)) == 10
@@ -261,6 +261,12 @@ def test_the_file_of_a_stranger_is_never_overwritten_unless_that_is_asked(tmp_pa
     one, other = batch(scene, rows, output, size=SIZE, resume=True)
     assert (one.path, one.image, "which exists" in one.problem) == (None, None, True)
     assert (other.problem, (tmp_path / "a.png").read_bytes()) == ("", b"mine")
+    for own in ({"sheet": tmp_path / "s.png"}, {"table": tmp_path / "t.csv"}):
+        (path,) = own.values()
+        path.write_bytes(b"mine")
+        with pytest.raises(OutputError, match="which exists"):
+            batch(scene, rows[1:], output, size=SIZE, resume=True, **own)  # type: ignore[arg-type]
+        assert path.read_bytes() == b"mine"
     batch(scene, rows, output, size=SIZE, overwrite=True)
     assert mark_in(str(tmp_path / "a.png"), "png") != ""
 
@@ -366,6 +372,8 @@ def refused() -> Iterator[tuple[dict[str, Any], type[Exception], str]]:
     yield {"resume": True}, UsageError, "only a batch with an output can be resumed"
     yield {"sheet": "a.jpg"}, UsageError, "a contact sheet must be written to a file that ends in .png"
     yield {"table": "a.txt"}, UsageError, "a table of results must be written to a file that ends in .csv"
+    same = {"output": "{number}.png", "sheet": "25.PNG"}
+    yield same, UsageError, "a contact sheet must have a file of its own, not 25.PNG, a picture's; rename it"
     yield {"source": 3}, UsageError, "a scene must be a Scene, not 3"
     yield {"source": (render(scene, 3, 4), scene)}, UsageError, "the scene must come before the picture"
     yield {"source": "no.npz"}, InputError, "no.npz"
