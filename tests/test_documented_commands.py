@@ -27,6 +27,7 @@ NODES = "".join(f"{x} {y} {z}\n" for x, y, z in CORNERS)
 POLYGONS = "".join(f"3 {a} {b} {c}\n" for a, b, c in FACES)
 
 INPUTS = {
+    "looks.csv": "name,surfaces.body.object_color,lights.key.intensity\nracing,#b01020,\nevening,navy,0.5\n",
     "engine.ply": "ply\nformat ascii 1.0\nelement vertex 4\n"
     + "".join(f"property float {axis}\n" for axis in "xyz")
     + f"element face 4\nproperty list uchar int vertex_indices\nend_header\n{NODES}{POLYGONS}",

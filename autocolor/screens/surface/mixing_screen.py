@@ -41,7 +41,7 @@ from autocolor.screens.input import Gesture
 from autocolor.screens.picture.over_picture import paint_rows, surface_row
 from autocolor.screens.screen import Cached, Sample, Screen
 from autocolor.screens.session import Session
-from autocolor.screens.surface.mixing_palette import Crop, Palette, crop_of, palette_of
+from autocolor.screens.surface.mixing_palette import Crop, MixingWords, crop_of, mixing_words
 from autocolor.widgets.bars import ComponentBar, LevelBar, level_strip
 from autocolor.widgets.items import (
     BLUE,
@@ -138,7 +138,7 @@ class MixingScreen(Screen):
             *paint_rows(self.session, surface.paint),
             Gap("taking gap"),
             *(self._taking_row(thing) for thing in (PAINT, COLOR)),
-            *(() if self._taking else self.choices.rows(self._palette.swatches, self._chosen.title)),
+            *(() if self._taking else self.choices.rows(self._mixing_words.swatches, self._chosen.title)),
         ]
 
     def _taking_row(self, thing: str) -> Button:
@@ -154,19 +154,19 @@ class MixingScreen(Screen):
         surface = self.session.chosen_surface
         if surface is None or self._taking:
             return []
-        palette = self._palette
+        mixing = self._mixing_words
         at_levels = self.session.studio.display_image.words_at_levels(surface.name)
         blend_bar = LevelBar(
             "blend bar",
             "Above the handle the object color gives way to the light color.",
-            words=palette.shown[at_levels],
+            words=mixing.shown[at_levels],
             level=blend_level(surface.paint.blend, self._levels.levels),
             put=self._put_level,
         )
         return [
-            *self.light.widgets(surface.paint, self._chosen is self.light, palette.hues),
+            *self.light.widgets(surface.paint, self._chosen is self.light, mixing.hues),
             blend_bar.at(BLEND),
-            *self.object.widgets(surface.paint, self._chosen is self.object, palette.hues),
+            *self.object.widgets(surface.paint, self._chosen is self.object, mixing.hues),
             *self.choices.finishes(surface),
         ]
 
@@ -176,10 +176,10 @@ class MixingScreen(Screen):
             return [text("The scene has no surface in use.", LEFT, LIGHT_TOP + TEXT_DOWN, LIGHT_GRAY)]
         if self._taking:
             return [self._picture_item()]
-        palette, blend = self._palette, self._blend_text(surface.paint)
+        mixing, blend = self._mixing_words, self._blend_text(surface.paint)
         return [
-            *self.light.items(palette.light_ramp),
-            *self.object.items(palette.object_ramp),
+            *self.light.items(mixing.light_ramp),
+            *self.object.items(mixing.object_ramp),
             text("blend", LEFT + MARGIN, BLEND_TOP + TEXT_DOWN, LIGHT_GRAY),
             text(blend, RIGHT_END + 1 - CHARACTER * len(blend), BLEND_TOP + TEXT_DOWN),
             self._picture_item(),
@@ -189,7 +189,9 @@ class MixingScreen(Screen):
         surface = self.session.chosen_surface
         if surface is None or self._taking:
             return []
-        return self._palette.loads(surface.paint.light_color, surface.paint.object_color, self.choices.colors)
+        return self._mixing_words.loads(
+            surface.paint.light_color, surface.paint.object_color, self.choices.colors
+        )
 
     def hint(self, element: int, line: int) -> str:
         sample = self.sample(element, line)
@@ -223,9 +225,9 @@ class MixingScreen(Screen):
         return self.session.studio.level_ranges[self.session.surface_name]
 
     @property
-    def _palette(self) -> Palette:
+    def _mixing_words(self) -> MixingWords:
         ranges = tuple(self.session.studio.level_ranges.items())
-        return palette_of(ranges, self.session.surface_name, self.choices.count)
+        return mixing_words(ranges, self.session.surface_name, self.choices.count)
 
     @property
     def _present_crop(self) -> Crop:
@@ -242,7 +244,7 @@ class MixingScreen(Screen):
     def _picture_item(self) -> Item:
         """The picture in the words that stand for its words; the same item until it changes."""
         studio, crop = self.session.studio, self._present_crop
-        stand_ins = None if self._taking else self._palette.dimmed(studio.entries)
+        stand_ins = None if self._taking else self._mixing_words.dimmed(studio.entries)
 
         def draw() -> Item:
             words = crop.of(studio.words)
