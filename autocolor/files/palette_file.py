@@ -25,7 +25,7 @@ from typing import Any, Final
 import numpy as np
 
 from autocolor.arrays import Bytes
-from autocolor.checks import Color, closest, printable, shown
+from autocolor.checks import Color, printable, shown
 from autocolor.errors import InputError, UsageError
 from autocolor.files.formats import Format, format_named, recognized, suffix_rule, suffixes_of
 from autocolor.files.meshes.number_text import Problems
@@ -93,18 +93,10 @@ class Palette(Immutable):
         red, green, blue = self.colors[number].tolist()
         return red, green, blue
 
-    def color_named(self, name: str) -> Color:
-        """The color of this name; of several, the first. Capitals do not matter.
-
-        Raises UsageError, with the closest name, if no color has the name.
-        """
+    def color_named(self, name: str) -> Color | None:
+        """The color of this name, whatever its capitals; of several, the first. None if no color has it."""
         folded = [each.casefold() for each in self.names]
-        if not name or name.casefold() not in folded:
-            names = [each for each in self.names if each]
-            raise UsageError(
-                f"there is no paint {shown(name)}{closest(name, names) or '; see the names of the palette'}"
-            )
-        return self.color(folded.index(name.casefold()))
+        return self.color(folded.index(name.casefold())) if name and name.casefold() in folded else None
 
 
 def is_name(name: object) -> bool:

@@ -15,6 +15,7 @@ import numpy as np
 
 from autocolor.arrays import Bytes, Words
 from autocolor.errors import InputError, UsageError
+from autocolor.files.palette_file import Palette, is_palette, read_palette
 from autocolor.files.paths import SCENE_FILE, file_stem, free_path
 from autocolor.files.rig_file import RIG_SUFFIX, is_rig, read_rig, write_rig
 from autocolor.files.scene_files import MESH, kind_of, stays_within
@@ -43,6 +44,9 @@ from ramtek_emu.errors import escaped
 
 PICTURE: Final = "picture"
 """The name of the screen that a session begins with, and comes back to."""
+
+MIXING: Final = "mixing"
+"""The name of the screen where colors are mixed, and taken from swatches and paints."""
 
 HISTORY: Final = "history"
 """The name of the screen with the steps of the session."""
@@ -128,6 +132,10 @@ class Session:
         """Whether the user sits at this machine; a pointer from elsewhere stays within `root`."""
         self.mesh_up, self.mesh_scale = "z", 1.0
         """The up axis and the scale of mesh files that are opened; other files give their own."""
+        self.paints: Palette | None = None
+        """The paints that the user brought as a palette file, to take colors from."""
+        self.paints_name = ""
+        """The name of that file."""
         self.surface = 0
         """The number of the chosen surface among the surfaces in use; see `surface_name`."""
         self.side_view: tuple[View, str] | None = None
@@ -348,9 +356,21 @@ class Session:
         self.tell("all lights on")
 
     def paint(self, **changes: Unpack[PaintChanges]) -> None:
-        """Change the colors of the chosen surface, if there is one."""
+        """Change the paint of the chosen surface, if there is one.
+
+        A color may be the name of one of `paints`.
+        """
+        for name in ("object_color", "light_color"):
+            if name in changes:
+                changes[name] = self._color_of(changes[name])
         if self.surface_name:
             self.edit(self.scene.with_paint(self.surface_name, **changes))
+
+    def _color_of(self, color: Sequence[int] | str) -> Sequence[int] | str:
+        """The color that a text names among `paints`; every other color itself."""
+        if not isinstance(color, str) or self.paints is None:
+            return color
+        return self.paints.color_named(color.strip()) or color
 
     def take_paint(self, name: str) -> None:
         """Give the chosen surface the paint of another: both colors, the blend and the percentage.
@@ -394,8 +414,13 @@ class Session:
     def open(self, path: Path) -> None:
         """Open a file or a folder as one step to undo: a scene, a mesh, a picture, or a rig of lights.
 
-        Raises InputError or MissingInputError.
+        The colors of a palette file become `paints`, which is no step, and color mixing shows them. Raises
+        InputError or MissingInputError.
         """
+        if is_palette(path):
+            self.bring_paints(read_palette(path), path.name)
+            self.turn_to(MIXING)
+            return
         if path.suffix.lower() == RIG_SUFFIX and path.name != SCENE_FILE and is_rig(path):
             rig = read_rig(path)
             self.edit(self.scene.with_rig(rig))
@@ -409,6 +434,12 @@ class Session:
             self.studio.open(path)
         note_file(path.resolve())
         self.tell("; ".join(part for part in (f"opened {path.name}", self.lying, "undo goes back") if part))
+
+    def bring_paints(self, paints: Palette, name: str) -> None:
+        """Let the user take colors from the paints of a file of this name, in place of those before."""
+        self.paints, self.paints_name = paints, name
+        count = "a paint" if len(paints) == 1 else f"{len(paints):,} paints"
+        self.tell(f"{count} of {short_name(name, LONGEST_NAME)}: take them in color mixing")
 
     def reopen(self) -> None:
         """Read the scene's file again, as one step to undo. Raises UsageError or InputError."""

@@ -21,6 +21,7 @@ import numpy as np
 from autocolor.arrays import Bytes, Words
 from autocolor.checks import Color
 from autocolor.errors import UsageError
+from autocolor.files.palette_file import Palette
 from autocolor.files.state import note_color, recent_colors
 from autocolor.mapping.colors import (
     FULL,
@@ -57,7 +58,17 @@ from autocolor.widgets.items import (
     text,
 )
 from autocolor.widgets.menu import WORK
-from autocolor.widgets.widget import MARGIN, ROW_LINES, TEXT_DOWN, Button, Entry, Gap, Place, Widget
+from autocolor.widgets.widget import (
+    MARGIN,
+    ROW_LINES,
+    TEXT_DOWN,
+    Button,
+    Entry,
+    Gap,
+    Place,
+    Widget,
+    page_choice,
+)
 
 LEFT: Final = 8
 LEFT_END: Final = 172
@@ -138,8 +149,12 @@ class MixingScreen(Screen):
             *paint_rows(self.session, surface.paint),
             Gap("taking gap"),
             *(self._taking_row(thing) for thing in (PAINT, COLOR)),
-            *(() if self._taking else self.choices.rows(self._mixing_words.swatches, self._chosen.title)),
+            *(() if self._taking else self._choice_rows(surface.paint)),
         ]
+
+    def _choice_rows(self, paint: Paint) -> list[Widget]:
+        chosen = self._chosen
+        return self.choices.rows(self._mixing_words.swatches, chosen.title, chosen.color_of(paint))
 
     def _taking_row(self, thing: str) -> Button:
         is_on = self._taking == thing
@@ -328,12 +343,13 @@ class MixingScreen(Screen):
     def _put_level(self, level: int) -> None:
         self.session.paint(blend=blend_from(level, self._levels.levels))
 
-    def _take(self, color: Color | str) -> None:
-        """Give the chosen color of the chosen surface a value."""
+    def _take(self, color: Color | str, name: str = "") -> None:
+        """Give the chosen color of the chosen surface a value, the color of a paint with a name."""
         self._paint(self._chosen, color)
         surface = self.session.chosen_surface
         if surface is not None:
-            self.session.tell(f"{self._chosen.title}: {in_digits(self._chosen.color_of(surface.paint))}")
+            digits = in_digits(self._chosen.color_of(surface.paint))
+            self.session.tell(f"{self._chosen.title}: {f'{name}, ' if name else ''}{digits}")
 
 
 # A section: one of the two colors of the chosen surface, with its ramp and bars.
@@ -505,7 +521,8 @@ def whole(name: str, value: float) -> int:
     return int(value)
 
 
-# The choices: finishes, and in the menu recent colors and swatches.
+# The choices: finishes, and in the menu recent colors and swatches. The paints of a palette file have pages
+# before the swatches, in cells of twice the size if they are few.
 
 CELL_ELEMENTS: Final = 12
 CELL_LINES: Final = 10
@@ -515,45 +532,124 @@ MOST_RECENT: Final = ROWS
 """Recent colors in their row, which is as wide as the swatches."""
 
 
-class PaintChoices:
-    """The finishes of the chosen surface, and colors; `take` is called with a color that is picked."""
+FEW_PAINTS: Final = ROWS * COLUMNS // 4
+"""The paints that fit in cells of twice the size."""
 
-    def __init__(self, session: Session, take: Callable[[Color], object]) -> None:
+
+class ColorPage(NamedTuple):
+    """A page of colors to pick: what it shows, the colors (n, 3) uint8, row by row, and their names."""
+
+    title: str
+    colors: Bytes
+    names: Sequence[str] = ()
+    is_large: bool = False
+
+
+def swatch_page() -> ColorPage:
+    """The page of the swatches, with the hues downward."""
+    hues_down = swatches().reshape(ROWS, COLUMNS, 3).swapaxes(0, 1).reshape(-1, 3)
+    return ColorPage("the swatches", hues_down)
+
+
+def pages_of_paints(paints: Palette | None, file: str) -> list[ColorPage]:
+    """The pages of the paints of a file, if there are paints, and last the page of the swatches."""
+    pages, size = [], ROWS * COLUMNS
+    count = 0 if paints is None else len(paints)
+    for first in range(0, count, size):
+        assert paints is not None
+        end = min(first + size, count)
+        title = f"paints {first + 1:,} to {end:,} of {file}" if count > size else f"the paints of {file}"
+        colors, names = paints.colors[first:end], paints.names[first:end]
+        pages.append(ColorPage(title, colors, names, count <= FEW_PAINTS))
+    return [*pages, swatch_page()]
+
+
+class PaintChoices:
+    """The finishes of the chosen surface, and colors.
+
+    `take` is called with a color that is picked, and its name, which may be empty.
+    """
+
+    def __init__(self, session: Session, take: Callable[[Color, str], object]) -> None:
         self.session = session
         self._take = take
         self._recent: tuple[Color, ...] = ()
-        self._colors = np.empty((0, 3), np.uint8)
+        self._pages: Cached[list[ColorPage]] = Cached()
+        self._turned: tuple[Palette | None, int] = None, 0
+        """The page that was turned to, of the pages of these paints."""
+        self._taken = 0
+        """The number of the color that was taken last, on its page."""
         self._before: dict[str, Paint] = {}
         """The paints of all surfaces when the mixing began."""
 
     @property
+    def pages(self) -> list[ColorPage]:
+        """The pages of colors."""
+        paints, file = self.session.paints, self.session.paints_name
+        return self._pages.of(lambda: pages_of_paints(paints, file), paints)
+
+    @property
+    def page_number(self) -> int:
+        """The number of the page that is shown, from 0; new paints begin with their first page."""
+        paints, number = self._turned
+        return number if paints is self.session.paints else 0
+
+    @property
+    def page(self) -> ColorPage:
+        """The page that is shown."""
+        return self.pages[self.page_number]
+
+    @property
     def count(self) -> int:
         """The number of colors that can be picked."""
-        return len(self._colors)
+        return len(self.page.colors) + len(self._recent)
 
     @property
     def colors(self) -> Bytes:
-        """The colors that can be picked, (n, 3) uint8: the swatches, and then the recent colors."""
-        return self._colors
+        """The colors that can be picked, (n, 3) uint8: those of the page, and then the recent colors."""
+        return np.concatenate([self.page.colors, np.array(self._recent, np.uint8).reshape(-1, 3)])
 
-    def rows(self, words: Words, title: str) -> list[Widget]:
-        """The rows of the colors. `words` show them; `title` names the color that they are for."""
-        count = len(swatches())
+    def rows(self, words: Words, title: str, present: Color) -> list[Widget]:
+        """The rows of the colors, which `words` show.
+
+        `title` names the color that they are for, and `present` is that color.
+        """
+        page, pages = self.page, len(self.pages)
+        count, size = len(page.colors), 2 if page.is_large else 1
         recent = SwatchField(
             "recent colors",
             f"The colors that were mixed last; click one for the {title}.",
             words=words[count:],
             across=MOST_RECENT,
-            take=lambda number: self._take_number(count + number),
+            take=self._take_recent,
+        )
+        turning = page_choice(
+            f"Shown: {page.title}. A click turns to the next page, at the left end to the page before.",
+            self.page_number,
+            pages,
+            self._turn,
         )
         paints = PaintField(
             "paints",
             f"Paints for the {title}: click one, or drag over them.",
             words=words[:count],
-            across=ROWS,
+            across=ROWS // size,
+            width=size * CELL_ELEMENTS,
+            height=size * CELL_LINES,
             take=self._take_number,
+            step=partial(self._step, present),
+            hint_of=partial(self._hint_of, title) if page.names else None,
         )
-        return [Gap("swatches gap"), *((recent, Gap("recent gap")) if self._recent else ()), paints]
+        gap = (recent, Gap("recent gap")) if self._recent else ()
+        return [Gap("swatches gap"), *gap, *([turning] if pages > 1 else []), paints]
+
+    def _hint_of(self, title: str, number: int) -> str:
+        name, (red, green, blue) = self.page.names[number], self.page.colors[number].tolist()
+        return f"{f'{name}, ' if name else ''}{in_digits((red, green, blue))}: click it for the {title}"
+
+    def _turn(self, number: int) -> None:
+        self._turned, self._taken = (self.session.paints, number), 0
+        self.session.tell(f"shown: {self.page.title}")
 
     def finishes(self, surface: Surface) -> list[Widget]:
         """The row of finishes."""
@@ -573,8 +669,6 @@ class PaintChoices:
         """Mixing begins: note the paints, and look up the recent colors."""
         self._before = {each.name: each.paint for each in self.session.scene.surfaces}
         self._recent = recent_colors()[:MOST_RECENT]
-        hues_down = swatches().reshape(ROWS, COLUMNS, 3).swapaxes(0, 1).reshape(-1, 3)
-        self._colors = np.concatenate([hues_down, np.array(self._recent, np.uint8).reshape(-1, 3)])
 
     def end(self) -> None:
         """Mixing ends: note the new colors of the surfaces as recent colors."""
@@ -585,9 +679,26 @@ class PaintChoices:
             if before.object_color != now.object_color:
                 note_color(now.object_color)
 
+    def _take_recent(self, number: int) -> None:
+        self._take(self._recent[number], "")
+
     def _take_number(self, number: int) -> None:
-        red, green, blue = self.colors[number].tolist()
-        self._take((red, green, blue))
+        page, self._taken = self.page, number
+        red, green, blue = page.colors[number].tolist()
+        self._take((red, green, blue), page.names[number] if page.names else "")
+
+    def _step(self, present: Color, step: int) -> None:
+        """Take the color that is a step further on the page than the present one.
+
+        Several paints may have one color: the paint that was taken last is the present one if its color is.
+        """
+        is_present = (self.page.colors == present).all(axis=1)
+        if is_present.any():
+            places = np.flatnonzero(is_present).tolist()
+            number = self._taken if self._taken in places else places[0]
+            self._take_number((number + step) % len(is_present))
+        else:
+            self._take_number(0 if step > 0 else len(is_present) - 1)
 
     def _finish(self, surface: Surface, name: str) -> None:
         self.session.change_surface(surface.name, **finished(surface, name))
@@ -613,7 +724,15 @@ class SwatchField(Widget):
     height: int = CELL_LINES
     """Elements and lines of a cell."""
     take: Callable[[int], object] = lambda _: None
+    step: Callable[[int], object] = lambda _: None
+    """Called with 1 or -1, to take the next cell or the one before, by a key or the wheel."""
+    hint_of: Callable[[int], str] | None = None
+    """Gives the text of the message line for a cell; without it, the help is for all cells."""
     row_lines: ClassVar[int] = CELL_LINES
+
+    def hint_at(self, place: Place) -> str:
+        number = self.cell_at(place)
+        return self.hint if number is None or self.hint_of is None else self.hint_of(number)
 
     @property
     def _left(self) -> int:
@@ -641,10 +760,13 @@ class SwatchField(Widget):
     def drag(self, start: Place, last: Place, place: Place) -> object:
         return self.pick(place)
 
+    def nudge(self, steps: float) -> object:
+        return self.step(1 if steps > 0 else -1)
+
 
 @dataclass(frozen=True)
 class PaintField(SwatchField):
-    """All swatches as a row of the menu."""
+    """A page of colors as a row of the menu."""
 
     row_lines: ClassVar[int] = COLUMNS * CELL_LINES
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from autocolor import Mesh, Paint, scene_of
+from autocolor import Mesh, Paint, Palette, scene_of, write_palette
 from autocolor.checks import Color
 from autocolor.errors import UsageError
 from autocolor.files.state import recent_colors
@@ -29,7 +29,7 @@ from autocolor.screens.viewer import Viewer
 from autocolor.widgets.bars import ComponentBar
 from autocolor.widgets.items import BLUE, GREEN, LIGHT_GRAY, NIGHT, RED, WHITE, Area
 from autocolor.widgets.menu import WORK
-from autocolor.widgets.widget import Place, Widget
+from autocolor.widgets.widget import Choice, Place, Widget
 from ramtek_emu import Ramtek9300
 from tests.autocolor.screens.mixing import STRIP, ZERO, bar_is_right, line_of, mixing, ramps_are_right
 from tests.autocolor.screens.painting_hand import PAINTS, PaintingHand, boxes_scene
@@ -698,6 +698,159 @@ def test_without_a_clipboard_the_message_has_the_color(hand: PaintingHand) -> No
     hand.viewer.on_key("v", control=True)
     assert hand.viewer.message == "this display has no clipboard; type the color"
     assert hand.viewer.studio.scene is scene
+
+
+FILE = "paints.gpl"
+FEW = Palette(["#a52019", "#f8f32b", "#a52019", "#0e294b"], ["Signal red", "Teal", "Old red", ""])
+MANY = Palette([(number // 256, number % 256, 9) for number in range(430)], map(str, range(430)))
+
+
+def bring(hand: PaintingHand, paints: Palette) -> None:
+    """Open a palette file as it is opened when it is dropped on the window."""
+    folder = hand.viewer.session.folder
+    write_palette(folder / FILE, paints, overwrite=True)
+    hand.viewer.on_drop(folder / FILE)
+
+
+def paint_place(hand: PaintingHand, number: int) -> Place:
+    """The middle of the cell of a paint in the menu."""
+    field = hand.widget("paints")
+    assert isinstance(field, SwatchField)
+    down, across = divmod(number, field.across)
+    left = field.area.left + (field.area.width - field.across * field.width) // 2
+    middle = left + field.width * across + field.width // 2 - 1
+    return Place(middle, field.area.top + field.height * down + field.height // 2 - 1)
+
+
+def color_of_paint(hand: PaintingHand, number: int) -> Color:
+    """The color that the display shows for a paint."""
+    red, green, blue = hand.display.field()[paint_place(hand, number)[::-1]].tolist()
+    return red, green, blue
+
+
+@pytest.mark.parametrize("paints", [FEW, MANY])
+def test_the_paints_of_a_file_come_before_the_swatches(hand: PaintingHand, paints: Palette) -> None:
+    scene = hand.viewer.studio.scene
+    hand.leave()
+    bring(hand, paints)
+    assert hand.viewer.page == "mixing"
+    assert hand.viewer.message == f"{len(paints)} paints of paints.gpl: take them in color mixing"
+    seen = []
+    while (page := hand.widget("page")) and isinstance(page, Choice):
+        if page.present == f"{len(page.names)} of {len(page.names)}":
+            break
+        field = hand.widget("paints")
+        assert isinstance(field, SwatchField)
+        seen += [color_of_paint(hand, number) for number in range(len(field.words))]
+        hand.pick("page")
+    assert seen == [paints.color(number) for number in range(len(paints))]
+    # The last page has the swatches.
+    assert color_of_paint(hand, 0) == tuple(swatches()[0])
+    assert hand.viewer.studio.scene is scene
+
+
+def test_few_paints_have_large_cells(hand: PaintingHand) -> None:
+    bring(hand, FEW)
+    assert (hand.widget("paints").width, MANY.colors.shape) == (2 * CELL_ELEMENTS, (430, 3))  # type: ignore[attr-defined]
+    bring(hand, MANY)
+    assert hand.widget("paints").width == CELL_ELEMENTS  # type: ignore[attr-defined]
+
+
+def test_the_name_of_a_paint_is_shown_under_the_pointer_and_when_it_is_taken(hand: PaintingHand) -> None:
+    bring(hand, FEW)
+    hand.viewer.tell("")
+    shown = []
+    for number in range(4):
+        hand.move(*paint_place(hand, number))
+        shown.append(hand.viewer.board.messages[0].text)
+    assert shown == [
+        "Signal red, #a52019: click it for the object",
+        "Teal, #f8f32b: click it for the object",
+        "Old red, #a52019: click it for the object",
+        "#0e294b: click it for the object",
+    ]
+    hand.click(*paint_place(hand, 2))
+    assert hand.viewer.message == "object: Old red, #a52019"
+    assert hand.paint.object_color == (165, 32, 25)
+    hand.pick("light source heading")
+    hand.click(*paint_place(hand, 3))
+    assert hand.viewer.message == "light source: #0e294b"
+    assert hand.paint.light_color == (14, 41, 75)
+    assert ramps_are_right(hand)
+    assert bar_is_right(hand)
+
+
+def test_keys_take_paint_after_paint_although_some_have_one_color(hand: PaintingHand) -> None:
+    bring(hand, FEW)
+    hand.viewer.on_key("tab")
+    while hand.viewer.board.lit != "paints":
+        hand.viewer.on_key("down")
+    taken = []
+    for key in ("right", "right", "right", "right", "right", "left", "left"):
+        hand.viewer.on_key(key)
+        taken.append(hand.viewer.message.removeprefix("object: "))
+    red, teal, old, blue = "Signal red, #a52019", "Teal, #f8f32b", "Old red, #a52019", "#0e294b"
+    assert taken == [red, teal, old, blue, red, blue, old]
+    # The last paint is before a color that no paint has.
+    while hand.viewer.studio.history.to_undo:
+        hand.viewer.on_key("z", control=True)
+    hand.viewer.on_key("left")
+    assert hand.viewer.message == "object: #0e294b"
+
+
+def test_new_paints_begin_with_their_first_page(hand: PaintingHand) -> None:
+    bring(hand, MANY)
+    hand.pick("page")
+    hand.click(*paint_place(hand, 199))
+    assert hand.viewer.message == "object: 399, #018f09"
+    bring(hand, FEW)
+    assert color_of_paint(hand, 0) == (165, 32, 25)
+    hand.viewer.on_pointer(*paint_place(hand, 0), "wheel up")
+    assert hand.viewer.message == "object: Signal red, #a52019"
+
+
+def test_a_name_that_is_typed_or_pasted_is_a_paint_before_it_is_a_color_of_css(hand: PaintingHand) -> None:
+    board = hand.viewer.board
+    teal = (0, 128, 128)
+    for paints, name, color in (
+        (None, "teal", teal),
+        (FEW, "TEAL", (248, 243, 43)),
+        (FEW, "navy", (0, 0, 128)),
+    ):
+        if paints is not None:
+            bring(hand, paints)
+        hand.pick("object")
+        board.typing.insert(name)
+        hand.viewer.on_key("return")
+        assert hand.paint.object_color == color
+    board.paste("old red")
+    assert hand.paint.object_color == (165, 32, 25)
+
+
+def test_the_key_of_the_next_color_goes_through_the_paints(hand: PaintingHand) -> None:
+    own = hand.paint.object_color
+    bring(hand, FEW)
+    messages = []
+    for _ in range(4):
+        hand.viewer.on_key("c", typed="c")
+        messages.append(hand.viewer.message)
+    assert messages == [
+        "object color Old red, #a52019",
+        "object color Teal, #f8f32b",
+        "object color #0e294b",
+        f"object color {in_digits(own)}",
+    ]
+
+
+def test_paints_that_cannot_be_read_leave_those_before(hand: PaintingHand) -> None:
+    bring(hand, FEW)
+    path = hand.viewer.session.folder / "bad.gpl"
+    path.write_text("GIMP Palette\n1 2 3\n1 2\n")
+    hand.viewer.on_drop(path)
+    assert hand.viewer.message == (
+        "bad.gpl, line 3: a color must be red, green, blue and perhaps a name, not '1 2'; correct it"
+    )
+    assert hand.viewer.session.paints == FEW
 
 
 AREA = Area(176, 312, 255, 367)
