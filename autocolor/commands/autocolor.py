@@ -26,6 +26,7 @@ class AutocolorGroup(CommandGroup):
     table: ClassVar[dict[str, str]] = {
         "render": "render a scene to a PNG or picture file, without a window",
         "recolor": "change the colors of a saved picture, without rendering it again",
+        "palette": "write the colors of a surface's levels to a palette file",
         "view": "show a scene in an interactive window",
         "info": "print the counts, sizes and ranges of a scene",
         "explain": "explain a pixel of a scene, from the nodes to the color",

@@ -170,14 +170,20 @@ def write_palette(
     and `overwrite` is false, or if it cannot be created; WriteError if writing fails.
     """
     path = Path(path)
-    palette_format = format_named(path, PALETTE_FORMATS)
-    if palette_format is None:
-        raise UsageError(f"{path.name}: a palette must {suffix_rule(path, SUFFIXES)}; rename it")
+    palette_format = check_palette_path(path)
     if not isinstance(palette, Palette):
         palette = Palette(palette, names or ())
     elif names is not None:
         palette = Palette(palette.colors, names)
     write_atomically(path, palette_format.written(palette, path), overwrite=overwrite)
+
+
+def check_palette_path(path: Path) -> PaletteFormat:
+    """The format in which a palette is written to a path. Raises UsageError for an unknown ending."""
+    palette_format = format_named(path, PALETTE_FORMATS)
+    if palette_format is None:
+        raise UsageError(f"{path.name}: a palette must {suffix_rule(path, SUFFIXES)}; rename it")
+    return palette_format
 
 
 def is_palette(path: Path) -> bool:
