@@ -144,12 +144,13 @@ class Kind:
 class Row(Immutable):
     """A row of a table: a frozen dataclass whose fields are columns, checked at construction.
 
-    Messages name a row by its `noun` and its name, if it has a name. At most one of the fields in
-    `alternatives` has a value: a change that sets one of them resets the others.
+    Messages name a row by its `noun` and its name, if it has a name. At most one of the groups of fields in
+    `alternatives` is in use: a change that sets a field of one group resets the fields of the other groups.
+    The rules of the class refuse a row that uses two groups.
     """
 
     noun: ClassVar[str] = ""
-    alternatives: ClassVar[tuple[str, ...]] = ()
+    alternatives: ClassVar[tuple[tuple[str, ...], ...]] = ()
 
     def __post_init__(self) -> None:
         check(self, fields_of(type(self)))
@@ -297,9 +298,24 @@ def _values_by_field(
             inside.setdefault(name, {}).update(value)
         else:
             values[name] = value
-    if row.alternatives and any(values.get(name) is not None for name in row.alternatives):
-        values = {**dict.fromkeys(row.alternatives), **values}
+    used = [group for group in row.alternatives if any(values.get(name) is not None for name in group)]
+    if used:
+        unused = [name for group in row.alternatives if group not in used for name in group]
+        resets = {name: fields[name].default for name in unused}
+        values = {**{name: default() for name, default in resets.items() if default}, **values}
     return values, inside
+
+
+def reset_fields(row: Row) -> tuple[str, ...]:
+    """The fields that are reset because the row uses another group of its `alternatives`.
+
+    A group is in use if an optional field of it has a value.
+    """
+    fields, values = fields_of(type(row)), vars(row)
+    for used in row.alternatives:
+        if any(fields[name].is_optional and values[name] is not None for name in used):
+            return tuple(name for group in row.alternatives if group is not used for name in group)
+    return ()
 
 
 def from_plain(cls: type[SomeRow], table: object) -> SomeRow:
@@ -335,12 +351,12 @@ def from_plain(cls: type[SomeRow], table: object) -> SomeRow:
 
 
 def to_plain(row: Row) -> dict[str, object]:
-    """The row as keys and plain values, which TOML and JSON can hold; None values are omitted."""
-    values = vars(row)
+    """The row as keys and plain values, which TOML and JSON can hold; None and reset values are omitted."""
+    values, resets = vars(row), reset_fields(row)
     return {
         key: value
         for name, field in fields_of(type(row)).items()
-        if values[name] is not None
+        if values[name] is not None and name not in resets
         for key, value in field.column.kind.to_plain(name, values[name]).items()
         if value is not None
     }
@@ -351,7 +367,7 @@ def difference(one: Row, other: Row) -> dict[str, object]:
 
     None removes a value. An infinite value is written, too. Meshes are left out.
     """
-    ones, others = vars(one), vars(other)
+    ones, others, resets = vars(one), vars(other), reset_fields(other)
     changes: dict[str, object] = {}
     for name, field in fields_of(type(one)).items():
         before, after, kind = ones[name], others[name], field.column.kind
@@ -359,6 +375,8 @@ def difference(one: Row, other: Row) -> dict[str, object]:
             continue
         if after is None:
             changes[name] = None
+        elif name in resets:
+            continue
         elif before is None:
             changes.update(kind.to_plain(name, after))
         else:

@@ -10,7 +10,7 @@ import math
 import re
 from collections.abc import Mapping, Set
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import islice, pairwise
 from numbers import Integral, Real
 from typing import Any, Final
 
@@ -326,6 +326,38 @@ class ColorKind(Kind):
 
     def to_plain(self, name: str, value: Any) -> Mapping[str, object]:
         return {name: in_digits(value)}
+
+
+@dataclass(frozen=True)
+class ColorsKind(Kind):
+    """A list of 2 to `most` colors."""
+
+    most: int
+
+    def rule(self) -> str:
+        return f"must be a list of 2 to {self.most} colors"
+
+    def accepts(self) -> str:
+        return "Sequence[str | Sequence[int]]"
+
+    def accepted(self, value: Any) -> tuple[Color, ...]:
+        require(not isinstance(value, UNORDERED))
+        colors = tuple(ColorKind().accepted(color) for color in islice(value, self.most + 1))
+        require(2 <= len(colors) <= self.most)
+        return colors
+
+    def advice(self, value: object) -> str:
+        return '; write them as in ["#200", "#f60", "#fff"]'
+
+    def validated(self, value: object, path: Path, problems: list[Problem]) -> object:
+        if isinstance(value, (list, tuple)) and 2 <= len(value) <= self.most:
+            # Name the colors that are invalid.
+            colors = [ColorKind().validated(color, (*path, at), problems) for at, color in enumerate(value)]
+            return REFUSED if any(color is REFUSED for color in colors) else tuple(colors)
+        return super().validated(value, path, problems)
+
+    def to_plain(self, name: str, value: Any) -> Mapping[str, object]:
+        return {name: [in_digits(color) for color in value]}
 
 
 def in_digits(color: Color) -> str:

@@ -21,6 +21,7 @@ from autocolor.scene.kinds import (
     UNORDERED,
     Boolean,
     ColorKind,
+    ColorsKind,
     Number,
     Text,
     VectorKind,
@@ -95,10 +96,7 @@ class ScaleKind(Kind):
         if isinstance(value, str):
             require(value in COLOR_SCALES)
             return value
-        require(not isinstance(value, UNORDERED))
-        colors = tuple(ColorKind().accepted(color) for color in value)
-        require(2 <= len(colors) <= MOST_COLORS)
-        return colors
+        return ColorsKind(MOST_COLORS).accepted(value)
 
     def advice(self, value: object) -> str:
         if not isinstance(value, str):

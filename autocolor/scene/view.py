@@ -33,7 +33,7 @@ class View(Row):
     """An eye position, and a view direction or a target. The world's z axis points up."""
 
     noun: ClassVar[str] = "view"
-    alternatives: ClassVar[tuple[str, ...]] = ("direction", "target")
+    alternatives: ClassVar[tuple[tuple[str, ...], ...]] = (("direction",), ("target",))
 
     eye: Annotated[Vector, Column(VectorKind(), Tier.FRAME, "The position of the eye.", WORLD_UNITS)]
     direction: Annotated[

@@ -213,9 +213,11 @@ reflectances = st.builds(Reflectance, numbers(0, 2), numbers(0, 2), exponents)
 """Phong's, as in the paper."""
 
 reflectances_of_any_model = st.builds(Reflectance, numbers(0, 2), numbers(0, 2), models)
-paints = st.builds(
+blended_paints = st.builds(
     Paint, colors, colors, st.sampled_from([0.0, 0.25, 0.6, 1.0]) | numbers(0, 1), numbers(0, 100)
 )
+ramps = st.lists(colors, min_size=2, max_size=9).map(tuple)
+paints = blended_paints | st.builds(Paint, ramp=ramps)
 
 
 def surfaces(name: str) -> st.SearchStrategy[Surface]:

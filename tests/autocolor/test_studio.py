@@ -31,7 +31,7 @@ from autocolor.mapping.ranges import SCREENS
 from ramtek_emu import Ramtek9300
 from tests.autocolor.meshes import cube
 from tests.autocolor.sessions import SMALL, car, fresh, held, opened
-from tests.autocolor.strategies import colors, limits, numbers, scales, scenes, vectors
+from tests.autocolor.strategies import colors, limits, numbers, ramps, scales, scenes, vectors
 
 Edit = tuple[str, str, dict[str, Any]]
 
@@ -49,7 +49,8 @@ recolorings = st.tuples(
             "blend": numbers(0, 1),
             "light_percentage": numbers(0, 100),
         },
-    ),
+    )
+    | st.fixed_dictionaries({"ramp": st.none() | ramps}),
 )
 surface_edits = st.tuples(
     st.just("surface"),

@@ -29,7 +29,7 @@ from autocolor.scene.scalar import COMPUTED
 from autocolor.visibility.visible_points import Sight
 from tests.autocolor.meshes import sphere
 from tests.autocolor.sessions import car, opened
-from tests.autocolor.strategies import numbers, paints, scales
+from tests.autocolor.strategies import blended_paints, numbers, scales
 
 LINES, ELEMENTS = 24, 32
 
@@ -105,7 +105,7 @@ def test_equalized_levels_are_those_of_the_picture(given: list[float], held: boo
         assert abs(found - float(curve(np.array([each]))[0])) <= same
 
 
-@given(paints, st.integers(2, 300))
+@given(blended_paints, st.integers(2, 300))
 def test_the_light_color_grows_in_equal_steps_to_its_percentage(paint: Paint, levels: int) -> None:
     shares = np.array([light_share(paint, level, levels) for level in range(levels)])
     steps = np.diff(shares[shares > 0])

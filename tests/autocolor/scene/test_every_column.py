@@ -110,6 +110,7 @@ EDITS: dict[str, dict[str, Values]] = {
         "light_color": {"light_color": "#fff0e0"},
         "blend": {"blend": 0.25},
         "light_percentage": {"light_percentage": 40},
+        "ramp": {"ramp": ["#220000", "#ff6600", "#ffffff"]},
         "two_sided": {"two_sided": False},
         "levels": {"levels": 99},
     },
