@@ -22,6 +22,7 @@ Examples:
   autocolor render scenes/coupe --save coupe.npz
   autocolor recolor coupe.npz body --object "#1f3f8f" -o blue.png
   autocolor recolor coupe.npz body --object navy --source "#ffe9c0" --blend 0 -o metallic.png
+  autocolor recolor coupe.npz body --palette body.gpl
   autocolor recolor bracket.npz --set scalar.scale=turbo --set scalar.limits=[0,200] -o stress.png
 """
 
@@ -55,6 +56,12 @@ Examples:
     metavar="PERCENT",
     help="Share of the light color at the highest level, 0 to 100.",
 )
+@click.option(
+    "--palette",
+    type=click.Path(),
+    metavar="FILE",
+    help="Take the colors of a .gpl, .csv or .act file as the ramp, such as a file of `autocolor palette`.",
+)
 @set_option
 @click.option(
     "-o",
@@ -76,6 +83,7 @@ def recolor(
     light_color: str | None,
     blend: float | None,
     percentage: float | None,
+    palette: str | None,
     settings: tuple[str, ...],
     output: str | None,
     save: str | None,
@@ -95,7 +103,7 @@ def recolor(
         "light_percentage": percentage,
     }
     given = {name: value for name, value in changes.items() if value is not None}
-    if surface is None and (given or not settings):
+    if surface is None and (given or palette is not None or not settings):
         raise UsageError(
             "recolor must have a SURFACE, or --set KEY=VALUE without colors; write it as in recolor PICTURE"
             " body --object navy"
@@ -105,6 +113,12 @@ def recolor(
 
         output = f"{Path(picture).stem}-{file_stem(surface or 'recolored')}.png"
     refuse_outputs(output, save, force)
+    if palette is not None:
+        if given:
+            raise UsageError("--palette gives all colors of a surface; leave the other options of colors out")
+        from autocolor.files.palette_file import read_palette
+
+        given["ramp"] = read_palette(palette).colors.tolist()
 
     from autocolor.files.picture_file import read_picture, write_picture
     from autocolor.logs import logger_of, timed
