@@ -343,7 +343,7 @@ def picture_samples() -> Iterator[bytes]:
     """Picture files of a small picture, without a scalar and with it."""
     for scene in (small_scene(), small_scene().with_scalar(name="stress")):
         picture = render(scene, 6, 8)
-        yield written("small.npz", partial(write_picture, picture=picture, scene=scene))
+        yield written("small.npz", partial(write_picture, scene=scene, picture=picture))
 
 
 def fault_of_picture(_: bytes) -> str:

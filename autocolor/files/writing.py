@@ -35,14 +35,17 @@ def no_guard(_: Path) -> Callable[[], None]:
     return lambda: None
 
 
-def write_atomically(path: str | os.PathLike[str], data: bytes, *, overwrite: bool) -> None:
+def write_atomically(
+    path: str | os.PathLike[str], data: bytes, *, overwrite: bool, sync: bool = True
+) -> None:
     """Write the bytes to a temporary file beside the path, sync it, and rename it to the path.
 
-    Raises OutputError if the path exists and `overwrite` is false, or if no file can be created there;
-    WriteError if writing fails. In both cases the old file, if any, is intact.
+    Without `sync`, a power failure may leave an empty file. Raises OutputError if the path exists and
+    `overwrite` is false, or if no file can be created there; WriteError if writing fails. In both cases the
+    old file, if any, is intact.
     """
     with _refusals_of_this_package():
-        writing.write_atomically(path, data, overwrite=overwrite)
+        writing.write_atomically(path, data, overwrite=overwrite, sync=sync)
 
 
 def write_together(

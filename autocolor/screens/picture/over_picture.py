@@ -51,7 +51,7 @@ class OverPicture(Screen):
 
     def items(self) -> Sequence[Item]:
         """The legend of a scalar."""
-        image = self.session.comparing.image or self.session.studio.image
+        image = self.session.comparing.image or self.session.studio.display_image
         is_under_menu = self.is_under_menu
 
         def draw() -> Sequence[Item]:
@@ -147,11 +147,11 @@ class OverPicture(Screen):
         seen = studio.seen_at(line, element)
         first, levels = studio.level_ranges[name]
         part = "" if seen is None else seen.part
-        bands, scalar = studio.image.bands.get(name), studio.scene.scalar
+        bands, scalar = studio.display_image.bands.get(name), studio.scene.scalar
         if bands is None or scalar is None:
-            what = studio.image.meaning
+            what = studio.display_image.meaning
             return Pointed(name, part, f"{what} {word - first} of {levels - 1}")
-        values, block = studio.image.picture.scalar, studio.image.block
+        values, block = studio.display_image.picture.scalar, studio.display_image.block
         value = float("nan") if values is None else float(values[line // block, element // block])
         shown = "missing" if math.isnan(value) else f"{value:.5g}"
         return Pointed(name, part, f"{scalar.name} {shown}, shade {(word - first) % bands.shades + 1}")

@@ -170,7 +170,7 @@ class MixingScreen(Screen):
         if surface is None or self._taking:
             return []
         mixing = self._mixing_words
-        at_levels = self.session.studio.image.words_at_levels(surface.name)
+        at_levels = self.session.studio.display_image.words_at_levels(surface.name)
         blend_bar = LevelBar(
             "blend bar",
             "Above the handle the object color gives way to the light color.",
@@ -224,7 +224,8 @@ class MixingScreen(Screen):
         if self._taking:
             return self._prompt(PAINT)
         if is_chosen:
-            return f"{name}, {self.session.studio.image.meaning} {sample.level} of {self._levels.levels - 1}"
+            meaning = self.session.studio.display_image.meaning
+            return f"{name}, {meaning} {sample.level} of {self._levels.levels - 1}"
         return f"{name}: click to mix its colors; P: take its paint" if name else self.help
 
     def _prompt(self, thing: str) -> str:

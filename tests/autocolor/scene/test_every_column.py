@@ -275,7 +275,7 @@ def by_table_store(scene: Scene, folder: Path) -> Scene:
 
 
 def by_picture_file(scene: Scene, folder: Path) -> Scene:
-    write_picture(folder / "scene.npz", render(scene, 12, 16), scene)
+    write_picture(folder / "scene.npz", scene, render(scene, 12, 16))
     return read_picture(folder / "scene.npz").scene
 
 
