@@ -41,7 +41,7 @@ LONGEST_NAME: Final = 100
 """Limit: letters of a name, which fit in two lines of a message."""
 
 LARGEST: Final = 1 << 20
-"""Limit: the bytes of a palette file. MOST_COLORS with names of ordinary length take a quarter of it."""
+"""Limit: the bytes of a palette file. MOST_COLORS with names of LONGEST_NAME letters take half of it."""
 
 NAME_RULE: Final = f"must be at most {LONGEST_NAME} printable characters, without spaces around them"
 COUNT_RULE: Final = f"a palette must have 1 to {MOST_COLORS:,} colors"
