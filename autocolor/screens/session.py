@@ -436,7 +436,7 @@ class Session:
         self.tell("; ".join(part for part in (f"opened {path.name}", self.lying, "undo goes back") if part))
 
     def bring_paints(self, paints: Palette, name: str) -> None:
-        """Let the user take colors from the paints of a file of this name, in place of those before."""
+        """Let the user take colors from the paints of a file of this name; they replace earlier paints."""
         self.paints, self.paints_name = paints, name
         count = "a paint" if len(paints) == 1 else f"{len(paints):,} paints"
         self.tell(f"{count} of {short_name(name, LONGEST_NAME)}: take them in color mixing")

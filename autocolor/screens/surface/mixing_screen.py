@@ -538,7 +538,7 @@ FEW_PAINTS: Final = ROWS * COLUMNS // 4
 
 
 class ColorPage(NamedTuple):
-    """A page of colors to pick: what it shows, the colors (n, 3) uint8, row by row, and their names."""
+    """A page of colors to pick: its title, the colors (n, 3) uint8, row by row, and their names."""
 
     title: str
     colors: Bytes
@@ -607,13 +607,13 @@ class PaintChoices:
 
     @property
     def colors(self) -> Bytes:
-        """The colors that can be picked, (n, 3) uint8: those of the page, and then the recent colors."""
+        """The colors that can be picked, (n, 3) uint8: the page's colors, and then the recent colors."""
         return np.concatenate([self.page.colors, np.array(self._recent, np.uint8).reshape(-1, 3)])
 
     def rows(self, words: Words, title: str, present: Color) -> list[Widget]:
-        """The rows of the colors, which `words` show.
+        """The rows of the colors; `words` show the colors.
 
-        `title` names the color that they are for, and `present` is that color.
+        `title` names the color of the surface to choose, and `present` is its present value.
         """
         page, pages = self.page, len(self.pages)
         count, size = len(page.colors), 2 if page.is_large else 1
@@ -691,7 +691,7 @@ class PaintChoices:
     def _step(self, present: Color, step: int) -> None:
         """Take the color that is a step further on the page than the present one.
 
-        Several paints may have one color: the paint that was taken last is the present one if its color is.
+        If several paints have the present color, the paint that was taken last counts as the present paint.
         """
         is_present = (self.page.colors == present).all(axis=1)
         if is_present.any():
