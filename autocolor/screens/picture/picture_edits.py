@@ -13,6 +13,7 @@ from autocolor.checks import Vector
 from autocolor.errors import UsageError
 from autocolor.mapping.intensity import is_held
 from autocolor.scene.defaults import OBJECT_COLORS, default_view, framed, object_bounds, stage_top
+from autocolor.scene.kinds import in_digits
 from autocolor.scene.scene import Scene
 from autocolor.scene.view import View
 from autocolor.screens.screen import Cached
@@ -374,16 +375,13 @@ class PictureEdits:
         if self.session.surface_name:
             blend = self.session.scene.surface(self.session.surface_name).paint.blend
             blend = min(1.0, max(0.0, round(blend + step, 6)))
-            self.session.paint(blend=blend)
-            self.session.tell(f"blend {blend:.2f}")
+            self.session.paint(lambda paint: f"blend {paint.blend:.2f}", blend=blend)
 
     def repaint(self, step: int) -> None:
         """Give the selected surface another of OBJECT_COLORS or its own, `step` positions further."""
         name = self.session.surface_name
         if not name:
             return
-        red, green, blue = self.session.scene.surface(name).paint.object_color
-        present = f"#{red:02x}{green:02x}{blue:02x}"
+        present = in_digits(self.session.scene.surface(name).paint.color)
         color = color_after(present, self._own_colors.setdefault(name, present), step)
-        self.session.paint(object_color=color)
-        self.session.tell(f"object color {color}")
+        self.session.paint(lambda _: f"object color {color}", object_color=color)
