@@ -12,7 +12,15 @@ import click
 
 from autocolor.commands.demo import PLACES
 from autocolor.commands.options import bringing_paints, paints_option
-from autocolor.commands.scenes import SceneSource, created_again, ended, read, scene_options, set_option
+from autocolor.commands.scenes import (
+    SceneSource,
+    created_again,
+    ended,
+    read,
+    scene_options,
+    set_option,
+    tell_unset,
+)
 from autocolor.errors import UnavailableError, UsageError
 from ramtek_emu.command_line import tell
 
@@ -95,6 +103,7 @@ def show(
         place = place_of(origin)
         report = read(source)
         scene = created_again(report, with_settings(report.scene, settings))
+        tell_unset(report.scene, scene)
         if once:
             show_once(scene, address)
         else:

@@ -13,7 +13,15 @@ from typing import TYPE_CHECKING, Final, TypeVar
 import click
 
 from autocolor.commands.options import bringing_paints, normals_option, paints_option, with_normals
-from autocolor.commands.scenes import SceneSource, created_again, ended, read, scene_options, set_option
+from autocolor.commands.scenes import (
+    SceneSource,
+    created_again,
+    ended,
+    read,
+    scene_options,
+    set_option,
+    tell_unset,
+)
 from autocolor.errors import UsageError
 
 if TYPE_CHECKING:
@@ -117,6 +125,7 @@ def session_of(source: SceneSource, settings: tuple[str, ...], normals: bool) ->
     place = place_of(Source(source.path, source.up, source.surfaces, source.scale))
     report = read(source)
     edited = created_again(report, with_normals(with_settings(report.scene, settings), normals))
+    tell_unset(report.scene, edited)
     note_file(source.path)
     history = History(report.scene, place)
     if edited is not report.scene:

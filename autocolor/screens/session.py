@@ -32,8 +32,9 @@ from autocolor.scene.changes import LightChanges, PaintChanges, SurfaceChanges
 from autocolor.scene.columns import fields_of
 from autocolor.scene.lights import Light
 from autocolor.scene.mesh import Mesh
-from autocolor.scene.scene import AUTO, LEVELS, Scene
-from autocolor.scene.surfaces import Part, Surface
+from autocolor.scene.scene import AUTO, LEVELS, Scene, unset_paints
+from autocolor.scene.surfaces import Paint, Part, Surface
+from autocolor.scene.swatches import finished
 from autocolor.scene.view import View
 from autocolor.sending import shown_colors
 from autocolor.studio import Studio
@@ -147,6 +148,8 @@ class Session:
         self._light = ""
         self._before_solo: Solo | None = None
         """The light that was last switched on alone, and the switches before."""
+        self._blended: dict[str, tuple[Mesh, Paint]] = {}
+        """By the name of a surface that was given a ramp: the mesh then, and its paint before."""
         self._world: tuple[Mesh, tuple[Part, ...], World] | None = None
         self._up: tuple[Mesh, Source, str] | None = None
         """The mesh and the source that were last looked at, and the axis that seems to be up."""
@@ -355,33 +358,60 @@ class Session:
         self.edit(self.scene.with_all_lights_on())
         self.tell("all lights on")
 
-    def paint(self, **changes: Unpack[PaintChanges]) -> None:
-        """Change the paint of the chosen surface, if there is one.
+    def paint(
+        self, message: Callable[[Paint], str] | None = None, /, **changes: Unpack[PaintChanges]
+    ) -> None:
+        """Change the colors of the chosen surface, if there is one, and show a message about its new paint.
 
-        A color may be the name of one of `paints`.
+        If two colors replace a ramp, colors and blend are as before the ramp, if this session gave it, else
+        the color in its middle and its last color, unless they are given.
         """
-        for name in ("object_color", "light_color"):
-            if name in changes:
-                changes[name] = self._color_of(changes[name])
         if self.surface_name:
-            self.edit(self.scene.with_paint(self.surface_name, **changes))
+            paint = self.scene.surface(self.surface_name).paint
+            if paint.ramp is not None and changes.get("ramp") is None:
+                mesh, before = self._blended.get(self.surface_name, (None, paint))
+                if mesh is not self.scene.mesh:
+                    before = Paint(paint.color, paint.ramp[-1])
+                scene = self.scene.with_surface(self.surface_name, paint=before.replace(**changes))
+            else:
+                scene = self.scene.with_paint(self.surface_name, **changes)
+            self._edit_paint(scene, message(scene.surface(self.surface_name).paint) if message else "")
 
-    def _color_of(self, color: Sequence[int] | str) -> Sequence[int] | str:
+    def finish(self, name: str) -> None:
+        """Give the chosen surface a finish. Raises UsageError for an unknown finish."""
+        surface = self.scene.surface(self.surface_name)
+        scene = self.scene.with_surface(surface.name, **finished(surface, name))
+        self._edit_paint(scene, f"{surface.name}: {name}")
+
+    def _edit_paint(self, scene: Scene, message: str) -> None:
+        """Make a scene with other paints the current scene, and tell the colors that the edit unsets."""
+        before = self.scene
+        # A message is about the chosen surface already.
+        chosen = f"{self.surface_name}: " if message else ""
+        messages = [message, *(each.removeprefix(chosen) for each in unset_paints(before, scene))]
+        self.edit(scene)
+        for old, new in zip(before.surfaces, scene.surfaces, strict=True):
+            if old.paint.ramp is None and new.paint.ramp is not None:
+                self._blended[old.name] = before.mesh, old.paint
+        if any(messages):
+            self.tell("; ".join(filter(None, messages)))
+
+    def color_of(self, color: Sequence[int] | str) -> Sequence[int] | str:
         """The color that a text names among `paints`; every other color itself."""
         if not isinstance(color, str) or self.paints is None:
             return color
         return self.paints.color_named(color.strip()) or color
 
     def take_paint(self, name: str) -> None:
-        """Give the chosen surface the paint of another: both colors, the blend and the percentage.
+        """Give the chosen surface the paint of another: both colors, the blend and the percentage, or a ramp.
 
         Raises UsageError if that is the chosen surface.
         """
         chosen = self.surface_name
         if name == chosen:
             raise UsageError(f"{name} is the chosen surface; point at another, whose paint it takes")
-        self.paint(**vars(self.scene.surface(name).paint))
-        self.tell(f"{chosen}: the paint of {name}; undo goes back")
+        scene = self.scene.with_surface(chosen, paint=self.scene.surface(name).paint)
+        self._edit_paint(scene, f"{chosen}: the paint of {name}; undo goes back")
 
     # Files.
 

@@ -375,8 +375,7 @@ class PictureEdits:
         if self.session.surface_name:
             blend = self.session.scene.surface(self.session.surface_name).paint.blend
             blend = min(1.0, max(0.0, round(blend + step, 6)))
-            self.session.paint(blend=blend)
-            self.session.tell(f"blend {blend:.2f}")
+            self.session.paint(lambda paint: f"blend {paint.blend:.2f}", blend=blend)
 
     def repaint(self, step: int) -> None:
         """Give the selected surface another object color, `step` positions further.
@@ -386,11 +385,10 @@ class PictureEdits:
         name = self.session.surface_name
         if not name:
             return
-        red, green, blue = self.session.scene.surface(name).paint.object_color
-        present = f"#{red:02x}{green:02x}{blue:02x}"
+        present = in_digits(self.session.scene.surface(name).paint.color)
         names = dict.fromkeys(OBJECT_COLORS, "")
         if (paints := self.session.paints) is not None:
             names = {in_digits(paints.color(number)): each for number, each in enumerate(paints.names)}
         color = color_after(present, self._own_colors.setdefault(name, present), step, tuple(names))
-        self.session.paint(object_color=color)
-        self.session.tell(f"object color {', '.join(part for part in (names.get(color), color) if part)}")
+        message = f"object color {', '.join(part for part in (names.get(color), color) if part)}"
+        self.session.paint(lambda _: message, object_color=color)

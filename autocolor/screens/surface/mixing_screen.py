@@ -1,9 +1,12 @@
-"""The color mixing screen: the two colors of a surface, and the blend bar between them.
+"""The color mixing screen: the two colors of a surface, and the blend bar between them; or two of its ramp.
 
 Paper: Figure 13. The light source color is above, the object color below, each with all its intensities at
 the left of its bars; in the horizontal bar between them, intensity rises to the right. Mixing shows its
 result at once: only entries change, and the words of the picture stay. "This array is simply retransmitted to
 the display after color mixing is completed."
+
+If the surface has a ramp, the bar between shows it, and its handle is at the chosen color. The sections have
+the bars of two neighboring colors of the ramp: the higher one above, the lower one below.
 
 Hue, saturation and value have bars below those of the paper. The picture below the bars shows the surface as
 large as the screen allows; paints and colors can be taken from it.
@@ -37,13 +40,13 @@ from autocolor.mapping.ranges import LevelRange
 from autocolor.scene.changes import PaintChanges
 from autocolor.scene.kinds import in_digits
 from autocolor.scene.surfaces import Paint, Surface
-from autocolor.scene.swatches import COLUMNS, FINISHES, ROWS, finished, swatches
+from autocolor.scene.swatches import COLUMNS, FINISHES, ROWS, mixed, swatches
 from autocolor.screens.input import Gesture
 from autocolor.screens.picture.over_picture import paint_rows, surface_row
 from autocolor.screens.screen import Cached, Sample, Screen
 from autocolor.screens.session import Session
 from autocolor.screens.surface.mixing_palette import Crop, MixingWords, crop_of, mixing_words
-from autocolor.widgets.bars import ComponentBar, LevelBar, level_strip
+from autocolor.widgets.bars import ComponentBar, LevelBar, RampBar, level_strip
 from autocolor.widgets.items import (
     BLUE,
     CHARACTER,
@@ -65,6 +68,7 @@ from autocolor.widgets.widget import (
     Button,
     Entry,
     Gap,
+    Pair,
     Place,
     Widget,
     page_choice,
@@ -72,7 +76,7 @@ from autocolor.widgets.widget import (
 
 LEFT: Final = 8
 LEFT_END: Final = 172
-"""The column of the ramps."""
+"""The columns of the shades."""
 
 RIGHT: Final = 176
 RIGHT_END: Final = 495
@@ -103,6 +107,8 @@ COMPONENTS: Final = (("red", RED), ("green", GREEN), ("blue", BLUE))
 OBJECT: Final = "object"
 LIGHT_SOURCE: Final = "light source"
 """The names of the two colors for users."""
+
+Ramp = tuple[Color, ...]
 
 PAINT: Final = "paint"
 COLOR: Final = "color"
@@ -147,6 +153,7 @@ class MixingScreen(Screen):
             self.light.row(surface.paint),
             self.object.row(surface.paint),
             *paint_rows(self.session, surface.paint),
+            *(() if surface.paint.ramp is None else (self._ramp_row(surface.paint.ramp),)),
             Gap("taking gap"),
             *(self._taking_row(thing) for thing in (PAINT, COLOR)),
             *(() if self._taking else self._choice_rows(surface.paint)),
@@ -154,7 +161,17 @@ class MixingScreen(Screen):
 
     def _choice_rows(self, paint: Paint) -> list[Widget]:
         chosen = self._chosen
-        return self.choices.rows(self._mixing_words.swatches, chosen.title, chosen.color_of(paint))
+        name, present = chosen.name_in(paint), chosen.color_of(paint)
+        return self.choices.rows(self._mixing_words.swatches, name, present)
+
+    def _ramp_row(self, ramp: Ramp) -> Pair:
+        return Pair(
+            "add color",
+            "Add a color to the ramp between the two that are shown; or remove the chosen color.",
+            run=partial(self._add_color, ramp),
+            other="remove",
+            run_other=partial(self._remove_color, ramp),
+        )
 
     def _taking_row(self, thing: str) -> Button:
         is_on = self._taking == thing
@@ -171,13 +188,23 @@ class MixingScreen(Screen):
             return []
         mixing = self._mixing_words
         at_levels = self.session.studio.display_image.words_at_levels(surface.name)
-        blend_bar = LevelBar(
-            "blend bar",
-            "Above the handle the object color gives way to the light color.",
-            words=mixing.shown[at_levels],
-            level=blend_level(surface.paint.blend, self._levels.levels),
-            put=self._put_level,
-        )
+        if surface.paint.ramp is not None:
+            blend_bar: LevelBar = RampBar(
+                "ramp bar",
+                "The ramp: pick a color to mix it.",
+                words=mixing.shown[at_levels],
+                colors=len(surface.paint.ramp),
+                color=self._chosen.number_in(surface.paint.ramp),
+                choose=self._choose_color,
+            )
+        else:
+            blend_bar = LevelBar(
+                "blend bar",
+                "Above the handle the object color gives way to the light color.",
+                words=mixing.shown[at_levels],
+                level=blend_level(surface.paint.blend, self._levels.levels),
+                put=self._put_level,
+            )
         return [
             *self.light.widgets(surface.paint, self._chosen is self.light, mixing.hues),
             blend_bar.at(BLEND),
@@ -191,11 +218,11 @@ class MixingScreen(Screen):
             return [text("The scene has no surface in use.", LEFT, LIGHT_TOP + TEXT_DOWN, LIGHT_GRAY)]
         if self._taking:
             return [self._picture_item()]
-        mixing, blend = self._mixing_words, self._blend_text(surface.paint)
+        mixing, label, blend = self._mixing_words, *self._blend_text(surface.paint)
         return [
-            *self.light.items(mixing.light_ramp),
-            *self.object.items(mixing.object_ramp),
-            text("blend", LEFT + MARGIN, BLEND_TOP + TEXT_DOWN, LIGHT_GRAY),
+            *self.light.items(mixing.light_shades),
+            *self.object.items(mixing.object_shades),
+            text(label, LEFT + MARGIN, BLEND_TOP + TEXT_DOWN, LIGHT_GRAY),
             text(blend, RIGHT_END + 1 - CHARACTER * len(blend), BLEND_TOP + TEXT_DOWN),
             self._picture_item(),
         ]
@@ -204,9 +231,8 @@ class MixingScreen(Screen):
         surface = self.session.chosen_surface
         if surface is None or self._taking:
             return []
-        return self._mixing_words.loads(
-            surface.paint.light_color, surface.paint.object_color, self.choices.colors
-        )
+        light, object_color = (section.color_of(surface.paint) for section in (self.light, self.object))
+        return self._mixing_words.loads(light, object_color, self.choices.colors)
 
     def hint(self, element: int, line: int) -> str:
         sample = self.sample(element, line)
@@ -216,9 +242,11 @@ class MixingScreen(Screen):
         is_chosen = name == self.session.surface_name
         if self._taking == COLOR:
             where = name or "the background"
-            return f"pick {in_digits(sample.color)} of {where} as the {self._chosen.title} color; Esc ends"
+            return f"pick {in_digits(sample.color)} of {where} as {self._chosen_name}; Esc ends"
         if self._taking and name and not is_chosen:
             paint = self.session.scene.surface(name).paint
+            if paint.ramp is not None:
+                return f"pick the paint of {name}: a ramp of {len(paint.ramp)} colors; Esc ends"
             colors = f"{in_digits(paint.object_color)} and {in_digits(paint.light_color)}"
             return f"pick the paint of {name}: {colors}, blend {paint.blend:.2f}; Esc ends"
         if self._taking:
@@ -233,7 +261,12 @@ class MixingScreen(Screen):
         name = self.session.surface_name
         if thing == PAINT:
             return f"pick a surface: {name} takes both its colors, blend and percentage; Esc ends"
-        return f"pick a pixel: its color as you see it becomes the {self._chosen.title} color; Esc ends"
+        return f"pick a pixel: its color as you see it becomes {self._chosen_name}; Esc ends"
+
+    @property
+    def _chosen_name(self) -> str:
+        surface = self.session.chosen_surface
+        return "" if surface is None else self._chosen.name_in(surface.paint)
 
     @property
     def _levels(self) -> LevelRange:
@@ -267,9 +300,13 @@ class MixingScreen(Screen):
 
         return self._picture.of(draw, crop, stand_ins)
 
-    def _blend_text(self, paint: Paint) -> str:
+    def _blend_text(self, paint: Paint) -> tuple[str, str]:
+        """The heading of the bar between, and its number."""
         levels = self._levels.levels
-        return f"{paint.blend:.2f}, from level {blend_level(paint.blend, levels)} of {levels - 1}"
+        if paint.ramp is not None:
+            number = self._chosen.number_in(paint.ramp)
+            return "ramp", f"color {number + 1} of {len(paint.ramp)}"
+        return "blend", f"{paint.blend:.2f}, from level {blend_level(paint.blend, levels)} of {levels - 1}"
 
     def sample(self, element: int, line: int) -> Sample | None:
         if self.session.chosen_surface is None:
@@ -329,7 +366,28 @@ class MixingScreen(Screen):
 
     def _choose(self, section: ColorSection) -> None:
         self._chosen = section
-        self.session.tell(f"swatches are for the {section.title}")
+        self.session.tell(f"swatches are for {self._chosen_name}")
+
+    def _choose_color(self, number: int) -> None:
+        """Choose a color of the ramp, and show it with the color after it, or before it if it is the last."""
+        surface = self.session.chosen_surface
+        if surface is not None and surface.paint.ramp is not None:
+            last = len(surface.paint.ramp) - 1
+            self.light.lower = self.object.lower = min(number, last - 1)
+            self._choose(self.light if number == last else self.object)
+
+    def _add_color(self, ramp: Ramp) -> None:
+        lower = self.object.number_in(ramp)
+        color = mixed(ramp[lower], ramp[lower + 1], 0.5)
+        self.session.paint(ramp=(*ramp[: lower + 1], color, *ramp[lower + 1 :]))
+        self._choose_color(lower + 1)
+
+    def _remove_color(self, ramp: Ramp) -> None:
+        if len(ramp) == 2:
+            raise UsageError("a ramp must have 2 colors or more; to have none, switch the ramp off")
+        number = self._chosen.number_in(ramp)
+        self.session.paint(ramp=ramp[:number] + ramp[number + 1 :])
+        self._choose_color(min(number, len(ramp) - 2))
 
     def _choose_surface(self, name: str) -> None:
         self.choices.end()
@@ -339,7 +397,9 @@ class MixingScreen(Screen):
     def _paint(self, section: ColorSection, color: Sequence[int] | str) -> None:
         """Give the chosen surface a color."""
         self._chosen = section
-        self.session.paint(**section.change(color))
+        surface = self.session.chosen_surface
+        if surface is not None:
+            self.session.paint(**section.change(surface.paint, self.session.color_of(color)))
 
     def _put_level(self, level: int) -> None:
         self.session.paint(blend=blend_from(level, self._levels.levels))
@@ -349,11 +409,12 @@ class MixingScreen(Screen):
         self._paint(self._chosen, color)
         surface = self.session.chosen_surface
         if surface is not None:
+            label = self._chosen.label_in(surface.paint)
             digits = in_digits(self._chosen.color_of(surface.paint))
-            self.session.tell(f"{self._chosen.title}: {f'{name}, ' if name else ''}{digits}")
+            self.session.tell(f"{label}: {f'{name}, ' if name else ''}{digits}")
 
 
-# A section: one of the two colors of the chosen surface, with its ramp and bars.
+# A section: one of the two colors of the chosen surface, with its shades and bars.
 
 
 class Raised(NamedTuple):
@@ -376,7 +437,10 @@ HSV: Final = (("hue", 360, "degrees"), ("saturation", 100, "percent"), ("value",
 
 
 class ColorSection:
-    """The ramp and the bars of one color of a paint. `top` is the first line, `title` names the color.
+    """The shades and the bars of one color of a paint. `top` is the first line, `title` names the color.
+
+    In a paint with a ramp it is a color of the ramp: the color with the number `lower`, from 0, or in the
+    section of the light source the color after it.
 
     `give` gives the chosen surface another color, `choose` makes this the section that swatches are for.
     """
@@ -390,48 +454,68 @@ class ColorSection:
         choose: Callable[[ColorSection], object],
     ) -> None:
         self.session, self.title = session, title
+        self.lower = 0
         self._give, self._choose = partial(give, self), partial(choose, self)
         self._raised = Raised("", (0, 0, 0), (0, 0, 0))
         self._mixed = Mixed(Hsv(0, 0, 0), (0, 0, 0))
         self._heading = Area(LEFT, top, LEFT_END, top + ROW_LINES - 1)
-        self.ramp = Area(LEFT, top + ROW_LINES, LEFT_END, top + SECTION_LINES - 1)
+        self.shades = Area(LEFT, top + ROW_LINES, LEFT_END, top + SECTION_LINES - 1)
         self.area = Area(LEFT, top, RIGHT_END, top + SECTION_LINES - 1)
-        """The heading, the ramp and the bars."""
+        """The heading, the shades and the bars."""
 
     def color_of(self, paint: Paint) -> Color:
         """The color in a paint."""
+        if paint.ramp is not None:
+            return paint.ramp[self.number_in(paint.ramp)]
         return paint.object_color if self.title == OBJECT else paint.light_color
 
-    def change(self, color: Sequence[int] | str) -> PaintChanges:
+    def number_in(self, ramp: Ramp) -> int:
+        """The number of the color in a ramp, from 0. The ramp may have become shorter."""
+        return min(self.lower, len(ramp) - 2) + (self.title == LIGHT_SOURCE)
+
+    def label_in(self, paint: Paint) -> str:
+        """The label of the color of a paint: "object", or "color 2" of a ramp."""
+        return self.title if paint.ramp is None else f"color {self.number_in(paint.ramp) + 1}"
+
+    def name_in(self, paint: Paint) -> str:
+        """The name of the color of a paint in a sentence: "the object color", or "color 2 of 5"."""
+        if paint.ramp is None:
+            return f"the {self.title} color"
+        return f"{self.label_in(paint)} of {len(paint.ramp)}"
+
+    def change(self, paint: Paint, color: Sequence[int] | str) -> PaintChanges:
         """The change of a paint that puts the color into it."""
+        if paint.ramp is not None:
+            number = self.number_in(paint.ramp)
+            return {"ramp": (*paint.ramp[:number], color, *paint.ramp[number + 1 :])}
         return {"object_color": color} if self.title == OBJECT else {"light_color": color}
 
-    def items(self, ramp: Words) -> list[Item]:
-        """The ramp in its words, from the lowest intensity at the left."""
-        return [level_strip(ramp.tobytes(), self.ramp)]
+    def items(self, shades: Words) -> list[Item]:
+        """The shades in their words, from the darkest at the left."""
+        return [level_strip(shades.tobytes(), self.shades)]
 
     def widgets(self, paint: Paint, is_chosen: bool, hues: Words) -> list[Widget]:
         """The heading with the number of the color, and the bars; `hues` are the words of the hue bar."""
-        color = self.color_of(paint)
+        color, label, name = self.color_of(paint), self.label_in(paint), self.name_in(paint)
         heading = SectionHeading(
-            self.title,
-            f"The {self.title} color: click to pick swatches for it; Ctrl+C copies it.",
+            label,
+            f"{_capitalized(name)}: click to pick swatches for it; Ctrl+C copies it.",
             run=self._choose,
             is_chosen=is_chosen,
         )
         bars = [
             ComponentBar(
-                f"{self.title}, {name}",
-                f"{name.capitalize()} of the {self.title} color, 0 to {FULL}.",
+                f"{label}, {component}",
+                f"{component.capitalize()} of {name}, 0 to {FULL}.",
                 value=color[number],
                 put=partial(self._put_component, number),
                 word=word,
-                letter=name[0].upper(),
+                letter=component[0].upper(),
             )
-            for number, (name, word) in enumerate(COMPONENTS)
+            for number, (component, word) in enumerate(COMPONENTS)
         ]
         white = ComponentBar(
-            f"{self.title}, white",
+            f"{label}, white",
             "Tints and shades: adds the same to red, green and blue; each stops at its ends.",
             value=white_of(color),
             put=self._put_white,
@@ -441,16 +525,16 @@ class ColorSection:
         hsv = self._hsv_of(color)
         by_hue = [
             ComponentBar(
-                f"{self.title}, {name}",
-                f"{name.capitalize()} of the {self.title} color, 0 to {most} {unit}.",
+                f"{label}, {part}",
+                f"{part.capitalize()} of {name}, 0 to {most} {unit}.",
                 value=hsv[number],
                 high=most,
                 put=partial(self._put_hsv, number),
                 word=LIGHT_GRAY,
-                letter=name[0].upper(),
-                strip=hues.tobytes() if name == "hue" else b"",
+                letter=part[0].upper(),
+                strip=hues.tobytes() if part == "hue" else b"",
             )
-            for number, (name, most, unit) in enumerate(HSV)
+            for number, (part, most, unit) in enumerate(HSV)
         ]
         return [
             heading.at(self._heading._replace(right=LEFT_END - HEX_ELEMENTS)),
@@ -460,9 +544,11 @@ class ColorSection:
 
     def row(self, paint: Paint, within: str = "") -> Entry:
         """The row of a menu, or the number `within` the heading, over which the color is typed."""
-        help = f"The {self.title} color by its name or number, such as teal or #b01020."
+        name = self.name_in(paint)
+        help = f"{_capitalized(name)} by its name or number, such as teal or #b01020."
         value = in_digits(self.color_of(paint))
-        return Entry(self.title.split()[0], help, within=within, value=value, take=self._give)
+        label = self.title.split()[0] if paint.ramp is None else self.label_in(paint)
+        return Entry(label, help, within=within, value=value, take=self._give)
 
     def _bar_area(self, number: int) -> Area:
         top = self.area.top + number * BAR_LINES
@@ -504,6 +590,10 @@ class ColorSection:
     def _present(self) -> Color:
         """The color that the chosen surface has now."""
         return self.color_of(self.session.scene.surface(self.session.surface_name).paint)
+
+
+def _capitalized(text: str) -> str:
+    return f"{text[0].upper()}{text[1:]}"
 
 
 @dataclass(frozen=True)
@@ -610,16 +700,16 @@ class PaintChoices:
         """The colors that can be picked, (n, 3) uint8: the page's colors, and then the recent colors."""
         return np.concatenate([self.page.colors, np.array(self._recent, np.uint8).reshape(-1, 3)])
 
-    def rows(self, words: Words, title: str, present: Color) -> list[Widget]:
+    def rows(self, words: Words, name: str, present: Color) -> list[Widget]:
         """The rows of the colors; `words` show the colors.
 
-        `title` names the color of the surface to choose, and `present` is its present value.
+        `name` is the name of the color of the surface to choose, and `present` is its present value.
         """
         page, pages = self.page, len(self.pages)
         count, size = len(page.colors), 2 if page.is_large else 1
         recent = SwatchField(
             "recent colors",
-            f"The colors that were mixed last; click one for the {title}.",
+            f"The colors that were mixed last; click one for {name}.",
             words=words[count:],
             across=MOST_RECENT,
             take=self._take_recent,
@@ -632,21 +722,21 @@ class PaintChoices:
         )
         paints = PaintField(
             "paints",
-            f"Paints for the {title}: click one, or drag over them.",
+            f"Paints for {name}: click one, or drag over them.",
             words=words[:count],
             across=ROWS // size,
             width=size * CELL_ELEMENTS,
             height=size * CELL_LINES,
             take=self._take_number,
             step=partial(self._step, present),
-            hint_of=partial(self._hint_of, title) if page.names else None,
+            hint_of=partial(self._hint_of, name) if page.names else None,
         )
         gap = (recent, Gap("recent gap")) if self._recent else ()
         return [Gap("swatches gap"), *gap, *([turning] if pages > 1 else []), paints]
 
-    def _hint_of(self, title: str, number: int) -> str:
-        name, (red, green, blue) = self.page.names[number], self.page.colors[number].tolist()
-        return f"{f'{name}, ' if name else ''}{in_digits((red, green, blue))}: click it for the {title}"
+    def _hint_of(self, name: str, number: int) -> str:
+        paint, (red, green, blue) = self.page.names[number], self.page.colors[number].tolist()
+        return f"{f'{paint}, ' if paint else ''}{in_digits((red, green, blue))}: click it for {name}"
 
     def _turn(self, number: int) -> None:
         self._turned, self._taken = (self.session.paints, number), 0
@@ -675,10 +765,11 @@ class PaintChoices:
         """Mixing ends: note the new colors of the surfaces as recent colors."""
         for surface in self.session.scene.surfaces:
             before, now = self._before.get(surface.name, surface.paint), surface.paint
-            if before.light_color != now.light_color:
-                note_color(now.light_color)
-            if before.object_color != now.object_color:
-                note_color(now.object_color)
+            colors = [paint.ramp or (paint.light_color, paint.object_color) for paint in (before, now)]
+            if (before.ramp is None) == (now.ramp is None):
+                for old, new in zip(*colors, strict=False):
+                    if old != new:
+                        note_color(new)
 
     def _take_recent(self, number: int) -> None:
         self._take(self._recent[number], "")
@@ -702,8 +793,7 @@ class PaintChoices:
             self._take_number(0 if step > 0 else len(is_present) - 1)
 
     def _finish(self, surface: Surface, name: str) -> None:
-        self.session.change_surface(surface.name, **finished(surface, name))
-        self.session.tell(f"{surface.name}: {name}")
+        self.session.finish(name)
 
 
 GROUT: Final = 1
