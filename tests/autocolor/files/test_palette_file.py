@@ -129,6 +129,11 @@ REFUSALS: list[tuple[str, bytes, str]] = [
     ),
     (
         "a.gpl",
+        HEAD + b"Name: mine\n1 2 3\nName: late\n",
+        "a.gpl, line 4: a color must be red, green, blue and perhaps a name, not 'Name: late'; correct it",
+    ),
+    (
+        "a.gpl",
         HEAD + "٣ 2 1\n".encode(),
         "a.gpl, line 2: a color must be red, green, blue and perhaps a name, not '٣ 2 1'; correct it",
     ),
