@@ -9,6 +9,7 @@ from __future__ import annotations
 import dataclasses
 import re
 from itertools import product
+from numbers import Integral
 from os import PathLike
 from typing import Final
 
@@ -16,13 +17,13 @@ import numpy as np
 
 from autocolor.arrays import Bytes, Words, chunks, light_of
 from autocolor.checks import shown
-from autocolor.errors import InputError, UsageError
+from autocolor.errors import UsageError
 from autocolor.files.writing import check_suffix, write_atomically
-from autocolor.lighting.picture import Picture, check_smooth
+from autocolor.lighting.picture import Picture, check_smooth, check_surfaces
 from autocolor.mapping.display_image import DisplayImage, LevelImage
 from autocolor.mapping.legend import legend
 from autocolor.mapping.normal_words import NormalImage
-from autocolor.scene.scene import NORMALS, Scene, check_scene
+from autocolor.scene.scene import NORMALS, Scene
 from autocolor.sending import configuration_of, send_image, shown_colors
 from ramtek_emu import HostPort
 
@@ -78,6 +79,8 @@ def save_image(
     *,
     overwrite: bool = False,
     smooth: int | None = None,
+    level: int | None = None,
+    sync: bool = True,
 ) -> None:
     """Write the picture as a display shows it to a PNG file, atomically, with the legend of a scalar.
 
@@ -87,16 +90,33 @@ def save_image(
         picture = autocolor.render(scene, smooth=4)
         autocolor.save_image("coupe.png", scene, picture)   # 640 x 480 pixels
 
-    Raises UsageError for a name that ends as another kind of file does, and if the lines or elements are no
-    multiple of `smooth`; OutputError if the file exists and `overwrite` is false, or if it cannot be created;
-    WriteError if writing fails.
+    `level` is the compression: from 0, fastest, to 9, smallest, by default `ramtek_emu.png.LEVEL`. With
+    `sync=False` the file is not synced to the disk, for programs that write many images: a killed program
+    still leaves whole files, but after a power failure a new file may be empty.
+
+    Raises UsageError if the scene and the picture are in the wrong order, for a name that ends as another
+    kind of file does, for a wrong `level`, and if the lines or elements are no multiple of `smooth`;
+    InputError if the surfaces of the picture are not those of the scene; OutputError if the file exists and
+    `overwrite` is false, or if it cannot be created; WriteError if writing fails.
     """
     from ramtek_emu.png import png_bytes
 
-    check_suffix(path, ".png", "an image")
     check_surfaces(scene, picture)
+    check_suffix(path, ".png", "an image")
+    check_png_level(level)
     smooth = _smooth_of(picture, smooth)
-    write_atomically(path, png_bytes(smoothed(display_image(scene, picture), smooth)), overwrite=overwrite)
+    data = png_bytes(smoothed(display_image(scene, picture), smooth), level)
+    write_atomically(path, data, overwrite=overwrite, sync=sync)
+
+
+def check_png_level(level: int | None) -> None:
+    """Raise UsageError unless the compression of a PNG file is a whole number from 0 to 9, or None."""
+    if level is not None and (
+        isinstance(level, bool) or not isinstance(level, Integral) or not 0 <= level <= 9
+    ):
+        raise UsageError(
+            f"level must be a whole number from 0 to 9, not {shown(level)}; leave it out for the default"
+        )
 
 
 SMOOTHNESSES: Final = (1, 2, 3, 4)
@@ -138,8 +158,7 @@ def averaged(entries: Bytes, words: Words, smooth: int) -> Bytes:
     Measured and rejected: float32 is no faster, and rounds a thousandth of the components differently.
     """
     if smooth == 1:
-        colors: Bytes = entries[words]
-        return colors
+        return entries.take(words, axis=0)
     light = light_of(entries.astype(np.float64))
     # The nearest color of each mean is found by the light between two neighbors.
     between = light_of(np.linspace(0.5, 254.5, 255))
@@ -200,19 +219,3 @@ def size_of(text: str) -> tuple[int, int]:
             " 1280x960"
         )
     return size
-
-
-def check_surfaces(scene: Scene, picture: Picture) -> None:
-    """Raise InputError if the surfaces of a picture are not those of a scene, in the same order.
-
-    Raises UsageError for anything else than a scene and a picture, such as the two in the wrong order.
-    """
-    check_scene(scene)
-    if not isinstance(picture, Picture):
-        raise UsageError(f"a picture must be a Picture, not {shown(picture)}; `render` makes one of a scene")
-    names = [surface.name for surface in scene.surfaces]
-    if list(picture.surfaces) != names:
-        raise InputError(
-            f"the surfaces of a picture must be those of the scene, {shown(names)}, not"
-            f" {shown(list(picture.surfaces))}; render this scene, or use the scene that was rendered"
-        )

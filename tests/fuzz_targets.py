@@ -40,10 +40,12 @@ from autocolor import (
     Scene,
     Studio,
     read_journal,
+    read_palette,
     read_picture,
     read_rig,
     read_scene,
     render,
+    write_palette,
     write_picture,
     write_rig,
 )
@@ -53,6 +55,7 @@ from autocolor.commands.sql import lines_of, statements_in
 from autocolor.errors import AutocolorError, InputError
 from autocolor.files.formats import MESH_FORMATS
 from autocolor.files.meshes.foreign import FOREIGN
+from autocolor.files.palette_file import PALETTE_FORMATS
 from autocolor.files.scene_sources import read_scene_with_report
 from autocolor.files.state import COLORS, FILES, recent_colors, recent_files
 from autocolor.files.store.store_file import write_store
@@ -85,6 +88,8 @@ its mesh, its normals and the arrays of their computation take some hundred."""
 
 SMALL = Configuration(name="small", elements=64, lines=48, planes=10)
 """The display of most inputs, which takes a hundredth of the time of the usual one."""
+
+PALETTES = ("paints.gpl", "paints.csv", "paints.act")
 
 LONGEST_SENTENCE = 4000
 MOST_SENTENCES = 101
@@ -338,7 +343,7 @@ def picture_samples() -> Iterator[bytes]:
     """Picture files of a small picture, without a scalar and with it."""
     for scene in (small_scene(), small_scene().with_scalar(name="stress")):
         picture = render(scene, 6, 8)
-        yield written("small.npz", partial(write_picture, picture=picture, scene=scene))
+        yield written("small.npz", partial(write_picture, scene=scene, picture=picture))
 
 
 def fault_of_picture(_: bytes) -> str:
@@ -407,6 +412,25 @@ def rig_samples() -> Iterator[bytes]:
 
 def fault_of_rig(_: bytes) -> str:
     return fault_of_scene(small_scene().with_rig(read_rig("rig.toml")))
+
+
+def palette_samples() -> Iterator[bytes]:
+    """The files of a format of palettes for which the others are empty; see `fault_of_palette`."""
+    colors, names = ["#b01020", "#1e5ac8"], ["signal red", 'a "b", c']
+    for number, name in enumerate(PALETTES):
+        pieces = [b""] * len(PALETTES)
+        names = [] if name.endswith(".act") else names
+        pieces[number] = written(name, partial(write_palette, palette=colors, names=names))
+        yield BETWEEN.join(pieces)
+
+
+def fault_of_palette(_: bytes) -> str:
+    name = max(PALETTES, key=lambda name: os.path.getsize(name) if os.path.exists(name) else -1)
+    palette = read_palette(name)
+    for each in PALETTE_FORMATS[:2]:
+        if each.read(each.written(palette, Path("again")), "again") != palette:
+            return f"a palette that is another one as a {each.name}"
+    return ""
 
 
 # Sessions, settings and statements.
@@ -818,6 +842,7 @@ TARGETS: dict[str, Target] = {
     "scene": file_target("scene", ("scene.toml", "car.obj", "car.mtl", "mesh.tables"), is_folder=True),
     "picture": Target(lambda: archives(picture_samples()), fault_of_picture, ("small.npz",), zipped),
     "rig": Target(rig_samples, fault_of_rig, ("rig.toml",)),
+    "palette": Target(palette_samples, fault_of_palette, PALETTES),
     "store": Target(
         store_samples, lambda _: fault_of_scene_at("small.sqlite"), ("small.sqlite",), largest=1 << 17
     ),

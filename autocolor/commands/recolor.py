@@ -32,6 +32,7 @@ Examples:
 @click.argument("surface", required=False, shell_complete=complete_surfaces)
 @click.option(
     "--object",
+    "--object-color",
     "object_color",
     metavar="COLOR",
     shell_complete=complete_colors,
@@ -39,6 +40,7 @@ Examples:
 )
 @click.option(
     "--source",
+    "--light-color",
     "light_color",
     metavar="COLOR",
     shell_complete=complete_colors,
@@ -125,7 +127,7 @@ def recolor(
     scene = recolored(saved.scene, surface, given, settings)
     tell_unset(saved.scene, scene)
     if save is not None:
-        write_picture(save, saved.picture, scene, overwrite=force)
+        write_picture(save, scene, saved.picture, overwrite=force)
     if output is not None:
         with timed(logger, "image written"):
             write_image(output, scene, saved.picture, force)

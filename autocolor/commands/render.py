@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 import click
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 
 EXAMPLES: Final = """\b
 Examples:
+  autocolor render
   autocolor render scenes/coupe -o coupe.png --save coupe.npz
   autocolor render car.obj --up y
   autocolor render scenes/coupe --light key -o key.png
@@ -41,13 +43,13 @@ Examples:
 
 
 @click.command(epilog=EXAMPLES)
-@scene_options
+@partial(scene_options, required=False)
 @click.option(
     "-o",
     "--output",
     type=click.Path(),
     metavar="PNG",
-    help="PNG file to write. Default, without --save: SCENE.png.",
+    help="PNG file to write. Default, without --save: SCENE.png, or coupe.png.",
 )
 @click.option(
     "--save",
@@ -83,7 +85,7 @@ Examples:
 @click.pass_context
 def render(
     context: click.Context,
-    source: SceneSource,
+    source: SceneSource | None,
     output: str | None,
     save: str | None,
     lights: tuple[str, ...],
@@ -95,7 +97,7 @@ def render(
     hold_exposure: bool,
     force: bool,
 ) -> None:
-    """Render SCENE: a folder, a scene.toml, a mesh file or a picture file."""
+    """Render SCENE: a folder, a scene.toml, a mesh file or a picture file. Without SCENE, render the demo."""
     from autocolor.commands.settings import with_settings
 
     def rendered(scene: Scene) -> Picture:
@@ -105,7 +107,8 @@ def render(
 
     elements, lines = size
     report = reframed(read(source), elements / lines)
-    tell_up(report, source)
+    if source is not None:
+        tell_up(report, source)
     original = with_normals(report.scene, normals)
     if view_name is not None:
         original = original.with_taken_view(view_name)
@@ -133,7 +136,7 @@ def render(
         picture = rendered(edited)
         step()
         if save is not None:
-            write_picture(save, picture, edited, overwrite=force)
+            write_picture(save, edited, picture, overwrite=force)
         step()
         if output is not None:
             write_image(output, edited, picture, force)

@@ -96,12 +96,16 @@ set_option = click.option(
 )
 
 
-def read(source: SceneSource) -> SceneReport:
-    """Read a scene, and print a line on stderr for each repair and each warning."""
-    from autocolor.files.scene_sources import read_scene_with_report
-
+def read(source: SceneSource | None) -> SceneReport:
+    """Read a scene, by default the built-in demo; print a line on stderr for each repair and each warning."""
     if context := click.get_current_context(silent=True):
         print_log(context)
+    if source is None:
+        from autocolor.commands.demo import demo_report
+
+        return demo_report()
+    from autocolor.files.scene_sources import read_scene_with_report
+
     report = read_scene_with_report(source.path, up=source.up, scale=source.scale, surfaces=source.surfaces)
     tell(*(f"autocolor: {repair}" for repair in report.repairs))
     return report
@@ -124,9 +128,9 @@ def tell_unset(before: Scene, after: Scene) -> None:
     tell(*(f"autocolor: {sentence}" for sentence in unset_paints(before, after)))
 
 
-def ended(report: SceneReport, source: SceneSource) -> int:
+def ended(report: SceneReport, source: SceneSource | None) -> int:
     """The exit code of a command that succeeded."""
-    return REPAIRED if source.strict and report.repairs else 0
+    return REPAIRED if source is not None and source.strict and report.repairs else 0
 
 
 def reframed(report: SceneReport, aspect: float) -> SceneReport:

@@ -165,7 +165,10 @@ def show(
         with autosaved_session(viewer, left) as update:
             connected(waiting.monitor, viewer, update).run()
     except NoScreenError as error:
-        raise UnavailableError(f"{error}; `autocolor render SCENE -o PNG` renders without a screen") from None
+        raise UnavailableError(
+            f"{error}; `autocolor render` writes the demo to coupe.png, and `autocolor render SCENE -o PNG`"
+            " renders any scene"
+        ) from None
 
 
 def viewer_of(history: History) -> tuple[Viewer, Ramtek9300]:

@@ -297,7 +297,7 @@ class Session:
 
     def edit(self, scene: Scene) -> None:
         """Make a scene the current scene. All edits of a gesture are undone as one step."""
-        before = self.studio.image
+        before = self.studio.display_image
         self.studio.edit(scene, same_step=self.same_step, moving=self.moving)
         if self.studio.scene is not before.scene:
             first = self._edits[0] if self._edits is not None and self.same_step else before
@@ -499,7 +499,7 @@ class Session:
     def save_image(self) -> None:
         """Save the picture alone, with the legend of a scalar, as the next screenshot."""
         self.studio.refine()
-        self.save_screenshot(shown_colors(self.studio.image))
+        self.save_screenshot(shown_colors(self.studio.display_image))
 
     def save_screenshot(self, colors: Bytes) -> None:
         """Save (lines, elements, 3) colors as the next screenshot, "autocolor-0001.png"."""
@@ -732,7 +732,7 @@ def reason_of_no_change(studio: Studio, before: DisplayImage) -> str:
     olds = {light.name: light for light in start.lights}
     edited = [light for light in scene.lights if is_edited(olds.get(light.name), light)]
     is_renamed = len(scene.lights) == len(olds) and olds.keys() != {light.name for light in scene.lights}
-    if is_other or is_renamed or not edited or not looks_equal(before, studio.image):
+    if is_other or is_renamed or not edited or not looks_equal(before, studio.display_image):
         return ""
     which = titled("light", edited[0].name) if len(edited) == 1 else "every edited light"
     versions = [version for light in edited for version in (light, olds.get(light.name, light))]

@@ -25,6 +25,7 @@ from autocolor import (
     save_image,
     scene_of,
     send_picture,
+    write_picture,
 )
 from autocolor.images import LARGEST, averaged, display_image, size_of, smoothed
 from autocolor.mapping.legend import legend
@@ -55,6 +56,25 @@ def test_a_saved_image_has_the_legend_as_a_display_shows_it(tmp_path: Path) -> N
     assert (np.asarray(Image.open(path)) == display.field()).all()
     assert (display.field() != image(scene, studio.picture)).any()
     assert studio._repr_png_() == display._repr_png_()
+
+
+@pytest.mark.parametrize("level", range(10))
+def test_an_image_has_the_same_pixels_at_every_level_of_compression(tmp_path: Path, level: int) -> None:
+    scene = scene_of(cube())
+    picture = render(scene, 48, 64)
+    save_image(tmp_path / "cube.png", scene, picture, level=level, sync=False)
+    assert (np.asarray(Image.open(tmp_path / "cube.png")) == image(scene, picture)).all()
+    # Byte 1 of the compressed data names the class of the level.
+    data = (tmp_path / "cube.png").read_bytes()
+    assert data[data.index(b"IDAT") + 5] >> 6 == (0, 0, 1, 1, 1, 1, 2, 3, 3, 3)[level]
+
+
+@pytest.mark.parametrize("level", [-1, 10, 4.0, True, "best"])
+def test_a_wrong_level_of_compression_is_refused(tmp_path: Path, level: Any) -> None:
+    scene = scene_of(cube())
+    with pytest.raises(UsageError, match=r"^level must be a whole number from 0 to 9, not .*; leave it out"):
+        save_image(tmp_path / "cube.png", scene, render(scene, 24, 32), level=level)
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_picture_is_colored_by_any_scene_that_has_its_surfaces() -> None:
@@ -91,14 +111,23 @@ def test_an_image_under_the_name_of_another_kind_is_refused(tmp_path: Path) -> N
     assert not path.exists()
 
 
-def test_a_scene_and_a_picture_in_the_wrong_order_are_refused_in_words() -> None:
+def test_a_scene_and_a_picture_in_the_wrong_order_are_refused_in_words(tmp_path: Path) -> None:
     scene = scene_of(cube())
-    picture = render(scene, 24, 32)
-    with pytest.raises(
-        UsageError,
-        match=r"a scene must be a Scene, not Picture\(.*; read a scene from files with `read_scene`",
+    picture: Any = render(scene, 24, 32)
+    swapped: Any = scene
+    for swap in (
+        lambda: image(picture, swapped),
+        lambda: send_picture(picture, swapped, Ramtek9300(SMALL)),
+        lambda: save_image(tmp_path / "cube.png", picture, swapped),
+        lambda: write_picture(tmp_path / "cube.npz", picture, swapped),
     ):
-        image(picture, scene)  # type: ignore[arg-type]
+        with pytest.raises(UsageError, match=r"^the scene must come before the picture, not after it; swap"):
+            swap()
+    assert list(tmp_path.iterdir()) == []
+    with pytest.raises(
+        UsageError, match=r"a scene must be a Scene, not Picture\(.*; read a scene from files"
+    ):
+        image(picture, picture)
     with pytest.raises(UsageError, match=r"a picture must be a Picture, not Scene\(.*; `render` makes one"):
         image(scene, scene)  # type: ignore[arg-type]
 

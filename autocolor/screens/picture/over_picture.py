@@ -53,7 +53,7 @@ class OverPicture(Screen):
 
     def items(self) -> Sequence[Item]:
         """The legend of a scalar."""
-        image = self.session.comparing.image or self.session.studio.image
+        image = self.session.comparing.image or self.session.studio.display_image
         is_under_menu = self.is_under_menu
 
         def draw() -> Sequence[Item]:
@@ -149,11 +149,11 @@ class OverPicture(Screen):
         seen = studio.seen_at(line, element)
         first, levels = studio.level_ranges[name]
         part = "" if seen is None else seen.part
-        bands, scalar = studio.image.bands.get(name), studio.scene.scalar
+        bands, scalar = studio.display_image.bands.get(name), studio.scene.scalar
         if bands is None or scalar is None:
-            what = studio.image.meaning
+            what = studio.display_image.meaning
             return Pointed(name, part, f"{what} {word - first} of {levels - 1}")
-        values, block = studio.image.picture.scalar, studio.image.block
+        values, block = studio.display_image.picture.scalar, studio.display_image.block
         value = float("nan") if values is None else float(values[line // block, element // block])
         shown = "missing" if math.isnan(value) else f"{value:.5g}"
         return Pointed(name, part, f"{scalar.name} {shown}, shade {(word - first) % bands.shades + 1}")
@@ -210,7 +210,7 @@ def _flip_ramp(session: Session, paint: Paint) -> None:
     if paint.ramp is not None:
         session.paint(ramp=None)
         return
-    image, name = session.studio.image, session.surface_name
+    image, name = session.studio.display_image, session.surface_name
     entries = entries_of(paint, image.ranges[name].levels, image.floor_of(name))
     steps = FIRST_RAMP_COLORS - 1
     levels = [half_up(step * (len(entries) - 1) / steps) for step in range(steps + 1)]

@@ -67,7 +67,7 @@ class BlendingScreen(OverPicture):
                 "blend level",
                 "The light color blends in above the handle; pick a level, or drag.",
                 area=Area(between - BAR_ELEMENTS - LANE, TOP, between - 1, BOTTOM),
-                words=self.session.studio.image.words_at_levels(surface.name),
+                words=self.session.studio.display_image.words_at_levels(surface.name),
                 level=blend_level(paint.blend, levels),
                 put=lambda level: self.session.paint(blend=blend_from(level, levels)),
                 number=f"{paint.blend:.2f}",

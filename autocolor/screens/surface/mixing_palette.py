@@ -37,7 +37,7 @@ Ranges = tuple[tuple[str, LevelRange], ...]
 """The level ranges of the surfaces in use by name, so that they can be a key."""
 
 
-class Palette(NamedTuple):
+class MixingWords(NamedTuple):
     """The words that show a surface and the colors beside it."""
 
     borrowed: Words
@@ -89,8 +89,8 @@ class Palette(NamedTuple):
 
 
 @lru_cache(maxsize=8)
-def palette_of(ranges: Ranges, surface: str, swatches: int) -> Palette:
-    """The palette for a surface in use and a number of swatches.
+def mixing_words(ranges: Ranges, surface: str, swatches: int) -> MixingWords:
+    """The words for a surface in use and a number of swatches.
 
     Raises UsageError if there are too few words to borrow.
     """
@@ -103,12 +103,12 @@ def palette_of(ranges: Ranges, surface: str, swatches: int) -> Palette:
     shown = np.full(WORDS, NIGHT, np.uint16)
     shown[own] = without_words(own, borrowed, {surface: levels})
     others = np.setdiff1d(np.arange(BACKGROUND + 1, SCREENS.first, dtype=np.uint16), own)
-    return Palette(borrowed, tuple(map(slice, bounds, bounds[1:])), read_only(shown), read_only(others))
+    return MixingWords(borrowed, tuple(map(slice, bounds, bounds[1:])), read_only(shown), read_only(others))
 
 
 @lru_cache(maxsize=8)
 def _dimmed(shown: bytes, others: bytes, grays: bytes, entries: bytes) -> Words:
-    """The words of `Palette.dimmed`, from arrays as bytes."""
+    """The words of `MixingWords.dimmed`, from arrays as bytes."""
     colors = np.frombuffer(entries, np.uint8).reshape(-1, 3)
     steps = np.floor(colors @ np.array(LUMINANCE) * ((len(GRAYS) - 1) / FULL) + HALF).astype(np.int64)
     words = np.frombuffer(shown, np.uint16).copy()

@@ -44,7 +44,7 @@ from autocolor.screens.input import Gesture
 from autocolor.screens.picture.over_picture import paint_rows, surface_row
 from autocolor.screens.screen import Cached, Sample, Screen
 from autocolor.screens.session import Session
-from autocolor.screens.surface.mixing_palette import Crop, Palette, crop_of, palette_of
+from autocolor.screens.surface.mixing_palette import Crop, MixingWords, crop_of, mixing_words
 from autocolor.widgets.bars import ComponentBar, LevelBar, RampBar, level_strip
 from autocolor.widgets.items import (
     BLUE,
@@ -147,7 +147,7 @@ class MixingScreen(Screen):
             *(
                 ()
                 if self._taking
-                else self.choices.rows(self._palette.swatches, self._chosen.name_in(surface.paint))
+                else self.choices.rows(self._mixing_words.swatches, self._chosen.name_in(surface.paint))
             ),
         ]
 
@@ -173,13 +173,13 @@ class MixingScreen(Screen):
         surface = self.session.chosen_surface
         if surface is None or self._taking:
             return []
-        palette = self._palette
-        at_levels = self.session.studio.image.words_at_levels(surface.name)
+        mixing = self._mixing_words
+        at_levels = self.session.studio.display_image.words_at_levels(surface.name)
         if surface.paint.ramp is not None:
             blend_bar: LevelBar = RampBar(
                 "ramp bar",
                 "The ramp: pick a color to mix it.",
-                words=palette.shown[at_levels],
+                words=mixing.shown[at_levels],
                 colors=len(surface.paint.ramp),
                 color=self._chosen.number_in(surface.paint.ramp),
                 choose=self._choose_color,
@@ -188,14 +188,14 @@ class MixingScreen(Screen):
             blend_bar = LevelBar(
                 "blend bar",
                 "Above the handle the object color gives way to the light color.",
-                words=palette.shown[at_levels],
+                words=mixing.shown[at_levels],
                 level=blend_level(surface.paint.blend, self._levels.levels),
                 put=self._put_level,
             )
         return [
-            *self.light.widgets(surface.paint, self._chosen is self.light, palette.hues),
+            *self.light.widgets(surface.paint, self._chosen is self.light, mixing.hues),
             blend_bar.at(BLEND),
-            *self.object.widgets(surface.paint, self._chosen is self.object, palette.hues),
+            *self.object.widgets(surface.paint, self._chosen is self.object, mixing.hues),
             *self.choices.finishes(surface),
         ]
 
@@ -205,10 +205,10 @@ class MixingScreen(Screen):
             return [text("The scene has no surface in use.", LEFT, LIGHT_TOP + TEXT_DOWN, LIGHT_GRAY)]
         if self._taking:
             return [self._picture_item()]
-        palette, label, blend = self._palette, *self._blend_text(surface.paint)
+        mixing, label, blend = self._mixing_words, *self._blend_text(surface.paint)
         return [
-            *self.light.items(palette.light_shades),
-            *self.object.items(palette.object_shades),
+            *self.light.items(mixing.light_shades),
+            *self.object.items(mixing.object_shades),
             text(label, LEFT + MARGIN, BLEND_TOP + TEXT_DOWN, LIGHT_GRAY),
             text(blend, RIGHT_END + 1 - CHARACTER * len(blend), BLEND_TOP + TEXT_DOWN),
             self._picture_item(),
@@ -219,7 +219,7 @@ class MixingScreen(Screen):
         if surface is None or self._taking:
             return []
         light, object_color = (section.color_of(surface.paint) for section in (self.light, self.object))
-        return self._palette.loads(light, object_color, self.choices.colors)
+        return self._mixing_words.loads(light, object_color, self.choices.colors)
 
     def hint(self, element: int, line: int) -> str:
         sample = self.sample(element, line)
@@ -239,7 +239,8 @@ class MixingScreen(Screen):
         if self._taking:
             return self._prompt(PAINT)
         if is_chosen:
-            return f"{name}, {self.session.studio.image.meaning} {sample.level} of {self._levels.levels - 1}"
+            meaning = self.session.studio.display_image.meaning
+            return f"{name}, {meaning} {sample.level} of {self._levels.levels - 1}"
         return f"{name}: click to mix its colors; P: take its paint" if name else self.help
 
     def _prompt(self, thing: str) -> str:
@@ -259,9 +260,9 @@ class MixingScreen(Screen):
         return self.session.studio.level_ranges[self.session.surface_name]
 
     @property
-    def _palette(self) -> Palette:
+    def _mixing_words(self) -> MixingWords:
         ranges = tuple(self.session.studio.level_ranges.items())
-        return palette_of(ranges, self.session.surface_name, self.choices.count)
+        return mixing_words(ranges, self.session.surface_name, self.choices.count)
 
     @property
     def _present_crop(self) -> Crop:
@@ -278,7 +279,7 @@ class MixingScreen(Screen):
     def _picture_item(self) -> Item:
         """The picture in the words that stand for its words; the same item until it changes."""
         studio, crop = self.session.studio, self._present_crop
-        stand_ins = None if self._taking else self._palette.dimmed(studio.entries)
+        stand_ins = None if self._taking else self._mixing_words.dimmed(studio.entries)
 
         def draw() -> Item:
             words = crop.of(studio.words)

@@ -31,6 +31,14 @@ def test_nothing_changed_gives_the_rendered_picture_byte_for_byte(saved: Path, r
             ("surfaces.side.light_color=#ffe9c0", "surfaces.side.blend=0"),
         ),
         (
+            ("--object-color", "#123456", "--light-color", "#ffe9c0", "--blend", "0"),
+            (
+                "surfaces.side.object_color=#123456",
+                "surfaces.side.light_color=#ffe9c0",
+                "surfaces.side.blend=0",
+            ),
+        ),
+        (
             ("--object", "#123456", "--blend", "0.25", "--percentage", "50"),
             (
                 "surfaces.side.object_color=#123456",
@@ -95,7 +103,7 @@ def test_the_surface_s_name_in_the_output_s_is_made_one_of_a_file(folder: Path, 
     surface = scene.surfaces[0].replace(name="a/b")
     part = scene.parts[0].replace(surface="a/b")
     scene = scene.replace(surfaces=(surface,), parts=(part,))
-    write_picture("wall.npz", render(scene), scene)
+    write_picture("wall.npz", scene, render(scene))
     assert run("recolor", "wall.npz", "a/b").err == "wrote wall-b.png\n"
 
 
@@ -103,7 +111,7 @@ def test_pictures_of_another_size_keep_it(folder: Path, run: Run) -> None:
     from PIL import Image
 
     scene = wall_scene(lights=[], ambient=0.5)
-    write_picture("wall.npz", render(scene, 30, 50), scene)
+    write_picture("wall.npz", scene, render(scene, 30, 50))
     assert run("recolor", "wall.npz", "wall").code == 0
     with Image.open("wall-wall.png") as image:
         assert image.size == (50, 30)

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from autocolor import Studio, image, read_picture, read_scene, render, write_scene
+from autocolor import Studio, demo, image, read_picture, read_scene, render, write_scene
 from autocolor.commands.options import smooth_of
 from autocolor.commands.render import render as command
 from autocolor.images import SMOOTHNESS, SMOOTHNESSES
@@ -35,6 +35,14 @@ def test_without_smooth_edges_a_picture_is_the_field_of_a_display(folder: Path, 
     display = Ramtek9300()
     Studio(read_scene("two.obj"), display)
     assert (pixels(folder / "two.png") == display.field()).all()
+
+
+def test_without_a_scene_the_demo_is_rendered(folder: Path, run: Run) -> None:
+    assert run("render", "--size", "64x48", "--save", "new.npz") == (0, "", "wrote new.npz\n")
+    assert run("render", "--size", "64x48") == (0, "", "wrote coupe.png\n")
+    assert (pixels(folder / "coupe.png") == image(demo(), render(demo(), 48, 64, smooth=2))).all()
+    assert read_picture("new.npz").scene.name == "coupe"
+    assert run("render").code == 73
 
 
 @pytest.mark.parametrize("smooth", [2, 3, 4])

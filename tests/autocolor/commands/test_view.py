@@ -237,7 +237,7 @@ def test_without_a_screen_render_is_named(
     ran = run(*arguments)
     assert (ran.code, ran.out) == (69, "")
     assert ran.err.count("\n") == 1
-    assert "`autocolor render SCENE -o PNG` renders without a screen" in ran.err
+    assert "; `autocolor render` writes the demo to coupe.png, and `autocolor render SCENE" in ran.err
 
 
 @pytest.mark.skipif(os.name != "posix", reason="needs an X display that can be missing")

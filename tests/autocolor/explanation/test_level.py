@@ -62,7 +62,7 @@ def test_a_missing_value_has_the_band_and_the_color_of_missing_values() -> None:
     assert level is not None
     assert level.scalar is not None
     assert level.scalar.value is None
-    assert level.scalar.band == studio.image.bands["body"].missing
+    assert level.scalar.band == studio.display_image.bands["body"].missing
     assert color_of(level) == (10, 20, 30)
     assert word_of(level) == studio.words[12, 16]
 

@@ -646,7 +646,7 @@ def test_a_long_name_is_whole_and_has_no_date_where_there_is_no_room(letters: in
 def saved_hand(folder: Path) -> Hand:
     """A hand before the file screen of a folder with a saved picture and a damaged one."""
     scene = wall_scene(name="wall")
-    write_picture(folder / "wall.npz", render(scene, 48, 96), scene)
+    write_picture(folder / "wall.npz", scene, render(scene, 48, 96))
     (folder / "damaged.npz").write_bytes((folder / "wall.npz").read_bytes()[:2000])
     return hand_at(folder, "file")
 
@@ -713,7 +713,7 @@ def test_a_picture_that_was_saved_again_is_read_again(saved_hand: Hand, folder: 
     point_at(saved_hand, "wall.npz")
     settle(saved_hand)
     scene = wall_scene(name="wall")
-    write_picture(folder / "wall.npz", render(scene, 30, 40), scene, overwrite=True)
+    write_picture(folder / "wall.npz", scene, render(scene, 30, 40), overwrite=True)
     saved_hand.pick("refresh")
     point_at(saved_hand, "wall.npz")
     settle(saved_hand)
@@ -725,7 +725,7 @@ def test_a_picture_that_was_saved_again_is_read_again(saved_hand: Hand, folder: 
 @pytest.mark.parametrize(("lines", "elements"), [(480, 640), (400, 100), (20, 700), (168, 224)])
 def test_a_small_picture_of_any_shape_is_in_its_place(folder: Path, lines: int, elements: int) -> None:
     scene = wall_scene(name="wall")
-    write_picture(folder / "wall.npz", render(scene, lines, elements), scene)
+    write_picture(folder / "wall.npz", scene, render(scene, lines, elements))
     hand = hand_at(folder, "file")
     point_at(hand, "wall.npz")
     settle(hand)
