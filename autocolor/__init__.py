@@ -16,6 +16,13 @@ TYPE_CHECKING: Final = False
 if TYPE_CHECKING:
     from typing import Final
 
+    from autocolor.batches.films import animate as animate
+    from autocolor.batches.frames import frames as frames
+    from autocolor.batches.making import batch as batch
+    from autocolor.batches.making import batch_results as batch_results
+    from autocolor.batches.table import Variant as Variant
+    from autocolor.batches.table import grid as grid
+    from autocolor.batches.table import read_variants as read_variants
     from autocolor.commands.demo import demo as demo
     from autocolor.errors import AutocolorError as AutocolorError
     from autocolor.errors import InputError as InputError
@@ -92,9 +99,15 @@ _HOME: Final = {
     "Surface": "scene.surfaces",
     "UnavailableError": "errors",
     "UsageError": "errors",
+    "Variant": "batches.table",
     "View": "scene.view",
     "WriteError": "errors",
+    "animate": "batches.films",
+    "batch": "batches.making",
+    "batch_results": "batches.making",
     "demo": "commands.demo",
+    "frames": "batches.frames",
+    "grid": "batches.table",
     "image": "images",
     "open_tables": "files.store.tables",
     "read_journal": "journal.journal",
@@ -102,6 +115,7 @@ _HOME: Final = {
     "read_picture": "files.picture_file",
     "read_rig": "files.rig_file",
     "read_scene": "files.scene_sources",
+    "read_variants": "batches.table",
     "render": "rendering",
     "save_image": "images",
     "scene_of": "scene.creation",

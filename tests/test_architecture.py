@@ -20,9 +20,10 @@ PUBLIC_NAMES = {
         "AutocolorError", "BlinnPhong", "CookTorrance", "Flap", "Flaps", "HalfSpace", "InputError",
         "LevelRange", "Light", "Mesh", "MeshScalar", "MissingInputError", "NamedView", "OutputError", "Paint",
         "Palette", "Part", "Phong", "Picture", "Reflectance", "Rig", "Scalar", "Scene", "Studio", "Surface",
-        "UnavailableError", "UsageError", "View", "WriteError", "demo", "image", "open_tables",
-        "read_journal", "read_palette", "read_picture", "read_rig", "read_scene", "render", "save_image",
-        "scene_of", "send_picture", "write_palette", "write_picture", "write_rig", "write_scene",
+        "UnavailableError", "UsageError", "Variant", "View", "WriteError", "animate", "batch",
+        "batch_results", "demo", "frames", "grid", "image", "open_tables", "read_journal", "read_palette",
+        "read_picture", "read_rig", "read_scene", "read_variants", "render", "save_image", "scene_of",
+        "send_picture", "write_palette", "write_picture", "write_rig", "write_scene",
     ],
     "ramtek_emu": [
         "ColorsError", "Configuration", "ConfigurationError", "EntryFormat", "GMR_9300", "HostPort",
@@ -36,11 +37,11 @@ PUBLIC_NAMES = {
 WINGS = {
     "autocolor": (
         "errors", "logs", "arrays", "immutable", "checks", "budget", "scene", "visibility", "scalars",
-        "lighting", "mapping", "files", "rendering", "sending", "images", "explanation", "journal", "studio",
-        "widgets", "screens", "commands", "__main__",
+        "lighting", "mapping", "files", "rendering", "sending", "images", "batches", "explanation",
+        "journal", "studio", "widgets", "screens", "commands", "__main__",
     ),
     "ramtek_emu": (
-        "errors", "arrays", "checks", "timing", "configuration", "writing", "png",
+        "errors", "arrays", "checks", "timing", "configuration", "writing", "png", "films",
         "command_line",
         "instruction_set", "memory", "drawing", "video", "processor", "instructions", "display",
         "host", "monitor", "snapshot", "commands", "__main__",
@@ -49,14 +50,16 @@ WINGS = {
 """The wings of a package in the order of its data: each may use those before it and no other."""
 
 KNOWING_THE_DISPLAY = (
-    "autocolor.__main__", "autocolor.errors", "autocolor.files.writing", "autocolor.images",
-    "autocolor.lighting.picture", "autocolor.sending", "autocolor.studio",
+    "autocolor.__main__", "autocolor.batches.films", "autocolor.batches.making",
+    "autocolor.batches.outputs", "autocolor.batches.sheet", "autocolor.errors",
+    "autocolor.files.writing", "autocolor.images", "autocolor.lighting.picture", "autocolor.sending",
+    "autocolor.studio",
 )  # fmt: skip
 WINGS_KNOWING_THE_DISPLAY = ("autocolor.commands", "autocolor.screens", "autocolor.widgets")
 DOORS_OF_THE_DISPLAY = {
     "ramtek_emu", "ramtek_emu.command_line", "ramtek_emu.configuration",
-    "ramtek_emu.errors", "ramtek_emu.host.port", "ramtek_emu.instructions", "ramtek_emu.png",
-    "ramtek_emu.monitor.window", "ramtek_emu.writing",
+    "ramtek_emu.errors", "ramtek_emu.films", "ramtek_emu.host.port", "ramtek_emu.instructions",
+    "ramtek_emu.monitor.window", "ramtek_emu.png", "ramtek_emu.writing",
 }  # fmt: skip
 OUTSIDE = {"numpy", "click", "PIL", "pygame"}
 
@@ -135,9 +138,11 @@ def test_pygame_is_in_one_file() -> None:
     assert {name for name, _ in importers({"pygame"})} == {"ramtek_emu.monitor.glass"}
 
 
-def test_pillow_is_in_two_files_one_for_pictures_and_one_for_the_names_of_colors() -> None:
+def test_pillow_is_in_files_for_pictures_and_films_for_the_names_of_colors_and_in_batches() -> None:
     # Colors written as "#rrggbb" need no Pillow: it is loaded for the first name.
-    assert importers({"PIL"}) == {("ramtek_emu.png", True), ("autocolor.scene.kinds", False)}
+    encoders = {("ramtek_emu.png", True), ("ramtek_emu.films", True)}
+    batches = {(f"autocolor.batches.{name}", False) for name in ("outputs", "sheet")}
+    assert importers({"PIL"}) == {*encoders, *batches, ("autocolor.scene.kinds", False)}
 
 
 def test_nothing_is_imported_that_is_no_dependency() -> None:
@@ -243,7 +248,7 @@ def run(code: str, timeout: float = 60) -> str:
 
 
 WITH_PYGAME = {"ramtek_emu.monitor.glass", "ramtek_emu.monitor.window"}
-WITH_PILLOW = {"ramtek_emu.png", *WITH_PYGAME}
+WITH_PILLOW = {"ramtek_emu.films", "ramtek_emu.png", *WITH_PYGAME}
 
 IMPORTING_ALONE = """
 import importlib, sys

@@ -27,6 +27,8 @@ class AutocolorGroup(CommandGroup):
         "render": "render a scene to a PNG or picture file, without a window",
         "recolor": "change the colors of a saved picture, without rendering it again",
         "palette": "write the colors of a surface's levels to a palette file",
+        "sweep": "make pictures of many variants of a scene or a picture",
+        "animate": "write the frames between variants as a film or a stream",
         "view": "show a scene in an interactive window",
         "info": "print the counts, sizes and ranges of a scene",
         "explain": "explain a pixel of a scene, from the nodes to the color",

@@ -25,7 +25,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from enum import IntEnum
 from functools import cache, partial
-from typing import Any, ClassVar, Final, NamedTuple, TypeVar, cast, get_type_hints
+from typing import Any, ClassVar, Final, NamedTuple, Self, TypeVar, cast, get_type_hints
 
 from autocolor.checks import listed, nearest, shown
 from autocolor.errors import InputError
@@ -140,6 +140,25 @@ class Kind:
         """The cost of an edit from one value to another; None if equal. `own` is the tier of the column."""
         return None if one == other else own
 
+    def between(self, one: Any, other: Any, share: float) -> Any:
+        """The value at a share of the way from one value to another, neither None; 0 < `share` < 1.
+
+        Floats are interpolated linearly, also inside tuples of equal shape. Assumed: any other value holds
+        until the other is reached.
+        """
+        return _between(one, other, share)
+
+
+def _between(one: Any, other: Any, share: float) -> Any:
+    if isinstance(one, tuple) and isinstance(other, tuple) and len(one) == len(other):
+        return tuple(_between(a, b, share) for a, b in zip(one, other, strict=True))
+    if not (isinstance(one, float) and isinstance(other, float)) or one == other:
+        return one
+    # No bound of a flap is infinitely far away, so the bound holds.
+    if math.isinf(one) or math.isinf(other):
+        return one
+    return min(max(one * (1 - share) + other * share, min(one, other)), max(one, other))
+
 
 class Row(Immutable):
     """A row of a table: a frozen dataclass whose fields are columns, checked at construction.
@@ -158,6 +177,24 @@ class Row(Immutable):
     def rules(self) -> Iterator[Problem]:
         """The problems of rules between columns. A column with an invalid value is REFUSED."""
         return iter(())
+
+    def between(self, other: Any, share: float) -> Self:
+        """The row at a share of the way to another row, unchecked; 0 < `share` < 1.
+
+        The kind of a column interpolates its values. A column that is absent in one of the rows holds, as do
+        alternatives of which the rows use different groups, and a row of another class.
+        """
+        if self is other or type(self) is not type(other):
+            return self
+        ones, others = vars(self), vars(other)
+        copy = object.__new__(type(self))
+        has_same_groups = not self.alternatives or reset_fields(self) == reset_fields(other)
+        held = () if has_same_groups else {name for group in self.alternatives for name in group}
+        for name, field in fields_of(type(self)).items():
+            a, b = ones[name], others[name]
+            holds = a is b or a is None or b is None or name in held
+            vars(copy)[name] = a if holds else field.column.kind.between(a, b, share)
+        return copy
 
     def __repr__(self) -> str:
         # Leave out fields that have their defaults.

@@ -107,6 +107,11 @@ class ScaleKind(Kind):
     def to_plain(self, name: str, value: Any) -> Mapping[str, object]:
         return {name: value if isinstance(value, str) else [in_digits(color) for color in value]}
 
+    def between(self, one: Any, other: Any, share: float) -> Any:
+        """Lists of colors are interpolated; names hold."""
+        is_named = isinstance(one, str) or isinstance(other, str)
+        return one if is_named else ColorsKind(MOST_COLORS).between(one, other, share)
+
 
 MOST_BANDS: Final = 256
 """Limit: bands, and levels of a band."""

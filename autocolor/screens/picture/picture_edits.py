@@ -12,7 +12,7 @@ from autocolor.arrays import Floats
 from autocolor.checks import Vector
 from autocolor.errors import UsageError
 from autocolor.mapping.intensity import is_held
-from autocolor.scene.defaults import OBJECT_COLORS, default_view, framed, object_bounds, stage_top
+from autocolor.scene.defaults import OBJECT_COLORS, default_view, framed, stage_top
 from autocolor.scene.kinds import in_digits
 from autocolor.scene.scene import Scene
 from autocolor.scene.view import View
@@ -96,7 +96,7 @@ def turned(scene: Scene, right: float, up: float, top: float = -math.inf) -> Vie
     target = np.array(target_of(scene))
     away = np.array(scene.view.eye) - target
     distance = float(np.linalg.norm(away)) or 1.0
-    azimuth = _azimuth(scene.view, away) + math.radians(right)
+    azimuth = math.radians(scene.view.polar(_vector(target)).azimuth + right)
     before = math.asin(max(-1.0, min(1.0, float(away[2]) / distance)))
     lowest = max(-1.0, (lowest_eye(scene, top) - float(target[2])) / distance)
     elevation = max(-HIGHEST, min(HIGHEST, before + math.radians(up)))
@@ -109,15 +109,6 @@ def turned(scene: Scene, right: float, up: float, top: float = -math.inf) -> Vie
         [horizontal * math.cos(azimuth), horizontal * math.sin(azimuth), math.sin(elevation)]
     )
     return scene.view.replace(eye=_vector(eye), target=_vector(target))
-
-
-def _azimuth(view: View, away: Floats) -> float:
-    """The azimuth of the eye as seen from the target; for a vertical view, from the picture's axes."""
-    if math.hypot(away[0], away[1]) < 1e-9 * abs(away[2]):
-        # The picture's bottom points to the side of a lower eye; seen from below, its top does.
-        toward = view.axes[1] if away[2] > 0 else -view.axes[1]
-        return math.atan2(toward[1], toward[0])
-    return math.atan2(away[1], away[0])
 
 
 def lowest_eye(scene: Scene, top: float) -> float:
@@ -175,15 +166,7 @@ def seen_from(scene: Scene, side: str) -> View:
 
 def target_of(scene: Scene) -> Vector:
     """The point to orbit: the view's target, else the point on the line of sight at the object's depth."""
-    view = scene.view
-    if view.target is not None:
-        return view.target
-    low, high = object_bounds(scene.mesh, scene.parts)
-    eye = np.array(view.eye)
-    forward = view.axes[2]
-    depth = float(((low + high) / 2 - eye) @ forward)
-    least = float(np.linalg.norm(high - low)) / 2 or 1.0
-    return _vector(eye + forward * max(depth, least))
+    return scene.view.orbit_target(*scene.object_bounds)
 
 
 def _vector(values: Floats | Vector) -> Vector:
