@@ -528,7 +528,7 @@ def settings_samples() -> Iterator[bytes]:
     yield b"lights.key.intensity=2"
     yield b"lights.key.only_parts=hood, roof\0lights.rim.position=[1, 2, 3]\0lights.rim.on=false"
     yield b"view.angle=10\0view.target=none\0view.eye=[1,2,3]\0scalar=none"
-    yield b"surfaces.body.object_color=#b01020\0surfaces.glass.blend=0.3\0surfaces.body.levels=20"
+    yield b"surfaces.body.object_color=#b01020\0surfaces.glass.ramp=#200,#f60,#fff\0surfaces.body.levels=20"
     yield b"scalar.name=stress\0scalar.bands=4\0scalar.limits=[0, 5]\0ambient=0.1\0mapping=[[0,0],[1,1]]"
     yield b"lights.key.flaps.z.minimum=-0.5\0parts.hood.surface=glass"
     yield b"lights.key.half_spaces.door={point=[0,0,1], direction=[0,0,1]}\0lights.rim.half_spaces=none"

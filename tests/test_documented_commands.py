@@ -13,6 +13,7 @@ from docs.generate.commands import ROOT, here, process
 
 NOT_RUN = {
     "autocolor view scenes/coupe --normals": "it opens a window",
+    "autocolor view scenes/coupe --paints paints.gpl": "it opens a window",
     "ramtek play figures/figure-normals.ramtek --loads-per-second 30": "it opens a window",
     "ramtek serve --unix /tmp/display --window &": "it waits for hosts",
     "ramtek tty /tmp/display -- old_program {}": "it runs a program that the reader has",

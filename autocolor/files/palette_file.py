@@ -25,7 +25,7 @@ from typing import Any, Final
 import numpy as np
 
 from autocolor.arrays import Bytes
-from autocolor.checks import Color, closest, printable, shown
+from autocolor.checks import Color, printable, shown
 from autocolor.errors import InputError, UsageError
 from autocolor.files.formats import Format, format_named, recognized, suffix_rule, suffixes_of
 from autocolor.files.meshes.number_text import Problems
@@ -41,7 +41,7 @@ LONGEST_NAME: Final = 100
 """Limit: letters of a name, which fit in two lines of a message."""
 
 LARGEST: Final = 1 << 20
-"""Limit: the bytes of a palette file. MOST_COLORS with names of ordinary length take a quarter of it."""
+"""Limit: the bytes of a palette file. MOST_COLORS with names of LONGEST_NAME letters take half of it."""
 
 NAME_RULE: Final = f"must be at most {LONGEST_NAME} printable characters, without spaces around them"
 COUNT_RULE: Final = f"a palette must have 1 to {MOST_COLORS:,} colors"
@@ -93,18 +93,10 @@ class Palette(Immutable):
         red, green, blue = self.colors[number].tolist()
         return red, green, blue
 
-    def color_named(self, name: str) -> Color:
-        """The color of this name; of several, the first. Capitals do not matter.
-
-        Raises UsageError, with the closest name, if no color has the name.
-        """
+    def color_named(self, name: str) -> Color | None:
+        """The color of this name, whatever its capitals; of several, the first. None if no color has it."""
         folded = [each.casefold() for each in self.names]
-        if not name or name.casefold() not in folded:
-            names = [each for each in self.names if each]
-            raise UsageError(
-                f"there is no paint {shown(name)}{closest(name, names) or '; see the names of the palette'}"
-            )
-        return self.color(folded.index(name.casefold()))
+        return self.color(folded.index(name.casefold())) if name and name.casefold() in folded else None
 
 
 def is_name(name: object) -> bool:
@@ -178,14 +170,20 @@ def write_palette(
     and `overwrite` is false, or if it cannot be created; WriteError if writing fails.
     """
     path = Path(path)
-    palette_format = format_named(path, PALETTE_FORMATS)
-    if palette_format is None:
-        raise UsageError(f"{path.name}: a palette must {suffix_rule(path, SUFFIXES)}; rename it")
+    palette_format = check_palette_path(path)
     if not isinstance(palette, Palette):
         palette = Palette(palette, names or ())
     elif names is not None:
         palette = Palette(palette.colors, names)
     write_atomically(path, palette_format.written(palette, path), overwrite=overwrite)
+
+
+def check_palette_path(path: Path) -> PaletteFormat:
+    """The format in which a palette is written to a path. Raises UsageError for an unknown ending."""
+    palette_format = format_named(path, PALETTE_FORMATS)
+    if palette_format is None:
+        raise UsageError(f"{path.name}: a palette must {suffix_rule(path, SUFFIXES)}; rename it")
+    return palette_format
 
 
 def is_palette(path: Path) -> bool:

@@ -387,7 +387,7 @@ class ColorKind(Kind):
 
 @dataclass(frozen=True)
 class ColorsKind(Kind):
-    """A list of 2 to `most` colors."""
+    """A list of 2 to `most` colors. A text of colors between commas, as in "#200, #f60", is accepted."""
 
     most: int
 
@@ -395,7 +395,7 @@ class ColorsKind(Kind):
         return f"must be a list of 2 to {self.most} colors"
 
     def accepts(self) -> str:
-        return "Sequence[str | Sequence[int]]"
+        return "str | Sequence[str | Sequence[int]]"
 
     def accepted(self, value: Any) -> tuple[Color, ...]:
         require(not isinstance(value, UNORDERED))
@@ -407,10 +407,13 @@ class ColorsKind(Kind):
         return '; write them as in ["#200", "#f60", "#fff"]'
 
     def validated(self, value: object, path: Path, problems: list[Problem]) -> object:
-        if isinstance(value, (list, tuple)) and 2 <= len(value) <= self.most:
+        given = value
+        if isinstance(value, str) and len(value) <= LONGEST_COLOR * self.most:
+            given = _between_commas(value.removeprefix("[").removesuffix("]"))
+        if isinstance(given, (list, tuple)) and 2 <= len(given) <= self.most:
             # Name the colors that are invalid.
-            colors = [ColorKind().validated(color, (*path, at), problems) for at, color in enumerate(value)]
-            return REFUSED if any(color is REFUSED for color in colors) else tuple(colors)
+            ramp = [ColorKind().validated(color, (*path, at), problems) for at, color in enumerate(given)]
+            return REFUSED if any(color is REFUSED for color in ramp) else tuple(ramp)
         return super().validated(value, path, problems)
 
     def to_plain(self, name: str, value: Any) -> Mapping[str, object]:
@@ -421,6 +424,25 @@ class ColorsKind(Kind):
         if len(one) != len(other):
             return one
         return tuple(ColorKind().between(a, b, share) for a, b in zip(one, other, strict=True))
+
+
+def _between_commas(text: str) -> list[str]:
+    """The parts of a text between its commas, without spaces and quotes around them.
+
+    Commas in parentheses do not count.
+
+    >>> _between_commas("red, 'rgb(1, 2, 3)'")
+    ['red', 'rgb(1, 2, 3)']
+    """
+    parts: list[list[str]] = []
+    depth = 0
+    for part in text.split(","):
+        if depth > 0:
+            parts[-1].append(part)
+        else:
+            parts.append([part])
+        depth += part.count("(") - part.count(")")
+    return [",".join(part).strip(" '\"") for part in parts]
 
 
 def in_digits(color: Color) -> str:

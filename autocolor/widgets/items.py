@@ -25,7 +25,7 @@ from ramtek_emu import instructions
 # picture, lights, reflectance, all; SCREENS over the picture                    none
 #   mapping, scalar
 # light and view                SCREENS; all in its small picture                none
-# color mixing                  SCREENS; the chosen surface's in a picture       ramps, hues, swatches, and
+# color mixing                  SCREENS; the chosen surface's in a picture       shades, hues, swatches, and
 #                               and a bar                                        grays of the other surfaces
 # light blending                all; the chosen surface's again in a bar         none
 # kept                          SCREENS                                          small pictures, in the words

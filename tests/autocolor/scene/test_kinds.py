@@ -20,6 +20,7 @@ from autocolor.scene.kinds import (
     AngleCurveKind,
     Boolean,
     ColorKind,
+    ColorsKind,
     CurveKind,
     Instance,
     Number,
@@ -96,6 +97,23 @@ def test_what_is_no_finite_number_is_refused(value: object) -> None:
         (Reference("lights", "eye"), 3, "it must be 'eye' or the name of a light, not 3"),
         (Instance(dict), [], "it must be a dict, not []"),
         (
+            ColorsKind(3),
+            ["red"],
+            'it must be a list of 2 to 3 colors, not [\'red\']; write them as in ["#200", "#f60", "#fff"]',
+        ),
+        (
+            ColorsKind(3),
+            "red, blue, teal, gold",
+            "it must be a list of 2 to 3 colors, not 'red, blue, teal, gold'; write them as in"
+            ' ["#200", "#f60", "#fff"]',
+        ),
+        (
+            ColorsKind(3),
+            ("red", "bleu"),
+            'it[2] must be "#rrggbb", a name such as "red", or three whole numbers from 0 to 255, not'
+            " 'bleu'; did you mean 'blue'?",
+        ),
+        (
             CurveKind({"linear": 1, "gamma": 2}),
             "gama",
             "it must be 'linear', 'gamma', or rising points [x, y] from x = 0 to x = 1, not 'gama'; did you"
@@ -125,6 +143,9 @@ def test_a_value_that_breaks_a_rule_is_refused_in_a_sentence(
         (References("lights"), [], ()),
         (Reference("lights", "eye"), "key", "key"),
         (Reference("lights", "eye"), "eye", "eye"),
+        (ColorsKind(9), np.array([[0, 0, 0], [1, 2, 3]], np.uint8), ((0, 0, 0), (1, 2, 3))),
+        (ColorsKind(9), "#200,rgb(1, 2, 3) , teal", ((34, 0, 0), (1, 2, 3), (0, 128, 128))),
+        (ColorsKind(9), "['#200', \"#f60\"]", ((34, 0, 0), (255, 102, 0))),
         (CurveKind({"linear": 1}), "linear", "linear"),
         (CurveKind({"linear": 1}), [[0, 0], [1, 0.5]], ((0.0, 0.0), (1.0, 0.5))),
     ],

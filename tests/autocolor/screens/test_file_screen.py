@@ -17,6 +17,7 @@ from autocolor import (
     read_scene,
     render,
     save_image,
+    write_palette,
     write_picture,
     write_rig,
     write_scene,
@@ -24,7 +25,7 @@ from autocolor import (
 from autocolor.budget import allowing
 from autocolor.errors import AutocolorError
 from autocolor.files.picture_file import SavedPicture
-from autocolor.files.state import MOST_FILES, note_file
+from autocolor.files.state import MOST_FILES, note_file, recent_files
 from autocolor.mapping.ranges import SCREENS
 from autocolor.screens import file_screen
 from autocolor.screens.file_screen import (
@@ -160,6 +161,19 @@ def test_a_rig_is_put_on_the_scene_and_fitted(hand: Hand) -> None:
     hand.open_menu()
     undo(hand)
     assert scene_of(hand) is before
+
+
+def test_paints_are_opened_for_color_mixing_and_are_no_step(hand: Hand, folder: Path) -> None:
+    before, recent = scene_of(hand), recent_files()
+    write_palette(folder / "ral.act", ["red", "navy"])
+    hand.pick("refresh")
+    assert rows_of(hand)["ral.act"].value == "paints"
+    pick(hand, "ral.act")
+    assert hand.viewer.page == "mixing"
+    assert told(hand) == ("2 paints of ral.act: take them in color mixing", False)
+    assert scene_of(hand) is before
+    # Nothing is written unasked.
+    assert recent_files() == recent
 
 
 def test_an_unreadable_file_is_refused_in_an_orange_sentence(hand: Hand) -> None:

@@ -318,6 +318,8 @@ def test_surfaces_are_written_as_a_library_of_materials() -> None:
         "newmtl b\nKd 0 0 0.4\nKs 0.5 0.5 0.5\nillum 2\n"
     )
     assert mtl_text([]) == b""
+    ramp = Surface("hot").replace(ramp=["#200", "#f30", "#fff"])
+    assert mtl_text([("a", ramp)]).startswith(b"newmtl a\nKd 1 0.2 0\n")
 
 
 def test_the_last_line_may_end_with_a_continuation(path: Path) -> None:

@@ -11,12 +11,12 @@ from autocolor.mapping.ranges import BACKGROUND, SCREENS, LevelRange
 from autocolor.screens.surface.mixing_palette import (
     GRAYS,
     HUES,
-    RAMP_STEPS,
+    SHADE_STEPS,
     MixingWords,
     Ranges,
     crop_of,
     mixing_words,
-    ramp_of,
+    shades_of,
 )
 from autocolor.widgets.items import NIGHT, Area
 
@@ -29,9 +29,9 @@ TWO_RANGES: Ranges = (("glass", LevelRange(1, 600)), ("body", LevelRange(601, 40
 
 
 @given(COLORS)
-def test_step_k_of_a_ramp_is_k_of_63_parts_of_the_color_rounded_half_up(color: Color) -> None:
+def test_shade_k_is_k_of_63_parts_of_the_color_rounded_half_up(color: Color) -> None:
     expected = [[(2 * part * step + 63) // 126 for part in color] for step in range(64)]
-    assert ramp_of(color).tolist() == expected
+    assert shades_of(color).tolist() == expected
 
 
 @pytest.mark.parametrize("ranges", [ALONE, LARGE, TWO_RANGES])
@@ -40,9 +40,9 @@ def test_all_words_differ_and_none_is_of_the_background_of_the_screens_or_shown(
     ranges: Ranges, swatches: int
 ) -> None:
     palette = mixing_words(ranges, "body", swatches)
-    parts = [palette.light_ramp, palette.object_ramp, palette.grays, palette.hues, palette.swatches]
+    parts = [palette.light_shades, palette.object_shades, palette.grays, palette.hues, palette.swatches]
     words = np.concatenate(parts)
-    assert len(palette.light_ramp) == len(palette.object_ramp) == RAMP_STEPS
+    assert len(palette.light_shades) == len(palette.object_shades) == SHADE_STEPS
     assert (len(palette.grays), len(palette.hues)) == (len(GRAYS), len(HUES))
     assert len(palette.swatches) == swatches
     assert len(set(words.tolist())) == len(words)
@@ -71,8 +71,8 @@ def test_loads_put_each_color_into_its_word(ranges: Ranges) -> None:
     table = np.full((1024, 3), 7, np.uint8)
     for first, colors in palette.loads((200, 100, 50), (1, 2, 3), swatches):
         table[first : first + len(colors)] = colors
-    assert np.array_equal(table[palette.light_ramp], ramp_of((200, 100, 50)))
-    assert np.array_equal(table[palette.object_ramp], ramp_of((1, 2, 3)))
+    assert np.array_equal(table[palette.light_shades], shades_of((200, 100, 50)))
+    assert np.array_equal(table[palette.object_shades], shades_of((1, 2, 3)))
     assert np.array_equal(table[palette.grays], GRAYS)
     assert np.array_equal(table[palette.hues], HUES)
     assert np.array_equal(table[palette.swatches], swatches)
