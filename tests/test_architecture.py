@@ -23,7 +23,8 @@ PUBLIC_NAMES = {
         "UnavailableError", "UsageError", "Variant", "View", "WriteError", "animate", "batch",
         "batch_results", "demo", "frames", "grid", "image", "open_tables", "read_journal", "read_palette",
         "read_picture", "read_rig", "read_scene", "read_variants", "render", "save_image", "save_layers",
-        "save_words", "scene_of", "send_picture", "write_palette", "write_picture", "write_rig", "write_scene",
+        "save_words", "scene_of", "send_picture", "write_palette", "write_picture", "write_rig",
+        "write_scene",
     ],
     "ramtek_emu": [
         "ColorsError", "Configuration", "ConfigurationError", "EntryFormat", "GMR_9300", "HostPort",
