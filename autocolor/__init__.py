@@ -16,6 +16,13 @@ TYPE_CHECKING: Final = False
 if TYPE_CHECKING:
     from typing import Final
 
+    from autocolor.batches.films import animate as animate
+    from autocolor.batches.frames import frames as frames
+    from autocolor.batches.making import batch as batch
+    from autocolor.batches.making import batch_results as batch_results
+    from autocolor.batches.table import Variant as Variant
+    from autocolor.batches.table import grid as grid
+    from autocolor.batches.table import read_variants as read_variants
     from autocolor.commands.demo import demo as demo
     from autocolor.errors import AutocolorError as AutocolorError
     from autocolor.errors import InputError as InputError
@@ -24,6 +31,9 @@ if TYPE_CHECKING:
     from autocolor.errors import UnavailableError as UnavailableError
     from autocolor.errors import UsageError as UsageError
     from autocolor.errors import WriteError as WriteError
+    from autocolor.files.palette_file import Palette as Palette
+    from autocolor.files.palette_file import read_palette as read_palette
+    from autocolor.files.palette_file import write_palette as write_palette
     from autocolor.files.picture_file import read_picture as read_picture
     from autocolor.files.picture_file import write_picture as write_picture
     from autocolor.files.rig_file import read_rig as read_rig
@@ -33,8 +43,10 @@ if TYPE_CHECKING:
     from autocolor.files.store.tables import open_tables as open_tables
     from autocolor.images import image as image
     from autocolor.images import save_image as save_image
+    from autocolor.images import save_words as save_words
     from autocolor.images import send_picture as send_picture
     from autocolor.journal.journal import read_journal as read_journal
+    from autocolor.layers import save_layers as save_layers
     from autocolor.lighting.picture import Picture as Picture
     from autocolor.mapping.ranges import LevelRange as LevelRange
     from autocolor.rendering import render as render
@@ -77,6 +89,7 @@ _HOME: Final = {
     "NamedView": "scene.view",
     "OutputError": "errors",
     "Paint": "scene.surfaces",
+    "Palette": "files.palette_file",
     "Part": "scene.surfaces",
     "Phong": "scene.reflection_models",
     "Picture": "lighting.picture",
@@ -88,19 +101,30 @@ _HOME: Final = {
     "Surface": "scene.surfaces",
     "UnavailableError": "errors",
     "UsageError": "errors",
+    "Variant": "batches.table",
     "View": "scene.view",
     "WriteError": "errors",
+    "animate": "batches.films",
+    "batch": "batches.making",
+    "batch_results": "batches.making",
     "demo": "commands.demo",
+    "frames": "batches.frames",
+    "grid": "batches.table",
     "image": "images",
     "open_tables": "files.store.tables",
     "read_journal": "journal.journal",
+    "read_palette": "files.palette_file",
     "read_picture": "files.picture_file",
     "read_rig": "files.rig_file",
     "read_scene": "files.scene_sources",
+    "read_variants": "batches.table",
     "render": "rendering",
     "save_image": "images",
+    "save_layers": "layers",
+    "save_words": "images",
     "scene_of": "scene.creation",
     "send_picture": "images",
+    "write_palette": "files.palette_file",
     "write_picture": "files.picture_file",
     "write_rig": "files.rig_file",
     "write_scene": "files.scene_writing",

@@ -1,4 +1,4 @@
-"""A picture in the colors of a scene, without a studio: on a display, as an array, or as a PNG file.
+"""A picture in the colors of a scene, without a studio: on a display, as an array, or in PNG files.
 
 A picture contains intensities but no colors. The colors come from the words and entries of a display image,
 which `display_image` makes.
@@ -9,6 +9,7 @@ from __future__ import annotations
 import dataclasses
 import re
 from itertools import product
+from numbers import Integral
 from os import PathLike
 from typing import Final
 
@@ -16,13 +17,14 @@ import numpy as np
 
 from autocolor.arrays import Bytes, Words, chunks, light_of
 from autocolor.checks import shown
-from autocolor.errors import InputError, UsageError
+from autocolor.errors import UsageError
 from autocolor.files.writing import check_suffix, write_atomically
-from autocolor.lighting.picture import Picture, check_smooth
+from autocolor.lighting.picture import Picture, check_smooth, check_surfaces
 from autocolor.mapping.display_image import DisplayImage, LevelImage
 from autocolor.mapping.legend import legend
 from autocolor.mapping.normal_words import NormalImage
-from autocolor.scene.scene import NORMALS, Scene, check_scene
+from autocolor.mapping.ranges import FEWEST_LEVELS, WORDS
+from autocolor.scene.scene import NORMALS, Scene
 from autocolor.sending import configuration_of, send_image, shown_colors
 from ramtek_emu import HostPort
 
@@ -78,6 +80,8 @@ def save_image(
     *,
     overwrite: bool = False,
     smooth: int | None = None,
+    level: int | None = None,
+    sync: bool = True,
 ) -> None:
     """Write the picture as a display shows it to a PNG file, atomically, with the legend of a scalar.
 
@@ -87,16 +91,78 @@ def save_image(
         picture = autocolor.render(scene, smooth=4)
         autocolor.save_image("coupe.png", scene, picture)   # 640 x 480 pixels
 
-    Raises UsageError for a name that ends as another kind of file does, and if the lines or elements are no
-    multiple of `smooth`; OutputError if the file exists and `overwrite` is false, or if it cannot be created;
-    WriteError if writing fails.
+    `level` is the compression: from 0, fastest, to 9, smallest, by default `ramtek_emu.png.LEVEL`. With
+    `sync=False` the file is not synced to the disk, for programs that write many images: a killed program
+    still leaves whole files, but after a power failure a new file may be empty.
+
+    Raises UsageError if the scene and the picture are in the wrong order, for a name that ends as another
+    kind of file does, for a wrong `level`, and if the lines or elements are no multiple of `smooth`;
+    InputError if the surfaces of the picture are not those of the scene; OutputError if the file exists and
+    `overwrite` is false, or if it cannot be created; WriteError if writing fails.
     """
     from ramtek_emu.png import png_bytes
 
-    check_suffix(path, ".png", "an image")
     check_surfaces(scene, picture)
+    check_suffix(path, ".png", "an image")
+    check_png_level(level)
     smooth = _smooth_of(picture, smooth)
-    write_atomically(path, png_bytes(smoothed(display_image(scene, picture), smooth)), overwrite=overwrite)
+    data = png_bytes(smoothed(display_image(scene, picture), smooth), level)
+    write_atomically(path, data, overwrite=overwrite, sync=sync)
+
+
+def check_png_level(level: int | None) -> None:
+    """Raise UsageError unless the compression of a PNG file is a whole number from 0 to 9, or None."""
+    if level is not None and (
+        isinstance(level, bool) or not isinstance(level, Integral) or not 0 <= level <= 9
+    ):
+        raise UsageError(
+            f"level must be a whole number from 0 to 9, not {shown(level)}; leave it out for the default"
+        )
+
+
+MOST_INDEXED: Final = 256
+"""The colors of the palette of a PNG file."""
+
+
+def save_words(
+    path: str | PathLike[str],
+    scene: Scene,
+    picture: Picture,
+    *,
+    indexed: bool = False,
+    overwrite: bool = False,
+) -> None:
+    """Write the words of a picture with their entries to a PNG file, atomically.
+
+    The file has the lines and elements of the picture: words cannot be averaged, so a smooth picture has
+    `smooth` times those of its image. The legend of a scalar is left out. The pixels are 16-bit grays, equal
+    to the words, 0 to 1023; `word_png_bytes` tells where the 1024 entries are in the file.
+
+    If `indexed`, the pixels are indices of a palette instead. The words in use become 0, 1, 2 and so on, in
+    their order, and their entries the palette; so the colors are those of `image` with `smooth=1`.
+
+    Raises UsageError for a name that does not end in .png, and if `indexed` and more than 256 words are in
+    use; InputError if an intensity is not finite, or if the surfaces of the picture are not those of the
+    scene; OutputError and WriteError as `save_image`.
+    """
+    from ramtek_emu.png import indexed_png_bytes, word_png_bytes
+
+    check_suffix(path, ".png", "words")
+    check_surfaces(scene, picture)
+    shown_image = display_image(scene, picture)
+    if indexed:
+        is_used = np.bincount(shown_image.words.ravel(), minlength=WORDS) > 0
+        if (count := np.count_nonzero(is_used)) > MOST_INDEXED:
+            levels = max(FEWEST_LEVELS, (MOST_INDEXED - 1) // len(shown_image.ranges))
+            raise UsageError(
+                f"an indexed PNG must have at most {MOST_INDEXED} words in use, not {count:,}; set `levels`"
+                f" of each surface to {levels}, or write the words themselves"
+            )
+        index_of_word = (np.cumsum(is_used) - 1).astype(np.uint8)
+        data = indexed_png_bytes(index_of_word[shown_image.words], shown_image.entries[is_used])
+    else:
+        data = word_png_bytes(shown_image.words, shown_image.entries)
+    write_atomically(path, data, overwrite=overwrite)
 
 
 SMOOTHNESSES: Final = (1, 2, 3, 4)
@@ -138,8 +204,7 @@ def averaged(entries: Bytes, words: Words, smooth: int) -> Bytes:
     Measured and rejected: float32 is no faster, and rounds a thousandth of the components differently.
     """
     if smooth == 1:
-        colors: Bytes = entries[words]
-        return colors
+        return entries.take(words, axis=0)
     light = light_of(entries.astype(np.float64))
     # The nearest color of each mean is found by the light between two neighbors.
     between = light_of(np.linspace(0.5, 254.5, 255))
@@ -200,19 +265,3 @@ def size_of(text: str) -> tuple[int, int]:
             " 1280x960"
         )
     return size
-
-
-def check_surfaces(scene: Scene, picture: Picture) -> None:
-    """Raise InputError if the surfaces of a picture are not those of a scene, in the same order.
-
-    Raises UsageError for anything else than a scene and a picture, such as the two in the wrong order.
-    """
-    check_scene(scene)
-    if not isinstance(picture, Picture):
-        raise UsageError(f"a picture must be a Picture, not {shown(picture)}; `render` makes one of a scene")
-    names = [surface.name for surface in scene.surfaces]
-    if list(picture.surfaces) != names:
-        raise InputError(
-            f"the surfaces of a picture must be those of the scene, {shown(names)}, not"
-            f" {shown(list(picture.surfaces))}; render this scene, or use the scene that was rendered"
-        )

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 import numpy as np
 
 from autocolor.arrays import Bytes, Words
 from autocolor.checks import printable, shown
-from autocolor.errors import UsageError
+from autocolor.errors import InputError, UsageError
 from autocolor.mapping.display_image import DisplayImage
 from autocolor.mapping.legend import GROUND, INK, Legend, legend
 from autocolor.mapping.ranges import WORDS
@@ -81,3 +81,33 @@ def drawn_legend(key: Legend) -> Words:
     ]
     drawn: Words = np.concatenate([*areas, *texts])
     return drawn
+
+
+def send_cycle(display: HostPort, images: Iterable[DisplayImage]) -> None:
+    """Send a picture and then one load of the table for each image, the first included.
+
+    After the k-th load the display shows the k-th image: color cycling, as programs of the time did it. A
+    load has the entries from the first to the last that differ, and entry 0 if none differs, so that loads
+    are in step with images. The words come before the first load, because a display that plays a recording
+    waits before each load. Raises InputError if an image has other words than the first, or another legend.
+    """
+    encode = encoder_of_entries(display)
+    first: DisplayImage | None = None
+    shown_entries: Bytes | None = None
+    for number, image in enumerate(images, 1):
+        if first is None:
+            first = image
+            display.send(instructions.reset())
+            display.send(instructions.write_image(image.words))
+            if (key := legend(image)) is not None:
+                display.send(drawn_legend(key))
+        elif not (image.words is first.words or np.array_equal(image.words, first.words)):
+            raise InputError(f"frame {number}: it must have the words of the first frame, not others")
+        elif legend(image) != legend(first):
+            raise InputError(f"frame {number}: it must have the legend of the first frame, not another")
+        differing = np.arange(len(image.entries))
+        if shown_entries is not None:
+            differing = np.flatnonzero((shown_entries != image.entries).any(axis=1))
+        start, end = (int(differing[0]), int(differing[-1])) if len(differing) else (0, 0)
+        display.send(encode(start, image.entries[start : end + 1]))
+        shown_entries = image.entries

@@ -123,7 +123,7 @@ class Studio:
         return self._shown.entries
 
     @property
-    def image(self) -> DisplayImage:
+    def display_image(self) -> DisplayImage:
         """The image on the display: the words, the entries, and their meaning."""
         return self._shown
 
@@ -179,7 +179,9 @@ class Studio:
         """Change the colors of a surface; this sends entries, but no words.
 
         `changes` are fields of its Paint: object_color and light_color ("#rrggbb", a name, or three whole
-        numbers), blend, light_percentage.
+        numbers), blend, light_percentage; or a ramp, which replaces the two colors and their blend.
+
+            studio.recolor("body", ramp=["#200", "#f60", "#fff"])
         """
         fields = fields_of(Paint)
         for name in changes:
@@ -405,7 +407,7 @@ class Studio:
 
         self.refine()
         guard = self._history.on_disk.guard if overwrite else no_guard
-        write_picture(path, self.picture, self.scene, overwrite=overwrite, guard=guard)
+        write_picture(path, self.scene, self.picture, overwrite=overwrite, guard=guard)
         self._mark_written(path)
 
     def save_scene(self, path: str | PathLike[str], overwrite: bool = False) -> None:

@@ -30,8 +30,8 @@ import numpy as np
 from autocolor.arrays import Bytes, Words
 from autocolor.checks import Color, Vector, listed, shown
 from autocolor.errors import UsageError
-from autocolor.images import check_surfaces, display_image
-from autocolor.lighting.picture import Picture
+from autocolor.images import display_image
+from autocolor.lighting.picture import Picture, check_surfaces
 from autocolor.mapping.ranges import SCREENS, LevelRange
 from autocolor.rendering import render
 from autocolor.scene.columns import Tier
@@ -261,6 +261,18 @@ def reflectances() -> st.SearchStrategy[Reflectance]:
 
 @cache
 def paints() -> st.SearchStrategy[Paint]:
+    """Two colors that blend, as in `blended_paints`, or a ramp of `ramps`."""
+    return blended_paints() | st.builds(Paint, ramp=ramps())
+
+
+@cache
+def ramps() -> st.SearchStrategy[tuple[Color, ...]]:
+    """Ramps of two to nine colors."""
+    return st.lists(colors(), min_size=2, max_size=9).map(tuple)
+
+
+@cache
+def blended_paints() -> st.SearchStrategy[Paint]:
     """Any two colors, with a blend of 0 to 1 and a light percentage of 0 to 100."""
     blends = st.sampled_from([0.0, 0.25, 0.6, 1.0]) | numbers(0, 1)
     return st.builds(Paint, colors(), colors(), blends, numbers(0, 100))
@@ -420,17 +432,18 @@ class Recoloring:
 
 
 def recolorings(surfaces: Sequence[str] = ("body", "glass")) -> st.SearchStrategy[Recoloring]:
-    """Changes of any fields of the paint of one of these surfaces, with the values of `paints`.
+    """Changes of the paint of one of these surfaces: of its ramp, or of any other fields, as in `paints`.
 
     A recoloring may change nothing. Call it with a scene or a studio, or use its `surface` and `changes`.
     """
-    fields = {
+    blending = {
         "object_color": colors(),
         "light_color": colors(),
         "blend": numbers(0, 1),
         "light_percentage": numbers(0, 100),
     }
-    changes = st.fixed_dictionaries({}, optional=fields)
+    ramp = {"ramp": st.none() | ramps()}
+    changes = st.fixed_dictionaries({}, optional=blending) | st.fixed_dictionaries(ramp)
     return st.builds(Recoloring, st.sampled_from(surfaces), changes)
 
 

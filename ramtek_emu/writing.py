@@ -1,7 +1,7 @@
 """Atomic writing: whatever happens, a path names either the whole old file or the whole new one.
 
-The bytes go into a temporary file in the same folder, which is synced and then renamed. Both packages write
-their files with this module.
+The bytes go into a temporary file in the same folder, which is synced, unless the caller declines, and then
+renamed. Both packages write their files with this module.
 
 At its exit, Python removes the temporary files of the process. If it is killed, they stay. They are locked
 while their program lives, so the next program that writes to the folder knows, and removes them.
@@ -55,9 +55,10 @@ _SWEPT: Final[set[Path]] = set()
 class Output:
     """A file that is written piece by piece under a temporary name; `keep` gives it its own name."""
 
-    def __init__(self, path: str | os.PathLike[str], *, overwrite: bool) -> None:
+    def __init__(self, path: str | os.PathLike[str], *, overwrite: bool, sync: bool = True) -> None:
         """Create the temporary file; OutputExistsError or OutputError if the path cannot be written."""
         self.overwrite = overwrite
+        self.sync = sync
         refuse_output(path, overwrite)
         # Follow links: the file that a link names is replaced, and the link is kept.
         self.path = Path(os.path.realpath(path))
@@ -76,15 +77,20 @@ class Output:
             raise refusal(self.path, error) from None
 
     def keep(self) -> None:
-        """Sync the file and give it its name; WriteError or OutputExistsError when that fails."""
+        """Sync the file and give it its name; WriteError or OutputExistsError when that fails.
+
+        Without `sync`, the file has its name at once, and the system writes its bytes to the disk later.
+        """
         try:
             self._file.flush()
-            os.fsync(self._file.fileno())
+            if self.sync:
+                os.fsync(self._file.fileno())
             if sys.platform == "win32":
                 # Open files cannot be renamed there. Elsewhere the file is locked until it has its name.
                 self._file.close()
             _name(self._beside, self.path, self.overwrite)
-            sync_folder(self.path.parent)
+            if self.sync:
+                sync_folder(self.path.parent)
         except OutputError:
             raise
         except OSError as error:
@@ -114,13 +120,18 @@ def temporary_folder(path: Path) -> Iterator[tuple[Path, BinaryIO]]:
         _remove(folder)
 
 
-def write_atomically(path: str | os.PathLike[str], data: bytes, *, overwrite: bool) -> None:
+def write_atomically(
+    path: str | os.PathLike[str], data: bytes, *, overwrite: bool, sync: bool = True
+) -> None:
     """Write the bytes to the path, whole or not at all.
+
+    Without `sync`, the system writes the file to the disk later. A program that is killed still leaves whole
+    files, but after a power failure a new file may be empty.
 
     Raises OutputExistsError if the path exists and may not be overwritten, OutputError if no file can be
     created there, and WriteError if writing fails.
     """
-    with Output(path, overwrite=overwrite) as output:
+    with Output(path, overwrite=overwrite, sync=sync) as output:
         output.write(data)
         output.keep()
 

@@ -84,7 +84,7 @@ def main() -> None:
 
 def show_normals(studio: autocolor.Studio, display: Ramtek9300) -> None:
     """Load each word's normal as its color: red to the right, green upward, blue to the eye."""
-    image = studio.image
+    image = studio.display_image
     assert isinstance(image, NormalImage)
     stand_for = image.normals
     right, down, forward = stand_for.normals

@@ -151,7 +151,7 @@ class Sheet:
         """A studio, or what its display shows, at the size of a panel, with smooth edges."""
         squares = SMOOTH * self.reduction
         if isinstance(shown, autocolor.Studio):
-            return smoothed(shown.image, squares)
+            return smoothed(shown.display_image, squares)
         return averaged(shown.entries, shown.words, squares)
 
     def add(self, shown: autocolor.Studio | Field, caption: str, panel: str = "") -> None:

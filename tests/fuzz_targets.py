@@ -26,7 +26,7 @@ import traceback
 import warnings
 import zipfile
 import zlib
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cache, partial
 from itertools import islice
 from pathlib import Path
@@ -39,21 +39,29 @@ from autocolor import (
     Mesh,
     Scene,
     Studio,
+    Variant,
     read_journal,
+    read_palette,
     read_picture,
     read_rig,
     read_scene,
+    read_variants,
     render,
+    write_palette,
     write_picture,
     write_rig,
 )
+from autocolor.batches.outputs import Pattern
+from autocolor.batches.table import varied
 from autocolor.commands.settings import with_settings
 from autocolor.commands.show import session_elsewhere, show_once
 from autocolor.commands.sql import lines_of, statements_in
 from autocolor.errors import AutocolorError, InputError
 from autocolor.files.formats import MESH_FORMATS
 from autocolor.files.meshes.foreign import FOREIGN
+from autocolor.files.palette_file import PALETTE_FORMATS
 from autocolor.files.scene_sources import read_scene_with_report
+from autocolor.files.settings import scene_with
 from autocolor.files.state import COLORS, FILES, recent_colors, recent_files
 from autocolor.files.store.store_file import write_store
 from autocolor.files.store.tables import tables_of
@@ -85,6 +93,8 @@ its mesh, its normals and the arrays of their computation take some hundred."""
 
 SMALL = Configuration(name="small", elements=64, lines=48, planes=10)
 """The display of most inputs, which takes a hundredth of the time of the usual one."""
+
+PALETTES = ("paints.gpl", "paints.csv", "paints.act")
 
 LONGEST_SENTENCE = 4000
 MOST_SENTENCES = 101
@@ -338,7 +348,7 @@ def picture_samples() -> Iterator[bytes]:
     """Picture files of a small picture, without a scalar and with it."""
     for scene in (small_scene(), small_scene().with_scalar(name="stress")):
         picture = render(scene, 6, 8)
-        yield written("small.npz", partial(write_picture, picture=picture, scene=scene))
+        yield written("small.npz", partial(write_picture, scene=scene, picture=picture))
 
 
 def fault_of_picture(_: bytes) -> str:
@@ -409,6 +419,61 @@ def fault_of_rig(_: bytes) -> str:
     return fault_of_scene(small_scene().with_rig(read_rig("rig.toml")))
 
 
+def palette_samples() -> Iterator[bytes]:
+    """The files of a format of palettes for which the others are empty; see `fault_of_palette`."""
+    colors, names = ["#b01020", "#1e5ac8"], ["signal red", 'a "b", c']
+    for number, name in enumerate(PALETTES):
+        pieces = [b""] * len(PALETTES)
+        names = [] if name.endswith(".act") else names
+        pieces[number] = written(name, partial(write_palette, palette=colors, names=names))
+        yield BETWEEN.join(pieces)
+
+
+def fault_of_palette(_: bytes) -> str:
+    name = max(PALETTES, key=lambda name: os.path.getsize(name) if os.path.exists(name) else -1)
+    palette = read_palette(name)
+    for each in PALETTE_FORMATS[:2]:
+        if each.read(each.written(palette, Path("again")), "again") != palette:
+            return f"a palette that is another one as a {each.name}"
+    return ""
+
+
+# Tables and lists of variants.
+
+TABLES = ("looks.csv", "looks.json")
+
+
+def table_samples() -> Iterator[bytes]:
+    """A table in CSV without one in JSON, and a table in JSON without one in CSV."""
+    yield b'name,time,view.eye,ambient\nfirst,0,"[1, 2, 3]",0.1\n,2.5,,none\n' + BETWEEN
+    yield (
+        BETWEEN + b'[{"name": "a", "surfaces.body.object_color": [1, 2, 3], "scalar": null}, {"ambient": 1}]'
+    )
+
+
+def vary_samples() -> Iterator[bytes]:
+    yield b"surfaces.body.object_color=red,#1f3f8f,rgb(1, 2, 3)"
+    yield b"lights.key.intensity=0.5:2:4"
+    yield b"view.eye=[1, 2, 3],[4, 5, 6]"
+    yield b"lights.key.only_parts='hood, roof',\"hood\",none"
+
+
+def fault_of_table(_: bytes) -> str:
+    name = max(TABLES, key=lambda name: os.path.getsize(name) if os.path.exists(name) else -1)
+    return fault_of_variants(read_variants(name))
+
+
+def fault_of_variants(variants: Sequence[Variant]) -> str:
+    pattern = Pattern("{number}-{name}.png", small_scene())
+    if any(os.path.dirname(pattern.path(1, variant)) for variant in variants):
+        return "a name that leads to another folder"
+    for variant in variants[:5]:
+        with contextlib.suppress(AutocolorError):
+            if fault := fault_of_scene(scene_with(small_scene(), variant.settings)):
+                return fault
+    return ""
+
+
 # Sessions, settings and statements.
 
 STATE = tuple(f"../state/autocolor/{name}" for name in (COLORS, FILES, "sessions/1-1/session.jsonl"))
@@ -463,7 +528,7 @@ def settings_samples() -> Iterator[bytes]:
     yield b"lights.key.intensity=2"
     yield b"lights.key.only_parts=hood, roof\0lights.rim.position=[1, 2, 3]\0lights.rim.on=false"
     yield b"view.angle=10\0view.target=none\0view.eye=[1,2,3]\0scalar=none"
-    yield b"surfaces.body.object_color=#b01020\0surfaces.glass.blend=0.3\0surfaces.body.levels=20"
+    yield b"surfaces.body.object_color=#b01020\0surfaces.glass.ramp=#200,#f60,#fff\0surfaces.body.levels=20"
     yield b"scalar.name=stress\0scalar.bands=4\0scalar.limits=[0, 5]\0ambient=0.1\0mapping=[[0,0],[1,1]]"
     yield b"lights.key.flaps.z.minimum=-0.5\0parts.hood.surface=glass"
     yield b"lights.key.half_spaces.door={point=[0,0,1], direction=[0,0,1]}\0lights.rim.half_spaces=none"
@@ -799,6 +864,7 @@ NAMES_OF = {
     "PLY": ("plate.ply",),
     "STL": ("plate.stl",),
     "VTK": ("plate.vtk",),
+    "VTP": ("plate.vtp",),
 }  # fmt: skip
 """The files of the mesh formats of which samples are damaged as they are."""
 
@@ -818,6 +884,9 @@ TARGETS: dict[str, Target] = {
     "scene": file_target("scene", ("scene.toml", "car.obj", "car.mtl", "mesh.tables"), is_folder=True),
     "picture": Target(lambda: archives(picture_samples()), fault_of_picture, ("small.npz",), zipped),
     "rig": Target(rig_samples, fault_of_rig, ("rig.toml",)),
+    "palette": Target(palette_samples, fault_of_palette, PALETTES),
+    "table": Target(table_samples, fault_of_table, TABLES),
+    "vary": Target(vary_samples, lambda data: fault_of_variants(varied(os.fsdecode(data))), largest=300),
     "store": Target(
         store_samples, lambda _: fault_of_scene_at("small.sqlite"), ("small.sqlite",), largest=1 << 17
     ),

@@ -195,7 +195,7 @@ def read_session(folder: Path) -> object:
 def save_picture(path: Path, number: int) -> None:
     """Save a small picture of scene `number`."""
     scene = scene_number(number)
-    write_picture(path, render(scene, 24, 32), scene, overwrite=True)
+    write_picture(path, scene, render(scene, 24, 32), overwrite=True)
 
 
 def save_snapshot(path: Path, number: int) -> None:

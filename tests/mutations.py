@@ -17,6 +17,7 @@ import numpy as np
 from autocolor import Mesh, scene_of
 from autocolor.files.conversion import OutputFormat, outputs
 from autocolor.scene.scalar import MeshScalar
+from tests.autocolor.files.meshes.vtp_files import VtpWriter
 
 NUMBERS = (
     b"4294967296", b"4294967295", b"2147483648", b"2147483647", b"-1", b"0", b"nan", b"inf", b"1e999",
@@ -193,6 +194,27 @@ VTK_OFFSETS = (
     + struct.pack(">15f", *range(15))
     + b"\n"
 )
+VTK_BLOCK = (
+    b"# vtk DataFile Version 3.0\nblock\nBINARY\nDATASET RECTILINEAR_GRID\nDIMENSIONS 3 3 3\n"
+    + b"".join(b"%c_COORDINATES 3 float\n%b\n" % (axis, struct.pack(">3f", 0, 1, 3)) for axis in b"XYZ")
+    + b"POINT_DATA 27\nSCALARS s unsigned_char\nLOOKUP_TABLE default\n"
+    + bytes(range(27))
+    + b"\nCELL_DATA 8\nFIELD f 1\nrow 1 8 unsigned_char\n"
+    + bytes(range(8))
+    + b"\n"
+)
+
+
+def vtp_seed(form: str = "ascii", compressor: str = "") -> bytes:
+    """A VTP file in an encoding."""
+    writer = VtpWriter(form, compressor=compressor)
+    data = f"<PointData>{writer.array('stress', 'Float64', [1, 2, 3, 4, 5e3])}</PointData>"
+    data += f"<CellData>{writer.array('load', 'Int32', [1, 2, 3])}</CellData>"
+    places = [0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0.5, 2, 2, 2]
+    cells = writer.piece(places, "Float32", data, Lines=[[0, 1]], Polys=[[0, 1, 2, 3]], Strips=[[1, 4, 2]])
+    return cells.data
+
+
 OBJ_TEXT = (
     b"# by hand\nmtllib car.mtl\no hood\nusemtl red\nv 0 0 0\nv 1.5e0 0 0 1\nv 1 1 0\nv 0 1 .5\n"
     b"vt 0 0\nvn 0 0 1\n"
@@ -221,6 +243,11 @@ BY_HAND = (
     Seed("VTK in bits", {"plate.vtk": VTK_GRID}, "plate.vtk"),
     Seed("VTK volume in text", {"plate.vtk": VTK_VOLUME}, "plate.vtk"),
     Seed("VTK volume in bits", {"plate.vtk": VTK_OFFSETS}, "plate.vtk"),
+    Seed("VTK block in bits", {"plate.vtk": VTK_BLOCK}, "plate.vtk"),
+    Seed("VTP in text", {"plate.vtp": vtp_seed()}, "plate.vtp"),
+    Seed("VTP in base64", {"plate.vtp": vtp_seed("binary", "vtkZLibDataCompressor")}, "plate.vtp"),
+    Seed("VTP in bits", {"plate.vtp": vtp_seed("appended")}, "plate.vtp"),
+    Seed("VTP packed", {"plate.vtp": vtp_seed("appended", "vtkLZMADataCompressor")}, "plate.vtp"),
     Seed("OFF with normals", {"plate.off": OFF_NORMALS}, "plate.off"),
     Seed("OFF", {"plate.off": OFF_TEXT}, "plate.off"),
     Seed("Movie.BYU", {"plate.g": BYU_TEXT}, "plate.g"),

@@ -407,6 +407,7 @@ def edit_at_random(studio: Studio, chance: random.Random) -> None:
     acts: list[Callable[[], object]] = [
         lambda: studio.recolor(chance.choice(names), object_color=color),
         lambda: studio.recolor(chance.choice(names), blend=number),
+        lambda: studio.recolor(chance.choice(names), ramp=["#200", color, "#fff"]),
         lambda: studio.light(chance.choice(lights), intensity=number),
         lambda: studio.light(chance.choice(lights), on=number < 0.5),
         lambda: studio.add_light(f"light {chance.randrange(5)}", position=(5 * number, -4, 3)),

@@ -19,10 +19,12 @@ PUBLIC_NAMES = {
     "autocolor": [
         "AutocolorError", "BlinnPhong", "CookTorrance", "Flap", "Flaps", "HalfSpace", "InputError",
         "LevelRange", "Light", "Mesh", "MeshScalar", "MissingInputError", "NamedView", "OutputError", "Paint",
-        "Part", "Phong", "Picture", "Reflectance", "Rig", "Scalar", "Scene", "Studio", "Surface",
-        "UnavailableError", "UsageError", "View", "WriteError", "demo", "image", "open_tables",
-        "read_journal", "read_picture", "read_rig", "read_scene", "render", "save_image", "scene_of",
-        "send_picture", "write_picture", "write_rig", "write_scene",
+        "Palette", "Part", "Phong", "Picture", "Reflectance", "Rig", "Scalar", "Scene", "Studio", "Surface",
+        "UnavailableError", "UsageError", "Variant", "View", "WriteError", "animate", "batch",
+        "batch_results", "demo", "frames", "grid", "image", "open_tables", "read_journal", "read_palette",
+        "read_picture", "read_rig", "read_scene", "read_variants", "render", "save_image", "save_layers",
+        "save_words", "scene_of", "send_picture", "write_palette", "write_picture", "write_rig",
+        "write_scene",
     ],
     "ramtek_emu": [
         "ColorsError", "Configuration", "ConfigurationError", "EntryFormat", "GMR_9300", "HostPort",
@@ -36,11 +38,11 @@ PUBLIC_NAMES = {
 WINGS = {
     "autocolor": (
         "errors", "logs", "arrays", "immutable", "checks", "budget", "scene", "visibility", "scalars",
-        "lighting", "mapping", "files", "rendering", "sending", "images", "explanation", "journal", "studio",
-        "testing", "widgets", "screens", "commands", "__main__",
+        "lighting", "mapping", "files", "rendering", "sending", "images", "layers", "batches", "explanation",
+        "journal", "studio", "testing", "widgets", "screens", "commands", "__main__",
     ),
     "ramtek_emu": (
-        "errors", "arrays", "checks", "timing", "configuration", "writing", "png",
+        "errors", "arrays", "checks", "timing", "configuration", "writing", "png", "films",
         "command_line",
         "instruction_set", "memory", "drawing", "video", "processor", "instructions", "display",
         "host", "monitor", "snapshot", "testing", "commands", "__main__",
@@ -49,14 +51,16 @@ WINGS = {
 """The wings of a package in the order of its data: each may use those before it and no other."""
 
 KNOWING_THE_DISPLAY = (
-    "autocolor.__main__", "autocolor.errors", "autocolor.files.writing", "autocolor.images",
-    "autocolor.lighting.picture", "autocolor.sending", "autocolor.studio", "autocolor.testing",
+    "autocolor.__main__", "autocolor.batches.films", "autocolor.batches.making",
+    "autocolor.batches.outputs", "autocolor.errors", "autocolor.files.writing", "autocolor.images",
+    "autocolor.lighting.picture", "autocolor.sending", "autocolor.studio",
+    "autocolor.testing",
 )  # fmt: skip
 WINGS_KNOWING_THE_DISPLAY = ("autocolor.commands", "autocolor.screens", "autocolor.widgets")
 DOORS_OF_THE_DISPLAY = {
     "ramtek_emu", "ramtek_emu.command_line", "ramtek_emu.configuration",
-    "ramtek_emu.errors", "ramtek_emu.host.port", "ramtek_emu.instructions", "ramtek_emu.png",
-    "ramtek_emu.monitor.window", "ramtek_emu.writing",
+    "ramtek_emu.errors", "ramtek_emu.films", "ramtek_emu.host.port", "ramtek_emu.instructions",
+    "ramtek_emu.monitor.window", "ramtek_emu.png", "ramtek_emu.writing",
 }  # fmt: skip
 OUTSIDE = {"numpy", "click", "PIL", "pygame"}
 
@@ -65,6 +69,10 @@ FOR_TESTS = {"hypothesis"}
 
 READING_FOR_US = {"meshio", "trimesh"}
 """The packages of the extra `meshes`."""
+
+
+WRITING_LAYERS = {"OpenEXR"}
+"""The package of the extra `exr`."""
 
 
 class Import(NamedTuple):
@@ -138,14 +146,17 @@ def test_pygame_is_in_one_file() -> None:
     assert {name for name, _ in importers({"pygame"})} == {"ramtek_emu.monitor.glass"}
 
 
-def test_pillow_is_in_two_files_one_for_pictures_and_one_for_the_names_of_colors() -> None:
+def test_pillow_is_in_files_for_pictures_and_films_for_the_names_of_colors_and_in_batches() -> None:
     # Colors written as "#rrggbb" need no Pillow: it is loaded for the first name.
-    assert importers({"PIL"}) == {("ramtek_emu.png", True), ("autocolor.scene.kinds", False)}
+    encoders = {("ramtek_emu.png", True), ("ramtek_emu.films", True)}
+    batches = {(f"autocolor.batches.{name}", False) for name in ("outputs", "sheet")}
+    assert importers({"PIL"}) == {*encoders, *batches, ("autocolor.scene.kinds", False)}
 
 
 def test_nothing_is_imported_that_is_no_dependency() -> None:
     used = {top(i.target) for imports in IMPORTS.values() for i in imports}
-    assert used <= {*PUBLIC_NAMES, *OUTSIDE, *FOR_TESTS, *READING_FOR_US, *sys.stdlib_module_names}
+    used_by_us = {*PUBLIC_NAMES, *OUTSIDE, *FOR_TESTS, *READING_FOR_US, *WRITING_LAYERS}
+    assert used <= {*used_by_us, *sys.stdlib_module_names}
 
 
 def test_the_libraries_that_read_meshes_are_in_one_file_and_loaded_when_they_are_needed() -> None:
@@ -154,6 +165,10 @@ def test_the_libraries_that_read_meshes_are_in_one_file_and_loaded_when_they_are
 
 def test_hypothesis_is_in_the_two_modules_that_are_for_tests() -> None:
     assert {name for name, _ in importers(FOR_TESTS)} == {"autocolor.testing", "ramtek_emu.testing"}
+
+
+def test_the_library_that_writes_layers_is_in_one_file_and_loaded_when_it_is_needed() -> None:
+    assert importers(WRITING_LAYERS) == {("autocolor.layers", False)}
 
 
 def test_constants_are_final_and_array_types_stand_in_one_module() -> None:
@@ -250,7 +265,7 @@ def run(code: str, timeout: float = 60) -> str:
 
 
 WITH_PYGAME = {"ramtek_emu.monitor.glass", "ramtek_emu.monitor.window"}
-WITH_PILLOW = {"ramtek_emu.png", *WITH_PYGAME}
+WITH_PILLOW = {"ramtek_emu.films", "ramtek_emu.png", *WITH_PYGAME}
 
 IMPORTING_ALONE = """
 import importlib, sys

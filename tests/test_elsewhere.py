@@ -55,7 +55,7 @@ studio.recolor("body", object_color="#1f3f8f")
 studio.save_scene(folder / "scene")
 studio.save_scene(folder / "scene.sqlite")
 studio.save_session(folder)
-autocolor.write_picture(folder / "picture.npz", studio.picture, studio.scene)
+autocolor.write_picture(folder / "picture.npz", studio.scene, studio.picture)
 autocolor.save_image(folder / "image.png", studio.scene, studio.picture)
 for path in (folder / "scene", folder / "scene.sqlite", folder / "picture.npz"):
     other = Ramtek9300()

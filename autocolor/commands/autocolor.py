@@ -6,7 +6,8 @@ from typing import ClassVar, Final
 
 import click
 
-from autocolor.commands.options import verbose_option
+from autocolor.commands.options import bringing_paints, paints_option, verbose_option
+from autocolor.errors import UsageError
 from ramtek_emu.command_line import CommandGroup, version_option
 
 EXAMPLES: Final = """\b
@@ -25,6 +26,9 @@ class AutocolorGroup(CommandGroup):
     table: ClassVar[dict[str, str]] = {
         "render": "render a scene to a PNG or picture file, without a window",
         "recolor": "change the colors of a saved picture, without rendering it again",
+        "palette": "write the colors of a surface's levels to a palette file",
+        "sweep": "make pictures of many variants of a scene or a picture",
+        "animate": "write the frames between variants as a film or a stream",
         "view": "show a scene in an interactive window",
         "info": "print the counts, sizes and ranges of a scene",
         "explain": "explain a pixel of a scene, from the nodes to the color",
@@ -44,10 +48,11 @@ class AutocolorGroup(CommandGroup):
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 @click.option("--debug", is_flag=True, help="Show the traceback of an error.")
+@paints_option
 @verbose_option
 @version_option
 @click.pass_context
-def autocolor(context: click.Context, debug: bool) -> None:
+def autocolor(context: click.Context, debug: bool, paints: str | None) -> None:
     """Render lit scenes on an emulated RAMTEK 9300, and recolor them without rendering them again.
 
     Without a command, show the built-in demo in a window.
@@ -55,4 +60,6 @@ def autocolor(context: click.Context, debug: bool) -> None:
     if context.invoked_subcommand is None:
         from autocolor.commands.view import show_demo
 
-        show_demo()
+        show_demo(prepare=bringing_paints(paints))
+    elif paints is not None:
+        raise UsageError("--paints before a command is for the demo; write it after `view` or `show`")

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import dataclasses
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from autocolor.errors import MissingInputError
 
 if TYPE_CHECKING:
+    from autocolor.files.scene_report import SceneReport
     from autocolor.journal.history import History
     from autocolor.scene.scene import Scene
 
@@ -27,9 +29,15 @@ def demo_folder() -> Path:
 
 def demo() -> Scene:
     """The scene of the built-in demo, the coupe. Raises MissingInputError if it is not installed."""
-    from autocolor.files.scene_sources import read_scene
+    return demo_report().scene
 
-    return read_scene(demo_folder()).replace(name="coupe")
+
+def demo_report() -> SceneReport:
+    """The scene of `demo`, with its report. Raises MissingInputError if it is not installed."""
+    from autocolor.files.scene_sources import read_scene_with_report
+
+    report = read_scene_with_report(demo_folder())
+    return dataclasses.replace(report, scene=report.scene.replace(name="coupe"))
 
 
 def demo_session() -> History:

@@ -1,12 +1,13 @@
-"""Options that several commands share: `--normals`, `--size`, `--limit` and `-v`.
+"""Options that several commands share: `--normals`, `--paints`, `--size`, `--limit` and `-v`.
 
 An invalid value of an option is a UsageError, not an InputError.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 import click
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from logging import LogRecord
 
     from autocolor.scene.scene import Scene
+    from autocolor.screens.viewer import Viewer
 
 
 @contextmanager
@@ -45,6 +47,27 @@ def with_normals(scene: Scene, normals: bool) -> Scene:
         return scene
     with as_usage("--normals: "):
         return scene.replace(words="normals")
+
+
+paints_option = click.option(
+    "--paints",
+    type=click.Path(),
+    metavar="FILE",
+    help="Offer the named paints of a .gpl, .csv or .act file beside the swatches of color mixing.",
+)
+
+
+def bringing_paints(path: str | None) -> Callable[[Viewer], object]:
+    """A function that brings the paints of a palette file to a viewer; it does nothing without a path.
+
+    The file is read at once. Raises InputError.
+    """
+    if path is None:
+        return lambda _: None
+    from autocolor.files.palette_file import read_palette
+
+    paints, name = read_palette(path), Path(path).name
+    return lambda viewer: viewer.bring_paints(paints, name)
 
 
 def _size(_context: click.Context, _parameter: click.Parameter, text: str) -> tuple[int, int]:

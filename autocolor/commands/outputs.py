@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from autocolor.errors import OutputError, UsageError
 from ramtek_emu.command_line import tell
@@ -15,12 +16,23 @@ if TYPE_CHECKING:
     from autocolor.scene.scene import Scene
 
 
-def refuse_outputs(output: str | None, save: str | None, force: bool) -> None:
-    """Check the paths of a PNG (`-o`) and a picture file (`--save`), unless they are None.
+OTHERS: Final = {
+    "--layers": (".exr", "an OpenEXR file"),
+    "--words": (".png", "a PNG"),
+    "--indexed": (".png", "a PNG"),
+}
+"""The suffix and the kind of the other outputs, by option."""
+
+
+def refuse_outputs(
+    output: str | None, save: str | None, force: bool, others: Mapping[str, str | None] | None = None
+) -> None:
+    """Check the paths of a PNG (`-o`), a picture file (`--save`) and others by option, unless they are None.
 
     Raises UsageError for a wrong suffix. Raises OutputError if the file exists and `force` is false, or if it
     cannot be created.
     """
+    given = {option: path for option, path in (others or {}).items() if path is not None}
     if output is not None:
         _refuse(output, force)
         if Path(output).suffix.lower() not in ("", ".png"):
@@ -29,9 +41,15 @@ def refuse_outputs(output: str | None, save: str | None, force: bool) -> None:
         _refuse(save, force)
         if Path(save).suffix.lower() != ".npz":
             raise UsageError(f"--save must be the name of a picture file, not {save!r}; end it in .npz")
-    if output is not None and save is not None and same_outputs((output, save)):
+    for option, path in given.items():
+        _refuse(path, force)
+        suffix, kind = OTHERS[option]
+        if Path(path).suffix.lower() != suffix:
+            raise UsageError(f"{option} must be the name of {kind}, not {path!r}; end it in {suffix}")
+    if same := same_outputs([path for path in (output, save, *given.values()) if path is not None]):
+        one, other = same
         raise UsageError(
-            f"two outputs must be two files, not {output} and {save}, which are the same; rename one"
+            f"two outputs must be two files, not {one} and {other}, which are the same; rename one"
         )
 
 

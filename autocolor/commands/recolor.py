@@ -11,7 +11,7 @@ import click
 from autocolor.commands.completion import complete_colors, complete_pictures, complete_surfaces
 from autocolor.commands.options import as_usage, limit_option, verbose_option
 from autocolor.commands.outputs import refuse_outputs, tell_written, write_image
-from autocolor.commands.scenes import set_option
+from autocolor.commands.scenes import set_option, tell_unset
 from autocolor.errors import UsageError
 
 if TYPE_CHECKING:
@@ -22,6 +22,8 @@ Examples:
   autocolor render scenes/coupe --save coupe.npz
   autocolor recolor coupe.npz body --object "#1f3f8f" -o blue.png
   autocolor recolor coupe.npz body --object navy --source "#ffe9c0" --blend 0 -o metallic.png
+  autocolor recolor coupe.npz body --ramp "#200,#f60,#fff" -o glowing.png
+  autocolor recolor coupe.npz body --palette body.gpl
   autocolor recolor bracket.npz --set scalar.scale=turbo --set scalar.limits=[0,200] -o stress.png
 """
 
@@ -31,6 +33,7 @@ Examples:
 @click.argument("surface", required=False, shell_complete=complete_surfaces)
 @click.option(
     "--object",
+    "--object-color",
     "object_color",
     metavar="COLOR",
     shell_complete=complete_colors,
@@ -38,6 +41,7 @@ Examples:
 )
 @click.option(
     "--source",
+    "--light-color",
     "light_color",
     metavar="COLOR",
     shell_complete=complete_colors,
@@ -54,6 +58,18 @@ Examples:
     type=float,
     metavar="PERCENT",
     help="Share of the light color at the highest level, 0 to 100.",
+)
+@click.option(
+    "--ramp",
+    metavar="COLORS",
+    help="Colors at equal distances from the lowest level to the highest, such as #200,#f60,#fff; instead of"
+    " the two colors and their blend.",
+)
+@click.option(
+    "--palette",
+    type=click.Path(),
+    metavar="FILE",
+    help="Take the colors of a .gpl, .csv or .act file as the ramp, such as a file of `autocolor palette`.",
 )
 @set_option
 @click.option(
@@ -76,6 +92,8 @@ def recolor(
     light_color: str | None,
     blend: float | None,
     percentage: float | None,
+    ramp: str | None,
+    palette: str | None,
     settings: tuple[str, ...],
     output: str | None,
     save: str | None,
@@ -93,9 +111,10 @@ def recolor(
         "light_color": light_color,
         "blend": blend,
         "light_percentage": percentage,
+        "ramp": ramp,
     }
     given = {name: value for name, value in changes.items() if value is not None}
-    if surface is None and (given or not settings):
+    if surface is None and (given or palette is not None or not settings):
         raise UsageError(
             "recolor must have a SURFACE, or --set KEY=VALUE without colors; write it as in recolor PICTURE"
             " body --object navy"
@@ -105,6 +124,12 @@ def recolor(
 
         output = f"{Path(picture).stem}-{file_stem(surface or 'recolored')}.png"
     refuse_outputs(output, save, force)
+    if palette is not None:
+        if given:
+            raise UsageError("--palette gives all colors of a surface; leave the other options of colors out")
+        from autocolor.files.palette_file import read_palette
+
+        given["ramp"] = read_palette(palette).colors.tolist()
 
     from autocolor.files.picture_file import read_picture, write_picture
     from autocolor.logs import logger_of, timed
@@ -114,8 +139,9 @@ def recolor(
         saved = read_picture(picture)
     logger.info("%r", saved.picture)
     scene = recolored(saved.scene, surface, given, settings)
+    tell_unset(saved.scene, scene)
     if save is not None:
-        write_picture(save, saved.picture, scene, overwrite=force)
+        write_picture(save, scene, saved.picture, overwrite=force)
     if output is not None:
         with timed(logger, "image written"):
             write_image(output, scene, saved.picture, force)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 import click
@@ -20,6 +21,7 @@ from autocolor.commands.scenes import (
     reframed,
     scene_options,
     set_option,
+    tell_unset,
     tell_up,
 )
 
@@ -29,6 +31,7 @@ if TYPE_CHECKING:
 
 EXAMPLES: Final = """\b
 Examples:
+  autocolor render
   autocolor render scenes/coupe -o coupe.png --save coupe.npz
   autocolor render car.obj --up y
   autocolor render scenes/coupe --light key -o key.png
@@ -36,23 +39,42 @@ Examples:
   autocolor render scenes/coupe --view hood -o hood.png
   autocolor render scenes/coupe --set lights.key.concentration=40 --set ambient=0.2
   autocolor render scenes/coupe --set surfaces.body.object_color=navy --size 1280x960 --smooth 4
+  autocolor render scenes/coupe --layers coupe.exr --words coupe-words.png
 """
 
 
 @click.command(epilog=EXAMPLES)
-@scene_options
+@partial(scene_options, required=False)
 @click.option(
     "-o",
     "--output",
     type=click.Path(),
     metavar="PNG",
-    help="PNG file to write. Default, without --save: SCENE.png.",
+    help="PNG file to write. Default, without any other output: SCENE.png, or coupe.png.",
 )
 @click.option(
     "--save",
     type=click.Path(),
     metavar="PICTURE.npz",
     help="Save the picture with its scene, to recolor it later.",
+)
+@click.option(
+    "--layers",
+    type=click.Path(),
+    metavar="FILE.exr",
+    help="Write what compositors use: each light, depth, normals, positions, identities.",
+)
+@click.option(
+    "--words",
+    type=click.Path(),
+    metavar="FILE.png",
+    help="Write the words as 16-bit grays, with the lookup table.",
+)
+@click.option(
+    "--indexed",
+    type=click.Path(),
+    metavar="FILE.png",
+    help="Write the words in use, at most 256, as indices of a palette.",
 )
 @click.option(
     "--light",
@@ -82,9 +104,12 @@ Examples:
 @click.pass_context
 def render(
     context: click.Context,
-    source: SceneSource,
+    source: SceneSource | None,
     output: str | None,
     save: str | None,
+    layers: str | None,
+    words: str | None,
+    indexed: str | None,
     lights: tuple[str, ...],
     view_name: str | None,
     settings: tuple[str, ...],
@@ -94,8 +119,17 @@ def render(
     hold_exposure: bool,
     force: bool,
 ) -> None:
-    """Render SCENE: a folder, a scene.toml, a mesh file or a picture file."""
+    """Render SCENE: a folder, a scene.toml, a mesh file or a picture file. Without SCENE, render the demo.
+
+    --layers, --words and --indexed write each pixel by itself. With one of them, the default of --smooth is
+    1; with --smooth N, their files have N times the lines and elements of the PNG.
+    """
     from autocolor.commands.settings import with_settings
+
+    others = {"--layers": layers, "--words": words, "--indexed": indexed}
+    is_image_alone = not any(others.values())
+    if smooth is None and not is_image_alone:
+        smooth = "1"
 
     def rendered(scene: Scene) -> Picture:
         from autocolor.rendering import render
@@ -104,7 +138,8 @@ def render(
 
     elements, lines = size
     report = reframed(read(source), elements / lines)
-    tell_up(report, source)
+    if source is not None:
+        tell_up(report, source)
     original = with_normals(report.scene, normals)
     if view_name is not None:
         original = original.with_taken_view(view_name)
@@ -115,28 +150,43 @@ def render(
         mapped = display_image(original, rendered(original)).mapped
         original = original.replace(exposure=held_exposure(mapped, original.scaling, original.exposure))
     edited = created_again(report, with_settings(original, settings), elements / lines)
+    tell_unset(original, edited)
     if lights:
         edited = edited.only_lights(*lights)
-    if output is None and save is None:
+    if output is None and save is None and is_image_alone:
         from autocolor.files.paths import file_stem
 
         output = f"{file_stem(edited.name)}.png"
-    refuse_outputs(output, save, force)
+    refuse_outputs(output, save, force, others)
+    if layers is not None:
+        from autocolor.layers import open_exr
 
-    with progress(4) as step:
+        open_exr()
+
+    with progress(5) as step:
         from autocolor.files.picture_file import write_picture
+        from autocolor.images import save_words
+        from autocolor.layers import save_layers
 
         _ = edited.mesh.normals
         step()
         picture = rendered(edited)
         step()
+        # This may be refused, so it comes first.
+        if indexed is not None:
+            save_words(indexed, edited, picture, indexed=True, overwrite=force)
         if save is not None:
-            write_picture(save, picture, edited, overwrite=force)
+            write_picture(save, edited, picture, overwrite=force)
         step()
         if output is not None:
             write_image(output, edited, picture, force)
         step()
-    tell_written(output, save)
+        if words is not None:
+            save_words(words, edited, picture, overwrite=force)
+        if layers is not None:
+            save_layers(layers, edited, picture, overwrite=force)
+        step()
+    tell_written(output, save, *others.values())
     context.exit(ended(report, source))
 
 

@@ -96,12 +96,16 @@ set_option = click.option(
 )
 
 
-def read(source: SceneSource) -> SceneReport:
-    """Read a scene, and print a line on stderr for each repair and each warning."""
-    from autocolor.files.scene_sources import read_scene_with_report
-
+def read(source: SceneSource | None) -> SceneReport:
+    """Read a scene, by default the built-in demo; print a line on stderr for each repair and each warning."""
     if context := click.get_current_context(silent=True):
         print_log(context)
+    if source is None:
+        from autocolor.commands.demo import demo_report
+
+        return demo_report()
+    from autocolor.files.scene_sources import read_scene_with_report
+
     report = read_scene_with_report(source.path, up=source.up, scale=source.scale, surfaces=source.surfaces)
     tell(*(f"autocolor: {repair}" for repair in report.repairs))
     return report
@@ -117,9 +121,16 @@ def tell_up(report: SceneReport, source: SceneSource) -> None:
         tell(f"autocolor: {source.path} seems to lie on its side; try --up {up}, or give --up z")
 
 
-def ended(report: SceneReport, source: SceneSource) -> int:
+def tell_unset(before: Scene, after: Scene) -> None:
+    """Print a line on stderr for each surface whose ramp or two colors the settings have unset."""
+    from autocolor.scene.scene import unset_paints
+
+    tell(*(f"autocolor: {sentence}" for sentence in unset_paints(before, after)))
+
+
+def ended(report: SceneReport, source: SceneSource | None) -> int:
     """The exit code of a command that succeeded."""
-    return REPAIRED if source.strict and report.repairs else 0
+    return REPAIRED if source is not None and source.strict and report.repairs else 0
 
 
 def reframed(report: SceneReport, aspect: float) -> SceneReport:

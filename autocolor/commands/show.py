@@ -11,7 +11,16 @@ from typing import TYPE_CHECKING, Final
 import click
 
 from autocolor.commands.demo import PLACES
-from autocolor.commands.scenes import SceneSource, created_again, ended, read, scene_options, set_option
+from autocolor.commands.options import bringing_paints, paints_option
+from autocolor.commands.scenes import (
+    SceneSource,
+    created_again,
+    ended,
+    read,
+    scene_options,
+    set_option,
+    tell_unset,
+)
 from autocolor.errors import UnavailableError, UsageError
 from ramtek_emu.command_line import tell
 
@@ -53,6 +62,7 @@ BUTTONS: Final = "the right edge brings the menu; ENTER (left button) picks, TRA
     metavar="[SESSION]",
     help="Instead of SCENE, continue the newest session that was not closed, or the session of a name.",
 )
+@paints_option
 @click.option("--once", is_flag=True, help="Send the picture and exit; the display keeps showing it.")
 @click.pass_context
 def show(
@@ -61,6 +71,7 @@ def show(
     settings: tuple[str, ...],
     address: str,
     recover: str | None,
+    paints: str | None,
     once: bool,
 ) -> None:
     """Show SCENE on another display, such as `ramtek serve`, and follow its joystick.
@@ -75,11 +86,14 @@ def show(
         raise UsageError("show must have either SCENE or --recover; name a scene")
     if recover is not None and (settings or once):
         raise UsageError("--set and --once are for SCENE, not for sessions; leave them out")
+    if once and paints is not None:
+        raise UsageError("--paints is for an interactive session, not for --once; leave one of them out")
+    bring = bringing_paints(paints)
     if recover is not None:
         from autocolor.commands.sessions import chosen_session
 
         left, session = chosen_session(recover)
-        session_elsewhere(session.history, address, folder_of(session.source), left)
+        session_elsewhere(session.history, address, folder_of(session.source), left, bring)
     elif source is not None:
         from autocolor.commands.settings import with_settings
         from autocolor.journal.history import History
@@ -89,13 +103,14 @@ def show(
         place = place_of(origin)
         report = read(source)
         scene = created_again(report, with_settings(report.scene, settings))
+        tell_unset(report.scene, scene)
         if once:
             show_once(scene, address)
         else:
             history = History(report.scene, place)
             if scene is not report.scene:
                 history.take(scene)
-            session_elsewhere(history, address, folder_of(origin))
+            session_elsewhere(history, address, folder_of(origin), prepare=bring)
         context.exit(ended(report, source))
 
 

@@ -12,8 +12,16 @@ from typing import TYPE_CHECKING, Final, TypeVar
 
 import click
 
-from autocolor.commands.options import normals_option, with_normals
-from autocolor.commands.scenes import SceneSource, created_again, ended, read, scene_options, set_option
+from autocolor.commands.options import bringing_paints, normals_option, paints_option, with_normals
+from autocolor.commands.scenes import (
+    SceneSource,
+    created_again,
+    ended,
+    read,
+    scene_options,
+    set_option,
+    tell_unset,
+)
 from autocolor.errors import UsageError
 
 if TYPE_CHECKING:
@@ -32,6 +40,7 @@ Examples:
   autocolor view scenes/coupe
   autocolor view car.obj --up y --full-screen
   autocolor view scenes/coupe --normals
+  autocolor view scenes/coupe --paints paints.gpl
   autocolor view --recover
   autocolor view scenes/coupe --set background=navy --set lights.key.cone_angle=none
 """
@@ -50,6 +59,7 @@ Examples:
 @click.option("--sessions", is_flag=True, help="List the sessions that were not closed, and exit.")
 @click.option("--forget", metavar="SESSION", help="Remove a session that was not closed, and exit.")
 @normals_option
+@paints_option
 @click.option("--full-screen", is_flag=True, help="Open the window in full screen.")
 @click.option("--fit", is_flag=True, help="Scale the picture to fill the window; pixels may become uneven.")
 @click.pass_context
@@ -58,6 +68,7 @@ def view(
     source: SceneSource | None,
     settings: tuple[str, ...],
     normals: bool,
+    paints: str | None,
     recover: str | None,
     sessions: bool,
     forget: str | None,
@@ -73,6 +84,9 @@ def view(
     for option, is_given in (("--set", bool(settings)), ("--normals", normals)):
         if is_given and source is None:
             raise UsageError(f"{option} is for SCENE, not for sessions; leave it out")
+    if paints is not None and (sessions or forget is not None):
+        raise UsageError("--paints is for a scene or a session that is shown; leave it out")
+    bring = bringing_paints(paints)
     if sessions or forget is not None:
         from autocolor.commands.sessions import forget_session, list_sessions
 
@@ -80,16 +94,17 @@ def view(
     elif recover is not None:
         waiting = Waiting("the session", full_screen, fit)
         folder, session = waiting.until("reading", lambda: left_session(recover))
-        show(session.history, left=folder, waiting=waiting)
+        show(session.history, left=folder, prepare=bring, waiting=waiting)
     elif source is not None:
         waiting = Waiting(Path(source.path).name or source.path, full_screen, fit)
         report, history = waiting.until("reading", lambda: session_of(source, settings, normals))
-        # Meshes that the user opens later get the same up axis and scale.
-        show(
-            history,
-            prepare=lambda viewer: viewer.session.place_meshes(source.up, source.scale),
-            waiting=waiting,
-        )
+
+        def prepare(viewer: Viewer) -> None:
+            # Meshes that the user opens later get the same up axis and scale.
+            viewer.session.place_meshes(source.up, source.scale)
+            bring(viewer)
+
+        show(history, prepare=prepare, waiting=waiting)
         context.exit(ended(report, source))
 
 
@@ -110,6 +125,7 @@ def session_of(source: SceneSource, settings: tuple[str, ...], normals: bool) ->
     place = place_of(Source(source.path, source.up, source.surfaces, source.scale))
     report = read(source)
     edited = created_again(report, with_normals(with_settings(report.scene, settings), normals))
+    tell_unset(report.scene, edited)
     note_file(source.path)
     history = History(report.scene, place)
     if edited is not report.scene:
@@ -156,7 +172,10 @@ def show(
         with autosaved_session(viewer, left) as update:
             connected(waiting.monitor, viewer, update).run()
     except NoScreenError as error:
-        raise UnavailableError(f"{error}; `autocolor render SCENE -o PNG` renders without a screen") from None
+        raise UnavailableError(
+            f"{error}; `autocolor render` writes the demo to coupe.png, and `autocolor render SCENE -o PNG`"
+            " renders any scene"
+        ) from None
 
 
 def viewer_of(history: History) -> tuple[Viewer, Ramtek9300]:

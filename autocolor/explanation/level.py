@@ -69,6 +69,9 @@ class LevelExplained:
     (levels - 1) + `threshold`, rounded down; without dithering the threshold is a half. On a surface that a
     scalar colors, it is the level of a shade within the band. `light_share` is the weight of the light color
     in the entry, `brightness` the share of the color that the level leaves.
+
+    If the surface has a ramp, `ramp_color` is the number, counted from 1, of the ramp's last color at or
+    below the level. It stands in place of the object color, and the next color in place of the light color.
     """
 
     range_of: str
@@ -86,6 +89,7 @@ class LevelExplained:
     light_color: Color
     light_share: float
     brightness: float
+    ramp_color: int | None
 
 
 def level_at(
@@ -124,6 +128,12 @@ def level_at(
     threshold = ordered_threshold(*at_pixel) if scene.dither == "ordered" and is_mapped else 0.5
     level = math.floor(mapped * (levels - 1) + threshold)
     brightness = darkest + (1 - darkest) * level / (levels - 1) if levels > 1 else 1.0
+    ramp_color, colors = None, (paint.object_color, paint.light_color)
+    share = 0.0 if scalar is not None else light_share(paint, level, levels)
+    if paint.ramp is not None and scalar is None:
+        brightness = 1.0
+        ramp_color, share = ramp_place(len(paint.ramp), level, levels)
+        colors = paint.ramp[ramp_color - 1], paint.ramp[ramp_color]
     return LevelExplained(
         range_of="object" if of_object else "surface",
         is_held=bool(held_name(scene.exposure, at.surface_name)),
@@ -136,10 +146,11 @@ def level_at(
         levels=levels,
         first_word=first,
         scalar=scalar,
-        object_color=paint.object_color,
-        light_color=paint.light_color,
-        light_share=0.0 if scalar is not None else light_share(paint, level, levels),
+        object_color=colors[0],
+        light_color=colors[1],
+        light_share=share,
         brightness=brightness,
+        ramp_color=ramp_color,
     )
 
 
@@ -165,6 +176,17 @@ def light_share(paint: Paint, level: float, levels: int) -> float:
     if level <= begin:
         return 0.0
     return (level - begin) / (levels - 1 - begin) * paint.light_percentage / 100
+
+
+def ramp_place(colors: int, level: int, levels: int) -> tuple[int, float]:
+    """The number, from 1, of the color of a ramp before a level, and the weight of the next color there.
+
+    >>> ramp_place(3, 60, 101), ramp_place(3, 100, 101)
+    ((2, 0.2), (2, 1.0))
+    """
+    steps = max(levels - 1, 1)
+    before = min(level * (colors - 1) // steps, colors - 2)
+    return before + 1, (level * (colors - 1) - before * steps) / steps
 
 
 def curved(mapping: str | CurvePoints, fraction: float) -> float:

@@ -156,10 +156,14 @@ def _level_rows(explanation: Explanation, level: LevelExplained) -> Iterable[Tex
         )
     else:
         yield TextRow("word", f"{explanation.word} = first word {level.first_word} + level {level.level}")
+        labels = ["object color", "light color"]
+        if level.ramp_color is not None:
+            labels = [f"ramp {number}" for number in (level.ramp_color, level.ramp_color + 1)]
         object_color, light_color = (color_text(color) for color in (level.object_color, level.light_color))
-        yield TextRow("object color", f"{object_color}  x {1 - level.light_share:.4f}")
-        yield TextRow("light color", f"{light_color}  x {level.light_share:.4f}")
-    yield TextRow("brightness", f"{level.brightness:.4f} at {what} {level.level}")
+        yield TextRow(labels[0], f"{object_color}  x {1 - level.light_share:.4f}")
+        yield TextRow(labels[1], f"{light_color}  x {level.light_share:.4f}")
+    if level.ramp_color is None:
+        yield TextRow("brightness", f"{level.brightness:.4f} at {what} {level.level}")
     yield TextRow("color", f"{color_text(explanation.color)} in entry {explanation.word}")
 
 

@@ -14,14 +14,19 @@ from functools import partial
 from pathlib import Path
 from typing import Final
 
+import numpy as np
+
+from autocolor.arrays import underflowing
 from autocolor.checks import shown
 from autocolor.errors import UsageError
 from autocolor.files.formats import (
+    DOUBLES,
     MESH_EXTRAS,
     MESH_FORMATS,
     NODE_SCALARS,
     PARTS,
     POLYGON_SCALARS,
+    QUADS,
     Format,
     MeshFormat,
     format_named,
@@ -39,6 +44,7 @@ from autocolor.files.writing import refuse_output, write_atomically
 from autocolor.scene.columns import fields_of
 from autocolor.scene.creation import SHARED
 from autocolor.scene.geometry.normals import CREASE_ANGLE
+from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalar import NODE
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Surface
@@ -147,8 +153,19 @@ def _of_mesh(scene: Scene, output: OutputFormat) -> Iterator[str]:
         names = [each.name for each in mesh.scalars if (each.of == NODE) == (extra == NODE_SCALARS)]
         if extra not in output.holds and names:
             yield f"{len(names):,} {noun}{'s' if len(names) > 1 else ''} ({_named(names)})"
+    quads = len(mesh.node_numbers) - mesh.triangle_count
+    if QUADS not in output.holds and quads:
+        yield f"{quads:,} quad{'s' if quads > 1 else ''} (each is written as two triangles)"
+    if DOUBLES not in output.holds and (rounded := _rounded_nodes(mesh)):
+        yield f"the double precision of {rounded:,} node{'s' if rounded > 1 else ''} (rounded to single)"
     if SETTINGS not in output.holds and mesh.crease_angle != CREASE_ANGLE:
         yield f"the crease angle of {mesh.crease_angle:g} degrees"
+
+
+@underflowing
+def _rounded_nodes(mesh: Mesh) -> int:
+    """The number of nodes with a coordinate that float32 does not hold."""
+    return int((mesh.coordinates.astype(np.float32) != mesh.coordinates).any(axis=1).sum())
 
 
 def _of_scene(scene: Scene, output: OutputFormat) -> Iterator[str]:

@@ -25,9 +25,10 @@ from autocolor.files.meshes.off import begins_as_off, read_off
 from autocolor.files.meshes.ply import ply_bytes, read_ply
 from autocolor.files.meshes.ply_elements import begins_as_ply
 from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement
-from autocolor.files.meshes.stl import begins_as_stl, read_stl
+from autocolor.files.meshes.stl import begins_as_stl, read_stl, stl_bytes
 from autocolor.files.meshes.table_file import SUFFIX, read_table_file, table_file_bytes
 from autocolor.files.meshes.vtk import begins_as_vtk, read_vtk
+from autocolor.files.meshes.vtp import begins_as_vtp, read_vtp
 from autocolor.files.reading import read_head, refuse_irregular, status_of, table_exists
 from autocolor.logs import logger_of, timed
 from autocolor.scene.mesh import Mesh
@@ -99,8 +100,10 @@ NODES_AND_POLYGONS: Final = ("nodes", "polygons")
 PARTS: Final = "parts"
 NODE_SCALARS: Final = "node scalars"
 POLYGON_SCALARS: Final = "polygon scalars"
-MESH_EXTRAS: Final = (PARTS, NODE_SCALARS, POLYGON_SCALARS)
-"""Contents of a mesh, beside nodes and polygons, that some formats cannot hold."""
+QUADS: Final = "quads"
+DOUBLES: Final = "double precision"
+MESH_EXTRAS: Final = (PARTS, NODE_SCALARS, POLYGON_SCALARS, QUADS, DOUBLES)
+"""Contents of a mesh, beside nodes and triangles in single precision, that some formats cannot hold."""
 
 MeshReader = Callable[..., MeshReport]
 """A function that reads a mesh. Its positional arguments are the paths of the files, in the order of the
@@ -162,14 +165,23 @@ MESH_FORMATS: Final = (
         read_obj,
         begins=begins_as_obj,
         written=obj_text,
-        holds=frozenset((PARTS,)),
+        holds=frozenset((PARTS, QUADS, DOUBLES)),
         prior_of_y=MODELED,
     ),
     MeshFormat("OFF", (".off",), read_off, begins=begins_as_off, prior_of_y=SCANNED),
     MeshFormat("PLY", (".ply",), read_ply, begins=begins_as_ply, written=ply_bytes, prior_of_y=SCANNED),
-    MeshFormat("STL", (".stl",), read_stl, begins=begins_as_stl, prior_of_y=PRINTED),
+    MeshFormat(
+        "STL",
+        (".stl",),
+        read_stl,
+        begins=begins_as_stl,
+        written=stl_bytes,
+        holds=frozenset(),
+        prior_of_y=PRINTED,
+    ),
     MeshFormat("tables", (SUFFIX,), read_table_file, written=table_file_bytes),
     MeshFormat("VTK", (".vtk",), read_vtk, begins=begins_as_vtk, prior_of_y=SIMULATION),
+    MeshFormat("VTP", (".vtp",), read_vtp, begins=begins_as_vtp, prior_of_y=SIMULATION),
     *(
         MeshFormat(
             each.name,

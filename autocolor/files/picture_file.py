@@ -39,7 +39,7 @@ from autocolor.files.array_file import (
 )
 from autocolor.files.paths import PICTURE_SUFFIX
 from autocolor.files.writing import Guard, check_suffix, no_guard, write_atomically
-from autocolor.lighting.picture import Picture
+from autocolor.lighting.picture import Picture, check_surfaces
 from autocolor.scene.columns import Problem, RowError, from_plain, to_plain
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalar import LimitsKind, MeshScalar
@@ -83,17 +83,19 @@ class SavedPicture(NamedTuple):
 
 def write_picture(
     path: str | PathLike[str],
-    picture: Picture,
     scene: Scene,
+    picture: Picture,
     *,
     overwrite: bool = False,
     guard: Guard = no_guard,
 ) -> None:
-    """Write a picture file atomically; `guard` may refuse to overwrite a file.
+    """Write a picture and its scene to a picture file, atomically; `guard` may refuse to overwrite a file.
 
-    Raises UsageError for a name that does not end in .npz, or if only one of the picture and the scene has a
-    scalar; OutputError or WriteError if it cannot be written.
+    Raises UsageError if the scene and the picture are in the wrong order, for a name that does not end in
+    .npz, or if only one of the two has a scalar; InputError if the surfaces of the picture are not those of
+    the scene; OutputError or WriteError if the file cannot be written.
     """
+    check_surfaces(scene, picture)
     check_suffix(path, PICTURE_SUFFIX, "a picture with its scene")
     check = guard(Path(path))
     if (picture.scalar_values is None) != (scene.scalar is None):

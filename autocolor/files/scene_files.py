@@ -1,6 +1,7 @@
-"""The files of a folder that can be opened: scenes, stores, meshes, pictures, and further folders.
+"""The files of a folder that can be opened: scenes, stores, meshes, pictures, paints, and further folders.
 
-Kinds are recognized by names alone, which is quick: listing a folder opens no file.
+Kinds are recognized by names alone, which is quick: listing a folder opens no file. So CSV files are not
+listed, neither as tables of a mesh nor as paints.
 """
 
 from __future__ import annotations
@@ -13,18 +14,20 @@ from typing import Final, NamedTuple
 
 from autocolor.errors import InputError, reason_of
 from autocolor.files.formats import format_named, format_of_folder, mesh_suffixes
+from autocolor.files.palette_file import ACT, GPL
 from autocolor.files.paths import SCENE_FILE
 from autocolor.files.scene_sources import SCENE_FORMATS
 
 FOLDER: Final = "folder"
 MESH: Final = "mesh"
+PAINTS: Final = "paints"
 
 MOST_LISTED: Final = 1000
 """Limit: the names that are listed of a folder; nobody finds a file in a longer list."""
 
 
 class Openable(NamedTuple):
-    """A path, and its kind: "scene", "store", "picture", "mesh" or "folder"."""
+    """A path, and its kind: "scene", "store", "picture", "mesh", "paints" or "folder"."""
 
     path: Path
     kind: str
@@ -62,6 +65,8 @@ def kind_of(path: Path) -> str:
     scene_format = format_named(path, SCENE_FORMATS)
     if scene_format is not None:
         return scene_format.name.removesuffix(" file")
+    if path.suffix.lower() in (GPL, ACT):
+        return PAINTS
     return MESH if path.suffix.lower() in mesh_suffixes() else ""
 
 

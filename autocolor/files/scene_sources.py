@@ -74,16 +74,14 @@ STORE: Final = SceneFormat(
     "store", STORE_SUFFIXES, _read_store, begins=lambda head: head.startswith(b"SQLite format 3\0")
 )
 
-SCENE_FORMATS: Final = (
-    SceneFormat(
-        "picture file",
-        (PICTURE_SUFFIX,),
-        _read_picture_scene,
-        begins=lambda head: head.startswith(b"PK\x03\x04"),
-    ),
-    SCENE_FILE_FORMAT,
-    STORE,
+PICTURE: Final = SceneFormat(
+    "picture file",
+    (PICTURE_SUFFIX,),
+    _read_picture_scene,
+    begins=lambda head: head.startswith(b"PK\x03\x04"),
 )
+
+SCENE_FORMATS: Final = (PICTURE, SCENE_FILE_FORMAT, STORE)
 """All formats of whole scenes."""
 
 
@@ -159,6 +157,12 @@ def _with_source(report: SceneReport, folder: Path, scene_file: Path | None = No
         path = None if scene_file is None else scene_file.resolve()
         keep_source(report.scene.mesh, MeshSource(folder.resolve(), report.mesh_files, path))
     return report
+
+
+def is_picture(path: Path) -> bool:
+    """Whether a path is read as a picture file. Raises InputError if it cannot be read."""
+    status_of(path)
+    return source_format(path)[1] is PICTURE
 
 
 def source_format(path: Path) -> tuple[Path, SceneFormat | MeshFormat]:

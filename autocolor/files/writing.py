@@ -35,14 +35,17 @@ def no_guard(_: Path) -> Callable[[], None]:
     return lambda: None
 
 
-def write_atomically(path: str | os.PathLike[str], data: bytes, *, overwrite: bool) -> None:
+def write_atomically(
+    path: str | os.PathLike[str], data: bytes, *, overwrite: bool, sync: bool = True
+) -> None:
     """Write the bytes to a temporary file beside the path, sync it, and rename it to the path.
 
-    Raises OutputError if the path exists and `overwrite` is false, or if no file can be created there;
-    WriteError if writing fails. In both cases the old file, if any, is intact.
+    Without `sync`, a power failure may leave an empty file. Raises OutputError if the path exists and
+    `overwrite` is false, or if no file can be created there; WriteError if writing fails. In both cases the
+    old file, if any, is intact.
     """
-    with _refusals_of_this_package():
-        writing.write_atomically(path, data, overwrite=overwrite)
+    with refusals_of_this_package():
+        writing.write_atomically(path, data, overwrite=overwrite, sync=sync)
 
 
 def write_together(
@@ -65,7 +68,7 @@ def write_together(
         raise OutputError(f"an output of several files must be a folder, not the file {folder}; name another")
     with (
         new_folder(folder, "a mesh"),
-        _refusals_of_this_package(),
+        refusals_of_this_package(),
         _refusals_at(folder),
         writing.temporary_folder(folder.resolve() / "tables") as (part, names_file),
     ):
@@ -184,7 +187,7 @@ def _saving_alone(folder: Path) -> Iterator[None]:
 
 def refuse_output(path: str | os.PathLike[str], *, overwrite: bool) -> None:
     """Raise OutputError if no file can be written to the path; for use before an expensive computation."""
-    with _refusals_of_this_package():
+    with refusals_of_this_package():
         writing.refuse_output(path, overwrite)
 
 
@@ -206,7 +209,8 @@ def _refusals_at(path: Path) -> Iterator[None]:
 
 
 @contextmanager
-def _refusals_of_this_package() -> Iterator[None]:
+def refusals_of_this_package() -> Iterator[None]:
+    """Raise OutputError and WriteError of this package instead of those of `ramtek_emu`."""
     try:
         yield
     except ramtek_emu.OutputError as refusal:

@@ -14,8 +14,8 @@ from collections.abc import Iterator, Sequence
 from itertools import groupby
 from typing import Any, Final, NamedTuple
 
-from autocolor.scene.columns import Kind, Row, fields_of
-from autocolor.scene.kinds import ColorKind, VectorKind, in_digits
+from autocolor.scene.columns import Kind, Row, fields_of, reset_fields
+from autocolor.scene.kinds import ColorKind, ColorsKind, VectorKind, in_digits
 from autocolor.scene.row_kinds import NamedRows, Nested, OneRowOf, RowList
 from autocolor.scene.scene import Scene
 
@@ -156,7 +156,10 @@ def _changes(before: Row | None, after: Row, path: str = "") -> Iterator[ColumnC
 
     Without a row before, the new row is compared with the defaults of its columns.
     """
+    resets = reset_fields(after)
     for name, field in fields_of(type(after)).items():
+        if name in resets and vars(after)[name] is not None:
+            continue
         other, kind = vars(after)[name], field.column.kind
         if before is not None:
             one = vars(before)[name]
@@ -206,20 +209,22 @@ def _changes_of_value(label: str, kind: Kind, one: Any, other: Any, path: str = 
 
 
 def _arrow(kind: Kind, one: Any, other: Any) -> str:
-    """Two values with an arrow between them; a color or another long value alone; empty for a list."""
+    """Two values with an arrow between them; colors or another long value alone; empty for a list."""
     if isinstance(one, (int, float)) and isinstance(other, (int, float)):
         texts: Sequence[str] = _numbers(one, other)
     else:
         texts = [_text(kind, value) for value in (one, other)]
-    return " -> ".join(texts) if all(texts) and not isinstance(kind, ColorKind) else texts[1]
+    return " -> ".join(texts) if all(texts) and not isinstance(kind, (ColorKind, ColorsKind)) else texts[1]
 
 
 def _text(kind: Kind, value: Any) -> str:
-    """A value as short text; empty for a list."""
+    """A value as short text; empty for a list, except a list of colors."""
     if value is None:
         return "none"
     if isinstance(kind, ColorKind):
         return in_digits(value)
+    if isinstance(kind, ColorsKind):
+        return " ".join(map(in_digits, value))
     if isinstance(value, (int, float)):
         return f"{value:.{FEWEST_DIGITS}g}"
     return value if isinstance(value, str) else ""

@@ -86,7 +86,7 @@ def save_session(history: History, picture: Picture, folder: Path, name: str | N
             if file is None or not file.is_own:
                 backups.append(_backup_of(path))
         overwrite = picture_file in overwritten
-        write_picture(picture_file, picture, history.scene, overwrite=overwrite, guard=guard)
+        write_picture(picture_file, history.scene, picture, overwrite=overwrite, guard=guard)
     except BaseException:
         # No file was written yet, so backups are not needed.
         for path in backups:

@@ -18,9 +18,10 @@ import numpy as np
 from autocolor.arrays import AnyArray, Bytes, Indices, PartNumbers, Singles, underflowing
 from autocolor.budget import require_memory
 from autocolor.checks import shown
-from autocolor.errors import UsageError
+from autocolor.errors import InputError, UsageError
 from autocolor.immutable import Immutable, read_only
 from autocolor.lighting.shading import DIFFUSE, SPECULAR, LightPlanes
+from autocolor.scene.scene import Scene, check_scene
 from autocolor.visibility.visible_points import SurfaceSlice, VisibleParts, surface_slices
 
 
@@ -236,6 +237,24 @@ def check_smooth(smooth: int) -> None:
     if isinstance(smooth, bool) or not isinstance(smooth, Integral) or not 1 <= smooth <= MOST_SMOOTH:
         raise UsageError(
             f"smooth must be a whole number from 1 to {MOST_SMOOTH}, not {shown(smooth)}; give one such as 4"
+        )
+
+
+def check_surfaces(scene: Scene, picture: Picture) -> None:
+    """Raise InputError if the surfaces of a picture are not those of a scene, in the same order.
+
+    Raises UsageError unless the arguments are a scene and a picture, in this order.
+    """
+    if isinstance(scene, Picture) and isinstance(picture, Scene):
+        raise UsageError("the scene must come before the picture, not after it; swap the two arguments")
+    check_scene(scene)
+    if not isinstance(picture, Picture):
+        raise UsageError(f"a picture must be a Picture, not {shown(picture)}; `render` makes one of a scene")
+    names = [surface.name for surface in scene.surfaces]
+    if list(picture.surfaces) != names:
+        raise InputError(
+            f"the surfaces of a picture must be those of the scene, {shown(names)}, not"
+            f" {shown(list(picture.surfaces))}; render this scene, or use the scene that was rendered"
         )
 
 

@@ -1,8 +1,10 @@
-"""The lookup table entries of a surface: its object color, blended with the light color; and colors by hue.
+"""The lookup table entries of a surface: its object color blended with the light color, or its ramp.
 
 Paper: "Light Source Color Blending", Figure 12. Levels up to the blend level are taken as
 purely diffuse; above it the color shifts to the specular color in N equal steps. The method assumes that the
 brightest points have the color of the light; it is not a physical prediction of color.
+
+The module also has the white of a color, and colors by hue.
 """
 
 from __future__ import annotations
@@ -15,6 +17,7 @@ import numpy as np
 
 from autocolor.arrays import HALF, Bytes, Floats, Singles, half_up
 from autocolor.checks import Color
+from autocolor.immutable import read_only
 from autocolor.scene.surfaces import Paint
 
 HALVES_UP: Final = (HALF + 1e-9,) * 3
@@ -58,7 +61,14 @@ def entries_of(paint: Paint, levels: int, floor: float = 0.0) -> Bytes:
     should be added to adjust the percentage of the specular color at the maximum intensity". Assumed: the
     blend weights the two colors and the level darkens the result, so that blending two equal colors changes
     nothing. With a blend of 1 there is no shift.
+
+    Departs: a ramp gives the colors of all levels by itself, without darkening or `floor`. Its colors are at
+    equal distances, the first at the lowest level and the last at the highest. Each component is linear
+    between two colors, and rounded half up, in whole numbers: a ramp of `levels` colors gives just these.
+    A single level has the first color.
     """
+    if paint.ramp is not None:
+        return _of_ramp(paint.ramp, levels)
     return _blended(paint, color_shares(paint.blend, paint.light_percentage, levels, floor))
 
 
@@ -67,8 +77,29 @@ def entries_at(paint: Paint, fractions: Singles, levels: int, floor: float = 0.0
 
     A fraction of the range is a level between the whole levels of `entries_of`; its color is computed alike.
     """
+    if paint.ramp is not None:
+        return _of_ramp_at(paint.ramp, fractions)
     level = fractions.astype(np.float64) * (levels - 1)
     return _blended(paint, _shares_at(level, paint.blend, paint.light_percentage, levels, floor))
+
+
+def _of_ramp(ramp: tuple[Color, ...], levels: int) -> Bytes:
+    """The colors of a ramp at each level, (levels, 3) uint8, read-only."""
+    colors = np.array(ramp, np.int64)
+    steps, last = max(levels - 1, 1), len(ramp) - 1
+    place = np.arange(levels) * last
+    below = np.minimum(place // steps, last - 1)
+    above_share = (place - below * steps)[:, None]
+    sums = colors[below] * (steps - above_share) + colors[below + 1] * above_share
+    return read_only(((2 * sums + steps) // (2 * steps)).astype(np.uint8))
+
+
+def _of_ramp_at(ramp: tuple[Color, ...], fractions: Singles) -> Bytes:
+    """The colors of a ramp at fractions of its length, (n, 3) uint8, read-only."""
+    colors, places = np.array(ramp, np.float64), np.arange(len(ramp))
+    place = fractions.astype(np.float64) * (len(ramp) - 1)
+    mixed = [np.interp(place, places, component) for component in colors.T]
+    return read_only((np.stack(mixed, axis=1) + HALVES_UP).astype(np.uint8))
 
 
 def _blended(paint: Paint, shares: Floats) -> Bytes:

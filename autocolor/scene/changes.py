@@ -102,6 +102,7 @@ class PaintChanges(TypedDict, total=False):
     light_color: str | Sequence[int]
     blend: float
     light_percentage: float
+    ramp: str | Sequence[str | Sequence[int]] | None
 
 
 class SurfaceChanges(TypedDict, total=False):
@@ -125,6 +126,7 @@ class SurfaceChanges(TypedDict, total=False):
     light_color: str | Sequence[int]
     blend: float
     light_percentage: float
+    ramp: str | Sequence[str | Sequence[int]] | None
 
 
 class ViewChanges(TypedDict, total=False):

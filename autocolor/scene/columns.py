@@ -25,7 +25,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from enum import IntEnum
 from functools import cache, partial
-from typing import Any, ClassVar, Final, NamedTuple, TypeVar, cast, get_type_hints
+from typing import Any, ClassVar, Final, NamedTuple, Self, TypeVar, cast, get_type_hints
 
 from autocolor.checks import listed, nearest, shown
 from autocolor.errors import InputError
@@ -140,16 +140,36 @@ class Kind:
         """The cost of an edit from one value to another; None if equal. `own` is the tier of the column."""
         return None if one == other else own
 
+    def between(self, one: Any, other: Any, share: float) -> Any:
+        """The value at a share of the way from one value to another, neither None; 0 < `share` < 1.
+
+        Floats are interpolated linearly, also inside tuples of equal shape. Assumed: any other value holds
+        until the other is reached.
+        """
+        return _between(one, other, share)
+
+
+def _between(one: Any, other: Any, share: float) -> Any:
+    if isinstance(one, tuple) and isinstance(other, tuple) and len(one) == len(other):
+        return tuple(_between(a, b, share) for a, b in zip(one, other, strict=True))
+    if not (isinstance(one, float) and isinstance(other, float)) or one == other:
+        return one
+    # No bound of a flap is infinitely far away, so the bound holds.
+    if math.isinf(one) or math.isinf(other):
+        return one
+    return min(max(one * (1 - share) + other * share, min(one, other)), max(one, other))
+
 
 class Row(Immutable):
     """A row of a table: a frozen dataclass whose fields are columns, checked at construction.
 
-    Messages name a row by its `noun` and its name, if it has a name. At most one of the fields in
-    `alternatives` has a value: a change that sets one of them resets the others.
+    Messages name a row by its `noun` and its name, if it has a name. At most one of the groups of fields in
+    `alternatives` is in use: a change that sets a field of one group resets the fields of the other groups.
+    The rules of the class refuse a row that uses two groups.
     """
 
     noun: ClassVar[str] = ""
-    alternatives: ClassVar[tuple[str, ...]] = ()
+    alternatives: ClassVar[tuple[tuple[str, ...], ...]] = ()
 
     def __post_init__(self) -> None:
         check(self, fields_of(type(self)))
@@ -157,6 +177,24 @@ class Row(Immutable):
     def rules(self) -> Iterator[Problem]:
         """The problems of rules between columns. A column with an invalid value is REFUSED."""
         return iter(())
+
+    def between(self, other: Any, share: float) -> Self:
+        """The row at a share of the way to another row, unchecked; 0 < `share` < 1.
+
+        The kind of a column interpolates its values. A column that is absent in one of the rows holds, as do
+        alternatives of which the rows use different groups, and a row of another class.
+        """
+        if self is other or type(self) is not type(other):
+            return self
+        ones, others = vars(self), vars(other)
+        copy = object.__new__(type(self))
+        has_same_groups = not self.alternatives or reset_fields(self) == reset_fields(other)
+        held = () if has_same_groups else {name for group in self.alternatives for name in group}
+        for name, field in fields_of(type(self)).items():
+            a, b = ones[name], others[name]
+            holds = a is b or a is None or b is None or name in held
+            vars(copy)[name] = a if holds else field.column.kind.between(a, b, share)
+        return copy
 
     def __repr__(self) -> str:
         # Leave out fields that have their defaults.
@@ -297,9 +335,24 @@ def _values_by_field(
             inside.setdefault(name, {}).update(value)
         else:
             values[name] = value
-    if row.alternatives and any(values.get(name) is not None for name in row.alternatives):
-        values = {**dict.fromkeys(row.alternatives), **values}
+    used = [group for group in row.alternatives if any(values.get(name) is not None for name in group)]
+    if used:
+        unused = [name for group in row.alternatives if group not in used for name in group]
+        resets = {name: fields[name].default for name in unused}
+        values = {**{name: default() for name, default in resets.items() if default}, **values}
     return values, inside
+
+
+def reset_fields(row: Row) -> tuple[str, ...]:
+    """The fields that are reset because the row uses another group of its `alternatives`.
+
+    A group is in use if an optional field of it has a value.
+    """
+    fields, values = fields_of(type(row)), vars(row)
+    for used in row.alternatives:
+        if any(fields[name].is_optional and values[name] is not None for name in used):
+            return tuple(name for group in row.alternatives if group is not used for name in group)
+    return ()
 
 
 def from_plain(cls: type[SomeRow], table: object) -> SomeRow:
@@ -335,12 +388,12 @@ def from_plain(cls: type[SomeRow], table: object) -> SomeRow:
 
 
 def to_plain(row: Row) -> dict[str, object]:
-    """The row as keys and plain values, which TOML and JSON can hold; None values are omitted."""
-    values = vars(row)
+    """The row as keys and plain values, which TOML and JSON can hold; None and reset values are omitted."""
+    values, resets = vars(row), reset_fields(row)
     return {
         key: value
         for name, field in fields_of(type(row)).items()
-        if values[name] is not None
+        if values[name] is not None and name not in resets
         for key, value in field.column.kind.to_plain(name, values[name]).items()
         if value is not None
     }
@@ -351,7 +404,7 @@ def difference(one: Row, other: Row) -> dict[str, object]:
 
     None removes a value. An infinite value is written, too. Meshes are left out.
     """
-    ones, others = vars(one), vars(other)
+    ones, others, resets = vars(one), vars(other), reset_fields(other)
     changes: dict[str, object] = {}
     for name, field in fields_of(type(one)).items():
         before, after, kind = ones[name], others[name], field.column.kind
@@ -359,6 +412,8 @@ def difference(one: Row, other: Row) -> dict[str, object]:
             continue
         if after is None:
             changes[name] = None
+        elif name in resets:
+            continue
         elif before is None:
             changes.update(kind.to_plain(name, after))
         else:

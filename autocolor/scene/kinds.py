@@ -10,13 +10,14 @@ import math
 import re
 from collections.abc import Mapping, Set
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import islice, pairwise
 from numbers import Integral, Real
 from typing import Any, Final
 
 import numpy as np
 
-from autocolor.checks import Color, closest, either, shown
+from autocolor.arrays import half_up, unit_vector
+from autocolor.checks import Color, Vector, closest, either, shown
 from autocolor.scene.columns import REFUSED, BarRange, Kind, Path, Problem, Tier, bar_within
 
 LARGEST_PLACE: Final = 1e36
@@ -101,6 +102,14 @@ class Whole(Kind):
         require(self.at_least <= number <= self.at_most)
         return number
 
+    def between(self, one: int, other: int, share: float) -> int:
+        return _whole_between(one, other, share)
+
+
+def _whole_between(one: int, other: int, share: float) -> int:
+    """The whole number at a share of the way from one to another, rounded half up."""
+    return half_up(one + (other - one) * share)
+
 
 @dataclass(frozen=True)
 class Boolean(Kind):
@@ -164,6 +173,50 @@ class VectorKind(Kind):
             problems.append(Problem(path, f"must have a length above 0, not {shown(value)}; change it"))
             return REFUSED
         return vector
+
+    def between(self, one: Vector, other: Vector, share: float) -> Vector:
+        """A point moves along a line. A direction turns along a great circle, and its length is linear."""
+        if not self.has_length:
+            point: Vector = super().between(one, other, share)
+            return point
+        length = super().between(math.hypot(*one), math.hypot(*other), share)
+        x, y, z = (length * component for component in _direction_between(one, other, share))
+        return x, y, z
+
+
+LEAST_SINE: Final = 1e-9
+"""Assumed: directions with a smaller sine of their angle are in a line; rounding would decide how to turn."""
+
+
+def _direction_between(one: Vector, other: Vector, share: float) -> Vector:
+    """The unit vector at a share of the shortest turn from one direction to another.
+
+    Assumed: opposite directions turn through the vertical; from the vertical, through +x.
+    """
+    start, end = unit_vector(one), unit_vector(other)
+    cosine = _dot(start, end)
+    aside = _aside(start, end)
+    angle = math.atan2(math.hypot(*aside), cosine)
+    if math.hypot(*aside) < LEAST_SINE:
+        if cosine > 0:
+            return start
+        aside = _aside(start, (0.0, 0.0, 1.0))
+        if math.hypot(*aside) < LEAST_SINE:
+            aside = 1.0, 0.0, 0.0
+    along, across = math.cos(share * angle), math.sin(share * angle)
+    x, y, z = (along * a + across * b for a, b in zip(start, unit_vector(aside), strict=True))
+    return x, y, z
+
+
+def _dot(one: Vector, other: Vector) -> float:
+    return sum(a * b for a, b in zip(one, other, strict=True))
+
+
+def _aside(start: Vector, toward: Vector) -> Vector:
+    """The component of a unit vector at right angles to another."""
+    cosine = _dot(start, toward)
+    x, y, z = (b - cosine * a for a, b in zip(start, toward, strict=True))
+    return x, y, z
 
 
 @dataclass(frozen=True)
@@ -326,6 +379,70 @@ class ColorKind(Kind):
 
     def to_plain(self, name: str, value: Any) -> Mapping[str, object]:
         return {name: in_digits(value)}
+
+    def between(self, one: Color, other: Color, share: float) -> Color:
+        red, green, blue = (_whole_between(a, b, share) for a, b in zip(one, other, strict=True))
+        return red, green, blue
+
+
+@dataclass(frozen=True)
+class ColorsKind(Kind):
+    """A list of 2 to `most` colors. A text of colors between commas, as in "#200, #f60", is accepted."""
+
+    most: int
+
+    def rule(self) -> str:
+        return f"must be a list of 2 to {self.most} colors"
+
+    def accepts(self) -> str:
+        return "str | Sequence[str | Sequence[int]]"
+
+    def accepted(self, value: Any) -> tuple[Color, ...]:
+        require(not isinstance(value, UNORDERED))
+        colors = tuple(ColorKind().accepted(color) for color in islice(value, self.most + 1))
+        require(2 <= len(colors) <= self.most)
+        return colors
+
+    def advice(self, value: object) -> str:
+        return '; write them as in ["#200", "#f60", "#fff"]'
+
+    def validated(self, value: object, path: Path, problems: list[Problem]) -> object:
+        given = value
+        if isinstance(value, str) and len(value) <= LONGEST_COLOR * self.most:
+            given = _between_commas(value.removeprefix("[").removesuffix("]"))
+        if isinstance(given, (list, tuple)) and 2 <= len(given) <= self.most:
+            # Name the colors that are invalid.
+            ramp = [ColorKind().validated(color, (*path, at), problems) for at, color in enumerate(given)]
+            return REFUSED if any(color is REFUSED for color in ramp) else tuple(ramp)
+        return super().validated(value, path, problems)
+
+    def to_plain(self, name: str, value: Any) -> Mapping[str, object]:
+        return {name: [in_digits(color) for color in value]}
+
+    def between(self, one: Any, other: Any, share: float) -> Any:
+        """Lists of equally many colors are interpolated, color by color; other lists hold."""
+        if len(one) != len(other):
+            return one
+        return tuple(ColorKind().between(a, b, share) for a, b in zip(one, other, strict=True))
+
+
+def _between_commas(text: str) -> list[str]:
+    """The parts of a text between its commas, without spaces and quotes around them.
+
+    Commas in parentheses do not count.
+
+    >>> _between_commas("red, 'rgb(1, 2, 3)'")
+    ['red', 'rgb(1, 2, 3)']
+    """
+    parts: list[list[str]] = []
+    depth = 0
+    for part in text.split(","):
+        if depth > 0:
+            parts[-1].append(part)
+        else:
+            parts.append([part])
+        depth += part.count("(") - part.count(")")
+    return [",".join(part).strip(" '\"") for part in parts]
 
 
 def in_digits(color: Color) -> str:

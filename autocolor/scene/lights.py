@@ -282,7 +282,7 @@ class Light(Row):
     """
 
     noun: ClassVar[str] = "light"
-    alternatives: ClassVar[tuple[str, ...]] = ("direction", "aim")
+    alternatives: ClassVar[tuple[tuple[str, ...], ...]] = (("direction",), ("aim",))
 
     name: Annotated[str, Column(Text(), Tier.LIGHT, "The name of the light, which must be unique.")]
     position: Annotated[Vector, Column(VectorKind(), Tier.LIGHT, "The position of the light.", WORLD_UNITS)]

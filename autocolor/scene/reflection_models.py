@@ -143,7 +143,11 @@ class SpecularGrowth(Row):
     factor belongs to the plane, not to S: S stays a weight, and its edit a weighted sum.
     """
 
-    alternatives: ClassVar[tuple[str, ...]] = ("base_reflectance", "refractive_index", "fresnel_curve")
+    alternatives: ClassVar[tuple[tuple[str, ...], ...]] = (
+        ("base_reflectance",),
+        ("refractive_index",),
+        ("fresnel_curve",),
+    )
 
     base_reflectance: Annotated[
         float | None,
@@ -176,7 +180,7 @@ class SpecularGrowth(Row):
 
     def rules(self) -> Iterator[Problem]:
         """At most one of the three columns is given."""
-        given = [name for name in self.alternatives if vars(self)[name] is not None]
+        given = [name for (name,) in self.alternatives if vars(self)[name] is not None]
         for first, second in combinations(given, 2):
             yield Problem((second,), f"must stand without {first}, not beside it; leave one out")
 

@@ -93,6 +93,9 @@ class Nested(Kind):
     def cost(self, one: Any, other: Any, own: Tier) -> Tier | None:
         return own if one is None or other is None else cost(one, other)
 
+    def between(self, one: Row, other: Row, share: float) -> Row:
+        return one.between(other, share)
+
     def _path(self, path: Path) -> Path:
         return path[:-1] if self.inline else path
 
@@ -162,6 +165,9 @@ class OneRowOf(Kind):
     def cost(self, one: Any, other: Any, own: Tier) -> Tier | None:
         return cost(one, other, own)
 
+    def between(self, one: Row, other: Row, share: float) -> Row:
+        return one.between(other, share)
+
 
 @dataclass(frozen=True)
 class RowList(Kind):
@@ -200,6 +206,16 @@ class RowList(Kind):
         costs = _cost_of_rows(one, other) if len(one) == len(other) else own
         # No edit of a table costs anything if the table is not rendered.
         return own if costs is not None and own is Tier.NOTHING else costs
+
+    def between(self, one: Any, other: Any, share: float) -> Any:
+        return _rows_between(one, other, share)
+
+
+def _rows_between(ones: Sequence[Any], others: Sequence[Any], share: float) -> Sequence[Row]:
+    """The rows between two tables with the same names; tables with other names hold."""
+    if [row.name for row in ones] != [row.name for row in others]:
+        return ones
+    return tuple(one.between(other, share) for one, other in zip(ones, others, strict=True))
 
 
 def _cost_of_rows(ones: Sequence[Row], others: Sequence[Row]) -> Tier | None:
@@ -330,6 +346,12 @@ class RangesByName(Referring):
     def to_plain(self, name: str, value: Any) -> Mapping[str, object]:
         return {name: value if isinstance(value, str) else {key: list(limits) for key, limits in value}}
 
+    def between(self, one: Any, other: Any, share: float) -> Any:
+        """Fixed ranges are interpolated if both values name the same rows in the same order."""
+        if isinstance(one, str) or isinstance(other, str) or [*dict(one)] != [*dict(other)]:
+            return one
+        return super().between(one, other, share)
+
 
 class ReferenceAt(NamedTuple):
     """A column that refers to other rows: its kind, and the names of the fields from a row to its value."""
@@ -459,6 +481,9 @@ class NamedRows(Kind):
     def cost(self, one: Any, other: Any, own: Tier) -> Tier | None:
         has_same_names = [row.name for row in one] == [row.name for row in other]
         return _cost_of_rows(one, other) if has_same_names else own
+
+    def between(self, one: Any, other: Any, share: float) -> Any:
+        return _rows_between(one, other, share)
 
 
 def without_name(keys: Mapping[str, object]) -> dict[str, object]:

@@ -21,6 +21,7 @@ from autocolor.scene.kinds import (
     UNORDERED,
     Boolean,
     ColorKind,
+    ColorsKind,
     Number,
     Text,
     VectorKind,
@@ -95,10 +96,7 @@ class ScaleKind(Kind):
         if isinstance(value, str):
             require(value in COLOR_SCALES)
             return value
-        require(not isinstance(value, UNORDERED))
-        colors = tuple(ColorKind().accepted(color) for color in value)
-        require(2 <= len(colors) <= MOST_COLORS)
-        return colors
+        return ColorsKind(MOST_COLORS).accepted(value)
 
     def advice(self, value: object) -> str:
         if not isinstance(value, str):
@@ -108,6 +106,11 @@ class ScaleKind(Kind):
 
     def to_plain(self, name: str, value: Any) -> Mapping[str, object]:
         return {name: value if isinstance(value, str) else [in_digits(color) for color in value]}
+
+    def between(self, one: Any, other: Any, share: float) -> Any:
+        """Lists of colors are interpolated; names hold."""
+        is_named = isinstance(one, str) or isinstance(other, str)
+        return one if is_named else ColorsKind(MOST_COLORS).between(one, other, share)
 
 
 MOST_BANDS: Final = 256

@@ -58,7 +58,7 @@ from autocolor.scene.mesh import Mesh
 from autocolor.scene.rigs import Rig, axis_number, mirrored
 from autocolor.scene.row_kinds import Nested, RangesByName, ReferenceAt, RowList, references_of
 from autocolor.scene.scalar import COMPUTED, Scalar, name_problems
-from autocolor.scene.surfaces import MOST_SURFACES, Part, Surface
+from autocolor.scene.surfaces import MOST_SURFACES, Paint, Part, Surface
 from autocolor.scene.view import MOST_VIEWS, NamedView, View
 
 SomeTableRow = TypeVar("SomeTableRow", Part, Surface, Light, NamedView)
@@ -524,6 +524,22 @@ def costs_at_least(old: Scene, new: Scene, tier: Tier) -> bool:
     """Whether an edit from one scene to another costs at least a tier."""
     edit_cost = cost(old, new)
     return edit_cost is not None and edit_cost >= tier
+
+
+def unset_paints(old: Scene, new: Scene) -> list[str]:
+    """A sentence for each surface that an edit gives a ramp instead of two colors, or two colors instead.
+
+    Without a sentence nothing is lost: the surface had only defaults.
+    """
+    sentences = []
+    paints = {surface.name: surface.paint for surface in old.surfaces}
+    for surface in new.surfaces:
+        before, now = paints.get(surface.name, surface.paint), surface.paint
+        if before.ramp is None and now.ramp is not None and before != Paint():
+            sentences.append(f"{surface.name}: the ramp replaces its two colors and their blend")
+        elif before.ramp is not None and now.ramp is None:
+            sentences.append(f"{surface.name}: two colors and their blend replace its ramp")
+    return sentences
 
 
 def _place(kind: str, rows: Sequence[SomeTableRow], name: str) -> int:

@@ -6,14 +6,15 @@ and reflectance properties.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from numbers import Real
 from typing import Annotated, ClassVar, Final, Unpack
 
-from autocolor.checks import Color
+from autocolor.checks import Color, listed
 from autocolor.scene.changes import PaintChanges, PartChanges, ReflectanceChanges, SurfaceChanges
 from autocolor.scene.columns import BarRange, Column, Problem, Row, RowError, Tier, replaced
-from autocolor.scene.kinds import Boolean, ColorKind, Number, Text, Whole
+from autocolor.scene.kinds import Boolean, ColorKind, ColorsKind, Number, Text, Whole
 from autocolor.scene.reflection_models import MODELS, Phong, ReflectionModel
 from autocolor.scene.row_kinds import Nested, OneRowOf, Reference
 
@@ -22,6 +23,9 @@ MOST_SURFACES: Final = 255
 
 MOST_LEVELS: Final = 1_000_000
 """Limit: levels of a surface, more than any lookup table has."""
+
+MOST_RAMP_COLORS: Final = 1024
+"""Limit: colors of a ramp, one for each entry of the lookup table."""
 
 PHONG: Final = Phong()
 """The default reflection model."""
@@ -100,10 +104,16 @@ class Reflectance(Row):
 
 @dataclass(frozen=True, repr=False)
 class Paint(Row):
-    """The two colors of a surface and how they blend.
+    """The two colors of a surface and how they blend; or a ramp, which gives the color of every level.
 
-    Paper: "Light Source Color Blending", Figure 12.
+    Paper: "Light Source Color Blending", Figure 12. Departs: a ramp is an alternative to the two colors and
+    their blend, which have their defaults beside it.
     """
+
+    alternatives: ClassVar[tuple[tuple[str, ...], ...]] = (
+        ("object_color", "light_color", "blend", "light_percentage"),
+        ("ramp",),
+    )
 
     object_color: Annotated[Color, Column(ColorKind(), Tier.ENTRIES, "The color of diffuse reflection.")] = (
         176,
@@ -131,6 +141,35 @@ class Paint(Row):
             "percent",
         ),
     ] = 100.0
+    ramp: Annotated[
+        tuple[Color, ...] | None,
+        Column(
+            ColorsKind(MOST_RAMP_COLORS),
+            Tier.ENTRIES,
+            "Colors at equal distances from the lowest level to the highest; excludes the two colors and"
+            " their blend.",
+        ),
+    ] = None
+
+    def rules(self) -> Iterator[Problem]:
+        """A ramp stands alone."""
+        blended = self.alternatives[0]
+        if isinstance(self.ramp, tuple) and any(vars(self)[name] != getattr(Paint, name) for name in blended):
+            others = listed(blended)
+            yield Problem(("ramp",), f"must stand without {others}, not beside them; leave it or them out")
+
+    @property
+    def color(self) -> Color:
+        """The color that stands for the paint: the object color, or the color in the middle of the ramp.
+
+        >>> Paint("#b01020").color, Paint(ramp=["#200", "#f60", "#fff"]).color
+        ((176, 16, 32), (255, 102, 0))
+        """
+        if self.ramp is None:
+            return self.object_color
+        pairs = zip(self.ramp[(len(self.ramp) - 1) // 2], self.ramp[len(self.ramp) // 2], strict=True)
+        red, green, blue = ((one + other + 1) // 2 for one, other in pairs)
+        return red, green, blue
 
     def replace(self, /, **changes: Unpack[PaintChanges]) -> Paint:
         """The paint with some fields changed."""

@@ -158,8 +158,8 @@ FINISHES: Final[dict[str, Finish]] = {
 def finished(surface: Surface, name: str) -> SurfaceChanges:
     """The changes that give a surface a finish, for `scene.with_surface(surface.name, **changes)`.
 
-    They leave its object color, `levels` and `two_sided`. Raises UsageError, with the closest name, for an
-    unknown finish.
+    They leave its object color, `levels` and `two_sided`; a surface with a ramp gets the color in the middle
+    of the ramp as its object color. Raises UsageError, with the closest name, for an unknown finish.
     """
     if name not in FINISHES:
         raise UsageError(f"there is no finish {shown(name)}{nearest(name, FINISHES)}")
@@ -169,7 +169,8 @@ def finished(surface: Surface, name: str) -> SurfaceChanges:
         "specular": finish.specular,
         "model": "phong",
         "exponent": finish.exponent,
-        "light_color": mixed(surface.paint.object_color, finish.light, finish.share),
+        "object_color": surface.paint.color,
+        "light_color": mixed(surface.paint.color, finish.light, finish.share),
         "blend": finish.blend,
         "light_percentage": finish.light_percentage,
     }

@@ -9,7 +9,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Annotated, ClassVar, Final, Unpack
+from typing import Annotated, ClassVar, Final, NamedTuple, Unpack
 
 import numpy as np
 
@@ -28,12 +28,44 @@ ASPECT: Final = 640 / 480
 """Assumed: the width over the height of the paper's display."""
 
 
+VERTICAL: Final = 1e-9
+"""Assumed: a view is vertical if the eye is aside by a smaller part of its height over the target."""
+
+
+class Polar(NamedTuple):
+    """A place as seen from a point: azimuth from +x toward +y and elevation, in degrees, and distance."""
+
+    azimuth: float
+    elevation: float
+    distance: float
+
+    def between(self, other: Polar, share: float) -> Polar:
+        """The place at a share of the way to another place. Opposite azimuths turn counterclockwise."""
+        right = 180 - (180 - (other.azimuth - self.azimuth)) % 360
+        return Polar(
+            self.azimuth + share * right,
+            self.elevation + share * (other.elevation - self.elevation),
+            self.distance + share * (other.distance - self.distance),
+        )
+
+    def from_point(self, point: Vector) -> Vector:
+        """The place in world coordinates, as seen from a point."""
+        azimuth, elevation = math.radians(self.azimuth), math.radians(self.elevation)
+        flat = self.distance * math.cos(elevation)
+        x, y, z = point
+        return (
+            x + flat * math.cos(azimuth),
+            y + flat * math.sin(azimuth),
+            z + self.distance * math.sin(elevation),
+        )
+
+
 @dataclass(frozen=True, repr=False)
 class View(Row):
     """An eye position, and a view direction or a target. The world's z axis points up."""
 
     noun: ClassVar[str] = "view"
-    alternatives: ClassVar[tuple[str, ...]] = ("direction", "target")
+    alternatives: ClassVar[tuple[tuple[str, ...], ...]] = (("direction",), ("target",))
 
     eye: Annotated[Vector, Column(VectorKind(), Tier.FRAME, "The position of the eye.", WORLD_UNITS)]
     direction: Annotated[
@@ -118,6 +150,57 @@ class View(Row):
         cut off the sides of the object.
         """
         return math.tan(math.radians(self.field_of_view) / 2) * max(1.0, ASPECT / aspect)
+
+    def between(self, other: View, share: float) -> View:
+        """The view at a share of the way to another view, unchecked: the eye turns around the target.
+
+        The azimuth goes the shortest way, elevation and distance are linear, and the target moves along a
+        line. An eye that is the same in both views stays. Assumed: where a view has a direction, the eye
+        moves along a line, and the direction turns by azimuth and elevation, so that the horizon stays level.
+        """
+        if other is self:
+            return self
+        mixed = super().between(other, share)
+        if self.target is not None and other.target is not None:
+            if self.eye != other.eye:
+                away = self.polar(self.target).between(other.polar(other.target), share)
+                vars(mixed)["eye"] = away.from_point(vars(mixed)["target"])
+        elif (self.direction, self.target) != (other.direction, other.target):
+            x, y, z = self._away.between(other._away, share).from_point((0.0, 0.0, 0.0))
+            vars(mixed).update(direction=(0.0 - x, 0.0 - y, 0.0 - z), target=None)
+        return mixed
+
+    def polar(self, target: Vector) -> Polar:
+        """The place of the eye as seen from a point.
+
+        If the eye is vertically above or below, the azimuth is that of the picture's bottom or top.
+        """
+        return self._polar(*(a - b for a, b in zip(self.eye, target, strict=True)))
+
+    @property
+    def _away(self) -> Polar:
+        """The direction against the view direction, with a distance of 1."""
+        return self._polar(*(-self.axes[2]).tolist())
+
+    def _polar(self, x: float, y: float, z: float) -> Polar:
+        flat = math.hypot(x, y)
+        # The picture's bottom points to the side of a lower eye; seen from below, its top does.
+        bottom = (self.axes[1] if z > 0 else -self.axes[1]).tolist()
+        is_vertical = flat < VERTICAL * abs(z)
+        azimuth = math.atan2(bottom[1], bottom[0]) if is_vertical else math.atan2(y, x)
+        return Polar(math.degrees(azimuth), math.degrees(math.atan2(z, flat)), math.hypot(x, y, z))
+
+    def orbit_target(self, low: Vector, high: Vector) -> Vector:
+        """The point to orbit: the target, else the point on the line of sight at the depth of the object.
+
+        `low` and `high` are the object's bounds.
+        """
+        if self.target is not None:
+            return self.target
+        eye, forward = np.array(self.eye), self.axes[2]
+        depth = float(((np.array(low) + np.array(high)) / 2 - eye) @ forward)
+        x, y, z = (eye + forward * max(depth, math.dist(low, high) / 2 or 1.0)).tolist()
+        return x, y, z
 
     def replace(self, /, **changes: Unpack[ViewChanges]) -> View:
         """The view with some fields changed; a new direction removes the target, and vice versa."""

@@ -697,7 +697,7 @@ class Board:
             of, what = ("value", "the wide bar") if isinstance(lit, Bar) else ("name", "the list")
             return f"{lit.label}: pick a {of} on {what}; a pick on the row takes it away"
         if lit is not None:
-            return lit.hint
+            return lit.hint_at(self._pointer)
         if self.held is not None:
             return f"{self.held.label}: pick its new place"
         if min(element, line) < 0 or self.is_covered(element, line):

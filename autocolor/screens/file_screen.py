@@ -1,9 +1,9 @@
-"""The file screen: scenes, meshes, pictures and rigs to open, recent files, saving and exporting.
+"""The file screen: scenes, meshes, pictures, rigs and paints to open, recent files, saving and exporting.
 
 A pointer opens what is in the session's folder and below, links resolved; on the machine of the window, also
-everything else. Opening is one step to undo, so the scene before is not lost. New files are saved in the
-folder that is shown. The screen shows no surface, so the small picture of the picture file under the pointer
-borrows the words of all surfaces.
+everything else. Opening is one step to undo, so the scene before is not lost; paints are no step. New files
+are saved in the folder that is shown. The screen shows no surface, so the small picture of the picture file
+under the pointer borrows the words of all surfaces.
 """
 
 from __future__ import annotations
@@ -366,8 +366,11 @@ class FileScreen(Screen):
 
     def _open(self, path: Path) -> None:
         self._check(path)
+        before = self.session.screen
         self.session.open(path)
-        self.session.turn_to(PICTURE)
+        if self.session.screen == before:
+            # Paints turn to the screen that shows them.
+            self.session.turn_to(PICTURE)
 
     def _check(self, path: Path) -> None:
         self.session.check_reach(path, "a file to open")

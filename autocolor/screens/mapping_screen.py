@@ -185,9 +185,8 @@ class MappingScreen(OverPicture):
 
     def _curve(self) -> Curve:
         session, scene = self.session, self.session.scene
-        curve = curve_of(
-            session.studio.image.mapped, scene.scaling, scene.mapping, scene.exposure, session.surface_name
-        )
+        mapped = session.studio.display_image.mapped
+        curve = curve_of(mapped, scene.scaling, scene.mapping, scene.exposure, session.surface_name)
         levels, shares = (ACROSS, np.zeros_like(ACROSS)) if curve is None else curve
         state = range_state(scene.exposure, session.surface_name)
         return Curve(session.surface_name, levels, shares, self._points(), self._touched, state)
@@ -430,7 +429,7 @@ def flipped(session: Session, name: str) -> Exposure:
         held = {**(dict.fromkeys(others, of_object) if of_object else {}), **held}
         held.pop(name)
         return tuple(held.items()) or studio.following_exposure
-    picture = studio.image.mapped
+    picture = studio.display_image.mapped
     number = picture.surfaces.index(name) + 1
     extent = mapped_ranges(picture, scene.scaling, scene.exposure).get(number)
     if extent is None:
@@ -452,7 +451,7 @@ def held_rows(session: Session, put: Callable[[Mapping[str, object]], object]) -
         return []
     low, high = dict(exposure)[name]
     # The held range may exceed the bar: if the bar's range followed it, a drag would never reach its end.
-    usual = bar_within(0.0, BEYOND * (session.studio.image.mapped.ranges.whole.maximum or 1.0))
+    usual = bar_within(0.0, BEYOND * (session.studio.display_image.mapped.ranges.whole.maximum or 1.0))
     least = LEAST_SHARE * usual.high
 
     def hold(minimum: float, maximum: float) -> object:

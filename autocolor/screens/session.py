@@ -15,6 +15,7 @@ import numpy as np
 
 from autocolor.arrays import Bytes, Words
 from autocolor.errors import InputError, UsageError
+from autocolor.files.palette_file import Palette, is_palette, read_palette
 from autocolor.files.paths import SCENE_FILE, file_stem, free_path
 from autocolor.files.rig_file import RIG_SUFFIX, is_rig, read_rig, write_rig
 from autocolor.files.scene_files import MESH, kind_of, stays_within
@@ -31,8 +32,9 @@ from autocolor.scene.changes import LightChanges, PaintChanges, SurfaceChanges
 from autocolor.scene.columns import fields_of
 from autocolor.scene.lights import Light
 from autocolor.scene.mesh import Mesh
-from autocolor.scene.scene import AUTO, LEVELS, Scene
-from autocolor.scene.surfaces import Part, Surface
+from autocolor.scene.scene import AUTO, LEVELS, Scene, unset_paints
+from autocolor.scene.surfaces import Paint, Part, Surface
+from autocolor.scene.swatches import finished
 from autocolor.scene.view import View
 from autocolor.sending import shown_colors
 from autocolor.studio import Studio
@@ -43,6 +45,9 @@ from ramtek_emu.errors import escaped
 
 PICTURE: Final = "picture"
 """The name of the screen that a session begins with, and comes back to."""
+
+MIXING: Final = "mixing"
+"""The name of the screen where colors are mixed, and taken from swatches and paints."""
 
 HISTORY: Final = "history"
 """The name of the screen with the steps of the session."""
@@ -128,6 +133,10 @@ class Session:
         """Whether the user sits at this machine; a pointer from elsewhere stays within `root`."""
         self.mesh_up, self.mesh_scale = "z", 1.0
         """The up axis and the scale of mesh files that are opened; other files give their own."""
+        self.paints: Palette | None = None
+        """The paints that the user brought as a palette file, to take colors from."""
+        self.paints_name = ""
+        """The name of that file."""
         self.surface = 0
         """The number of the chosen surface among the surfaces in use; see `surface_name`."""
         self.side_view: tuple[View, str] | None = None
@@ -139,6 +148,8 @@ class Session:
         self._light = ""
         self._before_solo: Solo | None = None
         """The light that was last switched on alone, and the switches before."""
+        self._blended: dict[str, tuple[Mesh, Paint]] = {}
+        """By the name of a surface that was given a ramp: the mesh then, and its paint before."""
         self._world: tuple[Mesh, tuple[Part, ...], World] | None = None
         self._up: tuple[Mesh, Source, str] | None = None
         """The mesh and the source that were last looked at, and the axis that seems to be up."""
@@ -294,7 +305,7 @@ class Session:
 
     def edit(self, scene: Scene) -> None:
         """Make a scene the current scene. All edits of a gesture are undone as one step."""
-        before = self.studio.image
+        before = self.studio.display_image
         self.studio.edit(scene, same_step=self.same_step, moving=self.moving)
         if self.studio.scene is not before.scene:
             first = self._edits[0] if self._edits is not None and self.same_step else before
@@ -347,21 +358,60 @@ class Session:
         self.edit(self.scene.with_all_lights_on())
         self.tell("all lights on")
 
-    def paint(self, **changes: Unpack[PaintChanges]) -> None:
-        """Change the colors of the chosen surface, if there is one."""
+    def paint(
+        self, message: Callable[[Paint], str] | None = None, /, **changes: Unpack[PaintChanges]
+    ) -> None:
+        """Change the colors of the chosen surface, if there is one, and show a message about its new paint.
+
+        If two colors replace a ramp, colors and blend are as before the ramp, if this session gave it, else
+        the color in its middle and its last color, unless they are given.
+        """
         if self.surface_name:
-            self.edit(self.scene.with_paint(self.surface_name, **changes))
+            paint = self.scene.surface(self.surface_name).paint
+            if paint.ramp is not None and changes.get("ramp") is None:
+                mesh, before = self._blended.get(self.surface_name, (None, paint))
+                if mesh is not self.scene.mesh:
+                    before = Paint(paint.color, paint.ramp[-1])
+                scene = self.scene.with_surface(self.surface_name, paint=before.replace(**changes))
+            else:
+                scene = self.scene.with_paint(self.surface_name, **changes)
+            self._edit_paint(scene, message(scene.surface(self.surface_name).paint) if message else "")
+
+    def finish(self, name: str) -> None:
+        """Give the chosen surface a finish. Raises UsageError for an unknown finish."""
+        surface = self.scene.surface(self.surface_name)
+        scene = self.scene.with_surface(surface.name, **finished(surface, name))
+        self._edit_paint(scene, f"{surface.name}: {name}")
+
+    def _edit_paint(self, scene: Scene, message: str) -> None:
+        """Make a scene with other paints the current scene, and tell the colors that the edit unsets."""
+        before = self.scene
+        # A message is about the chosen surface already.
+        chosen = f"{self.surface_name}: " if message else ""
+        messages = [message, *(each.removeprefix(chosen) for each in unset_paints(before, scene))]
+        self.edit(scene)
+        for old, new in zip(before.surfaces, scene.surfaces, strict=True):
+            if old.paint.ramp is None and new.paint.ramp is not None:
+                self._blended[old.name] = before.mesh, old.paint
+        if any(messages):
+            self.tell("; ".join(filter(None, messages)))
+
+    def color_of(self, color: Sequence[int] | str) -> Sequence[int] | str:
+        """The color that a text names among `paints`; every other color itself."""
+        if not isinstance(color, str) or self.paints is None:
+            return color
+        return self.paints.color_named(color.strip()) or color
 
     def take_paint(self, name: str) -> None:
-        """Give the chosen surface the paint of another: both colors, the blend and the percentage.
+        """Give the chosen surface the paint of another: both colors, the blend and the percentage, or a ramp.
 
         Raises UsageError if that is the chosen surface.
         """
         chosen = self.surface_name
         if name == chosen:
             raise UsageError(f"{name} is the chosen surface; point at another, whose paint it takes")
-        self.paint(**vars(self.scene.surface(name).paint))
-        self.tell(f"{chosen}: the paint of {name}; undo goes back")
+        scene = self.scene.with_surface(chosen, paint=self.scene.surface(name).paint)
+        self._edit_paint(scene, f"{chosen}: the paint of {name}; undo goes back")
 
     # Files.
 
@@ -394,8 +444,13 @@ class Session:
     def open(self, path: Path) -> None:
         """Open a file or a folder as one step to undo: a scene, a mesh, a picture, or a rig of lights.
 
-        Raises InputError or MissingInputError.
+        The colors of a palette file become `paints`, which is no step, and color mixing shows them. Raises
+        InputError or MissingInputError.
         """
+        if is_palette(path):
+            self.bring_paints(read_palette(path), path.name)
+            self.turn_to(MIXING)
+            return
         if path.suffix.lower() == RIG_SUFFIX and path.name != SCENE_FILE and is_rig(path):
             rig = read_rig(path)
             self.edit(self.scene.with_rig(rig))
@@ -409,6 +464,12 @@ class Session:
             self.studio.open(path)
         note_file(path.resolve())
         self.tell("; ".join(part for part in (f"opened {path.name}", self.lying, "undo goes back") if part))
+
+    def bring_paints(self, paints: Palette, name: str) -> None:
+        """Let the user take colors from the paints of a file of this name; they replace earlier paints."""
+        self.paints, self.paints_name = paints, name
+        count = "a paint" if len(paints) == 1 else f"{len(paints):,} paints"
+        self.tell(f"{count} of {short_name(name, LONGEST_NAME)}: take them in color mixing")
 
     def reopen(self) -> None:
         """Read the scene's file again, as one step to undo. Raises UsageError or InputError."""
@@ -463,7 +524,7 @@ class Session:
     def save_image(self) -> None:
         """Save the picture alone, with the legend of a scalar, as the next screenshot."""
         self.studio.refine()
-        self.save_screenshot(shown_colors(self.studio.image))
+        self.save_screenshot(shown_colors(self.studio.display_image))
 
     def save_screenshot(self, colors: Bytes) -> None:
         """Save (lines, elements, 3) colors as the next screenshot, "autocolor-0001.png"."""
@@ -696,7 +757,7 @@ def reason_of_no_change(studio: Studio, before: DisplayImage) -> str:
     olds = {light.name: light for light in start.lights}
     edited = [light for light in scene.lights if is_edited(olds.get(light.name), light)]
     is_renamed = len(scene.lights) == len(olds) and olds.keys() != {light.name for light in scene.lights}
-    if is_other or is_renamed or not edited or not looks_equal(before, studio.image):
+    if is_other or is_renamed or not edited or not looks_equal(before, studio.display_image):
         return ""
     which = titled("light", edited[0].name) if len(edited) == 1 else "every edited light"
     versions = [version for light in edited for version in (light, olds.get(light.name, light))]

@@ -76,8 +76,8 @@ def _narrowed(before: Work, now: Work) -> bool:
 
 def _mixed(before: Work, now: Work) -> bool:
     return any(
-        (old.paint.object_color, old.paint.light_color)
-        != (surface.paint.object_color, surface.paint.light_color)
+        (old.paint.object_color, old.paint.light_color, old.paint.ramp)
+        != (surface.paint.object_color, surface.paint.light_color, surface.paint.ramp)
         for old, surface in surfaces_of_both(before, now)
     )
 

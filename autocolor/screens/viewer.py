@@ -14,6 +14,7 @@ from typing import Final
 
 from autocolor.arrays import Words
 from autocolor.errors import AutocolorError, UsageError
+from autocolor.files.palette_file import Palette
 from autocolor.journal.history import History
 from autocolor.scene.columns import Tier
 from autocolor.scene.scene import Scene, cost_of_edit
@@ -323,6 +324,11 @@ class Viewer:
         With `persistent`, the message stays until the next action.
         """
         self.session.tell(message, persistent=persistent)
+        self._update()
+
+    def bring_paints(self, paints: Palette, name: str) -> None:
+        """Let the user take colors from the paints of a file of this name."""
+        self.session.bring_paints(paints, name)
         self._update()
 
     def _update(self) -> None:
@@ -674,7 +680,7 @@ WINDOW_KEYS: Final = (
     ("mouse, Shift+click", "explain the pixel: every number that leads to its color"),
     ("mouse, highlight", "drag it, or click, and click where it goes"),
     ("joystick unit", "ENTER (left button): pick, place; TRACK (right), held: drag"),
-    ("a file dropped", "open it: a scene, a mesh or a picture file"),
+    ("a file dropped", "open it: a scene, a mesh, a picture file, or paints"),
 )
 """The keys that the window itself handles, and the mouse."""
 

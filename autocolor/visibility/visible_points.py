@@ -121,6 +121,12 @@ class VisiblePoints:
         return read_only(self.rows[NORMAL])
 
     @property
+    def depths(self) -> Floats:
+        """The distances from the eye along the view direction, (n,), in the order of `pixels`."""
+        depths: Floats = (self.rows[POINT][2].astype(np.float64) + self.origin[2]) * self.unit
+        return depths
+
+    @property
     def world_points(self) -> Floats:
         """The points in world coordinates, (n, 3), in the order of `pixels`."""
         in_camera = (self.rows[POINT].T.astype(np.float64) + self.origin) * self.unit

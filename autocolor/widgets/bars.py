@@ -367,6 +367,48 @@ class LevelBar(Widget):
 
 
 @dataclass(frozen=True)
+class RampBar(LevelBar):
+    """The levels of a surface with a ramp, with a pointer at each color of the ramp if there is room.
+
+    The handle is at the chosen color; `color` is its number, from 0. A pick or a drag chooses the nearest
+    color, a key a neighbor.
+    """
+
+    colors: int = 2
+    color: int = 0
+    choose: Callable[[int], object] = lambda _: None
+
+    @property
+    def _along(self) -> int:
+        return self._along_to(self.color)
+
+    def _along_to(self, color: int) -> int:
+        """The elements from the lowest level to a color."""
+        return half_up(color * (self.strip.width - 1) / (self.colors - 1))
+
+    def items(self, lit: bool) -> list[Item]:
+        strip, others = self.strip, []
+        if self.colors <= strip.width // (2 * REACH + 1):
+            elements = [strip.left + self._along_to(color) for color in range(self.colors)]
+            others = [pointer(element, strip.top - 2, DOWN, GRAY) for element in elements]
+        return [*others, *super().items(lit)]
+
+    def color_at(self, place: Place) -> int:
+        """The number of the color that is nearest to a place."""
+        along = min(max(place.element - self.strip.left, 0), self.strip.width - 1)
+        return half_up(along * (self.colors - 1) / (self.strip.width - 1))
+
+    def pick(self, place: Place) -> object:
+        return self.choose(self.color_at(place))
+
+    def drag(self, start: Place, last: Place, place: Place) -> object:
+        return self.choose(self.color_at(place))
+
+    def nudge(self, steps: float) -> object:
+        return self.choose(min(max(self.color + (1 if steps > 0 else -1), 0), self.colors - 1))
+
+
+@dataclass(frozen=True)
 class PercentBar(Widget):
     """A handle at a percentage of the height of the area, with its number, beside an upright level bar."""
 

@@ -25,7 +25,7 @@ from ramtek_emu import instructions
 # picture, lights, reflectance, all; SCREENS over the picture                    none
 #   mapping, scalar
 # light and view                SCREENS; all in its small picture                none
-# color mixing                  SCREENS; the chosen surface's in a picture       ramps, hues, swatches, and
+# color mixing                  SCREENS; the chosen surface's in a picture       shades, hues, swatches, and
 #                               and a bar                                        grays of the other surfaces
 # light blending                all; the chosen surface's again in a bar         none
 # kept                          SCREENS                                          small pictures, in the words
@@ -37,7 +37,7 @@ from ramtek_emu import instructions
 #
 # A screen borrows entries by `Screen.loads` alone. Color mixing borrows words of the surfaces that it shows
 # in grays. Where these are too few, it borrows some words of the chosen surface, spread over its levels: each
-# such level is then shown by the level beside it; see `mixing_palette.palette_of`.
+# such level is then shown by the level beside it; see `mixing_palette.mixing_words`.
 #
 # A page has a base and all 1024 entries. A sheet loads the entries that differ from the page before, and
 # writes the words of another base whole. So the next page restores what a screen borrowed or covered.

@@ -93,6 +93,10 @@ class Widget:
         """The text of the message line while the pointer is over it."""
         return self.why_not or self.help or self.label
 
+    def hint_at(self, place: Place) -> str:
+        """The text of the message line while the pointer is at a place over it."""
+        return self.hint
+
     @property
     def typed(self) -> Typed | None:
         """The text that can be typed over; None if there is none."""

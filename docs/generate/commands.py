@@ -153,8 +153,7 @@ LINES = (
 )
 
 FILES = {
-    "car/car.obj": "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nv 0 1 0\nv 0 1 1\ng hood\nf 1 2 3 4\n"
-    "g floor\nf 1 2 5\n",
+    "car/car.obj": "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nv 0 1 0\ng hood\nf 1 2 3 4\ng floor\nf 1 2 5\n",
     "car/scene.toml": '[[mesh]]\nfile = "car.obj"\n\n[parts.hood]\nsurface = "body"\n\n[surfaces.body]\n'
     '\n[surfaces.floor]\n\n[[lights]]\nname = "key"\nposition = [2, -3, 4]\naim = [0, 0, 0]\n'
     '\n[[lights]]\nname = "rim"\nposition = [-2, 3, 4]\n',

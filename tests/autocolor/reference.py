@@ -130,7 +130,15 @@ def level_of(fraction: float, levels: int) -> int:
 
 
 def entry_of(paint: Paint, levels: int, level: float, floor: float = 0.0) -> tuple[int, ...]:
-    """Figure 12: one entry of a range, its object and light color mixed and then darkened."""
+    """One entry of a range: a color of the ramp; or (Figure 12) the two colors mixed and then darkened."""
+    if paint.ramp is not None:
+        place = Fraction(level) * (len(paint.ramp) - 1) / (levels - 1) if levels > 1 else Fraction(0)
+        below, above = paint.ramp[math.floor(place)], paint.ramp[math.ceil(place)]
+        share = place - math.floor(place)
+        return tuple(
+            math.floor((1 - share) * one + share * other + Fraction(1, 2))
+            for one, other in zip(below, above, strict=True)
+        )
     begin = math.floor(paint.blend * (levels - 1) + 0.5)
     shift = 0.0
     if level > begin:

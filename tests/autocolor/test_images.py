@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import struct
 from pathlib import Path
 from typing import Any, Literal
 
@@ -14,6 +15,8 @@ from PIL import Image
 from autocolor import (
     InputError,
     OutputError,
+    Picture,
+    Scalar,
     Scene,
     Studio,
     Surface,
@@ -22,10 +25,12 @@ from autocolor import (
     images,
     render,
     save_image,
+    save_words,
     scene_of,
     send_picture,
+    write_picture,
 )
-from autocolor.images import LARGEST, averaged, display_image, size_of, smoothed
+from autocolor.images import LARGEST, MOST_INDEXED, averaged, display_image, size_of, smoothed
 from autocolor.mapping.legend import legend
 from autocolor.mapping.ranges import SCREENS
 from autocolor.sending import shown_colors
@@ -34,7 +39,7 @@ from ramtek_emu import GMR_9300, Configuration, ConfigurationError, Ramtek9300
 from ramtek_emu.arrays import Colors
 from ramtek_emu.testing import entries, rasters
 from tests.autocolor.meshes import STRETCHED, cube, wall_scene
-from tests.autocolor.sessions import SMALL, held, opened
+from tests.autocolor.sessions import SMALL, car, held, opened
 
 
 @given(scenes())
@@ -55,6 +60,25 @@ def test_a_saved_image_has_the_legend_as_a_display_shows_it(tmp_path: Path) -> N
     assert (np.asarray(Image.open(path)) == display.field()).all()
     assert (display.field() != image(scene, studio.picture)).any()
     assert studio._repr_png_() == display._repr_png_()
+
+
+@pytest.mark.parametrize("level", range(10))
+def test_an_image_has_the_same_pixels_at_every_level_of_compression(tmp_path: Path, level: int) -> None:
+    scene = scene_of(cube())
+    picture = render(scene, 48, 64)
+    save_image(tmp_path / "cube.png", scene, picture, level=level, sync=False)
+    assert (np.asarray(Image.open(tmp_path / "cube.png")) == image(scene, picture)).all()
+    # Byte 1 of the compressed data names the class of the level.
+    data = (tmp_path / "cube.png").read_bytes()
+    assert data[data.index(b"IDAT") + 5] >> 6 == (0, 0, 1, 1, 1, 1, 2, 3, 3, 3)[level]
+
+
+@pytest.mark.parametrize("level", [-1, 10, 4.0, True, "best"])
+def test_a_wrong_level_of_compression_is_refused(tmp_path: Path, level: Any) -> None:
+    scene = scene_of(cube())
+    with pytest.raises(UsageError, match=r"^level must be a whole number from 0 to 9, not .*; leave it out"):
+        save_image(tmp_path / "cube.png", scene, render(scene, 24, 32), level=level)
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_picture_is_colored_by_any_scene_that_has_its_surfaces() -> None:
@@ -91,14 +115,23 @@ def test_an_image_under_the_name_of_another_kind_is_refused(tmp_path: Path) -> N
     assert not path.exists()
 
 
-def test_a_scene_and_a_picture_in_the_wrong_order_are_refused_in_words() -> None:
+def test_a_scene_and_a_picture_in_the_wrong_order_are_refused_in_words(tmp_path: Path) -> None:
     scene = scene_of(cube())
-    picture = render(scene, 24, 32)
-    with pytest.raises(
-        UsageError,
-        match=r"a scene must be a Scene, not Picture\(.*; read a scene from files with `read_scene`",
+    picture: Any = render(scene, 24, 32)
+    swapped: Any = scene
+    for swap in (
+        lambda: image(picture, swapped),
+        lambda: send_picture(picture, swapped, Ramtek9300(SMALL)),
+        lambda: save_image(tmp_path / "cube.png", picture, swapped),
+        lambda: write_picture(tmp_path / "cube.npz", picture, swapped),
     ):
-        image(picture, scene)  # type: ignore[arg-type]
+        with pytest.raises(UsageError, match=r"^the scene must come before the picture, not after it; swap"):
+            swap()
+    assert list(tmp_path.iterdir()) == []
+    with pytest.raises(
+        UsageError, match=r"a scene must be a Scene, not Picture\(.*; read a scene from files"
+    ):
+        image(picture, picture)
     with pytest.raises(UsageError, match=r"a picture must be a Picture, not Scene\(.*; `render` makes one"):
         image(scene, scene)  # type: ignore[arg-type]
 
@@ -323,3 +356,107 @@ def test_a_picture_that_cannot_be_divided_into_squares_is_refused(
         " render with smooth=4"
     )
     assert not (tmp_path / "wall.png").exists()
+
+
+def suggested_palette(data: bytes) -> bytes:
+    """The content of the chunk sPLT of a PNG file."""
+    place, content = 8, b""
+    while place < len(data):
+        (length,) = struct.unpack(">I", data[place : place + 4])
+        if data[place + 4 : place + 8] == b"sPLT":
+            content = data[place + 8 : place + 8 + length]
+        place += 12 + length
+    return content
+
+
+@pytest.mark.parametrize(
+    "changes", [{}, {"words": "normals"}, {"scalar": Scalar("stress")}, {"dither": "ordered"}]
+)
+def test_words_and_their_entries_are_read_back_from_a_png(tmp_path: Path, changes: dict[str, Any]) -> None:
+    scene = car().replace(**changes)
+    picture = render(scene, 24, 32, smooth=2)
+    shown = display_image(scene, picture)
+    path = tmp_path / "words.png"
+    save_words(path, scene, picture)
+    with Image.open(path) as file:
+        assert file.mode == "I;16"
+        words = np.asarray(file)
+        entries = np.frombuffer(bytes.fromhex(file.info["lookup table"]), np.uint8).reshape(-1, 3)
+    assert (words == shown.words).all()
+    assert words.shape == (48, 64)
+    assert (entries == shown.entries).all()
+    assert (entries[words] == image(scene, picture, smooth=1)).all()
+    name, _, palette = suggested_palette(path.read_bytes()).partition(b"\0")
+    assert (name, palette[0], len(palette)) == (b"lookup table", 8, 1 + 1024 * 6)
+    rows = np.frombuffer(palette[1:], np.uint8).reshape(-1, 6)
+    assert (rows[:, :3] == shown.entries).all()
+    assert (rows[:, 3:] == (255, 0, 0)).all()
+
+
+def test_another_reader_reads_the_same_words(tmp_path: Path) -> None:
+    reader = pytest.importorskip("OpenImageIO")
+    scene = car()
+    picture = render(scene, 24, 32)
+    save_words(tmp_path / "words.png", scene, picture)
+    file = reader.ImageInput.open(str(tmp_path / "words.png"))
+    assert (file.spec().nchannels, str(file.spec().format)) == (1, "uint16")
+    assert (file.read_image("uint16")[..., 0] == display_image(scene, picture).words).all()
+    file.close()
+
+
+@pytest.mark.parametrize(
+    "changes", [{}, {"words": "normals"}, {"scalar": Scalar("stress", bands=8, shades=4)}]
+)
+def test_an_indexed_png_has_the_words_in_use_in_their_order(tmp_path: Path, changes: dict[str, Any]) -> None:
+    scene = car().replace(**changes)
+    for surface in scene.surfaces:
+        scene = scene.with_surface(surface.name, levels=40)
+    picture = render(scene, 24, 32, smooth=2)
+    save_words(tmp_path / "words.png", scene, picture, indexed=True)
+    words = display_image(scene, picture).words
+    with Image.open(tmp_path / "words.png") as file:
+        assert file.mode == "P"
+        indices = np.asarray(file)
+        colors = np.asarray(file.convert("RGB"))
+    assert (colors == image(scene, picture, smooth=1)).all()
+    assert (np.unique(words)[indices] == words).all()
+
+
+def test_an_indexed_png_has_256_words_and_no_more(tmp_path: Path) -> None:
+    scene = wall_scene()
+    lines, elements = 48, 64
+    picture = render(scene, lines, elements)
+    (surface,) = {scene.parts[0].surface}
+    seen = np.flatnonzero(picture.surface_number)
+    for levels in (255, 256):
+        # As many intensities as levels, evenly spaced.
+        relative = np.zeros(lines * elements, np.float32)
+        relative[seen] = np.arange(len(seen)) % levels
+        raster = relative.reshape(lines, elements)
+        steps = Picture.from_rasters(raster, picture.surface_number, picture.surfaces, 1.0)
+        stepped = scene.with_surface(surface, levels=levels)
+        assert len(np.unique(display_image(stepped, steps).words)) == levels + 1
+        path = tmp_path / f"{levels}.png"
+        if levels < MOST_INDEXED:
+            save_words(path, stepped, steps, indexed=True)
+            with Image.open(path) as file:
+                assert (np.asarray(file.convert("RGB")) == image(stepped, steps)).all()
+            continue
+        with pytest.raises(UsageError) as caught:
+            save_words(path, stepped, steps, indexed=True)
+        assert str(caught.value) == (
+            "an indexed PNG must have at most 256 words in use, not 257; set `levels` of each surface to 255,"
+            " or write the words themselves"
+        )
+        assert not path.exists()
+
+
+def test_words_are_never_written_over_a_file_unasked_nor_under_another_suffix(tmp_path: Path) -> None:
+    scene = scene_of(cube())
+    picture = render(scene, 6, 8)
+    save_words(tmp_path / "cube.png", scene, picture)
+    with pytest.raises(OutputError, match="exists"):
+        save_words(tmp_path / "cube.png", scene, picture)
+    save_words(tmp_path / "cube.png", scene, picture, overwrite=True)
+    with pytest.raises(UsageError, match=r"words must be written to a file that ends in \.png"):
+        save_words(tmp_path / "cube.gif", scene, picture)

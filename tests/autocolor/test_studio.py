@@ -201,6 +201,18 @@ def test_limits_and_bands_make_levels_anew_and_render_nothing(edits: list[Edit])
     assert held(display) == fresh(studio.scene)
 
 
+def test_a_ramp_is_one_table_load_of_the_surface_s_entries_and_no_word() -> None:
+    studio, display = opened()
+    levels = studio.level_ranges["body"].levels
+    received, entries = display.words_received, display.entries
+    ramp = Recoloring("body", {"ramp": ["#200", "#f60", "#fff"]})
+    check_entries_outside_range_stay(studio, ramp, "body")
+    assert display.words_received - received == 3 + 2 * levels
+    assert held(display) == fresh(studio.scene)
+    assert studio.undo()
+    assert (display.entries == entries).all()
+
+
 def test_another_scalar_mixes_and_lights_nothing_again() -> None:
     studio, display = opened(car().with_scalar(name="stress"))
     planes = dict(studio.picture.light_planes)

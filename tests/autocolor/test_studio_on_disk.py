@@ -270,7 +270,7 @@ def take(studio: Studio, kind: str, path: Path, number: int) -> None:
     elif kind == "write":
         # Another program writes the file.
         if path.suffix == ".npz":
-            write_picture(path, render(scene, 24, 32), scene, overwrite=True)
+            write_picture(path, scene, render(scene, 24, 32), overwrite=True)
         else:
             autocolor.write_scene(path, scene, overwrite=True)
     elif kind == "session":

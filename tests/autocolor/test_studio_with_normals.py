@@ -135,7 +135,7 @@ def test_a_light_that_moves_over_normals_computes_no_plane_until_the_picture_is_
     assert studio.words is words
     picture = studio.picture
     assert rendered == [studio.scene]
-    assert studio.image.picture is picture
+    assert studio.display_image.picture is picture
     # What was asked for is not computed twice.
     assert studio.picture is picture
     assert picture_of(studio) == fresh_picture(studio.scene)

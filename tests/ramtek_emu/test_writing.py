@@ -73,6 +73,22 @@ def test_after_a_failed_write_the_old_file_is_whole(tmp_path: Path, monkeypatch:
     assert os.listdir(tmp_path) == ["field.png"]
 
 
+@pytest.mark.parametrize("sync", [False, True])
+@pytest.mark.parametrize("overwrite", [False, True])
+def test_only_a_synced_file_waits_for_the_disk(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, sync: bool, overwrite: bool
+) -> None:
+    path = tmp_path / "field.png"
+    if overwrite:
+        path.write_bytes(b"old")
+    synced: list[int] = []
+    monkeypatch.setattr(os, "fsync", synced.append)
+    write_atomically(path, b"new", overwrite=overwrite, sync=sync)
+    assert len(synced) == (2 if sync else 0)
+    assert path.read_bytes() == b"new"
+    assert os.listdir(tmp_path) == ["field.png"]
+
+
 def test_an_output_is_written_piece_by_piece_and_appears_when_kept(tmp_path: Path) -> None:
     path = tmp_path / "words.ramtek"
     with Output(path, overwrite=False) as output:

@@ -7,7 +7,7 @@ cell is left out: programs often write boundaries besides the volume.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final, NamedTuple
 
@@ -82,43 +82,43 @@ class CellSurface(NamedTuple):
     sentences: tuple[str, ...]
 
 
-def cell_surface(
-    coordinates: Floats, flats: Flats, volumes: Sequence[Volumes], *, used_only: bool = False
-) -> CellSurface:
+def cell_surface(coordinates: Floats, flats: Flats, volumes: Sequence[Volumes]) -> CellSurface:
     """The surface of polygons and volume cells.
 
-    With volume cells or with `used_only`, nodes that the surface does not use are left out, and its corners
-    are rows of the others.
+    With volume cells, nodes that the surface does not use are left out, and its corners are rows of the
+    others.
     """
     volumes = [each for each in volumes if len(each.cells)]
     count = sum(len(each.cells) for each in volumes)
-    sentences = []
-    if count:
-        faces, owners = _faces(coordinates, volumes)
-        keys = _keys(faces, len(coordinates))
-        order = np.lexsort(keys)
-        differs = (np.diff(keys[0][order]) != 0) | (np.diff(keys[1][order]) != 0)
-        is_outer = np.concatenate([[True], differs]) & np.concatenate([differs, [True]])
-        outer = np.sort(order[is_outer])
-        sentences.append(f"took the outer surface of {count:,} volume {'cell' if count == 1 else 'cells'}")
-        # Leave out polygons that are faces.
-        is_face = _are_among(flats, keys, len(coordinates))
-        if number := int(is_face.sum()):
-            sentences.append(
-                f"left out {number:,} polygon{'s' * (number > 1)} that are faces of volume cells"
-            )
-            flats = _chosen(flats, ~is_face)
-        flats = Flats.joined([flats, Flats.of(faces[outer], owners[outer])])
-    if not count and not used_only:
+    if not count:
         return CellSurface(flats, np.arange(len(coordinates)), ())
+    faces, owners = _faces(coordinates, volumes)
+    keys = _keys(faces, len(coordinates))
+    order = np.lexsort(keys)
+    differs = (np.diff(keys[0][order]) != 0) | (np.diff(keys[1][order]) != 0)
+    is_outer = np.concatenate([[True], differs]) & np.concatenate([differs, [True]])
+    outer = np.sort(order[is_outer])
+    # Leave out polygons that are faces.
+    sentences = []
+    is_face = _are_among(flats, keys, len(coordinates))
+    if number := int(is_face.sum()):
+        sentences.append(f"left out {number:,} polygon{'s' * (number > 1)} that are faces of volume cells")
+        flats = _chosen(flats, ~is_face)
+    flats = Flats.joined([flats, Flats.of(faces[outer], owners[outer])])
     # Leave out the nodes within.
     is_used = np.zeros(len(coordinates), np.bool_)
     is_used[flats.corners] = True
-    if left := int((~is_used).sum()):
-        sentences.append(f"left out {left:,} node{'s' * (left > 1)} that the surface does not use")
+    sentences = [*surface_sentences(count, int((~is_used).sum())), *sentences]
     row_of = np.cumsum(is_used) - 1
     surface = Flats(row_of[flats.corners], flats.corner_counts, flats.cells)
     return CellSurface(surface, np.flatnonzero(is_used), tuple(sentences))
+
+
+def surface_sentences(cells: int, left: int) -> Iterator[str]:
+    """Sentences about the outer surface of some volume cells, which leaves some nodes out."""
+    yield f"took the outer surface of {cells:,} volume {'cell' if cells == 1 else 'cells'}"
+    if left:
+        yield f"left out {left:,} node{'s' * (left > 1)} that the surface does not use"
 
 
 def _faces(coordinates: Floats, volumes: Sequence[Volumes]) -> tuple[Indices, Indices]:

@@ -5,7 +5,8 @@
     2,1.0,0.0,0.0,              2,roof,2,5,3,
 
 The first row names the columns, which may be in any order. Cells are separated by commas; empty rows are
-skipped. In messages rows are counted from 1, the header, as in a spreadsheet.
+skipped. Nodes that no polygon uses stay. In messages rows are counted from 1, the header, as in a
+spreadsheet.
 
 In the node table `node` may be omitted; nodes are then numbered from 1. Node numbers are unique integers, in
 any order and with gaps. In the polygon table `polygon` (unique integers) and `part` may be omitted. A
@@ -339,7 +340,7 @@ def read_csv_tables(nodes: Path, polygons: Path, placement: Placement = PLAIN) -
         scalars.scalars,
         lambda row: f"row {polygon_table.numbers[row]}",
     )
-    return repaired(mesh, polygons.name, placement)
+    return repaired(mesh, polygons.name, placement, unused_nodes=True)
 
 
 def _repeated(numbers: Numbers) -> Indices:

@@ -79,12 +79,14 @@ BYTES_OF_WORD: Final = 40
 class NumberText:
     """The text of a file, `data`, and where its words begin, `starts`; `place` is its name in messages.
 
-    Raises InputError if a mesh of so many words takes more memory than the budget allows.
+    If the text is a part of a file, `first_line` is the line in which it begins. Raises InputError if a mesh
+    of so many words takes more memory than the budget allows.
     """
 
-    def __init__(self, data: bytes, place: str) -> None:
+    def __init__(self, data: bytes, place: str, first_line: int = 1) -> None:
         self.data = data
         self.place = place
+        self.first_line = first_line
         is_word = np.frombuffer(data, np.uint8) > ord(" ")
         begins = is_word.copy()
         np.greater(is_word[1:], is_word[:-1], out=begins[1:])
@@ -99,7 +101,7 @@ class NumberText:
 
     def line(self, at: int) -> int:
         """The line of a word, from 1."""
-        return self.data.count(b"\n", 0, int(self.starts[at])) + 1
+        return self.data.count(b"\n", 0, int(self.starts[at])) + self.first_line
 
     def word(self, at: int) -> bytes:
         """A word, cut to 1,000 bytes."""

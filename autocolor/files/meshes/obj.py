@@ -689,7 +689,7 @@ def mtl_text(surfaces: Iterable[tuple[str, Surface]]) -> bytes:
     """
     lines = []
     for name, surface in surfaces:
-        color = " ".join(f"{component / 255:.6g}" for component in surface.paint.object_color)
+        color = " ".join(f"{component / 255:.6g}" for component in surface.paint.color)
         specular = surface.reflectance.specular
         exponent = vars(surface.reflectance.model).get("exponent")
         lines += [f"newmtl {name}", f"Kd {color}", f"Ks {specular!r} {specular!r} {specular!r}"]

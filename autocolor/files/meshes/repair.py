@@ -4,7 +4,9 @@
 - A polygon with fewer than three corners left, or without area, is dropped.
 - A polygon with more than four corners is split into quads and triangles.
 - Warped, concave and crossed quads (bow-ties) are kept, since the renderer fills them scan line by scan line;
-  `scene.geometry.faults` finds them. Unused nodes are kept.
+  `scene.geometry.faults` finds them.
+- A node that no polygon uses is dropped, with its scalars. Tables of nodes (CSV, npy, tables) keep theirs,
+  because their rows have the user's own numbers.
 """
 
 from __future__ import annotations
@@ -16,7 +18,7 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Booleans, Floats, Indices, cross, dot, lengths, underflowing
+from autocolor.arrays import Booleans, Floats, Indices, cross, dot, lengths, underflowing, used_rows
 from autocolor.checks import printable
 from autocolor.errors import InputError
 from autocolor.immutable import read_only
@@ -114,11 +116,12 @@ def repaired(
     placement: Placement = PLAIN,
     *,
     skipped: tuple[str, ...] = (),
+    unused_nodes: bool = False,
 ) -> MeshReport:
     """The mesh of the polygons, with messages about what was repaired.
 
-    `place` is the file's name in messages; `skipped` are messages to put before those of the repairs. Raises
-    InputError if no polygon is left.
+    `place` is the file's name in messages; `skipped` are messages to put before those of the repairs. With
+    `unused_nodes`, nodes that no polygon uses are kept. Raises InputError if no polygon is left.
     """
     coordinates = placed(polygons.coordinates, placement)
     repairs = list(skipped)
@@ -156,10 +159,20 @@ def repaired(
     if not len(node_numbers):
         causes = "".join(f"; {repair}" for repair in repairs)
         raise InputError(f"{place}: a mesh must have a polygon with area, not none{causes}; add polygons")
+    rows_of: dict[str, Indices | slice] = {NODE: slice(None), POLYGON: owners}
+    is_used = used_rows(node_numbers.T, len(coordinates))
+    dropped = 0 if unused_nodes else int(np.count_nonzero(~is_used))
+    if dropped:
+        rows_of[NODE] = np.flatnonzero(is_used)
+        repairs.append(
+            f"{dropped:,} {'node' if dropped == 1 else 'nodes'} that no polygon uses"
+            f" {'was' if dropped == 1 else 'were'} dropped"
+        )
+        coordinates = coordinates[rows_of[NODE]]
+        node_numbers = (np.cumsum(is_used) - 1)[node_numbers]
     # A piece of a polygon has the scalars of the whole.
     scalars = tuple(
-        each if each.of == NODE else MeshScalar(each.name, read_only(each.values[owners]), POLYGON)
-        for each in polygons.scalars
+        MeshScalar(each.name, read_only(each.values[rows_of[each.of]]), each.of) for each in polygons.scalars
     )
     mesh = Mesh(
         coordinates,

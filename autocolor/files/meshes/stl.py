@@ -1,4 +1,4 @@
-"""Reading a mesh from an STL file, binary or text, welded.
+"""Reading a mesh from an STL file, binary or text, welded; and writing a binary one.
 
 A binary file may begin with `solid`, as text does. A file is binary if its count of triangles gives its size.
 Each solid of a text is a part with its name; a binary file is one part, named after the file.
@@ -16,7 +16,7 @@ from typing import Final, NamedTuple, NoReturn
 
 import numpy as np
 
-from autocolor.arrays import AnyArray, Floats, Indices, Singles
+from autocolor.arrays import AnyArray, Floats, Indices, Singles, chunks, cross, normalized, underflowing
 from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError
 from autocolor.files.meshes.number_text import MOST_PROBLEMS, NUMBER
@@ -35,6 +35,7 @@ from autocolor.files.reading import (
     shown,
     text_lines,
 )
+from autocolor.scene.mesh import Mesh
 
 GROWTH: Final = 6
 """Measured: how many times its size a binary file takes. A text takes half of that, in ten times the time."""
@@ -134,6 +135,50 @@ def read_binary(data: bytes, place: str) -> tuple[Singles, tuple[str, ...]]:
 
 def _count(data: bytes) -> int:
     return int.from_bytes(data[BEFORE_TRIANGLES - 4 : BEFORE_TRIANGLES], "little")
+
+
+TITLE: Final = b"binary STL, written by autocolor"
+"""The beginning of a file that is written; it must not be the word `solid`."""
+
+POLYGONS_AT_ONCE: Final = 1 << 16
+
+TRIANGLES_OF: Final = np.array([[[0, 1, 2], [0, 2, 3]], [[1, 2, 3], [1, 3, 0]], [[0, 1, 2], [0, 0, 0]]])
+"""The corners of the triangles of a polygon, by the corner where its diagonal begins (see `Diagonals`)."""
+
+
+def stl_bytes(mesh: Mesh) -> bytes:
+    """The mesh as a binary STL file: its triangles, and two triangles for each quad.
+
+    A quad is cut along its diagonal of `Mesh.diagonals`, which is the shorter one in most quads. Coordinates
+    are rounded to float32. The normals are unit vectors by the right-hand rule, 0 for triangles without area.
+    """
+    starts = mesh.diagonals.starts
+    pieces = [b""]
+    count = 0
+    for chunk in chunks(len(starts), POLYGONS_AT_ONCE):
+        at = TRIANGLES_OF[starts[chunk]].reshape(-1, 6)
+        triangles = np.take_along_axis(mesh.node_numbers[chunk], at, axis=1).reshape(-1, 3)
+        # Leave out triangles that repeat a corner.
+        triangles = triangles[(triangles != np.roll(triangles, 1, axis=1)).all(axis=1)]
+        pieces.append(_records(mesh.coordinates[triangles]).tobytes())
+        count += len(triangles)
+    pieces[0] = TITLE.ljust(BEFORE_TRIANGLES - 4) + count.to_bytes(4, "little")
+    return b"".join(pieces)
+
+
+@underflowing
+def _records(corners: Floats) -> AnyArray:
+    """The records of triangles with these corners, (triangles, 3, 3)."""
+    records = np.zeros(len(corners), TRIANGLE)
+    records["corners"] = corners
+    # The normals fit the corners in the file, so that a file that is read is written again the same.
+    corners = records["corners"].astype(np.float64)
+    edges = np.moveaxis(corners[:, 1:] - corners[:, :1], 0, 2)
+    # Unit size keeps the products of very small edges from underflow.
+    sizes = np.abs(edges).max(axis=(0, 1), initial=0)
+    sizes[sizes == 0] = 1.0
+    records["normal"] = normalized(cross(*(edges / sizes))).T
+    return records
 
 
 # In text, solids are parts:

@@ -2,31 +2,40 @@
 
 - POLYDATA: polygons and triangle strips; vertices and lines are skipped and counted.
 - UNSTRUCTURED_GRID: polygons of all kinds, and the outer surface of volume cells (see `cells`).
-- STRUCTURED_GRID, RECTILINEAR_GRID and STRUCTURED_POINTS of one layer: its quads.
+- STRUCTURED_GRID, RECTILINEAR_GRID and STRUCTURED_POINTS: the quads of one layer, or of the outer surface of
+  a volume.
 
 The data of nodes and cells are scalars of the mesh (see `file_scalars`). The file is one part, of its name.
 """
 
 from __future__ import annotations
 
+import math
 import re
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final, NamedTuple
 from urllib.parse import unquote_to_bytes
 
 import numpy as np
 
-from autocolor.arrays import AnyArray, Floats, Indices, Numbers, runs
+from autocolor.arrays import AnyArray, Floats, Indices, Numbers
 from autocolor.budget import require_memory
 from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError
-from autocolor.files.meshes.cells import CORNERS, Flats, Volumes, cell_surface
+from autocolor.files.meshes.cells import CellSurface, Flats, cell_surface, surface_sentences
 from autocolor.files.meshes.file_scalars import FileScalars
 from autocolor.files.meshes.number_text import NumberText
 from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, RawPolygons, repaired
+from autocolor.files.meshes.vtk_cells import (
+    POLYGON_CELL,
+    STRIP_CELL,
+    CellLists,
+    VtkCells,
+    add_cells,
+    require_nodes,
+)
 from autocolor.files.reading import HEAD, read_whole, shown
 from autocolor.scene.scalar import NODE, POLYGON
 
@@ -43,24 +52,20 @@ def read_vtk(path: Path, placement: Placement = PLAIN) -> MeshReport:
         data = data.replace(b"\r", b"\n")
     cursor = VtkCursor(data, path.name)
     dataset = _dataset(cursor)
-    coordinates, cells = (read_layer if dataset in LAYERS else _read_cells)(cursor, dataset)
-    # Nodes between the corners of cells of higher order are left out.
-    flats, nodes, sentences = cell_surface(
-        coordinates, Flats.joined(cells.flats), cells.volumes, used_only=cells.higher_order > 0
+    coordinates, (flats, nodes, sentences), counts = (read_grid if dataset in GRIDS else read_cells)(
+        cursor, dataset
     )
-    counts = {NODE: len(coordinates), POLYGON: cells.count}
     attributes = Attributes(cursor, counts, {NODE: nodes, POLYGON: flats.cells})
     attributes.read()
     table = RawPolygons(
-        coordinates[nodes],
+        coordinates,
         flats.corners,
         flats.corner_counts,
         np.zeros(len(flats.cells), np.intp),
         (path.stem,),
         attributes.scalars.scalars,
     )
-    skipped = (*cells.sentences, *sentences, *attributes.messages)
-    return repaired(table, path.name, placement, skipped=skipped)
+    return repaired(table, path.name, placement, skipped=(*sentences, *attributes.messages))
 
 
 def _dataset(cursor: VtkCursor) -> bytes:
@@ -86,10 +91,21 @@ def _dataset(cursor: VtkCursor) -> bytes:
     return words[1].upper()
 
 
-def _read_cells(cursor: VtkCursor, dataset: bytes) -> tuple[Floats, VtkCells]:
-    """The nodes and cells of POLYDATA or an UNSTRUCTURED_GRID. Raises InputError."""
+class VtkSurface(NamedTuple):
+    """The surface of a data set, the coordinates of its nodes, and the counts of nodes and cells in the file.
+
+    `counts` has the keys NODE and POLYGON.
+    """
+
+    coordinates: Floats
+    surface: CellSurface
+    counts: Mapping[str, int]
+
+
+def read_cells(cursor: VtkCursor, dataset: bytes) -> VtkSurface:
+    """The surface of POLYDATA or an UNSTRUCTURED_GRID. Raises InputError."""
     if dataset not in (b"POLYDATA", b"UNSTRUCTURED_GRID"):
-        datasets = ", ".join(["POLYDATA", "UNSTRUCTURED_GRID", *(each.decode() for each in LAYERS)])
+        datasets = ", ".join(["POLYDATA", "UNSTRUCTURED_GRID", *(each.decode() for each in GRIDS)])
         raise cursor.error(f"the DATASET must be one of {datasets}, not {shown(dataset)}; take its surface")
     coordinates: Floats | None = None
     cells, lists = VtkCells(), None
@@ -105,7 +121,7 @@ def _read_cells(cursor: VtkCursor, dataset: bytes) -> tuple[Floats, VtkCells]:
             raise cursor.error(f"there must be POINTS before {shown(words[0])}; correct the file")
         elif keyword in IN_POLYDATA:
             cell_lists = read_cell_lists(cursor, words, len(coordinates))
-            add_cells(cells, cursor, cell_lists, IN_POLYDATA[keyword])
+            add_cells(cells, cursor.name, cell_lists, IN_POLYDATA[keyword])
         elif keyword == b"CELLS":
             lists = read_cell_lists(cursor, words, len(coordinates))
         elif keyword == b"CELL_TYPES" and lists is not None:
@@ -116,7 +132,7 @@ def _read_cells(cursor: VtkCursor, dataset: bytes) -> tuple[Floats, VtkCells]:
                     f"{cursor.name}: there must be as many CELL_TYPES as CELLS, {len(lists.sizes):,}, not"
                     f" {count:,}; correct the file"
                 )
-            add_cells(cells, cursor, lists, types)
+            add_cells(cells, cursor.name, lists, types)
             lists = None
         else:
             raise cursor.error(f"there must be no {shown(words[0])} in {dataset.decode()}; correct the file")
@@ -124,7 +140,12 @@ def _read_cells(cursor: VtkCursor, dataset: bytes) -> tuple[Floats, VtkCells]:
         raise InputError(f"{cursor.name}: a data set must have POINTS, not none; add them")
     if lists is not None:
         raise InputError(f"{cursor.name}: there must be CELL_TYPES after CELLS; add them")
-    return coordinates, cells
+    surface = cell_surface(coordinates, Flats.joined(cells.flats), cells.volumes)
+    return VtkSurface(
+        coordinates[surface.nodes],
+        surface._replace(sentences=(*cells.sentences, *surface.sentences)),
+        {NODE: len(coordinates), POLYGON: cells.count},
+    )
 
 
 def read_points(cursor: VtkCursor, words: list[bytes]) -> Floats:
@@ -286,24 +307,7 @@ class VtkCursor:
         return values
 
 
-# Cells, by the numbers of their types. Of cells of second and higher order only the corners are read.
-
-STRIP_CELL: Final = 6
-POLYGON_CELL: Final = 7
-
-PIXEL: Final = 8
-VOXEL: Final = 11
-SHAPES: Final = {
-    **dict.fromkeys((5, 22, 34, 69), "triangle"),
-    **dict.fromkeys((PIXEL, 9, 23, 28, 30, 70), "quad"),
-    **dict.fromkeys((10, 24, 71), "tetra"),
-    **dict.fromkeys((VOXEL, 12, 25, 29, 33, 72), "hexahedron"),
-    **dict.fromkeys((13, 26, 31, 32, 73), "wedge"),
-    **dict.fromkeys((14, 27, 74), "pyramid"),
-}
-"""The shape that each type of cell becomes."""
-
-FIRST_ORDER: Final = frozenset(range(15))
+# Lists of cells.
 
 IN_POLYDATA: Final = {
     b"VERTICES": 1,
@@ -312,46 +316,6 @@ IN_POLYDATA: Final = {
     b"POLYGONS": POLYGON_CELL,
 }
 """The type of the cells in each section of POLYDATA."""
-
-SKIPPED: Final = {
-    0: "empty cells",
-    **dict.fromkeys((1, 2), "vertices"),
-    **dict.fromkeys((3, 4, 21, 35, 68), "lines"),
-}
-
-ORDERS: Final = {PIXEL: (0, 1, 3, 2), VOXEL: (0, 1, 3, 2, 4, 5, 7, 6)}
-"""Pixels and voxels number their corners by axis, quads and hexahedra around."""
-
-
-class CellLists(NamedTuple):
-    """The node numbers of all cells, and the offset of each cell in them; the last offset is their end."""
-
-    numbers: Numbers
-    offsets: Numbers
-
-    @property
-    def sizes(self) -> Numbers:
-        """The number of nodes of each cell."""
-        return np.diff(self.offsets)
-
-
-@dataclass
-class VtkCells:
-    """The polygons and volume cells of a file, and counts of its cells."""
-
-    flats: list[Flats] = field(default_factory=list)
-    volumes: list[Volumes] = field(default_factory=list)
-    skipped: Counter[str] = field(default_factory=Counter)
-    higher_order: int = 0
-    count: int = 0
-
-    @property
-    def sentences(self) -> tuple[str, ...]:
-        """Messages about skipped cells, and about cells that are read by their corners alone."""
-        sentences = [f"skipped {what}: {count:,}" for what, count in self.skipped.items() if count]
-        if self.higher_order:
-            sentences.append(f"took the corners alone of cells of higher order: {self.higher_order:,}")
-        return tuple(sentences)
 
 
 def read_cell_lists(cursor: VtkCursor, words: list[bytes], nodes: int) -> CellLists:
@@ -365,13 +329,7 @@ def read_cell_lists(cursor: VtkCursor, words: list[bytes], nodes: int) -> CellLi
     cells, size = (cursor.count(word, f"a count of {what}") for word in words[1:3])
     read = _offset_lists if cursor.peek() == b"OFFSETS" else _counted_lists
     lists = read(cursor, cells, size, what)
-    wrong = np.flatnonzero((lists.numbers < 0) | (lists.numbers >= nodes))
-    if len(wrong):
-        cell = int(np.searchsorted(lists.offsets, wrong[0], side="right")) - 1
-        raise InputError(
-            f"{cursor.name}, {what}: a node number must be from 0 to {nodes - 1:,}, not"
-            f" {lists.numbers[wrong[0]]} (cell {cell:,}, counted from 0); correct it"
-        )
+    require_nodes(f"{cursor.name}, {what}", lists, nodes)
     return lists
 
 
@@ -431,86 +389,20 @@ def _counted_lists(cursor: VtkCursor, cells: int, size: int, what: str) -> CellL
     return CellLists(numbers[~is_count], np.concatenate([[0], np.cumsum(sizes)]))
 
 
-def add_cells(cells: VtkCells, cursor: VtkCursor, lists: CellLists, types: Numbers | int) -> None:
-    """Add cells; `types` are the type of all cells or the types, cell by cell. Raises InputError."""
-    sizes = lists.sizes
-    for kind in np.unique(types).tolist():
-        is_kind = np.broadcast_to(np.equal(types, kind), sizes.shape)
-        chosen = np.flatnonzero(is_kind)
-        rows = cells.count + chosen
-        if kind == POLYGON_CELL:
-            corners = lists.numbers if is_kind.all() else lists.numbers[np.repeat(is_kind, sizes)]
-            cells.flats.append(Flats(corners.astype(np.intp), sizes[chosen], rows))
-            cells.skipped["empty cells"] += int((sizes[chosen] == 0).sum())
-        elif kind == STRIP_CELL:
-            cells.flats.append(_triangles(lists, chosen, rows))
-        elif shape := SHAPES.get(kind):
-            _add_shaped(cells, cursor, lists, chosen, rows, kind, shape)
-        else:
-            cells.skipped[SKIPPED.get(kind, f"cells of type {kind}")] += len(rows)
-    cells.count += len(sizes)
-
-
-def _triangles(lists: CellLists, chosen: Indices, rows: Indices) -> Flats:
-    """The triangles of the chosen strips; `rows` are the strips' rows among the cells of the file.
-
-    Each node of a strip from the third on makes a triangle with the two nodes before it.
-    """
-    enough = lists.sizes[chosen] >= 3
-    chosen, rows = chosen[enough], rows[enough]
-    count = lists.sizes[chosen] - 2
-    starts = runs(lists.offsets[chosen], count)
-    # Every other triangle is turned over.
-    odd = (starts - np.repeat(lists.offsets[chosen], count)) % 2
-    table = np.stack([starts + odd, starts + 1 - odd, starts + 2], axis=1)
-    return Flats.of(lists.numbers[table].astype(np.intp), np.repeat(rows, count))
-
-
-def _add_shaped(
-    cells: VtkCells,
-    cursor: VtkCursor,
-    lists: CellLists,
-    chosen: Indices,
-    rows: Indices,
-    kind: int,
-    shape: str,
-) -> None:
-    """Add the chosen cells, of a shape with a fixed number of corners. Raises InputError."""
-    corners = {"triangle": 3, "quad": 4, **CORNERS}[shape]
-    is_first_order = kind in FIRST_ORDER
-    sizes = lists.sizes[chosen]
-    wrong = (sizes != corners) if is_first_order else (sizes < corners)
-    if wrong.any():
-        cell = int(chosen[wrong.argmax()])
-        rule = f"{'' if is_first_order else 'at least '}{corners}"
-        raise InputError(
-            f"{cursor.name}, CELLS: a cell of type {kind} must have {rule} nodes, not {lists.sizes[cell]}"
-            f" (cell {cell:,}, counted from 0); correct it"
-        )
-    order = np.array(ORDERS.get(kind, range(corners)))
-    table = lists.numbers[lists.offsets[chosen][:, None] + order].astype(np.intp)
-    if not is_first_order:
-        cells.higher_order += len(rows)
-    if shape in CORNERS:
-        cells.volumes.append(Volumes(shape, table, rows))
-    else:
-        cells.flats.append(Flats.of(table, rows))
-
-
 # Grids of nodes in rows. A grid of one layer is a surface of quads that turn from the first axis to the
-# second.
+# second. A grid of several layers is a volume, whose quads turn outward.
 
-LAYERS: Final = (b"STRUCTURED_GRID", b"RECTILINEAR_GRID", b"STRUCTURED_POINTS")
+GRIDS: Final = (b"STRUCTURED_GRID", b"RECTILINEAR_GRID", b"STRUCTURED_POINTS")
 
 AXES: Final = (b"X_COORDINATES", b"Y_COORDINATES", b"Z_COORDINATES")
 BYTES_OF_NODE: Final = 340
-"""Measured: bytes that a node of a layer takes. A small file that gives only its axes can have many nodes."""
+"""Measured: bytes that a node of a surface takes. A small file that gives only axes can have many nodes."""
 
 VECTORS: Final = (b"ORIGIN", b"SPACING", b"ASPECT_RATIO")
 
 
-def read_layer(cursor: VtkCursor, dataset: bytes) -> tuple[Floats, VtkCells]:
-    """The nodes and the quads of a grid of one layer. Raises InputError."""
+def read_grid(cursor: VtkCursor, dataset: bytes) -> VtkSurface:
+    """The layer of a grid, or the outer surface of its volume. Raises InputError."""
     dimensions: tuple[int, ...] | None = None
     points: Floats | None = None
     axes: dict[bytes, Floats] = {}
@@ -535,37 +427,84 @@ def read_layer(cursor: VtkCursor, dataset: bytes) -> tuple[Floats, VtkCells]:
             )
     if dimensions is None:
         raise InputError(f"{cursor.name}: a {dataset.decode()} must have DIMENSIONS, not none; add them")
-    nodes = int(np.prod(dimensions, dtype=object))
-    if nodes > len(cursor.data):
+    nodes, cells, within = (
+        math.prod(max(size - less, least) for size in dimensions) for less, least in ((0, 0), (1, 1), (2, 0))
+    )
+    on_surface = nodes - within
+    if on_surface > len(cursor.data):
         raise InputError(
-            f"{cursor.name}: a {dataset.decode()} must have at most as many nodes as the file has bytes, not"
-            f" {nodes:,}; take fewer"
+            f"{cursor.name}: the surface of a {dataset.decode()} must have at most as many nodes as the file"
+            f" has bytes, not {on_surface:,}; take fewer"
         )
-    require_memory(BYTES_OF_NODE * nodes, f"{cursor.name}: to read {nodes:,} nodes", "take fewer")
+    require_memory(BYTES_OF_NODE * on_surface, f"{cursor.name}: to read {on_surface:,} nodes", "take fewer")
+    table, owners = _grid_quads(dimensions)
+    rows = np.arange(nodes) if on_surface == nodes else np.unique(table)
     if points is None:
-        points = _points(cursor, dataset, dimensions, axes, vectors)
-        if not (np.abs(points) <= LARGEST_COORDINATE).all():
+        coordinates = _points(cursor, dataset, dimensions, axes, vectors, rows)
+        if not (np.abs(coordinates) <= LARGEST_COORDINATE).all():
             raise InputError(
                 f"{cursor.name}: coordinates must be at most 1e30 in size; correct ORIGIN and SPACING"
             )
-    if len(points) != nodes:
+    elif len(points) != nodes:
         raise InputError(
             f"{cursor.name}: a {dataset.decode()} must have the {nodes:,} nodes of its DIMENSIONS, not"
             f" {len(points):,}; correct them"
         )
-    wide, high = (size for size in (*(each for each in dimensions if each > 1), 1, 1)[:2])
-    first = (np.arange(wide - 1) + wide * np.arange(high - 1)[:, None]).ravel()
-    table: Indices = first[:, None] + np.array([0, 1, wide + 1, wide])
-    return points, VtkCells([Flats.of(table, np.arange(len(table)))], count=len(table))
+    else:
+        coordinates = points[rows]
+    sentences: tuple[str, ...] = ()
+    if 1 not in dimensions:
+        sentences = tuple(surface_sentences(cells, within))
+        table = np.searchsorted(rows, table)
+        if _volume(coordinates, table) < 0:
+            table = table[:, ::-1]
+    surface = CellSurface(Flats.of(table, owners), rows, sentences)
+    return VtkSurface(coordinates, surface, {NODE: nodes, POLYGON: cells})
+
+
+def _grid_quads(dimensions: tuple[int, ...]) -> tuple[Indices, Indices]:
+    """The quads of a layer, or of the six sides of a volume, and the row of the cell of each quad.
+
+    Quads are (quads, 4), rows of all nodes. Those of a volume turn outward if its axes are right-handed.
+    """
+    cells = [max(size - 1, 1) for size in dimensions]
+    steps, cell_steps = (np.array([1, each[0], each[0] * each[1]]) for each in (dimensions, cells))
+
+    def side(one: int, other: int, node: int = 0, cell: int = 0) -> tuple[Indices, Indices]:
+        """The quads that turn from an axis to another, from the node and the cell in the corner on."""
+        columns, rows = np.arange(dimensions[one] - 1), np.arange(dimensions[other] - 1)[:, None]
+        first, owners = (
+            (start + each[one] * columns + each[other] * rows).ravel()
+            for start, each in ((node, steps), (cell, cell_steps))
+        )
+        around = np.array([0, steps[one], steps[one] + steps[other], steps[other]])
+        return first[:, None] + around, owners
+
+    if 1 in dimensions:
+        one, other = sorted(sorted(range(3), key=lambda axis: dimensions[axis] == 1)[:2])
+        return side(one, other)
+    sides = []
+    for axis in range(3):
+        one, other = (axis + 1) % 3, (axis + 2) % 3
+        last = cells[axis]
+        sides += [side(other, one), side(one, other, last * steps[axis], (last - 1) * cell_steps[axis])]
+    return np.concatenate([quads for quads, _ in sides]), np.concatenate([owners for _, owners in sides])
+
+
+def _volume(coordinates: Floats, quads: Indices) -> float:
+    """A number with the sign of the volume in a closed surface: positive if its quads turn outward."""
+    size = np.ptp(coordinates, axis=0).max() or 1.0
+    a, b, c, d = np.moveaxis(((coordinates - coordinates.mean(axis=0)) / size)[quads], 1, 0)
+    return float((np.cross(c - a, d - b) * (a + b + c + d)).sum())
 
 
 def _dimensions(cursor: VtkCursor, words: list[bytes], dataset: bytes) -> tuple[int, ...]:
-    """The numbers of nodes along the three axes, at least one of them 1. Raises InputError."""
+    """The numbers of nodes along the three axes. Raises InputError."""
     sizes = tuple(cursor.count(word, "a number of DIMENSIONS") for word in words[1:])
-    if len(sizes) != 3 or 0 in sizes or 1 not in sizes:
+    if len(sizes) != 3 or 0 in sizes:
         raise cursor.error(
-            f"a {dataset.decode()} must be one layer of nodes, as in DIMENSIONS 5 4 1, not"
-            f" {shown(b' '.join(words))}; take its surface"
+            f"a {dataset.decode()} must have three numbers of nodes, as in DIMENSIONS 5 4 1, not"
+            f" {shown(b' '.join(words))}; correct them"
         )
     return sizes
 
@@ -583,8 +522,9 @@ def _points(
     dimensions: tuple[int, ...],
     axes: dict[bytes, Floats],
     vectors: dict[bytes, Floats],
+    rows: Indices,
 ) -> Floats:
-    """The nodes of a grid with straight axes. Raises InputError."""
+    """The coordinates of some nodes of a grid with straight axes, by their rows. Raises InputError."""
     if dataset == b"STRUCTURED_POINTS":
         origin = vectors.get(b"ORIGIN", np.zeros(3))
         spacing = vectors.get(b"SPACING", vectors.get(b"ASPECT_RATIO", np.ones(3)))
@@ -598,8 +538,9 @@ def _points(
         if dataset != b"RECTILINEAR_GRID" or tuple(map(len, places)) != dimensions:
             what = "POINTS" if dataset == b"STRUCTURED_GRID" else "coordinates of each of its DIMENSIONS"
             raise InputError(f"{cursor.name}: a {dataset.decode()} must have {what}; add them")
-    z, y, x = np.meshgrid(*reversed(places), indexing="ij")
-    return np.stack([x.ravel(), y.ravel(), z.ravel()], axis=1)
+    wide, high, _ = dimensions
+    x, y, z = rows % wide, rows // wide % high, rows // (wide * high)
+    return np.stack([place[at] for place, at in zip(places, (x, y, z), strict=True)], axis=1)
 
 
 # The data of nodes and cells. Scalars, vectors, tensors and the arrays of fields become scalars of the mesh.

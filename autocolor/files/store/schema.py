@@ -7,7 +7,8 @@ shows the rule when a value breaks it. Columns that refer to other tables have i
 A number, a switch, a name, a choice or a color is one SQL column of the key's name. A point or a direction is
 three: `position_x`, `position_y`, `position_z`. A row in a row is the columns of that row with the key before
 them: `flaps_z_minimum`. Any other value is one column: text as it is, and lists and tables as JSON. An absent
-value is NULL, and so is a limit that is infinite.
+value is NULL, and so is a limit that is infinite. A surface has a ramp or two colors and their blend: the
+columns that it does not use are NULL, and NULL in a column that it uses stands for the default.
 """
 
 from __future__ import annotations
@@ -153,15 +154,21 @@ def columns_of(row_class: type[Row]) -> tuple[SqlColumn, ...]:
 
 
 def _columns(name: str, field: Field, prefix: tuple[str, ...], is_given: bool) -> Iterator[SqlColumn]:
-    """The columns of a field. All of them may be NULL if the row around the field may be absent."""
+    """The columns of a field.
+
+    All of them may be NULL if the row around the field may be absent, or if the field may be reset because
+    the row uses an alternative.
+    """
     column, is_optional, default = field
     kind, path = column.kind, (*prefix, name)
     if isinstance(kind, (Instance, RowList)):
         return
     if isinstance(kind, Nested) and (not is_optional or _has_required_column(kind.row_class)):
         inner_prefix = prefix if kind.inline else path
+        alternatives = {name for group in kind.row_class.alternatives for name in group}
         for inner_name, inner in fields_of(kind.row_class).items():
-            yield from _columns(inner_name, inner, inner_prefix, is_given and not is_optional)
+            inner_is_given = is_given and not is_optional and inner_name not in alternatives
+            yield from _columns(inner_name, inner, inner_prefix, inner_is_given)
         return
     may_be_null = is_optional or not is_given or getattr(kind, "endless", None) is not None
     may_be_null |= isinstance(kind, NamedRows)

@@ -68,11 +68,11 @@ class ExplainScreen(Screen):
         studio, pixel = self.session.studio, self.session.pixel
 
         def draw() -> Sequence[Item]:
-            rows = rows_of_text(explain(studio.sight, studio.image, *pixel))
+            rows = rows_of_text(explain(studio.sight, studio.display_image, *pixel))
             row_items = [item for number, row in enumerate(rows) for item in items_of_row(row, number)]
             return [*row_items, *magnifier_items(studio.words, *pixel)]
 
-        return self._items.of(draw, studio.image, pixel)
+        return self._items.of(draw, studio.display_image, pixel)
 
     def pick(self, gesture: Gesture) -> None:
         if MAGNIFIER.has(gesture.element, gesture.line):

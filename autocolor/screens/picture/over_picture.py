@@ -9,10 +9,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Any, ClassVar, Final, NamedTuple
 
-from autocolor.arrays import Bytes, Words
+from autocolor.arrays import Bytes, Words, half_up
 from autocolor.checks import Color
+from autocolor.mapping.colors import entries_of
 from autocolor.mapping.intensity import held_name
 from autocolor.mapping.legend import CORNERS, GROUND, INK, Corner, Legend, legend
 from autocolor.scene.defaults import TRIMMED
@@ -26,7 +28,7 @@ from autocolor.screens.session import Session
 from autocolor.widgets.items import Area, Item, filled, text
 from autocolor.widgets.menu import MENU
 from autocolor.widgets.rows import rows_of
-from autocolor.widgets.widget import Button, Choice, Pair, Widget
+from autocolor.widgets.widget import Button, Choice, Pair, Switch, Widget
 
 
 class OverPicture(Screen):
@@ -51,7 +53,7 @@ class OverPicture(Screen):
 
     def items(self) -> Sequence[Item]:
         """The legend of a scalar."""
-        image = self.session.comparing.image or self.session.studio.image
+        image = self.session.comparing.image or self.session.studio.display_image
         is_under_menu = self.is_under_menu
 
         def draw() -> Sequence[Item]:
@@ -102,10 +104,11 @@ class OverPicture(Screen):
         return None if sample is None else sample.color
 
     def take_color(self, color: Color | str, element: int, line: int) -> None:
-        self.session.paint(object_color=color)
-        surface = self.session.chosen_surface
-        if surface is not None:
-            self.session.tell(f"{surface.name}: object color {in_digits(surface.paint.object_color)}")
+        name = self.session.surface_name
+        self.session.paint(
+            lambda paint: f"{name}: object color {in_digits(paint.object_color)}",
+            object_color=self.session.color_of(color),
+        )
 
     def _is_on_legend(self, element: int, line: int) -> bool:
         if self._legend is None or self.session.comparing.is_on:
@@ -147,11 +150,11 @@ class OverPicture(Screen):
         seen = studio.seen_at(line, element)
         first, levels = studio.level_ranges[name]
         part = "" if seen is None else seen.part
-        bands, scalar = studio.image.bands.get(name), studio.scene.scalar
+        bands, scalar = studio.display_image.bands.get(name), studio.scene.scalar
         if bands is None or scalar is None:
-            what = studio.image.meaning
+            what = studio.display_image.meaning
             return Pointed(name, part, f"{what} {word - first} of {levels - 1}")
-        values, block = studio.image.picture.scalar, studio.image.block
+        values, block = studio.display_image.picture.scalar, studio.display_image.block
         value = float("nan") if values is None else float(values[line // block, element // block])
         shown = "missing" if math.isnan(value) else f"{value:.5g}"
         return Pointed(name, part, f"{scalar.name} {shown}, shade {(word - first) % bands.shades + 1}")
@@ -180,14 +183,39 @@ def legend_items(legend: Legend | None) -> Sequence[Item]:
 
 
 def paint_rows(session: Session, paint: Paint) -> list[Widget]:
-    """The rows of the chosen surface's paint, without its two colors."""
+    """The rows of the chosen surface's paint without its colors: their blend, and whether it has a ramp."""
+    switch = Switch(
+        "ramp",
+        "A ramp of any colors from the lowest level to the highest, instead of two colors and their blend.",
+        is_on=paint.ramp is not None,
+        flip=partial(_flip_ramp, session, paint),
+    )
+    if paint.ramp is not None:
+        return [switch]
 
     def put(changes: Mapping[str, Any]) -> None:
         session.paint(**changes)
 
     rows = rows_of(paint, put, session.world, leave_out=("object_color", "light_color"))
     # Shorten labels so that they fit beside their numbers.
-    return [replace(row, label=row.label.replace("percentage", "percent")) for row in rows]
+    return [*(replace(row, label=row.label.replace("percentage", "percent")) for row in rows), switch]
+
+
+FIRST_RAMP_COLORS: Final = 6
+"""Assumed: colors of a ramp that is switched on. The default blend, 0.6, begins at the fourth, so the surface
+looks nearly as before."""
+
+
+def _flip_ramp(session: Session, paint: Paint) -> None:
+    """Give the chosen surface a ramp that looks like its paint, or two colors instead of its ramp."""
+    if paint.ramp is not None:
+        session.paint(ramp=None)
+        return
+    image, name = session.studio.display_image, session.surface_name
+    entries = entries_of(paint, image.ranges[name].levels, image.floor_of(name))
+    steps = FIRST_RAMP_COLORS - 1
+    levels = [half_up(step * (len(entries) - 1) / steps) for step in range(steps + 1)]
+    session.paint(ramp=entries[levels].tolist())
 
 
 HELD: Final = "held"

@@ -12,7 +12,8 @@ from autocolor.arrays import Floats
 from autocolor.checks import Vector
 from autocolor.errors import UsageError
 from autocolor.mapping.intensity import is_held
-from autocolor.scene.defaults import OBJECT_COLORS, default_view, framed, object_bounds, stage_top
+from autocolor.scene.defaults import OBJECT_COLORS, default_view, framed, stage_top
+from autocolor.scene.kinds import in_digits
 from autocolor.scene.scene import Scene
 from autocolor.scene.view import View
 from autocolor.screens.screen import Cached
@@ -23,16 +24,16 @@ from autocolor.widgets.widget import titled
 # The object colors that a key steps through: the default colors of new surfaces, and a surface's own color.
 
 
-def color_after(present: str, own: str, step: int) -> str:
-    """The color that is `step` positions further than the present one.
+def color_after(present: str, own: str, step: int, colors: Sequence[str] = OBJECT_COLORS) -> str:
+    """The color that is `step` positions further than the present one, among different `colors`.
 
-    The colors are OBJECT_COLORS, after the surface's own color if that is not among them. The first color
-    follows a present color that is not among them.
+    The surface's own color comes before them if it is not among them. The first color follows a present color
+    that is not among them.
 
     >>> color_after("#ff0000", "#ff0000", 1), color_after("#f4a39b", "#ff0000", -1)
     ('#f4a39b', '#ff0000')
     """
-    colors = OBJECT_COLORS if own in OBJECT_COLORS else (own, *OBJECT_COLORS)
+    colors = colors if own in colors else (own, *colors)
     place = colors.index(present) + step if present in colors else 0
     return colors[place % len(colors)]
 
@@ -95,7 +96,7 @@ def turned(scene: Scene, right: float, up: float, top: float = -math.inf) -> Vie
     target = np.array(target_of(scene))
     away = np.array(scene.view.eye) - target
     distance = float(np.linalg.norm(away)) or 1.0
-    azimuth = _azimuth(scene.view, away) + math.radians(right)
+    azimuth = math.radians(scene.view.polar(_vector(target)).azimuth + right)
     before = math.asin(max(-1.0, min(1.0, float(away[2]) / distance)))
     lowest = max(-1.0, (lowest_eye(scene, top) - float(target[2])) / distance)
     elevation = max(-HIGHEST, min(HIGHEST, before + math.radians(up)))
@@ -108,15 +109,6 @@ def turned(scene: Scene, right: float, up: float, top: float = -math.inf) -> Vie
         [horizontal * math.cos(azimuth), horizontal * math.sin(azimuth), math.sin(elevation)]
     )
     return scene.view.replace(eye=_vector(eye), target=_vector(target))
-
-
-def _azimuth(view: View, away: Floats) -> float:
-    """The azimuth of the eye as seen from the target; for a vertical view, from the picture's axes."""
-    if math.hypot(away[0], away[1]) < 1e-9 * abs(away[2]):
-        # The picture's bottom points to the side of a lower eye; seen from below, its top does.
-        toward = view.axes[1] if away[2] > 0 else -view.axes[1]
-        return math.atan2(toward[1], toward[0])
-    return math.atan2(away[1], away[0])
 
 
 def lowest_eye(scene: Scene, top: float) -> float:
@@ -174,15 +166,7 @@ def seen_from(scene: Scene, side: str) -> View:
 
 def target_of(scene: Scene) -> Vector:
     """The point to orbit: the view's target, else the point on the line of sight at the object's depth."""
-    view = scene.view
-    if view.target is not None:
-        return view.target
-    low, high = object_bounds(scene.mesh, scene.parts)
-    eye = np.array(view.eye)
-    forward = view.axes[2]
-    depth = float(((low + high) / 2 - eye) @ forward)
-    least = float(np.linalg.norm(high - low)) / 2 or 1.0
-    return _vector(eye + forward * max(depth, least))
+    return scene.view.orbit_target(*scene.object_bounds)
 
 
 def _vector(values: Floats | Vector) -> Vector:
@@ -374,16 +358,20 @@ class PictureEdits:
         if self.session.surface_name:
             blend = self.session.scene.surface(self.session.surface_name).paint.blend
             blend = min(1.0, max(0.0, round(blend + step, 6)))
-            self.session.paint(blend=blend)
-            self.session.tell(f"blend {blend:.2f}")
+            self.session.paint(lambda paint: f"blend {paint.blend:.2f}", blend=blend)
 
     def repaint(self, step: int) -> None:
-        """Give the selected surface another of OBJECT_COLORS or its own, `step` positions further."""
+        """Give the selected surface another object color, `step` positions further.
+
+        The colors are its own and the paints that the user brought, or OBJECT_COLORS.
+        """
         name = self.session.surface_name
         if not name:
             return
-        red, green, blue = self.session.scene.surface(name).paint.object_color
-        present = f"#{red:02x}{green:02x}{blue:02x}"
-        color = color_after(present, self._own_colors.setdefault(name, present), step)
-        self.session.paint(object_color=color)
-        self.session.tell(f"object color {color}")
+        present = in_digits(self.session.scene.surface(name).paint.color)
+        names = dict.fromkeys(OBJECT_COLORS, "")
+        if (paints := self.session.paints) is not None:
+            names = {in_digits(paints.color(number)): each for number, each in enumerate(paints.names)}
+        color = color_after(present, self._own_colors.setdefault(name, present), step, tuple(names))
+        message = f"object color {', '.join(part for part in (names.get(color), color) if part)}"
+        self.session.paint(lambda _: message, object_color=color)

@@ -53,7 +53,7 @@ class SplitScreen(OverPicture):
     def halves(self) -> Halves:
         """The two pictures. Without another state, both are the present picture."""
         other = self.session.comparing.other_image
-        present = self.session.studio.image
+        present = self.session.studio.display_image
         return self._halves.of(lambda: halves_of(other or present, present), other, present)
 
     def enter(self) -> None:

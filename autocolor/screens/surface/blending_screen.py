@@ -34,6 +34,11 @@ class BlendingScreen(OverPicture):
     help = "Pick a level on the bar: the light color blends in above it"
     has_menu = False
 
+    def enter(self) -> None:
+        surface = self.session.chosen_surface
+        if surface is not None and surface.paint.ramp is not None:
+            self.session.tell(f"{surface.name} has a ramp, which does not blend; color mixing changes it")
+
     def items(self) -> Sequence[Item]:
         # The bar takes the legend's place.
         return () if self.has_panels else super().items()
@@ -50,7 +55,7 @@ class BlendingScreen(OverPicture):
 
     def widgets(self) -> Sequence[Widget]:
         surface = self.session.chosen_surface
-        if surface is None:
+        if surface is None or surface.paint.ramp is not None:
             return []
         levels = self.session.studio.level_ranges[surface.name].levels
         # Where the menu comes, the bar moves to its left.
@@ -62,7 +67,7 @@ class BlendingScreen(OverPicture):
                 "blend level",
                 "The light color blends in above the handle; pick a level, or drag.",
                 area=Area(between - BAR_ELEMENTS - LANE, TOP, between - 1, BOTTOM),
-                words=self.session.studio.image.words_at_levels(surface.name),
+                words=self.session.studio.display_image.words_at_levels(surface.name),
                 level=blend_level(paint.blend, levels),
                 put=lambda level: self.session.paint(blend=blend_from(level, levels)),
                 number=f"{paint.blend:.2f}",

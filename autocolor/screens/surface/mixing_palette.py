@@ -21,8 +21,8 @@ from autocolor.mapping.ranges import BACKGROUND, SCREENS, WORDS, LevelRange, bor
 from autocolor.scene.surfaces import Paint
 from autocolor.widgets.items import NIGHT, Area
 
-RAMP_STEPS: Final = 64
-"""The intensities of a ramp, from black to the color itself."""
+SHADE_STEPS: Final = 64
+"""The shades of a color, from black to the color itself."""
 
 GRAYS: Final = read_only(np.linspace((26, 28, 33), (104, 106, 112), 16).astype(np.uint8))
 """Assumed: the grays of the surfaces that are not chosen, from black to white; dim beside the chosen one."""
@@ -37,11 +37,11 @@ Ranges = tuple[tuple[str, LevelRange], ...]
 """The level ranges of the surfaces in use by name, so that they can be a key."""
 
 
-class Palette(NamedTuple):
+class MixingWords(NamedTuple):
     """The words that show a surface and the colors beside it."""
 
     borrowed: Words
-    """The words for colors, rising: two ramps of RAMP_STEPS, the grays, the hues, then the swatches."""
+    """The words for colors, rising: the shades of two colors, the grays, the hues, then the swatches."""
     runs: tuple[slice, ...]
     """The runs of consecutive words in `borrowed`."""
     shown: Words
@@ -50,33 +50,33 @@ class Palette(NamedTuple):
     """The words of the other surfaces, (n,)."""
 
     @property
-    def light_ramp(self) -> Words:
-        """The words of the intensities of the light color, from the lowest."""
-        return self.borrowed[:RAMP_STEPS]
+    def light_shades(self) -> Words:
+        """The words of the shades of the light color, from the darkest."""
+        return self.borrowed[:SHADE_STEPS]
 
     @property
-    def object_ramp(self) -> Words:
-        """The words of the intensities of the object color, from the lowest."""
-        return self.borrowed[RAMP_STEPS : 2 * RAMP_STEPS]
+    def object_shades(self) -> Words:
+        """The words of the shades of the object color, from the darkest."""
+        return self.borrowed[SHADE_STEPS : 2 * SHADE_STEPS]
 
     @property
     def grays(self) -> Words:
         """The words of the grays, from the darkest."""
-        return self.borrowed[2 * RAMP_STEPS :][: len(GRAYS)]
+        return self.borrowed[2 * SHADE_STEPS :][: len(GRAYS)]
 
     @property
     def hues(self) -> Words:
         """The words of the hues, from 0 to 360 degrees."""
-        return self.borrowed[2 * RAMP_STEPS + len(GRAYS) :][: len(HUES)]
+        return self.borrowed[2 * SHADE_STEPS + len(GRAYS) :][: len(HUES)]
 
     @property
     def swatches(self) -> Words:
         """The words of the swatches."""
-        return self.borrowed[2 * RAMP_STEPS + len(GRAYS) + len(HUES) :]
+        return self.borrowed[2 * SHADE_STEPS + len(GRAYS) + len(HUES) :]
 
     def loads(self, light: Color, object_color: Color, swatches: Bytes) -> list[tuple[int, Bytes]]:
         """The entries of the words, as runs of colors from a first entry on; `swatches` has (n, 3)."""
-        colors = np.concatenate([ramp_of(light), ramp_of(object_color), GRAYS, HUES, swatches])
+        colors = np.concatenate([shades_of(light), shades_of(object_color), GRAYS, HUES, swatches])
         return [(int(self.borrowed[run.start]), colors[run]) for run in self.runs]
 
     def dimmed(self, entries: Bytes) -> Words:
@@ -89,13 +89,13 @@ class Palette(NamedTuple):
 
 
 @lru_cache(maxsize=8)
-def palette_of(ranges: Ranges, surface: str, swatches: int) -> Palette:
-    """The palette for a surface in use and a number of swatches.
+def mixing_words(ranges: Ranges, surface: str, swatches: int) -> MixingWords:
+    """The words for a surface in use and a number of swatches.
 
     Raises UsageError if there are too few words to borrow.
     """
     levels = dict(ranges)[surface]
-    count = 2 * RAMP_STEPS + len(GRAYS) + len(HUES) + swatches
+    count = 2 * SHADE_STEPS + len(GRAYS) + len(HUES) + swatches
     borrowed = borrowed_words(dict(ranges), {surface}, count)
     ends = np.flatnonzero(np.diff(borrowed) != 1) + 1
     bounds = [0, *ends.tolist(), len(borrowed)]
@@ -103,12 +103,12 @@ def palette_of(ranges: Ranges, surface: str, swatches: int) -> Palette:
     shown = np.full(WORDS, NIGHT, np.uint16)
     shown[own] = without_words(own, borrowed, {surface: levels})
     others = np.setdiff1d(np.arange(BACKGROUND + 1, SCREENS.first, dtype=np.uint16), own)
-    return Palette(borrowed, tuple(map(slice, bounds, bounds[1:])), read_only(shown), read_only(others))
+    return MixingWords(borrowed, tuple(map(slice, bounds, bounds[1:])), read_only(shown), read_only(others))
 
 
 @lru_cache(maxsize=8)
 def _dimmed(shown: bytes, others: bytes, grays: bytes, entries: bytes) -> Words:
-    """The words of `Palette.dimmed`, from arrays as bytes."""
+    """The words of `MixingWords.dimmed`, from arrays as bytes."""
     colors = np.frombuffer(entries, np.uint8).reshape(-1, 3)
     steps = np.floor(colors @ np.array(LUMINANCE) * ((len(GRAYS) - 1) / FULL) + HALF).astype(np.int64)
     words = np.frombuffer(shown, np.uint16).copy()
@@ -117,12 +117,12 @@ def _dimmed(shown: bytes, others: bytes, grays: bytes, entries: bytes) -> Words:
 
 
 @lru_cache(maxsize=64)
-def ramp_of(color: Color) -> Bytes:
-    """The intensities of a color, (RAMP_STEPS, 3) uint8: step k is k / (RAMP_STEPS - 1) of it, half up.
+def shades_of(color: Color) -> Bytes:
+    """The shades of a color, (SHADE_STEPS, 3) uint8: step k is k / (SHADE_STEPS - 1) of it, half up.
 
     They are the entries of a surface of that color alone, with as many levels.
     """
-    return entries_of(Paint(color, color, blend=1.0), RAMP_STEPS)
+    return entries_of(Paint(color, color, blend=1.0), SHADE_STEPS)
 
 
 # A crop: the part of the picture that shows a surface as large as an area allows, at most at its full size.

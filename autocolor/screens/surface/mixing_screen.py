@@ -1,9 +1,12 @@
-"""The color mixing screen: the two colors of a surface, and the blend bar between them.
+"""The color mixing screen: the two colors of a surface, and the blend bar between them; or two of its ramp.
 
 Paper: Figure 13. The light source color is above, the object color below, each with all its intensities at
 the left of its bars; in the horizontal bar between them, intensity rises to the right. Mixing shows its
 result at once: only entries change, and the words of the picture stay. "This array is simply retransmitted to
 the display after color mixing is completed."
+
+If the surface has a ramp, the bar between shows it, and its handle is at the chosen color. The sections have
+the bars of two neighboring colors of the ramp: the higher one above, the lower one below.
 
 Hue, saturation and value have bars below those of the paper. The picture below the bars shows the surface as
 large as the screen allows; paints and colors can be taken from it.
@@ -12,16 +15,15 @@ large as the screen allows; paints and colors can be taken from it.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
-from functools import lru_cache, partial
-from typing import ClassVar, Final, NamedTuple
+from dataclasses import dataclass
+from functools import partial
+from typing import Final, NamedTuple
 
 import numpy as np
 
 from autocolor.arrays import Bytes, Words
 from autocolor.checks import Color
 from autocolor.errors import UsageError
-from autocolor.files.state import note_color, recent_colors
 from autocolor.mapping.colors import (
     FULL,
     Hsv,
@@ -35,20 +37,20 @@ from autocolor.mapping.colors import (
 from autocolor.mapping.ranges import LevelRange
 from autocolor.scene.changes import PaintChanges
 from autocolor.scene.kinds import in_digits
-from autocolor.scene.surfaces import Paint, Surface
-from autocolor.scene.swatches import COLUMNS, FINISHES, ROWS, finished, swatches
+from autocolor.scene.surfaces import Paint
+from autocolor.scene.swatches import mixed
 from autocolor.screens.input import Gesture
 from autocolor.screens.picture.over_picture import paint_rows, surface_row
 from autocolor.screens.screen import Cached, Sample, Screen
 from autocolor.screens.session import Session
-from autocolor.screens.surface.mixing_palette import Crop, Palette, crop_of, palette_of
-from autocolor.widgets.bars import ComponentBar, LevelBar, level_strip
+from autocolor.screens.surface.mixing_palette import Crop, MixingWords, crop_of, mixing_words
+from autocolor.screens.surface.paint_choices import PaintChoices
+from autocolor.widgets.bars import ComponentBar, LevelBar, RampBar, level_strip
 from autocolor.widgets.items import (
     BLUE,
     CHARACTER,
     GREEN,
     LIGHT_GRAY,
-    NIGHT,
     RED,
     WHITE,
     Area,
@@ -57,11 +59,20 @@ from autocolor.widgets.items import (
     text,
 )
 from autocolor.widgets.menu import WORK
-from autocolor.widgets.widget import MARGIN, ROW_LINES, TEXT_DOWN, Button, Entry, Gap, Place, Widget
+from autocolor.widgets.widget import (
+    MARGIN,
+    ROW_LINES,
+    TEXT_DOWN,
+    Button,
+    Entry,
+    Gap,
+    Pair,
+    Widget,
+)
 
 LEFT: Final = 8
 LEFT_END: Final = 172
-"""The column of the ramps."""
+"""The columns of the shades."""
 
 RIGHT: Final = 176
 RIGHT_END: Final = 495
@@ -84,6 +95,8 @@ FINISHES_TOP: Final = OBJECT_TOP + SECTION_LINES + 2
 PICTURE: Final = Area(LEFT, FINISHES_TOP + ROW_LINES + 2, RIGHT_END, WORK.bottom)
 """The room for the picture of the surface."""
 
+FINISHES_ROW: Final = Area(LEFT, FINISHES_TOP, RIGHT_END, FINISHES_TOP + ROW_LINES - 1)
+
 HEX_ELEMENTS: Final = CHARACTER * len("#rrggbb") + 2 * MARGIN
 """The width of the number of a color at the end of its heading."""
 
@@ -92,6 +105,8 @@ COMPONENTS: Final = (("red", RED), ("green", GREEN), ("blue", BLUE))
 OBJECT: Final = "object"
 LIGHT_SOURCE: Final = "light source"
 """The names of the two colors for users."""
+
+Ramp = tuple[Color, ...]
 
 PAINT: Final = "paint"
 COLOR: Final = "color"
@@ -136,10 +151,25 @@ class MixingScreen(Screen):
             self.light.row(surface.paint),
             self.object.row(surface.paint),
             *paint_rows(self.session, surface.paint),
+            *(() if surface.paint.ramp is None else (self._ramp_row(surface.paint.ramp),)),
             Gap("taking gap"),
             *(self._taking_row(thing) for thing in (PAINT, COLOR)),
-            *(() if self._taking else self.choices.rows(self._palette.swatches, self._chosen.title)),
+            *(() if self._taking else self._choice_rows(surface.paint)),
         ]
+
+    def _choice_rows(self, paint: Paint) -> list[Widget]:
+        chosen = self._chosen
+        name, present = chosen.name_in(paint), chosen.color_of(paint)
+        return self.choices.rows(self._mixing_words.swatches, name, present)
+
+    def _ramp_row(self, ramp: Ramp) -> Pair:
+        return Pair(
+            "add color",
+            "Add a color to the ramp between the two that are shown; or remove the chosen color.",
+            run=partial(self._add_color, ramp),
+            other="remove",
+            run_other=partial(self._remove_color, ramp),
+        )
 
     def _taking_row(self, thing: str) -> Button:
         is_on = self._taking == thing
@@ -154,20 +184,30 @@ class MixingScreen(Screen):
         surface = self.session.chosen_surface
         if surface is None or self._taking:
             return []
-        palette = self._palette
-        at_levels = self.session.studio.image.words_at_levels(surface.name)
-        blend_bar = LevelBar(
-            "blend bar",
-            "Above the handle the object color gives way to the light color.",
-            words=palette.shown[at_levels],
-            level=blend_level(surface.paint.blend, self._levels.levels),
-            put=self._put_level,
-        )
+        mixing = self._mixing_words
+        at_levels = self.session.studio.display_image.words_at_levels(surface.name)
+        if surface.paint.ramp is not None:
+            blend_bar: LevelBar = RampBar(
+                "ramp bar",
+                "The ramp: pick a color to mix it.",
+                words=mixing.shown[at_levels],
+                colors=len(surface.paint.ramp),
+                color=self._chosen.number_in(surface.paint.ramp),
+                choose=self._choose_color,
+            )
+        else:
+            blend_bar = LevelBar(
+                "blend bar",
+                "Above the handle the object color gives way to the light color.",
+                words=mixing.shown[at_levels],
+                level=blend_level(surface.paint.blend, self._levels.levels),
+                put=self._put_level,
+            )
         return [
-            *self.light.widgets(surface.paint, self._chosen is self.light, palette.hues),
+            *self.light.widgets(surface.paint, self._chosen is self.light, mixing.hues),
             blend_bar.at(BLEND),
-            *self.object.widgets(surface.paint, self._chosen is self.object, palette.hues),
-            *self.choices.finishes(surface),
+            *self.object.widgets(surface.paint, self._chosen is self.object, mixing.hues),
+            *self.choices.finishes(surface, FINISHES_ROW),
         ]
 
     def items(self) -> Sequence[Item]:
@@ -176,11 +216,11 @@ class MixingScreen(Screen):
             return [text("The scene has no surface in use.", LEFT, LIGHT_TOP + TEXT_DOWN, LIGHT_GRAY)]
         if self._taking:
             return [self._picture_item()]
-        palette, blend = self._palette, self._blend_text(surface.paint)
+        mixing, label, blend = self._mixing_words, *self._blend_text(surface.paint)
         return [
-            *self.light.items(palette.light_ramp),
-            *self.object.items(palette.object_ramp),
-            text("blend", LEFT + MARGIN, BLEND_TOP + TEXT_DOWN, LIGHT_GRAY),
+            *self.light.items(mixing.light_shades),
+            *self.object.items(mixing.object_shades),
+            text(label, LEFT + MARGIN, BLEND_TOP + TEXT_DOWN, LIGHT_GRAY),
             text(blend, RIGHT_END + 1 - CHARACTER * len(blend), BLEND_TOP + TEXT_DOWN),
             self._picture_item(),
         ]
@@ -189,7 +229,8 @@ class MixingScreen(Screen):
         surface = self.session.chosen_surface
         if surface is None or self._taking:
             return []
-        return self._palette.loads(surface.paint.light_color, surface.paint.object_color, self.choices.colors)
+        light, object_color = (section.color_of(surface.paint) for section in (self.light, self.object))
+        return self._mixing_words.loads(light, object_color, self.choices.colors)
 
     def hint(self, element: int, line: int) -> str:
         sample = self.sample(element, line)
@@ -199,15 +240,18 @@ class MixingScreen(Screen):
         is_chosen = name == self.session.surface_name
         if self._taking == COLOR:
             where = name or "the background"
-            return f"pick {in_digits(sample.color)} of {where} as the {self._chosen.title} color; Esc ends"
+            return f"pick {in_digits(sample.color)} of {where} as {self._chosen_name}; Esc ends"
         if self._taking and name and not is_chosen:
             paint = self.session.scene.surface(name).paint
+            if paint.ramp is not None:
+                return f"pick the paint of {name}: a ramp of {len(paint.ramp)} colors; Esc ends"
             colors = f"{in_digits(paint.object_color)} and {in_digits(paint.light_color)}"
             return f"pick the paint of {name}: {colors}, blend {paint.blend:.2f}; Esc ends"
         if self._taking:
             return self._prompt(PAINT)
         if is_chosen:
-            return f"{name}, {self.session.studio.image.meaning} {sample.level} of {self._levels.levels - 1}"
+            meaning = self.session.studio.display_image.meaning
+            return f"{name}, {meaning} {sample.level} of {self._levels.levels - 1}"
         return f"{name}: click to mix its colors; P: take its paint" if name else self.help
 
     def _prompt(self, thing: str) -> str:
@@ -215,16 +259,21 @@ class MixingScreen(Screen):
         name = self.session.surface_name
         if thing == PAINT:
             return f"pick a surface: {name} takes both its colors, blend and percentage; Esc ends"
-        return f"pick a pixel: its color as you see it becomes the {self._chosen.title} color; Esc ends"
+        return f"pick a pixel: its color as you see it becomes {self._chosen_name}; Esc ends"
+
+    @property
+    def _chosen_name(self) -> str:
+        surface = self.session.chosen_surface
+        return "" if surface is None else self._chosen.name_in(surface.paint)
 
     @property
     def _levels(self) -> LevelRange:
         return self.session.studio.level_ranges[self.session.surface_name]
 
     @property
-    def _palette(self) -> Palette:
+    def _mixing_words(self) -> MixingWords:
         ranges = tuple(self.session.studio.level_ranges.items())
-        return palette_of(ranges, self.session.surface_name, self.choices.count)
+        return mixing_words(ranges, self.session.surface_name, self.choices.count)
 
     @property
     def _present_crop(self) -> Crop:
@@ -241,7 +290,7 @@ class MixingScreen(Screen):
     def _picture_item(self) -> Item:
         """The picture in the words that stand for its words; the same item until it changes."""
         studio, crop = self.session.studio, self._present_crop
-        stand_ins = None if self._taking else self._palette.dimmed(studio.entries)
+        stand_ins = None if self._taking else self._mixing_words.dimmed(studio.entries)
 
         def draw() -> Item:
             words = crop.of(studio.words)
@@ -249,9 +298,13 @@ class MixingScreen(Screen):
 
         return self._picture.of(draw, crop, stand_ins)
 
-    def _blend_text(self, paint: Paint) -> str:
+    def _blend_text(self, paint: Paint) -> tuple[str, str]:
+        """The heading of the bar between, and its number."""
         levels = self._levels.levels
-        return f"{paint.blend:.2f}, from level {blend_level(paint.blend, levels)} of {levels - 1}"
+        if paint.ramp is not None:
+            number = self._chosen.number_in(paint.ramp)
+            return "ramp", f"color {number + 1} of {len(paint.ramp)}"
+        return "blend", f"{paint.blend:.2f}, from level {blend_level(paint.blend, levels)} of {levels - 1}"
 
     def sample(self, element: int, line: int) -> Sample | None:
         if self.session.chosen_surface is None:
@@ -311,7 +364,28 @@ class MixingScreen(Screen):
 
     def _choose(self, section: ColorSection) -> None:
         self._chosen = section
-        self.session.tell(f"swatches are for the {section.title}")
+        self.session.tell(f"swatches are for {self._chosen_name}")
+
+    def _choose_color(self, number: int) -> None:
+        """Choose a color of the ramp, and show it with the color after it, or before it if it is the last."""
+        surface = self.session.chosen_surface
+        if surface is not None and surface.paint.ramp is not None:
+            last = len(surface.paint.ramp) - 1
+            self.light.lower = self.object.lower = min(number, last - 1)
+            self._choose(self.light if number == last else self.object)
+
+    def _add_color(self, ramp: Ramp) -> None:
+        lower = self.object.number_in(ramp)
+        color = mixed(ramp[lower], ramp[lower + 1], 0.5)
+        self.session.paint(ramp=(*ramp[: lower + 1], color, *ramp[lower + 1 :]))
+        self._choose_color(lower + 1)
+
+    def _remove_color(self, ramp: Ramp) -> None:
+        if len(ramp) == 2:
+            raise UsageError("a ramp must have 2 colors or more; to have none, switch the ramp off")
+        number = self._chosen.number_in(ramp)
+        self.session.paint(ramp=ramp[:number] + ramp[number + 1 :])
+        self._choose_color(min(number, len(ramp) - 2))
 
     def _choose_surface(self, name: str) -> None:
         self.choices.end()
@@ -321,20 +395,24 @@ class MixingScreen(Screen):
     def _paint(self, section: ColorSection, color: Sequence[int] | str) -> None:
         """Give the chosen surface a color."""
         self._chosen = section
-        self.session.paint(**section.change(color))
+        surface = self.session.chosen_surface
+        if surface is not None:
+            self.session.paint(**section.change(surface.paint, self.session.color_of(color)))
 
     def _put_level(self, level: int) -> None:
         self.session.paint(blend=blend_from(level, self._levels.levels))
 
-    def _take(self, color: Color | str) -> None:
-        """Give the chosen color of the chosen surface a value."""
+    def _take(self, color: Color | str, name: str = "") -> None:
+        """Give the chosen color of the chosen surface a value, the color of a paint with a name."""
         self._paint(self._chosen, color)
         surface = self.session.chosen_surface
         if surface is not None:
-            self.session.tell(f"{self._chosen.title}: {in_digits(self._chosen.color_of(surface.paint))}")
+            label = self._chosen.label_in(surface.paint)
+            digits = in_digits(self._chosen.color_of(surface.paint))
+            self.session.tell(f"{label}: {f'{name}, ' if name else ''}{digits}")
 
 
-# A section: one of the two colors of the chosen surface, with its ramp and bars.
+# A section: one of the two colors of the chosen surface, with its shades and bars.
 
 
 class Raised(NamedTuple):
@@ -357,7 +435,10 @@ HSV: Final = (("hue", 360, "degrees"), ("saturation", 100, "percent"), ("value",
 
 
 class ColorSection:
-    """The ramp and the bars of one color of a paint. `top` is the first line, `title` names the color.
+    """The shades and the bars of one color of a paint. `top` is the first line, `title` names the color.
+
+    In a paint with a ramp it is a color of the ramp: the color with the number `lower`, from 0, or in the
+    section of the light source the color after it.
 
     `give` gives the chosen surface another color, `choose` makes this the section that swatches are for.
     """
@@ -371,48 +452,68 @@ class ColorSection:
         choose: Callable[[ColorSection], object],
     ) -> None:
         self.session, self.title = session, title
+        self.lower = 0
         self._give, self._choose = partial(give, self), partial(choose, self)
         self._raised = Raised("", (0, 0, 0), (0, 0, 0))
         self._mixed = Mixed(Hsv(0, 0, 0), (0, 0, 0))
         self._heading = Area(LEFT, top, LEFT_END, top + ROW_LINES - 1)
-        self.ramp = Area(LEFT, top + ROW_LINES, LEFT_END, top + SECTION_LINES - 1)
+        self.shades = Area(LEFT, top + ROW_LINES, LEFT_END, top + SECTION_LINES - 1)
         self.area = Area(LEFT, top, RIGHT_END, top + SECTION_LINES - 1)
-        """The heading, the ramp and the bars."""
+        """The heading, the shades and the bars."""
 
     def color_of(self, paint: Paint) -> Color:
         """The color in a paint."""
+        if paint.ramp is not None:
+            return paint.ramp[self.number_in(paint.ramp)]
         return paint.object_color if self.title == OBJECT else paint.light_color
 
-    def change(self, color: Sequence[int] | str) -> PaintChanges:
+    def number_in(self, ramp: Ramp) -> int:
+        """The number of the color in a ramp, from 0. The ramp may have become shorter."""
+        return min(self.lower, len(ramp) - 2) + (self.title == LIGHT_SOURCE)
+
+    def label_in(self, paint: Paint) -> str:
+        """The label of the color of a paint: "object", or "color 2" of a ramp."""
+        return self.title if paint.ramp is None else f"color {self.number_in(paint.ramp) + 1}"
+
+    def name_in(self, paint: Paint) -> str:
+        """The name of the color of a paint in a sentence: "the object color", or "color 2 of 5"."""
+        if paint.ramp is None:
+            return f"the {self.title} color"
+        return f"{self.label_in(paint)} of {len(paint.ramp)}"
+
+    def change(self, paint: Paint, color: Sequence[int] | str) -> PaintChanges:
         """The change of a paint that puts the color into it."""
+        if paint.ramp is not None:
+            number = self.number_in(paint.ramp)
+            return {"ramp": (*paint.ramp[:number], color, *paint.ramp[number + 1 :])}
         return {"object_color": color} if self.title == OBJECT else {"light_color": color}
 
-    def items(self, ramp: Words) -> list[Item]:
-        """The ramp in its words, from the lowest intensity at the left."""
-        return [level_strip(ramp.tobytes(), self.ramp)]
+    def items(self, shades: Words) -> list[Item]:
+        """The shades in their words, from the darkest at the left."""
+        return [level_strip(shades.tobytes(), self.shades)]
 
     def widgets(self, paint: Paint, is_chosen: bool, hues: Words) -> list[Widget]:
         """The heading with the number of the color, and the bars; `hues` are the words of the hue bar."""
-        color = self.color_of(paint)
+        color, label, name = self.color_of(paint), self.label_in(paint), self.name_in(paint)
         heading = SectionHeading(
-            self.title,
-            f"The {self.title} color: click to pick swatches for it; Ctrl+C copies it.",
+            label,
+            f"{_capitalized(name)}: click to pick swatches for it; Ctrl+C copies it.",
             run=self._choose,
             is_chosen=is_chosen,
         )
         bars = [
             ComponentBar(
-                f"{self.title}, {name}",
-                f"{name.capitalize()} of the {self.title} color, 0 to {FULL}.",
+                f"{label}, {component}",
+                f"{component.capitalize()} of {name}, 0 to {FULL}.",
                 value=color[number],
                 put=partial(self._put_component, number),
                 word=word,
-                letter=name[0].upper(),
+                letter=component[0].upper(),
             )
-            for number, (name, word) in enumerate(COMPONENTS)
+            for number, (component, word) in enumerate(COMPONENTS)
         ]
         white = ComponentBar(
-            f"{self.title}, white",
+            f"{label}, white",
             "Tints and shades: adds the same to red, green and blue; each stops at its ends.",
             value=white_of(color),
             put=self._put_white,
@@ -422,16 +523,16 @@ class ColorSection:
         hsv = self._hsv_of(color)
         by_hue = [
             ComponentBar(
-                f"{self.title}, {name}",
-                f"{name.capitalize()} of the {self.title} color, 0 to {most} {unit}.",
+                f"{label}, {part}",
+                f"{part.capitalize()} of {name}, 0 to {most} {unit}.",
                 value=hsv[number],
                 high=most,
                 put=partial(self._put_hsv, number),
                 word=LIGHT_GRAY,
-                letter=name[0].upper(),
-                strip=hues.tobytes() if name == "hue" else b"",
+                letter=part[0].upper(),
+                strip=hues.tobytes() if part == "hue" else b"",
             )
-            for number, (name, most, unit) in enumerate(HSV)
+            for number, (part, most, unit) in enumerate(HSV)
         ]
         return [
             heading.at(self._heading._replace(right=LEFT_END - HEX_ELEMENTS)),
@@ -441,9 +542,11 @@ class ColorSection:
 
     def row(self, paint: Paint, within: str = "") -> Entry:
         """The row of a menu, or the number `within` the heading, over which the color is typed."""
-        help = f"The {self.title} color by its name or number, such as teal or #b01020."
+        name = self.name_in(paint)
+        help = f"{_capitalized(name)} by its name or number, such as teal or #b01020."
         value = in_digits(self.color_of(paint))
-        return Entry(self.title.split()[0], help, within=within, value=value, take=self._give)
+        label = self.title.split()[0] if paint.ramp is None else self.label_in(paint)
+        return Entry(label, help, within=within, value=value, take=self._give)
 
     def _bar_area(self, number: int) -> Area:
         top = self.area.top + number * BAR_LINES
@@ -487,6 +590,10 @@ class ColorSection:
         return self.color_of(self.session.scene.surface(self.session.surface_name).paint)
 
 
+def _capitalized(text: str) -> str:
+    return f"{text[0].upper()}{text[1:]}"
+
+
 @dataclass(frozen=True)
 class SectionHeading(Button):
     """The heading of a section. Its key differs from the key of a menu row with the same label."""
@@ -501,162 +608,3 @@ def whole(name: str, value: float) -> int:
     if not 0 <= value <= FULL or value != int(value):
         raise UsageError(f"{name} must be a whole number from 0 to {FULL}, not {value:g}; type another")
     return int(value)
-
-
-# The choices: finishes, and in the menu recent colors and swatches.
-
-CELL_ELEMENTS: Final = 12
-CELL_LINES: Final = 10
-"""The size of a swatch. The hues go down, so that the field fits into the menu."""
-
-MOST_RECENT: Final = ROWS
-"""Recent colors in their row, which is as wide as the swatches."""
-
-
-class PaintChoices:
-    """The finishes of the chosen surface, and colors; `take` is called with a color that is picked."""
-
-    def __init__(self, session: Session, take: Callable[[Color], object]) -> None:
-        self.session = session
-        self._take = take
-        self._recent: tuple[Color, ...] = ()
-        self._colors = np.empty((0, 3), np.uint8)
-        self._before: dict[str, Paint] = {}
-        """The paints of all surfaces when the mixing began."""
-
-    @property
-    def count(self) -> int:
-        """The number of colors that can be picked."""
-        return len(self._colors)
-
-    @property
-    def colors(self) -> Bytes:
-        """The colors that can be picked, (n, 3) uint8: the swatches, and then the recent colors."""
-        return self._colors
-
-    def rows(self, words: Words, title: str) -> list[Widget]:
-        """The rows of the colors. `words` show them; `title` names the color that they are for."""
-        count = len(swatches())
-        recent = SwatchField(
-            "recent colors",
-            f"The colors that were mixed last; click one for the {title}.",
-            words=words[count:],
-            across=MOST_RECENT,
-            take=lambda number: self._take_number(count + number),
-        )
-        paints = PaintField(
-            "paints",
-            f"Paints for the {title}: click one, or drag over them.",
-            words=words[:count],
-            across=ROWS,
-            take=self._take_number,
-        )
-        return [Gap("swatches gap"), *((recent, Gap("recent gap")) if self._recent else ()), paints]
-
-    def finishes(self, surface: Surface) -> list[Widget]:
-        """The row of finishes."""
-        width = (RIGHT_END + 1 - LEFT) // len(FINISHES)
-        area = Area(LEFT, FINISHES_TOP, LEFT + width - 1, FINISHES_TOP + ROW_LINES - 1)
-        return [
-            Button(
-                name,
-                f"Let the surface look like {name}, in its object color.",
-                area=area._replace(left=area.left + number * width, right=area.right + number * width),
-                run=partial(self._finish, surface, name),
-            )
-            for number, name in enumerate(FINISHES)
-        ]
-
-    def begin(self) -> None:
-        """Mixing begins: note the paints, and look up the recent colors."""
-        self._before = {each.name: each.paint for each in self.session.scene.surfaces}
-        self._recent = recent_colors()[:MOST_RECENT]
-        hues_down = swatches().reshape(ROWS, COLUMNS, 3).swapaxes(0, 1).reshape(-1, 3)
-        self._colors = np.concatenate([hues_down, np.array(self._recent, np.uint8).reshape(-1, 3)])
-
-    def end(self) -> None:
-        """Mixing ends: note the new colors of the surfaces as recent colors."""
-        for surface in self.session.scene.surfaces:
-            before, now = self._before.get(surface.name, surface.paint), surface.paint
-            if before.light_color != now.light_color:
-                note_color(now.light_color)
-            if before.object_color != now.object_color:
-                note_color(now.object_color)
-
-    def _take_number(self, number: int) -> None:
-        red, green, blue = self.colors[number].tolist()
-        self._take((red, green, blue))
-
-    def _finish(self, surface: Surface, name: str) -> None:
-        self.session.change_surface(surface.name, **finished(surface, name))
-        self.session.tell(f"{surface.name}: {name}")
-
-
-GROUT: Final = 1
-"""Lines and elements of the ground at the right and lower edge of each cell."""
-
-
-@dataclass(frozen=True)
-class SwatchField(Widget):
-    """Cells, each filled with a word of its own, row by row from the top of the area.
-
-    `take` is called with the number of a cell that is picked, or that a drag reaches. There may be fewer
-    cells than fit.
-    """
-
-    words: Words = field(default_factory=lambda: np.empty(0, np.uint16))
-    across: int = 1
-    """Cells in a row."""
-    width: int = CELL_ELEMENTS
-    height: int = CELL_LINES
-    """Elements and lines of a cell."""
-    take: Callable[[int], object] = lambda _: None
-    row_lines: ClassVar[int] = CELL_LINES
-
-    @property
-    def _left(self) -> int:
-        """The first element of the cells, which are in the middle of the area."""
-        return self.area.left + (self.area.width - self.across * self.width) // 2
-
-    def items(self, lit: bool) -> list[Item]:
-        place = self._left, self.area.top
-        return list(_cells(self.words.tobytes(), place, self.across, self.width, self.height))
-
-    def cell_at(self, place: Place) -> int | None:
-        """The number of the cell at a place, if there is one."""
-        column, row = (
-            (place.element - self._left) // self.width,
-            (place.line - self.area.top) // self.height,
-        )
-        number = row * self.across + column
-        is_there = 0 <= column < self.across and 0 <= number < len(self.words)
-        return number if is_there else None
-
-    def pick(self, place: Place) -> object:
-        number = self.cell_at(place)
-        return None if number is None else self.take(number)
-
-    def drag(self, start: Place, last: Place, place: Place) -> object:
-        return self.pick(place)
-
-
-@dataclass(frozen=True)
-class PaintField(SwatchField):
-    """All swatches as a row of the menu."""
-
-    row_lines: ClassVar[int] = COLUMNS * CELL_LINES
-
-
-@lru_cache(maxsize=8)
-def _cells(data: bytes, place: tuple[int, int], across: int, width: int, height: int) -> tuple[Item, ...]:
-    words = np.frombuffer(data, np.uint16)
-    if not len(words):
-        return ()
-    rows = -(-len(words) // across)
-    grid = np.full(rows * across, NIGHT, np.uint16)
-    grid[: len(words)] = words
-    cells = grid.reshape(rows, across).repeat(height, axis=0).repeat(width, axis=1)
-    for edge in range(GROUT):
-        cells[height - 1 - edge :: height] = NIGHT
-        cells[:, width - 1 - edge :: width] = NIGHT
-    return (image(cells, *place),)

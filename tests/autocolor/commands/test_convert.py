@@ -62,6 +62,28 @@ def test_with_strict_what_is_left_out_is_an_exit_code(run: Run, folder: Path) ->
     assert run("convert", "torn.obj", "c.obj", "--strict").code == 1
 
 
+def test_what_stl_cannot_hold_is_listed(run: Run, folder: Path) -> None:
+    (folder / "quad.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0.1\nv 9 9 9\nf 1 2 3 4\n")
+    converted = run("convert", "quad.obj", "quad.stl")
+    assert (converted.code, converted.err.splitlines()) == (
+        0,
+        [
+            "autocolor: quad.obj: 1 node that no polygon uses was dropped",
+            "autocolor: quad.stl: left out, as STL cannot hold it: 1 quad (each is written as two triangles)",
+            "autocolor: quad.stl: left out, as STL cannot hold it: the double precision of 1 node (rounded to"
+            " single)",
+            "wrote quad.stl",
+        ],
+    )
+    again = run("convert", "quad.stl", "again.stl", "--strict")
+    assert (again.code, again.err) == (0, "wrote again.stl\n")
+    assert (folder / "again.stl").read_bytes() == (folder / "quad.stl").read_bytes()
+    # The dropped node alone is a repair.
+    assert run("convert", "quad.obj", "strict.ply", "--strict").code == 1
+    assert run("convert", "strict.ply", "strict.stl", "--strict").code == 1
+    assert run("convert", "strict.ply", "again.ply", "--strict").code == 0
+
+
 def test_the_format_may_be_named(run: Run, folder: Path) -> None:
     assert run("convert", "two.obj", "two.model", "--to", "obj").code == 0
     assert run("info", "two.model").code == 0

@@ -53,7 +53,7 @@ def test_repairs_are_told_and_counted_under_strict(folder: Path, run: Run) -> No
 def test_a_surface_that_is_not_seen_or_has_no_part_says_so(folder: Path, run: Run) -> None:
     scene = wall_scene(lights=[], view=wall_scene().view.replace(direction=(0, -1, 0)))
     scene = scene.replace(surfaces=(*scene.surfaces, scene.surfaces[0].replace(name="more")))
-    write_picture("wall.npz", render(scene), scene)
+    write_picture("wall.npz", scene, render(scene))
     ran = run("info", "wall.npz")
     assert "pixels 0," in ran.out
     assert "lights: none" in ran.out
@@ -63,7 +63,7 @@ def test_a_surface_that_is_not_seen_or_has_no_part_says_so(folder: Path, run: Ru
 
 def test_names_that_are_no_text_are_shown_with_backslashes(folder: Path, run: Run) -> None:
     scene = wall_scene(lights=[], name="\udcff")
-    write_picture("wall.npz", render(scene), scene)
+    write_picture("wall.npz", scene, render(scene))
     assert json.loads(run("info", "wall.npz", "--json").out)["name"] == "\udcff"
 
 
@@ -78,7 +78,7 @@ def test_the_scalars_of_the_mesh_are_told_with_their_ranges_and_what_is_missing(
         MeshScalar("none\nhere", np.full(nodes, np.nan)),
     )
     scene = scene.replace(mesh=scene.mesh.with_scalars(*scalars))
-    write_picture("wall.npz", render(scene), scene)
+    write_picture("wall.npz", scene, render(scene))
     lines = run("info", "wall.npz").out.splitlines()
     at = lines.index("scalars:")
     assert lines[at + 1 : at + 4] == [

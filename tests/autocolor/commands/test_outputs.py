@@ -37,6 +37,26 @@ def test_a_picture_file_must_be_one_that_is_known_again(folder: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    ("option", "sentence"),
+    [
+        ("--layers", "--layers must be the name of an OpenEXR file, not 'a.jpg'; end it in .exr"),
+        ("--words", "--words must be the name of a PNG, not 'a.jpg'; end it in .png"),
+        ("--indexed", "--indexed must be the name of a PNG, not 'a.jpg'; end it in .png"),
+    ],
+)
+def test_other_outputs_have_the_suffixes_of_their_kinds(folder: Path, option: str, sentence: str) -> None:
+    refuse_outputs(None, None, force=False, others={option: f"a.{sentence[-3:]}"})
+    with pytest.raises(UsageError) as caught:
+        refuse_outputs(None, None, force=False, others={option: "a.jpg"})
+    assert str(caught.value) == sentence
+
+
+def test_no_two_of_all_outputs_are_the_same_file(folder: Path) -> None:
+    with pytest.raises(UsageError, match=r"not a\.png and \./a\.png, which are the same"):
+        refuse_outputs("a.png", "a.npz", force=True, others={"--words": "b.png", "--indexed": "./a.png"})
+
+
+@pytest.mark.parametrize(
     ("output", "sentence"),
     [
         ("scene", "an output must be a file, not the folder scene; add a file name"),

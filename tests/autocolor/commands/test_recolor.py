@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from autocolor import read_picture, render, write_picture
+from autocolor import read_palette, read_picture, render, write_palette, write_picture
 from tests.autocolor.commands.conftest import Run
 from tests.autocolor.meshes import wall_scene
 
@@ -31,6 +31,14 @@ def test_nothing_changed_gives_the_rendered_picture_byte_for_byte(saved: Path, r
             ("surfaces.side.light_color=#ffe9c0", "surfaces.side.blend=0"),
         ),
         (
+            ("--object-color", "#123456", "--light-color", "#ffe9c0", "--blend", "0"),
+            (
+                "surfaces.side.object_color=#123456",
+                "surfaces.side.light_color=#ffe9c0",
+                "surfaces.side.blend=0",
+            ),
+        ),
+        (
             ("--object", "#123456", "--blend", "0.25", "--percentage", "50"),
             (
                 "surfaces.side.object_color=#123456",
@@ -38,6 +46,9 @@ def test_nothing_changed_gives_the_rendered_picture_byte_for_byte(saved: Path, r
                 "surfaces.side.light_percentage=50",
             ),
         ),
+        (("--ramp", "#200,#f60,#fff"), ("surfaces.side.ramp=#200,#f60,#fff",)),
+        (("--ramp", "#200,#f60"), ('surfaces.side.ramp=["#200", "#ff6600"]',)),
+        (("--ramp", "#200,#f60"), ("surfaces.side.ramp=[#200, #f60]",)),
     ],
 )
 def test_a_recolored_picture_is_the_one_rendered_in_the_new_colors(
@@ -48,6 +59,18 @@ def test_a_recolored_picture_is_the_one_rendered_in_the_new_colors(
     assert run("render", "scene", *arguments, "-o", "two.png").code == 0
     assert (saved.parent / "one.png").read_bytes() == (saved.parent / "two.png").read_bytes()
     assert (saved.parent / "one.png").read_bytes() != (saved.parent / "scene.png").read_bytes()
+
+
+def test_colors_that_a_ramp_unsets_are_told_and_a_ramp_that_colors_unset(saved: Path, run: Run) -> None:
+    ramp = ("recolor", "scene.npz", "side", "--ramp", "#200,#f60")
+    told = "autocolor: side: the ramp replaces its two colors and their blend\n"
+    assert run(*ramp, "--save", "hot.npz").err == f"{told}wrote hot.npz\n"
+    assert run("recolor", "hot.npz", "side", "--ramp", "red,blue", "-o", "a.png").err == "wrote a.png\n"
+    told = "autocolor: side: two colors and their blend replace its ramp\n"
+    blend = ("recolor", "hot.npz", "side", "--blend", "0.5", "-o", "b.png")
+    assert run(*blend).err == f"{told}wrote b.png\n"
+    setting = ("--set", "surfaces.side.ramp=red,blue", "-o", "c.png")
+    assert "side: the ramp replaces" in run("render", "scene", *setting).err
 
 
 def test_the_mesh_is_not_needed(saved: Path, run: Run) -> None:
@@ -80,7 +103,7 @@ def test_the_surface_s_name_in_the_output_s_is_made_one_of_a_file(folder: Path, 
     surface = scene.surfaces[0].replace(name="a/b")
     part = scene.parts[0].replace(surface="a/b")
     scene = scene.replace(surfaces=(surface,), parts=(part,))
-    write_picture("wall.npz", render(scene), scene)
+    write_picture("wall.npz", scene, render(scene))
     assert run("recolor", "wall.npz", "a/b").err == "wrote wall-b.png\n"
 
 
@@ -88,7 +111,7 @@ def test_pictures_of_another_size_keep_it(folder: Path, run: Run) -> None:
     from PIL import Image
 
     scene = wall_scene(lights=[], ambient=0.5)
-    write_picture("wall.npz", render(scene, 30, 50), scene)
+    write_picture("wall.npz", scene, render(scene, 30, 50))
     assert run("recolor", "wall.npz", "wall").code == 0
     with Image.open("wall-wall.png") as image:
         assert image.size == (50, 30)
@@ -103,6 +126,9 @@ def test_pictures_of_another_size_keep_it(folder: Path, run: Run) -> None:
         (("scene.npz", "side", "--blend", "nan"), 2, "blend must be a number from 0 to 1, not nan"),
         (("scene.npz", "side", "--blend", "much"), 2, "'much' is not a valid float"),
         (("scene.npz", "side", "--percentage", "101"), 2, "light_percentage must be a number from 0 to 100"),
+        (("scene.npz", "side", "--ramp", "#200,#g00"), 2, "ramp[2] must be"),
+        (("scene.npz", "side", "--ramp", "#200"), 2, "ramp must be a list of 2 to 1024 colors, not '#200'"),
+        (("scene.npz", "side", "--ramp", "#200,#f60", "--blend", "0"), 2, "ramp must stand without object_"),
         (("scene.npz",), 2, "recolor must have a SURFACE"),
         (("none.npz", "side"), 66, "none.npz: there is no such file or folder"),
         (("two.obj", "side"), 65, "two.obj: a picture file must be whole and as autocolor wrote it"),
@@ -170,3 +196,56 @@ def test_colors_need_a_surface_and_nothing_at_all_is_refused(saved: Path, run: R
         result = run("recolor", "scene.npz", *options)
         assert result.code == 2
         assert "recolor must have a SURFACE, or --set KEY=VALUE without colors" in result.err
+
+
+@pytest.mark.parametrize("suffix", [".gpl", ".csv", ".act"])
+def test_the_entries_of_a_range_come_back_from_a_palette_file(saved: Path, run: Run, suffix: str) -> None:
+    levels = "surfaces.side.levels=200"
+    assert run("recolor", "scene.npz", "--set", levels, "-o", "before.png", "--save", "few.npz").code == 0
+    assert run("palette", "few.npz", "side", "-o", f"side{suffix}").code == 0
+    assert run("recolor", "few.npz", "side", "--object", "lime", "-o", "other.png").code == 0
+    again = (
+        "recolor",
+        "few.npz",
+        "side",
+        "--palette",
+        f"side{suffix}",
+        "-o",
+        "after.png",
+        "--save",
+        "new.npz",
+    )
+    assert run(*again).code == 0
+    before, other, after = [
+        (saved.parent / f"{name}.png").read_bytes() for name in ("before", "other", "after")
+    ]
+    assert before == after != other
+    assert run("palette", "new.npz", "side", "-o", f"again{suffix}").code == 0
+    one, two = (read_palette(f"{name}{suffix}") for name in ("side", "again"))
+    assert one == two
+    assert len(one) == 200
+
+
+def test_a_palette_of_few_colors_is_a_ramp_over_the_levels(saved: Path, run: Run) -> None:
+    write_palette("hot.gpl", ["#200", "#f60", "#fff"], names=["low", "middle", "high"])
+    assert run("recolor", "scene.npz", "side", "--palette", "hot.gpl", "--save", "hot.npz").code == 0
+    ramp = read_picture("hot.npz").scene.surface("side").paint.ramp
+    assert ramp == ((34, 0, 0), (255, 102, 0), (255, 255, 255))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "message"),
+    [
+        (("side", "--palette", "one.csv"), 2, "ramp must be a list of 2 to 1024 colors"),
+        (("side", "--palette", "no.gpl"), 66, "no.gpl: there is no such file"),
+        (("side", "--palette", "one.csv", "--blend", "1"), 2, "--palette gives all colors of a surface;"),
+        (("--palette", "one.csv"), 2, "recolor must have a SURFACE"),
+    ],
+)
+def test_a_palette_that_is_no_ramp_is_refused(
+    saved: Path, run: Run, arguments: tuple[str, ...], code: int, message: str
+) -> None:
+    write_palette("one.csv", ["red"])
+    ran = run("recolor", "scene.npz", *arguments)
+    assert (ran.code, ran.out) == (code, "")
+    assert message in ran.err

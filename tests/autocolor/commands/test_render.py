@@ -2,6 +2,8 @@ from __future__ import annotations
 
 import errno
 import os
+import re
+import shlex
 import signal
 import sys
 from pathlib import Path
@@ -11,12 +13,12 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from autocolor import Studio, image, read_picture, read_scene, render, write_scene
+from autocolor import Studio, demo, image, images, read_picture, read_scene, render, write_scene
 from autocolor.commands.options import smooth_of
 from autocolor.commands.render import render as command
 from autocolor.images import SMOOTHNESS, SMOOTHNESSES
 from ramtek_emu import Ramtek9300
-from tests.autocolor.commands.conftest import Run
+from tests.autocolor.commands.conftest import ROOT, Run
 
 
 def pixels(path: Path) -> np.ndarray[tuple[int, ...], np.dtype[np.uint8]]:
@@ -35,6 +37,14 @@ def test_without_smooth_edges_a_picture_is_the_field_of_a_display(folder: Path, 
     display = Ramtek9300()
     Studio(read_scene("two.obj"), display)
     assert (pixels(folder / "two.png") == display.field()).all()
+
+
+def test_without_a_scene_the_demo_is_rendered(folder: Path, run: Run) -> None:
+    assert run("render", "--size", "64x48", "--save", "new.npz") == (0, "", "wrote new.npz\n")
+    assert run("render", "--size", "64x48") == (0, "", "wrote coupe.png\n")
+    assert (pixels(folder / "coupe.png") == image(demo(), render(demo(), 48, 64, smooth=2))).all()
+    assert read_picture("new.npz").scene.name == "coupe"
+    assert run("render").code == 73
 
 
 @pytest.mark.parametrize("smooth", [2, 3, 4])
@@ -400,3 +410,75 @@ def test_a_picture_too_large_for_the_memory_ends_with_what_was_being_done(folder
     )
     assert ran.err.endswith("; take a smaller mesh or picture, or give the program more memory\n")
     assert not (folder / "scene.png").exists()
+
+
+def test_layers_and_words_have_a_pixel_of_the_picture_each(folder: Path, run: Run) -> None:
+    library = pytest.importorskip("OpenEXR")
+    size = ("--size", "40x30")
+    assert run("render", "scene", *size, "--save", "a.npz", "--smooth", "1").code == 0
+    levels = [f"--set=surfaces.{name}.levels=50" for name in ("front.low", "side")]
+    outputs = ("--layers", "a.exr", "--words", "w.png", "--indexed", "i.png")
+    assert run("render", "a.npz", *size, *levels, *outputs) == (
+        0,
+        "",
+        "wrote a.exr\nwrote w.png\nwrote i.png\n",
+    )
+    picture, scene = read_picture("a.npz")
+    with library.File("a.exr", separate_channels=True) as file:
+        assert (file.channels()["intensity.Y"].pixels == picture.intensity).all()
+        assert {"key.diffuse.Y", "key_2.specular.Y"} <= file.channels().keys()
+    with Image.open("w.png") as words:
+        assert words.size == (40, 30)
+    for name in ("front.low", "side"):
+        scene = scene.with_surface(name, levels=50)
+    assert (pixels(folder / "i.png") == image(scene, picture)).all()
+    again = run("render", "scene", *size, "--smooth", "3", "--layers", "b.exr", "-o", "b.png")
+    assert again.err == "wrote b.png\nwrote b.exr\n"
+    with library.File("b.exr", separate_channels=True) as file:
+        assert file.channels()["depth.Z"].pixels.shape == (90, 120)
+    assert pixels(folder / "b.png").shape == (30, 40, 3)
+
+
+def test_a_refused_indexed_png_leaves_no_other_output(
+    folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(images, "MOST_INDEXED", 5)
+    ran = run("render", "scene", "--indexed", "i.png", "--words", "w.png", "-o", "o.png")
+    assert (ran.code, ran.out) == (2, "")
+    assert ran.err.startswith("autocolor: an indexed PNG must have at most 5 words in use, not ")
+    assert not list(folder.glob("*.png"))
+
+
+def test_layers_without_their_library_are_refused_before_any_work(
+    folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "OpenEXR", None)
+    ran = run("render", "scene", "--layers", "a.exr", "--save", "a.npz")
+    assert (ran.code, ran.out) == (69, "")
+    assert ran.err.endswith('run: pip install "autocolor[exr]"\n')
+    assert not (folder / "a.npz").exists()
+
+
+def test_the_commands_and_the_python_of_the_page_on_layers_run(folder: Path, run: Run) -> None:
+    pytest.importorskip("OpenEXR")
+    pytest.importorskip("OpenImageIO")
+    os.rename("scene", "other")
+    os.symlink(ROOT / "scenes", "scenes")
+    text = (ROOT / "docs" / "LAYERS.md").read_text("utf-8")
+    names: dict[str, object] = {}
+    blocks = re.findall(r"^```(python)?\n(.*?)^```$", text, re.DOTALL | re.MULTILINE)
+    assert len(blocks) == 6
+    for language, block in blocks:
+        if language:
+            exec(block, names)
+            continue
+        for line in block.splitlines():
+            program, *arguments = shlex.split(line)
+            assert program == "autocolor"
+            ran = run(*arguments)
+            assert ran.code == 0, ran.err
+    picture = read_picture("coupe.npz").picture
+    hood = picture.part_number == 1 + picture.parts.index("hood")
+    assert np.array_equal(np.asarray(names["mask"]), hood)
+    assert hood.any()
+    assert np.array_equal(np.asarray(names["colors"]), image(read_scene("scenes/coupe"), picture, smooth=1))

@@ -6,15 +6,9 @@ from pathlib import Path
 import pytest
 
 from autocolor import Flaps, Phong, Scene, Surface, read_scene
-from autocolor.commands.settings import (
-    SettingPlace,
-    field_of,
-    keys_after,
-    place_of,
-    value_of,
-    with_settings,
-)
+from autocolor.commands.settings import keys_after, with_settings
 from autocolor.errors import UsageError
+from autocolor.files.settings import SettingPlace, field_of, place_of, value_of
 from autocolor.scene.changes import HalfSpaceChanges
 from tests.autocolor.commands.conftest import Run
 

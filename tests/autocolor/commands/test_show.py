@@ -90,11 +90,31 @@ def test_what_is_no_address_is_refused_in_a_sentence(address: str, tmp_path: Pat
         ((), "show must have either SCENE or --recover; name a scene"),
         (("scene", "--recover", "newest"), "show must have either SCENE or --recover; name a scene"),
         (("--recover", "--once"), "--set and --once are for SCENE, not for sessions; leave them out"),
+        (
+            ("scene", "--paints", "a.gpl", "--once"),
+            "--paints is for an interactive session, not for --once; leave one of them out",
+        ),
     ],
 )
 def test_a_scene_or_a_session_is_shown(folder: Path, run: Run, arguments: tuple[str, ...], rule: str) -> None:
     ran = run("show", "--to", "tcp://127.0.0.1:1", *arguments)
     assert (ran.code, ran.err) == (2, f"autocolor: {rule}\n")
+
+
+def test_paints_are_brought_to_a_display_elsewhere(
+    folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    messages = []
+
+    def session(history: History, address: str, folder: Path, **given: Callable[[Viewer], object]) -> None:
+        viewer = Viewer(history, Ramtek9300(), folder)
+        given["prepare"](viewer)
+        messages.append(viewer.message)
+
+    monkeypatch.setattr("autocolor.commands.show.session_elsewhere", session)
+    (folder / "few.csv").write_text("color\nred\nnavy\n")
+    assert run("show", "scene", "--paints", "few.csv", "--to", "tcp://127.0.0.1:1").code == 0
+    assert messages == ["2 paints of few.csv: take them in color mixing"]
 
 
 def test_a_display_that_is_not_there_is_told(folder: Path, run: Run) -> None:

@@ -66,7 +66,7 @@ def test_the_tables_of_a_picture_file_are_written_with_its_mesh_beside(mesh: Pat
     scene = autocolor.read_scene(mesh).with_light("key", intensity=2.5)
     path = tmp_path / "pictures" / "square.npz"
     path.parent.mkdir()
-    autocolor.write_picture(path, autocolor.render(scene, 24, 32), scene)
+    autocolor.write_picture(path, scene, autocolor.render(scene, 24, 32))
     result = CliRunner().invoke(tables, [str(path), "--write"])
     assert result.exit_code == 0, result.output
     assert (
@@ -102,7 +102,7 @@ def test_half_spaces_and_links_are_told_as_text_and_as_json_and_fed_back(mesh: P
         follows="eye",
     )
     path = mesh.parent / "square.npz"
-    autocolor.write_picture(path, autocolor.render(scene, 24, 32), scene)
+    autocolor.write_picture(path, scene, autocolor.render(scene, 24, 32))
     text = CliRunner().invoke(tables, [str(path)]).stdout
     assert (
         "half_spaces.left = { point = [0.0, 0.0, 0.0], direction = [1.0, 0.0, 0.0], edge_width = 0.0," in text

@@ -35,7 +35,7 @@ def test_without_a_screen_render_is_named(folder: Path, run: Run, monkeypatch: p
         monkeypatch.delenv(name, raising=False)
     ran = run("tutorial")
     assert (ran.code, ran.out) == (69, "")
-    assert "`autocolor render SCENE -o PNG` renders without a screen" in ran.err
+    assert "; `autocolor render` writes the demo to coupe.png, and `autocolor render SCENE" in ran.err
 
 
 def test_it_is_taught_on_a_display_elsewhere(folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -69,6 +69,39 @@ def test_what_is_set_is_shown(folder: Path, run: Run, monitors: list[Any]) -> No
     )
 
 
+@pytest.mark.parametrize("line", [("view", "scene", "--paints", "few.csv"), ("--paints", "few.csv")])
+def test_paints_are_brought_along(folder: Path, run: Run, monitors: list[Any], line: tuple[str, ...]) -> None:
+    (folder / "few.csv").write_text("name,color\nSignal red,#a52019\n")
+    assert run(*line).code == 0
+    assert monitors[1].caption.endswith("a paint of few.csv: take them in color mixing")
+
+
+@pytest.mark.parametrize(
+    ("line", "code", "message"),
+    [
+        (
+            ("view", "scene", "--paints", "no.gpl"),
+            66,
+            "no.gpl: there is no such file or folder; check the name",
+        ),
+        (("--paints", "two.obj"), 65, "two.obj: a palette must end in .act, .csv or .gpl, not in '.obj';"),
+        (
+            ("view", "--sessions", "--paints", "few.csv"),
+            2,
+            "--paints is for a scene or a session that is shown;",
+        ),
+        (("--paints", "few.csv", "view", "scene"), 2, "--paints before a command is for the demo; write it"),
+    ],
+)
+def test_paints_that_cannot_be_shown_are_refused_before_anything_is_read(
+    folder: Path, run: Run, monitors: list[Any], line: tuple[str, ...], code: int, message: str
+) -> None:
+    ran = run(*line)
+    assert (ran.code, ran.out) == (code, "")
+    assert ran.err.startswith(f"autocolor: {message}")
+    assert len(monitors) == 1
+
+
 def test_repairs_count_under_strict(folder: Path, run: Run, monitors: list[Any]) -> None:
     (folder / "two.obj").write_text((folder / "two.obj").read_text() + "f 1 1 2\n")
     assert run("view", "two.obj").code == 0
@@ -237,7 +270,7 @@ def test_without_a_screen_render_is_named(
     ran = run(*arguments)
     assert (ran.code, ran.out) == (69, "")
     assert ran.err.count("\n") == 1
-    assert "`autocolor render SCENE -o PNG` renders without a screen" in ran.err
+    assert "; `autocolor render` writes the demo to coupe.png, and `autocolor render SCENE" in ran.err
 
 
 @pytest.mark.skipif(os.name != "posix", reason="needs an X display that can be missing")

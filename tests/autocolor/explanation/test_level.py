@@ -26,7 +26,7 @@ from autocolor.rendering import rendering
 from autocolor.scene.color_scales import COLOR_SCALES, scale_colors
 from autocolor.scene.curves import CURVES
 from autocolor.scene.scalar import COMPUTED
-from autocolor.testing import numbers, paints, scales
+from autocolor.testing import blended_paints, numbers, scales
 from autocolor.visibility.visible_points import Sight
 from tests.autocolor.meshes import sphere
 from tests.autocolor.sessions import car, opened
@@ -62,7 +62,7 @@ def test_a_missing_value_has_the_band_and_the_color_of_missing_values() -> None:
     assert level is not None
     assert level.scalar is not None
     assert level.scalar.value is None
-    assert level.scalar.band == studio.image.bands["body"].missing
+    assert level.scalar.band == studio.display_image.bands["body"].missing
     assert color_of(level) == (10, 20, 30)
     assert word_of(level) == studio.words[12, 16]
 
@@ -105,7 +105,7 @@ def test_equalized_levels_are_those_of_the_picture(given: list[float], held: boo
         assert abs(found - float(curve(np.array([each]))[0])) <= same
 
 
-@given(paints(), st.integers(2, 300))
+@given(blended_paints(), st.integers(2, 300))
 def test_the_light_color_grows_in_equal_steps_to_its_percentage(paint: Paint, levels: int) -> None:
     shares = np.array([light_share(paint, level, levels) for level in range(levels)])
     steps = np.diff(shares[shares > 0])

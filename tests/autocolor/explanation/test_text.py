@@ -24,6 +24,7 @@ SCENES = {
     "bands": car().with_scalar(name="z"),
     "missing": car().with_scalar(name="stress"),
     "dithered": car().replace(dither="ordered", mapping="gamma", contrast="floor"),
+    "ramp": car().with_paint("body", ramp=[(number % 256, 0, 0) for number in range(1024)]),
     "normals": car().replace(words="normals"),
     "very bright": car().replace(ambient=1e9),
     "long names": car().replace(name="a name " * 20),

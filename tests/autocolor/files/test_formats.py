@@ -39,12 +39,12 @@ def test_every_mesh_format_has_its_suffixes_and_abilities() -> None:
     table = {each.name: each.suffixes for each in MESH_FORMATS}
     own = {
         "CSV": (".csv",), "Movie.BYU": (".g", ".byu"), "npy": (".npy",), "OBJ": (".obj",), "OFF": (".off",),
-        "PLY": (".ply",), "STL": (".stl",), "VTK": (".vtk",),
+        "PLY": (".ply",), "STL": (".stl",), "VTK": (".vtk",), "VTP": (".vtp",),
     }  # fmt: skip
     assert {name: table[name] for name in own} == own
     assert [each.name for each in MESH_FORMATS if each.mapped] == ["npy"]
     assert [each.name for each in MESH_FORMATS if each.in_folder] == ["CSV", "npy"]
-    assert [each.name for each in MESH_FORMATS if each.written] == ["OBJ", "PLY", "tables"]
+    assert [each.name for each in MESH_FORMATS if each.written] == ["OBJ", "PLY", "STL", "tables"]
     assert [each.name for each in MESH_FORMATS if each.write] == ["CSV", "npy"]
 
 

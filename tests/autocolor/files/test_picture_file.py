@@ -61,7 +61,7 @@ def lit_wall() -> Scene:
 
 def saved(path: Path, scene: Scene, lines: int = LINES, elements: int = ELEMENTS) -> SavedPicture:
     """A scene's picture, written and read again."""
-    write_picture(path, render(scene, lines, elements), scene)
+    write_picture(path, scene, render(scene, lines, elements))
     return read_picture(path)
 
 
@@ -149,7 +149,7 @@ def test_a_picture_file_under_the_name_of_an_image_is_refused(tmp_path: Path) ->
     scene = lit_wall()
     path = tmp_path / "wall.png"
     with pytest.raises(UsageError) as refusal:
-        write_picture(path, render(scene, 24, 32), scene)
+        write_picture(path, scene, render(scene, 24, 32))
     assert str(refusal.value) == (
         f"a picture with its scene must be written to a file that ends in .npz, not to {path}; rename it"
     )
@@ -180,7 +180,7 @@ def test_a_picture_comes_back_with_its_scalar_and_those_of_the_mesh(tmp_path: Pa
     assert again.picture.scalar is not None
     assert again.picture.scalar.tobytes() == picture.scalar.tobytes()
     assert again.picture.scalar_limits == picture.scalar_limits
-    write_picture(tmp_path / "two.npz", *again)
+    write_picture(tmp_path / "two.npz", again.scene, again.picture)
     assert (tmp_path / "two.npz").read_bytes() == (tmp_path / "wall.npz").read_bytes()
 
 
@@ -197,7 +197,7 @@ def test_a_picture_of_another_scalar_than_its_scene_is_not_written(tmp_path: Pat
     scene = wall_scene(scalar=scalar)
     other = scene.replace(scalar=None if scalar else {"name": "z"})
     with pytest.raises(UsageError, match="must both have a scalar or neither, not one alone; render"):
-        write_picture(tmp_path / "wall.npz", render(scene, LINES, ELEMENTS), other)
+        write_picture(tmp_path / "wall.npz", other, render(scene, LINES, ELEMENTS))
     assert list(tmp_path.iterdir()) == []
 
 
@@ -211,7 +211,7 @@ def test_every_scene_that_renders_comes_back_with_equal_words(
     except InputError:
         return
     path = tmp_path_factory.mktemp("pictures") / "scene.npz"
-    write_picture(path, picture, scene)
+    write_picture(path, scene, picture)
     again = read_picture(path)
     assert equal_scenes(again.scene, scene)
     assert again.picture.part_number.tobytes() == picture.part_number.tobytes()
@@ -238,7 +238,7 @@ def test_a_smooth_picture_comes_back_with_its_smoothness(tmp_path: Path) -> None
     # Integers of numpy are as good as others.
     lines, elements, smooth = np.array([LINES // 3, ELEMENTS // 3, 3])
     picture = render(scene, lines, elements, smooth=smooth)
-    write_picture(tmp_path / "wall.npz", picture, scene)
+    write_picture(tmp_path / "wall.npz", scene, picture)
     again = read_picture(tmp_path / "wall.npz")
     assert again.picture.smooth == 3
     assert (image(*again[::-1]) == image(scene, picture)).all()
@@ -258,7 +258,7 @@ def test_the_same_picture_gives_the_same_bytes(tmp_path: Path) -> None:
 
 def test_a_picture_that_was_read_is_written_with_the_same_bytes(tmp_path: Path) -> None:
     picture, scene = saved(tmp_path / "one.npz", lit_wall())
-    write_picture(tmp_path / "two.npz", picture, scene)
+    write_picture(tmp_path / "two.npz", scene, picture)
     assert (tmp_path / "one.npz").read_bytes() == (tmp_path / "two.npz").read_bytes()
 
 
@@ -285,9 +285,9 @@ def test_an_existing_file_is_kept_unless_it_may_be_overwritten(tmp_path: Path) -
     scene = lit_wall()
     picture = render(scene, LINES, ELEMENTS)
     with pytest.raises(OutputError):
-        write_picture(path, picture, scene)
+        write_picture(path, scene, picture)
     assert path.read_bytes() == b"mine"
-    write_picture(path, picture, scene, overwrite=True)
+    write_picture(path, scene, picture, overwrite=True)
     assert equal_scenes(read_picture(path).scene, scene)
 
 
@@ -301,9 +301,17 @@ def test_a_full_disk_leaves_the_old_file_whole(tmp_path: Path, monkeypatch: pyte
 
     monkeypatch.setattr(os, "fsync", full)
     with pytest.raises(WriteError, match="no space left on device"):
-        write_picture(path, picture, lit_wall(), overwrite=True)
+        write_picture(path, lit_wall(), picture, overwrite=True)
     assert path.read_bytes() == b"mine"
     assert os.listdir(tmp_path) == ["wall.npz"]
+
+
+def test_a_picture_of_other_surfaces_than_its_scene_is_not_written(tmp_path: Path) -> None:
+    picture = render(lit_wall(), LINES, ELEMENTS)
+    other = scene_of(lit_wall().mesh, surfaces=[Surface("paint")], surface_of_part={"wall": "paint"})
+    with pytest.raises(InputError, match=r"must be those of the scene, \['paint'\], not"):
+        write_picture(tmp_path / "wall.npz", other, picture)
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_file_that_is_not_there_is_missing(tmp_path: Path) -> None:
@@ -771,7 +779,7 @@ def test_the_values_of_the_first_picture_files_give_the_same_scene(scene: Scene)
 def test_a_picture_file_of_an_older_format_is_still_read(tmp_path: Path, old: str) -> None:
     scene = wall_scene(ambient=0.5)
     picture = render(scene, 6, 8)
-    write_picture(tmp_path / "new.npz", picture, scene)
+    write_picture(tmp_path / "new.npz", scene, picture)
     header, arrays = read_array_file(PICTURE_FILE, tmp_path / "new.npz")
     if old == "autocolor picture 3":
         header = {key: header[key] for key in (*PICTURE_FILE.keys, *PICTURE_FILE.series)}
@@ -788,7 +796,7 @@ def test_a_picture_file_of_an_older_format_is_still_read(tmp_path: Path, old: st
     assert (again.picture.intensity == picture.intensity).all()
     assert (again.picture.surface_number == picture.surface_number).all()
     # It does not know its parts, also once it is written again.
-    write_picture(tmp_path / "again.npz", again.picture, again.scene)
+    write_picture(tmp_path / "again.npz", again.scene, again.picture)
     for each in (again, read_picture(tmp_path / "again.npz")):
         assert each.picture.parts == ()
         assert each.picture.part_number.shape == (6, 8)

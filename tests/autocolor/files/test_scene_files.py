@@ -14,7 +14,16 @@ def names(folder: Path) -> list[tuple[str, str]]:
 
 
 def test_what_can_be_opened_is_listed_in_natural_order_with_folders_last(tmp_path: Path) -> None:
-    for name in ("car10.obj", "car2.obj", "Car3.OBJ", "notes.txt", ".hidden.obj", "lights.toml", "a.npz"):
+    for name in (
+        "car10.obj",
+        "car2.obj",
+        "Car3.OBJ",
+        "notes.txt",
+        ".hidden.obj",
+        "lights.toml",
+        "a.npz",
+        "b.GPL",
+    ):
         (tmp_path / name).write_text("")
     for name in ("b", "a scene", "a mesh", ".git"):
         (tmp_path / name).mkdir()
@@ -25,6 +34,7 @@ def test_what_can_be_opened_is_listed_in_natural_order_with_folders_last(tmp_pat
         ("a mesh", "mesh"),
         ("a scene", "scene"),
         ("a.npz", "picture"),
+        ("b.GPL", "paints"),
         ("car2.obj", "mesh"),
         ("Car3.OBJ", "mesh"),
         ("car10.obj", "mesh"),

@@ -182,7 +182,7 @@ def test_a_scene_is_known_by_its_suffix_or_its_first_bytes(
 
 def test_a_picture_file_gives_the_scene_that_was_saved_and_needs_nothing_else(tmp_path: Path) -> None:
     scene, path = wall_scene(ambient=0.25, name="lit wall"), tmp_path / "wall.npz"
-    write_picture(path, render(scene, 6, 8), scene)
+    write_picture(path, scene, render(scene, 6, 8))
     for outside in (False, True):
         report = read_scene_with_report(path, outside=outside)
         assert (report.repairs, report.created, report.mesh_files) == ((), (), ())

@@ -390,7 +390,7 @@ def test_materials_become_surfaces(tmp_path: Path) -> None:
 
 def test_the_scene_of_a_picture_file_is_written_with_its_mesh(car: Path, tmp_path: Path) -> None:
     scene = read_scene(car)
-    write_picture(tmp_path / "car.npz", render(scene, 24, 32), scene)
+    write_picture(tmp_path / "car.npz", scene, render(scene, 24, 32))
     again = read_scene(tmp_path / "car.npz")
     write_scene(tmp_path / "new", again)
     assert same(read_scene(tmp_path / "new"), scene)

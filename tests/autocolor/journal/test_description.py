@@ -69,6 +69,7 @@ SCENES = {
     "key: position": start().with_light("key", position=(0, 0, 5)),
     "key, rim: off": start().only_lights(),
     "body: object color #b01020": start().with_paint("body", object_color="#b01020"),
+    "body: ramp #220000 #ff6600": start().with_paint("body", ramp=["#200", "#f60"]),
     "part cube: surface body -> glass": start().with_part("cube", surface="glass"),
     "light fill added": start().with_new_light("fill", position=(0, 0, 1)),
     "light rim removed": start().without_light("rim"),
@@ -84,6 +85,12 @@ SCENES = {
 @pytest.mark.parametrize("line", SCENES)
 def test_differences_in_words(line: str) -> None:
     assert describe(start(), SCENES[line]) == line
+
+
+def test_a_ramp_that_is_unset_is_described_with_the_colors_in_its_place() -> None:
+    ramp = start().with_paint("body", ramp=["#200", "#f60"])
+    colors = ramp.with_paint("body", object_color="#102030")
+    assert describe(ramp, colors) == "body: object color #102030, ramp none"
 
 
 def test_another_mesh_is_another_scene() -> None:

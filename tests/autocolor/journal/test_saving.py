@@ -291,7 +291,7 @@ def test_whatever_was_there_is_still_somewhere(made: list[str]) -> None:
                     files[what].write_text(f"{files[what].read_text()}# {number}\n")
                 else:
                     other = studio.scene.replace(name=f"theirs {number}")
-                    write_picture(files[what], studio.picture, other, overwrite=True)
+                    write_picture(files[what], other, studio.picture, overwrite=True)
                 foreign.add(files[what].read_bytes())
             else:
                 getattr(studio, verb)()

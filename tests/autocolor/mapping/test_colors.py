@@ -12,12 +12,13 @@ from autocolor.mapping.colors import (
     blend_from,
     blend_level,
     color_of_hsv,
+    entries_at,
     entries_of,
     hsv_of,
     white_of,
     with_white,
 )
-from autocolor.testing import numbers, paints
+from autocolor.testing import blended_paints, colors, numbers, paints, ramps
 from tests.autocolor.reference import entry_of
 
 
@@ -29,7 +30,7 @@ def test_every_entry_agrees_with_the_slow_twin(paint: Paint, levels: int, floor:
     assert entries.dtype == np.uint8
 
 
-@given(paints(), st.integers(2, 300))
+@given(blended_paints(), st.integers(2, 300))
 def test_the_lowest_level_is_black_and_the_highest_the_light_color_at_100_percent(
     paint: Paint, levels: int
 ) -> None:
@@ -51,7 +52,7 @@ def test_the_blend_from_a_level_has_that_level_and_no_digit_more_than_it_takes(
     assert digits <= 2 or blend_level(round(level / (levels - 1), digits - 1), levels) != level
 
 
-@given(paints(), st.integers(2, 300))
+@given(blended_paints(), st.integers(2, 300))
 def test_below_the_blend_level_there_is_only_the_object_color(paint: Paint, levels: int) -> None:
     plain = entries_of(Paint(paint.object_color, (0, 0, 0), 1.0), levels)
     upto = blend_level(paint.blend, levels) + 1
@@ -76,14 +77,14 @@ def test_the_percentage_is_how_much_of_the_light_color_is_reached(percentage: fl
     assert entries_of(Paint((50, 50, 50), (250, 250, 250), 0.5, percentage), 11)[-1].tolist() == [last] * 3
 
 
-@given(paints(), st.integers(2, 300))
+@given(blended_paints(), st.integers(2, 300))
 def test_with_two_like_colors_a_blend_changes_nothing(paint: Paint, levels: int) -> None:
     same = Paint(paint.object_color, paint.object_color, paint.blend, paint.light_percentage)
     plain = Paint(paint.object_color, paint.object_color, 1.0)
     assert entries_of(same, levels).tolist() == entries_of(plain, levels).tolist()
 
 
-@given(paints(), st.integers(2, 300))
+@given(blended_paints(), st.integers(2, 300))
 def test_a_light_color_that_is_nowhere_darker_never_makes_a_level_darker(paint: Paint, levels: int) -> None:
     light = tuple(max(pair) for pair in zip(paint.object_color, paint.light_color, strict=True))
     brighter = Paint(paint.object_color, light, paint.blend, paint.light_percentage)  # type: ignore[arg-type]
@@ -95,6 +96,37 @@ def test_the_floor_is_how_bright_the_lowest_level_is() -> None:
     assert entries[0].tolist() == [100, 50, 20]
     assert entries[5].tolist() == [150, 75, 30]
     assert entries[-1].tolist() == [200, 100, 40]
+
+
+@given(st.lists(colors(), min_size=2, max_size=60))
+def test_a_ramp_of_as_many_colors_as_levels_gives_just_these_colors(ramp: list[Color]) -> None:
+    assert entries_of(Paint(ramp=tuple(ramp)), len(ramp), floor=0.5).tolist() == [
+        list(color) for color in ramp
+    ]
+
+
+@given(ramps(), st.integers(1, 1_000_000))
+def test_a_ramp_begins_with_its_first_color_and_ends_with_its_last(
+    ramp: tuple[Color, ...], levels: int
+) -> None:
+    entries = entries_of(Paint(ramp=ramp), levels)
+    assert tuple(entries[0]) == ramp[0]
+    assert levels == 1 or tuple(entries[-1]) == ramp[-1]
+    assert not entries.flags.writeable
+
+
+def test_a_component_of_a_ramp_in_the_middle_between_two_is_rounded_up() -> None:
+    entries = entries_of(Paint(ramp=((0, 255, 7), (1, 254, 7))), 3)
+    assert entries.tolist() == [[0, 255, 7], [1, 255, 7], [1, 254, 7]]
+
+
+@given(paints(), st.integers(2, 300), st.just(0.0) | numbers(0, 1))
+def test_the_entries_at_fractions_of_a_range_are_those_of_its_levels(
+    paint: Paint, levels: int, floor: float
+) -> None:
+    fractions = (np.arange(levels) / (levels - 1)).astype(np.float32)
+    difference = entries_at(paint, fractions, levels, floor).astype(int) - entries_of(paint, levels, floor)
+    assert np.abs(difference).max() <= 1
 
 
 COMPONENTS = st.integers(0, 255)

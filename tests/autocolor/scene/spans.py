@@ -17,7 +17,7 @@ class Span(Row):
     """A row with a rule between its columns, and alternatives."""
 
     noun: ClassVar[str] = "span"
-    alternatives: ClassVar[tuple[str, ...]] = ("end", "length")
+    alternatives: ClassVar[tuple[tuple[str, ...], ...]] = (("end",), ("length",))
 
     name: Annotated[str, Column(Text(), Tier.NOTHING, "What it is called.")]
     begin: Annotated[float, Column(Number(), Tier.LIGHT, "Where it begins.")] = 0.0

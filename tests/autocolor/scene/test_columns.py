@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import dataclasses
 import pickle
+from collections.abc import Iterator
 from typing import Any
 
 import pytest
@@ -31,7 +32,9 @@ from autocolor.scene.columns import (
 )
 from autocolor.scene.kinds import Number, Whole
 from autocolor.testing import lights, scenes, surfaces, views
+from tests.autocolor.meshes import wall_scene
 from tests.autocolor.scene.spans import Span, sentences
+from tests.autocolor.strategies import of_mesh
 
 
 def test_a_row_holds_its_values_as_its_kinds_do() -> None:
@@ -300,3 +303,52 @@ def test_a_difference_makes_of_one_row_the_other_and_of_equal_ones_is_empty(one:
 
 def test_a_difference_tells_what_was_taken_away() -> None:
     assert difference(Span("a", 1, 2), Span("b", 1)) == {"name": "b", "end": None}
+
+
+def values_in(row: Row) -> Iterator[tuple[Column, object]]:
+    """All values of a row and of the rows inside it, with their columns."""
+    for name, field in fields_of(type(row)).items():
+        value = vars(row)[name]
+        yield field.column, value
+        for inner in value if isinstance(value, tuple) else (value,):
+            if isinstance(inner, Row):
+                yield from values_in(inner)
+
+
+@given(scenes(), scenes(), st.floats(0.01, 0.99))
+def test_between_two_rows_every_value_is_valid(one: Scene, other: Scene, share: float) -> None:
+    other = of_mesh(other, one.mesh)
+    between = one.between(other, share)
+    for column, value in values_in(between):
+        if value is not None:
+            problems: list[Problem] = []
+            assert column.kind.validated(value, (), problems) == value
+            assert problems == []
+    assert one.between(dataclasses.replace(one), share).equals(one)
+
+
+def test_a_column_that_is_absent_in_one_of_two_rows_holds() -> None:
+    one, other = Surface("body", levels=10), Surface("body")
+    assert (one.between(other, 0.9).levels, other.between(one, 0.9).levels) == (10, None)
+    assert one.between(Surface("body", levels=20), 0.5).levels == 15
+
+
+def test_alternatives_hold_until_the_next_row_uses_another_group() -> None:
+    red, ramp = Surface("body").replace(object_color="red"), Surface("body").replace(ramp=["red", "blue"])
+    assert red.between(ramp, 0.9).paint == red.paint
+    assert ramp.between(red, 0.9).paint == ramp.paint
+    assert ramp.between(ramp.replace(ramp=["blue", "red"]), 0.5).paint.ramp == ((128, 0, 128),) * 2
+    light = Light("key", (0, 0, 0), direction=(1, 0, 0))
+    aimed = light.replace(aim=(0, 9, 0), position=(2, 0, 0))
+    between = light.between(aimed, 0.5)
+    assert (between.direction, between.aim, between.position) == ((1, 0, 0), None, (1, 0, 0))
+
+
+def test_a_row_of_another_class_and_tables_of_other_rows_hold() -> None:
+    phong, cook = Surface("body"), Surface("body").replace(model="cook-torrance")
+    assert phong.between(cook, 0.9).reflectance == phong.reflectance
+    lights = [Light("key", (0, 0, 0)), Light("rim", (2, 0, 0))]
+    scene = wall_scene(lights=lights)
+    moved = scene.with_light("rim", position=(4, 0, 0))
+    assert scene.between(moved, 0.5).light("rim").position == (3, 0, 0)
+    assert scene.between(moved.without_light("key"), 0.5).lights is scene.lights

@@ -22,6 +22,7 @@ from autocolor import (
     NamedView,
     Scene,
     Studio,
+    frames,
     read_journal,
     read_picture,
     read_rig,
@@ -34,6 +35,7 @@ from autocolor import (
 )
 from autocolor.commands.settings import with_settings
 from autocolor.files.picture_file import plain_scene
+from autocolor.files.settings import scene_with
 from autocolor.journal.history import History
 from autocolor.journal.journal import MeshesBeside, first_line, step_line
 from autocolor.journal.places import Source
@@ -110,6 +112,7 @@ EDITS: dict[str, dict[str, Values]] = {
         "light_color": {"light_color": "#fff0e0"},
         "blend": {"blend": 0.25},
         "light_percentage": {"light_percentage": 40},
+        "ramp": {"ramp": ["#220000", "#ff6600", "#ffffff"]},
         "two_sided": {"two_sided": False},
         "levels": {"levels": 99},
     },
@@ -274,7 +277,7 @@ def by_table_store(scene: Scene, folder: Path) -> Scene:
 
 
 def by_picture_file(scene: Scene, folder: Path) -> Scene:
-    write_picture(folder / "scene.npz", render(scene, 12, 16), scene)
+    write_picture(folder / "scene.npz", scene, render(scene, 12, 16))
     return read_picture(folder / "scene.npz").scene
 
 
@@ -457,3 +460,25 @@ def without_numbers(value: object) -> object:
     if isinstance(value, (list, tuple)):
         return [without_numbers(each) for each in value]
     return 0 if isinstance(value, float) else value
+
+
+def settings_of(table: str, key: str) -> dict[str, object]:
+    """The edit of a column as settings by key."""
+    if table in ("flaps", "half_spaces"):
+        row = "y" if table == "flaps" else "door"
+        return {f"lights.key.{table}": {row: EDITS[table][key]}}
+    place = ".".join(filter(None, (table, ROWS.get(table))))
+    return {f"{place}.{name}".lstrip("."): value for name, value in EDITS[table][key].items()}
+
+
+@every_column
+def test_between_two_values_of_a_column_there_are_settings_for_the_rows_between(table: str, key: str) -> None:
+    one, other = start(), edited(start(), table, key)
+    edit = settings_of(table, key)
+    assert scene_with(one, edit).equals(other)
+    for variants, between in (
+        ([{}, edit], one.between(other, 0.5)),
+        ([edit, {}], other.between(one, 0.5)),
+    ):
+        _, middle, _ = frames(one, variants, 3)
+        assert scene_with(one, middle.settings).equals(between)

@@ -12,13 +12,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 from PIL import ImageColor
 
+from autocolor.checks import Vector
 from autocolor.scene.columns import REFUSED, Kind, Problem
+from autocolor.scene.curves import CURVES
 from autocolor.scene.kinds import (
     MOST_POINTS,
     AngleCurve,
     AngleCurveKind,
     Boolean,
     ColorKind,
+    ColorsKind,
     CurveKind,
     Instance,
     Number,
@@ -28,8 +31,15 @@ from autocolor.scene.kinds import (
     Whole,
     in_digits,
 )
-from autocolor.scene.row_kinds import Reference, References
-from autocolor.testing import angle_curves
+from autocolor.scene.row_kinds import RangesByName, Reference, References
+from autocolor.scene.scalar import EndColor, LimitsKind, PlaceKind, ScaleKind
+from autocolor.testing import angle_curves, directions, numbers, vectors
+
+HOLDS: Any = object()
+"""The first of two values."""
+
+CURVE: AngleCurve = ((0.0, 0.5), (90.0, 1.0))
+RANGES = RangesByName("surfaces", "auto", "object")
 
 
 def validated(kind: Kind, value: object) -> tuple[Any, list[str]]:
@@ -88,6 +98,23 @@ def test_what_is_no_finite_number_is_refused(value: object) -> None:
         (Reference("lights", "eye"), 3, "it must be 'eye' or the name of a light, not 3"),
         (Instance(dict), [], "it must be a dict, not []"),
         (
+            ColorsKind(3),
+            ["red"],
+            'it must be a list of 2 to 3 colors, not [\'red\']; write them as in ["#200", "#f60", "#fff"]',
+        ),
+        (
+            ColorsKind(3),
+            "red, blue, teal, gold",
+            "it must be a list of 2 to 3 colors, not 'red, blue, teal, gold'; write them as in"
+            ' ["#200", "#f60", "#fff"]',
+        ),
+        (
+            ColorsKind(3),
+            ("red", "bleu"),
+            'it[2] must be "#rrggbb", a name such as "red", or three whole numbers from 0 to 255, not'
+            " 'bleu'; did you mean 'blue'?",
+        ),
+        (
             CurveKind({"linear": 1, "gamma": 2}),
             "gama",
             "it must be 'linear', 'gamma', or rising points [x, y] from x = 0 to x = 1, not 'gama'; did you"
@@ -117,6 +144,9 @@ def test_a_value_that_breaks_a_rule_is_refused_in_a_sentence(
         (References("lights"), [], ()),
         (Reference("lights", "eye"), "key", "key"),
         (Reference("lights", "eye"), "eye", "eye"),
+        (ColorsKind(9), np.array([[0, 0, 0], [1, 2, 3]], np.uint8), ((0, 0, 0), (1, 2, 3))),
+        (ColorsKind(9), "#200,rgb(1, 2, 3) , teal", ((34, 0, 0), (1, 2, 3), (0, 128, 128))),
+        (ColorsKind(9), "['#200', \"#f60\"]", ((34, 0, 0), (255, 102, 0))),
         (CurveKind({"linear": 1}), "linear", "linear"),
         (CurveKind({"linear": 1}), [[0, 0], [1, 0.5]], ((0.0, 0.0), (1.0, 0.5))),
     ],
@@ -313,3 +343,70 @@ def test_colors_in_digits_are_read_without_pillow() -> None:
     )
     ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60)
     assert ran.stdout == "False\n(255, 0, 0) True\n"
+
+
+HALFWAY: list[tuple[Kind, object, object, object]] = [
+    (Number(), 1.0, 4.0, 2.5),
+    (Number(), -1e308, 1e308, 0.0),
+    (Number(endless=math.inf), 1.0, math.inf, 1.0),
+    (Number(endless=-math.inf), -math.inf, 1.0, -math.inf),
+    (Whole(0, 9), 1, 2, 2),
+    (Whole(-9, 9), -1, -2, -1),
+    (Boolean(), False, True, False),
+    (Text(), "a", "b", "a"),
+    (OneOf(("off", "ordered")), "off", "ordered", "off"),
+    (ColorKind(), (0, 0, 255), (255, 1, 0), (128, 1, 128)),
+    (EndColor(), (0, 0, 0), (2, 4, 6), (1, 2, 3)),
+    (VectorKind(), (0.0, 2.0, -4.0), (1.0, 2.0, 4.0), (0.5, 2.0, 0.0)),
+    (LimitsKind(), (0.0, 1.0), (2.0, 5.0), (1.0, 3.0)),
+    (PlaceKind(), (0.0, 1.0), (1.0, 0.5), (0.5, 0.75)),
+    (CurveKind(CURVES), "linear", "gamma", "linear"),
+    (CurveKind(CURVES), "linear", ((0.0, 0.0), (1.0, 1.0)), "linear"),
+    (CurveKind(CURVES), ((0.0, 0.0), (1.0, 1.0)), ((0.0, 0.5), (1.0, 1.0)), ((0.0, 0.25), (1.0, 1.0))),
+    (CurveKind(CURVES), ((0.0, 0.0), (1.0, 1.0)), ((0.0, 0.5), (0.5, 0.5), (1.0, 1.0)), HOLDS),
+    (AngleCurveKind(0, CURVE), CURVE, ((0.0, 0.0), (90.0, 0.5)), ((0.0, 0.25), (90.0, 0.75))),
+    (ScaleKind(), "viridis", "turbo", "viridis"),
+    (ScaleKind(), ((0, 0, 0), (9, 9, 9)), ((4, 4, 4), (255, 9, 0)), ((2, 2, 2), (132, 9, 5))),
+    (ScaleKind(), ((0, 0, 0), (9, 9, 9)), ((4, 4, 4), (9, 9, 9), (1, 1, 1)), HOLDS),
+    (References("parts"), ("hood", "door"), ("roof", "door"), HOLDS),
+    (Reference("parts"), "hood", "roof", "hood"),
+    (RANGES, "auto", (("body", (0.0, 1.0)),), "auto"),
+    (RANGES, (("body", (0.0, 1.0)),), (("body", (1.0, 2.0)),), (("body", (0.5, 1.5)),)),
+    (RANGES, (("body", (0.0, 1.0)),), (("glass", (1.0, 2.0)),), HOLDS),
+]  # fmt: skip
+"""Kinds, two values, and the value halfway between them."""
+
+
+@pytest.mark.parametrize(("kind", "one", "other", "halfway"), HALFWAY)
+def test_the_kind_says_what_is_halfway_between_two_values(
+    kind: Kind, one: object, other: object, halfway: object
+) -> None:
+    assert (accepted(kind, one), accepted(kind, other)) == (one, other)
+    assert kind.between(one, other, 0.5) == (one if halfway is HOLDS else halfway)
+    assert kind.between(one, one, 0.3) == one
+
+
+@given(vectors(numbers(-9, 9)), directions(), st.floats(0.01, 0.99))
+def test_a_direction_turns_evenly_by_the_shortest_way_and_its_length_is_linear(
+    one: Vector, other: Vector, share: float
+) -> None:
+    if one == (0, 0, 0):
+        return
+    between = np.array(VectorKind(has_length=True).between(one, other, share))
+    lengths = [float(np.linalg.norm(vector)) for vector in (one, other, between)]
+    start, end, middle = (np.array(v) / size for v, size in zip((one, other, between), lengths, strict=True))
+    assert lengths[2] == pytest.approx((1 - share) * lengths[0] + share * lengths[1])
+    whole = math.atan2(float(np.linalg.norm(np.cross(start, end))), float(start @ end))
+    # The turned angles add up to the whole angle only on the shortest way.
+    for vector, angle in ((start, share * whole), (end, (1 - share) * whole)):
+        turned = math.atan2(float(np.linalg.norm(np.cross(vector, middle))), float(vector @ middle))
+        assert turned == pytest.approx(angle, abs=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("one", "halfway"), [((2.0, 0.0, 0.0), (0.0, 0.0, 2.0)), ((0.0, 0.0, 2.0), (2.0, 0.0, 0.0))]
+)
+def test_opposite_directions_turn_through_the_vertical_or_x(one: Vector, halfway: Vector) -> None:
+    x, y, z = one
+    between = VectorKind(has_length=True).between(one, (-x, -y, -z), 0.5)
+    assert between == pytest.approx(halfway)

@@ -1,14 +1,18 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given
 
 from autocolor import InputError, Paint, Part, Reflectance, Surface
 from autocolor.checks import shown
+from autocolor.scene.columns import difference, from_plain, replaced, to_plain
 from autocolor.scene.reflection_models import BlinnPhong, CookTorrance, Phong
+from autocolor.testing import paints
 
 
 @pytest.mark.parametrize(
@@ -43,6 +47,53 @@ def test_a_surface_changes_its_own_fields_and_those_of_reflectance_and_paint() -
     assert surface.paint == Paint(object_color=(16, 32, 48), blend=0.3)
     assert not surface.two_sided
     assert surface.replace(paint=Paint(), blend=0.1).paint == Paint(blend=0.1)
+
+
+RAMP = ((34, 0, 0), (255, 102, 0), (255, 255, 255))
+
+
+def test_a_ramp_and_two_colors_with_their_blend_unset_each_other() -> None:
+    surface = Surface("body").replace(object_color="#102030", light_color="red", blend=0.3, diffuse=0.2)
+    glowing = surface.replace(ramp=["#200", "#f60", "#fff"])
+    assert glowing.paint == Paint(ramp=RAMP)
+    assert glowing.reflectance == surface.reflectance
+    changes = {"object_color": "#102030", "light_color": "red", "blend": 0.3, "light_percentage": 50}
+    for name, value in changes.items():
+        assert glowing.replace(**{name: value}).paint == Paint().replace(**{name: value})  # type: ignore[arg-type]
+    assert glowing.replace(ramp=None).paint == Paint()
+    assert surface.replace(ramp=None) == surface
+
+
+def test_a_ramp_beside_another_color_is_refused() -> None:
+    sentence = (
+        "ramp must stand without object_color, light_color, blend and light_percentage, not beside them;"
+        " leave it or them out"
+    )
+    makes: list[Callable[[], object]] = [
+        lambda: Paint((1, 2, 3), ramp=RAMP),
+        lambda: from_plain(Paint, {"ramp": RAMP, "blend": 0.5}),
+        lambda: Paint().replace(ramp=RAMP, light_percentage=0),
+        lambda: Surface("body").replace(object_color="red").replace(ramp=RAMP, blend=0.6),
+    ]
+    for make in makes:
+        with pytest.raises(InputError) as refusal:
+            make()
+        assert str(refusal.value).removeprefix("surface 'body': ") == sentence
+
+
+@given(paints(), paints())
+def test_a_paint_becomes_another_by_their_difference_and_comes_back_from_its_values(
+    one: Paint, other: Paint
+) -> None:
+    assert replaced(one, difference(one, other)) == other
+    assert from_plain(Paint, to_plain(one)) == one
+    unset = {"object_color", "light_color", "blend", "light_percentage"} if one.ramp else {"ramp"}
+    assert not unset & to_plain(one).keys()
+
+
+def test_the_color_of_a_ramp_is_in_its_middle() -> None:
+    assert Paint(ramp=RAMP).color == (255, 102, 0)
+    assert Paint(ramp=RAMP[:2]).color == (145, 51, 0)
 
 
 def test_a_refused_field_is_told_with_the_surface() -> None:

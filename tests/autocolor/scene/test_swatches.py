@@ -120,7 +120,7 @@ def test_a_finish_keeps_the_color_and_replaces_any_other_finish(
     once = surface.replace(**finished(surface, last))
     other = surface.replace(**finished(surface, first))
     assert other.replace(**finished(other, last)) == once
-    assert once.paint.object_color == surface.paint.object_color
+    assert once.paint.object_color == surface.paint.color
     assert (once.name, once.levels, once.two_sided) == (surface.name, surface.levels, surface.two_sided)
 
 

@@ -6,10 +6,11 @@ from typing import Any
 import numpy as np
 import pytest
 from hypothesis import given
+from hypothesis import strategies as st
 
 from autocolor import InputError, View
 from autocolor.checks import Vector
-from autocolor.testing import directions, numbers, vectors
+from autocolor.testing import directions, numbers, vectors, views
 from tests.autocolor.reference import ray
 
 
@@ -102,3 +103,68 @@ def test_a_view_that_breaks_a_rule_is_refused(fields: dict[str, Any], sentence: 
     with pytest.raises(InputError) as refusal:
         View((0, 0, 0), **fields)
     assert str(refusal.value) == sentence
+
+
+@given(views(), views(), st.floats(0.01, 0.99))
+def test_the_eye_turns_around_the_target_the_shortest_way(one: View, other: View, share: float) -> None:
+    one, other = (view.replace(target=view.orbit_target((-1, -1, -1), (1, 1, 1))) for view in (one, other))
+    assert one.target is not None
+    assert other.target is not None
+    between = one.between(other, share)
+    assert between.target is not None
+    assert between.target == pytest.approx(
+        np.array(one.target) * (1 - share) + np.array(other.target) * share
+    )
+    polars = one.polar(one.target), other.polar(other.target), between.polar(between.target)
+    start, end, middle = (np.array(polar) for polar in polars)
+    if one.eye == other.eye:
+        assert between.eye == one.eye
+        return
+    assert middle[1:] == pytest.approx((1 - share) * start[1:] + share * end[1:], abs=1e-6)
+    right = (end[0] - start[0] + 180) % 360 - 180
+    if abs(abs(right) - 180) > 1e-6 and abs(middle[1]) < 89.999:
+        assert math.cos(math.radians(middle[0] - start[0] - share * right)) == pytest.approx(1, abs=1e-9)
+
+
+def test_a_quarter_of_a_turn_stays_on_its_circle() -> None:
+    one, other = View((5, 0, 3), target=(1, 0, 0)), View((1, 4, 3), target=(1, 0, 0))
+    root = 4 / math.sqrt(2)
+    assert one.between(other, 0.5).eye == pytest.approx((1 + root, root, 3))
+    # From 170 to -170 degrees, the shortest way is through 180.
+    one, other = (
+        View((math.cos(math.radians(a)), math.sin(math.radians(a)), 0), target=(0, 0, 0)) for a in (170, -170)
+    )
+    assert one.between(other, 0.5).eye == pytest.approx((-1, 0, 0))
+
+
+def test_an_eye_stays_while_its_target_moves() -> None:
+    one = View((5, 0, 3), target=(1, 0, 0))
+    between = one.between(one.replace(target=(1, 2, 4)), 0.5)
+    assert (between.eye, between.target) == ((5, 0, 3), (1, 1, 2))
+
+
+def test_a_view_from_above_descends_without_a_swing() -> None:
+    # The picture's bottom is -y from above, as from the side of -y.
+    above, front = View((0, 0, 5), target=(0, 0, 0)), View((0, -5, 0), target=(0, 0, 0))
+    for one, other in ((above, front), (front, above)):
+        right, down, _ = one.between(other, 0.5).axes
+        assert right == pytest.approx((1, 0, 0))
+        assert down == pytest.approx((0, -math.sqrt(0.5), -math.sqrt(0.5)))
+
+
+def test_a_direction_turns_with_a_level_horizon_while_the_eye_moves_along_a_line() -> None:
+    one, other = View((0, 0, 0), direction=(1, 0, 1)), View((2, 4, 0), direction=(0, 3, 3))
+    between = one.between(other, 0.5)
+    assert (between.eye, between.target) == ((1, 2, 0), None)
+    assert between.direction == pytest.approx((0.5, 0.5, math.sqrt(0.5)))
+    # A view with a target looks at it at first, and then turns away from it.
+    aimed = View((0, 0, 0), target=(7, 0, 7)).between(other, 0.5)
+    assert aimed.direction == pytest.approx(between.direction)
+
+
+@given(views())
+def test_the_point_to_orbit_is_on_the_line_of_sight(view: View) -> None:
+    target = np.array(view.orbit_target((-1, -1, -1), (1, 1, 1))) - np.array(view.eye)
+    _, _, depth = view.axes @ target
+    assert view.axes @ target == pytest.approx((0, 0, depth), abs=1e-6 * depth)
+    assert depth > 0

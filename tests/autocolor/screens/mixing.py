@@ -1,4 +1,4 @@
-"""A hand at the color mixing screen, and whether its ramps and its blend bar show what they should."""
+"""A hand at the color mixing screen, and whether its shades and its blend bar show what they should."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ramtek_emu import Ramtek9300
 from tests.autocolor.screens.painting_hand import PaintingHand
 
 STRIP = Area(BLEND.left, BLEND.top + LANE, BLEND.right, BLEND.bottom - LANE)
-RAMPS = {"light source": Area(8, 20, 172, 80), "object": Area(8, 143, 172, 203)}
+SHADES = {"light source": Area(8, 20, 172, 80), "object": Area(8, 143, 172, 203)}
 ZERO = 192
 """The element of a bar at which a component is 0; each of the next is one more."""
 
@@ -34,13 +34,13 @@ def line_of(hand: PaintingHand, bar: str) -> int:
     return (area.top + area.bottom) // 2
 
 
-def ramps_are_right(hand: PaintingHand) -> bool:
-    """Whether step k of the 64 of each ramp is k / 63 of its color, rounded half up."""
+def shades_are_right(hand: PaintingHand) -> bool:
+    """Whether shade k of the 64 of each color is k / 63 of its color, rounded half up."""
     steps = np.floor(np.arange(165) * 63 / 164 + 0.5)
     paint = hand.paint
     return all(
         np.array_equal(
-            hand.colors(RAMPS[title]),
+            hand.colors(SHADES[title]),
             np.broadcast_to(np.floor(np.outer(steps, color) / 63 + 0.5), (61, 165, 3)),
         )
         for title, color in (("light source", paint.light_color), ("object", paint.object_color))

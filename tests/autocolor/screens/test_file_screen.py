@@ -17,6 +17,7 @@ from autocolor import (
     read_scene,
     render,
     save_image,
+    write_palette,
     write_picture,
     write_rig,
     write_scene,
@@ -24,7 +25,7 @@ from autocolor import (
 from autocolor.budget import allowing
 from autocolor.errors import AutocolorError
 from autocolor.files.picture_file import SavedPicture
-from autocolor.files.state import MOST_FILES, note_file
+from autocolor.files.state import MOST_FILES, note_file, recent_files
 from autocolor.mapping.ranges import SCREENS
 from autocolor.screens import file_screen
 from autocolor.screens.file_screen import (
@@ -160,6 +161,19 @@ def test_a_rig_is_put_on_the_scene_and_fitted(hand: Hand) -> None:
     hand.open_menu()
     undo(hand)
     assert scene_of(hand) is before
+
+
+def test_paints_are_opened_for_color_mixing_and_are_no_step(hand: Hand, folder: Path) -> None:
+    before, recent = scene_of(hand), recent_files()
+    write_palette(folder / "ral.act", ["red", "navy"])
+    hand.pick("refresh")
+    assert rows_of(hand)["ral.act"].value == "paints"
+    pick(hand, "ral.act")
+    assert hand.viewer.page == "mixing"
+    assert told(hand) == ("2 paints of ral.act: take them in color mixing", False)
+    assert scene_of(hand) is before
+    # Nothing is written unasked.
+    assert recent_files() == recent
 
 
 def test_an_unreadable_file_is_refused_in_an_orange_sentence(hand: Hand) -> None:
@@ -646,7 +660,7 @@ def test_a_long_name_is_whole_and_has_no_date_where_there_is_no_room(letters: in
 def saved_hand(folder: Path) -> Hand:
     """A hand before the file screen of a folder with a saved picture and a damaged one."""
     scene = wall_scene(name="wall")
-    write_picture(folder / "wall.npz", render(scene, 48, 96), scene)
+    write_picture(folder / "wall.npz", scene, render(scene, 48, 96))
     (folder / "damaged.npz").write_bytes((folder / "wall.npz").read_bytes()[:2000])
     return hand_at(folder, "file")
 
@@ -713,7 +727,7 @@ def test_a_picture_that_was_saved_again_is_read_again(saved_hand: Hand, folder: 
     point_at(saved_hand, "wall.npz")
     settle(saved_hand)
     scene = wall_scene(name="wall")
-    write_picture(folder / "wall.npz", render(scene, 30, 40), scene, overwrite=True)
+    write_picture(folder / "wall.npz", scene, render(scene, 30, 40), overwrite=True)
     saved_hand.pick("refresh")
     point_at(saved_hand, "wall.npz")
     settle(saved_hand)
@@ -725,7 +739,7 @@ def test_a_picture_that_was_saved_again_is_read_again(saved_hand: Hand, folder: 
 @pytest.mark.parametrize(("lines", "elements"), [(480, 640), (400, 100), (20, 700), (168, 224)])
 def test_a_small_picture_of_any_shape_is_in_its_place(folder: Path, lines: int, elements: int) -> None:
     scene = wall_scene(name="wall")
-    write_picture(folder / "wall.npz", render(scene, lines, elements), scene)
+    write_picture(folder / "wall.npz", scene, render(scene, lines, elements))
     hand = hand_at(folder, "file")
     point_at(hand, "wall.npz")
     settle(hand)

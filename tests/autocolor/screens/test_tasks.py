@@ -107,6 +107,18 @@ def blend(hand: Hand) -> None:
     assert hand.viewer.studio.scene.surface("body").paint.blend == pytest.approx(0.5, abs=0.01)
 
 
+def mix_a_ramp(hand: Hand) -> None:
+    go_to(hand, "color mixing")
+    hand.pick("ramp", 0.95)
+    hand.pick("ramp bar", 0.6)
+    before = hand.viewer.studio.scene.surface("body").paint.ramp
+    hand.pick("paints", 0.7)
+    after = hand.viewer.studio.scene.surface("body").paint.ramp
+    assert before is not None
+    assert after is not None
+    assert [color for color, other in zip(after, before, strict=True) if color != other] == [after[3]]
+
+
 def color_by_a_scalar(hand: Hand) -> None:
     go_to(hand, "scalar")
     # A drag along a choice goes through all names.
@@ -187,6 +199,7 @@ TASKS: dict[str, Callable[[Hand], None]] = {
     "switch a light": switch_a_light,
     "choose any paint": choose_any_paint,
     "blend": blend,
+    "mix a ramp": mix_a_ramp,
     "color by a scalar": color_by_a_scalar,
     "turn and move the view": turn_and_move_the_view,
     "save": save,

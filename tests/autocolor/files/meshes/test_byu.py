@@ -59,11 +59,12 @@ def test_numbers_in_columns_may_touch(tmp_path: Path, width: int) -> None:
 
 def test_whole_numbers_that_fill_their_columns_touch_without_a_sign(tmp_path: Path) -> None:
     nodes = 10_000
-    lines = [f"{1:5}{nodes:5}{1:5}{3:5}", f"{1:5}{1:5}"]
+    polygons = nodes - 1
+    lines = [f"{1:5}{nodes:5}{polygons:5}{3 * polygons:5}", f"{1:5}{polygons:5}"]
     lines += [f"{at / 7:12.5E}{at * at:12.5E}{1.5:12.5E}" for at in range(nodes)]
-    lines.append(f"{9998:5}{10000:5}{-999:5}")
+    lines += [f"{9998:5}{10000:5}{-999:5}", *(f"{1:5}{at:5}{-at - 1:5}" for at in range(2, nodes))]
     mesh = read(tmp_path, "\n".join(lines)).mesh
-    assert mesh.node_numbers.tolist() == [[9997, 9999, 998, 998]]
+    assert mesh.node_numbers[0].tolist() == [9997, 9999, 998, 998]
     assert mesh.coordinates[:, 1].tolist() == [float(f"{at * at:.5E}") for at in range(nodes)]
 
 

@@ -122,15 +122,6 @@ def test_polygons_of_several_lists_come_in_the_order_of_their_rows() -> None:
     assert len(Flats.joined([]).cells) == 0
 
 
-def test_nodes_that_no_corner_has_are_left_out_where_only_used_nodes_are_wanted() -> None:
-    flats = Flats(np.array([4, 1, 4]), np.array([3]), np.array([0]))
-    assert cell_surface(CUBE, flats, []).flats.corners.tolist() == [4, 1, 4]
-    surface = cell_surface(CUBE, flats, [], used_only=True)
-    assert surface.nodes.tolist() == [1, 4]
-    assert surface.flats.corners.tolist() == [1, 0, 1]
-    assert surface.sentences == ("left out 6 nodes that the surface does not use",)
-
-
 def test_thousands_of_cells_have_the_outer_faces_of_their_block() -> None:
     sizes = (9, 8, 7)
     x, y, z = np.meshgrid(*(np.arange(each) for each in sizes), indexing="ij")

@@ -97,8 +97,8 @@ def test_polygons_may_name_nodes_that_come_later(path: Path) -> None:
 
 
 def test_negative_node_numbers_count_back_from_where_they_stand(path: Path) -> None:
-    report = read(path, SQUARE + "f -4 -3 -2\n" + SQUARE + "f -4 -3 -2\n")
-    assert report.mesh.node_numbers.tolist() == [[0, 1, 2, 2], [4, 5, 6, 6]]
+    report = read(path, SQUARE + "f -4 -3 -2 -1\n" + SQUARE + "f -4 -3 -2 -1\n")
+    assert report.mesh.node_numbers.tolist() == [[0, 1, 2, 3], [4, 5, 6, 7]]
 
 
 def test_weights_and_colors_of_nodes_are_not_used(path: Path) -> None:
@@ -159,7 +159,7 @@ def test_the_files_up_axis_becomes_z(path: Path) -> None:
 
 @pytest.mark.parametrize("number", ["1", "-1.5", "+.5", "5.", "1e3", "1E-3", "1e30", "00", "-0", "1" * 30])
 def test_decimal_numbers_are_taken(path: Path, number: str) -> None:
-    mesh = read(path, f"v {number} 0 0\n{SQUARE}f 2 3 4\n").mesh
+    mesh = read(path, f"v {number} 0 0\nv 0 1 0\nv {number} {number} 1\nf 1 2 3\n").mesh
     assert mesh.coordinates[0, 0] == float(number)
 
 
@@ -318,6 +318,8 @@ def test_surfaces_are_written_as_a_library_of_materials() -> None:
         "newmtl b\nKd 0 0 0.4\nKs 0.5 0.5 0.5\nillum 2\n"
     )
     assert mtl_text([]) == b""
+    ramp = Surface("hot").replace(ramp=["#200", "#f30", "#fff"])
+    assert mtl_text([("a", ramp)]).startswith(b"newmtl a\nKd 1 0.2 0\n")
 
 
 def test_the_last_line_may_end_with_a_continuation(path: Path) -> None:
@@ -923,9 +925,12 @@ def test_nodes_come_first_and_a_part_has_its_name_where_it_begins() -> None:
 def test_every_coordinate_reads_back_equal(
     tmp_path_factory: pytest.TempPathFactory, places: list[tuple[float, float, float]]
 ) -> None:
-    coordinates = np.array([*places, (0, 0, 0), (1, 0, 0), (1, 1, 0)])
-    last = len(coordinates)
-    mesh = Mesh(coordinates, np.array([[last - 3, last - 2, last - 1]]), np.array([0]), ("a",))
+    # A triangle at each place, with sides as long as the place is far, so that it has area.
+    coordinates = np.repeat(np.array(places), 3, axis=0)
+    for axis in (0, 1):
+        sides = np.maximum(np.abs(coordinates[axis + 1 :: 3]).max(axis=1), 1)
+        coordinates[axis + 1 :: 3, axis] -= np.copysign(sides, coordinates[axis + 1 :: 3, axis])
+    mesh = Mesh(coordinates, np.arange(len(coordinates)).reshape(-1, 3), np.zeros(len(places), int), ("a",))
     path = tmp_path_factory.mktemp("mesh") / "mesh.obj"
     path.write_bytes(obj_text(mesh))
     again = read_mesh({"file": path}).mesh.coordinates

@@ -424,12 +424,13 @@ def test_a_scalar_is_written_under_its_name_where_that_is_free(scalar: str, name
 
 COORDINATES = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0.1, 1 / 3, 1e-300], [7, 8, 9]])
 POLYGONS = ([0, 1, 2, 3], [0, 1, 2, 2], [1, 2, 4, 4], [2, 3, 4, 1])
+WITH_ALL_NODES = [[0, 1, 2, 3], [3, 4, 5, 5]]
 names = st.text(st.characters(categories=("L", "N", "P")), min_size=1, max_size=12)
 
 
 @st.composite
 def meshes(draw: st.DrawFn) -> Mesh:
-    polygons = draw(st.lists(st.sampled_from(POLYGONS), min_size=1, max_size=8))
+    polygons = [*draw(st.lists(st.sampled_from(POLYGONS), max_size=8)), *WITH_ALL_NODES]
     part_names = draw(st.lists(names, min_size=1, max_size=4, unique=True))
     parts = draw(
         st.lists(st.integers(0, len(part_names) - 1), min_size=len(polygons), max_size=len(polygons))

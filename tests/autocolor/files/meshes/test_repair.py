@@ -29,7 +29,13 @@ from autocolor.testing import vectors
 SQUARE = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0, 0], [0, 0, 1]]
 
 
-def mesh_of(*polygons: list[int], coordinates: Any = SQUARE, up: str = "z") -> MeshReport:
+def mesh_of(
+    *polygons: list[int],
+    coordinates: Any = SQUARE,
+    up: str = "z",
+    scalars: tuple[MeshScalar, ...] = (),
+    unused_nodes: bool = True,
+) -> MeshReport:
     return repaired(
         RawPolygons(
             np.array(coordinates, np.float64),
@@ -37,9 +43,11 @@ def mesh_of(*polygons: list[int], coordinates: Any = SQUARE, up: str = "z") -> M
             np.array([len(polygon) for polygon in polygons], np.intp),
             np.arange(len(polygons)),
             tuple(f"part {number}" for number in range(len(polygons))),
+            scalars,
         ),
         "a.obj",
         Placement(up),
+        unused_nodes=unused_nodes,
     )
 
 
@@ -88,8 +96,24 @@ def test_a_polygon_of_more_corners_is_split_and_counted() -> None:
     assert report.repairs == ("a.obj: 1 polygon with more than four corners was split",)
 
 
-def test_unused_nodes_are_kept() -> None:
-    assert len(mesh_of([0, 1, 2]).mesh.coordinates) == len(SQUARE)
+def test_nodes_that_no_polygon_uses_are_dropped_with_their_scalars() -> None:
+    scalars = (
+        MeshScalar("height", np.arange(6.0)),
+        MeshScalar("row", np.array([7.0, 8.0, 9.0]), "polygon"),
+    )
+    report = mesh_of([5, 1, 3], [0, 1, 4], [3, 1, 2], scalars=scalars, unused_nodes=False)
+    assert report.mesh.coordinates.tolist() == [SQUARE[row] for row in (1, 2, 3, 5)]
+    assert report.mesh.node_numbers.tolist() == [[3, 0, 2, 2], [2, 0, 1, 1]]
+    assert [each.values.tolist() for each in report.mesh.scalars] == [[1, 2, 3, 5], [7, 9]]
+    assert report.repairs == (
+        "a.obj: 1 polygon without area was dropped",
+        "a.obj: 2 nodes that no polygon uses were dropped",
+    )
+
+
+def test_tables_of_nodes_keep_the_nodes_that_no_polygon_uses() -> None:
+    report = mesh_of([0, 1, 2])
+    assert (report.mesh.coordinates.tolist(), report.repairs) == (SQUARE, ())
 
 
 def test_a_mesh_without_polygons_left_is_refused() -> None:

@@ -20,8 +20,10 @@ from autocolor.files.meshes.stl import (
     read_binary,
     read_stl,
     read_text,
+    stl_bytes,
     welded,
 )
+from autocolor.scene.mesh import Mesh
 from tests.autocolor.files.refusals import is_read_or_refused, refusal
 
 NODES = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)], np.float32)
@@ -74,6 +76,45 @@ def test_a_cube_has_eight_nodes_however_it_is_written(path: Path, data: bytes) -
     assert report.repairs == ()
 
 
+def test_a_cube_reads_back_with_outward_normals(path: Path) -> None:
+    data = stl_bytes(Mesh(NODES.astype(float), np.array(QUADS)))
+    report = read(path, data)
+    assert has_binary_size(data)
+    assert (len(report.mesh.coordinates), report.mesh.triangle_count, report.repairs) == (8, 12, ())
+    records = np.frombuffer(data, TRIANGLE, 12, 84)
+    centers = records["corners"].mean(axis=1) - 0.5
+    assert np.array_equal(records["normal"], np.sign(np.where(np.abs(centers) > 0.4, centers, 0)))
+
+
+@pytest.mark.parametrize(
+    ("nodes", "triangles"),
+    [
+        # The shorter diagonal; equal diagonals lead through the lowest number; an arrowhead has one inside.
+        ([[0, 0, 0], [3, 0, 0], [4, 1, 0], [1, 1, 0]], [[1, 2, 3], [1, 3, 0]]),
+        ([[0, 0, 0], [3, 0, 0], [2, 1, 0], [-1, 1, 0]], [[0, 1, 2], [0, 2, 3]]),
+        ([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]]),
+        ([[0, 0, 0], [9, 0, 0], [1, 1, 0], [0, 9, 0]], [[0, 1, 2], [0, 2, 3]]),
+    ],
+)
+def test_a_quad_is_cut_along_the_diagonal_of_the_mesh(
+    nodes: list[list[float]], triangles: list[list[int]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(stl, "POLYGONS_AT_ONCE", 1)
+    mesh = Mesh(np.array([*nodes, [0, 0, 5]]), np.array([[0, 1, 2, 3], [1, 2, 4, 4], [0, 0, 1, 4]]))
+    records = np.frombuffer(stl_bytes(mesh), TRIANGLE, 4, 84)
+    expected = [*triangles, [1, 2, 4], [0, 1, 4]]
+    assert records["corners"].tolist() == mesh.coordinates[expected].tolist()
+    assert records["normal"][0].tolist() == [0, 0, 1]
+
+
+@pytest.mark.parametrize("size", [1e-30, 5e29])
+def test_normals_are_unit_vectors_at_any_size_and_zero_without_area(size: float) -> None:
+    nodes = np.array([[0, 0, 0], [0, 1, 0], [0, 0, 1], [0, 2, 0]]) * size
+    with np.errstate(all="raise"):
+        data = stl_bytes(Mesh(nodes, np.array([[0, 1, 2], [0, 1, 3]])))
+    assert np.frombuffer(data, TRIANGLE, 2, 84)["normal"].tolist() == [[1, 0, 0], [0, 0, 0]]
+
+
 def test_solids_are_parts_with_different_names(path: Path) -> None:
     data = b"".join(
         text(name, CUBE[at : at + 3]) for at, name in ((0, "hood"), (3, ""), (6, "hood"), (9, ""))
@@ -89,6 +130,7 @@ def test_triangles_without_area_are_dropped_and_counted(path: Path) -> None:
     assert read(path, binary([*CUBE, *flat])).repairs == (
         "cube.stl: 1 polygon with fewer than three different corners was dropped",
         "cube.stl: 1 polygon without area was dropped",
+        "cube.stl: 1 node that no polygon uses was dropped",
     )
 
 

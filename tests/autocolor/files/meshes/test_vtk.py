@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import tracemalloc
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -12,15 +13,15 @@ from autocolor.errors import InputError
 from autocolor.files.formats import format_of
 from autocolor.files.meshes.repair import MeshReport, Placement
 from autocolor.files.meshes.vtk import (
+    BYTES_OF_NODE,
     TYPES,
     Attributes,
-    CellLists,
-    VtkCells,
     VtkCursor,
-    add_cells,
     read_cell_lists,
     read_vtk,
 )
+from autocolor.files.meshes.vtk_cells import CellLists
+from autocolor.scene.mesh import Mesh
 from tests.autocolor.files.refusals import refusal, refused
 
 WRITTEN_TYPES = {
@@ -191,7 +192,7 @@ def test_cells_of_second_order_are_read_by_their_corners(
     assert report.mesh.coordinates.tolist() == SQUARE[:corners]
     assert report.repairs == (
         "thing.vtk: took the corners alone of cells of higher order: 1",
-        f"thing.vtk: left out {nodes - corners} nodes that the surface does not use",
+        f"thing.vtk: {nodes - corners} nodes that no polygon uses were dropped",
     )
 
 
@@ -407,12 +408,74 @@ def test_a_layer_may_lie_across_any_axis(tmp_path: Path) -> None:
     assert mesh.node_numbers.tolist() == [[0, 1, 3, 2], [2, 3, 5, 4]]
 
 
+def grid(dataset: str, sizes: Sequence[int], places: Sequence[Sequence[float]], binary: bool) -> VtkWriter:
+    """A grid of nodes at these places along the axes, which STRUCTURED_POINTS only begin and step by."""
+    writer = VtkWriter(dataset, binary=binary).line("DIMENSIONS " + " ".join(map(str, sizes)))
+    if dataset == "RECTILINEAR_GRID":
+        for axis, along in zip("XYZ", places, strict=True):
+            writer.line(f"{axis}_COORDINATES {len(along)} double").numbers(along, "double")
+    elif dataset == "STRUCTURED_GRID":
+        writer.points([[x, y, z] for z in places[2] for y in places[1] for x in places[0]], "double")
+    else:
+        writer.line("ORIGIN " + " ".join(str(along[0]) for along in places))
+        writer.line("SPACING " + " ".join(str(along[1] - along[0]) for along in places))
+    return writer
+
+
+@pytest.mark.parametrize("binary", [False, True])
+@pytest.mark.parametrize("steps", [(1, 2, 3), (-1, 2, 3), (1, -2, -3)])
+@pytest.mark.parametrize("sizes", [(2, 2, 2), (2, 3, 4), (5, 4, 3)])
+@pytest.mark.parametrize("dataset", ["STRUCTURED_GRID", "RECTILINEAR_GRID", "STRUCTURED_POINTS"])
+def test_a_volume_is_the_outer_surface_of_its_cells(
+    tmp_path: Path, dataset: str, sizes: tuple[int, ...], steps: tuple[int, ...], binary: bool
+) -> None:
+    places = [[0.5 + step * at for at in range(size)] for size, step in zip(sizes, steps, strict=True)]
+    nodes = np.prod(sizes)
+    first = np.arange(nodes).reshape(sizes[::-1])[:-1, :-1, :-1].ravel()
+    wide, layer = sizes[0], sizes[0] * sizes[1]
+    hexahedra = first[:, None] + [0, 1, 1 + wide, wide, *(layer + at for at in (0, 1, 1 + wide, wide))]
+    points = [[x, y, z] for z in places[2] for y in places[1] for x in places[0]]
+    cells = VtkWriter("UNSTRUCTURED_GRID", binary=binary).points(points, "double")
+    cells.grid([(12, cell) for cell in hexahedra.tolist()])
+    reports = []
+    for writer in (grid(dataset, sizes, places, binary), cells):
+        writer.line(f"POINT_DATA {nodes}\nSCALARS n int\nLOOKUP_TABLE default").numbers(range(nodes), "int")
+        writer.line(f"CELL_DATA {len(first)}\nSCALARS c int\nLOOKUP_TABLE default")
+        reports.append(read_written(tmp_path, writer.numbers(range(len(first)), "int")))
+    (mesh, twin), (repairs, others) = zip(*((each.mesh, each.repairs) for each in reports), strict=True)
+    assert repairs == others
+    assert mesh.coordinates.tolist() == twin.coordinates.tolist()
+    assert mesh.scalars[0].values.tolist() == twin.scalars[0].values.tolist()
+
+    def quads(of: Mesh) -> list[tuple[float, ...]]:
+        """The scalar of the cell, and the corners from the lowest on."""
+        turned = [np.roll(quad, -quad.argmin()).tolist() for quad in of.node_numbers]
+        return sorted((cell, *quad) for cell, quad in zip(of.scalars[1].values.tolist(), turned, strict=True))
+
+    assert quads(mesh) == quads(twin)
+
+
+def test_a_large_volume_takes_the_memory_of_its_surface(tmp_path: Path) -> None:
+    size = 100
+    writer = VtkWriter("STRUCTURED_POINTS", binary=True).line("DIMENSIONS" + f" {size}" * 3)
+    writer.line(f"POINT_DATA {size**3}\nSCALARS s unsigned_char\nLOOKUP_TABLE default")
+    writer.numbers(np.zeros(size**3), "unsigned_char")
+    tracemalloc.start()
+    mesh = read_written(tmp_path, writer).mesh
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert len(mesh.coordinates) == size**3 - (size - 2) ** 3
+    assert len(mesh.node_numbers) == 6 * (size - 1) ** 2
+    # The coordinates of all nodes alone would take more.
+    assert most < BYTES_OF_NODE * len(mesh.coordinates) + 2 * size**3
+
+
 OTHER_GRIDS = [
     (
         "STRUCTURED_GRID",
-        "DIMENSIONS 3 3 3",
-        "layer.vtk, line 5: a STRUCTURED_GRID must be one layer of nodes, as in DIMENSIONS 5 4 1, not"
-        " 'DIMENSIONS 3 3 3'; take its surface",
+        "DIMENSIONS 3 0 3",
+        "layer.vtk, line 5: a STRUCTURED_GRID must have three numbers of nodes, as in DIMENSIONS 5 4 1, not"
+        " 'DIMENSIONS 3 0 3'; correct them",
     ),
     ("STRUCTURED_GRID", "", "layer.vtk: a STRUCTURED_GRID must have DIMENSIONS, not none; add them"),
     ("STRUCTURED_GRID", "DIMENSIONS 3 3 1", "layer.vtk: a STRUCTURED_GRID must have POINTS; add them"),
@@ -429,8 +492,8 @@ OTHER_GRIDS = [
     (
         "STRUCTURED_POINTS",
         "DIMENSIONS 100000 100000 1",
-        "layer.vtk: a STRUCTURED_POINTS must have at most as many nodes as the file has bytes, not"
-        " 10,000,000,000; take fewer",
+        "layer.vtk: the surface of a STRUCTURED_POINTS must have at most as many nodes as the file has bytes,"
+        " not 10,000,000,000; take fewer",
     ),
     (
         "STRUCTURED_POINTS",
@@ -514,14 +577,6 @@ def test_cells_are_the_same_in_both_forms(cells: list[list[int]]) -> None:
 )  # fmt: skip
 def test_wrong_lists_are_refused(text: str, sentence: str) -> None:
     assert refusal(lists_of, text) == sentence
-
-
-def test_a_strip_turns_every_other_triangle_over() -> None:
-    cells = VtkCells()
-    add_cells(cells, text(b""), CellLists(np.array([4, 5, 6, 7, 8, 0, 1]), np.array([0, 5, 7])), 6)
-    assert cells.flats[0].corners.reshape(-1, 3).tolist() == [[4, 5, 6], [6, 5, 7], [6, 7, 8]]
-    assert cells.flats[0].cells.tolist() == [0, 0, 0]
-    assert cells.count == 2
 
 
 def read_data(writer: VtkWriter) -> Attributes:

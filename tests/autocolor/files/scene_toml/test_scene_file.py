@@ -293,6 +293,21 @@ def test_s_grows_by_a_key_of_the_surface_with_the_models_that_have_no_fresnel_te
     ]
 
 
+def test_a_ramp_is_read_alone(folder: Path) -> None:
+    text = MESH + '[surfaces.hood]\nramp = ["#200", "#f60", "#fff"]\n'
+    ramp = read(folder, text).scene.surface("hood").paint.ramp
+    assert ramp == ((34, 0, 0), (255, 102, 0), (255, 255, 255))
+    line = "scene.toml, line 4, [surfaces.hood]: ramp"
+    assert refusal(folder, text + "blend = 0.6\n") == [
+        f"{line} must stand without object_color, light_color, blend and light_percentage, not beside them;"
+        " leave it or them out"
+    ]
+    assert refusal(folder, MESH + '[surfaces.hood]\nramp = ["#200"]\n') == [
+        f"{line} must be a list of 2 to 1024 colors, not ['#200']; write them as in"
+        ' ["#200", "#f60", "#fff"]'
+    ]
+
+
 def test_s_grows_in_one_way(folder: Path) -> None:
     text = MESH + "[surfaces.hood]\nrefractive_index = 1.5\nbase_reflectance = 0.04\n"
     assert refusal(folder, text) == [

@@ -205,7 +205,7 @@ def test_an_edit_of_the_scene_keeps_it_and_a_new_mesh_has_none(folder_2: Path) -
 
 def test_the_mesh_of_a_picture_file_has_none(folder_2: Path) -> None:
     scene = read_scene(folder_2)
-    write_picture(folder_2 / "car.npz", render(scene, 12, 16), scene)
+    write_picture(folder_2 / "car.npz", scene, render(scene, 12, 16))
     assert source_of(read_scene(folder_2 / "car.npz").mesh) is None
 
 

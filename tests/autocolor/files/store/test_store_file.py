@@ -147,6 +147,11 @@ REFUSALS = (
         " to 255, not 'rde'; did you mean 'red'?",
     ),
     (
+        """UPDATE surfaces SET blend = 0.5, ramp = '["#200", "#f60"]' WHERE name = 'body'""",
+        "surfaces, row 1: ramp must stand without object_color, light_color, blend and light_percentage, not"
+        " beside them; leave it or them out",
+    ),
+    (
         (
             "UPDATE surfaces SET exponent = 5, model = 'cook-torrance' WHERE name = 'glass'",
             "UPDATE lights SET concentration = 3 WHERE name = 'rim'",

@@ -158,7 +158,7 @@ def test_without_a_legend_there_is_nothing_to_draw() -> None:
 
 def test_a_screen_draws_the_same_legend_as_a_studio(tmp_path: Path) -> None:
     scene = boxes().with_scalar(name="z")
-    found = legend(Studio(scene, Ramtek9300()).image)
+    found = legend(Studio(scene, Ramtek9300()).display_image)
     assert found is not None
     drawn, by_items = Ramtek9300(), Ramtek9300()
     drawn.send(drawn_legend(found))

@@ -184,3 +184,13 @@ def test_hidden_panels_take_the_bar_away_and_bring_the_legend(tmp_path: Path) ->
     hand.pick("show panels")
     assert bar_of(hand)
     assert not screen.items()
+
+
+def test_a_ramp_has_no_blend_level(tmp_path: Path) -> None:
+    hand = blending(boxes_scene().with_surface("box 0", ramp=["#000", "#f60"]), tmp_path)
+    hand.viewer.board.screen.enter()
+    assert hand.viewer.message == "box 0 has a ramp, which does not blend; color mixing changes it"
+    assert not hand.viewer.board.screen.widgets()
+    hand.open_menu()
+    hand.pick("ramp", 0.95)
+    assert bar_of(hand)

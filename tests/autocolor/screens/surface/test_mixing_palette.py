@@ -11,12 +11,12 @@ from autocolor.mapping.ranges import BACKGROUND, SCREENS, LevelRange
 from autocolor.screens.surface.mixing_palette import (
     GRAYS,
     HUES,
-    RAMP_STEPS,
-    Palette,
+    SHADE_STEPS,
+    MixingWords,
     Ranges,
     crop_of,
-    palette_of,
-    ramp_of,
+    mixing_words,
+    shades_of,
 )
 from autocolor.widgets.items import NIGHT, Area
 
@@ -29,9 +29,9 @@ TWO_RANGES: Ranges = (("glass", LevelRange(1, 600)), ("body", LevelRange(601, 40
 
 
 @given(COLORS)
-def test_step_k_of_a_ramp_is_k_of_63_parts_of_the_color_rounded_half_up(color: Color) -> None:
+def test_shade_k_is_k_of_63_parts_of_the_color_rounded_half_up(color: Color) -> None:
     expected = [[(2 * part * step + 63) // 126 for part in color] for step in range(64)]
-    assert ramp_of(color).tolist() == expected
+    assert shades_of(color).tolist() == expected
 
 
 @pytest.mark.parametrize("ranges", [ALONE, LARGE, TWO_RANGES])
@@ -39,10 +39,10 @@ def test_step_k_of_a_ramp_is_k_of_63_parts_of_the_color_rounded_half_up(color: C
 def test_all_words_differ_and_none_is_of_the_background_of_the_screens_or_shown(
     ranges: Ranges, swatches: int
 ) -> None:
-    palette = palette_of(ranges, "body", swatches)
-    parts = [palette.light_ramp, palette.object_ramp, palette.grays, palette.hues, palette.swatches]
+    palette = mixing_words(ranges, "body", swatches)
+    parts = [palette.light_shades, palette.object_shades, palette.grays, palette.hues, palette.swatches]
     words = np.concatenate(parts)
-    assert len(palette.light_ramp) == len(palette.object_ramp) == RAMP_STEPS
+    assert len(palette.light_shades) == len(palette.object_shades) == SHADE_STEPS
     assert (len(palette.grays), len(palette.hues)) == (len(GRAYS), len(HUES))
     assert len(palette.swatches) == swatches
     assert len(set(words.tolist())) == len(words)
@@ -56,7 +56,7 @@ def test_all_words_differ_and_none_is_of_the_background_of_the_screens_or_shown(
 def test_the_surface_is_shown_by_its_own_words_or_their_neighbors_and_the_others_by_the_ground(
     ranges: Ranges,
 ) -> None:
-    palette = palette_of(ranges, "body", 200)
+    palette = mixing_words(ranges, "body", 200)
     levels = dict(ranges)["body"]
     own = np.arange(levels.first, levels.last + 1)
     off = np.abs(palette.shown[levels.first : levels.last + 1].astype(int) - own)
@@ -66,13 +66,13 @@ def test_the_surface_is_shown_by_its_own_words_or_their_neighbors_and_the_others
 
 @pytest.mark.parametrize("ranges", [ALONE, LARGE, TWO_RANGES])
 def test_loads_put_each_color_into_its_word(ranges: Ranges) -> None:
-    palette = palette_of(ranges, "body", 12)
+    palette = mixing_words(ranges, "body", 12)
     swatches = np.random.default_rng(1).integers(0, 256, (12, 3)).astype(np.uint8)
     table = np.full((1024, 3), 7, np.uint8)
     for first, colors in palette.loads((200, 100, 50), (1, 2, 3), swatches):
         table[first : first + len(colors)] = colors
-    assert np.array_equal(table[palette.light_ramp], ramp_of((200, 100, 50)))
-    assert np.array_equal(table[palette.object_ramp], ramp_of((1, 2, 3)))
+    assert np.array_equal(table[palette.light_shades], shades_of((200, 100, 50)))
+    assert np.array_equal(table[palette.object_shades], shades_of((1, 2, 3)))
     assert np.array_equal(table[palette.grays], GRAYS)
     assert np.array_equal(table[palette.hues], HUES)
     assert np.array_equal(table[palette.swatches], swatches)
@@ -80,14 +80,14 @@ def test_loads_put_each_color_into_its_word(ranges: Ranges) -> None:
 
 
 def test_words_that_follow_each_other_are_one_load() -> None:
-    palette = palette_of(TWO_RANGES, "body", 12)
+    palette = mixing_words(TWO_RANGES, "body", 12)
     assert len(palette.loads((0, 0, 0), (0, 0, 0), np.zeros((12, 3), np.uint8))) == 1
 
 
 def test_equal_surfaces_have_the_same_palette() -> None:
-    palette = palette_of(TWO_RANGES, "body", 12)
-    assert isinstance(palette, Palette)
-    assert palette_of(tuple(TWO_RANGES), "body", 12) is palette
+    palette = mixing_words(TWO_RANGES, "body", 12)
+    assert isinstance(palette, MixingWords)
+    assert mixing_words(tuple(TWO_RANGES), "body", 12) is palette
 
 
 def random_entries(seed: int) -> Bytes:
@@ -102,7 +102,7 @@ def test_the_hues_go_once_around_in_equal_steps() -> None:
 
 @pytest.mark.parametrize("ranges", [ALONE, LARGE, TWO_RANGES])
 def test_other_surfaces_are_dim_and_the_lighter_color_never_has_the_darker_gray(ranges: Ranges) -> None:
-    palette, entries = palette_of(ranges, "body", 200), random_entries(1)
+    palette, entries = mixing_words(ranges, "body", 200), random_entries(1)
     words, own = palette.dimmed(entries), dict(ranges)["body"]
     mine = slice(own.first, own.last + 1)
     assert np.array_equal(words[mine], palette.shown[mine])
@@ -117,7 +117,7 @@ def test_other_surfaces_are_dim_and_the_lighter_color_never_has_the_darker_gray(
 
 
 def test_recoloring_the_surface_leaves_the_grays_of_the_others_alone() -> None:
-    palette, entries = palette_of(TWO_RANGES, "body", 200), random_entries(2)
+    palette, entries = mixing_words(TWO_RANGES, "body", 200), random_entries(2)
     before = palette.dimmed(entries)
     recolored = entries.copy()
     recolored[601:] = random_entries(3)[601:]

@@ -8,21 +8,17 @@ import pytest
 from autocolor import Mesh, Paint, scene_of
 from autocolor.checks import Color
 from autocolor.errors import UsageError
-from autocolor.files.state import recent_colors
 from autocolor.mapping.colors import Hsv, blend_level, color_of_hsv, hsv_of
 from autocolor.scene.kinds import in_digits
-from autocolor.scene.swatches import COLUMNS, FINISHES, ROWS, finished, swatches
+from autocolor.scene.swatches import swatches
 from autocolor.screens.session import Clipboard
 from autocolor.screens.surface.mixing_palette import Crop, crop_of
 from autocolor.screens.surface.mixing_screen import (
-    CELL_ELEMENTS,
-    CELL_LINES,
     LIGHT_SOURCE,
     OBJECT,
     PICTURE,
     ColorSection,
     MixingScreen,
-    SwatchField,
     whole,
 )
 from autocolor.screens.viewer import Viewer
@@ -31,7 +27,15 @@ from autocolor.widgets.items import BLUE, GREEN, LIGHT_GRAY, NIGHT, RED, WHITE, 
 from autocolor.widgets.menu import WORK
 from autocolor.widgets.widget import Place, Widget
 from ramtek_emu import Ramtek9300
-from tests.autocolor.screens.mixing import STRIP, ZERO, bar_is_right, line_of, mixing, ramps_are_right
+from tests.autocolor.screens.mixing import (
+    SHADES,
+    STRIP,
+    ZERO,
+    bar_is_right,
+    line_of,
+    mixing,
+    shades_are_right,
+)
 from tests.autocolor.screens.painting_hand import PAINTS, PaintingHand, boxes_scene
 
 BARS = {
@@ -49,12 +53,12 @@ def hand(tmp_path: Path) -> PaintingHand:
     return mixing(boxes_scene(), tmp_path)
 
 
-def test_the_ramps_show_all_intensities_of_both_colors(hand: PaintingHand) -> None:
-    assert ramps_are_right(hand)
+def test_the_shades_show_all_intensities_of_both_colors(hand: PaintingHand) -> None:
+    assert shades_are_right(hand)
     hand.click(ZERO + 200, line_of(hand, "object, green"))
     hand.drag((ZERO + 255, line_of(hand, "light source, blue")), (ZERO + 31, 100))
     assert hand.paint == Paint((176, 200, 32), (255, 250, 31), 0.4)
-    assert ramps_are_right(hand)
+    assert shades_are_right(hand)
 
 
 def test_the_bar_between_shows_the_entries_of_the_surface(hand: PaintingHand) -> None:
@@ -132,7 +136,7 @@ def test_a_drag_is_seen_at_once_and_writes_no_word_of_the_picture(hand: Painting
         color = hand.paint.object_color
         hand.move(ZERO + value, line)
         assert hand.paint.object_color != color
-        assert ramps_are_right(hand)
+        assert shades_are_right(hand)
         assert bar_is_right(hand)
         # The bars, their numbers, and the color's number twice.
         assert hand.display.frame_buffer.written - before < 20_000
@@ -157,7 +161,7 @@ def test_a_drag_is_one_step_to_undo(hand: PaintingHand) -> None:
         assert hand.viewer.message.startswith("undone: ")
         hand.click(area.left + 16, area.top + 4)
         assert hand.viewer.message == "nothing to undo"
-        assert ramps_are_right(hand)
+        assert shades_are_right(hand)
         assert bar_is_right(hand)
 
 
@@ -192,6 +196,104 @@ def test_the_bar_between_sets_the_blend(hand: PaintingHand) -> None:
     assert hand.paint.blend == 0
 
 
+def ramp_of(hand: PaintingHand) -> tuple[Color, ...]:
+    ramp = hand.paint.ramp
+    assert ramp is not None
+    return ramp
+
+
+def give(hand: PaintingHand, ramp: list[str]) -> None:
+    hand.viewer.session.paint(ramp=ramp)
+    hand.move(300, 440)
+
+
+def test_a_ramp_that_is_switched_on_looks_nearly_as_before_and_off_is_as_before(hand: PaintingHand) -> None:
+    before, entries = hand.paint, hand.viewer.studio.entries.astype(int)
+    hand.pick("ramp", 0.95)
+    assert hand.viewer.message == "box 0: the ramp replaces its two colors and their blend"
+    first, levels = hand.viewer.studio.level_ranges["box 0"]
+    colors = [first + int(step * (levels - 1) / 5 + 0.5) for step in range(6)]
+    assert np.array_equal(ramp_of(hand), entries[colors])
+    # The blend of 0.4 begins at the third of six colors.
+    assert np.abs(hand.viewer.studio.entries - entries).max() <= 4
+    assert bar_is_right(hand)
+    hand.pick("ramp", 0.95)
+    assert hand.paint == before
+    assert hand.viewer.message == "box 0: two colors and their blend replace its ramp"
+
+
+def test_a_color_of_the_ramp_is_picked_on_the_bar_and_mixed_alone(hand: PaintingHand) -> None:
+    give(hand, ["#200", "#f60", "#00f", "#fff"])
+    # A third of the bar is at the second color, and nearest to it up to the middle.
+    hand.click(STRIP.left + STRIP.width / 2 - 3, STRIP.top + 5)
+    assert hand.viewer.message == "swatches are for color 2 of 4"
+    hand.click(ZERO + 7, line_of(hand, "color 2, blue"))
+    hand.click(ZERO + 9, line_of(hand, "color 3, red"))
+    assert ramp_of(hand) == ((34, 0, 0), (255, 102, 7), (9, 0, 255), (255, 255, 255))
+    assert bar_is_right(hand)
+    assert np.array_equal(hand.colors(SHADES["object"])[0, -1], (255, 102, 7))
+    # The last color is mixed above, where the light source was; swatches are for it, too.
+    hand.drag((300, STRIP.top), (STRIP.right + 50, STRIP.top))
+    hand.pick("paints", 0.7)
+    *others, last = ramp_of(hand)
+    assert others == [(34, 0, 0), (255, 102, 7), (9, 0, 255)]
+    assert list(last) in swatches().tolist()
+    hand.pick("surface")
+    assert hand.widget("blend bar")
+
+
+def test_the_wheel_goes_from_color_to_color_on_the_bar(hand: PaintingHand) -> None:
+    give(hand, ["#200", "#f60", "#fff"])
+    numbers = []
+    for turn in ("up", "up", "up", "down", "down", "down"):
+        hand.viewer.on_pointer(STRIP.left + 40, STRIP.top + 5, f"wheel {turn}")
+        numbers.append(hand.viewer.message[len("swatches are for ") :])
+    assert numbers == [f"color {number} of 3" for number in (2, 3, 3, 2, 1, 1)]
+
+
+def test_colors_are_added_between_two_and_removed_down_to_two(hand: PaintingHand) -> None:
+    give(hand, ["#000", "#f60", "#fff"])
+    hand.pick("add color", 0.1)
+    assert ramp_of(hand) == ((0, 0, 0), (128, 51, 0), (255, 102, 0), (255, 255, 255))
+    assert hand.viewer.message == "swatches are for color 2 of 4"
+    for rest in (((0, 0, 0), (255, 102, 0), (255, 255, 255)), ((0, 0, 0), (255, 255, 255))):
+        hand.pick("add color", 0.9)
+        assert ramp_of(hand) == rest
+    hand.pick("add color", 0.9)
+    assert hand.viewer.message == "a ramp must have 2 colors or more; to have none, switch the ramp off"
+    for _ in range(3):
+        hand.pick(" ", 0.1)
+    assert len(ramp_of(hand)) == 3
+    # Undo may shorten the ramp below the chosen color.
+    hand.pick(" ", 0.1)
+    assert hand.paint == PAINTS[0]
+
+
+def test_a_finish_replaces_a_ramp_and_another_surface_takes_it(hand: PaintingHand) -> None:
+    give(hand, ["#000", "#f60", "#fff"])
+    hand.viewer.session.choose_surface("box 1")
+    hand.viewer.session.take_paint("box 0")
+    assert hand.viewer.message == (
+        "box 1: the paint of box 0; undo goes back; the ramp replaces its two colors and their blend"
+    )
+    assert hand.paint == Paint(ramp=((0, 0, 0), (255, 102, 0), (255, 255, 255)))
+    hand.pick("metal")
+    assert hand.viewer.message == "box 1: metal; two colors and their blend replace its ramp"
+    assert hand.paint.object_color == (255, 102, 0)
+
+
+def test_a_key_for_the_blend_brings_back_the_colors_before_the_ramp(hand: PaintingHand) -> None:
+    give(hand, ["#000", "#f60"])
+    hand.viewer.board.screen.session.paint(blend=0.5)
+    assert hand.paint == PAINTS[0].replace(blend=0.5)
+
+
+def test_without_a_paint_before_the_colors_of_the_ramp_remain(tmp_path: Path) -> None:
+    hand = mixing(boxes_scene().with_surface("box 0", ramp=["#000", "#f60", "#0f0"]), tmp_path)
+    hand.pick("ramp", 0.95)
+    assert hand.paint == Paint((255, 102, 0), (0, 255, 0))
+
+
 @pytest.mark.parametrize(("count", "levels"), [(1, None), (2, None), (60, None), (2, 1005)])
 def test_leaving_restores_words_and_entries_byte_for_byte(
     tmp_path: Path, count: int, levels: int | None
@@ -222,7 +324,7 @@ def test_a_surface_that_owns_nearly_all_words_is_at_most_a_level_off(
     # So its colors are those of the picture, or of the neighboring level.
     entries = hand.viewer.studio.entries
     assert np.array_equal(hand.colors(crop(hand).area)[is_own], entries[seen[is_own]])
-    assert ramps_are_right(hand)
+    assert shades_are_right(hand)
     assert bar_is_right(hand, most_off=1)
 
 
@@ -231,7 +333,7 @@ def test_sixty_surfaces_are_chosen_in_turn(tmp_path: Path) -> None:
     for number in range(1, 61):
         hand.choose("surface", f"box {number % 60}")
         assert hand.viewer.session.surface_name == f"box {number % 60}"
-    assert ramps_are_right(hand)
+    assert shades_are_right(hand)
     assert bar_is_right(hand)
     hand.click(ZERO + 77, line_of(hand, "object, red"))
     assert hand.paint.object_color == (77, 16, 32)
@@ -347,15 +449,15 @@ def test_it_has_a_heading_a_number_and_seven_bars(viewer: Viewer, title: str, va
     assert found == list(zip("RGBWHSV", words, values, strict=True))
 
 
-def test_bars_and_ramp_stand_beside_each_other_without_overlapping(viewer: Viewer) -> None:
+def test_bars_and_shades_stand_beside_each_other_without_overlapping(viewer: Viewer) -> None:
     section = section_of(viewer, OBJECT, [])
     widgets = widgets_of(section, is_chosen=True)
-    areas = [section.ramp, *(each.area for each in widgets)]
+    areas = [section.shades, *(each.area for each in widgets)]
     for number, area in enumerate(areas):
         assert section.area.covers(area)
         assert not any(area.overlaps(other) for other in areas[number + 1 :])
-    assert section.ramp.bottom == widgets[-1].area.bottom
-    assert section.ramp.right < min(each.area.left for each in widgets[2:])
+    assert section.shades.bottom == widgets[-1].area.bottom
+    assert section.shades.right < min(each.area.left for each in widgets[2:])
 
 
 def test_bars_of_hue_saturation_and_value_set_the_color(hand: PaintingHand) -> None:
@@ -368,7 +470,7 @@ def test_bars_of_hue_saturation_and_value_set_the_color(hand: PaintingHand) -> N
     assert hand.paint.object_color == (0, 176, 0)
     hand.drag((ZERO + 10, line_of(hand, "light source, value")), (ZERO, 0), (ZERO - 40, 0))
     assert hand.paint.light_color == (0, 0, 0)
-    assert ramps_are_right(hand)
+    assert shades_are_right(hand)
 
 
 @pytest.mark.parametrize("color", [(176, 16, 32), (3, 1, 2), (255, 255, 254)])
@@ -442,13 +544,13 @@ def test_the_row_takes_the_typed_text_unchanged(viewer: Viewer) -> None:
     assert given == [(LIGHT_SOURCE, "teal")]
 
 
-def test_the_ramp_rises_to_the_right_from_the_first_step_to_the_last(viewer: Viewer) -> None:
+def test_the_shades_rise_to_the_right_from_the_first_step_to_the_last(viewer: Viewer) -> None:
     display = Ramtek9300()
     section = section_of(viewer, OBJECT, [])
-    ramp = np.arange(300, 364, dtype=np.uint16)
-    for item in section.items(ramp):
+    shades = np.arange(300, 364, dtype=np.uint16)
+    for item in section.items(shades):
         display.send(np.frombuffer(item.stream, np.uint16))
-    line = display.words[section.ramp.top, section.ramp.left : section.ramp.right + 1]
+    line = display.words[section.shades.top, section.shades.left : section.shades.right + 1]
     assert set(np.bincount(line)[301:363].tolist()) <= {2, 3}
     assert line.tolist() == sorted(line.tolist())
     assert (line[0], line[-1]) == (300, 363)
@@ -459,75 +561,6 @@ def test_a_value_that_is_no_component_is_refused(value: float) -> None:
     with pytest.raises(UsageError) as told:
         whole("green", value)
     assert str(told.value) == f"green must be a whole number from 0 to 255, not {value:g}; type another"
-
-
-def swatch_cell(hand: PaintingHand, shade: int, hue: int) -> Area:
-    """The cell of a swatch in the menu, without its grout."""
-    area = hand.widget("paints").area
-    left = area.left + (area.width - ROWS * CELL_ELEMENTS) // 2 + CELL_ELEMENTS * shade
-    top = area.top + CELL_LINES * hue
-    return Area(left, top, left + CELL_ELEMENTS - 2, top + CELL_LINES - 2)
-
-
-def test_a_swatch_is_a_paint_for_the_chosen_color(hand: PaintingHand) -> None:
-    hand.click(*swatch_cell(hand, 4, 3).middle)
-    assert hand.paint.object_color == tuple(swatches()[4 * COLUMNS + 3])
-    hand.pick("light source heading")
-    hand.click(*swatch_cell(hand, 0, 19).middle)
-    assert hand.paint.light_color == tuple(swatches()[COLUMNS - 1])
-    # A click on the ramp chooses, too.
-    hand.click(30, 160)
-    hand.drag(swatch_cell(hand, 0, 0).middle, swatch_cell(hand, 1, 2).middle)
-    assert hand.paint.object_color == tuple(swatches()[COLUMNS + 2])
-    assert hand.paint.light_color == tuple(swatches()[COLUMNS - 1])
-
-
-def test_every_swatch_is_shown_in_its_color(hand: PaintingHand) -> None:
-    for number, color in enumerate(swatches()):
-        assert (hand.colors(swatch_cell(hand, *divmod(number, COLUMNS))) == color).all()
-    assert ramps_are_right(hand)
-    assert bar_is_right(hand)
-
-
-@pytest.mark.parametrize("name", FINISHES)
-def test_a_finish_keeps_the_object_color(hand: PaintingHand, name: str) -> None:
-    before = hand.viewer.studio.scene.surface("box 0")
-    hand.pick(name)
-    after = hand.viewer.studio.scene.surface("box 0")
-    assert after == before.replace(**finished(before, name))
-    assert ramps_are_right(hand)
-    assert bar_is_right(hand)
-
-
-def test_mixed_colors_are_recent_colors_when_the_mixing_ends(hand: PaintingHand) -> None:
-    hand.click(ZERO + 99, line_of(hand, "object, green"))
-    hand.click(ZERO + 100, line_of(hand, "object, green"))
-    assert recent_colors() == ()
-    hand.leave()
-    assert recent_colors() == ((176, 100, 32),)
-    hand.turn_to("color mixing")
-    # Another surface takes it over.
-    hand.pick("surface")
-    recent = hand.widget("recent colors").area
-    place = swatch_cell(hand, 0, 0).left + 4, recent.top + 4
-    assert (hand.colors(Area(*place, place[0] + 4, place[1] + 4)) == [176, 100, 32]).all()
-    hand.click(*place)
-    assert hand.paint.object_color == (176, 100, 32)
-
-
-def test_an_undone_color_is_no_recent_color(hand: PaintingHand) -> None:
-    hand.click(ZERO + 99, line_of(hand, "object, green"))
-    hand.pick(" ", 0.1)
-    hand.leave()
-    assert recent_colors() == ()
-
-
-def test_choosing_another_surface_ends_the_mixing(hand: PaintingHand) -> None:
-    hand.click(ZERO + 99, line_of(hand, "light source, green"))
-    hand.pick("surface")
-    assert recent_colors() == ((255, 99, 240),)
-    hand.leave()
-    assert recent_colors() == ((255, 99, 240),)
 
 
 def whole_picture(hand: PaintingHand) -> Crop:
@@ -551,7 +584,7 @@ def test_the_unit_takes_the_paint_of_a_surface_that_it_picks_in_the_whole_pictur
     hand.click(*there)
     assert hand.paint == PAINTS[1]
     assert hand.viewer.message == "box 0: the paint of box 1; undo goes back"
-    assert ramps_are_right(hand)
+    assert shades_are_right(hand)
     assert bar_is_right(hand)
     hand.pick(" ", 0.1)
     assert hand.viewer.studio.scene is before
@@ -570,7 +603,7 @@ def test_the_unit_takes_a_color_as_it_is_seen(hand: PaintingHand, title: str) ->
     hand.click(element, line)
     assert (hand.paint.object_color if title == OBJECT else hand.paint.light_color) == color
     assert hand.viewer.message == f"{title}: {in_digits(color)}"
-    assert ramps_are_right(hand)
+    assert shades_are_right(hand)
 
 
 @pytest.mark.parametrize("end", ["the row", "escape", "leaving"])
@@ -586,7 +619,7 @@ def test_taking_ends_without_a_pick(hand: PaintingHand, end: str) -> None:
         hand.turn_to("color mixing")
     assert hand.viewer.page == "mixing"
     assert hand.viewer.studio.scene is scene
-    assert ramps_are_right(hand)
+    assert shades_are_right(hand)
 
 
 def test_a_paint_is_not_taken_from_the_background_or_the_chosen_surface(hand: PaintingHand) -> None:
@@ -656,7 +689,7 @@ def test_a_color_is_pasted_into_the_section_or_the_chosen_color(
     hand.viewer.on_key("v", control=True)
     color = {"#": (16, 32, 48), " ": (0, 128, 128), "r": (1, 2, 3)}[text[0]]
     assert (hand.paint.object_color if title == OBJECT else hand.paint.light_color) == color
-    assert ramps_are_right(hand)
+    assert shades_are_right(hand)
 
 
 def test_a_text_that_is_no_color_is_refused(hand: PaintingHand, clipboard: FakeClipboard) -> None:
@@ -698,59 +731,3 @@ def test_without_a_clipboard_the_message_has_the_color(hand: PaintingHand) -> No
     hand.viewer.on_key("v", control=True)
     assert hand.viewer.message == "this display has no clipboard; type the color"
     assert hand.viewer.studio.scene is scene
-
-
-AREA = Area(176, 312, 255, 367)
-
-
-def field_of(count: int, found: list[int] | None = None) -> SwatchField:
-    found = [] if found is None else found
-    words = np.arange(100, 100 + count, dtype=np.uint16)
-    return SwatchField("paints", words=words, across=5, width=16, height=14, take=found.append, area=AREA)
-
-
-def drawn(field: SwatchField) -> Ramtek9300:
-    display = Ramtek9300()
-    for item in field.items(lit=False):
-        display.send(np.frombuffer(item.stream, np.uint16))
-    return display
-
-
-@pytest.mark.parametrize("count", [1, 5, 7, 20])
-def test_a_pick_takes_the_cell_that_is_shown_there(count: int) -> None:
-    found: list[int] = []
-    field = field_of(count, found)
-    words = drawn(field).words
-    for line in range(AREA.top, AREA.bottom + 1, 14):
-        for element in range(AREA.left, AREA.right + 1, 16):
-            before = len(found)
-            field.pick(Place(element + 3, line + 3))
-            word = int(words[line + 3, element + 3])
-            assert found[before:] == ([word - 100] if 100 <= word < 100 + count else [])
-    assert found == list(range(count))
-
-
-def test_nothing_is_drawn_or_taken_beyond_the_cells() -> None:
-    found: list[int] = []
-    field = field_of(20, found)
-    lines, elements = np.nonzero(drawn(field).words)
-    assert AREA.covers(Area(elements.min(), lines.min(), elements.max(), lines.max()))
-    for place in ((175, 320), (256, 320), (200, 311), (200, 368)):
-        field.drag(Place(200, 320), Place(200, 320), Place(*place))
-    assert found == []
-
-
-def test_a_drag_takes_every_cell_that_it_reaches() -> None:
-    found: list[int] = []
-    field = field_of(20, found)
-    for element in (180, 200, 220):
-        field.drag(Place(180, 315), Place(180, 315), Place(element, 330))
-    assert found == [5, 6, 7]
-
-
-def test_without_cells_there_is_nothing() -> None:
-    found: list[int] = []
-    field = field_of(0, found)
-    assert field.items(lit=True) == []
-    field.pick(Place(180, 315))
-    assert found == []

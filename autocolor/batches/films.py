@@ -1,0 +1,246 @@
+"""Animations as files: films, numbered pictures, and streams of instructions that cycle colors.
+
+| name | animation |
+|---|---|
+| .webp, .apng, .gif | a film (see `ramtek_emu.films`) |
+| .png with {number} | a picture a frame, such as frame-{number:04}.png |
+| .ramtek | the picture once, then a load of the lookup table a frame, for `ramtek play --loads-per-second` |
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor
+from contextlib import closing
+from io import BytesIO
+from os import PathLike, fspath
+from pathlib import Path
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from autocolor.arrays import Bytes
+from autocolor.batches.making import Batch, Source, batch_results, checked_batch
+from autocolor.batches.runs import Start
+from autocolor.batches.table import Result, Rows, Variant, variants_of
+from autocolor.budget import require_memory
+from autocolor.checks import shown
+from autocolor.errors import InputError, UsageError
+from autocolor.files.settings import field_of, place_of, scene_with, value_at
+from autocolor.files.writing import refusals_of_this_package, refuse_output, write_atomically
+from autocolor.mapping.display_image import DisplayImage
+from autocolor.rendering import sees_the_same
+from autocolor.scene.columns import Tier
+from autocolor.scene.scene import NORMALS, Scene, costs_at_least
+from autocolor.sending import send_cycle
+from ramtek_emu import Recorder
+
+FRAMES_PER_SECOND: Final = 24.0
+"""Assumed: the rate of motion pictures."""
+
+STREAM: Final = ".ramtek"
+FILMS: Final = (".webp", ".apng", ".gif")
+
+BYTES_OF_PIXEL: Final = 1.0
+"""Measured: an encoded frame of a WebP has up to 0.32 bytes of a pixel. At its end, a film is in memory three
+times: its frames, the whole, and the file."""
+
+Progress = Callable[[Result], object]
+"""A function that is called with the result of each frame."""
+
+
+class Film(NamedTuple):
+    """An animation that was written: its path, or the pattern of its paths, and the number of frames.
+
+    `lossy` frames of a GIF lost colors; `largest_loss` is the largest difference of a component, 0 to 255.
+    """
+
+    path: str
+    frames: int
+    lossy: int = 0
+    largest_loss: int = 0
+
+
+def animate(
+    source: Source,
+    frames: Rows,
+    path: str | PathLike[str],
+    *,
+    frames_per_second: float = FRAMES_PER_SECOND,
+    loop: bool = True,
+    size: tuple[int, int] | None = None,
+    smooth: int | None = None,
+    executor: Executor | None = None,
+    overwrite: bool = False,
+    progress: Progress | None = None,
+) -> Film:
+    """Write the frames of an animation, such as those of `frames`, to a file whose suffix gives its format.
+
+        autocolor.animate(scene, autocolor.frames(scene, [], 72, turn=360), "around.webp")
+
+    A frame costs its edit from the frame before. Frames come one by one, so that memory is bounded; only a
+    WebP keeps the encoded frames until its end. With `loop`, a film begins again at its end. `size` and
+    `smooth` are those of `render`. `path` may be a pattern of numbered pictures, such as
+    "frame-{number:04}.png". A file that ends in .ramtek has the words of the first frame and then a load of
+    the lookup table for each frame.
+
+    Raises UsageError for an unknown suffix or a wrong rate. Raises InputError, with the frame, if a frame
+    cannot be made, if a frame of a .ramtek file changes more than entries, or if a film needs more memory
+    than the budget allows; nothing is written then. Raises OutputError or WriteError if the file cannot be
+    written.
+    """
+    from ramtek_emu.films import write_film
+
+    variants = variants_of(frames)
+    name = fspath(path)
+    kind = kind_of(name)
+    if not variants:
+        raise UsageError("an animation must have a frame at least, not none; make some with `frames`")
+    check_rate(frames_per_second, kind)
+    tell = progress or (lambda result: None)
+    if kind == STREAM:
+        return _stream(source, variants, name, size, smooth, overwrite, tell)
+    output = name if kind == ".png" else None
+    if output is None:
+        refuse_output(name, overwrite=overwrite)
+    results = batch_results(
+        source,
+        variants,
+        output,
+        executor=executor,
+        size=size,
+        smooth=smooth,
+        overwrite=overwrite,
+        ordered=True,
+    )
+    with closing(results):
+        if output is not None:
+            for _ in _made(results, tell):
+                pass
+            return Film(name, len(variants))
+        with refusals_of_this_package():
+            loss = write_film(
+                name,
+                _colors(_made(results, tell), len(variants) if kind == ".webp" else 0),
+                len(variants),
+                fields_per_second=frames_per_second,
+                loop=loop,
+                overwrite=overwrite,
+            )
+    return Film(name, len(variants), loss.fields, loss.largest)
+
+
+def kind_of(path: str) -> str:
+    """The suffix of an animation's file. Raises UsageError for a name of another kind."""
+    suffix = Path(path).suffix.lower()
+    if suffix == ".png" and "{" not in path:
+        raise UsageError(
+            f"numbered pictures must have a pattern such as frame-{{number:04}}.png, not {path!r}; or end the"
+            " name in .apng for an animated PNG"
+        )
+    if suffix not in (*FILMS, ".png", STREAM):
+        raise UsageError(
+            f"an animation must be written to .webp, .apng, .gif, frame-{{number:04}}.png or .ramtek, not to"
+            f" {path!r}; rename it"
+        )
+    return suffix
+
+
+def check_rate(frames_per_second: float, kind: str) -> None:
+    """Raise UsageError unless a film of this suffix can have so many frames per second."""
+    from ramtek_emu.films import LEAST_RATE, MOST_GIF_RATE, MOST_RATE
+
+    most = MOST_GIF_RATE if kind == ".gif" else MOST_RATE
+    is_number = isinstance(frames_per_second, (int, float)) and not isinstance(frames_per_second, bool)
+    if not is_number or not LEAST_RATE <= frames_per_second <= most:
+        raise UsageError(
+            f"the frames per second must be a number from {LEAST_RATE:g} to {most:g}, not"
+            f" {shown(frames_per_second)}; choose another"
+        )
+
+
+def _made(results: Iterator[Result], tell: Progress) -> Iterator[Result]:
+    """The results. Raises InputError for the first frame without a picture."""
+    for number, result in enumerate(results, 1):
+        if result.problem:
+            raise InputError(f"frame {number}: {result.problem}")
+        yield result
+        tell(result)
+
+
+def _colors(results: Iterator[Result], in_memory: int) -> Iterator[Bytes]:
+    """The colors of frames. Raises InputError if `in_memory` encoded frames do not fit in memory."""
+    for result in results:
+        image = result.image
+        assert isinstance(image, np.ndarray)
+        if in_memory:
+            require_memory(
+                BYTES_OF_PIXEL * image.shape[0] * image.shape[1] * in_memory,
+                f"a WebP of {in_memory:,} frames",
+                "write .apng, or fewer or smaller frames",
+            )
+        yield image
+
+
+# Color cycling: one load of the lookup table a frame.
+
+
+def _stream(
+    source: Source,
+    variants: tuple[Variant, ...],
+    path: str,
+    size: tuple[int, int] | None,
+    smooth: int | None,
+    overwrite: bool,
+    tell: Progress,
+) -> Film:
+    """Write the stream of an animation. Raises InputError if a frame changes more than entries."""
+    refuse_output(path, overwrite=overwrite)
+    batch = checked_batch(source, variants, None, size=size, smooth=smooth, ordered=True)
+    if batch.drawing.smooth > 1:
+        raise UsageError("a stream must have smooth=1, because a display cannot average; leave it out")
+    first: Scene | None = None
+    for number, variant in enumerate(variants, 1):
+        scene = scene_with(batch.scene, variant.settings)
+        first = first or scene
+        _check_entries_alone(first, scene, variants, number)
+    file = BytesIO()
+    send_cycle(Recorder(file), _images(batch, tell))
+    write_atomically(path, file.getvalue(), overwrite=overwrite)
+    return Film(path, len(variants))
+
+
+def _images(batch: Batch, tell: Progress) -> Iterator[DisplayImage]:
+    """The display images of the variants of a batch."""
+    start = Start(batch.scene, batch.picture)
+    for variant in batch.variants:
+        image, tier = start.image_of(variant.settings, batch.drawing)
+        yield image
+        tell(Result(variant.name, variant.settings, tier=tier))
+
+
+def _check_entries_alone(first: Scene, other: Scene, variants: tuple[Variant, ...], number: int) -> None:
+    """Raise InputError, with the key, if a frame changes more than entries of the lookup table."""
+    if not costs_at_least(first, other, Tier.LEVELS):
+        return
+    if first.words == other.words == NORMALS and sees_the_same(first, other):
+        # Words stand for normals, so an edit of a light changes entries alone.
+        return
+    tier, key = max(_costs(first, other, variants))
+    is_light = tier in (Tier.MIX, Tier.LIGHT)
+    by_normals = ", or let words stand for normals (--normals; words='normals' in Python)" if is_light else ""
+    raise InputError(
+        f"frame {number}: a frame of a stream must change entries of the lookup table alone, and an edit of"
+        f" {key} computes {tier.computed} again; write a film such as .webp{by_normals}"
+    )
+
+
+def _costs(first: Scene, other: Scene, variants: tuple[Variant, ...]) -> Iterator[tuple[Tier, str]]:
+    """The cost of each key whose values differ in two scenes, with the key."""
+    for key in {key for variant in variants for key in variant.settings}:
+        place = place_of(first, key)
+        field, one, two = field_of(place), value_at(first, place), value_at(other, place)
+        column = None if field is None else field.column
+        costs = Tier.FRAME if column is None else column.kind.cost(one, two, column.tier)
+        if costs is not None and not (one is two is None):
+            yield costs, key

@@ -1,0 +1,476 @@
+"""Variants as data: tables of changed columns, from Python, CSV, JSON, or lists of values; and of results.
+
+    name,surfaces.body.object_color,lights.key.intensity
+    racing,#b01020,
+    evening,navy,0.5
+
+A column is a key, as after `--set`, and an empty cell leaves its field as it is in the scene. The columns
+`name` and `time` are optional.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import islice, product
+from os import PathLike
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any, Final, NamedTuple
+
+from autocolor.arrays import Bytes
+from autocolor.checks import shown
+from autocolor.errors import InputError, UsageError
+from autocolor.files.palette_file import read_palette
+from autocolor.files.paths import LONGEST_STEM, file_stem
+from autocolor.files.reading import bounded_json, read_bytes, text_lines
+from autocolor.immutable import Immutable
+from autocolor.scene.columns import Tier
+from autocolor.scene.kinds import in_digits
+
+MOST_VARIANTS: Final = 100_000
+"""Limit: variants of a batch."""
+
+MOST_KEYS: Final = 256
+"""Limit: keys of a variant."""
+
+LARGEST_TABLE: Final = 16 << 20
+"""Limit: bytes of a table of variants."""
+
+MOST_JSON_VALUES: Final = 1_000_000
+"""Limit: values in a table in JSON."""
+
+LATEST: Final = 1e9
+"""Limit: a time, in size."""
+
+NAME: Final = "name"
+TIME: Final = "time"
+
+
+@dataclass(frozen=True)
+class Variant(Immutable):
+    """A variant of a scene: a name, the fields that it sets by key, and its time in an animation, if any.
+
+    A key and its value are those of `--set`: `surfaces.body.object_color`, `lights.key.intensity`,
+    `view.eye`, `ambient`. A value is plain, or a text as in a scene file. None and "none" unset a field. The
+    settings are read-only. Raises UsageError.
+    """
+
+    name: str
+    settings: Mapping[str, object]
+    time: float | None = None
+
+    def __post_init__(self) -> None:
+        settings, time = self.settings, self.time
+        if not isinstance(self.name, str) or not self.name:
+            raise UsageError(
+                f"a variant must have a name of at least one character, not {shown(self.name)}; name it"
+            )
+        if not isinstance(settings, Mapping) or not all(isinstance(key, str) for key in settings):
+            raise UsageError(
+                f"the settings of a variant must be values by key, not {shown(settings)}; write them as in"
+                " {'ambient': 0.2}"
+            )
+        if len(settings) > MOST_KEYS:
+            raise UsageError(
+                f"a variant must have at most {MOST_KEYS} keys, not {len(settings):,}; leave keys out"
+            )
+        if time is not None:
+            # A whole number may be too large for a float.
+            is_number = isinstance(time, (int, float)) and not isinstance(time, bool)
+            if not is_number or not abs(time) <= LATEST:
+                raise UsageError(
+                    f"the time of a variant must be a number of at most {LATEST:g} in size, not"
+                    f" {shown(time)}; correct it"
+                )
+            vars(self)["time"] = float(time)
+        vars(self)["settings"] = MappingProxyType(dict(settings))
+
+    def __reduce__(self) -> tuple[type[Variant], tuple[str, dict[str, object], float | None]]:
+        # A read-only mapping cannot be pickled.
+        return Variant, (self.name, dict(self.settings), self.time)
+
+
+Rows = Iterable[Variant | Mapping[str, object]]
+"""Variants, or tables of values by key, with the optional keys `name` and `time`."""
+
+
+def variants_of(rows: Rows) -> tuple[Variant, ...]:
+    """The variants of some rows, in their order, with a name each. Raises UsageError with the row.
+
+    A variant without a name is named by its values of the keys in which the rows differ. Such a name can be
+    the stem of a file. All names are unique, also where files do not distinguish capitals.
+
+    >>> [variant.name for variant in variants_of([{"ambient": 0.1}, {"ambient": 0.2}])]
+    ['0.1', '0.2']
+    """
+    if isinstance(rows, (str, bytes, Mapping, Variant)) or not isinstance(rows, Iterable):
+        raise UsageError(
+            f"variants must be a list of tables or of Variants, not {shown(rows)}; write them as in"
+            " [{'ambient': 0.1}, {'ambient': 0.2}]"
+        )
+    given = islice(rows, MOST_VARIANTS + 1)
+    return _named([_row(row, f"row {number}") for number, row in enumerate(given, 1)], UsageError)
+
+
+class _Row(NamedTuple):
+    """A row of a table; its name is None if it has none."""
+
+    place: str
+    name: object
+    settings: Mapping[str, object]
+    time: Any
+
+
+def _row(row: object, place: str) -> _Row:
+    """The row of a Variant or of a table. Raises UsageError for anything else."""
+    if isinstance(row, Variant):
+        return _Row(place, row.name, row.settings, row.time)
+    if not isinstance(row, Mapping):
+        raise UsageError(f"{place}: a variant must be a table of values by key, not {shown(row)}")
+    settings = {key: value for key, value in row.items() if key not in (NAME, TIME)}
+    return _Row(place, row.get(NAME), settings, row.get(TIME))
+
+
+def _named(rows: Sequence[_Row], error: type[UsageError | InputError], file: str = "") -> tuple[Variant, ...]:
+    """The variants of some rows. Raises `error`, with the row, if a row is wrong or there are too many."""
+    if len(rows) > MOST_VARIANTS:
+        text = f"a table must have at most {MOST_VARIANTS:,} variants, not more; split it"
+        raise error(f"{file}: {text}" if file else text)
+    within, names = f"{file}, " if file else "", _Names()
+    for row in rows:
+        if isinstance(row.name, str):
+            other = names.places.setdefault(row.name.casefold(), row.place)
+            if other != row.place:
+                text = f"a name must be unique, not {shown(row.name)} as in {other}; rename a variant"
+                raise error(f"{within}{row.place}: {text}")
+    varying = _varying([row.settings for row in rows])
+    variants = []
+    for number, row in enumerate(rows, 1):
+        name = names.free(_label(row.settings, varying, number)) if row.name is None else row.name
+        try:
+            variants.append(Variant(name, row.settings, row.time))  # type: ignore[arg-type]
+        except UsageError as problem:
+            raise error(f"{within}{row.place}: {problem}") from None
+    return tuple(variants)
+
+
+class _Names:
+    """Names in use, without capitals, with the place of each."""
+
+    def __init__(self) -> None:
+        self.places: dict[str, str] = {}
+        self._numbers: dict[str, int] = {}
+
+    def free(self, name: str) -> str:
+        """The name if it is not in use, else the name with the first free number from 2: "red-2"."""
+        free = name
+        while free.casefold() in self.places:
+            number = self._numbers.get(name, 1) + 1
+            self._numbers[name] = number
+            free = f"{name[: LONGEST_STEM - 8]}-{number}"
+        self.places[free.casefold()] = ""
+        return free
+
+
+def _varying(settings: Sequence[Mapping[str, object]]) -> list[str]:
+    """The keys in which some settings differ, in order of first occurrence; all keys if there are none."""
+    keys = dict.fromkeys(key for row in settings for key in row)
+    varying = []
+    for key in keys:
+        values = [repr(row[key]) if key in row else None for row in settings]
+        if any(value != values[0] for value in values):
+            varying.append(key)
+    return varying or list(keys)
+
+
+def _label(settings: Mapping[str, object], keys: Iterable[str], number: int) -> str:
+    """The values of some keys as a stem of a file, such as "navy-0.5"; the number if there are no values."""
+    texts = [text_of(settings[key]).lstrip("#") for key in keys if key in settings]
+    text = "-".join(filter(None, texts)).replace("/", "_").replace("\\", "_")
+    return file_stem(text) if text.strip(" .") else str(number)
+
+
+def text_of(value: object) -> str:
+    """A plain value as text, as `--set` reads it but shorter.
+
+    >>> text_of(0.5), text_of(True), text_of([4.0, -6, 5]), text_of(None)
+    ('0.5', 'true', '4,-6,5', 'none')
+    """
+    if value is None or isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, float):
+        return f"{value:.12g}"
+    if isinstance(value, Mapping):
+        return ",".join(f"{key}={text_of(inner)}" for key, inner in value.items())
+    if isinstance(value, (list, tuple)):
+        return ",".join(map(text_of, value))
+    return str(value)
+
+
+# Results.
+
+
+class Result(NamedTuple):
+    """What became of a variant.
+
+    `path` is its file. Without a file, `image` is its picture: the colors, (lines, elements, 3) uint8, or the
+    bytes of a file. `problem` says why there is no picture, and is empty if there is one. `seconds` is the
+    time of the processor. `tier` is the cost of the edit from the variant made before it: FRAME for a
+    first rendering, None if nothing had to be edited. `was_made` is false for a file that was there already.
+    """
+
+    name: str
+    settings: Mapping[str, object]
+    path: str | None = None
+    image: Bytes | bytes | None = None
+    problem: str = ""
+    seconds: float = 0.0
+    tier: Tier | None = None
+    was_made: bool = True
+
+
+TABLE_BEGINS: Final = b"name,path,"
+"""The first bytes of a table of results."""
+
+
+def results_bytes(results: Sequence[Result]) -> bytes:
+    """The results as a CSV table: name, path, a column for each key, seconds, problem."""
+    keys = list(dict.fromkeys(key for result in results for key in result.settings))
+    text = io.StringIO(newline="")
+    writer = csv.writer(text)
+    writer.writerow([NAME, "path", *keys, "seconds", "problem"])
+    for result in results:
+        settings = result.settings
+        cells = [_cell(settings[key]) if key in settings else "" for key in keys]
+        writer.writerow([result.name, result.path or "", *cells, f"{result.seconds:.4f}", result.problem])
+    return text.getvalue().encode("utf-8", "backslashreplace")
+
+
+def _cell(value: object) -> str:
+    """A value as a table of variants has it."""
+    is_nested = isinstance(value, (list, tuple, Mapping))
+    return json.dumps(value, default=repr) if is_nested else text_of(value)
+
+
+# Grids.
+
+
+def grid(axes: Mapping[str, Iterable[object]]) -> tuple[Variant, ...]:
+    """Every combination of values for some keys, as variants; the last key changes fastest.
+
+    Raises UsageError for an axis without values, and for too many variants.
+
+    >>> [variant.name for variant in grid({"scaling": ["object", "surface"], "ambient": [0.1, 0.2]})]
+    ['object-0.1', 'object-0.2', 'surface-0.1', 'surface-0.2']
+    """
+    if not isinstance(axes, Mapping):
+        raise UsageError(
+            f"a grid must be lists of values by key, not {shown(axes)}; write it as in"
+            " {'ambient': [0.1, 0.2]}"
+        )
+    return products([_axis(key, values) for key, values in axes.items()])
+
+
+def _axis(key: str, values: Iterable[object]) -> tuple[Variant, ...]:
+    """The variants with each of some values for a key."""
+    if isinstance(values, (str, bytes, Mapping)) or not isinstance(values, Iterable):
+        raise UsageError(f"{key}: an axis must be a list of values, not {shown(values)}; write it as a list")
+    return variants_of([{key: value} for value in islice(values, MOST_VARIANTS + 1)])
+
+
+def products(tables: Sequence[Sequence[Variant]]) -> tuple[Variant, ...]:
+    """Every combination of a variant of each table, with the settings of all; the last changes fastest.
+
+    A combination is named after the variants of all tables that have several, and has the time of the first
+    variant with a time. Raises UsageError if two tables set the same key, if a table is empty, or for too
+    many combinations.
+    """
+    count = math.prod(map(len, tables)) if tables else 0
+    if not count or count > MOST_VARIANTS:
+        rule = f"must have 1 to {MOST_VARIANTS:,} variants, not {count:,}"
+        raise UsageError(f"a grid {rule}; give {'fewer values' if count else 'a value for each key'}")
+    seen: set[str] = set()
+    for table in tables:
+        keys = {key for variant in table for key in variant.settings}
+        if both := sorted(keys & seen):
+            raise UsageError(f"a key must be in one table or list, not {both[0]!r} in two; leave one out")
+        seen |= keys
+    several = [number for number, table in enumerate(tables) if len(table) > 1] or range(len(tables))
+    names = _Names()
+    variants = []
+    for parts in product(*tables):
+        name = "-".join(parts[number].name for number in several)[:LONGEST_STEM]
+        settings = {key: value for part in parts for key, value in part.settings.items()}
+        time = next((part.time for part in parts if part.time is not None), None)
+        variants.append(Variant(names.free(name), settings, time))
+    return tuple(variants)
+
+
+# The text of `--vary`.
+
+NUMBER: Final = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
+EVENLY: Final = re.compile(rf"\s*({NUMBER})\s*:\s*({NUMBER})\s*:\s*([0-9]{{1,7}})\s*")
+
+PIECE: Final = re.compile(r""""(?:[^"\\]|\\.)*"?|'[^']*'?|[\[({]|[\])}]|,|[^"'\[({\])},]+""", re.DOTALL)
+"""A piece of a list of values: a text in quotes, a bracket, a comma, anything else."""
+
+LONGEST_LIST: Final = 1 << 20
+"""Limit: letters of a list of values."""
+
+
+def varied(text: str) -> tuple[Variant, ...]:
+    """The variants of KEY=A,B,C, of KEY=START:STOP:COUNT, or of KEY=@PALETTE.
+
+    START:STOP:COUNT are evenly spaced numbers from START to STOP. A palette is a file that `read_palette`
+    reads; its colors have its names. Commas in brackets and in quotes do not separate values. Raises
+    UsageError, or InputError for a palette.
+
+    >>> [dict(variant.settings) for variant in varied("ambient=0:1:3")]
+    [{'ambient': 0.0}, {'ambient': 0.5}, {'ambient': 1.0}]
+    >>> [dict(variant.settings) for variant in varied("view.eye=[1,2,3],[4,5,6]")]
+    [{'view.eye': '[1,2,3]'}, {'view.eye': '[4,5,6]'}]
+    """
+    key, equals, values = (part.strip() for part in text.partition("="))
+    if not (key and equals and values) or len(values) > LONGEST_LIST:
+        raise UsageError(
+            f"--vary must be KEY=A,B,C or KEY=START:STOP:COUNT, not {shown(text)}; write it as in"
+            " surfaces.body.object_color=red,navy"
+        )
+    if values.startswith("@"):
+        return _of_palette(key, values[1:])
+    evenly = EVENLY.fullmatch(values)
+    if evenly is None:
+        return variants_of([{key: value} for value in _split(values, key)])
+    start, stop, count = float(evenly[1]), float(evenly[2]), int(evenly[3])
+    if not 2 <= count <= MOST_VARIANTS or not math.isfinite(start) or not math.isfinite(stop):
+        raise UsageError(
+            f"--vary {key}: START and STOP must be finite, and COUNT 2 to {MOST_VARIANTS:,}, not"
+            f" {shown(values)}; correct it"
+        )
+    steps = count - 1
+    return variants_of(
+        [{key: float(f"{start + (stop - start) * step / steps:.12g}")} for step in range(count)]
+    )
+
+
+def _of_palette(key: str, path: str) -> tuple[Variant, ...]:
+    """The variants with each color of a palette, by the names of the colors. Raises InputError."""
+    palette, names = read_palette(path), _Names()
+    colors = [in_digits(color) for color in map(tuple, palette.colors.tolist())]
+    labels = [name or color.lstrip("#") for name, color in zip(palette.names, colors, strict=True)]
+    return tuple(
+        Variant(names.free(label), {key: color}) for label, color in zip(labels, colors, strict=True)
+    )
+
+
+def _split(text: str, key: str) -> list[str]:
+    """The values between the commas that are in no brackets and in no quotes. Raises UsageError."""
+    values, depth, value = [], 0, ""
+    for piece in PIECE.findall(text):
+        depth += (piece in "[({") - (piece in "])}")
+        if piece == "," and depth <= 0:
+            values.append(value.strip())
+            value = ""
+        else:
+            value += piece
+    values.append(value.strip())
+    if not all(values):
+        raise UsageError(
+            f"--vary {key}: there must be a value before and after each comma, not {shown(text)}; leave a"
+            " comma out, or write none for a field without a value"
+        )
+    return values
+
+
+# Tables in files.
+
+
+def read_variants(path: str | PathLike[str]) -> tuple[Variant, ...]:
+    """The variants of a table in a file: CSV with a row of keys at the top, or a JSON list of objects.
+
+    Values in CSV are texts as after `--set`; an empty cell leaves a field as it is, and `none` unsets it.
+    Raises InputError with the row, MissingInputError if there is no such file, UsageError for another suffix.
+    """
+    source = Path(path)
+    read = READERS.get(source.suffix.lower())
+    if read is None:
+        raise UsageError(
+            f"a table of variants must be a file that ends in .csv or .json, not {source.name}; rename it"
+        )
+    data = text_lines(read_bytes(source, LARGEST_TABLE), source.name, "a table of variants")
+    rows = list(islice(read(data, source.name), MOST_VARIANTS + 1))
+    if not rows:
+        raise InputError(f"{source.name}: a table must have at least one variant, not none; add a row")
+    return _named(rows, InputError, source.name)
+
+
+def _csv_rows(data: bytes, file: str) -> Iterator[_Row]:
+    """The rows of a CSV table; rows count from 1, the header, as in a spreadsheet. Raises InputError."""
+    try:
+        reader = csv.reader(io.StringIO(data.decode("utf-8"), newline=""), strict=True)
+        header: list[str] | None = None
+        for number, cells in enumerate(reader, 1):
+            cells = [cell.strip() for cell in cells]
+            if not any(cells):
+                continue
+            if header is None:
+                header = _header(cells, f"{file}, row {number}")
+                continue
+            if len(cells) != len(header):
+                raise InputError(
+                    f"{file}, row {number}: a row must have {len(header)} cells, as many as the header, not"
+                    f" {len(cells)}; quote a value that contains a comma"
+                )
+            row = {key: cell for key, cell in zip(header, cells, strict=True) if cell}
+            name, time = row.pop(NAME, None), row.pop(TIME, None)
+            yield _Row(f"row {number}", name, row, None if time is None else _time(time))
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        raise InputError(f"{file}, line {line}: a table must be text in UTF-8; save it as UTF-8") from None
+    except csv.Error as error:
+        raise InputError(f"{file}: a table must be valid CSV ({error}); correct it") from None
+
+
+def _time(text: str) -> float | str:
+    """The number in a text; the text itself, which `Variant` refuses, if there is none."""
+    return float(text) if re.fullmatch(NUMBER, text) else text
+
+
+def _header(cells: list[str], place: str) -> list[str]:
+    """The keys of a header. Raises InputError for an empty or repeated key."""
+    for number, key in enumerate(cells, 1):
+        if not key:
+            raise InputError(f"{place}: column {number} must have a key, not none; write the key at its top")
+        if key in cells[: number - 1]:
+            raise InputError(f"{place}: a key must be at one column, not {shown(key)} at two; leave one out")
+        if number > MOST_KEYS + 2:
+            raise InputError(f"{place}: a table must have at most {MOST_KEYS} keys, not more; leave keys out")
+    return cells
+
+
+def _json_rows(data: bytes, file: str) -> Iterator[_Row]:
+    """The rows of a JSON table. Raises InputError."""
+    try:
+        rows = bounded_json(data, MOST_JSON_VALUES)
+    except (ValueError, RecursionError) as error:
+        raise InputError(f"{file}: a table must be valid JSON ({error}); correct it") from None
+    if not isinstance(rows, list):
+        raise InputError(f"{file}: a table in JSON must be a list of objects, not {shown(rows)}")
+    for number, row in enumerate(rows, 1):
+        try:
+            yield _row(row, f"row {number}")
+        except UsageError as problem:
+            raise InputError(f"{file}, {problem}") from None
+
+
+READERS: Final[Mapping[str, Callable[[bytes, str], Iterator[_Row]]]] = {
+    ".csv": _csv_rows,
+    ".json": _json_rows,
+}
+"""The readers of tables, by the suffix of their files."""

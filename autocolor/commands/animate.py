@@ -1,0 +1,190 @@
+"""`autocolor animate`: the frames between variants of a scene or a picture, as a film or a stream."""
+
+from __future__ import annotations
+
+from contextlib import nullcontext
+from typing import TYPE_CHECKING, Final
+
+import click
+from click.core import ParameterSource
+
+from autocolor.commands.completion import complete_settings
+from autocolor.commands.options import (
+    as_usage,
+    normals_option,
+    size_option,
+    smooth_of,
+    smooth_option,
+    with_normals,
+)
+from autocolor.commands.scenes import SceneSource, scene_options, set_option
+from autocolor.commands.sweep import jobs_option, progress, refuse_keys, start_of, table_option, workers
+from autocolor.errors import InputError, UsageError
+from ramtek_emu.command_line import tell
+
+if TYPE_CHECKING:
+    from autocolor.files.picture_file import SavedPicture
+    from autocolor.scene.scene import Scene
+
+EXAMPLES: Final = """\b
+Examples:
+  autocolor animate scenes/coupe --turn 360 --frames 72 -o around.webp
+  autocolor animate scenes/coupe --vary lights.key.position=[-8,-6,5],[2,-6,5] -o sweep.apng
+  autocolor animate coupe.npz --vary surfaces.body.object_color=red,navy,red -o fade.gif
+  autocolor animate scenes/coupe --table looks.csv -o "looks/{number:04}.png" --jobs 4
+  autocolor animate coupe.npz --vary surfaces.body.object_color=red,navy -o fade.ramtek
+"""
+
+FRAMES: Final = 48
+"""Assumed: by default, an animation lasts two seconds."""
+
+
+@click.command(epilog=EXAMPLES)
+@scene_options
+@click.option(
+    "--vary",
+    "varies",
+    multiple=True,
+    metavar="KEY=VALUES",
+    shell_complete=complete_settings,
+    help="Vary a field over the whole duration: A,B,C, evenly spaced in time. Several --vary run together.",
+)
+@table_option
+@click.option(
+    "--turn",
+    type=float,
+    default=0.0,
+    metavar="DEGREES",
+    help="Turn the eye around the view's target, counterclockwise as seen from above; 360 is a whole round.",
+)
+@click.option(
+    "--frames",
+    "count",
+    type=click.IntRange(1, 100_000),
+    default=FRAMES,
+    show_default=True,
+    metavar="N",
+    help="Number of frames.",
+)
+@click.option(
+    "-o",
+    "--output",
+    required=True,
+    metavar="FILE",
+    help="File to write: .webp or .apng (lossless), .gif (256 colors a frame), a name pattern for numbered"
+    " pictures such as {number:04}.png, or .ramtek, a load of the lookup table a frame.",
+)
+@click.option(
+    "--fps",
+    type=float,
+    default=24.0,
+    show_default=True,
+    metavar="RATE",
+    help="Frames per second of a film.",
+)
+@click.option("--once", is_flag=True, help="Show the film once; otherwise it begins again at its end.")
+@click.option(
+    "--hold-exposure",
+    is_flag=True,
+    help="Use the exposure that the scene has without --vary, --table and --turn, so that less light is"
+    " darker.",
+)
+@set_option
+@normals_option
+@jobs_option
+@size_option
+@smooth_option
+@click.option("--force", is_flag=True, help="Overwrite an existing file.")
+@click.pass_context
+def animate(
+    context: click.Context,
+    source: SceneSource,
+    varies: tuple[str, ...],
+    table: str | None,
+    turn: float,
+    count: int,
+    output: str,
+    fps: float,
+    once: bool,
+    hold_exposure: bool,
+    settings: tuple[str, ...],
+    normals: bool,
+    jobs: int,
+    size: tuple[int, int],
+    smooth: str | None,
+    force: bool,
+) -> None:
+    """Animate SCENE: a scene, a mesh file or a picture file.
+
+    Between two variants, numbers, points, colors and the view are interpolated, and everything else holds. If
+    the last variant equals the first, the last frame is left out, because the film begins again. Each frame
+    costs only what its edit changes: a fade of paint renders once.
+    """
+    from autocolor.batches import films
+    from autocolor.batches.frames import frames_of_tracks, in_step, times_of
+    from autocolor.batches.table import read_variants, varied
+
+    if not varies and table is None and not turn:
+        raise UsageError("animate must have --vary, --table or --turn; write it as in --turn 360")
+    kind = films.kind_of(output)
+    films.check_rate(fps, kind)
+    is_sized = context.get_parameter_source("size") is ParameterSource.COMMANDLINE
+    tables = [] if table is None else [read_variants(table)]
+    if table is not None:
+        try:
+            times_of(tables[0])
+        except UsageError as error:
+            raise InputError(f"{table}: {error}") from None
+    tables += [varied(text) for text in varies]
+    start, code = start_of(source, settings, size)
+    refuse_keys(start, tables, table)
+    start = prepared(start, normals, hold_exposure, size)
+    is_picture = isinstance(start, tuple)
+    own = tables[: 0 if table is None else 1]
+    tracks = [*own, *in_step(tables[len(own) :])]
+    scene = start.scene if isinstance(start, tuple) else start
+    with as_usage() if table is None else nullcontext():
+        frames = frames_of_tracks(scene, tracks, count, turn=turn)
+    by_size = None if is_picture or kind == films.STREAM else smooth_of(smooth, size)
+    with progress(len(frames)) as step, workers(jobs) as executor:
+        film = films.animate(
+            start,
+            frames,
+            output,
+            frames_per_second=fps,
+            loop=not once,
+            size=size if is_sized or not is_picture else None,
+            smooth=int(smooth) if smooth else by_size,
+            executor=executor,
+            overwrite=force,
+            progress=lambda _: step(),
+        )
+    if film.lossy:
+        tell(
+            f"{film.lossy:,} of {film.frames:,} frames lost colors, by at most {film.largest_loss} of 255;"
+            " .webp and .apng lose none"
+        )
+    tell(f"wrote {film.path}, {film.frames:,} frame{'' if film.frames == 1 else 's'}")
+    context.exit(code)
+
+
+def prepared(
+    start: Scene | SavedPicture, normals: bool, hold_exposure: bool, size: tuple[int, int]
+) -> Scene | SavedPicture:
+    """The scene or the picture, in which words stand for normals, or whose exposure is held."""
+    from autocolor.images import display_image
+    from autocolor.mapping.intensity import held_exposure
+    from autocolor.rendering import render
+
+    is_picture = isinstance(start, tuple)
+    if normals and is_picture:
+        raise UsageError(
+            "--normals is for a scene, not for a picture file, which has no normals; leave it out"
+        )
+    scene = with_normals(start.scene if isinstance(start, tuple) else start, normals)
+    if hold_exposure:
+        elements, lines = size
+        picture = start.picture if isinstance(start, tuple) else render(scene, lines, elements)
+        mapped = display_image(scene, picture).mapped
+        scene = scene.replace(exposure=held_exposure(mapped, scene.scaling, scene.exposure))
+    return start._replace(scene=scene) if isinstance(start, tuple) else scene

@@ -1,0 +1,94 @@
+"""`autocolor palette`: write the entries of a surface's range to a palette file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+import click
+
+from autocolor.commands.completion import complete_surfaces
+from autocolor.commands.outputs import tell_written
+from autocolor.commands.scenes import SceneSource, created_again, ended, read, scene_options, set_option
+from autocolor.errors import UsageError
+
+if TYPE_CHECKING:
+    from autocolor.arrays import Bytes
+    from autocolor.lighting.picture import Picture
+    from autocolor.scene.scene import Scene
+
+EXAMPLES: Final = """\b
+Examples:
+  autocolor palette coupe.npz body -o body.gpl
+  autocolor palette scenes/coupe tires -o tires.act
+  autocolor palette scenes/bracket bracket --set scalar.name=stress -o stress.csv
+  autocolor recolor coupe.npz body --palette body.gpl
+"""
+
+
+@click.command(epilog=EXAMPLES)
+@scene_options
+@click.argument("surface", shell_complete=complete_surfaces)
+@set_option
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(),
+    metavar="FILE",
+    help="File to write: a GIMP palette (.gpl), a table (.csv), or up to 256 colors for Adobe's programs"
+    " (.act). Default: SCENE-SURFACE.gpl.",
+)
+@click.option("--force", is_flag=True, help="Overwrite an existing file.")
+@click.pass_context
+def palette(
+    context: click.Context,
+    source: SceneSource,
+    surface: str,
+    settings: tuple[str, ...],
+    output: str | None,
+    force: bool,
+) -> None:
+    """Write the lookup table entries of SURFACE to a palette file, from its lowest level up.
+
+    SCENE may be a picture file, of which nothing is rendered. Of another scene they are the entries of its
+    picture on the display. With `recolor --palette` the colors become a ramp of the surface.
+    """
+    from autocolor.files.palette_file import check_palette_path, write_palette
+    from autocolor.files.paths import PICTURE_SUFFIX, file_stem
+    from autocolor.files.writing import refuse_output
+
+    if output is None:
+        output = f"{file_stem(Path(source.path).stem)}-{file_stem(surface)}.gpl"
+    check_palette_path(Path(output))
+    refuse_output(output, overwrite=force)
+    if Path(source.path).suffix.lower() == PICTURE_SUFFIX:
+        from autocolor.commands.recolor import recolored
+        from autocolor.files.picture_file import read_picture
+
+        saved = read_picture(source.path)
+        scene, picture, code = recolored(saved.scene, None, {}, settings), saved.picture, 0
+    else:
+        from autocolor.commands.settings import with_settings
+        from autocolor.rendering import render
+
+        report = read(source)
+        scene = created_again(report, with_settings(report.scene, settings))
+        # A wrong name is refused before the picture is rendered.
+        scene.surface(surface)
+        picture, code = render(scene), ended(report, source)
+    write_palette(output, entries_of_surface(scene, picture, surface), overwrite=force)
+    tell_written(output)
+    context.exit(code)
+
+
+def entries_of_surface(scene: Scene, picture: Picture, name: str) -> Bytes:
+    """The entries of a surface's range, (levels, 3) uint8. Raises UsageError if it has no range."""
+    from autocolor.checks import nearest
+    from autocolor.images import display_image
+
+    image, surface = display_image(scene, picture), scene.surface(name)
+    if name not in image.ranges:
+        raise UsageError(
+            f"surface {name!r} has no levels, because no part has it{nearest(name, image.ranges)}"
+        )
+    return image.entries_of(surface)

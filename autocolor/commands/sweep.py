@@ -1,0 +1,269 @@
+"""`autocolor sweep`: make pictures of many variants of a scene or a picture."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Final
+
+import click
+from click.core import ParameterSource
+
+from autocolor.commands.completion import complete_settings
+from autocolor.commands.options import size_option, smooth_of, smooth_option
+from autocolor.commands.scenes import (
+    REPAIRED,
+    SceneSource,
+    created_again,
+    ended,
+    read,
+    reframed,
+    scene_options,
+    set_option,
+    tell_up,
+)
+from autocolor.errors import InputError, UsageError
+from ramtek_emu.command_line import tell
+
+if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
+    from autocolor.batches.table import Result, Variant
+    from autocolor.files.picture_file import SavedPicture
+    from autocolor.scene.scene import Scene
+
+EXAMPLES: Final = """\b
+Examples:
+  autocolor sweep scenes/coupe --vary surfaces.body.object_color=red,navy -o {name}.png
+  autocolor sweep scenes/coupe --vary lights.key.intensity=0.5:2:4 --vary ambient=0.05,0.2 \\
+      -o sweep/{number:03}-{name}.png --sheet sweep.png --made sweep.csv
+  autocolor sweep coupe.npz --vary surfaces.body.object_color=@paints.gpl -o {name}.webp
+  autocolor sweep scenes/coupe --table looks.csv -o looks/{name}.png --jobs 4 --resume
+"""
+
+MOST_JOBS: Final = 256
+
+vary_option = click.option(
+    "--vary",
+    "varies",
+    multiple=True,
+    metavar="KEY=VALUES",
+    shell_complete=complete_settings,
+    help="Vary a field: A,B,C; START:STOP:COUNT, evenly spaced numbers; or @FILE, the colors of a palette."
+    " Several --vary make every combination, the last changing fastest.",
+)
+
+table_option = click.option(
+    "--table",
+    type=click.Path(),
+    metavar="CSV|JSON",
+    help="Variants: a CSV table with a key at the top of each column, or a JSON list of objects. An empty"
+    " cell leaves a field as it is. The keys name and time are optional.",
+)
+
+jobs_option = click.option(
+    "--jobs",
+    type=click.IntRange(1, MOST_JOBS),
+    default=1,
+    show_default=True,
+    metavar="N",
+    help="Make pictures in so many processes.",
+)
+
+
+@click.command(epilog=EXAMPLES)
+@scene_options
+@vary_option
+@table_option
+@set_option
+@click.option(
+    "-o",
+    "--output",
+    required=True,
+    metavar="PATTERN",
+    help="Name pattern of the pictures, which ends in .png or .webp (lossless). {number:03} is a number of"
+    " three digits, {name} the name of the variant, and a key such as {ambient} its value.",
+)
+@click.option("--sheet", type=click.Path(), metavar="PNG", help="Write a labeled contact sheet.")
+@click.option(
+    "--made", type=click.Path(), metavar="CSV", help="Write a table of the pictures and the problems."
+)
+@jobs_option
+@click.option(
+    "--resume",
+    is_flag=True,
+    help="Go on with a batch that was stopped: skip each picture that is whole and was made from the same"
+    " scene and settings, and replace the others.",
+)
+@size_option
+@smooth_option
+@click.option(
+    "--level",
+    type=click.IntRange(0, 9),
+    metavar="0-9",
+    help="Compression of PNG files: 0 is the fastest, 9 the smallest.",
+)
+@click.option("--force", is_flag=True, help="Overwrite existing files.")
+@click.pass_context
+def sweep(
+    context: click.Context,
+    source: SceneSource,
+    varies: tuple[str, ...],
+    table: str | None,
+    settings: tuple[str, ...],
+    output: str,
+    sheet: str | None,
+    made: str | None,
+    jobs: int,
+    resume: bool,
+    size: tuple[int, int],
+    smooth: str | None,
+    level: int | None,
+    force: bool,
+) -> None:
+    """Make a picture of each variant of SCENE: a scene, a mesh file or a picture file.
+
+    Each picture costs only what its edit changes: recolorings of a picture file render nothing. A variant
+    that cannot be made is listed on stderr, and the others are made; if all variants fail, the exit code is
+    65, and if some fail, it is 1 with --strict.
+    """
+    from autocolor.batches.making import batch
+    from autocolor.batches.table import products, read_variants, varied
+
+    if not varies and table is None:
+        raise UsageError(
+            "sweep must have --vary or --table; write it as in --vary surfaces.body.object_color=red,navy"
+        )
+    is_sized = context.get_parameter_source("size") is ParameterSource.COMMANDLINE
+    tables = [] if table is None else [read_variants(table)]
+    tables += [varied(text) for text in varies]
+    start, code = start_of(source, settings, size)
+    refuse_keys(start, tables, table)
+    variants = products(tables)
+    is_picture = isinstance(start, tuple)
+    with progress(len(variants)) as step, workers(jobs) as executor:
+        results = batch(
+            start,
+            variants,
+            output,
+            executor=executor,
+            size=size if is_sized or not is_picture else None,
+            smooth=int(smooth) if smooth else None if is_picture else smooth_of(smooth, size),
+            level=level,
+            overwrite=force,
+            resume=resume,
+            sheet=sheet,
+            table=made,
+            progress=lambda _: step(),
+        )
+    context.exit(told(results, source.strict) or code)
+
+
+def start_of(
+    source: SceneSource, settings: tuple[str, ...], size: tuple[int, int]
+) -> tuple[Scene | SavedPicture, int]:
+    """The scene, or the picture with its scene, of a command line, and the exit code of its repairs."""
+    from pathlib import Path
+
+    from autocolor.commands.recolor import recolored
+    from autocolor.commands.settings import with_settings
+    from autocolor.files.picture_file import read_picture
+    from autocolor.files.scene_sources import is_picture
+
+    if is_picture(Path(source.path)):
+        saved = read_picture(source.path)
+        return saved._replace(scene=recolored(saved.scene, None, {}, settings)), 0
+    elements, lines = size
+    report = reframed(read(source), elements / lines)
+    tell_up(report, source)
+    scene = created_again(report, with_settings(report.scene, settings), elements / lines)
+    return scene, ended(report, source)
+
+
+def refuse_keys(start: Scene | SavedPicture, tables: list[tuple[Variant, ...]], table: str | None) -> None:
+    """Refuse keys that the scene does not have, before anything is made.
+
+    Raises InputError for a key in the table, UsageError for a key of --vary.
+    """
+    from autocolor.files.settings import place_of
+
+    scene = start.scene if isinstance(start, tuple) else start
+    for number, variants in enumerate(tables):
+        for key in dict.fromkeys(key for variant in variants for key in variant.settings):
+            try:
+                place_of(scene, key)
+            except UsageError as error:
+                if table is not None and number == 0:
+                    raise InputError(f"{table}, column {error}") from None
+                raise UsageError(f"--vary {error}") from None
+
+
+def told(results: list[Result], strict: bool) -> int:
+    """Print the failed variants and how many pictures were made on stderr; returns the exit code."""
+    failed = [result for result in results if result.problem]
+    for result in failed:
+        tell(*(f"autocolor: {result.name}: {line}" for line in result.problem.splitlines()))
+    present = sum(not result.was_made for result in results)
+    made = len(results) - len(failed) - present
+    counts = [f"made {made:,} picture{'' if made == 1 else 's'}"]
+    counts += [f"{present:,} were there"] if present else []
+    counts += [f"{len(failed):,} failed"] if failed else []
+    tell(", ".join(counts))
+    if failed and len(failed) == len(results):
+        return InputError.exit_code
+    return REPAIRED if failed and strict else 0
+
+
+@contextmanager
+def progress(count: int) -> Iterator[Callable[[], None]]:
+    """A progress bar with the time left on stderr, if stderr is a terminal; call the function for a step."""
+    if sys.stderr is None or not sys.stderr.isatty():
+        yield lambda: None
+        return
+    with click.progressbar(length=count, file=sys.stderr, show_pos=True) as bar:
+        yield lambda: bar.update(1)
+
+
+@contextmanager
+def workers(jobs: int) -> Iterator[Executor | None]:
+    """An executor of some processes; None for one job. If the body fails, the processes are ended."""
+    if jobs == 1:
+        yield None
+        return
+    import multiprocessing
+    from concurrent.futures import ProcessPoolExecutor
+
+    # A process that is forked while this process has threads may hang.
+    context = multiprocessing.get_context("spawn")
+    executor = ProcessPoolExecutor(jobs, context, initializer=_begin_worker)
+    others = multiprocessing.active_children()
+    try:
+        yield executor
+    except BaseException:
+        for process in multiprocessing.active_children():
+            if process not in others:
+                process.terminate()
+        executor.shutdown(cancel_futures=True)
+        raise
+    executor.shutdown()
+
+
+def _begin_worker() -> None:
+    """Let this process end with its parent, and not by Ctrl+C, which reaches all processes of a terminal."""
+    import signal
+    from threading import Thread
+
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    """Wait for the parent to end, even if it is killed, and end this process."""
+    import os
+    from multiprocessing import parent_process
+
+    parent = parent_process()
+    assert parent is not None
+    parent.join()
+    os._exit(1)

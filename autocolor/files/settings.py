@@ -1,0 +1,299 @@
+"""The fields of a scene by their keys, such as `lights.key.intensity`: finding, reading and setting them.
+
+A key is the path of a field in a scene file. `--set` of the commands and the variants of a batch set fields
+by their keys.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
+from typing import Any, Final, NamedTuple
+
+from autocolor.checks import nearest
+from autocolor.errors import InputError, UsageError
+from autocolor.files.scene_toml.toml_text import parsed_toml
+from autocolor.scene.columns import REFUSED, Column, Field, Kind, Row, fields_of, keys_of
+from autocolor.scene.kinds import Instance, Text
+from autocolor.scene.row_kinds import NamedRows, Nested, OneRowOf, Reference, References, Referring, RowList
+from autocolor.scene.scene import Scene
+
+UNSET: Final = "none"
+"""The text that unsets a field."""
+
+Changes = dict[str, Any]
+
+
+class FieldsInside(dict[str, Any]):
+    """Settings of fields inside a field; a plain dict is a table that sets the whole field."""
+
+
+def scene_with(scene: Scene, settings: Mapping[str, object]) -> Scene:
+    """The scene with some of its fields set: values by key.
+
+    A value is plain, as JSON has it, or a text as in a scene file, which needs no quotes; a list of names
+    needs no brackets. None and the text "none" unset an optional field, such as `view.target`. All settings
+    of a row are applied together, so their order does not matter. Raises UsageError, which begins with the
+    key, for an unknown key and for a field that cannot be unset; RowError for an invalid value.
+
+        scene_with(scene, {"surfaces.body.object_color": "#1f3f8f", "lights.key.position": [4, -6, 5]})
+
+    Measured: 0.03 ms for a color.
+    """
+    changes: dict[tuple[str, str], Changes] = {}
+    for key, value in settings.items():
+        place = place_of(scene, key)
+        value = _value_at(scene, field_of(place), key, value)
+        _put(changes.setdefault((place.table, place.name), {}), place.path, value, key)
+    for (table, name), fields in changes.items():
+        scene = _replaced(scene, table, name, fields)
+    return scene
+
+
+def _replaced(scene: Scene, table: str, name: str, fields: Changes) -> Scene:
+    """The scene with some fields of a row changed; the table "" is the scene itself."""
+    edits: dict[str, Callable[..., Scene]] = {
+        "": scene.replace,
+        "scalar": scene.with_scalar,
+        "view": scene.with_view,
+        "views": partial(scene.with_named_view, name),
+        "lights": partial(scene.with_light, name),
+        "surfaces": partial(scene.with_surface, name),
+        "parts": partial(scene.with_part, name),
+    }
+    return edits[table](**fields)
+
+
+def _value_at(scene: Scene, field: Field | None, key: str, value: object) -> object:
+    """The value for a field. Raises UsageError if it unsets a field that must have a value."""
+    if value is None:
+        return _unset_value(field, key)
+    if not isinstance(value, str):
+        return value
+    kind = None if field is None else field.column.kind
+    names = [row.name for row in vars(scene)[kind.table]] if isinstance(kind, Referring) else []
+    if value.lower() == UNSET:
+        refers = field is not None and field.is_optional and isinstance(kind, Referring)
+        return None if refers and value not in names else _unset(field, key, value)
+    parsed = value_of(value)
+    if isinstance(kind, (Reference, Text)) and not isinstance(parsed, str):
+        # A name such as 2 needs no quotes.
+        return value
+    return _names_of(parsed, names) if isinstance(kind, References) and isinstance(parsed, str) else parsed
+
+
+def _names_of(text: str, existing: Sequence[str]) -> list[str]:
+    """The names in a text: the whole text if a row has this name, else the names between commas.
+
+    >>> _names_of("body", []), _names_of("[body, glass]", []), _names_of("a, b", ["a, b"])
+    (['body'], ['body', 'glass'], ['a, b'])
+    """
+    if text in existing:
+        return [text]
+    listed = text[1:-1] if text.startswith("[") and text.endswith("]") else text
+    return [name.strip().strip("\"'") for name in listed.split(",") if name.strip()]
+
+
+def _unset(field: Field | None, key: str, text: str) -> object:
+    """The value of a field that the text "none" unsets, or the text itself if it is a valid value.
+
+    Raises UsageError if the field must have a value.
+    """
+    if field is None or field.column.kind.validated(text, (), []) is not REFUSED:
+        return text
+    return _unset_value(field, key)
+
+
+def _unset_value(field: Field | None, key: str) -> object:
+    """The value of an unset field. Raises UsageError if the field must have a value."""
+    if field is None or field.is_optional:
+        return None
+    default = None if field.default is None else field.default()
+    # The default unsets a field if scene files leave it out: no limit of a flap, no flaps.
+    if default is not None and field.column.kind.to_plain(key, default).get(key) in (None, {}):
+        return default
+    rule = field.column.kind.rule()
+    raise UsageError(f"{key}: it {rule}, not none; only an optional field can be unset")
+
+
+def value_of(text: str) -> Any:
+    """The text parsed as a TOML value, or the text itself if it is not TOML.
+
+    >>> value_of("2.5"), value_of("[1, 2]"), value_of("true"), value_of("#b01020")
+    (2.5, [1, 2], True, '#b01020')
+    """
+    # In TOML, the # of a color begins a comment, and a line break ends the value.
+    if not text or text.startswith("#") or not text.isprintable():
+        return text
+    try:
+        return parsed_toml(f"value = {text}".encode(), "a value")["value"]
+    except (InputError, UnicodeEncodeError):
+        return text
+
+
+def _put(fields: Changes, path: tuple[str, ...], value: Any, key: str) -> None:
+    """Put a value at a path of nested dictionaries, which are created as needed.
+
+    Raises UsageError if both a whole table and a field inside it are set: the result would depend on their
+    order.
+    """
+    for name in path[:-1]:
+        fields = fields.setdefault(name, FieldsInside())
+        if not isinstance(fields, FieldsInside):
+            raise UsageError(f"{key}: {name} is also set as a whole; leave one out")
+    if isinstance(fields.get(path[-1]), FieldsInside):
+        raise UsageError(f"{key}: some of its fields are also set; leave one out")
+    fields[path[-1]] = value
+
+
+EXAMPLES: Final = {
+    "view": "view.angle=10",
+    "views": "views.hood.angle=10",
+    "scalar": "scalar.name=z",
+    "lights": "lights.key.intensity=2",
+    "surfaces": "surfaces.body.blend=0.3",
+    "parts": "parts.hood.surface=body",
+}
+
+MOST_PARTS: Final = 4
+"""Limit: names in the path from a row to a field."""
+
+
+class SettingPlace(NamedTuple):
+    """The place of a field: its table ("" for the scene itself), its row's name, the path in the row."""
+
+    table: str
+    name: str
+    path: tuple[str, ...]
+
+
+def place_of(scene: Scene, key: str) -> SettingPlace:
+    """The place of a key. Raises UsageError if its table or row does not exist, or if it names no field."""
+    kinds = settable_kinds()
+    table, _, rest = key.partition(".")
+    kind = kinds.get(table)
+    if kind is None or (rest and not isinstance(kind, (Nested, RowList))):
+        wrong = table if kind is None else key
+        raise UsageError(f"{key}: there is no field {wrong!r}{nearest(table, kinds)}")
+    if not isinstance(kind, (Nested, RowList)):
+        return SettingPlace("", "", (table,))
+    row: Row | None = None
+    if isinstance(kind, RowList):
+        rows = {row.name: row for row in vars(scene)[table]}
+        name, field = _name_and_rest(rest, rows)
+        if name is None and "." in rest:
+            wrong = rest.partition(".")[0]
+            raise UsageError(f"{key}: there is no {table[:-1]} {wrong!r}{nearest(wrong, rows)}")
+        row = None if name is None else rows[name]
+    else:
+        name, field = "", rest
+    if key == table and fields_of(Scene)[table].is_optional:
+        # The key is a whole row, which can be unset.
+        return SettingPlace("", "", (table,))
+    if name is None or not field:
+        raise UsageError(f"{key}: it must name a field; write it as in {EXAMPLES[table]}")
+    if field == "name" and isinstance(kind, RowList):
+        raise UsageError(f"{key}: a name cannot be set; change it in the scene file")
+    path = _path_in(row, field, key)
+    if len(path) > MOST_PARTS:
+        raise UsageError(f"{key}: there is no such field; write it as in {EXAMPLES[table]}")
+    return SettingPlace(table, name, path)
+
+
+def _name_and_rest(text: str, names: Iterable[str]) -> tuple[str | None, str]:
+    """The longest name that a text begins with, or None, and the text after the name and a period.
+
+    A name may contain periods, and may be quoted in the text.
+    """
+    written = {form: name for name in names for form in (name, f'"{name}"', f"'{name}'")}
+    start = max((form for form in written if f"{text}.".startswith(f"{form}.")), key=len, default=None)
+    return (None, "") if start is None else (written[start], text[len(start) + 1 :])
+
+
+def _path_in(row: Row | None, field: str, key: str) -> tuple[str, ...]:
+    """The path of a field in a row. Raises UsageError if a row of NamedRows on it does not exist."""
+    outer, _, rest = field.partition(".")
+    outer_field = None if row is None else fields_of(type(row)).get(outer)
+    if row is None or outer_field is None or not isinstance(outer_field.column.kind, NamedRows) or not rest:
+        return tuple(field.split("."))
+    names = [inner_row.name for inner_row in vars(row)[outer]]
+    name, inner = _name_and_rest(rest, names)
+    if inner == "name":
+        raise UsageError(f"{key}: a name cannot be set; change it in the scene file")
+    if name is not None:
+        return (outer, name, *inner.split(".")) if inner else (outer, name)
+    if rest[0] in "\"'" and rest[0] == rest[-1]:
+        return outer, rest[1:-1]
+    wrong, _, inner = rest.partition(".")
+    if inner:
+        noun = outer_field.column.kind.row_class.noun
+        advice = nearest(wrong, names) or f"; add a {noun} with all its keys in a table"
+        raise UsageError(f"{key}: there is no {noun} {wrong!r}{advice}")
+    return outer, wrong
+
+
+def field_of(place: SettingPlace) -> Field | None:
+    """The field at a place; None if its row has no such field."""
+    kind = settable_kinds().get(place.table)
+    return field_at(kind.row_class if isinstance(kind, (Nested, RowList)) else Scene, place.path)
+
+
+def settable_kinds() -> Mapping[str, Kind]:
+    """The kinds of the fields of a scene that have keys, by name."""
+    kinds = {name: field.column.kind for name, field in fields_of(Scene).items() if name != "name"}
+    return {name: kind for name, kind in kinds.items() if not isinstance(kind, Instance)}
+
+
+def field_at(cls: type[Row], path: Sequence[str]) -> Field | None:
+    """The field at a path of keys in a row of a class, or None."""
+    key = keys_of(cls).get(path[0])
+    if key is None:
+        return None
+    field = fields_of(cls)[key.field]
+    kind = field.column.kind
+    if isinstance(kind, OneRowOf) and path[0] != key.field:
+        return field_at(next(cls for cls in kind.classes.values() if path[0] in keys_of(cls)), path)
+    if isinstance(kind, Nested) and kind.inline:
+        return field_at(kind.row_class, path)
+    if len(path) == 1:
+        return field
+    if isinstance(kind, NamedRows):
+        # The row itself is optional.
+        whole = Field(Column(Nested(kind.row_class), field.column.tier, field.column.help), True, None)
+        return whole if len(path) == 2 else field_at(kind.row_class, path[2:])
+    return field_at(kind.row_class, path[1:]) if isinstance(kind, Nested) else None
+
+
+def row_at(scene: Scene, place: SettingPlace) -> Any:
+    """The row of a place; the scene itself for its own fields, None for a row that does not exist."""
+    if not place.table:
+        return scene
+    rows = vars(scene)[place.table]
+    return next((row for row in rows if row.name == place.name), None) if place.name else rows
+
+
+def value_at(scene: Scene, place: SettingPlace) -> Any:
+    """The value of the field at a place; None if it or a row that contains it is absent.
+
+    >>> from autocolor import demo
+    >>> scene = demo()
+    >>> value_at(scene, place_of(scene, "surfaces.body.exponent"))
+    80.0
+    """
+    value = row_at(scene, place)
+    path = list(place.path)
+    while path and value is not None:
+        if isinstance(value, tuple):
+            value = next((row for row in value if row.name == path[0]), None)
+            path.pop(0)
+            continue
+        key = keys_of(type(value)).get(path[0])
+        if key is None:
+            return None
+        kind, inner = fields_of(type(value))[key.field].column.kind, vars(value)[key.field]
+        # The keys of an inline row, and of a row of one of several classes, are keys of the row around it.
+        is_inside = path[0] != key.field and (isinstance(kind, OneRowOf) or key.is_inside)
+        value = inner
+        if not is_inside:
+            path.pop(0)
+    return value

@@ -1,0 +1,156 @@
+from __future__ import annotations
+
+import zlib
+from collections.abc import Callable
+from io import BytesIO
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from PIL import Image
+
+from autocolor import Mesh, Scene, UsageError, Variant, render
+from autocolor.batches.outputs import FORMS, Pattern, base_mark, form_of, mark_in, mark_of
+from tests.autocolor.meshes import wall, wall_scene
+
+MARK = "0123456789abcdef" * 4
+
+
+@pytest.mark.parametrize(
+    ("pattern", "path"),
+    [
+        ("out/{number:03}-{name}.png", "out/007-a_b.png"),
+        ("{number}{number:1}{number:12}.png", "77000000000007.png"),
+        ("{surfaces.wall.object_color}.png", "1f3f8f.png"),
+        ("{surfaces.wall.light_color}-{lights.key.cone_angle}-{scaling}.png", "ffffff-none-surface.png"),
+        ("{view.eye}.webp", "1,2,3.webp"),
+        ("{{{name}}}.png", "{a_b}.png"),
+        ("plain.png", "plain.png"),
+    ],
+)
+def test_a_pattern_gives_each_variant_a_name(pattern: str, path: str) -> None:
+    variant = Variant("a/b", {"surfaces.wall.object_color": "#1f3f8f", "view.eye": [1, 2, 3]})
+    assert Pattern(pattern, wall_scene()).path(7, variant) == path
+
+
+@given(st.text(min_size=1), st.text())
+def test_no_name_and_no_value_leaves_the_folder_of_the_pattern(name: str, value: str) -> None:
+    pattern = Pattern(Path("out") / "{name}{mapping}.png", wall_scene())
+    path = pattern.path(1, Variant(name, {"mapping": value}))
+    assert Path(path).parent == Path("out")
+    assert path.endswith(".png")
+    assert "\0" not in path
+
+
+@pytest.mark.parametrize(
+    ("pattern", "sentence"),
+    [
+        (
+            "{nam}.png",
+            "a field of a name pattern must be a key of the scene, not 'nam'; did you mean",
+        ),
+        ("{surfaces.wal.blend}.png", "a field of a name pattern must be a key of the scene, not"),
+        ("{name.png", "a name pattern must have each brace closed, not '{name.png'; double a brace"),
+        ("name}.png", "a name pattern must have each brace closed"),
+        ("{number:x}.png", "a name pattern must have each brace closed"),
+        ("{}.png", "a field of a name pattern must be a key of the scene, not ''"),
+    ],
+)
+def test_a_wrong_pattern_is_refused(pattern: str, sentence: str) -> None:
+    with pytest.raises(UsageError) as refused:
+        Pattern(pattern, wall_scene())
+    assert str(refused.value).startswith(sentence)
+
+
+def test_the_suffix_gives_the_form_and_a_form_without_an_output_is_taken() -> None:
+    assert (form_of("a/b.PNG", None), form_of(Path("b.webp"), "webp")) == ("png", "webp")
+    assert (form_of(None, None), form_of(None, "png")) == ("array", "png")
+
+
+@pytest.mark.parametrize(
+    ("output", "form", "sentence"),
+    [
+        (
+            "a.jpg",
+            None,
+            "the pictures of a batch must be written to files that end in .png or .webp, not to a.jpg",
+        ),
+        ("a.png", "webp", "the suffix of a.png must be that of the form 'webp'; leave the form out"),
+        (None, "jpg", "the form of pictures must be 'array', 'png' or 'webp', not 'jpg'"),
+    ],
+)
+def test_a_wrong_form_is_refused(output: str | None, form: str | None, sentence: str) -> None:
+    with pytest.raises(UsageError) as refused:
+        form_of(output, form)
+    assert str(refused.value).startswith(sentence)
+
+
+@pytest.mark.parametrize("form", FORMS)
+@given(seed=st.integers(0, 99))
+def test_a_file_has_its_colors_and_its_mark_and_no_part_of_it_has(
+    tmp_path_factory: pytest.TempPathFactory, form: str, seed: int
+) -> None:
+    colors = np.random.default_rng(seed).integers(0, 256, (5, 7, 3), np.uint8)
+    data = FORMS[form].encoded(colors, None, MARK)
+    path = tmp_path_factory.mktemp("marks") / f"a{FORMS[form].suffix}"
+    path.write_bytes(data)
+    with Image.open(BytesIO(data)) as image:
+        image.load()
+        assert (np.asarray(image.convert("RGB")) == colors).all()
+        if form == "png":
+            assert image.info["autocolor"] == MARK
+    assert mark_in(str(path), form) == MARK
+    for end in (0, 1, len(data) // 2, len(data) - 2):
+        path.write_bytes(data[:end])
+        assert mark_in(str(path), form) == ""
+
+
+def test_a_png_is_what_strangers_read_to_the_last_chunk(tmp_path: Path) -> None:
+    data = FORMS["png"].encoded(np.zeros((2, 3, 3), np.uint8), 9, MARK)
+    place, kinds = 8, []
+    while place < len(data):
+        length = int.from_bytes(data[place : place + 4], "big")
+        chunk = data[place + 4 : place + 8 + length]
+        assert zlib.crc32(chunk) == int.from_bytes(data[place + 8 + length : place + 12 + length], "big")
+        kinds.append(chunk[:4])
+        place += 12 + length
+    assert kinds == [b"IHDR", b"IDAT", b"tEXt", b"IEND"]
+
+
+def test_the_file_of_a_stranger_and_a_missing_file_have_no_mark(tmp_path: Path) -> None:
+    Image.new("RGB", (3, 3)).save(tmp_path / "a.png")
+    assert mark_in(str(tmp_path / "a.png"), "png") == ""
+    assert mark_in(str(tmp_path / "b.png"), "png") == ""
+    assert mark_in(str(tmp_path), "png") == ""
+
+
+def moved(scene: Scene) -> Scene:
+    mesh = scene.mesh
+    nodes = mesh.coordinates + 1e-9
+    return scene.replace(mesh=Mesh(nodes, mesh.node_numbers, mesh.part_numbers, mesh.part_names))
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        lambda: base_mark(moved(wall_scene()), None, ()),
+        lambda: base_mark(wall_scene().replace(ambient=0.5), None, ()),
+        lambda: base_mark(wall_scene(), None, (1,)),
+        lambda: base_mark(wall_scene(), render(wall_scene(), 6, 8), ()),
+        lambda: base_mark(wall_scene(wall(2)), None, ()),
+    ],
+)
+def test_a_change_of_mesh_table_picture_or_drawing_changes_the_mark(changed: Callable[[], str]) -> None:
+    base = base_mark(wall_scene(), None, ())
+    # No picture shows the columns of this tier.
+    assert base == base_mark(wall_scene().replace(name="moved", front="x"), None, ())
+    assert changed() != base
+
+
+def test_the_mark_of_a_variant_depends_on_its_settings_and_not_on_its_name() -> None:
+    one = Variant("a", {"ambient": 0.1, "mapping": "gamma"})
+    assert mark_of(MARK, one) == mark_of(MARK, Variant("b", {"mapping": "gamma", "ambient": 0.1}, 3))
+    assert mark_of(MARK, one) != mark_of(MARK, Variant("a", {"ambient": 0.1}))
+    assert mark_of(MARK, one) != mark_of(MARK[::-1], one)

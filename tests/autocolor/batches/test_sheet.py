@@ -1,0 +1,95 @@
+from __future__ import annotations
+
+from io import BytesIO
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from PIL import Image
+
+from autocolor import UsageError, grid
+from autocolor.arrays import light_of
+from autocolor.batches.sheet import (
+    BOXES,
+    GAP,
+    GROUND,
+    NO_PICTURE,
+    Box,
+    ContactSheet,
+    columns_of,
+    read_thumbnail,
+    thumbnail,
+)
+from autocolor.batches.table import variants_of
+from ramtek_emu.png import save_png
+
+
+@given(st.integers(1, 40), st.integers(1, 40), st.integers(0, 99))
+def test_a_thumbnail_fits_and_each_pixel_is_the_mean_light_of_a_square(
+    lines: int, elements: int, seed: int
+) -> None:
+    colors = np.random.default_rng(seed).integers(0, 256, (lines, elements, 3), np.uint8)
+    box = Box(9, 7)
+    small = thumbnail(colors, box)
+    assert small.shape[0] <= box.lines
+    assert small.shape[1] <= box.elements
+    side = max(1, -(-lines // box.lines), -(-elements // box.elements))
+    light = light_of(colors.astype(np.float64))
+    for line, element in np.ndindex(small.shape[:2]):
+        square = light[line * side : (line + 1) * side, element * side : (element + 1) * side]
+        mean = light_of(small[line, element].astype(np.float64))
+        half = np.maximum(
+            light_of(np.minimum(small[line, element] + 0.5, 255.0)) - mean,
+            mean - light_of(np.maximum(small[line, element] - 0.5, 0.0)),
+        )
+        assert (np.abs(square.mean((0, 1)) - mean) <= half + 1e-6).all()
+
+
+def test_a_sheet_has_the_shape_of_a_grid_else_it_is_nearly_square() -> None:
+    assert columns_of(grid({"a": [1, 2, 3], "b": [1, 2, 3, 4, 5]})) == 5
+    assert columns_of(grid({"a": [1, 2], "b": [1, 2, 3], "c": [1, 2, 3, 4]})) == 4
+    assert columns_of(grid({"a": range(24)})) == 5
+    assert columns_of(grid({"a": range(2), "b": range(40)})) == 9
+    assert columns_of(variants_of([{"a": 1, "b": 1}, {"a": 2, "b": 2}, {"a": 3}])) == 2
+    assert columns_of(()) == 1
+
+
+def test_a_sheet_has_each_thumbnail_in_its_cell_and_a_label_below() -> None:
+    sheet = ContactSheet(grid({"a": [1, 2], "b": ["a name too long for a cell of so few pixels" * 3, "x"]}))
+    box = sheet.box
+    colors = np.full((box.lines, box.elements, 3), 200, np.uint8)
+    sheet.put(3, colors)
+    sheet.put(1, colors[:10, :20])
+    sheet.put(0, None)
+    field = np.asarray(Image.open(BytesIO(sheet.png())))
+    step = (field.shape[0] - GAP) // 2, (field.shape[1] - GAP) // 2
+    corners = [(GAP + row * step[0], GAP + column * step[1]) for row in range(2) for column in range(2)]
+    cells = [field[top : top + box.lines, left : left + box.elements] for top, left in corners]
+    assert (cells[3] == 200).all()
+    assert (cells[0] == NO_PICTURE).all()
+    assert (cells[1] == 200).sum() == 600
+    assert set(np.unique(cells[1])) == {GROUND, 200}
+    for top, left in corners:
+        label = field[top + box.lines : top + step[0], left : left + box.elements]
+        assert label.max() > 150
+    # A long label ends within its cell.
+    assert (field[:, GAP + box.elements : GAP + step[1]] == GROUND).all()
+
+
+def test_a_sheet_of_many_variants_has_smaller_thumbnails_and_of_too_many_is_refused() -> None:
+    assert ContactSheet(grid({"a": range(401)})).box == BOXES[1][1]
+    with pytest.raises(UsageError, match=r"at most 10,000 variants, not 10,001; make sheets of parts"):
+        ContactSheet(grid({"a": range(10_001)}))
+
+
+def test_the_thumbnail_of_a_file_is_that_of_its_colors(tmp_path: Path) -> None:
+    colors = np.random.default_rng(1).integers(0, 256, (30, 40, 3), np.uint8)
+    save_png(colors, tmp_path / "a.png")
+    small = read_thumbnail(str(tmp_path / "a.png"), Box(20, 20))
+    assert small is not None
+    assert (small == thumbnail(colors, Box(20, 20))).all()
+    (tmp_path / "b.png").write_bytes((tmp_path / "a.png").read_bytes()[:200])
+    assert read_thumbnail(str(tmp_path / "b.png"), Box(20, 20)) is None
+    assert read_thumbnail(str(tmp_path / "c.png"), Box(20, 20)) is None

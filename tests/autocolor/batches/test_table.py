@@ -1,0 +1,252 @@
+from __future__ import annotations
+
+import csv
+import io
+import json
+import pickle
+from collections.abc import Callable
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from autocolor import InputError, UsageError, Variant, grid, read_variants, write_palette
+from autocolor.batches.table import (
+    LARGEST_TABLE,
+    MOST_KEYS,
+    MOST_VARIANTS,
+    Result,
+    products,
+    results_bytes,
+    text_of,
+    variants_of,
+    varied,
+)
+from autocolor.files.paths import file_stem
+
+VALUES = st.one_of(
+    st.integers(-9, 9),
+    st.floats(-9, 9),
+    st.booleans(),
+    st.none(),
+    st.text(max_size=5),
+    st.lists(st.integers(0, 9), max_size=3),
+)
+TABLES = st.lists(st.dictionaries(st.sampled_from("abcd"), VALUES, max_size=4), max_size=12)
+
+
+def settings_of(variants: tuple[Variant, ...]) -> list[dict[str, object]]:
+    return [dict(variant.settings) for variant in variants]
+
+
+@given(TABLES)
+def test_variants_keep_their_settings_and_get_names_that_are_files_and_unique(
+    rows: list[dict[str, object]],
+) -> None:
+    variants = variants_of(rows)
+    assert settings_of(variants) == rows
+    names = [variant.name for variant in variants]
+    assert len({name.casefold() for name in names}) == len(names)
+    assert all(file_stem(name) == name for name in names)
+
+
+def test_a_name_is_of_the_values_that_vary_and_numbers_tell_equal_names_apart() -> None:
+    rows: list[dict[str, object]] = [
+        {"a": "#ff0000", "b": 1},
+        {"a": "navy", "b": 1},
+        {"a": "Navy", "b": 1.0},
+        {"b": 1},
+        {"name": "own", "a": "x/y"},
+        {"a": "x/y"},
+    ]
+    names = [variant.name for variant in variants_of(rows)]
+    assert names == ["ff0000-1", "navy-1", "Navy-1-2", "1", "own", "x_y"]
+
+
+def test_a_variant_is_read_only_and_survives_pickling() -> None:
+    variant = Variant("a", {"ambient": 1}, 2)
+    assert pickle.loads(pickle.dumps(variant)) == variant == Variant("a", {"ambient": 1}, 2.0)
+    assert isinstance(variant.settings, MappingProxyType)
+    assert variant != Variant("a", {"ambient": 2}, 2)
+
+
+@given(
+    st.dictionaries(st.sampled_from("abc"), st.lists(st.integers(0, 9), min_size=1, max_size=4), min_size=1)
+)
+def test_a_grid_is_every_combination_in_the_order_of_its_lists(axes: dict[str, list[int]]) -> None:
+    expected: list[dict[str, int]] = [{}]
+    for key, values in axes.items():
+        expected = [{**row, key: value} for row in expected for value in values]
+    assert settings_of(grid(axes)) == expected
+
+
+def test_tables_are_multiplied_with_their_names_and_times() -> None:
+    looks = variants_of([{"name": "dark", "ambient": 0, "time": 3}, {"name": "light", "ambient": 1}])
+    made = products([looks, varied("scaling=object"), varied("contrast=floor,stretch")])
+    assert [variant.name for variant in made] == [
+        "dark-floor",
+        "dark-stretch",
+        "light-floor",
+        "light-stretch",
+    ]
+    assert [variant.time for variant in made] == [3, 3, None, None]
+    assert made[0].settings == {"ambient": 0, "scaling": "object", "contrast": "floor"}
+
+
+@pytest.mark.parametrize(
+    ("text", "values"),
+    [
+        ("a=red,blue,#1f3f8f", ["red", "blue", "#1f3f8f"]),
+        ("a = 1 , 2 ", ["1", "2"]),
+        ("a=[1, 2],[3, 4]", ["[1, 2]", "[3, 4]"]),
+        ("a=rgb(1, 2, 3),{x = 1, y = [2, 3]}", ["rgb(1, 2, 3)", "{x = 1, y = [2, 3]}"]),
+        ("a=\"x, y\",'z, ]',w", ['"x, y"', "'z, ]'", "w"]),
+        ("a=0.5:2:4", [0.5, 1.0, 1.5, 2.0]),
+        ("a=3:-1:3", [3.0, 1.0, -1.0]),
+        ("a=0:0.3:4", [0.0, 0.1, 0.2, 0.3]),
+        ("a=none", ["none"]),
+        ("a=b=c,d", ["b=c", "d"]),
+    ],
+)
+def test_a_list_of_values_is_split_at_commas_outside_of_brackets_and_quotes(
+    text: str, values: list[object]
+) -> None:
+    assert settings_of(varied(text)) == [{"a": value} for value in values]
+
+
+def test_a_palette_gives_its_colors_and_their_names(tmp_path: Path) -> None:
+    path = tmp_path / "paints.gpl"
+    write_palette(path, ["#102030", "#ff0000", "#00ff00"], names=["Deep/Sea", "Red", ""])
+    variants = varied(f"surfaces.body.object_color=@{path}")
+    assert [variant.settings["surfaces.body.object_color"] for variant in variants] == [
+        "#102030",
+        "#ff0000",
+        "#00ff00",
+    ]
+    assert [variant.name for variant in variants] == ["Deep/Sea", "Red", "00ff00"]
+
+
+def written(folder: Path, name: str, data: str | bytes) -> Path:
+    path = folder / name
+    path.write_bytes(data.encode() if isinstance(data, str) else data)
+    return path
+
+
+def test_a_csv_table_has_texts_and_an_empty_cell_sets_nothing(tmp_path: Path) -> None:
+    path = written(
+        tmp_path,
+        "looks.csv",
+        '\ufeffname,time,view.eye,"ambient"\r\nfirst,0,"[1, 2, 3]",none\r\n\r\n,2.5,,0.1\r\n',
+    )
+    assert read_variants(path) == (
+        Variant("first", {"view.eye": "[1, 2, 3]", "ambient": "none"}, 0.0),
+        Variant("0.1", {"ambient": "0.1"}, 2.5),
+    )
+
+
+def test_a_json_table_has_plain_values(tmp_path: Path) -> None:
+    rows = [{"name": "a", "view.eye": [1, 2, 3], "scalar": None, "time": 1}, {"ambient": 0.5}]
+    path = written(tmp_path, "looks.json", json.dumps(rows))
+    assert read_variants(str(path)) == (
+        Variant("a", {"view.eye": [1, 2, 3], "scalar": None}, 1),
+        Variant("0.5", {"ambient": 0.5}),
+    )
+
+
+REFUSED_FILES = [
+    ("t.csv", "", "t.csv: a table must have at least one variant, not none; add a row"),
+    ("t.csv", "a,b\n", "t.csv: a table must have at least one variant"),
+    ("t.csv", "a,a\n1,2\n", "t.csv, row 1: a key must be at one column, not 'a' at two; leave one out"),
+    ("t.csv", "a,\n1,2\n", "t.csv, row 1: column 2 must have a key"),
+    ("t.csv", "a,b\n1,2\n\n3\n", "t.csv, row 4: a row must have 2 cells, as many as the header, not 1"),
+    ("t.csv", "name,a\nx,1\nX,2\n", "t.csv, row 3: a name must be unique, not 'X' as in row 2; rename"),
+    ("t.csv", "time,a\nsoon,1\n", "t.csv, row 2: the time of a variant must be a number of at most 1e+09"),
+    ("t.csv", "time,a\n1e999,1\n", "t.csv, row 2: the time of a variant must be a number"),
+    ("t.csv", b"a\n\xff\n", "t.csv, line 2: a table must be text in UTF-8"),
+    ("t.csv", b"\xff\xfea\0", "t.csv: a table of variants must be text in UTF-8, not UTF-16"),
+    ("t.csv", 'a\n"1', "t.csv: a table must be valid CSV"),
+    ("t.csv", ",".join(f"k{n}" for n in range(MOST_KEYS + 3)) + "\n", "t.csv, row 1: a table must have at"),
+    ("t.csv", "a\n" + "1\n" * (MOST_VARIANTS + 1), "t.csv: a table must have at most 100,000 variants"),
+    ("t.json", "{}", "t.json: a table in JSON must be a list of objects, not {}"),
+    ("t.json", "[1]", "t.json, row 1: a variant must be a table of values by key, not 1"),
+    ("t.json", '[{"name": 3}]', "t.json, row 1: a variant must have a name of at least one character, not 3"),
+    ("t.json", '[{"time": true}]', "t.json, row 1: the time of a variant must be a number"),
+    ("t.json", f'[{{"time": {"9" * 400}}}]', "t.json, row 1: the time of a variant must be a number"),
+    ("t.json", "[{", "t.json: a table must be valid JSON"),
+    ("t.json", "[NaN]", "t.json: a table must be valid JSON (the number NaN"),
+    ("t.json", "[" * 5000, "t.json: a table must be valid JSON (values in more than"),
+    ("t.json", b'["\xff"]', "t.json: a table must be valid JSON"),
+]
+
+
+@pytest.mark.parametrize(("name", "data", "sentence"), REFUSED_FILES)
+def test_a_bad_table_is_refused_with_its_place(
+    tmp_path: Path, name: str, data: str | bytes, sentence: str
+) -> None:
+    with pytest.raises(InputError) as refused:
+        read_variants(written(tmp_path, name, data))
+    assert str(refused.value).startswith(sentence)
+    assert "\n" not in str(refused.value)
+
+
+def test_a_table_of_another_kind_and_a_large_file_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match=r"ends in \.csv or \.json, not t\.txt; rename it"):
+        read_variants(written(tmp_path, "t.txt", "a\n1\n"))
+    path = written(tmp_path, "t.csv", "")
+    with open(path, "wb") as file:
+        file.truncate(LARGEST_TABLE + 1)
+    with pytest.raises(InputError, match="must have at most 16,777,216 bytes"):
+        read_variants(path)
+
+
+@pytest.mark.parametrize(
+    ("make", "sentence"),
+    [
+        (lambda: variants_of("ab"), "variants must be a list of tables or of Variants, not 'ab'"),  # type: ignore[arg-type]
+        (lambda: variants_of({"a": 1}), "variants must be a list"),  # type: ignore[dict-item]
+        (lambda: variants_of([3]), "row 1: a variant must be a table of values by key, not 3"),  # type: ignore[list-item]
+        (lambda: variants_of([{}, {1: 2}]), "row 2: the settings of a variant must be values by key"),  # type: ignore[dict-item]
+        (lambda: Variant("", {}), "a variant must have a name of at least one character, not ''"),
+        (lambda: Variant("a", {str(n): 1 for n in range(MOST_KEYS + 1)}), "a variant must have at most 256"),
+        (lambda: variants_of({} for _ in iter(int, 1)), "a table must have at most 100,000 variants"),
+        (lambda: grid({"a": []}), "a grid must have 1 to 100,000 variants, not 0; give a value for each key"),
+        (
+            lambda: grid({key: range(100) for key in "abc"}),
+            "a grid must have 1 to 100,000 variants, not 1,000",
+        ),
+        (lambda: grid({"a": "red"}), "a: an axis must be a list of values, not 'red'; write it as a list"),
+        (lambda: grid(["a"]), "a grid must be lists of values by key, not ['a']"),  # type: ignore[arg-type]
+        (lambda: products([varied("a=1,2"), varied("a=3")]), "a key must be in one table or list, not 'a'"),
+        (lambda: varied("a"), "--vary must be KEY=A,B,C or KEY=START:STOP:COUNT, not 'a'; write it as in"),
+        (lambda: varied("=1"), "--vary must be KEY=A,B,C"),
+        (lambda: varied("a=1,,2"), "--vary a: there must be a value before and after each comma"),
+        (lambda: varied("a=0:1:1"), "--vary a: START and STOP must be finite, and COUNT 2 to 100,000, not"),
+        (lambda: varied("a=0:1e999:3"), "--vary a: START and STOP must be finite"),
+    ],
+)
+def test_wrong_variants_are_refused(make: Callable[[], object], sentence: str) -> None:
+    with pytest.raises(UsageError) as refused:
+        make()
+    assert str(refused.value).startswith(sentence)
+
+
+@given(TABLES, st.lists(st.text(max_size=8), max_size=12))
+def test_the_table_of_results_has_a_row_for_each_with_every_key(
+    rows: list[dict[str, object]], problems: list[str]
+) -> None:
+    results = [
+        Result(variant.name, variant.settings, None, problem=problem)
+        for variant, problem in zip(variants_of(rows), problems, strict=False)
+    ]
+    header, *cells = csv.reader(io.StringIO(results_bytes(results).decode(), newline=""))
+    read: list[dict[str, Any]] = [dict(zip(header, row, strict=True)) for row in cells]
+    keys = {key for result in results for key in result.settings}
+    assert set(header) == {"name", "path", "seconds", "problem", *keys}
+    assert [row["problem"] for row in read] == [result.problem for result in results]
+    for row, result in zip(read, results, strict=True):
+        for key in keys:
+            value = result.settings.get(key, "")
+            assert row[key] == (json.dumps(value) if isinstance(value, list) else text_of(value))

@@ -1,0 +1,320 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from autocolor import Palette, write_palette
+from autocolor.checks import Color
+from autocolor.files.state import recent_colors
+from autocolor.scene.kinds import in_digits
+from autocolor.scene.swatches import COLUMNS, FINISHES, ROWS, finished, swatches
+from autocolor.screens.surface.paint_choices import CELL_ELEMENTS, CELL_LINES, SwatchField
+from autocolor.widgets.items import Area
+from autocolor.widgets.widget import Choice, Place
+from ramtek_emu import Ramtek9300
+from tests.autocolor.screens.mixing import ZERO, bar_is_right, line_of, mixing, shades_are_right
+from tests.autocolor.screens.painting_hand import PaintingHand, boxes_scene
+
+
+@pytest.fixture
+def hand(tmp_path: Path) -> PaintingHand:
+    return mixing(boxes_scene(), tmp_path)
+
+
+def swatch_cell(hand: PaintingHand, shade: int, hue: int) -> Area:
+    """The cell of a swatch in the menu, without its grout."""
+    area = hand.widget("paints").area
+    left = area.left + (area.width - ROWS * CELL_ELEMENTS) // 2 + CELL_ELEMENTS * shade
+    top = area.top + CELL_LINES * hue
+    return Area(left, top, left + CELL_ELEMENTS - 2, top + CELL_LINES - 2)
+
+
+def test_a_swatch_is_a_paint_for_the_chosen_color(hand: PaintingHand) -> None:
+    hand.click(*swatch_cell(hand, 4, 3).middle)
+    assert hand.paint.object_color == tuple(swatches()[4 * COLUMNS + 3])
+    hand.pick("light source heading")
+    hand.click(*swatch_cell(hand, 0, 19).middle)
+    assert hand.paint.light_color == tuple(swatches()[COLUMNS - 1])
+    # A click on the shades chooses, too.
+    hand.click(30, 160)
+    hand.drag(swatch_cell(hand, 0, 0).middle, swatch_cell(hand, 1, 2).middle)
+    assert hand.paint.object_color == tuple(swatches()[COLUMNS + 2])
+    assert hand.paint.light_color == tuple(swatches()[COLUMNS - 1])
+
+
+def test_every_swatch_is_shown_in_its_color(hand: PaintingHand) -> None:
+    for number, color in enumerate(swatches()):
+        assert (hand.colors(swatch_cell(hand, *divmod(number, COLUMNS))) == color).all()
+    assert shades_are_right(hand)
+    assert bar_is_right(hand)
+
+
+@pytest.mark.parametrize("name", FINISHES)
+def test_a_finish_keeps_the_object_color(hand: PaintingHand, name: str) -> None:
+    before = hand.viewer.studio.scene.surface("box 0")
+    hand.pick(name)
+    after = hand.viewer.studio.scene.surface("box 0")
+    assert after == before.replace(**finished(before, name))
+    assert shades_are_right(hand)
+    assert bar_is_right(hand)
+
+
+def test_mixed_colors_are_recent_colors_when_the_mixing_ends(hand: PaintingHand) -> None:
+    hand.click(ZERO + 99, line_of(hand, "object, green"))
+    hand.click(ZERO + 100, line_of(hand, "object, green"))
+    assert recent_colors() == ()
+    hand.leave()
+    assert recent_colors() == ((176, 100, 32),)
+    hand.turn_to("color mixing")
+    # Another surface takes it over.
+    hand.pick("surface")
+    recent = hand.widget("recent colors").area
+    place = swatch_cell(hand, 0, 0).left + 4, recent.top + 4
+    assert (hand.colors(Area(*place, place[0] + 4, place[1] + 4)) == [176, 100, 32]).all()
+    hand.click(*place)
+    assert hand.paint.object_color == (176, 100, 32)
+
+
+def test_an_undone_color_is_no_recent_color(hand: PaintingHand) -> None:
+    hand.click(ZERO + 99, line_of(hand, "object, green"))
+    hand.pick(" ", 0.1)
+    hand.leave()
+    assert recent_colors() == ()
+
+
+def test_choosing_another_surface_ends_the_mixing(hand: PaintingHand) -> None:
+    hand.click(ZERO + 99, line_of(hand, "light source, green"))
+    hand.pick("surface")
+    assert recent_colors() == ((255, 99, 240),)
+    hand.leave()
+    assert recent_colors() == ((255, 99, 240),)
+
+
+FILE = "paints.gpl"
+FEW = Palette(["#a52019", "#f8f32b", "#a52019", "#0e294b"], ["Signal red", "Teal", "Old red", ""])
+MANY = Palette([(number // 256, number % 256, 9) for number in range(430)], map(str, range(430)))
+
+
+def bring(hand: PaintingHand, paints: Palette) -> None:
+    """Open a palette file as it is opened when it is dropped on the window."""
+    folder = hand.viewer.session.folder
+    write_palette(folder / FILE, paints, overwrite=True)
+    hand.viewer.on_drop(folder / FILE)
+
+
+def paint_place(hand: PaintingHand, number: int) -> Place:
+    """The middle of the cell of a paint in the menu."""
+    field = hand.widget("paints")
+    assert isinstance(field, SwatchField)
+    down, across = divmod(number, field.across)
+    left = field.area.left + (field.area.width - field.across * field.width) // 2
+    middle = left + field.width * across + field.width // 2 - 1
+    return Place(middle, field.area.top + field.height * down + field.height // 2 - 1)
+
+
+def color_of_paint(hand: PaintingHand, number: int) -> Color:
+    """The color that the display shows for a paint."""
+    red, green, blue = hand.display.field()[paint_place(hand, number)[::-1]].tolist()
+    return red, green, blue
+
+
+@pytest.mark.parametrize("paints", [FEW, MANY])
+def test_the_paints_of_a_file_come_before_the_swatches(hand: PaintingHand, paints: Palette) -> None:
+    scene = hand.viewer.studio.scene
+    hand.leave()
+    bring(hand, paints)
+    assert hand.viewer.page == "mixing"
+    assert hand.viewer.message == f"{len(paints)} paints of paints.gpl: take them in color mixing"
+    seen = []
+    while (page := hand.widget("page")) and isinstance(page, Choice):
+        if page.present == f"{len(page.names)} of {len(page.names)}":
+            break
+        field = hand.widget("paints")
+        assert isinstance(field, SwatchField)
+        seen += [color_of_paint(hand, number) for number in range(len(field.words))]
+        hand.pick("page")
+    assert seen == [paints.color(number) for number in range(len(paints))]
+    # The last page has the swatches.
+    assert color_of_paint(hand, 0) == tuple(swatches()[0])
+    assert hand.viewer.studio.scene is scene
+
+
+def test_few_paints_have_large_cells(hand: PaintingHand) -> None:
+    bring(hand, FEW)
+    assert (hand.widget("paints").width, MANY.colors.shape) == (2 * CELL_ELEMENTS, (430, 3))  # type: ignore[attr-defined]
+    bring(hand, MANY)
+    assert hand.widget("paints").width == CELL_ELEMENTS  # type: ignore[attr-defined]
+
+
+def test_the_name_of_a_paint_is_shown_under_the_pointer_and_when_it_is_taken(hand: PaintingHand) -> None:
+    bring(hand, FEW)
+    hand.viewer.tell("")
+    shown = []
+    for number in range(4):
+        hand.move(*paint_place(hand, number))
+        shown.append(hand.viewer.board.messages[0].text)
+    assert shown == [
+        "Signal red, #a52019: click it for the object color",
+        "Teal, #f8f32b: click it for the object color",
+        "Old red, #a52019: click it for the object color",
+        "#0e294b: click it for the object color",
+    ]
+    hand.click(*paint_place(hand, 2))
+    assert hand.viewer.message == "object: Old red, #a52019"
+    assert hand.paint.object_color == (165, 32, 25)
+    hand.pick("light source heading")
+    hand.click(*paint_place(hand, 3))
+    assert hand.viewer.message == "light source: #0e294b"
+    assert hand.paint.light_color == (14, 41, 75)
+    assert shades_are_right(hand)
+    assert bar_is_right(hand)
+
+
+def test_keys_take_paint_after_paint_although_some_have_one_color(hand: PaintingHand) -> None:
+    bring(hand, FEW)
+    hand.viewer.on_key("tab")
+    while hand.viewer.board.lit != "paints":
+        hand.viewer.on_key("down")
+    taken = []
+    for key in ("right", "right", "right", "right", "right", "left", "left"):
+        hand.viewer.on_key(key)
+        taken.append(hand.viewer.message.removeprefix("object: "))
+    red, teal, old, blue = "Signal red, #a52019", "Teal, #f8f32b", "Old red, #a52019", "#0e294b"
+    assert taken == [red, teal, old, blue, red, blue, old]
+    # The last paint is before a color that no paint has.
+    while hand.viewer.studio.history.to_undo:
+        hand.viewer.on_key("z", control=True)
+    hand.viewer.on_key("left")
+    assert hand.viewer.message == "object: #0e294b"
+
+
+def test_new_paints_begin_with_their_first_page(hand: PaintingHand) -> None:
+    bring(hand, MANY)
+    hand.pick("page")
+    hand.click(*paint_place(hand, 199))
+    assert hand.viewer.message == "object: 399, #018f09"
+    bring(hand, FEW)
+    assert color_of_paint(hand, 0) == (165, 32, 25)
+    hand.viewer.on_pointer(*paint_place(hand, 0), "wheel up")
+    assert hand.viewer.message == "object: Signal red, #a52019"
+
+
+def test_a_name_that_is_typed_or_pasted_is_a_paint_before_it_is_a_color_of_css(hand: PaintingHand) -> None:
+    board = hand.viewer.board
+    teal = (0, 128, 128)
+    for paints, name, color in (
+        (None, "teal", teal),
+        (FEW, "TEAL", (248, 243, 43)),
+        (FEW, "navy", (0, 0, 128)),
+    ):
+        if paints is not None:
+            bring(hand, paints)
+        hand.pick("object")
+        board.typing.insert(name)
+        hand.viewer.on_key("return")
+        assert hand.paint.object_color == color
+    board.paste("old red")
+    assert hand.paint.object_color == (165, 32, 25)
+
+
+def test_a_paint_is_taken_for_a_color_of_a_ramp(hand: PaintingHand) -> None:
+    bring(hand, FEW)
+    hand.pick("ramp", 0.95)
+    ramp = hand.paint.ramp
+    assert ramp is not None
+    hand.click(*paint_place(hand, 1))
+    assert hand.viewer.message == "color 1: Teal, #f8f32b"
+    assert hand.paint.ramp == ((248, 243, 43), *ramp[1:])
+    hand.viewer.board.paste("signal red")
+    assert hand.paint.ramp == ((165, 32, 25), *ramp[1:])
+
+
+def test_a_name_that_is_pasted_in_the_picture_is_a_paint(hand: PaintingHand) -> None:
+    bring(hand, FEW)
+    hand.leave()
+    hand.viewer.board.paste("teal")
+    assert hand.paint.object_color == (248, 243, 43)
+
+
+def test_the_key_of_the_next_color_goes_through_the_paints(hand: PaintingHand) -> None:
+    own = hand.paint.object_color
+    bring(hand, FEW)
+    messages = []
+    for _ in range(4):
+        hand.viewer.on_key("c", typed="c")
+        messages.append(hand.viewer.message)
+    assert messages == [
+        "object color Old red, #a52019",
+        "object color Teal, #f8f32b",
+        "object color #0e294b",
+        f"object color {in_digits(own)}",
+    ]
+
+
+def test_paints_that_cannot_be_read_leave_those_before(hand: PaintingHand) -> None:
+    bring(hand, FEW)
+    path = hand.viewer.session.folder / "bad.gpl"
+    path.write_text("GIMP Palette\n1 2 3\n1 2\n")
+    hand.viewer.on_drop(path)
+    assert hand.viewer.message == (
+        "bad.gpl, line 3: a color must be red, green, blue and perhaps a name, not '1 2'; correct it"
+    )
+    assert hand.viewer.session.paints == FEW
+
+
+AREA = Area(176, 312, 255, 367)
+
+
+def field_of(count: int, found: list[int] | None = None) -> SwatchField:
+    found = [] if found is None else found
+    words = np.arange(100, 100 + count, dtype=np.uint16)
+    return SwatchField("paints", words=words, across=5, width=16, height=14, take=found.append, area=AREA)
+
+
+def drawn(field: SwatchField) -> Ramtek9300:
+    display = Ramtek9300()
+    for item in field.items(lit=False):
+        display.send(np.frombuffer(item.stream, np.uint16))
+    return display
+
+
+@pytest.mark.parametrize("count", [1, 5, 7, 20])
+def test_a_pick_takes_the_cell_that_is_shown_there(count: int) -> None:
+    found: list[int] = []
+    field = field_of(count, found)
+    words = drawn(field).words
+    for line in range(AREA.top, AREA.bottom + 1, 14):
+        for element in range(AREA.left, AREA.right + 1, 16):
+            before = len(found)
+            field.pick(Place(element + 3, line + 3))
+            word = int(words[line + 3, element + 3])
+            assert found[before:] == ([word - 100] if 100 <= word < 100 + count else [])
+    assert found == list(range(count))
+
+
+def test_nothing_is_drawn_or_taken_beyond_the_cells() -> None:
+    found: list[int] = []
+    field = field_of(20, found)
+    lines, elements = np.nonzero(drawn(field).words)
+    assert AREA.covers(Area(elements.min(), lines.min(), elements.max(), lines.max()))
+    for place in ((175, 320), (256, 320), (200, 311), (200, 368)):
+        field.drag(Place(200, 320), Place(200, 320), Place(*place))
+    assert found == []
+
+
+def test_a_drag_takes_every_cell_that_it_reaches() -> None:
+    found: list[int] = []
+    field = field_of(20, found)
+    for element in (180, 200, 220):
+        field.drag(Place(180, 315), Place(180, 315), Place(element, 330))
+    assert found == [5, 6, 7]
+
+
+def test_without_cells_there_is_nothing() -> None:
+    found: list[int] = []
+    field = field_of(0, found)
+    assert field.items(lit=True) == []
+    field.pick(Place(180, 315))
+    assert found == []

@@ -1,0 +1,201 @@
+from __future__ import annotations
+
+import math
+import os
+import weakref
+from collections.abc import Iterator
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from PIL import Image
+
+from ramtek_emu.arrays import Colors
+from ramtek_emu.errors import ColorsError, OutputError, OutputExistsError, RamtekError
+from ramtek_emu.films import FORMATS, differing_area, ticks, write_film
+
+LOSSLESS = (".webp", ".apng")
+
+
+@st.composite
+def films(draw: st.DrawFn) -> list[Colors]:
+    """A few small fields. Each differs from the field before in a rectangle, which may be empty."""
+    lines, elements = draw(st.integers(1, 9)), draw(st.integers(1, 9))
+    field = np.zeros((lines, elements, 3), np.uint8)
+    fields = []
+    for _ in range(draw(st.integers(1, 5))):
+        top, left = draw(st.integers(0, lines)), draw(st.integers(0, elements))
+        field = field.copy()
+        field[top : draw(st.integers(top, lines)), left : draw(st.integers(left, elements))] = draw(
+            st.tuples(*[st.integers(0, 255)] * 3)
+        )
+        fields.append(field)
+    return fields
+
+
+def noise(count: int, lines: int = 20, elements: int = 30) -> list[Colors]:
+    """Fields with a color of its own at nearly each pixel."""
+    return list(np.random.default_rng(3).integers(0, 256, (count, lines, elements, 3)).astype(np.uint8))
+
+
+def decoded(path: Path) -> tuple[list[Colors], list[float]]:
+    """The fields of a film and their durations in milliseconds."""
+    fields, durations = [], []
+    with Image.open(path) as film:
+        for number in range(getattr(film, "n_frames", 1)):
+            film.seek(number)
+            fields.append(np.asarray(film.convert("RGB")))
+            durations.append(film.info.get("duration", 0))
+    return fields, durations
+
+
+def without_repeats(fields: list[Colors]) -> list[Colors]:
+    """The fields that differ from the field before."""
+    return [f for n, f in enumerate(fields) if n == 0 or not np.array_equal(f, fields[n - 1])]
+
+
+@pytest.mark.parametrize("suffix", FORMATS)
+@given(fields=films())
+def test_a_film_is_decoded_to_the_same_fields(
+    fields: list[Colors], suffix: str, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    path = tmp_path_factory.mktemp("films") / f"film{suffix}"
+    loss = write_film(path, iter(fields), len(fields), fields_per_second=24)
+    shown, _ = decoded(path)
+    if suffix != ".apng":
+        # A WebP has equal fields once, and so does Pillow when it reads a GIF.
+        shown, fields = without_repeats(shown), without_repeats(fields)
+    assert len(shown) == len(fields)
+    assert all(np.array_equal(one, other) for one, other in zip(shown, fields, strict=True))
+    assert loss == (0, 0)
+
+
+@pytest.mark.parametrize("suffix", LOSSLESS)
+def test_films_without_loss_keep_every_color(suffix: str, tmp_path: Path) -> None:
+    fields = noise(4)
+    assert write_film(tmp_path / f"film{suffix}", fields, 4, fields_per_second=24) == (0, 0)
+    assert np.array_equal(decoded(tmp_path / f"film{suffix}")[0], fields)
+
+
+def test_the_loss_of_a_gif_is_told_as_it_is(tmp_path: Path) -> None:
+    # The second field differs from the first in few pixels, but shows the lost colors of the others, too.
+    few, (many, more) = np.zeros((20, 30, 3), np.uint8), noise(2)
+    fields = [few, many, many.copy(), more]
+    fields[2][3, 4:7] = 9
+    loss = write_film(tmp_path / "film.gif", fields, 4, fields_per_second=24)
+    differences = [
+        np.abs(one.astype(int) - other).max()
+        for one, other in zip(decoded(tmp_path / "film.gif")[0], fields, strict=True)
+    ]
+    assert differences[0] == 0
+    assert min(differences[1:]) > 0
+    assert loss == (3, max(differences))
+
+
+def test_a_gif_that_is_off_by_one_has_lost_colors(tmp_path: Path) -> None:
+    numbers = np.arange(512)
+    field = np.stack([numbers % 256, numbers // 256, numbers * 0], axis=1).astype(np.uint8).reshape(16, 32, 3)
+    assert write_film(tmp_path / "film.gif", [field], 1, fields_per_second=24) == (1, 1)
+    assert np.abs(decoded(tmp_path / "film.gif")[0][0].astype(int) - field).max() == 1
+
+
+@pytest.mark.parametrize(("suffix", "unit"), [(".webp", 1), (".apng", 1), (".gif", 10)])
+@pytest.mark.parametrize("rate", [0.5, 24, 29.97, 50])
+def test_a_film_lasts_as_long_as_its_rate_says(suffix: str, unit: int, rate: float, tmp_path: Path) -> None:
+    write_film(tmp_path / f"film{suffix}", noise(7, 2, 3), 7, fields_per_second=rate)
+    durations = decoded(tmp_path / f"film{suffix}")[1]
+    ends = np.cumsum(durations)
+    assert np.abs(ends - np.arange(1, 8) * 1000 / rate).max() <= unit / 2 + 1e-6
+
+
+@given(st.integers(1, 5000), st.floats(0.1, 100))
+def test_the_durations_of_fields_add_up(count: int, rate: float) -> None:
+    total = sum(ticks(number, rate, 100) for number in range(count))
+    assert total == math.floor(100 * count / rate + 0.5)
+
+
+@pytest.mark.parametrize("suffix", FORMATS)
+def test_a_film_begins_again_unless_it_is_shown_once(suffix: str, tmp_path: Path) -> None:
+    for loop, repeats in ((True, 0), (False, 1)):
+        write_film(tmp_path / f"{loop}{suffix}", noise(2), 2, fields_per_second=24, loop=loop)
+        with Image.open(tmp_path / f"{loop}{suffix}") as film:
+            # A GIF that is shown once has no extension that says so.
+            assert film.info.get("loop", 1) == repeats
+
+
+def test_a_rectangle_holds_all_that_differs_and_no_more() -> None:
+    before = np.zeros((5, 7, 3), np.uint8)
+    field = before.copy()
+    field[1, 2, 0] = field[3, 5, 2] = 1
+    assert differing_area(field, before) == (2, 1, 4, 3)
+    assert differing_area(before, before) == (0, 0, 1, 1)
+    assert differing_area(field, None) == (0, 0, 7, 5)
+
+
+@pytest.mark.parametrize("suffix", FORMATS)
+def test_fields_are_taken_one_by_one(suffix: str, tmp_path: Path) -> None:
+    references: list[weakref.ref[Colors]] = []
+    most = 0
+
+    def made() -> Iterator[Colors]:
+        nonlocal most
+        for field in noise(12):
+            copy = np.copy(field)
+            references.append(weakref.ref(copy))
+            most = max(most, sum(reference() is not None for reference in references))
+            yield copy
+
+    write_film(tmp_path / f"film{suffix}", made(), 12, fields_per_second=24)
+    assert 1 <= most <= 4
+
+
+REFUSED: list[tuple[str, dict[str, Any], type[RamtekError], str]] = [
+    ("film.mp4", {}, OutputError, "a film must end in .webp, .apng, .gif, not in '.mp4'; rename it"),
+    ("film.gif", {"fields_per_second": 60}, ColorsError, "0.1 to 50 fields per second, not 60; choose"),
+    ("film.webp", {"fields_per_second": math.nan}, ColorsError, "0.1 to 100 fields per second, not nan"),
+    ("film.webp", {"count": 3}, ColorsError, "a film must have 3 fields, not 2; count them first"),
+    ("film.apng", {"count": 3}, ColorsError, "a film must have 3 fields, not 2; count them first"),
+    ("film.apng", {"count": 1}, ColorsError, "1 (lines, elements, 3) uint8 fields of one size, not field 2"),
+    ("film.webp", {"count": 1}, ColorsError, "1 (lines, elements, 3) uint8 fields of one size, not field 2"),
+    ("film.gif", {"count": 0}, ColorsError, "the fields of a film must be 1 to 100000, not 0; choose fewer"),
+    ("there.gif", {}, OutputExistsError, "an output must be a new file, not"),
+]
+
+
+@pytest.mark.parametrize(("name", "options", "error", "sentence"), REFUSED)
+def test_a_film_that_cannot_be_written_leaves_no_file(
+    name: str, options: dict[str, Any], error: type[RamtekError], sentence: str, tmp_path: Path
+) -> None:
+    (tmp_path / "there.gif").write_bytes(b"old")
+    with pytest.raises(error) as refusal:
+        write_film(tmp_path / name, noise(2), **{"count": 2, "fields_per_second": 24, **options})
+    assert sentence in str(refusal.value)
+    assert os.listdir(tmp_path) == ["there.gif"]
+    assert (tmp_path / "there.gif").read_bytes() == b"old"
+
+
+@pytest.mark.parametrize("suffix", FORMATS)
+def test_fields_of_different_sizes_make_no_film(suffix: str, tmp_path: Path) -> None:
+    fields = [np.zeros((2, 3, 3), np.uint8), np.zeros((3, 2, 3), np.uint8)]
+    with pytest.raises(ColorsError, match=r"not field 2 of shape \(3, 2, 3\) after \(2, 3, 3\)"):
+        write_film(tmp_path / f"film{suffix}", fields, 2, fields_per_second=24)
+    assert os.listdir(tmp_path) == []
+
+
+def test_an_animated_png_is_a_valid_png_of_its_first_field(tmp_path: Path) -> None:
+    fields = noise(3)
+    write_film(tmp_path / "film.apng", fields, 3, fields_per_second=24)
+    data = (tmp_path / "film.apng").read_bytes()
+    place, chunks = 8, [data[:8]]
+    while place < len(data):
+        end = place + 12 + int.from_bytes(data[place : place + 4], "big")
+        # A reader that knows no animation skips these chunks.
+        if data[place + 4 : place + 8] not in (b"acTL", b"fcTL", b"fdAT"):
+            chunks.append(data[place:end])
+        place = end
+    with Image.open(BytesIO(b"".join(chunks))) as picture:
+        assert np.array_equal(np.asarray(picture), fields[0])

@@ -1,0 +1,129 @@
+"""Every command in a code block of README.md and docs/*.md ends well, in the order of its document."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+from docs.generate.commands import ROOT, here, process
+
+NOT_RUN = {
+    "autocolor view scenes/coupe --normals": "it opens a window",
+    "autocolor view scenes/coupe --paints paints.gpl": "it opens a window",
+    "ramtek play figures/figure-normals.ramtek --loads-per-second 30": "it opens a window",
+    "ramtek serve --unix /tmp/display --window &": "it waits for hosts",
+    "ramtek tty /tmp/display -- old_program {}": "it runs a program that the reader has",
+    "ramtek serve --port 9300 --window": "it waits for hosts",
+    "ramtek serve --port 9300 --joystick stick &": "it waits for hosts",
+}
+"""The commands that this test cannot run, each with the reason."""
+
+CORNERS = ((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1))
+FACES = ((0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3))
+NODES = "".join(f"{x} {y} {z}\n" for x, y, z in CORNERS)
+POLYGONS = "".join(f"3 {a} {b} {c}\n" for a, b, c in FACES)
+
+INPUTS = {
+    "looks.csv": "name,surfaces.body.object_color,lights.key.intensity\nracing,#b01020,\nevening,navy,0.5\n",
+    "engine.ply": "ply\nformat ascii 1.0\nelement vertex 4\n"
+    + "".join(f"property float {axis}\n" for axis in "xyz")
+    + f"element face 4\nproperty list uchar int vertex_indices\nend_header\n{NODES}{POLYGONS}",
+    "housing.stl": "solid housing\n"
+    + "".join(
+        "facet normal 0 0 0\nouter loop\n"
+        + "".join("vertex {} {} {}\n".format(*CORNERS[node]) for node in face)
+        + "endloop\nendfacet\n"
+        for face in FACES
+    )
+    + "endsolid housing\n",
+    "housing.vtk": "# vtk DataFile Version 3.0\nhousing\nASCII\nDATASET POLYDATA\n"
+    f"POINTS 4 float\n{NODES}POLYGONS 4 16\n{POLYGONS}",
+}
+"""Files that the reader has, by the names that the documents give them."""
+
+
+class Command(NamedTuple):
+    """A command of a document, and the output that the document shows below it; None if it shows none."""
+
+    line: str
+    output: str | None
+
+
+def commands_of(text: str) -> list[Command]:
+    """The commands in the code blocks of a document. After a line with a prompt, "$ ", its output follows."""
+    commands = []
+    for block in re.findall(r"^```\w*\n(.*?)^```$", text, re.DOTALL | re.MULTILINE):
+        prompt, *parts = re.split(r"^\$ ", block.replace("\\\n", " "), flags=re.MULTILINE)
+        lines = [(line, None) for line in prompt.splitlines()]
+        for line, output in [*lines, *((part.split("\n", 1)) for part in parts)]:
+            for command in line.split(" && "):
+                command = re.sub(r"\s+#\s.*", "", command.strip()).removeprefix(".venv/bin/")
+                if command.startswith(("autocolor ", "ramtek ")):
+                    commands.append(Command(command, output))
+    return commands
+
+
+DOCUMENTS = {
+    path.name: commands
+    for path in (ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")))
+    if (commands := commands_of(path.read_text("utf-8")))
+}
+
+
+def make_inputs(folder: Path) -> None:
+    """The scenes of the project, and the files that the reader has."""
+    for scene in (ROOT / "scenes").iterdir():
+        if (scene / "scene.toml").exists():
+            shutil.copytree(scene, folder / "scenes" / scene.name)
+    for name, text in INPUTS.items():
+        (folder / name).write_text(text, "utf-8")
+
+
+def listed_words(listing: str) -> bytes:
+    """The stream of 16-bit words, low byte first, that a listing of `ramtek list` shows."""
+    rows = re.findall(r"^[0-9A-F]{5}:((?: [0-9A-F]{4})+)", listing, re.MULTILINE)
+    return b"".join(int(word, 16).to_bytes(2, "little") for row in rows for word in row.split())
+
+
+def ended(line: str, folder: Path) -> tuple[int, str, str]:
+    """The exit code, stdout and stderr of a command that is run in a folder."""
+    if line.startswith("autocolor "):
+        return here(line, folder)
+    # `ramtek` closes its files when its process ends.
+    with process(line, folder) as started:
+        out, err = started.communicate("", timeout=60)
+        return started.returncode, out, err
+
+
+@pytest.mark.parametrize("document", DOCUMENTS)
+def test_every_command_of_a_document_ends_well(document: str, tmp_path: Path) -> None:
+    make_inputs(tmp_path)
+    for line, output in DOCUMENTS[document]:
+        if line in NOT_RUN:
+            continue
+        if output is not None and line.startswith("ramtek list "):
+            (tmp_path / line.split()[2]).write_bytes(listed_words(output))
+        code, out, err = ended(line, tmp_path)
+        assert code == 0, f"{line} ended with {code}: {err}"
+        assert output is None or out == output, line
+
+
+def test_only_commands_of_the_documents_are_not_run() -> None:
+    assert NOT_RUN.keys() <= {command.line for commands in DOCUMENTS.values() for command in commands}
+
+
+def test_commands_are_found_in_code_blocks_alone() -> None:
+    text = (
+        "`autocolor a`\nautocolor b\n```\npip install x && .venv/bin/autocolor c\nautocolor d \\\n  -e  # f\n"
+        'cat | ramtek g\n```\n\n```console\n$ ramtek h "#i"\nj\n\nk\n$ cat l\nm\n$ autocolor n\n```\n'
+    )
+    assert commands_of(text) == [
+        ("autocolor c", None),
+        ("autocolor d    -e", None),
+        ('ramtek h "#i"', "j\n\nk\n"),
+        ("autocolor n", ""),
+    ]
