@@ -41,6 +41,7 @@ from autocolor.batches.making import MORE_THAN_WORKERS
 from autocolor.batches.outputs import mark_in
 from autocolor.batches.table import Result, Variant, variants_of
 from autocolor.files.settings import scene_with
+from autocolor.rendering import Rendering, rendering
 from autocolor.scene.columns import Tier
 from tests.autocolor.meshes import wall_scene
 
@@ -123,6 +124,23 @@ def test_any_executor_gives_the_same_bytes(monkeypatch: pytest.MonkeyPatch) -> N
         assert images(batch(scene, GRID, size=SIZE, form="png", executor=threads, runs=2)) == expected
     monkeypatch.setattr(making, "wait", wait_last)
     assert images(batch(scene, GRID, size=SIZE, form="png", executor=Reversed(), runs=1)) == expected
+
+
+@pytest.mark.parametrize(("rows", "count"), [(PAINTS, 1), (GRID, 0)])
+def test_a_picture_is_rendered_here_for_an_executor_if_it_is_the_picture_of_all_variants(
+    monkeypatch: pytest.MonkeyPatch, rows: tuple[Variant, ...], count: int
+) -> None:
+    rendered = []
+
+    def counted(scene: Scene, lines: int, elements: int) -> Rendering:
+        rendered.append(rendering(scene, lines, elements))
+        return rendered[-1]
+
+    monkeypatch.setattr(making, "rendering", counted)
+    with ThreadPoolExecutor(1) as threads:
+        results = batch(wall_scene(), rows, size=SIZE, executor=threads)
+    assert len(rendered) == count
+    assert [result.tier for result in results].count(Tier.FRAME) == (0 if count else 2)
 
 
 def test_processes_give_the_same_bytes_from_a_scene_and_from_a_picture() -> None:
