@@ -41,8 +41,8 @@ Source = Scene | SavedPicture | tuple[Scene, Picture] | str | PathLike[str]
 RUNS: Final = 16
 """The most variants of a run, unless the caller chooses.
 
-Measured: with 16, the picture that travels takes 1 % of a run's time, and 1,000 variants still occupy many
-processors alike.
+Measured: to hand out the coupe's picture takes this process 1.6 ms for each variant alone, and 0.2 ms a
+variant with 16. With 1, 4, 16 and 64, two processes take the same time within a tenth.
 """
 
 MOST_IN_RUN: Final = 10_000
