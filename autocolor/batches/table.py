@@ -205,7 +205,8 @@ def stem_of(value: object) -> str:
     >>> stem_of("#1f3f8f"), stem_of([4.0, -6, 5]), stem_of('["#200", "#fff"]')
     ('1f3f8f', '4,-6,5', '200,fff')
     """
-    return text_of(value).translate(LEFT_OUT).replace(", ", ",")
+    text = f"{value:.6g}" if isinstance(value, float) else text_of(value)
+    return text.translate(LEFT_OUT).replace(", ", ",")
 
 
 def text_of(value: object) -> str:
