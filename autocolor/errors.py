@@ -43,7 +43,7 @@ class MissingInputError(InputError):
 
 
 class UnavailableError(AutocolorError):
-    """A screen or an optional package that this machine lacks, or a display that does not answer."""
+    """A screen or an optional package that is missing, a display without an answer, or workers that ended."""
 
     exit_code = 69
 

@@ -136,7 +136,8 @@ def test_the_sdist_holds_what_the_tests_need(installed: Installed) -> None:
     scenes = {path.relative_to(ROOT).as_posix() for path in (ROOT / "scenes").rglob("*.py")}
     kept = {path.relative_to(ROOT).as_posix() for path in (ROOT / "docs").glob("*.*")}
     documents = kept | {"CHANGELOG.md", "CONTRIBUTING.md", "README.md", "pyproject.toml", "setup.py"}
-    assert tests | scenes | documents <= installed.in_sdist
+    examples = {path.relative_to(ROOT).as_posix() for path in (ROOT / "examples").glob("*.*")}
+    assert tests | scenes | documents | examples <= installed.in_sdist
 
 
 def test_the_wheel_names_both_commands(installed: Installed) -> None:

@@ -24,7 +24,7 @@ from autocolor.batches.sheet import Box, ContactSheet, read_thumbnail
 from autocolor.batches.table import TABLE_BEGINS, Result, Rows, Variant, results_bytes, variants_of
 from autocolor.budget import allowing, validated_limit
 from autocolor.checks import shown
-from autocolor.errors import OutputError, UnavailableError, UsageError, reason_of
+from autocolor.errors import InputError, OutputError, UnavailableError, UsageError, reason_of
 from autocolor.files.picture_file import SavedPicture, read_picture
 from autocolor.files.scene_sources import is_picture, read_scene
 from autocolor.files.writing import check_suffix, refuse_output, write_atomically
@@ -41,8 +41,8 @@ Source = Scene | SavedPicture | tuple[Scene, Picture] | str | PathLike[str]
 RUNS: Final = 16
 """The most variants of a run, unless the caller chooses.
 
-Measured: with 16, the picture that travels takes 1 % of a run's time, and 1,000 variants still occupy many
-processors alike.
+Measured: to hand out the coupe's picture takes this process 1.6 ms for each variant alone, and 0.2 ms a
+variant with 16. With 1, 4, 16 and 64, two processes take the same time within a tenth.
 """
 
 MOST_IN_RUN: Final = 10_000
@@ -126,6 +126,9 @@ class Batch:
 
         Raises UnavailableError if workers end.
         """
+        if len(present) == len(self.variants):
+            yield from (number for run in runs for number in run)
+            return
         start = Start(self.scene, self.picture if self.picture is not None else self._picture_of_all())
         window, waiting = self._window(executor), iter(runs)
         pending: dict[Future[list[Made]], Sequence[int]] = {}
@@ -153,8 +156,10 @@ class Batch:
         keys = {key for variant in self.variants for key in variant.settings}
         if any(key == "words" or tier_of(self.scene, key) >= Tier.MIX for key in keys):
             return None
-        with allowing(self.drawing.limit):
+        # If it cannot be rendered, each variant has this problem.
+        with suppress(InputError), allowing(self.drawing.limit):
             return rendering(self.scene, *self.drawing.raster).picture
+        return None
 
     def _window(self, executor: Executor) -> int:
         """How many runs an executor gets at once."""
@@ -186,9 +191,17 @@ class Batch:
     def _write(self, path: str, data: bytes) -> None:
         """Write a file and, if it is missing, its folder. Raises OutputError, WriteError."""
         _make_folder(path)
-        # An earlier picture of a batch may be replaced, the file of a stranger never.
-        is_ours = self.resume and mark_in(path, self.drawing.form) != ""
+        # An earlier picture of a batch may be replaced, and an empty file, as after a power failure without
+        # `sync`; the file of a stranger never.
+        is_ours = self.resume and (mark_in(path, self.drawing.form) != "" or _is_empty(path))
         write_atomically(path, data, overwrite=self.overwrite or is_ours, sync=self.sync)
+
+
+def _is_empty(path: str) -> bool:
+    """Whether there is a file without a byte at a path."""
+    with suppress(OSError):
+        return os.path.isfile(path) and os.path.getsize(path) == 0
+    return False
 
 
 def _make_folder(path: str | PathLike[str]) -> None:

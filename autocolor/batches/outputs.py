@@ -20,7 +20,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from autocolor.arrays import Bytes
-from autocolor.batches.table import Variant, text_of
+from autocolor.batches.table import Variant, stem_of
 from autocolor.checks import either, nearest, shown
 from autocolor.errors import UsageError
 from autocolor.files.paths import file_stem
@@ -73,7 +73,7 @@ class Pattern:
             if key == NAME:
                 return _safe(variant.name)
             settings = variant.settings
-            return _safe(text_of(settings[key]).lstrip("#")) if key in settings else self._own[key]
+            return _safe(stem_of(settings[key])) if key in settings else self._own[key]
 
         return FIELD.sub(part, self.text)
 
@@ -90,7 +90,7 @@ def _own_text(scene: Scene, key: str) -> str:
     field = field_of(place)
     value = value_at(scene, place)
     plain = {} if field is None or value is None else field.column.kind.to_plain(place.path[-1], value)
-    return _safe(text_of(plain.get(place.path[-1])).lstrip("#"))
+    return _safe(stem_of(plain.get(place.path[-1])))
 
 
 def _safe(text: str) -> str:

@@ -191,9 +191,22 @@ def _varying(settings: Sequence[Mapping[str, object]]) -> list[str]:
 
 def _label(settings: Mapping[str, object], keys: Iterable[str], number: int) -> str:
     """The values of some keys as a stem of a file, such as "navy-0.5"; the number if there are no values."""
-    texts = [text_of(settings[key]).lstrip("#") for key in keys if key in settings]
-    text = "-".join(filter(None, texts)).replace("/", "_").replace("\\", "_")
+    text = "-".join(filter(None, (stem_of(settings[key]) for key in keys if key in settings)))
     return file_stem(text) if text.strip(" .") else str(number)
+
+
+LEFT_OUT: Final = str.maketrans(dict.fromkeys("#[]{}\"'")) | {ord("/"): "_", ord("\\"): "_"}
+"""Marks of colors, lists and texts, which names of files leave out, and marks of folders."""
+
+
+def stem_of(value: object) -> str:
+    """A plain value or a text of it as a part of a name, without the marks of colors, lists and texts.
+
+    >>> stem_of("#1f3f8f"), stem_of([4.0, -6, 5]), stem_of('["#200", "#fff"]')
+    ('1f3f8f', '4,-6,5', '200,fff')
+    """
+    text = f"{value:.6g}" if isinstance(value, float) else text_of(value)
+    return text.translate(LEFT_OUT).replace(", ", ",")
 
 
 def text_of(value: object) -> str:

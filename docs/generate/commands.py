@@ -55,7 +55,7 @@ MEANINGS = {
     2: "the command line is wrong",
     65: "the input is wrong",
     66: "the input is not there",
-    69: "no screen, no display at the address, or a package is missing",
+    69: "no screen, no display at the address, a package is missing, or the processes of `--jobs` ended",
     70: "a fault of ours; the message says how to report it",
     71: "not enough memory",
     73: "the output exists, or cannot be made where it is",

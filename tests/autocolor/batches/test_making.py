@@ -41,6 +41,7 @@ from autocolor.batches.making import MORE_THAN_WORKERS
 from autocolor.batches.outputs import mark_in
 from autocolor.batches.table import Result, Variant, variants_of
 from autocolor.files.settings import scene_with
+from autocolor.rendering import Rendering, rendering
 from autocolor.scene.columns import Tier
 from tests.autocolor.meshes import wall_scene
 
@@ -123,6 +124,23 @@ def test_any_executor_gives_the_same_bytes(monkeypatch: pytest.MonkeyPatch) -> N
         assert images(batch(scene, GRID, size=SIZE, form="png", executor=threads, runs=2)) == expected
     monkeypatch.setattr(making, "wait", wait_last)
     assert images(batch(scene, GRID, size=SIZE, form="png", executor=Reversed(), runs=1)) == expected
+
+
+@pytest.mark.parametrize(("rows", "count"), [(PAINTS, 1), (GRID, 0)])
+def test_a_picture_is_rendered_here_for_an_executor_if_it_is_the_picture_of_all_variants(
+    monkeypatch: pytest.MonkeyPatch, rows: tuple[Variant, ...], count: int
+) -> None:
+    rendered = []
+
+    def counted(scene: Scene, lines: int, elements: int) -> Rendering:
+        rendered.append(rendering(scene, lines, elements))
+        return rendered[-1]
+
+    monkeypatch.setattr(making, "rendering", counted)
+    with ThreadPoolExecutor(1) as threads:
+        results = batch(wall_scene(), rows, size=SIZE, executor=threads)
+    assert len(rendered) == count
+    assert [result.tier for result in results].count(Tier.FRAME) == (0 if count else 2)
 
 
 def test_processes_give_the_same_bytes_from_a_scene_and_from_a_picture() -> None:
@@ -223,6 +241,10 @@ def test_a_stopped_batch_is_resumed_and_loses_nothing(tmp_path: Path) -> None:
     assert files(results) == images(batch(scene, PAINTS, size=SIZE, form="png"))
     whole = tmp_path / "whole.png"
     batch(scene, PAINTS, tmp_path / "whole" / "{number}.png", size=SIZE, sheet=whole)
+    with ThreadPoolExecutor(1) as threads:
+        for ordered in (False, True):
+            again = batch(scene, PAINTS, output, size=SIZE, resume=True, executor=threads, ordered=ordered)
+            assert not any(result.was_made for result in again)
     assert sheet.read_bytes() == whole.read_bytes() != half
     assert [row["path"] for row in rows_of(table)] == [result.path for result in results]
 
@@ -244,8 +266,13 @@ def test_what_differs_is_made_again_and_nothing_else(tmp_path: Path) -> None:
     # A damaged file, as after a power failure, and a missing file.
     (tmp_path / "7.png").write_bytes((tmp_path / "7.png").read_bytes()[:-1])
     (tmp_path / "9.png").unlink()
+    (tmp_path / "11.png").write_bytes(b"")
+    damaged, *_ = (each for each in batch(scene, rows, output, size=SIZE, resume=True) if each.problem)
+    assert damaged.name == PAINTS[6].name
+    (tmp_path / "9.png").unlink()
+    (tmp_path / "11.png").write_bytes(b"")
     results = batch(scene, rows, output, size=SIZE, resume=True, overwrite=True)
-    assert [number for number, result in enumerate(results, 1) if result.was_made] == [7, 9]
+    assert [number for number, result in enumerate(results, 1) if result.was_made] == [7, 9, 11]
     assert made(scene.replace(ambient=0.3), rows) == everything
     assert made(scene.replace(ambient=0.3), rows, level=9) == everything
     assert made(scene.replace(ambient=0.3), rows, smooth=2, level=9) == everything

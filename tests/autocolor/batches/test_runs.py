@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor import Picture, Scene, image, render
+from autocolor import Picture, Scene, View, image, render, scene_of
 from autocolor.batches import runs
 from autocolor.batches.outputs import FORMS
 from autocolor.batches.runs import Drawing, Start, VariantTask, make, make_run
@@ -17,7 +17,7 @@ from autocolor.files.settings import scene_with
 from autocolor.rendering import Rendering, rendering
 from autocolor.scene.columns import Tier
 from autocolor.scene.scene import cost_of_edit
-from tests.autocolor.meshes import wall_scene
+from tests.autocolor.meshes import cube, wall_scene
 
 SETTINGS = st.fixed_dictionaries(
     {},
@@ -97,6 +97,16 @@ def test_a_picture_is_rendered_again_only_where_a_variant_changes_the_light(
     made = [make(start, SMALL, VariantTask(n, each, "")) for n, each in enumerate(settings)]
     assert (counted.renderings, counted.frames) == (2, 1)
     assert [each.tier for each in made] == [None, Tier.FRAME, Tier.MIX, Tier.MIX]
+
+
+def test_words_that_stand_for_normals_need_a_rendering_of_a_picture() -> None:
+    scene = scene_of(cube(), view=View((3.0, -4.0, 2.0), target=(0.5, 0.5, 0.5)))
+    settings = {"words": "normals", "lights.key.position": [2, -3, 4]}
+    picture = render(scene_with(scene, {**settings, "words": "levels"}), 12, 16)
+    start = Start(scene_with(scene, {**settings, "words": "levels"}), picture)
+    made = make(start, SMALL, VariantTask(0, {"words": "normals"}, ""))
+    assert np.array_equal(made.image, alone(scene_with(scene, settings)))  # type: ignore[arg-type]
+    assert made.tier is Tier.FRAME
 
 
 def test_a_wrong_variant_has_its_problem_and_loses_no_other() -> None:

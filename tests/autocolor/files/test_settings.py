@@ -32,6 +32,9 @@ def plain_at(scene: Scene, key: str) -> Any:
 
 @given(scenes())
 def test_the_value_of_each_field_set_again_leaves_the_scene_as_it_is(scene: Scene) -> None:
+    for surface in scene.surfaces:
+        # A color of a surface would reset its ramp.
+        scene = scene.with_surface(surface.name, ramp=None)
     settings = {key: plain_at(scene, key) for key in keys_of_scene(scene)}
     present = {key: value for key, value in settings.items() if value is not None}
     assert len(present) > 20
