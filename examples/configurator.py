@@ -20,5 +20,12 @@ looks = [
 ]
 made = batch(car, looks, "looks/{name}.png", size=(320, 240), smooth=2, resume=True, sheet="looks.png")
 print(f"{len(made)} looks, {sum(bool(look.problem) for look in made)} failed")
-turned = frames(car, [looks[3]], 24, turn=360)
-animate(car, turned, "turntable.webp", size=(320, 240), smooth=2, overwrite=True)
+whole = car.with_view(field_of_view=30)
+animate(
+    whole,
+    frames(whole, [looks[3]], 24, turn=360),
+    "turntable.webp",
+    size=(320, 240),
+    smooth=2,
+    overwrite=True,
+)
