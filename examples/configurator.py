@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from autocolor import Variant, animate, batch, frames, read_palette, read_scene
 
-car = read_scene("scenes/coupe")
+car = read_scene("scenes/coupe").with_view(field_of_view=30)
 paints = read_palette("examples/paints.gpl")
 evening = {"lights.key.intensity": 0.3, "lights.rim.intensity": 1.5}
 spot = {"lights.side.on": False, "lights.back.on": False, "lights.key.concentration": 30.0}
@@ -20,12 +20,5 @@ looks = [
 ]
 made = batch(car, looks, "looks/{name}.png", size=(320, 240), smooth=2, resume=True, sheet="looks.png")
 print(f"{len(made)} looks, {sum(bool(look.problem) for look in made)} failed")
-whole = car.with_view(field_of_view=30)
-animate(
-    whole,
-    frames(whole, [looks[3]], 24, turn=360),
-    "turntable.webp",
-    size=(320, 240),
-    smooth=2,
-    overwrite=True,
-)
+turned = frames(car, [looks[3]], 24, turn=360)
+animate(car, turned, "turntable.webp", size=(320, 240), smooth=2, overwrite=True)
