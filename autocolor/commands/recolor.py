@@ -11,7 +11,7 @@ import click
 from autocolor.commands.completion import complete_colors, complete_pictures, complete_surfaces
 from autocolor.commands.options import as_usage, limit_option, verbose_option
 from autocolor.commands.outputs import refuse_outputs, tell_written, write_image
-from autocolor.commands.scenes import set_option, tell_unset
+from autocolor.commands.scenes import set_option
 from autocolor.errors import UsageError
 
 if TYPE_CHECKING:
@@ -139,7 +139,6 @@ def recolor(
         saved = read_picture(picture)
     logger.info("%r", saved.picture)
     scene = recolored(saved.scene, surface, given, settings)
-    tell_unset(saved.scene, scene)
     if save is not None:
         write_picture(save, scene, saved.picture, overwrite=force)
     if output is not None:
@@ -151,8 +150,11 @@ def recolor(
 def recolored(
     scene: Scene, surface: str | None, colors: Mapping[str, Any], settings: tuple[str, ...]
 ) -> Scene:
-    """The scene with settings and other colors of a surface. Raises UsageError if they need a rendering."""
-    from autocolor.commands.settings import with_settings
+    """The scene with settings and other colors of a surface.
+
+    Ramps and colors that are replaced are listed on stderr. Raises UsageError if a setting needs a rendering.
+    """
+    from autocolor.commands.settings import tell_unset, with_settings
     from autocolor.scene.columns import Tier
     from autocolor.scene.scene import costs_at_least
 
@@ -163,4 +165,6 @@ def recolored(
             " bands of a scalar; use it with `autocolor render`"
         )
     with as_usage():
-        return edited if surface is None else edited.with_surface(surface, **colors)
+        painted = edited if surface is None else edited.with_surface(surface, **colors)
+    tell_unset(edited, painted)
+    return painted

@@ -69,8 +69,17 @@ def test_colors_that_a_ramp_unsets_are_told_and_a_ramp_that_colors_unset(saved: 
     told = "autocolor: side: two colors and their blend replace its ramp\n"
     blend = ("recolor", "hot.npz", "side", "--blend", "0.5", "-o", "b.png")
     assert run(*blend).err == f"{told}wrote b.png\n"
-    setting = ("--set", "surfaces.side.ramp=red,blue", "-o", "c.png")
-    assert "side: the ramp replaces" in run("render", "scene", *setting).err
+    setting = ("--set", "surfaces.side.ramp=red,blue")
+    vary = ("--vary", "surfaces.side.ramp=[red,navy]")
+    for command in (
+        ("render", "scene", *setting, "-o", "c.png"),
+        ("recolor", "scene.npz", *setting, "-o", "d.png"),
+        ("palette", "scene.npz", "side", *setting),
+        ("palette", "scene", "side", *setting, "-o", "side.csv"),
+        ("sweep", "scene.npz", *setting, *vary, "-o", "{name}.png"),
+        ("sweep", "scene", *setting, *vary, "-o", "{name}-2.png"),
+    ):
+        assert run(*command).err.count("side: the ramp replaces") == 1, command
 
 
 def test_the_mesh_is_not_needed(saved: Path, run: Run) -> None:
