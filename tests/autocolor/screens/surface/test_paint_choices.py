@@ -225,10 +225,10 @@ def test_a_paint_is_taken_for_a_color_of_a_ramp(hand: PaintingHand) -> None:
     ramp = hand.paint.ramp
     assert ramp is not None
     hand.click(*paint_place(hand, 1))
-    assert hand.viewer.message == "color 1: Teal, #f8f32b"
-    assert hand.paint.ramp == ((248, 243, 43), *ramp[1:])
+    assert hand.viewer.message == "color 4: Teal, #f8f32b"
+    assert hand.paint.ramp == (*ramp[:3], (248, 243, 43), *ramp[4:])
     hand.viewer.board.paste("signal red")
-    assert hand.paint.ramp == ((165, 32, 25), *ramp[1:])
+    assert hand.paint.ramp == (*ramp[:3], (165, 32, 25), *ramp[4:])
 
 
 def test_a_name_that_is_pasted_in_the_picture_is_a_paint(hand: PaintingHand) -> None:
