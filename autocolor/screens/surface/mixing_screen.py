@@ -316,10 +316,12 @@ class MixingScreen(Screen):
     def _blend_text(self, paint: Paint) -> tuple[str, str]:
         """The heading of the bar between, and its number."""
         levels = self._levels.levels
+        label = "blend" if paint.ramp is None else "ramp"
+        if self.session.surface_name in self.session.studio.display_image.bands:
+            return label, "not shown: a scalar colors the surface"
         if paint.ramp is not None:
-            number = self._chosen.number_in(paint.ramp)
-            return "ramp", f"color {number + 1} of {len(paint.ramp)}"
-        return "blend", f"{paint.blend:.2f}, from level {blend_level(paint.blend, levels)} of {levels - 1}"
+            return label, f"color {self._chosen.number_in(paint.ramp) + 1} of {len(paint.ramp)}"
+        return label, f"{paint.blend:.2f}, from level {blend_level(paint.blend, levels)} of {levels - 1}"
 
     def sample(self, element: int, line: int) -> Sample | None:
         if self.session.chosen_surface is None:

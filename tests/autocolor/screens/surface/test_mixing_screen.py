@@ -14,6 +14,7 @@ from autocolor.scene.swatches import swatches
 from autocolor.screens.session import Clipboard
 from autocolor.screens.surface.mixing_palette import Crop, crop_of
 from autocolor.screens.surface.mixing_screen import (
+    BLEND,
     LIGHT_SOURCE,
     OBJECT,
     PICTURE,
@@ -23,9 +24,9 @@ from autocolor.screens.surface.mixing_screen import (
 )
 from autocolor.screens.viewer import Viewer
 from autocolor.widgets.bars import ComponentBar
-from autocolor.widgets.items import BLUE, GREEN, LIGHT_GRAY, NIGHT, RED, WHITE, Area
+from autocolor.widgets.items import BLUE, CHARACTER, GREEN, LIGHT_GRAY, NIGHT, RED, WHITE, Area, text
 from autocolor.widgets.menu import WORK
-from autocolor.widgets.widget import Place, Widget
+from autocolor.widgets.widget import TEXT_DOWN, Place, Widget
 from ramtek_emu import Ramtek9300
 from tests.autocolor.screens.mixing import (
     SHADES,
@@ -289,6 +290,16 @@ def test_rows_stay_in_their_places_when_a_ramp_is_switched(hand: PaintingHand) -
     # The color that is mixed first is bright enough to be seen.
     assert max(ramp_of(hand)[3]) > 100
     assert hand.widget("color 4, red")
+
+
+@pytest.mark.parametrize("ramp", [None, ["#000", "#f60"]])
+def test_the_bar_between_says_that_a_scalar_hides_the_paint(tmp_path: Path, ramp: list[str] | None) -> None:
+    scene = boxes_scene().with_surface("box 0", ramp=ramp)
+    hidden = "not shown: a scalar colors the surface"
+    heading = text(hidden, BLEND.right + 1 - CHARACTER * len(hidden), BLEND.top - 12 + TEXT_DOWN)
+    for is_hidden, shown in ((False, scene), (True, scene.with_scalar(name="z", surfaces=["box 0"]))):
+        hand = mixing(shown, tmp_path)
+        assert (heading in hand.viewer.board.screen.items()) == is_hidden
 
 
 def test_a_finish_replaces_a_ramp_and_another_surface_takes_it(hand: PaintingHand) -> None:
