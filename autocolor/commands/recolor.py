@@ -12,7 +12,7 @@ from autocolor.commands.completion import complete_colors, complete_pictures, co
 from autocolor.commands.options import as_usage, limit_option, verbose_option
 from autocolor.commands.outputs import refuse_outputs, tell_written, write_image
 from autocolor.commands.scenes import set_option
-from autocolor.errors import UsageError
+from autocolor.errors import InputError, UsageError
 
 if TYPE_CHECKING:
     from autocolor.scene.scene import Scene
@@ -127,9 +127,7 @@ def recolor(
     if palette is not None:
         if given:
             raise UsageError("--palette gives all colors of a surface; leave the other options of colors out")
-        from autocolor.files.palette_file import read_palette
-
-        given["ramp"] = read_palette(palette).colors.tolist()
+        given["ramp"] = ramp_of_file(palette)
 
     from autocolor.files.picture_file import read_picture, write_picture
     from autocolor.logs import logger_of, timed
@@ -145,6 +143,19 @@ def recolor(
         with timed(logger, "image written"):
             write_image(output, scene, saved.picture, force)
     tell_written(output, save)
+
+
+def ramp_of_file(path: str) -> list[list[int]]:
+    """The colors of a palette file. Raises InputError if their number cannot make a ramp."""
+    from autocolor.files.palette_file import read_palette
+    from autocolor.scene.surfaces import MOST_RAMP_COLORS
+
+    colors: list[list[int]] = read_palette(path).colors.tolist()
+    if not 2 <= len(colors) <= MOST_RAMP_COLORS:
+        advice = "choose some of them" if len(colors) > 1 else "use --object for a single color"
+        rule = f"a ramp must have 2 to {MOST_RAMP_COLORS:,} colors"
+        raise InputError(f"{Path(path).name}: {rule}, not {len(colors):,}; {advice}")
+    return colors
 
 
 def recolored(

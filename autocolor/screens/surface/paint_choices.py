@@ -76,7 +76,7 @@ class PaintChoices:
         self._recent: tuple[Color, ...] = ()
         self._pages: Cached[list[ColorPage]] = Cached()
         self._turned: tuple[Palette | None, int] = None, 0
-        """The page that was turned to, of the pages of these paints."""
+        """Paints, and the number of the page to which the user turned while they were shown."""
         self._taken = 0
         """The number of the color that was taken last, on its page."""
         self._before: dict[str, Paint] = {}

@@ -245,7 +245,12 @@ def test_a_palette_of_few_colors_is_a_ramp_over_the_levels(saved: Path, run: Run
 @pytest.mark.parametrize(
     ("arguments", "code", "message"),
     [
-        (("side", "--palette", "one.csv"), 2, "ramp must be a list of 2 to 1024 colors"),
+        (
+            ("side", "--palette", "one.csv"),
+            65,
+            "one.csv: a ramp must have 2 to 1,024 colors, not 1; use --object for a single color",
+        ),
+        (("side", "--palette", "many.csv"), 65, "colors, not 1,025; choose some of them"),
         (("side", "--palette", "no.gpl"), 66, "no.gpl: there is no such file"),
         (("side", "--palette", "one.csv", "--blend", "1"), 2, "--palette gives all colors of a surface;"),
         (("--palette", "one.csv"), 2, "recolor must have a SURFACE"),
@@ -255,6 +260,7 @@ def test_a_palette_that_is_no_ramp_is_refused(
     saved: Path, run: Run, arguments: tuple[str, ...], code: int, message: str
 ) -> None:
     write_palette("one.csv", ["red"])
+    write_palette("many.csv", ["red"] * 1025)
     ran = run("recolor", "scene.npz", *arguments)
     assert (ran.code, ran.out) == (code, "")
     assert message in ran.err
