@@ -154,7 +154,7 @@ def read_palette(path: str | os.PathLike[str]) -> Palette:
     palette_format = recognized(path, PALETTE_FORMATS)
     if palette_format is None:
         raise InputError(
-            f"{path.name}: a palette must {suffix_rule(path, SUFFIXES)}; save it as one of these"
+            f"{path.name or path}: a palette must {suffix_rule(path, SUFFIXES)}; save it as one of these"
         )
     return palette_format.read(read_bytes(path, LARGEST), path.name)
 

@@ -232,6 +232,8 @@ def test_a_bad_palette_is_refused_in_a_sentence(
 def test_a_palette_that_is_not_there_is_missing(tmp_path: Path) -> None:
     with pytest.raises(MissingInputError, match=r"no\.gpl: there is no such file"):
         read_palette(tmp_path / "no.gpl")
+    with pytest.raises(InputError, match=r"^\.: a palette must end in \.act, \.csv or \.gpl"):
+        read_palette(".")
 
 
 @pytest.mark.parametrize(
