@@ -21,7 +21,6 @@ from autocolor.commands.scenes import (
     reframed,
     scene_options,
     set_option,
-    tell_unset,
     tell_up,
 )
 
@@ -150,7 +149,6 @@ def render(
         mapped = display_image(original, rendered(original)).mapped
         original = original.replace(exposure=held_exposure(mapped, original.scaling, original.exposure))
     edited = created_again(report, with_settings(original, settings), elements / lines)
-    tell_unset(original, edited)
     if lights:
         edited = edited.only_lights(*lights)
     if output is None and save is None and is_image_alone:
