@@ -147,8 +147,8 @@ def save_words(
     """
     from ramtek_emu.png import indexed_png_bytes, word_png_bytes
 
-    check_suffix(path, ".png", "words")
     check_surfaces(scene, picture)
+    check_suffix(path, ".png", "words")
     shown_image = display_image(scene, picture)
     if indexed:
         is_used = np.bincount(shown_image.words.ravel(), minlength=WORDS) > 0

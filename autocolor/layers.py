@@ -83,9 +83,9 @@ def save_layers(
     OutputError if the file exists and `overwrite` is false, or if it cannot be created; WriteError if writing
     fails.
     """
+    check_surfaces(scene, picture)
     check_suffix(path, ".exr", "layers")
     library = open_exr()
-    check_surfaces(scene, picture)
     refuse_output(path, overwrite=overwrite)
     channels, attributes = layers_of(scene, picture)
     header = {"compression": library.ZIPS_COMPRESSION, "type": library.scanlineimage, **attributes}

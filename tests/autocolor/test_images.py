@@ -31,6 +31,7 @@ from autocolor import (
     write_picture,
 )
 from autocolor.images import LARGEST, MOST_INDEXED, averaged, display_image, size_of, smoothed
+from autocolor.layers import save_layers
 from autocolor.mapping.legend import legend
 from autocolor.mapping.ranges import SCREENS
 from autocolor.sending import shown_colors
@@ -123,6 +124,8 @@ def test_a_scene_and_a_picture_in_the_wrong_order_are_refused_in_words(tmp_path:
         lambda: image(picture, swapped),
         lambda: send_picture(picture, swapped, Ramtek9300(SMALL)),
         lambda: save_image(tmp_path / "cube.png", picture, swapped),
+        lambda: save_words(tmp_path / "cube.png", picture, swapped),
+        lambda: save_layers(tmp_path / "cube.exr", picture, swapped),
         lambda: write_picture(tmp_path / "cube.npz", picture, swapped),
     ):
         with pytest.raises(UsageError, match=r"^the scene must come before the picture, not after it; swap"):
@@ -134,6 +137,10 @@ def test_a_scene_and_a_picture_in_the_wrong_order_are_refused_in_words(tmp_path:
         image(picture, picture)
     with pytest.raises(UsageError, match=r"a picture must be a Picture, not Scene\(.*; `render` makes one"):
         image(scene, scene)  # type: ignore[arg-type]
+    name: Any = tmp_path / "cube"
+    for save in (save_image, save_words, save_layers, write_picture):
+        with pytest.raises(UsageError, match=r"^a picture must be a Picture, not "):
+            save(picture, scene, name)
 
 
 def test_a_picture_of_other_surfaces_is_refused() -> None:
