@@ -52,7 +52,7 @@ BYTES_OF_LIGHT: Final = 16
 """Measured where all pixels see polygons: bytes for each pixel, and more for each light that shines."""
 
 FIXED_LAYERS: Final = ("intensity", "ambient", "depth", "position", "normal", "crypto_surface", "crypto_part")
-"""The names of layers that are not those of lights."""
+"""The layers that belong to no light."""
 
 LONGEST_LAYER: Final = 200
 """Limit: bytes of a light's layer. OpenEXR allows 255 for the name of a channel."""
@@ -149,7 +149,7 @@ def layers_of(scene: Scene, picture: Picture) -> Layers:
 
 
 def _check_rendered(picture: Picture, again: Picture) -> None:
-    """Raise InputError unless a picture is the one that its scene has when it is rendered again."""
+    """Raise InputError unless rendering the scene again gave the same picture."""
     difference = np.abs(picture.intensity - again.intensity).max()
     if (
         difference > CLOSE * again.ranges.whole.maximum

@@ -458,6 +458,17 @@ def test_an_indexed_png_has_256_words_and_no_more(tmp_path: Path) -> None:
         assert not path.exists()
 
 
+def test_an_indexed_png_of_a_scalar_needs_fewer_bands(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(images, "MOST_INDEXED", 9)
+    scene = scene_of(cube(), scalar={"name": "z", "bands": 20, "shades": 8})
+    with pytest.raises(UsageError, match="choose fewer bands or shades of the scalar, or write"):
+        save_words(tmp_path / "z.png", scene, render(scene, 48, 64), indexed=True)
+    banded = scene.with_scalar(bands=4, shades=2)
+    save_words(tmp_path / "z.png", banded, render(banded, 48, 64), indexed=True)
+
+
 def test_words_are_never_written_over_a_file_unasked_nor_under_another_suffix(tmp_path: Path) -> None:
     scene = scene_of(cube())
     picture = render(scene, 6, 8)

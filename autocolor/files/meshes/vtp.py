@@ -255,7 +255,7 @@ class Document:
 
 
 def _ignored(tag: str, attributes: Mapping[str, str]) -> str:
-    """What an array is called that is skipped because of its type; empty if the array is read."""
+    """What messages call the arrays that are skipped for their type; empty for an array that is read."""
     kind = attributes.get("type", "")
     if tag == "Array" or kind == "String":
         return "arrays of texts"
@@ -539,7 +539,7 @@ class VtpFile:
 
 
 def _offset(array: DataArray) -> int | None:
-    """The offset of an array in the appended data; None if it has none, or if it is no number."""
+    """The offset of an array in the appended data; None unless the attribute is a whole number."""
     text = array.attributes.get("offset", "").strip()
     return int(text) if text.isascii() and text.isdigit() and len(text) <= 18 else None
 
