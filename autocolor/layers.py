@@ -47,9 +47,10 @@ from autocolor.lighting.shading import DIFFUSE, SPECULAR
 from autocolor.rendering import Rendering, rendering
 from autocolor.scene.scene import Scene
 
-BYTES_OF_PIXEL: Final = 130
-BYTES_OF_LIGHT: Final = 16
-"""Measured where all pixels see polygons: bytes for each pixel, and more for each light that shines."""
+BYTES_OF_PIXEL: Final = 140
+BYTES_OF_LIGHT: Final = 22
+"""Measured where all pixels see polygons, with the bytes of the file: for each pixel, and for each light that
+shines in it."""
 
 FIXED_LAYERS: Final = ("intensity", "ambient", "depth", "position", "normal", "crypto_surface", "crypto_part")
 """The layers that belong to no light."""
