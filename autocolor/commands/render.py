@@ -120,8 +120,8 @@ def render(
 ) -> None:
     """Render SCENE: a folder, a scene.toml, a mesh file or a picture file. Without SCENE, render the demo.
 
-    --layers, --words and --indexed write each pixel by itself. With one of them, the default of --smooth is
-    1; with --smooth N, their files have N times the lines and elements of the PNG.
+    --layers, --words and --indexed never average pixels. If you give any of these options, --smooth is 1 by
+    default; with --smooth N, their files have N times the lines and elements of the PNG.
     """
     from autocolor.commands.settings import with_settings
 
