@@ -121,7 +121,7 @@ class MixingScreen(Screen):
 
     name = "mixing"
     title = "color mixing"
-    help = "Drag the bars to mix the colors; drag the bar between to blend them"
+    help = "Drag the bars to mix colors; the bar between blends them, or picks from a ramp"
 
     def __init__(self, session: Session) -> None:
         super().__init__(session)

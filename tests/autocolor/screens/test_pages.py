@@ -22,7 +22,7 @@ PAGES = {
     "light and view": 3442920221,
     "lights": 2635481227,
     "reflectance": 571573069,
-    "mixing": 1650877233,
+    "mixing": 1_328_086_564,
     "blending": 4232246749,
     "mapping": 2296462326,
     "scalar": 648425415,
