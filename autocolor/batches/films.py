@@ -11,8 +11,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
-from contextlib import closing
+from contextlib import closing, contextmanager
 from io import BytesIO
+from numbers import Real
 from os import PathLike, fspath
 from pathlib import Path
 from typing import Final, NamedTuple
@@ -151,7 +152,7 @@ def check_rate(frames_per_second: float, kind: str) -> None:
     from ramtek_emu.films import LEAST_RATE, MOST_GIF_RATE, MOST_RATE
 
     most = MOST_GIF_RATE if kind == ".gif" else MOST_RATE
-    is_number = isinstance(frames_per_second, (int, float)) and not isinstance(frames_per_second, bool)
+    is_number = isinstance(frames_per_second, Real) and not isinstance(frames_per_second, bool)
     if not is_number or not LEAST_RATE <= frames_per_second <= most:
         raise UsageError(
             f"the frames per second must be a number from {LEAST_RATE:g} to {most:g}, not"
@@ -201,7 +202,8 @@ def _stream(
         raise UsageError("a stream must have smooth=1, because a display cannot average; leave it out")
     first: Scene | None = None
     for number, variant in enumerate(variants, 1):
-        scene = scene_with(batch.scene, variant.settings)
+        with _naming(number):
+            scene = scene_with(batch.scene, variant.settings)
         first = first or scene
         _check_entries_alone(first, scene, variants, number)
     file = BytesIO()
@@ -213,10 +215,20 @@ def _stream(
 def _images(batch: Batch, tell: Progress) -> Iterator[DisplayImage]:
     """The display images of the variants of a batch."""
     start = Start(batch.scene, batch.picture)
-    for variant in batch.variants:
-        image, tier = start.image_of(variant.settings, batch.drawing)
+    for number, variant in enumerate(batch.variants, 1):
+        with _naming(number):
+            image, tier = start.image_of(variant.settings, batch.drawing)
         yield image
         tell(Result(variant.name, variant.settings, tier=tier))
+
+
+@contextmanager
+def _naming(number: int) -> Iterator[None]:
+    """Raise an InputError with the number of the frame for a frame that cannot be made."""
+    try:
+        yield
+    except (InputError, UsageError) as error:
+        raise InputError(f"frame {number}: {problem}" for problem in error.problems) from None
 
 
 def _check_entries_alone(first: Scene, other: Scene, variants: tuple[Variant, ...], number: int) -> None:

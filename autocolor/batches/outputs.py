@@ -172,7 +172,7 @@ def form_of(output: str | os.PathLike[str] | None, form: str | None) -> str:
     if suffix not in forms:
         raise UsageError(
             f"the pictures of a batch must be written to files that end in {' or '.join(forms)}, not to"
-            f" {output}; rename them"
+            f" {shown(str(output))}; rename them"
         )
     if form not in (None, forms[suffix]):
         raise UsageError(f"the suffix of {output} must be that of the form {shown(form)}; leave the form out")

@@ -18,7 +18,15 @@ from autocolor.commands.options import (
     with_normals,
 )
 from autocolor.commands.scenes import SceneSource, scene_options, set_option
-from autocolor.commands.sweep import jobs_option, progress, refuse_keys, start_of, table_option, workers
+from autocolor.commands.sweep import (
+    jobs_option,
+    progress,
+    refuse_keys,
+    start_of,
+    table_option,
+    tell_paints,
+    workers,
+)
 from autocolor.errors import InputError, UsageError
 from ramtek_emu.command_line import tell
 
@@ -138,6 +146,7 @@ def animate(
     tables += [varied(text) for text in varies]
     start, code = start_of(source, settings, size)
     refuse_keys(start, tables, table)
+    tell_paints(start, tables)
     start = prepared(start, normals, hold_exposure, size)
     is_picture = isinstance(start, tuple)
     own = tables[: 0 if table is None else 1]
