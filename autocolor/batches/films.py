@@ -79,9 +79,9 @@ def animate(
 
         autocolor.animate(scene, autocolor.frames(scene, [], 72, turn=360), "around.webp")
 
-    A frame costs its edit from the frame before. Frames come one by one, so that memory is bounded; only a
-    WebP keeps the encoded frames until its end. With `loop`, a film begins again at its end. `size` and
-    `smooth` are those of `render`. `path` may be a pattern of numbered pictures, such as
+    A frame costs its edit from the frame before. Memory is bounded, because each frame is written when it is
+    made; only a WebP and a stream are in memory until their end. With `loop`, a film begins again at its end.
+    `size` and `smooth` are those of `render`. `path` may be a pattern of numbered pictures, such as
     "frame-{number:04}.png". A file that ends in .ramtek has the words of the first frame and then a load of
     the lookup table for each frame.
 
@@ -199,7 +199,10 @@ def _stream(
     refuse_output(path, overwrite=overwrite)
     batch = checked_batch(source, variants, None, size=size, smooth=smooth, ordered=True)
     if batch.drawing.smooth > 1:
-        raise UsageError("a stream must have smooth=1, because a display cannot average; leave it out")
+        raise UsageError(
+            "a stream must have smooth=1, because a display cannot average; leave it out, or render the"
+            " picture file with --smooth 1"
+        )
     first: Scene | None = None
     for number, variant in enumerate(variants, 1):
         with _naming(number):

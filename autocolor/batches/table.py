@@ -355,7 +355,7 @@ def varied(text: str) -> tuple[Variant, ...]:
     [{'view.eye': '[1,2,3]'}, {'view.eye': '[4,5,6]'}]
     """
     key, equals, values = (part.strip() for part in text.partition("="))
-    if not (key and equals and values) or len(values) > LONGEST_LIST:
+    if not (key and equals and values) or key in (NAME, TIME) or len(values) > LONGEST_LIST:
         raise UsageError(
             f"--vary must be KEY=A,B,C or KEY=START:STOP:COUNT, not {shown(text)}; write it as in"
             " surfaces.body.object_color=red,navy"

@@ -238,6 +238,7 @@ def test_a_table_of_another_kind_and_a_large_file_are_refused(tmp_path: Path) ->
         (lambda: products([varied("a=1,2"), varied("a=3")]), "a key must be in one table or list, not 'a'"),
         (lambda: varied("a"), "--vary must be KEY=A,B,C or KEY=START:STOP:COUNT, not 'a'; write it as in"),
         (lambda: varied("=1"), "--vary must be KEY=A,B,C"),
+        (lambda: varied("name=a,b"), "--vary must be KEY=A,B,C"),
         (lambda: varied("a=1,,2"), "--vary a: there must be a value before and after each comma"),
         (lambda: varied("a=0:1:1"), "--vary a: START and STOP must be finite, and COUNT 2 to 100,000, not"),
         (lambda: varied("a=0:1e999:3"), "--vary a: START and STOP must be finite"),
