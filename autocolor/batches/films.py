@@ -75,7 +75,7 @@ def animate(
     overwrite: bool = False,
     progress: Progress | None = None,
 ) -> Film:
-    """Write the frames of an animation, such as those of `frames`, to a file whose suffix gives its format.
+    """Write the frames of an animation to a file; its suffix gives the format.
 
         autocolor.animate(scene, autocolor.frames(scene, [], 72, turn=360), "around.webp")
 

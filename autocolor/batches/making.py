@@ -77,7 +77,7 @@ class Batch:
     paths: tuple[str, ...]
     drawing: Drawing
     base: str
-    """The checksum of what all variants are made from."""
+    """The checksum of the scene, its picture and the drawing."""
     executor: Executor | None
     runs: int
     ordered: bool
@@ -125,7 +125,7 @@ class Batch:
     def _made_here(
         self, runs: Iterable[Sequence[int]], present: Set[int]
     ) -> Generator[Made | int, None, None]:
-        """What is made of the runs in this process; of a variant that is present, its number."""
+        """The pictures of the runs, made in this process. A present variant gives its number alone."""
         start = Start(self.scene, self.picture)
         for number in (number for run in runs for number in run):
             yield number if number in present else make(start, self.drawing, self._task(number))
@@ -133,7 +133,7 @@ class Batch:
     def _made_by(
         self, executor: Executor, runs: Iterable[Sequence[int]], present: Set[int]
     ) -> Generator[Made | int, None, None]:
-        """What an executor makes of the runs; of a variant that is present, its number.
+        """The pictures of the runs, made by an executor. A present variant gives its number alone.
 
         Raises UnavailableError if workers end.
         """
@@ -167,7 +167,7 @@ class Batch:
         keys = {key for variant in self.variants for key in variant.settings}
         if any(key == "words" or tier_of(self.scene, key) >= Tier.MIX for key in keys):
             return None
-        # If it cannot be rendered, each variant has this problem.
+        # If rendering fails, the result of each variant says why.
         with suppress(InputError), allowing(self.drawing.limit):
             return rendering(self.scene, *self.drawing.raster).picture
         return None

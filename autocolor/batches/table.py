@@ -271,7 +271,7 @@ def results_bytes(results: Sequence[Result]) -> bytes:
 
 
 def _cell(value: object) -> str:
-    """A value as a table of variants has it."""
+    """A value as a cell of a table of variants."""
     is_nested = isinstance(value, (list, tuple, Mapping))
     return json.dumps(value, default=repr) if is_nested else text_of(value)
 
@@ -456,7 +456,7 @@ def _csv_rows(data: bytes, file: str) -> Iterator[_Row]:
 
 
 def _time(text: str) -> float | str:
-    """The number in a text; the text itself, which `Variant` refuses, if there is none."""
+    """The number in a text. A text without a number is returned as it is, and `Variant` refuses it."""
     return float(text) if re.fullmatch(NUMBER, text) else text
 
 

@@ -22,6 +22,7 @@ from autocolor.commands.sweep import (
     jobs_option,
     progress,
     refuse_keys,
+    scene_in,
     start_of,
     table_option,
     tell_paints,
@@ -151,9 +152,8 @@ def animate(
     is_picture = isinstance(start, tuple)
     own = tables[: 0 if table is None else 1]
     tracks = [*own, *in_step(tables[len(own) :])]
-    scene = start.scene if isinstance(start, tuple) else start
     with as_usage() if table is None else nullcontext():
-        frames = frames_of_tracks(scene, tracks, count, turn=turn)
+        frames = frames_of_tracks(scene_in(start), tracks, count, turn=turn)
     by_size = None if is_picture or kind == films.STREAM else smooth_of(smooth, size)
     with progress(len(frames)) as step, workers(jobs) as executor:
         film = films.animate(
@@ -190,7 +190,7 @@ def prepared(
         raise UsageError(
             "--normals is for a scene, not for a picture file, which has no normals; leave it out"
         )
-    scene = with_normals(start.scene if isinstance(start, tuple) else start, normals)
+    scene = with_normals(scene_in(start), normals)
     if hold_exposure:
         elements, lines = size
         picture = start.picture if isinstance(start, tuple) else render(scene, lines, elements)

@@ -193,6 +193,11 @@ def start_of(
     return scene, ended(report, source)
 
 
+def scene_in(start: Scene | SavedPicture) -> Scene:
+    """The scene, or the scene of a picture."""
+    return start.scene if isinstance(start, tuple) else start
+
+
 def refuse_keys(start: Scene | SavedPicture, tables: list[tuple[Variant, ...]], table: str | None) -> None:
     """Refuse keys that the scene does not have, before anything is made.
 
@@ -200,7 +205,7 @@ def refuse_keys(start: Scene | SavedPicture, tables: list[tuple[Variant, ...]], 
     """
     from autocolor.files.settings import place_of
 
-    scene = start.scene if isinstance(start, tuple) else start
+    scene = scene_in(start)
     for number, variants in enumerate(tables):
         for key in dict.fromkeys(key for variant in variants for key in variant.settings):
             try:
@@ -216,7 +221,7 @@ def tell_paints(start: Scene | SavedPicture, tables: list[tuple[Variant, ...]]) 
     from autocolor.files.settings import UNSET, scene_with
     from autocolor.scene.scene import unset_paints
 
-    scene = start.scene if isinstance(start, tuple) else start
+    scene = scene_in(start)
     sentences, checked = dict[str, None](), set[frozenset[str]]()
     for variant in (variant for table in tables for variant in table):
         keys = frozenset(key for key, value in variant.settings.items() if value not in (None, UNSET))
