@@ -93,9 +93,15 @@ def _own_text(scene: Scene, key: str) -> str:
     return _safe(stem_of(plain.get(place.path[-1])))
 
 
+LONGEST_PART: Final = 200
+"""Limit: bytes of a part of a file name, in UTF-8. Most systems allow 255 for the whole name."""
+
+
 def _safe(text: str) -> str:
-    """The text as a part of a file name."""
-    return file_stem(text.replace("/", "_"))
+    """The text as a part of a file name, cut to LONGEST_PART."""
+    stem = file_stem(text.replace("/", "_"))
+    data = stem.encode("utf-8", "surrogatepass")
+    return stem if len(data) <= LONGEST_PART else data[:LONGEST_PART].decode("utf-8", "ignore")
 
 
 # Forms.
