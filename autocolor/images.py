@@ -147,16 +147,17 @@ def save_words(
     """
     from ramtek_emu.png import indexed_png_bytes, word_png_bytes
 
-    check_suffix(path, ".png", "words")
     check_surfaces(scene, picture)
+    check_suffix(path, ".png", "words")
     shown_image = display_image(scene, picture)
     if indexed:
         is_used = np.bincount(shown_image.words.ravel(), minlength=WORDS) > 0
         if (count := np.count_nonzero(is_used)) > MOST_INDEXED:
             levels = max(FEWEST_LEVELS, (MOST_INDEXED - 1) // len(shown_image.ranges))
+            fewer = "" if scene.scalar is None else ", choose fewer bands or shades of the scalar"
             raise UsageError(
                 f"an indexed PNG must have at most {MOST_INDEXED} words in use, not {count:,}; set `levels`"
-                f" of each surface to {levels}, or write the words themselves"
+                f" of each surface to {levels}{fewer}, or write the words themselves"
             )
         index_of_word = (np.cumsum(is_used) - 1).astype(np.uint8)
         data = indexed_png_bytes(index_of_word[shown_image.words], shown_image.entries[is_used])

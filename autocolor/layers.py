@@ -47,12 +47,13 @@ from autocolor.lighting.shading import DIFFUSE, SPECULAR
 from autocolor.rendering import Rendering, rendering
 from autocolor.scene.scene import Scene
 
-BYTES_OF_PIXEL: Final = 130
-BYTES_OF_LIGHT: Final = 16
-"""Measured where all pixels see polygons: bytes for each pixel, and more for each light that shines."""
+BYTES_OF_PIXEL: Final = 140
+BYTES_OF_LIGHT: Final = 22
+"""Measured where all pixels see polygons, with the bytes of the file: for each pixel, and for each light that
+shines in it."""
 
 FIXED_LAYERS: Final = ("intensity", "ambient", "depth", "position", "normal", "crypto_surface", "crypto_part")
-"""The names of layers that are not those of lights."""
+"""The layers that belong to no light."""
 
 LONGEST_LAYER: Final = 200
 """Limit: bytes of a light's layer. OpenEXR allows 255 for the name of a channel."""
@@ -83,9 +84,9 @@ def save_layers(
     OutputError if the file exists and `overwrite` is false, or if it cannot be created; WriteError if writing
     fails.
     """
+    check_surfaces(scene, picture)
     check_suffix(path, ".exr", "layers")
     library = open_exr()
-    check_surfaces(scene, picture)
     refuse_output(path, overwrite=overwrite)
     channels, attributes = layers_of(scene, picture)
     header = {"compression": library.ZIPS_COMPRESSION, "type": library.scanlineimage, **attributes}
@@ -149,7 +150,7 @@ def layers_of(scene: Scene, picture: Picture) -> Layers:
 
 
 def _check_rendered(picture: Picture, again: Picture) -> None:
-    """Raise InputError unless a picture is the one that its scene has when it is rendered again."""
+    """Raise InputError unless rendering the scene again gave the same picture."""
     difference = np.abs(picture.intensity - again.intensity).max()
     if (
         difference > CLOSE * again.ranges.whole.maximum
@@ -213,8 +214,8 @@ def cryptomatte(layer: str, names: Sequence[str], numbers: Bytes | PartNumbers) 
     second is empty (B, A). The manifest has the names that are visible. Format: "Cryptomatte Specification",
     Psyop, 2018: version 1.2.
     """
-    hashes = [murmur_hash(name.encode("utf-8", "replace")) for name in names]
-    identities = np.array([0.0, *map(identity, hashes)], np.float32)
+    bits = [identity(murmur_hash(name.encode("utf-8", "replace"))) for name in names]
+    identities = np.array([0, *bits], np.uint32).view(np.float32)
     none = np.zeros(numbers.shape, np.float32)
     channels = {
         f"{layer}00.R": identities[numbers],
@@ -223,7 +224,7 @@ def cryptomatte(layer: str, names: Sequence[str], numbers: Bytes | PartNumbers) 
         f"{layer}00.A": none,
     }
     visible = np.flatnonzero(np.bincount(numbers.ravel(), minlength=1 + len(names))[1:]).tolist()
-    manifest = {names[k]: f"{hashes[k]:08x}" for k in visible}
+    manifest = {names[k]: f"{bits[k]:08x}" for k in visible}
     key = f"cryptomatte/{murmur_hash(layer.encode()):08x}"[: len("cryptomatte/") + 7]
     attributes = {
         f"{key}/name": layer,
@@ -234,17 +235,15 @@ def cryptomatte(layer: str, names: Sequence[str], numbers: Bytes | PartNumbers) 
     return Layers(channels, attributes)
 
 
-def identity(number: int) -> np.float32:
-    """The float32 whose bits are a hash. If all bits of its exponent are equal, the last of them is flipped.
+def identity(number: int) -> int:
+    """The bits of the float32 that stands for a hash: its own, so that the float is finite and not tiny.
 
-    So the number is finite and normal.
+    If all bits of the float's exponent would be equal, the last of them is flipped.
 
-    >>> identity(0x3F800000), identity(0x7FC00000)
-    (np.float32(1.0), np.float32(2.5521178e+38))
+    >>> f"{identity(0x3F800000):x} {identity(0x7FC00000):x}"
+    '3f800000 7f400000'
     """
-    if number >> 23 & 255 in (0, 255):
-        number ^= 1 << 23
-    return np.uint32(number).view(np.float32)
+    return number ^ 1 << 23 if number >> 23 & 255 in (0, 255) else number
 
 
 def murmur_hash(data: bytes) -> int:

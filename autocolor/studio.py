@@ -179,7 +179,8 @@ class Studio:
         """Change the colors of a surface; this sends entries, but no words.
 
         `changes` are fields of its Paint: object_color and light_color ("#rrggbb", a name, or three whole
-        numbers), blend, light_percentage; or a ramp, which replaces the two colors and their blend.
+        numbers), blend, light_percentage; or a ramp. A ramp replaces the two colors and their blend, and any
+        of these replaces a ramp; the others then have their defaults.
 
             studio.recolor("body", ramp=["#200", "#f60", "#fff"])
         """

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from autocolor import Variant, animate, batch, frames, read_palette, read_scene
 
-car = read_scene("scenes/coupe")
+car = read_scene("scenes/coupe").with_view(field_of_view=30)
 paints = read_palette("examples/paints.gpl")
 evening = {"lights.key.intensity": 0.3, "lights.rim.intensity": 1.5}
 spot = {"lights.side.on": False, "lights.back.on": False, "lights.key.concentration": 30.0}

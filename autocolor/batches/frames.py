@@ -23,9 +23,10 @@ from typing import Any, Final
 from autocolor.batches.table import MOST_VARIANTS, Rows, Variant, variants_of
 from autocolor.checks import shown
 from autocolor.errors import InputError, UsageError
-from autocolor.files.settings import SettingPlace, field_of, place_of, scene_with, value_at
+from autocolor.files.settings import SettingPlace, field_of, place_of, row_at, scene_with, value_at
 from autocolor.scene.row_kinds import OneRowOf
 from autocolor.scene.scene import Scene, check_scene, cost_of_edit
+from autocolor.scene.surfaces import Paint, Surface
 from autocolor.scene.view import VERTICAL
 
 SAME_TIME: Final = 1e-9
@@ -174,7 +175,10 @@ class _Track:
         """The values of all keys in a scene between two variants, as settings."""
         settings: dict[str, object] = {}
         for key, place in self.places.items():
-            field, value = field_of(place), value_at(between, place)
+            field, value, row = field_of(place), value_at(between, place), row_at(between, place)
+            if isinstance(row, Surface) and row.paint.ramp and place.path[-1] in Paint.alternatives[0]:
+                # Two colors beside a ramp would be refused.
+                continue
             if field is None:
                 # The key is a whole inline row, which holds.
                 settings |= {key: earlier.settings[key]} if key in earlier.settings else {}

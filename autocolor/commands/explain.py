@@ -16,7 +16,6 @@ from autocolor.commands.scenes import (
     reframed,
     scene_options,
     set_option,
-    tell_unset,
     tell_up,
 )
 from ramtek_emu.command_line import tell
@@ -63,7 +62,6 @@ def explain(
     report = reframed(read(source), elements / lines)
     tell_up(report, source)
     scene = created_again(report, with_settings(report.scene, settings), elements / lines)
-    tell_unset(report.scene, scene)
     rendered = rendering(scene, lines, elements)
     image = display_image(scene, rendered.picture)
     explanation = explained(Sight(scene, rendered.points), image, line, element)

@@ -50,8 +50,8 @@ def palette(
 ) -> None:
     """Write the lookup table entries of SURFACE to a palette file, from its lowest level up.
 
-    SCENE may be a picture file, of which nothing is rendered. Of another scene they are the entries of its
-    picture on the display. With `recolor --palette` the colors become a ramp of the surface.
+    SCENE may be a picture file, which needs no rendering. Any other scene is rendered in the size of the
+    display. With `recolor --palette` the colors become a ramp of the surface.
     """
     from autocolor.files.palette_file import check_palette_path, write_palette
     from autocolor.files.paths import PICTURE_SUFFIX, file_stem

@@ -11,8 +11,8 @@ import click
 from autocolor.commands.completion import complete_colors, complete_pictures, complete_surfaces
 from autocolor.commands.options import as_usage, limit_option, verbose_option
 from autocolor.commands.outputs import refuse_outputs, tell_written, write_image
-from autocolor.commands.scenes import set_option, tell_unset
-from autocolor.errors import UsageError
+from autocolor.commands.scenes import set_option
+from autocolor.errors import InputError, UsageError
 
 if TYPE_CHECKING:
     from autocolor.scene.scene import Scene
@@ -127,9 +127,7 @@ def recolor(
     if palette is not None:
         if given:
             raise UsageError("--palette gives all colors of a surface; leave the other options of colors out")
-        from autocolor.files.palette_file import read_palette
-
-        given["ramp"] = read_palette(palette).colors.tolist()
+        given["ramp"] = ramp_of_file(palette)
 
     from autocolor.files.picture_file import read_picture, write_picture
     from autocolor.logs import logger_of, timed
@@ -139,7 +137,6 @@ def recolor(
         saved = read_picture(picture)
     logger.info("%r", saved.picture)
     scene = recolored(saved.scene, surface, given, settings)
-    tell_unset(saved.scene, scene)
     if save is not None:
         write_picture(save, scene, saved.picture, overwrite=force)
     if output is not None:
@@ -148,11 +145,27 @@ def recolor(
     tell_written(output, save)
 
 
+def ramp_of_file(path: str) -> list[list[int]]:
+    """The colors of a palette file. Raises InputError if their number cannot make a ramp."""
+    from autocolor.files.palette_file import read_palette
+    from autocolor.scene.surfaces import MOST_RAMP_COLORS
+
+    colors: list[list[int]] = read_palette(path).colors.tolist()
+    if not 2 <= len(colors) <= MOST_RAMP_COLORS:
+        advice = "choose some of them" if len(colors) > 1 else "use --object for a single color"
+        rule = f"a ramp must have 2 to {MOST_RAMP_COLORS:,} colors"
+        raise InputError(f"{Path(path).name}: {rule}, not {len(colors):,}; {advice}")
+    return colors
+
+
 def recolored(
     scene: Scene, surface: str | None, colors: Mapping[str, Any], settings: tuple[str, ...]
 ) -> Scene:
-    """The scene with settings and other colors of a surface. Raises UsageError if they need a rendering."""
-    from autocolor.commands.settings import with_settings
+    """The scene with settings and other colors of a surface.
+
+    Ramps and colors that are replaced are listed on stderr. Raises UsageError if a setting needs a rendering.
+    """
+    from autocolor.commands.settings import tell_unset, with_settings
     from autocolor.scene.columns import Tier
     from autocolor.scene.scene import costs_at_least
 
@@ -163,4 +176,6 @@ def recolored(
             " bands of a scalar; use it with `autocolor render`"
         )
     with as_usage():
-        return edited if surface is None else edited.with_surface(surface, **colors)
+        painted = edited if surface is None else edited.with_surface(surface, **colors)
+    tell_unset(edited, painted)
+    return painted

@@ -21,7 +21,6 @@ from autocolor.commands.scenes import (
     reframed,
     scene_options,
     set_option,
-    tell_unset,
     tell_up,
 )
 
@@ -121,8 +120,8 @@ def render(
 ) -> None:
     """Render SCENE: a folder, a scene.toml, a mesh file or a picture file. Without SCENE, render the demo.
 
-    --layers, --words and --indexed write each pixel by itself. With one of them, the default of --smooth is
-    1; with --smooth N, their files have N times the lines and elements of the PNG.
+    --layers, --words and --indexed never average pixels. If you give any of these options, --smooth is 1 by
+    default; with --smooth N, their files have N times the lines and elements of the PNG.
     """
     from autocolor.commands.settings import with_settings
 
@@ -150,7 +149,6 @@ def render(
         mapped = display_image(original, rendered(original)).mapped
         original = original.replace(exposure=held_exposure(mapped, original.scaling, original.exposure))
     edited = created_again(report, with_settings(original, settings), elements / lines)
-    tell_unset(original, edited)
     if lights:
         edited = edited.only_lights(*lights)
     if output is None and save is None and is_image_alone:

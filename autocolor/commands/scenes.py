@@ -121,13 +121,6 @@ def tell_up(report: SceneReport, source: SceneSource) -> None:
         tell(f"autocolor: {source.path} seems to lie on its side; try --up {up}, or give --up z")
 
 
-def tell_unset(before: Scene, after: Scene) -> None:
-    """Print a line on stderr for each surface whose ramp or two colors the settings have unset."""
-    from autocolor.scene.scene import unset_paints
-
-    tell(*(f"autocolor: {sentence}" for sentence in unset_paints(before, after)))
-
-
 def ended(report: SceneReport, source: SceneSource | None) -> int:
     """The exit code of a command that succeeded."""
     return REPAIRED if source is not None and source.strict and report.repairs else 0

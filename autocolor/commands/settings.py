@@ -16,14 +16,16 @@ from autocolor.scene.columns import Row, keys_of, to_plain
 from autocolor.scene.kinds import ColorKind, OneOf, color_names
 from autocolor.scene.row_kinds import NamedRows, Nested, OneRowOf, RangesByName, Referring, RowList
 from autocolor.scene.scalar import Scalar, ScaleKind
-from autocolor.scene.scene import Scene
+from autocolor.scene.scene import Scene, unset_paints
+from ramtek_emu.command_line import tell
 
 
 def with_settings(scene: Scene, settings: tuple[str, ...]) -> Scene:
     """The scene with settings KEY=VALUE, such as `lights.key.intensity=2` or `lights.key.only_parts=hood`.
 
     `none` unsets an optional field, such as `view.target`. If a field is set twice, the last value counts.
-    Raises UsageError for an unknown key or an invalid value.
+    Ramps and colors that the settings replace are listed on stderr. Raises UsageError for an unknown key or
+    an invalid value.
     """
     texts: dict[str, str] = {}
     for setting in settings:
@@ -37,11 +39,18 @@ def with_settings(scene: Scene, settings: tuple[str, ...]) -> Scene:
         texts[key.strip()] = text.strip()
     try:
         with as_usage("--set: "):
-            return scene_with(scene, texts)
+            edited = scene_with(scene, texts)
     except UsageError as error:
         raise UsageError(
             problem if problem.startswith("--set: ") else f"--set {problem}" for problem in error.problems
         ) from None
+    tell_unset(scene, edited)
+    return edited
+
+
+def tell_unset(before: Scene, after: Scene) -> None:
+    """Print a line on stderr for each surface whose ramp or two colors an edit replaces."""
+    tell(*(f"autocolor: {sentence}" for sentence in unset_paints(before, after)))
 
 
 def keys_after(scene: Scene, start: str) -> list[str]:

@@ -19,7 +19,6 @@ from autocolor.commands.scenes import (
     read,
     scene_options,
     set_option,
-    tell_unset,
 )
 from autocolor.errors import UnavailableError, UsageError
 from ramtek_emu.command_line import tell
@@ -103,7 +102,6 @@ def show(
         place = place_of(origin)
         report = read(source)
         scene = created_again(report, with_settings(report.scene, settings))
-        tell_unset(report.scene, scene)
         if once:
             show_once(scene, address)
         else:

@@ -20,7 +20,6 @@ from autocolor.commands.scenes import (
     read,
     scene_options,
     set_option,
-    tell_unset,
 )
 from autocolor.errors import UsageError
 
@@ -125,7 +124,6 @@ def session_of(source: SceneSource, settings: tuple[str, ...], normals: bool) ->
     place = place_of(Source(source.path, source.up, source.surfaces, source.scale))
     report = read(source)
     edited = created_again(report, with_normals(with_settings(report.scene, settings), normals))
-    tell_unset(report.scene, edited)
     note_file(source.path)
     history = History(report.scene, place)
     if edited is not report.scene:

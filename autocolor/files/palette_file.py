@@ -44,7 +44,6 @@ LARGEST: Final = 1 << 20
 """Limit: the bytes of a palette file. MOST_COLORS with names of LONGEST_NAME letters take half of it."""
 
 NAME_RULE: Final = f"must be at most {LONGEST_NAME} printable characters, without spaces around them"
-COUNT_RULE: Final = f"a palette must have 1 to {MOST_COLORS:,} colors"
 
 COLOR: Final = ColorKind()
 
@@ -99,6 +98,12 @@ class Palette(Immutable):
         return self.color(folded.index(name.casefold())) if name and name.casefold() in folded else None
 
 
+def count_problem(count: int) -> str:
+    """The sentence that refuses a palette with so many colors."""
+    advice = "choose some of them" if count else "add a color"
+    return f"a palette must have 1 to {MOST_COLORS:,} colors, not {count:,}; {advice}"
+
+
 def is_name(name: object) -> bool:
     """Whether a value can be the name of a color, or "" for none."""
     return (
@@ -117,7 +122,7 @@ def _validated(colors: Any) -> Bytes:
     else:
         array = np.array(list(_accepted(colors)), np.uint8).reshape(-1, 3)
     if not 1 <= len(array) <= MOST_COLORS:
-        raise InputError(f"{COUNT_RULE}, not {len(array):,}; choose some of them")
+        raise InputError(count_problem(len(array)))
     return read_only(array)
 
 
@@ -149,7 +154,7 @@ def read_palette(path: str | os.PathLike[str]) -> Palette:
     palette_format = recognized(path, PALETTE_FORMATS)
     if palette_format is None:
         raise InputError(
-            f"{path.name}: a palette must {suffix_rule(path, SUFFIXES)}; save it as one of these"
+            f"{path.name or path}: a palette must {suffix_rule(path, SUFFIXES)}; save it as one of these"
         )
     return palette_format.read(read_bytes(path, LARGEST), path.name)
 
@@ -187,7 +192,7 @@ def check_palette_path(path: Path) -> PaletteFormat:
 
 
 def is_palette(path: Path) -> bool:
-    """Whether a file seems to be a palette: by its ending, and if this is .csv, by its first row."""
+    """Whether a file seems to be a palette. Its ending decides; for .csv, its first row decides, too."""
     palette_format = format_named(path, PALETTE_FORMATS)
     if palette_format is None or palette_format.suffixes != (CSV,):
         return palette_format is not None
@@ -395,7 +400,7 @@ def _palette(
     """The palette of a file, unless there were problems. Raises InputError."""
     problems.raise_any()
     if not 1 <= len(colors) <= MOST_COLORS:
-        raise InputError(f"{place}: {COUNT_RULE}, not {len(colors):,}; choose some of them")
+        raise InputError(f"{place}: {count_problem(len(colors))}")
     return Palette(np.array(colors, np.uint8), names)
 
 

@@ -156,7 +156,9 @@ class Paint(Row):
         blended = self.alternatives[0]
         if isinstance(self.ramp, tuple) and any(vars(self)[name] != getattr(Paint, name) for name in blended):
             others = listed(blended)
-            yield Problem(("ramp",), f"must stand without {others}, not beside them; leave it or them out")
+            yield Problem(
+                ("ramp",), f"must stand without {others}, not beside them; leave out the ramp or these"
+            )
 
     @property
     def color(self) -> Color:

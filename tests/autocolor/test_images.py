@@ -31,6 +31,7 @@ from autocolor import (
     write_picture,
 )
 from autocolor.images import LARGEST, MOST_INDEXED, averaged, display_image, size_of, smoothed
+from autocolor.layers import save_layers
 from autocolor.mapping.legend import legend
 from autocolor.mapping.ranges import SCREENS
 from autocolor.sending import shown_colors
@@ -123,6 +124,8 @@ def test_a_scene_and_a_picture_in_the_wrong_order_are_refused_in_words(tmp_path:
         lambda: image(picture, swapped),
         lambda: send_picture(picture, swapped, Ramtek9300(SMALL)),
         lambda: save_image(tmp_path / "cube.png", picture, swapped),
+        lambda: save_words(tmp_path / "cube.png", picture, swapped),
+        lambda: save_layers(tmp_path / "cube.exr", picture, swapped),
         lambda: write_picture(tmp_path / "cube.npz", picture, swapped),
     ):
         with pytest.raises(UsageError, match=r"^the scene must come before the picture, not after it; swap"):
@@ -134,6 +137,10 @@ def test_a_scene_and_a_picture_in_the_wrong_order_are_refused_in_words(tmp_path:
         image(picture, picture)
     with pytest.raises(UsageError, match=r"a picture must be a Picture, not Scene\(.*; `render` makes one"):
         image(scene, scene)  # type: ignore[arg-type]
+    name: Any = tmp_path / "cube"
+    for save in (save_image, save_words, save_layers, write_picture):
+        with pytest.raises(UsageError, match=r"^a picture must be a Picture, not "):
+            save(picture, scene, name)
 
 
 def test_a_picture_of_other_surfaces_is_refused() -> None:
@@ -449,6 +456,17 @@ def test_an_indexed_png_has_256_words_and_no_more(tmp_path: Path) -> None:
             " or write the words themselves"
         )
         assert not path.exists()
+
+
+def test_an_indexed_png_of_a_scalar_needs_fewer_bands(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(images, "MOST_INDEXED", 9)
+    scene = scene_of(cube(), scalar={"name": "z", "bands": 20, "shades": 8})
+    with pytest.raises(UsageError, match="choose fewer bands or shades of the scalar, or write"):
+        save_words(tmp_path / "z.png", scene, render(scene, 48, 64), indexed=True)
+    banded = scene.with_scalar(bands=4, shades=2)
+    save_words(tmp_path / "z.png", banded, render(banded, 48, 64), indexed=True)
 
 
 def test_words_are_never_written_over_a_file_unasked_nor_under_another_suffix(tmp_path: Path) -> None:

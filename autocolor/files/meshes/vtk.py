@@ -395,6 +395,9 @@ def _counted_lists(cursor: VtkCursor, cells: int, size: int, what: str) -> CellL
 GRIDS: Final = (b"STRUCTURED_GRID", b"RECTILINEAR_GRID", b"STRUCTURED_POINTS")
 
 AXES: Final = (b"X_COORDINATES", b"Y_COORDINATES", b"Z_COORDINATES")
+NODES_OF_ANY_GRID: Final = 250_000
+"""Limit: nodes on the surface of a grid. A file of more bytes may have as many nodes as bytes."""
+
 BYTES_OF_NODE: Final = 340
 """Measured: bytes that a node of a surface takes. A small file that gives only axes can have many nodes."""
 
@@ -411,6 +414,8 @@ def read_grid(cursor: VtkCursor, dataset: bytes) -> VtkSurface:
         words = cursor.words()
         if keyword == b"METADATA":
             cursor.skip_metadata()
+        elif keyword == b"FIELD":
+            Attributes(cursor, {}, {}).field(words)
         elif keyword == b"DIMENSIONS":
             dimensions = _dimensions(cursor, words, dataset)
         elif keyword in VECTORS and len(words) == 4:
@@ -431,10 +436,11 @@ def read_grid(cursor: VtkCursor, dataset: bytes) -> VtkSurface:
         math.prod(max(size - less, least) for size in dimensions) for less, least in ((0, 0), (1, 1), (2, 0))
     )
     on_surface = nodes - within
-    if on_surface > len(cursor.data):
+    most = max(len(cursor.data), NODES_OF_ANY_GRID)
+    if on_surface > most:
         raise InputError(
-            f"{cursor.name}: the surface of a {dataset.decode()} must have at most as many nodes as the file"
-            f" has bytes, not {on_surface:,}; take fewer"
+            f"{cursor.name}: the surface of a {dataset.decode()} must have at most {most:,} nodes, for the"
+            f" size of the file, not {on_surface:,}; take fewer"
         )
     require_memory(BYTES_OF_NODE * on_surface, f"{cursor.name}: to read {on_surface:,} nodes", "take fewer")
     table, owners = _grid_quads(dimensions)
@@ -511,9 +517,8 @@ def _dimensions(cursor: VtkCursor, words: list[bytes], dataset: bytes) -> tuple[
 
 def _vector(cursor: VtkCursor, words: list[bytes]) -> Floats:
     """The three numbers after a keyword. Raises InputError."""
-    text = VtkCursor(b" ".join(words[1:]), cursor.where)
-    text.as_text()
-    return text.coordinates(3, b"double", words[0].decode("latin-1").upper())
+    line = cursor.data.count(b"\n", 0, cursor.begun) + 1
+    return NumberText(b" ".join(words[1:]), cursor.name, line).coordinates(0, 3)
 
 
 def _points(

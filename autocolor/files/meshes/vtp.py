@@ -49,7 +49,7 @@ GROWTH: Final = 10
 """Measured: a binary file takes 5 to 8 times its size, and a text 4; with scalars of single bytes, more."""
 
 BEGINNING: Final = re.compile(
-    rb"\s*(?:<\?xml[^<>]*>\s*)?(?:<!--.*?-->\s*)*<VTKFile\s[^<>]*type=[\"']PolyData", re.DOTALL
+    rb"\s*(?:<\?xml[^<>]*>\s*)?(?><!--.*?-->\s*)*+<VTKFile\s[^<>]*type=[\"']PolyData", re.DOTALL
 )
 
 
@@ -255,7 +255,7 @@ class Document:
 
 
 def _ignored(tag: str, attributes: Mapping[str, str]) -> str:
-    """What an array is called that is skipped because of its type; empty if the array is read."""
+    """What messages call the arrays that are skipped for their type; empty for an array that is read."""
     kind = attributes.get("type", "")
     if tag == "Array" or kind == "String":
         return "arrays of texts"
@@ -356,17 +356,15 @@ class VtpFile:
         rows = [(piece, sum(map(piece.count, parts))) for piece in self.document.pieces]
         rows = [(piece, count) for piece, count in rows if count]
         sections = [piece.sections.get(section, {}) for piece, _ in rows]
-        for name in dict.fromkeys(name for each in sections for name in each):
-            arrays = [each.get(name) for each in sections]
-            widths = {0 if array is None else self._components(array) for array in arrays}
-            if len(widths) > 1 or 0 in widths:
+        for name, number in Counter(name for each in sections for name in each).items():
+            arrays = [each[name] for each in sections] if number == len(sections) else []
+            widths = set(map(self._components, arrays))
+            if len(widths) != 1 or 0 in widths:
                 self.document.skipped["arrays that are not in all pieces alike, or empty"] += 1
                 continue
             (width,) = widths
             values = [
-                self._numbers(array, count * width)
-                for array, (_, count) in zip(arrays, rows, strict=True)
-                if array is not None
+                self._numbers(array, count * width) for array, (_, count) in zip(arrays, rows, strict=True)
             ]
             yield name, np.concatenate(values).reshape(-1, width)
 
@@ -436,15 +434,16 @@ class VtpFile:
 
     def _appended(self, array: DataArray) -> bytes | memoryview:
         """The appended bytes of an array, up to the next array that is read."""
-        document, offset = self.document, array.attributes.get("offset", "").strip()
-        if not (offset.isascii() and offset.isdigit() and len(offset) <= 18):
-            raise self._error(array, f"its offset must be a whole number, not {shown(offset)}; correct it")
+        document, offset = self.document, _offset(array)
+        if offset is None:
+            text = array.attributes.get("offset", "")
+            raise self._error(array, f"its offset must be a whole number, not {shown(text)}; correct it")
         if document.encoding not in ("raw", "base64"):
             raise InputError(
                 f"{self.name}: the encoding of AppendedData must be raw or base64, not"
                 f" {shown(document.encoding)}; write it again"
             )
-        start = document.appended_start + int(offset)
+        start = document.appended_start + offset
         following = bisect_right(self._starts, start)
         end = min([*self._starts[following : following + 1], self._end_of_appended])
         self._appended_size += max(end - start, 0)
@@ -457,14 +456,13 @@ class VtpFile:
     @cached_property
     def _starts(self) -> list[int]:
         """Where the appended arrays begin in the file, sorted."""
-        offsets = (
-            array.attributes.get("offset", "").strip()
+        offsets = {
+            _offset(array)
             for piece in self.document.pieces
             for section in piece.sections.values()
             for array in section.values()
-        )
-        numbers = {int(offset) for offset in offsets if offset.isascii() and offset.isdigit()}
-        return sorted(self.document.appended_start + number for number in numbers)
+        }
+        return sorted(self.document.appended_start + offset for offset in offsets if offset is not None)
 
     @cached_property
     def _end_of_appended(self) -> int:
@@ -538,6 +536,12 @@ class VtpFile:
         if len(unpacked) != size or not is_whole:
             raise self._error(array, f"a packed block must have {size:,} bytes, not others; write it again")
         return unpacked
+
+
+def _offset(array: DataArray) -> int | None:
+    """The offset of an array in the appended data; None unless the attribute is a whole number."""
+    text = array.attributes.get("offset", "").strip()
+    return int(text) if text.isascii() and text.isdigit() and len(text) <= 18 else None
 
 
 def unpacked_zlib(packed: memoryview, most: int) -> tuple[bytes, bool]:

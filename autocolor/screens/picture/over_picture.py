@@ -183,7 +183,7 @@ def legend_items(legend: Legend | None) -> Sequence[Item]:
 
 
 def paint_rows(session: Session, paint: Paint) -> list[Widget]:
-    """The rows of the chosen surface's paint without its colors: their blend, and whether it has a ramp."""
+    """The rows of the chosen surface's paint without its colors: whether it has a ramp, else the blend."""
     switch = Switch(
         "ramp",
         "A ramp of any colors from the lowest level to the highest, instead of two colors and their blend.",
@@ -198,7 +198,7 @@ def paint_rows(session: Session, paint: Paint) -> list[Widget]:
 
     rows = rows_of(paint, put, session.world, leave_out=("object_color", "light_color"))
     # Shorten labels so that they fit beside their numbers.
-    return [*(replace(row, label=row.label.replace("percentage", "percent")) for row in rows), switch]
+    return [switch, *(replace(row, label=row.label.replace("percentage", "percent")) for row in rows)]
 
 
 FIRST_RAMP_COLORS: Final = 6

@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from typing import Final
 
 from autocolor.mapping.colors import blend_from, blend_level
+from autocolor.screens.input import Gesture
 from autocolor.screens.picture.over_picture import OverPicture, paint_rows, surface_row
 from autocolor.widgets.bars import LANE, LevelBar, PercentBar
 from autocolor.widgets.items import WIDTH, Area, Item
@@ -35,9 +36,22 @@ class BlendingScreen(OverPicture):
     has_menu = False
 
     def enter(self) -> None:
+        self._explain_missing_bar()
+
+    def pick(self, gesture: Gesture) -> None:
+        before = self.session.surface_name
+        super().pick(gesture)
+        if self.session.surface_name != before:
+            self._explain_missing_bar()
+
+    def _choose(self, name: str) -> None:
+        self.session.choose_surface(name)
+        self._explain_missing_bar()
+
+    def _explain_missing_bar(self) -> None:
         surface = self.session.chosen_surface
         if surface is not None and surface.paint.ramp is not None:
-            self.session.tell(f"{surface.name} has a ramp, which does not blend; color mixing changes it")
+            self.session.tell(f"{surface.name} has a ramp and no blend; change the ramp in color mixing")
 
     def items(self) -> Sequence[Item]:
         # The bar takes the legend's place.
@@ -48,7 +62,11 @@ class BlendingScreen(OverPicture):
         if surface is None:
             return []
         return [
-            surface_row(self.session, "The surface whose colors blend; a click in the picture chooses, too."),
+            surface_row(
+                self.session,
+                "The surface whose colors blend; a click in the picture chooses, too.",
+                self._choose,
+            ),
             Gap("blend gap"),
             *paint_rows(self.session, surface.paint),
         ]

@@ -37,10 +37,10 @@ from autocolor.mapping.colors import (
 from autocolor.mapping.ranges import LevelRange
 from autocolor.scene.changes import PaintChanges
 from autocolor.scene.kinds import in_digits
-from autocolor.scene.surfaces import Paint
+from autocolor.scene.surfaces import MOST_RAMP_COLORS, Paint
 from autocolor.scene.swatches import mixed
 from autocolor.screens.input import Gesture
-from autocolor.screens.picture.over_picture import paint_rows, surface_row
+from autocolor.screens.picture.over_picture import FIRST_RAMP_COLORS, paint_rows, surface_row
 from autocolor.screens.screen import Cached, Sample, Screen
 from autocolor.screens.session import Session
 from autocolor.screens.surface.mixing_palette import Crop, MixingWords, crop_of, mixing_words
@@ -66,7 +66,6 @@ from autocolor.widgets.widget import (
     Button,
     Entry,
     Gap,
-    Pair,
     Widget,
 )
 
@@ -108,6 +107,10 @@ LIGHT_SOURCE: Final = "light source"
 
 Ramp = tuple[Color, ...]
 
+FEW: Final = "a ramp has at least 2 colors; to have none, switch the ramp off"
+MANY: Final = f"a ramp has at most {MOST_RAMP_COLORS:,} colors; remove a color first"
+"""Why a color of a ramp can be neither removed nor added."""
+
 PAINT: Final = "paint"
 COLOR: Final = "color"
 """The things that can be taken from the picture."""
@@ -145,13 +148,16 @@ class MixingScreen(Screen):
         surface = self.session.chosen_surface
         if surface is None:
             return []
+        ramp = surface.paint.ramp
+        switch, *blend = paint_rows(self.session, surface.paint)
         return [
             surface_row(self.session, "The surface whose colors you mix.", self._choose_surface),
             Gap("colors gap"),
+            switch,
             self.light.row(surface.paint),
             self.object.row(surface.paint),
-            *paint_rows(self.session, surface.paint),
-            *(() if surface.paint.ramp is None else (self._ramp_row(surface.paint.ramp),)),
+            # With a ramp there are as many rows as without, so that the rows below stay in their places.
+            *(blend if ramp is None else self._ramp_rows(ramp)),
             Gap("taking gap"),
             *(self._taking_row(thing) for thing in (PAINT, COLOR)),
             *(() if self._taking else self._choice_rows(surface.paint)),
@@ -162,14 +168,23 @@ class MixingScreen(Screen):
         name, present = chosen.name_in(paint), chosen.color_of(paint)
         return self.choices.rows(self._mixing_words.swatches, name, present)
 
-    def _ramp_row(self, ramp: Ramp) -> Pair:
-        return Pair(
-            "add color",
-            "Add a color to the ramp between the two that are shown; or remove the chosen color.",
-            run=partial(self._add_color, ramp),
-            other="remove",
-            run_other=partial(self._remove_color, ramp),
-        )
+    def _ramp_rows(self, ramp: Ramp) -> list[Widget]:
+        shown = self.object.number_in(ramp) + 1
+        chosen = self._chosen.number_in(ramp) + 1
+        return [
+            Button(
+                "add color",
+                f"Add a color to the ramp, between the colors {shown} and {shown + 1}.",
+                run=partial(self._add_color, ramp),
+                why_not=MANY if len(ramp) == MOST_RAMP_COLORS else "",
+            ),
+            Button(
+                "remove color",
+                f"Remove color {chosen}, the chosen one, from the ramp.",
+                run=partial(self._remove_color, ramp),
+                why_not=FEW if len(ramp) == 2 else "",
+            ),
+        ]
 
     def _taking_row(self, thing: str) -> Button:
         is_on = self._taking == thing
@@ -301,10 +316,12 @@ class MixingScreen(Screen):
     def _blend_text(self, paint: Paint) -> tuple[str, str]:
         """The heading of the bar between, and its number."""
         levels = self._levels.levels
+        label = "blend" if paint.ramp is None else "ramp"
+        if self.session.surface_name in self.session.studio.display_image.bands:
+            return label, "not shown: a scalar colors the surface"
         if paint.ramp is not None:
-            number = self._chosen.number_in(paint.ramp)
-            return "ramp", f"color {number + 1} of {len(paint.ramp)}"
-        return "blend", f"{paint.blend:.2f}, from level {blend_level(paint.blend, levels)} of {levels - 1}"
+            return label, f"color {self._chosen.number_in(paint.ramp) + 1} of {len(paint.ramp)}"
+        return label, f"{paint.blend:.2f}, from level {blend_level(paint.blend, levels)} of {levels - 1}"
 
     def sample(self, element: int, line: int) -> Sample | None:
         if self.session.chosen_surface is None:
@@ -381,8 +398,6 @@ class MixingScreen(Screen):
         self._choose_color(lower + 1)
 
     def _remove_color(self, ramp: Ramp) -> None:
-        if len(ramp) == 2:
-            raise UsageError("a ramp must have 2 colors or more; to have none, switch the ramp off")
         number = self._chosen.number_in(ramp)
         self.session.paint(ramp=ramp[:number] + ramp[number + 1 :])
         self._choose_color(min(number, len(ramp) - 2))
@@ -452,7 +467,8 @@ class ColorSection:
         choose: Callable[[ColorSection], object],
     ) -> None:
         self.session, self.title = session, title
-        self.lower = 0
+        # A ramp that is switched on begins with the color at which the default blend begins.
+        self.lower = FIRST_RAMP_COLORS // 2
         self._give, self._choose = partial(give, self), partial(choose, self)
         self._raised = Raised("", (0, 0, 0), (0, 0, 0))
         self._mixed = Mixed(Hsv(0, 0, 0), (0, 0, 0))

@@ -76,7 +76,7 @@ class PaintChoices:
         self._recent: tuple[Color, ...] = ()
         self._pages: Cached[list[ColorPage]] = Cached()
         self._turned: tuple[Palette | None, int] = None, 0
-        """The page that was turned to, of the pages of these paints."""
+        """Paints, and the number of the page to which the user turned while they were shown."""
         self._taken = 0
         """The number of the color that was taken last, on its page."""
         self._before: dict[str, Paint] = {}
@@ -174,11 +174,12 @@ class PaintChoices:
         """Mixing ends: note the new colors of the surfaces as recent colors."""
         for surface in self.session.scene.surfaces:
             before, now = self._before.get(surface.name, surface.paint), surface.paint
-            colors = [paint.ramp or (paint.light_color, paint.object_color) for paint in (before, now)]
+            olds, news = (paint.ramp or (paint.light_color, paint.object_color) for paint in (before, now))
             if (before.ramp is None) == (now.ramp is None):
-                for old, new in zip(*colors, strict=False):
-                    if old != new:
-                        note_color(new)
+                # Adding or removing a color of a ramp moves the others, which are not new.
+                mixed = [color for color in dict.fromkeys(news) if color not in olds]
+                for color in mixed[-MOST_RECENT:]:
+                    note_color(color)
 
     def _take_recent(self, number: int) -> None:
         self._take(self._recent[number], "")

@@ -134,9 +134,10 @@ def test_a_reflection_model_keeps_its_parameters_until_the_next_variant() -> Non
 
 def test_a_ramp_and_two_colors_hold_until_the_next_variant() -> None:
     ramp: dict[str, object] = {"surfaces.wall.ramp": ["black", "red", "white"]}
-    for first, last in ((RED, ramp), (ramp, RED)):
-        middle = scene_with(SCENE, frames(SCENE, [first, last], 3)[1].settings)
-        assert middle.equals(scene_with(SCENE, first))
+    for scene in (SCENE, SCENE.with_paint("wall", blend=0.2), SCENE.with_paint("wall", ramp=["red", "blue"])):
+        for first, last in ((RED, ramp), (ramp, RED), ({}, ramp), (ramp, {})):
+            middle = scene_with(scene, frames(scene, [first, last], 3)[1].settings)
+            assert middle.equals(scene_with(scene, first))
 
 
 def test_tables_run_together_each_over_the_whole_duration() -> None:

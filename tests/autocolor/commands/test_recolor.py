@@ -69,8 +69,17 @@ def test_colors_that_a_ramp_unsets_are_told_and_a_ramp_that_colors_unset(saved: 
     told = "autocolor: side: two colors and their blend replace its ramp\n"
     blend = ("recolor", "hot.npz", "side", "--blend", "0.5", "-o", "b.png")
     assert run(*blend).err == f"{told}wrote b.png\n"
-    setting = ("--set", "surfaces.side.ramp=red,blue", "-o", "c.png")
-    assert "side: the ramp replaces" in run("render", "scene", *setting).err
+    setting = ("--set", "surfaces.side.ramp=red,blue")
+    vary = ("--vary", "surfaces.side.ramp=[red,navy]")
+    for command in (
+        ("render", "scene", *setting, "-o", "c.png"),
+        ("recolor", "scene.npz", *setting, "-o", "d.png"),
+        ("palette", "scene.npz", "side", *setting),
+        ("palette", "scene", "side", *setting, "-o", "side.csv"),
+        ("sweep", "scene.npz", *setting, *vary, "-o", "{name}.png"),
+        ("sweep", "scene", *setting, *vary, "-o", "{name}-2.png"),
+    ):
+        assert run(*command).err.count("side: the ramp replaces") == 1, command
 
 
 def test_the_mesh_is_not_needed(saved: Path, run: Run) -> None:
@@ -236,7 +245,12 @@ def test_a_palette_of_few_colors_is_a_ramp_over_the_levels(saved: Path, run: Run
 @pytest.mark.parametrize(
     ("arguments", "code", "message"),
     [
-        (("side", "--palette", "one.csv"), 2, "ramp must be a list of 2 to 1024 colors"),
+        (
+            ("side", "--palette", "one.csv"),
+            65,
+            "one.csv: a ramp must have 2 to 1,024 colors, not 1; use --object for a single color",
+        ),
+        (("side", "--palette", "many.csv"), 65, "colors, not 1,025; choose some of them"),
         (("side", "--palette", "no.gpl"), 66, "no.gpl: there is no such file"),
         (("side", "--palette", "one.csv", "--blend", "1"), 2, "--palette gives all colors of a surface;"),
         (("--palette", "one.csv"), 2, "recolor must have a SURFACE"),
@@ -246,6 +260,7 @@ def test_a_palette_that_is_no_ramp_is_refused(
     saved: Path, run: Run, arguments: tuple[str, ...], code: int, message: str
 ) -> None:
     write_palette("one.csv", ["red"])
+    write_palette("many.csv", ["red"] * 1025)
     ran = run("recolor", "scene.npz", *arguments)
     assert (ran.code, ran.out) == (code, "")
     assert message in ran.err

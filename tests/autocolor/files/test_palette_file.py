@@ -119,7 +119,7 @@ def test_a_color_table_without_a_count_has_256_colors_and_a_transparent_color_is
 
 REFUSALS: list[tuple[str, bytes, str]] = [
     ("a.gpl", b"", "a.gpl, line 1: it must be 'GIMP Palette', not ''; save it by GIMP"),
-    ("a.gpl", HEAD, "a.gpl: a palette must have 1 to 4,096 colors, not 0; choose some of them"),
+    ("a.gpl", HEAD, "a.gpl: a palette must have 1 to 4,096 colors, not 0; add a color"),
     (
         "a.gpl",
         HEAD + b"1 2 256 a\n0 0\n-1 0 0\n",
@@ -166,7 +166,7 @@ REFUSALS: list[tuple[str, bytes, str]] = [
         HEAD + b"#" * LARGEST,
         "a.gpl: a file must have at most 1,048,576 bytes, not more; split or simplify it",
     ),
-    ("a.csv", b"", "a.csv: a palette must have 1 to 4,096 colors, not 0; choose some of them"),
+    ("a.csv", b"", "a.csv: a palette must have 1 to 4,096 colors, not 0; add a color"),
     (
         "a.csv",
         b"1,2,3\n",
@@ -232,12 +232,14 @@ def test_a_bad_palette_is_refused_in_a_sentence(
 def test_a_palette_that_is_not_there_is_missing(tmp_path: Path) -> None:
     with pytest.raises(MissingInputError, match=r"no\.gpl: there is no such file"):
         read_palette(tmp_path / "no.gpl")
+    with pytest.raises(InputError, match=r"^\.: a palette must end in \.act, \.csv or \.gpl"):
+        read_palette(".")
 
 
 @pytest.mark.parametrize(
     ("colors", "names", "sentence"),
     [
-        ([], (), "a palette must have 1 to 4,096 colors, not 0; choose some of them"),
+        ([], (), "a palette must have 1 to 4,096 colors, not 0; add a color"),
         (np.zeros((MOST_COLORS + 1, 3), np.uint8), (), "a palette must have 1 to 4,096 colors, not 4,097;"),
         (np.zeros(3, np.uint8), (), r"the colors of a palette must be an array (n, 3), not (3,);"),
         ([(0, 0, 256)], (), "color 1 of a palette must be"),

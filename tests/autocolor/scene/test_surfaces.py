@@ -67,7 +67,7 @@ def test_a_ramp_and_two_colors_with_their_blend_unset_each_other() -> None:
 def test_a_ramp_beside_another_color_is_refused() -> None:
     sentence = (
         "ramp must stand without object_color, light_color, blend and light_percentage, not beside them;"
-        " leave it or them out"
+        " leave out the ramp or these"
     )
     makes: list[Callable[[], object]] = [
         lambda: Paint((1, 2, 3), ramp=RAMP),

@@ -455,6 +455,25 @@ def test_a_volume_is_the_outer_surface_of_its_cells(
     assert quads(mesh) == quads(twin)
 
 
+@pytest.mark.parametrize("binary", [False, True])
+@pytest.mark.parametrize("dataset", ["STRUCTURED_GRID", "RECTILINEAR_GRID", "STRUCTURED_POINTS"])
+def test_data_of_the_whole_file_are_skipped_before_a_grid(tmp_path: Path, dataset: str, binary: bool) -> None:
+    data = grid(dataset, (2, 3, 4), ([0, 1], [0, 1, 2], [0, 1, 2, 3]), binary).data
+    field = VtkWriter(dataset, binary=binary).line("FIELD FieldData 1\nTimeValue 1 1 double")
+    start = field.numbers([1.5], "double").line("METADATA").line("INFORMATION 0\n").data
+    at = data.index(b"DIMENSIONS")
+    for name, contents in (("a.vtk", data), ("b.vtk", start + data[at:])):
+        (tmp_path / name).write_bytes(contents)
+    plain, whole = (read_vtk(tmp_path / name).mesh for name in ("a.vtk", "b.vtk"))
+    assert (plain.coordinates == whole.coordinates).all()
+    assert (plain.node_numbers == whole.node_numbers).all()
+
+
+def test_a_grid_may_have_more_nodes_than_its_file_has_bytes(tmp_path: Path) -> None:
+    report = read_written(tmp_path, VtkWriter("STRUCTURED_POINTS").line("DIMENSIONS 30 30 30"))
+    assert len(report.mesh.coordinates) == 30**3 - 28**3
+
+
 def test_a_large_volume_takes_the_memory_of_its_surface(tmp_path: Path) -> None:
     size = 100
     writer = VtkWriter("STRUCTURED_POINTS", binary=True).line("DIMENSIONS" + f" {size}" * 3)
@@ -492,8 +511,14 @@ OTHER_GRIDS = [
     (
         "STRUCTURED_POINTS",
         "DIMENSIONS 100000 100000 1",
-        "layer.vtk: the surface of a STRUCTURED_POINTS must have at most as many nodes as the file has bytes,"
-        " not 10,000,000,000; take fewer",
+        "layer.vtk: the surface of a STRUCTURED_POINTS must have at most 250,000 nodes, for the size of the"
+        " file, not 10,000,000,000; take fewer",
+    ),
+    (
+        "STRUCTURED_POINTS",
+        "DIMENSIONS 9 9 1\nSPACING 1 nan 1",
+        "layer.vtk, line 6: a coordinate must be a decimal number of at most 1e30 in size, not 'nan'; correct"
+        " it",
     ),
     (
         "STRUCTURED_POINTS",

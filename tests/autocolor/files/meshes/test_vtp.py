@@ -114,6 +114,12 @@ def test_it_is_placed_and_known_by_its_suffix_and_its_first_bytes(tmp_path: Path
         assert mesh_format.name == "VTP"
 
 
+def test_a_file_that_begins_with_many_comments_is_recognized_at_once() -> None:
+    comments = b"<!-- - -- > -->" * 5000
+    assert vtp.begins_as_vtp(GOOD.replace(b"<VTK", comments + b"<VTK"))
+    assert not vtp.begins_as_vtp(comments + b"x")
+
+
 def good(form: str = "ascii", encoding: str = "raw", compressor: str = "") -> bytes:
     return VtpWriter(form, encoding, compressor).piece(NODES[:4], Polys=[[0, 1, 2, 3]]).data
 
@@ -218,6 +224,11 @@ test_a_wrong_file_is_refused_with_its_place = refused(
         (
             APPENDED.replace(b'offset="44"', b'offset="nine"'),
             f"{AT_POINTS}its offset must be a whole number, not 'nine'; correct it",
+        ),
+        (
+            APPENDED.replace(b'offset="36"', b'offset="%b"' % (b"9" * 5000)),
+            f"thing.vtp, line 8, array 'offsets': its offset must be a whole number, not '{'9' * 40}'...;"
+            " correct it",
         ),
         (
             APPENDED.replace(b'offset="44"', b'offset="99999999"'),

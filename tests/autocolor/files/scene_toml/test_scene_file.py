@@ -300,7 +300,7 @@ def test_a_ramp_is_read_alone(folder: Path) -> None:
     line = "scene.toml, line 4, [surfaces.hood]: ramp"
     assert refusal(folder, text + "blend = 0.6\n") == [
         f"{line} must stand without object_color, light_color, blend and light_percentage, not beside them;"
-        " leave it or them out"
+        " leave out the ramp or these"
     ]
     assert refusal(folder, MESH + '[surfaces.hood]\nramp = ["#200"]\n') == [
         f"{line} must be a list of 2 to 1024 colors, not ['#200']; write them as in"

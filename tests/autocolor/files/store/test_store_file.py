@@ -149,7 +149,7 @@ REFUSALS = (
     (
         """UPDATE surfaces SET blend = 0.5, ramp = '["#200", "#f60"]' WHERE name = 'body'""",
         "surfaces, row 1: ramp must stand without object_color, light_color, blend and light_percentage, not"
-        " beside them; leave it or them out",
+        " beside them; leave out the ramp or these",
     ),
     (
         (

@@ -27,6 +27,7 @@ EDITS: dict[str, Callable[[Scene], Scene]] = {
     "all paints": lambda scene: scene.with_paint("paint", object_color="#1040c0").with_paint(
         "floor", object_color="#80ff10", light_color="#ff00ff"
     ),
+    "ramp": lambda scene: scene.with_paint("paint", ramp=["#102", "#a03060", "#ffb060", "#fff"]),
     "background": lambda scene: scene.replace(background="#305070", contrast="floor"),
     "view": lambda scene: scene.with_view(eye=(3, -7, 1)),
     "scalar": lambda scene: scene.with_scalar(name="z", scale="turbo"),

@@ -189,8 +189,21 @@ def test_hidden_panels_take_the_bar_away_and_bring_the_legend(tmp_path: Path) ->
 def test_a_ramp_has_no_blend_level(tmp_path: Path) -> None:
     hand = blending(boxes_scene().with_surface("box 0", ramp=["#000", "#f60"]), tmp_path)
     hand.viewer.board.screen.enter()
-    assert hand.viewer.message == "box 0 has a ramp, which does not blend; color mixing changes it"
+    message = "box 0 has a ramp and no blend; change the ramp in color mixing"
+    assert hand.viewer.message == message
     assert not hand.viewer.board.screen.widgets()
+    # The message comes back if the surface is chosen again, in the picture or in the menu.
+    session = hand.viewer.session
+    words, (first, levels) = hand.viewer.studio.words, hand.viewer.studio.level_ranges["box 0"]
+    lines, elements = np.nonzero((words >= first) & (words < first + levels))
+    session.choose_surface("box 1")
+    hand.click(elements[0], lines[0])
+    assert (session.surface_name, hand.viewer.message) == ("box 0", message)
     hand.open_menu()
+    hand.pick("surface")
+    assert session.surface_name == "box 1"
+    assert hand.viewer.message != message
+    hand.pick("surface")
+    assert (session.surface_name, hand.viewer.message) == ("box 0", message)
     hand.pick("ramp", 0.95)
     assert bar_of(hand)

@@ -14,6 +14,7 @@ from autocolor.scene.swatches import swatches
 from autocolor.screens.session import Clipboard
 from autocolor.screens.surface.mixing_palette import Crop, crop_of
 from autocolor.screens.surface.mixing_screen import (
+    BLEND,
     LIGHT_SOURCE,
     OBJECT,
     PICTURE,
@@ -23,9 +24,9 @@ from autocolor.screens.surface.mixing_screen import (
 )
 from autocolor.screens.viewer import Viewer
 from autocolor.widgets.bars import ComponentBar
-from autocolor.widgets.items import BLUE, GREEN, LIGHT_GRAY, NIGHT, RED, WHITE, Area
+from autocolor.widgets.items import BLUE, CHARACTER, GREEN, LIGHT_GRAY, NIGHT, RED, WHITE, Area, text
 from autocolor.widgets.menu import WORK
-from autocolor.widgets.widget import Place, Widget
+from autocolor.widgets.widget import TEXT_DOWN, Place, Widget
 from ramtek_emu import Ramtek9300
 from tests.autocolor.screens.mixing import (
     SHADES,
@@ -245,28 +246,60 @@ def test_a_color_of_the_ramp_is_picked_on_the_bar_and_mixed_alone(hand: Painting
 def test_the_wheel_goes_from_color_to_color_on_the_bar(hand: PaintingHand) -> None:
     give(hand, ["#200", "#f60", "#fff"])
     numbers = []
-    for turn in ("up", "up", "up", "down", "down", "down"):
+    for turn in ("down", "down", "up", "up", "up", "down"):
         hand.viewer.on_pointer(STRIP.left + 40, STRIP.top + 5, f"wheel {turn}")
         numbers.append(hand.viewer.message[len("swatches are for ") :])
-    assert numbers == [f"color {number} of 3" for number in (2, 3, 3, 2, 1, 1)]
+    assert numbers == [f"color {number} of 3" for number in (1, 1, 2, 3, 3, 2)]
 
 
 def test_colors_are_added_between_two_and_removed_down_to_two(hand: PaintingHand) -> None:
     give(hand, ["#000", "#f60", "#fff"])
-    hand.pick("add color", 0.1)
+    hand.pick("ramp bar", 0.1)
+    hand.pick("add color")
     assert ramp_of(hand) == ((0, 0, 0), (128, 51, 0), (255, 102, 0), (255, 255, 255))
     assert hand.viewer.message == "swatches are for color 2 of 4"
     for rest in (((0, 0, 0), (255, 102, 0), (255, 255, 255)), ((0, 0, 0), (255, 255, 255))):
-        hand.pick("add color", 0.9)
+        hand.pick("remove color")
         assert ramp_of(hand) == rest
-    hand.pick("add color", 0.9)
-    assert hand.viewer.message == "a ramp must have 2 colors or more; to have none, switch the ramp off"
+    hand.pick("remove color")
+    assert hand.viewer.message == (
+        "remove color: a ramp has at least 2 colors; to have none, switch the ramp off"
+    )
     for _ in range(3):
         hand.pick(" ", 0.1)
     assert len(ramp_of(hand)) == 3
     # Undo may shorten the ramp below the chosen color.
     hand.pick(" ", 0.1)
     assert hand.paint == PAINTS[0]
+
+
+def test_a_ramp_of_the_most_colors_takes_no_further_color(hand: PaintingHand) -> None:
+    ramp = tuple((number % 256, number // 4, 0) for number in range(1024))
+    hand.viewer.session.paint(ramp=ramp)
+    hand.move(300, 440)
+    hand.pick("add color")
+    assert hand.viewer.message == "add color: a ramp has at most 1,024 colors; remove a color first"
+    assert ramp_of(hand) == ramp
+
+
+def test_rows_stay_in_their_places_when_a_ramp_is_switched(hand: PaintingHand) -> None:
+    labels = ("ramp", "take paint", "take color", "paints")
+    places = [hand.widget(label).area for label in labels]
+    hand.pick("ramp", 0.95)
+    assert [hand.widget(label).area for label in labels] == places
+    # The color that is mixed first is bright enough to be seen.
+    assert max(ramp_of(hand)[3]) > 100
+    assert hand.widget("color 4, red")
+
+
+@pytest.mark.parametrize("ramp", [None, ["#000", "#f60"]])
+def test_the_bar_between_says_that_a_scalar_hides_the_paint(tmp_path: Path, ramp: list[str] | None) -> None:
+    scene = boxes_scene().with_surface("box 0", ramp=ramp)
+    hidden = "not shown: a scalar colors the surface"
+    heading = text(hidden, BLEND.right + 1 - CHARACTER * len(hidden), BLEND.top - 12 + TEXT_DOWN)
+    for is_hidden, shown in ((False, scene), (True, scene.with_scalar(name="z", surfaces=["box 0"]))):
+        hand = mixing(shown, tmp_path)
+        assert (heading in hand.viewer.board.screen.items()) == is_hidden
 
 
 def test_a_finish_replaces_a_ramp_and_another_surface_takes_it(hand: PaintingHand) -> None:

@@ -10,7 +10,8 @@ from autocolor.checks import Color
 from autocolor.files.state import recent_colors
 from autocolor.scene.kinds import in_digits
 from autocolor.scene.swatches import COLUMNS, FINISHES, ROWS, finished, swatches
-from autocolor.screens.surface.paint_choices import CELL_ELEMENTS, CELL_LINES, SwatchField
+from autocolor.screens.surface import paint_choices
+from autocolor.screens.surface.paint_choices import CELL_ELEMENTS, CELL_LINES, MOST_RECENT, SwatchField
 from autocolor.widgets.items import Area
 from autocolor.widgets.widget import Choice, Place
 from ramtek_emu import Ramtek9300
@@ -75,6 +76,39 @@ def test_mixed_colors_are_recent_colors_when_the_mixing_ends(hand: PaintingHand)
     assert (hand.colors(Area(*place, place[0] + 4, place[1] + 4)) == [176, 100, 32]).all()
     hand.click(*place)
     assert hand.paint.object_color == (176, 100, 32)
+
+
+def choose_again(hand: PaintingHand) -> None:
+    """Choose the other of the two surfaces, and the first one again."""
+    hand.pick("surface")
+    hand.pick("surface")
+
+
+def test_colors_of_a_ramp_that_only_move_are_no_recent_colors(hand: PaintingHand) -> None:
+    paint = hand.viewer.session.paint
+    paint(ramp=["#100", "#200", "#300", "#400"])
+    for ramp, recent in (
+        (["#100", "#300", "#400"], ()),
+        (["#100", "#600", "#300", "#400"], ((102, 0, 0),)),
+    ):
+        choose_again(hand)
+        paint(ramp=ramp)
+        choose_again(hand)
+        assert recent_colors() == recent
+
+
+def test_a_ramp_that_is_taken_whole_fills_the_recent_colors_once(
+    hand: PaintingHand, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    paint = hand.viewer.session.paint
+    paint(ramp=["#100", "#200"])
+    choose_again(hand)
+    ramp = [(number // 4, number % 4, 0) for number in range(1024)]
+    paint(ramp=ramp)
+    noted: list[Color] = []
+    monkeypatch.setattr(paint_choices, "note_color", noted.append)
+    choose_again(hand)
+    assert noted == ramp[-MOST_RECENT:]
 
 
 def test_an_undone_color_is_no_recent_color(hand: PaintingHand) -> None:
@@ -225,10 +259,10 @@ def test_a_paint_is_taken_for_a_color_of_a_ramp(hand: PaintingHand) -> None:
     ramp = hand.paint.ramp
     assert ramp is not None
     hand.click(*paint_place(hand, 1))
-    assert hand.viewer.message == "color 1: Teal, #f8f32b"
-    assert hand.paint.ramp == ((248, 243, 43), *ramp[1:])
+    assert hand.viewer.message == "color 4: Teal, #f8f32b"
+    assert hand.paint.ramp == (*ramp[:3], (248, 243, 43), *ramp[4:])
     hand.viewer.board.paste("signal red")
-    assert hand.paint.ramp == ((165, 32, 25), *ramp[1:])
+    assert hand.paint.ramp == (*ramp[:3], (165, 32, 25), *ramp[4:])
 
 
 def test_a_name_that_is_pasted_in_the_picture_is_a_paint(hand: PaintingHand) -> None:
