@@ -21,7 +21,6 @@ from autocolor.commands.scenes import (
     reframed,
     scene_options,
     set_option,
-    tell_unset,
     tell_up,
 )
 from autocolor.errors import AutocolorError, InputError, UsageError
@@ -168,10 +167,7 @@ def sweep(
 def start_of(
     source: SceneSource, settings: tuple[str, ...], size: tuple[int, int]
 ) -> tuple[Scene | SavedPicture, int]:
-    """The scene, or the picture with its scene, of a command line, and the exit code of its repairs.
-
-    Prints a line for each paint that the settings have unset.
-    """
+    """The scene, or the picture with its scene, of a command line, and the exit code of its repairs."""
     from pathlib import Path
 
     from autocolor.commands.recolor import recolored
@@ -182,14 +178,11 @@ def start_of(
     if is_picture(Path(source.path)):
         print_log(click.get_current_context())
         saved = read_picture(source.path)
-        scene = recolored(saved.scene, None, {}, settings)
-        tell_unset(saved.scene, scene)
-        return saved._replace(scene=scene), 0
+        return saved._replace(scene=recolored(saved.scene, None, {}, settings)), 0
     elements, lines = size
     report = reframed(read(source), elements / lines)
     tell_up(report, source)
     scene = created_again(report, with_settings(report.scene, settings), elements / lines)
-    tell_unset(report.scene, scene)
     return scene, ended(report, source)
 
 
