@@ -11,8 +11,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
-from contextlib import closing
+from contextlib import closing, contextmanager
 from io import BytesIO
+from numbers import Real
 from os import PathLike, fspath
 from pathlib import Path
 from typing import Final, NamedTuple
@@ -74,13 +75,13 @@ def animate(
     overwrite: bool = False,
     progress: Progress | None = None,
 ) -> Film:
-    """Write the frames of an animation, such as those of `frames`, to a file whose suffix gives its format.
+    """Write the frames of an animation to a file; its suffix gives the format.
 
         autocolor.animate(scene, autocolor.frames(scene, [], 72, turn=360), "around.webp")
 
-    A frame costs its edit from the frame before. Frames come one by one, so that memory is bounded; only a
-    WebP keeps the encoded frames until its end. With `loop`, a film begins again at its end. `size` and
-    `smooth` are those of `render`. `path` may be a pattern of numbered pictures, such as
+    A frame costs its edit from the frame before. Memory is bounded, because each frame is written when it is
+    made; only a WebP and a stream are in memory until their end. With `loop`, a film begins again at its end.
+    `size` and `smooth` are those of `render`. `path` may be a pattern of numbered pictures, such as
     "frame-{number:04}.png". A file that ends in .ramtek has the words of the first frame and then a load of
     the lookup table for each frame.
 
@@ -151,7 +152,7 @@ def check_rate(frames_per_second: float, kind: str) -> None:
     from ramtek_emu.films import LEAST_RATE, MOST_GIF_RATE, MOST_RATE
 
     most = MOST_GIF_RATE if kind == ".gif" else MOST_RATE
-    is_number = isinstance(frames_per_second, (int, float)) and not isinstance(frames_per_second, bool)
+    is_number = isinstance(frames_per_second, Real) and not isinstance(frames_per_second, bool)
     if not is_number or not LEAST_RATE <= frames_per_second <= most:
         raise UsageError(
             f"the frames per second must be a number from {LEAST_RATE:g} to {most:g}, not"
@@ -198,10 +199,14 @@ def _stream(
     refuse_output(path, overwrite=overwrite)
     batch = checked_batch(source, variants, None, size=size, smooth=smooth, ordered=True)
     if batch.drawing.smooth > 1:
-        raise UsageError("a stream must have smooth=1, because a display cannot average; leave it out")
+        raise UsageError(
+            "a stream must have smooth=1, because a display cannot average; leave it out, or render the"
+            " picture file with --smooth 1"
+        )
     first: Scene | None = None
     for number, variant in enumerate(variants, 1):
-        scene = scene_with(batch.scene, variant.settings)
+        with _naming(number):
+            scene = scene_with(batch.scene, variant.settings)
         first = first or scene
         _check_entries_alone(first, scene, variants, number)
     file = BytesIO()
@@ -213,10 +218,20 @@ def _stream(
 def _images(batch: Batch, tell: Progress) -> Iterator[DisplayImage]:
     """The display images of the variants of a batch."""
     start = Start(batch.scene, batch.picture)
-    for variant in batch.variants:
-        image, tier = start.image_of(variant.settings, batch.drawing)
+    for number, variant in enumerate(batch.variants, 1):
+        with _naming(number):
+            image, tier = start.image_of(variant.settings, batch.drawing)
         yield image
         tell(Result(variant.name, variant.settings, tier=tier))
+
+
+@contextmanager
+def _naming(number: int) -> Iterator[None]:
+    """Raise an InputError with the number of the frame for a frame that cannot be made."""
+    try:
+        yield
+    except (InputError, UsageError) as error:
+        raise InputError(f"frame {number}: {problem}" for problem in error.problems) from None
 
 
 def _check_entries_alone(first: Scene, other: Scene, variants: tuple[Variant, ...], number: int) -> None:

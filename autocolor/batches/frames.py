@@ -17,6 +17,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
+from numbers import Integral, Real
 from typing import Any, Final
 
 from autocolor.batches.table import MOST_VARIANTS, Rows, Variant, variants_of
@@ -70,11 +71,11 @@ def frames_of_tracks(
     Raises UsageError if two tables set the same key.
     """
     check_scene(scene)
-    if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= MOST_VARIANTS:
+    if isinstance(count, bool) or not isinstance(count, Integral) or not 1 <= count <= MOST_VARIANTS:
         raise UsageError(
             f"frames must be a whole number from 1 to {MOST_VARIANTS:,}, not {shown(count)}; choose another"
         )
-    if isinstance(turn, bool) or not isinstance(turn, (int, float)) or not abs(turn) <= LARGEST_TURN:
+    if isinstance(turn, bool) or not isinstance(turn, Real) or not abs(turn) <= LARGEST_TURN:
         raise UsageError(
             f"a turn must be a number of degrees up to {LARGEST_TURN:,.0f}, not {shown(turn)}; choose another"
         )

@@ -18,11 +18,11 @@ from typing import Final, TypedDict, Unpack
 
 from autocolor.arrays import Bytes
 from autocolor.batches.order import cut, runs_of, tier_of
-from autocolor.batches.outputs import ARRAY, Pattern, base_mark, form_of, mark_in, mark_of
+from autocolor.batches.outputs import ARRAY, SHEET_MARK, Pattern, base_mark, form_of, mark_in, mark_of
 from autocolor.batches.runs import Drawing, Made, Start, VariantTask, forget, make, make_run
 from autocolor.batches.sheet import Box, ContactSheet, read_thumbnail
 from autocolor.batches.table import TABLE_BEGINS, Result, Rows, Variant, results_bytes, variants_of
-from autocolor.budget import allowing, validated_limit
+from autocolor.budget import allowed_memory, allowing, validated_limit
 from autocolor.checks import shown
 from autocolor.errors import InputError, OutputError, UnavailableError, UsageError, reason_of
 from autocolor.files.picture_file import SavedPicture, read_picture
@@ -30,10 +30,13 @@ from autocolor.files.scene_sources import is_picture, read_scene
 from autocolor.files.writing import check_suffix, refuse_output, write_atomically
 from autocolor.images import check_png_level
 from autocolor.lighting.picture import Picture, check_smooth, check_surfaces
+from autocolor.logs import logger_of
 from autocolor.rendering import LARGEST_RASTER, rendering
 from autocolor.scene.columns import Tier
 from autocolor.scene.scene import Scene, check_scene
 from ramtek_emu.errors import escaped
+
+LOG: Final = logger_of(__name__)
 
 Source = Scene | SavedPicture | tuple[Scene, Picture] | str | PathLike[str]
 """What variants are made from: a scene, a scene with its picture, a picture that was read, or a path."""
@@ -54,6 +57,9 @@ BYTES_OF_RUN: Final = 1 << 28
 BYTES_WAITING: Final = 1 << 29
 """Limit: bytes of the runs that an executor works at or has finished, unless there are only two runs."""
 
+LONGEST_PATH: Final = 4096
+"""Limit: characters of the path of a picture, as on most systems."""
+
 MORE_THAN_WORKERS: Final = 2
 """Runs that wait for a worker, so that no worker waits for a run."""
 
@@ -71,7 +77,7 @@ class Batch:
     paths: tuple[str, ...]
     drawing: Drawing
     base: str
-    """The checksum of what all variants are made from."""
+    """The checksum of the scene, its picture and the drawing."""
     executor: Executor | None
     runs: int
     ordered: bool
@@ -83,18 +89,23 @@ class Batch:
         """The number, the result and the thumbnail of each variant, as they are made."""
         present = self._present()
         if self.ordered:
-            runs = cut(range(len(self.variants)), self.runs)
+            runs = cut(range(len(self.variants)), self._most_in_run(len(self.variants)))
         else:
             for number in sorted(present):
                 yield self._skipped(number)
             missing = [number for number in range(len(self.variants)) if number not in present]
-            ordered = runs_of(self.scene, [self.variants[number] for number in missing], self.runs)
+            most = self._most_in_run(len(missing))
+            ordered = runs_of(self.scene, [self.variants[number] for number in missing], most)
             runs = [[missing[place] for place in run] for run in ordered]
         executor = self.executor
         made = self._made_here(runs, present) if executor is None else self._made_by(executor, runs, present)
         with closing(made):
             for each in made:
                 yield self._skipped(each) if isinstance(each, int) else self._finished(each)
+
+    def _most_in_run(self, count: int) -> int:
+        """The most variants of a run, so that `count` variants are at least a run for each worker."""
+        return max(1, min(self.runs, -(-count // (_workers(self.executor) or 1))))
 
     def _present(self) -> set[int]:
         """The numbers of the variants whose files are whole."""
@@ -114,7 +125,7 @@ class Batch:
     def _made_here(
         self, runs: Iterable[Sequence[int]], present: Set[int]
     ) -> Generator[Made | int, None, None]:
-        """What is made of the runs in this process; of a variant that is present, its number."""
+        """The pictures of the runs, made in this process. A present variant gives its number alone."""
         start = Start(self.scene, self.picture)
         for number in (number for run in runs for number in run):
             yield number if number in present else make(start, self.drawing, self._task(number))
@@ -122,7 +133,7 @@ class Batch:
     def _made_by(
         self, executor: Executor, runs: Iterable[Sequence[int]], present: Set[int]
     ) -> Generator[Made | int, None, None]:
-        """What an executor makes of the runs; of a variant that is present, its number.
+        """The pictures of the runs, made by an executor. A present variant gives its number alone.
 
         Raises UnavailableError if workers end.
         """
@@ -156,15 +167,15 @@ class Batch:
         keys = {key for variant in self.variants for key in variant.settings}
         if any(key == "words" or tier_of(self.scene, key) >= Tier.MIX for key in keys):
             return None
-        # If it cannot be rendered, each variant has this problem.
+        # If rendering fails, the result of each variant says why.
         with suppress(InputError), allowing(self.drawing.limit):
             return rendering(self.scene, *self.drawing.raster).picture
         return None
 
     def _window(self, executor: Executor) -> int:
         """How many runs an executor gets at once."""
-        workers = getattr(executor, "_max_workers", None)
-        window = workers + MORE_THAN_WORKERS if isinstance(workers, int) and workers > 0 else WINDOW
+        workers = _workers(executor)
+        window = WINDOW if workers is None else workers + MORE_THAN_WORKERS
         return max(2, min(window, BYTES_WAITING // (self.drawing.bytes_of_picture * self.runs)))
 
     def _skipped(self, number: int) -> tuple[int, Result, Bytes | None]:
@@ -195,6 +206,12 @@ class Batch:
         # `sync`; the file of a stranger never.
         is_ours = self.resume and (mark_in(path, self.drawing.form) != "" or _is_empty(path))
         write_atomically(path, data, overwrite=self.overwrite or is_ours, sync=self.sync)
+
+
+def _workers(executor: Executor | None) -> int | None:
+    """How many workers an executor has; None if it does not say."""
+    workers = getattr(executor, "_max_workers", None)
+    return workers if isinstance(workers, int) and workers > 0 else None
 
 
 def _is_empty(path: str) -> bool:
@@ -278,33 +295,44 @@ def _drawing(
     if smooth is not None:
         check_smooth(smooth)
     check_png_level(level)
+    counts = None if size is None else tuple(size) if isinstance(size, (tuple, list)) else ()
     if picture is not None:
         own = picture.elements // picture.smooth, picture.lines // picture.smooth
-        if (size is not None and tuple(size) != own) or smooth not in (None, picture.smooth):
+        if counts not in (None, own) or smooth not in (None, picture.smooth):
             raise UsageError(
                 f"the size and smooth of a batch must be those of its picture, {own[0]} x {own[1]} and"
                 f" {picture.smooth}; leave them out, or give the scene alone"
             )
-        size, smooth = own, picture.smooth
-    size, smooth = size or (640, 480), smooth or 1
+        counts, smooth = own, picture.smooth
+    counts, smooth = (640, 480) if counts is None else counts, smooth or 1
     most = LARGEST_RASTER // smooth
-    whole = [count for count in size if isinstance(count, Integral) and not isinstance(count, bool)]
-    if len(whole) != 2 or len(size) != 2 or not all(1 <= count <= most for count in whole):
+    whole = [count for count in counts if isinstance(count, Integral) and not isinstance(count, bool)]
+    if len(whole) != 2 or len(counts) != 2 or not all(1 <= count <= most for count in whole):
         raise UsageError(
             f"the size of pictures must be elements and lines, each from 1 to {most}, not {shown(size)};"
             " write it as in (640, 480)"
         )
-    elements, lines = map(int, size)
+    elements, lines = map(int, counts)
     return Drawing(lines, elements, int(smooth), form, level, thumbnail, validated_limit(None))
 
 
 def _paths(pattern: Pattern | None, variants: Sequence[Variant]) -> tuple[str, ...]:
-    """The path of each variant; none without a pattern. Raises UsageError if two are the same file."""
+    """The path of each variant; none without a pattern.
+
+    Raises UsageError if two variants have the same file, or if a path is too long.
+    """
     if pattern is None:
         return ()
-    paths = [pattern.path(number, variant) for number, variant in enumerate(variants, 1)]
+    paths: list[str] = []
     first: dict[str, int] = {}
-    for number, path in enumerate(paths, 1):
+    for number, variant in enumerate(variants, 1):
+        path = pattern.path(number, variant)
+        if len(path) > LONGEST_PATH:
+            raise UsageError(
+                f"the path of a picture must have at most {LONGEST_PATH:,} characters, not {len(path):,} as"
+                f" for {shown(variant.name)}; shorten the name pattern"
+            )
+        paths.append(path)
         other = first.setdefault(_same_file(path), number)
         if other != number:
             raise UsageError(
@@ -339,7 +367,8 @@ def checked_batch(
             f"runs must be a whole number from 1 to {MOST_IN_RUN:,}, not {shown(runs)}; give one such as"
             f" {RUNS}"
         )
-    if executor is not None and not callable(getattr(executor, "submit", None)):
+    is_class = isinstance(executor, type)
+    if executor is not None and (is_class or not callable(getattr(executor, "submit", None))):
         raise UsageError(
             f"an executor must be one of concurrent.futures or the like, not {shown(executor)}; leave it out"
             " for this process"
@@ -425,7 +454,7 @@ def batch(
     The options:
 
     - `executor`: any executor of concurrent.futures, also Dask's `Client.get_executor()`; by default this
-      process does the work. Runs of at most `runs` variants travel to it.
+      process does the work. Runs of at most `runs` variants travel to it, at least a run for each worker.
     - `size`, by default (640, 480), and `smooth`, by default 1, as in `render`; a picture has its own.
     - `level`: the compression of PNG files, 0 to 9; `sync=False` as in `save_image`.
     - `resume`: skip each variant whose file is whole and was made from the same scene or picture and the
@@ -435,13 +464,16 @@ def batch(
     `sheet` is a PNG file for a labeled contact sheet, `table` a CSV file for the results; both are also
     written if the batch is stopped. `progress` is called with each result.
 
-    A variant that cannot be made has a `problem` in its result, and loses no other. Raises UsageError for a
-    wrong argument; InputError for an invalid source; OutputError if a file exists; WriteError if a file
-    cannot be written; UnavailableError if the executor fails.
+    A variant that cannot be made has a `problem` in its result, which is also logged as a warning, and loses
+    no other. Raises UsageError for a wrong argument, and for arrays that exceed the memory budget;
+    InputError for an invalid source; OutputError if a file exists; WriteError if a file cannot be written;
+    UnavailableError if the executor fails.
     """
     rows = variants_of(variants)
     cells = None if sheet is None else ContactSheet(rows)
     checked = checked_batch(source, rows, output, thumbnail=None if cells is None else cells.box, **options)
+    if output is None and checked.drawing.form == ARRAY:
+        _check_memory(len(rows) * checked.drawing.bytes_of_picture)
     for path, suffix, what in ((sheet, ".png", "a contact sheet"), (table, ".csv", "a table of results")):
         if path is not None:
             check_suffix(path, suffix, what)
@@ -465,7 +497,19 @@ def batch(
             write_atomically(table, results_bytes(in_order), overwrite=True)
         if sheet is not None and cells is not None:
             write_atomically(sheet, cells.png(), overwrite=True)
+    for result in in_order:
+        for line in result.problem.splitlines():
+            LOG.warning("%s: %s", result.name, line)
     return in_order
+
+
+def _check_memory(needed: int) -> None:
+    """Raise UsageError if the arrays of a batch need more bytes than the budget allows."""
+    if needed > allowed_memory():
+        raise UsageError(
+            f"the arrays of a batch must have at most {allowed_memory():,} bytes, not {needed:,}; give an"
+            " output, or take the results one by one from batch_results"
+        )
 
 
 def _same_file(path: str | PathLike[str]) -> str:
@@ -476,7 +520,7 @@ def _same_file(path: str | PathLike[str]) -> str:
 def _is_of_batch(path: str | PathLike[str]) -> bool:
     """Whether a file is the sheet or the table of a batch."""
     if not fspath(path).lower().endswith(".csv"):
-        return mark_in(fspath(path), "png") != ""
+        return mark_in(fspath(path), "png") == SHEET_MARK
     with suppress(OSError), open(path, "rb") as file:
         return file.read(len(TABLE_BEGINS)) == TABLE_BEGINS
     return False

@@ -93,9 +93,15 @@ def _own_text(scene: Scene, key: str) -> str:
     return _safe(stem_of(plain.get(place.path[-1])))
 
 
+LONGEST_PART: Final = 200
+"""Limit: bytes of a part of a file name, in UTF-8. Most systems allow 255 for the whole name."""
+
+
 def _safe(text: str) -> str:
-    """The text as a part of a file name."""
-    return file_stem(text.replace("/", "_"))
+    """The text as a part of a file name, cut to LONGEST_PART."""
+    stem = file_stem(text.replace("/", "_"))
+    data = stem.encode("utf-8", "surrogatepass")
+    return stem if len(data) <= LONGEST_PART else data[:LONGEST_PART].decode("utf-8", "ignore")
 
 
 # Forms.
@@ -172,7 +178,7 @@ def form_of(output: str | os.PathLike[str] | None, form: str | None) -> str:
     if suffix not in forms:
         raise UsageError(
             f"the pictures of a batch must be written to files that end in {' or '.join(forms)}, not to"
-            f" {output}; rename them"
+            f" {shown(str(output))}; rename them"
         )
     if form not in (None, forms[suffix]):
         raise UsageError(f"the suffix of {output} must be that of the form {shown(form)}; leave the form out")
@@ -201,7 +207,7 @@ def mark_in(path: str, form: str) -> str:
 
 
 def base_mark(scene: Scene, picture: Picture | None, drawn: tuple[object, ...]) -> str:
-    """The checksum of what all variants are made from: the scene, its mesh, the picture, how it is drawn.
+    """The checksum of the scene with its mesh, of its picture, and of the numbers of the drawing.
 
     Columns of the scene that no picture depends on, such as its name, are left out. Measured: 1 ms for the
     coupe, 3 ms with its picture, 45 ms for a million polygons.
@@ -227,7 +233,7 @@ def base_mark(scene: Scene, picture: Picture | None, drawn: tuple[object, ...]) 
 
 
 def mark_of(base: str, variant: Variant) -> str:
-    """The checksum of what the picture of a variant is made from."""
+    """The checksum of a variant's settings and of the scene that they change."""
     return sha256(base.encode() + _text(dict(variant.settings))).hexdigest()
 
 

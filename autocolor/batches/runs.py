@@ -132,7 +132,7 @@ _ARRIVED: Final[dict[str, Start]] = {}
 
 
 def forget(start: Start) -> None:
-    """Forget the start of a batch that ended, where its workers were threads of this process."""
+    """Forget the start of a batch that ended: threads of this process may have unpickled a copy."""
     _ARRIVED.pop(start.token, None)
 
 

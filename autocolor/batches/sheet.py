@@ -31,6 +31,9 @@ LABEL_LINES: Final = 16
 MOST_COLUMNS: Final = 32
 """Limit: columns of a sheet that has the shape of a grid; others are nearly square."""
 
+MOST_ROWS: Final = 64
+"""Limit: rows of a sheet that has the shape of a grid; of more rows, several stand side by side."""
+
 
 class Box(NamedTuple):
     """The most elements and lines of a thumbnail."""
@@ -102,15 +105,20 @@ class ContactSheet:
 
 
 def columns_of(variants: Sequence[Variant]) -> int:
-    """The columns of a sheet: the values of the last key of a grid, else enough for a nearly square sheet."""
+    """The columns of a sheet: the values of the last key of a grid, else enough for a nearly square sheet.
+
+    Of a grid with many rows, several rows stand side by side.
+    """
     counts: dict[str, set[str]] = {}
     for variant in variants:
         for key, value in variant.settings.items():
             counts.setdefault(key, set()).add(repr(value))
     axes = [len(values) for values in counts.values() if len(values) > 1]
+    square = max(1, math.ceil(math.sqrt(len(variants))))
     if len(axes) > 1 and math.prod(axes) == len(variants) and axes[-1] <= MOST_COLUMNS:
-        return axes[-1]
-    return max(1, math.ceil(math.sqrt(len(variants))))
+        is_high = len(variants) > MOST_ROWS * axes[-1]
+        return axes[-1] * math.ceil(square / axes[-1]) if is_high else axes[-1]
+    return square
 
 
 def thumbnail(colors: Bytes, box: Box) -> Bytes:

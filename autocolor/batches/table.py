@@ -18,6 +18,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice, product
+from numbers import Real
 from os import PathLike
 from pathlib import Path
 from types import MappingProxyType
@@ -82,14 +83,18 @@ class Variant(Immutable):
             )
         if time is not None:
             # A whole number may be too large for a float.
-            is_number = isinstance(time, (int, float)) and not isinstance(time, bool)
+            is_number = isinstance(time, Real) and not isinstance(time, bool)
             if not is_number or not abs(time) <= LATEST:
                 raise UsageError(
                     f"the time of a variant must be a number of at most {LATEST:g} in size, not"
                     f" {shown(time)}; correct it"
                 )
             vars(self)["time"] = float(time)
-        vars(self)["settings"] = MappingProxyType(dict(settings))
+        # The text of a NumPy array leaves out digits and, of a long array, numbers.
+        plain = {
+            key: value.tolist() if hasattr(value, "tolist") else value for key, value in settings.items()
+        }
+        vars(self)["settings"] = MappingProxyType(plain)
 
     def __reduce__(self) -> tuple[type[Variant], tuple[str, dict[str, object], float | None]]:
         # A read-only mapping cannot be pickled.
@@ -266,7 +271,7 @@ def results_bytes(results: Sequence[Result]) -> bytes:
 
 
 def _cell(value: object) -> str:
-    """A value as a table of variants has it."""
+    """A value as a cell of a table of variants."""
     is_nested = isinstance(value, (list, tuple, Mapping))
     return json.dumps(value, default=repr) if is_nested else text_of(value)
 
@@ -338,11 +343,11 @@ LONGEST_LIST: Final = 1 << 20
 
 
 def varied(text: str) -> tuple[Variant, ...]:
-    """The variants of KEY=A,B,C, of KEY=START:STOP:COUNT, or of KEY=@PALETTE.
+    """The variants of KEY=A,B,C or of KEY=START:STOP:COUNT.
 
-    START:STOP:COUNT are evenly spaced numbers from START to STOP. A palette is a file that `read_palette`
-    reads; its colors have its names. Commas in brackets and in quotes do not separate values. Raises
-    UsageError, or InputError for a palette.
+    START:STOP:COUNT are evenly spaced numbers from START to STOP. A value @PALETTE stands for the colors of a
+    palette, with their names: a file that `read_palette` reads. Commas in brackets and in quotes do not
+    separate values. Raises UsageError, or InputError for a palette.
 
     >>> [dict(variant.settings) for variant in varied("ambient=0:1:3")]
     [{'ambient': 0.0}, {'ambient': 0.5}, {'ambient': 1.0}]
@@ -350,16 +355,17 @@ def varied(text: str) -> tuple[Variant, ...]:
     [{'view.eye': '[1,2,3]'}, {'view.eye': '[4,5,6]'}]
     """
     key, equals, values = (part.strip() for part in text.partition("="))
-    if not (key and equals and values) or len(values) > LONGEST_LIST:
+    if not (key and equals and values) or key in (NAME, TIME) or len(values) > LONGEST_LIST:
         raise UsageError(
             f"--vary must be KEY=A,B,C or KEY=START:STOP:COUNT, not {shown(text)}; write it as in"
             " surfaces.body.object_color=red,navy"
         )
-    if values.startswith("@"):
-        return _of_palette(key, values[1:])
     evenly = EVENLY.fullmatch(values)
     if evenly is None:
-        return variants_of([{key: value} for value in _split(values, key)])
+        names, rows = _Names(), list[dict[str, object]]()
+        for value in _split(values, key):
+            rows += _of_palette(key, value[1:], names) if value.startswith("@") else [{key: value}]
+        return variants_of(rows)
     start, stop, count = float(evenly[1]), float(evenly[2]), int(evenly[3])
     if not 2 <= count <= MOST_VARIANTS or not math.isfinite(start) or not math.isfinite(stop):
         raise UsageError(
@@ -372,14 +378,13 @@ def varied(text: str) -> tuple[Variant, ...]:
     )
 
 
-def _of_palette(key: str, path: str) -> tuple[Variant, ...]:
-    """The variants with each color of a palette, by the names of the colors. Raises InputError."""
-    palette, names = read_palette(path), _Names()
-    colors = [in_digits(color) for color in map(tuple, palette.colors.tolist())]
-    labels = [name or color.lstrip("#") for name, color in zip(palette.names, colors, strict=True)]
-    return tuple(
-        Variant(names.free(label), {key: color}) for label, color in zip(labels, colors, strict=True)
-    )
+def _of_palette(key: str, path: str, names: _Names) -> list[dict[str, object]]:
+    """The rows with each color of a palette, by the names of the colors. Raises InputError."""
+    palette = read_palette(path.strip("\"'"))
+    rows: list[dict[str, object]] = []
+    for name, color in zip(palette.names, map(tuple, palette.colors.tolist()), strict=True):
+        rows.append({key: in_digits(color), **({NAME: names.free(name)} if name else {})})
+    return rows
 
 
 def _split(text: str, key: str) -> list[str]:
@@ -451,7 +456,7 @@ def _csv_rows(data: bytes, file: str) -> Iterator[_Row]:
 
 
 def _time(text: str) -> float | str:
-    """The number in a text; the text itself, which `Variant` refuses, if there is none."""
+    """The number in a text. A text without a number is returned as it is, and `Variant` refuses it."""
     return float(text) if re.fullmatch(NUMBER, text) else text
 
 

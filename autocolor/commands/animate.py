@@ -18,7 +18,16 @@ from autocolor.commands.options import (
     with_normals,
 )
 from autocolor.commands.scenes import SceneSource, scene_options, set_option
-from autocolor.commands.sweep import jobs_option, progress, refuse_keys, start_of, table_option, workers
+from autocolor.commands.sweep import (
+    jobs_option,
+    progress,
+    refuse_keys,
+    scene_in,
+    start_of,
+    table_option,
+    tell_paints,
+    workers,
+)
 from autocolor.errors import InputError, UsageError
 from ramtek_emu.command_line import tell
 
@@ -138,13 +147,13 @@ def animate(
     tables += [varied(text) for text in varies]
     start, code = start_of(source, settings, size)
     refuse_keys(start, tables, table)
+    tell_paints(start, tables)
     start = prepared(start, normals, hold_exposure, size)
     is_picture = isinstance(start, tuple)
     own = tables[: 0 if table is None else 1]
     tracks = [*own, *in_step(tables[len(own) :])]
-    scene = start.scene if isinstance(start, tuple) else start
     with as_usage() if table is None else nullcontext():
-        frames = frames_of_tracks(scene, tracks, count, turn=turn)
+        frames = frames_of_tracks(scene_in(start), tracks, count, turn=turn)
     by_size = None if is_picture or kind == films.STREAM else smooth_of(smooth, size)
     with progress(len(frames)) as step, workers(jobs) as executor:
         film = films.animate(
@@ -181,7 +190,7 @@ def prepared(
         raise UsageError(
             "--normals is for a scene, not for a picture file, which has no normals; leave it out"
         )
-    scene = with_normals(start.scene if isinstance(start, tuple) else start, normals)
+    scene = with_normals(scene_in(start), normals)
     if hold_exposure:
         elements, lines = size
         picture = start.picture if isinstance(start, tuple) else render(scene, lines, elements)

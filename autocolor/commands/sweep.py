@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from typing import TYPE_CHECKING, Final
 
 import click
 from click.core import ParameterSource
 
 from autocolor.commands.completion import complete_settings
-from autocolor.commands.options import size_option, smooth_of, smooth_option
+from autocolor.commands.options import print_log, size_option, smooth_of, smooth_option
 from autocolor.commands.scenes import (
     REPAIRED,
     SceneSource,
@@ -23,8 +23,9 @@ from autocolor.commands.scenes import (
     set_option,
     tell_up,
 )
-from autocolor.errors import InputError, UsageError
+from autocolor.errors import AutocolorError, InputError, UsageError
 from ramtek_emu.command_line import tell
+from ramtek_emu.writing import same_outputs
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -50,8 +51,8 @@ vary_option = click.option(
     multiple=True,
     metavar="KEY=VALUES",
     shell_complete=complete_settings,
-    help="Vary a field: A,B,C; START:STOP:COUNT, evenly spaced numbers; or @FILE, the colors of a palette."
-    " Several --vary make every combination, the last changing fastest.",
+    help="Vary a field: A,B,C, where @FILE stands for the colors of a palette; or START:STOP:COUNT, evenly"
+    " spaced numbers. Several --vary make every combination, the last changing fastest.",
 )
 
 table_option = click.option(
@@ -135,11 +136,14 @@ def sweep(
         raise UsageError(
             "sweep must have --vary or --table; write it as in --vary surfaces.body.object_color=red,navy"
         )
+    if made is not None and any(same_outputs([made, read]) for read in (source.path, table) if read):
+        raise UsageError(f"--made must be a file of its own, not {made}, which is read; name another")
     is_sized = context.get_parameter_source("size") is ParameterSource.COMMANDLINE
     tables = [] if table is None else [read_variants(table)]
     tables += [varied(text) for text in varies]
     start, code = start_of(source, settings, size)
     refuse_keys(start, tables, table)
+    tell_paints(start, tables)
     variants = products(tables)
     is_picture = isinstance(start, tuple)
     with progress(len(variants)) as step, workers(jobs) as executor:
@@ -172,6 +176,7 @@ def start_of(
     from autocolor.files.scene_sources import is_picture
 
     if is_picture(Path(source.path)):
+        print_log(click.get_current_context())
         saved = read_picture(source.path)
         return saved._replace(scene=recolored(saved.scene, None, {}, settings)), 0
     elements, lines = size
@@ -181,6 +186,11 @@ def start_of(
     return scene, ended(report, source)
 
 
+def scene_in(start: Scene | SavedPicture) -> Scene:
+    """The scene, or the scene of a picture."""
+    return start.scene if isinstance(start, tuple) else start
+
+
 def refuse_keys(start: Scene | SavedPicture, tables: list[tuple[Variant, ...]], table: str | None) -> None:
     """Refuse keys that the scene does not have, before anything is made.
 
@@ -188,7 +198,7 @@ def refuse_keys(start: Scene | SavedPicture, tables: list[tuple[Variant, ...]], 
     """
     from autocolor.files.settings import place_of
 
-    scene = start.scene if isinstance(start, tuple) else start
+    scene = scene_in(start)
     for number, variants in enumerate(tables):
         for key in dict.fromkeys(key for variant in variants for key in variant.settings):
             try:
@@ -199,11 +209,27 @@ def refuse_keys(start: Scene | SavedPicture, tables: list[tuple[Variant, ...]], 
                 raise UsageError(f"--vary {error}") from None
 
 
+def tell_paints(start: Scene | SavedPicture, tables: list[tuple[Variant, ...]]) -> None:
+    """Print a line for each paint that variants unset, once for all variants."""
+    from autocolor.files.settings import UNSET, scene_with
+    from autocolor.scene.scene import unset_paints
+
+    scene = scene_in(start)
+    sentences, checked = dict[str, None](), set[frozenset[str]]()
+    for variant in (variant for table in tables for variant in table):
+        keys = frozenset(key for key, value in variant.settings.items() if value not in (None, UNSET))
+        if keys in checked:
+            # Variants that set the same fields unset the same fields.
+            continue
+        with suppress(AutocolorError):
+            sentences |= dict.fromkeys(unset_paints(scene, scene_with(scene, variant.settings)))
+            checked.add(keys)
+    tell(*(f"autocolor: {sentence}" for sentence in sentences))
+
+
 def told(results: list[Result], strict: bool) -> int:
-    """Print the failed variants and how many pictures were made on stderr; returns the exit code."""
+    """Print how many pictures were made on stderr; returns the exit code."""
     failed = [result for result in results if result.problem]
-    for result in failed:
-        tell(*(f"autocolor: {result.name}: {line}" for line in result.problem.splitlines()))
     present = sum(not result.was_made for result in results)
     made = len(results) - len(failed) - present
     counts = [f"made {made:,} picture{'' if made == 1 else 's'}"]
@@ -217,12 +243,22 @@ def told(results: list[Result], strict: bool) -> int:
 
 @contextmanager
 def progress(count: int) -> Iterator[Callable[[], None]]:
-    """A progress bar with the time left on stderr, if stderr is a terminal; call the function for a step."""
+    """A progress bar with the time left on stderr, if stderr is a terminal; call the function for a step.
+
+    The bar ends with the last step, so that messages have lines of their own.
+    """
     if sys.stderr is None or not sys.stderr.isatty():
         yield lambda: None
         return
-    with click.progressbar(length=count, file=sys.stderr, show_pos=True) as bar:
-        yield lambda: bar.update(1)
+    with ExitStack() as stack:
+        bar = stack.enter_context(click.progressbar(length=count, file=sys.stderr, show_pos=True))
+
+        def step() -> None:
+            bar.update(1)
+            if bar.finished:
+                stack.close()
+
+        yield step
 
 
 @contextmanager

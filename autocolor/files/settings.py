@@ -33,8 +33,9 @@ def scene_with(scene: Scene, settings: Mapping[str, object]) -> Scene:
 
     A value is plain, as JSON has it, or a text as in a scene file, which needs no quotes; a list of names
     needs no brackets. None and the text "none" unset an optional field, such as `view.target`. All settings
-    of a row are applied together, so their order does not matter. Raises UsageError, which begins with the
-    key, for an unknown key and for a field that cannot be unset; RowError for an invalid value.
+    of a row are applied together, and whole rows before fields, so their order does not matter. Raises
+    UsageError, which begins with the key, for an unknown key and for a field that cannot be unset; RowError
+    for an invalid value.
 
         scene_with(scene, {"surfaces.body.object_color": "#1f3f8f", "lights.key.position": [4, -6, 5]})
 
@@ -45,8 +46,9 @@ def scene_with(scene: Scene, settings: Mapping[str, object]) -> Scene:
         place = place_of(scene, key)
         value = _value_at(scene, field_of(place), key, value)
         _put(changes.setdefault((place.table, place.name), {}), place.path, value, key)
-    for (table, name), fields in changes.items():
-        scene = _replaced(scene, table, name, fields)
+    # Set whole rows, which are fields of the scene, before their fields.
+    for table, name in sorted(changes, key=lambda row: row[0] != ""):
+        scene = _replaced(scene, table, name, changes[table, name])
     return scene
 
 

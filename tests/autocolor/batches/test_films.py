@@ -211,6 +211,22 @@ def test_a_frame_that_cannot_be_made_is_named_and_nothing_is_written(name: str, 
     assert os.listdir(tmp_path) == []
 
 
+@pytest.mark.parametrize(
+    ("bad", "sentence"),
+    [
+        ({COLOR: "no"}, "frame 2: surface 'cube': object_color"),
+        ({"surfaces.no.blend": 1}, "frame 2: surfaces.no.blend: there is no surface"),
+    ],
+)
+def test_a_frame_of_a_stream_that_cannot_be_made_is_named(
+    bad: dict[str, object], sentence: str, tmp_path: Path
+) -> None:
+    with pytest.raises(InputError) as refusal:
+        animate(SCENE, [{COLOR: "red"}, bad], tmp_path / "cycle.ramtek")
+    assert str(refusal.value).startswith(sentence)
+    assert os.listdir(tmp_path) == []
+
+
 def test_a_webp_that_does_not_fit_in_memory_is_refused(tmp_path: Path) -> None:
     many = FADE * 100
     with (

@@ -188,6 +188,10 @@ def test_what_makes_no_frames_is_refused_in_words(
     assert sentence in str(refusal.value)
 
 
+def test_numbers_of_numpy_are_numbers() -> None:
+    assert frames(SCENE, [], np.int64(3), turn=np.int64(360)) == frames(SCENE, [], 3, turn=360)  # type: ignore[arg-type]
+
+
 def test_a_key_in_two_tables_is_refused() -> None:
     for lists in (["ambient=0,1", "ambient=1,2"], ["ambient=0,1", "ambient=1,2,3"]):
         with pytest.raises(UsageError, match="a key must be in one table or list, not 'ambient' in two"):

@@ -38,7 +38,7 @@ from autocolor import (
 )
 from autocolor.batches import making
 from autocolor.batches.making import MORE_THAN_WORKERS
-from autocolor.batches.outputs import mark_in
+from autocolor.batches.outputs import SHEET_MARK, mark_in
 from autocolor.batches.table import Result, Variant, variants_of
 from autocolor.files.settings import scene_with
 from autocolor.rendering import Rendering, rendering
@@ -194,6 +194,14 @@ def test_an_executor_has_a_few_more_runs_than_workers_however_many_variants_ther
         assert len(executor.pending) <= executor._max_workers + MORE_THAN_WORKERS
     assert count == 100
     assert executor.most == executor._max_workers + MORE_THAN_WORKERS
+
+
+@pytest.mark.parametrize("ordered", [False, True])
+def test_each_worker_gets_a_run_of_a_small_batch(ordered: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(making, "wait", wait_last)
+    executor = Reversed()
+    results = batch(wall_scene(), PAINTS[:7], size=SIZE, executor=executor, ordered=ordered)
+    assert (len(results), executor.most) == (7, executor._max_workers)
 
 
 def unnamed(variants: tuple[Variant, ...]) -> list[dict[str, object]]:
@@ -382,6 +390,24 @@ def test_a_folder_that_cannot_be_made_is_a_problem_of_its_variants(tmp_path: Pat
     assert (other.problem, other.path) == ("", str(tmp_path / "navy" / "a.png"))
 
 
+def test_each_problem_is_logged_as_a_warning(caplog: pytest.LogCaptureFixture) -> None:
+    rows = [{"name": name, "background": name} for name in ("red", "no", "nay")]
+    results = batch(wall_scene(), rows, size=SIZE)
+    assert caplog.messages == [f"{result.name}: {result.problem}" for result in results[1:]]
+    assert {record.levelname for record in caplog.records} == {"WARNING"}
+
+
+def test_a_sheet_is_never_written_over_a_picture_of_another_batch(tmp_path: Path) -> None:
+    (other,) = batch(wall_scene(), [{}], tmp_path / "a.png", size=SIZE)
+    again: dict[str, Any] = {"size": SIZE, "sheet": tmp_path / "a.png", "resume": True}
+    with pytest.raises(OutputError, match="must be a new file"):
+        batch(wall_scene(), PAINTS[:2], tmp_path / "{number}.png", **again)
+    again["sheet"] = tmp_path / "sheet.png"
+    for _ in range(2):
+        batch(wall_scene(), PAINTS[:2], tmp_path / "{number}.png", **again)
+    assert mark_in(str(other.path), "png") != SHEET_MARK
+
+
 def refused() -> Iterator[tuple[dict[str, Any], type[Exception], str]]:
     scene = wall_scene()
     yield {"output": "same.png"}, UsageError, "a name pattern must give each variant a file of its own"
@@ -409,6 +435,12 @@ def refused() -> Iterator[tuple[dict[str, Any], type[Exception], str]]:
         UsageError,
         "the size and smooth of a batch",
     )
+    yield {"size": 640}, UsageError, "the size of pictures must be elements and lines"
+    yield {"source": (scene, render(scene, 3, 4)), "size": 4}, UsageError, "the size and smooth of a batch"
+    yield {"executor": ThreadPoolExecutor}, UsageError, "an executor must be one of concurrent.futures"
+    long = {"output": "x" * 4090 + "{name}.png"}
+    yield long, UsageError, "the path of a picture must have at most 4,096 characters, not 4,1"
+    yield {"size": (9000, 9000)}, UsageError, "the arrays of a batch must have at most 4,000,000,000 bytes"
     yield {"variants": "red"}, UsageError, "variants must be a list of tables or of Variants, not 'red'"
 
 

@@ -13,6 +13,7 @@ from PIL import Image
 
 from autocolor import Mesh, Scene, UsageError, Variant, render
 from autocolor.batches.outputs import FORMS, Pattern, base_mark, form_of, mark_in, mark_of
+from autocolor.files.writing import write_atomically
 from tests.autocolor.meshes import wall, wall_scene
 
 MARK = "0123456789abcdef" * 4
@@ -33,6 +34,14 @@ MARK = "0123456789abcdef" * 4
 def test_a_pattern_gives_each_variant_a_name(pattern: str, path: str) -> None:
     variant = Variant("a/b", {"surfaces.wall.object_color": "#1f3f8f", "view.eye": [1, 2, 3]})
     assert Pattern(pattern, wall_scene()).path(7, variant) == path
+
+
+def test_a_long_name_of_any_letters_is_cut_to_a_file(tmp_path: Path) -> None:
+    pattern = Pattern(tmp_path / "{name}.png", wall_scene())
+    for letter, count in (("x", 100), ("車", 66), ("🚗", 50)):
+        path = pattern.path(1, Variant(letter * 300, {}))
+        assert Path(path).name == f"{letter * count}.png"
+        write_atomically(path, b"", overwrite=False)
 
 
 @given(st.text(min_size=1), st.text())
@@ -75,7 +84,7 @@ def test_the_suffix_gives_the_form_and_a_form_without_an_output_is_taken() -> No
         (
             "a.jpg",
             None,
-            "the pictures of a batch must be written to files that end in .png or .webp, not to a.jpg",
+            "the pictures of a batch must be written to files that end in .png or .webp, not to 'a.jpg'",
         ),
         ("a.png", "webp", "the suffix of a.png must be that of the form 'webp'; leave the form out"),
         (None, "jpg", "the form of pictures must be 'array', 'png' or 'webp', not 'jpg'"),

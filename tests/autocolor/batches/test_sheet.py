@@ -53,6 +53,9 @@ def test_a_sheet_has_the_shape_of_a_grid_else_it_is_nearly_square() -> None:
     assert columns_of(grid({"a": range(24)})) == 5
     assert columns_of(grid({"a": range(2), "b": range(40)})) == 9
     assert columns_of(variants_of([{"a": 1, "b": 1}, {"a": 2, "b": 2}, {"a": 3}])) == 2
+    assert columns_of(grid({"a": range(24), "b": range(3)})) == 3
+    # A thousand rows of two stand side by side.
+    assert columns_of(grid({"a": range(1000), "b": range(2)})) == 46
     assert columns_of(()) == 1
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -129,6 +130,21 @@ def test_a_palette_gives_its_colors_and_their_names(tmp_path: Path) -> None:
     assert [variant.name for variant in variants] == ["Deep/Sea", "Red", "00ff00"]
 
 
+def test_palettes_stand_in_a_list_beside_other_values_and_a_quoted_value_is_none(tmp_path: Path) -> None:
+    path = tmp_path / "paints, old.gpl"
+    write_palette(path, ["#102030", "#ff0000"], names=["sea", "Red"])
+    variants = varied(f"a=red,@'{path}',\"@x\",@'{path}'")
+    values = ["red", "#102030", "#ff0000", '"@x"', "#102030", "#ff0000"]
+    assert settings_of(variants) == [{"a": value} for value in values]
+    assert [variant.name for variant in variants] == ["red-3", "sea", "Red", "@x", "sea-2", "Red-2"]
+
+
+def test_arrays_are_plain_values_with_all_digits() -> None:
+    array = np.array([1.123456789012, 2.0, 3.0])
+    variant = Variant("a", {"view.eye": array, "ambient": np.float32(0.5)}, np.int64(2))  # type: ignore[arg-type]
+    assert variant == Variant("a", {"view.eye": [1.123456789012, 2.0, 3.0], "ambient": 0.5}, 2.0)
+
+
 def written(folder: Path, name: str, data: str | bytes) -> Path:
     path = folder / name
     path.write_bytes(data.encode() if isinstance(data, str) else data)
@@ -222,6 +238,7 @@ def test_a_table_of_another_kind_and_a_large_file_are_refused(tmp_path: Path) ->
         (lambda: products([varied("a=1,2"), varied("a=3")]), "a key must be in one table or list, not 'a'"),
         (lambda: varied("a"), "--vary must be KEY=A,B,C or KEY=START:STOP:COUNT, not 'a'; write it as in"),
         (lambda: varied("=1"), "--vary must be KEY=A,B,C"),
+        (lambda: varied("name=a,b"), "--vary must be KEY=A,B,C"),
         (lambda: varied("a=1,,2"), "--vary a: there must be a value before and after each comma"),
         (lambda: varied("a=0:1:1"), "--vary a: START and STOP must be finite, and COUNT 2 to 100,000, not"),
         (lambda: varied("a=0:1e999:3"), "--vary a: START and STOP must be finite"),

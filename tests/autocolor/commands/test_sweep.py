@@ -80,6 +80,33 @@ def test_failed_variants_are_listed(
     assert ran.err.endswith("2 failed\n" if code == 65 else "made 1 picture, 1 failed\n")
 
 
+def test_a_paint_that_variants_unset_is_told_once(folder: Path, run: Run) -> None:
+    side = "surfaces.side"
+    ramps = ("--vary", f"{side}.ramp=[red,blue],[red,white],[red,navy]")
+    told = "autocolor: side: the ramp replaces its two colors and their blend\n"
+    assert run("sweep", "scene", *ramps, "-o", "{name}.png", *SMALL).err == f"{told}made 3 pictures\n"
+    ran = run("animate", "scene", *ramps, "--frames", "6", "-o", "a.webp", *SMALL)
+    assert ran.err == f"{told}wrote a.webp, 6 frames\n"
+    back = "autocolor: side: two colors and their blend replace its ramp\n"
+    settings = ("--set", f"{side}.ramp=red,blue", "--vary", f"{COLOR}=no,red,navy")
+    assert run("sweep", "scene", *settings, "-o", "b-{name}.png", *SMALL).err.startswith(told + back)
+    assert run("render", "scene", "--save", "saved.npz", *SMALL).code == 0
+    assert run("sweep", "saved.npz", *settings, "-o", "c-{name}.png").err.startswith(told + back)
+    nothing = ("--vary", f"{COLOR}=red", "--vary", "ambient=0,1")
+    assert run("sweep", "scene", *nothing, "-o", "d-{name}.png", *SMALL).err == "made 2 pictures\n"
+
+
+def test_the_table_of_results_is_never_written_over_the_table_of_variants(folder: Path, run: Run) -> None:
+    Path("looks.csv").write_text("ambient\n1\n")
+    arguments = ("--table", "looks.csv", "--made", "./looks.csv", "--force", "-o", "{name}.png")
+    ran = run("sweep", "scene", *arguments, *SMALL)
+    assert (ran.code, ran.err) == (
+        2,
+        "autocolor: --made must be a file of its own, not ./looks.csv, which is read; name another\n",
+    )
+    assert Path("looks.csv").read_text() == "ambient\n1\n"
+
+
 @pytest.mark.parametrize(
     ("arguments", "code", "sentence"),
     [
@@ -120,7 +147,11 @@ def test_a_terminal_gets_a_progress_bar_with_the_time_left(
     with sweep.progress(2) as step:
         step()
         step()
-    assert "2/2" in capsys.readouterr().err
+        print("message", file=sys.stderr)
+    # The bar has ended its line before the message.
+    *_, bar, message, end = capsys.readouterr().err.split("\n")
+    assert "2/2" in bar
+    assert (message.removeprefix("\x1b[?25h"), end) == ("message", "")
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="needs SIGINT")

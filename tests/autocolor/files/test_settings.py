@@ -71,6 +71,16 @@ def test_a_name_that_is_a_number_needs_no_quotes() -> None:
     assert scene_with(scene, {"parts.wall.surface": "2"}).parts[0].surface == "2"
 
 
+@pytest.mark.parametrize("whole", [None, {"name": "x", "bands": 4}])
+def test_a_whole_row_is_set_before_its_fields_in_any_order(whole: object) -> None:
+    settings = {"scalar.name": "z", "scalar": whole}
+    scene = wall_scene().with_scalar(name="y")
+    one, other = scene_with(scene, settings), scene_with(scene, dict(reversed(settings.items())))
+    assert one.scalar == other.scalar
+    assert one.scalar is not None
+    assert one.scalar.name == "z"
+
+
 def test_a_color_shares_everything_else_with_the_scene() -> None:
     scene = wall_scene()
     changed = scene_with(scene, {"surfaces.wall.object_color": "red"})
