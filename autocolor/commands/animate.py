@@ -17,10 +17,10 @@ from autocolor.commands.options import (
     smooth_option,
     with_normals,
 )
+from autocolor.commands.outputs import progress
 from autocolor.commands.scenes import SceneSource, scene_options, set_option
 from autocolor.commands.sweep import (
     jobs_option,
-    progress,
     refuse_keys,
     scene_in,
     start_of,

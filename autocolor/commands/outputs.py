@@ -1,11 +1,15 @@
-"""Output files of the commands: checks of their paths before any work, and writing."""
+"""Output files of the commands: checks of their paths before any work, writing, and its progress."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
+
+import click
 
 from autocolor.errors import OutputError, UsageError
 from ramtek_emu.command_line import tell
@@ -14,7 +18,6 @@ from ramtek_emu.writing import same_outputs
 if TYPE_CHECKING:
     from autocolor.lighting.picture import Picture
     from autocolor.scene.scene import Scene
-
 
 OTHERS: Final = {
     "--layers": (".exr", "an OpenEXR file"),
@@ -85,3 +88,24 @@ def tell_written(*paths: str | None) -> None:
     for path in paths:
         if path is not None:
             tell(f"wrote {path}")
+
+
+@contextmanager
+def progress(count: int) -> Iterator[Callable[[], None]]:
+    """A progress bar with the time left on stderr, if stderr is a terminal.
+
+    Call the yielded function after each step. The bar ends with the last step, so that messages have lines of
+    their own.
+    """
+    if sys.stderr is None or not sys.stderr.isatty():
+        yield lambda: None
+        return
+    with ExitStack() as stack:
+        bar = stack.enter_context(click.progressbar(length=count, file=sys.stderr, show_pos=True))
+
+        def step() -> None:
+            bar.update(1)
+            if bar.finished:
+                stack.close()
+
+        yield step

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from functools import partial
 from typing import TYPE_CHECKING, Final
 
@@ -12,7 +9,7 @@ import click
 
 from autocolor.commands.completion import complete_lights, complete_views
 from autocolor.commands.options import normals_option, size_option, smooth_of, smooth_option, with_normals
-from autocolor.commands.outputs import refuse_outputs, tell_written, write_image
+from autocolor.commands.outputs import progress, refuse_outputs, tell_written, write_image
 from autocolor.commands.scenes import (
     SceneSource,
     created_again,
@@ -186,13 +183,3 @@ def render(
         step()
     tell_written(output, save, *others.values())
     context.exit(ended(report, source))
-
-
-@contextmanager
-def progress(steps: int) -> Iterator[Callable[[], None]]:
-    """A progress bar on stderr, if stderr is a terminal. Call the yielded function after each step."""
-    if sys.stderr is None or not sys.stderr.isatty():
-        yield lambda: None
-        return
-    with click.progressbar(length=steps, file=sys.stderr, show_eta=False) as bar:
-        yield lambda: bar.update(1)

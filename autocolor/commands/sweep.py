@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager, suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Final
 
 import click
@@ -12,6 +11,7 @@ from click.core import ParameterSource
 
 from autocolor.commands.completion import complete_settings
 from autocolor.commands.options import print_log, size_option, smooth_of, smooth_option
+from autocolor.commands.outputs import progress
 from autocolor.commands.scenes import (
     REPAIRED,
     SceneSource,
@@ -239,26 +239,6 @@ def told(results: list[Result], strict: bool) -> int:
     if failed and len(failed) == len(results):
         return InputError.exit_code
     return REPAIRED if failed and strict else 0
-
-
-@contextmanager
-def progress(count: int) -> Iterator[Callable[[], None]]:
-    """A progress bar with the time left on stderr, if stderr is a terminal; call the function for a step.
-
-    The bar ends with the last step, so that messages have lines of their own.
-    """
-    if sys.stderr is None or not sys.stderr.isatty():
-        yield lambda: None
-        return
-    with ExitStack() as stack:
-        bar = stack.enter_context(click.progressbar(length=count, file=sys.stderr, show_pos=True))
-
-        def step() -> None:
-            bar.update(1)
-            if bar.finished:
-                stack.close()
-
-        yield step
 
 
 @contextmanager
