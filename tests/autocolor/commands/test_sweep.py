@@ -11,7 +11,7 @@ import pytest
 from PIL import Image
 
 from autocolor import write_palette
-from autocolor.commands import sweep
+from autocolor.commands.outputs import progress
 from tests.autocolor.commands.conftest import ROOT, Run
 
 COLOR = "surfaces.side.object_color"
@@ -140,11 +140,11 @@ def test_a_wrong_command_line_is_refused_before_anything_is_made(
 def test_a_terminal_gets_a_progress_bar_with_the_time_left(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    with sweep.progress(2) as step:
+    with progress(2) as step:
         step()
     assert capsys.readouterr() == ("", "")
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
-    with sweep.progress(2) as step:
+    with progress(2) as step:
         step()
         step()
         print("message", file=sys.stderr)
