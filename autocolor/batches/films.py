@@ -80,15 +80,15 @@ def animate(
         autocolor.animate(scene, autocolor.frames(scene, [], 72, turn=360), "around.webp")
 
     A frame costs its edit from the frame before. Memory is bounded, because each frame is written when it is
-    made; only a WebP and a stream are in memory until their end. With `loop`, a film begins again at its end.
-    `size` and `smooth` are those of `render`. `path` may be a pattern of numbered pictures, such as
-    "frame-{number:04}.png". A file that ends in .ramtek has the words of the first frame and then a load of
-    the lookup table for each frame.
+    made; only a WebP and a stream are in memory until their end. `frames_per_second` is 0.1 to 100, and at
+    most 50 for a GIF. With `loop`, a film begins again at its end. `size` and `smooth` are those of `render`.
+    `path` may be a pattern of numbered pictures, such as "frame-{number:04}.png". A file that ends in .ramtek
+    has the words of the first frame and then a load of the lookup table for each frame.
 
     Raises UsageError for an unknown suffix or a wrong rate. Raises InputError, with the frame, if a frame
     cannot be made, if a frame of a .ramtek file changes more than entries, or if a film needs more memory
-    than the budget allows; nothing is written then. Raises OutputError or WriteError if the file cannot be
-    written.
+    than the budget allows. A film or a stream is then not written; numbered pictures that were finished stay.
+    Raises OutputError or WriteError if the file cannot be written.
     """
     from ramtek_emu.films import write_film
 

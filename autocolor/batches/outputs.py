@@ -52,11 +52,16 @@ class Pattern:
         self.text = os.fspath(text)
         self._own: dict[str, str] = {}
         for match in FIELD.finditer(self.text):
-            key, _, _, brace = match.groups()
+            key, digits, _, brace = match.groups()
             if brace is not None:
                 raise UsageError(
                     f"a name pattern must have each brace closed, not {shown(self.text)}; double a brace that"
                     " belongs to the name"
+                )
+            if digits is not None and key != NUMBER:
+                raise UsageError(
+                    f"only {{number}} of a name pattern can have a number of digits, not {match[0]}; leave"
+                    " the digits out"
                 )
             if key not in (None, NUMBER, NAME):
                 self._own[key] = _own_text(scene, key)

@@ -16,7 +16,7 @@ from autocolor.checks import LARGEST_COORDINATE, Color, Vector, nearest, shown
 from autocolor.errors import InputError
 from autocolor.immutable import Immutable, read_only
 from autocolor.scene.color_scales import COLOR_SCALES, REVERSED
-from autocolor.scene.columns import BarRange, Column, Kind, Problem, Row, Tier
+from autocolor.scene.columns import BarRange, Column, Kind, Path, Problem, Row, Tier
 from autocolor.scene.kinds import (
     UNORDERED,
     Boolean,
@@ -84,7 +84,7 @@ class EndColor(ColorKind):
 
 @dataclass(frozen=True)
 class ScaleKind(Kind):
-    """The name of a color scale, or a list of at least two colors."""
+    """The name of a color scale, or a list of at least two colors, also as a text with commas."""
 
     def rule(self) -> str:
         return "must be the name of a color scale, or a list of 2 to 256 colors"
@@ -97,6 +97,11 @@ class ScaleKind(Kind):
             require(value in COLOR_SCALES)
             return value
         return ColorsKind(MOST_COLORS).accepted(value)
+
+    def validated(self, value: object, path: Path, problems: list[Problem]) -> object:
+        if isinstance(value, str) and "," in value:
+            return ColorsKind(MOST_COLORS).validated(value, path, problems)
+        return super().validated(value, path, problems)
 
     def advice(self, value: object) -> str:
         if not isinstance(value, str):

@@ -64,6 +64,7 @@ def test_no_name_and_no_value_leaves_the_folder_of_the_pattern(name: str, value:
         ("{name.png", "a name pattern must have each brace closed, not '{name.png'; double a brace"),
         ("name}.png", "a name pattern must have each brace closed"),
         ("{number:x}.png", "a name pattern must have each brace closed"),
+        ("{name:03}.png", "only {number} of a name pattern can have a number of digits, not {name:03}"),
         ("{}.png", "a field of a name pattern must be a key of the scene, not ''"),
     ],
 )

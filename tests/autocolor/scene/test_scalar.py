@@ -58,7 +58,10 @@ def test_an_unknown_color_scale_is_refused_with_the_nearest_name() -> None:
         Scalar("stress", scale="virids")
     with pytest.raises(InputError, match=r"did you mean 'coolwarm'\?"):
         Scalar("stress", scale="cool-warm")
-    assert Scalar("stress", scale=["red", "#00f"]).scale == ((255, 0, 0), (0, 0, 255))  # type: ignore[arg-type]
+    for colors in (["red", "#00f"], "red, #00f", "[red, '#00f']"):
+        assert Scalar("stress", scale=colors).scale == ((255, 0, 0), (0, 0, 255))  # type: ignore[arg-type]
+    with pytest.raises(InputError, match=r"scale\[2\] must be \"#rrggbb\""):
+        Scalar("stress", scale="red, grean")
 
 
 def test_a_scalar_of_the_mesh_and_a_computed_one_can_be_shown() -> None:
