@@ -1,10 +1,6 @@
 """Animations as files: films, numbered pictures, and streams of instructions that cycle colors.
 
-| name | animation |
-|---|---|
-| .webp, .apng, .gif | a film (see `ramtek_emu.films`) |
-| .png with {number} | a picture a frame, such as frame-{number:04}.png |
-| .ramtek | the picture once, then a load of the lookup table a frame, for `ramtek play --loads-per-second` |
+docs/ANIMATIONS.md lists the formats. `ramtek_emu.films` writes the films.
 """
 
 from __future__ import annotations
@@ -43,8 +39,8 @@ STREAM: Final = ".ramtek"
 FILMS: Final = (".webp", ".apng", ".gif")
 
 BYTES_OF_PIXEL: Final = 1.0
-"""Measured: an encoded frame of a WebP has up to 0.32 bytes of a pixel. At its end, a film is in memory three
-times: its frames, the whole, and the file."""
+"""Measured: an encoded frame of a WebP takes up to 0.32 bytes for each pixel. At its end, a film is in memory
+three times: as frames, as a whole, and as a file."""
 
 Progress = Callable[[Result], object]
 """A function that is called with the result of each frame."""
@@ -81,7 +77,7 @@ def animate(
 
     A frame costs its edit from the frame before. Memory is bounded, because each frame is written when it is
     made; only a WebP and a stream are in memory until their end. `frames_per_second` is 0.1 to 100, and at
-    most 50 for a GIF. With `loop`, a film begins again at its end. `size` and `smooth` are those of `render`.
+    most 50 for a GIF. With `loop`, a film begins again at its end. `size` and `smooth` are as in `render`.
     `path` may be a pattern of numbered pictures, such as "frame-{number:04}.png". A file that ends in .ramtek
     has the words of the first frame and then a load of the lookup table for each frame.
 
@@ -96,7 +92,7 @@ def animate(
     name = fspath(path)
     kind = kind_of(name)
     if not variants:
-        raise UsageError("an animation must have a frame at least, not none; make some with `frames`")
+        raise UsageError("an animation must have at least one frame, not none; make some with `frames`")
     check_rate(frames_per_second, kind)
     tell = progress or (lambda result: None)
     if kind == STREAM:
@@ -148,7 +144,7 @@ def kind_of(path: str) -> str:
 
 
 def check_rate(frames_per_second: float, kind: str) -> None:
-    """Raise UsageError unless a film of this suffix can have so many frames per second."""
+    """Raise UsageError unless a film with this suffix can have this rate."""
     from ramtek_emu.films import LEAST_RATE, MOST_GIF_RATE, MOST_RATE
 
     most = MOST_GIF_RATE if kind == ".gif" else MOST_RATE
@@ -161,7 +157,7 @@ def check_rate(frames_per_second: float, kind: str) -> None:
 
 
 def _made(results: Iterator[Result], tell: Progress) -> Iterator[Result]:
-    """The results. Raises InputError for the first frame without a picture."""
+    """The results, which are passed to `tell`. Raises InputError for the first frame without a picture."""
     for number, result in enumerate(results, 1):
         if result.problem:
             raise InputError(f"frame {number}: {result.problem}")

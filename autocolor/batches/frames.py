@@ -4,9 +4,7 @@
                                     {"surfaces.body.object_color": "navy"}], 48)
     around = autocolor.frames(scene, [], 72, turn=360)
 
-The kind of a column interpolates its values (see `Kind.between`): numbers and points move along a line,
-directions and a view turn, and the bytes of colors are rounded half up. Names, switches and choices hold
-until the next variant.
+The kind of a column interpolates its values (see `Kind.between`); docs/ANIMATIONS.md has a table.
 """
 
 from __future__ import annotations
@@ -20,7 +18,7 @@ from itertools import pairwise
 from numbers import Integral, Real
 from typing import Any, Final
 
-from autocolor.batches.table import MOST_VARIANTS, Rows, Variant, variants_of
+from autocolor.batches.table import MOST_VARIANTS, Rows, Variant, check_keys, variants_of
 from autocolor.checks import shown
 from autocolor.errors import InputError, UsageError
 from autocolor.files.settings import SettingPlace, field_of, place_of, row_at, scene_with, value_at
@@ -43,17 +41,18 @@ def frames(
 ) -> tuple[Variant, ...]:
     """The frames of an animation of a scene, evenly spaced from the first variant to the last.
 
-    Without times, the variants are evenly spaced, too. A field that only some variants set has the scene's
-    own value in the others. A frame at the time of a variant has exactly its settings.
+    Variants without times are evenly spaced, too. If only some variants set a field, it has the scene's own
+    value in the others. A frame at the time of a variant has exactly its settings.
 
     With `turn`, the eye also turns by so many degrees around the view's target, counterclockwise as seen from
     above. Then there may be no variant.
 
     With `loop`, the last frame is left out, because it would repeat the first when the film begins again.
-    Assumed: by default, if the last variant gives the same scene as the first, and the turn is whole.
+    Assumed: `loop` is true by default if the last variant gives the same scene as the first and the turn is
+    whole.
 
-    Raises UsageError for times that do not rise, for a count that is no whole number from 1 to 100,000, and
-    without anything that moves; the errors of `scene_with`, which name the variant.
+    Raises UsageError if the times do not rise, if the count is no whole number from 1 to 100,000, or if
+    nothing moves. Raises the errors of `scene_with` with the name of the variant.
     """
     return frames_of_tracks(scene, [variants_of(variants)], count, turn=turn, loop=loop)
 
@@ -80,7 +79,7 @@ def frames_of_tracks(
             f"a turn must be a number of degrees up to {LARGEST_TURN:,.0f}, not {shown(turn)}; choose another"
         )
     moving = [_Track.of(scene, variants) for variants in tracks if variants]
-    _check_keys(moving)
+    check_keys(tracks)
     if not turn and all(len(track.variants) < 2 for track in moving):
         raise UsageError("an animation must have at least two variants, or a turn; add a value to a list")
     if loop is None:
@@ -112,15 +111,9 @@ def in_step(lists: Sequence[Sequence[Variant]]) -> list[list[Variant]]:
             table.extend(variants)
             continue
         for row, (one, other) in enumerate(zip(table, variants, strict=True)):
-            _check_new(other.settings, one.settings)
+            check_keys([[one], [other]])
             table[row] = Variant(f"{one.name}-{other.name}", {**one.settings, **other.settings})
     return list(tables.values())
-
-
-def _check_new(keys: Mapping[str, object], others: Mapping[str, object]) -> None:
-    for key in keys:
-        if key in others:
-            raise UsageError(f"a key must be in one table or list, not {key!r} in two; leave one out")
 
 
 @dataclass(frozen=True)
@@ -196,14 +189,6 @@ class _Track:
         return settings
 
 
-def _check_keys(tracks: Sequence[_Track]) -> None:
-    seen: dict[str, object] = {}
-    for track in tracks:
-        keys = {key: None for variant in track.variants for key in variant.settings}
-        _check_new(keys, seen)
-        seen |= keys
-
-
 def times_of(variants: Sequence[Variant]) -> list[float]:
     """The times of variants; 0, 1, 2 and so on if no variant has a time. Raises UsageError."""
     if all(variant.time is None for variant in variants):
@@ -228,8 +213,8 @@ def _turned(scene: Scene, settings: Mapping[str, object], degrees: float) -> dic
     right, back = view.eye[0] - x, view.eye[1] - y
     if math.hypot(right, back) <= VERTICAL * abs(view.eye[2] - z):
         raise UsageError(
-            f"a view that turns must be from the side, not from {view.eye}, vertically over what it looks at;"
-            " move the eye, or vary view.angle"
+            f"a view that turns must be from the side, not from {view.eye}, vertically above or"
+            " below its target; move the eye, or vary view.angle"
         )
     turn = math.radians(degrees % 360)
     cosine, sine = math.cos(turn), math.sin(turn)

@@ -44,8 +44,8 @@ Source = Scene | SavedPicture | tuple[Scene, Picture] | str | PathLike[str]
 RUNS: Final = 16
 """The most variants of a run, unless the caller chooses.
 
-Measured: to hand out the coupe's picture takes this process 1.6 ms for each variant alone, and 0.2 ms a
-variant with 16. With 1, 4, 16 and 64, two processes take the same time within a tenth.
+Measured: handing out the coupe's picture takes this process 1.6 ms for a run of one variant, and 0.2 ms a
+variant for runs of 16. With runs of 1, 4, 16 and 64, two processes take the same time within a tenth.
 """
 
 MOST_IN_RUN: Final = 10_000
@@ -55,7 +55,7 @@ BYTES_OF_RUN: Final = 1 << 28
 """Limit: bytes that a run returns; runs of large pictures are shorter."""
 
 BYTES_WAITING: Final = 1 << 29
-"""Limit: bytes of the runs that an executor works at or has finished, unless there are only two runs."""
+"""Limit: bytes of the pictures that an executor computes or has finished. It always gets two runs."""
 
 LONGEST_PATH: Final = 4096
 """Limit: characters of the path of a picture, as on most systems."""
@@ -202,8 +202,8 @@ class Batch:
     def _write(self, path: str, data: bytes) -> None:
         """Write a file and, if it is missing, its folder. Raises OutputError, WriteError."""
         _make_folder(path)
-        # An earlier picture of a batch may be replaced, and an empty file, as after a power failure without
-        # `sync`; the file of a stranger never.
+        # Replace an earlier picture of a batch, or an empty file, which a power failure leaves if `sync` is
+        # false. Never replace any other file.
         is_ours = self.resume and (mark_in(path, self.drawing.form) != "" or _is_empty(path))
         write_atomically(path, data, overwrite=self.overwrite or is_ours, sync=self.sync)
 
@@ -336,7 +336,7 @@ def _paths(pattern: Pattern | None, variants: Sequence[Variant]) -> tuple[str, .
         other = first.setdefault(_same_file(path), number)
         if other != number:
             raise UsageError(
-                f"a name pattern must give each variant a file of its own, and {path} is that of"
+                f"a name pattern must give each variant a file of its own, and {path} is the file of both"
                 f" {shown(variants[other - 1].name)} and {shown(variants[number - 1].name)}; add {{name}} or"
                 " {number}"
             )
@@ -417,7 +417,7 @@ def batch_results(
 
     With `ordered`, the variants are made in their own order, each after the variant before it; otherwise in
     the order in which they cost least. Memory is bounded, however many variants there are. To stop a batch,
-    close the generator: files are whole then, and whatever waits is canceled.
+    close the generator: files are then whole, and waiting runs are canceled.
     """
     checked = checked_batch(source, variants, output, **options)
     return _only_results(checked)

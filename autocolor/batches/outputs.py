@@ -1,7 +1,7 @@
-"""The files of a batch: their names from a pattern, their forms, and the mark of what a file was made from.
+"""The files of a batch: their names from a pattern, their forms, and their marks.
 
-The mark is a checksum at the end of a file: a file with the mark of a variant is whole and need not be made
-again.
+A mark is a checksum of the scene and the settings, at the end of a file. A file with the mark of a variant is
+whole and need not be made again.
 """
 
 from __future__ import annotations
@@ -36,15 +36,15 @@ NUMBER: Final = "number"
 NAME: Final = "name"
 
 FIELD: Final = re.compile(r"\{([^{}:]*)(?::0?([0-9]{1,2}))?\}|(\{\{|\}\})|([{}])")
-"""A field of a pattern with its number of digits, a doubled brace, or a brace that belongs to nothing."""
+"""A field of a pattern with its number of digits, a doubled brace, or an unmatched brace."""
 
 
 class Pattern:
     """A name for each variant's file, such as "out/{number:03}-{name}.png".
 
     The fields are `{number}`, which counts from 1 and can have a number of digits, `{name}`, and keys, such
-    as `{lights.key.intensity}`. A key stands for the variant's value, or else for the scene's. Whatever a
-    file name cannot have is "_". Doubled braces stand for braces.
+    as `{lights.key.intensity}`. A key stands for the variant's value, or else for the scene's. Characters
+    that a file name cannot have become "_". Doubled braces stand for braces.
     """
 
     def __init__(self, text: str | os.PathLike[str], scene: Scene) -> None:
@@ -170,7 +170,7 @@ ARRAY: Final = "array"
 
 
 def form_of(output: str | os.PathLike[str] | None, form: str | None) -> str:
-    """The form of the pictures: that of the output's suffix, or `form`, by default ARRAY.
+    """The form of the pictures. The suffix of the output gives it; without an output, `form` or else ARRAY.
 
     Raises UsageError for an unknown form, and for a form beside an output.
     """
@@ -186,17 +186,17 @@ def form_of(output: str | os.PathLike[str] | None, form: str | None) -> str:
             f" {shown(str(output))}; rename them"
         )
     if form not in (None, forms[suffix]):
-        raise UsageError(f"the suffix of {output} must be that of the form {shown(form)}; leave the form out")
+        raise UsageError(f"the suffix of {output} must belong to the form {shown(form)}; leave the form out")
     return forms[suffix]
 
 
 # Marks.
 
 EDITION: Final = 1
-"""To be raised if the same scene gives another picture: then batches make their pictures again."""
+"""Raise this number when the same scene gives another picture, so that batches make their pictures again."""
 
 LONGEST_TAIL: Final = 512
-"""Bytes at the end of a file in which its mark is."""
+"""The bytes at the end of a file that are searched for its mark."""
 
 
 def mark_in(path: str, form: str) -> str:

@@ -1,4 +1,4 @@
-"""Making the pictures of a run of variants: what a worker gets, does and returns.
+"""Making the pictures of a run of variants, in this process or in a worker.
 
 Each variant of a run reuses whatever its edit leaves of the variant before it. If a batch only recolors, its
 picture travels with each run; otherwise the scene travels. Each worker keeps its last rendering until it
@@ -54,7 +54,7 @@ class Drawing(NamedTuple):
 
     @property
     def numbers(self) -> tuple[object, ...]:
-        """What the bytes of a file depend on."""
+        """The values that determine the bytes of a file, besides the scene."""
         return self.lines, self.elements, self.smooth, self.form, self.level
 
 
@@ -86,9 +86,9 @@ class Latest(NamedTuple):
 
 
 class Start:
-    """What all variants start from: a scene, perhaps its picture, and the latest variant of each thread.
+    """The start of all variants: a scene, perhaps its picture, and the latest variant of each thread.
 
-    In another process, only the first copy of a batch is unpickled; the others are this copy.
+    It travels with each run. A process unpickles the first copy, and uses it for all runs of the batch.
     """
 
     def __init__(self, scene: Scene, picture: Picture | None, token: str = "") -> None:

@@ -15,7 +15,7 @@ from autocolor.checks import printable
 from autocolor.errors import UsageError
 
 GROUND: Final = 32
-"""The gray of the ground."""
+"""The gray of the background."""
 
 NO_PICTURE: Final = 64
 """The gray of a cell without a picture."""
@@ -32,7 +32,7 @@ MOST_COLUMNS: Final = 32
 """Limit: columns of a sheet that has the shape of a grid; others are nearly square."""
 
 MOST_ROWS: Final = 64
-"""Limit: rows of a sheet that has the shape of a grid; of more rows, several stand side by side."""
+"""Limit: rows of a sheet that has the shape of a grid. More rows are set side by side."""
 
 
 class Box(NamedTuple):
@@ -107,7 +107,7 @@ class ContactSheet:
 def columns_of(variants: Sequence[Variant]) -> int:
     """The columns of a sheet: the values of the last key of a grid, else enough for a nearly square sheet.
 
-    Of a grid with many rows, several rows stand side by side.
+    If a grid has too many rows, several rows are set side by side.
     """
     counts: dict[str, set[str]] = {}
     for variant in variants:

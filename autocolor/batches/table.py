@@ -1,11 +1,6 @@
-"""Variants as data: tables of changed columns, from Python, CSV, JSON, or lists of values; and of results.
+"""Tables of variants, from Python, CSV, JSON, or lists of values; and tables of results.
 
-    name,surfaces.body.object_color,lights.key.intensity
-    racing,#b01020,
-    evening,navy,0.5
-
-A column is a key, as after `--set`, and an empty cell leaves its field as it is in the scene. The columns
-`name` and `time` are optional.
+A column is a key, as after `--set`. The columns `name` and `time` are optional. docs/BATCHES.md has examples.
 """
 
 from __future__ import annotations
@@ -29,7 +24,7 @@ from autocolor.checks import shown
 from autocolor.errors import InputError, UsageError
 from autocolor.files.palette_file import read_palette
 from autocolor.files.paths import LONGEST_STEM, file_stem
-from autocolor.files.reading import bounded_json, read_bytes, text_lines
+from autocolor.files.reading import bounded_json, read_bytes, text_lines, utf_8_text
 from autocolor.immutable import Immutable
 from autocolor.scene.columns import Tier
 from autocolor.scene.kinds import in_digits
@@ -166,7 +161,7 @@ def _named(rows: Sequence[_Row], error: type[UsageError | InputError], file: str
 
 
 class _Names:
-    """Names in use, without capitals, with the place of each."""
+    """Names in use, in lower case, with their places."""
 
     def __init__(self) -> None:
         self.places: dict[str, str] = {}
@@ -201,11 +196,11 @@ def _label(settings: Mapping[str, object], keys: Iterable[str], number: int) -> 
 
 
 LEFT_OUT: Final = str.maketrans(dict.fromkeys("#[]{}\"'")) | {ord("/"): "_", ord("\\"): "_"}
-"""Marks of colors, lists and texts, which names of files leave out, and marks of folders."""
+"""The marks of colors, lists and texts, which file names leave out, and of folders, which become "_"."""
 
 
 def stem_of(value: object) -> str:
-    """A plain value or a text of it as a part of a name, without the marks of colors, lists and texts.
+    """A plain value, or its text, as a part of a file name, without the marks in LEFT_OUT.
 
     >>> stem_of("#1f3f8f"), stem_of([4.0, -6, 5]), stem_of('["#200", "#fff"]')
     ('1f3f8f', '4,-6,5', '200,fff')
@@ -235,12 +230,12 @@ def text_of(value: object) -> str:
 
 
 class Result(NamedTuple):
-    """What became of a variant.
+    """The result of a variant: a file, an image or a problem.
 
     `path` is its file. Without a file, `image` is its picture: the colors, (lines, elements, 3) uint8, or the
-    bytes of a file. `problem` says why there is no picture, and is empty if there is one. `seconds` is the
-    time of the processor. `tier` is the cost of the edit from the variant made before it: FRAME for a
-    first rendering, None if nothing had to be edited. `was_made` is false for a file that was there already.
+    bytes of a file. `problem` says why there is no picture; otherwise it is empty. `seconds` is the time of
+    the processor. `tier` is the cost of the edit from the variant before it: FRAME for a first rendering,
+    None if nothing had to be edited. `was_made` is false if the file already existed.
     """
 
     name: str
@@ -313,12 +308,7 @@ def products(tables: Sequence[Sequence[Variant]]) -> tuple[Variant, ...]:
     if not count or count > MOST_VARIANTS:
         rule = f"must have 1 to {MOST_VARIANTS:,} variants, not {count:,}"
         raise UsageError(f"a grid {rule}; give {'fewer values' if count else 'a value for each key'}")
-    seen: set[str] = set()
-    for table in tables:
-        keys = {key for variant in table for key in variant.settings}
-        if both := sorted(keys & seen):
-            raise UsageError(f"a key must be in one table or list, not {both[0]!r} in two; leave one out")
-        seen |= keys
+    check_keys(tables)
     several = [number for number, table in enumerate(tables) if len(table) > 1] or range(len(tables))
     names = _Names()
     variants = []
@@ -328,6 +318,16 @@ def products(tables: Sequence[Sequence[Variant]]) -> tuple[Variant, ...]:
         time = next((part.time for part in parts if part.time is not None), None)
         variants.append(Variant(names.free(name), settings, time))
     return tuple(variants)
+
+
+def check_keys(tables: Iterable[Iterable[Variant]]) -> None:
+    """Raise UsageError if two tables set the same key."""
+    seen: set[str] = set()
+    for table in tables:
+        keys = {key for variant in table for key in variant.settings}
+        if both := sorted(keys & seen):
+            raise UsageError(f"a key must be in one table or list, not {both[0]!r} in two; leave one out")
+        seen |= keys
 
 
 # The text of `--vary`.
@@ -431,7 +431,7 @@ def read_variants(path: str | PathLike[str]) -> tuple[Variant, ...]:
 def _csv_rows(data: bytes, file: str) -> Iterator[_Row]:
     """The rows of a CSV table; rows count from 1, the header, as in a spreadsheet. Raises InputError."""
     try:
-        reader = csv.reader(io.StringIO(data.decode("utf-8"), newline=""), strict=True)
+        reader = csv.reader(io.StringIO(utf_8_text(data, file, "a table"), newline=""), strict=True)
         header: list[str] | None = None
         for number, cells in enumerate(reader, 1):
             cells = [cell.strip() for cell in cells]
@@ -448,9 +448,6 @@ def _csv_rows(data: bytes, file: str) -> Iterator[_Row]:
             row = {key: cell for key, cell in zip(header, cells, strict=True) if cell}
             name, time = row.pop(NAME, None), row.pop(TIME, None)
             yield _Row(f"row {number}", name, row, None if time is None else _time(time))
-    except UnicodeDecodeError as error:
-        line = data.count(b"\n", 0, error.start) + 1
-        raise InputError(f"{file}, line {line}: a table must be text in UTF-8; save it as UTF-8") from None
     except csv.Error as error:
         raise InputError(f"{file}: a table must be valid CSV ({error}); correct it") from None
 

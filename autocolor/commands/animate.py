@@ -15,6 +15,7 @@ from autocolor.commands.options import (
     size_option,
     smooth_of,
     smooth_option,
+    with_held_exposure,
     with_normals,
 )
 from autocolor.commands.outputs import progress
@@ -180,13 +181,10 @@ def animate(
 def prepared(
     start: Scene | SavedPicture, normals: bool, hold_exposure: bool, size: tuple[int, int]
 ) -> Scene | SavedPicture:
-    """The scene or the picture, in which words stand for normals, or whose exposure is held."""
-    from autocolor.images import display_image
-    from autocolor.mapping.intensity import held_exposure
+    """The scene or the picture, with words that stand for normals or with a held exposure, if asked for."""
     from autocolor.rendering import render
 
-    is_picture = isinstance(start, tuple)
-    if normals and is_picture:
+    if normals and isinstance(start, tuple):
         raise UsageError(
             "--normals is for a scene, not for a picture file, which has no normals; leave it out"
         )
@@ -194,6 +192,5 @@ def prepared(
     if hold_exposure:
         elements, lines = size
         picture = start.picture if isinstance(start, tuple) else render(scene, lines, elements)
-        mapped = display_image(scene, picture).mapped
-        scene = scene.replace(exposure=held_exposure(mapped, scene.scaling, scene.exposure))
+        scene = with_held_exposure(scene, picture)
     return start._replace(scene=scene) if isinstance(start, tuple) else scene

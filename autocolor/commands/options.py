@@ -18,6 +18,7 @@ from ramtek_emu.command_line import tell
 if TYPE_CHECKING:
     from logging import LogRecord
 
+    from autocolor.lighting.picture import Picture
     from autocolor.scene.scene import Scene
     from autocolor.screens.viewer import Viewer
 
@@ -47,6 +48,15 @@ def with_normals(scene: Scene, normals: bool) -> Scene:
         return scene
     with as_usage("--normals: "):
         return scene.replace(words="normals")
+
+
+def with_held_exposure(scene: Scene, picture: Picture) -> Scene:
+    """The scene with the exposure that its picture has."""
+    from autocolor.images import display_image
+    from autocolor.mapping.intensity import held_exposure
+
+    mapped = display_image(scene, picture).mapped
+    return scene.replace(exposure=held_exposure(mapped, scene.scaling, scene.exposure))
 
 
 paints_option = click.option(

@@ -9,7 +9,8 @@ import click
 
 from autocolor.commands.completion import complete_surfaces
 from autocolor.commands.outputs import tell_written
-from autocolor.commands.scenes import SceneSource, created_again, ended, read, scene_options, set_option
+from autocolor.commands.scenes import SceneSource, scene_options, set_option
+from autocolor.commands.sweep import scene_in, start_of
 from autocolor.errors import UsageError
 
 if TYPE_CHECKING:
@@ -54,28 +55,19 @@ def palette(
     display. With `recolor --palette` the colors become a ramp of the surface.
     """
     from autocolor.files.palette_file import check_palette_path, write_palette
-    from autocolor.files.paths import PICTURE_SUFFIX, file_stem
+    from autocolor.files.paths import file_stem
     from autocolor.files.writing import refuse_output
+    from autocolor.rendering import render
 
     if output is None:
         output = f"{file_stem(Path(source.path).stem)}-{file_stem(surface)}.gpl"
     check_palette_path(Path(output))
     refuse_output(output, overwrite=force)
-    if Path(source.path).suffix.lower() == PICTURE_SUFFIX:
-        from autocolor.commands.recolor import recolored
-        from autocolor.files.picture_file import read_picture
-
-        saved = read_picture(source.path)
-        scene, picture, code = recolored(saved.scene, None, {}, settings), saved.picture, 0
-    else:
-        from autocolor.commands.settings import with_settings
-        from autocolor.rendering import render
-
-        report = read(source)
-        scene = created_again(report, with_settings(report.scene, settings))
-        # A wrong name is refused before the picture is rendered.
-        scene.surface(surface)
-        picture, code = render(scene), ended(report, source)
+    start, code = start_of(source, settings, (640, 480))
+    scene = scene_in(start)
+    # A wrong name is refused before the picture is rendered.
+    scene.surface(surface)
+    picture = start.picture if isinstance(start, tuple) else render(scene)
     write_palette(output, entries_of_surface(scene, picture, surface), overwrite=force)
     tell_written(output)
     context.exit(code)

@@ -8,7 +8,14 @@ from typing import TYPE_CHECKING, Final
 import click
 
 from autocolor.commands.completion import complete_lights, complete_views
-from autocolor.commands.options import normals_option, size_option, smooth_of, smooth_option, with_normals
+from autocolor.commands.options import (
+    normals_option,
+    size_option,
+    smooth_of,
+    smooth_option,
+    with_held_exposure,
+    with_normals,
+)
 from autocolor.commands.outputs import progress, refuse_outputs, tell_written, write_image
 from autocolor.commands.scenes import (
     SceneSource,
@@ -117,8 +124,8 @@ def render(
 ) -> None:
     """Render SCENE: a folder, a scene.toml, a mesh file or a picture file. Without SCENE, render the demo.
 
-    --layers, --words and --indexed never average pixels. If you give any of these options, --smooth is 1 by
-    default; with --smooth N, their files have N times the lines and elements of the PNG.
+    --layers, --words and --indexed never average pixels. With any of these options, --smooth is 1 by default.
+    With --smooth N, their files have N times the lines and elements of the PNG.
     """
     from autocolor.commands.settings import with_settings
 
@@ -140,11 +147,7 @@ def render(
     if view_name is not None:
         original = original.with_taken_view(view_name)
     if hold_exposure:
-        from autocolor.images import display_image
-        from autocolor.mapping.intensity import held_exposure
-
-        mapped = display_image(original, rendered(original)).mapped
-        original = original.replace(exposure=held_exposure(mapped, original.scaling, original.exposure))
+        original = with_held_exposure(original, rendered(original))
     edited = created_again(report, with_settings(original, settings), elements / lines)
     if lights:
         edited = edited.only_lights(*lights)

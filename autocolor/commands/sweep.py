@@ -161,7 +161,7 @@ def sweep(
             table=made,
             progress=lambda _: step(),
         )
-    context.exit(told(results, source.strict) or code)
+    context.exit(print_counts(results, source.strict) or code)
 
 
 def start_of(
@@ -227,8 +227,8 @@ def tell_paints(start: Scene | SavedPicture, tables: list[tuple[Variant, ...]]) 
     tell(*(f"autocolor: {sentence}" for sentence in sentences))
 
 
-def told(results: list[Result], strict: bool) -> int:
-    """Print how many pictures were made on stderr; returns the exit code."""
+def print_counts(results: list[Result], strict: bool) -> int:
+    """Print on stderr how many pictures were made; returns the exit code."""
     failed = [result for result in results if result.problem]
     present = sum(not result.was_made for result in results)
     made = len(results) - len(failed) - present

@@ -5,8 +5,8 @@ A palette is the entries of a surface's range, or a list of named paints. Names 
 - .gpl, a GIMP palette: any colors, with names. Written in UTF-8.
 - .csv, a table: the columns red, green and blue from 0 to 255, or the column color as "#rrggbb" or by name;
   and perhaps the column name. Written as `red,green,blue`, and `name` if a color has a name.
-- .act, Adobe's color table: at most 256 colors, without names. Written with 772 bytes: the last four are the
-  number of colors, and that no color is transparent.
+- .act, Adobe's color table: at most 256 colors, without names. Written with 772 bytes. The last four bytes
+  are the number of colors and the mark of no transparent color.
 
 Transparency is not modeled: the transparent color of an .act file is a color like the others.
 """
@@ -29,7 +29,7 @@ from autocolor.checks import Color, printable, shown
 from autocolor.errors import InputError, UsageError
 from autocolor.files.formats import Format, format_named, recognized, suffix_rule, suffixes_of
 from autocolor.files.meshes.number_text import Problems
-from autocolor.files.reading import UTF_8_MARK, read_bytes, read_head, status_of, text_lines
+from autocolor.files.reading import UTF_8_MARK, read_bytes, read_head, status_of, text_lines, utf_8_text
 from autocolor.files.writing import write_atomically
 from autocolor.immutable import Immutable, read_only
 from autocolor.scene.kinds import ColorKind
@@ -93,7 +93,7 @@ class Palette(Immutable):
         return red, green, blue
 
     def color_named(self, name: str) -> Color | None:
-        """The color of this name, whatever its capitals; of several, the first. None if no color has it."""
+        """The first color with this name, in capitals or not; None if no color has this name."""
         folded = [each.casefold() for each in self.names]
         return self.color(folded.index(name.casefold())) if name and name.casefold() in folded else None
 
@@ -366,12 +366,7 @@ def _act_of(palette: Palette, path: Path) -> bytes:
 
 def _text(data: bytes, place: str) -> str:
     """The text of a palette file, with lines that end with LF. Raises InputError."""
-    data = text_lines(data, place, "a palette")
-    try:
-        return data.decode("utf-8")
-    except UnicodeDecodeError as error:
-        line = data.count(b"\n", 0, error.start) + 1
-        raise InputError(f"{place}, line {line}: a palette must be text in UTF-8; save it as UTF-8") from None
+    return utf_8_text(text_lines(data, place, "a palette"), place, "a palette")
 
 
 def _components(problems: Problems, place: str, line: int, texts: Sequence[str]) -> tuple[int, ...]:

@@ -334,6 +334,15 @@ def text_lines(data: bytes, place: str, thing: str) -> bytes:
     return data.replace(b"\r\n", b"\n").replace(b"\r", b"\n") if b"\r" in data else data
 
 
+def utf_8_text(data: bytes, place: str, thing: str) -> str:
+    """The bytes of `thing` decoded. Raises InputError with the line if they are not UTF-8."""
+    try:
+        return data.decode("utf-8")
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        raise InputError(f"{place}, line {line}: {thing} must be text in UTF-8; save it as UTF-8") from None
+
+
 def shown(value: str | bytes, most: int = 40) -> str:
     """The text in quotes for a message, cut to `most` characters."""
     if isinstance(value, bytes):
