@@ -1,10 +1,10 @@
-"""Fields as films: files of pictures that follow each other in time, written whole or not at all.
+"""Films of fields, written whole or not at all.
 
 | suffix | format | colors |
 |---|---|---|
 | .webp | animated WebP | lossless |
 | .apng | animated PNG | lossless |
-| .gif | animated GIF | 256 a field; of a field with more, the nearest of 256 |
+| .gif | animated GIF | 256 a field; others become the nearest of these |
 
 A field after the first is stored as the rectangle that differs from the field before. Pillow encodes the
 fields; an animated PNG and a GIF are put together here, because Pillow keeps all fields in memory until the
@@ -66,8 +66,8 @@ def write_film(
 ) -> Loss:
     """Write (lines, elements, 3) uint8 fields to a film in the format of its suffix; returns what was lost.
 
-    `count` is the number of fields, which come one by one. With `loop`, the film begins again at its end.
-    Of equal fields that follow each other, a WebP stores one with a longer duration.
+    `fields` are taken one by one, and `count` is their number. With `loop`, the film begins again at its end.
+    A WebP stores equal consecutive fields once, with a longer duration.
     Raises ColorsError for fields of different sizes or another count, OutputError, OutputExistsError or
     WriteError if the file cannot be written.
     """
@@ -89,7 +89,7 @@ def write_film(
 
 
 def _alike(fields: Iterable[Colors], count: int) -> Iterator[Colors]:
-    """The fields, contiguous. Raises ColorsError unless they are as many as `count`, all of one size."""
+    """The fields, contiguous. Raises ColorsError if their number is not `count` or their sizes differ."""
     size: tuple[int, ...] | None = None
     number = 0
     for number, field in enumerate(fields, 1):
@@ -270,23 +270,10 @@ def _gif_parts(image: Image.Image) -> tuple[bytes, bytes]:
     buffer = BytesIO()
     image.save(buffer, "GIF", interlace=0)
     data = buffer.getvalue()
-    place = 13
-    table = b""
-    if data[10] & 0x80:
-        size = 3 << (data[10] & 7) + 1
-        table, place = data[place : place + size], place + size
-    while data[place] == 0x21:
-        # Skip the sub-blocks of an extension.
-        place += 2
-        while data[place]:
-            place += data[place] + 1
-        place += 1
-    flags = data[place + 9]
-    place += 10
-    if flags & LOCAL_TABLE:
-        size = 3 << (flags & 7) + 1
-        table, place = data[place : place + size], place + size
-    return table, data[place:-1]
+    # Pillow writes a header of 13 bytes, a global table, 10 bytes about the image, and its pixels.
+    end = 13 + (3 << (data[10] & 7) + 1)
+    assert data[end] == 0x2C
+    return data[13:end], data[end + 10 : -1]
 
 
 FORMATS: Final = {".webp": _write_webp, ".apng": _write_apng, ".gif": _write_gif}

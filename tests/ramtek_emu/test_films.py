@@ -17,6 +17,7 @@ from PIL import Image
 from ramtek_emu.arrays import Colors
 from ramtek_emu.errors import ColorsError, OutputError, OutputExistsError, RamtekError
 from ramtek_emu.films import FORMATS, differing_area, ticks, write_film
+from tests.ramtek_emu.film_reader import decoded, durations_of
 
 LOSSLESS = (".webp", ".apng")
 
@@ -42,17 +43,6 @@ def noise(count: int, lines: int = 20, elements: int = 30) -> list[Colors]:
     return list(np.random.default_rng(3).integers(0, 256, (count, lines, elements, 3)).astype(np.uint8))
 
 
-def decoded(path: Path) -> tuple[list[Colors], list[float]]:
-    """The fields of a film and their durations in milliseconds."""
-    fields, durations = [], []
-    with Image.open(path) as film:
-        for number in range(getattr(film, "n_frames", 1)):
-            film.seek(number)
-            fields.append(np.asarray(film.convert("RGB")))
-            durations.append(film.info.get("duration", 0))
-    return fields, durations
-
-
 def without_repeats(fields: list[Colors]) -> list[Colors]:
     """The fields that differ from the field before."""
     return [f for n, f in enumerate(fields) if n == 0 or not np.array_equal(f, fields[n - 1])]
@@ -65,7 +55,7 @@ def test_a_film_is_decoded_to_the_same_fields(
 ) -> None:
     path = tmp_path_factory.mktemp("films") / f"film{suffix}"
     loss = write_film(path, iter(fields), len(fields), fields_per_second=24)
-    shown, _ = decoded(path)
+    shown = decoded(path)
     if suffix != ".apng":
         # A WebP has equal fields once, and so does Pillow when it reads a GIF.
         shown, fields = without_repeats(shown), without_repeats(fields)
@@ -78,7 +68,7 @@ def test_a_film_is_decoded_to_the_same_fields(
 def test_films_without_loss_keep_every_color(suffix: str, tmp_path: Path) -> None:
     fields = noise(4)
     assert write_film(tmp_path / f"film{suffix}", fields, 4, fields_per_second=24) == (0, 0)
-    assert np.array_equal(decoded(tmp_path / f"film{suffix}")[0], fields)
+    assert np.array_equal(decoded(tmp_path / f"film{suffix}"), fields)
 
 
 def test_the_loss_of_a_gif_is_told_as_it_is(tmp_path: Path) -> None:
@@ -89,7 +79,7 @@ def test_the_loss_of_a_gif_is_told_as_it_is(tmp_path: Path) -> None:
     loss = write_film(tmp_path / "film.gif", fields, 4, fields_per_second=24)
     differences = [
         np.abs(one.astype(int) - other).max()
-        for one, other in zip(decoded(tmp_path / "film.gif")[0], fields, strict=True)
+        for one, other in zip(decoded(tmp_path / "film.gif"), fields, strict=True)
     ]
     assert differences[0] == 0
     assert min(differences[1:]) > 0
@@ -100,15 +90,14 @@ def test_a_gif_that_is_off_by_one_has_lost_colors(tmp_path: Path) -> None:
     numbers = np.arange(512)
     field = np.stack([numbers % 256, numbers // 256, numbers * 0], axis=1).astype(np.uint8).reshape(16, 32, 3)
     assert write_film(tmp_path / "film.gif", [field], 1, fields_per_second=24) == (1, 1)
-    assert np.abs(decoded(tmp_path / "film.gif")[0][0].astype(int) - field).max() == 1
+    assert np.abs(decoded(tmp_path / "film.gif")[0].astype(int) - field).max() == 1
 
 
 @pytest.mark.parametrize(("suffix", "unit"), [(".webp", 1), (".apng", 1), (".gif", 10)])
 @pytest.mark.parametrize("rate", [0.5, 24, 29.97, 50])
 def test_a_film_lasts_as_long_as_its_rate_says(suffix: str, unit: int, rate: float, tmp_path: Path) -> None:
     write_film(tmp_path / f"film{suffix}", noise(7, 2, 3), 7, fields_per_second=rate)
-    durations = decoded(tmp_path / f"film{suffix}")[1]
-    ends = np.cumsum(durations)
+    ends = np.cumsum(durations_of(tmp_path / f"film{suffix}"))
     assert np.abs(ends - np.arange(1, 8) * 1000 / rate).max() <= unit / 2 + 1e-6
 
 

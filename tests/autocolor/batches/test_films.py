@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from PIL import Image
 
 from autocolor import InputError, Light, Scene, UsageError, Variant, animate, batch, frames, image, render
 from autocolor.arrays import Bytes
@@ -20,6 +19,7 @@ from autocolor.scene.columns import Tier
 from ramtek_emu import GMR_9300, Ramtek9300
 from ramtek_emu.host.pipe import PacedReader
 from tests.autocolor.meshes import cube, wall_scene
+from tests.ramtek_emu.film_reader import decoded
 
 SIZE = (40, 30)
 SCENE = wall_scene(cube(), lights=[Light("key", (0.5, -4, 3), aim=(0.5, 0.5, 0.5))]).with_view(
@@ -35,16 +35,6 @@ def rendered(scene: Scene, made: tuple[Variant, ...]) -> list[Bytes]:
     """The colors of frames, each rendered by itself."""
     scenes = [scene_with(scene, frame.settings) for frame in made]
     return [image(each, render(each, SIZE[1], SIZE[0])) for each in scenes]
-
-
-def decoded(path: Path) -> list[Bytes]:
-    """The colors of the frames of a film."""
-    with Image.open(path) as film:
-        shown = []
-        for number in range(getattr(film, "n_frames", 1)):
-            film.seek(number)
-            shown.append(np.asarray(film.convert("RGB")))
-    return shown
 
 
 @pytest.fixture
@@ -258,5 +248,5 @@ def test_a_wrong_name_or_rate_is_refused_before_anything_is_rendered(
         animate(SCENE, FADE, tmp_path / name, **options)
     assert sentence in str(refusal.value)
     assert visible == []
-    with pytest.raises(UsageError, match="an animation must have a frame at least, not none"):
+    with pytest.raises(UsageError, match="an animation must have at least one frame, not none"):
         animate(SCENE, [], tmp_path / "film.webp")

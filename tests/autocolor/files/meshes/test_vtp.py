@@ -101,7 +101,7 @@ def test_all_pieces_are_one_mesh(tmp_path: Path, form: str) -> None:
         ("s", [0, 1, 2, 3, 10, 11, 12, 13]),
         ("cell", [0, 10]),
     ]
-    assert report.repairs == ("thing.vtp: skipped arrays that are not in all pieces alike, or empty: 2",)
+    assert report.repairs == ("thing.vtp: skipped arrays that differ between pieces, or are empty: 2",)
 
 
 def test_it_is_placed_and_known_by_its_suffix_and_its_first_bytes(tmp_path: Path) -> None:
@@ -335,7 +335,7 @@ def test_a_block_of_another_size_than_its_header_says_is_refused(tmp_path: Path,
         )
         data = good("binary", compressor="vtkZLibDataCompressor")
     assert refusal(read, tmp_path, data) == (
-        f"{AT_POINTS}a packed block must have 24 bytes, not others; write it again"
+        f"{AT_POINTS}a packed block must have 24 bytes, not fewer or more; write it again"
     )
 
 
