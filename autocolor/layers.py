@@ -1,21 +1,7 @@
 """The layers of a picture for compositors, in one OpenEXR file: light by light, depth, normals, identities.
 
-The channels, each (lines, elements) float32, with the names that compositors know:
-
-    R, G, B                           the colors of the display as light, 0 to 1, in half precision
-    intensity.Y                       the intensity of the picture
-    ambient.Y                         the ambient term
-    LIGHT.diffuse.Y, LIGHT.specular.Y the share of each light that shines, see below
-    depth.Z                           the distance from the eye along the view direction
-    position.X, .Y, .Z                the visible point, in world coordinates
-    normal.X, .Y, .Z                  the unit normal used for shading, in world axes, turned to the eye
-    crypto_surface00.R, .G, .B, .A    the surface in Cryptomatte's layout
-    crypto_part00.R, .G, .B, .A       the part in Cryptomatte's layout
-
-The layers of the lights are weighted with D or S and the intensity of the light: `ambient` and all layers of
-lights add up to `intensity`, up to the rounding of float32. The file has the lines and elements of the
-picture, so each pixel sees one point, and every coverage is 1. For smooth edges, render with `smooth`,
-compose, and scale down at the end: means of depths, normals or identities would be wrong.
+docs/LAYERS.md lists the channels, whose names compositors know. The file has the lines and elements of the
+picture, so each pixel sees one point, and every coverage is 1.
 
 Assumed: all channels but R, G and B are 0 where nothing is visible. No visible point has the depth 0.
 
@@ -73,7 +59,7 @@ class Layers(NamedTuple):
 def save_layers(
     path: str | PathLike[str], scene: Scene, picture: Picture, *, overwrite: bool = False
 ) -> None:
-    """Write the layers of a picture to an OpenEXR file, atomically; docs/LAYERS.md lists its channels.
+    """Write the layers of a picture to an OpenEXR file, atomically; docs/LAYERS.md lists the channels.
 
     `scene` is the scene that the picture was rendered from; its colors and its mapping may differ. A picture
     has no depths and no normals, so its visible points and its lights are computed again. The file has the

@@ -1,12 +1,5 @@
 """Strategies and checks for property tests of scenes, words and entries, with hypothesis.
 
-    from hypothesis import given
-    from autocolor.testing import check_recoloring_moves_no_word, recolorings, scenes
-
-    @given(scenes(), recolorings())
-    def test_a_recoloring_moves_no_word(scene, recoloring):
-        check_recoloring_moves_no_word(scene, recoloring)
-
 Each strategy is a function, named by a plural noun. The scenes are small: at most 18 nodes, 8 polygons and 3
 lights, and the surfaces "body" and "glass". Coordinates are short binary fractions, so that polygons often
 meet: in the same place, in the same plane, in the eye's plane, at a pixel's center. The checks raise an
@@ -70,7 +63,7 @@ def coordinates() -> st.SearchStrategy[float]:
 
 
 def numbers(least: float, most: float) -> st.SearchStrategy[float]:
-    """Numbers from `least` to `most`, in 1,048,576 equal steps: none of them is tiny but not 0."""
+    """Numbers from `least` to `most`, in 1,048,576 equal steps, so that no number is tiny but not 0."""
     return st.integers(0, 1 << 20).map(lambda step: least + (most - least) * step / (1 << 20))
 
 
@@ -82,7 +75,7 @@ def vectors(component: st.SearchStrategy[float] | None = None) -> st.SearchStrat
 
 @cache
 def directions() -> st.SearchStrategy[Vector]:
-    """Vectors of `coordinates` that are not zero, of any length."""
+    """Vectors of `coordinates`, of any length but zero."""
     return vectors().filter(any)
 
 
@@ -132,7 +125,7 @@ def views(draw: st.DrawFn) -> View:
 
 @st.composite
 def outside_views(draw: st.DrawFn) -> View:
-    """Views of all polygons of `meshes` from around them."""
+    """Views from outside that show all polygons of `meshes`."""
     eye = draw(directions())
     far = 6.0 / float(np.linalg.norm(eye))
     return View((eye[0] * far, eye[1] * far, eye[2] * far), target=(0.0, 0.0, 0.0), field_of_view=40.0)

@@ -1,15 +1,5 @@
 """Strategies and a check for property tests of programs that use the display, with hypothesis.
 
-    from hypothesis import given
-    from ramtek_emu import Ramtek9300
-    from ramtek_emu.testing import check_words_within_planes, streams
-
-    @given(streams())
-    def test_any_stream_leaves_words_within_the_planes(stream):
-        display = Ramtek9300()
-        display.send(stream)
-        check_words_within_planes(display.words)
-
 Install hypothesis with `pip install 'autocolor[testing]'`. docs/TESTING.md has complete tests.
 """
 
@@ -49,8 +39,8 @@ def entries(count: int = 1024) -> st.SearchStrategy[Colors]:
 def streams(most: int = 60) -> st.SearchStrategy[list[int]]:
     """Lists of at most so many 16-bit words; many of them begin an instruction.
 
-    A display accepts any words, so that these streams are as good as those of a program: instructions with
-    operands that make no sense, unknown instructions, and an instruction that ends too early.
+    A display accepts any words: instructions with operands that make no sense, unknown instructions, and an
+    instruction that ends too early.
     """
     opcodes = st.sampled_from([format.opcode for format in SUBSTANTIATED]) | st.sampled_from(
         [format.opcode for format in FORMATS]

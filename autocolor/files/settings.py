@@ -275,7 +275,7 @@ def row_at(scene: Scene, place: SettingPlace) -> Any:
 
 
 def value_at(scene: Scene, place: SettingPlace) -> Any:
-    """The value of the field at a place; None if it or a row that contains it is absent.
+    """The value of the field at a place; None if the field or a row around it is absent.
 
     >>> from autocolor import demo
     >>> scene = demo()

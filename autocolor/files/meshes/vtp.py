@@ -92,7 +92,7 @@ def begins_as_vtp(head: bytes) -> bool:
     return BEGINNING.match(head) is not None
 
 
-# The document: the elements, where their text is in the file, and nothing of what the text says.
+# The document: its elements, and where their text is in the file.
 
 MOST_ELEMENTS: Final = 100_000
 """Limit: elements of a file."""
@@ -130,7 +130,7 @@ class DataArray:
 
 @dataclass
 class Piece:
-    """A piece of the data: its attributes, and the arrays of each of its sections, by their names.
+    """A piece of the data: its attributes, and its arrays by section and name.
 
     It has at most `most` points or cells of a kind.
     """
@@ -360,7 +360,7 @@ class VtpFile:
             arrays = [each[name] for each in sections] if number == len(sections) else []
             widths = set(map(self._components, arrays))
             if len(widths) != 1 or 0 in widths:
-                self.document.skipped["arrays that are not in all pieces alike, or empty"] += 1
+                self.document.skipped["arrays that differ between pieces, or are empty"] += 1
                 continue
             (width,) = widths
             values = [
@@ -421,7 +421,7 @@ class VtpFile:
             )
 
     def _decoded(self, array: DataArray, text: bytes) -> bytes:
-        """The bytes of base64, of which a header may be encoded, and padded, alone."""
+        """The bytes of base64. A header may be encoded and padded by itself."""
         text = text.translate(None, SPACES)
         if wrong := text.translate(None, IN_BASE64):
             raise self._error(array, f"it must be base64, not have {shown(wrong[:1])}; write it again")
@@ -470,10 +470,10 @@ class VtpFile:
         return len(self.data) if end < 0 else end
 
     def _bytes(self, array: DataArray, stored: memoryview, size: int) -> bytes | memoryview:
-        """The `size` bytes of an array, unpacked, of a header and data, which may be longer.
+        """The `size` bytes of an array, unpacked. `stored` has a header, the data, and perhaps more.
 
-        A header is the number of bytes; of packed numbers, it is the number of blocks, the bytes of a block
-        and of the last block if that is shorter, and the packed bytes of each block.
+        The header is the number of bytes. If the numbers are packed, it is the number of blocks, the bytes of
+        a block, the bytes of a shorter last block or 0, and the packed bytes of each block.
         """
         width = self._header.itemsize
         is_packed = bool(self._compressor)
@@ -520,7 +520,7 @@ class VtpFile:
             )
 
     def _unpacked_block(self, array: DataArray, packed: memoryview, size: int) -> bytes:
-        """The bytes of a packed block. No more than `size` bytes are ever unpacked, and one."""
+        """The `size` bytes of a packed block. At most one byte more is ever unpacked."""
         if self._compressor not in UNPACKERS:
             raise self._error(
                 array,
@@ -534,7 +534,9 @@ class VtpFile:
                 array, f"a packed block must be whole, not wrong ({error}); write it again"
             ) from None
         if len(unpacked) != size or not is_whole:
-            raise self._error(array, f"a packed block must have {size:,} bytes, not others; write it again")
+            raise self._error(
+                array, f"a packed block must have {size:,} bytes, not fewer or more; write it again"
+            )
         return unpacked
 
 

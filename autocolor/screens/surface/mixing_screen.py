@@ -222,7 +222,7 @@ class MixingScreen(Screen):
             *self.light.widgets(surface.paint, self._chosen is self.light, mixing.hues),
             blend_bar.at(BLEND),
             *self.object.widgets(surface.paint, self._chosen is self.object, mixing.hues),
-            *self.choices.finishes(surface, FINISHES_ROW),
+            *self.choices.finishes(FINISHES_ROW),
         ]
 
     def items(self) -> Sequence[Item]:
@@ -585,9 +585,9 @@ class ColorSection:
         self._give(to)
 
     def _hsv_of(self, color: Color) -> Hsv:
-        """The hue, saturation and value of a color: as the bars gave it, if they gave it.
+        """The hue, saturation and value of a color. If the bars gave the color, these are their values.
 
-        Assumed: so a gray keeps the hue from which it came by these bars, and black its saturation, too.
+        Assumed: so a gray that the bars gave keeps its hue, and black keeps its saturation, too.
         """
         return self._mixed.hsv if color == self._mixed.to else hsv_of(color)
 

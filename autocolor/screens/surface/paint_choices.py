@@ -17,7 +17,7 @@ from autocolor.checks import Color
 from autocolor.files.palette_file import Palette
 from autocolor.files.state import note_color, recent_colors
 from autocolor.scene.kinds import in_digits
-from autocolor.scene.surfaces import Paint, Surface
+from autocolor.scene.surfaces import Paint
 from autocolor.scene.swatches import COLUMNS, FINISHES, ROWS, swatches
 from autocolor.screens.screen import Cached
 from autocolor.screens.session import Session
@@ -45,12 +45,6 @@ class ColorPage(NamedTuple):
     is_large: bool = False
 
 
-def swatch_page() -> ColorPage:
-    """The page of the swatches, with the hues downward."""
-    hues_down = swatches().reshape(ROWS, COLUMNS, 3).swapaxes(0, 1).reshape(-1, 3)
-    return ColorPage("the swatches", hues_down)
-
-
 def pages_of_paints(paints: Palette | None, file: str) -> list[ColorPage]:
     """The pages of the paints of a file, if there are paints, and last the page of the swatches."""
     pages, size = [], ROWS * COLUMNS
@@ -61,7 +55,8 @@ def pages_of_paints(paints: Palette | None, file: str) -> list[ColorPage]:
         title = f"paints {first + 1:,} to {end:,} of {file}" if count > size else f"the paints of {file}"
         colors, names = paints.colors[first:end], paints.names[first:end]
         pages.append(ColorPage(title, colors, names, count <= FEW_PAINTS))
-    return [*pages, swatch_page()]
+    hues_down = swatches().reshape(ROWS, COLUMNS, 3).swapaxes(0, 1).reshape(-1, 3)
+    return [*pages, ColorPage("the swatches", hues_down)]
 
 
 class PaintChoices:
@@ -151,7 +146,7 @@ class PaintChoices:
         self._turned, self._taken = (self.session.paints, number), 0
         self.session.tell(f"shown: {self.page.title}")
 
-    def finishes(self, surface: Surface, row: Area) -> list[Widget]:
+    def finishes(self, row: Area) -> list[Widget]:
         """The finishes, side by side in a row."""
         width = row.width // len(FINISHES)
         area = row._replace(right=row.left + width - 1)
@@ -160,7 +155,7 @@ class PaintChoices:
                 name,
                 f"Let the surface look like {name}, in its object color.",
                 area=area._replace(left=area.left + number * width, right=area.right + number * width),
-                run=partial(self._finish, surface, name),
+                run=partial(self.session.finish, name),
             )
             for number, name in enumerate(FINISHES)
         ]
@@ -201,13 +196,6 @@ class PaintChoices:
             self._take_number((number + step) % len(is_present))
         else:
             self._take_number(0 if step > 0 else len(is_present) - 1)
-
-    def _finish(self, surface: Surface, name: str) -> None:
-        self.session.finish(name)
-
-
-GROUT: Final = 1
-"""Lines and elements of the ground at the right and lower edge of each cell."""
 
 
 @dataclass(frozen=True)
@@ -281,7 +269,7 @@ def _cells(data: bytes, place: tuple[int, int], across: int, width: int, height:
     grid = np.full(rows * across, NIGHT, np.uint16)
     grid[: len(words)] = words
     cells = grid.reshape(rows, across).repeat(height, axis=0).repeat(width, axis=1)
-    for edge in range(GROUT):
-        cells[height - 1 - edge :: height] = NIGHT
-        cells[:, width - 1 - edge :: width] = NIGHT
+    # The ground shows between the cells, at the right and lower edge of each cell.
+    cells[height - 1 :: height] = NIGHT
+    cells[:, width - 1 :: width] = NIGHT
     return (image(cells, *place),)
