@@ -473,7 +473,12 @@ def batch(
     cells = None if sheet is None else ContactSheet(rows)
     checked = checked_batch(source, rows, output, thumbnail=None if cells is None else cells.box, **options)
     if output is None and checked.drawing.form == ARRAY:
-        _check_memory(len(rows) * checked.drawing.bytes_of_picture)
+        needed = len(rows) * checked.drawing.bytes_of_picture
+        if needed > allowed_memory():
+            raise UsageError(
+                f"the arrays of a batch must have at most {allowed_memory():,} bytes, not {needed:,}; give an"
+                " output, or take the results one by one from batch_results"
+            )
     for path, suffix, what in ((sheet, ".png", "a contact sheet"), (table, ".csv", "a table of results")):
         if path is not None:
             check_suffix(path, suffix, what)
@@ -501,15 +506,6 @@ def batch(
         for line in result.problem.splitlines():
             LOG.warning("%s: %s", result.name, line)
     return in_order
-
-
-def _check_memory(needed: int) -> None:
-    """Raise UsageError if the arrays of a batch need more bytes than the budget allows."""
-    if needed > allowed_memory():
-        raise UsageError(
-            f"the arrays of a batch must have at most {allowed_memory():,} bytes, not {needed:,}; give an"
-            " output, or take the results one by one from batch_results"
-        )
 
 
 def _same_file(path: str | PathLike[str]) -> str:

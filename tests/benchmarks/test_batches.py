@@ -1,7 +1,5 @@
 from __future__ import annotations
 
-import time
-
 from benchmarks import batches
 
 
@@ -14,11 +12,3 @@ def test_the_costs_of_a_recoloring_are_the_encoder_the_writing_and_the_others() 
 
 def test_the_light_moves_of_a_batch_are_compared_with_relighting() -> None:
     assert batches.light_moves(6).median > 0
-
-
-def test_a_clock_counts_each_call_of_a_function() -> None:
-    with batches.clocked(time, "sleep") as seconds:
-        time.sleep(0)
-        time.sleep(0)
-    assert len(seconds) == 2
-    assert not hasattr(time.sleep, "__wrapped__")

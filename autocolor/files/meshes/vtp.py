@@ -36,6 +36,7 @@ from autocolor.files.meshes.number_text import NumberText
 from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, RawPolygons, repaired
 from autocolor.files.meshes.vtk_cells import (
     POLYGON_CELL,
+    SKIPPED,
     STRIP_CELL,
     CellLists,
     VtkCells,
@@ -285,8 +286,6 @@ LARGEST_DICTIONARY: Final = 1 << 27
 
 CELLS: Final = {"Verts": 1, "Lines": 3, "Polys": POLYGON_CELL, "Strips": STRIP_CELL}
 """The type of the cells in each section, in the order of the data of cells."""
-
-SKIPPED: Final = {1: "vertices", 3: "lines"}
 
 IN_BASE64: Final = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/="
 PADDED: Final = re.compile(rb"[^=]*=*")

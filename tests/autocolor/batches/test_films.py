@@ -81,15 +81,6 @@ def test_a_frame_costs_its_edit_from_the_frame_before(
     assert tiers == [Tier.FRAME] + [tier] * (len(made) - 1)
 
 
-def test_the_loss_of_a_gif_is_told(tmp_path: Path) -> None:
-    film = animate(SCENE, SWEEP, tmp_path / "film.gif", size=SIZE)
-    differences = [
-        int(np.abs(one.astype(int) - other).max())
-        for one, other in zip(decoded(tmp_path / "film.gif"), rendered(SCENE, SWEEP), strict=True)
-    ]
-    assert (film.lossy, film.largest_loss) == (sum(map(bool, differences)), max(differences))
-
-
 def test_a_picture_alone_is_animated_without_rendering(visible: list[object], tmp_path: Path) -> None:
     picture = render(SCENE, 2 * SIZE[1], 2 * SIZE[0], smooth=1)
     visible.clear()
