@@ -135,11 +135,11 @@ def save_words(
     """Write the words of a picture with their entries to a PNG file, atomically.
 
     The file has the lines and elements of the picture: words cannot be averaged, so a smooth picture has
-    `smooth` times those of its image. The legend of a scalar is left out. The pixels are 16-bit grays, equal
-    to the words, 0 to 1023; `word_png_bytes` tells where the 1024 entries are in the file.
+    `smooth` times the lines and elements of its image. The legend of a scalar is left out. The pixels are
+    16-bit grays, equal to the words, 0 to 1023; `word_png_bytes` says where the 1024 entries are in the file.
 
-    If `indexed`, the pixels are indices of a palette instead. The words in use become 0, 1, 2 and so on, in
-    their order, and their entries the palette; so the colors are those of `image` with `smooth=1`.
+    If `indexed`, the pixels are indices of a palette instead. The words in use are numbered from 0, in their
+    order, and their entries are the palette. The colors equal `image` with `smooth=1`.
 
     Raises UsageError for a name that does not end in .png, and if `indexed` and more than 256 words are in
     use; InputError if an intensity is not finite, or if the surfaces of the picture are not those of the

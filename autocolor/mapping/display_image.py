@@ -72,7 +72,7 @@ class DisplayImage(ABC):
     def colors(self) -> Bytes:
         """The color of each pixel, (lines, elements, 3) uint8.
 
-        Measured: `take` needs a quarter of the time of indexing.
+        Measured: `take` takes a quarter of the time of indexing.
         """
         return self.entries.take(self.words, axis=0)
 

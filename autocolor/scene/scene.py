@@ -527,9 +527,9 @@ def costs_at_least(old: Scene, new: Scene, tier: Tier) -> bool:
 
 
 def unset_paints(old: Scene, new: Scene) -> list[str]:
-    """A sentence for each surface that an edit gives a ramp instead of two colors, or two colors instead.
+    """A sentence for each surface whose two colors an edit replaces by a ramp, or whose ramp by two colors.
 
-    Without a sentence nothing is lost: the surface had only defaults.
+    Two colors that are the defaults are not lost, so they give no sentence.
     """
     sentences = []
     paints = {surface.name: surface.paint for surface in old.surfaces}

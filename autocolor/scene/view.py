@@ -29,7 +29,8 @@ ASPECT: Final = 640 / 480
 
 
 VERTICAL: Final = 1e-9
-"""Assumed: a view is vertical if the eye is aside by a smaller part of its height over the target."""
+"""Assumed: a view is vertical if the eye's horizontal distance from the target is a smaller part of its
+height over the target."""
 
 
 class Polar(NamedTuple):

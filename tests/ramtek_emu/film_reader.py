@@ -1,4 +1,4 @@
-"""Reads films with Pillow, as other programs do."""
+"""Films as Pillow reads them."""
 
 from __future__ import annotations
 

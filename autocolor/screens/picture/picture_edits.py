@@ -27,8 +27,8 @@ from autocolor.widgets.widget import titled
 def color_after(present: str, own: str, step: int, colors: Sequence[str] = OBJECT_COLORS) -> str:
     """The color that is `step` positions further than the present one, among different `colors`.
 
-    The surface's own color comes before them if it is not among them. The first color follows a present color
-    that is not among them.
+    The surface's own color comes first if the colors do not contain it. If they do not contain the present
+    color, the first color follows.
 
     >>> color_after("#ff0000", "#ff0000", 1), color_after("#f4a39b", "#ff0000", -1)
     ('#f4a39b', '#ff0000')

@@ -151,11 +151,7 @@ def test_after_each_load_of_a_stream_the_display_shows_its_frame(cycle: str, tmp
 
 
 NO_CYCLES: list[tuple[str, object, str]] = [
-    (
-        POSITION,
-        [4, -4, 3],
-        "an edit of lights.key.position computes one light, or all",
-    ),
+    (POSITION, [4, -4, 3], "an edit of lights.key.position computes one light, or all"),
     ("lights.key.intensity", 0.1, "write a film such as .webp, or let words stand for normals"),
     ("view.eye", [4, -4, 3], "an edit of view.eye computes everything again; write a film such as .webp"),
     ("mapping", "gamma", "an edit of mapping computes the levels again"),
@@ -222,11 +218,7 @@ REFUSED: list[tuple[str, dict[str, Any], str]] = [
     ("film.mp4", {}, "must be written to .webp, .apng, .gif, frame-{number:04}.png or .ramtek, not to"),
     ("film.png", {}, "numbered pictures must have a pattern such as frame-{number:04}.png, not"),
     ("film.gif", {"frames_per_second": 60}, "frames per second must be a number from 0.1 to 50, not 60"),
-    (
-        "film.webp",
-        {"frames_per_second": "24"},
-        "per second must be a number from 0.1 to 100, not '24'",
-    ),
+    ("film.webp", {"frames_per_second": "24"}, "per second must be a number from 0.1 to 100, not '24'"),
     ("film.ramtek", {"smooth": 2}, "a stream must have smooth=1, because a display cannot average"),
 ]
 

@@ -423,11 +423,8 @@ def refused() -> Iterator[tuple[dict[str, Any], type[Exception], str]]:
     yield {"source": 3}, UsageError, "a scene must be a Scene, not 3"
     yield {"source": (render(scene, 3, 4), scene)}, UsageError, "the scene must come before the picture"
     yield {"source": "no.npz"}, InputError, "no.npz"
-    yield (
-        {"source": (scene, render(scene, 3, 4)), "size": (8, 6)},
-        UsageError,
-        "the size and smooth of a batch",
-    )
+    other = {"source": (scene, render(scene, 3, 4)), "size": (8, 6)}
+    yield other, UsageError, "the size and smooth of a batch"
     yield {"size": 640}, UsageError, "the size of pictures must be elements and lines"
     yield {"source": (scene, render(scene, 3, 4)), "size": 4}, UsageError, "the size and smooth of a batch"
     yield {"executor": ThreadPoolExecutor}, UsageError, "an executor must be one of concurrent.futures"

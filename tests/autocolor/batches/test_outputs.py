@@ -56,10 +56,7 @@ def test_no_name_and_no_value_leaves_the_folder_of_the_pattern(name: str, value:
 @pytest.mark.parametrize(
     ("pattern", "sentence"),
     [
-        (
-            "{nam}.png",
-            "a field of a name pattern must be a key of the scene, not 'nam'; did you mean",
-        ),
+        ("{nam}.png", "a field of a name pattern must be a key of the scene, not 'nam'; did you mean"),
         ("{surfaces.wal.blend}.png", "a field of a name pattern must be a key of the scene, not"),
         ("{name.png", "a name pattern must have each brace closed, not '{name.png'; double a brace"),
         ("name}.png", "a name pattern must have each brace closed"),

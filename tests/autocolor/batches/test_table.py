@@ -87,12 +87,8 @@ def test_a_grid_is_every_combination_in_the_order_of_its_lists(axes: dict[str, l
 def test_tables_are_multiplied_with_their_names_and_times() -> None:
     looks = variants_of([{"name": "dark", "ambient": 0, "time": 3}, {"name": "light", "ambient": 1}])
     made = products([looks, varied("scaling=object"), varied("contrast=floor,stretch")])
-    assert [variant.name for variant in made] == [
-        "dark-floor",
-        "dark-stretch",
-        "light-floor",
-        "light-stretch",
-    ]
+    names = ["dark-floor", "dark-stretch", "light-floor", "light-stretch"]
+    assert [variant.name for variant in made] == names
     assert [variant.time for variant in made] == [3, 3, None, None]
     assert made[0].settings == {"ambient": 0, "scaling": "object", "contrast": "floor"}
 
@@ -122,11 +118,8 @@ def test_a_palette_gives_its_colors_and_their_names(tmp_path: Path) -> None:
     path = tmp_path / "paints.gpl"
     write_palette(path, ["#102030", "#ff0000", "#00ff00"], names=["Deep/Sea", "Red", ""])
     variants = varied(f"surfaces.body.object_color=@{path}")
-    assert [variant.settings["surfaces.body.object_color"] for variant in variants] == [
-        "#102030",
-        "#ff0000",
-        "#00ff00",
-    ]
+    colors = ["#102030", "#ff0000", "#00ff00"]
+    assert settings_of(variants) == [{"surfaces.body.object_color": color} for color in colors]
     assert [variant.name for variant in variants] == ["Deep/Sea", "Red", "00ff00"]
 
 

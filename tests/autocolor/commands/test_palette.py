@@ -49,7 +49,6 @@ def test_the_entries_of_a_scene_are_those_of_the_display(folder: Path, run: Run)
             2,
             "side.png: a palette must end in .act, .csv or .gpl, not in '.png'; rename",
         ),
-        (("side", "-o", "side.act"), 2, "side.act: an .act file must hold at most 256 colors, not "),
         (("side", "-o", "old.gpl"), 73, "an output must be a new file, not old.gpl, which exists;"),
         (("side", "--set", "view.angle=3"), 2, "--set: a setting of a picture must need no rendering"),
     ],

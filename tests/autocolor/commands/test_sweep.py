@@ -115,11 +115,6 @@ def test_the_table_of_results_is_never_written_over_the_table_of_variants(folder
         (("--vary", "ambiet=1,2"), 2, "--vary ambiet: there is no field 'ambiet'; did you mean 'ambient'?"),
         (("--table", "t.csv"), 65, "t.csv, column ambiet: there is no field 'ambiet'; did you mean"),
         (("--table", "no.csv"), 66, "no.csv"),
-        (
-            ("--vary", "ambient=1,2", "--table", "ok.csv"),
-            2,
-            "a key must be in one table or list, not 'ambient'",
-        ),
         (("--vary", f"{COLOR}=@no.gpl"), 66, "no.gpl"),
         (("--vary", "ambient=1,2", "--set", "ambiet=1"), 2, "--set ambiet: there is no field"),
         (("--vary", "ambient=1,2", "--sheet", "a.jpg"), 2, "a contact sheet must be written to a file that"),
@@ -129,7 +124,6 @@ def test_a_wrong_command_line_is_refused_before_anything_is_made(
     folder: Path, run: Run, arguments: tuple[str, ...], code: int, sentence: str
 ) -> None:
     Path("t.csv").write_text("ambiet\n1\n")
-    Path("ok.csv").write_text("ambient\n1\n")
     before = sorted(os.listdir())
     ran = run("sweep", "scene", *arguments, "-o", "{name}.png", *SMALL)
     assert ran.code == code

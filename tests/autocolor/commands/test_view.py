@@ -82,7 +82,7 @@ def test_paints_are_brought_along(folder: Path, run: Run, monitors: list[Any], l
         (
             ("view", "scene", "--paints", "no.gpl"),
             66,
-            "no.gpl: there is no such file or folder; check the name",
+            "no.gpl: there is no such file or folder; check",
         ),
         (("--paints", "two.obj"), 65, "two.obj: a palette must end in .act, .csv or .gpl, not in '.obj';"),
         (

@@ -91,16 +91,8 @@ def test_a_color_shares_everything_else_with_the_scene() -> None:
 @pytest.mark.parametrize(
     ("settings", "error", "sentence"),
     [
-        (
-            {"surfaces.wal.blend": 1},
-            UsageError,
-            "surfaces.wal.blend: there is no surface 'wal'; did you",
-        ),
-        (
-            {"ambient": None},
-            UsageError,
-            "ambient: it must be a finite number of at least 0, not none",
-        ),
+        ({"surfaces.wal.blend": 1}, UsageError, "surfaces.wal.blend: there is no surface 'wal'; did you"),
+        ({"ambient": None}, UsageError, "ambient: it must be a finite number of at least 0, not none"),
         ({"surfaces.wall.blend": 2}, InputError, "surface 'wall': blend must be a number from 0 to 1, not 2"),
         ({"view.eye": [1, 2]}, InputError, "view: eye must be three finite numbers"),
     ],
