@@ -8,16 +8,7 @@ from typing import Final
 import click
 
 from autocolor.commands.options import size_option
-from autocolor.commands.scenes import (
-    SceneSource,
-    created_again,
-    ended,
-    read,
-    reframed,
-    scene_options,
-    set_option,
-    tell_up,
-)
+from autocolor.commands.scenes import SceneSource, ended, read_edited, scene_options, set_option
 from ramtek_emu.command_line import tell
 
 EXAMPLES: Final = """\b
@@ -51,7 +42,6 @@ def explain(
     computed apart from the renderer, by the formulas of the paper. Lines are counted from the top and
     elements from the left, from 0; rows of tables are counted from 1.
     """
-    from autocolor.commands.settings import with_settings
     from autocolor.explanation.explain import explain as explained
     from autocolor.explanation.text import rows_of_text
     from autocolor.images import display_image
@@ -59,9 +49,7 @@ def explain(
     from autocolor.visibility.visible_points import Sight
 
     elements, lines = size
-    report = reframed(read(source), elements / lines)
-    tell_up(report, source)
-    scene = created_again(report, with_settings(report.scene, settings), elements / lines)
+    scene, report = read_edited(source, settings, size)
     rendered = rendering(scene, lines, elements)
     image = display_image(scene, rendered.picture)
     explanation = explained(Sight(scene, rendered.points), image, line, element)

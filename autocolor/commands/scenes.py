@@ -138,6 +138,18 @@ def reframed(report: SceneReport, aspect: float) -> SceneReport:
     return dataclasses.replace(report, scene=scene.replace(view=view))
 
 
+def read_edited(
+    source: SceneSource, settings: tuple[str, ...], size: tuple[int, int]
+) -> tuple[Scene, SceneReport]:
+    """The scene of a source with `--set`, for pictures of a size, and the report of what was read."""
+    from autocolor.commands.settings import with_settings
+
+    elements, lines = size
+    report = reframed(read(source), elements / lines)
+    tell_up(report, source)
+    return created_again(report, with_settings(report.scene, settings), elements / lines), report
+
+
 def created_again(report: SceneReport, edited: Scene, aspect: float | None = None) -> Scene:
     """The edited scene of a report; if the edits affect its created view or lights, they are created again.
 

@@ -12,17 +12,7 @@ from click.core import ParameterSource
 from autocolor.commands.completion import complete_settings
 from autocolor.commands.options import print_log, size_option, smooth_of, smooth_option
 from autocolor.commands.outputs import progress
-from autocolor.commands.scenes import (
-    REPAIRED,
-    SceneSource,
-    created_again,
-    ended,
-    read,
-    reframed,
-    scene_options,
-    set_option,
-    tell_up,
-)
+from autocolor.commands.scenes import REPAIRED, SceneSource, ended, read_edited, scene_options, set_option
 from autocolor.errors import AutocolorError, InputError, UsageError
 from ramtek_emu.command_line import tell
 from ramtek_emu.writing import same_outputs
@@ -171,7 +161,6 @@ def start_of(
     from pathlib import Path
 
     from autocolor.commands.recolor import recolored
-    from autocolor.commands.settings import with_settings
     from autocolor.files.picture_file import read_picture
     from autocolor.files.scene_sources import is_picture
 
@@ -179,10 +168,7 @@ def start_of(
         print_log(click.get_current_context())
         saved = read_picture(source.path)
         return saved._replace(scene=recolored(saved.scene, None, {}, settings)), 0
-    elements, lines = size
-    report = reframed(read(source), elements / lines)
-    tell_up(report, source)
-    scene = created_again(report, with_settings(report.scene, settings), elements / lines)
+    scene, report = read_edited(source, settings, size)
     return scene, ended(report, source)
 
 
