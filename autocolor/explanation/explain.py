@@ -8,6 +8,7 @@ the renderer: it must agree with the picture.
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from dataclasses import asdict, dataclass
 from typing import Any
@@ -61,19 +62,20 @@ def explain(sight: Sight, image: DisplayImage, line: int, element: int) -> Expla
     seen = seen_at(sight, line, element)
     # JSON cannot hold integers of numpy.
     line, element = int(line), int(element)
+    background = Explanation(
+        scene=scene.name,
+        line=line,
+        element=element,
+        point=None,
+        ambient=scene.ambient,
+        lights=(),
+        intensity=None,
+        level=None,
+        word=BACKGROUND,
+        color=scene.background,
+    )
     if seen is None:
-        return Explanation(
-            scene=scene.name,
-            line=line,
-            element=element,
-            point=None,
-            ambient=scene.ambient,
-            lights=(),
-            intensity=None,
-            level=None,
-            word=BACKGROUND,
-            color=scene.background,
-        )
+        return background
     camera = Camera(scene.view, sight.points.lines, sight.points.elements)
     at_pixel = line // sight.block, element // sight.block
     point = point_at(scene, camera, seen.polygon, *at_pixel)
@@ -89,12 +91,9 @@ def explain(sight: Sight, image: DisplayImage, line: int, element: int) -> Expla
     else:
         level = level_at(image, point, intensity, at_pixel)
         word, color = word_of(level), color_of(level)
-    return Explanation(
-        scene=scene.name,
-        line=line,
-        element=element,
+    return dataclasses.replace(
+        background,
         point=point,
-        ambient=scene.ambient,
         lights=tuple(lights),
         intensity=intensity,
         level=level,
