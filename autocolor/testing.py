@@ -362,6 +362,22 @@ def scalars() -> st.SearchStrategy[Scalar]:
     )
 
 
+def scene_columns() -> dict[str, st.SearchStrategy[Any]]:
+    """Strategies for the columns of a scene that are no rows, by name; see `scenes` for its surfaces."""
+    return {
+        "ambient": numbers(0, 1),
+        "scaling": st.sampled_from(["surface", "object"]),
+        "mapping": st.sampled_from(MAPPINGS),
+        "contrast": st.sampled_from(["stretch", "floor"]),
+        "exposure": exposures(),
+        "dither": st.sampled_from(["off", "ordered"]),
+        "division": st.sampled_from(["covered", "equal"]),
+        "interpolation": st.sampled_from(INTERPOLATIONS),
+        "background": colors(),
+        "front": st.sampled_from([None, "x", "-x", "y", "-y"]),
+    }
+
+
 @st.composite
 def scenes(draw: st.DrawFn, /, **given: Any) -> Scene:
     """Scenes with a value in every column, small enough to be rendered hundreds of times.
@@ -386,18 +402,9 @@ def scenes(draw: st.DrawFn, /, **given: Any) -> Scene:
             draw(lights(name, links=draw(links(names, parts))))
             for name in draw(st.sampled_from([(), ("key",), ("key", "fill", "rim")]))
         )
-    strategies: dict[str, st.SearchStrategy[Any]] = {
+    strategies = {
         "view": views() | outside_views(),
-        "ambient": numbers(0, 1),
-        "scaling": st.sampled_from(["surface", "object"]),
-        "mapping": st.sampled_from(MAPPINGS),
-        "contrast": st.sampled_from(["stretch", "floor"]),
-        "exposure": exposures(),
-        "dither": st.sampled_from(["off", "ordered"]),
-        "division": st.sampled_from(["covered", "equal"]),
-        "interpolation": st.sampled_from(INTERPOLATIONS),
-        "background": colors(),
-        "front": st.sampled_from([None, "x", "-x", "y", "-y"]),
+        **scene_columns(),
         "views": named_views(),
         "scalar": st.none() | scalars(),
     }

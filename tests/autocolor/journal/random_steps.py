@@ -14,7 +14,7 @@ from autocolor.journal.autosave import JOURNAL
 from autocolor.journal.history import History
 from autocolor.journal.journal import MeshesBeside, first_line, step_line
 from autocolor.journal.places import Source, checksum_of
-from autocolor.testing import MAPPINGS, colors, exposures, lights, named_views, numbers, surfaces, views
+from autocolor.testing import lights, named_views, scene_columns, surfaces, views
 from tests.autocolor.linked_scenes import linked
 from tests.autocolor.meshes import cube
 from tests.autocolor.sessions import car
@@ -46,16 +46,7 @@ columns_of_scenes = st.fixed_dictionaries(
         ),
         "view": views(),
         "views": named_views(),
-        "ambient": numbers(0, 1),
-        "scaling": st.sampled_from(["surface", "object"]),
-        "mapping": st.sampled_from(MAPPINGS),
-        "contrast": st.sampled_from(["stretch", "floor"]),
-        "exposure": exposures(),
-        "dither": st.sampled_from(["off", "ordered"]),
-        "division": st.sampled_from(["covered", "equal"]),
-        "interpolation": st.sampled_from(["scan line", "invariant"]),
-        "background": colors(),
-        "front": st.sampled_from([None, "x", "-y"]),
+        **scene_columns(),
         "name": st.sampled_from(["scene", "a 'name'\n", "\N{SNOWMAN}"]),
     },
 )
