@@ -1,9 +1,10 @@
-"""Parts of messages about invalid input: a value, a list of names, the name that was probably meant."""
+"""Whether a number is whole; and parts of messages about invalid input: a value, names, the name meant."""
 
 from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable
+from numbers import Integral
 from typing import Final
 
 Vector = tuple[float, float, float]
@@ -17,6 +18,15 @@ MOST_COMPARED: Final = 1000
 
 LARGEST_COORDINATE: Final = 1e30
 """Limit: a coordinate. Its square is still well within the float64 range."""
+
+
+def is_whole(value: object, least: int, most: int) -> bool:
+    """Whether a value is a whole number from `least` to `most`, of any type but bool.
+
+    >>> is_whole(3, 1, 4), is_whole(True, 0, 1), is_whole(2.0, 1, 4)
+    (True, False, False)
+    """
+    return isinstance(value, Integral) and not isinstance(value, bool) and least <= int(value) <= most
 
 
 def shown(value: object, most: int = 60) -> str:

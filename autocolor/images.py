@@ -9,14 +9,13 @@ from __future__ import annotations
 import dataclasses
 import re
 from itertools import product
-from numbers import Integral
 from os import PathLike
 from typing import Final
 
 import numpy as np
 
 from autocolor.arrays import Bytes, Words, chunks, light_of
-from autocolor.checks import shown
+from autocolor.checks import is_whole, shown
 from autocolor.errors import UsageError
 from autocolor.files.writing import check_suffix, write_atomically
 from autocolor.lighting.picture import Picture, check_smooth, check_surfaces
@@ -112,9 +111,7 @@ def save_image(
 
 def check_png_level(level: int | None) -> None:
     """Raise UsageError unless the compression of a PNG file is a whole number from 0 to 9, or None."""
-    if level is not None and (
-        isinstance(level, bool) or not isinstance(level, Integral) or not 0 <= level <= 9
-    ):
+    if level is not None and not is_whole(level, 0, 9):
         raise UsageError(
             f"level must be a whole number from 0 to 9, not {shown(level)}; leave it out for the default"
         )

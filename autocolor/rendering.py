@@ -19,13 +19,12 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
-from numbers import Integral
 from typing import Final
 
 import numpy as np
 
 from autocolor.budget import allowing, require_memory
-from autocolor.checks import nearest, shown
+from autocolor.checks import is_whole, nearest, shown
 from autocolor.errors import UsageError
 from autocolor.lighting.illumination import Previous, illuminate
 from autocolor.lighting.picture import Picture, check_smooth
@@ -91,7 +90,7 @@ def render(
     check_smooth(smooth)
     for what, size in (("lines", lines), ("elements", elements)):
         most = LARGEST_RASTER // smooth
-        if isinstance(size, bool) or not isinstance(size, Integral) or not 1 <= size <= most:
+        if not is_whole(size, 1, most):
             where = f" where smooth is {smooth}" if smooth > 1 else ""
             raise UsageError(
                 f"{what} must be a whole number from 1 to {most}{where}, not {shown(size)}; choose another"

@@ -15,11 +15,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
-from numbers import Integral, Real
+from numbers import Real
 from typing import Any, Final
 
 from autocolor.batches.table import MOST_VARIANTS, Rows, Variant, check_keys, variants_of
-from autocolor.checks import shown
+from autocolor.checks import is_whole, shown
 from autocolor.errors import InputError, UsageError
 from autocolor.files.settings import SettingPlace, field_of, place_of, row_at, scene_with, value_at
 from autocolor.scene.row_kinds import OneRowOf
@@ -70,7 +70,7 @@ def frames_of_tracks(
     Raises UsageError if two tables set the same key.
     """
     check_scene(scene)
-    if isinstance(count, bool) or not isinstance(count, Integral) or not 1 <= count <= MOST_VARIANTS:
+    if not is_whole(count, 1, MOST_VARIANTS):
         raise UsageError(
             f"frames must be a whole number from 1 to {MOST_VARIANTS:,}, not {shown(count)}; choose another"
         )

@@ -11,7 +11,6 @@ from collections.abc import Callable, Generator, Iterable, Sequence, Set
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Executor, Future, wait
 from contextlib import closing, suppress
 from dataclasses import dataclass
-from numbers import Integral
 from os import PathLike, fspath
 from pathlib import Path
 from typing import Final, TypedDict, Unpack
@@ -23,7 +22,7 @@ from autocolor.batches.runs import Drawing, Made, Start, VariantTask, forget, ma
 from autocolor.batches.sheet import Box, ContactSheet, read_thumbnail
 from autocolor.batches.table import TABLE_BEGINS, Result, Rows, Variant, results_bytes, variants_of
 from autocolor.budget import allowed_memory, allowing, validated_limit
-from autocolor.checks import shown
+from autocolor.checks import is_whole, shown
 from autocolor.errors import InputError, OutputError, UnavailableError, UsageError, reason_of
 from autocolor.files.picture_file import SavedPicture, read_picture
 from autocolor.files.scene_sources import is_picture, read_scene
@@ -306,8 +305,7 @@ def _drawing(
         counts, smooth = own, picture.smooth
     counts, smooth = (640, 480) if counts is None else counts, smooth or 1
     most = LARGEST_RASTER // smooth
-    whole = [count for count in counts if isinstance(count, Integral) and not isinstance(count, bool)]
-    if len(whole) != 2 or len(counts) != 2 or not all(1 <= count <= most for count in whole):
+    if len(counts) != 2 or not all(is_whole(count, 1, most) for count in counts):
         raise UsageError(
             f"the size of pictures must be elements and lines, each from 1 to {most}, not {shown(size)};"
             " write it as in (640, 480)"
@@ -362,7 +360,7 @@ def checked_batch(
 ) -> Batch:
     """The checked batch. Raises the errors of `batch_results`, before anything is made."""
     form = form_of(output, form)
-    if isinstance(runs, bool) or not isinstance(runs, Integral) or not 1 <= runs <= MOST_IN_RUN:
+    if not is_whole(runs, 1, MOST_IN_RUN):
         raise UsageError(
             f"runs must be a whole number from 1 to {MOST_IN_RUN:,}, not {shown(runs)}; give one such as"
             f" {RUNS}"

@@ -10,14 +10,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from numbers import Integral
 from typing import Final, NamedTuple
 
 import numpy as np
 
 from autocolor.arrays import AnyArray, Bytes, Indices, PartNumbers, Singles, underflowing
 from autocolor.budget import require_memory
-from autocolor.checks import shown
+from autocolor.checks import is_whole, shown
 from autocolor.errors import InputError, UsageError
 from autocolor.immutable import Immutable, read_only
 from autocolor.lighting.shading import DIFFUSE, SPECULAR, LightPlanes
@@ -234,7 +233,7 @@ MOST_SMOOTH: Final = 64
 
 def check_smooth(smooth: int) -> None:
     """Raise UsageError unless `smooth` is a whole number from 1 to MOST_SMOOTH."""
-    if isinstance(smooth, bool) or not isinstance(smooth, Integral) or not 1 <= smooth <= MOST_SMOOTH:
+    if not is_whole(smooth, 1, MOST_SMOOTH):
         raise UsageError(
             f"smooth must be a whole number from 1 to {MOST_SMOOTH}, not {shown(smooth)}; give one such as 4"
         )

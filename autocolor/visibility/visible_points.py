@@ -17,13 +17,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from numbers import Integral
 from typing import Final, NamedTuple
 
 import numpy as np
 
 from autocolor.arrays import Floats, Indices, Numbers, PartNumbers, Singles
-from autocolor.checks import Vector, shown
+from autocolor.checks import Vector, is_whole, shown
 from autocolor.errors import UsageError
 from autocolor.immutable import Immutable, read_only
 from autocolor.scene.scene import SCAN_LINE, Scene
@@ -268,11 +267,7 @@ class Sight:
         """
         points, block = self.points, self.block
         for what, number, count in (("line", line, points.lines), ("element", element, points.elements)):
-            if (
-                isinstance(number, bool)
-                or not isinstance(number, Integral)
-                or not 0 <= number < count * block
-            ):
+            if not is_whole(number, 0, count * block - 1):
                 article = "an" if what == "element" else "a"
                 raise UsageError(
                     f"{article} {what} must be 0 to {count * block - 1}, not {shown(number)}; choose another"
