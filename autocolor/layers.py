@@ -92,7 +92,7 @@ def open_exr() -> Any:
     if version < [3, 5]:
         raise UnavailableError(
             "to write layers, the package OpenEXR must be installed, at least version 3.5; run: pip install"
-            ' "autocolor[exr]"'
+            ' "OpenEXR>=3.5"'
         )
     return OpenEXR
 

@@ -8,7 +8,7 @@ AssertionError that says what moved, and where.
 Measured: strategies without arguments are cached, because hypothesis validates every new strategy. Without a
 cache, 100 scenes took 4.1 s instead of 1.8.
 
-Install hypothesis with `pip install 'autocolor[testing]'`. docs/TESTING.md has complete tests.
+They need hypothesis, which the extra `testing` installs. docs/TESTING.md has complete tests.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ try:
     from hypothesis import strategies as st
 except ModuleNotFoundError as error:
     raise ModuleNotFoundError(
-        "autocolor.testing needs the package hypothesis; install it with: pip install 'autocolor[testing]'",
+        "autocolor.testing needs the package hypothesis; run: pip install hypothesis",
         name=error.name,
     ) from error
 

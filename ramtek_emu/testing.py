@@ -1,6 +1,6 @@
 """Strategies and a check for property tests of programs that use the display, with hypothesis.
 
-Install hypothesis with `pip install 'autocolor[testing]'`. docs/TESTING.md has complete tests.
+They need hypothesis, which the extra `testing` installs. docs/TESTING.md has complete tests.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ try:
     from hypothesis.extra import numpy as arrays
 except ModuleNotFoundError as error:
     raise ModuleNotFoundError(
-        "ramtek_emu.testing needs the package hypothesis; install it with: pip install 'autocolor[testing]'",
+        "ramtek_emu.testing needs the package hypothesis; run: pip install hypothesis",
         name=error.name,
     ) from error
 

@@ -324,5 +324,5 @@ def test_without_a_library_that_is_new_enough_the_extra_is_named(
         save_layers(tmp_path / "cube.exr", scene, render(scene, 6, 8))
     assert str(caught.value) == (
         "to write layers, the package OpenEXR must be installed, at least version 3.5; run: pip install"
-        ' "autocolor[exr]"'
+        ' "OpenEXR>=3.5"'
     )

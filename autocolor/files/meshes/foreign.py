@@ -430,7 +430,7 @@ def read_foreign(read_as: ForeignFormat, path: Path, placement: Placement = PLAI
     if missing:
         raise UnavailableError(
             f"{path.name}: to read {read_as.suffixes[0]} files, the package {listed(missing)} must be"
-            ' installed; run: pip install "autocolor[meshes]"'
+            f" installed; run: pip install {' '.join(missing)}"
         )
     require_size(path.name, size, read_as.growth)
     mesh = read_in_own_process(read_as.library, read_as.kind, path, size)

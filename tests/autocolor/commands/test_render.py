@@ -455,7 +455,7 @@ def test_layers_without_their_library_are_refused_before_any_work(
     monkeypatch.setitem(sys.modules, "OpenEXR", None)
     ran = run("render", "scene", "--layers", "a.exr", "--save", "a.npz")
     assert (ran.code, ran.out) == (69, "")
-    assert ran.err.endswith('run: pip install "autocolor[exr]"\n')
+    assert ran.err.endswith('run: pip install "OpenEXR>=3.5"\n')
     assert not (folder / "a.npz").exists()
 
 

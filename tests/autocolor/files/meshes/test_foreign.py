@@ -251,7 +251,10 @@ def test_a_missing_package_is_told_with_what_installs_it(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
-    for name, package in (("a.vtu", "meshio"), ("a.3mf", "trimesh, networkx and lxml")):
+    for name, package, packages in (
+        ("a.vtu", "meshio", "meshio"),
+        ("a.3mf", "trimesh, networkx and lxml", "trimesh networkx lxml"),
+    ):
         path = tmp_path / name
         path.write_bytes(b"PK\5\6" + bytes(18))
         with pytest.raises(UnavailableError) as caught:
@@ -259,7 +262,7 @@ def test_a_missing_package_is_told_with_what_installs_it(
         assert caught.value.exit_code == 69
         assert str(caught.value) == (
             f"{name}: to read {path.suffix} files, the package {package} must be installed; run: pip install"
-            ' "autocolor[meshes]"'
+            f" {packages}"
         )
 
 
