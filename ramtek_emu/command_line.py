@@ -143,9 +143,12 @@ class EndingSignals:
     def install(self) -> None:
         """Install the handlers for the rest of the process."""
         self.ended, self.ignored, self.cancels = None, False, False
-        self._show_unraisable, sys.unraisablehook = sys.unraisablehook, self._on_unraisable
+        # A process that runs several commands installs the handlers again; the hooks before them stay.
+        if sys.unraisablehook != self._on_unraisable:
+            self._show_unraisable, sys.unraisablehook = sys.unraisablehook, self._on_unraisable
         # Libraries in C may print an exception that is raised while they are imported.
-        self._show, sys.excepthook = sys.excepthook, self._on_exception
+        if sys.excepthook != self._on_exception:
+            self._show, sys.excepthook = sys.excepthook, self._on_exception
         for number in ENDING:
             if signal.getsignal(number) is not signal.SIG_IGN:
                 signal.signal(number, self._receive)

@@ -251,6 +251,18 @@ def test_what_is_put_in_order_after_a_signal_is_not_interrupted(end: End) -> Non
     assert orders == ["done"]
 
 
+def test_after_several_commands_in_a_process_an_uncaught_error_is_shown_once(
+    end: End, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shown: list[BaseException] = []
+    monkeypatch.setattr(sys, "excepthook", lambda kind, error, trace: shown.append(error))
+    end(lambda: None)
+    end(lambda: None)
+    error = ValueError()
+    sys.excepthook(ValueError, error, None)
+    assert shown == [error]
+
+
 def test_a_reader_of_stdout_that_left_ends_a_command_in_silence(end: End) -> None:
     assert end(raising(BrokenPipeError(errno.EPIPE, "Broken pipe"))) == (141, "\n", "")
 
