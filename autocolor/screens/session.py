@@ -680,6 +680,8 @@ class FileOnDisk:
         self._studio = studio
         self._looked_at = time.monotonic()
         self._last_look: tuple[int | bytes, ...] | None = None
+        self._is_refused = False
+        """Whether the file had an error when it was last read."""
 
     def was_changed(self) -> bool:
         """Whether another program changed the file since the last call; it is looked at twice a second."""
@@ -704,11 +706,15 @@ class FileOnDisk:
         name = path.name
         if self._studio.is_changed:
             return f"{name} was changed elsewhere: Ctrl+R shows that, Ctrl+S saves yours beside"
+        was_refused, self._is_refused = self._is_refused, True
         try:
             is_other = self._studio.reopen()
         except InputError as error:
             raise InputError(f"not shown: {problem}" for problem in error.problems) from None
-        return f"{name} was changed elsewhere; undo goes back" if is_other else ""
+        self._is_refused = False
+        if is_other:
+            return f"{name} was changed elsewhere; undo goes back"
+        return f"{name} holds this scene again" if was_refused else ""
 
 
 # An edit of a light may change nothing that is seen: with automatic exposure and one light alone, any

@@ -718,10 +718,14 @@ def test_a_scene_file_is_looked_at_as_well(tmp_path: Path) -> None:
     file.write_text(file.read_text() + '\n[[lights]]\nname = "third"\nposition = [1, 2, 3]\n')
     tick(viewer)
     assert [light.name for light in viewer.studio.scene.lights] == ["key", "rim", "third"]
+    correct = file.read_text()
     file.write_text("[[mesh]\n")
     tick(viewer)
     assert viewer.message.startswith("not shown: scene.toml")
     assert len(viewer.studio.scene.lights) == 3
+    file.write_text(correct)
+    tick(viewer)
+    assert viewer.message == "scene.toml holds this scene again"
 
 
 def test_a_file_that_only_looks_changed_is_no_step(store: Path) -> None:
