@@ -694,7 +694,7 @@ class FileOnDisk:
         if look is None or look == self._last_look:
             return False
         self._last_look = look
-        return self._studio.history.on_disk.was_changed(str(path))
+        return self._is_refused or self._studio.history.on_disk.was_changed(str(path))
 
     def take(self) -> str:
         """Show the file's scene, or ask whether to; returns the message, empty if nothing differs.
