@@ -285,9 +285,9 @@ def _light_values(image: DisplayImage) -> dict[str, Any]:
     bright_rendering = rendering(bright, picture.lines, picture.elements, again)
     names = [light.name for light in scene.lights]
     # Points are in the order of the polygons, but a browser finds them again in the raster.
-    order = np.concatenate(
-        [each.start + again.points.pixels[each.pixels].argsort() for each in picture.slices]
-    )
+    order = np.arange(len(picture.pixels))
+    for surface in again.picture.slices:
+        order[surface.pixels] = surface.start + again.points.pixels[surface.pixels].argsort()
     planes = {
         name: _plane_values(image, (diffuse + specular).take(order))
         for name, diffuse, specular in light_shares(bright_rendering, names)
