@@ -105,7 +105,7 @@ export function inDigits(color) {
 function cssColor(text) {
   const bare = /^[0-9a-f]{3}([0-9a-f]{3})?$/i.test(text.trim()) ? `#${text.trim()}` : text.trim();
   if (!CSS.supports("color", bare) || /^(current|inherit|initial|unset|revert)/i.test(bare)) return "";
-  const context = make("canvas", { width: 1, height: 1 }).getContext("2d");
+  const context = make("canvas", { width: 1, height: 1 }).getContext("2d", { willReadFrequently: true });
   if (!context) return "";
   context.fillStyle = bare;
   context.fillRect(0, 0, 1, 1);
