@@ -6,7 +6,7 @@ import dataclasses
 import io
 import json
 import os
-from base64 import b64decode, b64encode
+from base64 import b64encode
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from hashlib import sha256
 from pathlib import Path
@@ -82,7 +82,11 @@ def opened(browser: Browser, tmp_path: Path) -> Iterator[Open]:
     contexts, troubles = [], []
 
     def open_page(
-        scene: autocolor.Scene, picture: autocolor.Picture, fragment: str = "", context: Any = None, **page: Any
+        scene: autocolor.Scene,
+        picture: autocolor.Picture,
+        fragment: str = "",
+        context: Any = None,
+        **page: Any,
     ) -> Page:
         path = tmp_path / "page.html"
         autocolor.save_page(path, scene, picture, overwrite=True, **page)
@@ -92,7 +96,10 @@ def opened(browser: Browser, tmp_path: Path) -> Iterator[Open]:
         shown.on("console", lambda message: troubles.append(message.text))
         shown.on("pageerror", lambda error: troubles.append(str(error)))
         shown.on(
-            "request", lambda request: request.url.startswith(("file:", "data:", "blob:")) or troubles.append(request.url)
+            "request",
+            lambda request: (
+                request.url.startswith(("file:", "data:", "blob:")) or troubles.append(request.url)
+            ),
         )
         shown.goto(path.as_uri() + (f"#{fragment}" if fragment else ""))
         shown.wait_for_selector(".desk")
@@ -105,10 +112,12 @@ def opened(browser: Browser, tmp_path: Path) -> Iterator[Open]:
 
 
 @pytest.fixture
-def module(browser: Browser) -> Iterator[Page]:
-    """An empty page with the module's functions as `autocolor`."""
-    names = "mount, entriesOf, unpackWords, unpackPlane, levelsOf, whiteOf, withWhite, inDigits, colorOf"
+def module(browser: Browser, tmp_path: Path) -> Iterator[Page]:
+    """An empty page, from a file, with the module's functions as `autocolor`."""
+    names = "mount, entriesOf, unpackWords, relighting, whiteOf, withWhite"
+    (tmp_path / "empty.html").write_text("<!doctype html><title>empty</title>")
     page = browser.new_page()
+    page.goto((tmp_path / "empty.html").as_uri())
     page.add_script_tag(type="module", content=f"{MODULE}\nglobalThis.autocolor = {{{names}}};")
     page.wait_for_function("globalThis.autocolor")
     yield page
@@ -235,19 +244,21 @@ def test_a_saved_png_has_the_legend_and_a_page_says_what_is_fixed(
 def test_saved_values_are_a_table_of_variants(
     opened: Open, coupe: autocolor.Scene, small: autocolor.Picture, tmp_path: Path
 ) -> None:
-    scene = coupe.with_surface("glass", ramp=["#200000", "#ff6600"]).with_surface("trim", ramp=["#000", "#fff"])
+    scene = coupe.with_surface("glass", ramp=["#200000", "#ff6600"]).with_surface(
+        "trim", ramp=["#000", "#fff"]
+    )
     page = opened(scene, small, "surfaces.body.object_color=1f3f8f&surfaces.body.blend=0.25")
     page.get_by_role("radio", name="trim").check()
     page.get_by_role("button", name="Use two colors instead").click()
     (tmp_path / "values.csv").write_bytes(saved(page, "Save CSV"))
     (variant,) = autocolor.read_variants(tmp_path / "values.csv")
     found = scene_with(scene, variant.settings)
-    assert found.surface("body").paint == coupe.surface("body").paint.replace(object_color="#1f3f8f", blend=0.25)
+    assert found.surface("body").paint == coupe.surface("body").paint.replace(
+        object_color="#1f3f8f", blend=0.25
+    )
     assert found.surface("glass").paint == scene.surface("glass").paint
     assert found.surface("trim").paint.ramp is None
-    assert page.evaluate(SHOWN) == digest(
-        image(found, small, smooth=1)
-    )
+    assert page.evaluate(SHOWN) == digest(image(found, small, smooth=1))
 
 
 def test_a_drag_is_one_step_and_the_link_has_the_colors(
@@ -353,6 +364,67 @@ def test_a_touch_chooses_a_surface(opened: Open, coupe: autocolor.Scene, small: 
         )
         assert page.get_by_role("radio", name=name).is_checked()
     assert page.evaluate("document.documentElement.scrollWidth") == 390
+
+
+RELIT = """async ([text, states]) => {
+    const picture = JSON.parse(text);
+    const {lines, elements, surfaces} = picture;
+    const words = await autocolor.unpackWords(picture.words, lines, elements);
+    const owner = new Uint8Array(1024);
+    surfaces.forEach(({first, levels}, number) => owner.fill(number + 1, first, first + levels));
+    const relight = await autocolor.relighting(picture, words, owner);
+    return states.map(([state, name]) => {
+        relight(state, name);
+        return Array.from(words);
+    });
+}"""
+
+
+@pytest.mark.parametrize("changes", [{}, {"mapping": "gamma", "dither": "ordered"}])
+def test_lights_give_the_levels_of_a_rendering(
+    module: Page, coupe: autocolor.Scene, changes: dict[str, Any]
+) -> None:
+    scene = coupe.replace(**changes)
+    display = Ramtek9300(dataclasses.replace(GMR_9300, lines=120, elements=160))
+    studio = autocolor.Studio(scene, display)
+    exported = export_of(studio.scene, studio.picture, lights=True)
+    studio.hold_exposure()
+    names = [light.name for light in scene.lights]
+    strengths = {name: float(light.intensity) for name, light in zip(names, scene.lights, strict=True)}
+    on = dict.fromkeys(names, True)
+    states, expected = [], []
+    random = np.random.default_rng(5)
+    # Drags of one light, and changes of several at once.
+    for step in range(8):
+        for name in names[:1] if step % 4 else names:
+            strengths[name], on[name] = round(float(random.random() * 2), 3), bool(random.random() < 0.8)
+            studio.light(name, intensity=strengths[name], on=on[name])
+        state = {f"lights.{name}.intensity": strengths[name] for name in names}
+        states.append([state | {f"lights.{name}.on": on[name] for name in names}, names[0]])
+        expected.append(studio.words)
+    for found, words in zip(module.evaluate(RELIT, [json.dumps(exported), states]), expected, strict=True):
+        away = np.abs(np.array(found).reshape(words.shape) - words.astype(int))
+        assert away.max() <= 1
+        for surface in exported["surfaces"]:
+            of_surface = (words >= surface["first"]) & (words < surface["first"] + surface["levels"])
+            assert (away[of_surface] > 0).sum() <= 0.005 * of_surface.sum()
+
+
+def test_a_light_is_dimmed_and_switched_off(
+    opened: Open, coupe: autocolor.Scene, small: autocolor.Picture
+) -> None:
+    page = opened(coupe, small, lights=True)
+    before = page.evaluate(SHOWN)
+    assert "Exposure is held" in page.locator(".lights").inner_text()
+    page.get_by_role("switch", name="Light key").uncheck()
+    dark = page.evaluate(SHOWN)
+    assert "no entry" in page.get_by_role("status").inner_text()
+    page.get_by_label("Strength of light key, as a number").fill("0")
+    page.get_by_role("switch", name="Light key").check()
+    assert page.evaluate(SHOWN) == dark != before
+    assert page.evaluate("location.hash") == "#lights.key.intensity=0"
+    page.get_by_role("button", name="Reset").click()
+    assert page.evaluate(SHOWN) == before
 
 
 VARIANTS = [
