@@ -32,7 +32,7 @@ def unpacked_words(packed: bytes, lines: int, elements: int) -> AnyArray:
     """The words of a raster, pixel by pixel."""
     data = zlib.decompress(packed)
     steps, far = data[: lines * elements], iter(np.frombuffer(data[lines * elements :], "<u2").tolist())
-    words = []
+    words: list[int] = []
     for at, step in enumerate(steps):
         left = words[-1] if at % elements else 0
         words.append(next(far) if step == 128 else left + (step - 256 if step > 128 else step))
