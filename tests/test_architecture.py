@@ -23,7 +23,7 @@ PUBLIC_NAMES = {
         "UnavailableError", "UsageError", "Variant", "View", "WriteError", "animate", "batch",
         "batch_results", "demo", "frames", "grid", "image", "open_tables", "read_journal", "read_palette",
         "read_picture", "read_rig", "read_scene", "read_variants", "render", "save_image", "save_layers",
-        "save_words", "scene_of", "send_picture", "write_palette", "write_picture", "write_rig",
+        "save_page", "save_words", "scene_of", "send_picture", "write_palette", "write_picture", "write_rig",
         "write_scene",
     ],
     "ramtek_emu": [
@@ -39,7 +39,7 @@ WINGS = {
     "autocolor": (
         "errors", "logs", "arrays", "immutable", "checks", "budget", "scene", "visibility", "scalars",
         "lighting", "mapping", "files", "rendering", "sending", "images", "layers", "batches", "explanation",
-        "journal", "studio", "testing", "widgets", "screens", "commands", "__main__",
+        "journal", "web", "studio", "testing", "widgets", "screens", "commands", "__main__",
     ),
     "ramtek_emu": (
         "errors", "arrays", "checks", "timing", "configuration", "writing", "png", "films",
