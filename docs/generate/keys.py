@@ -20,8 +20,8 @@ F1 shows these keys in the window. The page is written from the key tables of th
 `python -m docs.generate.keys > docs/KEYS.md`.
 """
 
-STUDIO = """The window of `autocolor`, `autocolor view` and `autocolor tutorial`. A display elsewhere sends no keys: its
-joystick unit reaches everything through the menu.
+STUDIO = """The window of `autocolor`, `autocolor view` and `autocolor tutorial`. A display elsewhere sends no
+keys: its joystick unit reaches everything through the menu.
 """
 
 DISPLAY = """The window of `ramtek` and of `ramtek serve --window`, which shows what a host draws.

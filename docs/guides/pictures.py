@@ -18,11 +18,12 @@ from typing import Final
 import numpy as np
 from PIL import Image
 
+from autocolor import read_palette
 from autocolor.screens.viewer import Viewer
 from docs.generate.blocks import blocks_of, commands_of
-from docs.generate.commands import here
+from docs.generate.commands import ROOT, here
 from ramtek_emu.memory.cursors import Joystick
-from scenes.figures import Field, captioned, click, open_viewer, point_at
+from scenes.figures import Field, captioned, click, click_at, open_viewer, point_at
 
 GUIDES: Final = Path(__file__).parent
 IMAGES: Final = GUIDES / "images"
@@ -35,6 +36,12 @@ SMALL: Final = 2
 
 CAR: Final = slice(40, 200)
 """The lines of a small panel that show the car."""
+
+COBALT: Final = (530, 275)
+"""The element and the line of a paint in the menu of color mixing."""
+
+EXPLAINED: Final = (240, 200)
+"""The line and the element of the pixel that the guide to the studio explains."""
 
 
 def start_paint() -> Field:
@@ -94,9 +101,39 @@ def light_exposure() -> Field:
     return sheet("light", ("automatic", "held", "lifted"), across=3)
 
 
+def studio_mixing() -> Field:
+    """Color mixing, with the paints of a file, of which the pointer takes one."""
+    with open_viewer("coupe", "mixing") as (viewer, display):
+        viewer.session.bring_paints(read_palette(ROOT / "examples" / "paints.gpl"), "paints.gpl")
+        viewer.tell("")
+        click_at(viewer, *COBALT)
+        return display.field()
+
+
+def studio_split() -> Field:
+    """The red car at the left of the line, the blue car at its right."""
+    with open_viewer("coupe", "picture") as (viewer, display):
+        viewer.studio.recolor("body", object_color="#2348c8", blend=0.5)
+        for element in (400, 639):
+            point_at(viewer, element, 57)
+        click(viewer, "compare", 0.75)
+        idle(viewer)
+        return display.field()
+
+
+def studio_explain() -> Field:
+    """The explanation of a pixel of the hood."""
+    with open_viewer("coupe", "picture") as (viewer, display):
+        viewer.session.explain(*EXPLAINED)
+        viewer.tell("")
+        idle(viewer)
+        return display.field()
+
+
 PICTURES: Final[Sequence[Callable[[], Field]]] = (
     start_paint, start_menu,
     light_alone, light_place, light_spot, light_flaps, light_highlight, light_links, light_exposure,
+    studio_mixing, studio_split, studio_explain,
 )  # fmt: skip
 
 
