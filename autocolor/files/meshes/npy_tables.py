@@ -20,8 +20,8 @@ and the log says so: triangles alone as (polygons, 3), float32, int32, tables by
 angle is the file's; otherwise they are computed. If you change nodes or polygons, delete the files of normals
 and planes, or convert the folder again. Nothing is ever repaired.
 
-`tables.json` is as `write_npy_tables` writes it. `planes` is true if the three files of planes exist, false if
-polygons share no planes, and null if planes are to be computed when the mesh is opened:
+`tables.json` is as `write_npy_tables` writes it. `planes` is true if the three files of planes exist, false
+if polygons share no planes, and null if planes are to be computed when the mesh is opened:
 
     {"format": "autocolor npy tables 1", "part_names": ["hood", "roof"], "crease_angle": 40.0,
      "scalars": [{"name": "stress", "of": "node"}], "planes": null}
