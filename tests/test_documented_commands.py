@@ -20,7 +20,6 @@ NOT_RUN = {
     "autocolor view coupe": "it opens a window",
     "autocolor view scenes/coupe --normals": "it opens a window",
     "autocolor view scenes/coupe --paints paints.gpl": "it opens a window",
-    "ramtek play figures/figure-normals.ramtek --loads-per-second 30": "it opens a window",
     "ramtek serve --unix /tmp/display --window &": "it waits for hosts",
     "ramtek tty /tmp/display -- old_program {}": "it runs a program that the reader has",
     "ramtek serve --port 9300 --window": "it waits for hosts",

@@ -1,13 +1,14 @@
 """The pictures of the guides on paint, meshes and scalars, made by the commands that the guides show.
 
-`python -m docs.guides.pictures_b` writes them all to docs/guides/images, in about ten seconds. The panels are
-smaller than the pictures of the commands.
+`python -m docs.guides.pictures_b` writes them all to docs/guides/images, in about ten seconds, and
+`python -m docs.guides.pictures_b scalar_hills` writes one. The panels are smaller than the pictures of the
+commands. `paint_page` needs playwright and Debian's Chromium.
 """
 
 from __future__ import annotations
 
-import argparse
 import math
+import sys
 from collections.abc import Callable
 from contextlib import chdir
 from pathlib import Path
@@ -41,16 +42,14 @@ SIDES: Final = 16
 
 
 def main() -> None:
-    """Write every picture."""
-    parser = argparse.ArgumentParser(prog="python -m docs.guides.pictures_b", description=main.__doc__)
-    parser.add_argument("folder", nargs="?", type=Path, default=IMAGES, help="default: %(default)s")
-    folder = parser.parse_args().folder
-    folder.mkdir(parents=True, exist_ok=True)
+    """Write the pictures that the command line names, or all."""
+    IMAGES.mkdir(exist_ok=True)
     for draw in PICTURES:
-        path = folder / f"{draw.__name__.replace('_', '-')}.webp"
-        with TemporaryDirectory() as place:
-            draw(Path(place), path)
-        print(path)
+        if draw.__name__ in sys.argv[1:] or len(sys.argv) == 1:
+            path = IMAGES / f"{draw.__name__.replace('_', '-')}.webp"
+            with TemporaryDirectory() as place:
+                draw(Path(place), path)
+            print(path, path.stat().st_size)
 
 
 def paint_recolored(place: Path, path: Path) -> None:
@@ -77,6 +76,25 @@ def paint_fade(place: Path, path: Path) -> None:
     ran(place, f"animate coupe.npz {vary} --frames 30 -o {{number:02}}.png")
     frames = [Image.open(each) for each in sorted(place.glob("[0-9][0-9].png"))]
     frames[0].save(path, save_all=True, append_images=frames[1:], duration=100, loop=0, quality=60, method=6)
+
+
+def paint_page(place: Path, path: Path) -> None:
+    """The page of the coupe with its lights and a strip of variants, in a browser."""
+    from playwright.sync_api import sync_playwright
+
+    ran(place, f"render {COUPE} --save coupe.npz")
+    vary = "--vary surfaces.body.object_color=navy,silver,#e0b020"
+    ran(place, f"page coupe.npz --lights {vary} -o coupe.html")
+    with sync_playwright() as browsers:
+        browser = browsers.chromium.launch(executable_path="/usr/bin/chromium", args=["--no-sandbox"])
+        window = browser.new_page(viewport={"width": 1000, "height": 700}, color_scheme="light")
+        window.goto((place / "coupe.html").as_uri())
+        window.wait_for_selector("canvas")
+        # The page draws its variants while it is idle.
+        window.wait_for_timeout(2000)
+        window.screenshot(path=place / "page.png")
+        browser.close()
+    save(path, field_of(place / "page.png"))
 
 
 def mesh_parts(place: Path, path: Path) -> None:
@@ -155,6 +173,7 @@ PICTURES: Final[tuple[Callable[[Path, Path], None], ...]] = (
     paint_recolored,
     paint_sheet,
     paint_fade,
+    paint_page,
     mesh_parts,
     mesh_creases,
     mesh_faults,
