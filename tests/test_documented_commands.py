@@ -34,6 +34,7 @@ POLYGONS = "".join(f"3 {a} {b} {c}\n" for a, b, c in FACES)
 
 INPUTS = {
     "looks.csv": "name,surfaces.body.object_color,lights.key.intensity\nracing,#b01020,\nevening,navy,0.5\n",
+    "paints.csv": "name,color\nsignal red,#a52019\n",
     "engine.ply": "ply\nformat ascii 1.0\nelement vertex 4\n"
     + "".join(f"property float {axis}\n" for axis in "xyz")
     + f"element face 4\nproperty list uchar int vertex_indices\nend_header\n{NODES}{POLYGONS}",
