@@ -72,7 +72,7 @@ def paint_sheet(place: Path, path: Path) -> None:
 def paint_fade(place: Path, path: Path) -> None:
     """A film of a fade between three colors."""
     ran(place, f"render {COUPE} --size 240x180 --smooth 4 --save coupe.npz")
-    vary = "--vary surfaces.body.object_color=red,navy,#e0b020,red"
+    vary = "--vary surfaces.body.object_color=red,navy,goldenrod,red"
     ran(place, f"animate coupe.npz {vary} --frames 30 -o {{number:02}}.png")
     frames = [Image.open(each) for each in sorted(place.glob("[0-9][0-9].png"))]
     frames[0].save(path, save_all=True, append_images=frames[1:], duration=100, loop=0, quality=60, method=6)
@@ -83,7 +83,7 @@ def paint_page(place: Path, path: Path) -> None:
     from playwright.sync_api import sync_playwright
 
     ran(place, f"render {COUPE} --save coupe.npz")
-    vary = "--vary surfaces.body.object_color=navy,silver,#e0b020"
+    vary = "--vary surfaces.body.object_color=navy,silver,goldenrod"
     ran(place, f"page coupe.npz --lights {vary} -o coupe.html")
     with sync_playwright() as browsers:
         browser = browsers.chromium.launch(executable_path="/usr/bin/chromium", args=["--no-sandbox"])
@@ -149,7 +149,7 @@ def scalar_scales(place: Path, path: Path) -> None:
 
 def scalar_form(place: Path, path: Path) -> None:
     """Two computed scalars: curvature and zebra stripes."""
-    only_body = """--set 'scalar.surfaces=["body"]'"""
+    only_body = "--set scalar.surfaces=body"
     curvature = (
         "--set 'scalar.name=\"mean curvature\"' --set scalar.scale=coolwarm --set scalar.limits=[-5,5]"
     )
