@@ -24,6 +24,9 @@ PAGES: Final = {"README.md": "index.md", "CONTRIBUTING.md": "contributing.md", "
 LANGUAGES: Final = {".py": "python", ".toml": "toml", ".js": "javascript", ".csv": "text", ".gpl": "text"}
 """The files that a page shows, by suffix. Others are copied as they are."""
 
+FULL_WIDTH: Final = "---\nhide: [navigation, toc]\n---\n"
+"""The head of a page without columns beside its text."""
+
 LIVE: Final = """## Try it here
 
 <iframe class="live" src="coupe.html" title="The coupe, with colors and lights to change"></iframe>
@@ -73,7 +76,9 @@ def page_of(document: str, markdown: str) -> str:
         if path:
             place = relpath(place_of(target_of(document, path)), here) + mark + anchor
             markdown = markdown[: link.start()] + place + markdown[link.end() :]
-    return markdown.replace("\n## ", f"\n{LIVE}## ", 1) if document == "README.md" else markdown
+    if document == "README.md":
+        markdown = FULL_WIDTH + markdown.replace("\n## ", f"\n{LIVE}## ", 1)
+    return markdown
 
 
 def source_page(path: str, text: str) -> str:
@@ -101,7 +106,8 @@ def main() -> None:
     """Write the whole folder."""
     texts = documents()
     shutil.rmtree(FOLDER, ignore_errors=True)
-    shutil.copytree(ROOT / "docs", FOLDER, ignore=shutil.ignore_patterns("*.md", "*.py", "__pycache__"))
+    own = shutil.ignore_patterns("*.md", "*.py", "__pycache__", "generate")
+    shutil.copytree(ROOT / "docs", FOLDER, ignore=own)
     write_live_coupe()
     for document, text in texts.items():
         write(place_of(document), page_of(document, text).encode())
