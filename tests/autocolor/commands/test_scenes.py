@@ -51,6 +51,18 @@ def test_other_arguments_are_wrong_usage(arguments: tuple[str, ...]) -> None:
     assert CliRunner().invoke(echo, arguments).exit_code == 2
 
 
+@pytest.mark.parametrize("command", ["render", "show --to tcp://127.0.0.1:1"])
+@pytest.mark.parametrize(("option", "value"), [("--up", "y"), ("--scale", "0.001")])
+def test_the_built_in_demo_has_its_own_up_axis_and_scale(
+    command: str, option: str, value: str, run: Run
+) -> None:
+    refused = run(*command.split(), option, value)
+    assert refused.code == 2
+    assert refused.err == (
+        f"autocolor: {option} is for a mesh file, not for the built-in demo; name a file, or leave it out\n"
+    )
+
+
 def test_a_scene_is_read_without_a_word_where_nothing_is_repaired(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
