@@ -54,7 +54,7 @@ def scene_options(command: Callable[..., Any], required: bool = True) -> Callabl
         for option, is_given in (("--up", up != "z"), ("--scale", scale != 1)):
             if scene is None and is_given:
                 raise UsageError(
-                    f"{option} is for a mesh file, not for the built-in demo; name a file, or leave it out"
+                    f"{option} must come with a mesh file as SCENE; name a file, or leave {option} out"
                 )
         source = None if scene is None else SceneSource(scene, up, surfaces, strict, scale)
         return command(*arguments, source=source, **options)
