@@ -177,12 +177,17 @@ def idle(viewer: Viewer) -> None:
         viewer.on_tick()
 
 
+def path_of(picture: Callable[[], Field]) -> Path:
+    """The file of a picture."""
+    return IMAGES / f"{picture.__name__.replace('_', '-')}.png"
+
+
 def write(pictures: Sequence[Callable[[], Field]]) -> None:
     """Write the pictures that the command line names, or all."""
     IMAGES.mkdir(exist_ok=True)
     for picture in pictures:
         if picture.__name__ in sys.argv[1:] or len(sys.argv) == 1:
-            path = IMAGES / f"{picture.__name__.replace('_', '-')}.png"
+            path = path_of(picture)
             image = Image.fromarray(picture())
             image.quantize(COLORS, kmeans=5, dither=Image.Dither.NONE).save(path, optimize=True)
             print(path, path.stat().st_size)
