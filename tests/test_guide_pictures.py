@@ -32,3 +32,10 @@ def test_a_picture_of_a_screen_is_that_of_its_steps(picture: Callable[[], Field]
     with Image.open(path_of(picture)) as image:
         shown = np.asarray(image.convert("RGB"), np.int16)
     assert np.abs(shown - picture()).mean() < CLOSE, f"run: python -m docs.guides.pictures {picture.__name__}"
+
+
+def test_every_image_is_small_and_in_a_guide() -> None:
+    text = "".join(path.read_text("utf-8") for path in GUIDES.glob("*.md"))
+    for path in (GUIDES / "images").iterdir():
+        assert f"](images/{path.name})" in text, f"remove {path}, or show it"
+        assert path.stat().st_size <= MOST_BYTES
