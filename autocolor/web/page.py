@@ -64,6 +64,7 @@ def save_page(
     scene: Scene,
     picture: Picture,
     *,
+    lights: bool = False,
     variants: Rows = (),
     overwrite: bool = False,
 ) -> None:
@@ -83,7 +84,7 @@ def save_page(
     check_surfaces(scene, picture)
     check_suffix(path, ".html", "a page")
     refuse_output(path, overwrite=overwrite)
-    page = page_of(export_of(scene, picture, variants=variants))
+    page = page_of(export_of(scene, picture, lights=lights, variants=variants))
     write_atomically(path, page.encode(), overwrite=overwrite)
 
 
