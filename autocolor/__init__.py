@@ -70,6 +70,7 @@ if TYPE_CHECKING:
     from autocolor.scene.view import NamedView as NamedView
     from autocolor.scene.view import View as View
     from autocolor.studio import Studio as Studio
+    from autocolor.web.page import save_page as save_page
 
     __version__: str
 
@@ -121,6 +122,7 @@ _HOME: Final = {
     "render": "rendering",
     "save_image": "images",
     "save_layers": "layers",
+    "save_page": "web.page",
     "save_words": "images",
     "scene_of": "scene.creation",
     "send_picture": "images",

@@ -56,7 +56,7 @@ def send_picture(scene: Scene, picture: Picture, display: HostPort) -> None:
             f"a picture must be at most {sizes.shown_elements} x {sizes.shown_lines}, as large as the"
             f" display, not {elements} x {lines}; render it smaller, or take a larger configuration"
         )
-    send_image(display, _middles(display_image(scene, picture), picture.smooth))
+    send_image(display, middles(display_image(scene, picture), picture.smooth))
 
 
 def image(scene: Scene, picture: Picture, *, smooth: int | None = None) -> Bytes:
@@ -225,7 +225,7 @@ def smoothed(image: DisplayImage, smooth: int) -> Bytes:
     if smooth == 1:
         return shown_colors(image)
     colors = averaged(image.entries, image.words, smooth)
-    small = _middles(image, smooth)
+    small = middles(image, smooth)
     key = legend(small)
     if key is not None:
         left, top, right, bottom, _ = key.swatches[0]
@@ -234,7 +234,7 @@ def smoothed(image: DisplayImage, smooth: int) -> Bytes:
     return colors
 
 
-def _middles(image: DisplayImage, smooth: int) -> DisplayImage:
+def middles(image: DisplayImage, smooth: int) -> DisplayImage:
     """The image with the word in the middle of each square of `smooth` pixels a side."""
     if smooth == 1:
         return image

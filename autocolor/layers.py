@@ -107,7 +107,7 @@ def layers_of(scene: Scene, picture: Picture) -> Layers:
         "render fewer pixels or lights",
     )
     again = rendering(scene, lines, elements)
-    _check_rendered(picture, again.picture)
+    check_rendered(picture, again.picture, "the layers")
     points, place = again.points, again.points.pixels
 
     def raster(values: AnyArray | np.float32) -> Singles:
@@ -120,7 +120,7 @@ def layers_of(scene: Scene, picture: Picture) -> Layers:
     channels: dict[str, AnyArray] = {name: light[:, k][shown.words] for k, name in enumerate("RGB")}
     channels |= {"intensity.Y": picture.intensity, "ambient.Y": raster(np.float32(scene.ambient))}
     layer_of_light = light_layers(lights)
-    for name, diffuse, specular in _light_shares(scene, again, lights):
+    for name, diffuse, specular in light_shares(again, lights):
         channels[f"{layer_of_light[name]}.diffuse.Y"] = raster(diffuse)
         channels[f"{layer_of_light[name]}.specular.Y"] = raster(specular)
     channels["depth.Z"] = raster(points.depths)
@@ -135,29 +135,30 @@ def layers_of(scene: Scene, picture: Picture) -> Layers:
     )
 
 
-def _check_rendered(picture: Picture, again: Picture) -> None:
-    """Raise InputError unless rendering the scene again gave the same picture."""
+def check_rendered(picture: Picture, again: Picture, subject: str) -> None:
+    """Raise InputError unless rendering the scene again gave the same picture; `subject` needs that."""
     difference = np.abs(picture.intensity - again.intensity).max()
     if (
         difference > CLOSE * again.ranges.whole.maximum
         or (picture.surface_number != again.surface_number).any()
     ):
         raise InputError(
-            "the layers of a picture must be computed from the scene that it was rendered from, not from one"
+            f"{subject} of a picture must be computed from the scene that it was rendered from, not from one"
             " with other lights, another view or another mesh; render this scene"
         )
 
 
 @underflowing
-def _light_shares(
-    scene: Scene, again: Rendering, lights: Sequence[str]
-) -> Iterator[tuple[str, Singles, Singles]]:
-    """The name of each light, and its diffuse and specular share of the intensity at the visible points."""
+def light_shares(rendered: Rendering, lights: Sequence[str]) -> Iterator[tuple[str, Singles, Singles]]:
+    """The name of each light, and its diffuse and specular share of the intensity at the visible points.
+
+    The lights must shine in the rendered scene.
+    """
     for name in lights:
-        lit = again.picture
+        lit = rendered.picture
         if name not in lit.light_planes:
             # There are more lights than a picture keeps the planes of.
-            lit = illuminate(scene.only_lights(name), again.points)
+            lit = illuminate(rendered.scene.only_lights(name), rendered.points)
         planes = lit.light_planes[name]
         shares = np.empty_like(planes.values)
         for row in (DIFFUSE, SPECULAR):

@@ -63,14 +63,19 @@ def send_image(display: HostPort, image: DisplayImage, before: DisplayImage | No
             display.send(drawn_legend(key))
 
 
-def shown_colors(image: DisplayImage) -> Bytes:
-    """The colors of an image with its legend, (lines, elements, 3) uint8, as on a display of its size."""
+def shown_words(image: DisplayImage) -> Words:
+    """The words of an image with its legend, (lines, elements) uint16, as on a display of its size."""
     if legend(image) is None:
-        return image.colors
+        return image.words
     lines, elements = image.words.shape
     display = Ramtek9300(dataclasses.replace(GMR_9300, lines=lines, elements=elements))
     send_image(display, image)
-    return display.field()
+    return display.words
+
+
+def shown_colors(image: DisplayImage) -> Bytes:
+    """The colors of an image with its legend, (lines, elements, 3) uint8, as on a display of its size."""
+    return image.entries.take(shown_words(image), axis=0)
 
 
 def drawn_legend(key: Legend) -> Words:

@@ -1,0 +1,1219 @@
+// @ts-check
+/**
+ * The picture in a browser: words and a table of 1024 entries, and the controls that rewrite the entries.
+ *
+ * A page holds the picture once, as words. A recoloring computes the entries of one surface and looks up the
+ * colors of its pixels again; no word changes. The strength of a light changes words, which are computed from
+ * light planes; then no entry changes. A page keeps its own history and writes it into the link's fragment. In
+ * a notebook the host keeps the history: edits are shown at once and sent to the host.
+ *
+ * Keys and values are those of the command line: `surfaces.body.object_color`, `lights.key.intensity`.
+ */
+
+/** @typedef {string | number | boolean | string[] | null} Value */
+/** @typedef {Record<string, Value>} State  The values by key. */
+/** @typedef {[number, number, number]} Color  Red, green and blue, 0 to 255. */
+/** @typedef {{object_color: string, light_color: string, blend: number, light_percentage: number,
+ *   ramp: string[] | null}} Paint */
+/** @typedef {{name: string, first: number, levels: number, shades: number, floor: number, pixels: number,
+ *   fixed: string, paint: Paint}} Surface */
+/** @typedef {{name: string, on: boolean, intensity: number, most: number, units: number[],
+ *   plane?: string}} LightRow */
+/** @typedef {{held: string, ambient: number, rows: LightRow[], levels: string[], dither: boolean}} Lights */
+/** @typedef {{name: string, paints?: Record<string, Partial<Paint>>,
+ *   lights?: Record<string, Record<string, Value>>}} Variant */
+/** @typedef {string | ArrayBuffer | ArrayBufferView} Packed  Bytes, or their base64. */
+/** @typedef {{format: string, name: string, lines: number, elements: number, smooth: number, words: Packed,
+ *   entries: Packed, background: string, surfaces: Surface[], notes: string[], variants: Variant[],
+ *   legend: null | {line: number, element: number, lines: number, elements: number, words: Packed},
+ *   lights: Lights | null, undo?: number, redo?: number}} Picture */
+/** @typedef {{edit?: (edits: State, sameStep: boolean) => void, undo?: () => void, redo?: () => void}} Options */
+/** @typedef {Uint8Array<ArrayBuffer>} Bytes */
+/** @typedef {Uint16Array<ArrayBuffer>} Words */
+
+export const FORMAT = "autocolor page 1";
+const ENTRIES = 1024;
+const PAINT = /** @type {const} */ (["object_color", "light_color", "blend", "light_percentage", "ramp"]);
+
+// ---------------------------------------------------------------------------------------------------------
+// Packed values
+
+/** The bytes of packed values. @param {Packed} packed @returns {Bytes} */
+export function bytesOf(packed) {
+  if (typeof packed === "string") return Uint8Array.from(atob(packed), (letter) => letter.charCodeAt(0));
+  if (packed instanceof ArrayBuffer) return new Uint8Array(packed);
+  return new Uint8Array(/** @type {ArrayBuffer} */ (packed.buffer), packed.byteOffset, packed.byteLength);
+}
+
+/** The bytes of values that zlib compressed. @param {Packed} packed @returns {Promise<Bytes>} */
+export async function inflated(packed) {
+  const stream = new Blob([bytesOf(packed)]).stream().pipeThrough(new DecompressionStream("deflate"));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}
+
+/**
+ * The words of a raster. Each has a byte: the difference to the word on its left, or 128 for a word that
+ * follows whole, after all of these bytes.
+ * @param {Packed} packed @param {number} lines @param {number} elements @returns {Promise<Words>}
+ */
+export async function unpackWords(packed, lines, elements) {
+  const bytes = await inflated(packed);
+  const words = new Uint16Array(lines * elements);
+  let whole = words.length;
+  for (let line = 0, at = 0; line < lines; line++) {
+    for (let element = 0, word = 0; element < elements; element++, at++) {
+      if (bytes[at] !== 128) word += (bytes[at] << 24) >> 24;
+      else {
+        word = bytes[whole] | (bytes[whole + 1] << 8);
+        whole += 2;
+      }
+      words[at] = word;
+    }
+  }
+  return words;
+}
+
+/**
+ * The plane of a light, 16 bits a point: differences, the low bytes of all before the high bytes.
+ * @param {Packed} packed @returns {Promise<Words>}
+ */
+export async function unpackPlane(packed) {
+  const bytes = await inflated(packed);
+  const plane = new Uint16Array(bytes.length / 2);
+  for (let at = 0, value = 0; at < plane.length; at++) {
+    value += bytes[at] | (bytes[plane.length + at] << 8);
+    plane[at] = value;
+  }
+  return plane;
+}
+
+// ---------------------------------------------------------------------------------------------------------
+// Colors
+
+/** The color of "#rrggbb". @param {string} text @returns {Color} */
+export function colorOf(text) {
+  const number = parseInt(text.slice(1), 16);
+  return [number >> 16, (number >> 8) & 255, number & 255];
+}
+
+/** The color as "#rrggbb". @param {ArrayLike<number>} color */
+export function inDigits(color) {
+  return "#" + Array.from(color, (part) => part.toString(16).padStart(2, "0")).join("");
+}
+
+/** The color of a CSS color as "#rrggbb"; empty if it is none, or not opaque. @param {string} text */
+function cssColor(text) {
+  const bare = /^[0-9a-f]{3}([0-9a-f]{3})?$/i.test(text.trim()) ? `#${text.trim()}` : text.trim();
+  if (!CSS.supports("color", bare) || /^(current|inherit|initial|unset|revert)/i.test(bare)) return "";
+  const context = make("canvas", { width: 1, height: 1 }).getContext("2d");
+  if (!context) return "";
+  context.fillStyle = bare;
+  context.fillRect(0, 0, 1, 1);
+  const [red, green, blue, alpha] = context.getImageData(0, 0, 1, 1).data;
+  return alpha === 255 ? inDigits([red, green, blue]) : "";
+}
+
+/**
+ * The entries of a paint, three bytes a level, from the lowest level up; equal to `mapping.colors.entries_of`.
+ *
+ * Up to the blend level the object color, then in equal steps toward the light color, all darkened in
+ * proportion to the level; the small excess makes up for rounding. A ramp gives each level its color.
+ * @param {Paint} paint @param {number} levels @param {number} floor @returns {Bytes}
+ */
+export function entriesOf(paint, levels, floor) {
+  const entries = new Uint8Array(3 * levels);
+  const steps = Math.max(levels - 1, 1);
+  if (paint.ramp) {
+    const colors = paint.ramp.map(colorOf);
+    const last = colors.length - 1;
+    for (let level = 0; level < levels; level++) {
+      const below = Math.min(Math.floor((level * last) / steps), last - 1);
+      const above = level * last - below * steps;
+      for (let part = 0; part < 3; part++) {
+        const sum = colors[below][part] * (steps - above) + colors[below + 1][part] * above;
+        entries[3 * level + part] = Math.floor((2 * sum + steps) / (2 * steps));
+      }
+    }
+    return entries;
+  }
+  const object = colorOf(paint.object_color);
+  const light = colorOf(paint.light_color);
+  const begin = Math.floor(paint.blend * (levels - 1) + 0.5);
+  for (let level = 0; level < levels; level++) {
+    const weight =
+      (Math.max(level - begin, 0) / Math.max(levels - 1 - begin, 1)) * (paint.light_percentage / 100);
+    const share = floor + ((1 - floor) * level) / steps;
+    for (let part = 0; part < 3; part++) {
+      entries[3 * level + part] = (1 - weight) * share * object[part] + weight * share * light[part] + 0.500000001;
+    }
+  }
+  return entries;
+}
+
+/** The white of a color: the mean of its components, rounded half up. @param {Color} color */
+export function whiteOf(color) {
+  return Math.floor((color[0] + color[1] + color[2]) / 3 + 0.5);
+}
+
+/**
+ * The color with the same amount added to each component, such that their mean is `white`.
+ * @param {Color} color @param {number} white @returns {Color}
+ */
+export function withWhite(color, white) {
+  /** @type {Color} */
+  let nearest = color;
+  for (let amount = -255, least = Infinity; amount <= 255; amount++) {
+    const tint = /** @type {Color} */ (color.map((part) => Math.min(Math.max(part + amount, 0), 255)));
+    const away = Math.abs(tint[0] + tint[1] + tint[2] - 3 * white);
+    if (away < least) [least, nearest] = [away, tint];
+  }
+  return nearest;
+}
+
+/** The light of a component of a color, 0 to 255, as sRGB shows it: 0 to 1. @param {number} component */
+function lightOf(component) {
+  const share = component / 255;
+  return share <= 0.04045 ? share / 12.92 : ((share + 0.055) / 1.055) ** 2.4;
+}
+
+/**
+ * The colors of pixels, averaged as light over squares of `smooth` pixels a side; equal to `images.averaged`.
+ * @param {Uint32Array} pixels @param {number} elements @param {number} smooth @returns {ImageData}
+ */
+export function averaged(pixels, elements, smooth) {
+  const lines = pixels.length / elements / smooth;
+  const image = new ImageData(elements / smooth, lines);
+  const light = Float64Array.from({ length: 256 }, (_, component) => lightOf(component));
+  const between = Float64Array.from({ length: 255 }, (_, component) => lightOf(component + 0.5));
+  for (let at = 0; at < image.width * lines; at++) {
+    const corner = Math.floor(at / image.width) * smooth * elements + (at % image.width) * smooth;
+    for (let part = 0; part < 3; part++) {
+      let sum = 0;
+      for (let down = 0; down < smooth; down++) {
+        for (let across = 0; across < smooth; across++) {
+          sum += light[(pixels[corner + down * elements + across] >>> (8 * part)) & 255];
+        }
+      }
+      image.data[4 * at + part] = countUpTo(between, sum / smooth ** 2);
+    }
+    image.data[4 * at + 3] = 255;
+  }
+  return image;
+}
+
+/** How many of some rising numbers are at most a value. @param {ArrayLike<number>} numbers @param {number} value */
+function countUpTo(numbers, value) {
+  let low = 0;
+  for (let high = numbers.length; low < high; ) {
+    const middle = (low + high) >> 1;
+    if (numbers[middle] <= value) low = middle + 1;
+    else high = middle;
+  }
+  return low;
+}
+
+// ---------------------------------------------------------------------------------------------------------
+// Light
+
+const CELLS = 4096;
+
+/**
+ * The function from an intensity to its level: the number of thresholds that are at most the intensity.
+ *
+ * Equal cells between the ends know the level at which to begin. Measured on the coupe: a third of the time of
+ * a binary search.
+ * @param {Float32Array} thresholds @returns {(intensity: number) => number}
+ */
+export function levelsOf(thresholds) {
+  const finite = thresholds.filter(Number.isFinite);
+  const low = finite[0] ?? 0;
+  const scale = finite.length > 1 ? CELLS / (finite[finite.length - 1] - low) : 0;
+  // A cell begins at the level of the cell before it, for its own edge is rounded.
+  const begin = Uint16Array.from({ length: CELLS + 1 }, (_, cell) =>
+    countUpTo(thresholds, scale ? low + (cell - 1) / scale : -Infinity),
+  );
+  const last = thresholds.length;
+  return (intensity) => {
+    const cell = (intensity - low) * scale;
+    let level = begin[cell > 0 ? Math.min(cell, CELLS) | 0 : 0];
+    while (level < last && thresholds[level] <= intensity) level++;
+    return level;
+  };
+}
+
+/**
+ * The function that writes the words for some values of lights, and returns how many of them changed; null for
+ * a picture without light planes.
+ *
+ * The intensity at a point is the ambient light plus the sum of the contributions of the lights that are on.
+ * The sum of all lights but one is kept, so that a drag of one strength adds one plane.
+ * @param {Picture} picture @param {Words} words @param {Uint8Array} owner
+ * @returns {Promise<((state: State, name: string) => number) | null>}
+ */
+async function relighting({ surfaces, lights, elements }, words, owner) {
+  if (!lights || !lights.rows.every((row) => row.plane)) return null;
+  const planes = await Promise.all(lights.rows.map((row) => unpackPlane(row.plane ?? "")));
+  const levels = await Promise.all(lights.levels.map(async (each) => levelsOf(new Float32Array((await inflated(each)).buffer))));
+  const counts = new Uint32Array(surfaces.length + 1);
+  for (let at = 0; at < words.length; at++) counts[owner[words[at]]]++;
+  const ends = counts.map((_, number) => counts.subarray(1, number + 1).reduce((sum, count) => sum + count, 0));
+  const points = new Uint32Array(ends[surfaces.length]);
+  /** The lowest word of each point's band. */
+  const lowest = new Uint16Array(points.length);
+  const next = ends.slice();
+  for (let at = 0; at < words.length; at++) {
+    const number = owner[words[at]];
+    if (number === 0) continue;
+    const { first, shades } = surfaces[number - 1];
+    lowest[next[number - 1]] = first + Math.floor((words[at] - first) / shades) * shades;
+    points[next[number - 1]++] = at;
+  }
+  const sums = new Float32Array(points.length);
+  let summed = "";
+
+  return (state, name) => {
+    const strengths = lights.rows.map((row) =>
+      state[`lights.${row.name}.on`] ? Number(state[`lights.${row.name}.intensity`]) : 0,
+    );
+    const chosen = lights.rows.findIndex((row) => row.name === name);
+    const others = JSON.stringify([chosen, strengths.map((strength, row) => (row === chosen ? null : strength))]);
+    if (others !== summed) {
+      sums.fill(lights.ambient);
+      strengths.forEach((strength, row) => {
+        if (row === chosen || strength === 0) return;
+        surfaces.forEach((_, number) => {
+          const factor = strength * lights.rows[row].units[number];
+          for (let at = ends[number]; at < ends[number + 1]; at++) sums[at] += factor * planes[row][at];
+        });
+      });
+      summed = others;
+    }
+    let changed = 0;
+    surfaces.forEach((_, number) => {
+      const factor = strengths[chosen] * lights.rows[chosen].units[number];
+      const plane = planes[chosen];
+      const levelOf = levels[number];
+      for (let at = ends[number]; at < ends[number + 1]; at++) {
+        const word = lowest[at] + levelOf(sums[at] + factor * plane[at]);
+        if (words[points[at]] === word) continue;
+        words[points[at]] = word;
+        changed++;
+      }
+    });
+    return changed;
+  };
+}
+
+// ---------------------------------------------------------------------------------------------------------
+// Values by key
+
+/** The values that a picture was exported with. @param {Picture} picture @returns {State} */
+export function stateOf(picture) {
+  /** @type {State} */
+  const state = {};
+  for (const { name, fixed, paint } of picture.surfaces) {
+    if (!fixed) for (const field of PAINT) state[`surfaces.${name}.${field}`] = paint[field];
+  }
+  for (const { name, on, intensity } of picture.lights?.rows ?? []) {
+    state[`lights.${name}.on`] = on;
+    state[`lights.${name}.intensity`] = intensity;
+  }
+  return state;
+}
+
+/** The paint of a surface. @param {State} state @param {string} name @returns {Paint} */
+export function paintOf(state, name) {
+  return /** @type {Paint} */ (Object.fromEntries(PAINT.map((field) => [field, state[`surfaces.${name}.${field}`]])));
+}
+
+/** The values of a variant. @param {State} first @param {Variant} variant @returns {State} */
+function stateOfVariant(first, variant) {
+  const state = { ...first };
+  for (const [table, rows] of [["surfaces", variant.paints], ["lights", variant.lights]]) {
+    for (const [name, fields] of Object.entries(rows ?? {})) {
+      for (const [field, value] of Object.entries(fields)) {
+        if (`${table}.${name}.${field}` in state) state[`${table}.${name}.${field}`] = value;
+      }
+    }
+  }
+  return state;
+}
+
+/** Whether two values are equal. @param {Value} one @param {Value} other */
+function same(one, other) {
+  return one === other || JSON.stringify(one) === JSON.stringify(other);
+}
+
+/** The keys whose values differ. @param {State} one @param {State} other */
+function differing(one, other) {
+  return Object.keys(one).filter((key) => !same(one[key], other[key]));
+}
+
+/** A value as the command line reads it. @param {Value} value */
+function textOf(value) {
+  return value === null ? "none" : String(value);
+}
+
+/**
+ * The value of a text; undefined if it is none for this key.
+ * @param {string} key @param {string} text @param {number} most  The largest intensity.
+ * @returns {Value | undefined}
+ */
+function valueOf(key, text, most) {
+  const field = key.slice(key.lastIndexOf(".") + 1);
+  const digits = (/** @type {string} */ part) => (/^#?[0-9a-f]{6}$/i.test(part) ? `#${part.slice(-6).toLowerCase()}` : "");
+  if (field === "on") return text === "true" || (text === "false" ? false : undefined);
+  if (field.endsWith("_color")) return digits(text) || undefined;
+  if (field === "ramp") {
+    const colors = text.split(",").map(digits);
+    return text === "none" ? null : colors.length > 1 && colors.every(Boolean) ? colors : undefined;
+  }
+  const number = text.trim() === "" ? NaN : Number(text);
+  const top = field === "blend" ? 1 : field === "intensity" ? most : 100;
+  return number >= 0 && number <= top ? number : undefined;
+}
+
+/** The values that differ from the first ones, as the fragment of a link. @param {State} state @param {State} first */
+export function fragmentOf(state, first) {
+  return differing(state, first)
+    .map((key) => `${encodeURIComponent(key)}=${encodeURIComponent(textOf(state[key]).replaceAll("#", ""))}`)
+    .join("&");
+}
+
+/**
+ * The values of a link's fragment, or a sentence about why there are none.
+ * @param {string} fragment @param {Picture} picture @param {State} first @returns {State | string}
+ */
+export function stateOfFragment(fragment, picture, first) {
+  const state = { ...first };
+  for (const pair of fragment.split("&").filter(Boolean)) {
+    const at = pair.indexOf("=");
+    let key, text;
+    try {
+      [key, text] = [pair.slice(0, Math.max(at, 0)), pair.slice(at + 1)].map(decodeURIComponent);
+    } catch {
+      key = text = "";
+    }
+    const row = picture.lights?.rows.find((each) => key === `lights.${each.name}.intensity`);
+    const value = key in first ? valueOf(key, text, row?.most ?? 0) : undefined;
+    if (value === undefined) {
+      const what = key in first ? `${key} cannot be “${text.slice(0, 40)}”` : `it has no “${(key || pair).slice(0, 40)}”`;
+      return `The link does not fit this picture: ${what}. Nothing was changed.`;
+    }
+    state[key] = value;
+  }
+  return state;
+}
+
+/**
+ * The values as a table for `autocolor sweep --table`: a row of keys and a row of values. A surface has its
+ * ramp, or its two colors and their blend.
+ * @param {State} state @param {State} first @param {string} name @returns {string}
+ */
+export function tableOf(state, first, name) {
+  const keys = Object.keys(state).filter((key) => {
+    const ramp = `${key.slice(0, key.lastIndexOf("."))}.ramp`;
+    if (!(ramp in state)) return true;
+    return key === ramp ? state[ramp] !== null || first[ramp] !== null : state[ramp] === null;
+  });
+  const cell = (/** @type {string} */ text) => (/[",\r\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
+  const rows = [["name", ...keys], [name, ...keys.map((key) => textOf(state[key]))]];
+  return rows.map((row) => row.map(cell).join(",") + "\r\n").join("");
+}
+
+// ---------------------------------------------------------------------------------------------------------
+// The glass: words looked up in a table, on a canvas
+
+/** @typedef {{left: number, top: number, width: number, height: number}} Box */
+
+/**
+ * The canvas of a picture.
+ * @param {Picture} picture @param {Words} words @param {Bytes} entries @param {Words | null} legendWords
+ */
+function glassOf(picture, words, entries, legendWords) {
+  const { lines, elements, smooth, surfaces, legend } = picture;
+  const canvas = make("canvas", { width: elements, height: lines, role: "img", "aria-label": `Picture of ${picture.name}` });
+  const outline = make("canvas", { width: elements, height: lines, class: "outline", "aria-hidden": "true" });
+  const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d", { alpha: false }));
+  const image = context.createImageData(elements, lines);
+  const pixels = new Uint32Array(image.data.buffer);
+  const table = new Uint32Array(ENTRIES);
+  /** The number of the surface that owns each word, from 1; 0 for none. */
+  const owner = new Uint8Array(ENTRIES);
+  surfaces.forEach(({ first, levels }, number) => owner.fill(number + 1, first, first + levels));
+  const boxes = surfaces.map((_, number) => boxOf(words, owner, elements, number + 1));
+
+  function load(/** @type {number} */ first, /** @type {ArrayLike<number>} */ colors) {
+    for (let at = 0; at < colors.length / 3; at++) {
+      table[first + at] = 0xff000000 | (colors[3 * at + 2] << 16) | (colors[3 * at + 1] << 8) | colors[3 * at];
+    }
+  }
+
+  /**
+   * Look up the colors of all words in a box. Measured at 1280 x 960: a list of the surface's pixels takes as
+   * long and four bytes a pixel.
+   */
+  function look(/** @type {Box} */ { left, top, width, height }) {
+    for (let line = top; line < top + height; line++) {
+      const end = line * elements + left + width;
+      for (let at = line * elements + left; at < end; at++) pixels[at] = table[words[at]];
+    }
+    drawLegend();
+    context.putImageData(image, 0, 0, left, top, width, height);
+  }
+
+  function drawLegend() {
+    if (!legend || !legendWords) return;
+    for (let at = 0; at < legendWords.length; at++) {
+      const place = (legend.line + Math.floor(at / legend.elements)) * elements + legend.element + (at % legend.elements);
+      pixels[place] = table[legendWords[at]];
+    }
+  }
+
+  const whole = { left: 0, top: 0, width: elements, height: lines };
+  load(0, entries);
+  look(whole);
+
+  return {
+    canvas,
+    outline,
+    pixels,
+    /** The words; whoever writes them calls `look`. */
+    words,
+    owner,
+    whole,
+    look,
+    load,
+    /** Rewrite the entries of a surface. */
+    rewrite(/** @type {number} */ number, /** @type {Bytes} */ colors) {
+      load(surfaces[number].first, colors);
+      look(boxes[number]);
+      if (legend) context.putImageData(image, 0, 0, legend.element, legend.line, legend.elements, legend.lines);
+    },
+    /** The colors of some words of the table, three bytes each. */
+    colors(/** @type {number} */ first, /** @type {number} */ count) {
+      return new Uint8Array(3 * count).map((_, at) => table[first + Math.floor(at / 3)] >>> (8 * (at % 3)));
+    },
+    /** The number of the surface at a pixel, from 0; -1 for none. */
+    at(/** @type {number} */ line, /** @type {number} */ element) {
+      const inside = line >= 0 && line < lines && element >= 0 && element < elements;
+      return inside ? owner[words[line * elements + element]] - 1 : -1;
+    },
+    /** Draw the outline of a surface over the picture. */
+    drawOutline(/** @type {number} */ number) {
+      const over = /** @type {CanvasRenderingContext2D} */ (outline.getContext("2d"));
+      const drawn = over.createImageData(elements, lines);
+      const dots = new Uint32Array(drawn.data.buffer);
+      const away = Math.max(smooth, Math.round(elements / 640));
+      for (let line = away; line < lines - away; line++) {
+        for (let at = line * elements + away; at < (line + 1) * elements - away; at++) {
+          if (owner[words[at]] !== number + 1) continue;
+          const neighbors = [at - away, at + away, at - away * elements, at + away * elements];
+          if (neighbors.some((each) => owner[words[each]] !== number + 1)) dots[at] = 0xffffffff;
+        }
+      }
+      over.putImageData(drawn, 0, 0);
+    },
+  };
+}
+
+/** The box around the pixels of a surface. @param {Words} words @param {Uint8Array} owner
+ * @param {number} elements @param {number} number @returns {Box} */
+function boxOf(words, owner, elements, number) {
+  let [left, top, right, bottom] = [elements, Infinity, -1, -1];
+  for (let at = 0; at < words.length; at++) {
+    if (owner[words[at]] !== number) continue;
+    const element = at % elements;
+    if (element < left) left = element;
+    if (element > right) right = element;
+    bottom = (at - element) / elements;
+    if (top > bottom) top = bottom;
+  }
+  return right < 0 ? { left: 0, top: 0, width: 0, height: 0 } : { left, top, width: right - left + 1, height: bottom - top + 1 };
+}
+
+// ---------------------------------------------------------------------------------------------------------
+// The interface
+
+/**
+ * An element with attributes, listeners (`onclick`) and children.
+ * @template {keyof HTMLElementTagNameMap} T
+ * @param {T} tag @param {Record<string, unknown>} [attributes] @param {...(Node | string)} children
+ * @returns {HTMLElementTagNameMap[T]}
+ */
+function make(tag, attributes = {}, ...children) {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (typeof value === "function") element.addEventListener(name.slice(2), /** @type {EventListener} */ (value));
+    else if (value !== false && value !== undefined) element.setAttribute(name, value === true ? "" : String(value));
+  }
+  element.append(...children);
+  return element;
+}
+
+/** An icon of 24 units a side, drawn by a path. @param {string} path */
+function icon(path) {
+  const frame = make("span", { class: "icon", "aria-hidden": "true" });
+  frame.innerHTML = `<svg viewBox="0 0 24 24"><path d="${path}"/></svg>`;
+  return frame;
+}
+
+const UNDO = "M8 5 4 9l4 4M4 9h10a5 5 0 0 1 0 10H9";
+const REDO = "M16 5l4 4-4 4M20 9H10a5 5 0 0 0 0 10h5";
+const COMPARE = "M12 3v18M9 6H4v12h5M15 6h5v12h-5";
+
+/**
+ * What the parts of the interface share.
+ * @typedef {object} Desk
+ * @property {string} id  A prefix of names and ids.
+ * @property {HTMLElement} root
+ * @property {Picture} picture
+ * @property {ReturnType<typeof glassOf>} glass
+ * @property {State} first  The values as exported.
+ * @property {State} state
+ * @property {number} chosen  The number of the chosen surface, from 0.
+ * @property {Array<() => void>} syncs  What shows the values in the controls.
+ * @property {(edits: State, gesture?: string) => void} edit  Edits of the same gesture are one step.
+ * @property {() => void} rest  The end of a gesture.
+ * @property {(number: number) => void} choose
+ * @property {(text: string) => void} say
+ */
+
+let mounted = 0;
+
+/**
+ * Build the interface in an element. With `options.edit` a host keeps the history; without it, the page does.
+ * @param {HTMLElement} root @param {Picture} picture @param {Options} [options]
+ */
+export async function mount(root, picture, options = {}) {
+  let built = await build(root, picture, options);
+  let queue = Promise.resolve();
+  return {
+    /** Show other words, entries or values of the host. @param {Partial<Picture> & {picture?: Picture}} news */
+    update({ words, entries, picture: changed }) {
+      queue = queue.then(async () => {
+        picture = { ...picture, ...changed, words: words ?? picture.words, entries: entries ?? picture.entries };
+        if (await built.update(picture, words !== undefined, entries !== undefined)) return;
+        built.destroy();
+        built = await build(root, picture, options);
+      });
+      return queue;
+    },
+    /** Remove the interface and its listeners. */
+    destroy() {
+      built.destroy();
+    },
+  };
+}
+
+/** The parts of a picture that a new interface is built for. @param {Picture} picture */
+function structureOf({ lines, elements, smooth, surfaces, legend, lights, variants }) {
+  const rows = surfaces.map(({ name, first, levels, fixed }) => [name, first, levels, fixed]);
+  return JSON.stringify([lines, elements, smooth, rows, legend, lights?.rows.map((row) => row.name), variants]);
+}
+
+/** The interface of one picture. @param {HTMLElement} root @param {Picture} picture @param {Options} options */
+async function build(root, picture, options) {
+  const hosted = options.edit !== undefined;
+  root.classList.add("autocolor");
+  root.classList.toggle("autocolor-page", !hosted);
+  if (picture.format !== FORMAT) {
+    root.replaceChildren(make("p", { role: "alert" }, `This file has a picture in the format “${picture.format}”, and this page reads “${FORMAT}”.`));
+    return { update: async () => false, destroy: () => root.replaceChildren() };
+  }
+  const { lines, elements } = picture;
+  const words = await unpackWords(picture.words, lines, elements);
+  const before = words.slice();
+  const entries = typeof picture.entries === "string" ? await inflated(picture.entries) : bytesOf(picture.entries).slice();
+  const key = picture.legend;
+  const legend = key && (await unpackWords(key.words, key.lines, key.elements));
+  const glass = glassOf(picture, words, entries, legend);
+  const relight = await relighting(picture, words, glass.owner);
+  const first = stateOf(picture);
+  const status = make("p", { class: "status", role: "status" });
+
+  /** @type {State[]} */
+  let steps = [first];
+  let at = 0;
+  let gesture = "";
+  let keyHeld = false;
+
+  /** @type {Desk} */
+  const desk = {
+    id: `autocolor-${++mounted}`,
+    root,
+    picture,
+    glass,
+    first,
+    state: first,
+    chosen: Math.max(0, picture.surfaces.findIndex((surface) => !surface.fixed)),
+    syncs: [],
+    say(text) {
+      if (status.textContent !== text) status.textContent = text;
+    },
+    edit(edits, name = "") {
+      const next = { ...desk.state, ...edits };
+      if (differing(next, desk.state).length === 0) return;
+      const sameStep = name !== "" && name === gesture;
+      gesture = name;
+      if (!hosted) {
+        steps = steps.slice(0, sameStep ? at : at + 1).concat(next);
+        at = steps.length - 1;
+      }
+      show(next);
+      options.edit?.(edits, sameStep);
+      if (!name) desk.rest();
+    },
+    rest() {
+      if (keyHeld) return;
+      gesture = "";
+      if (!hosted) writeFragment();
+      held?.();
+      held = null;
+    },
+    choose(number) {
+      desk.chosen = number;
+      sync();
+      point(number, true);
+    },
+  };
+  /** What the host sent during a gesture, to be shown when it rests. @type {(() => void) | null} */
+  let held = null;
+
+  function sync() {
+    desk.syncs.forEach((each) => each());
+  }
+
+  /** Rewrite what differs: the entries of surfaces, or the words of the picture. */
+  function show(/** @type {State} */ next) {
+    const keys = differing(next, desk.state);
+    desk.state = next;
+    const lit = keys.filter((each) => each.startsWith("lights."));
+    if (lit.length > 0 && relight) {
+      const changed = relight(next, lit[0].slice(7, lit[0].lastIndexOf(".")));
+      glass.look(glass.whole);
+      desk.say(`${changed.toLocaleString("en")} words rewritten, no entry of the table: light is in the words.`);
+    }
+    const painted = picture.surfaces.flatMap(({ name, fixed }, number) =>
+      !fixed && PAINT.some((field) => keys.includes(`surfaces.${name}.${field}`)) ? [number] : [],
+    );
+    for (const number of painted) {
+      const { name, levels, floor } = picture.surfaces[number];
+      glass.rewrite(number, entriesOf(paintOf(next, name), levels, floor));
+    }
+    if (painted.length === 1 && lit.length === 0) {
+      const { first: from, levels } = picture.surfaces[painted[0]];
+      desk.say(`Entries ${from} to ${from + levels - 1} of the table rewritten, no word of the picture.`);
+    }
+    sync();
+  }
+
+  function step(/** @type {number} */ by) {
+    gesture = "";
+    if (hosted) (by < 0 ? options.undo : options.redo)?.();
+    else if (steps[at + by]) {
+      at += by;
+      show(steps[at]);
+      desk.say(by < 0 ? "Undone." : "Redone.");
+      writeFragment();
+    }
+  }
+
+  function writeFragment() {
+    const fragment = fragmentOf(desk.state, first);
+    if (location.hash.slice(1) === fragment) return;
+    history.replaceState(history.state, "", fragment ? `#${fragment}` : location.pathname + location.search);
+  }
+
+  function readFragment() {
+    const state = stateOfFragment(location.hash.slice(1), picture, first);
+    if (typeof state === "string") desk.say(state);
+    else desk.edit(state);
+  }
+
+  // The picture: point at a surface to see its name and outline, click to choose it.
+  const label = make("span", { class: "pointed", "aria-hidden": "true" });
+  const screen = make("div", { class: "glass" }, glass.canvas, glass.outline, label);
+  screen.style.setProperty("--ratio", String(elements / lines));
+  screen.style.setProperty("--most", `${elements * (picture.smooth === 1 ? 1.6 : 1)}px`);
+  root.style.setProperty("--background", picture.background);
+  let pointed = -1;
+  function point(/** @type {number} */ number, flash = false) {
+    if (number !== pointed && number >= 0) glass.drawOutline(number);
+    pointed = number;
+    label.textContent = number < 0 ? "" : picture.surfaces[number].name;
+    screen.classList.toggle("pointing", number >= 0 && !flash);
+    screen.classList.remove("flash");
+    if (flash) {
+      void screen.offsetWidth;
+      screen.classList.add("flash");
+    }
+  }
+  function surfaceUnder(/** @type {MouseEvent} */ event) {
+    const box = glass.canvas.getBoundingClientRect();
+    const scale = elements / box.width;
+    return glass.at(Math.floor((event.clientY - box.top) * scale), Math.floor((event.clientX - box.left) * scale));
+  }
+  glass.canvas.addEventListener("pointermove", (event) => {
+    const number = surfaceUnder(event);
+    if (event.pointerType === "mouse" && number !== pointed) point(number);
+  });
+  glass.canvas.addEventListener("pointerleave", () => point(-1));
+  glass.canvas.addEventListener("click", (event) => {
+    const number = surfaceUnder(event);
+    if (number >= 0) desk.choose(number);
+  });
+
+  const counts = () => (hosted ? [desk.picture.undo ?? 0, desk.picture.redo ?? 0] : [at, steps.length - 1 - at]);
+  const compare = comparison(screen, () => glassOf(picture, before, entries, legend).canvas);
+  const notes = make("div", { class: "notes" });
+  desk.syncs.push(() => notes.replaceChildren(...desk.picture.notes.map((note) => make("p", {}, note))));
+  const head = make("header", {}, ...(hosted ? [] : [make("h1", {}, picture.name)]), toolbar(desk, step, counts, compare));
+  const under = make("div", { class: "under" }, wholeTable(desk), status, ...variantStrip(desk, relight));
+  const panel = make("div", { class: "panel" }, surfaceList(desk), paintPanel(desk), ...lightRows(desk), notes, sharing(desk, hosted));
+  root.replaceChildren(make("div", { class: "desk" }, head, make("div", { class: "stage" }, screen), under, panel));
+  sync();
+
+  // Keys and gestures: a drag, or a key that is held, is one step.
+  const keys = hosted ? root : document;
+  const onKey = (/** @type {Event} */ event) => {
+    const { key: name, ctrlKey, metaKey, shiftKey, altKey, type } = /** @type {KeyboardEvent} */ (event);
+    if (type === "keyup") {
+      keyHeld = false;
+      if (gesture) desk.rest();
+      return;
+    }
+    const inRange = event.target instanceof HTMLInputElement && event.target.type === "range";
+    keyHeld = inRange && /^(Arrow|Page|Home|End)/.test(name);
+    const inText = event.target instanceof HTMLInputElement && /text|number/.test(event.target.type);
+    const letter = name.toLowerCase();
+    if (!(ctrlKey || metaKey) || altKey || inText || !(letter === "z" || letter === "y")) return;
+    event.preventDefault();
+    event.stopPropagation();
+    step(letter === "y" || shiftKey ? 1 : -1);
+  };
+  keys.addEventListener("keydown", onKey);
+  keys.addEventListener("keyup", onKey);
+  root.addEventListener("change", desk.rest);
+  if (!hosted) {
+    document.title = `${picture.name} · AUTOCOLOR`;
+    addEventListener("hashchange", readFragment);
+    if (location.hash.length > 1) readFragment();
+  }
+
+  return {
+    /** Show what a host sent; false if it needs a new interface. */
+    async update(/** @type {Picture} */ changed, /** @type {boolean} */ hasWords, /** @type {boolean} */ hasEntries) {
+      if (structureOf(changed) !== structureOf(picture)) return false;
+      if (hasWords) words.set(await unpackWords(changed.words, lines, elements));
+      if (hasWords) glass.look(glass.whole);
+      const shown = () => {
+        picture = desk.picture = changed;
+        desk.state = stateOf(changed);
+        if (hasEntries) glass.load(0, bytesOf(changed.entries));
+        if (hasEntries) glass.look(glass.whole);
+        sync();
+      };
+      if (gesture) held = shown;
+      else shown();
+      return true;
+    },
+    destroy() {
+      keys.removeEventListener("keydown", onKey);
+      keys.removeEventListener("keyup", onKey);
+      root.removeEventListener("change", desk.rest);
+      removeEventListener("hashchange", readFragment);
+      root.replaceChildren();
+    },
+  };
+}
+
+/** The buttons above the picture. @param {Desk} desk @param {(by: number) => void} step
+ * @param {() => number[]} counts  The steps to undo and to redo. @param {HTMLElement} compare */
+function toolbar(desk, step, counts, compare) {
+  const undo = make("button", { type: "button", class: "square", "aria-label": "Undo", title: "Undo (Ctrl+Z)", onclick: () => step(-1) }, icon(UNDO));
+  const redo = make("button", { type: "button", class: "square", "aria-label": "Redo", title: "Redo (Ctrl+Y)", onclick: () => step(1) }, icon(REDO));
+  const reset = make("button", { type: "button", onclick: () => desk.edit(changesTo(desk, desk.first)) }, "Reset");
+  desk.syncs.push(() => {
+    const [undos, redos] = counts();
+    disable(undo, undos === 0);
+    disable(redo, redos === 0);
+    disable(reset, differing(desk.state, desk.first).length === 0);
+  });
+  return make("div", { class: "tools" }, undo, redo, compare, reset);
+}
+
+/** Disable a button without taking the focus from it. @param {HTMLElement} button @param {boolean} isDisabled */
+function disable(button, isDisabled) {
+  button.setAttribute("aria-disabled", String(isDisabled));
+}
+
+/** The edits that lead to other values. @param {Desk} desk @param {State} state @returns {State} */
+function changesTo(desk, state) {
+  return Object.fromEntries(differing(state, desk.state).map((key) => [key, state[key]]));
+}
+
+/** The button that shows the picture as it was on the left of a line, which can be dragged.
+ * @param {HTMLElement} screen @param {() => HTMLCanvasElement} drawBefore */
+function comparison(screen, drawBefore) {
+  /** @type {HTMLElement[]} */
+  let shown = [];
+  const button = make(
+    "button",
+    {
+      type: "button",
+      "aria-pressed": "false",
+      title: "Show the picture as it was, left of a line",
+      onclick() {
+        const isOn = shown.length === 0;
+        button.setAttribute("aria-pressed", String(isOn));
+        shown.forEach((each) => each.remove());
+        shown = isOn ? split() : [];
+        screen.append(...shown);
+      },
+    },
+    icon(COMPARE),
+    "Before",
+  );
+  function split() {
+    const before = drawBefore();
+    before.className = "before";
+    before.setAttribute("aria-hidden", "true");
+    const move = () => screen.style.setProperty("--split", `${line.value}%`);
+    const line = make("input", { type: "range", class: "split", min: 0, max: 100, step: 0.5, value: 50, "aria-label": "Line between before and after", oninput: move });
+    move();
+    return [before, make("span", { class: "line", "aria-hidden": "true" }), line];
+  }
+  return button;
+}
+
+/** The surfaces, one of which is chosen. @param {Desk} desk */
+function surfaceList(desk) {
+  const rows = desk.picture.surfaces.map(({ name }, number) => {
+    const radio = make("input", { type: "radio", name: `${desk.id}-surface`, value: number, onchange: () => desk.choose(number) });
+    const ball = make("span", { class: "ball", "aria-hidden": "true" });
+    desk.syncs.push(() => {
+      radio.checked = desk.chosen === number;
+      setStyle(ball, "background", ballOf(desk, number));
+    });
+    return make("label", { class: "chip" }, radio, ball, make("span", {}, name));
+  });
+  return make("fieldset", { class: "surfaces" }, make("legend", {}, "Surface"), make("div", { class: "chips" }, ...rows));
+}
+
+/** A ball in the colors of a surface; stripes for bands of a scalar. @param {Desk} desk @param {number} number */
+function ballOf({ picture, glass }, number) {
+  const { first, levels, shades } = picture.surfaces[number];
+  const at = (/** @type {number} */ share) => inDigits(glass.colors(first + Math.round(share * (levels - 1)), 1));
+  if (shades !== levels) return `linear-gradient(90deg, ${[0.05, 0.3, 0.55, 0.8, 1].map(at).join(", ")})`;
+  return `radial-gradient(circle at 36% 30%, ${at(1)} 4%, ${at(0.8)} 22%, ${at(0.55)} 58%, ${at(0.2)})`;
+}
+
+/** Set a property of a style if it differs. @param {HTMLElement} element @param {string} name @param {string} value */
+function setStyle(element, name, value) {
+  if (element.dataset[name] === value) return;
+  element.dataset[name] = value;
+  element.style.setProperty(name === "track" ? "--track" : name, value);
+}
+
+/** The colors of the chosen surface. @param {Desk} desk */
+function paintPanel(desk) {
+  const panel = make("section", { class: "paint" });
+  /** @type {Array<() => void>} */
+  let syncs = [];
+  let field = "object_color";
+  let built = "";
+  desk.syncs.push(() => {
+    const { name, first, levels, fixed } = desk.picture.surfaces[desk.chosen] ?? {};
+    if (name === undefined) return;
+    const isRamp = desk.state[`surfaces.${name}.ramp`] !== null;
+    const needed = JSON.stringify([desk.chosen, isRamp, field]);
+    if (needed !== built) {
+      built = needed;
+      syncs = [];
+      const title = make("h2", {}, make("span", {}, name), make("small", {}, `words ${first} to ${first + levels - 1}`));
+      const controls = fixed ? [strip(desk, syncs), make("p", { class: "fixed" }, fixed)] : isRamp ? ramp() : twoColors();
+      panel.replaceChildren(title, ...controls);
+    }
+    syncs.forEach((each) => each());
+  });
+
+  function ramp() {
+    const surface = desk.picture.surfaces[desk.chosen];
+    const colors = /** @type {string[]} */ (paintOf(desk.state, surface.name).ramp);
+    const replace = () =>
+      desk.edit({
+        [`surfaces.${surface.name}.ramp`]: null,
+        [`surfaces.${surface.name}.object_color`]: colors[Math.floor(colors.length / 2)],
+        [`surfaces.${surface.name}.light_color`]: colors[colors.length - 1],
+      });
+    return [
+      strip(desk, syncs),
+      make("p", { class: "fixed" }, `A ramp of ${colors.length} colors, from the lowest level to the highest.`),
+      make("button", { type: "button", onclick: replace }, "Use two colors instead"),
+    ];
+  }
+
+  function twoColors() {
+    const { name } = desk.picture.surfaces[desk.chosen];
+    const key = (/** @type {string} */ each) => `surfaces.${name}.${each}`;
+    const tabs = [["object_color", "Object color"], ["light_color", "Light color"]].map(([each, label]) => {
+      const radio = make("input", { type: "radio", name: `${desk.id}-color`, value: each, onchange: () => chooseField(each) });
+      radio.checked = each === field;
+      const swatch = make("span", { class: "swatch", "aria-hidden": "true" });
+      syncs.push(() => setStyle(swatch, "background", String(desk.state[key(each)])));
+      return make("label", {}, radio, swatch, label);
+    });
+    const blend = slider(desk, syncs, {
+      label: "Blend",
+      title: `Blend of ${name}: where the light color begins`,
+      max: 1,
+      step: 0.01,
+      key: key("blend"),
+    });
+    const percentage = slider(desk, syncs, {
+      label: "Light %",
+      title: `Percent of the light color at the highest level of ${name}`,
+      max: 100,
+      step: 1,
+      key: key("light_percentage"),
+    });
+    blend.firstElementChild?.nextElementSibling?.before(strip(desk, syncs));
+    blend.classList.add("blend");
+    return [
+      make("fieldset", { class: "tabs" }, make("legend", {}, `Colors of ${name}`), ...tabs),
+      ...mixer(desk, syncs, key(field), `${field === "object_color" ? "object" : "light"} color of ${name}`),
+      make("div", { class: "blending" }, blend, percentage),
+    ];
+  }
+
+  function chooseField(/** @type {string} */ each) {
+    field = each;
+    desk.syncs.forEach((sync) => sync());
+    /** @type {HTMLElement | null} */ (panel.querySelector(`[value="${each}"]`))?.focus();
+  }
+  return panel;
+}
+
+/** The entries of the chosen surface, from the lowest level to the highest. @param {Desk} desk @param {Array<() => void>} syncs */
+function strip(desk, syncs) {
+  const { first, levels } = desk.picture.surfaces[desk.chosen];
+  const canvas = make("canvas", { class: "strip", width: levels, height: 1, "aria-hidden": "true" });
+  syncs.push(() => drawEntries(canvas, desk.glass.colors(first, levels)));
+  return canvas;
+}
+
+/** Draw entries side by side. @param {HTMLCanvasElement} canvas @param {Bytes} colors */
+function drawEntries(canvas, colors) {
+  const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
+  const image = context.createImageData(canvas.width, 1);
+  image.data.forEach((_, at) => (image.data[at] = at % 4 === 3 ? 255 : colors[3 * Math.floor(at / 4) + (at % 4)]));
+  context.putImageData(image, 0, 0);
+}
+
+/**
+ * A slider with its number.
+ * @param {Desk} desk @param {Array<() => void>} syncs
+ * @param {{label: string, title: string, max: number, step: number, key?: string, value?: () => number,
+ *   edits?: (value: number) => State, track?: () => string}} spec
+ */
+function slider(desk, syncs, { label, title, max, step, key = "", value = () => Number(desk.state[key]), edits = (each) => ({ [key]: each }), track }) {
+  const take = (/** @type {Event} */ event) => {
+    const text = /** @type {HTMLInputElement} */ (event.target).value;
+    const number = Math.min(Math.max(Number(text), 0), max);
+    if (text !== "" && Number.isFinite(number)) desk.edit(edits(number), title);
+  };
+  const range = make("input", { type: "range", min: 0, max, step, "aria-label": title, title, oninput: take });
+  const digits = make("input", { type: "number", min: 0, max, step: "any", "aria-label": `${title}, as a number`, oninput: take, onchange: () => (digits.value = shownNumber(value())) });
+  syncs.push(() => {
+    const text = String(value());
+    if (range.value !== text) range.value = text;
+    if (focusOf(desk.root) !== digits) digits.value = shownNumber(value());
+    if (track) setStyle(range, "track", track());
+  });
+  return make("div", { class: "slider" }, make("span", { class: "name", "aria-hidden": "true" }, label), range, digits);
+}
+
+/** The element with the focus, also in a shadow tree. @param {HTMLElement} root */
+function focusOf(root) {
+  return /** @type {Document | ShadowRoot} */ (root.getRootNode()).activeElement;
+}
+
+/** A number in at most three decimals. @param {number} value */
+function shownNumber(value) {
+  return String(Math.round(value * 1000) / 1000);
+}
+
+/** The controls that mix a color. @param {Desk} desk @param {Array<() => void>} syncs @param {string} key @param {string} what */
+function mixer(desk, syncs, key, what) {
+  const color = () => colorOf(String(desk.state[key]));
+  const picker = make("input", { type: "color", "aria-label": `Pick the ${what}`, oninput: () => desk.edit({ [key]: picker.value }, `pick ${key}`) });
+  const text = make("input", {
+    type: "text",
+    spellcheck: "false",
+    autocomplete: "off",
+    "aria-label": `The ${what} as #rrggbb or a name of CSS`,
+    onchange() {
+      const digits = cssColor(text.value);
+      text.toggleAttribute("aria-invalid", !digits);
+      if (digits) desk.edit({ [key]: digits });
+      else desk.say(`A color must be “#rrggbb”, or a name such as “navy”, not “${text.value.slice(0, 40)}”.`);
+      if (digits) text.value = digits;
+    },
+  });
+  syncs.push(() => {
+    const digits = String(desk.state[key]);
+    picker.value = digits;
+    if (focusOf(desk.root) !== text) {
+      text.value = digits;
+      text.removeAttribute("aria-invalid");
+    }
+  });
+  const parts = ["Red", "Green", "Blue"].map((label, part) => {
+    const mixed = (/** @type {number} */ each) => inDigits(color().map((own, at) => (at === part ? Math.round(each) : own)));
+    return slider(desk, syncs, {
+      label: label[0],
+      title: `${label} of the ${what}`,
+      max: 255,
+      step: 1,
+      value: () => color()[part],
+      edits: (each) => ({ [key]: mixed(each) }),
+      track: () => `linear-gradient(90deg, ${mixed(0)}, ${mixed(255)})`,
+    });
+  });
+  const white = slider(desk, syncs, {
+    label: "W",
+    title: `White of the ${what}: lighter or darker, all three parts at once`,
+    max: 255,
+    step: 1,
+    value: () => whiteOf(color()),
+    edits: (each) => ({ [key]: inDigits(withWhite(color(), each)) }),
+    track: () => `linear-gradient(90deg, #000, ${inDigits(withWhite(color(), 128))}, #fff)`,
+  });
+  return [make("div", { class: "mixed" }, picker, text), make("div", { class: "bars" }, ...parts, white)];
+}
+
+/** The switches and strengths of the lights, if any. @param {Desk} desk */
+function lightRows(desk) {
+  const lights = desk.picture.lights;
+  if (!lights) return [];
+  const rows = lights.rows.map(({ name, most }) => {
+    const key = `lights.${name}.on`;
+    const toggle = make("input", { type: "checkbox", role: "switch", "aria-label": `Light ${name}`, onchange: () => desk.edit({ [key]: toggle.checked }) });
+    desk.syncs.push(() => (toggle.checked = desk.state[key] === true));
+    const strength = slider(desk, desk.syncs, { label: "", title: `Strength of light ${name}`, max: most, step: most / 200, key: `lights.${name}.intensity` });
+    return make("div", { class: "light" }, make("label", {}, toggle, make("span", {}, name)), strength);
+  });
+  return [make("section", { class: "lights" }, make("h2", {}, "Lights"), ...rows, make("p", { class: "fixed" }, lights.held))];
+}
+
+/** The whole lookup table, with the range of the chosen surface. @param {Desk} desk */
+function wholeTable(desk) {
+  const canvas = make("canvas", { width: ENTRIES, height: 1, "aria-hidden": "true" });
+  const mark = make("span", { class: "mark", "aria-hidden": "true" });
+  const text = make("span", {});
+  desk.syncs.push(() => {
+    drawEntries(canvas, desk.glass.colors(0, ENTRIES));
+    const { name, first, levels } = desk.picture.surfaces[desk.chosen] ?? { name: "", first: 0, levels: 0 };
+    mark.style.left = `${(100 * first) / ENTRIES}%`;
+    mark.style.width = `${(100 * levels) / ENTRIES}%`;
+    text.textContent = `words ${first} to ${first + levels - 1} are ${name}`;
+  });
+  canvas.addEventListener("click", ({ offsetX }) => {
+    const number = desk.glass.owner[Math.floor((offsetX / canvas.clientWidth) * ENTRIES)] - 1;
+    if (number >= 0) desk.choose(number);
+  });
+  return make("div", { class: "table" }, make("div", { class: "entries" }, canvas, mark), make("p", {}, make("span", {}, "Lookup table, 1024 entries"), text));
+}
+
+/** The pictures of the variants; one is chosen as one step. @param {Desk} desk
+ * @param {((state: State, name: string) => number) | null} relight */
+function variantStrip(desk, relight) {
+  const { picture, first, glass } = desk;
+  if (picture.variants.length === 0) return [];
+  const lit = picture.lights?.rows[0]?.name ?? "";
+  const buttons = [{ name: "As exported" }, ...picture.variants].map((variant) => {
+    const state = stateOfVariant(first, variant);
+    relight?.(state, lit);
+    const choose = () => desk.edit(changesTo(desk, state));
+    const button = make("button", { type: "button", onclick: choose }, thumbnail(desk, state), make("span", {}, variant.name));
+    desk.syncs.push(() => button.setAttribute("aria-pressed", String(differing(state, desk.state).length === 0)));
+    return button;
+  });
+  relight?.(desk.state, lit);
+  glass.look(glass.whole);
+  return [make("div", { class: "variants", role: "group", "aria-label": "Variants" }, ...buttons)];
+}
+
+const THUMBNAIL = 208;
+
+/** A small canvas of the picture's words in other colors. @param {Desk} desk @param {State} state */
+function thumbnail({ picture, glass }, state) {
+  const { lines, elements, surfaces } = picture;
+  const every = Math.max(1, Math.ceil(elements / THUMBNAIL));
+  const [width, height] = [Math.floor(elements / every), Math.floor(lines / every)];
+  const table = glass.colors(0, ENTRIES);
+  for (const { name, first, levels, floor, fixed } of surfaces) {
+    if (!fixed) table.set(entriesOf(paintOf(state, name), levels, floor), 3 * first);
+  }
+  const canvas = make("canvas", { width, height, "aria-hidden": "true" });
+  const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
+  const image = context.createImageData(width, height);
+  for (let at = 0; at < width * height; at++) {
+    const word = glass.words[(Math.floor(at / width) * elements + (at % width)) * every];
+    image.data.set([table[3 * word], table[3 * word + 1], table[3 * word + 2], 255], 4 * at);
+  }
+  context.putImageData(image, 0, 0);
+  return canvas;
+}
+
+/** The buttons that copy the link, and save the picture and its values. @param {Desk} desk @param {boolean} hosted */
+function sharing(desk, hosted) {
+  const { picture, glass, first } = desk;
+  const stem = picture.name.replace(/[^\p{L}\p{N}._-]+/gu, "-") || "picture";
+  const button = (/** @type {string} */ text, /** @type {() => void} */ onclick) => make("button", { type: "button", onclick }, text);
+  async function copy() {
+    try {
+      await navigator.clipboard.writeText(location.href);
+      desk.say("The link is copied. It has the colors that you see.");
+    } catch {
+      desk.say("The browser does not let this page copy; the link is in the address bar.");
+    }
+  }
+  function savePicture() {
+    const canvas = make("canvas", { width: picture.elements / picture.smooth, height: picture.lines / picture.smooth });
+    canvas.getContext("2d")?.putImageData(averaged(glass.pixels, picture.elements, picture.smooth), 0, 0);
+    canvas.toBlob((blob) => blob && download(blob, `${stem}.png`), "image/png");
+  }
+  function saveValues() {
+    download(new Blob([tableOf(desk.state, first, picture.name)], { type: "text/csv" }), `${stem}-values.csv`);
+  }
+  return make("div", { class: "sharing" }, ...(hosted ? [] : [button("Copy link", copy)]), button("Save PNG", savePicture), button("Save CSV", saveValues));
+}
+
+/** Save a file from the page. @param {Blob} blob @param {string} name */
+function download(blob, name) {
+  const link = make("a", { href: URL.createObjectURL(blob), download: name });
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
+}
+
+/** The widget of a notebook, as anywidget asks for it. */
+export default {
+  /** @param {{model: any, el: HTMLElement}} context */
+  async render({ model, el }) {
+    const picture = { ...model.get("picture"), words: model.get("words"), entries: model.get("entries") };
+    const handle = await mount(el, picture, {
+      edit: (edits, sameStep) => model.send({ edit: edits, same_step: sameStep }),
+      undo: () => model.send({ undo: 1 }),
+      redo: () => model.send({ redo: 1 }),
+    });
+    const names = ["picture", "words", "entries"];
+    const listeners = names.map((name) => () => handle.update({ [name]: model.get(name) }));
+    names.forEach((name, at) => model.on(`change:${name}`, listeners[at]));
+    return () => {
+      names.forEach((name, at) => model.off(`change:${name}`, listeners[at]));
+      handle.destroy();
+    };
+  },
+};

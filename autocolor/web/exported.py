@@ -1,0 +1,417 @@
+"""The export of a picture for a browser, as values that JSON can hold.
+
+The browser has what the display has: the words of the raster, the 1024 entries, and the range of each
+surface. So it recolors as the display does, by entries alone. A smooth picture keeps all of its samples; the
+browser averages them. The keys of an export:
+
+- `format`, `name`, `background`; `lines`, `elements` and `smooth` of the picture, samples included;
+- `words`: packed, see `packed_words`; `entries`: 1024 x 3 bytes by zlib;
+- `surfaces`, in the order of their numbers: `name`, `first` and `levels` of the range; `shades`, the levels
+  that light can give, fewer than `levels` on a surface with bands; `floor`, as `colors.entries_of` takes it;
+  `pixels`; `fixed`, why the colors cannot be edited, or ""; `paint`, the fields of the paint;
+- `legend`: None, or `line`, `element`, `lines`, `elements` and packed `words` to draw over the words;
+- `notes`: sentences about the picture;
+- `variants`: the `name` of each, its changed `paints` by surface and its changed `lights` by light;
+- `lights`: None, or what `_light_values` exports.
+
+All bytes are base64. Words and planes are compressed twice: as differences between neighbors, which are
+small, and then by zlib, which browsers can inflate.
+
+With lights, the intensity at a visible point is
+
+    ambient + sum over the lights that are on of  intensity x unit x q
+
+where q is the light's number at the point in its `plane`, and unit its number for the surface in `units`.
+The level is how many of the surface's thresholds in `levels` are at most the intensity. A word is then
+first + band x shades + level, where the band is known from the exported word. With `dither`, each level has
+64 steps: the level is floor((steps + k) / 64), where `steps` counts thresholds and k, 0 to 63, is the rank of
+the pixel in the tile of `intensity.ordered_thresholds`.
+
+Measured: the words of the coupe take 31.4 kB at 640 x 480 and 73.7 kB with smooth=2. Measured and rejected:
+differences of 16 bits, 36.7 and 88.5 kB.
+"""
+
+from __future__ import annotations
+
+import zlib
+from base64 import b64encode
+from collections.abc import Mapping, Sequence
+from typing import Any, Final
+
+import numpy as np
+
+from autocolor.arrays import HALF, Singles, Words, underflowing
+from autocolor.batches.table import Rows, variants_of
+from autocolor.budget import require_memory
+from autocolor.errors import InputError, UsageError
+from autocolor.files.settings import place_of, scene_with
+from autocolor.images import display_image, middles
+from autocolor.layers import check_rendered, light_shares
+from autocolor.lighting.picture import IntensityRange, Picture, check_surfaces
+from autocolor.mapping.display_image import DisplayImage
+from autocolor.mapping.intensity import fractions_by_surface, has_extent, levels_of, mapped_ranges
+from autocolor.mapping.legend import legend
+from autocolor.rendering import rendering
+from autocolor.scene.columns import fields_of
+from autocolor.scene.curves import Fractions
+from autocolor.scene.kinds import in_digits
+from autocolor.scene.lights import Light
+from autocolor.scene.scene import Scene
+from autocolor.scene.surfaces import Paint
+from autocolor.sending import shown_words
+
+FORMAT: Final = "autocolor page 1"
+
+LARGEST_CANVAS: Final = 16_777_216
+"""Limit: pixels of a picture in a browser. Canvases of phones hold no more."""
+
+MOST_PLANE_POINTS: Final = 1 << 26
+"""Limit: visible points of all light planes together, for which a browser takes 134 MB: four lights on the
+largest canvas."""
+
+MOST_VARIANTS_SHOWN: Final = 1000
+"""Limit: variants of a picture in a browser."""
+
+BYTES_OF_PIXEL: Final = 24
+BYTES_OF_LIGHT: Final = 24
+"""Measured where all pixels see polygons: for each pixel, and for each light at it, besides the rendering."""
+
+LARGEST_STEP: Final = 60
+"""Assumed: differences of words up to this size take one byte, as most do within a surface."""
+
+FAR: Final = 128
+"""The byte of a larger difference."""
+
+LARGEST_SHARE: Final = 65535
+"""The number of a plane where its light contributes most to a surface."""
+
+TILE: Final = 64
+"""The thresholds of a tile of ordered dither."""
+
+HELD: Final = "Exposure is held as exported: with less light, the picture is darker."
+
+
+def export_of(scene: Scene, picture: Picture, *, lights: bool = False, variants: Rows = ()) -> dict[str, Any]:
+    """A picture in the colors of a scene, as values that JSON can hold.
+
+    With `lights`, the scene is rendered again, and must give the same picture.
+
+    Raises InputError if the surfaces of the picture are not those of the scene, if the picture or its light
+    planes are too large for a browser or exceed the memory budget, and for an invalid value of a variant;
+    UsageError for a variant with a key that a browser cannot change, and for too many variants. With
+    `lights`, also InputError if the picture is not the scene's or has no lights, and UsageError if words
+    stand for normals.
+    """
+    check_surfaces(scene, picture)
+    size = f"{picture.elements:,} x {picture.lines:,}"
+    if picture.lines * picture.elements > LARGEST_CANVAS:
+        raise InputError(
+            f"a picture in a browser must have at most {LARGEST_CANVAS:,} pixels, which canvases of phones"
+            f" hold, not {size}; render it smaller or with less `smooth`"
+        )
+    bytes_of_pixel = BYTES_OF_PIXEL + (BYTES_OF_LIGHT * len(scene.lights) if lights else 0)
+    require_memory(
+        bytes_of_pixel * picture.lines * picture.elements,
+        f"the export of {size} pixels",
+        "render fewer pixels or lights",
+    )
+    image = display_image(scene, picture)
+    values = values_of(image)
+    return {
+        **values,
+        "smooth": picture.smooth,
+        "words": _text(packed_words(image.words)),
+        "entries": _text(zlib.compress(image.entries.tobytes(), 9)),
+        "legend": _legend_values(image, picture.smooth),
+        "variants": _variant_values(image, values, variants, lights),
+        "lights": _light_values(image) if lights else None,
+    }
+
+
+def values_of(image: DisplayImage) -> dict[str, Any]:
+    """Everything about an image but its words and entries, as values that JSON can hold.
+
+    Nothing is smooth, the words contain the legend, if any, and there are no variants and no lights.
+    """
+    scene, (lines, elements) = image.scene, image.words.shape
+    counts = np.bincount(image.words.ravel(), minlength=len(image.entries))
+    surfaces = []
+    for name, (first, levels) in image.ranges.items():
+        bands = image.bands.get(name)
+        surfaces.append(
+            {
+                "name": name,
+                "first": first,
+                "levels": levels,
+                "shades": levels if bands is None else bands.shades,
+                "floor": image.floor_of(name),
+                "pixels": int(counts[first : first + levels].sum()),
+                "fixed": _reason_of_fixed(image, name),
+                "paint": paint_values(scene.surface(name).paint),
+            }
+        )
+    notes = dict.fromkeys(surface["fixed"] for surface in surfaces if surface["fixed"])
+    return {
+        "format": FORMAT,
+        "name": scene.name,
+        "lines": lines,
+        "elements": elements,
+        "smooth": 1,
+        "background": in_digits(scene.background),
+        "surfaces": surfaces,
+        "legend": None,
+        "notes": list(notes),
+        "variants": [],
+        "lights": None,
+    }
+
+
+def _reason_of_fixed(image: DisplayImage, name: str) -> str:
+    """Why the colors of a surface cannot be edited; empty if they can."""
+    scalar = image.scene.scalar
+    if not image.has_light_in_words:
+        return "Words stand for normals here, so colors are shown as they were exported."
+    if scalar is not None and name in image.bands:
+        return f"Colors stand for the scalar “{scalar.name}” here and cannot be edited."
+    return ""
+
+
+def paint_values(paint: Paint) -> dict[str, Any]:
+    """The fields of a paint, with colors as "#rrggbb"."""
+    return {
+        "object_color": in_digits(paint.object_color),
+        "light_color": in_digits(paint.light_color),
+        "blend": paint.blend,
+        "light_percentage": paint.light_percentage,
+        "ramp": None if paint.ramp is None else [in_digits(color) for color in paint.ramp],
+    }
+
+
+def packed_words(words: Words, effort: int = 9) -> bytes:
+    """Words of at most 16 bits, (lines, elements), packed by `_steps` and by zlib with an effort, 1 to 9."""
+    return zlib.compress(_steps(words), effort)
+
+
+def _steps(words: Words) -> bytes:
+    """One byte a pixel, and then the words of some pixels, low byte first, in raster order.
+
+    The byte is the difference to the word on the left, 0 at the left edge, modulo 256. FAR stands for a
+    larger difference than LARGEST_STEP; the words of these pixels follow.
+    """
+    steps = np.diff(words.astype(np.int32), axis=1, prepend=0)
+    is_far = np.abs(steps) > LARGEST_STEP
+    steps[is_far] = FAR
+    return steps.astype(np.uint8).tobytes() + words[is_far].astype("<u2").tobytes()
+
+
+def _text(data: bytes) -> str:
+    return b64encode(data).decode("ascii")
+
+
+def _legend_values(image: DisplayImage, smooth: int) -> dict[str, Any] | None:
+    """The area and the words of the legend, at the size of the samples of a smooth picture; None without."""
+    small = middles(image, smooth)
+    key = legend(small)
+    if key is None:
+        return None
+    left, top, right, bottom, _ = key.swatches[0]
+    words = shown_words(small)[top : bottom + 1, left : right + 1]
+    words = words.repeat(smooth, axis=0).repeat(smooth, axis=1)
+    lines, elements = words.shape
+    return {
+        "line": top * smooth,
+        "element": left * smooth,
+        "lines": lines,
+        "elements": elements,
+        "words": _text(packed_words(words)),
+    }
+
+
+def light_rows(scene: Scene) -> list[dict[str, Any]]:
+    """The name, switch and intensity of each light, and `most`, the upper end of a slider."""
+    bar = fields_of(Light)["intensity"].column.bar
+    assert bar is not None
+    return [
+        {
+            "name": light.name,
+            "on": light.on,
+            "intensity": light.intensity,
+            "most": max(bar.high, 2 * light.intensity),
+        }
+        for light in scene.lights
+    ]
+
+
+def _light_values(image: DisplayImage) -> dict[str, Any]:
+    """The contributions of the lights to an image, and the levels of intensities, for its exposure.
+
+    Intensities are relative to the scale of the picture. The values: `held`, a sentence about the exposure;
+    `ambient`; `rows` as `light_rows`, each with its `units` and its `plane`; `levels`, the thresholds of each
+    surface as float32, low byte first, by zlib; `dither`.
+    """
+    scene, picture = image.scene, image.picture
+    if not image.has_light_in_words:
+        raise UsageError(
+            "a page with lights must have words that stand for levels, not for normals; render the scene with"
+            ' words="levels", or leave the lights out'
+        )
+    if not scene.lights:
+        raise InputError("a page with lights must have a light in its scene, not none; leave the lights out")
+    if len(picture.pixels) * len(scene.lights) > MOST_PLANE_POINTS:
+        raise InputError(
+            f"a page with lights must have at most {MOST_PLANE_POINTS:,} visible points of all lights"
+            f" together, not {len(picture.pixels):,} of {len(scene.lights):,} lights; render fewer pixels or"
+            " lights, or leave the lights out"
+        )
+    again = rendering(scene, picture.lines, picture.elements)
+    check_rendered(picture, again.picture, "the lights")
+    bright = scene.replace(lights=tuple(light.replace(on=True, intensity=1.0) for light in scene.lights))
+    bright_rendering = rendering(bright, picture.lines, picture.elements, again)
+    names = [light.name for light in scene.lights]
+    # Points are in the order of the polygons, but a browser finds them again in the raster.
+    order = np.concatenate(
+        [each.start + again.points.pixels[each.pixels].argsort() for each in picture.slices]
+        or [np.empty(0, np.intp)]
+    )
+    planes = {
+        name: _plane_values(image, (diffuse + specular).take(order))
+        for name, diffuse, specular in light_shares(bright_rendering, names)
+    }
+    return {
+        "held": HELD,
+        "ambient": scene.ambient / picture.scale,
+        "rows": [{**row, **planes[row["name"]]} for row in light_rows(scene)],
+        "levels": [
+            _text(zlib.compress(thresholds.astype("<f4").tobytes(), 9)) for thresholds in _thresholds(image)
+        ],
+        "dither": scene.dither == "ordered",
+    }
+
+
+@underflowing
+def _plane_values(image: DisplayImage, contribution: Singles) -> dict[str, Any]:
+    """The `units` and the `plane` of a light by its contributions to the visible points, in raster order."""
+    picture = image.picture
+    units = dict.fromkeys(image.ranges, 0.0)
+    shares = np.zeros(len(contribution), np.uint16)
+    for surface in picture.slices:
+        exact = contribution[surface.pixels].astype(np.float64)
+        unit = float(exact.max()) / LARGEST_SHARE
+        if unit > 0:
+            shares[surface.pixels] = np.floor(exact / unit + HALF)
+            units[picture.surfaces[surface.surface_number - 1]] = unit / picture.scale
+    return {"units": list(units.values()), "plane": _text(packed_plane(shares))}
+
+
+def packed_plane(shares: Words) -> bytes:
+    """The numbers of a plane, (n,) uint16, in few bytes: differences to the number before, modulo 65536.
+
+    The low bytes of all differences come before the high bytes; zlib.
+    """
+    steps = np.diff(shares, prepend=np.uint16(0))
+    return zlib.compress(
+        (steps & 255).astype(np.uint8).tobytes() + (steps >> 8).astype(np.uint8).tobytes(), 9
+    )
+
+
+@underflowing
+def _thresholds(image: DisplayImage) -> list[Singles]:
+    """The thresholds of each surface with a range, in order; none for a surface that is not visible."""
+    scene, picture = image.scene, image.picture
+    extents = mapped_ranges(picture, scene.scaling, scene.exposure)
+    fractions = fractions_by_surface(picture, extents, scene.mapping)
+    thresholds = dict.fromkeys(image.ranges, np.empty(0, np.float32))
+    for number, of_surface in fractions.items():
+        name = picture.surfaces[number - 1]
+        levels = image.bands[name].shades if name in image.bands else image.ranges[name].levels
+        steps = TILE if scene.dither == "ordered" else 1
+        thresholds[name] = least_intensities(of_surface, extents[number], levels, steps)
+    return list(thresholds.values())
+
+
+LARGEST_BITS: Final = 0x7F800000
+"""The bits of infinity as float32. Bits as whole numbers have the order of the intensities."""
+
+
+def least_intensities(fractions: Fractions, extent: IntensityRange, levels: int, steps: int = 1) -> Singles:
+    """The least intensity of each level from 1 on, or of each of `steps` steps a level, float32.
+
+    It is infinite for a level that no intensity reaches. `fractions` maps the intensities of `extent`. With
+    one step, levels are those of `intensity.levels_of`. Bisection finds them for every nondecreasing curve.
+    """
+    numbers = np.arange(1, steps * (levels - 1) + 1)
+    low, high = np.zeros(len(numbers), np.uint32), np.full(len(numbers), LARGEST_BITS, np.uint32)
+    minimum, maximum = np.float32(extent.minimum), np.float32(extent.maximum)
+    while (low < high).any():
+        middle = (low + high) >> 1
+        mapped = fractions(np.clip(middle.view(np.float32), minimum, maximum))
+        if steps == 1 or not has_extent(extent):
+            reached = levels_of(mapped, levels) * steps
+        else:
+            reached = np.floor(mapped.astype(np.float64) * (steps * (levels - 1)) + HALF)
+        is_reached = reached >= numbers
+        high = np.where(is_reached, middle, high)
+        low = np.where(is_reached, low, np.minimum(middle + 1, high))
+    return high.view(np.float32)
+
+
+def _variant_values(
+    image: DisplayImage, values: Mapping[str, Any], variants: Rows, lights: bool
+) -> list[dict[str, Any]]:
+    """What each variant changes of the paints and lights in the export `values` of an image.
+
+    Raises UsageError for a key that a browser cannot change, InputError for an invalid value.
+    """
+    rows = variants_of(variants)
+    if len(rows) > MOST_VARIANTS_SHOWN:
+        raise UsageError(
+            f"a page must have at most {MOST_VARIANTS_SHOWN:,} variants, not {len(rows):,}; leave some out"
+        )
+    surfaces = {surface["name"]: surface for surface in values["surfaces"]}
+    exported = []
+    for variant in rows:
+        for key in variant.settings:
+            if problem := _problem_of_key(image.scene, surfaces, key, lights):
+                raise UsageError(f"variant {variant.name!r}: {key}: {problem}")
+        try:
+            scene = scene_with(image.scene, variant.settings)
+        except InputError as error:
+            raise InputError(f"variant {variant.name!r}: {problem}" for problem in error.problems) from None
+        changes = {
+            name: _changes(surface["paint"], paint_values(scene.surface(name).paint))
+            for name, surface in surfaces.items()
+        }
+        pairs = zip(light_rows(image.scene), light_rows(scene), strict=True)
+        light_changes = {old["name"]: _changes(old, new, ("on", "intensity")) for old, new in pairs}
+        exported.append(
+            {
+                "name": variant.name,
+                "paints": {name: change for name, change in changes.items() if change},
+                "lights": {name: change for name, change in light_changes.items() if change},
+            }
+        )
+    return exported
+
+
+def _problem_of_key(scene: Scene, surfaces: Mapping[str, Any], key: str, lights: bool) -> str:
+    """Why a browser cannot change a key of a variant, and what to do; empty if it can.
+
+    Raises UsageError for a key that the scene does not have.
+    """
+    table, name, path = place_of(scene, key)
+    if table == "surfaces" and path[0] in fields_of(Paint):
+        fixed = surfaces[name]["fixed"] if name in surfaces else ""
+        return f"{fixed} Leave this key out" if fixed else ""
+    if table == "lights" and path in (("on",), ("intensity",)):
+        return (
+            "" if lights else "a page must have lights to change them; add --lights (lights=True in Python)"
+        )
+    return (
+        "a variant of a page must change paints, such as surfaces.body.object_color, or `on` and `intensity`"
+        " of lights; leave this key out"
+    )
+
+
+def _changes(old: Mapping[str, Any], new: Mapping[str, Any], keys: Sequence[str] = ()) -> dict[str, Any]:
+    """The new values that differ, of some keys or of all."""
+    return {key: new[key] for key in keys or new if new[key] != old[key]}
