@@ -31,20 +31,21 @@ from autocolor.explanation.text import rows_of_text
 from ramtek_emu import Configuration, Ramtek9300
 
 LINES, ELEMENTS = 240, 320
-SMALL = Configuration(name="SMALL", elements=ELEMENTS, lines=LINES, planes=10, entries=1024)
 
 Floats = npt.NDArray[np.float64]
 
 
 def shown(scene: Scene) -> tuple[Studio, Ramtek9300]:
     """A studio that shows a scene, and its display, which is smaller than the paper's."""
-    display = Ramtek9300(SMALL)
+    small = Configuration(name="SMALL", elements=ELEMENTS, lines=LINES, planes=10)
+    display = Ramtek9300(small)
     return Studio(scene, display), display
 
 
 def beside(*scenes: Scene) -> Image.Image:
     """The pictures of scenes, side by side."""
-    fields = [autocolor.image(scene, autocolor.render(scene, 150, 200, smooth=2)) for scene in scenes]
+    pictures = [autocolor.render(scene, 150, 200, smooth=2) for scene in scenes]
+    fields = [autocolor.image(*pair) for pair in zip(scenes, pictures, strict=True)]
     return Image.fromarray(np.hstack(fields)).quantize(192)
 
 
@@ -59,10 +60,9 @@ def beside(*scenes: Scene) -> Image.Image:
 # %%
 coupe = autocolor.demo()
 mesh = coupe.mesh
-print(f"{len(mesh.coordinates):,} nodes, {len(mesh.node_numbers):,} polygons, {mesh.edge_count:,} edges")
-print(
-    f"{len(coupe.parts)} parts, such as {coupe.parts[0].name!r} with the surface {coupe.parts[0].surface!r}"
-)
+print(f"{len(mesh.coordinates):,} nodes, {len(mesh.node_numbers):,} polygons")
+hood = coupe.parts[0]
+print(f"{len(coupe.parts)} parts, such as {hood.name!r} with the surface {hood.surface!r}")
 print("surfaces:", ", ".join(surface.name for surface in coupe.surfaces))
 print("lights:", ", ".join(light.name for light in coupe.lights))
 
@@ -83,7 +83,8 @@ studio
 
 # %%
 picture = studio.picture
-print(picture.intensity.dtype, picture.intensity.shape, "and", picture.surface_number.dtype)
+print("intensity", picture.intensity.dtype, picture.intensity.shape)
+print("surface number", picture.surface_number.dtype, picture.surface_number.shape)
 picture
 
 # %% [markdown]
@@ -103,7 +104,8 @@ for name, (low, high) in picture.ranges.surfaces.items():
 
 # %%
 LINE, ELEMENT = 112, 68
-bulbs = coupe.replace(lights=[Light(light.name, light.position, light.intensity) for light in coupe.lights])
+lights = [Light(light.name, light.position, light.intensity) for light in coupe.lights]
+bulbs = coupe.replace(lights=lights)
 studio_of_bulbs, _ = shown(bulbs)
 why = studio_of_bulbs.explain(LINE, ELEMENT)
 print(*rows_of_text(why), sep="\n")
@@ -157,7 +159,8 @@ def cosine(one: Floats, other: Floats) -> float:
     return max(float(one @ other), 0.0)
 
 
-ray = ahead + ((ELEMENT + 0.5 - ELEMENTS / 2) * right + (LINE + 0.5 - LINES / 2) * down) / focal
+across, below = ELEMENT + 0.5 - ELEMENTS / 2, LINE + 0.5 - LINES / 2
+ray = ahead + (across * right + below * down) / focal
 P = eye + ray / inverse_depth
 N = unit(normal)
 print("P =", P.round(4), " N =", N.round(4))
@@ -202,7 +205,7 @@ assert np.isclose(intensity, studio_of_bulbs.picture.intensity[LINE, ELEMENT], r
 # %%
 stronger = [light.replace(intensity=1000 * light.intensity) for light in bulbs.lights]
 strong_studio, _ = shown(bulbs.replace(lights=stronger, ambient=1000 * bulbs.ambient))
-print("maximum", strong_studio.picture.ranges.whole.maximum)
+print(f"maximum {strong_studio.picture.ranges.whole.maximum:.1f}")
 print("words that differ", np.count_nonzero(strong_studio.words != studio_of_bulbs.words))
 
 # %% [markdown]
@@ -235,16 +238,17 @@ for C in (1, 10, 40):
 nodes = [(-1.2, -1.2, 0), (1.2, -1.2, 0), (1.2, 1.2, 0), (-1.2, 1.2, 0), (0, 0, 2)]
 nodes += [(-6, -6, 0), (6, -6, 0), (6, 6, 0), (-6, 6, 0)]
 polygons = [(0, 1, 4, 4), (1, 2, 4, 4), (2, 3, 4, 4), (3, 0, 4, 4), (5, 6, 7, 8)]
+parts = np.array([0, 0, 0, 0, 1])
 pyramid = autocolor.scene_of(
-    Mesh(np.array(nodes, float), np.array(polygons), np.array([0, 0, 0, 0, 1]), ("pyramid", "plane")),
+    Mesh(np.array(nodes, float), np.array(polygons), parts, ("pyramid", "plane")),
     surfaces="parts",
     view=View((3.6, -8.5, 5.2), target=(0.8, -0.8, 0.45), field_of_view=33),
     lights=[Light("lamp", (3.3, -1.2, 1.0))],
     ambient=0.08,
     scaling="object",
 )
-pyramid = pyramid.with_surface("pyramid", diffuse=0.9, specular=0.2, exponent=10, object_color="#e0a030")
-pyramid = pyramid.with_surface("plane", diffuse=0.7, specular=0.6, exponent=40, object_color="#5878b8")
+pyramid = pyramid.with_surface("pyramid", diffuse=0.9, specular=0.2, object_color="#e0a030")
+pyramid = pyramid.with_surface("plane", exponent=40, object_color="#5878b8")
 flood = pyramid.with_light("lamp", aim=(0.5, 0.0, 0.9), concentration=1)
 beside(pyramid, flood, flood.with_light("lamp", concentration=40))
 
@@ -254,9 +258,10 @@ beside(pyramid, flood, flood.with_light("lamp", concentration=40))
 
 # %%
 alone = [coupe.only_lights(light.name) for light in coupe.lights]
-dark = [autocolor.render(scene.replace(ambient=0), LINES, ELEMENTS).intensity for scene in alone]
+pictures = [autocolor.render(scene.replace(ambient=0), LINES, ELEMENTS) for scene in alone]
 is_seen = picture.surface_number > 0
-assert np.allclose(picture.intensity[is_seen], np.sum(dark, axis=0)[is_seen] + coupe.ambient, rtol=1e-4)
+total = np.sum([each.intensity for each in pictures], axis=0) + coupe.ambient
+assert np.allclose(picture.intensity[is_seen], total[is_seen], rtol=1e-4)
 # One range for all pictures, so that less light looks darker.
 exposure = {"object": (0.0, picture.ranges.whole.maximum / 2)}
 beside(*(scene.replace(exposure=exposure, mapping="gamma") for scene in alone))
@@ -271,7 +276,8 @@ before = dict(studio.picture.light_planes)
 studio.light("side", aim=(0.5, -0.9, 0.75))
 after = studio.picture.light_planes
 studio.undo()
-print("planes used again:", [name for name in after if after[name].values is before[name].values])
+used_again = [name for name in after if after[name].values is before[name].values]
+print("used again:", *used_again)
 
 # %% [markdown]
 # ### Flaps and cones
@@ -298,7 +304,7 @@ beside(
 # %%
 spot = Light("spot", (-5.0, -4.0, 5.0), aim=(-0.9, -0.3, 0.8), concentration=6)
 spotlit = coupe.replace(lights=[spot], ambient=0.12, mapping="gamma")
-beside(spotlit, spotlit.with_light("spot", cone_angle=14.0), spotlit.with_light("spot", cone_angle=7.0))
+beside(spotlit, *(spotlit.with_light("spot", cone_angle=angle) for angle in (14.0, 7.0)))
 
 # %% [markdown]
 # **The pixel again**, now under the real lights. Each control is a factor of the light.
@@ -340,15 +346,17 @@ table = display.entries.reshape(16, 64, 3).repeat(8, axis=0).repeat(8, axis=1)
 Image.fromarray(table).quantize(192)
 
 # %% [markdown]
-# The minimum and the maximum intensity of a surface become the lowest and the highest word of its range.
-# One line of numpy gives the words of the whole body. They can differ from the display's words by one,
-# where rounding decides.
+# In this scene, the range of intensities of each surface is scaled by itself, so the floor is brighter than
+# in the pictures above: the minimum and the maximum of a surface become the lowest and the highest word of
+# its range. Two lines of numpy give the words of the whole body. A word could differ from the display's by
+# one where rounding decides.
 
 # %%
 body = picture.surface_number == picture.surfaces.index("body") + 1
 first, levels = studio.level_ranges["body"]
 low, high = picture.ranges.surfaces["body"]
-words = first + np.floor((picture.intensity[body] - low) / (high - low) * (levels - 1) + 0.5).astype(int)
+fraction = (picture.intensity[body] - low) / (high - low)
+words = first + np.floor(fraction * (levels - 1) + 0.5).astype(int)
 difference = np.abs(words - display.words[body])
 print(f"{np.count_nonzero(difference)} of {len(words):,} words differ")
 assert difference.max() <= 1
@@ -364,7 +372,8 @@ assert difference.max() <= 1
 paint = paper.surface("body").paint
 level = np.arange(levels)
 blend_level = np.floor(paint.blend * (levels - 1) + 0.5)
-share = np.clip((level - blend_level) / (levels - 1 - blend_level), 0, 1) * paint.light_percentage / 100
+share = np.clip((level - blend_level) / (levels - 1 - blend_level), 0, 1)
+share *= paint.light_percentage / 100
 mixed = np.outer(1 - share, paint.object_color) + np.outer(share, paint.light_color)
 entries = np.floor(mixed * (level / (levels - 1))[:, None] + 0.5).astype(np.uint8)
 assert (entries == display.entries[first : first + levels]).all()
@@ -381,14 +390,15 @@ assert (display.field()[LINE, ELEMENT] == entries[word - first]).all()
 # %% [markdown]
 # ### Recoloring
 #
-# Now the point of it all. The lights took minutes in 1983. To paint the car, only the entries of its range
-# are sent. The display counts what is written to its memories: not a single word of the picture.
+# Now the point of it all. In 1983, a picture took one to five minutes. To paint the car, only the entries of
+# its range are sent. The display counts what is written to its memories: no word of the picture is written.
 
 # %%
 words_before, entries_before = display.frame_buffer.written, display.entries.copy()
 studio.recolor("body", object_color="#1f4fbf", light_color="#e8f4ff", blend=0.5)
 changed = np.any(display.entries != entries_before, axis=1).sum()
-print(f"{display.frame_buffer.written - words_before} words written, {changed} entries changed")
+words_written = display.frame_buffer.written - words_before
+print(f"{words_written} words written, {changed} entries changed")
 assert display.frame_buffer.written == words_before
 display
 
@@ -410,12 +420,14 @@ Image.fromarray(np.hstack(fields)).quantize(192)
 # differs, and they all have one color. "But it works quite well."
 
 # %%
-planes = picture.planes.values()
-lights = zip(coupe.lights, planes, strict=True)
-specular_light = S * np.sum([light.intensity * plane.specular for light, plane in lights], axis=0)
+planes = picture.planes
+light_of_highlights = S * np.sum(
+    [light.intensity * planes[light.name].specular for light in coupe.lights], axis=0
+)
 has_word = body & (display.words == word)
-specular_share = specular_light[has_word] / picture.intensity[has_word]
-print(f"{has_word.sum()} pixels, specular share {specular_share.min():.0%} to {specular_share.max():.0%}")
+specular_share = light_of_highlights[has_word] / picture.intensity[has_word]
+least, most = specular_share.min(), specular_share.max()
+print(f"{has_word.sum()} pixels, of whose light {least:.0%} to {most:.0%} is specular")
 
 # %% [markdown]
 # ## Conclusions
@@ -426,7 +438,7 @@ print(f"{has_word.sum()} pixels, specular share {specular_share.min():.0%} to {s
 # colors. Each change is an edit of `studio`, and `studio.undo()` takes it back.
 
 # %%
-studio.widget() if find_spec("anywidget") else print('Install it by: pip install ".[notebook]"')
+studio.widget() if find_spec("anywidget") else 'first: pip install ".[notebook]"'
 
 # %% [markdown]
 # Where to go on: `autocolor tutorial` is the same studio in a window, with the screens of Figures 5, 13
