@@ -57,10 +57,13 @@ from ramtek_emu import HostPort
 if TYPE_CHECKING:
     from os import PathLike
 
+    from anywidget import AnyWidget
+
     from autocolor.journal.history import Variants
     from autocolor.journal.saving import SavedFiles
     from autocolor.scene.changes import SceneChanges
     from autocolor.scene.creation import SurfaceSource
+    from autocolor.web.notebook import WidgetPort
 
 
 class Studio:
@@ -80,6 +83,7 @@ class Studio:
         scene = self._history.scene
         configuration = configuration_of(display)
         self._display = display
+        self._widgets: WidgetPort | None = None
         self._size = configuration.shown_lines, configuration.shown_elements
         begun = perf_counter()
         self._rendering = self._rendered(scene, *self._size)
@@ -307,6 +311,7 @@ class Studio:
         """Compute a coarse picture again at all lines and elements, and send it; the scene stays."""
         if self.is_coarse:
             self._show(self.scene, Tier.FRAME)
+            self._refresh_widgets()
 
     def undo(self, steps: int = 1) -> bool:
         """Undo the last step, or some steps at once; returns False if there are not so many."""
@@ -343,8 +348,7 @@ class Studio:
         """Make a variant the current scene, by one step to undo; nothing happens if they are equal."""
         scene = self.variants[name].scene
         if not scene.equals(self.scene):
-            self._show_scene(scene)
-            self._history.show(name)
+            self._show_scene(scene, lambda: self._history.show(name))
 
     def drop_variant(self, name: str) -> None:
         """Drop a variant. Raises UsageError for an unknown name."""
@@ -369,8 +373,7 @@ class Studio:
         source = Source(fspath(path), up, surfaces, scale)
         with allowing(self._limit):
             scene = opened(source, tables, checksum, (self._history.on_disk.scene_of(source),))
-        self._show_scene(scene.scene)
-        self._history.open(scene, source)
+        self._show_scene(scene.scene, lambda: self._history.open(scene, source))
 
     @property
     def file(self) -> Path | None:
@@ -393,8 +396,7 @@ class Studio:
             if again.place.stamp is not None and self._history.on_disk.was_changed(str(path)):
                 self._history.mark_saved({str(path): again.place.stamp}, is_own=False)
             return False
-        self._show_scene(again.scene)
-        self._history.open(again, source)
+        self._show_scene(again.scene, lambda: self._history.open(again, source))
         return True
 
     def save(self, path: str | PathLike[str], overwrite: bool = False) -> None:
@@ -498,12 +500,36 @@ class Studio:
 
     def send_everything(self) -> None:
         """Reset the display and send all entries and all words."""
-        send_image(self._display, self._shown)
+        send_image(self._port, self._shown)
+        self._refresh_widgets()
+
+    def widget(self) -> AnyWidget:
+        """A widget for a notebook, which shows the studio and edits it: an `anywidget.AnyWidget`.
+
+        It receives the words and entries that the studio sends to its display. What is done in the widget is
+        an edit of the studio, which `undo` undoes, and every edit shows in all widgets of the studio. `close`
+        ends a widget. Raises UnavailableError without the package anywidget (extra `notebook`).
+        """
+        from autocolor.web.notebook import WidgetPort
+
+        if self._widgets is None:
+            self._widgets = WidgetPort(self, self._display)
+        return self._widgets.new_widget()
+
+    @property
+    def _port(self) -> HostPort:
+        """The host port that the studio sends to: its display, and its widgets if it has had any."""
+        return self._display if self._widgets is None else self._widgets
+
+    def _refresh_widgets(self) -> None:
+        if self._widgets is not None:
+            self._widgets.refresh()
 
     def _take(self, scene: Scene, costs: Tier, same_step: bool = False, moving: bool = False) -> None:
         """Show a scene, which an edit of this cost made, and add the step to the history."""
         self._show(scene, costs, moving)
         self._history.take(scene, same_step)
+        self._refresh_widgets()
 
     def _step(self, scenes: Sequence[Scene], move: Callable[[], None], steps: int) -> bool:
         """Show the scene that is some steps from the end, and move there in the history by these steps.
@@ -516,13 +542,19 @@ class Studio:
             )
         if steps > len(scenes):
             return False
-        self._show_scene(scenes[-steps])
-        for _ in range(steps):
-            move()
+
+        def note() -> None:
+            for _ in range(steps):
+                move()
+
+        self._show_scene(scenes[-steps], note)
         return True
 
-    def _show_scene(self, scene: Scene) -> None:
+    def _show_scene(self, scene: Scene, note: Callable[[], object]) -> None:
+        """Show a scene, then note the step in the history, and refresh the widgets."""
         self._show(scene, cost_of_edit(self.scene, scene) or Tier.NOTHING)
+        note()
+        self._refresh_widgets()
 
     def _show(self, scene: Scene, costs: Tier, moving: bool = False) -> None:
         """Compute and send the difference to another scene. An error leaves the session unchanged."""
@@ -539,7 +571,7 @@ class Studio:
                 rendered = self._rendered(scene, lines, elements, rendered)
         now = display_image(scene, rendered.picture, before, block)
         if self.sends:
-            send_image(self._display, now, before)
+            send_image(self._port, now, before)
         self._rendering, self._shown = rendered, now
         if costs == Tier.FRAME:
             self._pace = block, perf_counter() - begun

@@ -54,7 +54,7 @@ KNOWING_THE_DISPLAY = (
     "autocolor.__main__", "autocolor.batches.films", "autocolor.batches.making",
     "autocolor.batches.outputs", "autocolor.errors", "autocolor.files.writing", "autocolor.images",
     "autocolor.lighting.picture", "autocolor.sending", "autocolor.studio",
-    "autocolor.testing",
+    "autocolor.testing", "autocolor.web.notebook",
 )  # fmt: skip
 WINGS_KNOWING_THE_DISPLAY = ("autocolor.commands", "autocolor.screens", "autocolor.widgets")
 DOORS_OF_THE_DISPLAY = {
@@ -73,6 +73,9 @@ READING_FOR_US = {"meshio", "trimesh"}
 
 WRITING_LAYERS = {"OpenEXR"}
 """The package of the extra `exr`."""
+
+IN_NOTEBOOKS = {"anywidget", "traitlets"}
+"""The packages of the extra `notebook`."""
 
 
 class Import(NamedTuple):
@@ -155,7 +158,7 @@ def test_pillow_is_in_files_for_pictures_and_films_for_the_names_of_colors_and_i
 
 def test_nothing_is_imported_that_is_no_dependency() -> None:
     used = {top(i.target) for imports in IMPORTS.values() for i in imports}
-    used_by_us = {*PUBLIC_NAMES, *OUTSIDE, *FOR_TESTS, *READING_FOR_US, *WRITING_LAYERS}
+    used_by_us = {*PUBLIC_NAMES, *OUTSIDE, *FOR_TESTS, *READING_FOR_US, *WRITING_LAYERS, *IN_NOTEBOOKS}
     assert used <= {*used_by_us, *sys.stdlib_module_names}
 
 
@@ -169,6 +172,11 @@ def test_hypothesis_is_in_the_two_modules_that_are_for_tests() -> None:
 
 def test_the_library_that_writes_layers_is_in_one_file_and_loaded_when_it_is_needed() -> None:
     assert importers(WRITING_LAYERS) == {("autocolor.layers", False)}
+
+
+def test_the_libraries_of_widgets_are_in_one_file_and_loaded_when_they_are_needed() -> None:
+    # The studio names the class of its widgets for type checkers.
+    assert importers(IN_NOTEBOOKS) == {("autocolor.web.notebook", False), ("autocolor.studio", False)}
 
 
 def test_constants_are_final_and_array_types_stand_in_one_module() -> None:

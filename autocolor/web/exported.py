@@ -201,9 +201,9 @@ def paint_values(paint: Paint) -> dict[str, Any]:
     }
 
 
-def packed_words(words: Words) -> bytes:
-    """Words of at most 16 bits, (lines, elements), in few bytes: see `_steps`; zlib."""
-    return zlib.compress(_steps(words), 9)
+def packed_words(words: Words, effort: int = 9) -> bytes:
+    """Words of at most 16 bits, (lines, elements), packed by `_steps` and by zlib with an effort, 1 to 9."""
+    return zlib.compress(_steps(words), effort)
 
 
 def _steps(words: Words) -> bytes:

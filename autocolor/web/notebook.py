@@ -1,0 +1,253 @@
+"""The notebook: widgets that show a studio in the cells of a notebook, and edit it.
+
+    studio --> host port --> the display of the studio
+                   |
+                   +-------> a display of the widgets --> words and entries --> browser
+
+The host port of the widgets is a tee. It passes the words of the studio on to the display of the studio, and
+then to a display of its own. The counters of that display tell what was written: the browser receives words
+only when words were sent, and 3,072 bytes of entries after a recoloring. The widgets show what the studio
+sends; what a program sends to the display itself is not in them.
+
+The browser sends edits by the keys of `--set`, which become edits of the studio. It applies an edit of colors
+at once to its own copy of the entries. It sends the next edit when the last edit is answered, and unites the
+edits of a drag that wait for the answer, so that a drag never lags behind the hand.
+
+| trait | value |
+|---|---|
+| `picture` | the values of the image (`exported.values_of`), the numbers of steps to `undo` and `redo` |
+| `words` | the packed words, with the legend |
+| `entries` | the 1,024 entries, three bytes each |
+
+| message of the browser | effect |
+|---|---|
+| `{"edit": {key: value, ...}, "same_step": bool}` | an edit; with `same_step` it goes on with a drag |
+| `{"undo": steps}`, `{"redo": steps}` | undoes or redoes steps |
+
+The answer to each message is `{"answer": sentence}`. The sentence is empty if the message had its effect.
+Otherwise the scene is as it was before.
+"""
+
+from __future__ import annotations
+
+import base64
+import dataclasses
+from collections.abc import Callable
+from functools import cache
+from importlib.resources import files
+from typing import TYPE_CHECKING, Any, Final, Protocol
+
+from autocolor.arrays import Words
+from autocolor.checks import is_whole, shown
+from autocolor.errors import AutocolorError, UnavailableError, UsageError
+from autocolor.files.settings import scene_with
+from autocolor.journal.history import History
+from autocolor.logs import logger_of
+from autocolor.mapping.display_image import DisplayImage
+from autocolor.mapping.ranges import WORDS
+from autocolor.scene.scene import Scene
+from autocolor.sending import configuration_of, send_image
+from autocolor.web.exported import packed_words, values_of
+from ramtek_emu import HostPort, Ramtek9300, RamtekError
+
+if TYPE_CHECKING:
+    from anywidget import AnyWidget
+
+LOGGER: Final = logger_of(__name__)
+
+PACKING: Final = 6
+"""The effort of zlib for words in a notebook, 1 to 9.
+
+Measured on the coupe: 33.2 kB in 8 ms. With 9, as in a page, it is 31.4 kB in 72 ms: a drag would stutter.
+"""
+
+FAILED: Final = "the studio failed, and its scene is as it was; the log of the notebook has the reason"
+
+
+class EditedStudio(Protocol):
+    """What widgets use of a `Studio`."""
+
+    @property
+    def scene(self) -> Scene:
+        """The current scene."""
+
+    @property
+    def history(self) -> History:
+        """The steps of the session."""
+
+    @property
+    def display_image(self) -> DisplayImage:
+        """The image on the display."""
+
+    def edit(self, scene: Scene, same_step: bool = False) -> None:
+        """Make a scene the current one."""
+
+    def undo(self, steps: int = 1) -> bool:
+        """Undo steps; returns False if there are not so many."""
+
+    def redo(self, steps: int = 1) -> bool:
+        """Redo steps; returns False if there are not so many."""
+
+    def _repr_png_(self) -> bytes: ...
+
+
+class WidgetPort:
+    """The host port of a studio with widgets: a tee to its display and to a display of the widgets.
+
+    Without widgets there is no display for them, and words are passed on alone.
+    """
+
+    def __init__(self, studio: EditedStudio, display: HostPort) -> None:
+        self.configuration = configuration_of(display)
+        self._studio = studio
+        self._display = display
+        self._widgets: list[AnyWidget] = []
+        self._copy: Ramtek9300 | None = None
+        """The display of the widgets."""
+        self._traits: dict[str, object] = {}
+        """The values of the traits of all widgets."""
+        self._written = -1, -1
+        """The numbers of words and of entries that were written to the display when the traits were made."""
+        self._dragged: Scene | None = None
+        """The scene after the last edit of a drag in a widget; a later edit of the drag joins its step."""
+
+    def send(self, words: Words) -> None:
+        """Send words to the display of the studio, and then to the display of the widgets."""
+        self._display.send(words)
+        if self._copy is not None:
+            self._copy.send(words)
+
+    def receive(self, count: int) -> Words:
+        """The next words that the display of the studio replies."""
+        return self._display.receive(count)
+
+    def new_widget(self) -> AnyWidget:
+        """Another widget of the studio. Raises UnavailableError without the package anywidget."""
+        made = widget_class()
+        if self._copy is None:
+            # No time passes on this display, and its monitor is the browser's.
+            self._copy = Ramtek9300(dataclasses.replace(self.configuration, timing=None, monochrome=False))
+            self._written = -1, -1
+            send_image(self._copy, self._studio.display_image)
+        self._update_traits(self._copy)
+        widget = made(self._studio._repr_png_, **self._traits)
+        widget.on_msg(self._answer)
+        widget.observe(lambda _: self._remove_closed(), "comm")
+        self._widgets.append(widget)
+        return widget
+
+    def refresh(self) -> None:
+        """Send the browser what changed since the last call: after every step of the studio."""
+        if self._copy is None:
+            return
+        self._update_traits(self._copy)
+        for widget in tuple(self._widgets):
+            try:
+                # Traits that are equal to those before are not sent; the others are sent in one message.
+                with widget.hold_sync():
+                    for name, value in self._traits.items():
+                        setattr(widget, name, value)
+            except Exception:
+                # The studio has taken its step: a notebook that is gone must not make it fail.
+                LOGGER.exception("a widget could not be refreshed, and is closed")
+                self._widgets.remove(widget)
+        self._remove_closed()
+
+    def _update_traits(self, display: Ramtek9300) -> None:
+        """Make the traits of the studio and of the words and entries that were written to the display."""
+        history = self._studio.history
+        counts = {"undo": len(history.to_undo), "redo": len(history.to_redo)}
+        self._traits["picture"] = {**values_of(self._studio.display_image), **counts}
+        written = display.frame_buffer.written, display.lookup_table.written
+        if written[0] != self._written[0]:
+            lines, elements = self.configuration.shown_lines, self.configuration.shown_elements
+            self._traits["words"] = packed_words(display.words[:lines, :elements], PACKING)
+        if written[1] != self._written[1]:
+            self._traits["entries"] = display.entries[:WORDS].tobytes()
+        self._written = written
+
+    def _remove_closed(self) -> None:
+        """Forget closed widgets, and their display after the last."""
+        self._widgets = [widget for widget in self._widgets if widget.comm is not None]
+        if not self._widgets:
+            self._copy = None
+
+    def _answer(self, widget: AnyWidget, message: object, _: object) -> None:
+        """Do what a message of the browser says, and answer."""
+        sentence = FAILED
+        try:
+            self._do(message)
+            sentence = ""
+        except (AutocolorError, RamtekError) as error:
+            sentence = str(error)
+        finally:
+            widget.send({"answer": sentence})
+
+    def _do(self, message: object) -> None:
+        """Do what a message of the browser says. Raises an error if that cannot be done."""
+        studio, history = self._studio, self._studio.history
+        match message:
+            case {"edit": dict() as values, **others} if all(isinstance(key, str) for key in values):
+                self._edit(scene_with(studio.scene, values), others.get("same_step") is True)
+            case {"undo": steps}:
+                studio.undo(checked_steps(steps, len(history.to_undo), "undo"))
+            case {"redo": steps}:
+                studio.redo(checked_steps(steps, len(history.to_redo), "redo"))
+            case _:
+                raise UsageError(
+                    f"a message of a widget must be an edit, undo or redo, not {shown(message)}; make the"
+                    " widget again"
+                )
+
+    def _edit(self, scene: Scene, same_step: bool) -> None:
+        before = self._studio.scene
+        self._studio.edit(scene, same_step and before is self._dragged)
+        if self._studio.scene is not before:
+            self._dragged = self._studio.scene
+        elif not same_step:
+            self._dragged = None
+
+
+def checked_steps(steps: Any, most: int, what: str) -> int:
+    """The number of steps to undo or redo. Raises UsageError if there are not so many."""
+    if not is_whole(steps, 1, most):
+        there = f"there is 1 step to {what}" if most == 1 else f"there are {most} steps to {what}"
+        raise UsageError(f"{there}, not {shown(steps)}")
+    return int(steps)
+
+
+@cache
+def widget_class() -> Callable[..., Any]:
+    """The class of the widgets, made of `autocolor.js` and `autocolor.css`.
+
+    Raises UnavailableError without the package anywidget.
+    """
+    try:
+        import anywidget
+        import traitlets
+    except ImportError as cause:
+        raise UnavailableError(
+            'a widget needs the package anywidget, which is not installed; run: pip install ".[notebook]"'
+        ) from cause
+
+    class StudioWidget(anywidget.AnyWidget):  # type: ignore[misc]
+        """A studio in the cell of a notebook."""
+
+        _esm = (files("autocolor.web") / "autocolor.js").read_text("utf-8")
+        _css = (files("autocolor.web") / "autocolor.css").read_text("utf-8")
+        picture = traitlets.Dict().tag(sync=True)
+        words = traitlets.Bytes().tag(sync=True)
+        entries = traitlets.Bytes().tag(sync=True)
+
+        def __init__(self, png_of_studio: Callable[[], bytes], **values: object) -> None:
+            self._png_of_studio = png_of_studio
+            super().__init__(**values)
+
+        def _repr_mimebundle_(self, **options: object) -> Any:
+            # A saved notebook shows the picture where no kernel runs.
+            bundle = super()._repr_mimebundle_(**options)
+            if bundle:
+                bundle[0]["image/png"] = base64.b64encode(self._png_of_studio()).decode("ascii")
+            return bundle
+
+    return StudioWidget
