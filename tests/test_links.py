@@ -52,6 +52,8 @@ def test_a_link_to_a_missing_file_or_heading_is_lost() -> None:
 def test_links_in_code_and_on_other_sites_are_left_alone() -> None:
     text = "[a](b.md) `[c](d.md)` ![e](f.png)\n```\n[g](h.md)\n```\n[i](https://j.org/k) [l](#m)\n"
     assert [link[0] for link in links_of(text)] == ["b.md", "f.png", "#m"]
+    text = "`a\nb` [c](d.md) ``e ` [f](g.md)`` [h](i.md) `\n\n[j](k.md) `l`"
+    assert [link[0] for link in links_of(text)] == ["d.md", "i.md", "k.md"]
 
 
 def test_links_change_to_places_on_the_site() -> None:

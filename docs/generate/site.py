@@ -36,7 +36,13 @@ The picture is [one file](coupe.html), made by `autocolor page`, and works witho
 
 """
 
-CODE: Final = re.compile(r"^( *)(```+).*?^\1\2 *$|`[^`\n]+`", re.DOTALL | re.MULTILINE)
+CODE: Final = re.compile(
+    r"^ *(?P<fence>```+).*?^ *(?P=fence) *$"
+    r"|(?<!`)(?P<ticks>`+)(?!`)(?:[^\n]|\n(?! *\n))+?(?<!`)(?P=ticks)(?!`)",
+    re.DOTALL | re.MULTILINE,
+)
+"""A block of code, or code in a paragraph."""
+
 LINK: Final = re.compile(r"(?<=\]\()[^)\s]+(?=\))")
 
 
