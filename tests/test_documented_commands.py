@@ -1,17 +1,23 @@
-"""Every command in a code block of README.md and docs/*.md ends well, in the order of its document."""
+"""Every command in a code block of README.md and docs ends well, in the order of its document.
+
+In the guides, Python and the tables of scene files are run, too, in the same folder.
+"""
 
 from __future__ import annotations
 
 import re
 import shutil
+from contextlib import chdir
 from pathlib import Path
-from typing import NamedTuple
 
 import pytest
 
+from autocolor import read_scene
+from docs.generate.blocks import Command, blocks_of, commands_of
 from docs.generate.commands import ROOT, here, process
 
 NOT_RUN = {
+    "autocolor view coupe": "it opens a window",
     "autocolor view scenes/coupe --normals": "it opens a window",
     "autocolor view scenes/coupe --paints paints.gpl": "it opens a window",
     "ramtek play figures/figure-normals.ramtek --loads-per-second 30": "it opens a window",
@@ -29,6 +35,7 @@ POLYGONS = "".join(f"3 {a} {b} {c}\n" for a, b, c in FACES)
 
 INPUTS = {
     "looks.csv": "name,surfaces.body.object_color,lights.key.intensity\nracing,#b01020,\nevening,navy,0.5\n",
+    "paints.csv": "name,color\nsignal red,#a52019\n",
     "engine.ply": "ply\nformat ascii 1.0\nelement vertex 4\n"
     + "".join(f"property float {axis}\n" for axis in "xyz")
     + f"element face 4\nproperty list uchar int vertex_indices\nend_header\n{NODES}{POLYGONS}",
@@ -46,32 +53,14 @@ INPUTS = {
 """Files that the reader has, by the names that the documents give them."""
 
 
-class Command(NamedTuple):
-    """A command of a document, and the output that the document shows below it; None if it shows none."""
-
-    line: str
-    output: str | None
-
-
-def commands_of(text: str) -> list[Command]:
-    """The commands in the code blocks of a document. After a line with a prompt, "$ ", its output follows."""
-    commands = []
-    for block in re.findall(r"^```\w*\n(.*?)^```$", text, re.DOTALL | re.MULTILINE):
-        prompt, *parts = re.split(r"^\$ ", block.replace("\\\n", " "), flags=re.MULTILINE)
-        lines = [(line, None) for line in prompt.splitlines()]
-        for line, output in [*lines, *((part.split("\n", 1)) for part in parts)]:
-            for command in line.split(" && "):
-                command = re.sub(r"\s+#\s.*", "", command.strip()).removeprefix(".venv/bin/")
-                if command.startswith(("autocolor ", "ramtek ")):
-                    commands.append(Command(command, output))
-    return commands
-
-
 DOCUMENTS = {
-    path.name: commands
-    for path in (ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")))
-    if (commands := commands_of(path.read_text("utf-8")))
+    path.name: blocks
+    for path in (ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md")))
+    if (blocks := blocks_of(path.read_text("utf-8")))
 }
+
+GUIDES = {path.name for path in (ROOT / "docs" / "guides").glob("*.md")}
+"""The documents whose Python and scene files are run, too."""
 
 
 def make_inputs(folder: Path) -> None:
@@ -100,20 +89,42 @@ def ended(line: str, folder: Path) -> tuple[int, str, str]:
 
 
 @pytest.mark.parametrize("document", DOCUMENTS)
-def test_every_command_of_a_document_ends_well(document: str, tmp_path: Path) -> None:
+def test_every_code_block_of_a_document_ends_well(document: str, tmp_path: Path) -> None:
     make_inputs(tmp_path)
-    for line, output in DOCUMENTS[document]:
-        if line in NOT_RUN:
-            continue
-        if output is not None and line.startswith("ramtek list "):
-            (tmp_path / line.split()[2]).write_bytes(listed_words(output))
-        code, out, err = ended(line, tmp_path)
-        assert code == 0, f"{line} ended with {code}: {err}"
-        assert output is None or out == output, line
+    names: dict[str, object] = {}
+    for block in DOCUMENTS[document]:
+        if document in GUIDES and block.language == "python":
+            with chdir(tmp_path):
+                exec(compile(block.text, document, "exec"), names)
+        elif document in GUIDES and block.language == "toml":
+            run_scene_file(block.text, tmp_path)
+        else:
+            for command in commands_of(block):
+                run(command, tmp_path)
+
+
+def run(command: Command, folder: Path) -> None:
+    """Run a command as the reader does, and compare its output if the document shows it."""
+    line, output = command
+    if line in NOT_RUN:
+        return
+    if output is not None and line.startswith("ramtek list "):
+        (folder / line.split()[2]).write_bytes(listed_words(output))
+    code, out, err = ended(line, folder)
+    assert code == 0, f"{line} ended with {code}: {err}"
+    assert output is None or out == output, line
+
+
+def run_scene_file(text: str, folder: Path) -> None:
+    """Read the tables of a scene that a guide shows; a mesh is added if they have none."""
+    path = folder / "tables of a guide.toml"
+    path.write_text(text if "[[mesh]]" in text else f'{text}\n[[mesh]]\nfile = "engine.ply"\n', "utf-8")
+    read_scene(path)
 
 
 def test_only_commands_of_the_documents_are_not_run() -> None:
-    assert NOT_RUN.keys() <= {command.line for commands in DOCUMENTS.values() for command in commands}
+    blocks = [block for blocks in DOCUMENTS.values() for block in blocks]
+    assert NOT_RUN.keys() <= {command.line for block in blocks for command in commands_of(block)}
 
 
 def test_commands_are_found_in_code_blocks_alone() -> None:
@@ -121,7 +132,7 @@ def test_commands_are_found_in_code_blocks_alone() -> None:
         "`autocolor a`\nautocolor b\n```\npip install x && .venv/bin/autocolor c\nautocolor d \\\n  -e  # f\n"
         'cat | ramtek g\n```\n\n```console\n$ ramtek h "#i"\nj\n\nk\n$ cat l\nm\n$ autocolor n\n```\n'
     )
-    assert commands_of(text) == [
+    assert [command for block in blocks_of(text) for command in commands_of(block)] == [
         ("autocolor c", None),
         ("autocolor d    -e", None),
         ('ramtek h "#i"', "j\n\nk\n"),

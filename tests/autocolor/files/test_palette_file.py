@@ -336,8 +336,8 @@ def test_the_example_of_the_document_brings_the_same_entries_back(
     write_palette("paints.csv", ["#a52019"], names=["Signal red"])
     body = dict.fromkeys(cube().part_names, "body")
     studio = Studio(scene_of(cube(), surfaces=[Surface("body")], surface_of_part=body), Ramtek9300())
-    document = (Path(__file__).parents[3] / "docs" / "STUDIO.md").read_text("utf-8")
-    (example,) = re.findall("```python\n(paints = .*?)```", document, re.DOTALL)
+    document = (Path(__file__).parents[3] / "docs" / "guides" / "studio.md").read_text("utf-8")
+    (example,) = re.findall("^(paints = .*?)```", document, re.DOTALL | re.MULTILINE)
     names = {"autocolor": autocolor, "studio": studio}
     entries, paints = [], []
     for line in example.splitlines():

@@ -1,6 +1,6 @@
 """Tasks of a lighting designer, each by the joystick unit alone, with the number of its steps.
 
-The table of docs/STUDIO.md tells the same numbers.
+The table of docs/guides/studio.md tells the same numbers.
 """
 
 from __future__ import annotations
@@ -214,13 +214,13 @@ TASKS: dict[str, Callable[[Hand], None]] = {
 @pytest.mark.parametrize("name", TASKS)
 def test_a_task_is_done_by_pointing_in_as_many_steps_as_the_guide_tells(hand: Hand, name: str) -> None:
     TASKS[name](hand)
-    table = (ROOT / "docs/STUDIO.md").read_text()
+    table = (ROOT / "docs/guides/studio.md").read_text()
     told = re.search(rf"^\| {name} \| .* \| (\d+) \|$", table, re.MULTILINE)
-    assert told is not None, f"docs/STUDIO.md does not tell how to {name}"
+    assert told is not None, f"docs/guides/studio.md does not tell how to {name}"
     assert hand.steps == int(told[1])
     assert hand.steps <= 5
 
 
 def test_the_guide_tells_of_these_tasks_and_no_other() -> None:
-    table = (ROOT / "docs/STUDIO.md").read_text()
+    table = (ROOT / "docs/guides/studio.md").read_text()
     assert re.findall(r"^\| ([a-z ]+) \| .* \| \d+ \|$", table, re.MULTILINE) == list(TASKS)

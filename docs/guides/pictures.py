@@ -1,0 +1,197 @@
+"""The pictures of the guides: `python -m docs.guides.pictures` writes them into docs/guides/images.
+
+Each function of PICTURES returns a picture, which is named after the function. To write some pictures only,
+name their functions: `python -m docs.guides.pictures light_place`. A picture of results runs the commands of
+its guide, and shows what they wrote. A picture of a screen is the field of a display, after the steps of the
+guide were done with the joystick unit.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Final
+
+import numpy as np
+from PIL import Image
+
+from autocolor import read_palette
+from autocolor.screens.viewer import Viewer
+from docs.generate.blocks import blocks_of, commands_of
+from docs.generate.commands import ROOT, here
+from ramtek_emu.memory.cursors import Joystick
+from scenes.figures import Field, captioned, click, click_at, open_viewer, point_at
+
+GUIDES: Final = Path(__file__).parent
+IMAGES: Final = GUIDES / "images"
+
+COLORS: Final = 255
+"""The most colors of a picture: a pixel is then a byte."""
+
+SMALL: Final = 2
+"""A panel has this part of the lines and elements of a result."""
+
+CAR: Final = slice(40, 200)
+"""The lines of a small panel that show the car."""
+
+COBALT: Final = (530, 275)
+"""The element and the line of a paint in the menu of color mixing."""
+
+EXPLAINED: Final = (240, 200)
+"""The line and the element of the pixel that the guide to the studio explains."""
+
+
+def start_paint() -> Field:
+    """The coupe, and the recolored coupe."""
+    results = results_of("start")
+    return np.hstack([results["coupe"][CAR], results["metallic"][CAR]])
+
+
+def start_menu() -> Field:
+    """The picture screen with its menu; the pointer is at color mixing."""
+    with open_viewer("coupe", "picture") as (viewer, display):
+        # The menu opens when the pointer comes to the right edge from elsewhere.
+        for element in (400, 639, 600):
+            point_at(viewer, element, 57)
+        return display.field()
+
+
+def light_alone() -> Field:
+    """Each of the four lights alone."""
+    return sheet("light", ("key", "side", "back", "rim"))
+
+
+def light_place() -> Field:
+    """The screen light & view, while the side light is dragged in the view from above."""
+    with open_viewer("coupe", "light and view") as (viewer, display):
+        grab(viewer, "side: x", (-34, -14))
+        return display.field()
+
+
+def light_spot() -> Field:
+    """The key light as a flood, concentrated, in a cone, and in a soft cone."""
+    return sheet("light", ("flood", "concentrated", "cone", "soft"))
+
+
+def light_flaps() -> Field:
+    """The side light, with a flap, with a soft flap, and with a half-space."""
+    return sheet("light", ("side", "flap", "soft-flap", "half-space"))
+
+
+def light_highlight() -> Field:
+    """The lights screen, after the highlight of the back light was dragged to the front of the hood."""
+    with open_viewer("coupe", "lights") as (viewer, display):
+        click(viewer, "back")
+        grab(viewer, "highlight of back", (-56, 24)).track = False
+        viewer.poll()
+        idle(viewer)
+        return display.field()
+
+
+def light_links() -> Field:
+    """The key light without the floor, and the back light on the hood alone."""
+    return sheet("light", ("car-only", "hood-only"))
+
+
+def light_exposure() -> Field:
+    """A dim light with three exposures."""
+    return sheet("light", ("automatic", "held", "lifted"), across=3)
+
+
+def studio_mixing() -> Field:
+    """Color mixing, with the paints of a file, of which the pointer takes one."""
+    with open_viewer("coupe", "mixing") as (viewer, display):
+        viewer.session.bring_paints(read_palette(ROOT / "examples" / "paints.gpl"), "paints.gpl")
+        viewer.tell("")
+        click_at(viewer, *COBALT)
+        return display.field()
+
+
+def studio_split() -> Field:
+    """The red car at the left of the line, the blue car at its right."""
+    with open_viewer("coupe", "picture") as (viewer, display):
+        viewer.studio.recolor("body", object_color="#2348c8", blend=0.5)
+        for element in (400, 639):
+            point_at(viewer, element, 57)
+        click(viewer, "compare", 0.75)
+        idle(viewer)
+        return display.field()
+
+
+def studio_explain() -> Field:
+    """The explanation of a pixel of the hood."""
+    with open_viewer("coupe", "picture") as (viewer, display):
+        viewer.session.explain(*EXPLAINED)
+        viewer.tell("")
+        idle(viewer)
+        return display.field()
+
+
+PICTURES: Final[Sequence[Callable[[], Field]]] = (
+    start_paint, start_menu,
+    light_alone, light_place, light_spot, light_flaps, light_highlight, light_links, light_exposure,
+    studio_mixing, studio_split, studio_explain,
+)  # fmt: skip
+
+
+@cache
+def results_of(guide: str) -> Mapping[str, Field]:
+    """The PNG files that the commands of a guide write in an empty folder, by name, at a small size."""
+    with TemporaryDirectory() as name:
+        folder = Path(name)
+        for block in blocks_of((GUIDES / f"{guide}.md").read_text("utf-8")):
+            for line, _ in commands_of(block):
+                if not line.startswith("autocolor view "):
+                    code, _, err = here(line, folder)
+                    assert code == 0, f"{line}: {err}"
+        return {
+            path.stem: np.asarray(Image.open(path).convert("RGB").reduce(SMALL))
+            for path in folder.glob("*.png")
+        }
+
+
+def sheet(guide: str, names: Sequence[str], across: int = 2) -> Field:
+    """Results of the commands of a guide in rows, each with its name below it."""
+    panels = [captioned(results_of(guide)[name][CAR], f"{name}.png", 1) for name in names]
+    return np.vstack([np.hstack(panels[first : first + across]) for first in range(0, len(panels), across)])
+
+
+def grab(viewer: Viewer, label: str, by: tuple[int, int]) -> Joystick:
+    """Begin to drag the handle of a label by elements and lines; returns the unit, which still tracks."""
+    handle = next(each for each in viewer.board.screen.handles() if each.label.startswith(label))
+    joystick = point_at(viewer, handle.element, handle.line)
+    joystick.track = True
+    viewer.poll()
+    for share in (0.5, 1):
+        point_at(viewer, handle.element + round(share * by[0]), handle.line + round(share * by[1]))
+    viewer.on_tick()
+    return joystick
+
+
+def idle(viewer: Viewer) -> None:
+    """Let the viewer do what it does while nothing moves."""
+    while viewer.board.screen.idle():
+        viewer.on_tick()
+
+
+def path_of(picture: Callable[[], Field]) -> Path:
+    """The file of a picture."""
+    return IMAGES / f"{picture.__name__.replace('_', '-')}.png"
+
+
+def write(pictures: Sequence[Callable[[], Field]]) -> None:
+    """Write the pictures that the command line names, or all."""
+    IMAGES.mkdir(exist_ok=True)
+    for picture in pictures:
+        if picture.__name__ in sys.argv[1:] or len(sys.argv) == 1:
+            path = path_of(picture)
+            image = Image.fromarray(picture())
+            image.quantize(COLORS, kmeans=5, dither=Image.Dither.NONE).save(path, optimize=True)
+            print(path, path.stat().st_size)
+
+
+if __name__ == "__main__":
+    write(PICTURES)
