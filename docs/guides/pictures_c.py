@@ -1,55 +1,43 @@
-"""The pictures of display.md, paper.md and elsewhere.md: `python -m docs.guides.pictures_c` writes them all.
+"""The pictures of display.md, paper.md and elsewhere.md: `python -m docs.guides.pictures_c` writes them.
 
-The pictures of display.md are drawn by the display from the listings and the examples that the guide shows.
+As in `pictures`, each function returns the picture that is named after it. The display draws the pictures of
+display.md from the listings and the examples of that guide.
 """
 
 from __future__ import annotations
 
 import doctest
-import io
-import re
-from collections.abc import Callable
-from pathlib import Path
+from collections.abc import Callable, Sequence
+from functools import cache
 from typing import Any, Final
 
 import numpy as np
-import numpy.typing as npt
-from PIL import Image
 
 import autocolor
+from docs.generate.blocks import blocks_of
+from docs.guides.pictures import GUIDES, write
 from ramtek_emu import Ramtek9300
 from ramtek_emu.instruction_set.assembler import assemble
-from scenes.figures import captioned, click, open_viewer, point_at
-
-FOLDER: Final = Path(__file__).parent
-MOST_BYTES: Final = 40_000
-"""The largest picture of a guide."""
-
-Field = npt.NDArray[np.uint8]
+from scenes.figures import Field, captioned, click, open_viewer, point_at
 
 
-def blocks_of(guide: str, language: str) -> list[str]:
-    """The code blocks of a guide in a language."""
-    text = (FOLDER / guide).read_text("utf-8")
-    return re.findall(rf"^```{language}\n(.*?)^```$", text, re.DOTALL | re.MULTILINE)
-
-
+@cache
 def listings() -> dict[str, str]:
-    """The listings of display.md, by the names in their first lines: `; areas.txt` begins "areas"."""
-    return {block[2:].split(".txt")[0]: block for block in blocks_of("display.md", "asm")}
+    """The listings of display.md, by the names of their files: `; areas.txt` is the first line of "areas"."""
+    blocks = blocks_of((GUIDES / "display.md").read_text("utf-8"))
+    return {
+        block.text[2:].partition(".txt")[0]: block.text for block in blocks if block.text.startswith("; ")
+    }
 
 
-def examples(guide: str) -> doctest.DocTest:
-    """The examples of a guide, in one doctest."""
-    text = "\n".join(blocks_of(guide, "pycon"))
-    return doctest.DocTestParser().get_doctest(text, {}, guide, str(FOLDER / guide), 0)
-
-
+@cache
 def names_after(guide: str) -> dict[str, Any]:
     """The names that the examples of a guide leave, such as `display`."""
-    test = examples(guide)
-    doctest.DocTestRunner(verbose=False).run(test, clear_globs=False)
-    return test.globs
+    blocks = blocks_of((GUIDES / f"{guide}.md").read_text("utf-8"))
+    text = "\n".join(block.text for block in blocks if block.language == "pycon")
+    examples = doctest.DocTestParser().get_doctest(text, {}, guide, None, None)
+    doctest.DocTestRunner().run(examples, clear_globs=False)
+    return examples.globs
 
 
 def played(*names: str, more: str = "") -> Ramtek9300:
@@ -61,26 +49,56 @@ def played(*names: str, more: str = "") -> Ramtek9300:
     return display
 
 
-def of_listing(name: str) -> Callable[[], Field]:
-    """Draws the upper half of the field that a listing leaves on the display that is switched on."""
-    return lambda: played("colors", name).field()[:240]
+def upper_half(name: str) -> Field:
+    """The upper half of the field that a listing leaves on the display that is switched on."""
+    return played("colors", name).field()[:240]
 
 
-def view() -> Field:
+def display_areas() -> Field:
+    """Windows, planes and the write window."""
+    return upper_half("areas")
+
+
+def display_lines() -> Field:
+    """Linked and unlinked lines, points, textures."""
+    return upper_half("lines")
+
+
+def display_curves() -> Field:
+    """Circles, filled areas, conics."""
+    return upper_half("curves")
+
+
+def display_text() -> Field:
+    """Text, and characters that were loaded."""
+    return upper_half("text")
+
+
+def display_images() -> Field:
+    """Images, rasters, pixels and copies."""
+    return upper_half("images")
+
+
+def display_cursors() -> Field:
+    """Two cursors over a box."""
+    return upper_half("cursors")
+
+
+def display_view() -> Field:
     """The page of text by view.txt, and again with the lines from the bottom."""
     fields = (played("colors", "text", "view", more=more).field() for more in ("", "SELVO #1"))
     return beside(*(field[::2, ::2] for field in fields))
 
 
-def ball() -> Field:
+def display_ball() -> Field:
     """The ball of display.md in its two colors."""
-    names = names_after("display.md")
+    names = names_after("display")
     return beside(names["red"][::2, ::2], names["blue"][::2, ::2])
 
 
-def stripes() -> Field:
+def display_stripes() -> Field:
     """The field of display.md that is drawn with one entry."""
-    field: Field = names_after("display.md")["stripes"]
+    field: Field = names_after("display")["stripes"]
     return field[::2, ::2]
 
 
@@ -97,7 +115,7 @@ def panel(scene: autocolor.Scene, caption: str, lines: int = 150, elements: int 
     return captioned(field, caption, size=1)
 
 
-def terms() -> Field:
+def paper_terms() -> Field:
     """The coupe by diffuse light, by specular light, and by both."""
     car = autocolor.demo().replace(exposure={"object": (0, 1.05)})
     matte, mirrors = car.replace(ambient=0), car.replace(ambient=0)
@@ -111,9 +129,9 @@ def terms() -> Field:
     )
 
 
-def controls() -> Field:
+def paper_controls() -> Field:
     """The wall of paper.md under one lamp with several controls."""
-    wall = names_after("paper.md")["wall"].replace(exposure={"object": (0, 1.5)})
+    wall = names_after("paper")["wall"].replace(exposure={"object": (0, 1.5)})
     wall = wall.with_view(field_of_view=28)
     flap = {"z": {"minimum": -0.1, "maximum": 0.5}}
     every = {"concentration": 10, "cone_angle": 20, "flaps": flap}
@@ -129,7 +147,7 @@ def controls() -> Field:
     return np.vstack([beside(*panels[:3]), beside(*panels[3:])])
 
 
-def words() -> Field:
+def paper_words() -> Field:
     """The words of the coupe as grays, and their colors by the table."""
     display = Ramtek9300()
     autocolor.Studio(autocolor.demo(), display)
@@ -139,7 +157,7 @@ def words() -> Field:
     )
 
 
-def blends() -> Field:
+def paper_blends() -> Field:
     """The entries of the coupe's body in three blends, above the picture with them."""
     parts = []
     for blend in (1.0, 0.5, 0.0):
@@ -151,7 +169,7 @@ def blends() -> Field:
     return beside(*parts)
 
 
-def elsewhere() -> Field:
+def elsewhere_lights() -> Field:
     """The studio on a display, with the menu that the pointer brings at the right edge."""
     with open_viewer("coupe", "lights") as (viewer, display):
         click(viewer, "key")
@@ -159,39 +177,13 @@ def elsewhere() -> Field:
         return display.field()
 
 
-PICTURES: Final[dict[str, Callable[[], Field]]] = {
-    **{
-        f"display-{name}": of_listing(name)
-        for name in ("areas", "lines", "curves", "text", "images", "cursors")
-    },
-    "display-view": view,
-    "display-ball": ball,
-    "display-stripes": stripes,
-    "paper-terms": terms,
-    "paper-controls": controls,
-    "paper-words": words,
-    "paper-blends": blends,
-    "elsewhere": elsewhere,
-}
-
-
-def png_of(field: Field) -> bytes:
-    """The PNG file of a field; with more than 256 colors, of the nearest of 256."""
-    image = Image.fromarray(field)
-    colors = image.getcolors(256)
-    image = image.quantize(256 if colors is None else len(colors), dither=Image.Dither.NONE)
-    file = io.BytesIO()
-    image.save(file, "PNG", optimize=True)
-    return file.getvalue()
-
-
-def main() -> None:
-    """Write all pictures."""
-    for name, picture in PICTURES.items():
-        data = png_of(picture())
-        (FOLDER / "images" / f"{name}.png").write_bytes(data)
-        print(f"{name}.png {len(data):,} bytes")
+PICTURES: Final[Sequence[Callable[[], Field]]] = (
+    display_areas, display_lines, display_curves, display_text, display_images, display_cursors,
+    display_view, display_ball, display_stripes,
+    paper_terms, paper_controls, paper_words, paper_blends,
+    elsewhere_lights,
+)  # fmt: skip
 
 
 if __name__ == "__main__":
-    main()
+    write(PICTURES)
