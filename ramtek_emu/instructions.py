@@ -3,8 +3,8 @@
 They set up the display, write and read images, draw circles, areas, lines and text, place cursors, and load
 and read the lookup table. An operand that is left out keeps the value that an earlier instruction set.
 
->>> " ".join(f"{word:04X}" for word in set_parameters(foreground=1))
-'0802 0002 0001'
+    >>> " ".join(f"{word:04X}" for word in set_parameters(foreground=1))
+    '0802 0002 0001'
 """
 
 from __future__ import annotations

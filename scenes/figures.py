@@ -5,7 +5,7 @@ introduction: a machined part with its stress, and the curvature of a body; and 
 such as S that grows with the angle of incidence. Each script renders once, then relights or recolors for
 every panel, and writes labeled pictures into `figures/`, or into the folder that it is given:
 `python -m scenes.figure_04 elsewhere`. `python -m scenes.figures docs/figures --small` makes all pictures of
-docs/FIGURES.md.
+docs/gallery.md.
 
 Pictures have smooth edges: they are rendered at SMOOTH times their lines and elements, and averaged. Figures
 5, 13 and 14 are screens, and show the words of the display as they are.

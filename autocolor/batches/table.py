@@ -279,8 +279,8 @@ def grid(axes: Mapping[str, Iterable[object]]) -> tuple[Variant, ...]:
 
     Raises UsageError for an axis without values, and for too many variants.
 
-    >>> [variant.name for variant in grid({"scaling": ["object", "surface"], "ambient": [0.1, 0.2]})]
-    ['object-0.1', 'object-0.2', 'surface-0.1', 'surface-0.2']
+        >>> [variant.name for variant in grid({"scaling": ["object", "surface"], "ambient": [0.1, 0.2]})]
+        ['object-0.1', 'object-0.2', 'surface-0.1', 'surface-0.2']
     """
     if not isinstance(axes, Mapping):
         raise UsageError(

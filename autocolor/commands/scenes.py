@@ -12,6 +12,7 @@ from click.core import ParameterSource
 
 from autocolor.commands.completion import complete_scenes, complete_settings
 from autocolor.commands.options import limit_option, print_log, verbose_option
+from autocolor.errors import UsageError
 from ramtek_emu.command_line import tell
 
 if TYPE_CHECKING:
@@ -50,6 +51,11 @@ def scene_options(command: Callable[..., Any], required: bool = True) -> Callabl
         strict: bool,
         **options: Any,
     ) -> Any:
+        for option, is_given in (("--up", up != "z"), ("--scale", scale != 1)):
+            if scene is None and is_given:
+                raise UsageError(
+                    f"{option} must come with a mesh file as SCENE; name a file, or leave {option} out"
+                )
         source = None if scene is None else SceneSource(scene, up, surfaces, strict, scale)
         return command(*arguments, source=source, **options)
 

@@ -100,6 +100,7 @@ def show(
 
         origin = Source(source.path, source.up, source.surfaces, source.scale)
         place = place_of(origin)
+        tell(f"reading {source.path}")
         report = read(source)
         scene = created_again(report, with_settings(report.scene, settings))
         if once:

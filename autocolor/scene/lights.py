@@ -159,8 +159,8 @@ class HalfSpace(Row):
         From the lit side, a, b and c turn counterclockwise. `changes` are further fields. Raises InputError
         for an invalid point, and for three points in a line.
 
-        >>> HalfSpace.through("left", (0, 0, 0), (1, 0, 0), (0, 2, 0)).direction
-        (0.0, 0.0, 1.0)
+            >>> HalfSpace.through("left", (0, 0, 0), (1, 0, 0), (0, 2, 0)).direction
+            (0.0, 0.0, 1.0)
         """
         points = _checked_points(name, a, b, c)
         # Scale the sides of the triangle first, so that no product over- or underflows.

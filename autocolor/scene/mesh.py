@@ -205,8 +205,8 @@ class Mesh(Immutable):
         component at the points or the cells of PyVista and meshio become scalars. A Mesh is returned
         unchanged. Raises InputError, and UsageError for any other source.
 
-        >>> Mesh.of([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 1, 2, 3]])
-        Mesh(nodes 4, polygons 2, parts 1)
+            >>> Mesh.of([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 1, 2, 3]])
+            Mesh(nodes 4, polygons 2, parts 1)
         """
         if isinstance(source, Mesh) and polygons is None:
             return source

@@ -164,8 +164,10 @@ class Paint(Row):
     def color(self) -> Color:
         """The color that stands for the paint: the object color, or the color in the middle of the ramp.
 
-        >>> Paint("#b01020").color, Paint(ramp=["#200", "#f60", "#fff"]).color
-        ((176, 16, 32), (255, 102, 0))
+            >>> Paint("#b01020").color, Paint(ramp=["#200", "#f60", "#fff"]).color
+            ((176, 16, 32), (255, 102, 0))
+
+        Of an even number of colors, it is the mean of the two in the middle.
         """
         if self.ramp is None:
             return self.object_color

@@ -75,9 +75,9 @@ MOST_COLORS: Final = 200
 class VariantsScreen(Screen):
     """The variants as small pictures. While nothing moves, the missing pictures are computed in turn."""
 
-    name = "kept"
-    title = "kept"
-    help = "Click a kept variant to choose it; then come back to it, or drop it"
+    name = "variants"
+    title = "variants"
+    help = "Click a variant to choose it; then come back to it, or drop it"
     shows_scene = False
 
     def __init__(self, session: Session) -> None:

@@ -77,10 +77,10 @@ def test_each_figure_leaves_its_labeled_pictures(
         assert (pixels[480 : 480 + figures.CAPTION_LINES, :640] > 200).any(), "the caption is empty"
 
 
-def test_the_page_of_figures_shows_the_picture_of_every_script() -> None:
+def test_the_gallery_shows_the_picture_of_every_script() -> None:
     folder = figures.SCENES.parent / "docs"
-    page = (folder / "FIGURES.md").read_text("utf-8")
-    shown = re.findall(r"!\[[^]]+\]\((figures/[^)]+)\)\s+`(scenes/[^`]+)`", page)
+    page = (folder / "gallery.md").read_text("utf-8")
+    shown = re.findall(r"!\[[^]]+\]\((figures/[^)]+)\)\s+\[(scenes/[^]]+)\]\(../\2\)", page)
     assert dict(shown) == {
         f"figures/figure-{number}.png": f"scenes/figure_{number.replace('-', '_')}.py"
         for number in figures.FIGURES

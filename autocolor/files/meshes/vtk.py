@@ -52,10 +52,12 @@ def read_vtk(path: Path, placement: Placement = PLAIN) -> MeshReport:
         data = data.replace(b"\r", b"\n")
     cursor = VtkCursor(data, path.name)
     dataset = _dataset(cursor)
+    before = Attributes(cursor, {}, {})
     coordinates, (flats, nodes, sentences), counts = (read_grid if dataset in GRIDS else read_cells)(
-        cursor, dataset
+        cursor, dataset, before
     )
     attributes = Attributes(cursor, counts, {NODE: nodes, POLYGON: flats.cells})
+    attributes.skipped.update(before.skipped)
     attributes.read()
     table = RawPolygons(
         coordinates,
@@ -102,8 +104,8 @@ class VtkSurface(NamedTuple):
     counts: Mapping[str, int]
 
 
-def read_cells(cursor: VtkCursor, dataset: bytes) -> VtkSurface:
-    """The surface of POLYDATA or an UNSTRUCTURED_GRID. Raises InputError."""
+def read_cells(cursor: VtkCursor, dataset: bytes, before: Attributes) -> VtkSurface:
+    """The surface of POLYDATA or an UNSTRUCTURED_GRID. `before` skips a FIELD. Raises InputError."""
     if dataset not in (b"POLYDATA", b"UNSTRUCTURED_GRID"):
         datasets = ", ".join(["POLYDATA", "UNSTRUCTURED_GRID", *(each.decode() for each in GRIDS)])
         raise cursor.error(f"the DATASET must be one of {datasets}, not {shown(dataset)}; take its surface")
@@ -114,7 +116,7 @@ def read_cells(cursor: VtkCursor, dataset: bytes) -> VtkSurface:
         if keyword == b"METADATA":
             cursor.skip_metadata()
         elif keyword == b"FIELD":
-            Attributes(cursor, {}, {}).field(words)
+            before.field(words)
         elif keyword == b"POINTS":
             coordinates = read_points(cursor, words)
         elif coordinates is None:
@@ -404,8 +406,8 @@ BYTES_OF_NODE: Final = 340
 VECTORS: Final = (b"ORIGIN", b"SPACING", b"ASPECT_RATIO")
 
 
-def read_grid(cursor: VtkCursor, dataset: bytes) -> VtkSurface:
-    """The layer of a grid, or the outer surface of its volume. Raises InputError."""
+def read_grid(cursor: VtkCursor, dataset: bytes, before: Attributes) -> VtkSurface:
+    """The layer of a grid, or the outer surface of its volume. `before` skips a FIELD. Raises InputError."""
     dimensions: tuple[int, ...] | None = None
     points: Floats | None = None
     axes: dict[bytes, Floats] = {}
@@ -415,7 +417,7 @@ def read_grid(cursor: VtkCursor, dataset: bytes) -> VtkSurface:
         if keyword == b"METADATA":
             cursor.skip_metadata()
         elif keyword == b"FIELD":
-            Attributes(cursor, {}, {}).field(words)
+            before.field(words)
         elif keyword == b"DIMENSIONS":
             dimensions = _dimensions(cursor, words, dataset)
         elif keyword in VECTORS and len(words) == 4:

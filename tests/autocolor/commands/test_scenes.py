@@ -51,6 +51,16 @@ def test_other_arguments_are_wrong_usage(arguments: tuple[str, ...]) -> None:
     assert CliRunner().invoke(echo, arguments).exit_code == 2
 
 
+@pytest.mark.parametrize("command", ["render", "show --recover --to tcp://127.0.0.1:1"])
+@pytest.mark.parametrize(("option", "value"), [("--up", "y"), ("--scale", "0.001")])
+def test_an_up_axis_and_a_scale_come_with_a_scene(command: str, option: str, value: str, run: Run) -> None:
+    refused = run(*command.split(), option, value)
+    assert refused.code == 2
+    assert refused.err == (
+        f"autocolor: {option} must come with a mesh file as SCENE; name a file, or leave {option} out\n"
+    )
+
+
 def test_a_scene_is_read_without_a_word_where_nothing_is_repaired(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -70,7 +70,7 @@ def test_a_picture_is_shown_once_on_a_display_behind_a_port(tmp_path: Path, run:
     mesh = tmp_path / "square.obj"
     mesh.write_text(SQUARE)
     ran = run("show", str(mesh), "--to", server.address, "--once")
-    assert ran == (0, "", f"shown on {server.address}\n")
+    assert ran == (0, "", f"reading {mesh}\nshown on {server.address}\n")
     here = Ramtek9300()
     Studio(read_scene(mesh), here)
     assert (server.display.field() == here.field()).all()
@@ -120,7 +120,9 @@ def test_paints_are_brought_to_a_display_elsewhere(
 def test_a_display_that_is_not_there_is_told(folder: Path, run: Run) -> None:
     ran = run("show", "scene", "--to", "tcp://127.0.0.1:1")
     assert ran.code == 69
-    assert ran.err.startswith("autocolor: a display must listen at tcp://127.0.0.1:1, and it is not reached")
+    assert ran.err.startswith(
+        "reading scene\nautocolor: a display must listen at tcp://127.0.0.1:1, and it is not reached"
+    )
 
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows ends programs without a signal")

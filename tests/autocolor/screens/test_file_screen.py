@@ -208,7 +208,7 @@ def test_a_folder_that_is_gone_since_is_refused(hand: Hand, folder: Path) -> Non
 
 def test_a_session_in_a_folder_that_is_gone_still_shows_its_screen(tmp_path: Path) -> None:
     (tmp_path / "gone").mkdir()
-    hand = hand_at(tmp_path / "gone", "kept")
+    hand = hand_at(tmp_path / "gone", "variants")
     (tmp_path / "gone").rmdir()
     hand.pick("< picture")
     hand.open_menu()
@@ -261,7 +261,7 @@ def test_a_user_elsewhere_sees_no_path_of_the_machine(hand: Hand, folder: Path) 
 def test_the_user_of_the_machine_goes_up_and_opens_recent_files(folder: Path) -> None:
     note_file(folder.parent / "outside")
     note_file(folder / "gone")
-    hand = hand_at(folder, "kept")
+    hand = hand_at(folder, "variants")
     hand.viewer.session.is_at_hand = True
     hand.pick("< picture")
     hand.open_menu()

@@ -18,7 +18,7 @@ from tests.autocolor.screens.boxes import boxes
 from tests.autocolor.widgets.drawing import checksum
 
 PAGES = {
-    "picture": 2590435057,
+    "picture": 3671235257,
     "light and view": 3442920221,
     "lights": 2635481227,
     "reflectance": 571573069,
@@ -26,7 +26,7 @@ PAGES = {
     "blending": 4232246749,
     "mapping": 2296462326,
     "scalar": 648425415,
-    "kept": 3802267977,
+    "variants": 378967624,
     "history": 158829111,
     "file": 2987804811,
     "explain": 4211328274,

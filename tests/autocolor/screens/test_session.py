@@ -372,7 +372,7 @@ def test_a_comparison_says_how_the_present_state_differs(hand: Hand) -> None:
     release(hand)
     hand.viewer.studio.keep_variant("A")
     hand.open_menu()
-    hand.pick("kept")
+    hand.pick("variants")
     hand.pick("compare")
     assert hand.viewer.message == "shown: variant A; now the same"
 
@@ -516,7 +516,7 @@ def test_the_message_stands_as_long_as_the_other_state_does(hand: Hand) -> None:
 
 def go_to_kept(hand: Hand) -> None:
     hand.open_menu()
-    hand.pick("kept")
+    hand.pick("variants")
 
 
 @pytest.fixture

@@ -20,7 +20,7 @@ from tests.autocolor.screens.hand import Hand
 
 @pytest.fixture
 def hand(tmp_path: Path) -> Hand:
-    return hand_at(tmp_path, "kept")
+    return hand_at(tmp_path, "variants")
 
 
 def keep(hand: Hand, number: int) -> None:
@@ -157,7 +157,7 @@ def test_it_opens_at_the_page_of_the_last_variant(hand: Hand) -> None:
         hand.viewer.studio.keep_variant()
     hand.pick("< picture")
     hand.open_menu()
-    hand.pick("kept")
+    hand.pick("variants")
     assert names(hand) == ["Q"]
 
 
@@ -185,7 +185,7 @@ def test_a_long_name_is_cut_within_its_place(hand: Hand) -> None:
 
 
 def test_a_small_picture_that_is_refused_is_black(tmp_path: Path) -> None:
-    hand = hand_at(tmp_path, "kept")
+    hand = hand_at(tmp_path, "variants")
     # A strip between the middles of two pixels of the picture, where the small one has the middle of a pixel.
     pixel = 2.0 / 480
     left = (10.0 - 320) * pixel

@@ -223,7 +223,7 @@ def test_up_scale_metadata_fields_and_line_ends_are_understood(tmp_path: Path, e
     )
     report = read(tmp_path, data.replace(b"\n", ending), Placement("y", 2.0))
     assert report.mesh.coordinates[2].tolist() == [2, 0, 2]
-    assert report.repairs == ()
+    assert report.repairs == ("thing.vtk: skipped arrays that are of no node or cell: 1",)
 
 
 GOOD = VtkWriter("POLYDATA").points().cells("POLYGONS", [[0, 1, 2, 3]]).data
@@ -464,9 +464,11 @@ def test_data_of_the_whole_file_are_skipped_before_a_grid(tmp_path: Path, datase
     at = data.index(b"DIMENSIONS")
     for name, contents in (("a.vtk", data), ("b.vtk", start + data[at:])):
         (tmp_path / name).write_bytes(contents)
-    plain, whole = (read_vtk(tmp_path / name).mesh for name in ("a.vtk", "b.vtk"))
-    assert (plain.coordinates == whole.coordinates).all()
-    assert (plain.node_numbers == whole.node_numbers).all()
+    plain, whole = (read_vtk(tmp_path / name) for name in ("a.vtk", "b.vtk"))
+    assert (plain.mesh.coordinates == whole.mesh.coordinates).all()
+    assert (plain.mesh.node_numbers == whole.mesh.node_numbers).all()
+    told = [repair.replace("b.vtk", "a.vtk") for repair in whole.repairs]
+    assert told == [*plain.repairs, "a.vtk: skipped arrays that are of no node or cell: 1"]
 
 
 def test_a_grid_may_have_more_nodes_than_its_file_has_bytes(tmp_path: Path) -> None:

@@ -162,7 +162,7 @@ def test_a_variant_is_split_as_it_is_compared(tmp_path: Path) -> None:
     for intensity in (0.5, 0.25):
         hand.viewer.session.change_light("key", intensity=intensity)
     hand.open_menu()
-    hand.pick("kept")
+    hand.pick("variants")
     hand.pick("compare")
     split(hand)
     assert hand.viewer.message.startswith("now: key: intensity 1 -> 0.25; ")
