@@ -30,7 +30,6 @@ NOT_RUN = {
     "ramtek serve --unix /tmp/display --window &": "it waits for hosts",
     "ramtek tty /tmp/display -- old_program {}": "it runs a program that the reader has",
     "ramtek serve --port 9300 --window": "it waits for hosts",
-    "ramtek serve --port 9300 --joystick stick &": "it waits for hosts",
     "ramtek serve --port 9300 --joystick stick -o last.png &": "it waits for hosts",
     "ramtek serve --port 9300 --window --record session.ramtek": "it waits for hosts",
 }
