@@ -23,7 +23,6 @@ NOT_RUN = {
     "autocolor view coupe": "it opens a window",
     "autocolor view scenes/coupe --normals": "it opens a window",
     "autocolor view scenes/coupe --paints paints.gpl": "it opens a window",
-    "ramtek play figures/figure-normals.ramtek --loads-per-second 30": "it opens a window",
     "autocolor show scenes/coupe --to tcp://127.0.0.1:9300": "it runs until its user leaves",
     "autocolor show scenes/coupe --to tcp://127.0.0.1:9300 &": "it runs until its user leaves",
     "ramtek play fade.ramtek --loads-per-second 24": "it opens a window",
@@ -57,6 +56,9 @@ INPUTS = {
     + "endsolid housing\n",
     "housing.vtk": "# vtk DataFile Version 3.0\nhousing\nASCII\nDATASET POLYDATA\n"
     f"POINTS 4 float\n{NODES}POLYGONS 4 16\n{POLYGONS}",
+    "car.obj": "".join(f"v {x} {y} {z}\n" for x, y, z in CORNERS) + "g hood\nf 1 2 4\ng floor\nf 1 3 2\n",
+    "tour.csv": 'name,time,view.eye,lights.key.intensity\nstart,0,"[-6.9, -5.1, 2.1]",\n'
+    'low,3,"[-7.5, 0, 0.9]",0.4\nend,4,"[-6.9, 5.1, 2.1]",\n',
 }
 """Files that the reader has, by the names that the documents give them."""
 

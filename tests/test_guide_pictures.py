@@ -24,12 +24,17 @@ DRAWN = [picture for picture in PICTURES if re.search(r"upper_half|played", insp
 """The pictures of the listings in display.md. They have few colors, so no color is lost."""
 
 
-def test_every_picture_is_small_and_in_its_guide() -> None:
-    for picture in PICTURES:
-        path = path_of(picture)
-        guide = GUIDES / f"{picture.__name__.partition('_')[0]}.md"
-        assert f"](images/{path.name})" in guide.read_text("utf-8")
+def test_every_image_is_small_and_in_a_guide() -> None:
+    text = "".join(path.read_text("utf-8") for path in GUIDES.glob("*.md"))
+    for path in (GUIDES / "images").iterdir():
+        assert f"](images/{path.name})" in text, f"remove {path}, or show it"
         assert path.stat().st_size <= MOST_BYTES
+
+
+def test_every_picture_is_in_its_guide() -> None:
+    for picture in PICTURES:
+        guide = GUIDES / f"{picture.__name__.partition('_')[0]}.md"
+        assert f"](images/{path_of(picture).name})" in guide.read_text("utf-8")
 
 
 @pytest.mark.parametrize("picture", SCREENS, ids=lambda picture: picture.__name__)

@@ -1,6 +1,6 @@
 """Animations as files: films, numbered pictures, and streams of instructions that cycle colors.
 
-docs/ANIMATIONS.md lists the formats. `ramtek_emu.films` writes the films.
+docs/guides/paint.md shows each. `ramtek_emu.films` writes the films.
 """
 
 from __future__ import annotations

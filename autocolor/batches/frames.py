@@ -4,7 +4,10 @@
                                     {"surfaces.body.object_color": "navy"}], 48)
     around = autocolor.frames(scene, [], 72, turn=360)
 
-The kind of a column interpolates its values (see `Kind.between`); docs/ANIMATIONS.md has a table.
+The kind of a column interpolates its values (see `Kind.between`). Numbers, limits, colors, points and curves
+of equally many points go straight, and whole numbers are rounded half up. A direction turns along a great
+circle. The eye of a view with a target turns around it: the azimuth goes the shortest way, elevation and
+distance are linear. Names, switches and choices hold, and so does a value that is absent in one variant.
 """
 
 from __future__ import annotations

@@ -1,6 +1,7 @@
 """Tables of variants, from Python, CSV, JSON, or lists of values; and tables of results.
 
-A column is a key, as after `--set`. The columns `name` and `time` are optional. docs/BATCHES.md has examples.
+A column is a key, as after `--set`. The columns `name` and `time` are optional.
+docs/guides/paint.md has examples.
 """
 
 from __future__ import annotations

@@ -20,7 +20,17 @@ and the log says so: triangles alone as (polygons, 3), float32, int32, tables by
 angle is the file's; otherwise they are computed. If you change nodes or polygons, delete the files of normals
 and planes, or convert the folder again. Nothing is ever repaired.
 
+`tables.json` is as `write_npy_tables` writes it. `planes` is true if the three files of planes exist, false
+if polygons share no planes, and null if planes are to be computed when the mesh is opened:
+
+    {"format": "autocolor npy tables 1", "part_names": ["hood", "roof"], "crease_angle": 40.0,
+     "scalars": [{"name": "stress", "of": "node"}], "planes": null}
+
 All numbers are checked once when the tables are opened, a few pages at a time.
+
+Measured with `python -m benchmarks mapped_tables`: from opening ten million quads to the first picture 1.24 s
+and 168 MB besides the tables; without normals in the folder, opening takes 18 s and 1.4 GB. Conversion takes
+17 s and 333 MB, and about 390 bytes a polygon if all polygons lie in one plane.
 """
 
 from __future__ import annotations
