@@ -1,10 +1,12 @@
 """Every command in a code block of README.md and docs ends well, in the order of its document.
 
-In the guides, Python and the tables of scene files are run, too, in the same folder.
+In the guides, Python and the tables of scene files are run, too, in the same folder. Listings are saved under
+the names in their first lines.
 """
 
 from __future__ import annotations
 
+import doctest
 import re
 import shutil
 from contextlib import chdir
@@ -15,15 +17,20 @@ import pytest
 from autocolor import read_scene
 from docs.generate.blocks import Command, blocks_of, commands_of
 from docs.generate.commands import ROOT, here, process
+from tests.ramtek_emu.serving import serving
 
 NOT_RUN = {
     "autocolor view coupe": "it opens a window",
     "autocolor view scenes/coupe --normals": "it opens a window",
     "autocolor view scenes/coupe --paints paints.gpl": "it opens a window",
+    "autocolor show scenes/coupe --to tcp://127.0.0.1:9300": "it runs until its user leaves",
+    "autocolor show scenes/coupe --to tcp://127.0.0.1:9300 &": "it runs until its user leaves",
+    "ramtek play fade.ramtek --loads-per-second 24": "it opens a window",
     "ramtek serve --unix /tmp/display --window &": "it waits for hosts",
     "ramtek tty /tmp/display -- old_program {}": "it runs a program that the reader has",
     "ramtek serve --port 9300 --window": "it waits for hosts",
-    "ramtek serve --port 9300 --joystick stick &": "it waits for hosts",
+    "ramtek serve --port 9300 --joystick stick -o last.png &": "it waits for hosts",
+    "ramtek serve --port 9300 --window --record session.ramtek": "it waits for hosts",
 }
 """The commands that this test cannot run, each with the reason."""
 
@@ -34,6 +41,7 @@ POLYGONS = "".join(f"3 {a} {b} {c}\n" for a, b, c in FACES)
 
 INPUTS = {
     "looks.csv": "name,surfaces.body.object_color,lights.key.intensity\nracing,#b01020,\nevening,navy,0.5\n",
+    "session.ramtek": "\0\7",
     "paints.csv": "name,color\nsignal red,#a52019\n",
     "engine.ply": "ply\nformat ascii 1.0\nelement vertex 4\n"
     + "".join(f"property float {axis}\n" for axis in "xyz")
@@ -60,6 +68,9 @@ DOCUMENTS = {
     for path in (ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md")))
     if (blocks := blocks_of(path.read_text("utf-8")))
 }
+
+THE_DISPLAY = "tcp://127.0.0.1:9300"
+"""The address of the display that the reader has started."""
 
 GUIDES = {path.name for path in (ROOT / "docs" / "guides").glob("*.md")}
 """The documents whose Python and scene files are run, too."""
@@ -94,27 +105,42 @@ def ended(line: str, folder: Path) -> tuple[int, str, str]:
 def test_every_code_block_of_a_document_ends_well(document: str, tmp_path: Path) -> None:
     make_inputs(tmp_path)
     names: dict[str, object] = {}
-    for block in DOCUMENTS[document]:
-        if document in GUIDES and block.language == "python":
-            with chdir(tmp_path):
-                exec(compile(block.text, document, "exec"), names)
-        elif document in GUIDES and block.language == "toml":
-            run_scene_file(block.text, tmp_path)
-        else:
-            for command in commands_of(block):
-                run(command, tmp_path)
+    with serving() as server:
+        for block in DOCUMENTS[document]:
+            text = block.text
+            if document in GUIDES and block.language in ("python", "pycon"):
+                with chdir(tmp_path):
+                    run_python(text.replace(THE_DISPLAY, server.address), document, names)
+            elif document in GUIDES and block.language == "toml":
+                run_scene_file(text, tmp_path)
+            elif document in GUIDES and text.startswith("; "):
+                (tmp_path / text[2:].split("\n")[0]).write_text(text, "utf-8")
+            else:
+                for line, output in commands_of(block):
+                    if line not in NOT_RUN:
+                        run(Command(line.replace(THE_DISPLAY, server.address), output), tmp_path)
 
 
 def run(command: Command, folder: Path) -> None:
     """Run a command as the reader does, and compare its output if the document shows it."""
     line, output = command
-    if line in NOT_RUN:
-        return
     if output is not None and line.startswith("ramtek list "):
         (folder / line.split()[2]).write_bytes(listed_words(output))
     code, out, err = ended(line, folder)
     assert code == 0, f"{line} ended with {code}: {err}"
     assert output is None or out == output, line
+
+
+def run_python(text: str, document: str, names: dict[str, object]) -> None:
+    """Run statements with the names of a document. After a prompt, ">>> ", they must give what is below."""
+    if not text.startswith(">>> "):
+        exec(compile(text, document, "exec"), names)
+        return
+    examples = doctest.DocTestParser().get_doctest(text, {}, document, None, None)
+    examples.globs = names
+    report: list[str] = []
+    doctest.DocTestRunner().run(examples, out=report.append, clear_globs=False)
+    assert not report, "".join(report)
 
 
 def run_scene_file(text: str, folder: Path) -> None:

@@ -1,5 +1,8 @@
 from __future__ import annotations
 
+import pkgutil
+import re
+
 import pytest
 
 from docs.generate.fidelity import (
@@ -103,3 +106,11 @@ class Box:
         ("Hardware", "m", "Box", "LIN, f(x)."),
         ("Departs", "m", "", "it opens twice."),
     ]
+
+
+def test_the_guide_to_the_paper_names_modules_and_functions_of_the_program() -> None:
+    text = (ROOT / "docs" / "guides" / "paper.md").read_text("utf-8")
+    names = re.findall(r"`(autocolor(?:\.\w+)+)`", text)
+    assert len(names) > 15
+    for name in names:
+        pkgutil.resolve_name(name)

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
 from hypothesis import given
 from hypothesis import strategies as st
@@ -97,3 +98,9 @@ def test_a_name_that_stands_for_a_range_ends_in_its_opcode() -> None:
 def test_each_name_is_a_row_of_the_table_that_does_nothing() -> None:
     rows = {(format.opcode, format.name, format.meaning) for format in FORMATS if format.unimplemented}
     assert rows == set(UNIMPLEMENTED)
+
+
+def test_the_guide_to_the_display_names_every_instruction_that_is_done() -> None:
+    guide = Path(__file__).parents[3] / "docs" / "guides" / "display.md"
+    names = set(re.findall(r"[A-Z]+", guide.read_text("utf-8")))
+    assert {row.name for row in SUBSTANTIATED} <= names

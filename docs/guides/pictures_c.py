@@ -1,0 +1,189 @@
+"""The pictures of display.md, paper.md and elsewhere.md: `python -m docs.guides.pictures_c` writes them.
+
+As in `pictures`, each function returns the picture that is named after it. The display draws the pictures of
+display.md from the listings and the examples of that guide.
+"""
+
+from __future__ import annotations
+
+import doctest
+from collections.abc import Callable, Sequence
+from functools import cache
+from typing import Any, Final
+
+import numpy as np
+
+import autocolor
+from docs.generate.blocks import blocks_of
+from docs.guides.pictures import GUIDES, write
+from ramtek_emu import Ramtek9300
+from ramtek_emu.instruction_set.assembler import assemble
+from scenes.figures import Field, captioned, click, open_viewer, point_at
+
+
+@cache
+def listings() -> dict[str, str]:
+    """The listings of display.md, by the names of their files: `; areas.txt` is the first line of "areas"."""
+    blocks = blocks_of((GUIDES / "display.md").read_text("utf-8"))
+    return {
+        block.text[2:].partition(".txt")[0]: block.text for block in blocks if block.text.startswith("; ")
+    }
+
+
+@cache
+def names_after(guide: str) -> dict[str, Any]:
+    """The names that the examples of a guide leave, such as `display`."""
+    blocks = blocks_of((GUIDES / f"{guide}.md").read_text("utf-8"))
+    text = "\n".join(block.text for block in blocks if block.language == "pycon")
+    examples = doctest.DocTestParser().get_doctest(text, {}, guide, None, None)
+    doctest.DocTestRunner().run(examples, clear_globs=False)
+    return examples.globs
+
+
+def played(*names: str, more: str = "") -> Ramtek9300:
+    """The display after some listings, and after `more` lines of a listing."""
+    display = Ramtek9300()
+    lines = [line for name in names for line in listings()[name].splitlines()]
+    stream = b"".join(assemble([*lines, *more.splitlines()]))
+    display.send(np.frombuffer(stream, "<u2"))
+    return display
+
+
+def upper_half(name: str) -> Field:
+    """The upper half of the field that a listing leaves on the display that is switched on."""
+    return played("colors", name).field()[:240]
+
+
+def display_areas() -> Field:
+    """Windows, planes and the write window."""
+    return upper_half("areas")
+
+
+def display_lines() -> Field:
+    """Linked and unlinked lines, points, textures."""
+    return upper_half("lines")
+
+
+def display_curves() -> Field:
+    """Circles, filled areas, conics."""
+    return upper_half("curves")
+
+
+def display_text() -> Field:
+    """Text, and characters that were loaded."""
+    return upper_half("text")
+
+
+def display_images() -> Field:
+    """Images, rasters, pixels and copies."""
+    return upper_half("images")
+
+
+def display_cursors() -> Field:
+    """Two cursors over a box."""
+    return upper_half("cursors")
+
+
+def display_view() -> Field:
+    """The page of text by view.txt, and again with the lines from the bottom."""
+    fields = (played("colors", "text", "view", more=more).field() for more in ("", "SELVO #1"))
+    return beside(*(field[::2, ::2] for field in fields))
+
+
+def display_ball() -> Field:
+    """The ball of display.md in its two colors."""
+    names = names_after("display")
+    return beside(names["red"][::2, ::2], names["blue"][::2, ::2])
+
+
+def display_stripes() -> Field:
+    """The field of display.md that is drawn with one entry."""
+    field: Field = names_after("display")["stripes"]
+    return field[::2, ::2]
+
+
+def beside(*fields: Field, gap: int = 8) -> Field:
+    """Fields of one height, side by side with white gaps."""
+    white = np.full((len(fields[0]), gap, 3), 255, np.uint8)
+    parts = [part for field in fields for part in (white, field)][1:]
+    return np.hstack(parts)
+
+
+def panel(scene: autocolor.Scene, caption: str, lines: int = 150, elements: int = 200) -> Field:
+    """A small picture of a scene with smooth edges, and a caption below it."""
+    field = autocolor.image(scene, autocolor.render(scene, lines, elements, smooth=3))
+    return captioned(field, caption, size=1)
+
+
+def paper_terms() -> Field:
+    """The coupe by diffuse light, by specular light, and by both."""
+    car = autocolor.demo().replace(exposure={"object": (0, 1.05)})
+    matte, mirrors = car.replace(ambient=0), car.replace(ambient=0)
+    for surface in car.surfaces:
+        matte = matte.with_surface(surface.name, specular=0.0)
+        mirrors = mirrors.with_surface(surface.name, diffuse=0.0)
+    return beside(
+        panel(matte, "intensity D cos(I)"),
+        panel(mirrors, "intensity S cos^N(E)"),
+        panel(car, "their sum, with the ambient"),
+    )
+
+
+def paper_controls() -> Field:
+    """The wall of paper.md under one lamp with several controls."""
+    wall = names_after("paper")["wall"].replace(exposure={"object": (0, 1.5)})
+    wall = wall.with_view(field_of_view=28)
+    flap = {"z": {"minimum": -0.1, "maximum": 0.5}}
+    every = {"concentration": 10, "cone_angle": 20, "flaps": flap}
+    changes: tuple[tuple[str, dict[str, Any]], ...] = (
+        ("point source, C = 0", {}),
+        ("C = 10", {"concentration": 10}),
+        ("C = 40", {"concentration": 40}),
+        ("Z flaps at -0.1 and 0.5", {"flaps": flap}),
+        ("cone of 20 degrees", {"cone_angle": 20}),
+        ("all of them", every),
+    )
+    panels = [panel(wall.with_light("lamp", **change), text) for text, change in changes]
+    return np.vstack([beside(*panels[:3]), beside(*panels[3:])])
+
+
+def paper_words() -> Field:
+    """The words of the coupe as grays, and their colors by the table."""
+    display = Ramtek9300()
+    autocolor.Studio(autocolor.demo(), display)
+    grays = np.repeat((display.words[::2, ::2, np.newaxis] // 4).astype(np.uint8), 3, axis=2)
+    return beside(
+        captioned(grays, "words, 0 black to 1023 white", 1), captioned(display.field()[::2, ::2], "colors", 1)
+    )
+
+
+def paper_blends() -> Field:
+    """The entries of the coupe's body in three blends, above the picture with them."""
+    parts = []
+    for blend in (1.0, 0.5, 0.0):
+        car = autocolor.demo().with_paint("body", object_color="#8c1a22", light_color="#f0e8d8", blend=blend)
+        studio = autocolor.Studio(car, Ramtek9300())
+        entries = studio.display_image.entries_of(car.surface("body"))
+        bar = entries[np.linspace(0, len(entries) - 1, 200).round().astype(int)]
+        parts.append(np.vstack([np.tile(bar, (24, 1, 1)), panel(car, f"blend {blend:g}")]))
+    return beside(*parts)
+
+
+def elsewhere_lights() -> Field:
+    """The studio on a display, with the menu that the pointer brings at the right edge."""
+    with open_viewer("coupe", "lights") as (viewer, display):
+        click(viewer, "key")
+        point_at(viewer, 632, 200)
+        return display.field()
+
+
+PICTURES: Final[Sequence[Callable[[], Field]]] = (
+    display_areas, display_lines, display_curves, display_text, display_images, display_cursors,
+    display_view, display_ball, display_stripes,
+    paper_terms, paper_controls, paper_words, paper_blends,
+    elsewhere_lights,
+)  # fmt: skip
+
+
+if __name__ == "__main__":
+    write(PICTURES)
