@@ -1,8 +1,7 @@
-"""The pictures of the first pages: `python -m scenes.title_picture` writes three files of docs/.
+"""The moving picture of the README, docs/recolor.webp: `python -m scenes.title_picture` writes it.
 
-recolor.webp, the moving picture of the README, has the coupe in several paints, above the lookup table. The
-picture is rendered once: between two frames, only entries of the table differ. coupe.png and bracket.png show
-one scene each in two ways.
+It has the coupe in several paints, above the lookup table. The picture is rendered once: between two
+frames, only entries of the table differ.
 """
 
 from __future__ import annotations
@@ -17,13 +16,9 @@ from autocolor.arrays import Bytes
 from autocolor.files.settings import scene_with
 from autocolor.images import averaged, display_image
 from autocolor.mapping.ranges import WORDS
-from ramtek_emu import Ramtek9300
 from ramtek_emu.films import write_film
-from ramtek_emu.png import save_png
-from scenes.figure_part import COLORS, EXPOSURE, STRESS
-from scenes.figures import open_studio, read_scene
 
-FOLDER: Final = Path(__file__).parents[1] / "docs"
+PATH: Final = Path(__file__).parents[1] / "docs" / "recolor.webp"
 
 COLORS_OF_FILM: Final = ("#b01020", "#2348c8", "#c9ced6", "#11603a", "#b01020")
 FRAMES: Final = 24
@@ -52,20 +47,9 @@ def recolored() -> list[Bytes]:
 
 
 def main() -> None:
-    """Write the moving picture, and two pictures of scenes that are shown in two ways, side by side."""
-    FOLDER.mkdir(exist_ok=True)
+    """Write the moving picture."""
     frames = recolored()
-    write_film(FOLDER / "recolor.webp", frames, len(frames), fields_per_second=RATE, overwrite=True)
-    display = Ramtek9300()
-    coupe = open_studio(read_scene("coupe"), display)
-    red = display.field()
-    coupe.recolor("body", object_color="#2348c8", blend=0.6)
-    save_png(np.hstack([red, display.field()]), FOLDER / "coupe.png")
-    bracket = open_studio(read_scene("bracket"), display)
-    metal = display.field()
-    bracket.edit(bracket.scene.replace(exposure=EXPOSURE))
-    bracket.scalar(**STRESS, scale=COLORS, shades=20)
-    save_png(np.hstack([metal, display.field()]), FOLDER / "bracket.png")
+    write_film(PATH, frames, len(frames), fields_per_second=RATE, overwrite=True)
 
 
 if __name__ == "__main__":

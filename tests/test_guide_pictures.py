@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from docs.guides import pictures, pictures_c
+from docs.guides import pictures, pictures_of_displays
 from docs.guides.pictures import GUIDES, path_of
 from scenes.figures import Field
 
-PICTURES = (*pictures.PICTURES, *pictures_c.PICTURES)
+PICTURES = (*pictures.PICTURES, *pictures_of_displays.PICTURES)
 MOST_BYTES = 60_000
 CLOSE = 1.0
 """The mean difference of components. Fewer colors make 0.25 of it, and a missing drag at least 5."""

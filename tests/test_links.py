@@ -45,7 +45,7 @@ def test_a_link_to_a_missing_file_or_heading_is_lost() -> None:
     assert is_lost("README.md", "docs/COLUMNS.md#eye")
     assert is_lost("docs/COLUMNS.md", "#eye")
     assert is_lost("docs/COLUMNS.md", "docs/COLUMNS.md")
-    assert is_lost("README.md", "docs/coupe.png#view")
+    assert is_lost("README.md", "docs/recolor.webp#view")
     assert is_lost("README.md", "docs")
 
 

@@ -1,8 +1,8 @@
 """The pictures of the guides on paint, meshes and scalars, made by the commands that the guides show.
 
-`python -m docs.guides.pictures_b` writes them all to docs/guides/images, in about ten seconds, and
-`python -m docs.guides.pictures_b scalar_hills` writes one. The panels are smaller than the pictures of the
-commands. `paint_page` needs playwright and Debian's Chromium.
+`python -m docs.guides.pictures_of_scenes` writes them all to docs/guides/images, in about ten seconds, and
+`python -m docs.guides.pictures_of_scenes scalar_hills` writes one. The panels are smaller than the
+pictures of the commands. `paint_page` needs playwright and Debian's Chromium.
 """
 
 from __future__ import annotations
