@@ -20,7 +20,7 @@ from ramtek_emu.films import write_film
 
 PATH: Final = Path(__file__).parents[1] / "docs" / "recolor.webp"
 
-COLORS_OF_FILM: Final = ("#b01020", "#2348c8", "#c9ced6", "#11603a", "#b01020")
+COLORS_OF_FILM: Final = ("#b12", "#24c", "#ccd", "#164", "#b12")
 FRAMES: Final = 24
 RATE: Final = 8.0
 """The object colors of the body, one after the other; frames, and frames a second."""

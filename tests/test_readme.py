@@ -22,13 +22,13 @@ def test_the_lines_make_the_moving_picture(tmp_path: Path, monkeypatch: pytest.M
     for _ in range(2):
         names: dict[str, Any] = {}
         exec(CODE, names)
-    with Image.open("recolor.webp") as made, Image.open(ROOT / "docs" / "recolor.webp") as shown:
+    with Image.open("car.webp") as made, Image.open(ROOT / "docs" / "recolor.webp") as shown:
         for number in range(FRAMES):
             made.seek(number)
             shown.seek(number)
             assert (np.array(made.convert("RGB")) == np.array(shown.convert("RGB"))[:LINES]).all(), number
     with Image.open("blue.png") as blue:
-        assert (np.array(blue) == names["display"].field()).all()
+        assert (np.array(blue) == names["studio"].display_image.colors).all()
 
 
 def test_the_lines_are_ten() -> None:
