@@ -599,6 +599,10 @@ export async function mount(root, picture, options = {}) {
       });
       return queue;
     },
+    /** Show a sentence of the host. @param {string} sentence */
+    say(sentence) {
+      queue = queue.then(() => built.say(sentence));
+    },
     /** Remove the interface and its listeners. */
     destroy() {
       built.destroy();
@@ -619,7 +623,7 @@ async function build(root, picture, options) {
   root.classList.toggle("autocolor-page", !hosted);
   if (picture.format !== FORMAT) {
     root.replaceChildren(make("p", { role: "alert" }, `This file has a picture in the format “${picture.format}”, and this page reads “${FORMAT}”.`));
-    return { update: async () => false, destroy: () => root.replaceChildren() };
+    return { update: async () => false, say: () => {}, destroy: () => root.replaceChildren() };
   }
   const { lines, elements } = picture;
   const words = await unpackWords(picture.words, lines, elements);
@@ -807,6 +811,7 @@ async function build(root, picture, options) {
       if (structureOf(changed) !== structureOf(picture)) return false;
       if (hasWords) words.set(await unpackWords(changed.words, lines, elements));
       if (hasWords) glass.look(glass.whole);
+      if (hasWords) desk.say(`The studio sent ${bytesOf(changed.words).length.toLocaleString("en")} bytes of words.`);
       const shown = () => {
         picture = desk.picture = changed;
         desk.state = stateOf(changed);
@@ -818,6 +823,7 @@ async function build(root, picture, options) {
       else shown();
       return true;
     },
+    say: desk.say,
     destroy() {
       keys.removeEventListener("keydown", onKey);
       keys.removeEventListener("keyup", onKey);
@@ -1198,21 +1204,74 @@ function download(blob, name) {
   setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
 }
 
-/** The widget of a notebook, as anywidget asks for it. */
+/** Milliseconds until a studio counts as busy. */
+const PATIENCE = 3000;
+
+/** The widget of a notebook, as anywidget asks for it. Its host is a studio; see `notebook.py`. */
 export default {
   /** @param {{model: any, el: HTMLElement}} context */
   async render({ model, el }) {
-    const picture = { ...model.get("picture"), words: model.get("words"), entries: model.get("entries") };
-    const handle = await mount(el, picture, {
-      edit: (edits, sameStep) => model.send({ edit: edits, same_step: sameStep }),
-      undo: () => model.send({ undo: 1 }),
-      redo: () => model.send({ redo: 1 }),
+    /** The messages that the studio has not answered; only the first is sent. @type {any[]} */
+    const messages = [];
+    /** The traits that changed since they were shown. @type {Set<string>} */
+    const changed = new Set();
+    const shape = () => structureOf(model.get("picture"));
+
+    function send(/** @type {any} */ message) {
+      const last = messages.length > 1 ? messages[messages.length - 1] : {};
+      if (message.same_step && last.edit) Object.assign(last.edit, message.edit);
+      else if (messages.push(message) === 1) sendFirst();
+    }
+
+    function sendFirst() {
+      const [message] = messages;
+      if (!message) return;
+      const busy = () => message === messages[0] && handle.say("The studio has not answered yet; it may be busy.");
+      setTimeout(busy, PATIENCE);
+      try {
+        model.send(message);
+      } catch {
+        messages.length = 0;
+        handle.say("The kernel of the notebook is gone, so edits do not reach the studio.");
+      }
+    }
+
+    /** Show what the studio sent. While messages wait for answers, controls and entries are ahead of it. */
+    function show() {
+      const isAhead = messages.length > 0 && shape() === shown;
+      const names = [...changed].filter((name) => name === "words" || !isAhead);
+      if (names.length === 0) return;
+      names.forEach((name) => changed.delete(name));
+      shown = shape();
+      handle.update(Object.fromEntries(names.map((name) => [name, model.get(name)])));
+    }
+
+    function hear(/** @type {any} */ message) {
+      if (typeof message?.answer !== "string" || messages.length === 0) return;
+      messages.shift();
+      sendFirst();
+      if (message.answer) ["picture", "entries"].forEach((name) => changed.add(name));
+      show();
+      if (message.answer) handle.say(message.answer);
+    }
+
+    const traits = ["picture", "words", "entries"];
+    const [picture, words, entries] = traits.map((name) => model.get(name));
+    let shown = shape();
+    const handle = await mount(el, { ...picture, words, entries }, {
+      edit: (edits, sameStep) => send({ edit: edits, same_step: sameStep }),
+      undo: () => send({ undo: 1 }),
+      redo: () => send({ redo: 1 }),
     });
-    const names = ["picture", "words", "entries"];
-    const listeners = names.map((name) => () => handle.update({ [name]: model.get(name) }));
-    names.forEach((name, at) => model.on(`change:${name}`, listeners[at]));
+    const listeners = traits.map((name) => () => {
+      changed.add(name);
+      queueMicrotask(show);
+    });
+    traits.forEach((name, at) => model.on(`change:${name}`, listeners[at]));
+    model.on("msg:custom", hear);
     return () => {
-      names.forEach((name, at) => model.off(`change:${name}`, listeners[at]));
+      traits.forEach((name, at) => model.off(`change:${name}`, listeners[at]));
+      model.off("msg:custom", hear);
       handle.destroy();
     };
   },
