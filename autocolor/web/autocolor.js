@@ -1226,7 +1226,7 @@ export default {
     function sendFirst() {
       const [message] = messages;
       if (!message) return;
-      const busy = () => message === messages[0] && handle.say("The studio has not answered yet; it may be busy.");
+      const busy = () => message === messages[0] && handle.say("The studio has not answered yet: its kernel is busy, or gone.");
       setTimeout(busy, PATIENCE);
       try {
         model.send(message);
@@ -1255,6 +1255,8 @@ export default {
       if (message.answer) handle.say(message.answer);
     }
 
+    // JupyterLab takes no key as a shortcut from an element with this attribute; otherwise "b" would insert a cell.
+    el.addEventListener("focusin", ({ target }) => target instanceof HTMLElement && (target.dataset.lmSuppressShortcuts = "true"));
     const traits = ["picture", "words", "entries"];
     const [picture, words, entries] = traits.map((name) => model.get(name));
     let shown = shape();

@@ -593,6 +593,8 @@ def test_a_drag_in_a_browser_sends_as_fast_as_the_studio_answers_and_is_one_step
             tell("change");
         }"""
     )
+    red.focus()
+    assert red.get_attribute("data-lm-suppress-shortcuts") == "true"
     # The first edit, and one for all that came before its answer.
     assert shown.carry() == 2
     assert studio.scene.surface("body").paint.object_color[0] == 89
