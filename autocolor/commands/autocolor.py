@@ -28,6 +28,7 @@ class AutocolorGroup(CommandGroup):
         "recolor": "change the colors of a saved picture, without rendering it again",
         "palette": "write the colors of a surface's levels to a palette file",
         "sweep": "make pictures of many variants of a scene or a picture",
+        "page": "write a page that recolors a picture in any browser",
         "animate": "write the frames between variants as a film or a stream",
         "view": "show a scene in an interactive window",
         "info": "print the counts, sizes and ranges of a scene",

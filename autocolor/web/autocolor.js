@@ -33,6 +33,7 @@
 
 export const FORMAT = "autocolor page 1";
 const ENTRIES = 1024;
+const COUNT = new Intl.NumberFormat("en");
 const PAINT = /** @type {const} */ (["object_color", "light_color", "blend", "light_percentage", "ramp"]);
 
 // ---------------------------------------------------------------------------------------------------------
@@ -105,7 +106,7 @@ export function inDigits(color) {
 function cssColor(text) {
   const bare = /^[0-9a-f]{3}([0-9a-f]{3})?$/i.test(text.trim()) ? `#${text.trim()}` : text.trim();
   if (!CSS.supports("color", bare) || /^(current|inherit|initial|unset|revert)/i.test(bare)) return "";
-  const context = make("canvas", { width: 1, height: 1 }).getContext("2d");
+  const context = make("canvas", { width: 1, height: 1 }).getContext("2d", { willReadFrequently: true });
   if (!context) return "";
   context.fillStyle = bare;
   context.fillRect(0, 0, 1, 1);
@@ -218,27 +219,28 @@ function countUpTo(numbers, value) {
 const CELLS = 4096;
 
 /**
- * The function from an intensity to its level: the number of thresholds that are at most the intensity.
+ * Where to begin the search for the level of an intensity: equal cells between the lowest and the highest
+ * threshold, each with a level that is at most its own. The thresholds end with infinity.
  *
- * Equal cells between the ends know the level at which to begin. Measured on the coupe: a third of the time of
- * a binary search.
- * @param {Float32Array} thresholds @returns {(intensity: number) => number}
+ * Measured on the coupe: the search takes a third of the time of a binary search.
+ * @param {Float32Array} thresholds
  */
-export function levelsOf(thresholds) {
+function levelSearch(thresholds) {
   const finite = thresholds.filter(Number.isFinite);
   const low = finite[0] ?? 0;
   const scale = finite.length > 1 ? CELLS / (finite[finite.length - 1] - low) : 0;
   // A cell begins at the level of the cell before it, for its own edge is rounded.
   const begin = Uint16Array.from({ length: CELLS + 1 }, (_, cell) =>
-    countUpTo(thresholds, scale ? low + (cell - 1) / scale : -Infinity),
+    scale && cell ? countUpTo(thresholds, low + (cell - 1) / scale) : 0,
   );
-  const last = thresholds.length;
-  return (intensity) => {
-    const cell = (intensity - low) * scale;
-    let level = begin[cell > 0 ? Math.min(cell, CELLS) | 0 : 0];
-    while (level < last && thresholds[level] <= intensity) level++;
-    return level;
-  };
+  return { low, scale, begin, thresholds: Float32Array.of(...thresholds, Infinity) };
+}
+
+/** The rank of a pixel in the tile of ordered dither, 0 to 63. @param {number} line @param {number} element */
+function rankOf(line, element) {
+  let rank = 0;
+  for (let bit = 0; bit < 3; bit++) rank = 4 * rank + [0, 2, 3, 1][2 * ((line >> bit) & 1) + ((element >> bit) & 1)];
+  return rank;
 }
 
 /**
@@ -246,60 +248,82 @@ export function levelsOf(thresholds) {
  * a picture without light planes.
  *
  * The intensity at a point is the ambient light plus the sum of the contributions of the lights that are on.
- * The sum of all lights but one is kept, so that a drag of one strength adds one plane.
+ * The sum of all lights but one is kept, so that a drag of one strength adds one plane. With dither, each level
+ * has 64 steps.
  * @param {Picture} picture @param {Words} words @param {Uint8Array} owner
  * @returns {Promise<((state: State, name: string) => number) | null>}
  */
-async function relighting({ surfaces, lights, elements }, words, owner) {
+export async function relighting({ surfaces, lights, elements }, words, owner) {
   if (!lights || !lights.rows.every((row) => row.plane)) return null;
   const planes = await Promise.all(lights.rows.map((row) => unpackPlane(row.plane ?? "")));
-  const levels = await Promise.all(lights.levels.map(async (each) => levelsOf(new Float32Array((await inflated(each)).buffer))));
+  const searches = await Promise.all(lights.levels.map(async (each) => levelSearch(new Float32Array((await inflated(each)).buffer))));
+  const isDithered = lights.dither;
   const counts = new Uint32Array(surfaces.length + 1);
   for (let at = 0; at < words.length; at++) counts[owner[words[at]]]++;
   const ends = counts.map((_, number) => counts.subarray(1, number + 1).reduce((sum, count) => sum + count, 0));
   const points = new Uint32Array(ends[surfaces.length]);
   /** The lowest word of each point's band. */
   const lowest = new Uint16Array(points.length);
+  /** The rank of each point in its tile of ordered dither. */
+  const ranks = new Uint8Array(isDithered ? points.length : 0);
   const next = ends.slice();
   for (let at = 0; at < words.length; at++) {
     const number = owner[words[at]];
     if (number === 0) continue;
     const { first, shades } = surfaces[number - 1];
     lowest[next[number - 1]] = first + Math.floor((words[at] - first) / shades) * shades;
+    if (isDithered) ranks[next[number - 1]] = rankOf(Math.floor(at / elements), at % elements);
     points[next[number - 1]++] = at;
   }
   const sums = new Float32Array(points.length);
+  const exported = words.slice();
   let summed = "";
 
   return (state, name) => {
     const strengths = lights.rows.map((row) =>
       state[`lights.${row.name}.on`] ? Number(state[`lights.${row.name}.intensity`]) : 0,
     );
+    // The words as exported are exact; the planes have 16 bits.
+    if (lights.rows.every(({ on, intensity }, row) => strengths[row] === (on ? intensity : 0))) {
+      const changed = words.reduce((count, word, at) => count + (word === exported[at] ? 0 : 1), 0);
+      words.set(exported);
+      summed = "";
+      return changed;
+    }
     const chosen = lights.rows.findIndex((row) => row.name === name);
     const others = JSON.stringify([chosen, strengths.map((strength, row) => (row === chosen ? null : strength))]);
-    if (others !== summed) {
+    const isKept = others === summed;
+    if (!isKept) {
       sums.fill(lights.ambient);
       strengths.forEach((strength, row) => {
+        const plane = planes[row];
         if (row === chosen || strength === 0) return;
-        surfaces.forEach((_, number) => {
+        for (let number = 0; number < surfaces.length; number++) {
           const factor = strength * lights.rows[row].units[number];
-          for (let at = ends[number]; at < ends[number + 1]; at++) sums[at] += factor * planes[row][at];
-        });
+          for (let at = ends[number], end = ends[number + 1]; at < end; at++) sums[at] += factor * plane[at];
+        }
       });
       summed = others;
     }
     let changed = 0;
-    surfaces.forEach((_, number) => {
+    for (let number = 0; number < surfaces.length; number++) {
       const factor = strengths[chosen] * lights.rows[chosen].units[number];
       const plane = planes[chosen];
-      const levelOf = levels[number];
-      for (let at = ends[number]; at < ends[number + 1]; at++) {
-        const word = lowest[at] + levelOf(sums[at] + factor * plane[at]);
-        if (words[points[at]] === word) continue;
-        words[points[at]] = word;
-        changed++;
+      const { low, scale, begin, thresholds } = searches[number];
+      for (let at = ends[number], end = ends[number + 1]; at < end; at++) {
+        // A point that the light does not reach keeps its word while only this light changes.
+        if (isKept && plane[at] === 0) continue;
+        const intensity = sums[at] + factor * plane[at];
+        const cell = (intensity - low) * scale;
+        let level = begin[cell < CELLS ? (cell > 0 ? cell | 0 : 0) : CELLS];
+        while (thresholds[level] <= intensity) level++;
+        if (isDithered) level = (level + ranks[at]) >> 6;
+        const word = lowest[at] + level;
+        const place = points[at];
+        changed += words[place] === word ? 0 : 1;
+        words[place] = word;
       }
-    });
+    }
     return changed;
   };
 }
@@ -394,10 +418,11 @@ export function stateOfFragment(fragment, picture, first) {
     } catch {
       key = text = "";
     }
+    const isKey = Object.hasOwn(first, key);
     const row = picture.lights?.rows.find((each) => key === `lights.${each.name}.intensity`);
-    const value = key in first ? valueOf(key, text, row?.most ?? 0) : undefined;
+    const value = isKey ? valueOf(key, text, row?.most ?? 0) : undefined;
     if (value === undefined) {
-      const what = key in first ? `${key} cannot be “${text.slice(0, 40)}”` : `it has no “${(key || pair).slice(0, 40)}”`;
+      const what = isKey ? `${key} cannot be “${text.slice(0, 40)}”` : `it has no “${(key || pair).slice(0, 40)}”`;
       return `The link does not fit this picture: ${what}. Nothing was changed.`;
     }
     state[key] = value;
@@ -426,6 +451,13 @@ export function tableOf(state, first, name) {
 
 /** @typedef {{left: number, top: number, width: number, height: number}} Box */
 
+/** Load entries into a table of colors. @param {Uint32Array} table @param {number} first @param {Bytes} entries */
+function load(table, first, entries) {
+  for (let at = 0, part = 0; part < entries.length; at++, part += 3) {
+    table[first + at] = 0xff000000 | (entries[part + 2] << 16) | (entries[part + 1] << 8) | entries[part];
+  }
+}
+
 /**
  * The canvas of a picture.
  * @param {Picture} picture @param {Words} words @param {Bytes} entries @param {Words | null} legendWords
@@ -442,12 +474,6 @@ function glassOf(picture, words, entries, legendWords) {
   const owner = new Uint8Array(ENTRIES);
   surfaces.forEach(({ first, levels }, number) => owner.fill(number + 1, first, first + levels));
   const boxes = surfaces.map((_, number) => boxOf(words, owner, elements, number + 1));
-
-  function load(/** @type {number} */ first, /** @type {ArrayLike<number>} */ colors) {
-    for (let at = 0; at < colors.length / 3; at++) {
-      table[first + at] = 0xff000000 | (colors[3 * at + 2] << 16) | (colors[3 * at + 1] << 8) | colors[3 * at];
-    }
-  }
 
   /**
    * Look up the colors of all words in a box. Measured at 1280 x 960: a list of the surface's pixels takes as
@@ -471,28 +497,25 @@ function glassOf(picture, words, entries, legendWords) {
   }
 
   const whole = { left: 0, top: 0, width: elements, height: lines };
-  load(0, entries);
+  load(table, 0, entries);
   look(whole);
 
   return {
     canvas,
     outline,
     pixels,
+    /** The colors of the entries, 255, blue, green and red from the highest byte down. */
+    table,
     /** The words; whoever writes them calls `look`. */
     words,
     owner,
     whole,
     look,
-    load,
     /** Rewrite the entries of a surface. */
     rewrite(/** @type {number} */ number, /** @type {Bytes} */ colors) {
-      load(surfaces[number].first, colors);
+      load(table, surfaces[number].first, colors);
       look(boxes[number]);
       if (legend) context.putImageData(image, 0, 0, legend.element, legend.line, legend.elements, legend.lines);
-    },
-    /** The colors of some words of the table, three bytes each. */
-    colors(/** @type {number} */ first, /** @type {number} */ count) {
-      return new Uint8Array(3 * count).map((_, at) => table[first + Math.floor(at / 3)] >>> (8 * (at % 3)));
     },
     /** The number of the surface at a pixel, from 0; -1 for none. */
     at(/** @type {number} */ line, /** @type {number} */ element) {
@@ -696,7 +719,7 @@ async function build(root, picture, options) {
     if (lit.length > 0 && relight) {
       const changed = relight(next, lit[0].slice(7, lit[0].lastIndexOf(".")));
       glass.look(glass.whole);
-      desk.say(`${changed.toLocaleString("en")} words rewritten, no entry of the table: light is in the words.`);
+      desk.say(`${COUNT.format(changed)} words rewritten, no entry of the table: light is in the words.`);
     }
     const painted = picture.surfaces.flatMap(({ name, fixed }, number) =>
       !fixed && PAINT.some((field) => keys.includes(`surfaces.${name}.${field}`)) ? [number] : [],
@@ -772,10 +795,10 @@ async function build(root, picture, options) {
   const compare = comparison(screen, () => glassOf(picture, before, entries, legend).canvas);
   const notes = make("div", { class: "notes" });
   desk.syncs.push(() => notes.replaceChildren(...desk.picture.notes.map((note) => make("p", {}, note))));
-  const head = make("header", {}, ...(hosted ? [] : [make("h1", {}, picture.name)]), toolbar(desk, step, counts, compare));
+  const head = make("div", { class: "head" }, ...(hosted ? [] : [make("h1", {}, picture.name)]), toolbar(desk, step, counts, compare));
   const under = make("div", { class: "under" }, wholeTable(desk), status, ...variantStrip(desk, relight));
   const panel = make("div", { class: "panel" }, surfaceList(desk), paintPanel(desk), ...lightRows(desk), notes, sharing(desk, hosted));
-  root.replaceChildren(make("div", { class: "desk" }, head, make("div", { class: "stage" }, screen), under, panel));
+  root.replaceChildren(make(hosted ? "div" : "main", { class: "desk" }, head, make("div", { class: "stage" }, screen), under, panel));
   sync();
 
   // Keys and gestures: a drag, or a key that is held, is one step.
@@ -815,7 +838,7 @@ async function build(root, picture, options) {
       const shown = () => {
         picture = desk.picture = changed;
         desk.state = stateOf(changed);
-        if (hasEntries) glass.load(0, bytesOf(changed.entries));
+        if (hasEntries) load(glass.table, 0, bytesOf(changed.entries));
         if (hasEntries) glass.look(glass.whole);
         sync();
       };
@@ -910,7 +933,10 @@ function surfaceList(desk) {
 /** A ball in the colors of a surface; stripes for bands of a scalar. @param {Desk} desk @param {number} number */
 function ballOf({ picture, glass }, number) {
   const { first, levels, shades } = picture.surfaces[number];
-  const at = (/** @type {number} */ share) => inDigits(glass.colors(first + Math.round(share * (levels - 1)), 1));
+  const at = (/** @type {number} */ share) => {
+    const color = glass.table[first + Math.round(share * (levels - 1))];
+    return inDigits([color & 255, (color >> 8) & 255, (color >> 16) & 255]);
+  };
   if (shades !== levels) return `linear-gradient(90deg, ${[0.05, 0.3, 0.55, 0.8, 1].map(at).join(", ")})`;
   return `radial-gradient(circle at 36% 30%, ${at(1)} 4%, ${at(0.8)} 22%, ${at(0.55)} 58%, ${at(0.2)})`;
 }
@@ -1005,15 +1031,15 @@ function paintPanel(desk) {
 function strip(desk, syncs) {
   const { first, levels } = desk.picture.surfaces[desk.chosen];
   const canvas = make("canvas", { class: "strip", width: levels, height: 1, "aria-hidden": "true" });
-  syncs.push(() => drawEntries(canvas, desk.glass.colors(first, levels)));
+  syncs.push(() => drawEntries(canvas, desk.glass.table.subarray(first, first + levels)));
   return canvas;
 }
 
-/** Draw entries side by side. @param {HTMLCanvasElement} canvas @param {Bytes} colors */
+/** Draw entries side by side. @param {HTMLCanvasElement} canvas @param {Uint32Array} colors */
 function drawEntries(canvas, colors) {
   const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
   const image = context.createImageData(canvas.width, 1);
-  image.data.forEach((_, at) => (image.data[at] = at % 4 === 3 ? 255 : colors[3 * Math.floor(at / 4) + (at % 4)]));
+  new Uint32Array(image.data.buffer).set(colors);
   context.putImageData(image, 0, 0);
 }
 
@@ -1119,7 +1145,7 @@ function wholeTable(desk) {
   const mark = make("span", { class: "mark", "aria-hidden": "true" });
   const text = make("span", {});
   desk.syncs.push(() => {
-    drawEntries(canvas, desk.glass.colors(0, ENTRIES));
+    drawEntries(canvas, desk.glass.table);
     const { name, first, levels } = desk.picture.surfaces[desk.chosen] ?? { name: "", first: 0, levels: 0 };
     mark.style.left = `${(100 * first) / ENTRIES}%`;
     mark.style.width = `${(100 * levels) / ENTRIES}%`;
@@ -1158,17 +1184,16 @@ function thumbnail({ picture, glass }, state) {
   const { lines, elements, surfaces } = picture;
   const every = Math.max(1, Math.ceil(elements / THUMBNAIL));
   const [width, height] = [Math.floor(elements / every), Math.floor(lines / every)];
-  const table = glass.colors(0, ENTRIES);
+  const table = glass.table.slice();
   for (const { name, first, levels, floor, fixed } of surfaces) {
-    if (!fixed) table.set(entriesOf(paintOf(state, name), levels, floor), 3 * first);
+    if (!fixed) load(table, first, entriesOf(paintOf(state, name), levels, floor));
   }
   const canvas = make("canvas", { width, height, "aria-hidden": "true" });
   const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
   const image = context.createImageData(width, height);
-  for (let at = 0; at < width * height; at++) {
-    const word = glass.words[(Math.floor(at / width) * elements + (at % width)) * every];
-    image.data.set([table[3 * word], table[3 * word + 1], table[3 * word + 2], 255], 4 * at);
-  }
+  new Uint32Array(image.data.buffer).forEach((_, at, pixels) => {
+    pixels[at] = table[glass.words[(Math.floor(at / width) * elements + (at % width)) * every]];
+  });
   context.putImageData(image, 0, 0);
   return canvas;
 }

@@ -41,13 +41,15 @@ from typing import Any, Final
 import numpy as np
 
 from autocolor.arrays import HALF, Singles, Words, underflowing
-from autocolor.batches.table import Rows, variants_of
+from autocolor.batches.table import Rows, Variant, variants_of
 from autocolor.budget import require_memory
+from autocolor.checks import listed
 from autocolor.errors import InputError, UsageError
 from autocolor.files.settings import place_of, scene_with
 from autocolor.images import display_image, middles
 from autocolor.layers import check_rendered, light_shares
 from autocolor.lighting.picture import IntensityRange, Picture, check_surfaces
+from autocolor.mapping.bands import colored_surfaces
 from autocolor.mapping.display_image import DisplayImage
 from autocolor.mapping.intensity import fractions_by_surface, has_extent, levels_of, mapped_ranges
 from autocolor.mapping.legend import legend
@@ -99,20 +101,15 @@ def export_of(scene: Scene, picture: Picture, *, lights: bool = False, variants:
     Raises InputError if the surfaces of the picture are not those of the scene, if the picture or its light
     planes are too large for a browser or exceed the memory budget, and for an invalid value of a variant;
     UsageError for a variant with a key that a browser cannot change, and for too many variants. With
-    `lights`, also InputError if the picture is not the scene's or has no lights, and UsageError if words
-    stand for normals.
+    `lights`, also InputError if the picture is not the scene's, or has no lights or a single intensity, and
+    UsageError if words stand for normals.
     """
     check_surfaces(scene, picture)
-    size = f"{picture.elements:,} x {picture.lines:,}"
-    if picture.lines * picture.elements > LARGEST_CANVAS:
-        raise InputError(
-            f"a picture in a browser must have at most {LARGEST_CANVAS:,} pixels, which canvases of phones"
-            f" hold, not {size}; render it smaller or with less `smooth`"
-        )
+    check_canvas(picture.elements, picture.lines)
     bytes_of_pixel = BYTES_OF_PIXEL + (BYTES_OF_LIGHT * len(scene.lights) if lights else 0)
     require_memory(
         bytes_of_pixel * picture.lines * picture.elements,
-        f"the export of {size} pixels",
+        f"the export of {picture.elements:,} x {picture.lines:,} pixels",
         "render fewer pixels or lights",
     )
     image = display_image(scene, picture)
@@ -126,6 +123,15 @@ def export_of(scene: Scene, picture: Picture, *, lights: bool = False, variants:
         "variants": _variant_values(image, values, variants, lights),
         "lights": _light_values(image) if lights else None,
     }
+
+
+def check_canvas(elements: int, lines: int) -> None:
+    """Raise InputError for a picture that is larger than a canvas of a phone, samples included."""
+    if lines * elements > LARGEST_CANVAS:
+        raise InputError(
+            f"a picture in a browser must have at most {LARGEST_CANVAS:,} pixels, which canvases of phones"
+            f" hold, not {elements:,} x {lines:,}; render it smaller or with less `smooth`"
+        )
 
 
 def values_of(image: DisplayImage) -> dict[str, Any]:
@@ -150,7 +156,6 @@ def values_of(image: DisplayImage) -> dict[str, Any]:
                 "paint": paint_values(scene.surface(name).paint),
             }
         )
-    notes = dict.fromkeys(surface["fixed"] for surface in surfaces if surface["fixed"])
     return {
         "format": FORMAT,
         "name": scene.name,
@@ -160,7 +165,7 @@ def values_of(image: DisplayImage) -> dict[str, Any]:
         "background": in_digits(scene.background),
         "surfaces": surfaces,
         "legend": None,
-        "notes": list(notes),
+        "notes": _notes(image),
         "variants": [],
         "lights": None,
     }
@@ -168,12 +173,17 @@ def values_of(image: DisplayImage) -> dict[str, Any]:
 
 def _reason_of_fixed(image: DisplayImage, name: str) -> str:
     """Why the colors of a surface cannot be edited; empty if they can."""
-    scalar = image.scene.scalar
     if not image.has_light_in_words:
-        return "Words stand for normals here, so colors are shown as they were exported."
-    if scalar is not None and name in image.bands:
-        return f"Colors stand for the scalar “{scalar.name}” here and cannot be edited."
-    return ""
+        return "Words stand for normals here, so the colors stay as they were exported."
+    return "Its colors stand for a scalar and cannot be edited." if name in image.bands else ""
+
+
+def _notes(image: DisplayImage) -> list[str]:
+    """A sentence about the scalar, if any."""
+    scalar = image.scene.scalar
+    if scalar is None or not image.bands:
+        return []
+    return [f"The scalar “{scalar.name}” colors {listed(image.bands)}."]
 
 
 def paint_values(paint: Paint) -> dict[str, Any]:
@@ -257,6 +267,12 @@ def _light_values(image: DisplayImage) -> dict[str, Any]:
         )
     if not scene.lights:
         raise InputError("a page with lights must have a light in its scene, not none; leave the lights out")
+    extents = mapped_ranges(picture, scene.scaling, scene.exposure)
+    if not any(has_extent(extent) for extent in extents.values()):
+        raise InputError(
+            "the picture of a page with lights must have more than one intensity, or there is no exposure to"
+            " hold; switch a light on, or leave the lights out"
+        )
     if len(picture.pixels) * len(scene.lights) > MOST_PLANE_POINTS:
         raise InputError(
             f"a page with lights must have at most {MOST_PLANE_POINTS:,} visible points of all lights"
@@ -269,10 +285,9 @@ def _light_values(image: DisplayImage) -> dict[str, Any]:
     bright_rendering = rendering(bright, picture.lines, picture.elements, again)
     names = [light.name for light in scene.lights]
     # Points are in the order of the polygons, but a browser finds them again in the raster.
-    order = np.concatenate(
-        [each.start + again.points.pixels[each.pixels].argsort() for each in picture.slices]
-        or [np.empty(0, np.intp)]
-    )
+    order = np.arange(len(picture.pixels))
+    for surface in again.picture.slices:
+        order[surface.pixels] = surface.start + again.points.pixels[surface.pixels].argsort()
     planes = {
         name: _plane_values(image, (diffuse + specular).take(order))
         for name, diffuse, specular in light_shares(bright_rendering, names)
@@ -282,7 +297,8 @@ def _light_values(image: DisplayImage) -> dict[str, Any]:
         "ambient": scene.ambient / picture.scale,
         "rows": [{**row, **planes[row["name"]]} for row in light_rows(scene)],
         "levels": [
-            _text(zlib.compress(thresholds.astype("<f4").tobytes(), 9)) for thresholds in _thresholds(image)
+            _text(zlib.compress(thresholds.astype("<f4").tobytes(), 9))
+            for thresholds in _thresholds(image, extents)
         ],
         "dither": scene.dither == "ordered",
     }
@@ -315,10 +331,12 @@ def packed_plane(shares: Words) -> bytes:
 
 
 @underflowing
-def _thresholds(image: DisplayImage) -> list[Singles]:
-    """The thresholds of each surface with a range, in order; none for a surface that is not visible."""
+def _thresholds(image: DisplayImage, extents: Mapping[int, IntensityRange]) -> list[Singles]:
+    """The thresholds of each surface with a range, in order; none for a surface that is not visible.
+
+    `extents` are the ranges of intensities that are mapped to levels, by surface number.
+    """
     scene, picture = image.scene, image.picture
-    extents = mapped_ranges(picture, scene.scaling, scene.exposure)
     fractions = fractions_by_surface(picture, extents, scene.mapping)
     thresholds = dict.fromkeys(image.ranges, np.empty(0, np.float32))
     for number, of_surface in fractions.items():
@@ -367,12 +385,10 @@ def _variant_values(
         raise UsageError(
             f"a page must have at most {MOST_VARIANTS_SHOWN:,} variants, not {len(rows):,}; leave some out"
         )
+    check_variants(image.scene, rows, lights)
     surfaces = {surface["name"]: surface for surface in values["surfaces"]}
     exported = []
     for variant in rows:
-        for key in variant.settings:
-            if problem := _problem_of_key(image.scene, surfaces, key, lights):
-                raise UsageError(f"variant {variant.name!r}: {key}: {problem}")
         try:
             scene = scene_with(image.scene, variant.settings)
         except InputError as error:
@@ -380,6 +396,7 @@ def _variant_values(
         changes = {
             name: _changes(surface["paint"], paint_values(scene.surface(name).paint))
             for name, surface in surfaces.items()
+            if not surface["fixed"]
         }
         pairs = zip(light_rows(image.scene), light_rows(scene), strict=True)
         light_changes = {old["name"]: _changes(old, new, ("on", "intensity")) for old, new in pairs}
@@ -393,23 +410,26 @@ def _variant_values(
     return exported
 
 
-def _problem_of_key(scene: Scene, surfaces: Mapping[str, Any], key: str, lights: bool) -> str:
-    """Why a browser cannot change a key of a variant, and what to do; empty if it can.
-
-    Raises UsageError for a key that the scene does not have.
-    """
-    table, name, path = place_of(scene, key)
-    if table == "surfaces" and path[0] in fields_of(Paint):
-        fixed = surfaces[name]["fixed"] if name in surfaces else ""
-        return f"{fixed} Leave this key out" if fixed else ""
-    if table == "lights" and path in (("on",), ("intensity",)):
-        return (
-            "" if lights else "a page must have lights to change them; add --lights (lights=True in Python)"
-        )
-    return (
-        "a variant of a page must change paints, such as surfaces.body.object_color, or `on` and `intensity`"
-        " of lights; leave this key out"
-    )
+def check_variants(scene: Scene, variants: Sequence[Variant], lights: bool) -> None:
+    """Raise UsageError for a variant with a key that a browser cannot change."""
+    colored = colored_surfaces(scene)
+    for variant in variants:
+        for key in variant.settings:
+            table, name, path = place_of(scene, key)
+            is_paint = table == "surfaces" and path[0] in fields_of(Paint)
+            is_strength = table == "lights" and path in (("on",), ("intensity",))
+            if is_paint and name in colored:
+                problem = "its colors must stand for a paint, not for a scalar; leave this key out"
+            elif is_strength and not lights:
+                problem = "the page must have lights for it; add --lights (lights=True in Python)"
+            elif not is_paint and not is_strength:
+                problem = (
+                    "a variant of a page must change paints, such as surfaces.body.object_color, or `on` and"
+                    " `intensity` of lights; leave this key out"
+                )
+            else:
+                continue
+            raise UsageError(f"variant {variant.name!r}: {key}: {problem}")
 
 
 def _changes(old: Mapping[str, Any], new: Mapping[str, Any], keys: Sequence[str] = ()) -> dict[str, Any]:

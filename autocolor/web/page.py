@@ -7,6 +7,7 @@ script. The names of a scene never become markup.
 from __future__ import annotations
 
 import json
+import re
 from base64 import b64encode
 from hashlib import sha256
 from html import escape
@@ -44,10 +45,7 @@ PAGE: Final = """\
 """
 
 START: Final = """
-await mount(
-  document.getElementById("autocolor"),
-  JSON.parse(document.getElementById("picture").textContent),
-);
+await mount(document.getElementById("autocolor"), JSON.parse(document.getElementById("picture").textContent));
 """
 """The end of the script of a page."""
 
@@ -91,8 +89,8 @@ def save_page(
 def page_of(picture: dict[str, Any]) -> str:
     """The HTML of the page of an exported picture."""
     folder = files("autocolor.web")
-    style = folder.joinpath("autocolor.css").read_text("utf-8")
-    script = folder.joinpath("autocolor.js").read_text("utf-8") + START
+    style = without_comments(folder.joinpath("autocolor.css").read_text("utf-8"))
+    script = without_comments(folder.joinpath("autocolor.js").read_text("utf-8")) + START
     name = printable(picture["name"])
     policy = (
         "default-src 'none'; img-src data: blob:; base-uri 'none'; form-action 'none';"
@@ -108,6 +106,20 @@ def page_of(picture: dict[str, Any]) -> str:
         picture=json.dumps(picture, separators=(",", ":")).replace("<", "\\u003c"),
         script=script,
     )
+
+
+COMMENT_LINES: Final = re.compile(r"^[ \t]*(?:/\*(?:[^*]|\*(?!/))*\*/[ \t]*|//[^\n]*)\n", re.MULTILINE)
+
+
+def without_comments(source: str) -> str:
+    r"""A script or a style without the comments that have lines of their own, and without indentation.
+
+    No text in it may extend over several lines. Measured: a page has 49 of the 67 kB of script and style.
+
+    >>> without_comments("// Two.\nlet two = [\n  2, // Not 3.\n];\n").splitlines()
+    ['let two = [', '2, // Not 3.', '];']
+    """
+    return re.sub(r"\n[ \t]+", "\n", COMMENT_LINES.sub("", source))
 
 
 def _hash(text: str) -> str:

@@ -24,6 +24,10 @@ BAYER = [
 """The tile of ordered dither, as in Bayer's paper."""
 
 
+ROUNDING = 2.0**-20
+"""How far float32 may be off, as a fraction of the sum of all lights."""
+
+
 def inflated(text: str) -> bytes:
     return zlib.decompress(b64decode(text, validate=True))
 
@@ -32,7 +36,7 @@ def unpacked_words(packed: bytes, lines: int, elements: int) -> AnyArray:
     """The words of a raster, pixel by pixel."""
     data = zlib.decompress(packed)
     steps, far = data[: lines * elements], iter(np.frombuffer(data[lines * elements :], "<u2").tolist())
-    words = []
+    words: list[int] = []
     for at, step in enumerate(steps):
         left = words[-1] if at % elements else 0
         words.append(next(far) if step == 128 else left + (step - 256 if step > 128 else step))
@@ -45,9 +49,18 @@ def words_in(part: Mapping[str, Any]) -> AnyArray:
     return unpacked_words(b64decode(part["words"], validate=True), part["lines"], part["elements"])
 
 
-def unpacked_plane(text: str) -> list[int]:
+def with_legend(values: Mapping[str, Any]) -> AnyArray:
+    """The words with the legend drawn over them."""
+    legend, words = values["legend"], words_in(values).astype(np.uint16)
+    if legend is not None:
+        line, element = legend["line"], legend["element"]
+        words[line : line + legend["lines"], element : element + legend["elements"]] = words_in(legend)
+    return words
+
+
+def unpacked_plane(packed: bytes) -> list[int]:
     """The numbers of a plane."""
-    data = inflated(text)
+    data = zlib.decompress(packed)
     number, numbers = 0, []
     for low, high in zip(data[: len(data) // 2], data[len(data) // 2 :], strict=True):
         number = (number + low + 256 * high) % 65536
@@ -55,10 +68,13 @@ def unpacked_plane(text: str) -> list[int]:
     return numbers
 
 
-def relit_words(values: Mapping[str, Any], strengths: Mapping[str, float]) -> AnyArray:
-    """The words for other strengths of the lights; a light that is switched off has the strength 0."""
+def relit_words(values: Mapping[str, Any], strengths: Mapping[str, float], shift: int = 0) -> AnyArray:
+    """The words for other strengths of the lights; a light that is switched off has the strength 0.
+
+    With a `shift` of -1 or 1, the least and the highest words that rounding allows.
+    """
     lights, words = values["lights"], words_in(values)
-    planes = {row["name"]: np.array(unpacked_plane(row["plane"])) for row in lights["rows"]}
+    planes = {row["name"]: np.array(unpacked_plane(b64decode(row["plane"]))) for row in lights["rows"]}
     relit, start = words.copy(), 0
     tile = np.array(BAYER)
     for place, surface in enumerate(values["surfaces"]):
@@ -67,7 +83,9 @@ def relit_words(values: Mapping[str, Any], strengths: Mapping[str, float]) -> An
         end = start + len(at[0])
         intensity = np.full(end - start, lights["ambient"])
         for row in lights["rows"]:
-            intensity += strengths[row["name"]] * row["units"][place] * planes[row["name"]][start:end]
+            unit = strengths[row["name"]] * row["units"][place]
+            intensity += unit * (planes[row["name"]][start:end] + 0.5 * shift)
+        intensity *= 1 + shift * ROUNDING
         thresholds = np.frombuffer(inflated(lights["levels"][place]), "<f4").astype(float)
         levels = np.searchsorted(thresholds, intensity, side="right")
         if lights["dither"]:

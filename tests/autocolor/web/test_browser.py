@@ -1,0 +1,521 @@
+"""The page in a real browser, beside the display and the images of this package."""
+
+from __future__ import annotations
+
+import dataclasses
+import io
+import json
+import os
+from base64 import b64encode
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from hashlib import sha256
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import autocolor
+from autocolor.files.settings import scene_with
+from autocolor.images import image, save_image
+from autocolor.mapping.colors import entries_of, white_of, with_white
+from autocolor.scene.kinds import in_digits
+from autocolor.scene.surfaces import Paint
+from autocolor.web.exported import export_of, packed_words
+from ramtek_emu import GMR_9300, Ramtek9300
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page
+
+ROOT = Path(__file__).parents[3]
+MODULE = (ROOT / "autocolor" / "web" / "autocolor.js").read_text("utf-8")
+Open = Callable[..., "Page"]
+Rows = Sequence[Mapping[str, object]]
+
+# What a page shows, and what a display that shows the same has as red, green, blue and 255 for each pixel.
+SHOWN = """async () => {
+    const canvas = document.querySelector(".glass canvas");
+    const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d", {willReadFrequently: true});
+    copy.drawImage(canvas, 0, 0);
+    const {data} = copy.getImageData(0, 0, canvas.width, canvas.height);
+    const digest = await crypto.subtle.digest("SHA-256", data);
+    return Array.from(new Uint8Array(digest), byte => byte.toString(16).padStart(2, "0")).join("");
+}"""
+SHOWN_AFTER = f"""async (fragments) => {{
+    const digests = [];
+    for (const fragment of fragments) {{
+        const done = new Promise(resolve => addEventListener("hashchange", resolve, {{once: true}}));
+        location.hash = fragment;
+        await done;
+        digests.push(await ({SHOWN})());
+    }}
+    return digests;
+}}"""
+
+
+def digest(colors: np.ndarray[Any, np.dtype[np.uint8]]) -> str:
+    opaque = np.dstack([colors, np.full(colors.shape[:2], 255, np.uint8)])
+    return sha256(opaque.tobytes()).hexdigest()
+
+
+@pytest.fixture(scope="module")
+def coupe() -> autocolor.Scene:
+    return autocolor.read_scene(ROOT / "scenes" / "coupe")
+
+
+@pytest.fixture(scope="module")
+def small(coupe: autocolor.Scene) -> autocolor.Picture:
+    return autocolor.render(coupe, lines=120, elements=160, smooth=2)
+
+
+@pytest.fixture(scope="module")
+def stress() -> tuple[autocolor.Scene, autocolor.Picture]:
+    """The bracket with bands and a legend, as a smooth picture."""
+    scene = autocolor.read_scene(ROOT / "scenes" / "bracket").with_scalar(name="stress", limits=(0, 150))
+    return scene, autocolor.render(scene, smooth=2)
+
+
+@pytest.fixture
+def opened(browser: Browser, tmp_path: Path) -> Iterator[Open]:
+    """Opens a page from its file, without a network. At the end no page has asked or complained."""
+    contexts, troubles = [], []
+
+    def open_page(
+        scene: autocolor.Scene,
+        picture: autocolor.Picture,
+        fragment: str = "",
+        context: Any = None,
+        **page: Any,
+    ) -> Page:
+        path = tmp_path / "page.html"
+        autocolor.save_page(path, scene, picture, overwrite=True, **page)
+        contexts.append(browser.new_context(offline=True, **(context or {})))
+        shown = contexts[-1].new_page()
+        shown.set_default_timeout(20_000)
+        shown.on("console", lambda message: troubles.append(message.text))
+        shown.on("pageerror", lambda error: troubles.append(str(error)))
+        shown.on(
+            "request",
+            lambda request: (
+                request.url.startswith(("file:", "data:", "blob:")) or troubles.append(request.url)
+            ),
+        )
+        shown.goto(path.as_uri() + (f"#{fragment}" if fragment else ""))
+        shown.wait_for_selector(".desk")
+        return shown
+
+    yield open_page
+    for context in contexts:
+        context.close()
+    assert troubles == []
+
+
+@pytest.fixture
+def module(browser: Browser, tmp_path: Path) -> Iterator[Page]:
+    """An empty page, from a file, with the module's functions as `autocolor`."""
+    names = "mount, entriesOf, unpackWords, relighting, whiteOf, withWhite"
+    (tmp_path / "empty.html").write_text("<!doctype html><title>empty</title>")
+    page = browser.new_page()
+    page.goto((tmp_path / "empty.html").as_uri())
+    page.add_script_tag(type="module", content=f"{MODULE}\nglobalThis.autocolor = {{{names}}};")
+    page.wait_for_function("globalThis.autocolor")
+    yield page
+    page.close()
+
+
+def random_paint(random: np.random.Generator) -> Paint:
+    def color() -> Any:
+        return tuple(random.integers(0, 256, 3).tolist())
+
+    if random.random() < 0.3:
+        return Paint(ramp=[color() for _ in range(random.integers(2, 9))])
+    blend, percentage = random.random(), random.choice([100.0, float(random.random() * 100)])
+    if random.random() < 0.5:
+        blend = round(blend, 2)
+    return Paint(object_color=color(), light_color=color(), blend=blend, light_percentage=percentage)
+
+
+def plain(paint: Paint) -> dict[str, Any]:
+    return {
+        "object_color": in_digits(paint.object_color),
+        "light_color": in_digits(paint.light_color),
+        "blend": paint.blend,
+        "light_percentage": paint.light_percentage,
+        "ramp": None if paint.ramp is None else [in_digits(color) for color in paint.ramp],
+    }
+
+
+def fragment_of(surface: str, paint: Paint) -> str:
+    fields = plain(paint)
+    texts = {key: "none" if value is None else str(value) for key, value in fields.items()}
+    texts["ramp"] = ",".join(fields["ramp"]) if fields["ramp"] else "none"
+    return "&".join(f"surfaces.{surface}.{key}={text.replace('#', '')}" for key, text in texts.items())
+
+
+def test_entries_are_those_of_the_display_to_the_byte(module: Page) -> None:
+    random = np.random.default_rng(1)
+    cases = [
+        (random_paint(random), int(random.choice([1, 2, 3, 16, 97, 249, 1007])), float(floor))
+        for floor in np.repeat([0, 0.05, 0.3217, 1], 60)
+    ]
+    found = module.evaluate(
+        "cases => cases.map(each => Array.from(autocolor.entriesOf(...each)))",
+        [[plain(paint), levels, floor] for paint, levels, floor in cases],
+    )
+    for (paint, levels, floor), entries in zip(cases, found, strict=True):
+        assert entries == entries_of(paint, levels, floor).ravel().tolist(), (paint, levels, floor)
+
+
+def test_the_white_bar_is_that_of_the_studio(module: Page) -> None:
+    random = np.random.default_rng(2)
+    cases = [(*random.integers(0, 256, 3).tolist(), int(random.integers(0, 256))) for _ in range(100)]
+    found = module.evaluate(
+        """cases => cases.map(([red, green, blue, white]) =>
+            [autocolor.whiteOf([red, green, blue]), autocolor.withWhite([red, green, blue], white)])""",
+        cases,
+    )
+    assert found == [[white_of(each[:3]), list(with_white(each[:3], each[3]))] for each in cases]
+
+
+def test_words_are_unpacked_as_they_were_packed(module: Page) -> None:
+    random = np.random.default_rng(3)
+    rasters = [
+        random.integers(0, 1024, (7, 11)),
+        random.integers(0, 1024, (1, 1)),
+        500 + np.cumsum(random.integers(-3, 4, (20, 30)), axis=1),
+    ]
+    for raster in rasters:
+        packed = b64encode(packed_words(raster.astype(np.uint16))).decode()
+        found = module.evaluate(
+            "async each => Array.from(await autocolor.unpackWords(...each))", [packed, *raster.shape]
+        )
+        assert found == raster.ravel().tolist()
+
+
+@pytest.mark.parametrize(("smooth", "recolorings"), [(1, 50), (2, 6)])
+def test_the_canvas_shows_the_field_of_the_display_after_recolorings(
+    opened: Open, coupe: autocolor.Scene, smooth: int, recolorings: int
+) -> None:
+    sizes = {"lines": 480 * smooth, "elements": 640 * smooth}
+    display = Ramtek9300(dataclasses.replace(GMR_9300, **sizes))
+    studio = autocolor.Studio(coupe, display)
+    page = opened(coupe, autocolor.render(coupe, smooth=smooth))
+    assert page.evaluate(SHOWN) == digest(display.field())
+    random = np.random.default_rng(4)
+    fragments, fields = [], []
+    for _ in range(recolorings):
+        name = str(random.choice([surface.name for surface in coupe.surfaces]))
+        paint = random_paint(random)
+        fragments.append(fragment_of(name, paint))
+        studio.edit(coupe.with_surface(name, paint=paint))
+        fields.append(digest(display.field()))
+    assert len(set(fields)) == recolorings
+    assert page.evaluate(SHOWN_AFTER, fragments) == fields
+
+
+def saved(page: Page, button: str) -> bytes:
+    with page.expect_download() as download:
+        page.get_by_role("button", name=button).click()
+    return Path(download.value.path()).read_bytes()
+
+
+def test_a_saved_png_is_the_image_of_the_new_colors(
+    opened: Open, coupe: autocolor.Scene, small: autocolor.Picture
+) -> None:
+    paint = Paint(object_color="#1f3f8f", light_color="#ffe9c0", blend=0.3)
+    page = opened(coupe, small, fragment_of("body", paint))
+    png = np.asarray(Image.open(io.BytesIO(saved(page, "Save PNG"))).convert("RGB"))
+    assert (png == image(coupe.with_surface("body", paint=paint), small)).all()
+
+
+def test_a_saved_png_has_the_legend_and_a_page_says_what_is_fixed(
+    opened: Open, stress: tuple[autocolor.Scene, autocolor.Picture], tmp_path: Path
+) -> None:
+    page = opened(*stress)
+    png = np.asarray(Image.open(io.BytesIO(saved(page, "Save PNG"))).convert("RGB"))
+    save_image(tmp_path / "stress.png", *stress)
+    assert (png == np.asarray(Image.open(tmp_path / "stress.png").convert("RGB"))).all()
+    page.get_by_role("radio", name="cast").check()
+    assert "cannot be edited" in page.locator(".paint").inner_text()
+    assert page.locator(".paint input").count() == 0
+
+
+def test_saved_values_are_a_table_of_variants(
+    opened: Open, coupe: autocolor.Scene, small: autocolor.Picture, tmp_path: Path
+) -> None:
+    scene = coupe.with_surface("glass", ramp=["#200000", "#ff6600"]).with_surface(
+        "trim", ramp=["#000", "#fff"]
+    )
+    page = opened(scene, small, "surfaces.body.object_color=1f3f8f&surfaces.body.blend=0.25")
+    page.get_by_role("radio", name="trim").check()
+    page.get_by_role("button", name="Use two colors instead").click()
+    (tmp_path / "values.csv").write_bytes(saved(page, "Save CSV"))
+    (variant,) = autocolor.read_variants(tmp_path / "values.csv")
+    found = scene_with(scene, variant.settings)
+    assert found.surface("body").paint == coupe.surface("body").paint.replace(
+        object_color="#1f3f8f", blend=0.25
+    )
+    assert found.surface("glass").paint == scene.surface("glass").paint
+    assert found.surface("trim").paint.ramp is None
+    assert page.evaluate(SHOWN) == digest(image(found, small, smooth=1))
+
+
+def test_a_drag_is_one_step_and_the_link_has_the_colors(
+    opened: Open, coupe: autocolor.Scene, small: autocolor.Picture
+) -> None:
+    page = opened(coupe, small)
+    before = page.evaluate(SHOWN)
+    box = page.get_by_label("Green of the object color of body", exact=True).bounding_box()
+    assert box
+    line = box["y"] + box["height"] / 2
+    page.mouse.move(box["x"] + 20, line)
+    page.mouse.down()
+    for share in (0.3, 0.5, 0.7):
+        page.mouse.move(box["x"] + share * box["width"], line)
+    page.mouse.up()
+    page.wait_for_function("location.hash.length > 1")
+    dragged, fragment = page.evaluate(SHOWN), page.evaluate("location.hash.slice(1)")
+    assert dragged != before
+    assert fragment.startswith("surfaces.body.object_color=")
+    assert "no word" in page.get_by_role("status").inner_text()
+    page.keyboard.press("Control+z")
+    assert page.evaluate(SHOWN) == before
+    assert page.evaluate("location.hash") == ""
+    page.keyboard.press("Control+Shift+z")
+    assert page.evaluate(SHOWN) == dragged
+    page.get_by_role("button", name="Undo").click()
+    page.get_by_role("button", name="Redo").click()
+    page.get_by_role("button", name="Reset").click()
+    assert page.evaluate(SHOWN) == before
+    page.keyboard.press("Control+z")
+    assert page.evaluate(SHOWN) == dragged
+    assert opened(coupe, small, fragment).evaluate(SHOWN) == dragged
+
+
+@pytest.mark.parametrize(
+    ("fragment", "says"),
+    [
+        ("surfaces.bdy.object_color=102030", "surfaces.bdy.object_color"),
+        ("surfaces.body.blend=2&surfaces.glass.blend=0.1", "surfaces.body.blend"),
+        ("surfaces.body.object_color=red", "“red”"),
+        ("surfaces.body.ramp=102030", "“102030”"),
+        ("surfaces.body.blend=", "surfaces.body.blend"),
+        ("chapter-2", "chapter-2"),
+        ("%E0%A4%A", "%E0%A4%A"),
+        ("__proto__=1", "__proto__"),
+    ],
+)
+def test_a_foreign_link_changes_nothing_and_says_so(
+    opened: Open, coupe: autocolor.Scene, small: autocolor.Picture, fragment: str, says: str
+) -> None:
+    page = opened(coupe, small, fragment)
+    assert says in page.get_by_role("status").inner_text()
+    assert page.evaluate(SHOWN) == digest(image(coupe, small, smooth=1))
+
+
+def test_the_keyboard_alone_recolors(opened: Open, coupe: autocolor.Scene, small: autocolor.Picture) -> None:
+    page = opened(coupe, small)
+
+    def focus_on(label: str) -> None:
+        for _ in range(40):
+            page.keyboard.press("Tab")
+            if label in (page.evaluate("document.activeElement.ariaLabel ?? ''") or ""):
+                return
+        raise AssertionError(f"no way to {label} by Tab")
+
+    page.get_by_role("radio", name="body").focus()
+    page.keyboard.press("ArrowRight")
+    assert page.get_by_role("radio", name="glass").is_checked()
+    focus_on("#rrggbb")
+    page.keyboard.press("Control+a")
+    page.keyboard.type("navy")
+    page.keyboard.press("Enter")
+    focus_on("Blend of glass")
+    page.keyboard.press("End")
+    paint = coupe.surface("glass").paint.replace(object_color="navy", blend=1.0)
+    shown = coupe.with_surface("glass", paint=paint)
+    assert page.evaluate(SHOWN) == digest(image(shown, small, smooth=1))
+
+
+def test_a_color_that_is_none_is_refused_in_a_sentence(
+    opened: Open, coupe: autocolor.Scene, small: autocolor.Picture
+) -> None:
+    page = opened(coupe, small)
+    before = page.evaluate(SHOWN)
+    field = page.get_by_label("object color of body as #rrggbb")
+    for text in ("sparkly", "#12", "rgb(0 0 0 / 50%)", "currentcolor"):
+        field.fill(text)
+        field.press("Enter")
+        assert f"not “{text}”" in page.get_by_role("status").inner_text()
+        assert page.evaluate(SHOWN) == before
+
+
+def test_a_touch_chooses_a_surface(opened: Open, coupe: autocolor.Scene, small: autocolor.Picture) -> None:
+    page = opened(coupe, small, context={"has_touch": True, "viewport": {"width": 390, "height": 844}})
+    numbers = small.surface_number
+    box = page.locator(".glass").bounding_box()
+    assert box
+    for name in ("glass", "floor", "body"):
+        at = np.argwhere(numbers == 1 + list(small.surfaces).index(name))
+        line, element = at[len(at) // 2] + 0.5
+        page.touchscreen.tap(
+            box["x"] + element / small.elements * box["width"], box["y"] + line / small.lines * box["height"]
+        )
+        assert page.get_by_role("radio", name=name).is_checked()
+    assert page.evaluate("document.documentElement.scrollWidth") == 390
+
+
+RELIT = """async ([text, states]) => {
+    const picture = JSON.parse(text);
+    const {lines, elements, surfaces} = picture;
+    const words = await autocolor.unpackWords(picture.words, lines, elements);
+    const owner = new Uint8Array(1024);
+    surfaces.forEach(({first, levels}, number) => owner.fill(number + 1, first, first + levels));
+    const relight = await autocolor.relighting(picture, words, owner);
+    return states.map(([state, name]) => {
+        relight(state, name);
+        return Array.from(words);
+    });
+}"""
+
+
+@pytest.mark.parametrize("changes", [{}, {"mapping": "gamma", "dither": "ordered"}])
+def test_lights_give_the_levels_of_a_rendering(
+    module: Page, coupe: autocolor.Scene, changes: dict[str, Any]
+) -> None:
+    scene = coupe.replace(**changes)
+    display = Ramtek9300(dataclasses.replace(GMR_9300, lines=120, elements=160))
+    studio = autocolor.Studio(scene, display)
+    exported = export_of(studio.scene, studio.picture, lights=True)
+    studio.hold_exposure()
+    names = [light.name for light in scene.lights]
+    strengths = {name: float(light.intensity) for name, light in zip(names, scene.lights, strict=True)}
+    on = dict.fromkeys(names, True)
+    states, expected = [], []
+    random = np.random.default_rng(5)
+    # Drags of one light, and changes of several at once.
+    for step in range(8):
+        for name in names[:1] if step % 4 else names:
+            strengths[name], on[name] = round(float(random.random() * 2), 3), bool(random.random() < 0.8)
+            studio.light(name, intensity=strengths[name], on=on[name])
+        state = {f"lights.{name}.intensity": strengths[name] for name in names}
+        states.append([state | {f"lights.{name}.on": on[name] for name in names}, names[0]])
+        expected.append(studio.words)
+    for found, words in zip(module.evaluate(RELIT, [json.dumps(exported), states]), expected, strict=True):
+        away = np.abs(np.array(found).reshape(words.shape) - words.astype(int))
+        assert away.max() <= 1
+        for surface in exported["surfaces"]:
+            of_surface = (words >= surface["first"]) & (words < surface["first"] + surface["levels"])
+            assert (away[of_surface] > 0).sum() <= 0.005 * of_surface.sum()
+
+
+def test_a_light_is_dimmed_and_switched_off(
+    opened: Open, coupe: autocolor.Scene, small: autocolor.Picture
+) -> None:
+    page = opened(coupe, small, lights=True)
+    before = page.evaluate(SHOWN)
+    assert "Exposure is held" in page.locator(".lights").inner_text()
+    page.get_by_role("switch", name="Light key").uncheck()
+    dark = page.evaluate(SHOWN)
+    assert "no entry" in page.get_by_role("status").inner_text()
+    page.get_by_label("Strength of light key, as a number").fill("0")
+    page.get_by_role("switch", name="Light key").check()
+    assert page.evaluate(SHOWN) == dark != before
+    assert page.evaluate("location.hash") == "#lights.key.intensity=0"
+    page.get_by_role("button", name="Reset").click()
+    assert page.evaluate(SHOWN) == before
+
+
+VARIANTS = [
+    {"name": "night", "surfaces.body.object_color": "#10203f", "surfaces.trim.blend": 0.9},
+    {"name": "glow", "surfaces.body.ramp": ["#200000", "#ff6600", "#ffffff"]},
+]
+
+
+def test_a_variant_is_chosen_as_one_step_and_compared_with_before(
+    opened: Open, coupe: autocolor.Scene, small: autocolor.Picture
+) -> None:
+    page = opened(coupe, small, variants=VARIANTS)
+    before = page.evaluate(SHOWN)
+    for row in VARIANTS:
+        page.get_by_role("button", name=str(row["name"])).click()
+        settings = {key: value for key, value in row.items() if key != "name"}
+        assert page.evaluate(SHOWN) == digest(image(scene_with(coupe, settings), small, smooth=1))
+    page.get_by_role("button", name="Before").click()
+    assert page.evaluate(SHOWN.replace(".glass canvas", ".glass .before")) == before
+    page.get_by_label("Line between before and after").fill("80")
+    assert page.locator(".glass").evaluate("glass => glass.style.getPropertyValue('--split')") == "80%"
+    page.keyboard.press("Control+z")
+    page.keyboard.press("Control+z")
+    assert page.evaluate(SHOWN) == before
+
+
+def test_a_host_gets_edits_and_keeps_the_history(
+    module: Page, coupe: autocolor.Scene, small: autocolor.Picture
+) -> None:
+    exported = json.dumps(export_of(coupe, small))
+    module.evaluate(
+        """async text => {
+            const root = document.body.appendChild(document.createElement("div"));
+            globalThis.sent = [];
+            globalThis.handle = await autocolor.mount(root, JSON.parse(text), {
+                edit: (edits, sameStep) => sent.push([edits, sameStep]),
+                undo: () => sent.push("undo"),
+                redo: () => sent.push("redo"),
+            });
+        }""",
+        exported,
+    )
+    bar = module.get_by_label("Green of the object color of body", exact=True)
+    bar.evaluate(
+        """bar => {
+            for (const value of [100, 200]) {
+                bar.value = value;
+                bar.dispatchEvent(new Event("input", {bubbles: true}));
+            }
+            bar.dispatchEvent(new Event("change", {bubbles: true}));
+        }"""
+    )
+    key = "surfaces.body.object_color"
+    assert module.evaluate("sent") == [[{key: "#d8642c"}, False], [{key: "#d8c82c"}, True]]
+    edited = coupe.with_surface("body", object_color="#d8c82c")
+    assert module.evaluate(SHOWN) == digest(image(edited, small, smooth=1))
+    assert module.evaluate("location.hash") == ""
+    # The host answers with other values, and says that there is a step to undo.
+    answer = export_of(coupe.with_surface("body", object_color="#102030"), small)
+    entries = display_entries(coupe.with_surface("body", object_color="#102030"), small)
+    del answer["words"], answer["entries"]
+    module.evaluate(
+        "([picture, entries]) => handle.update({picture, entries: new Uint8Array(entries)})",
+        [answer | {"undo": 1, "redo": 0}, entries],
+    )
+    shown = coupe.with_surface("body", object_color="#102030")
+    assert module.evaluate(SHOWN) == digest(image(shown, small, smooth=1))
+    assert module.get_by_label("object color of body as #rrggbb").input_value() == "#102030"
+    module.get_by_role("button", name="Undo").click()
+    assert module.evaluate("sent.at(-1)") == "undo"
+    module.evaluate("handle.destroy()")
+    assert module.locator(".desk").count() == 0
+
+
+def display_entries(scene: autocolor.Scene, picture: autocolor.Picture) -> list[int]:
+    from autocolor.images import display_image
+
+    entries: list[int] = display_image(scene, picture).entries.ravel().tolist()
+    return entries
+
+
+AXE = Path(os.environ.get("AXE_CORE", "not set"))
+
+
+@pytest.mark.skipif(not AXE.is_file(), reason="AXE_CORE is not the path of axe.min.js of axe-core")
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_the_accessibility_checker_finds_nothing(
+    opened: Open, coupe: autocolor.Scene, small: autocolor.Picture, scheme: str
+) -> None:
+    page = opened(coupe, small, context={"color_scheme": scheme, "bypass_csp": True}, variants=VARIANTS)
+    page.get_by_role("button", name="Before").click()
+    page.evaluate(AXE.read_text("utf-8"))
+    found = page.evaluate("async () => (await axe.run()).violations")
+    assert [(each["id"], each["impact"], [node["html"] for node in each["nodes"]]) for each in found] == []

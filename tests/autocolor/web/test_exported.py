@@ -1,0 +1,370 @@
+from __future__ import annotations
+
+import json
+from base64 import b64decode
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from autocolor import (
+    InputError,
+    Light,
+    Picture,
+    Scene,
+    UsageError,
+    demo,
+    image,
+    read_picture,
+    read_scene,
+    render,
+    scene_of,
+    write_picture,
+)
+from autocolor.arrays import AnyArray
+from autocolor.budget import MEMORY, allowing
+from autocolor.images import averaged, display_image, smoothed
+from autocolor.lighting.picture import IntensityRange
+from autocolor.mapping.intensity import has_extent, levels_of, mapped_ranges
+from autocolor.rendering import rendering
+from autocolor.scene.curves import mapping_curve
+from autocolor.testing import MAPPINGS, numbers, scenes
+from autocolor.web import exported
+from autocolor.web.exported import (
+    BYTES_OF_LIGHT,
+    BYTES_OF_PIXEL,
+    check_canvas,
+    export_of,
+    least_intensities,
+    packed_plane,
+    packed_words,
+)
+from tests.autocolor.meshes import cube, wall_scene
+from tests.autocolor.sessions import car
+from tests.autocolor.web.twin import (
+    inflated,
+    relit_words,
+    unpacked_plane,
+    unpacked_words,
+    with_legend,
+    words_in,
+)
+
+SIZE = (24, 32)
+
+
+def values_through_json(scene: Scene, **options: Any) -> Any:
+    return json.loads(json.dumps(export_of(scene, render(scene, *SIZE), **options)))
+
+
+# Words, planes and thresholds.
+
+
+@given(
+    st.lists(st.integers(0, 1023) | st.sampled_from([60, 61, 120, 121]), min_size=24, max_size=24),
+    st.sampled_from([1, 2, 4, 24]),
+)
+def test_packed_words_are_unpacked_word_by_word(given_words: list[int], lines: int) -> None:
+    words = np.array(given_words, np.uint16).reshape(lines, -1)
+    assert (unpacked_words(packed_words(words), *words.shape) == words).all()
+
+
+@given(st.lists(st.integers(0, 65535), max_size=40))
+def test_a_packed_plane_is_unpacked_number_by_number(shares: list[int]) -> None:
+    packed = packed_plane(np.array(shares, np.uint16))
+    assert unpacked_plane(packed) == shares
+
+
+@settings(max_examples=60)
+@given(
+    st.sampled_from(MAPPINGS),
+    numbers(0, 1),
+    numbers(0.001, 3),
+    st.integers(2, 40),
+    st.sampled_from([1, 64]),
+    st.lists(numbers(0, 4), min_size=1, max_size=20),
+)
+def test_a_threshold_is_the_least_intensity_of_its_level(
+    mapping: Any, low: float, width: float, levels: int, steps: int, seen: list[float]
+) -> None:
+    limits = np.array([low, low + width], np.float32)
+    extent = IntensityRange(*limits.tolist())
+    everything = np.clip(np.array(seen, np.float32), *limits)
+    fractions = mapping_curve(mapping)(limits[0], limits[1], everything)
+
+    def level_of(intensity: AnyArray) -> AnyArray:
+        mapped = fractions(np.clip(intensity, *limits))
+        return levels_of(mapped, steps * (levels - 1) + 1)
+
+    thresholds = least_intensities(fractions, extent, levels, steps)
+    assert len(thresholds) == steps * (levels - 1)
+    assert (np.diff(thresholds[np.isfinite(thresholds)]) >= 0).all()
+    wanted = np.arange(1, len(thresholds) + 1)
+    # At 64 steps a level, positions are rounded in double precision.
+    slack = 0 if steps == 1 else 1
+    reached = np.isfinite(thresholds)
+    assert (level_of(thresholds[reached]) >= wanted[reached] - slack).all()
+    below = np.nextafter(thresholds, np.float32(0))
+    is_above = (thresholds > 0) & reached
+    assert (level_of(below[is_above]) < wanted[is_above] + slack).all()
+    assert (level_of(limits[1:]) < wanted[~reached] + slack).all()
+
+
+def test_a_surface_without_extent_has_its_middle_level_in_any_light() -> None:
+    extent = IntensityRange(0.5, 0.5)
+    for steps in (1, 64):
+        thresholds = least_intensities(lambda given: np.full_like(given, 0.5), extent, 8, steps)
+        assert np.count_nonzero(thresholds == 0) == 4 * steps
+        assert np.count_nonzero(np.isinf(thresholds)) == 3 * steps
+
+
+# Words, entries and legends.
+
+
+@settings(max_examples=40)
+@given(scenes())
+def test_an_export_has_the_words_the_entries_and_the_ranges_of_the_display_image(scene: Scene) -> None:
+    try:
+        shown = display_image(scene, render(scene, *SIZE))
+    except InputError:
+        assume(False)
+    values = values_through_json(scene)
+    assert (words_in(values) == shown.words).all()
+    entries = np.frombuffer(inflated(values["entries"]), np.uint8).reshape(1024, 3)
+    assert (entries == shown.entries).all()
+    assert [(each["name"], each["first"], each["levels"]) for each in values["surfaces"]] == [
+        (name, *each) for name, each in shown.ranges.items()
+    ]
+    for each in values["surfaces"]:
+        name = each["name"]
+        assert bool(each["fixed"]) == (name in shown.bands)
+        assert each["shades"] == (shown.bands[name].shades if name in shown.bands else each["levels"])
+        is_surface = (shown.words >= each["first"]) & (shown.words < each["first"] + each["levels"])
+        assert each["pixels"] == np.count_nonzero(is_surface)
+
+
+@pytest.mark.parametrize("smooth", [1, 2])
+def test_the_legend_of_an_export_is_that_of_the_image(smooth: int) -> None:
+    scene = read_scene("scenes/bracket").with_scalar(name="stress")
+    picture = render(scene, 320, 400, smooth=smooth)
+    shown = display_image(scene, picture)
+    values = export_of(scene, picture)
+    words = with_legend(values)
+    assert values["smooth"] == smooth
+    assert (words != shown.words).any()
+    assert (averaged(shown.entries, words, smooth) == smoothed(shown, smooth)).all()
+    assert values["notes"] == ["The scalar “stress” colors cast and machined."]
+
+
+def test_words_for_normals_are_exported_but_fixed() -> None:
+    scene = car().replace(words="normals")
+    values = values_through_json(scene)
+    assert {each["fixed"] for each in values["surfaces"]} == {
+        "Words stand for normals here, so the colors stay as they were exported."
+    }
+    with pytest.raises(UsageError, match="must have words that stand for levels, not for normals"):
+        values_through_json(scene, lights=True)
+
+
+def test_a_picture_larger_than_the_canvas_of_a_phone_is_refused() -> None:
+    check_canvas(4096, 4096)
+    with pytest.raises(InputError, match=r"at most 16,777,216 pixels, which .* not 4,096 x 4,097; render"):
+        check_canvas(4096, 4097)
+
+
+def test_the_words_of_the_coupe_are_small() -> None:
+    scene = demo()
+    values = export_of(scene, render(scene))
+    assert len(b64decode(values["words"])) < 31_600
+    assert len(b64decode(values["entries"])) < 2_500
+
+
+# Lights.
+
+
+def held_exposure_of(scene: Scene, picture: Picture) -> Any:
+    """The ranges of intensities that a page holds, by surface."""
+    extents = mapped_ranges(picture, scene.scaling, scene.exposure)
+    scale = picture.scale
+    return {
+        picture.surfaces[number - 1]: (scale * extent.minimum, scale * extent.maximum)
+        for number, extent in extents.items()
+        if number
+    } or "auto"
+
+
+def relit(scene: Scene, exposure: Any, strengths: Mapping[str, float]) -> Scene:
+    """The scene with other strengths of all lights, and an exposure."""
+    lights = tuple(light.replace(on=True, intensity=strengths[light.name]) for light in scene.lights)
+    return scene.replace(lights=lights, exposure=exposure)
+
+
+@settings(max_examples=60)
+@given(scenes(words="levels"), st.tuples(*[numbers(0, 3)] * 3))
+def test_planes_and_thresholds_give_the_words_of_a_rendering_in_other_light(
+    scene: Scene, strengths: tuple[float, ...]
+) -> None:
+    picture = render(scene, *SIZE)
+    try:
+        shown = display_image(scene, picture)
+        values = json.loads(json.dumps(export_of(scene, picture, lights=True)))
+    except InputError:
+        # There are too many bands, no lights or a single intensity.
+        assume(False)
+    # Each light is off by at most half a unit, and float32 rounds the sum.
+    as_exported = {light.name: light.intensity * light.on for light in scene.lights}
+    assert (relit_words(values, as_exported, -1) <= shown.words).all()
+    assert (shown.words <= relit_words(values, as_exported, 1)).all()
+    if scene.mapping == "equalize":
+        # A page keeps the histogram that was exported.
+        return
+    extents = mapped_ranges(picture, scene.scaling, scene.exposure)
+    assume(all(has_extent(extent) for number, extent in extents.items() if number))
+    others = {light.name: strength for light, strength in zip(scene.lights, strengths, strict=False)}
+    other = relit(scene, held_exposure_of(scene, picture), others)
+    expected = display_image(other, render(other, *SIZE)).words
+    assert (relit_words(values, others, -1) <= expected).all()
+    assert (expected <= relit_words(values, others, 1)).all()
+
+
+@pytest.mark.parametrize("dither", ["off", "ordered"])
+def test_few_pixels_of_the_coupe_are_a_level_off_and_none_two(dither: Any) -> None:
+    scene = demo().replace(dither=dither)
+    picture = render(scene)
+    values, words = export_of(scene, picture, lights=True), display_image(scene, picture).words
+    exposure = held_exposure_of(scene, picture)
+    for each in ((0.9, 0.7, 0.6, 0.6), (0.3, 1.1, 0.0, 1.7)):
+        strengths = {light.name: strength for light, strength in zip(scene.lights, each, strict=True)}
+        other = relit(scene, exposure, strengths)
+        expected = display_image(other, render(other)).words.astype(int)
+        off = np.abs(relit_words(values, strengths) - expected)
+        assert off.max() <= 1
+        for surface in values["surfaces"]:
+            first, levels = surface["first"], surface["levels"]
+            assert (off[(words >= first) & (words < first + levels)] > 0).mean() <= 0.005
+
+
+def test_a_picture_from_a_file_has_the_same_planes(tmp_path: Any) -> None:
+    scene = car().replace(lights=(*car().lights, Light("spare", (0, -5, 0), on=False, intensity=7)))
+    picture = render(scene, *SIZE)
+    write_picture(tmp_path / "car.npz", scene, picture)
+    saved = read_picture(tmp_path / "car.npz")
+    values = export_of(saved.scene, saved.picture, lights=True)
+    assert values == {**export_of(scene, picture, lights=True), "name": values["name"]}
+    rows = [
+        {key: row[key] for key in ("name", "on", "intensity", "most")} for row in values["lights"]["rows"]
+    ]
+    assert rows == [
+        {"name": "key", "on": True, "intensity": 1.0, "most": 2},
+        {"name": "fill", "on": True, "intensity": 0.4, "most": 2},
+        {"name": "spare", "on": False, "intensity": 7, "most": 14},
+    ]
+
+
+def test_lights_whose_planes_do_not_fit_in_the_budget_are_exported_too() -> None:
+    lights = [Light(f"light {number}", (0.1 * number - 1, -3.0, 0.5)) for number in range(20)]
+    scene = wall_scene(view=None).replace(lights=tuple(lights))
+    picture = render(scene, *SIZE)
+    usual = export_of(scene, picture, lights=True)["lights"]
+    needed = (BYTES_OF_PIXEL + 20 * BYTES_OF_LIGHT) * SIZE[0] * SIZE[1]
+    with allowing(1.001 * needed / MEMORY):
+        assert len(rendering(scene, *SIZE).picture.light_planes) < 20
+        in_turns = export_of(scene, picture, lights=True)["lights"]
+    for row, other in zip(usual["rows"], in_turns["rows"], strict=True):
+        assert np.allclose(row["units"], other["units"], rtol=1e-5)
+    with (
+        allowing(0.999 * needed / MEMORY),
+        pytest.raises(InputError, match=r"the export of 32 x 24 pixels must take at most 0\.\d MB"),
+    ):
+        export_of(scene, picture, lights=True)
+
+
+@pytest.mark.parametrize(
+    ("edit", "message"),
+    [
+        (lambda scene: scene.with_light("key", intensity=0.9), "the lights of a picture must be computed"),
+        (lambda scene: scene.with_view(angle=5), "the lights of a picture must be computed from the scene"),
+        (lambda scene: scene.replace(lights=()), "must have a light in its scene, not none; leave"),
+    ],
+)
+def test_lights_of_another_scene_are_refused(edit: Any, message: str) -> None:
+    scene = car()
+    with pytest.raises(InputError, match=message):
+        export_of(edit(scene), render(scene, *SIZE), lights=True)
+
+
+def test_an_exposure_that_cannot_be_held_is_refused() -> None:
+    scene = car().only_lights()
+    with pytest.raises(
+        InputError, match="must have more than one intensity, or there is no exposure to hold"
+    ):
+        export_of(scene, render(scene, *SIZE), lights=True)
+
+
+def test_more_planes_than_a_browser_holds_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(exported, "MOST_PLANE_POINTS", 100)
+    message = r"at most 100 visible points of all lights together, not \d+ of 2 lights; render fewer"
+    with pytest.raises(InputError, match=message):
+        export_of(car(), render(car(), *SIZE), lights=True)
+
+
+def test_a_picture_that_sees_nothing_is_exported() -> None:
+    scene = scene_of(cube()).with_view(eye=(0.0, -5.0, 0.0), direction=(0.0, -1.0, 0.0))
+    picture = render(scene, *SIZE)
+    values = export_of(scene, picture)
+    assert (
+        averaged(display_image(scene, picture).entries, words_in(values), 1) == image(scene, picture)
+    ).all()
+
+
+# Variants.
+
+
+def test_a_variant_has_the_fields_of_paints_and_lights_that_it_changes() -> None:
+    scene = car().with_surface("glass", ramp=["#000", "#fff"])
+    rows: list[Mapping[str, object]] = [
+        {"name": "night", "surfaces.body.object_color": "navy", "lights.key.on": "false"},
+        {"surfaces.glass.object_color": [1, 2, 3], "lights.fill.intensity": 0.4},
+        {"surfaces.glass.ramp": "none", "surfaces.body.blend": "0.25", "lights.fill.intensity": "2"},
+    ]
+    assert values_through_json(scene, variants=rows, lights=True)["variants"] == [
+        {"name": "night", "paints": {"body": {"object_color": "#000080"}}, "lights": {"key": {"on": False}}},
+        {
+            "name": "1,2,3-0.4",
+            "paints": {"glass": {"object_color": "#010203", "ramp": None}},
+            "lights": {},
+        },
+        {
+            "name": "2-none-0.25",
+            "paints": {"body": {"blend": 0.25}, "glass": {"ramp": None}},
+            "lights": {"fill": {"intensity": 2.0}},
+        },
+    ]
+
+
+@pytest.mark.parametrize(
+    ("row", "message"),
+    [
+        ({"view.angle": 3}, "variant '3': view.angle: a variant of a page must change paints, such as"),
+        ({"surfaces.body.levels": 3}, "surfaces.body.levels: a variant of a page must change paints"),
+        ({"lights.key.position": [1, 2, 3]}, "lights.key.position: a variant of a page must change paints"),
+        ({"lights.key.on": True}, "lights.key.on: the page must have lights for it; add --lights"),
+        ({"surfaces.wheels.blend": 1}, "its colors must stand for a paint, not for a scalar; leave this"),
+        ({"surfaces.body.blend": 2}, "variant '2': surface 'body': blend must be"),
+        ({"surfaces.bdy.blend": 2}, "there is no surface 'bdy'; did you mean 'body'?"),
+    ],
+)
+def test_what_a_page_cannot_change_is_refused(row: Mapping[str, object], message: str) -> None:
+    scene = car().with_scalar(name="stress", surfaces=["wheels"])
+    with pytest.raises((UsageError, InputError)) as refused:
+        values_through_json(scene, variants=[row])
+    assert message in str(refused.value)
+
+
+def test_so_many_variants_are_refused() -> None:
+    rows = [{"surfaces.body.blend": number / 2000} for number in range(1001)]
+    with pytest.raises(UsageError, match="at most 1,000 variants, not 1,001; leave some out"):
+        values_through_json(car(), variants=rows)

@@ -1,0 +1,191 @@
+from __future__ import annotations
+
+import json
+import re
+from base64 import b64encode
+from hashlib import sha256
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from autocolor import (
+    InputError,
+    OutputError,
+    Scene,
+    Surface,
+    UsageError,
+    demo,
+    render,
+    save_page,
+    scene_of,
+)
+from autocolor.web.exported import export_of
+from autocolor.web.page import page_of, without_comments
+from tests.autocolor.meshes import sphere
+from tests.autocolor.sessions import car
+
+SIZE = (24, 32)
+WEB = Path(__file__).resolve().parents[3] / "autocolor" / "web"
+
+HOSTILE = [
+    "</script><script>alert(1)</script>",
+    "<!--<script>",
+    "\"onload='alert(1)' {style}",
+    "&lt;b&gt; &amp; ]]>",
+    "\u202etxt.exe\u2028\u0000",
+    "\ud800",
+    "car\nhood",
+]
+
+
+class Elements(HTMLParser):
+    """The elements of a page with their attributes and their texts, in order."""
+
+    def __init__(self, page: str) -> None:
+        super().__init__()
+        self.elements: list[tuple[str, dict[str, str | None], str]] = []
+        self.is_open = False
+        self.feed(page)
+        self.close()
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.elements.append((tag, dict(attrs), ""))
+        self.is_open = True
+
+    def handle_endtag(self, tag: str) -> None:
+        self.is_open = False
+
+    def handle_data(self, data: str) -> None:
+        if self.is_open:
+            tag, attributes, text = self.elements[-1]
+            self.elements[-1] = (tag, attributes, text + data)
+
+    def all(self, tag: str) -> list[tuple[dict[str, str | None], str]]:
+        return [(attributes, text) for name, attributes, text in self.elements if name == tag]
+
+
+def page_with(scene: Scene, **options: Any) -> Elements:
+    return Elements(page_of(export_of(scene, render(scene, *SIZE), **options)))
+
+
+def policy_of(page: Elements) -> dict[str, str]:
+    (content,) = (
+        attributes["content"] or ""
+        for attributes, _ in page.all("meta")
+        if attributes.get("http-equiv") == "Content-Security-Policy"
+    )
+    return {name: rest for name, _, rest in (rule.strip().partition(" ") for rule in content.split(";"))}
+
+
+def test_the_policy_allows_this_script_and_this_style_and_no_request() -> None:
+    page = page_with(car(), lights=True)
+    (_, picture), (attributes, script) = page.all("script")
+    ((_, style),) = page.all("style")
+    assert attributes == {"type": "module"}
+    assert json.loads(picture)["name"] == car().name
+    assert policy_of(page) == {
+        "default-src": "'none'",
+        "img-src": "data: blob:",
+        "base-uri": "'none'",
+        "form-action": "'none'",
+        "script-src": f"'sha256-{b64encode(sha256(script.encode()).digest()).decode()}'",
+        "style-src": f"'sha256-{b64encode(sha256(style.encode()).digest()).decode()}'",
+    }
+
+
+def test_a_page_refers_to_nothing_outside() -> None:
+    page = page_with(car())
+    references = [
+        value
+        for _, attributes, _ in page.elements
+        for name, value in attributes.items()
+        if name in ("src", "href", "srcset", "action", "data", "poster")
+    ]
+    assert [(reference or "").partition(",")[0] for reference in references] == ["data:image/svg+xml"]
+    assert not re.search(r"@import|url\((?!['\"]?data:)", page.all("style")[0][1])
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_names_of_strangers_are_never_markup(name: str) -> None:
+    mesh = sphere(8, 6)
+    scene = scene_of(
+        mesh,
+        surface_of_part={part: name for part in mesh.part_names},
+        surfaces=[Surface(name)],
+        name=name,
+    )
+    hostile = page_with(scene, lights=True, variants=[{"name": name}])
+    plain = page_with(car(), lights=True)
+    assert [(tag, [*attributes]) for tag, attributes, _ in hostile.elements] == [
+        (tag, [*attributes]) for tag, attributes, _ in plain.elements
+    ]
+    values = json.loads(hostile.all("script")[0][1])
+    assert values["name"] == name
+    assert [surface["name"] for surface in values["surfaces"]] == [name]
+    assert [variant["name"] for variant in values["variants"]] == [name]
+    assert all(letter.isprintable() for letter in hostile.all("title")[0][1].strip())
+
+
+def lines_without_comments(source: str) -> str:
+    """The slow, obvious twin: line by line."""
+    lines: list[str] = []
+    inside = False
+    for line in source.splitlines():
+        text = line.strip(" \t")
+        if not inside and text.startswith("/*") and ("*/" not in text or text.endswith("*/")):
+            # A second comment on the line, or code between two comments, would be lost.
+            assert "*/" not in text[:-2], line
+            inside = "*/" not in text
+        elif inside:
+            inside = "*/" not in text
+            assert inside or text.endswith("*/"), line
+        elif not text.startswith("//"):
+            lines.append(line.lstrip(" \t") if lines else line)
+    return "".join(f"{line}\n" for line in lines)
+
+
+@pytest.mark.parametrize("name", ["autocolor.js", "autocolor.css"])
+def test_a_page_has_every_line_of_the_module_but_comments(name: str) -> None:
+    source = (WEB / name).read_text("utf-8")
+    assert without_comments(source) == lines_without_comments(source)
+    # No text extends over several lines, and none ends the element that it is in.
+    assert all(line.count("`") % 2 == 0 for line in without_comments(source).splitlines())
+    assert not re.search("</(script|style)|<!--", source, re.IGNORECASE)
+
+
+def test_the_pages_of_the_coupe_are_small(tmp_path: Path) -> None:
+    scene = demo()
+    picture = render(scene, smooth=2)
+    save_page(tmp_path / "coupe.html", scene, picture)
+    save_page(tmp_path / "lit.html", scene, picture, lights=True)
+    assert (tmp_path / "coupe.html").stat().st_size <= 150_000
+    assert (tmp_path / "lit.html").stat().st_size <= 1_200_000
+
+
+def test_a_page_is_never_written_over_unasked_nor_under_another_suffix(tmp_path: Path) -> None:
+    scene = car()
+    picture = render(scene, *SIZE)
+    path = tmp_path / "car.html"
+    save_page(path, scene, picture)
+    before = path.read_bytes()
+    with pytest.raises(OutputError, match="an output must be a new file"):
+        save_page(path, scene.with_surface("body", object_color="navy"), picture)
+    assert path.read_bytes() == before
+    save_page(path, scene.with_surface("body", object_color="navy"), picture, overwrite=True)
+    assert path.read_bytes() != before
+    with pytest.raises(UsageError, match=r"a page must be written to a file that ends in \.html, not to"):
+        save_page(tmp_path / "car.png", scene, picture)
+    with pytest.raises(UsageError, match="the scene must come before the picture"):
+        save_page(tmp_path / "new.html", picture, scene)  # type: ignore[arg-type]
+    with pytest.raises(InputError, match="the surfaces of a picture must be those of the scene"):
+        save_page(tmp_path / "new.html", demo(), picture)
+    assert [each.name for each in tmp_path.iterdir()] == ["car.html"]
+
+
+def test_the_page_of_a_picture_is_the_same_every_time() -> None:
+    scene = car()
+    picture = render(scene, *SIZE)
+    again = render(scene.replace(), *SIZE)
+    assert page_of(export_of(scene, picture, lights=True)) == page_of(export_of(scene, again, lights=True))
