@@ -119,11 +119,13 @@ def files_of_packages() -> set[str]:
     """The files that an installation must have, by their paths in it."""
     modules = {path.relative_to(ROOT) for package in PACKAGES for path in (ROOT / package).rglob("*.py")}
     typed = {Path(package, "py.typed") for package in PACKAGES}
+    web = {path.relative_to(ROOT) for path in (ROOT / "autocolor" / "web").glob("autocolor.*")}
+    assert {path.suffix for path in web} == {".css", ".js"}
     coupe = ROOT / "scenes" / "coupe"
     scene = {
         Path("autocolor", "demo_scene", path.name) for path in (coupe / "scene.toml", *coupe.glob("*.obj"))
     }
-    return {path.as_posix() for path in modules | typed | scene}
+    return {path.as_posix() for path in modules | typed | web | scene}
 
 
 def test_the_wheel_holds_both_packages_and_the_demo_and_nothing_else(installed: Installed) -> None:

@@ -22,7 +22,7 @@
 /** @typedef {{held: string, ambient: number, rows: LightRow[], levels: string[], dither: boolean}} Lights */
 /** @typedef {{name: string, paints?: Record<string, Partial<Paint>>,
  *   lights?: Record<string, Record<string, Value>>}} Variant */
-/** @typedef {string | ArrayBuffer | ArrayBufferView} Packed  Bytes, or their base64. */
+/** @typedef {string | ArrayBufferView} Packed  Bytes, or their base64. */
 /** @typedef {{format: string, name: string, lines: number, elements: number, smooth: number, words: Packed,
  *   entries: Packed, background: string, surfaces: Surface[], notes: string[], variants: Variant[],
  *   legend: null | {line: number, element: number, lines: number, elements: number, words: Packed},
@@ -31,7 +31,6 @@
 /** @typedef {Uint8Array<ArrayBuffer>} Bytes */
 /** @typedef {Uint16Array<ArrayBuffer>} Words */
 
-export const FORMAT = "autocolor page 1";
 const ENTRIES = 1024;
 const COUNT = new Intl.NumberFormat("en");
 const PAINT = /** @type {const} */ (["object_color", "light_color", "blend", "light_percentage", "ramp"]);
@@ -42,7 +41,6 @@ const PAINT = /** @type {const} */ (["object_color", "light_color", "blend", "li
 /** The bytes of packed values. @param {Packed} packed @returns {Bytes} */
 export function bytesOf(packed) {
   if (typeof packed === "string") return Uint8Array.from(atob(packed), (letter) => letter.charCodeAt(0));
-  if (packed instanceof ArrayBuffer) return new Uint8Array(packed);
   return new Uint8Array(/** @type {ArrayBuffer} */ (packed.buffer), packed.byteOffset, packed.byteLength);
 }
 
@@ -373,6 +371,16 @@ function differing(one, other) {
   return Object.keys(one).filter((key) => !same(one[key], other[key]));
 }
 
+/** Whether all values are equal. @param {State} one @param {State} other */
+function alike(one, other) {
+  return Object.keys(one).every((key) => same(one[key], other[key]));
+}
+
+/** The name of the first light that keys belong to; empty if none. @param {string[]} keys */
+function lightIn(keys) {
+  return keys.find((key) => key.startsWith("lights."))?.slice(7).replace(/\.[^.]*$/, "") ?? "";
+}
+
 /** A value as the command line reads it. @param {Value} value */
 function textOf(value) {
   return value === null ? "none" : String(value);
@@ -449,7 +457,7 @@ export function tableOf(state, first, name) {
 // ---------------------------------------------------------------------------------------------------------
 // The glass: words looked up in a table, on a canvas
 
-/** @typedef {{left: number, top: number, width: number, height: number}} Box */
+/** @typedef {{left: number, top: number, right: number, bottom: number}} Box  Its edges are included. */
 
 /** Load entries into a table of colors. @param {Uint32Array} table @param {number} first @param {Bytes} entries */
 function load(table, first, entries) {
@@ -465,7 +473,7 @@ function load(table, first, entries) {
 function glassOf(picture, words, entries, legendWords) {
   const { lines, elements, smooth, surfaces, legend } = picture;
   const canvas = make("canvas", { width: elements, height: lines, role: "img", "aria-label": `Picture of ${picture.name}` });
-  const outline = make("canvas", { width: elements, height: lines, class: "outline", "aria-hidden": "true" });
+  const outline = make("canvas", { width: elements, height: lines, class: "outline" });
   const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d", { alpha: false }));
   const image = context.createImageData(elements, lines);
   const pixels = new Uint32Array(image.data.buffer);
@@ -473,19 +481,30 @@ function glassOf(picture, words, entries, legendWords) {
   /** The number of the surface that owns each word, from 1; 0 for none. */
   const owner = new Uint8Array(ENTRIES);
   surfaces.forEach(({ first, levels }, number) => owner.fill(number + 1, first, first + levels));
-  const boxes = surfaces.map((_, number) => boxOf(words, owner, elements, number + 1));
+  const whole = { left: 0, top: 0, right: elements - 1, bottom: lines - 1 };
+  /** The box around the pixels of each surface. @type {Box[]} */
+  const boxes = surfaces.map(() => ({ left: elements, top: lines, right: 0, bottom: 0 }));
+  for (let at = 0; at < words.length; at++) {
+    const box = boxes[owner[words[at]] - 1];
+    if (!box) continue;
+    const element = at % elements;
+    box.left = Math.min(box.left, element);
+    box.right = Math.max(box.right, element);
+    box.bottom = (at - element) / elements;
+    box.top = Math.min(box.top, box.bottom);
+  }
 
   /**
    * Look up the colors of all words in a box. Measured at 1280 x 960: a list of the surface's pixels takes as
    * long and four bytes a pixel.
    */
-  function look(/** @type {Box} */ { left, top, width, height }) {
-    for (let line = top; line < top + height; line++) {
-      const end = line * elements + left + width;
-      for (let at = line * elements + left; at < end; at++) pixels[at] = table[words[at]];
+  function look(/** @type {Box} */ { left, top, right, bottom }) {
+    for (let line = top; line <= bottom; line++) {
+      const end = line * elements + right;
+      for (let at = line * elements + left; at <= end; at++) pixels[at] = table[words[at]];
     }
     drawLegend();
-    context.putImageData(image, 0, 0, left, top, width, height);
+    context.putImageData(image, 0, 0, left, top, right - left + 1, bottom - top + 1);
   }
 
   function drawLegend() {
@@ -496,7 +515,6 @@ function glassOf(picture, words, entries, legendWords) {
     }
   }
 
-  const whole = { left: 0, top: 0, width: elements, height: lines };
   load(table, 0, entries);
   look(whole);
 
@@ -517,42 +535,18 @@ function glassOf(picture, words, entries, legendWords) {
       look(boxes[number]);
       if (legend) context.putImageData(image, 0, 0, legend.element, legend.line, legend.elements, legend.lines);
     },
-    /** The number of the surface at a pixel, from 0; -1 for none. */
-    at(/** @type {number} */ line, /** @type {number} */ element) {
-      const inside = line >= 0 && line < lines && element >= 0 && element < elements;
-      return inside ? owner[words[line * elements + element]] - 1 : -1;
-    },
     /** Draw the outline of a surface over the picture. */
     drawOutline(/** @type {number} */ number) {
-      const over = /** @type {CanvasRenderingContext2D} */ (outline.getContext("2d"));
-      const drawn = over.createImageData(elements, lines);
-      const dots = new Uint32Array(drawn.data.buffer);
+      const dots = new Uint32Array(words.length);
       const away = Math.max(smooth, Math.round(elements / 640));
-      for (let line = away; line < lines - away; line++) {
-        for (let at = line * elements + away; at < (line + 1) * elements - away; at++) {
-          if (owner[words[at]] !== number + 1) continue;
-          const neighbors = [at - away, at + away, at - away * elements, at + away * elements];
-          if (neighbors.some((each) => owner[words[each]] !== number + 1)) dots[at] = 0xffffffff;
-        }
+      const other = (/** @type {number} */ at) => owner[words[at]] !== number + 1;
+      for (let at = away * elements; at < words.length - away * elements; at++) {
+        if (other(at)) continue;
+        if (other(at - away) || other(at + away) || other(at - away * elements) || other(at + away * elements)) dots[at] = 0xffffffff;
       }
-      over.putImageData(drawn, 0, 0);
+      drawPixels(outline, dots);
     },
   };
-}
-
-/** The box around the pixels of a surface. @param {Words} words @param {Uint8Array} owner
- * @param {number} elements @param {number} number @returns {Box} */
-function boxOf(words, owner, elements, number) {
-  let [left, top, right, bottom] = [elements, Infinity, -1, -1];
-  for (let at = 0; at < words.length; at++) {
-    if (owner[words[at]] !== number) continue;
-    const element = at % elements;
-    if (element < left) left = element;
-    if (element > right) right = element;
-    bottom = (at - element) / elements;
-    if (top > bottom) top = bottom;
-  }
-  return right < 0 ? { left: 0, top: 0, width: 0, height: 0 } : { left, top, width: right - left + 1, height: bottom - top + 1 };
 }
 
 // ---------------------------------------------------------------------------------------------------------
@@ -568,15 +562,21 @@ function make(tag, attributes = {}, ...children) {
   const element = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) {
     if (typeof value === "function") element.addEventListener(name.slice(2), /** @type {EventListener} */ (value));
-    else if (value !== false && value !== undefined) element.setAttribute(name, value === true ? "" : String(value));
+    else element.setAttribute(name, String(value));
   }
+  if (element instanceof HTMLButtonElement) element.type = "button";
   element.append(...children);
   return element;
 }
 
+/** A box of a class. @param {string} name @param {...(Node | string)} children */
+function div(name, ...children) {
+  return make("div", { class: name }, ...children);
+}
+
 /** An icon of 24 units a side, drawn by a path. @param {string} path */
 function icon(path) {
-  const frame = make("span", { class: "icon", "aria-hidden": "true" });
+  const frame = make("span");
   frame.innerHTML = `<svg viewBox="0 0 24 24"><path d="${path}"/></svg>`;
   return frame;
 }
@@ -589,7 +589,6 @@ const COMPARE = "M12 3v18M9 6H4v12h5M15 6h5v12h-5";
  * What the parts of the interface share.
  * @typedef {object} Desk
  * @property {string} id  A prefix of names and ids.
- * @property {HTMLElement} root
  * @property {Picture} picture
  * @property {ReturnType<typeof glassOf>} glass
  * @property {State} first  The values as exported.
@@ -616,7 +615,7 @@ export async function mount(root, picture, options = {}) {
     update({ words, entries, picture: changed }) {
       queue = queue.then(async () => {
         picture = { ...picture, ...changed, words: words ?? picture.words, entries: entries ?? picture.entries };
-        if (await built.update(picture, words !== undefined, entries !== undefined)) return;
+        if (await built.update(picture)) return;
         built.destroy();
         built = await build(root, picture, options);
       });
@@ -634,20 +633,16 @@ export async function mount(root, picture, options = {}) {
 }
 
 /** The parts of a picture that a new interface is built for. @param {Picture} picture */
-function structureOf({ lines, elements, smooth, surfaces, legend, lights, variants }) {
+function structureOf({ lines, elements, smooth, surfaces, legend, lights, variants, notes }) {
   const rows = surfaces.map(({ name, first, levels, fixed }) => [name, first, levels, fixed]);
-  return JSON.stringify([lines, elements, smooth, rows, legend, lights?.rows.map((row) => row.name), variants]);
+  return JSON.stringify([lines, elements, smooth, rows, legend, lights?.rows.map((row) => row.name), variants, notes]);
 }
 
 /** The interface of one picture. @param {HTMLElement} root @param {Picture} picture @param {Options} options */
 async function build(root, picture, options) {
   const hosted = options.edit !== undefined;
   root.classList.add("autocolor");
-  root.classList.toggle("autocolor-page", !hosted);
-  if (picture.format !== FORMAT) {
-    root.replaceChildren(make("p", { role: "alert" }, `This file has a picture in the format “${picture.format}”, and this page reads “${FORMAT}”.`));
-    return { update: async () => false, say: () => {}, destroy: () => root.replaceChildren() };
-  }
+  root.classList.toggle("page", !hosted);
   const { lines, elements } = picture;
   const words = await unpackWords(picture.words, lines, elements);
   const before = words.slice();
@@ -657,7 +652,7 @@ async function build(root, picture, options) {
   const glass = glassOf(picture, words, entries, legend);
   const relight = await relighting(picture, words, glass.owner);
   const first = stateOf(picture);
-  const status = make("p", { class: "status", role: "status" });
+  const status = make("p", { class: "status", role: "status" }, "Choose a surface in the picture, and mix its colors.");
 
   /** @type {State[]} */
   let steps = [first];
@@ -668,7 +663,6 @@ async function build(root, picture, options) {
   /** @type {Desk} */
   const desk = {
     id: `autocolor-${++mounted}`,
-    root,
     picture,
     glass,
     first,
@@ -680,7 +674,7 @@ async function build(root, picture, options) {
     },
     edit(edits, name = "") {
       const next = { ...desk.state, ...edits };
-      if (differing(next, desk.state).length === 0) return;
+      if (alike(next, desk.state)) return;
       const sameStep = name !== "" && name === gesture;
       gesture = name;
       if (!hosted) {
@@ -695,15 +689,19 @@ async function build(root, picture, options) {
       if (keyHeld) return;
       gesture = "";
       if (!hosted) writeFragment();
-      held?.();
+      const show = held;
       held = null;
+      show?.();
     },
     choose(number) {
       desk.chosen = number;
       sync();
-      point(number, true);
+      glass.drawOutline(number);
+      pointed = -1;
+      glass.outline.animate([{ opacity: 0.8 }, { opacity: 0.8, offset: 0.4 }, { opacity: 0 }], 1400);
     },
   };
+  let shownWords = picture.words;
   /** What the host sent during a gesture, to be shown when it rests. @type {(() => void) | null} */
   let held = null;
 
@@ -715,9 +713,9 @@ async function build(root, picture, options) {
   function show(/** @type {State} */ next) {
     const keys = differing(next, desk.state);
     desk.state = next;
-    const lit = keys.filter((each) => each.startsWith("lights."));
-    if (lit.length > 0 && relight) {
-      const changed = relight(next, lit[0].slice(7, lit[0].lastIndexOf(".")));
+    const light = lightIn(keys);
+    if (light && relight) {
+      const changed = relight(next, light);
       glass.look(glass.whole);
       desk.say(`${COUNT.format(changed)} words rewritten, no entry of the table: light is in the words.`);
     }
@@ -728,7 +726,7 @@ async function build(root, picture, options) {
       const { name, levels, floor } = picture.surfaces[number];
       glass.rewrite(number, entriesOf(paintOf(next, name), levels, floor));
     }
-    if (painted.length === 1 && lit.length === 0) {
+    if (painted.length === 1 && !light) {
       const { first: from, levels } = picture.surfaces[painted[0]];
       desk.say(`Entries ${from} to ${from + levels - 1} of the table rewritten, no word of the picture.`);
     }
@@ -759,99 +757,93 @@ async function build(root, picture, options) {
   }
 
   // The picture: point at a surface to see its name and outline, click to choose it.
-  const label = make("span", { class: "pointed", "aria-hidden": "true" });
-  const screen = make("div", { class: "glass" }, glass.canvas, glass.outline, label);
+  const label = make("span", { class: "pointed" });
+  const screen = div("glass", glass.canvas, glass.outline, label);
   screen.style.setProperty("--ratio", String(elements / lines));
   screen.style.setProperty("--most", `${elements * (picture.smooth === 1 ? 1.6 : 1)}px`);
   root.style.setProperty("--background", picture.background);
   let pointed = -1;
-  function point(/** @type {number} */ number, flash = false) {
+  function point(/** @type {number} */ number) {
     if (number !== pointed && number >= 0) glass.drawOutline(number);
     pointed = number;
     label.textContent = number < 0 ? "" : picture.surfaces[number].name;
-    screen.classList.toggle("pointing", number >= 0 && !flash);
-    screen.classList.remove("flash");
-    if (flash) {
-      void screen.offsetWidth;
-      screen.classList.add("flash");
-    }
+    screen.classList.toggle("pointing", number >= 0);
   }
-  function surfaceUnder(/** @type {MouseEvent} */ event) {
-    const box = glass.canvas.getBoundingClientRect();
-    const scale = elements / box.width;
-    return glass.at(Math.floor((event.clientY - box.top) * scale), Math.floor((event.clientX - box.left) * scale));
+  /** Call a function with the surface under the pointer. @param {(number: number, event: PointerEvent) => void} call */
+  function withSurface(call) {
+    return (/** @type {any} */ event) => {
+      const box = glass.canvas.getBoundingClientRect();
+      const [line, element] = [event.clientY - box.top, event.clientX - box.left].map((each) => Math.floor((each * elements) / box.width));
+      call((glass.owner[words[line * elements + element]] ?? 0) - 1, event);
+    };
   }
-  glass.canvas.addEventListener("pointermove", (event) => {
-    const number = surfaceUnder(event);
-    if (event.pointerType === "mouse" && number !== pointed) point(number);
-  });
+  glass.canvas.addEventListener("pointermove", withSurface((number, event) => event.pointerType === "mouse" && number !== pointed && point(number)));
   glass.canvas.addEventListener("pointerleave", () => point(-1));
-  glass.canvas.addEventListener("click", (event) => {
-    const number = surfaceUnder(event);
-    if (number >= 0) desk.choose(number);
-  });
+  glass.canvas.addEventListener("click", withSurface((number) => number >= 0 && desk.choose(number)));
 
   const counts = () => (hosted ? [desk.picture.undo ?? 0, desk.picture.redo ?? 0] : [at, steps.length - 1 - at]);
   const compare = comparison(screen, () => glassOf(picture, before, entries, legend).canvas);
-  const notes = make("div", { class: "notes" });
-  desk.syncs.push(() => notes.replaceChildren(...desk.picture.notes.map((note) => make("p", {}, note))));
-  const head = make("div", { class: "head" }, ...(hosted ? [] : [make("h1", {}, picture.name)]), toolbar(desk, step, counts, compare));
-  const under = make("div", { class: "under" }, wholeTable(desk), status, ...variantStrip(desk, relight));
-  const panel = make("div", { class: "panel" }, surfaceList(desk), paintPanel(desk), ...lightRows(desk), notes, sharing(desk, hosted));
-  root.replaceChildren(make(hosted ? "div" : "main", { class: "desk" }, head, make("div", { class: "stage" }, screen), under, panel));
+  const notes = div("notes", ...picture.notes.map((note) => make("p", {}, note)));
+  const head = div("head", ...(hosted ? [] : [make("h1", {}, picture.name)]), toolbar(desk, step, counts, compare));
+  const under = div("under", wholeTable(desk), status, ...variantStrip(desk, relight));
+  const panel = div("panel", surfaceList(desk), paintPanel(desk), ...lightRows(desk), notes, sharing(desk, hosted));
+  root.replaceChildren(make(hosted ? "div" : "main", { class: "desk" }, head, div("stage", screen), under, panel));
   sync();
 
   // Keys and gestures: a drag, or a key that is held, is one step.
   const keys = hosted ? root : document;
+  const life = new AbortController();
   const onKey = (/** @type {Event} */ event) => {
-    const { key: name, ctrlKey, metaKey, shiftKey, altKey, type } = /** @type {KeyboardEvent} */ (event);
+    const { key: name, ctrlKey, metaKey, shiftKey, altKey, type, target } = /** @type {KeyboardEvent} */ (event);
     if (type === "keyup") {
       keyHeld = false;
       if (gesture) desk.rest();
       return;
     }
-    const inRange = event.target instanceof HTMLInputElement && event.target.type === "range";
-    keyHeld = inRange && /^(Arrow|Page|Home|End)/.test(name);
-    const inText = event.target instanceof HTMLInputElement && /text|number/.test(event.target.type);
+    const kind = target instanceof HTMLInputElement ? target.type : "";
+    keyHeld = kind === "range" && /^(Arrow|Page|Home|End)/.test(name);
+    // In a text, these keys undo what was typed.
+    const inText = kind === "text" || kind === "number";
     const letter = name.toLowerCase();
     if (!(ctrlKey || metaKey) || altKey || inText || !(letter === "z" || letter === "y")) return;
     event.preventDefault();
     event.stopPropagation();
     step(letter === "y" || shiftKey ? 1 : -1);
   };
-  keys.addEventListener("keydown", onKey);
-  keys.addEventListener("keyup", onKey);
-  root.addEventListener("change", desk.rest);
+  const mortal = { signal: life.signal };
+  keys.addEventListener("keydown", onKey, mortal);
+  keys.addEventListener("keyup", onKey, mortal);
+  root.addEventListener("change", desk.rest, mortal);
   if (!hosted) {
-    document.title = `${picture.name} · AUTOCOLOR`;
-    addEventListener("hashchange", readFragment);
+    addEventListener("hashchange", readFragment, mortal);
     if (location.hash.length > 1) readFragment();
   }
 
   return {
-    /** Show what a host sent; false if it needs a new interface. */
-    async update(/** @type {Picture} */ changed, /** @type {boolean} */ hasWords, /** @type {boolean} */ hasEntries) {
+    /** Show what a host sent; false if it needs a new interface. @param {Picture} changed */
+    async update(changed) {
       if (structureOf(changed) !== structureOf(picture)) return false;
-      if (hasWords) words.set(await unpackWords(changed.words, lines, elements));
-      if (hasWords) glass.look(glass.whole);
-      if (hasWords) desk.say(`The studio sent ${bytesOf(changed.words).length.toLocaleString("en")} bytes of words.`);
-      const shown = () => {
+      if (changed.words !== shownWords) {
+        words.set(await unpackWords(changed.words, lines, elements));
+        shownWords = changed.words;
+        glass.look(glass.whole);
+        desk.say(`The studio sent ${COUNT.format(bytesOf(changed.words).length)} bytes of words.`);
+      }
+      held = () => {
+        if (changed.entries !== picture.entries) {
+          load(glass.table, 0, bytesOf(changed.entries));
+          glass.look(glass.whole);
+        }
         picture = desk.picture = changed;
         desk.state = stateOf(changed);
-        if (hasEntries) load(glass.table, 0, bytesOf(changed.entries));
-        if (hasEntries) glass.look(glass.whole);
         sync();
       };
-      if (gesture) held = shown;
-      else shown();
+      if (!gesture) desk.rest();
       return true;
     },
     say: desk.say,
     destroy() {
-      keys.removeEventListener("keydown", onKey);
-      keys.removeEventListener("keyup", onKey);
-      root.removeEventListener("change", desk.rest);
-      removeEventListener("hashchange", readFragment);
+      life.abort();
       root.replaceChildren();
     },
   };
@@ -860,21 +852,18 @@ async function build(root, picture, options) {
 /** The buttons above the picture. @param {Desk} desk @param {(by: number) => void} step
  * @param {() => number[]} counts  The steps to undo and to redo. @param {HTMLElement} compare */
 function toolbar(desk, step, counts, compare) {
-  const undo = make("button", { type: "button", class: "square", "aria-label": "Undo", title: "Undo (Ctrl+Z)", onclick: () => step(-1) }, icon(UNDO));
-  const redo = make("button", { type: "button", class: "square", "aria-label": "Redo", title: "Redo (Ctrl+Y)", onclick: () => step(1) }, icon(REDO));
-  const reset = make("button", { type: "button", onclick: () => desk.edit(changesTo(desk, desk.first)) }, "Reset");
+  const [undo, redo] = [["Undo", "Ctrl+Z", UNDO], ["Redo", "Ctrl+Y", REDO]].map(([label, keys, path], which) =>
+    make("button", { class: "square", "aria-label": label, title: `${label} (${keys})`, onclick: () => step(2 * which - 1) }, icon(path)),
+  );
+  const reset = make("button", { onclick: () => desk.edit(changesTo(desk, desk.first)) }, "Reset");
   desk.syncs.push(() => {
     const [undos, redos] = counts();
-    disable(undo, undos === 0);
-    disable(redo, redos === 0);
-    disable(reset, differing(desk.state, desk.first).length === 0);
+    // A disabled button would lose the focus.
+    undo.ariaDisabled = String(undos === 0);
+    redo.ariaDisabled = String(redos === 0);
+    reset.ariaDisabled = String(alike(desk.state, desk.first));
   });
-  return make("div", { class: "tools" }, undo, redo, compare, reset);
-}
-
-/** Disable a button without taking the focus from it. @param {HTMLElement} button @param {boolean} isDisabled */
-function disable(button, isDisabled) {
-  button.setAttribute("aria-disabled", String(isDisabled));
+  return div("tools", undo, redo, compare, reset);
 }
 
 /** The edits that lead to other values. @param {Desk} desk @param {State} state @returns {State} */
@@ -890,12 +879,11 @@ function comparison(screen, drawBefore) {
   const button = make(
     "button",
     {
-      type: "button",
       "aria-pressed": "false",
       title: "Show the picture as it was, left of a line",
       onclick() {
         const isOn = shown.length === 0;
-        button.setAttribute("aria-pressed", String(isOn));
+        button.ariaPressed = String(isOn);
         shown.forEach((each) => each.remove());
         shown = isOn ? split() : [];
         screen.append(...shown);
@@ -907,11 +895,11 @@ function comparison(screen, drawBefore) {
   function split() {
     const before = drawBefore();
     before.className = "before";
-    before.setAttribute("aria-hidden", "true");
+    before.ariaHidden = "true";
     const move = () => screen.style.setProperty("--split", `${line.value}%`);
     const line = make("input", { type: "range", class: "split", min: 0, max: 100, step: 0.5, value: 50, "aria-label": "Line between before and after", oninput: move });
     move();
-    return [before, make("span", { class: "line", "aria-hidden": "true" }), line];
+    return [before, make("span", { class: "line" }), line];
   }
   return button;
 }
@@ -920,14 +908,14 @@ function comparison(screen, drawBefore) {
 function surfaceList(desk) {
   const rows = desk.picture.surfaces.map(({ name }, number) => {
     const radio = make("input", { type: "radio", name: `${desk.id}-surface`, value: number, onchange: () => desk.choose(number) });
-    const ball = make("span", { class: "ball", "aria-hidden": "true" });
+    const ball = make("span", { class: "ball" });
     desk.syncs.push(() => {
       radio.checked = desk.chosen === number;
-      setStyle(ball, "background", ballOf(desk, number));
+      ball.style.background = ballOf(desk, number);
     });
     return make("label", { class: "chip" }, radio, ball, make("span", {}, name));
   });
-  return make("fieldset", { class: "surfaces" }, make("legend", {}, "Surface"), make("div", { class: "chips" }, ...rows));
+  return make("fieldset", { class: "surfaces" }, make("legend", {}, "Surface"), div("chips", ...rows));
 }
 
 /** A ball in the colors of a surface; stripes for bands of a scalar. @param {Desk} desk @param {number} number */
@@ -939,13 +927,6 @@ function ballOf({ picture, glass }, number) {
   };
   if (shades !== levels) return `linear-gradient(90deg, ${[0.05, 0.3, 0.55, 0.8, 1].map(at).join(", ")})`;
   return `radial-gradient(circle at 36% 30%, ${at(1)} 4%, ${at(0.8)} 22%, ${at(0.55)} 58%, ${at(0.2)})`;
-}
-
-/** Set a property of a style if it differs. @param {HTMLElement} element @param {string} name @param {string} value */
-function setStyle(element, name, value) {
-  if (element.dataset[name] === value) return;
-  element.dataset[name] = value;
-  element.style.setProperty(name === "track" ? "--track" : name, value);
 }
 
 /** The colors of the chosen surface. @param {Desk} desk */
@@ -963,7 +944,7 @@ function paintPanel(desk) {
     if (needed !== built) {
       built = needed;
       syncs = [];
-      const title = make("h2", {}, make("span", {}, name), make("small", {}, `words ${first} to ${first + levels - 1}`));
+      const title = make("h2", {}, make("span", {}, name), make("small", {}, rangeText(first, levels)));
       const controls = fixed ? [strip(desk, syncs), make("p", { class: "fixed" }, fixed)] : isRamp ? ramp() : twoColors();
       panel.replaceChildren(title, ...controls);
     }
@@ -971,18 +952,18 @@ function paintPanel(desk) {
   });
 
   function ramp() {
-    const surface = desk.picture.surfaces[desk.chosen];
-    const colors = /** @type {string[]} */ (paintOf(desk.state, surface.name).ramp);
+    const key = `surfaces.${desk.picture.surfaces[desk.chosen].name}`;
+    const colors = /** @type {string[]} */ (desk.state[`${key}.ramp`]);
     const replace = () =>
       desk.edit({
-        [`surfaces.${surface.name}.ramp`]: null,
-        [`surfaces.${surface.name}.object_color`]: colors[Math.floor(colors.length / 2)],
-        [`surfaces.${surface.name}.light_color`]: colors[colors.length - 1],
+        [`${key}.ramp`]: null,
+        [`${key}.object_color`]: colors[colors.length >> 1],
+        [`${key}.light_color`]: colors[colors.length - 1],
       });
     return [
       strip(desk, syncs),
       make("p", { class: "fixed" }, `A ramp of ${colors.length} colors, from the lowest level to the highest.`),
-      make("button", { type: "button", onclick: replace }, "Use two colors instead"),
+      make("button", { onclick: replace }, "Use two colors instead"),
     ];
   }
 
@@ -992,8 +973,8 @@ function paintPanel(desk) {
     const tabs = [["object_color", "Object color"], ["light_color", "Light color"]].map(([each, label]) => {
       const radio = make("input", { type: "radio", name: `${desk.id}-color`, value: each, onchange: () => chooseField(each) });
       radio.checked = each === field;
-      const swatch = make("span", { class: "swatch", "aria-hidden": "true" });
-      syncs.push(() => setStyle(swatch, "background", String(desk.state[key(each)])));
+      const swatch = make("span", { class: "swatch" });
+      syncs.push(() => (swatch.style.background = String(desk.state[key(each)])));
       return make("label", {}, radio, swatch, label);
     });
     const blend = slider(desk, syncs, {
@@ -1015,7 +996,7 @@ function paintPanel(desk) {
     return [
       make("fieldset", { class: "tabs" }, make("legend", {}, `Colors of ${name}`), ...tabs),
       ...mixer(desk, syncs, key(field), `${field === "object_color" ? "object" : "light"} color of ${name}`),
-      make("div", { class: "blending" }, blend, percentage),
+      div("blending", blend, percentage),
     ];
   }
 
@@ -1027,19 +1008,24 @@ function paintPanel(desk) {
   return panel;
 }
 
+/** The words of a range, as text. @param {number} first @param {number} levels */
+function rangeText(first, levels) {
+  return `words ${first} to ${first + levels - 1}`;
+}
+
 /** The entries of the chosen surface, from the lowest level to the highest. @param {Desk} desk @param {Array<() => void>} syncs */
 function strip(desk, syncs) {
   const { first, levels } = desk.picture.surfaces[desk.chosen];
-  const canvas = make("canvas", { class: "strip", width: levels, height: 1, "aria-hidden": "true" });
-  syncs.push(() => drawEntries(canvas, desk.glass.table.subarray(first, first + levels)));
+  const canvas = make("canvas", { class: "strip", width: levels, height: 1 });
+  syncs.push(() => drawPixels(canvas, desk.glass.table.subarray(first, first + levels)));
   return canvas;
 }
 
-/** Draw entries side by side. @param {HTMLCanvasElement} canvas @param {Uint32Array} colors */
-function drawEntries(canvas, colors) {
+/** Draw pixels on a whole canvas. @param {HTMLCanvasElement} canvas @param {Uint32Array} pixels */
+function drawPixels(canvas, pixels) {
   const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
-  const image = context.createImageData(canvas.width, 1);
-  new Uint32Array(image.data.buffer).set(colors);
+  const image = context.createImageData(canvas.width, canvas.height);
+  new Uint32Array(image.data.buffer).set(pixels);
   context.putImageData(image, 0, 0);
 }
 
@@ -1056,19 +1042,14 @@ function slider(desk, syncs, { label, title, max, step, key = "", value = () => 
     if (text !== "" && Number.isFinite(number)) desk.edit(edits(number), title);
   };
   const range = make("input", { type: "range", min: 0, max, step, "aria-label": title, title, oninput: take });
-  const digits = make("input", { type: "number", min: 0, max, step: "any", "aria-label": `${title}, as a number`, oninput: take, onchange: () => (digits.value = shownNumber(value())) });
+  const digits = make("input", { type: "number", min: 0, max, step, "aria-label": `${title}, as a number`, oninput: take, onchange: () => (digits.value = shownNumber(value())) });
   syncs.push(() => {
     const text = String(value());
     if (range.value !== text) range.value = text;
-    if (focusOf(desk.root) !== digits) digits.value = shownNumber(value());
-    if (track) setStyle(range, "track", track());
+    if (!digits.matches(":focus")) digits.value = shownNumber(value());
+    if (track) range.style.setProperty("--track", track());
   });
-  return make("div", { class: "slider" }, make("span", { class: "name", "aria-hidden": "true" }, label), range, digits);
-}
-
-/** The element with the focus, also in a shadow tree. @param {HTMLElement} root */
-function focusOf(root) {
-  return /** @type {Document | ShadowRoot} */ (root.getRootNode()).activeElement;
+  return div("slider", make("span", { class: "name", "aria-hidden": "true" }, label), range, digits);
 }
 
 /** A number in at most three decimals. @param {number} value */
@@ -1096,7 +1077,7 @@ function mixer(desk, syncs, key, what) {
   syncs.push(() => {
     const digits = String(desk.state[key]);
     picker.value = digits;
-    if (focusOf(desk.root) !== text) {
+    if (!text.matches(":focus")) {
       text.value = digits;
       text.removeAttribute("aria-invalid");
     }
@@ -1115,14 +1096,14 @@ function mixer(desk, syncs, key, what) {
   });
   const white = slider(desk, syncs, {
     label: "W",
-    title: `White of the ${what}: lighter or darker, all three parts at once`,
+    title: `White of the ${what}: all three parts at once`,
     max: 255,
     step: 1,
     value: () => whiteOf(color()),
     edits: (each) => ({ [key]: inDigits(withWhite(color(), each)) }),
     track: () => `linear-gradient(90deg, #000, ${inDigits(withWhite(color(), 128))}, #fff)`,
   });
-  return [make("div", { class: "mixed" }, picker, text), make("div", { class: "bars" }, ...parts, white)];
+  return [div("mixed", picker, text), div("bars", ...parts, white)];
 }
 
 /** The switches and strengths of the lights, if any. @param {Desk} desk */
@@ -1134,92 +1115,101 @@ function lightRows(desk) {
     const toggle = make("input", { type: "checkbox", role: "switch", "aria-label": `Light ${name}`, onchange: () => desk.edit({ [key]: toggle.checked }) });
     desk.syncs.push(() => (toggle.checked = desk.state[key] === true));
     const strength = slider(desk, desk.syncs, { label: "", title: `Strength of light ${name}`, max: most, step: most / 200, key: `lights.${name}.intensity` });
-    return make("div", { class: "light" }, make("label", {}, toggle, make("span", {}, name)), strength);
+    return div("light", make("label", {}, toggle, make("span", {}, name)), strength);
   });
   return [make("section", { class: "lights" }, make("h2", {}, "Lights"), ...rows, make("p", { class: "fixed" }, lights.held))];
 }
 
 /** The whole lookup table, with the range of the chosen surface. @param {Desk} desk */
 function wholeTable(desk) {
-  const canvas = make("canvas", { width: ENTRIES, height: 1, "aria-hidden": "true" });
-  const mark = make("span", { class: "mark", "aria-hidden": "true" });
+  const canvas = make("canvas", { width: ENTRIES, height: 1 });
+  const mark = make("span", { class: "mark" });
   const text = make("span", {});
   desk.syncs.push(() => {
-    drawEntries(canvas, desk.glass.table);
+    drawPixels(canvas, desk.glass.table);
     const { name, first, levels } = desk.picture.surfaces[desk.chosen] ?? { name: "", first: 0, levels: 0 };
     mark.style.left = `${(100 * first) / ENTRIES}%`;
     mark.style.width = `${(100 * levels) / ENTRIES}%`;
-    text.textContent = `words ${first} to ${first + levels - 1} are ${name}`;
+    text.textContent = `${rangeText(first, levels)} are ${name}`;
   });
   canvas.addEventListener("click", ({ offsetX }) => {
     const number = desk.glass.owner[Math.floor((offsetX / canvas.clientWidth) * ENTRIES)] - 1;
     if (number >= 0) desk.choose(number);
   });
-  return make("div", { class: "table" }, make("div", { class: "entries" }, canvas, mark), make("p", {}, make("span", {}, "Lookup table, 1024 entries"), text));
+  return div("table", div("entries", canvas, mark), make("p", {}, make("span", {}, "Lookup table, 1024 entries"), text));
 }
 
-/** The pictures of the variants; one is chosen as one step. @param {Desk} desk
- * @param {((state: State, name: string) => number) | null} relight */
+/**
+ * The pictures of the variants; one is chosen as one step. Pictures are drawn when they are scrolled into view.
+ * @param {Desk} desk @param {((state: State, name: string) => number) | null} relight
+ */
 function variantStrip(desk, relight) {
-  const { picture, first, glass } = desk;
+  const { picture, first } = desk;
   if (picture.variants.length === 0) return [];
-  const lit = picture.lights?.rows[0]?.name ?? "";
+  const draw = new Map();
+  const observer = new IntersectionObserver((seen) => {
+    for (const { isIntersecting, target } of seen) {
+      if (!isIntersecting) continue;
+      observer.unobserve(target);
+      draw.get(target)();
+    }
+  });
   const buttons = [{ name: "As exported" }, ...picture.variants].map((variant) => {
     const state = stateOfVariant(first, variant);
-    relight?.(state, lit);
-    const choose = () => desk.edit(changesTo(desk, state));
-    const button = make("button", { type: "button", onclick: choose }, thumbnail(desk, state), make("span", {}, variant.name));
-    desk.syncs.push(() => button.setAttribute("aria-pressed", String(differing(state, desk.state).length === 0)));
+    const canvas = make("canvas");
+    draw.set(canvas, () => {
+      const light = lightIn(differing(state, desk.state));
+      if (light) relight?.(state, light);
+      drawThumbnail(canvas, desk, state);
+      if (light) relight?.(desk.state, light);
+    });
+    observer.observe(canvas);
+    const button = make("button", { onclick: () => desk.edit(changesTo(desk, state)) }, canvas, make("span", {}, variant.name));
+    desk.syncs.push(() => (button.ariaPressed = String(alike(state, desk.state))));
     return button;
   });
-  relight?.(desk.state, lit);
-  glass.look(glass.whole);
   return [make("div", { class: "variants", role: "group", "aria-label": "Variants" }, ...buttons)];
 }
 
 const THUMBNAIL = 208;
 
-/** A small canvas of the picture's words in other colors. @param {Desk} desk @param {State} state */
-function thumbnail({ picture, glass }, state) {
+/** Draw some of the picture's words in other colors. @param {HTMLCanvasElement} canvas @param {Desk} desk @param {State} state */
+function drawThumbnail(canvas, { picture, glass }, state) {
   const { lines, elements, surfaces } = picture;
   const every = Math.max(1, Math.ceil(elements / THUMBNAIL));
-  const [width, height] = [Math.floor(elements / every), Math.floor(lines / every)];
+  const width = (canvas.width = Math.floor(elements / every));
+  canvas.height = Math.floor(lines / every);
   const table = glass.table.slice();
   for (const { name, first, levels, floor, fixed } of surfaces) {
     if (!fixed) load(table, first, entriesOf(paintOf(state, name), levels, floor));
   }
-  const canvas = make("canvas", { width, height, "aria-hidden": "true" });
-  const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
-  const image = context.createImageData(width, height);
-  new Uint32Array(image.data.buffer).forEach((_, at, pixels) => {
-    pixels[at] = table[glass.words[(Math.floor(at / width) * elements + (at % width)) * every]];
-  });
-  context.putImageData(image, 0, 0);
-  return canvas;
+  const words = Uint16Array.from({ length: width * canvas.height }, (_, at) => glass.words[(Math.floor(at / width) * elements + (at % width)) * every]);
+  drawPixels(canvas, Uint32Array.from(words, (word) => table[word]));
 }
 
 /** The buttons that copy the link, and save the picture and its values. @param {Desk} desk @param {boolean} hosted */
 function sharing(desk, hosted) {
   const { picture, glass, first } = desk;
   const stem = picture.name.replace(/[^\p{L}\p{N}._-]+/gu, "-") || "picture";
-  const button = (/** @type {string} */ text, /** @type {() => void} */ onclick) => make("button", { type: "button", onclick }, text);
+  const button = (/** @type {string} */ text, /** @type {() => void} */ onclick) => make("button", { onclick }, text);
   async function copy() {
     try {
       await navigator.clipboard.writeText(location.href);
-      desk.say("The link is copied. It has the colors that you see.");
+      desk.say("The link with these colors is copied.");
     } catch {
-      desk.say("The browser does not let this page copy; the link is in the address bar.");
+      desk.say("The browser refused; copy the link from its address bar.");
     }
   }
   function savePicture() {
-    const canvas = make("canvas", { width: picture.elements / picture.smooth, height: picture.lines / picture.smooth });
-    canvas.getContext("2d")?.putImageData(averaged(glass.pixels, picture.elements, picture.smooth), 0, 0);
-    canvas.toBlob((blob) => blob && download(blob, `${stem}.png`), "image/png");
+    const image = averaged(glass.pixels, picture.elements, picture.smooth);
+    const canvas = make("canvas", { width: image.width, height: image.height });
+    canvas.getContext("2d")?.putImageData(image, 0, 0);
+    canvas.toBlob((blob) => blob && download(blob, `${stem}.png`));
   }
   function saveValues() {
     download(new Blob([tableOf(desk.state, first, picture.name)], { type: "text/csv" }), `${stem}-values.csv`);
   }
-  return make("div", { class: "sharing" }, ...(hosted ? [] : [button("Copy link", copy)]), button("Save PNG", savePicture), button("Save CSV", saveValues));
+  return div("sharing", ...(hosted ? [] : [button("Copy link", copy)]), button("Save PNG", savePicture), button("Save CSV", saveValues));
 }
 
 /** Save a file from the page. @param {Blob} blob @param {string} name */
@@ -1268,7 +1258,10 @@ export default {
       if (names.length === 0) return;
       names.forEach((name) => changed.delete(name));
       shown = shape();
-      handle.update(Object.fromEntries(names.map((name) => [name, model.get(name)])));
+      const news = Object.fromEntries(names.map((name) => [name, model.get(name)]));
+      // The entries are loaded again if they are another object, as after an edit that the studio refused.
+      if (news.entries) news.entries = bytesOf(news.entries).slice();
+      handle.update(news);
     }
 
     function hear(/** @type {any} */ message) {

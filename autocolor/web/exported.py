@@ -27,8 +27,10 @@ first + band x shades + level, where the band is known from the exported word. W
 64 steps: the level is floor((steps + k) / 64), where `steps` counts thresholds and k, 0 to 63, is the rank of
 the pixel in the tile of `intensity.ordered_thresholds`.
 
-Measured: the words of the coupe take 31.4 kB at 640 x 480 and 73.7 kB with smooth=2. Measured and rejected:
-differences of 16 bits, 36.7 and 88.5 kB.
+Measured: the words of the coupe take 31.4 kB at 640 x 480 and 73.7 kB with smooth=2, the planes of its four
+lights 239 and 642 kB. Measured and rejected, for the words: differences of 16 bits, 36.7 and 88.5 kB; the
+predictors of PNG (Paeth) and of JPEG-LS, 79 kB with smooth=2; a second predictor, the word above, 72.3 kB, for
+twice the code in the browser.
 """
 
 from __future__ import annotations
@@ -74,9 +76,11 @@ largest canvas."""
 MOST_VARIANTS_SHOWN: Final = 1000
 """Limit: variants of a picture in a browser."""
 
-BYTES_OF_PIXEL: Final = 24
-BYTES_OF_LIGHT: Final = 24
-"""Measured where all pixels see polygons: for each pixel, and for each light at it, besides the rendering."""
+BYTES_OF_PIXEL: Final = 32
+BYTES_OF_LIT_PIXEL: Final = 124
+BYTES_OF_LIGHT: Final = 20
+"""Measured where all pixels see polygons, up to the page: for each pixel without lights and with lights, and
+for each light at it. Of a light's bytes, 12 are for the texts of a plane that zlib cannot compress."""
 
 LARGEST_STEP: Final = 60
 """Assumed: differences of words up to this size take one byte, as most do within a surface."""
@@ -106,9 +110,9 @@ def export_of(scene: Scene, picture: Picture, *, lights: bool = False, variants:
     """
     check_surfaces(scene, picture)
     check_canvas(picture.elements, picture.lines)
-    bytes_of_pixel = BYTES_OF_PIXEL + (BYTES_OF_LIGHT * len(scene.lights) if lights else 0)
+    lit_pixel = BYTES_OF_LIT_PIXEL + BYTES_OF_LIGHT * len(scene.lights)
     require_memory(
-        bytes_of_pixel * picture.lines * picture.elements,
+        (lit_pixel if lights else BYTES_OF_PIXEL) * picture.lines * picture.elements,
         f"the export of {picture.elements:,} x {picture.lines:,} pixels",
         "render fewer pixels or lights",
     )

@@ -108,18 +108,21 @@ def page_of(picture: dict[str, Any]) -> str:
     )
 
 
-COMMENT_LINES: Final = re.compile(r"^[ \t]*(?:/\*(?:[^*]|\*(?!/))*\*/[ \t]*|//[^\n]*)\n", re.MULTILINE)
+COMMENTS: Final = re.compile(
+    r"^[ \t]*(?:/\*(?:[^*]|\*(?!/))*\*/[ \t]*|//[^\n]*)\n|/\*\*(?:[^*]|\*(?!/))*\*/ ?", re.MULTILINE
+)
+"""Comments that have lines of their own, and types within a line."""
 
 
 def without_comments(source: str) -> str:
-    r"""A script or a style without the comments that have lines of their own, and without indentation.
+    r"""A script or a style without its `COMMENTS`, indentation and empty lines.
 
-    No text in it may extend over several lines. Measured: a page has 49 of the 67 kB of script and style.
+    No text in it may extend over several lines. Measured: a page has 45 of the 65 kB of script and style.
 
     >>> without_comments("// Two.\nlet two = [\n  2, // Not 3.\n];\n").splitlines()
     ['let two = [', '2, // Not 3.', '];']
     """
-    return re.sub(r"\n[ \t]+", "\n", COMMENT_LINES.sub("", source))
+    return re.sub(r"\n\s+", "\n", COMMENTS.sub("", source))
 
 
 def _hash(text: str) -> str:

@@ -35,7 +35,7 @@ from autocolor.testing import MAPPINGS, numbers, scenes
 from autocolor.web import exported
 from autocolor.web.exported import (
     BYTES_OF_LIGHT,
-    BYTES_OF_PIXEL,
+    BYTES_OF_LIT_PIXEL,
     check_canvas,
     export_of,
     least_intensities,
@@ -269,7 +269,7 @@ def test_lights_whose_planes_do_not_fit_in_the_budget_are_exported_too() -> None
     scene = wall_scene(view=None).replace(lights=tuple(lights))
     picture = render(scene, *SIZE)
     usual = export_of(scene, picture, lights=True)["lights"]
-    needed = (BYTES_OF_PIXEL + 20 * BYTES_OF_LIGHT) * SIZE[0] * SIZE[1]
+    needed = (BYTES_OF_LIT_PIXEL + 20 * BYTES_OF_LIGHT) * SIZE[0] * SIZE[1]
     with allowing(1.001 * needed / MEMORY):
         assert len(rendering(scene, *SIZE).picture.light_planes) < 20
         in_turns = export_of(scene, picture, lights=True)["lights"]

@@ -142,7 +142,11 @@ def lines_without_comments(source: str) -> str:
             inside = "*/" not in text
             assert inside or text.endswith("*/"), line
         elif not text.startswith("//"):
-            lines.append(line.lstrip(" \t") if lines else line)
+            line = line.lstrip(" \t") if lines else line
+            while "/**" in line:
+                before, _, rest = line.partition("/**")
+                line = before + rest.partition("*/")[2].removeprefix(" ")
+            lines.append(line)
     return "".join(f"{line}\n" for line in lines)
 
 
