@@ -7,9 +7,11 @@ import copy
 import dataclasses
 import itertools
 import pickle
+import re
 import sys
 from collections.abc import Callable, Iterator
 from importlib.resources import files
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -455,6 +457,16 @@ def test_replies_of_the_display_reach_the_studio() -> None:
     port = studio._port
     port.send(instructions.read_cursor(0))
     assert len(port.receive(2)) == 2
+
+
+def test_the_cells_of_the_guide_run(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.chdir(tmp_path)
+    guide = (Path(__file__).parents[3] / "docs" / "guides" / "notebook.md").read_text("utf-8")
+    variables: dict[str, Any] = {}
+    for cell in re.findall("^```python\n(.*?)^```", guide, re.DOTALL | re.MULTILINE):
+        exec(cell, variables)
+    assert variables["other"].comm is None
+    assert (tmp_path / "blue.npz").is_file()
 
 
 # The model of a widget, as anywidget gives it to a module.
