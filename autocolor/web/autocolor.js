@@ -1219,6 +1219,8 @@ function download(blob, name) {
   setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
 }
 
+// For notebooks: a page has only what is above this line.
+
 /** Milliseconds until a studio counts as busy. */
 const PATIENCE = 3000;
 
