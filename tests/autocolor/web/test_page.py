@@ -142,12 +142,11 @@ def lines_without_comments(source: str) -> str:
             inside = "*/" not in text
             assert inside or text.endswith("*/"), line
         elif not text.startswith("//"):
-            line = line.lstrip(" \t") if lines else line
             while "/**" in line:
                 before, _, rest = line.partition("/**")
                 line = before + rest.partition("*/")[2].removeprefix(" ")
             lines.append(line)
-    return "".join(f"{line}\n" for line in lines)
+    return "".join(f"{line.lstrip()}\n" for line in lines if line.strip())
 
 
 @pytest.mark.parametrize("name", ["autocolor.js", "autocolor.css"])
