@@ -141,8 +141,8 @@ def lines_without_comments(source: str) -> str:
         elif inside:
             inside = "*/" not in text
             assert inside or text.endswith("*/"), line
-        elif not text.startswith("//"):
-            line = line.lstrip(" \t") if lines else line
+        elif text and not text.startswith("//"):
+            line = line.lstrip(" \t")
             while "/**" in line:
                 before, _, rest = line.partition("/**")
                 line = before + rest.partition("*/")[2].removeprefix(" ")
