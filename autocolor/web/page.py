@@ -122,7 +122,7 @@ def without_comments(source: str) -> str:
     >>> without_comments("// Two.\nlet two = [\n  2, // Not 3.\n];\n").splitlines()
     ['let two = [', '2, // Not 3.', '];']
     """
-    return re.sub(r"(^|\n)\s+", r"\1", COMMENTS.sub("", source))
+    return re.sub(r"\n\s+", "\n", COMMENTS.sub("", source)).lstrip()
 
 
 def _hash(text: str) -> str:

@@ -9,7 +9,7 @@ import pytest
 from autocolor import Studio, UsageError, render
 from autocolor.images import display_image, send_picture
 from autocolor.mapping.legend import legend
-from autocolor.sending import send_image, shown_colors
+from autocolor.sending import send_image, shown_colors, shown_words
 from ramtek_emu import GMR_9300, EntryFormat, Ramtek9300
 from tests.autocolor.meshes import wall_scene
 
@@ -23,12 +23,13 @@ def test_what_is_no_display_is_refused_in_words(display: Any) -> None:
             send(wall_scene(), display)
 
 
-def test_the_colors_of_an_image_with_a_legend_are_those_of_its_display() -> None:
+def test_the_words_and_colors_of_an_image_with_a_legend_are_those_of_its_display() -> None:
     scene = wall_scene().with_scalar(name="x")
     shown = display_image(scene, render(scene))
     assert legend(shown) is not None
     display = Ramtek9300(GMR_9300)
     send_image(display, shown)
+    assert np.array_equal(shown_words(shown), display.words)
     assert np.array_equal(shown_colors(shown), display.field())
     plain = display_image(wall_scene(), render(wall_scene(), 60, 80))
     assert np.array_equal(shown_colors(plain), plain.colors)

@@ -124,7 +124,7 @@ def test_a_surface_without_extent_has_its_middle_level_in_any_light() -> None:
 # Words, entries and legends.
 
 
-@settings(max_examples=40)
+@settings(max_examples=25)
 @given(scenes())
 def test_an_export_has_the_words_the_entries_and_the_ranges_of_the_display_image(scene: Scene) -> None:
     try:
@@ -202,7 +202,7 @@ def relit(scene: Scene, exposure: Any, strengths: Mapping[str, float]) -> Scene:
     return scene.replace(lights=lights, exposure=exposure)
 
 
-@settings(max_examples=60)
+@settings(max_examples=40)
 @given(scenes(words="levels"), st.tuples(*[numbers(0, 3)] * 3))
 def test_planes_and_thresholds_give_the_words_of_a_rendering_in_other_light(
     scene: Scene, strengths: tuple[float, ...]

@@ -141,13 +141,12 @@ def lines_without_comments(source: str) -> str:
         elif inside:
             inside = "*/" not in text
             assert inside or text.endswith("*/"), line
-        elif text and not text.startswith("//"):
-            line = line.lstrip(" \t")
+        elif not text.startswith("//"):
             while "/**" in line:
                 before, _, rest = line.partition("/**")
                 line = before + rest.partition("*/")[2].removeprefix(" ")
             lines.append(line)
-    return "".join(f"{line}\n" for line in lines)
+    return "".join(f"{line.lstrip()}\n" for line in lines if line.strip())
 
 
 @pytest.mark.parametrize("name", ["autocolor.js", "autocolor.css"])
