@@ -256,24 +256,17 @@ export async function relighting({ surfaces, lights, elements }, words, owner) {
   const planes = await Promise.all(lights.rows.map((row) => unpackPlane(row.plane ?? "")));
   const searches = await Promise.all(lights.levels.map(async (each) => levelSearch(new Float32Array((await inflated(each)).buffer))));
   const isDithered = lights.dither;
-  const counts = new Uint32Array(surfaces.length + 1);
-  for (let at = 0; at < words.length; at++) counts[owner[words[at]]]++;
-  const ends = counts.map((_, number) => counts.subarray(1, number + 1).reduce((sum, count) => sum + count, 0));
-  const points = new Uint32Array(ends[surfaces.length]);
-  /** The lowest word of each point's band. */
-  const lowest = new Uint16Array(points.length);
-  /** The rank of each point in its tile of ordered dither. */
-  const ranks = new Uint8Array(isDithered ? points.length : 0);
-  const next = ends.slice();
+  /** The points of each surface as runs of words: first, end, first, end. @type {number[][]} */
+  const runs = surfaces.map(() => []);
   for (let at = 0; at < words.length; at++) {
-    const number = owner[words[at]];
-    if (number === 0) continue;
-    const { first, shades } = surfaces[number - 1];
-    lowest[next[number - 1]] = first + Math.floor((words[at] - first) / shades) * shades;
-    if (isDithered) ranks[next[number - 1]] = rankOf(Math.floor(at / elements), at % elements);
-    points[next[number - 1]++] = at;
+    const run = runs[owner[words[at]] - 1];
+    if (run?.at(-1) === at) run[run.length - 1]++;
+    else run?.push(at, at + 1);
   }
-  const sums = new Float32Array(points.length);
+  /** The place in the planes at which each surface begins. */
+  const begins = [0];
+  runs.forEach((run, number) => begins.push(begins[number] + run.reduce((sum, at, edge) => sum + (edge % 2 ? at : -at), 0)));
+  const sums = new Float32Array(begins[surfaces.length]);
   const exported = words.slice();
   let summed = "";
 
@@ -298,7 +291,7 @@ export async function relighting({ surfaces, lights, elements }, words, owner) {
         if (row === chosen || strength === 0) return;
         for (let number = 0; number < surfaces.length; number++) {
           const factor = strength * lights.rows[row].units[number];
-          for (let at = ends[number], end = ends[number + 1]; at < end; at++) sums[at] += factor * plane[at];
+          for (let at = begins[number], end = begins[number + 1]; at < end; at++) sums[at] += factor * plane[at];
         }
       });
       summed = others;
@@ -308,18 +301,20 @@ export async function relighting({ surfaces, lights, elements }, words, owner) {
       const factor = strengths[chosen] * lights.rows[chosen].units[number];
       const plane = planes[chosen];
       const { low, scale, begin, thresholds } = searches[number];
-      for (let at = ends[number], end = ends[number + 1]; at < end; at++) {
-        // A point that the light does not reach keeps its word while only this light changes.
-        if (isKept && plane[at] === 0) continue;
-        const intensity = sums[at] + factor * plane[at];
-        const cell = (intensity - low) * scale;
-        let level = begin[cell < CELLS ? (cell > 0 ? cell | 0 : 0) : CELLS];
-        while (thresholds[level] <= intensity) level++;
-        if (isDithered) level = (level + ranks[at]) >> 6;
-        const word = lowest[at] + level;
-        const place = points[at];
-        changed += words[place] === word ? 0 : 1;
-        words[place] = word;
+      const { first, levels, shades } = surfaces[number];
+      for (let run = 0, at = begins[number]; run < runs[number].length; run += 2) {
+        for (let place = runs[number][run], end = runs[number][run + 1]; place < end; place++, at++) {
+          // A point that the light does not reach keeps its word while only this light changes.
+          if (isKept && plane[at] === 0) continue;
+          const intensity = sums[at] + factor * plane[at];
+          const cell = (intensity - low) * scale;
+          let level = begin[cell < CELLS ? (cell > 0 ? cell | 0 : 0) : CELLS];
+          while (thresholds[level] <= intensity) level++;
+          if (isDithered) level = (level + rankOf(Math.floor(place / elements), place % elements)) >> 6;
+          const before = words[place];
+          words[place] = (shades === levels ? first : before - ((before - first) % shades)) + level;
+          changed += words[place] === before ? 0 : 1;
+        }
       }
     }
     return changed;
