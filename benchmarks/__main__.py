@@ -20,7 +20,7 @@ from benchmarks.machine import heading, machine
 RESULTS = Path(__file__).parent / "results"
 PARTS = (
     "targets", "scaling", "start", "steps", "scalars", "movement", "events", "reading", "mapped_tables",
-    "form", "normals", "batches",
+    "form", "normals", "batches", "page",
 )  # fmt: skip
 """Modules with `measure` and `text`."""
 PROGRAMS = {"display": "benchmarks.display", "ports": "benchmarks.host_ports"}

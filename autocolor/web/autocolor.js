@@ -256,24 +256,17 @@ export async function relighting({ surfaces, lights, elements }, words, owner) {
   const planes = await Promise.all(lights.rows.map((row) => unpackPlane(row.plane ?? "")));
   const searches = await Promise.all(lights.levels.map(async (each) => levelSearch(new Float32Array((await inflated(each)).buffer))));
   const isDithered = lights.dither;
-  const counts = new Uint32Array(surfaces.length + 1);
-  for (let at = 0; at < words.length; at++) counts[owner[words[at]]]++;
-  const ends = counts.map((_, number) => counts.subarray(1, number + 1).reduce((sum, count) => sum + count, 0));
-  const points = new Uint32Array(ends[surfaces.length]);
-  /** The lowest word of each point's band. */
-  const lowest = new Uint16Array(points.length);
-  /** The rank of each point in its tile of ordered dither. */
-  const ranks = new Uint8Array(isDithered ? points.length : 0);
-  const next = ends.slice();
+  /** The points of each surface as runs of words: first, end, first, end. @type {number[][]} */
+  const runs = surfaces.map(() => []);
   for (let at = 0; at < words.length; at++) {
-    const number = owner[words[at]];
-    if (number === 0) continue;
-    const { first, shades } = surfaces[number - 1];
-    lowest[next[number - 1]] = first + Math.floor((words[at] - first) / shades) * shades;
-    if (isDithered) ranks[next[number - 1]] = rankOf(Math.floor(at / elements), at % elements);
-    points[next[number - 1]++] = at;
+    const run = runs[owner[words[at]] - 1];
+    if (run?.at(-1) === at) run[run.length - 1]++;
+    else run?.push(at, at + 1);
   }
-  const sums = new Float32Array(points.length);
+  /** The place in the planes at which each surface begins. */
+  const begins = [0];
+  runs.forEach((run, number) => begins.push(begins[number] + run.reduce((sum, at, edge) => sum + (edge % 2 ? at : -at), 0)));
+  const sums = new Float32Array(begins[surfaces.length]);
   const exported = words.slice();
   let summed = "";
 
@@ -298,7 +291,7 @@ export async function relighting({ surfaces, lights, elements }, words, owner) {
         if (row === chosen || strength === 0) return;
         for (let number = 0; number < surfaces.length; number++) {
           const factor = strength * lights.rows[row].units[number];
-          for (let at = ends[number], end = ends[number + 1]; at < end; at++) sums[at] += factor * plane[at];
+          for (let at = begins[number], end = begins[number + 1]; at < end; at++) sums[at] += factor * plane[at];
         }
       });
       summed = others;
@@ -308,18 +301,20 @@ export async function relighting({ surfaces, lights, elements }, words, owner) {
       const factor = strengths[chosen] * lights.rows[chosen].units[number];
       const plane = planes[chosen];
       const { low, scale, begin, thresholds } = searches[number];
-      for (let at = ends[number], end = ends[number + 1]; at < end; at++) {
-        // A point that the light does not reach keeps its word while only this light changes.
-        if (isKept && plane[at] === 0) continue;
-        const intensity = sums[at] + factor * plane[at];
-        const cell = (intensity - low) * scale;
-        let level = begin[cell < CELLS ? (cell > 0 ? cell | 0 : 0) : CELLS];
-        while (thresholds[level] <= intensity) level++;
-        if (isDithered) level = (level + ranks[at]) >> 6;
-        const word = lowest[at] + level;
-        const place = points[at];
-        changed += words[place] === word ? 0 : 1;
-        words[place] = word;
+      const { first, levels, shades } = surfaces[number];
+      for (let run = 0, at = begins[number]; run < runs[number].length; run += 2) {
+        for (let place = runs[number][run], end = runs[number][run + 1]; place < end; place++, at++) {
+          // A point that the light does not reach keeps its word while only this light changes.
+          if (isKept && plane[at] === 0) continue;
+          const intensity = sums[at] + factor * plane[at];
+          const cell = (intensity - low) * scale;
+          let level = begin[cell < CELLS ? (cell > 0 ? cell | 0 : 0) : CELLS];
+          while (thresholds[level] <= intensity) level++;
+          if (isDithered) level = (level + rankOf(Math.floor(place / elements), place % elements)) >> 6;
+          const before = words[place];
+          words[place] = (shades === levels ? first : before - ((before - first) % shades)) + level;
+          changed += words[place] === before ? 0 : 1;
+        }
       }
     }
     return changed;
@@ -621,6 +616,10 @@ export async function mount(root, picture, options = {}) {
       });
       return queue;
     },
+    /** Show a sentence of the host. @param {string} sentence */
+    say(sentence) {
+      queue = queue.then(() => built.say(sentence));
+    },
     /** Remove the interface and its listeners. */
     destroy() {
       built.destroy();
@@ -823,6 +822,7 @@ async function build(root, picture, options) {
         words.set(await unpackWords(changed.words, lines, elements));
         shownWords = changed.words;
         glass.look(glass.whole);
+        desk.say(`The studio sent ${COUNT.format(bytesOf(changed.words).length)} bytes of words.`);
       }
       held = () => {
         if (changed.entries !== picture.entries) {
@@ -836,6 +836,7 @@ async function build(root, picture, options) {
       if (!gesture) desk.rest();
       return true;
     },
+    say: desk.say,
     destroy() {
       life.abort();
       root.replaceChildren();
@@ -1213,21 +1214,81 @@ function download(blob, name) {
   setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
 }
 
-/** The widget of a notebook, as anywidget asks for it. */
+// For notebooks: a page has only what is above this line.
+
+/** Milliseconds until a studio counts as busy. */
+const PATIENCE = 3000;
+
+/** The widget of a notebook, as anywidget asks for it. Its host is a studio; see `notebook.py`. */
 export default {
   /** @param {{model: any, el: HTMLElement}} context */
   async render({ model, el }) {
-    const picture = { ...model.get("picture"), words: model.get("words"), entries: model.get("entries") };
-    const handle = await mount(el, picture, {
-      edit: (edits, sameStep) => model.send({ edit: edits, same_step: sameStep }),
-      undo: () => model.send({ undo: 1 }),
-      redo: () => model.send({ redo: 1 }),
+    /** The messages that the studio has not answered; only the first is sent. @type {any[]} */
+    const messages = [];
+    /** The traits that changed since they were shown. @type {Set<string>} */
+    const changed = new Set();
+    const shape = () => structureOf(model.get("picture"));
+
+    function send(/** @type {any} */ message) {
+      const last = messages.length > 1 ? messages[messages.length - 1] : {};
+      if (message.same_step && last.edit) Object.assign(last.edit, message.edit);
+      else if (messages.push(message) === 1) sendFirst();
+    }
+
+    function sendFirst() {
+      const [message] = messages;
+      if (!message) return;
+      const busy = () => message === messages[0] && handle.say("The studio has not answered yet: its kernel is busy, or gone.");
+      setTimeout(busy, PATIENCE);
+      try {
+        model.send(message);
+      } catch {
+        messages.length = 0;
+        handle.say("The kernel of the notebook is gone, so edits do not reach the studio.");
+      }
+    }
+
+    /** Show what the studio sent. While messages wait for answers, controls and entries are ahead of it. */
+    function show() {
+      const isAhead = messages.length > 0 && shape() === shown;
+      const names = [...changed].filter((name) => name === "words" || !isAhead);
+      if (names.length === 0) return;
+      names.forEach((name) => changed.delete(name));
+      shown = shape();
+      const news = Object.fromEntries(names.map((name) => [name, model.get(name)]));
+      // The entries are loaded again if they are another object, as after an edit that the studio refused.
+      if (news.entries) news.entries = bytesOf(news.entries).slice();
+      handle.update(news);
+    }
+
+    function hear(/** @type {any} */ message) {
+      if (typeof message?.answer !== "string" || messages.length === 0) return;
+      messages.shift();
+      sendFirst();
+      if (message.answer) ["picture", "entries"].forEach((name) => changed.add(name));
+      show();
+      if (message.answer) handle.say(message.answer);
+    }
+
+    // JupyterLab takes no key as a shortcut from an element with this attribute; otherwise "b" would insert a cell.
+    el.addEventListener("focusin", ({ target }) => target instanceof HTMLElement && (target.dataset.lmSuppressShortcuts = "true"));
+    const traits = ["picture", "words", "entries"];
+    const [picture, words, entries] = traits.map((name) => model.get(name));
+    let shown = shape();
+    const handle = await mount(el, { ...picture, words, entries }, {
+      edit: (edits, sameStep) => send({ edit: edits, same_step: sameStep }),
+      undo: () => send({ undo: 1 }),
+      redo: () => send({ redo: 1 }),
     });
-    const names = ["picture", "words", "entries"];
-    const listeners = names.map((name) => () => handle.update({ [name]: model.get(name) }));
-    names.forEach((name, at) => model.on(`change:${name}`, listeners[at]));
+    const listeners = traits.map((name) => () => {
+      changed.add(name);
+      queueMicrotask(show);
+    });
+    traits.forEach((name, at) => model.on(`change:${name}`, listeners[at]));
+    model.on("msg:custom", hear);
     return () => {
-      names.forEach((name, at) => model.off(`change:${name}`, listeners[at]));
+      traits.forEach((name, at) => model.off(`change:${name}`, listeners[at]));
+      model.off("msg:custom", hear);
       handle.destroy();
     };
   },

@@ -44,10 +44,11 @@ from autocolor.files.settings import scene_with
 from autocolor.journal.history import History
 from autocolor.logs import logger_of
 from autocolor.mapping.display_image import DisplayImage
+from autocolor.mapping.intensity import is_held
 from autocolor.mapping.ranges import WORDS
 from autocolor.scene.scene import Scene
 from autocolor.sending import configuration_of, send_image
-from autocolor.web.exported import packed_words, values_of
+from autocolor.web.exported import light_rows, packed_words, values_of
 from ramtek_emu import HostPort, Ramtek9300, RamtekError
 
 if TYPE_CHECKING:
@@ -62,6 +63,9 @@ Measured on the coupe: 33.2 kB in 8 ms. With 9, as in a page, it is 31.4 kB in 7
 """
 
 FAILED: Final = "the studio failed, and its scene is as it was; the log of the notebook has the reason"
+
+HELD: Final = "Exposure is held: with less light, the picture is darker."
+FOLLOWING: Final = "Exposure follows the light. After studio.hold_exposure(), less light looks darker."
 
 
 class EditedStudio(Protocol):
@@ -125,8 +129,8 @@ class WidgetPort:
         """Another widget of the studio. Raises UnavailableError without the package anywidget."""
         made = widget_class()
         if self._copy is None:
-            # No time passes on this display, and its monitor is the browser's.
-            self._copy = Ramtek9300(dataclasses.replace(self.configuration, timing=None, monochrome=False))
+            # Only its memories are of use, and no time passes.
+            self._copy = Ramtek9300(dataclasses.replace(self.configuration, timing=None))
             self._written = -1, -1
             send_image(self._copy, self._studio.display_image)
         self._update_traits(self._copy)
@@ -149,15 +153,19 @@ class WidgetPort:
                         setattr(widget, name, value)
             except Exception:
                 # The studio has taken its step: a notebook that is gone must not make it fail.
-                LOGGER.exception("a widget could not be refreshed, and is closed")
+                LOGGER.exception("a widget could not be refreshed, and is left out from now on")
                 self._widgets.remove(widget)
         self._remove_closed()
 
     def _update_traits(self, display: Ramtek9300) -> None:
         """Make the traits of the studio and of the words and entries that were written to the display."""
-        history = self._studio.history
-        counts = {"undo": len(history.to_undo), "redo": len(history.to_redo)}
-        self._traits["picture"] = {**values_of(self._studio.display_image), **counts}
+        scene, history = self._studio.scene, self._studio.history
+        self._traits["picture"] = {
+            **values_of(self._studio.display_image),
+            "lights": light_values(scene),
+            "undo": len(history.to_undo),
+            "redo": len(history.to_redo),
+        }
         written = display.frame_buffer.written, display.lookup_table.written
         if written[0] != self._written[0]:
             lines, elements = self.configuration.shown_lines, self.configuration.shown_elements
@@ -206,6 +214,12 @@ class WidgetPort:
             self._dragged = self._studio.scene
         elif not same_step:
             self._dragged = None
+
+
+def light_values(scene: Scene) -> dict[str, Any] | None:
+    """The switches and strengths of the lights, without planes, because the studio computes light."""
+    held = HELD if is_held(scene.exposure) else FOLLOWING
+    return {"held": held, "rows": light_rows(scene)} if scene.lights else None
 
 
 def checked_steps(steps: Any, most: int, what: str) -> int:

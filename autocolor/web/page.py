@@ -49,6 +49,9 @@ await mount(document.getElementById("autocolor"), JSON.parse(document.getElement
 """
 """The end of the script of a page."""
 
+FOR_NOTEBOOKS: Final = "// For notebooks: a page has only what is above this line."
+"""The line of the module before the part that pages do not need."""
+
 ICON: Final = (
     "data:image/svg+xml,%3Csvg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 16 16'%3E"
     "%3Ccircle cx='8' cy='8' r='8' fill='%23b01020'/%3E%3Ccircle cx='5.5' cy='5' r='2' fill='%23fff'/%3E"
@@ -90,7 +93,8 @@ def page_of(picture: dict[str, Any]) -> str:
     """The HTML of the page of an exported picture."""
     folder = files("autocolor.web")
     style = without_comments(folder.joinpath("autocolor.css").read_text("utf-8"))
-    script = without_comments(folder.joinpath("autocolor.js").read_text("utf-8")) + START
+    module, _, _ = folder.joinpath("autocolor.js").read_text("utf-8").partition(FOR_NOTEBOOKS)
+    script = without_comments(module) + START
     name = printable(picture["name"])
     policy = (
         "default-src 'none'; img-src data: blob:; base-uri 'none'; form-action 'none';"

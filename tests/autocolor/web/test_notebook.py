@@ -1,4 +1,4 @@
-"""Widgets of a studio: what travels to the browser, and what its messages do."""
+"""Widgets of a studio: what travels to the browser, what its messages do, and both in a real browser."""
 
 from __future__ import annotations
 
@@ -7,8 +7,11 @@ import copy
 import dataclasses
 import itertools
 import pickle
+import re
 import sys
-import zlib
+from collections.abc import Callable, Iterator
+from importlib.resources import files
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,14 +19,16 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from autocolor import Studio, UnavailableError
-from autocolor.arrays import Words
+from autocolor import Studio, Surface, UnavailableError, scene_of
+from autocolor.arrays import AnyArray, Words
 from autocolor.files.settings import scene_with
 from autocolor.testing import colors
 from autocolor.web import notebook
 from ramtek_emu import PRINCETON_9300, Configuration, PortError, Ramtek9300, instructions
 from ramtek_emu.timing import Timing
+from tests.autocolor.meshes import cube
 from tests.autocolor.sessions import SMALL, car, opened
+from tests.autocolor.web.twin import unpacked_words
 
 pytest.importorskip("anywidget")
 
@@ -32,8 +37,12 @@ NUMBERS = itertools.count()
 LOCAL = settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 
 
-class Browser:
-    """The browser's side of a widget, as the stub of its comm: what arrived, and the answers to messages."""
+def text_of(data: bytes) -> str:
+    return base64.b64encode(data).decode("ascii")
+
+
+class Cell:
+    """The browser's side of a widget in a cell, as the stub of its comm: what arrived, and the answers."""
 
     def __init__(self, data: dict[str, Any], buffers: list[bytes], **_: object) -> None:
         self.comm_id = f"stub {next(NUMBERS)}"
@@ -41,6 +50,8 @@ class Browser:
         self.arrived: list[set[str]] = []
         """The names of the traits in each update."""
         self.answers: list[str] = []
+        self.news: list[dict[str, Any]] = []
+        """Updates and answers for a real browser, as JSON."""
         self.is_lost = False
         self._take(data, buffers)
         self.arrived.clear()
@@ -50,6 +61,7 @@ class Browser:
             raise ConnectionError("the kernel is gone")
         if data["method"] == "custom":
             self.answers.append(data["content"]["answer"])
+            self.news.append(data["content"])
         else:
             self._take(data, buffers or [])
 
@@ -57,6 +69,7 @@ class Browser:
         binary = {path[0]: bytes(each) for path, each in zip(data["buffer_paths"], buffers, strict=True)}
         self.arrived.append({*data["state"], *binary})
         self.traits |= data["state"] | binary
+        self.news.append({"state": data["state"], "binary": {name: text_of(binary[name]) for name in binary}})
 
     def on_msg(self, callback: Any) -> None:
         self._callback = callback
@@ -72,17 +85,10 @@ class Browser:
         return answer
 
     @property
-    def words(self) -> Words:
-        """The words that the browser shows, by a plain twin of its unpacking."""
-        lines, elements = self.traits["picture"]["lines"], self.traits["picture"]["elements"]
-        data = zlib.decompress(self.traits["words"])
-        steps, whole = data[: lines * elements], iter(np.frombuffer(data[lines * elements :], "<u2").tolist())
-        words = np.zeros((lines, elements), np.uint16)
-        for line, element in itertools.product(range(lines), range(elements)):
-            step = steps[line * elements + element]
-            left = int(words[line, element - 1]) if element else 0
-            words[line, element] = next(whole) if step == 128 else left + (step ^ 128) - 128
-        return words
+    def words(self) -> AnyArray:
+        """The words that the browser shows."""
+        picture = self.traits["picture"]
+        return unpacked_words(self.traits["words"], picture["lines"], picture["elements"])
 
     @property
     def field(self) -> Any:
@@ -96,58 +102,71 @@ class Browser:
 
 @pytest.fixture(autouse=True)
 def comms(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("comm.create_comm", Browser)
+    monkeypatch.setattr("comm.create_comm", Cell)
 
 
-def shown_in(studio: Studio) -> tuple[Any, Browser]:
-    """A new widget of a studio, and the browser that shows it."""
+def shown_in(studio: Studio) -> tuple[Any, Cell]:
+    """A new widget of a studio, and its cell."""
     widget = studio.widget()
     return widget, widget.comm
 
 
 def test_a_widget_shows_what_the_display_shows() -> None:
     studio, display = opened()
-    _, browser = shown_in(studio)
-    assert np.array_equal(browser.words, display.words)
-    assert np.array_equal(browser.field, display.field())
-    assert [each["name"] for each in browser.traits["picture"]["surfaces"]] == ["body", "glass", "wheels"]
+    _, cell = shown_in(studio)
+    assert np.array_equal(cell.words, display.words)
+    assert np.array_equal(cell.field, display.field())
+    assert [each["name"] for each in cell.traits["picture"]["surfaces"]] == ["body", "glass", "wheels"]
 
 
 def test_a_recoloring_sends_entries_and_no_words() -> None:
     studio, display = opened()
-    _, browser = shown_in(studio)
+    _, cell = shown_in(studio)
     studio.recolor("body", object_color="#102030")
-    assert browser.arrived == [{"picture", "entries"}]
-    assert len(browser.traits["entries"]) == 3072
-    assert np.array_equal(browser.field, display.field())
+    assert cell.arrived == [{"picture", "entries"}]
+    assert len(cell.traits["entries"]) == 3072
+    assert np.array_equal(cell.field, display.field())
 
 
 def test_an_edit_of_a_light_sends_words_and_no_entries() -> None:
     studio, display = opened()
-    _, browser = shown_in(studio)
+    _, cell = shown_in(studio)
     studio.light("key", intensity=0.2)
-    assert browser.arrived == [{"picture", "words"}]
-    assert np.array_equal(browser.field, display.field())
+    assert cell.arrived == [{"picture", "words"}]
+    assert np.array_equal(cell.field, display.field())
 
 
 def test_an_edit_that_shows_nothing_new_sends_neither() -> None:
     studio, _ = opened()
-    _, browser = shown_in(studio)
+    _, cell = shown_in(studio)
     studio.save_view("front")
-    assert browser.arrived == [{"picture"}]
+    assert cell.arrived == [{"picture"}]
     studio.save_view("front")
-    assert browser.arrived == [{"picture"}]
+    assert cell.arrived == [{"picture"}]
+
+
+def test_the_lights_are_sent_without_planes_and_their_exposure_is_told() -> None:
+    studio, _ = opened()
+    _, cell = shown_in(studio)
+    lights = cell.traits["picture"]["lights"]
+    assert [(row["name"], row["on"], row["intensity"]) for row in lights["rows"]] == [
+        ("key", True, 1.0),
+        ("fill", True, 0.4),
+    ]
+    assert lights["held"] == notebook.FOLLOWING
+    studio.hold_exposure()
+    assert cell.traits["picture"]["lights"]["held"] == notebook.HELD
 
 
 def test_a_legend_is_in_the_words() -> None:
     display = Ramtek9300(Configuration(name="medium", elements=320, lines=300, planes=10))
     studio = Studio(car(), display)
-    _, browser = shown_in(studio)
-    without = browser.words
+    _, cell = shown_in(studio)
+    without = cell.words
     studio.scalar(name="z", legend=True)
-    assert np.array_equal(browser.words, display.words)
-    assert not np.array_equal(browser.words, without)
-    assert browser.traits["picture"]["legend"] is None
+    assert np.array_equal(cell.words, display.words)
+    assert not np.array_equal(cell.words, without)
+    assert cell.traits["picture"]["legend"] is None
 
 
 @pytest.mark.parametrize(
@@ -163,11 +182,11 @@ def test_a_legend_is_in_the_words() -> None:
 def test_displays_of_all_kinds_are_shown(configuration: Configuration) -> None:
     display = Ramtek9300(configuration)
     studio = Studio(car(), display)
-    _, browser = shown_in(studio)
+    _, cell = shown_in(studio)
     studio.recolor("body", object_color="#123456")
     lines, elements = configuration.shown_lines, configuration.shown_elements
-    assert np.array_equal(browser.words, display.words[:lines, :elements])
-    assert browser.traits["entries"] == display.entries[:1024].tobytes()
+    assert np.array_equal(cell.words, display.words[:lines, :elements])
+    assert cell.traits["entries"] == display.entries[:1024].tobytes()
 
 
 messages = st.one_of(
@@ -190,49 +209,49 @@ messages = st.one_of(
 @given(st.lists(messages, max_size=8))
 def test_after_any_messages_all_browsers_show_the_display_of_the_studio(said: list[Any]) -> None:
     studio, display = opened()
-    browsers = [shown_in(studio)[1], shown_in(studio)[1]]
+    cells = [shown_in(studio)[1], shown_in(studio)[1]]
     for number, message in enumerate(said):
-        browsers[number % 2].say(message)
-        for browser in browsers:
-            assert np.array_equal(browser.field, display.field())
-            assert browser.undo_and_redo == (len(studio.history.to_undo), len(studio.history.to_redo))
+        cells[number % 2].say(message)
+        for cell in cells:
+            assert np.array_equal(cell.field, display.field())
+            assert cell.undo_and_redo == (len(studio.history.to_undo), len(studio.history.to_redo))
 
 
 def test_an_edit_in_the_browser_is_an_edit_of_the_studio() -> None:
     studio, _ = opened()
-    _, browser = shown_in(studio)
+    _, cell = shown_in(studio)
     before = studio.scene
     edit = {OBJECT_COLOR: "#102030", "surfaces.glass.blend": 0.25, "lights.fill.on": False}
-    assert browser.say({"edit": edit, "same_step": False}) == ""
+    assert cell.say({"edit": edit, "same_step": False}) == ""
     assert studio.scene.equals(scene_with(before, edit))
-    assert browser.say({"undo": 1}) == ""
+    assert cell.say({"undo": 1}) == ""
     assert studio.scene is before
-    assert browser.say({"redo": 1}) == ""
-    assert browser.undo_and_redo == (1, 0)
+    assert cell.say({"redo": 1}) == ""
+    assert cell.undo_and_redo == (1, 0)
 
 
 def test_a_drag_in_the_browser_is_one_step() -> None:
     studio, _ = opened()
-    _, browser = shown_in(studio)
+    _, cell = shown_in(studio)
     studio.recolor("glass", blend=0.1)
     for number, color in enumerate(["#100000", "#200000", "#300000"]):
-        assert browser.say({"edit": {OBJECT_COLOR: color}, "same_step": number > 0}) == ""
-    assert browser.undo_and_redo == (2, 0)
+        assert cell.say({"edit": {OBJECT_COLOR: color}, "same_step": number > 0}) == ""
+    assert cell.undo_and_redo == (2, 0)
 
 
 @pytest.mark.parametrize("meanwhile", ["recolor", "undo", "nothing"])
 def test_a_drag_never_joins_a_step_that_is_not_its_own(meanwhile: str) -> None:
     studio, _ = opened()
-    _, browser = shown_in(studio)
-    studio.recolor("glass", blend=0.1)
+    _, cell = shown_in(studio)
+    cell.say({"edit": {"surfaces.glass.blend": 0.1}, "same_step": False})
     begun = f"#{bytes(studio.scene.surface('body').paint.object_color).hex()}"
-    browser.say({"edit": {OBJECT_COLOR: begun if meanwhile == "nothing" else "#100000"}, "same_step": False})
+    cell.say({"edit": {OBJECT_COLOR: begun if meanwhile == "nothing" else "#100000"}, "same_step": False})
     if meanwhile == "recolor":
         studio.recolor("glass", blend=0.9)
     elif meanwhile == "undo":
         studio.undo()
     before = studio.scene
-    browser.say({"edit": {OBJECT_COLOR: "#200000"}, "same_step": True})
+    cell.say({"edit": {OBJECT_COLOR: "#200000"}, "same_step": True})
     assert studio.history.to_undo[-1] is before
 
 
@@ -262,13 +281,13 @@ def test_a_message_that_cannot_be_done_is_answered_and_changes_nothing(
 ) -> None:
     studio, display = opened()
     studio.recolor("body", blend=0.3)
-    _, browser = shown_in(studio)
+    _, cell = shown_in(studio)
     before, field = studio.scene, display.field()
-    assert sentence in browser.say(message)
+    assert sentence in cell.say(message)
     assert studio.scene is before
     assert np.array_equal(display.field(), field)
-    assert browser.arrived == []
-    assert browser.say({"undo": 1}) == ""
+    assert cell.arrived == []
+    assert cell.say({"undo": 1}) == ""
 
 
 @LOCAL
@@ -283,19 +302,19 @@ def test_a_message_that_cannot_be_done_is_answered_and_changes_nothing(
 )
 def test_any_message_is_answered(message: object) -> None:
     studio, display = opened()
-    _, browser = shown_in(studio)
-    browser.say(message)
-    assert np.array_equal(browser.field, display.field())
+    _, cell = shown_in(studio)
+    cell.say(message)
+    assert np.array_equal(cell.field, display.field())
 
 
 def test_a_fault_of_the_studio_is_answered_and_goes_to_the_log(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     studio, _ = opened()
-    _, browser = shown_in(studio)
+    _, cell = shown_in(studio)
     monkeypatch.setattr(Studio, "undo", lambda *_: 1 // 0)
     studio.recolor("body", blend=0.3)
-    assert browser.say({"undo": 1}) == notebook.FAILED
+    assert cell.say({"undo": 1}) == notebook.FAILED
     assert "ZeroDivisionError" in caplog.text
 
 
@@ -310,22 +329,22 @@ def test_a_studio_whose_display_is_lost_answers_and_keeps_its_scene() -> None:
 
     display = Lost(SMALL)
     studio = Studio(car(), display)
-    _, browser = shown_in(studio)
-    before, field = studio.scene, browser.field
+    _, cell = shown_in(studio)
+    before, field = studio.scene, cell.field
     display.is_lost = True
-    assert browser.say({"edit": {OBJECT_COLOR: "#102030"}}) == "the display left"
+    assert cell.say({"edit": {OBJECT_COLOR: "#102030"}}) == "the display left"
     assert studio.scene is before
-    assert np.array_equal(browser.field, field)
+    assert np.array_equal(cell.field, field)
 
 
 def test_every_step_of_the_studio_shows_in_all_widgets() -> None:
     studio, display = opened()
-    browsers = [shown_in(studio)[1] for _ in range(3)]
+    cells = [shown_in(studio)[1] for _ in range(3)]
 
     def check() -> None:
-        for browser in browsers:
-            assert np.array_equal(browser.field, display.field())
-            assert browser.undo_and_redo == (len(studio.history.to_undo), len(studio.history.to_redo))
+        for cell in cells:
+            assert np.array_equal(cell.field, display.field())
+            assert cell.undo_and_redo == (len(studio.history.to_undo), len(studio.history.to_redo))
 
     studio.keep_variant("A")
     studio.recolor("body", object_color="#102030")
@@ -348,36 +367,36 @@ def test_every_step_of_the_studio_shows_in_all_widgets() -> None:
     check()
     studio.send_everything()
     check()
-    assert browsers[0].undo_and_redo == (3, 0)
+    assert cells[0].undo_and_redo == (3, 0)
 
 
 def test_a_scene_that_the_studio_opens_shows_in_the_widget(tmp_path: Any) -> None:
     studio, display = opened()
-    _, browser = shown_in(studio)
+    _, cell = shown_in(studio)
     other = Studio(
         car().with_surface("body", object_color="#123456").replace(name="other"), Ramtek9300(SMALL)
     )
     other.save(tmp_path / "other.npz")
     studio.open(tmp_path / "other.npz")
-    assert browser.traits["picture"]["name"] == "other"
-    assert np.array_equal(browser.field, display.field())
+    assert cell.traits["picture"]["name"] == "other"
+    assert np.array_equal(cell.field, display.field())
 
 
 def test_a_closed_widget_hears_nothing_and_the_last_takes_its_display_along() -> None:
     studio, display = opened()
     widgets = [shown_in(studio)[0] for _ in range(2)]
-    browsers = [widget.comm for widget in widgets]
+    cells = [widget.comm for widget in widgets]
     widgets[0].close()
     studio.recolor("body", blend=0.3)
-    assert [browser.arrived for browser in browsers] == [[], [{"picture", "entries"}]]
+    assert [cell.arrived for cell in cells] == [[], [{"picture", "entries"}]]
     port = studio._widgets
     assert port is not None
     assert port._copy is not None
     widgets[1].close()
     assert port._copy is None
     studio.light("key", intensity=0.3)
-    _, browser = shown_in(studio)
-    assert np.array_equal(browser.field, display.field())
+    _, cell = shown_in(studio)
+    assert np.array_equal(cell.field, display.field())
 
 
 def test_a_widget_that_is_gone_does_not_stop_the_studio(caplog: pytest.LogCaptureFixture) -> None:
@@ -438,3 +457,187 @@ def test_replies_of_the_display_reach_the_studio() -> None:
     port = studio._port
     port.send(instructions.read_cursor(0))
     assert len(port.receive(2)) == 2
+
+
+def test_the_cells_of_the_guide_run(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.chdir(tmp_path)
+    guide = (Path(__file__).parents[3] / "docs" / "guides" / "notebook.md").read_text("utf-8")
+    variables: dict[str, Any] = {}
+    for cell in re.findall("^```python\n(.*?)^```", guide, re.DOTALL | re.MULTILINE):
+        exec(cell, variables)
+    assert variables["other"].comm is None
+    assert (tmp_path / "blue.npz").is_file()
+
+
+# The model of a widget, as anywidget gives it to a module.
+RENDER = """async ([source, news]) => {
+    const {default: module} = await import(`data:text/javascript;base64,${source}`);
+    const listeners = [], traits = {};
+    const tell = (event, value) => listeners.forEach(([name, heard]) => name === event && heard(value));
+    const view = text => new DataView(Uint8Array.from(atob(text), letter => letter.charCodeAt(0)).buffer);
+    window.sent = [];
+    window.receive = ({answer, state, binary}) => {
+        if (answer !== undefined) return tell("msg:custom", {answer});
+        const names = [...Object.keys(state), ...Object.keys(binary)];
+        Object.assign(traits, state);
+        for (const name in binary) traits[name] = view(binary[name]);
+        names.forEach(name => tell(`change:${name}`, traits[name]));
+    };
+    window.model = {
+        get: name => traits[name],
+        on: (event, heard) => listeners.push([event, heard]),
+        off: (event, heard) => listeners.splice(listeners.findIndex(each => each[1] === heard), 1),
+        send: message => sent.push(structuredClone(message)),
+    };
+    news.forEach(receive);
+    window.end = await module.render({model, el: document.getElementById("cell")});
+    window.listening = () => listeners.length;
+}"""
+SHOWS = """colors => {
+    const canvas = document.querySelector(".glass canvas");
+    const {width, height} = canvas;
+    const copy = new OffscreenCanvas(width, height).getContext("2d", {willReadFrequently: true});
+    copy.drawImage(canvas, 0, 0);
+    const shown = copy.getImageData(0, 0, width, height).data.filter((_, at) => at % 4 < 3);
+    return btoa(String.fromCharCode(...shown)) === colors;
+}"""
+
+
+class Window:
+    """A widget that the module shows in a real browser, and the carrier of the messages between them."""
+
+    def __init__(self, browser: Any, cell: Cell, display: Ramtek9300) -> None:
+        self.page = browser.new_page()
+        self.page.set_default_timeout(10_000)
+        self.faults: list[str] = []
+        self.page.on("console", lambda message: self.faults.append(message.text))
+        self.page.on("pageerror", lambda error: self.faults.append(str(error)))
+        self.page.set_content('<div id="cell"></div>')
+        self.cell = cell
+        self.display = display
+        source = (files("autocolor.web") / "autocolor.js").read_bytes()
+        self.page.evaluate(RENDER, [text_of(source), cell.news])
+        cell.news.clear()
+
+    def carry(self) -> tuple[int, int]:
+        """Carry messages to the studio, and its updates and answers back; returns how many of both."""
+        messages = self.page.evaluate("sent.splice(0)")
+        for message in messages:
+            self.cell.say(message)
+        news = self.cell.news.copy()
+        self.cell.news.clear()
+        self.page.evaluate("news => news.forEach(receive)", news)
+        return len(messages), len(news)
+
+    def check(self) -> None:
+        """Carry all messages, and wait until the canvas has the colors of the display."""
+        while any(self.carry()):
+            pass
+        self.page.wait_for_function(SHOWS, arg=text_of(self.display.field().tobytes()))
+        assert self.faults == []
+
+    def wait_for_status(self, text: str) -> None:
+        self.page.get_by_role("status").filter(has_text=text).wait_for()
+
+
+@pytest.fixture
+def window(browser: Any) -> Iterator[Callable[[Cell, Ramtek9300], Window]]:
+    windows: list[Window] = []
+
+    def open_window(cell: Cell, display: Ramtek9300) -> Window:
+        windows.append(Window(browser, cell, display))
+        return windows[-1]
+
+    yield open_window
+    for each in windows:
+        each.page.close()
+
+
+def test_a_browser_shows_every_step_and_its_edits_are_steps_of_the_studio(window: Any) -> None:
+    studio, display = opened()
+    cell = shown_in(studio)[1]
+    other = shown_in(studio)[1]
+    shown = window(cell, display)
+    page = shown.page
+    shown.check()
+    # A color that is typed in the browser.
+    field = page.get_by_role("textbox", name="#rrggbb")
+    field.fill("#204080")
+    field.press("Enter")
+    shown.check()
+    assert studio.scene.surface("body").paint.object_color == (0x20, 0x40, 0x80)
+    assert cell.arrived == [{"picture", "entries"}]
+    # An edit in Python, and another in the browser by a key.
+    studio.recolor("glass", object_color="#ff0000")
+    shown.check()
+    page.get_by_role("slider", name="Strength of light key").press("Home")
+    shown.check()
+    assert studio.scene.light("key").intensity == 0
+    assert cell.arrived[-1] == {"picture", "words"}
+    shown.wait_for_status("bytes of words")
+    page.get_by_role("switch", name="fill").press("Space")
+    shown.check()
+    assert not studio.scene.light("fill").on
+    # Undo and redo, in the browser and in Python.
+    for name in ("Undo", "Undo", "Undo", "Undo", "Redo"):
+        page.get_by_role("button", name=name, disabled=False).click()
+        shown.check()
+    assert cell.undo_and_redo == (1, 3)
+    studio.undo()
+    shown.check()
+    page.get_by_role("button", name="Undo", disabled=True).wait_for()
+    assert np.array_equal(other.field, display.field())
+
+
+def test_a_drag_in_a_browser_sends_as_fast_as_the_studio_answers_and_is_one_step(window: Any) -> None:
+    studio, display = opened()
+    cell = shown_in(studio)[1]
+    shown = window(cell, display)
+    red = shown.page.get_by_role("slider", name="Red")
+    red.evaluate(
+        """bar => {
+            const tell = name => bar.dispatchEvent(new Event(name, {bubbles: true}));
+            for (bar.value = 60; bar.value < 89; bar.value++) tell("input");
+            tell("input");
+            tell("change");
+        }"""
+    )
+    red.focus()
+    assert red.get_attribute("data-lm-suppress-shortcuts") == "true"
+    # The first edit is answered, while the browser already shows the last.
+    assert shown.carry() == (1, 2)
+    assert studio.scene.surface("body").paint.object_color[0] == 60
+    assert red.input_value() == "89"
+    # One edit stands for all that came before the answer.
+    assert shown.carry() == (1, 2)
+    assert shown.carry() == (0, 0)
+    assert studio.scene.surface("body").paint.object_color[0] == 89
+    assert len(studio.history.to_undo) == 1
+    shown.check()
+
+
+def test_an_edit_that_the_studio_refuses_is_told_in_the_browser_and_taken_back(
+    window: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    studio, display = opened()
+    shown = window(shown_in(studio)[1], display)
+    with monkeypatch.context() as patch:
+        patch.setattr(studio, "edit", lambda *_: studio.take_view("nowhere"))
+        shown.page.get_by_role("slider", name="Blend").press("Home")
+        shown.check()
+    shown.wait_for_status("nowhere")
+    assert studio.history.to_undo == ()
+    shown.page.get_by_role("slider", name="Blend").press("Home")
+    shown.check()
+    assert studio.scene.surface("body").paint.blend == 0
+
+
+def test_a_browser_shows_another_scene_of_the_studio_and_stops_when_it_is_left(window: Any) -> None:
+    studio, display = opened()
+    shown = window(shown_in(studio)[1], display)
+    studio.edit(scene_of(cube(1.2), surface_of_part={"cube": "wood"}, surfaces=[Surface("wood")]))
+    shown.check()
+    shown.page.get_by_role("radio", name="wood").wait_for(state="attached")
+    shown.page.evaluate("end()")
+    assert shown.page.evaluate("listening()") == 0
+    assert shown.page.locator("#cell > *").count() == 0

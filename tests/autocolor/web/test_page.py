@@ -158,6 +158,13 @@ def test_a_page_has_every_line_of_the_module_but_comments(name: str) -> None:
     assert not re.search("</(script|style)|<!--", source, re.IGNORECASE)
 
 
+def test_a_page_has_no_part_for_notebooks() -> None:
+    page = page_of(export_of(car(), render(car(), *SIZE)))
+    assert "export async function mount" in page
+    assert "export default" not in page
+    assert "export default" in (WEB / "autocolor.js").read_text("utf-8")
+
+
 def test_the_pages_of_the_coupe_are_small(tmp_path: Path) -> None:
     scene = demo()
     picture = render(scene, smooth=2)
