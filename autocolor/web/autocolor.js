@@ -630,7 +630,7 @@ export async function mount(root, picture, options = {}) {
 /** The parts of a picture that a new interface is built for. @param {Picture} picture */
 function structureOf({ lines, elements, smooth, surfaces, legend, lights, variants, notes }) {
   const rows = surfaces.map(({ name, first, levels, fixed }) => [name, first, levels, fixed]);
-  return JSON.stringify([lines, elements, smooth, rows, legend, lights?.rows.map((row) => row.name), variants, notes]);
+  return JSON.stringify([lines, elements, smooth, rows, legend, lights?.held, lights?.rows.map((row) => row.name), variants, notes]);
 }
 
 /** The interface of one picture. @param {HTMLElement} root @param {Picture} picture @param {Options} options */
@@ -1125,7 +1125,7 @@ function wholeTable(desk) {
     const { name, first, levels } = desk.picture.surfaces[desk.chosen] ?? { name: "", first: 0, levels: 0 };
     mark.style.left = `${(100 * first) / ENTRIES}%`;
     mark.style.width = `${(100 * levels) / ENTRIES}%`;
-    text.textContent = `${rangeText(first, levels)} are ${name}`;
+    text.textContent = name && `${rangeText(first, levels)} are ${name}`;
   });
   canvas.addEventListener("click", ({ offsetX }) => {
     const number = desk.glass.owner[Math.floor((offsetX / canvas.clientWidth) * ENTRIES)] - 1;
