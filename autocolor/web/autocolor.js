@@ -4,8 +4,8 @@
  *
  * A page holds the picture once, as words. A recoloring computes the entries of one surface and looks up the
  * colors of its pixels again; no word changes. The strength of a light changes words, which are computed from
- * light planes; then no entry changes. A page keeps its own history and writes it into the link's fragment. In
- * a notebook the host keeps the history: edits are shown at once and sent to the host.
+ * light planes; then no entry changes. A page keeps its own history, and writes its values into the link's
+ * fragment. In a notebook the host keeps the history: edits are shown at once and sent to the host.
  *
  * Keys and values are those of the command line: `surfaces.body.object_color`, `lights.key.intensity`.
  */
@@ -19,7 +19,9 @@
  *   fixed: string, paint: Paint}} Surface */
 /** @typedef {{name: string, on: boolean, intensity: number, most: number, units: number[],
  *   plane?: string}} LightRow */
-/** @typedef {{held: string, ambient: number, rows: LightRow[], levels: string[], dither: boolean}} Lights */
+/**
+ * @typedef {{held: string, ambient: number, rows: LightRow[], levels: string[], dither: boolean}} Lights
+ */
 /** @typedef {{name: string, paints?: Record<string, Partial<Paint>>,
  *   lights?: Record<string, Record<string, Value>>}} Variant */
 /** @typedef {string | ArrayBufferView} Packed  Bytes, or their base64. */
@@ -27,7 +29,9 @@
  *   entries: Packed, background: string, surfaces: Surface[], notes: string[], variants: Variant[],
  *   legend: null | {line: number, element: number, lines: number, elements: number, words: Packed},
  *   lights: Lights | null, undo?: number, redo?: number}} Picture */
-/** @typedef {{edit?: (edits: State, sameStep: boolean) => void, undo?: () => void, redo?: () => void}} Options */
+/**
+ * @typedef {{edit?: (edits: State, sameStep: boolean) => void, undo?: () => void, redo?: () => void}} Options
+ */
 /** @typedef {Uint8Array<ArrayBuffer>} Bytes */
 /** @typedef {Uint16Array<ArrayBuffer>} Words */
 
@@ -113,7 +117,7 @@ function cssColor(text) {
 }
 
 /**
- * The entries of a paint, three bytes a level, from the lowest level up; equal to `mapping.colors.entries_of`.
+ * The entries of a paint, three bytes a level from the lowest level up, equal to `mapping.colors.entries_of`.
  *
  * Up to the blend level the object color, then in equal steps toward the light color, all darkened in
  * proportion to the level; the small excess makes up for rounding. A ramp gives each level its color.
@@ -143,7 +147,8 @@ export function entriesOf(paint, levels, floor) {
       (Math.max(level - begin, 0) / Math.max(levels - 1 - begin, 1)) * (paint.light_percentage / 100);
     const share = floor + ((1 - floor) * level) / steps;
     for (let part = 0; part < 3; part++) {
-      entries[3 * level + part] = (1 - weight) * share * object[part] + weight * share * light[part] + 0.500000001;
+      entries[3 * level + part] =
+        (1 - weight) * share * object[part] + weight * share * light[part] + 0.500000001;
     }
   }
   return entries;
@@ -200,10 +205,13 @@ export function averaged(pixels, elements, smooth) {
   return image;
 }
 
-/** How many of some rising numbers are at most a value. @param {ArrayLike<number>} numbers @param {number} value */
+/**
+ * How many of some rising numbers are at most a value.
+ * @param {ArrayLike<number>} numbers @param {number} value
+ */
 function countUpTo(numbers, value) {
   let low = 0;
-  for (let high = numbers.length; low < high; ) {
+  for (let high = numbers.length; low < high;) {
     const middle = (low + high) >> 1;
     if (numbers[middle] <= value) low = middle + 1;
     else high = middle;
@@ -234,27 +242,33 @@ function levelSearch(thresholds) {
   return { low, scale, begin, thresholds: Float32Array.of(...thresholds, Infinity) };
 }
 
-/** The rank of a pixel in the tile of ordered dither, 0 to 63. @param {number} line @param {number} element */
+/**
+ * The rank of a pixel in the tile of ordered dither, 0 to 63.
+ * @param {number} line @param {number} element
+ */
 function rankOf(line, element) {
   let rank = 0;
-  for (let bit = 0; bit < 3; bit++) rank = 4 * rank + [0, 2, 3, 1][2 * ((line >> bit) & 1) + ((element >> bit) & 1)];
+  for (let bit = 0; bit < 3; bit++)
+    rank = 4 * rank + [0, 2, 3, 1][2 * ((line >> bit) & 1) + ((element >> bit) & 1)];
   return rank;
 }
 
 /**
- * The function that writes the words for some values of lights, and returns how many of them changed; null for
- * a picture without light planes.
+ * The function that writes the words for some values of lights and returns how many words changed. It is null
+ * for a picture without light planes.
  *
  * The intensity at a point is the ambient light plus the sum of the contributions of the lights that are on.
- * The sum of all lights but one is kept, so that a drag of one strength adds one plane. With dither, each level
- * has 64 steps.
+ * The sum of all lights but one is cached, so that a drag of one strength adds one plane. With dither, each
+ * level has 64 steps.
  * @param {Picture} picture @param {Words} words @param {Uint8Array} owner
  * @returns {Promise<((state: State, name: string) => number) | null>}
  */
 export async function relighting({ surfaces, lights, elements }, words, owner) {
   if (!lights || !lights.rows.every((row) => row.plane)) return null;
   const planes = await Promise.all(lights.rows.map((row) => unpackPlane(row.plane ?? "")));
-  const searches = await Promise.all(lights.levels.map(async (each) => levelSearch(new Float32Array((await inflated(each)).buffer))));
+  const searches = await Promise.all(
+    lights.levels.map(async (each) => levelSearch(new Float32Array((await inflated(each)).buffer))),
+  );
   const isDithered = lights.dither;
   /** The points of each surface as runs of words: first, end, first, end. @type {number[][]} */
   const runs = surfaces.map(() => []);
@@ -265,7 +279,9 @@ export async function relighting({ surfaces, lights, elements }, words, owner) {
   }
   /** The place in the planes at which each surface begins. */
   const begins = [0];
-  runs.forEach((run, number) => begins.push(begins[number] + run.reduce((sum, at, edge) => sum + (edge % 2 ? at : -at), 0)));
+  runs.forEach((run, number) =>
+    begins.push(begins[number] + run.reduce((sum, at, edge) => sum + (edge % 2 ? at : -at), 0)),
+  );
   const sums = new Float32Array(begins[surfaces.length]);
   const exported = words.slice();
   let summed = "";
@@ -282,7 +298,10 @@ export async function relighting({ surfaces, lights, elements }, words, owner) {
       return changed;
     }
     const chosen = lights.rows.findIndex((row) => row.name === name);
-    const others = JSON.stringify([chosen, strengths.map((strength, row) => (row === chosen ? null : strength))]);
+    const others = JSON.stringify([
+      chosen,
+      strengths.map((strength, row) => (row === chosen ? null : strength)),
+    ]);
     const isKept = others === summed;
     if (!isKept) {
       sums.fill(lights.ambient);
@@ -291,7 +310,8 @@ export async function relighting({ surfaces, lights, elements }, words, owner) {
         if (row === chosen || strength === 0) return;
         for (let number = 0; number < surfaces.length; number++) {
           const factor = strength * lights.rows[row].units[number];
-          for (let at = begins[number], end = begins[number + 1]; at < end; at++) sums[at] += factor * plane[at];
+          for (let at = begins[number], end = begins[number + 1]; at < end; at++)
+            sums[at] += factor * plane[at];
         }
       });
       summed = others;
@@ -340,13 +360,18 @@ export function stateOf(picture) {
 
 /** The paint of a surface. @param {State} state @param {string} name @returns {Paint} */
 export function paintOf(state, name) {
-  return /** @type {Paint} */ (Object.fromEntries(PAINT.map((field) => [field, state[`surfaces.${name}.${field}`]])));
+  return /** @type {Paint} */ (
+    Object.fromEntries(PAINT.map((field) => [field, state[`surfaces.${name}.${field}`]]))
+  );
 }
 
 /** The values of a variant. @param {State} first @param {Variant} variant @returns {State} */
 function stateOfVariant(first, variant) {
   const state = { ...first };
-  for (const [table, rows] of [["surfaces", variant.paints], ["lights", variant.lights]]) {
+  for (const [table, rows] of [
+    ["surfaces", variant.paints],
+    ["lights", variant.lights],
+  ]) {
     for (const [name, fields] of Object.entries(rows ?? {})) {
       for (const [field, value] of Object.entries(fields)) {
         if (`${table}.${name}.${field}` in state) state[`${table}.${name}.${field}`] = value;
@@ -373,7 +398,12 @@ function alike(one, other) {
 
 /** The name of the first light that keys belong to; empty if none. @param {string[]} keys */
 function lightIn(keys) {
-  return keys.find((key) => key.startsWith("lights."))?.slice(7).replace(/\.[^.]*$/, "") ?? "";
+  return (
+    keys
+      .find((key) => key.startsWith("lights."))
+      ?.slice(7)
+      .replace(/\.[^.]*$/, "") ?? ""
+  );
 }
 
 /** A value as the command line reads it. @param {Value} value */
@@ -388,7 +418,8 @@ function textOf(value) {
  */
 function valueOf(key, text, most) {
   const field = key.slice(key.lastIndexOf(".") + 1);
-  const digits = (/** @type {string} */ part) => (/^#?[0-9a-f]{6}$/i.test(part) ? `#${part.slice(-6).toLowerCase()}` : "");
+  const digits = (/** @type {string} */ part) =>
+    /^#?[0-9a-f]{6}$/i.test(part) ? `#${part.slice(-6).toLowerCase()}` : "";
   if (field === "on") return text === "true" || (text === "false" ? false : undefined);
   if (field.endsWith("_color")) return digits(text) || undefined;
   if (field === "ramp") {
@@ -400,7 +431,10 @@ function valueOf(key, text, most) {
   return number >= 0 && number <= top ? number : undefined;
 }
 
-/** The values that differ from the first ones, as the fragment of a link. @param {State} state @param {State} first */
+/**
+ * The values that differ from the first ones, as the fragment of a link.
+ * @param {State} state @param {State} first
+ */
 export function fragmentOf(state, first) {
   return differing(state, first)
     .map((key) => `${encodeURIComponent(key)}=${encodeURIComponent(textOf(state[key]).replaceAll("#", ""))}`)
@@ -425,7 +459,9 @@ export function stateOfFragment(fragment, picture, first) {
     const row = picture.lights?.rows.find((each) => key === `lights.${each.name}.intensity`);
     const value = isKey ? valueOf(key, text, row?.most ?? 0) : undefined;
     if (value === undefined) {
-      const what = isKey ? `${key} cannot be “${text.slice(0, 40)}”` : `it has no “${(key || pair).slice(0, 40)}”`;
+      const what = isKey
+        ? `${key} cannot be “${text.slice(0, 40)}”`
+        : `it has no “${(key || pair).slice(0, 40)}”`;
       return `The link does not fit this picture: ${what}. Nothing was changed.`;
     }
     state[key] = value;
@@ -444,8 +480,12 @@ export function tableOf(state, first, name) {
     if (!(ramp in state)) return true;
     return key === ramp ? state[ramp] !== null || first[ramp] !== null : state[ramp] === null;
   });
-  const cell = (/** @type {string} */ text) => (/[",\r\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
-  const rows = [["name", ...keys], [name, ...keys.map((key) => textOf(state[key]))]];
+  const cell = (/** @type {string} */ text) =>
+    /[",\r\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
+  const rows = [
+    ["name", ...keys],
+    [name, ...keys.map((key) => textOf(state[key]))],
+  ];
   return rows.map((row) => row.map(cell).join(",") + "\r\n").join("");
 }
 
@@ -454,7 +494,10 @@ export function tableOf(state, first, name) {
 
 /** @typedef {{left: number, top: number, right: number, bottom: number}} Box  Its edges are included. */
 
-/** Load entries into a table of colors. @param {Uint32Array} table @param {number} first @param {Bytes} entries */
+/**
+ * Load entries into a table of colors.
+ * @param {Uint32Array} table @param {number} first @param {Bytes} entries
+ */
 function load(table, first, entries) {
   for (let at = 0, part = 0; part < entries.length; at++, part += 3) {
     table[first + at] = 0xff000000 | (entries[part + 2] << 16) | (entries[part + 1] << 8) | entries[part];
@@ -467,7 +510,12 @@ function load(table, first, entries) {
  */
 function glassOf(picture, words, entries, legendWords) {
   const { lines, elements, smooth, surfaces, legend } = picture;
-  const canvas = make("canvas", { width: elements, height: lines, role: "img", "aria-label": `Picture of ${picture.name}` });
+  const canvas = make("canvas", {
+    width: elements,
+    height: lines,
+    role: "img",
+    "aria-label": `Picture of ${picture.name}`,
+  });
   const outline = make("canvas", { width: elements, height: lines, class: "outline" });
   const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d", { alpha: false }));
   const image = context.createImageData(elements, lines);
@@ -505,7 +553,8 @@ function glassOf(picture, words, entries, legendWords) {
   function drawLegend() {
     if (!legend || !legendWords) return;
     for (let at = 0; at < legendWords.length; at++) {
-      const place = (legend.line + Math.floor(at / legend.elements)) * elements + legend.element + (at % legend.elements);
+      const place =
+        (legend.line + Math.floor(at / legend.elements)) * elements + legend.element + (at % legend.elements);
       pixels[place] = table[legendWords[at]];
     }
   }
@@ -528,7 +577,8 @@ function glassOf(picture, words, entries, legendWords) {
     rewrite(/** @type {number} */ number, /** @type {Bytes} */ colors) {
       load(table, surfaces[number].first, colors);
       look(boxes[number]);
-      if (legend) context.putImageData(image, 0, 0, legend.element, legend.line, legend.elements, legend.lines);
+      if (legend)
+        context.putImageData(image, 0, 0, legend.element, legend.line, legend.elements, legend.lines);
     },
     /** Draw the outline of a surface over the picture. */
     drawOutline(/** @type {number} */ number) {
@@ -537,7 +587,13 @@ function glassOf(picture, words, entries, legendWords) {
       const other = (/** @type {number} */ at) => owner[words[at]] !== number + 1;
       for (let at = away * elements; at < words.length - away * elements; at++) {
         if (other(at)) continue;
-        if (other(at - away) || other(at + away) || other(at - away * elements) || other(at + away * elements)) dots[at] = 0xffffffff;
+        if (
+          other(at - away) ||
+          other(at + away) ||
+          other(at - away * elements) ||
+          other(at + away * elements)
+        )
+          dots[at] = 0xffffffff;
       }
       drawPixels(outline, dots);
     },
@@ -556,7 +612,8 @@ function glassOf(picture, words, entries, legendWords) {
 function make(tag, attributes = {}, ...children) {
   const element = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) {
-    if (typeof value === "function") element.addEventListener(name.slice(2), /** @type {EventListener} */ (value));
+    if (typeof value === "function")
+      element.addEventListener(name.slice(2), /** @type {EventListener} */ (value));
     else element.setAttribute(name, String(value));
   }
   if (element instanceof HTMLButtonElement) element.type = "button";
@@ -606,11 +663,19 @@ export async function mount(root, picture, options = {}) {
   let built = await build(root, picture, options);
   let queue = Promise.resolve();
   return {
-    /** Show other words, entries or values of the host. @param {Partial<Picture> & {picture?: Picture}} news */
-    update({ words, entries, picture: changed }) {
+    /**
+     * Show other words, entries or values of the host; see `update` of `build`.
+     * @param {Partial<Picture> & {picture?: Picture}} news @param {string[]} [keys]
+     */
+    update({ words, entries, picture: changed }, keys = []) {
       queue = queue.then(async () => {
-        picture = { ...picture, ...changed, words: words ?? picture.words, entries: entries ?? picture.entries };
-        if (await built.update(picture)) return;
+        picture = {
+          ...picture,
+          ...changed,
+          words: words ?? picture.words,
+          entries: entries ?? picture.entries,
+        };
+        if (await built.update(picture, keys)) return;
         built.destroy();
         built = await build(root, picture, options);
       });
@@ -630,10 +695,23 @@ export async function mount(root, picture, options = {}) {
 /** The parts of a picture that a new interface is built for. @param {Picture} picture */
 function structureOf({ lines, elements, smooth, surfaces, legend, lights, variants, notes }) {
   const rows = surfaces.map(({ name, first, levels, fixed }) => [name, first, levels, fixed]);
-  return JSON.stringify([lines, elements, smooth, rows, legend, lights?.rows.map((row) => row.name), variants, notes]);
+  return JSON.stringify([
+    lines,
+    elements,
+    smooth,
+    rows,
+    legend,
+    lights?.held,
+    lights?.rows.map((row) => row.name),
+    variants,
+    notes,
+  ]);
 }
 
-/** The interface of one picture. @param {HTMLElement} root @param {Picture} picture @param {Options} options */
+/**
+ * The interface of one picture.
+ * @param {HTMLElement} root @param {Picture} picture @param {Options} options
+ */
 async function build(root, picture, options) {
   const hosted = options.edit !== undefined;
   root.classList.add("autocolor");
@@ -641,13 +719,18 @@ async function build(root, picture, options) {
   const { lines, elements } = picture;
   const words = await unpackWords(picture.words, lines, elements);
   const before = words.slice();
-  const entries = typeof picture.entries === "string" ? await inflated(picture.entries) : bytesOf(picture.entries).slice();
+  const entries =
+    typeof picture.entries === "string" ? await inflated(picture.entries) : bytesOf(picture.entries).slice();
   const key = picture.legend;
   const legend = key && (await unpackWords(key.words, key.lines, key.elements));
   const glass = glassOf(picture, words, entries, legend);
   const relight = await relighting(picture, words, glass.owner);
   const first = stateOf(picture);
-  const status = make("p", { class: "status", role: "status" }, "Choose a surface in the picture, and mix its colors.");
+  const status = make(
+    "p",
+    { class: "status", role: "status" },
+    "Choose a surface in the picture, and mix its colors.",
+  );
 
   /** @type {State[]} */
   let steps = [first];
@@ -662,7 +745,10 @@ async function build(root, picture, options) {
     glass,
     first,
     state: first,
-    chosen: Math.max(0, picture.surfaces.findIndex((surface) => !surface.fixed)),
+    chosen: Math.max(
+      0,
+      picture.surfaces.findIndex((surface) => !surface.fixed),
+    ),
     syncs: [],
     say(text) {
       if (status.textContent !== text) status.textContent = text;
@@ -672,6 +758,8 @@ async function build(root, picture, options) {
       if (alike(next, desk.state)) return;
       const sameStep = name !== "" && name === gesture;
       gesture = name;
+      // What the host sent before is older than this edit.
+      held = null;
       if (!hosted) {
         steps = steps.slice(0, sameStep ? at : at + 1).concat(next);
         at = steps.length - 1;
@@ -704,6 +792,13 @@ async function build(root, picture, options) {
     desk.syncs.forEach((each) => each());
   }
 
+  /** The numbers of the surfaces with a key of their paint among some keys. @param {string[]} keys */
+  function paintedBy(keys) {
+    return picture.surfaces.flatMap(({ name, fixed }, number) =>
+      !fixed && PAINT.some((field) => keys.includes(`surfaces.${name}.${field}`)) ? [number] : [],
+    );
+  }
+
   /** Rewrite what differs: the entries of surfaces, or the words of the picture. */
   function show(/** @type {State} */ next) {
     const keys = differing(next, desk.state);
@@ -714,9 +809,7 @@ async function build(root, picture, options) {
       glass.look(glass.whole);
       desk.say(`${COUNT.format(changed)} words rewritten, no entry of the table: light is in the words.`);
     }
-    const painted = picture.surfaces.flatMap(({ name, fixed }, number) =>
-      !fixed && PAINT.some((field) => keys.includes(`surfaces.${name}.${field}`)) ? [number] : [],
-    );
+    const painted = paintedBy(keys);
     for (const number of painted) {
       const { name, levels, floor } = picture.surfaces[number];
       glass.rewrite(number, entriesOf(paintOf(next, name), levels, floor));
@@ -764,32 +857,65 @@ async function build(root, picture, options) {
     label.textContent = number < 0 ? "" : picture.surfaces[number].name;
     screen.classList.toggle("pointing", number >= 0);
   }
-  /** Call a function with the surface under the pointer. @param {(number: number, event: PointerEvent) => void} call */
+  /**
+   * Call a function with the surface under the pointer.
+   * @param {(number: number, event: PointerEvent) => void} call
+   */
   function withSurface(call) {
     return (/** @type {any} */ event) => {
       const box = glass.canvas.getBoundingClientRect();
-      const [line, element] = [event.clientY - box.top, event.clientX - box.left].map((each) => Math.floor((each * elements) / box.width));
+      const [line, element] = [event.clientY - box.top, event.clientX - box.left].map((each) =>
+        Math.floor((each * elements) / box.width),
+      );
       call((glass.owner[words[line * elements + element]] ?? 0) - 1, event);
     };
   }
-  glass.canvas.addEventListener("pointermove", withSurface((number, event) => event.pointerType === "mouse" && number !== pointed && point(number)));
+  glass.canvas.addEventListener(
+    "pointermove",
+    withSurface((number, event) => event.pointerType === "mouse" && number !== pointed && point(number)),
+  );
   glass.canvas.addEventListener("pointerleave", () => point(-1));
-  glass.canvas.addEventListener("click", withSurface((number) => number >= 0 && desk.choose(number)));
+  glass.canvas.addEventListener(
+    "click",
+    withSurface((number) => number >= 0 && desk.choose(number)),
+  );
 
-  const counts = () => (hosted ? [desk.picture.undo ?? 0, desk.picture.redo ?? 0] : [at, steps.length - 1 - at]);
+  const counts = () =>
+    hosted ? [desk.picture.undo ?? 0, desk.picture.redo ?? 0] : [at, steps.length - 1 - at];
   const compare = comparison(screen, () => glassOf(picture, before, entries, legend).canvas);
   const notes = div("notes", ...picture.notes.map((note) => make("p", {}, note)));
-  const head = div("head", ...(hosted ? [] : [make("h1", {}, picture.name)]), toolbar(desk, step, counts, compare));
+  const head = div(
+    "head",
+    ...(hosted ? [] : [make("h1", {}, picture.name)]),
+    toolbar(desk, step, counts, compare),
+  );
   const under = div("under", wholeTable(desk), status, ...variantStrip(desk, relight));
-  const panel = div("panel", surfaceList(desk), paintPanel(desk), ...lightRows(desk), notes, sharing(desk, hosted));
-  root.replaceChildren(make(hosted ? "div" : "main", { class: "desk" }, head, div("stage", screen), under, panel));
+  const panel = div(
+    "panel",
+    surfaceList(desk),
+    paintPanel(desk),
+    ...lightRows(desk),
+    notes,
+    sharing(desk, hosted),
+  );
+  root.replaceChildren(
+    make(hosted ? "div" : "main", { class: "desk" }, head, div("stage", screen), under, panel),
+  );
   sync();
 
   // Keys and gestures: a drag, or a key that is held, is one step.
   const keys = hosted ? root : document;
   const life = new AbortController();
   const onKey = (/** @type {Event} */ event) => {
-    const { key: name, ctrlKey, metaKey, shiftKey, altKey, type, target } = /** @type {KeyboardEvent} */ (event);
+    const {
+      key: name,
+      ctrlKey,
+      metaKey,
+      shiftKey,
+      altKey,
+      type,
+      target,
+    } = /** @type {KeyboardEvent} */ (event);
     if (type === "keyup") {
       keyHeld = false;
       if (gesture) desk.rest();
@@ -815,25 +941,35 @@ async function build(root, picture, options) {
   }
 
   return {
-    /** Show what a host sent; false if it needs a new interface. @param {Picture} changed */
-    async update(changed) {
+    /**
+     * Show what a host sent; false if it needs a new interface. During a gesture, and as long as the host
+     * has not heard of edits of some `keys`, controls stay; the paints with these keys stay, too.
+     * @param {Picture} changed @param {string[]} keys
+     */
+    async update(changed, keys) {
       if (structureOf(changed) !== structureOf(picture)) return false;
       if (changed.words !== shownWords) {
         words.set(await unpackWords(changed.words, lines, elements));
         shownWords = changed.words;
-        glass.look(glass.whole);
         desk.say(`The studio sent ${COUNT.format(bytesOf(changed.words).length)} bytes of words.`);
       }
-      held = () => {
-        if (changed.entries !== picture.entries) {
-          load(glass.table, 0, bytesOf(changed.entries));
-          glass.look(glass.whole);
+      const state = stateOf(changed);
+      const showEntries = (/** @type {number[]} */ own) => {
+        load(glass.table, 0, bytesOf(changed.entries));
+        for (const { name, first, levels, floor } of own.map((number) => changed.surfaces[number])) {
+          load(glass.table, first, entriesOf(paintOf(desk.state, name), levels, floor));
         }
+        glass.look(glass.whole);
+      };
+      const take = () => {
+        showEntries([]);
         picture = desk.picture = changed;
-        desk.state = stateOf(changed);
+        desk.state = state;
         sync();
       };
-      if (!gesture) desk.rest();
+      if (keys.length === 0) held = take;
+      if (keys.length > 0 || gesture || keyHeld) showEntries(paintedBy(keys));
+      else desk.rest();
       return true;
     },
     say: desk.say,
@@ -847,8 +983,20 @@ async function build(root, picture, options) {
 /** The buttons above the picture. @param {Desk} desk @param {(by: number) => void} step
  * @param {() => number[]} counts  The steps to undo and to redo. @param {HTMLElement} compare */
 function toolbar(desk, step, counts, compare) {
-  const [undo, redo] = [["Undo", "Ctrl+Z", UNDO], ["Redo", "Ctrl+Y", REDO]].map(([label, keys, path], which) =>
-    make("button", { class: "square", "aria-label": label, title: `${label} (${keys})`, onclick: () => step(2 * which - 1) }, icon(path)),
+  const [undo, redo] = [
+    ["Undo", "Ctrl+Z", UNDO],
+    ["Redo", "Ctrl+Y", REDO],
+  ].map(([label, keys, path], which) =>
+    make(
+      "button",
+      {
+        class: "square",
+        "aria-label": label,
+        title: `${label} (${keys})`,
+        onclick: () => step(2 * which - 1),
+      },
+      icon(path),
+    ),
   );
   const reset = make("button", { onclick: () => desk.edit(changesTo(desk, desk.first)) }, "Reset");
   desk.syncs.push(() => {
@@ -892,7 +1040,16 @@ function comparison(screen, drawBefore) {
     before.className = "before";
     before.ariaHidden = "true";
     const move = () => screen.style.setProperty("--split", `${line.value}%`);
-    const line = make("input", { type: "range", class: "split", min: 0, max: 100, step: 0.5, value: 50, "aria-label": "Line between before and after", oninput: move });
+    const line = make("input", {
+      type: "range",
+      class: "split",
+      min: 0,
+      max: 100,
+      step: 0.5,
+      value: 50,
+      "aria-label": "Line between before and after",
+      oninput: move,
+    });
     move();
     return [before, make("span", { class: "line" }), line];
   }
@@ -902,7 +1059,12 @@ function comparison(screen, drawBefore) {
 /** The surfaces, one of which is chosen. @param {Desk} desk */
 function surfaceList(desk) {
   const rows = desk.picture.surfaces.map(({ name }, number) => {
-    const radio = make("input", { type: "radio", name: `${desk.id}-surface`, value: number, onchange: () => desk.choose(number) });
+    const radio = make("input", {
+      type: "radio",
+      name: `${desk.id}-surface`,
+      value: number,
+      onchange: () => desk.choose(number),
+    });
     const ball = make("span", { class: "ball" });
     desk.syncs.push(() => {
       radio.checked = desk.chosen === number;
@@ -913,7 +1075,10 @@ function surfaceList(desk) {
   return make("fieldset", { class: "surfaces" }, make("legend", {}, "Surface"), div("chips", ...rows));
 }
 
-/** A ball in the colors of a surface; stripes for bands of a scalar. @param {Desk} desk @param {number} number */
+/**
+ * A ball in the colors of a surface; stripes for bands of a scalar.
+ * @param {Desk} desk @param {number} number
+ */
 function ballOf({ picture, glass }, number) {
   const { first, levels, shades } = picture.surfaces[number];
   const at = (/** @type {number} */ share) => {
@@ -940,7 +1105,11 @@ function paintPanel(desk) {
       built = needed;
       syncs = [];
       const title = make("h2", {}, make("span", {}, name), make("small", {}, rangeText(first, levels)));
-      const controls = fixed ? [strip(desk, syncs), make("p", { class: "fixed" }, fixed)] : isRamp ? ramp() : twoColors();
+      const controls = fixed
+        ? [strip(desk, syncs), make("p", { class: "fixed" }, fixed)]
+        : isRamp
+          ? ramp()
+          : twoColors();
       panel.replaceChildren(title, ...controls);
     }
     syncs.forEach((each) => each());
@@ -957,7 +1126,11 @@ function paintPanel(desk) {
       });
     return [
       strip(desk, syncs),
-      make("p", { class: "fixed" }, `A ramp of ${colors.length} colors, from the lowest level to the highest.`),
+      make(
+        "p",
+        { class: "fixed" },
+        `A ramp of ${colors.length} colors, from the lowest level to the highest.`,
+      ),
       make("button", { onclick: replace }, "Use two colors instead"),
     ];
   }
@@ -965,8 +1138,16 @@ function paintPanel(desk) {
   function twoColors() {
     const { name } = desk.picture.surfaces[desk.chosen];
     const key = (/** @type {string} */ each) => `surfaces.${name}.${each}`;
-    const tabs = [["object_color", "Object color"], ["light_color", "Light color"]].map(([each, label]) => {
-      const radio = make("input", { type: "radio", name: `${desk.id}-color`, value: each, onchange: () => chooseField(each) });
+    const tabs = [
+      ["object_color", "Object color"],
+      ["light_color", "Light color"],
+    ].map(([each, label]) => {
+      const radio = make("input", {
+        type: "radio",
+        name: `${desk.id}-color`,
+        value: each,
+        onchange: () => chooseField(each),
+      });
       radio.checked = each === field;
       const swatch = make("span", { class: "swatch" });
       syncs.push(() => (swatch.style.background = String(desk.state[key(each)])));
@@ -1008,7 +1189,10 @@ function rangeText(first, levels) {
   return `words ${first} to ${first + levels - 1}`;
 }
 
-/** The entries of the chosen surface, from the lowest level to the highest. @param {Desk} desk @param {Array<() => void>} syncs */
+/**
+ * The entries of the chosen surface, from the lowest level to the highest.
+ * @param {Desk} desk @param {Array<() => void>} syncs
+ */
 function strip(desk, syncs) {
   const { first, levels } = desk.picture.surfaces[desk.chosen];
   const canvas = make("canvas", { class: "strip", width: levels, height: 1 });
@@ -1030,14 +1214,43 @@ function drawPixels(canvas, pixels) {
  * @param {{label: string, title: string, max: number, step: number, key?: string, value?: () => number,
  *   edits?: (value: number) => State, track?: () => string}} spec
  */
-function slider(desk, syncs, { label, title, max, step, key = "", value = () => Number(desk.state[key]), edits = (each) => ({ [key]: each }), track }) {
+function slider(
+  desk,
+  syncs,
+  {
+    label,
+    title,
+    max,
+    step,
+    key = "",
+    value = () => Number(desk.state[key]),
+    edits = (each) => ({ [key]: each }),
+    track,
+  },
+) {
   const take = (/** @type {Event} */ event) => {
     const text = /** @type {HTMLInputElement} */ (event.target).value;
     const number = Math.min(Math.max(Number(text), 0), max);
     if (text !== "" && Number.isFinite(number)) desk.edit(edits(number), title);
   };
-  const range = make("input", { type: "range", min: 0, max, step, "aria-label": title, title, oninput: take });
-  const digits = make("input", { type: "number", min: 0, max, step, "aria-label": `${title}, as a number`, oninput: take, onchange: () => (digits.value = shownNumber(value())) });
+  const range = make("input", {
+    type: "range",
+    min: 0,
+    max,
+    step,
+    "aria-label": title,
+    title,
+    oninput: take,
+  });
+  const digits = make("input", {
+    type: "number",
+    min: 0,
+    max,
+    step,
+    "aria-label": `${title}, as a number`,
+    oninput: take,
+    onchange: () => (digits.value = shownNumber(value())),
+  });
   syncs.push(() => {
     const text = String(value());
     if (range.value !== text) range.value = text;
@@ -1052,10 +1265,17 @@ function shownNumber(value) {
   return String(Math.round(value * 1000) / 1000);
 }
 
-/** The controls that mix a color. @param {Desk} desk @param {Array<() => void>} syncs @param {string} key @param {string} what */
+/**
+ * The controls that mix a color.
+ * @param {Desk} desk @param {Array<() => void>} syncs @param {string} key @param {string} what
+ */
 function mixer(desk, syncs, key, what) {
   const color = () => colorOf(String(desk.state[key]));
-  const picker = make("input", { type: "color", "aria-label": `Pick the ${what}`, oninput: () => desk.edit({ [key]: picker.value }, `pick ${key}`) });
+  const picker = make("input", {
+    type: "color",
+    "aria-label": `Pick the ${what}`,
+    oninput: () => desk.edit({ [key]: picker.value }, `pick ${key}`),
+  });
   const text = make("input", {
     type: "text",
     spellcheck: "false",
@@ -1078,7 +1298,8 @@ function mixer(desk, syncs, key, what) {
     }
   });
   const parts = ["Red", "Green", "Blue"].map((label, part) => {
-    const mixed = (/** @type {number} */ each) => inDigits(color().map((own, at) => (at === part ? Math.round(each) : own)));
+    const mixed = (/** @type {number} */ each) =>
+      inDigits(color().map((own, at) => (at === part ? Math.round(each) : own)));
     return slider(desk, syncs, {
       label: label[0],
       title: `${label} of the ${what}`,
@@ -1107,12 +1328,31 @@ function lightRows(desk) {
   if (!lights) return [];
   const rows = lights.rows.map(({ name, most }) => {
     const key = `lights.${name}.on`;
-    const toggle = make("input", { type: "checkbox", role: "switch", "aria-label": `Light ${name}`, onchange: () => desk.edit({ [key]: toggle.checked }) });
+    const toggle = make("input", {
+      type: "checkbox",
+      role: "switch",
+      "aria-label": `Light ${name}`,
+      onchange: () => desk.edit({ [key]: toggle.checked }),
+    });
     desk.syncs.push(() => (toggle.checked = desk.state[key] === true));
-    const strength = slider(desk, desk.syncs, { label: "", title: `Strength of light ${name}`, max: most, step: most / 200, key: `lights.${name}.intensity` });
+    const strength = slider(desk, desk.syncs, {
+      label: "",
+      title: `Strength of light ${name}`,
+      max: most,
+      step: most / 200,
+      key: `lights.${name}.intensity`,
+    });
     return div("light", make("label", {}, toggle, make("span", {}, name)), strength);
   });
-  return [make("section", { class: "lights" }, make("h2", {}, "Lights"), ...rows, make("p", { class: "fixed" }, lights.held))];
+  return [
+    make(
+      "section",
+      { class: "lights" },
+      make("h2", {}, "Lights"),
+      ...rows,
+      make("p", { class: "fixed" }, lights.held),
+    ),
+  ];
 }
 
 /** The whole lookup table, with the range of the chosen surface. @param {Desk} desk */
@@ -1125,17 +1365,21 @@ function wholeTable(desk) {
     const { name, first, levels } = desk.picture.surfaces[desk.chosen] ?? { name: "", first: 0, levels: 0 };
     mark.style.left = `${(100 * first) / ENTRIES}%`;
     mark.style.width = `${(100 * levels) / ENTRIES}%`;
-    text.textContent = `${rangeText(first, levels)} are ${name}`;
+    text.textContent = name && `${rangeText(first, levels)} are ${name}`;
   });
   canvas.addEventListener("click", ({ offsetX }) => {
     const number = desk.glass.owner[Math.floor((offsetX / canvas.clientWidth) * ENTRIES)] - 1;
     if (number >= 0) desk.choose(number);
   });
-  return div("table", div("entries", canvas, mark), make("p", {}, make("span", {}, "Lookup table, 1024 entries"), text));
+  return div(
+    "table",
+    div("entries", canvas, mark),
+    make("p", {}, make("span", {}, "Lookup table, 1024 entries"), text),
+  );
 }
 
 /**
- * The pictures of the variants; one is chosen as one step. Pictures are drawn when they are scrolled into view.
+ * The pictures of the variants, which are drawn when they are scrolled into view. To choose one is one step.
  * @param {Desk} desk @param {((state: State, name: string) => number) | null} relight
  */
 function variantStrip(desk, relight) {
@@ -1159,7 +1403,12 @@ function variantStrip(desk, relight) {
       if (light) relight?.(desk.state, light);
     });
     observer.observe(canvas);
-    const button = make("button", { onclick: () => desk.edit(changesTo(desk, state)) }, canvas, make("span", {}, variant.name));
+    const button = make(
+      "button",
+      { onclick: () => desk.edit(changesTo(desk, state)) },
+      canvas,
+      make("span", {}, variant.name),
+    );
     desk.syncs.push(() => (button.ariaPressed = String(alike(state, desk.state))));
     return button;
   });
@@ -1168,7 +1417,10 @@ function variantStrip(desk, relight) {
 
 const THUMBNAIL = 208;
 
-/** Draw some of the picture's words in other colors. @param {HTMLCanvasElement} canvas @param {Desk} desk @param {State} state */
+/**
+ * Draw some of the picture's words in other colors.
+ * @param {HTMLCanvasElement} canvas @param {Desk} desk @param {State} state
+ */
 function drawThumbnail(canvas, { picture, glass }, state) {
   const { lines, elements, surfaces } = picture;
   const every = Math.max(1, Math.ceil(elements / THUMBNAIL));
@@ -1178,15 +1430,25 @@ function drawThumbnail(canvas, { picture, glass }, state) {
   for (const { name, first, levels, floor, fixed } of surfaces) {
     if (!fixed) load(table, first, entriesOf(paintOf(state, name), levels, floor));
   }
-  const words = Uint16Array.from({ length: width * canvas.height }, (_, at) => glass.words[(Math.floor(at / width) * elements + (at % width)) * every]);
-  drawPixels(canvas, Uint32Array.from(words, (word) => table[word]));
+  const words = Uint16Array.from(
+    { length: width * canvas.height },
+    (_, at) => glass.words[(Math.floor(at / width) * elements + (at % width)) * every],
+  );
+  drawPixels(
+    canvas,
+    Uint32Array.from(words, (word) => table[word]),
+  );
 }
 
-/** The buttons that copy the link, and save the picture and its values. @param {Desk} desk @param {boolean} hosted */
+/**
+ * The buttons that copy the link, and save the picture and its values.
+ * @param {Desk} desk @param {boolean} hosted
+ */
 function sharing(desk, hosted) {
   const { picture, glass, first } = desk;
   const stem = picture.name.replace(/[^\p{L}\p{N}._-]+/gu, "-") || "picture";
-  const button = (/** @type {string} */ text, /** @type {() => void} */ onclick) => make("button", { onclick }, text);
+  const button = (/** @type {string} */ text, /** @type {() => void} */ onclick) =>
+    make("button", { onclick }, text);
   async function copy() {
     try {
       await navigator.clipboard.writeText(location.href);
@@ -1202,9 +1464,17 @@ function sharing(desk, hosted) {
     canvas.toBlob((blob) => blob && download(blob, `${stem}.png`));
   }
   function saveValues() {
-    download(new Blob([tableOf(desk.state, first, picture.name)], { type: "text/csv" }), `${stem}-values.csv`);
+    download(
+      new Blob([tableOf(desk.state, first, picture.name)], { type: "text/csv" }),
+      `${stem}-values.csv`,
+    );
   }
-  return div("sharing", ...(hosted ? [] : [button("Copy link", copy)]), button("Save PNG", savePicture), button("Save CSV", saveValues));
+  return div(
+    "sharing",
+    ...(hosted ? [] : [button("Copy link", copy)]),
+    button("Save PNG", savePicture),
+    button("Save CSV", saveValues),
+  );
 }
 
 /** Save a file from the page. @param {Blob} blob @param {string} name */
@@ -1227,6 +1497,7 @@ export default {
     const messages = [];
     /** The traits that changed since they were shown. @type {Set<string>} */
     const changed = new Set();
+    let isLate = false;
     const shape = () => structureOf(model.get("picture"));
 
     function send(/** @type {any} */ message) {
@@ -1238,8 +1509,11 @@ export default {
     function sendFirst() {
       const [message] = messages;
       if (!message) return;
-      const busy = () => message === messages[0] && handle.say("The studio has not answered yet: its kernel is busy, or gone.");
-      setTimeout(busy, PATIENCE);
+      setTimeout(() => {
+        if (message !== messages[0]) return;
+        isLate = true;
+        handle.say("The studio has not answered yet: its kernel is busy, or gone.");
+      }, PATIENCE);
       try {
         model.send(message);
       } catch {
@@ -1248,38 +1522,46 @@ export default {
       }
     }
 
-    /** Show what the studio sent. While messages wait for answers, controls and entries are ahead of it. */
+    /** Show what the studio sent. It has not heard of the edits that wait for answers. */
     function show() {
-      const isAhead = messages.length > 0 && shape() === shown;
-      const names = [...changed].filter((name) => name === "words" || !isAhead);
-      if (names.length === 0) return;
-      names.forEach((name) => changed.delete(name));
+      if (changed.size === 0) return;
+      const keys = shape() === shown ? messages.flatMap(({ edit }) => Object.keys(edit ?? {})) : [];
+      const news = Object.fromEntries([...changed].map((name) => [name, model.get(name)]));
+      if (keys.length === 0) changed.clear();
+      changed.delete("words");
       shown = shape();
-      const news = Object.fromEntries(names.map((name) => [name, model.get(name)]));
-      // The entries are loaded again if they are another object, as after an edit that the studio refused.
-      if (news.entries) news.entries = bytesOf(news.entries).slice();
-      handle.update(news);
+      handle.update(news, keys);
     }
 
     function hear(/** @type {any} */ message) {
       if (typeof message?.answer !== "string" || messages.length === 0) return;
       messages.shift();
       sendFirst();
-      if (message.answer) ["picture", "entries"].forEach((name) => changed.add(name));
+      if (message.answer) changed.add("picture");
       show();
       if (message.answer) handle.say(message.answer);
+      else if (isLate) handle.say("The studio has answered.");
+      isLate = false;
     }
 
-    // JupyterLab takes no key as a shortcut from an element with this attribute; otherwise "b" would insert a cell.
-    el.addEventListener("focusin", ({ target }) => target instanceof HTMLElement && (target.dataset.lmSuppressShortcuts = "true"));
+    // JupyterLab takes no key as a shortcut from an element with this attribute; otherwise "b" would insert a
+    // cell.
+    el.addEventListener(
+      "focusin",
+      ({ target }) => target instanceof HTMLElement && (target.dataset.lmSuppressShortcuts = "true"),
+    );
     const traits = ["picture", "words", "entries"];
     const [picture, words, entries] = traits.map((name) => model.get(name));
     let shown = shape();
-    const handle = await mount(el, { ...picture, words, entries }, {
-      edit: (edits, sameStep) => send({ edit: edits, same_step: sameStep }),
-      undo: () => send({ undo: 1 }),
-      redo: () => send({ redo: 1 }),
-    });
+    const handle = await mount(
+      el,
+      { ...picture, words, entries },
+      {
+        edit: (edits, sameStep) => send({ edit: edits, same_step: sameStep }),
+        undo: () => send({ undo: 1 }),
+        redo: () => send({ redo: 1 }),
+      },
+    );
     const listeners = traits.map((name) => () => {
       changed.add(name);
       queueMicrotask(show);

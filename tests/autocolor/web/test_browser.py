@@ -238,7 +238,11 @@ def test_saved_values_are_a_table_of_variants(
     scene = coupe.with_surface("glass", ramp=["#200000", "#ff6600"]).with_surface(
         "trim", ramp=["#000", "#fff"]
     )
-    page = opened(scene, small, "surfaces.body.object_color=1f3f8f&surfaces.body.blend=0.25")
+    page = opened(
+        scene,
+        small,
+        "surfaces.body.object_color=1f3f8f&surfaces.body.blend=0.25&surfaces.floor.ramp=102030,405060",
+    )
     page.get_by_role("radio", name="trim").check()
     page.get_by_role("button", name="Use two colors instead").click()
     (tmp_path / "values.csv").write_bytes(saved(page, "Save CSV"))
@@ -249,6 +253,7 @@ def test_saved_values_are_a_table_of_variants(
     )
     assert found.surface("glass").paint == scene.surface("glass").paint
     assert found.surface("trim").paint.ramp is None
+    assert found.surface("floor").paint == Paint(ramp=((16, 32, 48), (64, 80, 96)))
     assert page.evaluate(SHOWN) == digest(image(found, small, smooth=1))
 
 
@@ -326,6 +331,14 @@ def test_the_keyboard_alone_recolors(opened: Open, coupe: autocolor.Scene, small
     page.keyboard.type("navy")
     page.keyboard.press("Enter")
     focus_on("Blend of glass")
+    # A key that is held is one step.
+    for _ in range(3):
+        page.keyboard.down("ArrowLeft")
+    page.keyboard.up("ArrowLeft")
+    blend = page.get_by_label("Blend of glass: where the light color begins", exact=True)
+    assert blend.input_value() == "0.42"
+    page.keyboard.press("Control+z")
+    assert blend.input_value() == "0.45"
     page.keyboard.press("End")
     paint = coupe.surface("glass").paint.replace(object_color="navy", blend=1.0)
     shown = coupe.with_surface("glass", paint=paint)
@@ -384,18 +397,27 @@ def test_lights_give_the_levels_of_a_rendering(
     exported = export_of(studio.scene, studio.picture, lights=True)
     studio.hold_exposure()
     names = [light.name for light in scene.lights]
-    strengths = {name: float(light.intensity) for name, light in zip(names, scene.lights, strict=True)}
-    on = dict.fromkeys(names, True)
-    states, expected = [], []
-    random = np.random.default_rng(5)
-    # Drags of one light, and changes of several at once.
-    for step in range(8):
-        for name in names[:1] if step % 4 else names:
-            strengths[name], on[name] = round(float(random.random() * 2), 3), bool(random.random() < 0.8)
-            studio.light(name, intensity=strengths[name], on=on[name])
-        state = {f"lights.{name}.intensity": strengths[name] for name in names}
-        states.append([state | {f"lights.{name}.on": on[name] for name in names}, names[0]])
+    states: list[Any] = []
+    expected = []
+
+    def light_as(strengths: Mapping[str, float]) -> None:
+        """A state in which a strength of 0 is a light that is switched off."""
+        state: dict[str, object] = {}
+        for name, strength in strengths.items():
+            studio.light(name, intensity=strength or 1.0, on=strength > 0)
+            state |= {f"lights.{name}.intensity": strength or 1.0, f"lights.{name}.on": strength > 0}
+        states.append([state, names[0]])
         expected.append(studio.words)
+
+    random = np.random.default_rng(5)
+    others = {name: round(float(random.random() * 2), 3) for name in names}
+    # A drag of one light, all lights as exported, the drag again; then other lights.
+    for strength in (0.3, 1.7, 0.9):
+        light_as({**others, names[0]: strength})
+    light_as({light.name: float(light.intensity) for light in scene.lights})
+    light_as({**others, names[0]: 0.5})
+    light_as({**others, names[1]: 0.0})
+    light_as({**others, names[0]: 0.0, names[2]: 0.0})
     for found, words in zip(module.evaluate(RELIT, [json.dumps(exported), states]), expected, strict=True):
         away = np.abs(np.array(found).reshape(words.shape) - words.astype(int))
         assert away.max() <= 1

@@ -163,7 +163,7 @@ def test_words_for_normals_are_exported_but_fixed() -> None:
     scene = car().replace(words="normals")
     values = values_through_json(scene)
     assert {each["fixed"] for each in values["surfaces"]} == {
-        "Words stand for normals here, so the colors stay as they were exported."
+        "Words stand for normals here, so the colors cannot be edited."
     }
     with pytest.raises(UsageError, match="must have words that stand for levels, not for normals"):
         values_through_json(scene, lights=True)
@@ -228,6 +228,21 @@ def test_planes_and_thresholds_give_the_words_of_a_rendering_in_other_light(
     expected = display_image(other, render(other, *SIZE)).words
     assert (relit_words(values, others, -1) <= expected).all()
     assert (expected <= relit_words(values, others, 1)).all()
+
+
+def test_the_plane_of_a_light_is_within_half_a_unit_of_its_contribution() -> None:
+    scene = car().with_light("key", on=False, intensity=3)
+    picture = render(scene, *SIZE)
+    values = export_of(scene, picture, lights=True)
+    for row in values["lights"]["rows"]:
+        alone = scene.only_lights(row["name"]).with_light(row["name"], intensity=1).replace(ambient=0)
+        intensity = render(alone, *SIZE).intensity / picture.scale
+        plane = np.array(unpacked_plane(b64decode(row["plane"])))
+        for surface, unit in zip(picture.slices, row["units"], strict=True):
+            shares = plane[surface.pixels]
+            expected = intensity[picture.surface_number == surface.surface_number]
+            assert shares.max() == 65535
+            assert np.abs(shares * unit - expected).max() <= 0.501 * unit
 
 
 @pytest.mark.parametrize("dither", ["off", "ordered"])
