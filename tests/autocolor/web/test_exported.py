@@ -230,6 +230,21 @@ def test_planes_and_thresholds_give_the_words_of_a_rendering_in_other_light(
     assert (expected <= relit_words(values, others, 1)).all()
 
 
+def test_the_plane_of_a_light_is_within_half_a_unit_of_its_contribution() -> None:
+    scene = car().with_light("key", on=False, intensity=3)
+    picture = render(scene, *SIZE)
+    values = export_of(scene, picture, lights=True)
+    for row in values["lights"]["rows"]:
+        alone = scene.only_lights(row["name"]).with_light(row["name"], intensity=1).replace(ambient=0)
+        intensity = render(alone, *SIZE).intensity / picture.scale
+        plane = np.array(unpacked_plane(b64decode(row["plane"])))
+        for surface, unit in zip(picture.slices, row["units"], strict=True):
+            shares = plane[surface.pixels]
+            expected = intensity[picture.surface_number == surface.surface_number]
+            assert shares.max() == 65535
+            assert np.abs(shares * unit - expected).max() <= 0.501 * unit
+
+
 @pytest.mark.parametrize("dither", ["off", "ordered"])
 def test_few_pixels_of_the_coupe_are_a_level_off_and_none_two(dither: Any) -> None:
     scene = demo().replace(dither=dither)
