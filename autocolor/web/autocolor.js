@@ -664,10 +664,10 @@ export async function mount(root, picture, options = {}) {
   let queue = Promise.resolve();
   return {
     /**
-     * Show other words, entries or values of the host.
-     * @param {Partial<Picture> & {picture?: Picture}} news
+     * Show other words, entries or values of the host; see `update` of `build`.
+     * @param {Partial<Picture> & {picture?: Picture}} news @param {string[]} [keys]
      */
-    update({ words, entries, picture: changed }) {
+    update({ words, entries, picture: changed }, keys = []) {
       queue = queue.then(async () => {
         picture = {
           ...picture,
@@ -675,7 +675,7 @@ export async function mount(root, picture, options = {}) {
           words: words ?? picture.words,
           entries: entries ?? picture.entries,
         };
-        if (await built.update(picture)) return;
+        if (await built.update(picture, keys)) return;
         built.destroy();
         built = await build(root, picture, options);
       });
@@ -758,6 +758,8 @@ async function build(root, picture, options) {
       if (alike(next, desk.state)) return;
       const sameStep = name !== "" && name === gesture;
       gesture = name;
+      // What the host sent before is older than this edit.
+      held = null;
       if (!hosted) {
         steps = steps.slice(0, sameStep ? at : at + 1).concat(next);
         at = steps.length - 1;
@@ -790,6 +792,13 @@ async function build(root, picture, options) {
     desk.syncs.forEach((each) => each());
   }
 
+  /** The numbers of the surfaces with a key of their paint among some keys. @param {string[]} keys */
+  function paintedBy(keys) {
+    return picture.surfaces.flatMap(({ name, fixed }, number) =>
+      !fixed && PAINT.some((field) => keys.includes(`surfaces.${name}.${field}`)) ? [number] : [],
+    );
+  }
+
   /** Rewrite what differs: the entries of surfaces, or the words of the picture. */
   function show(/** @type {State} */ next) {
     const keys = differing(next, desk.state);
@@ -800,9 +809,7 @@ async function build(root, picture, options) {
       glass.look(glass.whole);
       desk.say(`${COUNT.format(changed)} words rewritten, no entry of the table: light is in the words.`);
     }
-    const painted = picture.surfaces.flatMap(({ name, fixed }, number) =>
-      !fixed && PAINT.some((field) => keys.includes(`surfaces.${name}.${field}`)) ? [number] : [],
-    );
+    const painted = paintedBy(keys);
     for (const number of painted) {
       const { name, levels, floor } = picture.surfaces[number];
       glass.rewrite(number, entriesOf(paintOf(next, name), levels, floor));
@@ -934,25 +941,35 @@ async function build(root, picture, options) {
   }
 
   return {
-    /** Show what a host sent; false if it needs a new interface. @param {Picture} changed */
-    async update(changed) {
+    /**
+     * Show what a host sent; false if it needs a new interface. During a gesture, and as long as the host has
+     * not heard of edits of some `keys`, controls stay; the paints with these keys stay, too.
+     * @param {Picture} changed @param {string[]} keys
+     */
+    async update(changed, keys) {
       if (structureOf(changed) !== structureOf(picture)) return false;
       if (changed.words !== shownWords) {
         words.set(await unpackWords(changed.words, lines, elements));
         shownWords = changed.words;
-        glass.look(glass.whole);
         desk.say(`The studio sent ${COUNT.format(bytesOf(changed.words).length)} bytes of words.`);
       }
-      held = () => {
-        if (changed.entries !== picture.entries) {
-          load(glass.table, 0, bytesOf(changed.entries));
-          glass.look(glass.whole);
+      const state = stateOf(changed);
+      const showEntries = (/** @type {number[]} */ own) => {
+        load(glass.table, 0, bytesOf(changed.entries));
+        for (const { name, first, levels, floor } of own.map((number) => changed.surfaces[number])) {
+          load(glass.table, first, entriesOf(paintOf(desk.state, name), levels, floor));
         }
+        glass.look(glass.whole);
+      };
+      const take = () => {
+        showEntries([]);
         picture = desk.picture = changed;
-        desk.state = stateOf(changed);
+        desk.state = state;
         sync();
       };
-      if (!gesture) desk.rest();
+      if (keys.length === 0) held = take;
+      if (keys.length > 0 || gesture) showEntries(paintedBy(keys));
+      else desk.rest();
       return true;
     },
     say: desk.say,
@@ -1503,24 +1520,22 @@ export default {
       }
     }
 
-    /** Show what the studio sent. While messages wait for answers, controls and entries are ahead of it. */
+    /** Show what the studio sent. It has not heard of the edits that wait for answers. */
     function show() {
-      const isAhead = messages.length > 0 && shape() === shown;
-      const names = [...changed].filter((name) => name === "words" || !isAhead);
-      if (names.length === 0) return;
-      names.forEach((name) => changed.delete(name));
+      if (changed.size === 0) return;
+      const keys = shape() === shown ? messages.flatMap(({ edit }) => Object.keys(edit ?? {})) : [];
+      const news = Object.fromEntries([...changed].map((name) => [name, model.get(name)]));
+      if (keys.length === 0) changed.clear();
+      changed.delete("words");
       shown = shape();
-      const news = Object.fromEntries(names.map((name) => [name, model.get(name)]));
-      // The entries are loaded again if they are another object, as after an edit that the studio refused.
-      if (news.entries) news.entries = bytesOf(news.entries).slice();
-      handle.update(news);
+      handle.update(news, keys);
     }
 
     function hear(/** @type {any} */ message) {
       if (typeof message?.answer !== "string" || messages.length === 0) return;
       messages.shift();
       sendFirst();
-      if (message.answer) ["picture", "entries"].forEach((name) => changed.add(name));
+      if (message.answer) changed.add("picture");
       show();
       if (message.answer) handle.say(message.answer);
     }

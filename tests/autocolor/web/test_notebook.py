@@ -607,6 +607,7 @@ def test_a_drag_in_a_browser_sends_as_fast_as_the_studio_answers_and_is_one_step
     # The first edit is answered, while the browser already shows the last.
     assert shown.carry() == (1, 2)
     assert studio.scene.surface("body").paint.object_color[0] == 60
+    red.dispatch_event("change", {"bubbles": True})
     assert red.input_value() == "89"
     # One edit stands for all that came before the answer.
     assert shown.carry() == (1, 2)
@@ -614,6 +615,46 @@ def test_a_drag_in_a_browser_sends_as_fast_as_the_studio_answers_and_is_one_step
     assert studio.scene.surface("body").paint.object_color[0] == 89
     assert len(studio.history.to_undo) == 1
     shown.check()
+
+
+def drag(bar: Any, value: float) -> None:
+    """Drag the handle of a bar to a value, and hold it there."""
+    bar.evaluate(
+        "(bar, value) => {bar.value = value; bar.dispatchEvent(new Event('input', {bubbles: true}))}", value
+    )
+
+
+def test_a_drag_that_ends_before_the_answer_stays_where_it_ended(window: Any) -> None:
+    studio, display = opened()
+    shown = window(shown_in(studio)[1], display)
+    red = shown.page.get_by_role("slider", name="Red")
+    drag(red, 60)
+    shown.check()
+    drag(red, 70)
+    red.dispatch_event("change", {"bubbles": True})
+    assert red.input_value() == "70"
+    shown.check()
+    assert len(studio.history.to_undo) == 1
+
+
+@pytest.mark.parametrize("has_normals", [False, True])
+def test_a_browser_shows_light_during_the_drag_and_keeps_the_paint_that_is_ahead(
+    has_normals: bool, window: Any
+) -> None:
+    studio, display = opened(car().replace(contrast="floor"))
+    studio.normals(has_normals)
+    shown = window(shown_in(studio)[1], display)
+    drag(shown.page.get_by_role("slider", name="Strength of light key"), 0.1)
+    shown.check()
+    if not has_normals:
+        red = shown.page.get_by_role("slider", name="Red")
+        drag(red, 90)
+        studio.recolor("glass", object_color="#ff0000")
+        shown.page.evaluate("news => news.forEach(receive)", shown.cell.news)
+        assert red.input_value() == "90"
+        ahead = studio.image_of(studio.scene.with_paint("body", object_color=(90, 176, 176))).colors
+        shown.page.wait_for_function(SHOWS, arg=text_of(ahead.tobytes()))
+        shown.check()
 
 
 def test_an_edit_that_the_studio_refuses_is_told_in_the_browser_and_taken_back(
