@@ -942,8 +942,8 @@ async function build(root, picture, options) {
 
   return {
     /**
-     * Show what a host sent; false if it needs a new interface. During a gesture, and as long as the host has
-     * not heard of edits of some `keys`, controls stay; the paints with these keys stay, too.
+     * Show what a host sent; false if it needs a new interface. During a gesture, and as long as the host
+     * has not heard of edits of some `keys`, controls stay; the paints with these keys stay, too.
      * @param {Picture} changed @param {string[]} keys
      */
     async update(changed, keys) {
@@ -968,7 +968,7 @@ async function build(root, picture, options) {
         sync();
       };
       if (keys.length === 0) held = take;
-      if (keys.length > 0 || gesture) showEntries(paintedBy(keys));
+      if (keys.length > 0 || gesture || keyHeld) showEntries(paintedBy(keys));
       else desk.rest();
       return true;
     },
@@ -1497,6 +1497,7 @@ export default {
     const messages = [];
     /** The traits that changed since they were shown. @type {Set<string>} */
     const changed = new Set();
+    let isLate = false;
     const shape = () => structureOf(model.get("picture"));
 
     function send(/** @type {any} */ message) {
@@ -1508,10 +1509,11 @@ export default {
     function sendFirst() {
       const [message] = messages;
       if (!message) return;
-      const busy = () =>
-        message === messages[0] &&
+      setTimeout(() => {
+        if (message !== messages[0]) return;
+        isLate = true;
         handle.say("The studio has not answered yet: its kernel is busy, or gone.");
-      setTimeout(busy, PATIENCE);
+      }, PATIENCE);
       try {
         model.send(message);
       } catch {
@@ -1538,6 +1540,8 @@ export default {
       if (message.answer) changed.add("picture");
       show();
       if (message.answer) handle.say(message.answer);
+      else if (isLate) handle.say("The studio has answered.");
+      isLate = false;
     }
 
     // JupyterLab takes no key as a shortcut from an element with this attribute; otherwise "b" would insert a

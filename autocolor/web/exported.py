@@ -178,7 +178,7 @@ def values_of(image: DisplayImage) -> dict[str, Any]:
 def _reason_of_fixed(image: DisplayImage, name: str) -> str:
     """Why the colors of a surface cannot be edited; empty if they can."""
     if not image.has_light_in_words:
-        return "Words stand for normals here, so the colors stay as they were exported."
+        return "Words stand for normals here, so the colors cannot be edited."
     return "Its colors stand for a scalar and cannot be edited." if name in image.bands else ""
 
 

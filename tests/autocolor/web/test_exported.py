@@ -163,7 +163,7 @@ def test_words_for_normals_are_exported_but_fixed() -> None:
     scene = car().replace(words="normals")
     values = values_through_json(scene)
     assert {each["fixed"] for each in values["surfaces"]} == {
-        "Words stand for normals here, so the colors stay as they were exported."
+        "Words stand for normals here, so the colors cannot be edited."
     }
     with pytest.raises(UsageError, match="must have words that stand for levels, not for normals"):
         values_through_json(scene, lights=True)

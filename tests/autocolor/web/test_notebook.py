@@ -673,6 +673,17 @@ def test_an_edit_that_the_studio_refuses_is_told_in_the_browser_and_taken_back(
     assert studio.scene.surface("body").paint.blend == 0
 
 
+def test_a_browser_says_when_the_studio_is_busy_and_when_it_has_answered(window: Any) -> None:
+    studio, display = opened()
+    shown = window(shown_in(studio)[1], display)
+    shown.page.clock.install()
+    shown.page.get_by_role("slider", name="Blend").press("Home")
+    shown.page.clock.run_for(5000)
+    shown.wait_for_status("has not answered yet")
+    shown.carry()
+    shown.wait_for_status("has answered")
+
+
 def test_a_browser_shows_another_scene_of_the_studio_and_stops_when_it_is_left(window: Any) -> None:
     studio, display = opened()
     shown = window(shown_in(studio)[1], display)
