@@ -22,7 +22,7 @@ from tests.ramtek_emu.serving import serving
 NOT_RUN = {
     "autocolor view coupe": "it opens a window",
     "autocolor view scenes/coupe --normals": "it opens a window",
-    "autocolor view scenes/coupe --paints paints.gpl": "it opens a window",
+    "autocolor view scenes/coupe --paints examples/paints.gpl": "it opens a window",
     "autocolor show scenes/coupe --to tcp://127.0.0.1:9300": "it runs until its user leaves",
     "autocolor show scenes/coupe --to tcp://127.0.0.1:9300 &": "it runs until its user leaves",
     "ramtek play fade.ramtek --loads-per-second 24": "it opens a window",
@@ -42,7 +42,6 @@ POLYGONS = "".join(f"3 {a} {b} {c}\n" for a, b, c in FACES)
 INPUTS = {
     "looks.csv": "name,surfaces.body.object_color,lights.key.intensity\nracing,#b01020,\nevening,navy,0.5\n",
     "session.ramtek": "\0\7",
-    "paints.csv": "name,color\nsignal red,#a52019\n",
     "engine.ply": "ply\nformat ascii 1.0\nelement vertex 4\n"
     + "".join(f"property float {axis}\n" for axis in "xyz")
     + f"element face 4\nproperty list uchar int vertex_indices\nend_header\n{NODES}{POLYGONS}",
@@ -77,10 +76,12 @@ GUIDES = {path.name for path in (ROOT / "docs" / "guides").glob("*.md")}
 
 
 def make_inputs(folder: Path) -> None:
-    """The scenes of the project, and the files that the reader has."""
+    """The scenes and the paints of the project, and the files that the reader has."""
     for scene in (ROOT / "scenes").iterdir():
         if (scene / "scene.toml").exists():
             shutil.copytree(scene, folder / "scenes" / scene.name)
+    (folder / "examples").mkdir()
+    shutil.copy(ROOT / "examples" / "paints.gpl", folder / "examples")
     for name, text in INPUTS.items():
         (folder / name).write_text(text, "utf-8")
 

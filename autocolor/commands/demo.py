@@ -42,10 +42,9 @@ def demo_report() -> SceneReport:
 
 def demo_session() -> History:
     """A session with the demo. Raises MissingInputError if it is not installed."""
-    from autocolor.files.scene_sources import read_scene
     from autocolor.journal.history import History
     from autocolor.journal.places import ScenePlace, Source
 
     folder = demo_folder()
     # The user has not named the demo's files, so saving makes new files.
-    return History(read_scene(folder), ScenePlace(Source(str(folder))))
+    return History(demo(), ScenePlace(Source(str(folder))))

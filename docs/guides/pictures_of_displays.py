@@ -1,7 +1,7 @@
 """The pictures of display.md, paper.md and elsewhere.md.
 
-`python -m docs.guides.pictures_of_displays` writes them. As in `pictures`, each function returns the picture that
-is named after it. The display draws the pictures of display.md from the listings and the examples of that guide.
+`python -m docs.guides.pictures_of_displays` writes them. As in `pictures`, each function returns the picture
+that is named after it. The display draws the pictures of display.md from its listings and examples.
 """
 
 from __future__ import annotations
