@@ -46,7 +46,6 @@ from tests.autocolor.meshes import cube, wall_scene
 from tests.autocolor.sessions import car
 from tests.autocolor.web.twin import (
     entries_in,
-    inflated,
     relit_words,
     unpacked_plane,
     unpacked_words,
