@@ -154,6 +154,19 @@ export function entriesOf(paint, levels, floor) {
   return entries;
 }
 
+/**
+ * All entries of a picture: a host sends them, and a page computes those of the surfaces that it can recolor.
+ * @param {Picture} picture
+ */
+async function entriesIn({ entries, surfaces }) {
+  if (typeof entries !== "string") return bytesOf(entries).slice();
+  const all = await inflated(entries);
+  for (const { first, levels, floor, fixed, paint } of surfaces) {
+    if (!fixed) all.set(entriesOf(paint, levels, floor), 3 * first);
+  }
+  return all;
+}
+
 /** The white of a color: the mean of its components, rounded half up. @param {Color} color */
 export function whiteOf(color) {
   return Math.floor((color[0] + color[1] + color[2]) / 3 + 0.5);
@@ -719,8 +732,7 @@ async function build(root, picture, options) {
   const { lines, elements } = picture;
   const words = await unpackWords(picture.words, lines, elements);
   const before = words.slice();
-  const entries =
-    typeof picture.entries === "string" ? await inflated(picture.entries) : bytesOf(picture.entries).slice();
+  const entries = await entriesIn(picture);
   const key = picture.legend;
   const legend = key && (await unpackWords(key.words, key.lines, key.elements));
   const glass = glassOf(picture, words, entries, legend);

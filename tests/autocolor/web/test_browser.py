@@ -373,6 +373,20 @@ def test_a_touch_chooses_a_surface(opened: Open, coupe: autocolor.Scene, small: 
     assert page.evaluate("document.documentElement.scrollWidth") == 390
 
 
+def test_a_phone_on_its_side_keeps_the_picture_beside_the_controls(
+    opened: Open, coupe: autocolor.Scene, small: autocolor.Picture
+) -> None:
+    page = opened(coupe, small, context={"viewport": {"width": 844, "height": 390}})
+    page.get_by_role("button", name="Save CSV").scroll_into_view_if_needed()
+    assert page.evaluate("scrollY") > 0
+    picture, controls = page.locator(".glass").bounding_box(), page.locator(".panel").bounding_box()
+    assert picture
+    assert controls
+    assert 0 <= picture["y"] <= 390 - picture["height"]
+    assert picture["x"] + picture["width"] <= controls["x"]
+    assert page.evaluate("document.documentElement.scrollWidth") == 844
+
+
 RELIT = """async ([text, states]) => {
     const picture = JSON.parse(text);
     const {lines, elements, surfaces} = picture;

@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 
 from autocolor.arrays import AnyArray
+from autocolor.mapping.colors import entries_of
+from autocolor.scene.surfaces import Paint
 
 BAYER = [
     [0, 32, 8, 40, 2, 34, 10, 42],
@@ -47,6 +49,17 @@ def unpacked_words(packed: bytes, lines: int, elements: int) -> AnyArray:
 def words_in(part: Mapping[str, Any]) -> AnyArray:
     """The words of an export, or of its legend."""
     return unpacked_words(b64decode(part["words"], validate=True), part["lines"], part["elements"])
+
+
+def entries_in(values: Mapping[str, Any]) -> AnyArray:
+    """The entries of an export, with those that its paints give."""
+    entries = np.frombuffer(inflated(values["entries"]), np.uint8).reshape(1024, 3).copy()
+    for each in values["surfaces"]:
+        if not each["fixed"]:
+            entries_of_surface = entries[each["first"] : each["first"] + each["levels"]]
+            assert not entries_of_surface.any()
+            entries_of_surface[:] = entries_of(Paint(**each["paint"]), each["levels"], each["floor"])
+    return entries
 
 
 def with_legend(values: Mapping[str, Any]) -> AnyArray:
