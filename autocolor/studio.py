@@ -73,10 +73,13 @@ class Studio:
     whole picture; each edit then sends only what changed. An edit that raises an error changes nothing.
     """
 
-    def __init__(self, scene: Scene | History, display: HostPort, *, limit: float | None = None) -> None:
+    def __init__(
+        self, scene: Scene | History, display: HostPort, *, limit: float | None = None, sends: bool = True
+    ) -> None:
         """Show a scene, or go on with a session, such as the history of a journal.
 
         `limit` is a factor for the memory budget of this studio: of its pictures, and of files that it opens.
+        With `sends=False` nothing is sent: the program sends the picture itself, and draws over it.
         """
         self._limit = validated_limit(limit)
         self._history = scene if isinstance(scene, History) else History(scene)
@@ -90,9 +93,9 @@ class Studio:
         self._shown = display_image(scene, self._rendering.picture)
         self._pace = 1, perf_counter() - begun
         """The block of the last picture that was computed whole, and the seconds that took."""
-        self.sends = True
-        """Whether edits are sent to the display; programs that draw over the picture send it themselves."""
-        self.send_everything()
+        self.sends = sends
+        if sends:
+            self.send_everything()
 
     @property
     def scene(self) -> Scene:

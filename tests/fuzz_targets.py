@@ -31,7 +31,6 @@ from functools import cache, partial
 from itertools import islice
 from pathlib import Path
 from typing import Any, NamedTuple
-from unittest.mock import patch
 
 import numpy as np
 
@@ -796,13 +795,6 @@ def show_samples() -> Iterator[bytes]:
     yield b"\1" + struct.pack("<40H", *(word for place in range(20) for word in (600, 200 + place | 0x3000)))
 
 
-PORT_TO = "autocolor.commands.show.port_to"
-
-
-def port_of_little_patience(address: str) -> TcpPort:
-    return TcpPort(address, timeout=0.3)
-
-
 @cache
 def shown_scene() -> Scene:
     return small_scene()
@@ -827,11 +819,11 @@ def fault_of_show(data: bytes) -> str:
         server = threading.Thread(target=reply)
         server.start()
         try:
-            with contextlib.redirect_stderr(io.StringIO()), patch(PORT_TO, port_of_little_patience):
+            with contextlib.redirect_stderr(io.StringIO()):
                 if is_session:
-                    session_elsewhere(History(shown_scene()), address, Path())
+                    session_elsewhere(History(shown_scene()), address, Path(), timeout=0.3)
                 else:
-                    show_once(shown_scene(), address)
+                    show_once(shown_scene(), address, 0.3)
                     return "a picture that is said to be shown by what is no display"
         except (AutocolorError, RamtekError) as error:
             if error.exit_code != 69:

@@ -25,6 +25,7 @@ NOT_RUN = {
     "autocolor view scenes/coupe --paints examples/paints.gpl": "it opens a window",
     "autocolor show scenes/coupe --to tcp://127.0.0.1:9300": "it runs until its user leaves",
     "autocolor show scenes/coupe --to tcp://127.0.0.1:9300 &": "it runs until its user leaves",
+    "autocolor show scenes/coupe --to tcp://127.0.0.1:9300 --timeout 300": "it runs until its user leaves",
     "ramtek play fade.ramtek --loads-per-second 24": "it opens a window",
     "ramtek serve --unix /tmp/display --window &": "it waits for hosts",
     "ramtek tty /tmp/display -- old_program {}": "it runs a program that the reader has",

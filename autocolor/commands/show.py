@@ -44,6 +44,19 @@ BUTTONS: Final = "the right edge brings the menu; ENTER (left button) picks, TRA
 """The first message on the display. In the window of `ramtek serve`, the mouse is the joystick unit."""
 
 
+TIMEOUT: Final = 30.0
+"""The longest wait for the display, in seconds, unless the user gives another."""
+
+timeout_option = click.option(
+    "--timeout",
+    type=click.FloatRange(0.1, 86400),
+    default=TIMEOUT,
+    show_default=True,
+    metavar="SECONDS",
+    help="Longest wait for the display. A slow line needs more.",
+)
+
+
 @click.command(epilog=EXAMPLES)
 @partial(scene_options, required=False)
 @set_option
@@ -62,6 +75,7 @@ BUTTONS: Final = "the right edge brings the menu; ENTER (left button) picks, TRA
     help="Instead of SCENE, continue the newest session that was not closed, or the session of a name.",
 )
 @paints_option
+@timeout_option
 @click.option("--once", is_flag=True, help="Send the picture and exit; the display keeps showing it.")
 @click.pass_context
 def show(
@@ -71,6 +85,7 @@ def show(
     address: str,
     recover: str | None,
     paints: str | None,
+    timeout: float,
     once: bool,
 ) -> None:
     """Show SCENE on another display, such as `ramtek serve`, and follow its joystick.
@@ -92,7 +107,7 @@ def show(
         from autocolor.commands.sessions import chosen_session
 
         left, session = chosen_session(recover)
-        session_elsewhere(session.history, address, folder_of(session.source), left, bring)
+        session_elsewhere(session.history, address, folder_of(session.source), left, bring, timeout)
     elif source is not None:
         from autocolor.commands.settings import with_settings
         from autocolor.journal.history import History
@@ -104,23 +119,23 @@ def show(
         report = read(source)
         scene = created_again(report, with_settings(report.scene, settings))
         if once:
-            show_once(scene, address)
+            show_once(scene, address, timeout)
         else:
             history = History(report.scene, place)
             if scene is not report.scene:
                 history.take(scene)
-            session_elsewhere(history, address, folder_of(origin), prepare=bring)
+            session_elsewhere(history, address, folder_of(origin), prepare=bring, timeout=timeout)
         context.exit(ended(report, source))
 
 
-def show_once(scene: Scene, address: str) -> None:
+def show_once(scene: Scene, address: str, timeout: float = TIMEOUT) -> None:
     """Send the picture of a scene to the display at an address, and wait until it is complete.
 
     Raises UnavailableError if no display answers there.
     """
     from autocolor.studio import Studio
 
-    with port_to(address) as port:
+    with port_to(address, timeout) as port:
         require_display(port, address, Studio(scene, port).entries)
     tell(f"shown on {address}")
 
@@ -150,7 +165,7 @@ def require_display(port: TcpPort | UnixPort, address: str, entries: Bytes) -> N
 def _without_answer(port: TcpPort | UnixPort, address: str) -> UnavailableError:
     return UnavailableError(
         f"a display must answer within {port.timeout:g} seconds, and {address} does not; it may be serving"
-        " another host first"
+        " another host first, or a slow line needs a longer --timeout"
     )
 
 
@@ -167,6 +182,7 @@ def session_elsewhere(
     folder: Path,
     left: Path | None = None,
     prepare: Callable[[Viewer], object] = lambda _: None,
+    timeout: float = TIMEOUT,
 ) -> None:
     """Run the interactive system with a session on the display at an address, until its user leaves.
 
@@ -179,7 +195,7 @@ def session_elsewhere(
     from autocolor.screens.viewer import Viewer
     from ramtek_emu import PortError, ReplyError
 
-    with port_to(address) as port:
+    with port_to(address, timeout) as port:
         try:
             viewer = Viewer(history, port, folder)
             require_display(port, address, viewer.studio.entries)
@@ -223,11 +239,11 @@ def refuse_address(address: str) -> None:
         raise UsageError(f"--to: {error}, or the path of a Unix socket with a slash in it") from None
 
 
-def port_to(address: str) -> TcpPort | UnixPort:
-    """A port to the display at an address. Raises PortError if no display answers."""
+def port_to(address: str, timeout: float = TIMEOUT) -> TcpPort | UnixPort:
+    """A port to the display at an address. Raises PortError if no display answers in `timeout` seconds."""
     from ramtek_emu import TcpPort, UnixPort
 
-    return UnixPort(address) if _is_path(address) else TcpPort(address)
+    return UnixPort(address, timeout) if _is_path(address) else TcpPort(address, timeout)
 
 
 def _is_path(address: str) -> bool:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 import click
 
 from autocolor.commands.options import verbose_option
-from autocolor.commands.show import refuse_address, session_elsewhere
+from autocolor.commands.show import refuse_address, session_elsewhere, timeout_option
 
 if TYPE_CHECKING:
     from autocolor.screens.viewer import Viewer
@@ -26,10 +26,11 @@ Examples:
     metavar="tcp://HOST:PORT",
     help="Address of another display, or the path of its Unix socket, to use instead of a window.",
 )
+@timeout_option
 @click.option("--full-screen", is_flag=True, help="Open the window in full screen.")
 @click.option("--fit", is_flag=True, help="Scale the picture to fill the window; pixels may become uneven.")
 @verbose_option
-def tutorial(address: str | None, full_screen: bool, fit: bool) -> None:
+def tutorial(address: str | None, timeout: float, full_screen: bool, fit: bool) -> None:
     """Light and paint a car step by step. A panel shows the next step, and goes on when you have done it.
 
     Files are saved in the current folder.
@@ -43,7 +44,7 @@ def tutorial(address: str | None, full_screen: bool, fit: bool) -> None:
         show_demo(full_screen, fit, teach)
         return
     refuse_address(address)
-    session_elsewhere(demo_session(), address, Path.cwd(), prepare=teach)
+    session_elsewhere(demo_session(), address, Path.cwd(), prepare=teach, timeout=timeout)
 
 
 def teach(viewer: Viewer) -> None:

@@ -137,9 +137,8 @@ class Viewer:
         self._open(scene)
 
     def _open(self, scene: Scene | History) -> None:
-        self.studio = Studio(scene, self.display)
-        # From now on the sheet sends what is shown.
-        self.studio.sends = False
+        # The sheet sends the picture, and draws the items over it.
+        self.studio = Studio(scene, self.display, sends=False)
         self.session = Session(self.studio, self.display, self.folder)
         self.session.has_keyboard = self._has_keyboard
         self.screens = {each.name: each(self.session) for each in SCREENS}
@@ -155,10 +154,10 @@ class Viewer:
         """The base of the page that was shown last."""
         self._mouse.forget()
         self._sheet.forget()
-        self._unit.show()
         lying = f"; {self.session.lying}" if self.session.lying else ""
         self.session.tell(f"F1: help; Tab or the right edge: the menu{lying}", persistent=True)
         self._update()
+        self._unit.show()
 
     @property
     def page(self) -> str:

@@ -22,7 +22,7 @@ from autocolor.journal.history import History
 from autocolor.journal.places import Source
 from autocolor.screens.message_line import MessagePart, lines_of_message
 from autocolor.screens.viewer import Viewer
-from ramtek_emu import PortError, Ramtek9300, TcpPort
+from ramtek_emu import PortError, Ramtek9300
 from ramtek_emu.host.server import Server, TcpServer, UnixServer
 from tests.autocolor.commands.conftest import Run
 from tests.autocolor.screens.hand import folded_section_of
@@ -397,7 +397,7 @@ def test_a_display_that_does_not_answer_is_given_up(tmp_path: Path) -> None:
 
 def session_with(port: object, address: str, folder: Path) -> None:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("autocolor.commands.show.port_to", lambda _: port)
+        patch.setattr("autocolor.commands.show.port_to", lambda *_: port)
         session_elsewhere(History(car()), address, folder)
 
 
@@ -504,9 +504,7 @@ def test_a_server_that_is_no_display_is_refused(
     interactive: bool,
     folder: Path,
     run: Run,
-    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(TcpPort.__init__, "__defaults__", (seconds,))
     with socket.create_server(("127.0.0.1", 0)) as listening:
 
         def accept() -> None:
@@ -517,7 +515,8 @@ def test_a_server_that_is_no_display_is_refused(
         thread = Thread(target=accept)
         thread.start()
         address = f"tcp://127.0.0.1:{listening.getsockname()[1]}"
-        ran = run("show", "scene", "--to", address, *([] if interactive else ["--once"]))
+        once = [] if interactive else ["--once"]
+        ran = run("show", "scene", "--to", address, "--timeout", f"{seconds}", *once)
         thread.join(60)
     assert (ran.code, ran.out) == (69, "")
     assert sentence in ran.err

@@ -41,15 +41,15 @@ def test_without_a_screen_render_is_named(folder: Path, run: Run, monkeypatch: p
 def test_it_is_taught_on_a_display_elsewhere(folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     from autocolor.commands import tutorial
 
-    asked: list[tuple[str, str, Path]] = []
+    asked: list[tuple[str, str, Path, float]] = []
 
-    def session(history: History, address: str, place: Path, prepare: object) -> None:
+    def session(history: History, address: str, place: Path, prepare: object, timeout: float) -> None:
         assert prepare is teach
-        asked.append((history.scene.name, address, place))
+        asked.append((history.scene.name, address, place, timeout))
 
     monkeypatch.setattr(tutorial, "session_elsewhere", session)
-    assert run("tutorial", "--to", "tcp://127.0.0.1:9300").code == 0
-    assert asked == [("coupe", "tcp://127.0.0.1:9300", folder)]
+    assert run("tutorial", "--to", "tcp://127.0.0.1:9300", "--timeout", "200").code == 0
+    assert asked == [("coupe", "tcp://127.0.0.1:9300", folder, 200.0)]
 
 
 def test_a_wrong_address_is_refused(folder: Path, run: Run) -> None:

@@ -123,6 +123,12 @@ def test_each_edit_is_shown_undone_and_done_again(viewer: Viewer, name: str) -> 
     assert is_true_to(viewer, after)
 
 
+def test_the_picture_is_sent_once_when_a_viewer_opens(tmp_path: Path) -> None:
+    display = Ramtek9300()
+    Viewer(box_scene(), display, tmp_path)
+    assert display.words_received < 1.1 * display.frame_buffer.words.size
+
+
 def test_keys_do_what_the_help_page_says(viewer: Viewer) -> None:
     def scene() -> Scene:
         return viewer.studio.scene
