@@ -235,7 +235,7 @@ function countUpTo(numbers, value) {
 // ---------------------------------------------------------------------------------------------------------
 // Light
 
-const CELLS = 4096;
+const CELLS = 16384;
 
 /**
  * Where to begin the search for the level of an intensity: equal cells between the lowest and the highest
@@ -267,6 +267,38 @@ function rankOf(line, element) {
 }
 
 /**
+ * Write the words of a run of points from their intensities; returns how many words changed.
+ *
+ * Measured: in a function of its own, without captured variables, the loop takes two thirds of the time.
+ * @param {Words} words @param {number} place @param {number} end @param {Surface} surface
+ * @param {ReturnType<typeof levelSearch>} search
+ * @param {Float32Array} sums  The light of the other lights.
+ * @param {Words} plane @param {number} at  The place of the first point in `sums` and `plane`.
+ * @param {number} factor  The intensity of a unit of the plane.
+ * @param {boolean} isKept  Whether only this light changed: points that it does not reach keep their words.
+ * @param {number} width  With dither, the elements of a line; otherwise 0.
+ */
+function relevel(words, place, end, surface, search, sums, plane, at, factor, isKept, width) {
+  const { first, levels, shades } = surface;
+  const { low, scale, begin, thresholds } = search;
+  let changed = 0;
+  for (; place < end; place++, at++) {
+    if (isKept && plane[at] === 0) continue;
+    const intensity = sums[at] + factor * plane[at];
+    const cell = (intensity - low) * scale;
+    let level = begin[cell < CELLS ? (cell > 0 ? cell | 0 : 0) : CELLS];
+    while (thresholds[level] <= intensity) level++;
+    if (width) level = (level + rankOf(Math.floor(place / width), place % width)) >> 6;
+    const before = words[place];
+    const word = (shades === levels ? first : before - ((before - first) % shades)) + level;
+    if (word === before) continue;
+    words[place] = word;
+    changed++;
+  }
+  return changed;
+}
+
+/**
  * The function that writes the words for some values of lights and returns how many words changed. It is null
  * for a picture without light planes.
  *
@@ -282,7 +314,7 @@ export async function relighting({ surfaces, lights, elements }, words, owner) {
   const searches = await Promise.all(
     lights.levels.map(async (each) => levelSearch(new Float32Array((await inflated(each)).buffer))),
   );
-  const isDithered = lights.dither;
+  const width = lights.dither ? elements : 0;
   /** The points of each surface as runs of words: first, end, first, end. @type {number[][]} */
   const runs = surfaces.map(() => []);
   for (let at = 0; at < words.length; at++) {
@@ -333,21 +365,11 @@ export async function relighting({ surfaces, lights, elements }, words, owner) {
     for (let number = 0; number < surfaces.length; number++) {
       const factor = strengths[chosen] * lights.rows[chosen].units[number];
       const plane = planes[chosen];
-      const { low, scale, begin, thresholds } = searches[number];
-      const { first, levels, shades } = surfaces[number];
+      const search = searches[number];
       for (let run = 0, at = begins[number]; run < runs[number].length; run += 2) {
-        for (let place = runs[number][run], end = runs[number][run + 1]; place < end; place++, at++) {
-          // A point that the light does not reach keeps its word while only this light changes.
-          if (isKept && plane[at] === 0) continue;
-          const intensity = sums[at] + factor * plane[at];
-          const cell = (intensity - low) * scale;
-          let level = begin[cell < CELLS ? (cell > 0 ? cell | 0 : 0) : CELLS];
-          while (thresholds[level] <= intensity) level++;
-          if (isDithered) level = (level + rankOf(Math.floor(place / elements), place % elements)) >> 6;
-          const before = words[place];
-          words[place] = (shades === levels ? first : before - ((before - first) % shades)) + level;
-          changed += words[place] === before ? 0 : 1;
-        }
+        const [place, end] = runs[number].slice(run, run + 2);
+        changed += relevel(words, place, end, surfaces[number], search, sums, plane, at, factor, isKept, width);
+        at += end - place;
       }
     }
     return changed;
