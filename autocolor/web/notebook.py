@@ -241,7 +241,7 @@ def widget_class() -> Callable[..., Any]:
         import traitlets
     except ImportError as cause:
         raise UnavailableError(
-            'a widget needs the package anywidget, which is not installed; run: pip install ".[notebook]"'
+            "to make a widget, the package anywidget must be installed; run: pip install anywidget"
         ) from cause
 
     class StudioWidget(anywidget.AnyWidget):  # type: ignore[misc]
