@@ -444,7 +444,7 @@ def test_a_widget_without_anywidget_is_refused_with_its_command(monkeypatch: pyt
     studio, _ = opened()
     notebook.widget_class.cache_clear()
     monkeypatch.setitem(sys.modules, "anywidget", None)
-    with pytest.raises(UnavailableError, match="run: pip install anywidget$"):
+    with pytest.raises(UnavailableError, match=r"run: pip install anywidget$"):
         studio.widget()
     studio.recolor("body", blend=0.3)
 
