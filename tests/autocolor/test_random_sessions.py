@@ -68,9 +68,10 @@ SCENES = {
 
 @pytest.fixture(autouse=True)
 def _no_clock(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Messages stand, and pictures are never coarse, however slow the machine is."""
+    """Messages stand, pictures are never coarse, and files have one age, however slow the machine is."""
     monkeypatch.setattr("autocolor.studio.perf_counter", lambda: 0.0)
     monkeypatch.setattr("autocolor.screens.session.MESSAGE_SECONDS", float("inf"))
+    monkeypatch.setattr("autocolor.screens.file_screen.short_date", lambda *_: "12:00")
 
 
 def begun(name: str, folder: Path, port: HostPort) -> Viewer:
