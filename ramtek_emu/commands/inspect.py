@@ -80,9 +80,7 @@ def inspect(
     It opens a window, unless a picture, a question or JSON is asked for.
     """
     if who is not None and who_entry is not None:
-        raise click.UsageError(
-            "a question must be --who or --who-entry, not both; ask them one after the other"
-        )
+        raise click.UsageError("a question must be --who or --who-entry, not both; ask twice")
     refuse_outputs(force, output)
     display = display_asked_for(configuration, start)
 

@@ -111,18 +111,16 @@ def plain_values(display: Ramtek9300) -> dict[str, Any]:
     """The small parts of a display by name, in plain values: parameters, cursors, status."""
     processor = display.processor
     values = plain_parameters(processor.parameters)
-    for number, cursor in enumerate(display.cursors.all):
-        values[f"cursor {number}"] = {
-            "element": cursor.element,
-            "line": cursor.line,
-            "state": display.cursors.state_of(number),
-        }
     values["saved"] = [plain_parameters(saved) for saved in processor.saved]
-    values["table address"] = display.lookup_table.address
-    values["tracking devices"] = {str(device): mask for device, mask in display.cursors.driven.items()}
+    values["cursors"] = [
+        {"element": cursor.element, "line": cursor.line, "state": display.cursors.state_of(number)}
+        for number, cursor in enumerate(display.cursors.all)
+    ]
+    values["tracking_devices"] = {str(device): mask for device, mask in display.cursors.driven.items()}
+    values["table_address"] = display.lookup_table.address
     values["status"] = str(display.status.name)
-    values["illegal words"] = processor.illegal_words
-    values["without effect"] = processor.unimplemented
+    values["illegal_words"] = processor.illegal_words
+    values["without_effect"] = processor.unimplemented
     return values
 
 
