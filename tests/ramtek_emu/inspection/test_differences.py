@@ -58,6 +58,6 @@ def test_a_difference_says_where() -> None:
     }
     assert snapshot_bytes(start) == before
     table = [Stream(SMALL, instructions.load_entries(7, [(red, 0, 0)])) for red in (1, 2)]
-    found = first_difference(*table)
+    found = first_difference(table[0], table[1])
     assert found is not None
     assert found.where == {"entries": {"count": 1, "first": 7, "values": ["#010000", "#020000"]}}
