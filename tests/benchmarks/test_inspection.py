@@ -1,7 +1,7 @@
 from __future__ import annotations
 
-from benchmarks import inspection
 from benchmarks.inspection import drawing, figures, text
+from benchmarks.targets import MISSED
 from ramtek_emu.inspection.stream import Stream
 
 
@@ -16,6 +16,6 @@ def test_the_figures_of_a_short_stream() -> None:
     assert found["short"]["instructions"] == len(Stream(words=drawing(5000)))
     measured = {
         "streams": found,
-        "targets": [{"target": "jumps", "bound": 50.0, "verdict": inspection.MISSED}],
+        "targets": [{"target": "jumps", "bound": 50.0, "verdict": MISSED}],
     }
     assert text(measured).endswith("missed: jumps")
