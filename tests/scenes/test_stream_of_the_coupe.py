@@ -24,7 +24,7 @@ def test_a_picture_is_sent_once_and_a_recoloring_loads_the_table_alone() -> None
     sent, display = BytesIO(), Ramtek9300()
     studio = Studio(autocolor.read_scene(SCENES / "coupe"), Recorder(sent, display))
     whole = len(sent.getvalue()) // 2
-    studio.recolor("body", object=(0.1, 0.4, 0.2))
+    studio.recolor("body", object_color="#107040")
     words = np.frombuffer(sent.getvalue(), "<u2").astype(np.uint16)
     stream = Stream(words=words)
     replay = Replay(stream)
