@@ -10,15 +10,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import chain
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
 from autocolor.arrays import Booleans, Bytes, Numbers, Words
+from autocolor.immutable import read_only
 from autocolor.mapping.ranges import BACKGROUND
 from autocolor.sending import configuration_of, encoder_of_entries
 from autocolor.widgets.items import Area, Item, filled
 from ramtek_emu import HostPort, instructions
+
+NO_WORDS: Final[Words] = np.zeros(0, np.uint16)
 
 
 class Page(NamedTuple):
@@ -31,6 +34,15 @@ class Page(NamedTuple):
     base: Words | int
     items: Sequence[Item]
     entries: Bytes
+
+
+class Sent(NamedTuple):
+    """The words that a sheet sent to show a page."""
+
+    words: Words
+    """The instructions that changed the entries and the words of a base, (n,) uint16, read-only."""
+    other_words: int
+    """The number of all other words: for items, and for a base of one word."""
 
 
 class Sheet:
@@ -50,18 +62,26 @@ class Sheet:
         """Forget the page that is shown: the next page is drawn whole."""
         self._page = None
 
-    def show(self, page: Page) -> None:
-        """Show a page. Raises ReplyError or PortError if the display cannot be reached."""
-        parts = self._changes(page)
-        if parts:
+    def show(self, page: Page) -> Sent:
+        """Show a page; returns the words sent. Raises ReplyError or PortError if the display is lost."""
+        picture, others = self._changes(page)
+        stream = np.concatenate([*picture, *others, NO_WORDS])
+        if len(stream):
             self._page = None
-            self._display.send(np.concatenate(parts))
+            self._display.send(stream)
         self._page = page
+        count = sum(map(len, picture))
+        return Sent(read_only(stream[:count]), len(stream) - count)
 
-    def _changes(self, page: Page) -> list[Words]:
-        """The instructions that change the display from the page before to this page."""
+    def _changes(self, page: Page) -> tuple[list[Words], list[Words]]:
+        """The instructions that change the display from the page before to this page.
+
+        First those that change entries and the words of a base, then all others.
+        """
         before = self._page
         parts: list[Words] = []
+        others: list[Words] = []
+        of_base = others if isinstance(page.base, int) else parts
         if before is None:
             parts += [instructions.reset(), self._encode_entries(0, page.entries)]
         elif page.entries is not before.entries:
@@ -71,15 +91,17 @@ class Sheet:
                 parts.append(self._encode_entries(first, page.entries[first : last + 1]))
         whole = uncovered(self._whole, page.items)
         if before is None:
-            parts += _restored(page.base, whole)
+            of_base += _restored(page.base, whole)
             redrawn = list(page.items)
         else:
             drawn = [area for area in [differing_area(before.base, page.base, whole)] if not area.is_empty]
             restored, redrawn = changed_items(before.items, page.items, drawn)
-            for area in (*drawn, *restored):
-                parts += _restored(page.base, area.within(self._whole))
-        parts += [np.frombuffer(item.stream, np.uint16) for item in redrawn]
-        return parts
+            for area in drawn:
+                of_base += _restored(page.base, area.within(self._whole))
+            for area in restored:
+                others += _restored(page.base, area.within(self._whole))
+        others += [np.frombuffer(item.stream, np.uint16) for item in redrawn]
+        return parts, others
 
 
 def changed_items(
