@@ -184,10 +184,10 @@ class Pages(Screen):
         return step != 0
 
 
-Row = TypeVar("Row")
+AnyRow = TypeVar("AnyRow")
 
 
-def page_of(rows: Sequence[Row], number: int, rows_a_page: int) -> tuple[Sequence[Row], str]:
+def page_of(rows: Sequence[AnyRow], number: int, rows_a_page: int) -> tuple[Sequence[AnyRow], str]:
     """The rows of a page, counted from 0, and how to turn it; the text is empty if all rows are on one page.
 
     After the last page comes the first.

@@ -37,7 +37,7 @@ INDENT: Final = " " * 40
 """Before the rest of a line of the listing that is wider than the screen."""
 
 
-class Row(NamedTuple):
+class ListingRow(NamedTuple):
     """A row of the screen, and the word of its characters."""
 
     text: str = ""
@@ -54,13 +54,13 @@ class SentScreen(Pages):
 
     def __init__(self, session: Session) -> None:
         super().__init__(session)
-        self._rows: Cached[Sequence[Row]] = Cached()
+        self._rows: Cached[Sequence[ListingRow]] = Cached()
         self._shown: LastEdit | None = None
 
     def items(self) -> Sequence[Item]:
         """The title, and the rows of this page."""
         last = self._shown = self.session.last_edit
-        rows: Sequence[Row] = ()
+        rows: Sequence[ListingRow] = ()
         if last is not None:
             configuration = configuration_of(self.session.display)
             rows = self._rows.of(lambda: rows_of_edit(last, configuration), last)
@@ -80,17 +80,19 @@ class SentScreen(Pages):
         return self._shown is not self.session.last_edit
 
 
-def rows_of_edit(edit: LastEdit, configuration: Configuration) -> list[Row]:
+def rows_of_edit(edit: LastEdit, configuration: Configuration) -> list[ListingRow]:
     """The rows of an edit: what it was, the sums of its words, the share of each instruction, the listing."""
     listed = list(items([edit.words.astype("<u2").tobytes()], configuration))
     what = describe(edit.before, edit.after, MOST_DESCRIBED) or "no change"
     return [
-        Row("the scene was opened" if edit.before is edit.after else what, YELLOW),
-        Row(f"{counted(len(edit.words), 'word')}: {_effect(listed, configuration)}"),
-        Row(f"besides, {counted(edit.other_words, 'word')} for menus, panels and other parts of the screen"),
-        Row(),
+        ListingRow("the scene was opened" if edit.before is edit.after else what, YELLOW),
+        ListingRow(f"{counted(len(edit.words), 'word')}: {_effect(listed, configuration)}"),
+        ListingRow(
+            f"besides, {counted(edit.other_words, 'word')} for menus, panels and other parts of the screen"
+        ),
+        ListingRow(),
         *_shares(listed, len(edit.words)),
-        Row(),
+        ListingRow(),
         *[row for item in listed for row in _listing(item)],
     ]
 
@@ -117,7 +119,7 @@ def _effect(listed: Sequence[ListingItem], configuration: Configuration) -> str:
     )
 
 
-def _shares(listed: Sequence[ListingItem], words: int) -> Iterator[Row]:
+def _shares(listed: Sequence[ListingItem], words: int) -> Iterator[ListingRow]:
     """A row for each kind of instruction: its number, its words, and their share, the largest share first."""
     counts: Counter[str] = Counter()
     lengths: Counter[str] = Counter()
@@ -129,17 +131,17 @@ def _shares(listed: Sequence[ListingItem], words: int) -> Iterator[Row]:
         lengths[name] += len(item.words)
     for name, length in lengths.most_common():
         count, length_text = counted(counts[name], "instruction"), counted(length, "word")
-        yield Row(f"{name:4} {count:>16} {length_text:>14} {length / words:>6.1%}  {meanings[name]}")
+        yield ListingRow(f"{name:4} {count:>16} {length_text:>14} {length / words:>6.1%}  {meanings[name]}")
 
 
-def _listing(item: ListingItem) -> Iterator[Row]:
+def _listing(item: ListingItem) -> Iterator[ListingRow]:
     """The lines of an instruction; of long data, the first lines and the number of words left out."""
     lines = item.lines()
     for number, line in enumerate(islice(lines, MOST_LINES)):
         for part in wrap(line, CHARACTERS, subsequent_indent=INDENT, break_on_hyphens=False):
-            yield Row(part, LIGHT_GRAY if number else WHITE)
+            yield ListingRow(part, LIGHT_GRAY if number else WHITE)
     following = next(lines, None)
     if following is not None:
         place = int(following.partition(":")[0], 16)
         left_out = item.place + len(item.words) - place
-        yield Row(f"{INDENT}and {counted(left_out, 'word')} more of this instruction", GRAY)
+        yield ListingRow(f"{INDENT}and {counted(left_out, 'word')} more of this instruction", GRAY)

@@ -9,11 +9,12 @@ import os
 from pathlib import Path
 
 from autocolor.screens.board import rows_of_menu
+from autocolor.screens.session import LastEdit
 from autocolor.screens.tutorial import Tutorial
 from autocolor.screens.viewer import Viewer
 from autocolor.widgets.bars import Bar
 from autocolor.widgets.menu import WIDE_BAR, laid_out
-from ramtek_emu import Ramtek9300
+from ramtek_emu import Ramtek9300, instructions
 from tests.autocolor.screens.boxes import boxes
 from tests.autocolor.widgets.drawing import checksum
 
@@ -46,12 +47,17 @@ def test_every_screen_is_drawn_as_it_was(tmp_path: Path) -> None:
     viewer = Viewer(boxes().with_scalar(name="z"), Ramtek9300(), folder)
     viewer.studio.keep_variant("first")
     viewer.studio.keep_variant()
+    # Words of the picture would depend on the rounding of the light.
+    after = viewer.studio.scene.with_paint("low", object_color="#24c")
+    entries = instructions.load_entries(1, [(number, 0, 7) for number in range(60)])
+    edit = LastEdit(viewer.studio.scene, after, entries, 1234)
     board = viewer.board
     board.is_pinned = True
     pages = {}
     for name, screen in viewer.screens.items():
         viewer.session.turn_to(name)
         viewer.tell("")
+        viewer.session.last_edit = edit
         items = list(board.page().items)
         for widget in board.widgets():
             items += widget.items(lit=True)
