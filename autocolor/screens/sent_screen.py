@@ -33,6 +33,9 @@ CHARACTERS: Final = (WIDTH - 2 * LEFT) // CHARACTER
 MOST_LINES: Final = 12
 """Assumed: lines of the listing of one instruction; its further data are left out."""
 
+OTHERS: Final = "menus, panels and other parts of the screen"
+"""The things whose words are counted and not listed."""
+
 INDENT: Final = " " * 40
 """Before the rest of a line of the listing that is wider than the screen."""
 
@@ -48,7 +51,7 @@ class SentScreen(Pages):
     """The last edit: what it was, how many words it sent, and their listing."""
 
     name = SENT
-    title = "what was sent"
+    title = "last edit"
     help = "The instructions that the last edit sent to the display"
     is_in_menu = False
 
@@ -87,9 +90,7 @@ def rows_of_edit(edit: LastEdit, configuration: Configuration) -> list[ListingRo
     return [
         ListingRow("the scene was opened" if edit.before is edit.after else what, YELLOW),
         ListingRow(f"{counted(len(edit.words), 'word')}: {_effect(listed, configuration)}"),
-        ListingRow(
-            f"besides, {counted(edit.other_words, 'word')} for menus, panels and other parts of the screen"
-        ),
+        ListingRow(f"besides, {counted(edit.other_words, 'word')} for {OTHERS}"),
         ListingRow(),
         *_shares(listed, len(edit.words)),
         ListingRow(),

@@ -19,7 +19,7 @@ from tests.autocolor.screens.boxes import boxes
 from tests.autocolor.widgets.drawing import checksum
 
 PAGES = {
-    "picture": 3671235257,
+    "picture": 473489948,
     "light and view": 3442920221,
     "lights": 2635481227,
     "reflectance": 571573069,
@@ -33,7 +33,8 @@ PAGES = {
     "explain": 4211328274,
     "split": 1133462600,
     "entries": 3253356514,
-    "help": 3796583346,
+    "sent": 2886095108,
+    "help": 523945837,
     "tutorial": 3473960918,
 }
 
