@@ -21,8 +21,6 @@ from autocolor.sending import configuration_of, encoder_of_entries
 from autocolor.widgets.items import Area, Item, filled
 from ramtek_emu import HostPort, instructions
 
-NO_WORDS: Final[Words] = np.zeros(0, np.uint16)
-
 
 class Page(NamedTuple):
     """The contents of a display: a base, which is one word or the words of a picture, items, and entries.
@@ -45,6 +43,9 @@ class Sent(NamedTuple):
     """The number of all other words: for items, and for a base of one word."""
 
 
+NOTHING: Final = Sent(read_only(np.zeros(0, np.uint16)), 0)
+
+
 class Sheet:
     """Shows pages on a display, on which nothing else may draw meanwhile.
 
@@ -65,13 +66,15 @@ class Sheet:
     def show(self, page: Page) -> Sent:
         """Show a page; returns the words sent. Raises ReplyError or PortError if the display is lost."""
         picture, others = self._changes(page)
-        stream = np.concatenate([*picture, *others, NO_WORDS])
-        if len(stream):
-            self._page = None
-            self._display.send(stream)
+        if not picture and not others:
+            self._page = page
+            return NOTHING
+        stream = read_only(np.concatenate(picture + others))
+        self._page = None
+        self._display.send(stream)
         self._page = page
         count = sum(map(len, picture))
-        return Sent(read_only(stream[:count]), len(stream) - count)
+        return Sent(stream[:count], len(stream) - count)
 
     def _changes(self, page: Page) -> tuple[list[Words], list[Words]]:
         """The instructions that change the display from the page before to this page.
