@@ -114,7 +114,11 @@ class LastEdit(NamedTuple):
     At most the words of one page are held: the array that was sent.
     """
     other_words: int
-    """The number of words that drew menus, panels and the legend for the same page."""
+    """The number of further words for the same page: for menus, panels and the legend.
+
+    If the edit did not change the words of the picture, and another screen turned to the picture, they also
+    include the picture.
+    """
 
 
 class Session:

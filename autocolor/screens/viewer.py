@@ -153,8 +153,8 @@ class Viewer:
         self._had_news = True
         self._base: Words | int | None = None
         """The base of the page that was shown last."""
-        self._block = 1
-        """The block of the picture when the page was shown."""
+        self._words: Words | None = None
+        """The words of the studio's picture when that page was shown."""
         self._mouse.forget()
         self._sheet.forget()
         lying = f"; {self.session.lying}" if self.session.lying else ""
@@ -356,12 +356,14 @@ class Viewer:
 
     def _note(self, sent: Sent, has_turned: bool) -> None:
         """Note the words of a page that shows an edit, or the refined picture of the last edit."""
-        scene, block, last = self.studio.scene, self.studio.display_image.block, self.session.last_edit
-        if last is None or scene is not last.after:
-            self.session.last_edit = LastEdit(last.after if last else scene, scene, *sent)
-        elif block != self._block and not has_turned:
-            self.session.last_edit = LastEdit(last.before, scene, *sent)
-        self._block = block
+        scene, words, last = self.studio.scene, self.studio.words, self.session.last_edit
+        is_edited = last is None or scene is not last.after
+        has_other_words = words is not self._words
+        self._words = words
+        if is_edited or (has_other_words and not has_turned):
+            before = scene if last is None else last.after if is_edited else last.before
+            count = sent.entry_words + (sent.base_words if has_other_words else 0)
+            self.session.last_edit = LastEdit(before, scene, sent.words[:count], len(sent.words) - count)
 
     def _refine(self) -> None:
         try:

@@ -38,12 +38,14 @@ class Sent(NamedTuple):
     """The words that a sheet sent to show a page."""
 
     words: Words
-    """The instructions that changed the entries and the words of a base, (n,) uint16, read-only."""
-    other_words: int
-    """The number of all other words: for items, and for a base of one word."""
+    """The instructions in the order in which they were sent, (n,) uint16, read-only."""
+    entry_words: int
+    """The number of the first words: they load entries. Those of a first page also reset the display."""
+    base_words: int
+    """The number of the next words, which write a base that is a picture. All further words are for items."""
 
 
-NOTHING: Final = Sent(read_only(np.zeros(0, np.uint16)), 0)
+NOTHING: Final = Sent(read_only(np.zeros(0, np.uint16)), 0, 0)
 
 
 class Sheet:
@@ -64,34 +66,35 @@ class Sheet:
         self._page = None
 
     def show(self, page: Page) -> Sent:
-        """Show a page; returns the words sent. Raises ReplyError or PortError if the display is lost."""
-        picture, others = self._changes(page)
-        if not picture and not others:
+        """Show a page; returns its words. Raises ReplyError or PortError if the display cannot be reached."""
+        entries, base, others = self._changes(page)
+        parts = entries + base + others
+        if not parts:
             self._page = page
             return NOTHING
-        stream = read_only(np.concatenate(picture + others))
+        stream = read_only(np.concatenate(parts))
         self._page = None
         self._display.send(stream)
         self._page = page
-        count = sum(map(len, picture))
-        return Sent(stream[:count], len(stream) - count)
+        return Sent(stream, sum(map(len, entries)), sum(map(len, base)))
 
-    def _changes(self, page: Page) -> tuple[list[Words], list[Words]]:
+    def _changes(self, page: Page) -> tuple[list[Words], list[Words], list[Words]]:
         """The instructions that change the display from the page before to this page.
 
-        First those that change entries and the words of a base, then all others.
+        Instructions for entries are first, then for a base that is a picture, then for everything else.
         """
         before = self._page
-        parts: list[Words] = []
+        entries: list[Words] = []
+        picture: list[Words] = []
         others: list[Words] = []
-        of_base = others if isinstance(page.base, int) else parts
+        of_base = others if isinstance(page.base, int) else picture
         if before is None:
-            parts += [instructions.reset(), self._encode_entries(0, page.entries)]
+            entries += [instructions.reset(), self._encode_entries(0, page.entries)]
         elif page.entries is not before.entries:
             differing = np.flatnonzero((page.entries != before.entries).any(axis=1))
             if len(differing):
                 first, last = int(differing[0]), int(differing[-1])
-                parts.append(self._encode_entries(first, page.entries[first : last + 1]))
+                entries.append(self._encode_entries(first, page.entries[first : last + 1]))
         whole = uncovered(self._whole, page.items)
         if before is None:
             of_base += _restored(page.base, whole)
@@ -104,7 +107,7 @@ class Sheet:
             for area in restored:
                 others += _restored(page.base, area.within(self._whole))
         others += [np.frombuffer(item.stream, np.uint16) for item in redrawn]
-        return parts, others
+        return entries, picture, others
 
 
 def changed_items(

@@ -149,6 +149,17 @@ def test_words_of_a_screen_that_covers_the_picture_are_counted_but_not_listed(re
     assert last.other_words > 0
 
 
+def test_a_color_that_is_undone_from_another_screen_needs_no_word_of_the_picture(recorded: Recorded) -> None:
+    viewer = recorded.viewer
+    recorded.edit(EDITS["object color"](SCENE))
+    viewer.on_key("f3")
+    viewer.on_key("z", control=True)
+    assert viewer.page == "picture"
+    last = last_edit(viewer)
+    assert names_in(last.words) == ["LAM"]
+    assert last.other_words > viewer.studio.words.size // 2
+
+
 def test_turning_to_another_screen_is_no_edit(recorded: Recorded) -> None:
     viewer = recorded.viewer
     recorded.edit(EDITS["view"](SCENE))
@@ -255,3 +266,14 @@ def test_the_menu_of_the_picture_leads_there(tmp_path: Path) -> None:
     hand.open_menu()
     hand.pick("what was sent")
     assert hand.viewer.page == "sent"
+
+
+def test_lights_that_are_rendered_late_are_no_edit(recorded: Recorded) -> None:
+    viewer = recorded.viewer
+    recorded.edit(SCENE.replace(words="normals"))
+    recorded.edit(EDITS["light"](viewer.studio.scene))
+    last = last_edit(viewer)
+    assert names_in(last.words) == ["LAM"]
+    assert viewer.studio.picture is viewer.studio.display_image.picture
+    viewer.tell("")
+    assert last_edit(viewer) is last
