@@ -59,7 +59,8 @@ KNOWING_THE_DISPLAY = (
 WINGS_KNOWING_THE_DISPLAY = ("autocolor.commands", "autocolor.screens", "autocolor.widgets")
 DOORS_OF_THE_DISPLAY = {
     "ramtek_emu", "ramtek_emu.command_line", "ramtek_emu.configuration",
-    "ramtek_emu.errors", "ramtek_emu.films", "ramtek_emu.host.port", "ramtek_emu.instructions",
+    "ramtek_emu.errors", "ramtek_emu.films", "ramtek_emu.host.port",
+    "ramtek_emu.instruction_set.disassembler", "ramtek_emu.instructions",
     "ramtek_emu.monitor.window", "ramtek_emu.png", "ramtek_emu.writing",
 }  # fmt: skip
 OUTSIDE = {"numpy", "click", "PIL", "pygame"}

@@ -158,6 +158,46 @@ class Screen:
         """Clean up after being shown."""
 
 
+class Pages(Screen):
+    """A screen of text in pages: a click, the wheel, Space, Page Up and Page Down turn to another page."""
+
+    has_menu = False
+    shows_scene = False
+
+    def __init__(self, session: Session) -> None:
+        super().__init__(session)
+        self.page = 0
+        """The number of the page, which grows and falls without end; see `page_of`."""
+
+    def enter(self) -> None:
+        self.page = 0
+
+    def pick(self, gesture: Gesture) -> None:
+        self.page += 1
+
+    def wheel(self, gesture: Gesture) -> None:
+        self.page += 1 if gesture.steps < 0 else -1
+
+    def key(self, name: str, typed: str) -> bool:
+        step = {"space": 1, "page down": 1, "page up": -1}.get(name, 0)
+        self.page += step
+        return step != 0
+
+
+AnyRow = TypeVar("AnyRow")
+
+
+def page_of(rows: Sequence[AnyRow], number: int, rows_a_page: int) -> tuple[Sequence[AnyRow], str]:
+    """The rows of a page, counted from 0, and how to turn it; the text is empty if all rows are on one page.
+
+    After the last page comes the first.
+    """
+    pages = max(1, -(-len(rows) // rows_a_page))
+    first = number % pages * rows_a_page
+    turn = f"page {number % pages + 1} of {pages}; a click, the wheel or Space: the next page"
+    return rows[first : first + rows_a_page], turn if pages > 1 else ""
+
+
 Value = TypeVar("Value")
 
 

@@ -58,6 +58,9 @@ SPLIT: Final = "split"
 EXPLAIN: Final = "explain"
 """The name of the screen that explains a pixel."""
 
+SENT: Final = "sent"
+"""The name of the screen that lists what the last edit sent."""
+
 MESSAGE_SECONDS: Final = 5.0
 """Assumed: how long a message is shown."""
 
@@ -97,6 +100,27 @@ class Solo(NamedTuple):
     switches: Mapping[str, bool]
 
 
+class LastEdit(NamedTuple):
+    """The last edit that was shown, and the words that it sent to the display.
+
+    At first this is the opening of the scene; `before` is then the same scene.
+    """
+
+    before: Scene
+    after: Scene
+    words: Words
+    """The instructions that changed the entries and the words of the picture, (n,) uint16, read-only.
+
+    At most the words of one page are held: the array that was sent.
+    """
+    other_words: int
+    """The number of further words for the same page: for menus, panels and the legend.
+
+    If the edit did not change the words of the picture, and another screen turned to the picture, they also
+    include the picture.
+    """
+
+
 class Session:
     """The state that the screens share.
 
@@ -117,6 +141,8 @@ class Session:
         """Whether the next click in the picture explains its pixel."""
         self.pixel = (0, 0)
         """The line and the element of the pixel that is explained."""
+        self.last_edit: LastEdit | None = None
+        """The last edit, once a page has shown the scene."""
         self.leaves = False
         """Whether the user asked to leave the program."""
         self.same_step = False

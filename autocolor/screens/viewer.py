@@ -34,14 +34,15 @@ from autocolor.screens.picture.split_screen import SplitScreen
 from autocolor.screens.picture.watching import ENDING, MESSAGE, Watching
 from autocolor.screens.scalar_screen import ScalarScreen
 from autocolor.screens.screen import Screen
-from autocolor.screens.session import PICTURE, Session
+from autocolor.screens.sent_screen import SentScreen
+from autocolor.screens.session import PICTURE, SENT, LastEdit, Session
 from autocolor.screens.surface.blending_screen import BlendingScreen
 from autocolor.screens.surface.mixing_screen import MixingScreen
 from autocolor.screens.surface.reflectance_screen import ReflectanceScreen
 from autocolor.screens.variants_screen import VariantsScreen
 from autocolor.sending import configuration_of
 from autocolor.studio import Studio
-from autocolor.widgets.sheet import Sheet
+from autocolor.widgets.sheet import Sent, Sheet
 from ramtek_emu import HostPort, PortError, RamtekError, ReplyError
 
 REST_SECONDS: Final = 0.1
@@ -152,6 +153,8 @@ class Viewer:
         self._had_news = True
         self._base: Words | int | None = None
         """The base of the page that was shown last."""
+        self._words: Words | None = None
+        """The words of the studio's picture when that page was shown."""
         self._mouse.forget()
         self._sheet.forget()
         lying = f"; {self.session.lying}" if self.session.lying else ""
@@ -338,17 +341,29 @@ class Viewer:
         if self.session.watches:
             self.watch()
             return
-        if self.board.turn():
+        has_turned = self.board.turn()
+        if has_turned:
             self._refine()
         self._had_news = self.session.has_news
         self.board.forget()
         page = self.board.page()
-        self._sheet.show(page)
+        self._note(self._sheet.show(page), has_turned)
         if page.base is not self._base and not self.board.is_dragging:
             # The hint for the pointer reads a word back from the display, which has the new base only now.
             self._sheet.show(self.board.page())
         self._base = page.base
         self._unit.mark(self.board.mark)
+
+    def _note(self, sent: Sent, has_turned: bool) -> None:
+        """Note the words of a page that shows an edit, or the refined picture of the last edit."""
+        scene, words, last = self.studio.scene, self.studio.words, self.session.last_edit
+        is_edited = last is None or scene is not last.after
+        has_other_words = words is not self._words
+        self._words = words
+        if is_edited or (has_other_words and not has_turned):
+            before = scene if last is None else last.after if is_edited else last.before
+            count = sent.entry_words + (sent.base_words if has_other_words else 0)
+            self.session.last_edit = LastEdit(before, scene, sent.words[:count], len(sent.words) - count)
 
     def _refine(self) -> None:
         try:
@@ -518,6 +533,7 @@ SCREENS: Final[tuple[type[Screen], ...]] = (
     FileScreen,
     SplitScreen,
     EntriesScreen,
+    SentScreen,
     HelpScreen,
 )
 """Every screen, in the order of the main menu. A new screen is its module, and its line here."""
@@ -534,6 +550,11 @@ BLEND: Final = 0.05
 
 BINDINGS: Final[tuple[Binding[Viewer], ...]] = (
     Binding((Chord("f1"),), "this help, and back", lambda viewer, _: viewer.toggle("help")),
+    Binding(
+        (Chord("f3"),),
+        "the instructions that the last edit sent, and back",
+        lambda viewer, _: viewer.toggle(SENT),
+    ),
     Binding(
         (Chord("f4"),),
         "the 1024 entries of the lookup table, and back",

@@ -33,7 +33,7 @@ from ramtek_emu import instructions
 # entries                       all, each in its cell                            none
 # file                          SCREENS                                          small picture, in the words
 #                                                                                of all surfaces
-# help                          SCREENS                                          none
+# sent, help                    SCREENS                                          none
 #
 # A screen borrows entries by `Screen.loads` alone. Color mixing borrows words of the surfaces that it shows
 # in grays. Where these are too few, it borrows some words of the chosen surface, spread over its levels: each

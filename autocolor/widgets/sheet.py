@@ -10,11 +10,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import chain
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
 from autocolor.arrays import Booleans, Bytes, Numbers, Words
+from autocolor.immutable import read_only
 from autocolor.mapping.ranges import BACKGROUND
 from autocolor.sending import configuration_of, encoder_of_entries
 from autocolor.widgets.items import Area, Item, filled
@@ -31,6 +32,20 @@ class Page(NamedTuple):
     base: Words | int
     items: Sequence[Item]
     entries: Bytes
+
+
+class Sent(NamedTuple):
+    """The words that a sheet sent to show a page."""
+
+    words: Words
+    """The instructions in the order in which they were sent, (n,) uint16, read-only."""
+    entry_words: int
+    """The number of the first words: they load entries. Those of a first page also reset the display."""
+    base_words: int
+    """The number of the next words, which write a base that is a picture. All further words are for items."""
+
+
+NOTHING: Final = Sent(read_only(np.zeros(0, np.uint16)), 0, 0)
 
 
 class Sheet:
@@ -50,36 +65,49 @@ class Sheet:
         """Forget the page that is shown: the next page is drawn whole."""
         self._page = None
 
-    def show(self, page: Page) -> None:
-        """Show a page. Raises ReplyError or PortError if the display cannot be reached."""
-        parts = self._changes(page)
-        if parts:
-            self._page = None
-            self._display.send(np.concatenate(parts))
+    def show(self, page: Page) -> Sent:
+        """Show a page; returns its words. Raises ReplyError or PortError if the display cannot be reached."""
+        entries, base, others = self._changes(page)
+        parts = entries + base + others
+        if not parts:
+            self._page = page
+            return NOTHING
+        stream = read_only(np.concatenate(parts))
+        self._page = None
+        self._display.send(stream)
         self._page = page
+        return Sent(stream, sum(map(len, entries)), sum(map(len, base)))
 
-    def _changes(self, page: Page) -> list[Words]:
-        """The instructions that change the display from the page before to this page."""
+    def _changes(self, page: Page) -> tuple[list[Words], list[Words], list[Words]]:
+        """The instructions that change the display from the page before to this page.
+
+        Instructions for entries are first, then for a base that is a picture, then for everything else.
+        """
         before = self._page
-        parts: list[Words] = []
+        entries: list[Words] = []
+        picture: list[Words] = []
+        others: list[Words] = []
+        of_base = others if isinstance(page.base, int) else picture
         if before is None:
-            parts += [instructions.reset(), self._encode_entries(0, page.entries)]
+            entries += [instructions.reset(), self._encode_entries(0, page.entries)]
         elif page.entries is not before.entries:
             differing = np.flatnonzero((page.entries != before.entries).any(axis=1))
             if len(differing):
                 first, last = int(differing[0]), int(differing[-1])
-                parts.append(self._encode_entries(first, page.entries[first : last + 1]))
+                entries.append(self._encode_entries(first, page.entries[first : last + 1]))
         whole = uncovered(self._whole, page.items)
         if before is None:
-            parts += _restored(page.base, whole)
+            of_base += _restored(page.base, whole)
             redrawn = list(page.items)
         else:
             drawn = [area for area in [differing_area(before.base, page.base, whole)] if not area.is_empty]
             restored, redrawn = changed_items(before.items, page.items, drawn)
-            for area in (*drawn, *restored):
-                parts += _restored(page.base, area.within(self._whole))
-        parts += [np.frombuffer(item.stream, np.uint16) for item in redrawn]
-        return parts
+            for area in drawn:
+                of_base += _restored(page.base, area.within(self._whole))
+            for area in restored:
+                others += _restored(page.base, area.within(self._whole))
+        others += [np.frombuffer(item.stream, np.uint16) for item in redrawn]
+        return entries, picture, others
 
 
 def changed_items(

@@ -130,10 +130,21 @@ def studio_explain() -> Field:
         return display.field()
 
 
+def studio_sent() -> Field:
+    """The listing of an edit of the body's object color."""
+    with open_viewer("coupe", "picture") as (viewer, display):
+        viewer.session.change_surface("body", paint={"object_color": "#2348c8"})
+        viewer.tell("")
+        viewer.session.turn_to("sent")
+        viewer.tell("")
+        idle(viewer)
+        return display.field()
+
+
 PICTURES: Final[Sequence[Callable[[], Field]]] = (
     start_paint, start_menu,
     light_alone, light_place, light_spot, light_flaps, light_highlight, light_links, light_exposure,
-    studio_mixing, studio_split, studio_explain,
+    studio_mixing, studio_split, studio_explain, studio_sent,
 )  # fmt: skip
 
 

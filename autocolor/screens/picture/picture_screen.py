@@ -12,7 +12,7 @@ from autocolor.screens.picture.light_handles import LightHandles
 from autocolor.screens.picture.over_picture import OverPicture, camera_rows, surface_row
 from autocolor.screens.picture.picture_edits import sides_of
 from autocolor.screens.screen import Handle
-from autocolor.screens.session import PICTURE, Session
+from autocolor.screens.session import PICTURE, SENT, Session
 from autocolor.widgets.items import SCREEN
 from autocolor.widgets.menu import Section
 from autocolor.widgets.widget import Button, Choice, Pair, Steps, Switch, Widget, titled
@@ -109,6 +109,11 @@ class PictureScreen(OverPicture):
                 "explain a pixel",
                 "Click a pixel next: every number that leads to its color; also Shift and a click.",
                 run=self._explain,
+            ),
+            Button(
+                "what was sent",
+                "The instructions that the last edit sent to the display.",
+                run=partial(session.turn_to, SENT),
             ),
             Button(
                 "leave", "Leave the program; you are asked first about unsaved changes.", run=session.leave

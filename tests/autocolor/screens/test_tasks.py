@@ -163,6 +163,18 @@ def go_back_several_steps(hand: Hand) -> None:
     assert hand.viewer.studio.scene is coupe()
 
 
+def see_what_an_edit_sent(hand: Hand) -> None:
+    hand.drag((300, 60), (340, 60))
+    hand.steps = 0
+    hand.open_menu()
+    hand.pick("what was sent")
+    last = hand.viewer.session.last_edit
+    assert hand.viewer.page == "sent"
+    assert last is not None
+    assert last.after is hand.viewer.studio.scene
+    assert len(last.words) > 0
+
+
 def explain_a_pixel(hand: Hand) -> None:
     hand.open_menu()
     hand.pick("explain a pixel")
@@ -206,6 +218,7 @@ TASKS: dict[str, Callable[[Hand], None]] = {
     "undo": undo,
     "go back several steps": go_back_several_steps,
     "compare": compare,
+    "see what an edit sent": see_what_an_edit_sent,
     "explain a pixel": explain_a_pixel,
     "compare side by side": compare_side_by_side,
 }

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+import io
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -8,7 +10,7 @@ from hypothesis import strategies as st
 from autocolor.arrays import Words
 from autocolor.widgets.items import WHITE, Area, Item, filled, lines, text
 from autocolor.widgets.sheet import Page, Sheet, differing_area, uncovered
-from ramtek_emu import GMR_9300, PRINCETON_9300, Configuration, EntryFormat, PortError, Ramtek9300
+from ramtek_emu import GMR_9300, PRINCETON_9300, Configuration, EntryFormat, PortError, Ramtek9300, Recorder
 from tests.autocolor.widgets.drawing import TINY, items
 
 SHORT = Configuration(
@@ -59,6 +61,33 @@ def test_after_any_pages_the_display_has_what_the_last_one_alone_gives(
     Sheet(fresh).show(pages[-1])
     assert np.array_equal(display.words, fresh.words)
     assert np.array_equal(display.entries, fresh.entries)
+
+
+@settings(max_examples=60)
+@given(pages=sessions())
+def test_a_sheet_returns_its_words_with_those_for_entries_first(pages: list[Page]) -> None:
+    file, replayed = io.BytesIO(), Ramtek9300(TINY)
+    sheet = Sheet(Recorder(file, Ramtek9300(TINY)))
+    for page in pages:
+        start = file.tell()
+        sent = sheet.show(page)
+        stream = np.frombuffer(file.getvalue()[start:], "<u2")
+        assert np.array_equal(stream, sent.words)
+        assert sent.base_words == 0 or not isinstance(page.base, int)
+        replayed.send(sent.words[: sent.entry_words])
+    # No item and no base changes an entry.
+    assert np.array_equal(replayed.entries, pages[-1].entries)
+
+
+@given(pages=st.lists(st.sampled_from([PICTURE, OTHER]), min_size=1, max_size=4))
+def test_the_words_for_pictures_alone_show_the_last_picture(pages: list[Words]) -> None:
+    display, replayed = Ramtek9300(TINY), Ramtek9300(TINY)
+    sheet = Sheet(display)
+    for picture in pages:
+        sent = sheet.show(Page(picture, (), TABLES[0]))
+        assert len(sent.words) == sent.entry_words + sent.base_words
+        replayed.send(sent.words)
+    assert np.array_equal(replayed.words, display.words)
 
 
 def page(*shown: Item, base: int = 0) -> Page:
