@@ -551,7 +551,7 @@ BLEND: Final = 0.05
 BINDINGS: Final[tuple[Binding[Viewer], ...]] = (
     Binding((Chord("f1"),), "this help, and back", lambda viewer, _: viewer.toggle("help")),
     Binding(
-        (Chord("f3"),),
+        (Chord("f2"),),
         "the instructions that the last edit sent, and back",
         lambda viewer, _: viewer.toggle(SENT),
     ),

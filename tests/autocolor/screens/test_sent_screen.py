@@ -152,7 +152,7 @@ def test_words_of_a_screen_that_covers_the_picture_are_counted_but_not_listed(re
 def test_a_color_that_is_undone_from_another_screen_needs_no_word_of_the_picture(recorded: Recorded) -> None:
     viewer = recorded.viewer
     recorded.edit(EDITS["object color"](SCENE))
-    viewer.on_key("f3")
+    viewer.on_key("f2")
     viewer.on_key("z", control=True)
     assert viewer.page == "picture"
     last = last_edit(viewer)
@@ -229,7 +229,7 @@ def test_the_pages_have_every_row_once_and_nothing_overlaps(recorded: Recorded) 
     viewer = recorded.viewer
     recorded.edit(EDITS["view"](SCENE))
     rows = rows_of_edit(last_edit(viewer), GMR_9300)
-    viewer.on_key("f3")
+    viewer.on_key("f2")
     screen = viewer.screens[viewer.page]
     count = -(-len(rows) // ROWS_A_PAGE)
     assert count > 1
@@ -248,7 +248,7 @@ def test_the_pages_have_every_row_once_and_nothing_overlaps(recorded: Recorded) 
 
 def test_an_edit_of_colors_on_the_screen_is_listed_there(recorded: Recorded) -> None:
     viewer = recorded.viewer
-    viewer.on_key("f3")
+    viewer.on_key("f2")
     viewer.on_key("c", typed="c")
     viewer.on_tick()
     assert viewer.page == "sent"
