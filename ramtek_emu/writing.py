@@ -76,6 +76,15 @@ class Output:
         except OSError as error:
             raise refusal(self.path, error) from None
 
+    def write_at(self, place: int, data: bytes) -> None:
+        """Replace bytes that were written; WriteError when that fails."""
+        try:
+            self._file.seek(place)
+            self._file.write(data)
+            self._file.seek(0, os.SEEK_END)
+        except OSError as error:
+            raise refusal(self.path, error) from None
+
     def keep(self) -> None:
         """Sync the file and give it its name; WriteError or OutputExistsError when that fails.
 
