@@ -145,6 +145,24 @@ def write_atomically(
         output.keep()
 
 
+def write_numbered(data: bytes, folder: Path, name: str, suffix: str) -> Path:
+    """Write the bytes to NAME-0001 with the suffix, or the next free number, never over a file.
+
+    Returns the path, links resolved. Raises OutputError or WriteError.
+    """
+    number = 1
+    while True:
+        path = folder / f"{name}-{number:04d}{suffix}"
+        number += 1
+        if path.exists():
+            continue
+        try:
+            write_atomically(path, data, overwrite=False)
+        except OutputExistsError:
+            continue
+        return path.resolve()
+
+
 def refuse_output(path: str | os.PathLike[str], overwrite: bool) -> None:
     """Refuse a path that cannot be written; call it before computing anything for the file."""
     target = Path(path)
