@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, BinaryIO, Final, TypeVar
 import click
 
 from ramtek_emu import command_line
-from ramtek_emu.command_line import ENDING, SIGNALS, takes_text
+from ramtek_emu.command_line import ENDING, SIGNALS
 from ramtek_emu.configuration import CONFIGURATIONS, GMR_9300
 from ramtek_emu.errors import MissingInputError, RamtekError, reason_of
 from ramtek_emu.writing import Output, refuse_output, same_outputs
@@ -210,11 +210,8 @@ def open_stream(path: str) -> BinaryIO:
         ) from None
 
 
-def tell(message: str) -> None:
-    """Print a message on stderr; stdout is for results. If nobody reads stderr, the message is dropped."""
-    if takes_text(sys.stderr):
-        command_line.tell(message)
-
+tell: Final = command_line.report
+"""Prints a message on stderr; stdout is for results."""
 
 TICK_SECONDS: Final = 0.01
 """How long a host is served before the window is handled again."""

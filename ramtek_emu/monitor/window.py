@@ -17,13 +17,12 @@ the window saves the film, too.
 from __future__ import annotations
 
 import os
-import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from ramtek_emu.command_line import takes_text, tell
+from ramtek_emu.command_line import report
 from ramtek_emu.display import Ramtek9300
 from ramtek_emu.errors import RamtekError
 from ramtek_emu.monitor.glass import Glass
@@ -352,9 +351,3 @@ class Monitor:
             joystick.track = pointer.action == "press"
         if self.on_pointer is not None:
             self.on_pointer(pointer._replace(enter=self._enter))
-
-
-def report(message: str) -> None:
-    """Print a message on stderr, because the window is closed. If nobody reads stderr, it is dropped."""
-    if takes_text(sys.stderr):
-        tell(message)
