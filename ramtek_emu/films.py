@@ -49,8 +49,8 @@ MOST_FIELDS: Final = 100_000
 """Limit: fields of a film."""
 
 MOST_WEBP_PIXELS: Final = 1 << 30
-"""Limit: pixels of all fields of a WebP whose number nobody knows before: 3,495 fields of 640 x 480. At its
-end, a WebP is in memory three times; an encoded field takes up to 0.32 bytes for each pixel."""
+"""Limit: pixels of a WebP, in all fields, if the number of fields is not known: 3,495 fields of 640 x 480. At
+its end, a WebP is in memory three times; an encoded field takes up to 0.32 bytes for each pixel."""
 
 LARGEST_WEBP: Final = 16383
 """The most elements and lines of a WebP."""
