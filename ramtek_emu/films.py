@@ -37,7 +37,7 @@ from PIL import Image
 from ramtek_emu.arrays import Colors
 from ramtek_emu.errors import ColorsError, OutputError
 from ramtek_emu.png import png_bytes
-from ramtek_emu.writing import Output, refuse_output, write_atomically
+from ramtek_emu.writing import Output, refusal, refuse_output, write_atomically
 
 LEAST_RATE: Final = 0.1
 MOST_RATE: Final = 100.0
@@ -125,17 +125,21 @@ def check_film(path: str | PathLike[str], fields_per_second: float, overwrite: b
 
 def _check_pattern(pattern: Path, overwrite: bool) -> None:
     """Raise OutputError or OutputExistsError for a pattern of numbered pictures that cannot be written."""
-    before, *after = NUMBER.sub("\0", pattern.name).split("\0")
-    if len(after) != 1 or any(brace in f"{pattern.parent}{before}{after[0]}" for brace in "{}"):
+    numbers = list(NUMBER.finditer(pattern.name))
+    if len(numbers) != 1 or any(brace in NUMBER.sub("", fspath(pattern)) for brace in "{}"):
         raise OutputError(
             f"numbered pictures must have one number in their name, as in frame-{{number:04}}.png, not"
             f" {fspath(pattern)!r}; or end the name in .apng for an animated PNG"
         )
     refuse_output(numbered(fspath(pattern), 1), overwrite)
-    name = re.compile(f"{re.escape(before)}[0-9]+{re.escape(after[0])}")
-    for other in () if overwrite else sorted(os.listdir(pattern.parent)):
-        if name.fullmatch(other):
-            refuse_output(pattern.parent / other, overwrite)
+    before, after = pattern.name[: numbers[0].start()], pattern.name[numbers[0].end() :]
+    name = re.compile(f"{re.escape(before)}[0-9]+{re.escape(after)}")
+    try:
+        others = [] if overwrite else sorted(os.listdir(pattern.parent))
+    except OSError as error:
+        raise refusal(pattern.parent, error) from None
+    for other in filter(name.fullmatch, others):
+        refuse_output(pattern.parent / other, overwrite)
 
 
 def numbered(pattern: str, number: int) -> str:

@@ -91,10 +91,10 @@ def test_the_loss_of_a_gif_is_told_as_it_is(tmp_path: Path) -> None:
     ]
     assert differences[0] == 0
     assert min(differences[1:]) > 0
-    assert loss == (3, max(differences))
     assert loss.sentence(4) == (
         f"3 of 4 frames lost colors, by at most {max(differences)} of 255; .webp and .apng lose none"
     )
+    assert loss == (3, max(differences))
 
 
 def test_a_gif_that_is_off_by_one_has_lost_colors(tmp_path: Path) -> None:
