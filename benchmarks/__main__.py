@@ -20,7 +20,7 @@ from benchmarks.machine import heading, machine
 RESULTS = Path(__file__).parent / "results"
 PARTS = (
     "targets", "scaling", "start", "steps", "scalars", "movement", "events", "reading", "mapped_tables",
-    "form", "normals", "batches", "page",
+    "form", "normals", "batches", "page", "inspection",
 )  # fmt: skip
 """Modules with `measure` and `text`."""
 PROGRAMS = {"display": "benchmarks.display", "ports": "benchmarks.host_ports"}

@@ -126,7 +126,7 @@ def check_film(path: str | PathLike[str], fields_per_second: float, overwrite: b
 def _check_pattern(pattern: Path, overwrite: bool) -> None:
     """Raise OutputError or OutputExistsError for a pattern of numbered pictures that cannot be written."""
     numbers = list(NUMBER.finditer(pattern.name))
-    if len(numbers) != 1 or any(brace in NUMBER.sub("", fspath(pattern)) for brace in "{}"):
+    if len(numbers) != 1 or any(brace in f"{pattern.parent}{NUMBER.sub('', pattern.name)}" for brace in "{}"):
         raise OutputError(
             f"numbered pictures must have one number in their name, as in frame-{{number:04}}.png, not"
             f" {fspath(pattern)!r}; or end the name in .apng for an animated PNG"

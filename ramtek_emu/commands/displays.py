@@ -20,6 +20,7 @@ from ramtek_emu.errors import MissingInputError, RamtekError, reason_of
 from ramtek_emu.writing import Output, refuse_output, same_outputs
 
 if TYPE_CHECKING:
+    from ramtek_emu.arrays import Words
     from ramtek_emu.display import Ramtek9300
     from ramtek_emu.host.server import HostSession, Record
 
@@ -208,6 +209,22 @@ def open_stream(path: str) -> BinaryIO:
         raise MissingInputError(
             f"a stream must be a file that can be read, not {path!r} ({reason_of(cause)}); check the name"
         ) from None
+
+
+def read_stream(path: str) -> Words:
+    """All words of a file, uint16, or of stdin for `-`; MissingInputError if it cannot be read."""
+    import numpy as np
+
+    with open_stream(path) as file:
+        try:
+            data = file.read()
+        except OSError as cause:
+            raise MissingInputError(
+                f"a stream must be readable to its end, not fail ({reason_of(cause)}); try a copy of it"
+            ) from None
+    if len(data) % 2:
+        tell("the stream ends within a word: its last byte was dropped")
+    return np.frombuffer(data, "<u2", len(data) // 2).astype(np.uint16, copy=False)
 
 
 tell: Final = command_line.report

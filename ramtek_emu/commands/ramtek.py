@@ -25,6 +25,8 @@ class RamtekGroup(CommandGroup):
     table: ClassVar[dict[str, str]] = {
         "play": "run a stream of instructions from a file",
         "list": "a stream as instructions with named operands",
+        "inspect": "a stream at any of its instructions; who wrote a pixel",
+        "diff": "the first instruction after which two streams differ",
         "assemble": "a listing back into its stream",
         "serve": "a display for programs, over TCP, on a Unix socket or on a pipe",
         "tty": "a program that opens a device, on a display of serve --unix",

@@ -79,9 +79,11 @@ class ListingItem:
             yield _line(place, _hexadecimal(words) if len(words) <= WORDS_PER_LINE else "", f"  {text}")
             place += len(words)
 
-    def to_plain(self) -> dict[str, Any]:
+    def to_plain(self, with_words: bool = True) -> dict[str, Any]:
         """The item in plain values, for JSON."""
-        item: dict[str, Any] = {"place": self.place, "words": self.words.tolist()}
+        item: dict[str, Any] = {"place": self.place}
+        if with_words:
+            item["words"] = self.words.tolist()
         if self.instruction is None:
             item["note"] = self.note
             if self.odd_byte:

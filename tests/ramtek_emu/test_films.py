@@ -166,6 +166,7 @@ REFUSED: list[tuple[str, dict[str, Any], type[RamtekError], str]] = [
     ),
     ("{number}-{number}.png", {}, OutputError, "numbered pictures must have one number in their name"),
     ("{name}-{number}.png", {}, OutputError, "numbered pictures must have one number in their name"),
+    ("{number}/{number}.png", {}, OutputError, "numbered pictures must have one number in their name"),
     ("none/{number}.png", {}, OutputError, "there is no folder"),
     ("there-{number:02}.png", {}, OutputExistsError, "there-7.png, which exists"),
 ]

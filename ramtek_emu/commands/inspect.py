@@ -1,0 +1,163 @@
+"""`ramtek inspect`: a stream at any of its instructions, and who wrote a pixel or an entry."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any, Final
+
+import click
+
+from ramtek_emu.commands.displays import (
+    complete_configurations,
+    display_asked_for,
+    read_stream,
+    refuse_outputs,
+    tell,
+)
+
+if TYPE_CHECKING:
+    from ramtek_emu.inspection.histories import Write
+    from ramtek_emu.inspection.replay import Replay
+
+EXAMPLES: Final = """\b
+Examples:
+  ramtek inspect drawing.ramtek                            step and scrub in a window
+  ramtek inspect drawing.ramtek --at 120 -o drawing.png    the picture after 120 instructions
+  ramtek inspect drawing.ramtek --who 200 150              the instructions that wrote line 200, element 150
+  ramtek inspect drawing.ramtek --who-entry 7 --json       the table loads that wrote entry 7
+"""
+
+
+@click.command(epilog=EXAMPLES)
+@click.argument("stream", type=click.Path())
+@click.option(
+    "--at",
+    type=click.IntRange(min=0),
+    metavar="N",
+    help="The instruction, counted as `ramtek list` shows them; 0 is power-on. The last if not given.",
+)
+@click.option("-o", "--output", type=click.Path(), metavar="PNG", help="Write the picture, open no window.")
+@click.option(
+    "--who",
+    nargs=2,
+    type=click.IntRange(min=0),
+    metavar="LINE ELEMENT",
+    help="List the instructions that wrote a word of the memory, the newest first.",
+)
+@click.option(
+    "--who-entry",
+    type=click.IntRange(min=0),
+    metavar="ENTRY",
+    help="List the instructions that wrote an entry of the lookup table.",
+)
+@click.option(
+    "--json",
+    "as_json",
+    is_flag=True,
+    help="The answer as JSON; without a question: the instruction and the parameters after it.",
+)
+@click.option("--force", is_flag=True, help="Overwrite the picture if it exists.")
+@click.option(
+    "--configuration",
+    metavar="NAME",
+    shell_complete=complete_configurations,
+    help="The display; GMR_9300 if not given.",
+)
+@click.option("--start", type=click.Path(), metavar="SNAPSHOT", help="Begin with the display of a snapshot.")
+def inspect(
+    stream: str,
+    at: int | None,
+    output: str | None,
+    who: tuple[int, int] | None,
+    who_entry: int | None,
+    as_json: bool,
+    force: bool,
+    configuration: str | None,
+    start: str | None,
+) -> None:
+    """Stop a display at any instruction of STREAM, a file of 16-bit words, low byte first; - is stdin.
+
+    It opens a window, unless a picture, a question or JSON is asked for.
+    """
+    if who is not None and who_entry is not None:
+        raise click.UsageError("a question must be --who or --who-entry, not both; ask twice")
+    refuse_outputs(force, output)
+    display = display_asked_for(configuration, start)
+
+    from ramtek_emu.inspection.replay import Replay
+    from ramtek_emu.inspection.stream import Stream
+
+    sizes = display.configuration
+    refuse_outside("a line", None if who is None else who[0], sizes.lines - 1)
+    refuse_outside("an element", None if who is None else who[1], sizes.elements - 1)
+    refuse_outside("an entry", who_entry, sizes.entries - 1)
+    replay = Replay(Stream(sizes, read_stream(stream)), display)
+    last = len(replay.stream)
+    refuse_outside("an instruction", at, last, stream)
+    number = last if at is None else at
+    if output is None and who is None and who_entry is None and not as_json:
+        from ramtek_emu.inspection.inspector import inspect
+
+        replay.go_to(0 if at is None else at)
+        inspect(replay, f"{stream} - RAMTEK {sizes.name.replace('_', ' ')}")
+        return
+    if rest := len(replay.stream.words) - int(replay.stream.ends[-1]):
+        tell(f"the stream ends within an instruction: its {rest} words are not counted")
+    if output is not None or (who is None and who_entry is None):
+        replay.go_to(number)
+    if output is not None:
+        replay.display.save_png(output, overwrite=force)
+        tell(f"wrote {output}")
+    if who is not None or who_entry is not None:
+        answer(replay, who, who_entry, number, as_json)
+    elif as_json:
+        click.echo(json.dumps(plain_moment(replay)))
+
+
+def refuse_outside(thing: str, value: int | None, most: int, place: str = "") -> None:
+    """Refuse a number beyond the last."""
+    if value is not None and value > most:
+        where = f" ({place})" if place else ""
+        raise click.UsageError(f"{thing} must be 0 to {most}, not {value}{where}; choose a smaller number")
+
+
+def answer(replay: Replay, who: tuple[int, int] | None, entry: int | None, until: int, as_json: bool) -> None:
+    """Print the instructions that wrote a word or an entry, the newest first."""
+    from ramtek_emu.inspection.histories import finished, writes_to_entry, writes_to_pixel
+
+    if who is not None:
+        line, element = who
+        writes = finished(writes_to_pixel(replay, line, element, until))
+        thing = f"line {line}, element {element}"
+    else:
+        writes = finished(writes_to_entry(replay, entry or 0, until))
+        thing = f"entry {entry}"
+    writes.reverse()
+    if as_json:
+        rows = (json.dumps(plain_write(replay, write)) for write in writes)
+        click.echo("[" + ",\n ".join(rows) + "]")
+        return
+    form = "04X" if who is not None else "06X"
+    for write in writes:
+        listed = next(replay.stream.item(write.number).lines())
+        click.echo(f"{write.number:>8}  {write.before:{form}} -> {write.after:{form}}  {listed}")
+    if not writes:
+        tell(f"none of the first {until} instructions writes {thing}")
+
+
+def plain_write(replay: Replay, write: Write) -> dict[str, Any]:
+    """A write in plain values, with its instruction as `ramtek list --json` writes it."""
+    return {"number": write.number, "before": write.before, "after": write.after} | {
+        "instruction": replay.stream.item(write.number).to_plain(with_words=False)
+    }
+
+
+def plain_moment(replay: Replay) -> dict[str, Any]:
+    """An instruction, its reply and the small parts of the display after it, in plain values."""
+    from ramtek_emu.inspection.differences import plain_values
+
+    instruction = replay.stream.item(replay.number).to_plain(with_words=False) if replay.number else None
+    reply = [] if replay.reply is None else replay.reply.tolist()
+    return {"number": replay.number, "of": len(replay.stream), "instruction": instruction, "reply": reply} | (
+        plain_values(replay.display)
+    )

@@ -1,0 +1,185 @@
+"""Replay: the display after any number of instructions of a stream, forward and back.
+
+A display cannot run backwards. So states are kept on the way, and a display is brought to a number by running
+from the last state before it. States are STATE_SECONDS of work apart while they take at most STATE_BYTES for
+each word of the stream; if they would take more, every second state is dropped.
+
+The replies to instructions that read are dropped, as `ramtek play` does; only that of the last is kept.
+"""
+
+from __future__ import annotations
+
+import copy
+from bisect import bisect_left
+from collections.abc import Iterator
+from time import perf_counter, thread_time
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from ramtek_emu.arrays import Dots, Words
+from ramtek_emu.display import Ramtek9300
+from ramtek_emu.inspection.states import Packer, State, packed_dots, size_of, thinned, unpacked_dots
+from ramtek_emu.inspection.stream import Stream
+from ramtek_emu.inspection.watching import watched
+from ramtek_emu.instruction_set.instruction import NO_WORDS
+
+STATE_SECONDS: Final = 0.02
+"""How long the instructions between two states take."""
+STATE_BYTES: Final = 64
+"""Limit: the bytes of states for each word of the stream, on average."""
+LEAST_STATE_BYTES: Final = 64 << 20
+"""Limit: the bytes of states that even a short stream may take."""
+
+
+class Replay:
+    """A stream, and a display that was brought to one of its instructions."""
+
+    def __init__(self, stream: Stream, start: Ramtek9300 | None = None) -> None:
+        """Begin with a display as it is at power-on, or like the display `start`."""
+        self.stream = stream
+        self.number = 0
+        """How many instructions the display has executed; 0 is power-on."""
+        self.display = Ramtek9300(stream.configuration) if start is None else copy.deepcopy(start)
+        """The display after `number` instructions. `go_to` may replace it."""
+        self.reply: Words | None = NO_WORDS
+        """The reply of the last instruction, uint16; None if it is not known."""
+        self._packer = Packer()
+        self._seconds = STATE_SECONDS
+        self._due = 0.0
+        self._bytes = 0
+        self._states: list[State] = []
+        self._keep(self._packer.pack(self.display, 0, NO_WORDS))
+        self._preparing = self._prepare()
+
+    def __repr__(self) -> str:
+        return f"Replay(instruction {self.number} of {len(self.stream)}, {len(self._states)} states)"
+
+    @property
+    def prepared(self) -> int:
+        """The number of instructions up to which states are kept."""
+        return self._states[-1].number
+
+    @property
+    def state_bytes(self) -> int:
+        """The bytes that the states take."""
+        return self._bytes
+
+    def prepare_for(self, seconds: float) -> bool:
+        """Run on for up to `seconds`, and keep states; returns whether instructions are left."""
+        end = perf_counter() + seconds
+        for _ in self._preparing:
+            if perf_counter() >= end:
+                break
+        if self.prepared < len(self.stream):
+            return True
+        self._preparing = self._prepare()
+        return False
+
+    def _prepare(self) -> Iterator[None]:
+        """Run a display over the stream, and keep states; pauses after each instruction."""
+        display, number = self._states[-1].display(), self.prepared
+        while number < len(self.stream):
+            due = thread_time() + self._seconds
+            touched = watched(display).watch(display.frame_buffer.window)
+            reply = NO_WORDS
+            for step in self.steps(display, number, len(self.stream)):
+                number, reply = step, reply_of(display)
+                if thread_time() >= due:
+                    break
+                yield
+            self._keep(self._packer.pack(display, number, reply, packed_dots(touched)))
+            yield
+
+    def _keep(self, state: State) -> None:
+        """Keep a state, in place of an older state with its number; drop states if there are too many."""
+        if self._states and self._states[-1].number == state.number:
+            self._states.pop()
+        self._bytes += size_of([*self._states[-1:], state]) - size_of(self._states[-1:])
+        self._states.append(state)
+        most = max(LEAST_STATE_BYTES, STATE_BYTES * len(self.stream.words))
+        if self._bytes > most:
+            self._seconds *= 2
+            self._states = thinned(self._states)
+            self._bytes = size_of(self._states)
+
+    def note(self, words: Words, display: Ramtek9300, has_moved: bool = False) -> None:
+        """Append whole instructions that a running display has executed, and keep its state if one is due.
+
+        The display must be between two instructions. With `has_moved`, something other than an instruction
+        has changed it, such as its joystick or a reset, and a state is due.
+        """
+        self.stream.append(words)
+        if has_moved or thread_time() >= self._due:
+            self._keep(self._packer.pack(display, len(self.stream), None))
+            self._due = thread_time() + self._seconds
+
+    def go_to(self, number: int) -> None:
+        """Bring the display to an instruction, forward or back."""
+        state = self.state_before(number)
+        if not state.number <= self.number <= number or number == state.number:
+            self.display, self.number, self.reply = state.display(), state.number, state.reply
+        if number > self.number:
+            words_before = self.stream.words_between(self.number, number - 1)
+            self.display.send(words_before)
+            reply_of(self.display)
+            self.display.send(self.stream.words_between(number - 1, number))
+            self.number, self.reply = number, reply_of(self.display)
+
+    def state_before(self, number: int) -> State:
+        """The last state that was kept before an instruction, or after it exactly."""
+        numbers = [state.number for state in self._states]
+        index = bisect_left(numbers, number)
+        return self._states[index if index < len(numbers) and numbers[index] == number else index - 1]
+
+    def stretches(self, after: int, until: int) -> Iterator[Stretch]:
+        """The parts of the stream between states that hold the instructions after `after` up to `until`."""
+        states = self._states
+        for index, state in enumerate(states):
+            following = states[index + 1] if index + 1 < len(states) else None
+            end = until if following is None else min(following.number, until)
+            if end > max(state.number, after):
+                yield Stretch(state, end, None if following is None else self._touched(following))
+
+    def _touched(self, state: State) -> Dots | None:
+        shape = self.display.words.shape
+        return None if state.touched is None else unpacked_dots(state.touched, (shape[0], shape[1]))
+
+    def first_display(self) -> Ramtek9300:
+        """A new display at power-on, or as the stream found it."""
+        return self._states[0].display()
+
+    def steps(self, display: Ramtek9300, number: int, end: int) -> Iterator[int]:
+        """Run a display from `number` to `end`; yields the number after each instruction.
+
+        Consecutive illegal words are one step.
+        """
+        ends = self.stream.ends[number : end + 1] - self.stream.ends[number]
+        place = index = 0
+        for used in display.send_stepwise(self.stream.words_between(number, end)):
+            # A long instruction pauses with the count of the words before it.
+            if used > place:
+                place = used
+                index += 1
+                if ends[index] < used:
+                    index = int(np.searchsorted(ends, used))
+                yield number + index
+
+
+class Stretch(NamedTuple):
+    """Consecutive instructions after a state, up to the instruction `end`."""
+
+    state: State
+    end: int
+    touched: Dots | None
+    """The (lines, elements) words that the stretch writes, or more; None if they are not known."""
+
+    def may_touch(self, part: tuple[slice, slice]) -> bool:
+        """Whether a word of a part of the memory may be written."""
+        return self.touched is None or bool(self.touched[part].any())
+
+
+def reply_of(display: Ramtek9300) -> Words:
+    """The replies that wait, which are taken."""
+    waiting = display.processor.waiting
+    return display.receive(waiting) if waiting else NO_WORDS

@@ -1,0 +1,110 @@
+"""Stream: words as numbered instructions, counted as `ramtek list` shows them.
+
+Instruction 1 is the first; 0 stands for power-on. An illegal word counts as an instruction.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Final, TypeVar
+
+import numpy as np
+
+from ramtek_emu.arrays import AnyArray, Bytes, Indices, Words
+from ramtek_emu.configuration import GMR_9300, Configuration
+from ramtek_emu.instruction_set.decoder import MOST_HEAD, formats_of_opcodes, words_needed
+from ramtek_emu.instruction_set.disassembler import ListingItem, items
+from ramtek_emu.instruction_set.table import ILLEGAL, Flags
+
+PIECE: Final = 1 << 16
+"""How many words are converted to Python's numbers at once."""
+
+Array = TypeVar("Array", bound=AnyArray)
+
+
+class Stream:
+    """Words for a display, with the place of each instruction; more words can be appended."""
+
+    def __init__(self, configuration: Configuration = GMR_9300, words: Words | None = None) -> None:
+        self.configuration = configuration
+        self._words: Words = np.zeros(0, np.uint16)
+        self._word_count = 0
+        self._ends: Indices = np.zeros(1, np.int64)
+        self._count = 0
+        if words is not None:
+            self.append(words)
+
+    def __len__(self) -> int:
+        """The number of whole instructions."""
+        return self._count
+
+    def __repr__(self) -> str:
+        return f"Stream({len(self)} instructions, {self._word_count} words)"
+
+    @property
+    def words(self) -> Words:
+        """All words, uint16, with those of an instruction that is not complete yet."""
+        return self._words[: self._word_count]
+
+    @property
+    def ends(self) -> Indices:
+        """The words up to the end of each instruction, (instructions + 1,) int64; `ends[0]` is 0."""
+        return self._ends[: self._count + 1]
+
+    @property
+    def opcodes(self) -> Bytes:
+        """The high byte of the first word of each instruction, (instructions,) uint8."""
+        return (self._words[self.ends[:-1]] >> 8).astype(np.uint8)
+
+    def append(self, words: Words) -> None:
+        """Append words; an instruction may be cut anywhere."""
+        self._words = _with_room(self._words, self._word_count, len(words))
+        self._words[self._word_count : self._word_count + len(words)] = words
+        self._word_count += len(words)
+        ends = self._ends_from(int(self._ends[self._count]))
+        self._ends = _with_room(self._ends, self._count + 1, len(ends))
+        self._ends[self._count + 1 : self._count + 1 + len(ends)] = ends
+        self._count += len(ends)
+
+    def _ends_from(self, place: int) -> list[int]:
+        """The ends of the whole instructions from a place on."""
+        extended = self.configuration.extended
+        formats = formats_of_opcodes(extended)
+        ends: list[int] = []
+        while place < self._word_count:
+            # Numbers of Python are faster here than those of numpy.
+            first, words = place, self.words[place : place + PIECE + MOST_HEAD].tolist()
+            end = min(first + PIECE, self._word_count)
+            while place < end:
+                head = words[place - first : place - first + MOST_HEAD]
+                format = formats[head[0] >> 8]
+                if not extended and format.is_normal and head[0] & Flags.OPERANDS_2:
+                    format = ILLEGAL
+                place += words_needed(format, head)
+                if place > self._word_count:
+                    return ends
+                ends.append(place)
+        return ends
+
+    def place(self, number: int) -> int:
+        """The index of the first word of an instruction."""
+        return int(self._ends[number - 1])
+
+    def words_between(self, number: int, end: int) -> Words:
+        """The words of the instructions after `number` up to `end`, included."""
+        return self._words[self._ends[number] : self._ends[end]]
+
+    def item(self, number: int) -> ListingItem:
+        """An instruction as `ramtek list` shows it."""
+        words = self.words_between(number - 1, number)
+        (item,) = items([words.astype("<u2", copy=False).tobytes()], self.configuration)
+        return replace(item, place=self.place(number))
+
+
+def _with_room(array: Array, used: int, more: int) -> Array:
+    """The array, or a longer one with the same first items, so that `more` items can follow them."""
+    if used + more <= len(array):
+        return array
+    longer = np.zeros(max(2 * len(array), used + more), array.dtype)
+    longer[:used] = array[:used]
+    return longer  # type: ignore[return-value]

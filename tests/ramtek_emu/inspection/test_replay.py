@@ -1,0 +1,142 @@
+from __future__ import annotations
+
+import copy
+import random
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from ramtek_emu import Configuration, Ramtek9300, Timing, instructions
+from ramtek_emu.inspection.replay import Replay
+from ramtek_emu.inspection.stream import Stream
+from ramtek_emu.monitor.pattern import pattern
+from ramtek_emu.snapshot import snapshot_bytes
+from ramtek_emu.testing import streams
+from tests.ramtek_emu import recorded_streams
+from tests.ramtek_emu.inspection.replays import moments, prepare, replay_of, states_every
+from tests.ramtek_emu.strategies import SMALL, quick
+
+TIMED = Configuration(name="TIMED", elements=13, lines=9, planes=10, timing=Timing())
+RECORDED = {
+    name: stream
+    for name, stream in vars(recorded_streams).items()
+    if name.isupper() and isinstance(stream, np.ndarray)
+}
+
+
+@pytest.mark.parametrize("configuration", [SMALL, TIMED])
+@quick
+@given(
+    words=streams(),
+    numbers=st.lists(st.integers(0, 60), min_size=1, max_size=8),
+    most_bytes=st.sampled_from([0, 1 << 30]),
+    is_prepared=st.booleans(),
+)
+def test_any_moment_equals_a_fresh_display(
+    configuration: Configuration, words: list[int], numbers: list[int], most_bytes: int, is_prepared: bool
+) -> None:
+    with states_every(0, most_bytes):
+        replay = replay_of(words, configuration)
+        if is_prepared:
+            prepare(replay)
+            assert replay.prepared == len(replay.stream)
+        expected = moments(replay)
+        for number in numbers:
+            number %= len(replay.stream) + 1
+            replay.go_to(number)
+            snapshot, reply = expected[number]
+            assert replay.number == number
+            assert snapshot_bytes(replay.display) == snapshot
+            assert replay.reply is not None
+            assert replay.reply.tolist() == reply.tolist()
+
+
+@pytest.mark.parametrize("name", [*RECORDED, "PATTERN"])
+def test_a_recorded_stream_runs_forward_and_back(name: str) -> None:
+    display = Ramtek9300()
+    words = pattern(display.configuration) if name == "PATTERN" else RECORDED[name]
+    replay = Replay(Stream(display.configuration, words))
+    prepare(replay)
+    numbers = random.Random(name).choices(range(len(replay.stream) + 1), k=6)
+    for number in [*numbers, len(replay.stream), 0]:
+        fresh = Ramtek9300()
+        fresh.send(replay.stream.words_between(0, number))
+        replay.go_to(number)
+        assert snapshot_bytes(replay.display) == snapshot_bytes(fresh)
+        assert (replay.display.field() == fresh.field()).all()
+
+
+def test_a_stream_that_grows_is_prepared_further() -> None:
+    replay = replay_of(instructions.erase((0, 0, 3, 3), 5).tolist())
+    prepare(replay)
+    replay.stream.append(instructions.erase((1, 1, 2, 2), 7))
+    prepare(replay)
+    assert replay.prepared == len(replay.stream)
+    replay.go_to(len(replay.stream))
+    assert replay.display.words[0, 0] == 5
+    assert replay.display.words[1, 1] == 7
+
+
+def test_states_stay_within_their_bytes_and_the_first_and_last_stay() -> None:
+    words = np.concatenate(
+        [instructions.write_image(np.random.default_rng(n).integers(0, 1024, (9, 13))) for n in range(40)]
+    )
+    with states_every(0, most_bytes=20_000):
+        replay = replay_of(words.tolist())
+        prepare(replay)
+        assert replay.state_bytes <= 20_000
+    assert [replay.state_before(0).number, replay.prepared] == [0, len(replay.stream)]
+
+
+def test_a_replay_begins_with_the_display_that_is_given_and_leaves_it_alone() -> None:
+    start = Ramtek9300(SMALL)
+    start.send(instructions.erase((0, 0, 3, 3), 5))
+    before = snapshot_bytes(start)
+    replay = Replay(Stream(SMALL, instructions.erase((5, 5, 6, 6), 9)), start)
+    replay.go_to(len(replay.stream))
+    replay.go_to(0)
+    assert replay.display.words[3, 3] == 5
+    assert snapshot_bytes(start) == before
+
+
+@quick
+@given(st.lists(st.tuples(streams(), st.booleans(), st.booleans()), max_size=6))
+def test_a_running_display_is_noted_with_what_moved_beside_its_instructions(
+    rounds: list[tuple[list[int], bool, bool]],
+) -> None:
+    display = Ramtek9300(SMALL)
+    with states_every(0):
+        replay = Replay(Stream(SMALL), display)
+        expected = {0: snapshot_bytes(display)}
+        for words, moves, resets in rounds:
+            whole = Stream(SMALL, np.array(words, np.uint16))
+            sent = whole.words_between(0, len(whole))
+            display.send(sent)
+            display.receive(display.processor.waiting)
+            replay.note(sent, display)
+            expected[len(replay.stream)] = snapshot_bytes(display)
+            if moves:
+                display.joystick.move_to(len(sent) % 13, 3)
+                display.joystick.press_enter()
+                replay.note(np.zeros(0, np.uint16), display, has_moved=True)
+                expected[len(replay.stream)] = snapshot_bytes(display)
+            if resets:
+                display.reset()
+                replay.note(instructions.reset(), display, has_moved=True)
+                expected[len(replay.stream)] = snapshot_bytes(display)
+    for number in reversed(expected):
+        replay.go_to(number)
+        assert snapshot_bytes(replay.display) == expected[number]
+
+
+def test_a_replay_does_not_change_what_others_hold() -> None:
+    replay = replay_of(instructions.erase((0, 0, 3, 3), 5).tolist())
+    prepare(replay)
+    replay.go_to(1)
+    held = copy.deepcopy(replay.display)
+    replay.display.frame_buffer.fill(replay.display.frame_buffer.window, 1)
+    replay.go_to(0)
+    replay.go_to(1)
+    assert snapshot_bytes(replay.display) == snapshot_bytes(held)
