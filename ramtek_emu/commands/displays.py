@@ -139,9 +139,14 @@ class Run:
         return False
 
     def attempt(self, write: Callable[[], object]) -> bool:
-        """Write an output, and return True; if that fails, report the reason and return False."""
+        """Write an output, and return True; if that fails, report the reason and return False.
+
+        A film is written while its stream is read. If the stream fails, MissingInputError is raised.
+        """
         try:
             write()
+        except MissingInputError:
+            raise
         except RamtekError as failure:
             tell(f"ramtek: {failure}")
             self.exit_code = self.exit_code or failure.exit_code

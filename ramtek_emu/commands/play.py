@@ -162,7 +162,10 @@ def refuse_film(context: click.Context, film: str | None, force: bool) -> None:
 def write_fields(
     path: str, session: HostSession, read: CutReader, run: Run, rate: float, loop: bool, force: bool
 ) -> None:
-    """Execute a stream and write its film. If the film fails, that is reported, and the stream goes on."""
+    """Execute a stream and write its film. If the film fails, that is reported, and the stream goes on.
+
+    Raises MissingInputError if the stream cannot be read to its end.
+    """
     from ramtek_emu.films import Loss, most_fields, write_film
     from ramtek_emu.host.pipe import StreamFields
 
@@ -182,8 +185,8 @@ def write_fields(
         return
     if film.left_out:
         tell(
-            f"the film would have more than {most:,} frames, its limit: it has the first {most - 1:,} and the"
-            " last; choose a larger --every, or write another format"
+            f"a film such as {path} must have at most {most:,} frames, not more: it has the first"
+            f" {most - 1:,} and the last; make fewer with --every"
         )
     if loss.fields:
         tell(loss.sentence(film.count))

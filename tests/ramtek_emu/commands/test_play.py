@@ -9,7 +9,7 @@ import pytest
 from click.testing import CliRunner, Result
 from PIL import Image
 
-from ramtek_emu import RamtekError, WriteError, instructions, read_snapshot
+from ramtek_emu import MissingInputError, RamtekError, WriteError, instructions, read_snapshot
 from ramtek_emu.commands.ramtek import ramtek
 from ramtek_emu.writing import Output
 from tests.ramtek_emu.film_reader import decoded, durations_of
@@ -103,8 +103,8 @@ def test_a_film_that_is_too_long_has_the_last_frame_and_says_so(
     monkeypatch.setattr("ramtek_emu.films.MOST_FIELDS", 3)
     played = play(frames, "--film", "a.webp")
     assert played.stderr.splitlines() == [
-        "the film would have more than 3 frames, its limit: it has the first 2 and the last; choose a larger"
-        " --every, or write another format",
+        "a film such as a.webp must have at most 3 frames, not more: it has the first 2 and the last; make"
+        " fewer with --every",
         "wrote a.webp, 3 frames",
     ]
     assert reds("a.webp") == [20, 40, 100]
@@ -171,6 +171,22 @@ def test_a_film_that_fails_is_reported_and_the_stream_goes_on(
     ]
     assert field_of(Path("end.png"))[0, 0, 0] == 100
     assert sorted(path.name for path in Path().iterdir()) == ["end.png", "frames.ramtek"]
+
+
+def test_a_stream_that_cannot_be_read_to_its_end_makes_no_film(
+    frames: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pieces = [stream(FRAMES)]
+
+    def read(_: int, __: int) -> bytes:
+        if pieces:
+            return pieces.pop()
+        raise OSError("broken")
+
+    monkeypatch.setattr("ramtek_emu.commands.play.os.read", read)
+    failed = play(frames, "--film", "a.apng", "-o", "a.png")
+    assert isinstance(failed.exception, MissingInputError)
+    assert [path.name for path in Path().iterdir()] == [frames]
 
 
 def test_an_interrupted_film_has_the_frames_so_far(tmp_path: Path) -> None:
