@@ -213,6 +213,15 @@ def test_numbered_pictures_are_the_fields(tmp_path: Path) -> None:
     assert np.array_equal(decoded(tmp_path / names[1]), [fields[6]])
 
 
+def test_a_folder_that_cannot_be_listed_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(_: Path) -> list[str]:
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(os, "listdir", fail)
+    with pytest.raises(OutputError, match="permission denied"):
+        write_film(tmp_path / "{number}.png", noise(1), fields_per_second=24)
+
+
 def test_a_webp_of_unknown_length_has_fewer_large_fields() -> None:
     assert most_fields("a.apng", 480, 640) == most_fields("{number}.png", 1, 1) == MOST_FIELDS
     assert most_fields("a.WebP", 480, 640) == 3495
