@@ -346,6 +346,12 @@ def takes_text(stream: TextIO | None) -> bool:
         return True
 
 
+def report(message: str) -> None:
+    """Print a message on stderr, as `tell` does. If nobody reads stderr, the message is dropped."""
+    if takes_text(sys.stderr):
+        tell(message)
+
+
 def _discard(stream: TextIO | None) -> None:
     """Send what a stream's buffer contains, and all that follows, to the null device."""
     with suppress(OSError, ValueError):

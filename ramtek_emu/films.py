@@ -5,10 +5,12 @@
 | .webp | animated WebP | lossless |
 | .apng | animated PNG | lossless |
 | .gif | animated GIF | 256 a field; others become the nearest of these |
+| {number:04}.png | a numbered PNG for each field | lossless |
 
 A field after the first is stored as the rectangle that differs from the field before. Pillow encodes the
 fields; an animated PNG and a GIF are put together here, because Pillow keeps all fields in memory until the
-end. Of a WebP, the library keeps the encoded fields.
+end. Of a WebP, the library keeps the encoded fields. The number of fields need not be known before the last.
+`TimedFilm` takes fields with the times at which they were shown.
 
 Measured for 640 x 480 fields of the coupe, a turn and a fade of its paint: WebP takes 9 ms and 30 to 51 KB a
 field, an animated PNG 10 ms and 61 to 72 KB, a GIF 15 ms and 24 to 30 KB.
@@ -19,9 +21,11 @@ times the time; WebP put together here, whose fields are twice as large.
 from __future__ import annotations
 
 import math
+import os
+import re
 from collections.abc import Callable, Iterable, Iterator
 from io import BytesIO
-from os import PathLike
+from os import PathLike, fspath
 from pathlib import Path
 from struct import pack, unpack_from
 from typing import Final, NamedTuple
@@ -31,9 +35,9 @@ import numpy as np
 from PIL import Image
 
 from ramtek_emu.arrays import Colors
-from ramtek_emu.checks import checked_number
 from ramtek_emu.errors import ColorsError, OutputError
-from ramtek_emu.writing import Output
+from ramtek_emu.png import png_bytes
+from ramtek_emu.writing import Output, refusal, refuse_output, write_atomically
 
 LEAST_RATE: Final = 0.1
 MOST_RATE: Final = 100.0
@@ -44,8 +48,15 @@ two."""
 MOST_FIELDS: Final = 100_000
 """Limit: fields of a film."""
 
+MOST_WEBP_PIXELS: Final = 1 << 30
+"""Limit: pixels of a WebP, in all fields, if the number of fields is not known: 3,495 fields of 640 x 480. At
+its end, a WebP is in memory three times; an encoded field takes up to 0.32 bytes for each pixel."""
+
 LARGEST_WEBP: Final = 16383
 """The most elements and lines of a WebP."""
+
+NUMBER: Final = re.compile(r"\{number(?::0?([0-9]{1,2}))?\}")
+"""The number of a picture in a pattern of names, with its number of digits."""
 
 
 class Loss(NamedTuple):
@@ -54,11 +65,17 @@ class Loss(NamedTuple):
     fields: int = 0
     largest: int = 0
 
+    def sentence(self, frames: int) -> str:
+        """The loss as a sentence about a film of so many frames."""
+        return (
+            f"{self.fields:,} of {frames:,} frames lost colors, by at most {self.largest} of 255;"
+            " .webp and .apng lose none"
+        )
+
 
 def write_film(
     path: str | PathLike[str],
     fields: Iterable[Colors],
-    count: int,
     *,
     fields_per_second: float,
     loop: bool = True,
@@ -66,42 +83,96 @@ def write_film(
 ) -> Loss:
     """Write (lines, elements, 3) uint8 fields to a film in the format of its suffix; returns what was lost.
 
-    `fields` are taken one by one, and `count` is their number. With `loop`, the film begins again at its end.
-    A WebP stores equal consecutive fields once, with a longer duration.
-    Raises ColorsError for fields of different sizes or another count, OutputError, OutputExistsError or
-    WriteError if the file cannot be written.
+    `fields` are taken one by one. With `loop`, the film begins again at its end. A WebP stores equal
+    consecutive fields once, with a longer duration. `path` may be a pattern of numbered pictures, such as
+    "frame-{number:04}.png"; they have no rate.
+    Raises ColorsError for fields of different sizes, for none or too many, and for a wrong rate. Raises
+    OutputError, OutputExistsError or WriteError if the film cannot be written. Then there is no file, but
+    numbered pictures that were finished stay.
     """
+    check_film(path, fields_per_second, overwrite)
     suffix = Path(path).suffix.lower()
-    write = FORMATS.get(suffix)
-    if write is None:
-        raise OutputError(f"a film must end in {', '.join(FORMATS)}, not in {suffix!r}; rename it")
-    count = checked_number(count, "the fields of a film", 1, MOST_FIELDS, "choose fewer", ColorsError)
+    if suffix == PICTURES:
+        for number, field in enumerate(_alike(fields), 1):
+            write_atomically(
+                numbered(fspath(path), number), png_bytes(field), overwrite=overwrite, sync=False
+            )
+        return Loss()
+    with Output(path, overwrite=overwrite) as output:
+        loss = FORMATS[suffix](output, _alike(fields), fields_per_second, loop)
+        output.keep()
+    return loss
+
+
+def check_film(path: str | PathLike[str], fields_per_second: float, overwrite: bool = False) -> None:
+    """Raise the error of `write_film` for a path that it cannot write, or for a rate of no film."""
+    suffix = Path(path).suffix.lower()
+    if suffix not in (*FORMATS, PICTURES):
+        raise OutputError(
+            f"a film must end in {', '.join(FORMATS)}, or in .png with a number, not in {suffix!r}; rename it"
+        )
     most = MOST_GIF_RATE if suffix == ".gif" else MOST_RATE
     if not LEAST_RATE <= fields_per_second <= most:
         raise ColorsError(
             f"a film must have {LEAST_RATE:g} to {most:g} fields per second, not {fields_per_second:g};"
             " choose another rate"
         )
-    with Output(path, overwrite=overwrite) as output:
-        loss = write(output.write, _alike(fields, count), count, fields_per_second, loop)
-        output.keep()
-    return loss
+    if suffix == PICTURES:
+        _check_pattern(Path(path), overwrite)
+    else:
+        refuse_output(path, overwrite)
 
 
-def _alike(fields: Iterable[Colors], count: int) -> Iterator[Colors]:
-    """The fields, contiguous. Raises ColorsError if their number is not `count` or their sizes differ."""
+def _check_pattern(pattern: Path, overwrite: bool) -> None:
+    """Raise OutputError or OutputExistsError for a pattern of numbered pictures that cannot be written."""
+    numbers = list(NUMBER.finditer(pattern.name))
+    if len(numbers) != 1 or any(brace in f"{pattern.parent}{NUMBER.sub('', pattern.name)}" for brace in "{}"):
+        raise OutputError(
+            f"numbered pictures must have one number in their name, as in frame-{{number:04}}.png, not"
+            f" {fspath(pattern)!r}; or end the name in .apng for an animated PNG"
+        )
+    refuse_output(numbered(fspath(pattern), 1), overwrite)
+    before, after = pattern.name[: numbers[0].start()], pattern.name[numbers[0].end() :]
+    name = re.compile(f"{re.escape(before)}[0-9]+{re.escape(after)}")
+    try:
+        others = [] if overwrite else sorted(os.listdir(pattern.parent))
+    except OSError as error:
+        raise refusal(pattern.parent, error) from None
+    for other in filter(name.fullmatch, others):
+        refuse_output(pattern.parent / other, overwrite)
+
+
+def numbered(pattern: str, number: int) -> str:
+    """The path of a numbered picture.
+
+    >>> numbered("frame-{number:04}.png", 7)
+    'frame-0007.png'
+    """
+    return NUMBER.sub(lambda match: f"{number:0{int(match[1] or 1)}}", pattern)
+
+
+def most_fields(path: str | PathLike[str], lines: int, elements: int) -> int:
+    """The most fields of this size that a film at this path should have, if their number is not known."""
+    if Path(path).suffix.lower() == ".webp":
+        return max(1, min(MOST_FIELDS, MOST_WEBP_PIXELS // (lines * elements)))
+    return MOST_FIELDS
+
+
+def _alike(fields: Iterable[Colors]) -> Iterator[Colors]:
+    """The fields, contiguous. Raises ColorsError for none, too many, or fields of different sizes."""
     size: tuple[int, ...] | None = None
-    number = 0
     for number, field in enumerate(fields, 1):
         size = size or field.shape
-        if field.shape != size or field.dtype != np.uint8 or field.ndim != 3 or number > count:
+        if field.shape != size or field.dtype != np.uint8 or field.ndim != 3:
             raise ColorsError(
-                f"a film must have {count} (lines, elements, 3) uint8 fields of one size, not field {number}"
+                f"a film must have (lines, elements, 3) uint8 fields of one size, not field {number}"
                 f" of shape {field.shape} after {size}; render them alike"
             )
+        if number > MOST_FIELDS:
+            raise ColorsError(f"a film must have at most {MOST_FIELDS:,} fields, not more; choose fewer")
         yield np.ascontiguousarray(field)
-    if number != count:
-        raise ColorsError(f"a film must have {count} fields, not {number}; count them first")
+    if size is None:
+        raise ColorsError("a film must have at least one field, not none; make a field")
 
 
 def ticks(number: int, fields_per_second: float, per_second: int) -> int:
@@ -132,83 +203,132 @@ def differing_area(field: Colors, before: Colors | None) -> Rectangle:
     """The smallest rectangle of pixels that differ from the field before; one pixel if no pixel differs."""
     if before is None:
         return Rectangle(0, 0, field.shape[1], field.shape[0])
-    differs = (field != before).any(axis=2)
-    lines, elements = np.flatnonzero(differs.any(axis=1)), np.flatnonzero(differs.any(axis=0))
+    # Measured: to reduce the components first, (field != before).any(axis=2), takes forty times as long.
+    differs = (field != before).reshape(len(field), -1)
+    lines = np.flatnonzero(differs.any(axis=1))
+    elements = np.flatnonzero(differs.any(axis=0).reshape(-1, 3).any(axis=1))
     if not len(lines):
         return Rectangle(0, 0, 1, 1)
     left, top = int(elements[0]), int(lines[0])
     return Rectangle(left, top, int(elements[-1]) - left + 1, int(lines[-1]) - top + 1)
 
 
-Write = Callable[[bytes], None]
-
-
 # Animated WebP.
 
 
 class _Fields(Image.Image):
-    """Fields as the pictures of one image. Pillow seeks each of them once, in order, and then encodes it."""
+    """The rest of the fields of a film as one image, which Pillow is given as often as there may be fields.
 
-    def __init__(self, fields: Iterator[Colors], count: int) -> None:
+    `n_frames` is 1 while there is a field. Pillow asks for `n_frames`, seeks the field, and encodes it.
+    """
+
+    def __init__(self, fields: Iterator[Colors], rate: float) -> None:
         super().__init__()
         self._fields = fields
-        self.n_frames = count
+        self._rate = rate
+        self._next = next(fields, None)
+        self.durations = [ticks(0, rate, 1000)]
+        """The durations of the fields until now, with the first field, in milliseconds."""
+
+    @property
+    def n_frames(self) -> int:
+        return int(self._next is not None)
 
     def seek(self, frame: int) -> None:
-        vars(self).update(vars(Image.fromarray(next(self._fields))))
+        assert self._next is not None
+        vars(self).update(vars(Image.fromarray(self._next)))
+        self.durations.append(ticks(len(self.durations), self._rate, 1000))
+        self._next = next(self._fields, None)
 
 
-def _write_webp(write: Write, fields: Iterator[Colors], count: int, rate: float, loop: bool) -> Loss:
+def _write_webp(output: Output, fields: Iterator[Colors], rate: float, loop: bool) -> Loss:
     first = next(fields)
     if max(first.shape) > LARGEST_WEBP:
         raise OutputError(
             f"a WebP must have at most {LARGEST_WEBP} lines and elements, not {max(first.shape)}; write .apng"
         )
     buffer = BytesIO()
-    durations = [ticks(number, rate, 1000) for number in range(count)]
+    rest = _Fields(fields, rate)
     Image.fromarray(first).save(
         buffer,
         "WEBP",
         save_all=True,
-        append_images=[_Fields(fields, count - 1)] if count > 1 else [],
-        duration=durations,
+        append_images=[rest] * MOST_FIELDS if rest.n_frames else [],
+        duration=rest.durations,
         loop=0 if loop else 1,
         lossless=True,
         quality=50,
         method=0,
     )
-    # Pillow takes `count` fields: check that there is no further one.
-    next(fields, None)
-    write(buffer.getvalue())
+    output.write(buffer.getvalue())
     return Loss()
 
 
-# Animated PNG, by its specification: fcTL describes a field, fdAT holds the data of a field after the first.
+# Animated PNG, by its specification: acTL counts the fields, fcTL describes a field, and fdAT holds the data
+# of a field after the first.
 
 PNG_LEVEL: Final = 3
 """Level 6 takes twice the time for a fifth fewer bytes."""
 
+UNITS: Final = (1000, 100, 10, 1)
+"""The units of a field's duration, per second. It counts at most 65,535 of them."""
 
-def _write_apng(write: Write, fields: Iterator[Colors], count: int, rate: float, loop: bool) -> Loss:
-    before, sequence = None, 0
-    for number, field in enumerate(fields):
-        area = differing_area(field, before)
+
+class AnimatedPng:
+    """An animated PNG that is made field by field; `write` gets its bytes.
+
+    The number of fields stands before the fields. It is 0 until `count` is written at COUNT_PLACE.
+    """
+
+    COUNT_PLACE: Final = 33
+
+    def __init__(self, write: Callable[[bytes], object], loop: bool) -> None:
+        self.fields = 0
+        """The number of fields."""
+        self._write = write
+        self._loop = loop
+        self._before: Colors | None = None
+        self._sequence = 0
+
+    def add(self, field: Colors, milliseconds: int) -> None:
+        """Add a (lines, elements, 3) uint8 field of the size of the others, with its duration."""
+        area = differing_area(field, self._before)
         chunks = list(_png_chunks(area.of(field)))
-        if number == 0:
-            write(PNG_SIGNATURE + _chunk(*chunks[0]) + _chunk(b"acTL", pack(">II", count, 0 if loop else 1)))
+        if self._before is None:
+            self._write(PNG_SIGNATURE + _chunk(*chunks[0]) + self.count())
         shape = (area.elements, area.lines, area.left, area.top)
+        unit = next((unit for unit in UNITS if milliseconds * unit < 65_535_500), 1)
+        duration = min(65_535, milliseconds * unit // 1000)
         # Neither dispose of the field before nor blend with it: the rectangle is replaced.
-        control = pack(">IIIIIHHBB", sequence, *shape, ticks(number, rate, 1000), 1000, 0, 0)
-        write(_chunk(b"fcTL", control))
-        sequence += 1
+        self._add_chunk(b"fcTL", pack(">IIIIHHBB", *shape, duration, unit, 0, 0))
         for kind, data in chunks:
-            if kind == b"IDAT" and number == 0:
-                write(_chunk(kind, data))
+            if kind == b"IDAT" and self._before is None:
+                self._write(_chunk(kind, data))
             elif kind == b"IDAT":
-                write(_chunk(b"fdAT", pack(">I", sequence) + data))
-                sequence += 1
-        before = field
-    write(_chunk(b"IEND", b""))
+                self._add_chunk(b"fdAT", data)
+        self._before = field
+        self.fields += 1
+
+    def _add_chunk(self, kind: bytes, data: bytes) -> None:
+        """Write a chunk with its number in the sequence."""
+        self._write(_chunk(kind, pack(">I", self._sequence) + data))
+        self._sequence += 1
+
+    def count(self) -> bytes:
+        """The chunk that counts the fields; it belongs at COUNT_PLACE."""
+        return _chunk(b"acTL", pack(">II", self.fields, 0 if self._loop else 1))
+
+    def end(self) -> None:
+        """Write the end of the file; the count must still be written."""
+        self._write(_chunk(b"IEND", b""))
+
+
+def _write_apng(output: Output, fields: Iterator[Colors], rate: float, loop: bool) -> Loss:
+    film = AnimatedPng(output.write, loop)
+    for number, field in enumerate(fields):
+        film.add(field, ticks(number, rate, 1000))
+    film.end()
+    output.write_at(AnimatedPng.COUNT_PLACE, film.count())
     return Loss()
 
 
@@ -238,9 +358,9 @@ REPEAT: Final = b"\x21\xff\x0bNETSCAPE2.0\x03\x01\x00\x00\x00"
 LOCAL_TABLE: Final = 0x80
 
 
-def _write_gif(write: Write, fields: Iterator[Colors], count: int, rate: float, loop: bool) -> Loss:
+def _write_gif(output: Output, fields: Iterator[Colors], rate: float, loop: bool) -> Loss:
     before, shown = None, None
-    loss = Loss()
+    write, loss = output.write, Loss()
     for number, field in enumerate(fields):
         area = differing_area(field, before)
         # Measured: these 256 colors are off by at most 7, the colors of a median cut by up to 43.
@@ -278,3 +398,67 @@ def _gif_parts(image: Image.Image) -> tuple[bytes, bytes]:
 
 FORMATS: Final = {".webp": _write_webp, ".apng": _write_apng, ".gif": _write_gif}
 """The function that writes each format, by the suffix."""
+
+PICTURES: Final = ".png"
+"""The suffix of numbered pictures."""
+
+
+# Films of fields as they are shown.
+
+MOST_BYTES: Final = 1 << 28
+"""Limit: the encoded fields of a `TimedFilm`, which stay in memory."""
+
+
+class TimedFilm:
+    """Fields with the times at which they were shown, as an animated PNG in memory.
+
+    A field is encoded when the next field is shown, because its duration stands before its data. Measured: a
+    field of 640 x 480 that differs everywhere takes 10 ms.
+    """
+
+    def __init__(self, field: Colors, seconds: float) -> None:
+        """Begin with a (lines, elements, 3) uint8 field, shown since `seconds` of any clock."""
+        self._file = BytesIO()
+        self._film = AnimatedPng(self._file.write, loop=True)
+        self._shown = field
+        self._began = seconds
+        self._milliseconds = 0
+        """The time of the shown field, from the beginning."""
+        self._data = b""
+
+    @property
+    def fields(self) -> int:
+        """The number of fields, with the field that is shown."""
+        return self._film.fields + (not self.has_ended)
+
+    @property
+    def is_full(self) -> bool:
+        """Whether a limit is reached: MOST_FIELDS or MOST_BYTES."""
+        return self.has_ended or self.fields >= MOST_FIELDS or self._file.tell() >= MOST_BYTES
+
+    @property
+    def has_ended(self) -> bool:
+        """Whether `end` was called."""
+        return bool(self._data)
+
+    def show(self, field: Colors, seconds: float) -> None:
+        """Add a field that is shown from `seconds` on; a field that equals the shown field adds nothing."""
+        if not self.has_ended and not np.array_equal(field, self._shown):
+            self._encode_shown(seconds)
+            self._shown = field
+
+    def _encode_shown(self, seconds: float) -> None:
+        end = max(self._milliseconds + 1, math.floor(1000 * (seconds - self._began) + 0.5))
+        self._film.add(self._shown, end - self._milliseconds)
+        self._milliseconds = end
+
+    def end(self, seconds: float) -> bytes:
+        """End the film at `seconds`, unless it has ended already; returns the bytes of its file."""
+        if not self.has_ended:
+            self._encode_shown(seconds)
+            self._film.end()
+            self._file.seek(AnimatedPng.COUNT_PLACE)
+            self._file.write(self._film.count())
+            self._data = self._file.getvalue()
+            self._file.close()
+        return self._data

@@ -12,8 +12,7 @@ from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
 from ramtek_emu.arrays import Colors, Words
-from ramtek_emu.errors import OutputExistsError
-from ramtek_emu.writing import write_atomically
+from ramtek_emu.writing import write_atomically, write_numbered
 
 LEVEL: Final = 4
 """The compression of a PNG file by default: from 0, fastest, to 9, smallest.
@@ -86,18 +85,5 @@ def save_png(field: Colors, path: str | PathLike[str], overwrite: bool = True) -
 
 
 def save_numbered(field: Colors, folder: Path, name: str) -> Path:
-    """Write a field to NAME-0001.png or the next free number, never over a file; OutputError or WriteError.
-
-    Returns the path, links resolved.
-    """
-    number = 1
-    while True:
-        path = folder / f"{name}-{number:04d}.png"
-        number += 1
-        if path.exists():
-            continue
-        try:
-            save_png(field, path, overwrite=False)
-        except OutputExistsError:
-            continue
-        return path.resolve()
+    """Write a field to NAME-0001.png or the next free number; see `write_numbered`."""
+    return write_numbered(png_bytes(field), folder, name, ".png")

@@ -76,6 +76,15 @@ class Output:
         except OSError as error:
             raise refusal(self.path, error) from None
 
+    def write_at(self, place: int, data: bytes) -> None:
+        """Replace bytes that were written; WriteError when that fails."""
+        try:
+            self._file.seek(place)
+            self._file.write(data)
+            self._file.seek(0, os.SEEK_END)
+        except OSError as error:
+            raise refusal(self.path, error) from None
+
     def keep(self) -> None:
         """Sync the file and give it its name; WriteError or OutputExistsError when that fails.
 
@@ -134,6 +143,24 @@ def write_atomically(
     with Output(path, overwrite=overwrite, sync=sync) as output:
         output.write(data)
         output.keep()
+
+
+def write_numbered(data: bytes, folder: Path, name: str, suffix: str) -> Path:
+    """Write the bytes to NAME-0001 with the suffix, or the next free number, never over a file.
+
+    Returns the path, links resolved. Raises OutputError or WriteError.
+    """
+    number = 1
+    while True:
+        path = folder / f"{name}-{number:04d}{suffix}"
+        number += 1
+        if path.exists():
+            continue
+        try:
+            write_atomically(path, data, overwrite=False)
+        except OutputExistsError:
+            continue
+        return path.resolve()
 
 
 def refuse_output(path: str | os.PathLike[str], overwrite: bool) -> None:

@@ -49,7 +49,7 @@ def recolored() -> list[Bytes]:
 def main() -> None:
     """Write the moving picture."""
     frames = recolored()
-    write_film(PATH, frames, len(frames), fields_per_second=RATE, overwrite=True)
+    write_film(PATH, frames, fields_per_second=RATE, overwrite=True)
 
 
 if __name__ == "__main__":

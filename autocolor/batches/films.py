@@ -119,7 +119,6 @@ def animate(
             loss = write_film(
                 name,
                 _colors(_made(results, tell), len(variants) if kind == ".webp" else 0),
-                len(variants),
                 fields_per_second=frames_per_second,
                 loop=loop,
                 overwrite=overwrite,

@@ -170,10 +170,9 @@ def animate(
             progress=lambda _: step(),
         )
     if film.lossy:
-        tell(
-            f"{film.lossy:,} of {film.frames:,} frames lost colors, by at most {film.largest_loss} of 255;"
-            " .webp and .apng lose none"
-        )
+        from ramtek_emu.films import Loss
+
+        tell(Loss(film.lossy, film.largest_loss).sentence(film.frames))
     tell(f"wrote {film.path}, {film.frames:,} frame{'' if film.frames == 1 else 's'}")
     context.exit(code)
 

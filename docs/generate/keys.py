@@ -24,7 +24,7 @@ STUDIO = """The window of `autocolor`, `autocolor view` and `autocolor tutorial`
 keys: its joystick unit reaches everything through the menu.
 """
 
-DISPLAY = """The window of `ramtek` and of `ramtek serve --window`, which shows what a host draws.
+DISPLAY = """The window of `ramtek`, `ramtek play` and `ramtek serve --window`, which shows what a host draws.
 """
 
 TABLES: tuple[tuple[str, str, Sequence[tuple[str, str]]], ...] = (

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, BinaryIO, Final, TypeVar
 import click
 
 from ramtek_emu import command_line
-from ramtek_emu.command_line import ENDING, SIGNALS, takes_text
+from ramtek_emu.command_line import ENDING, SIGNALS
 from ramtek_emu.configuration import CONFIGURATIONS, GMR_9300
 from ramtek_emu.errors import MissingInputError, RamtekError, reason_of
 from ramtek_emu.writing import Output, refuse_output, same_outputs
@@ -139,9 +139,14 @@ class Run:
         return False
 
     def attempt(self, write: Callable[[], object]) -> bool:
-        """Write an output, and return True; if that fails, report the reason and return False."""
+        """Write an output, and return True; if that fails, report the reason and return False.
+
+        A film is written while its stream is read. If the stream fails, MissingInputError is raised.
+        """
         try:
             write()
+        except MissingInputError:
+            raise
         except RamtekError as failure:
             tell(f"ramtek: {failure}")
             self.exit_code = self.exit_code or failure.exit_code
@@ -227,11 +232,8 @@ def read_stream(path: str) -> Words:
     return np.frombuffer(data, "<u2", len(data) // 2).astype(np.uint16, copy=False)
 
 
-def tell(message: str) -> None:
-    """Print a message on stderr; stdout is for results. If nobody reads stderr, the message is dropped."""
-    if takes_text(sys.stderr):
-        command_line.tell(message)
-
+tell: Final = command_line.report
+"""Prints a message on stderr; stdout is for results."""
 
 TICK_SECONDS: Final = 0.01
 """How long a host is served before the window is handled again."""

@@ -1,32 +1,44 @@
-"""`ramtek play`: runs a stream of instructions from a file, in a window or into a picture."""
+"""`ramtek play`: runs a stream of instructions from a file, in a window, into a picture or into a film."""
 
 from __future__ import annotations
 
 import os
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import click
+from click.core import ParameterSource
 
 from ramtek_emu.command_line import Ended
 from ramtek_emu.commands.displays import (
+    Run,
     display_asked_for,
     display_options,
     open_stream,
     refuse_outputs,
     running,
     show,
+    tell,
     tell_the_end,
     tell_unexecuted,
 )
-from ramtek_emu.errors import MissingInputError, reason_of
+from ramtek_emu.errors import ColorsError, MissingInputError, reason_of
+
+if TYPE_CHECKING:
+    from ramtek_emu.host.pipe import CutReader
+    from ramtek_emu.host.server import HostSession
 
 EXAMPLES: Final = """\b
 Examples:
   ramtek play drawing.ramtek
   ramtek play circling_light.ramtek --loads-per-second 30
   ramtek play drawing.ramtek -o drawing.png --configuration princeton_9300
+  ramtek play drawing.ramtek --film drawing.webp --every 1 --once
+  ramtek play circling_light.ramtek --film "circling/{number:04}.png"
   old_program | ramtek play - -o drawing.png --record drawing.ramtek
 """
+
+FRAMES_PER_SECOND: Final = 24.0
+"""Assumed: the rate of motion pictures, as of `autocolor animate`."""
 
 
 @click.command(epilog=EXAMPLES)
@@ -39,7 +51,30 @@ Examples:
     metavar="RATE",
     help="In the window, load the table at most so often: an animation of table loads.",
 )
+@click.option(
+    "--film",
+    metavar="FILE",
+    help="Write a film: .webp or .apng (lossless), .gif (256 colors a frame), or a name pattern for numbered"
+    " pictures such as {number:04}.png. Its last frame is the picture at the end.",
+)
+@click.option(
+    "--every",
+    type=click.IntRange(min=1),
+    metavar="N",
+    help="A frame of the film after every N instructions; without it, after every load of the table (LAM).",
+)
+@click.option(
+    "--fps",
+    type=float,
+    default=FRAMES_PER_SECOND,
+    show_default=True,
+    metavar="RATE",
+    help="Frames per second of the film.",
+)
+@click.option("--once", is_flag=True, help="Show the film once; otherwise it begins again at its end.")
+@click.pass_context
 def play(
+    context: click.Context,
     stream: str,
     output: str | None,
     snapshot: str | None,
@@ -49,19 +84,25 @@ def play(
     record: str | None,
     window: bool,
     loads_per_second: int | None,
+    film: str | None,
+    every: int | None,
+    fps: float,
+    once: bool,
 ) -> None:
     """Run STREAM, a file of 16-bit words with the low byte first; - is stdin.
 
-    Without -o or --snapshot it is shown in a window. The replies to instructions that read are dropped.
+    Without -o, --snapshot or --film it is shown in a window. The replies to instructions that read are
+    dropped.
     """
-    in_window = window or (output is None and snapshot is None)
+    in_window = window or (output is None and snapshot is None and film is None)
     if loads_per_second is not None and not in_window:
         raise click.UsageError("--loads-per-second is for the window; add --window, or leave it out")
-    refuse_outputs(force, output, snapshot, record)
+    refuse_film(context, film, force)
+    refuse_outputs(force, output, snapshot, record, film)
     file = open_stream(stream)
     display = display_asked_for(configuration, start)
 
-    from ramtek_emu.host.pipe import PacedReader, PolledPipe, serve_pipe
+    from ramtek_emu.host import pipe
     from ramtek_emu.host.port import waiting_bytes
     from ramtek_emu.host.server import HostSession
 
@@ -80,11 +121,73 @@ def play(
         if in_window:
             paced = read
             if loads_per_second is not None:
-                paced = PacedReader(read, loads_per_second, display.configuration)
-            show(display, run, PolledPipe(session, paced).serve_for)
+                paced = pipe.PacedReader(read, loads_per_second, display.configuration)
+            show(display, run, pipe.PolledPipe(session, paced).serve_for)
             return
-        serve_pipe(session, read, None, lambda: run.ends)
+        waiting = 0
+        if film is None:
+            pipe.serve_pipe(session, read, None, lambda: run.ends)
+        else:
+            is_cut = pipe.is_load if every is None else pipe.every(every)
+            cut = pipe.CutReader(read, display.configuration, is_cut)
+            write_fields(film, session, cut, run, fps, not once, force)
+            waiting = cut.waiting
         tell_the_end(session)
-        tell_unexecuted(session.unexecuted + waiting_bytes(number) // 2)
+        tell_unexecuted(session.unexecuted + (waiting + waiting_bytes(number)) // 2)
     if run.signal:
         raise Ended(run.signal)
+
+
+def refuse_film(context: click.Context, film: str | None, force: bool) -> None:
+    """Refuse a film that cannot be written, and options of a film without a film, before the work."""
+    given = {name: context.get_parameter_source(name) for name in ("every", "fps", "once")}
+    options = [name for name, source in given.items() if source is ParameterSource.COMMANDLINE]
+    if film is None:
+        if options:
+            raise click.UsageError(f"--{options[0]} is for a film; add --film FILE, or leave it out")
+        return
+    if context.params["window"]:
+        raise click.UsageError(
+            "a film must be written without a window, not with --window; leave it out, or press F3"
+            " in the window to record what it shows"
+        )
+    from ramtek_emu.films import check_film
+
+    try:
+        check_film(film, context.params["fps"], force)
+    except ColorsError as refusal:
+        raise click.UsageError(str(refusal)) from None
+
+
+def write_fields(
+    path: str, session: HostSession, read: CutReader, run: Run, rate: float, loop: bool, force: bool
+) -> None:
+    """Execute a stream and write its film. If the film fails, that is reported, and the stream goes on.
+
+    Raises MissingInputError if the stream cannot be read to its end.
+    """
+    from ramtek_emu.films import Loss, most_fields, write_film
+    from ramtek_emu.host.pipe import StreamFields
+
+    scan_out = session.display.scan_out
+    most = most_fields(path, scan_out.lines, scan_out.elements)
+    film = StreamFields(session, read, most, lambda: run.ends)
+    fields, loss = iter(film), Loss()
+
+    def write() -> None:
+        nonlocal loss
+        loss = write_film(path, fields, fields_per_second=rate, loop=loop, overwrite=force)
+
+    is_written = run.attempt(write)
+    for _ in fields:
+        pass
+    if not is_written:
+        return
+    if film.left_out:
+        tell(
+            f"a film such as {path} must have at most {most:,} frames, not more: it has the first"
+            f" {most - 1:,} and the last; make fewer with --every"
+        )
+    if loss.fields:
+        tell(loss.sentence(film.count))
+    tell(f"wrote {path}, {film.count:,} frame{'' if film.count == 1 else 's'}")

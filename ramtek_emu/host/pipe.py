@@ -3,6 +3,7 @@
 `serve_pipe` blocks until the host sends something, as a command does. `PolledPipe` never blocks, so that a
 window can be drawn in between: two threads read and write the pipes, and only the caller uses the display.
 `PacedReader` reads a recorded stream at the pace of a host that loads the table at a given rate.
+`StreamFields` are the fields of a recorded stream, for a film.
 
 A host that stops reading its replies loses them, but its words are still executed (Assumed: a host that draws
 and leaves wants its picture). The session ends with the input; an unfinished instruction and an odd last byte
@@ -19,10 +20,11 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
+from ramtek_emu.arrays import Colors
 from ramtek_emu.configuration import Configuration
 from ramtek_emu.host.server import READ_BYTES, HostSession
 from ramtek_emu.instruction_set.decoder import Decoder
-from ramtek_emu.instruction_set.instruction import encode
+from ramtek_emu.instruction_set.instruction import Instruction
 
 Read = Callable[[int], bytes]
 Write = Callable[[bytes], object]
@@ -126,6 +128,73 @@ class PolledPipe:
             self._replies.task_done()
 
 
+class CutReader:
+    """Reads a stream as the given `read` does, and cuts it after the instructions that `is_cut` chooses.
+
+    `is_cut` is called for each instruction in order; an illegal word is an instruction with the format
+    ILLEGAL, as in a listing.
+    """
+
+    def __init__(
+        self, read: Read, configuration: Configuration, is_cut: Callable[[Instruction], bool]
+    ) -> None:
+        self.ends_in_cut = False
+        """Whether the last piece ends with a chosen instruction."""
+        self._read = read
+        self._is_cut = is_cut
+        self._decoder = Decoder(configuration)
+        self._pieces: deque[tuple[bytes, bool]] = deque()
+        self._odd_byte = b""
+
+    @property
+    def waiting(self) -> int:
+        """The number of bytes that were read and not returned."""
+        return sum(len(piece) for piece, _ in self._pieces)
+
+    def __call__(self, most: int) -> bytes:
+        """The next piece, at most `most` bytes; no bytes at the end of the stream."""
+        if not self._pieces:
+            data = self._read(most)
+            if not data:
+                return data
+            self._pieces.extend(self._pieces_of(data))
+        piece, self.ends_in_cut = self._pieces.popleft()
+        return piece
+
+    def _pieces_of(self, data: bytes) -> Iterator[tuple[bytes, bool]]:
+        """Yields the bytes, cut after the chosen instructions, and whether a piece ends with one."""
+        # A word may have begun in the bytes before, and an instruction in the words before.
+        odd = len(self._odd_byte)
+        whole = self._odd_byte + data
+        self._odd_byte = whole[len(whole) & ~1 :]
+        words = np.frombuffer(whole, "<u2", len(whole) // 2).astype(np.uint16, copy=False)
+        begun = 0
+        for instruction in self._decoder.feed(words):
+            if self._is_cut(instruction):
+                end = 2 * self._decoder.used - odd
+                yield data[begun:end], True
+                begun = end
+        if begun < len(data):
+            yield data[begun:], False
+
+
+def is_load(instruction: Instruction) -> bool:
+    """Whether an instruction loads the lookup table."""
+    return instruction.format.name == "LAM"
+
+
+def every(count: int) -> Callable[[Instruction], bool]:
+    """A function that is true for each `count`-th of its calls, with any instruction."""
+    number = 0
+
+    def is_cut(_: Instruction) -> bool:
+        nonlocal number
+        number = (number + 1) % count
+        return number == 0
+
+    return is_cut
+
+
 class PacedReader:
     """Reads a stream as the given `read` does, but waits before every load of the lookup table.
 
@@ -147,25 +216,16 @@ class PacedReader:
         clock: Callable[[], float] = time.monotonic,
         sleep: Callable[[float], object] = time.sleep,
     ) -> None:
-        self._read = read
+        self._read = CutReader(read, configuration, is_load)
         self._seconds = 1 / loads_per_second
-        self._decoder = Decoder(configuration)
         self._clock = clock
         self._sleep = sleep
-        self._pieces: deque[tuple[bytes, bool]] = deque()
-        """Pieces of the stream, and whether a piece ends with a load of the table."""
-        self._odd_byte = b""
         self._due = clock()
 
     def __call__(self, most: int) -> bytes:
         """At most `most` bytes of the stream, none at its end. Waits until a load is due."""
-        if not self._pieces:
-            data = self._read(most)
-            if not data:
-                return data
-            self._pieces.extend(self._pieces_of(data))
-        data, ends_a_load = self._pieces.popleft()
-        if ends_a_load:
+        data = self._read(most)
+        if data and self._read.ends_in_cut:
             self._wait()
         return data
 
@@ -176,18 +236,48 @@ class PacedReader:
             self._sleep(self._due - now)
         self._due = max(self._due, now) + self._seconds
 
-    def _pieces_of(self, data: bytes) -> Iterator[tuple[bytes, bool]]:
-        """Yields the bytes, cut after every load."""
-        # A word may have begun in the bytes before, and an instruction in the words before.
-        odd = len(self._odd_byte)
-        whole = self._odd_byte + data
-        self._odd_byte = whole[len(whole) & ~1 :]
-        words = np.frombuffer(whole, "<u2", len(whole) // 2).astype(np.uint16, copy=False)
-        begun, end = 0, -2 * self._decoder.pending_words - odd
-        for instruction in self._decoder.feed(words):
-            end += 2 * len(encode(instruction))
-            if instruction.format.name == "LAM":
-                yield data[begun:end], True
-                begun = end
-        if begun < len(data):
-            yield data[begun:], False
+
+class StreamFields:
+    """The fields of a stream, which is executed as they are taken: one after each cut, and one at the end.
+
+    The last field is left out if it equals the field before. There are at most `most` fields: after so many
+    cuts, the rest of the stream is executed, and has its last field alone. When `ends()` is true, the rest of
+    the words is not executed. Replies are dropped.
+    """
+
+    def __init__(
+        self, session: HostSession, read: CutReader, most: int, ends: Callable[[], bool] = lambda: False
+    ) -> None:
+        self.count = 0
+        """The number of fields until now."""
+        self.left_out = False
+        """Whether fields before the last field are left out, because of `most`."""
+        self._session = session
+        self._read = read
+        self._most = most
+        self._ends = ends
+
+    def __iter__(self) -> Iterator[Colors]:
+        """Execute the rest of the stream, and yield its fields, (lines, elements, 3) uint8."""
+        display = self._session.display
+        last: Colors | None = None
+        is_skipped = False
+        while self._executes_piece():
+            self.left_out |= is_skipped
+            is_skipped = self._read.ends_in_cut and self.count == self._most - 1
+            if self._read.ends_in_cut and not is_skipped:
+                last = display.field()
+                self.count += 1
+                yield last
+        field = display.field()
+        if last is None or not np.array_equal(field, last):
+            self.count += 1
+            yield field
+
+    def _executes_piece(self) -> bool:
+        """Execute the words up to the next cut; returns False at the end of the words to execute."""
+        data = self._read(READ_BYTES)
+        for _ in self._session.feed(data) if data else ():
+            if self._ends():
+                return False
+        return bool(data)

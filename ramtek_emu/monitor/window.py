@@ -9,6 +9,9 @@ field, the field is shown before the next input is handled, so that input never 
 
 A program that draws its own pages handles F1, F4 and F12 itself. If the picture belongs to a host, the
 monitor shows pages over the field; see `overlay`.
+
+F3 records the fields that are shown, with their times, as a film; see `ramtek_emu.films.TimedFilm`. Closing
+the window saves the film, too.
 """
 
 from __future__ import annotations
@@ -17,8 +20,9 @@ import os
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
+from ramtek_emu.command_line import report
 from ramtek_emu.display import Ramtek9300
 from ramtek_emu.errors import RamtekError
 from ramtek_emu.monitor.glass import Glass
@@ -27,6 +31,9 @@ from ramtek_emu.monitor.input_queue import Close, Input, InputQueue, Release
 from ramtek_emu.monitor.input_queue import Key as Key
 from ramtek_emu.monitor.input_queue import Pointer as Pointer
 from ramtek_emu.monitor.overlay import PAGES, Overlay
+
+if TYPE_CHECKING:
+    from ramtek_emu.films import TimedFilm
 
 TICK_MILLISECONDS: Final = 15
 BLINK_SECONDS: Final = 0.5
@@ -58,7 +65,7 @@ class Monitor:
         on_close: Callable[[], bool] | None = None,
         on_message: Callable[[str], object] | None = None,
     ) -> None:
-        """Prepare a window; `open` opens it.
+        """Prepare a window; `open` opens it. Screenshots and films are saved in the folder `screenshots`.
 
         `on_key` returns whether it handled the key; if it did not, F1 and F4 show a page over the field, Esc
         closes that page, and F12 saves the field. In full screen, Esc first leaves full screen. `on_release`
@@ -70,6 +77,8 @@ class Monitor:
         self._display = display
         self.full_screen = full_screen
         self.screenshots = Path(screenshots)
+        self.file_name = "ramtek"
+        """The beginning of the names of screenshots and films; a number follows."""
         self.on_key = on_key
         self.on_release = on_release
         self.on_pointer = on_pointer
@@ -81,6 +90,8 @@ class Monitor:
         self.overlay = Overlay()
         """The page and the message over the field."""
         self._enter = False
+        self._film: TimedFilm | None = None
+        """The film that is recorded, or that could not be saved."""
         self.refreshed = 0
         """The number of times that the field was shown; it never decreases."""
         self._caption = caption
@@ -124,16 +135,27 @@ class Monitor:
     @caption.setter
     def caption(self, text: str) -> None:
         self._caption = text
-        self._glass.set_title(text)
+        self._set_title()
+
+    def _set_title(self, message: str = "") -> None:
+        """Show the caption, whether a film is recorded, and a message in the title bar."""
+        recording = "" if self._film is None else "not saved" if self._film.has_ended else "recording"
+        self._glass.set_title(" - ".join(part for part in (self._caption, recording, message) if part))
 
     def open(self) -> None:
         """Open the window; NoScreenError if there is no screen."""
         self._glass.open(self.full_screen)
-        self._glass.set_title(self._caption)
+        self._set_title()
 
     def close(self) -> None:
-        """Close the window without asking."""
+        """Close the window without asking. A film is saved, and a message on stderr has its path."""
         self._glass.close()
+        if self._film is not None:
+            try:
+                report(self._save_film(self._film))
+            except RamtekError as refusal:
+                report(f"{refusal}; the film is lost")
+            self._film = None
 
     def _to_be_shown(self) -> tuple[object, ...]:
         return self.display.scan_out.stamp, self._glass.stamp, self.overlay.stamp
@@ -141,7 +163,7 @@ class Monitor:
     def show_message(self, message: str) -> None:
         """Show a message in the title bar of the window, or over the field in full screen."""
         self.overlay.message = message if self.full_screen else ""
-        self._glass.set_title(" - ".join(part for part in (self._caption, message) if part))
+        self._set_title(message)
 
     def run(self) -> None:
         """Keep the window open until it is closed; open it first if it is not."""
@@ -177,6 +199,10 @@ class Monitor:
         # Hide the mouse pointer while a cursor of the display follows the mouse.
         hides_mouse = any(cursor.is_visible for cursor in self.display.joystick.driven)
         self._glass.show(self.display.scan_out, self.overlay, self._caption, hides_mouse)
+        if self._film is not None and not self._film.has_ended:
+            self._film.show(self.display.field(), time.monotonic())
+            if self._film.is_full:
+                self._tell_of_film(self._film, "the film is full: ")
 
     def toggle_full_screen(self) -> None:
         """Switch to full screen, or back to a window of the previous size."""
@@ -192,7 +218,36 @@ class Monitor:
         """Save the field under the next free number, never over a file; OutputError or WriteError."""
         from ramtek_emu.png import save_numbered
 
-        return save_numbered(self.display.field(), self.screenshots, "ramtek")
+        return save_numbered(self.display.field(), self.screenshots, self.file_name)
+
+    def toggle_recording(self) -> None:
+        """Begin a film with the field that is shown; or end it, save it, and show its path."""
+        if self._film is not None:
+            self._tell_of_film(self._film)
+            return
+        from ramtek_emu.films import TimedFilm
+
+        self._film = TimedFilm(self.display.field(), time.monotonic())
+        # A program that gets messages would draw this message into the film.
+        self.show_message("F3 ends it")
+
+    def _tell_of_film(self, film: TimedFilm, reason: str = "") -> None:
+        """End and save the film, and show its path. A film that cannot be saved is not lost."""
+        try:
+            self.tell(reason + self._save_film(film))
+        except RamtekError as refusal:
+            self.tell(f"{refusal}; F3 tries again")
+
+    def _save_film(self, film: TimedFilm) -> str:
+        """End the film, and save it under the next free number; returns a sentence with its path.
+
+        Raises OutputError or WriteError.
+        """
+        from ramtek_emu.writing import write_numbered
+
+        path = write_numbered(film.end(time.monotonic()), self.screenshots, self.file_name, ".apng")
+        self._film = None
+        return f"saved {path}, {film.fields:,} {'field' if film.fields == 1 else 'fields'}"
 
     def copy(self, text: str) -> bool:
         """Put a text into the clipboard; returns False if the screen has none, or the window is closed."""
@@ -210,9 +265,19 @@ class Monitor:
             self.show_message(message)
 
     def ask_to_close(self) -> None:
-        """Close the window, unless `on_close` returns False."""
-        if self.on_close is None or self.on_close():
-            self.close()
+        """Close the window, unless `on_close` returns False.
+
+        If a film cannot be saved, the window stays until it is asked a second time.
+        """
+        if self.on_close is not None and not self.on_close():
+            return
+        if self._film is not None and not self._film.has_ended:
+            try:
+                report(self._save_film(self._film))
+            except RamtekError as refusal:
+                self.tell(f"{refusal}; F3 tries again, and closing again drops the film")
+                return
+        self.close()
 
     def handle(self, user_input: Input) -> None:
         """Handle one input."""
@@ -240,6 +305,9 @@ class Monitor:
                 self.toggle_full_screen()
         elif key.name == "escape" and self.full_screen:
             self.toggle_full_screen()
+        elif key.name == "f3":
+            if not key.repeated:
+                self.toggle_recording()
         elif key.name == "f10":
             if not key.repeated:
                 self.toggle_fit()

@@ -16,7 +16,15 @@ from PIL import Image
 
 from ramtek_emu.arrays import Colors
 from ramtek_emu.errors import ColorsError, OutputError, OutputExistsError, RamtekError
-from ramtek_emu.films import FORMATS, differing_area, ticks, write_film
+from ramtek_emu.films import (
+    FORMATS,
+    MOST_FIELDS,
+    TimedFilm,
+    differing_area,
+    most_fields,
+    ticks,
+    write_film,
+)
 from tests.ramtek_emu.film_reader import decoded, durations_of
 
 LOSSLESS = (".webp", ".apng")
@@ -54,7 +62,7 @@ def test_a_film_is_decoded_to_the_same_fields(
     fields: list[Colors], suffix: str, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
     path = tmp_path_factory.mktemp("films") / f"film{suffix}"
-    loss = write_film(path, iter(fields), len(fields), fields_per_second=24)
+    loss = write_film(path, iter(fields), fields_per_second=24)
     shown = decoded(path)
     if suffix != ".apng":
         # A WebP has equal fields once, and so does Pillow when it reads a GIF.
@@ -67,7 +75,7 @@ def test_a_film_is_decoded_to_the_same_fields(
 @pytest.mark.parametrize("suffix", LOSSLESS)
 def test_films_without_loss_keep_every_color(suffix: str, tmp_path: Path) -> None:
     fields = noise(4)
-    assert write_film(tmp_path / f"film{suffix}", fields, 4, fields_per_second=24) == (0, 0)
+    assert write_film(tmp_path / f"film{suffix}", fields, fields_per_second=24) == (0, 0)
     assert np.array_equal(decoded(tmp_path / f"film{suffix}"), fields)
 
 
@@ -76,27 +84,30 @@ def test_the_loss_of_a_gif_is_told_as_it_is(tmp_path: Path) -> None:
     few, (many, more) = np.zeros((20, 30, 3), np.uint8), noise(2)
     fields = [few, many, many.copy(), more]
     fields[2][3, 4:7] = 9
-    loss = write_film(tmp_path / "film.gif", fields, 4, fields_per_second=24)
+    loss = write_film(tmp_path / "film.gif", fields, fields_per_second=24)
     differences = [
         np.abs(one.astype(int) - other).max()
         for one, other in zip(decoded(tmp_path / "film.gif"), fields, strict=True)
     ]
     assert differences[0] == 0
     assert min(differences[1:]) > 0
+    assert loss.sentence(4) == (
+        f"3 of 4 frames lost colors, by at most {max(differences)} of 255; .webp and .apng lose none"
+    )
     assert loss == (3, max(differences))
 
 
 def test_a_gif_that_is_off_by_one_has_lost_colors(tmp_path: Path) -> None:
     numbers = np.arange(512)
     field = np.stack([numbers % 256, numbers // 256, numbers * 0], axis=1).astype(np.uint8).reshape(16, 32, 3)
-    assert write_film(tmp_path / "film.gif", [field], 1, fields_per_second=24) == (1, 1)
+    assert write_film(tmp_path / "film.gif", [field], fields_per_second=24) == (1, 1)
     assert np.abs(decoded(tmp_path / "film.gif")[0].astype(int) - field).max() == 1
 
 
 @pytest.mark.parametrize(("suffix", "unit"), [(".webp", 1), (".apng", 1), (".gif", 10)])
 @pytest.mark.parametrize("rate", [0.5, 24, 29.97, 50])
 def test_a_film_lasts_as_long_as_its_rate_says(suffix: str, unit: int, rate: float, tmp_path: Path) -> None:
-    write_film(tmp_path / f"film{suffix}", noise(7, 2, 3), 7, fields_per_second=rate)
+    write_film(tmp_path / f"film{suffix}", noise(7, 2, 3), fields_per_second=rate)
     ends = np.cumsum(durations_of(tmp_path / f"film{suffix}"))
     assert np.abs(ends - np.arange(1, 8) * 1000 / rate).max() <= unit / 2 + 1e-6
 
@@ -110,7 +121,7 @@ def test_the_durations_of_fields_add_up(count: int, rate: float) -> None:
 @pytest.mark.parametrize("suffix", FORMATS)
 def test_a_film_begins_again_unless_it_is_shown_once(suffix: str, tmp_path: Path) -> None:
     for loop, repeats in ((True, 0), (False, 1)):
-        write_film(tmp_path / f"{loop}{suffix}", noise(2), 2, fields_per_second=24, loop=loop)
+        write_film(tmp_path / f"{loop}{suffix}", noise(2), fields_per_second=24, loop=loop)
         with Image.open(tmp_path / f"{loop}{suffix}") as film:
             # A GIF that is shown once has no extension that says so.
             assert film.info.get("loop", 1) == repeats
@@ -138,46 +149,145 @@ def test_fields_are_taken_one_by_one(suffix: str, tmp_path: Path) -> None:
             most = max(most, sum(reference() is not None for reference in references))
             yield copy
 
-    write_film(tmp_path / f"film{suffix}", made(), 12, fields_per_second=24)
+    write_film(tmp_path / f"film{suffix}", made(), fields_per_second=24)
     assert 1 <= most <= 4
 
 
 REFUSED: list[tuple[str, dict[str, Any], type[RamtekError], str]] = [
-    ("film.mp4", {}, OutputError, "a film must end in .webp, .apng, .gif, not in '.mp4'; rename it"),
+    ("film.mp4", {}, OutputError, "must end in .webp, .apng, .gif, or in .png with a number, not in '.mp4'"),
     ("film.gif", {"fields_per_second": 60}, ColorsError, "0.1 to 50 fields per second, not 60; choose"),
     ("film.webp", {"fields_per_second": math.nan}, ColorsError, "0.1 to 100 fields per second, not nan"),
-    ("film.webp", {"count": 3}, ColorsError, "a film must have 3 fields, not 2; count them first"),
-    ("film.apng", {"count": 3}, ColorsError, "a film must have 3 fields, not 2; count them first"),
-    ("film.apng", {"count": 1}, ColorsError, "1 (lines, elements, 3) uint8 fields of one size, not field 2"),
-    ("film.webp", {"count": 1}, ColorsError, "1 (lines, elements, 3) uint8 fields of one size, not field 2"),
-    ("film.gif", {"count": 0}, ColorsError, "the fields of a film must be 1 to 100000, not 0; choose fewer"),
     ("there.gif", {}, OutputExistsError, "an output must be a new file, not"),
+    (
+        "film.png",
+        {},
+        OutputError,
+        "numbered pictures must have one number in their name, as in frame-{number",
+    ),
+    ("{number}-{number}.png", {}, OutputError, "numbered pictures must have one number in their name"),
+    ("{name}-{number}.png", {}, OutputError, "numbered pictures must have one number in their name"),
+    ("{number}/{number}.png", {}, OutputError, "numbered pictures must have one number in their name"),
+    ("none/{number}.png", {}, OutputError, "there is no folder"),
+    ("there-{number:02}.png", {}, OutputExistsError, "there-7.png, which exists"),
 ]
 
 
 @pytest.mark.parametrize(("name", "options", "error", "sentence"), REFUSED)
-def test_a_film_that_cannot_be_written_leaves_no_file(
+def test_a_film_that_cannot_be_written_takes_no_field_and_leaves_no_file(
     name: str, options: dict[str, Any], error: type[RamtekError], sentence: str, tmp_path: Path
 ) -> None:
-    (tmp_path / "there.gif").write_bytes(b"old")
+    old = ["there-7.png", "there.gif"]
+    for path in old:
+        (tmp_path / path).write_bytes(b"old")
+    fields = iter(noise(2))
     with pytest.raises(error) as refusal:
-        write_film(tmp_path / name, noise(2), **{"count": 2, "fields_per_second": 24, **options})
+        write_film(tmp_path / name, fields, **{"fields_per_second": 24, **options})
     assert sentence in str(refusal.value)
-    assert os.listdir(tmp_path) == ["there.gif"]
-    assert (tmp_path / "there.gif").read_bytes() == b"old"
+    assert len(list(fields)) == 2
+    assert sorted(os.listdir(tmp_path)) == old
+    assert all((tmp_path / path).read_bytes() == b"old" for path in old)
+
+
+@pytest.mark.parametrize("suffix", FORMATS)
+@pytest.mark.parametrize("count", [0, 4])
+def test_a_film_has_at_least_one_field_and_at_most_the_limit(
+    suffix: str, count: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("ramtek_emu.films.MOST_FIELDS", 3)
+    write_film(tmp_path / f"three{suffix}", noise(3), fields_per_second=24)
+    assert len(decoded(tmp_path / f"three{suffix}")) == 3
+    with pytest.raises(ColorsError, match=r"a film must have at (least one field, not none|most 3 fields)"):
+        write_film(tmp_path / f"film{suffix}", noise(count), fields_per_second=24)
+    assert os.listdir(tmp_path) == [f"three{suffix}"]
+
+
+def test_numbered_pictures_are_the_fields(tmp_path: Path) -> None:
+    fields = noise(11)
+    pattern = tmp_path / "a-{number:03}.png"
+    assert write_film(pattern, iter(fields), fields_per_second=24) == (0, 0)
+    names = [f"a-{number:03}.png" for number in range(1, 12)]
+    assert sorted(os.listdir(tmp_path)) == names
+    for name, field in zip(names, fields, strict=True):
+        assert np.array_equal(decoded(tmp_path / name), [field])
+    write_film(pattern, fields[5:7], fields_per_second=24, overwrite=True)
+    assert np.array_equal(decoded(tmp_path / names[1]), [fields[6]])
+
+
+def test_a_folder_that_cannot_be_listed_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(_: Path) -> list[str]:
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(os, "listdir", fail)
+    with pytest.raises(OutputError, match="permission denied"):
+        write_film(tmp_path / "{number}.png", noise(1), fields_per_second=24)
+
+
+def test_a_webp_of_unknown_length_has_fewer_large_fields() -> None:
+    assert most_fields("a.apng", 480, 640) == most_fields("{number}.png", 1, 1) == MOST_FIELDS
+    assert most_fields("a.WebP", 480, 640) == 3495
+    assert most_fields("a.webp", 1, 1) == MOST_FIELDS
+    assert most_fields("a.webp", 1 << 20, 1 << 20) == 1
+
+
+@given(
+    fields=films(),
+    seconds=st.lists(st.floats(0.001, 300), min_size=5, max_size=5),
+    start=st.floats(-10_000, 10_000),
+)
+def test_a_timed_film_shows_each_field_for_its_time(
+    fields: list[Colors], seconds: list[float], start: float, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    times = [start, *(start + np.cumsum(seconds[: len(fields)]))]
+    film = TimedFilm(fields[0], start)
+    for field, at in zip(fields[1:], times[1:-1], strict=True):
+        film.show(field, at)
+    data = film.end(times[-1])
+    path = tmp_path_factory.mktemp("films") / "film.apng"
+    path.write_bytes(data)
+    changes = [n for n, f in enumerate(fields) if n == 0 or not np.array_equal(f, fields[n - 1])]
+    assert film.fields == len(changes)
+    assert np.array_equal(decoded(path), [fields[number] for number in changes])
+    spans = np.diff([*(times[number] for number in changes), times[-1]]) * 1000
+    # Times are rounded to milliseconds, and long durations to the four digits that the format has.
+    assert np.all(np.abs(durations_of(path) - spans) <= 2 + spans / 6553)
+    film.show(255 - fields[-1], times[-1] + 1)
+    assert film.end(times[-1] + 2) == data
+
+
+def test_no_duration_of_a_timed_film_is_too_long_for_the_format(tmp_path: Path) -> None:
+    first, second = noise(2, 2, 3)
+    film = TimedFilm(first, 0)
+    film.show(second, 1e6)
+    (tmp_path / "film.apng").write_bytes(film.end(1e6 + 60_000))
+    assert durations_of(tmp_path / "film.apng") == [65_535_000, 60_000_000]
+
+
+@pytest.mark.parametrize("limit", ["FIELDS", "BYTES"])
+def test_a_timed_film_is_full_at_its_limits(limit: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(f"ramtek_emu.films.MOST_{limit}", {"FIELDS": 3, "BYTES": 3500}[limit])
+    first, *fields = noise(4)
+    film = TimedFilm(first, 0.0)
+    full = []
+    for number, field in enumerate(fields, 1):
+        film.show(field, number)
+        full.append(film.is_full)
+    # The data of a field are 1,800 bytes and more, and those of the field that is shown are not encoded yet.
+    assert full == [False, True, True]
+    film.end(9.0)
+    assert film.is_full
 
 
 @pytest.mark.parametrize("suffix", FORMATS)
 def test_fields_of_different_sizes_make_no_film(suffix: str, tmp_path: Path) -> None:
     fields = [np.zeros((2, 3, 3), np.uint8), np.zeros((3, 2, 3), np.uint8)]
     with pytest.raises(ColorsError, match=r"not field 2 of shape \(3, 2, 3\) after \(2, 3, 3\)"):
-        write_film(tmp_path / f"film{suffix}", fields, 2, fields_per_second=24)
+        write_film(tmp_path / f"film{suffix}", fields, fields_per_second=24)
     assert os.listdir(tmp_path) == []
 
 
 def test_an_animated_png_is_a_valid_png_of_its_first_field(tmp_path: Path) -> None:
     fields = noise(3)
-    write_film(tmp_path / "film.apng", fields, 3, fields_per_second=24)
+    write_film(tmp_path / "film.apng", fields, fields_per_second=24)
     data = (tmp_path / "film.apng").read_bytes()
     place, chunks = 8, [data[:8]]
     while place < len(data):

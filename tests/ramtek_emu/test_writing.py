@@ -95,8 +95,10 @@ def test_an_output_is_written_piece_by_piece_and_appears_when_kept(tmp_path: Pat
         output.write(b"one ")
         assert not path.exists()
         output.write(b"two")
+        output.write_at(1, b"NE")
+        output.write(b"!")
         output.keep()
-    assert path.read_bytes() == b"one two"
+    assert path.read_bytes() == b"oNE two!"
     assert os.listdir(tmp_path) == ["words.ramtek"]
 
 

@@ -207,6 +207,24 @@ def test_the_clipboard_of_the_window_is_that_of_the_viewer(monkeypatch: pytest.M
         monitor.close()
 
 
+def test_the_window_is_recorded_beside_the_screenshots_of_the_viewer(tmp_path: Path) -> None:
+    from autocolor.commands.view import connected
+    from autocolor.screens.viewer import Viewer
+    from ramtek_emu import Ramtek9300
+    from ramtek_emu.monitor.window import Key, Monitor
+    from tests.autocolor.sessions import car
+
+    display = Ramtek9300()
+    viewer = Viewer(car(), display, tmp_path)
+    monitor = connected(Monitor(display), viewer)
+    viewer.session.tell("")
+    for _ in range(2):
+        monitor.handle_key(Key("f3"))
+    assert viewer.message.startswith("saved ")
+    monitor.handle_key(Key("f12"))
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["autocolor-0001.apng", "autocolor-0001.png"]
+
+
 def test_modifiers_and_released_keys_reach_the_viewer(folder: Path, run: Run, monitors: list[Any]) -> None:
     from ramtek_emu.monitor.window import Key, Pointer
 

@@ -1,12 +1,21 @@
 from __future__ import annotations
 
+import re
+import signal
 from pathlib import Path
 
 import numpy as np
+import pytest
+from click.testing import CliRunner, Result
+from PIL import Image
 
-from ramtek_emu import read_snapshot
-from tests.ramtek_emu.processes import field_of, run, stream
+from ramtek_emu import MissingInputError, RamtekError, WriteError, instructions, read_snapshot
+from ramtek_emu.commands.ramtek import ramtek
+from ramtek_emu.writing import Output
+from tests.ramtek_emu.film_reader import decoded, durations_of
+from tests.ramtek_emu.processes import field_of, run, started, stream
 from tests.ramtek_emu.recorded_streams import COLOR_MAP, OUTLINE
+from tests.ramtek_emu.serving import until
 
 
 def test_a_played_stream_gives_its_picture_its_recording_and_its_snapshot(tmp_path: Path) -> None:
@@ -28,3 +37,168 @@ def test_a_played_stream_gives_its_picture_its_recording_and_its_snapshot(tmp_pa
     )
     assert run("play", "-", "-o", picture, "--force", data=record.read_bytes()).returncode == 0
     assert run("play", path, "--loads-per-second", "30").returncode == 69
+
+
+FRAMES = np.concatenate([instructions.load_entries(0, [(20 * number, 0, 0)]) for number in range(1, 6)])
+"""Five loads of the entry that an empty display shows everywhere."""
+
+
+def reds(path: Path | str) -> list[int]:
+    """The red of the first pixel of each field of a film."""
+    return [int(field[0, 0, 0]) for field in decoded(path)]
+
+
+def play(*arguments: object) -> Result:
+    return CliRunner().invoke(ramtek, ["play", *map(str, arguments)])
+
+
+@pytest.fixture
+def frames(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
+    """The file of five loads, in the current folder."""
+    monkeypatch.chdir(tmp_path)
+    Path("frames.ramtek").write_bytes(stream(FRAMES))
+    return "frames.ramtek"
+
+
+@pytest.mark.parametrize(
+    ("options", "expected"),
+    [
+        ([], [20, 40, 60, 80, 100]),
+        (["--every", 1], [20, 40, 60, 80, 100]),
+        (["--every", 2], [40, 80, 100]),
+        (["--every", 9], [100]),
+    ],
+)
+@pytest.mark.parametrize("name", ["a.apng", "a.webp", "a.gif"])
+def test_a_film_has_a_frame_after_each_load_or_after_some_instructions(
+    frames: str, name: str, options: list[object], expected: list[int]
+) -> None:
+    played = play(frames, "--film", name, *options, "-o", "a.png")
+    assert played.exit_code == 0
+    count = f"{len(expected)} frame{'s' * (len(expected) > 1)}"
+    assert played.stderr.splitlines() == [f"wrote {name}, {count}", "wrote a.png"]
+    assert reds(name) == expected
+    assert np.array_equal(decoded(name)[-1], field_of(Path("a.png")))
+
+
+def test_a_film_goes_on_from_a_snapshot_and_is_written_with_all_other_outputs(frames: str) -> None:
+    assert play(frames, "--configuration", "PRINCETON_9300", "--snapshot", "a.png").exit_code == 0
+    Path("nop.ramtek").write_bytes(stream(instructions.no_operation()))
+    others = ("--record", "b.ramtek", "--snapshot", "b.png")
+    assert play("nop.ramtek", "--start", "a.png", "--film", "b{number}.png", *others).exit_code == 0
+    assert np.array_equal(decoded("b1.png")[0], read_snapshot("a.png").field())
+    assert Path("b.ramtek").read_bytes() == Path("nop.ramtek").read_bytes()
+
+
+def test_a_film_is_as_fast_as_it_should_be_and_is_shown_once_if_asked(frames: str) -> None:
+    assert play(frames, "--film", "a.apng", "--fps", 5, "--once").exit_code == 0
+    assert durations_of(Path("a.apng")) == [200] * 5
+    with Image.open("a.apng") as film:
+        assert film.info["loop"] == 1
+
+
+def test_a_film_that_is_too_long_has_the_last_frame_and_says_so(
+    frames: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("ramtek_emu.films.MOST_FIELDS", 3)
+    played = play(frames, "--film", "a.webp")
+    assert played.stderr.splitlines() == [
+        "a film such as a.webp must have at most 3 frames, not more: it has the first 2 and the last; make"
+        " fewer with --every",
+        "wrote a.webp, 3 frames",
+    ]
+    assert reds("a.webp") == [20, 40, 100]
+
+
+def test_a_gif_says_what_it_lost(frames: str) -> None:
+    # A word of many colors on each pixel.
+    pixels = np.arange(640 * 480, dtype=np.uint16).reshape(480, 640) % 1024
+    colors = np.stack([np.arange(1024) % 256, np.arange(1024) // 4, np.arange(1024) % 7], axis=1)
+    Path("many.ramtek").write_bytes(
+        stream(np.concatenate([instructions.write_image(pixels), instructions.load_entries(0, colors)]))
+    )
+    played = play("many.ramtek", "--film", "a.gif")
+    assert re.search(r"^1 of 1 frames lost colors, by at most \d+ of 255; \.webp and", played.stderr)
+
+
+REFUSED: list[tuple[list[object], int, str]] = [
+    (
+        ["--film", "a.mp4"],
+        73,
+        "a film must end in .webp, .apng, .gif, or in .png with a number, not in '.mp4'",
+    ),
+    (["--film", "a.png"], 73, "numbered pictures must have one number in their name"),
+    (["--film", "frames.apng"], 73, "which exists; choose another name"),
+    (["--film", "a.gif", "--fps", 60], 2, "a film must have 0.1 to 50 fields per second, not 60"),
+    (["--film", "a.webp", "--fps", "nan"], 2, "a film must have 0.1 to 100 fields per second, not nan"),
+    (["--film", "a.webp", "--every", 0], 2, "'--every': 0 is not in the range"),
+    (["--film", "a.webp", "--window"], 2, "leave it out, or press F3 in the window"),
+    (["--film", "a.webp", "--loads-per-second", 9], 2, "--loads-per-second is for the window"),
+    (["--film", "a.webp", "--record", "a.webp"], 2, "two outputs must be two files"),
+    (["-o", "a.png", "--every", 3], 2, "--every is for a film; add --film FILE, or leave it out"),
+    (["--once"], 2, "--once is for a film; add --film FILE, or leave it out"),
+]
+
+
+@pytest.mark.parametrize(("options", "code", "sentence"), REFUSED)
+def test_a_wrong_film_is_refused_before_the_stream_is_read(
+    frames: str, options: list[object], code: int, sentence: str
+) -> None:
+    Path("frames.apng").write_bytes(b"old")
+    refused = play("none.ramtek", *options)
+    error = refused.exception
+    assert (error.exit_code if isinstance(error, RamtekError) else refused.exit_code) == code
+    assert sentence in refused.stderr + str(error)
+    assert sorted(path.name for path in Path().iterdir()) == ["frames.apng", "frames.ramtek"]
+
+
+@pytest.mark.parametrize("name", ["a.apng", "{number}.png"])
+def test_a_film_that_fails_is_reported_and_the_stream_goes_on(
+    frames: str, name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(output: Output, _: bytes) -> None:
+        raise WriteError(f"{output.path.name} is full")
+
+    monkeypatch.setattr(Output, "write", fail)
+    monkeypatch.setattr(
+        "ramtek_emu.png.write_atomically", lambda path, data, **_: Path(path).write_bytes(data)
+    )
+    played = play(frames, "--film", name, "-o", "end.png")
+    assert played.exit_code == 74
+    assert played.stderr.splitlines() == [
+        f"ramtek: {name.replace('{number}', '1')} is full",
+        "wrote end.png",
+    ]
+    assert field_of(Path("end.png"))[0, 0, 0] == 100
+    assert sorted(path.name for path in Path().iterdir()) == ["end.png", "frames.ramtek"]
+
+
+def test_a_stream_that_cannot_be_read_to_its_end_makes_no_film(
+    frames: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pieces = [stream(FRAMES)]
+
+    def read(_: int, __: int) -> bytes:
+        if pieces:
+            return pieces.pop()
+        raise OSError("broken")
+
+    monkeypatch.setattr("ramtek_emu.commands.play.os.read", read)
+    failed = play(frames, "--film", "a.apng", "-o", "a.png")
+    assert isinstance(failed.exception, MissingInputError)
+    assert [path.name for path in Path().iterdir()] == [frames]
+
+
+def test_an_interrupted_film_has_the_frames_so_far(tmp_path: Path) -> None:
+    arguments = ("--film", tmp_path / "{number}.png", "--every", 2, "-o", tmp_path / "end.png")
+    with started("play", "-", *arguments) as process:
+        assert process.stdin is not None
+        process.stdin.write(stream(FRAMES))
+        until((tmp_path / "2.png").exists)
+        process.send_signal(signal.SIGINT)
+        assert process.wait(60) in (-signal.SIGINT, 128 + signal.SIGINT)
+        assert process.stderr is not None
+        assert re.search(rb"wrote .*\{number\}\.png, [23] frames", process.stderr.read())
+    numbers = sorted(int(path.stem) for path in tmp_path.glob("[0-9]*.png"))
+    assert numbers in ([1, 2], [1, 2, 3])
+    assert np.array_equal(field_of(tmp_path / f"{numbers[-1]}.png"), field_of(tmp_path / "end.png"))

@@ -1,19 +1,33 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from itertools import pairwise
 
 import numpy as np
-from hypothesis import given
+import pytest
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ramtek_emu import GMR_9300, Ramtek9300, instructions
-from ramtek_emu.host.pipe import PacedReader, PolledPipe, serve_pipe
+from ramtek_emu.arrays import Colors
+from ramtek_emu.films import write_film
+from ramtek_emu.host.pipe import (
+    CutReader,
+    PacedReader,
+    PolledPipe,
+    StreamFields,
+    every,
+    is_load,
+    serve_pipe,
+)
 from ramtek_emu.host.server import HostSession
 from ramtek_emu.instruction_set.decoder import Decoder
+from ramtek_emu.instruction_set.disassembler import items
+from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.monitor.window import Monitor
-from ramtek_emu.testing import check_words_within_planes
+from ramtek_emu.testing import check_words_within_planes, streams
+from tests.ramtek_emu.film_reader import decoded
 from tests.ramtek_emu.processes import stream
 from tests.ramtek_emu.recorded_streams import OUTLINE, RECORDED
 from tests.ramtek_emu.serving import until
@@ -104,11 +118,16 @@ def load(number: int) -> bytes:
     return stream(instructions.load_entries(number, [(number, 0, 0)]))
 
 
-def paced(data: bytes, cuts: list[int], rate: int, clock: Clock) -> list[bytes]:
-    """The pieces that a paced reader returns for a stream in pieces."""
+def in_pieces(data: bytes, cuts: list[int]) -> Callable[[int], bytes]:
+    """A `read` that returns a stream in pieces, and ignores its argument."""
     places = [0, *sorted(cut % (len(data) + 1) for cut in cuts), len(data)]
     pieces = [data[start:end] for start, end in pairwise(places) if start < end]
-    read = PacedReader(lambda _: pieces.pop(0) if pieces else b"", rate, GMR_9300, clock, clock.sleep)
+    return lambda _: pieces.pop(0) if pieces else b""
+
+
+def paced(data: bytes, cuts: list[int], rate: int, clock: Clock) -> list[bytes]:
+    """The pieces that a paced reader returns for a stream in pieces."""
+    read = PacedReader(in_pieces(data, cuts), rate, GMR_9300, clock, clock.sleep)
     read_pieces = []
     while piece := read(1 << 16):
         read_pieces.append(piece)
@@ -153,3 +172,79 @@ def test_a_late_load_does_not_hurry_the_next_loads() -> None:
     while read(1 << 16):
         pass
     assert clock.slept == []
+
+
+def seen_load(number: int) -> bytes:
+    """A load of the entry that an empty display shows everywhere."""
+    return stream(instructions.load_entries(0, [(20 * number, 0, 0)]))
+
+
+def cut_read(data: bytes, cuts: list[int], is_cut: Callable[[Instruction], bool]) -> CutReader:
+    """A cut reader of a stream that arrives in pieces."""
+    return CutReader(in_pieces(data, cuts), GMR_9300, is_cut)
+
+
+def fields_by_instruction(data: bytes) -> tuple[list[Colors], list[str]]:
+    """The fields before a stream and after each of its instructions, with the names of the instructions."""
+    display = Ramtek9300()
+    fields, names = [display.field()], []
+    for item in items([data]):
+        if item.instruction is None and item.note == "the stream ends within this instruction":
+            break
+        display.send(item.words)
+        fields.append(display.field())
+        names.append("" if item.instruction is None else item.instruction.format.name)
+    return fields, names
+
+
+long_streams = st.lists(
+    streams(12).map(stream) | st.integers(0, 9).map(seen_load) | st.just(stream(OUTLINE)),
+    min_size=1,
+    max_size=6,
+).map(b"".join)
+
+
+@settings(max_examples=25)
+@given(data=long_streams, cuts=cuts, count=st.integers(0, 4))
+def test_a_film_of_a_stream_has_the_fields_after_its_instructions(
+    data: bytes, cuts: list[int], count: int, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    fields, names = fields_by_instruction(data)
+    chosen = [n for n, name in enumerate(names, 1) if (n % count == 0 if count else name == "LAM")]
+    expected = [fields[number] for number in chosen]
+    if not expected or not np.array_equal(expected[-1], fields[-1]):
+        expected.append(fields[-1])
+    read = cut_read(data, cuts, every(count) if count else is_load)
+    film = StreamFields(HostSession(Ramtek9300()), read, 1000)
+    path = tmp_path_factory.mktemp("films") / "film.apng"
+    write_film(path, film, fields_per_second=24)
+    assert film.count == len(expected)
+    assert not film.left_out
+    assert np.array_equal(decoded(path), expected)
+
+
+LOADS = [seen_load(number) for number in range(1, 7)]
+
+
+@pytest.mark.parametrize(
+    ("most", "numbers", "left_out"), [(1, [5], True), (3, [0, 1, 5], True), (6, range(6), False)]
+)
+def test_the_last_field_of_a_stream_has_a_place_in_every_film(
+    most: int, numbers: Iterable[int], left_out: bool
+) -> None:
+    expected = fields_by_instruction(b"".join(LOADS))[0][1:]
+    film = StreamFields(HostSession(Ramtek9300()), cut_read(b"".join(LOADS), [], is_load), most)
+    assert np.array_equal(list(film), [expected[number] for number in numbers])
+    assert film.left_out is left_out
+
+
+def test_a_film_that_is_ended_has_the_field_at_its_end_and_counts_the_words_that_wait() -> None:
+    session = HostSession(Ramtek9300())
+    read = cut_read(b"".join(LOADS), [], every(1))
+    film = StreamFields(session, read, 100, lambda: film.count == 3)
+    fields = list(film)
+    assert len(fields) == 4
+    assert np.array_equal(fields[-1], session.display.field())
+    # The fourth load was executed before the end was noticed.
+    assert read.waiting == len(LOADS[4]) + len(LOADS[5])
+    assert session.unexecuted == 0

@@ -18,6 +18,7 @@ from ramtek_emu.monitor.input_queue import Close, Release
 from ramtek_emu.monitor.pattern import pattern
 from ramtek_emu.monitor.window import Key, Monitor, Pointer
 from tests.ramtek_emu.displays import shown
+from tests.ramtek_emu.film_reader import decoded, durations_of
 from tests.ramtek_emu.serving import until
 
 pygame = pytest.importorskip("pygame")
@@ -219,6 +220,133 @@ def test_a_screenshot_that_cannot_be_saved_is_a_message(monitor: Monitor, tmp_pa
     press(monitor, pygame.K_F12)
     assert monitor.is_open
     assert "there is no folder" in messages[1]
+
+
+class Clock:
+    """The time of the monitor."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.now = 100.0
+        monkeypatch.setattr("time.monotonic", lambda: self.now)
+
+
+def title() -> str:
+    return str(pygame.display.get_caption()[0])
+
+
+def show_load(monitor: Monitor, red: int) -> np.ndarray[tuple[int, ...], np.dtype[np.uint8]]:
+    """Load an entry that the test pattern shows, show the field, and return it."""
+    monitor.display.send(instructions.load_entries(9, [[red, 100, 50]]))
+    monitor.step()
+    return monitor.display.field()
+
+
+def test_a_recording_has_the_fields_that_were_shown_with_their_times(
+    monitor: Monitor, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    clock = Clock(monkeypatch)
+    (tmp_path / "ramtek-0001.apng").write_bytes(b"mine")
+    show_load(monitor, 10)
+    fields = [monitor.display.field()]
+    press(monitor, pygame.K_F3)
+    assert title() == "RAMTEK 9300 - recording - F3 ends it"
+    clock.now += 0.2
+    press(monitor, pygame.K_F1)
+    for seconds, red in ((0.05, 20), (0.25, 30), (0.1, 20)):
+        clock.now += seconds
+        fields.append(show_load(monitor, red))
+        # What the window shows again is no new field.
+        settle(monitor)
+    clock.now += 0.5
+    press(monitor, pygame.K_F3)
+    path = tmp_path / "ramtek-0002.apng"
+    assert title() == f"RAMTEK 9300 - saved {path.resolve()}, 4 fields"
+    assert np.array_equal(decoded(path), fields)
+    assert durations_of(path) == [250, 250, 100, 500]
+    assert (tmp_path / "ramtek-0001.apng").read_bytes() == b"mine"
+    show_load(monitor, 40)
+    monitor.caption = "another"
+    assert title() == "another"
+
+
+def test_in_full_screen_a_recording_begins_with_a_message_over_the_field(
+    monitor: Monitor, tmp_path: Path
+) -> None:
+    press(monitor, pygame.K_F11)
+    press(monitor, pygame.K_F3)
+    assert monitor.overlay.message == "F3 ends it"
+    field = monitor.display.field()
+    settle(monitor)
+    press(monitor, pygame.K_F3)
+    # The message is not in the film.
+    assert np.array_equal(decoded(tmp_path / "ramtek-0001.apng"), [field])
+
+
+def test_a_recording_that_is_full_is_saved(
+    monitor: Monitor, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("ramtek_emu.films.MOST_FIELDS", 3)
+    messages: list[str] = []
+    monitor.on_message = messages.append
+    fields = [monitor.display.field()]
+    press(monitor, pygame.K_F3)
+    fields += [show_load(monitor, red) for red in (10, 20, 30)]
+    path = tmp_path / "ramtek-0001.apng"
+    assert messages == [f"the film is full: saved {path.resolve()}, 3 fields"]
+    monitor.caption = "RAMTEK"
+    assert title() == "RAMTEK"
+    assert np.array_equal(decoded(path), fields[:3])
+
+
+@pytest.mark.parametrize("way", ["close", "key"])
+def test_closing_the_window_saves_the_recording(
+    monitor: Monitor, tmp_path: Path, way: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    fields = [monitor.display.field()]
+    press(monitor, pygame.K_F3)
+    fields.append(show_load(monitor, 10))
+    if way == "close":
+        monitor.close()
+    else:
+        press(monitor, pygame.K_q, "\x11", pygame.KMOD_CTRL)
+    assert not monitor.is_open
+    path = tmp_path / "ramtek-0001.apng"
+    assert np.array_equal(decoded(path), fields)
+    assert capsys.readouterr().err == f"saved {path.resolve()}, 2 fields\n"
+    monitor.close()
+    assert [path.name for path in tmp_path.iterdir()] == ["ramtek-0001.apng"]
+
+
+def test_a_recording_that_cannot_be_saved_waits_for_room(
+    monitor: Monitor, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    messages: list[str] = []
+    monitor.on_message = messages.append
+    monitor.screenshots = tmp_path / "later"
+    fields = [monitor.display.field()]
+    press(monitor, pygame.K_F3)
+    fields.append(show_load(monitor, 10))
+    press(monitor, pygame.K_q, "\x11", pygame.KMOD_CTRL)
+    assert monitor.is_open
+    assert "there is no folder" in messages[0]
+    assert messages[0].endswith("; F3 tries again, and closing again drops the film")
+    # The film has ended, and the window goes on.
+    show_load(monitor, 20)
+    press(monitor, pygame.K_F3)
+    assert messages[1].endswith("; F3 tries again")
+    monitor.caption = "RAMTEK"
+    assert title() == "RAMTEK - not saved"
+    monitor.screenshots.mkdir()
+    press(monitor, pygame.K_F3)
+    path = monitor.screenshots / "ramtek-0001.apng"
+    assert messages[2] == f"saved {path.resolve()}, 2 fields"
+    assert np.array_equal(decoded(path), fields)
+    press(monitor, pygame.K_F3)
+    monitor.screenshots = tmp_path / "never"
+    for _ in range(2):
+        press(monitor, pygame.K_q, "\x11", pygame.KMOD_CTRL)
+    assert not monitor.is_open
+    assert capsys.readouterr().err.endswith("; the film is lost\n")
 
 
 def test_the_mouse_is_reported_in_elements_and_lines(monitor: Monitor) -> None:
@@ -599,7 +727,7 @@ def test_a_window_is_asked_to_close_once_for_each_press(unopened: UnopenedMonito
 
 
 def test_shortcuts_do_not_repeat(unopened: UnopenedMonitor) -> None:
-    for name in ("f10", "f11", "f12", "f1"):
+    for name in ("f3", "f10", "f11", "f12", "f1"):
         unopened.handle_key(Key(name, repeated=True))
     assert unopened.asked == []
     assert unopened.overlay.page == ""
