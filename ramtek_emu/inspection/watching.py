@@ -82,7 +82,8 @@ class WatchedLookupTable(LookupTable):
         return self._touched
 
     def _note(self, first: int, end: int, words: int) -> None:
-        self._touched[first:end] = True
+        if words:
+            self._touched[first:end] = True
         super()._note(first, end, words)
 
 

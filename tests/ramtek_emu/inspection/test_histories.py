@@ -4,10 +4,10 @@ import copy
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
-from ramtek_emu import PRINCETON_9300, Ramtek9300, instructions
+from ramtek_emu import PRINCETON_9300, Configuration, EntryFormat, Ramtek9300, instructions
 from ramtek_emu.inspection.histories import (
     Write,
     finished,
@@ -119,23 +119,21 @@ loads = st.lists(
 
 
 @pytest.mark.parametrize("configuration", [SMALL, PRINCETON_9300])
+@example([(3, [], 0)], 0, 1)
 @quick
 @given(loads, st.integers(0, 12), st.sampled_from([0, 1, 2, 1022, 1023]))
 def test_the_history_of_an_entry(
-    configuration: object, loads: list[tuple[int, list[int], int]], after: int, entry: int
+    configuration: Configuration, loads: list[tuple[int, list[int], int]], after: int, entry: int
 ) -> None:
-    from ramtek_emu.configuration import EntryFormat, checked_configuration
-
-    checked = checked_configuration(configuration)
     words = [
         word
         for address, data, device in loads
         for word in (0x0300 | device, address, 2 * len(data), *data, 0x0700)
     ]
-    replay = Replay(Stream(checked, np.array(words, np.uint16)))
+    replay = Replay(Stream(configuration, np.array(words, np.uint16)))
     # The slow way, word by word.
-    per_entry = 1 if checked.entry_format is EntryFormat.WORD_12 else 2
-    display = Ramtek9300(checked)
+    per_entry = 1 if configuration.entry_format is EntryFormat.WORD_12 else 2
+    display = Ramtek9300(configuration)
     writes: list[Write] = []
     for index, (address, data, device) in enumerate(loads):
         before = int(display.lookup_table.packed[entry])
