@@ -19,6 +19,8 @@ What is **not** modeled
     interlace, blanking levels, phosphor
     the UNIBUS registers: a host port of two methods stands for them
     interrupts: the request bits can be read, but nothing is interrupted
+    the errors of a driver: PRG DRIVER.c resets the display at an open that finds it not ready, fails with EIO
+        after an illegal instruction, and refuses a second open with EACCES; here a host waits in line
 
 The parts of the package, each of which uses only those before it: the basic modules (errors, arrays, checks,
 timing, configuration, writing, png, command_line), instruction_set, memory, drawing, video, processor,
