@@ -90,14 +90,14 @@ def test_no_instruction_that_is_done_is_known_by_its_name_only() -> None:
 def test_every_row_cites_sources_of_the_list_and_their_files() -> None:
     keys = set(re.findall(r"^## ([A-Z0-9]+):", (DOCS / "SOURCES.md").read_text("utf-8"), re.MULTILINE))
     assert len(keys) > 8
-    for row in (*FORMATS, *OPERANDS.values()):
-        *cited, last = row.source.split(", ")
+    for source in [row.source for row in FORMATS] + [operand.source for operand in OPERANDS.values()]:
+        *cited, last = source.split(", ")
         cited += [] if last in ("format assumed", "length assumed") else [last]
-        assert cited, row
+        assert cited, source
         for citation in cited:
             key, file = citation.split(" ")
-            assert key in keys, row
-            assert re.fullmatch(r"\w+\.[ch]|longlib\.tex|libdoc", file), row
+            assert key in keys, source
+            assert re.fullmatch(r"\w+\.[ch]|longlib\.tex|libdoc", file), source
 
 
 def test_the_data_sheet_and_the_table_name_the_same_assumed_formats() -> None:
