@@ -19,16 +19,15 @@ What is **not** modeled
     interlace, blanking levels, phosphor
     the UNIBUS registers: a host port of two methods stands for them
     interrupts: the request bits can be read, but nothing is interrupted
+    the errors of a driver: PRG DRIVER.c resets the display at an open that finds it not ready, fails with EIO
+        after an illegal instruction, and refuses a second open with EACCES; here a host waits in line
 
 The parts of the package, each of which uses only those before it: the basic modules (errors, arrays, checks,
 timing, configuration, writing, png, command_line), instruction_set, memory, drawing, video, processor,
 instructions, display, host, monitor, snapshot, commands.
 
-The sources are named by keys: LIN (Linton's C library for the Princeton RM-9300, 1978), PRG (the Princeton
-and Cincinnati programs), BTL (the Bell Labs plot library), PIC (Bell Labs pico and rebecca), V8K (the Bell
-Labs VAX driver), JPL (the VICAR driver of the RM-9460), NCAR (its opcode header and client), LONG (the
-LONGLIB manual), ASF (the Alaska SAR facility) and GM (Warn, "Lighting Controls for Synthetic Images",
-SIGGRAPH 1983).
+The sources are named by keys, such as LIN for Linton's C library of 1978. docs/SOURCES.md lists them with
+their repositories, revisions and files.
 """
 
 from __future__ import annotations

@@ -225,7 +225,8 @@ def document() -> str:
     parts = [
         "# Fidelity\n\nWhere every formula, number and rule comes from, collected from the sources by"
         ' `python -m docs.generate.fidelity > docs/FIDELITY.md`. The paper is D. R. Warn, "Lighting Controls'
-        ' for Synthetic Images", SIGGRAPH 1983; the keys of the hardware sources stand in `ramtek_emu`.\n',
+        ' for Synthetic Images", SIGGRAPH 1983; [SOURCES.md](SOURCES.md) lists the sources about the'
+        " hardware by their keys.\n",
         "\n## The paper: where each section and figure is built and tested\n\nThe tests are those of"
         " `tests/test_paper.py`, which goes through the paper in its order.\n\n| section or figure | module |"
         " test |\n|---|---|---|\n",
@@ -242,6 +243,25 @@ def document() -> str:
                 where = f"{line.module}: {line.definition}" if line.definition else line.module
                 text = line.text.replace("|", "\\|")
                 parts.append(f"| `{where}` | {text} |\n")
+    return "".join(parts) + instructions_and_operands()
+
+
+def instructions_and_operands() -> str:
+    """The sources of every row of the instruction table, as a section of the ledger."""
+    from ramtek_emu.instruction_set.table import OPERANDS_1, OPERANDS_2, SUBSTANTIATED, UNIMPLEMENTED
+
+    parts = [
+        "\n## Instructions and operands: where each format comes from\n\nThe rows of"
+        " `ramtek_emu.instruction_set.table`.\n\n| opcode | instruction | source |\n|---|---|---|\n",
+        *(f"| {row.opcode:02X} | {row.name}: {row.meaning} | {row.source} |\n" for row in SUBSTANTIATED),
+        f"\nNCAR ramtek.h alone has the numbers and the names of {len(UNIMPLEMENTED)} other opcodes: ",
+        ", ".join(f"{opcode:02X} {name}" for opcode, name, _ in UNIMPLEMENTED),
+        ".\n\n| flag word, bit | operand | words | source |\n|---|---|---|---|\n",
+    ]
+    for word, operands in enumerate((OPERANDS_1, OPERANDS_2), 1):
+        for bit, row in enumerate(operands):
+            named = f"{row.mnemonic}: {row.name.replace('_', ' ')}"
+            parts.append(f"| {word}, {bit} | {named} | {row.words} | {row.source} |\n")
     return "".join(parts)
 
 

@@ -21,7 +21,9 @@ FOLDER: Final = ROOT / "build" / "docs"
 PAGES: Final = {"README.md": "index.md", "CONTRIBUTING.md": "contributing.md", "CHANGELOG.md": "changelog.md"}
 """The documents outside `docs`, and their places on the site."""
 
-LANGUAGES: Final = {".py": "python", ".toml": "toml", ".js": "javascript", ".csv": "text", ".gpl": "text"}
+LANGUAGES: Final = {
+    ".c": "c", ".csv": "text", ".gpl": "text", ".js": "javascript", ".py": "python", ".toml": "toml"
+}  # fmt: skip
 """The files that a page shows, by suffix. Others are copied as they are."""
 
 FULL_WIDTH: Final = "---\nhide: [navigation, toc]\n---\n"

@@ -1,17 +1,25 @@
-"""The pictures of display.md, paper.md and elsewhere.md.
+"""The pictures of display.md, paper.md, elsewhere.md and emulators.md.
 
 `python -m docs.guides.pictures_of_displays` writes them. As in `pictures`, each function returns the picture
 that is named after it. The display draws the pictures of display.md from its listings and examples.
+The picture of emulators.md needs SIMH.
 """
 
 from __future__ import annotations
 
 import doctest
+import os
+import signal
+import subprocess
+import sys
 from collections.abc import Callable, Sequence
 from functools import cache
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any, Final
 
 import numpy as np
+from PIL import Image
 
 import autocolor
 from docs.generate.blocks import blocks_of
@@ -177,11 +185,42 @@ def elsewhere_lights() -> Field:
         return display.field()
 
 
+def simulated(folder: Path) -> str:
+    """Run the simulator of emulators.md in a folder, which gets lines.png; returns what it prints."""
+    blocks = blocks_of((GUIDES / "emulators.md").read_text("utf-8"))
+    (listing,) = (block.text for block in blocks if block.text.startswith("; lines.ini"))
+    (commands,) = (block.text for block in blocks if block.language == "sh")
+    (folder / "lines.ini").write_text(listing, "utf-8")
+    path = os.pathsep.join((str(Path(sys.executable).parent), os.environ["PATH"]))
+    with subprocess.Popen(
+        ["sh", "-c", commands],
+        cwd=folder,
+        env={**os.environ, "PATH": path},
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    ) as shell:
+        try:
+            return shell.communicate(timeout=60)[0]
+        except subprocess.TimeoutExpired:
+            os.killpg(shell.pid, signal.SIGKILL)
+            raise
+
+
+def emulators_lines() -> Field:
+    """The figures that a PDP-11 draws."""
+    with TemporaryDirectory() as folder:
+        simulated(Path(folder))
+        with Image.open(Path(folder) / "lines.png") as picture:
+            return np.asarray(picture.convert("RGB"))
+
+
 PICTURES: Final[Sequence[Callable[[], Field]]] = (
     display_areas, display_lines, display_curves, display_text, display_images, display_cursors,
     display_view, display_ball, display_stripes,
     paper_terms, paper_controls, paper_words, paper_blends,
-    elsewhere_lights,
+    elsewhere_lights, emulators_lines,
 )  # fmt: skip
 
 

@@ -29,7 +29,7 @@ def write_circles(
 ) -> None:
     """Draw the outlines of circles around (n, 2) centers.
 
-    Hardware: NCAR (disabled code: center, then the radius in elements).
+    Hardware: JPL rtekinc.h, NCAR (center, then the radius; in elements, by a comment of NCAR).
     Assumed: in each octant, at every step the pixel nearest to the circle; radius 0 is a point.
     """
     inside = frame_buffer.window.intersection(enable.window)

@@ -12,6 +12,9 @@ notice of every write before it begins: with a seccomp filter, Linux (5.5 and la
 of any size while only one process writes at a time. The program and its children need no change: they may be
 statically linked, or 32-bit. A write takes about a tenth of a millisecond longer.
 
+What is **not** modeled: the errors of a driver. PRG DRIVER.c fails with EIO after an illegal instruction, and
+refuses a second open with EACCES. Here both succeed; RERR reads the status of the instruction.
+
 What notices do **not** separate: simultaneous writes of two processes or threads, and writes by other calls
 (`io_uring`). With the filter, the program gains no privileges from set-user-ID files. Children that outlive
 us cannot write to any file (ENOSYS). A signal during a write that waits for permission ends the write with

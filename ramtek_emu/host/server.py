@@ -5,7 +5,8 @@ JPL, V8K: the words of a PDP-11's or a VAX's memory); instructions cut anywhere;
 as they exist; whole words: a write of odd length is rounded down (Hardware: PRG DRIVER.c, V8K). A Unix socket
 separates the writes of a host, and every write is rounded down. TCP does not mark the ends of writes: only
 the odd byte at the end of the session is dropped. What is **not** modeled: the UNIBUS registers and their
-interrupts.
+interrupts, and the errors of a driver. PRG DRIVER.c refuses a second open with EACCES and V8K with ENXIO;
+here the second host waits in line.
 
 No call blocks longer than its argument allows, so that a window can be drawn in between: `step` reads the
 bytes that have arrived, sends as many replies as the socket takes, and returns. When a host leaves, all its
@@ -127,7 +128,11 @@ class HostSession:
             self._record(instructions.reset().astype("<u2", copy=False).tobytes())
 
     def leave(self) -> None:
-        """Drop the incomplete instruction, the odd byte and the unread replies."""
+        """Drop the incomplete instruction, the odd byte and the unread replies.
+
+        Assumed: PRG DRIVER.c resets the display at an open that finds it not ready. Such a reset would erase
+        the picture of the host that left, so only words that nobody can finish are dropped.
+        """
         self.unexecuted, self.odd_byte = 0, b""
         self._unrecorded = NO_WORDS
         self.display.decoder.clear()

@@ -5,6 +5,8 @@ flags. Operand flag words follow, then the operands that they name in ascending 
 flag, a length in bytes and the data. In a *special* instruction the low byte is the number of a device, a
 cursor or a character, and a fixed sequence of operands follows.
 
+Every row of both tables cites its sources: keys of docs/SOURCES.md, each with a file.
+
 Hardware: LIN, BTL, JPL and NCAR agree on all of this; the counts of words are Linton's `Argno` and `libdoc`.
 Assumed: CONE is 12 words, as its only client sends; a header comment says 6, which the decoder takes where
 nothing else can be meant.
@@ -43,33 +45,35 @@ class Operand:
     name: str
     mnemonic: str
     words: int
+    source: str
+    """The sources of the number and the meaning of its words, such as "LIN libdoc, BTL move.c"."""
 
 
 OPERANDS_1: Final = (
-    Operand("mask", "SUB", 1),
-    Operand("foreground", "FORE", 1),
-    Operand("background", "BACK", 1),
-    Operand("index_1", "INX1", 2),
-    Operand("index_2", "INX2", 2),
-    Operand("origin", "ORIG", 2),
-    Operand("window", "WIN", 4),
-    Operand("scan_order", "SCAN", 1),
-    Operand("dimensions", "DIM", 2),
-    Operand("spacing", "SPACE", 2),
-    Operand("scale", "SCALE", 1),
-    Operand("function", "FUNC", 1),
-    Operand("conic", "CONE", 12),
-    Operand("base_line", "BASE", 1),
-    Operand("scroll", "SCRO", 1),
-    Operand("start", "STRT", 2),
+    Operand("mask", "SUB", 1, "LIN libdoc, JPL rtekinc.h, NCAR dev_ramtek.c"),
+    Operand("foreground", "FORE", 1, "LIN libdoc, BTL color.c, JPL rtekinc.h"),
+    Operand("background", "BACK", 1, "LIN libdoc, BTL sbox.c"),
+    Operand("index_1", "INX1", 2, "LIN libdoc, PRG ramtek.h, NCAR ramtek.h"),
+    Operand("index_2", "INX2", 2, "LIN libdoc, PRG ramtek.h, NCAR ramtek.h"),
+    Operand("origin", "ORIG", 2, "LIN libdoc, JPL rtekinc.h, NCAR dev_ramtek.c"),
+    Operand("window", "WIN", 4, "LIN libdoc, BTL sbox.c, JPL rtekinc.h, NCAR dev_ramtek.c"),
+    Operand("scan_order", "SCAN", 1, "LIN libdoc, PRG ramtek.h, JPL rtekinc.h, NCAR dev_ramtek.c"),
+    Operand("dimensions", "DIM", 2, "LIN libdoc, PRG rrr.c"),
+    Operand("spacing", "SPACE", 2, "LIN libdoc, PRG ramtek.h, NCAR ramtek.h"),
+    Operand("scale", "SCALE", 1, "LIN libdoc, JPL rtekinc.h"),
+    Operand("function", "FUNC", 1, "LIN libdoc, PRG rfun.c"),
+    Operand("conic", "CONE", 12, "LIN wc.c"),
+    Operand("base_line", "BASE", 1, "LIN libdoc, PRG ramtek.h, NCAR ramtek.h"),
+    Operand("scroll", "SCRO", 1, "LIN libdoc, PRG ramtek.h, NCAR ramtek.h"),
+    Operand("start", "STRT", 2, "LIN libdoc, BTL move.c, JPL rtekinc.h, NCAR dev_ramtek.c"),
 )
 OPERANDS_2: Final = (
-    Operand("read_mask", "RMSK", 1),
-    Operand("write_window", "WEW", 4),
-    Operand("write_offset", "WOF", 2),
-    Operand("texture", "VTX", 2),
-    Operand("display_class", "DCL", 1),
-    Operand("image_mode", "IMG", 1),
+    Operand("read_mask", "RMSK", 1, "NCAR dev_ramtek.c"),
+    Operand("write_window", "WEW", 4, "NCAR dev_ramtek.c"),
+    Operand("write_offset", "WOF", 2, "NCAR dev_ramtek.c"),
+    Operand("texture", "VTX", 2, "NCAR dev_ramtek.c, LONG longlib.tex"),
+    Operand("display_class", "DCL", 1, "NCAR ramtek.h, length assumed"),
+    Operand("image_mode", "IMG", 1, "JPL rtekinc.h, NCAR dev_ramtek.c"),
 )
 OPERANDS: Final = {operand.name: operand for operand in OPERANDS_1 + OPERANDS_2}
 OPERAND_BITS: Final = {
@@ -98,6 +102,8 @@ class InstructionFormat:
     opcode: int
     name: str
     meaning: str
+    source: str
+    """The sources of the format, such as "LIN lam.c, BTL openpl.c"."""
     fixed: tuple[str, ...] | None = None
     """The operands of a special instruction, and `length` if data follow; None for a normal instruction."""
     replies: bool = False
@@ -115,63 +121,122 @@ class InstructionFormat:
         return self.fixed is None
 
 
-ILLEGAL: Final = InstructionFormat(-1, "???", "no instruction", ())
+ILLEGAL: Final = InstructionFormat(-1, "???", "no instruction", "", ())
 """The format of a word that begins no instruction of the table; only that word is skipped."""
 
 CHARACTER_ROWS: Final = tuple(f"rows_{2 * pair}_{2 * pair + 1}" for pair in range(6))
 """The operands of LPF: twelve rows of eight dots, two a word."""
 
+NAME_ALONE: Final = "NCAR ramtek.h, format assumed"
+"""The source of a row of which only number and name are known."""
+
 SUBSTANTIATED: Final = (
-    InstructionFormat(0x03, "LAM", "load the lookup table", ("address", "length")),
+    InstructionFormat(
+        0x03,
+        "LAM",
+        "load the lookup table",
+        "LIN lam.c, PRG cmap.c, BTL openpl.c, JPL ramtek_lut.c, NCAR dev_ramtek.c",
+        ("address", "length"),
+    ),
     # Assumed: on the 9300 too, though only clients of the 9460 were seen to send it; without it, a client
     # that reads the table of a 9300 would wait for its answer forever.
-    InstructionFormat(0x04, "RAM", "read the lookup table", ("address", "length"), replies=True),
-    InstructionFormat(0x05, "RSET", "restore every parameter and erase the screen", ()),
-    InstructionFormat(0x06, "INIT", "restore every parameter", ()),
-    InstructionFormat(0x07, "NOP", "do nothing", ()),
-    InstructionFormat(0x08, "SET", "set parameters"),
-    InstructionFormat(0x09, "ERS", "erase the window"),
-    InstructionFormat(0x0A, "WI", "write an image"),
-    InstructionFormat(0x0B, "RI", "read an image", replies=True),
-    InstructionFormat(0x0C, "WT", "write text"),
-    InstructionFormat(0x0D, "WR", "write a raster of one bit a pixel"),
-    InstructionFormat(0x0E, "WVL", "write linked vectors"),
-    InstructionFormat(0x0F, "WC", "write a conic"),
-    InstructionFormat(0x13, "PUSHE", "save the environment", (), extended=True),
-    InstructionFormat(0x14, "POPE", "restore the environment", (), extended=True),
-    InstructionFormat(0x15, "LPF", "load a character", CHARACTER_ROWS),
-    InstructionFormat(0x16, "WCSS", "write a cursor, screen coordinates", ("element", "line_and_state")),
-    InstructionFormat(0x17, "RCSS", "read a cursor, screen coordinates", ()),
-    InstructionFormat(0x21, "LPFRP", "load a character, reverse packed", CHARACTER_ROWS, extended=True),
-    InstructionFormat(0x24, "READP", "read parameters", extended=True, requests_operands=True),
-    InstructionFormat(0x25, "RERR", "read and clear the error status", (), extended=True),
-    InstructionFormat(0x26, "ZOOM", "repeat elements and lines", ("zoom",), extended=True),
-    InstructionFormat(0x27, "SELVO", "select the video origin", (), extended=True),
-    InstructionFormat(0x29, "WAITVR", "wait for the vertical retrace", (), extended=True),
-    InstructionFormat(0x2A, "WAITL", "wait for a line", ("line",), extended=True),
-    InstructionFormat(0x2B, "BERS", "erase the whole memory", extended=True),
     InstructionFormat(
-        0x2C, "WCSP", "write a cursor, pixel coordinates", ("element", "line_and_state"), extended=True
+        0x04, "RAM", "read the lookup table", "JPL ramtek_lut.c", ("address", "length"), replies=True
     ),
     InstructionFormat(
-        0x2D, "WCSG", "write a cursor, global coordinates", ("element", "line", "state"), extended=True
+        0x05,
+        "RSET",
+        "restore every parameter and erase the screen",
+        "LIN libdoc, PRG ramtek.h, BTL erase.c",
+        (),
     ),
-    InstructionFormat(0x2E, "RCSP", "read a cursor, pixel coordinates", (), extended=True),
-    InstructionFormat(0x2F, "RCSG", "read a cursor, global coordinates", (), extended=True),
-    InstructionFormat(0x30, "LCF", "load a cursor's shape", ("length",), extended=True),
-    InstructionFormat(0x33, "DDCC", "connect a tracking device to cursors", ("cursors",), extended=True),
-    InstructionFormat(0x35, "WVU", "write unlinked vectors", extended=True),
-    InstructionFormat(0x38, "WPT", "write points", extended=True),
-    InstructionFormat(0x39, "WRP", "write random pixels", extended=True),
-    InstructionFormat(0x3A, "FILL", "fill an area", extended=True),
-    InstructionFormat(0x4E, "ATTPF", "attach a font", (), extended=True),
-    InstructionFormat(0x69, "COPY", "copy an image", extended=True),
-    InstructionFormat(0x6D, "CIRC", "write circles", extended=True),
+    InstructionFormat(0x06, "INIT", "restore every parameter", "LIN libdoc, PRG ramtek.h", ()),
+    InstructionFormat(0x07, "NOP", "do nothing", "PRG ramtek.h, NCAR ramtek.h", ()),
+    InstructionFormat(
+        0x08, "SET", "set parameters", "LIN libdoc, BTL move.c, JPL rtekinc.h, NCAR dev_ramtek.c"
+    ),
+    InstructionFormat(
+        0x09, "ERS", "erase the window", "LIN libdoc, BTL sbox.c, JPL rtekinc.h, NCAR dev_ramtek.c"
+    ),
+    InstructionFormat(
+        0x0A, "WI", "write an image", "LIN libdoc, PIC pmunge0.c, JPL rtekinc.h, NCAR dev_ramtek.c"
+    ),
+    InstructionFormat(0x0B, "RI", "read an image", "LIN libdoc, PIC pram.c, JPL rtekinc.h", replies=True),
+    InstructionFormat(0x0C, "WT", "write text", "LIN wt.c, PRG rrr.c, BTL text.c, JPL rtekinc.h"),
+    InstructionFormat(0x0D, "WR", "write a raster of one bit a pixel", "LIN wr.c, PRG rast.c"),
+    InstructionFormat(
+        0x0E, "WVL", "write linked vectors", "PRG rrr.c, BTL vec.c, JPL rtekinc.h, NCAR dev_ramtek.c"
+    ),
+    InstructionFormat(0x0F, "WC", "write a conic", "LIN wc.c, LIN libdoc"),
+    InstructionFormat(0x13, "PUSHE", "save the environment", NAME_ALONE, (), extended=True),
+    InstructionFormat(0x14, "POPE", "restore the environment", NAME_ALONE, (), extended=True),
+    InstructionFormat(0x15, "LPF", "load a character", "LIN lcs.c", CHARACTER_ROWS),
+    InstructionFormat(
+        0x16, "WCSS", "write a cursor, screen coordinates", "LIN wcur.c", ("element", "line_and_state")
+    ),
+    InstructionFormat(0x17, "RCSS", "read a cursor, screen coordinates", "LIN rcur.c", ()),
+    InstructionFormat(
+        0x21, "LPFRP", "load a character, reverse packed", NAME_ALONE, CHARACTER_ROWS, extended=True
+    ),
+    InstructionFormat(0x24, "READP", "read parameters", NAME_ALONE, extended=True, requests_operands=True),
+    InstructionFormat(0x25, "RERR", "read and clear the error status", NAME_ALONE, (), extended=True),
+    InstructionFormat(
+        0x26,
+        "ZOOM",
+        "repeat elements and lines",
+        "JPL rtekinc.h, NCAR dev_ramtek.c",
+        ("zoom",),
+        extended=True,
+    ),
+    InstructionFormat(0x27, "SELVO", "select the video origin", "NCAR dev_ramtek.c", (), extended=True),
+    InstructionFormat(
+        0x29, "WAITVR", "wait for the vertical retrace", "NCAR dev_ramtek.c", (), extended=True
+    ),
+    InstructionFormat(0x2A, "WAITL", "wait for a line", NAME_ALONE, ("line",), extended=True),
+    InstructionFormat(0x2B, "BERS", "erase the whole memory", NAME_ALONE, extended=True),
+    InstructionFormat(
+        0x2C,
+        "WCSP",
+        "write a cursor, pixel coordinates",
+        "NCAR dev_ramtek.c",
+        ("element", "line_and_state"),
+        extended=True,
+    ),
+    InstructionFormat(
+        0x2D,
+        "WCSG",
+        "write a cursor, global coordinates",
+        "JPL ramtek_curposition.c",
+        ("element", "line", "state"),
+        extended=True,
+    ),
+    InstructionFormat(
+        0x2E, "RCSP", "read a cursor, pixel coordinates", "NCAR dev_ramtek.c", (), extended=True
+    ),
+    InstructionFormat(
+        0x2F, "RCSG", "read a cursor, global coordinates", "JPL ramtek_curposition.c", (), extended=True
+    ),
+    InstructionFormat(0x30, "LCF", "load a cursor's shape", "JPL rtekinc.h", ("length",), extended=True),
+    InstructionFormat(
+        0x33,
+        "DDCC",
+        "connect a tracking device to cursors",
+        "JPL ramtek_autotrack.c",
+        ("cursors",),
+        extended=True,
+    ),
+    InstructionFormat(0x35, "WVU", "write unlinked vectors", NAME_ALONE, extended=True),
+    InstructionFormat(0x38, "WPT", "write points", "NCAR dev_ramtek.c", extended=True),
+    InstructionFormat(0x39, "WRP", "write random pixels", NAME_ALONE, extended=True),
+    InstructionFormat(0x3A, "FILL", "fill an area", "NCAR dev_ramtek.c", extended=True),
+    InstructionFormat(0x4E, "ATTPF", "attach a font", "NCAR dev_ramtek.c", (), extended=True),
+    InstructionFormat(0x69, "COPY", "copy an image", NAME_ALONE, extended=True),
+    InstructionFormat(0x6D, "CIRC", "write circles", "JPL rtekinc.h, NCAR dev_ramtek.c", extended=True),
 )
 """The instructions that programs of the time confirm, or whose names leave little doubt.
 
-Hardware: LIN, PRG, BTL (the rows that are not extended), JPL, NCAR (RAM, ZOOM, SELVO, WAITVR, the pixel and
-global cursor forms, LCF, DDCC, ATTPF; FILL, WPT and CIRC in disabled code).
+Hardware: LIN, PRG, BTL and PIC send or describe the rows that are not extended, except RAM. JPL and NCAR send
+the extended rows; FILL and WPT are in disabled code.
 Assumed: the formats of PUSHE, POPE, READP, RERR, WAITL, BERS, LPFRP, WVU, WRP and COPY, of which the
 sources give numbers and names. Their executors say more.
 """
@@ -184,61 +249,102 @@ UNIMPLEMENTED: Final = (
     (0x12, "SCRY", "scroll across the lines"),
     (0x18, "WKB", "write to the keyboard"),
     (0x19, "RKB", "read the keyboard"),
-    (0x1A, "SPS", "SPS"),
+    (0x1A, "SPS", "sense the status of peripherals"),
     (0x1B, "LDL", "load a display list"),
     (0x1C, "RDL", "read a display list"),
-    (0x1D, "CCM", "CCM"),
-    (0x1E, "XIM", "XIM"),
+    (0x1D, "CCM", "call control memory"),
+    (0x1E, "XIM", "execute instruction memory"),
     (0x1F, "LDLRP", "load a display list, reverse packed"),
     (0x20, "RDLRP", "read a display list, reverse packed"),
-    (0x22, "SELMG", "SELMG"),
-    (0x23, "SETDC", "set the display class"),
-    (0x28, "LOADSO", "LOADSO"),
-    (0x31, "LCCIO", "LCCIO"),
-    (0x32, "CWC", "CWC"),
-    (0x34, "DCVC", "DCVC"),
-    (0x36, "WPP", "WPP"),
-    (0x37, "WPV", "WPV"),
+    (0x22, "SELMG", "select an MCP or a group"),
+    (0x23, "SETDC", "set the ranges of display classes"),
+    (0x28, "LOADSO", "load the origins of subchannels"),
+    (0x31, "LCCIO", "load a cursor into the operating point, an index register or the origin"),
+    (0x32, "CWC", "center the window at a cursor"),
+    (0x34, "DCVC", "define the configuration of cursors and video"),
+    (0x36, "WPP", "write a plot point"),
+    (0x37, "WPV", "write a plot vector"),
     (0x3B, "ALDL", "allocate a display list"),
     (0x3C, "DEDL", "delete a display list"),
-    (0x3D, "RESCON", "RESCON"),
-    (0x3E, "WBLK", "write a block"),
-    (0x3F, "WBLKRP", "write a block, reverse packed"),
-    (0x40, "RTC", "RTC"),
+    (0x3D, "RESCON", "reset a context"),
+    (0x3E, "WBLK", "write a block to the keyboard"),
+    (0x3F, "WBLKRP", "write a block to the keyboard, reverse packed"),
+    (0x40, "RTC", "read the coordinates of the tablet"),
     (0x41, "CDL", "call a display list"),
     (0x42, "RETDL", "return from a display list"),
-    *((opcode, f"DL{opcode:02X}", "display-list registers") for opcode in range(0x43, 0x4C)),
+    (0x43, "SDLR", "set a display-list register"),
+    (0x44, "DDLR", "decrement a display-list register"),
+    (0x45, "IDLR", "increment a display-list register"),
+    (0x46, "SUBDLR", "subtract display-list registers"),
+    (0x47, "ADLR", "add display-list registers"),
+    (0x48, "LDLR", "load a display-list register"),
+    (0x49, "STDLR", "store a display-list register"),
+    (0x4A, "PLDLR", "load display-list registers from parameters"),
+    (0x4B, "JDLR", "jump if a display-list register fulfills a condition"),
     (0x4C, "ALPF", "allocate a font"),
     (0x4D, "DEPF", "delete a font"),
-    (0x4F, "LMPF", "LMPF"),
-    *((opcode, f"MX{opcode:02X}", "matrices") for opcode in range(0x50, 0x5C)),
-    *((opcode, f"CX{opcode:02X}", "contexts") for opcode in range(0x5C, 0x61)),
-    *((opcode, f"DT{opcode:02X}", "detection") for opcode in range(0x61, 0x69)),
-    (0x6A, "COPYT", "COPYT"),
+    (0x4F, "LMPF", "load several fonts"),
+    (0x50, "PUSHM", "push the matrix"),
+    (0x51, "POPM", "pop the matrix"),
+    (0x52, "SETM", "set the matrix"),
+    (0x53, "LM", "load the current matrix"),
+    (0x54, "SM", "store the current matrix"),
+    (0x55, "MM", "multiply matrices"),
+    (0x56, "MMI", "multiply by an immediate matrix"),
+    (0x57, "IM", "initialize the matrix"),
+    (0x58, "SCALE", "scale the matrix"),
+    (0x59, "TRANS", "translate the matrix"),
+    (0x5A, "ROTAT", "rotate the matrix"),
+    (0x5B, "READM", "read the matrix"),
+    (0x5C, "ALCON", "allocate a context"),
+    (0x5D, "DECON", "delete a context"),
+    (0x5E, "SCON", "select a context"),
+    (0x5F, "READAS", "read the state of allocation"),
+    (0x60, "RCON", "read the associations of contexts"),
+    (0x61, "SDP", "set the parameters of detection"),
+    (0x62, "ED", "enable detection"),
+    (0x63, "DD", "disable detection"),
+    (0x64, "SD", "suspend detection"),
+    (0x65, "RD", "resume detection"),
+    (0x66, "SDD", "set the data of detection"),
+    (0x67, "SDS", "SDS"),
+    (0x68, "RDB", "read the buffer of detection"),
+    (0x6A, "COPYT", "copy an image, triggered"),
     (0x6B, "COMBI", "combine images"),
-    (0x6C, "COMBT", "COMBT"),
-    *((opcode, f"ARC{opcode:02X}", "arcs") for opcode in range(0x6E, 0x71)),
-    *((opcode, f"LF{opcode:02X}", "local functions") for opcode in range(0x71, 0x78)),
+    (0x6C, "COMBT", "combine images, triggered"),
+    (0x6E, "ARC1", "write arcs, type 1"),
+    (0x6F, "ARC2", "write arcs, type 2"),
+    (0x70, "ARC3", "write arcs, type 3"),
+    (0x71, "SLFS", "set the state of local functions"),
+    (0x72, "SLKF", "set a local keyboard function"),
+    (0x73, "CLKF", "clear a local keyboard function"),
+    (0x74, "SLCF", "set a local cursor function"),
+    (0x75, "CLCF", "clear a local cursor function"),
+    (0x76, "SKES", "set the echo of the keyboard"),
+    (0x77, "CKES", "clear the echo of the keyboard"),
     (0x7F, "WPI", "write a packed image"),
-    (0x80, "WIV", "WIV"),
-    (0x81, "SCW", "SCW"),
-    (0x82, "WRCT", "WRCT"),
-    (0x83, "RCSL", "RCSL"),
-    (0x84, "WCSL", "WCSL"),
-    *((opcode, f"RA{opcode:02X}", "register arithmetic") for opcode in range(0x85, 0x8A)),
-    (0x8A, "WC32", "WC32"),
-    (0x8B, "STM", "STM"),
-    (0x8C, "RTCS", "RTCS"),
-    (0x8D, "WCVU", "WCVU"),
+    (0x80, "WIV", "write image vectors"),
+    (0x81, "SCW", "set the window of a cursor"),
+    (0x82, "WRCT", "write colored text at random places"),
+    (0x83, "RCSL", "read a cursor, local"),
+    (0x84, "WCSL", "write a cursor, local"),
+    (0x85, "DIVDLR", "divide display-list registers"),
+    (0x86, "MULDLR", "multiply display-list registers"),
+    (0x87, "ANDDLR", "AND of display-list registers"),
+    (0x88, "ORDLR", "OR of display-list registers"),
+    (0x89, "XORDLR", "exclusive OR of display-list registers"),
+    (0x8A, "WC32", "write a conic with 32-bit coefficients"),
+    (0x8B, "STM", "set the mode of the tablet"),
+    (0x8C, "RTCS", "read the coordinates and the status of the tablet"),
+    (0x8D, "WCVU", "write colored, unlinked vectors"),
 )
 """Opcodes of the 9400 and 9460 of which only number and name are known: opcode, name, meaning.
 
-Hardware: NCAR, whose header lists them; we found no client that sends them. Names such as DL43 are ours: the
-header describes a whole range.
+Hardware: NCAR ramtek.h lists them with a few words each, and no client sends them. SDS has a joke there.
 """
 
 FORMATS: Final = SUBSTANTIATED + tuple(
-    InstructionFormat(opcode, name, meaning, extended=True, unimplemented=True)
+    InstructionFormat(opcode, name, meaning, "NCAR ramtek.h", extended=True, unimplemented=True)
     for opcode, name, meaning in UNIMPLEMENTED
 )
 """All rows of the instruction table.

@@ -62,7 +62,7 @@ def write_points(processor: Processor, instruction: Instruction) -> None:
 
 
 def write_circles(processor: Processor, instruction: Instruction) -> None:
-    """Hardware: NCAR (center and radius in elements; the operating point becomes the center).
+    """Hardware: JPL rtekinc.h, NCAR (center, radius); NCAR (the operating point becomes the center).
 
     Assumed: three numbers for each of several circles; radii are 16-bit numbers without a sign; with relative
     addressing each center is counted from the one before.

@@ -87,9 +87,10 @@ def write_raster(processor: Processor, instruction: Instruction) -> None:
     """Write one bit a pixel: foreground for 1, background for 0.
 
     Hardware: PRG rast.c, LIN wr.c (one bit a pixel into the window in scan order, bytes as in text, highest
-    bit first).
-    Assumed: 1 is the foreground; a line of the window need not end with a byte; with the additive flag,
-    pixels of 0 are not written.
+    bit first); PRG rread.c, rast.c (1 is the foreground: rread sets the bit of a dark pixel, and rast draws
+    word 64 on word 128).
+    Assumed: a line of the window need not end with a byte; with the additive flag, pixels of 0 are not
+    written.
     """
     parameters = processor.parameters
     bits = np.unpackbits(np.frombuffer(instruction.data_bytes(), np.uint8))

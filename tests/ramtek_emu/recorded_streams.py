@@ -1,6 +1,8 @@
 """Streams of programs of the time, as hexadecimal words.
 
-Real programs of 1978 to 1990 sent these streams to their displays.
+PRG has PDP-11 executables of 1980. An emulator of the PDP-11 and of the system calls that they make ran them,
+and captured what they wrote to the file of the device. The driver of NCAR is a C source, which ran with its
+output call captured. The keys and their files are in docs/SOURCES.md.
 """
 
 from __future__ import annotations
@@ -31,7 +33,10 @@ OUTLINE = words("""
 0E01 0004 015E 0032   0802 8000 00FA 0064   0E01 0004 015E 00C8   0802 8002 0100 00C8 00C8
 0E01 0004 00C8 0032   0802 0002 0080   0C03 0040 00F0 006E 00FA 0078 0001 6600
 """)
-"""A closed outline with lines in it, and the letters a to f (Hardware: PRG, rrr)."""
+"""A closed outline with lines in it, and the letters a to f.
+
+Hardware: PRG, all that the executable `rrr` (source rrr.c) writes, captured from the device file.
+"""
 
 SQUARES = words("""
 0802 0040 0000 0000 001F 001F   0902 0004 0004   0802 0006 0004 0000
@@ -39,13 +44,19 @@ SQUARES = words("""
 0802 0040 0020 0000 003F 001F   0902 0004 0006   0802 0006 0006 0000
 0C13 0040 0020 0000 0040 0020 0003 3030 3600
 """)
-"""Two numbered squares (Hardware: PRG, sqap)."""
+"""Two numbered squares.
+
+Hardware: PRG, the first two of the 160 squares of the executable `sqap`, captured from the device file.
+"""
 
 BARS = np.array(
     [word for i in range(320) for word in (0x0802, 0x0040, 2 * i, 0, 2 * i + 1, 0x0100, 0x0902, 0x0004, i)],
     np.uint16,
 )
-"""Vertical bars in the words 0 to 319 (Hardware: PRG, band)."""
+"""Vertical bars in the words 0 to 319.
+
+Hardware: PRG, all that the executable `band` writes, captured from the device file; written here as a loop.
+"""
 
 COLOR_MAP = np.array(
     [0x0300, 0, 0x0800]
@@ -53,15 +64,25 @@ COLOR_MAP = np.array(
     + [0x0300, 0x03FF, 2, 0],
     np.uint16,
 )
-"""A table of 12-bit entries, and its address counter parked (Hardware: PRG, cmap 3)."""
+"""A table of 12-bit entries, and its address counter parked.
+
+Hardware: PRG, all that the executable `cmap` (source cmap.c) writes with the argument 3, captured from the
+device file; written here as a formula.
+"""
 
 CLEAR = words("0910 0500")
-"""Hardware: PRG, zp."""
+"""A cleared screen.
+
+Hardware: PRG, all that the executable `zp` writes, captured from the device file.
+"""
 
 BYTE_IMAGE = words(
     "0A0F 00C0 0020 0008 0210 000B 0213 0000 0001 0010 0201 0403 0605 0807 0A09 0C0B 0E0D 100F"
 )
-"""4 x 4 pixels of a byte each (Hardware: NCAR)."""
+"""4 x 4 pixels of a byte each.
+
+Hardware: NCAR, the call `rm_pixel` of dev_ramtek.c with 16 bytes, its output captured; byte n is n.
+"""
 
 DECODED = words("""
 0500 0802 0002 0001 0802 8000 000A 01F5 0E01 0004 0064 01C3
@@ -76,6 +97,11 @@ DECODED = words("""
 0E0F 8002 0008 0007 000A 0214 FF00 1000 0008 0064 0214 0064 025A
 080E 0041 0006 00FF 0000 0200 027F 03FF 0000 0200 027F 03FF 0000 0200
 """)
-"""Instructions of the Bell Labs, Princeton, JPL and NCAR libraries, one after the other."""
+"""Instructions of five libraries, one after the other.
+
+Hardware: line by line, BTL (erase.c, color.c, move.c, vec.c); JPL (ramtek_fill.c); BTL (sbox.c); PIC
+(pmunge0.c); BTL (text.c); PRG (sqap); JPL (the image, vector, window and zoom structures of rtekinc.h, three
+lines); NCAR (rm_poly and rm_hcw of dev_ramtek.c). These functions write the words for the arguments in them.
+"""
 
 RECORDED = (OUTLINE, SQUARES, BARS, COLOR_MAP, CLEAR, BYTE_IMAGE, DECODED)

@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 
 from ramtek_emu import HostPort, OutputError, OutputExistsError, PortError, Ramtek9300, TcpPort, instructions
 from ramtek_emu.arrays import Words
-from ramtek_emu.host.port import UnixPort, Wire
+from ramtek_emu.host.port import UnixPort, Wire, packet_socket
 from ramtek_emu.host.server import REPLY_BYTES, Client, HostSession, TcpServer, UnixServer
 from ramtek_emu.testing import streams
 from tests.ramtek_emu.recorded_streams import OUTLINE, RECORDED, words
@@ -475,6 +475,19 @@ def test_replies_to_different_writes_are_in_different_packets_and_an_odd_byte_is
             client.serve(selectors.EVENT_WRITE)
         assert [host.recv(100) for _ in range(4)] == [packet("7"), packet("7 0")] * 2
     client.leave()
+
+
+def test_replies_to_a_write_come_in_packets_of_at_most_64_kib(tmp_path: Path) -> None:
+    ask = packet("0B03 0040 0 0 27F 2E EB00")
+    with serving_at(tmp_path / "display") as server, packet_socket() as host:
+        host.settimeout(60)
+        host.connect(server.address)
+        host.send(3 * ask)
+        lengths: list[int] = []
+        while sum(lengths) < 3 * 0xEB00:
+            lengths.append(len(host.recv(1 << 20)))
+    assert len(lengths) > 2
+    assert max(lengths) <= 1 << 16
 
 
 def test_a_mark_resets_the_display_and_drops_the_waiting_replies() -> None:

@@ -19,6 +19,8 @@ from ramtek_emu.instruction_set.table import (
 )
 from tests.ramtek_emu.strategies import quick
 
+DOCS = Path(__file__).parents[3] / "docs"
+
 ARGNO = [1, 1, 1, 2, 2, 2, 4, 1, 2, 2, 1, 1, 12, 1, 1, 2]
 """Words of each operand of the first flag word (Hardware: LIN, Argno; 12 for CONE as its client sends)."""
 
@@ -85,14 +87,24 @@ def test_no_instruction_that_is_done_is_known_by_its_name_only() -> None:
     assert not {name for _, name, _ in UNIMPLEMENTED} & {format.name for format in SUBSTANTIATED}
 
 
-def test_a_name_that_stands_for_a_range_ends_in_its_opcode() -> None:
-    numbered = [
-        (opcode, name)
-        for opcode, name, _ in UNIMPLEMENTED
-        if re.fullmatch(r"(DL|MX|CX|DT|ARC|LF|RA)[0-9A-F]{2}", name)
-    ]
-    assert len(numbered) == 9 + 12 + 5 + 8 + 3 + 7 + 5
-    assert all(name.endswith(f"{opcode:02X}") for opcode, name in numbered)
+def test_every_row_cites_sources_of_the_list_and_their_files() -> None:
+    keys = set(re.findall(r"^## ([A-Z0-9]+):", (DOCS / "SOURCES.md").read_text("utf-8"), re.MULTILINE))
+    assert len(keys) > 8
+    for source in [row.source for row in FORMATS] + [operand.source for operand in OPERANDS.values()]:
+        *cited, last = source.split(", ")
+        cited += [] if last in ("format assumed", "length assumed") else [last]
+        assert cited, source
+        for citation in cited:
+            key, file = citation.split(" ")
+            assert key in keys, source
+            assert re.fullmatch(r"\w+\.[ch]|longlib\.tex|libdoc", file), source
+
+
+def test_the_data_sheet_and_the_table_name_the_same_assumed_formats() -> None:
+    assumed = [row.name for row in FORMATS if row.source.endswith("format assumed")]
+    sheet = " ".join((DOCS / "RAMTEK.md").read_text("utf-8").split())
+    named = re.findall("[A-Z]+", re.findall("the formats of ([A-Z, and]+);", sheet)[0])
+    assert sorted(named) == sorted(assumed)
 
 
 def test_each_name_is_a_row_of_the_table_that_does_nothing() -> None:
@@ -101,6 +113,5 @@ def test_each_name_is_a_row_of_the_table_that_does_nothing() -> None:
 
 
 def test_the_guide_to_the_display_names_every_instruction_that_is_done() -> None:
-    guide = Path(__file__).parents[3] / "docs" / "guides" / "display.md"
-    names = set(re.findall(r"[A-Z]+", guide.read_text("utf-8")))
+    names = set(re.findall(r"[A-Z]+", (DOCS / "guides" / "display.md").read_text("utf-8")))
     assert {row.name for row in SUBSTANTIATED} <= names

@@ -1,0 +1,59 @@
+/* A host of a display at a Unix socket: draws a box, reads a pixel back, and resets the display.
+   cc -o ramtek_client examples/ramtek_client.c && ./ramtek_client /tmp/display */
+#include <err.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+
+enum { MOST_WORDS = 1 << 15 }; /* A packet of words has at most 64 KiB. */
+
+/* Send one write. Its bytes are a packet, the low byte of each word first. */
+static void write_words(int display, const uint16_t *words, size_t count)
+{
+    uint8_t packet[2 * MOST_WORDS];
+    for (size_t i = 0; i < 2 * count; i++)
+        packet[i] = words[i / 2] >> (i % 2 ? 8 : 0) & 0xFF;
+    if (send(display, packet, 2 * count, MSG_NOSIGNAL) < 0)
+        err(1, "send");
+}
+
+/* Receive one packet of replies, and return the number of words: 0 is a mark, or the end. */
+static size_t read_words(int display, uint16_t *words)
+{
+    uint8_t packet[2 * MOST_WORDS];
+    ssize_t length = recv(display, packet, sizeof packet, 0);
+    if (length < 0)
+        err(1, "recv");
+    for (ssize_t i = 0; i < length / 2; i++)
+        words[i] = packet[2 * i] | packet[2 * i + 1] << 8;
+    return length / 2;
+}
+
+static unsigned pixel(int display)
+{
+    static const uint16_t ask[] = {0x0B03, 0x0040, 150, 120, 150, 120, 2}; /* RI of one pixel */
+    uint16_t reply[MOST_WORDS];
+    write_words(display, ask, 7);
+    return read_words(display, reply) == 1 ? reply[0] : 0xFFFF;
+}
+
+int main(int argc, char **argv)
+{
+    static const uint16_t box[] = {0x0912, 0x0042, 5, 100, 100, 199, 149}; /* ERS BK FORE WIN */
+    uint16_t reply[MOST_WORDS];
+    struct sockaddr_un place = {.sun_family = AF_UNIX};
+    int display = socket(AF_UNIX, SOCK_SEQPACKET, 0);
+    strncpy(place.sun_path, argc > 1 ? argv[1] : "", sizeof place.sun_path - 1);
+    if (connect(display, (struct sockaddr *)&place, sizeof place) < 0)
+        err(1, "connect");
+    write_words(display, box, 7);
+    printf("the pixel is %u\n", pixel(display));
+    write_words(display, box, 0); /* An empty packet asks for a hard reset, and is the answer. */
+    if (read_words(display, reply) != 0)
+        errx(1, "the display must answer a reset");
+    printf("after a reset it is %u\n", pixel(display));
+    shutdown(display, SHUT_WR); /* When all is executed, the display ends, too. */
+    return read_words(display, reply) != 0;
+}
