@@ -166,7 +166,8 @@ def copy_image(processor: Processor, instruction: Instruction) -> Pauses:
     for run in range(0, runs, at_once):
         count = along * min(at_once, runs - run)
         words, _ = processor.frame_buffer.read_scan(inside, order, order.stepped(first, 0, run), count)
-        blocks.append(words.reshape(-1, along) & np.uint16(parameters.read_mask))
+        words &= np.uint16(parameters.read_mask)
+        blocks.append(words.reshape(-1, along))
         yield
     for run, block in zip(range(0, runs, at_once), blocks, strict=True):
         processor.frame_buffer.write_block(order.stepped(place, 0, run), order, block, parameters.enable)
