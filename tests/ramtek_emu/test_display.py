@@ -35,7 +35,7 @@ from ramtek_emu.snapshot import snapshot_bytes
 from ramtek_emu.testing import check_words_within_planes, streams
 from tests.ramtek_emu.displays import sent, smallest_slices
 from tests.ramtek_emu.recorded_streams import RECORDED
-from tests.ramtek_emu.strategies import SMALL, cuts, masks, sent_words, thorough, windows
+from tests.ramtek_emu.strategies import SMALL, cuts, sent_words, sliced_instructions, thorough
 from tests.ramtek_emu.test_hostile import sessions
 
 
@@ -124,33 +124,6 @@ def test_no_instruction_takes_long(name: str) -> None:
     display.send(sent_words([*WORST[name], 0x0700]))
     assert display.decoder.pending_words == 0
     check_words_within_planes(display.words)
-
-
-@st.composite
-def sliced_instructions(draw: st.DrawFn) -> NDArray[np.uint16]:
-    """An instruction that can be executed in slices, with small or far coordinates and any flags."""
-    coordinate = st.integers(-6, 18) | st.sampled_from([-0x8000, 0x7FFF])
-    operands = {
-        "mask": masks,
-        "foreground": st.integers(0, 1023),
-        "background": st.integers(0, 1023),
-        "index_1": st.tuples(coordinate, coordinate),
-        "window": windows(),
-        "scan_order": st.integers(0, 7),
-        "start": st.tuples(coordinate, coordinate),
-        "read_mask": masks,
-        "write_window": windows(),
-        "texture": st.tuples(st.sampled_from([0xFFFF, 0xAAAA, 0xF731]), st.integers(0, 3)),
-    }
-    given_operands = draw(st.fixed_dictionaries({}, optional=operands))
-    flags = (
-        draw(st.sampled_from([0, 0x40, 0xC0]))
-        | draw(st.sampled_from([0, 0x10]))
-        | draw(st.sampled_from([0, 0x20]))
-    )
-    data = sent_words(draw(st.lists(coordinate, max_size=40)))
-    name = draw(st.sampled_from(["WVL", "WVU", "CIRC", "FILL", "COPY"]))
-    return encode(normal(name, given_operands, data, flags=flags))
 
 
 def state_of(display: Ramtek9300) -> tuple[object, ...]:
