@@ -63,7 +63,10 @@ class HostSession:
         self._record = record
         self._unrecorded = NO_WORDS
         self.unexecuted = 0
-        """The number of words of the last `feed` that are not executed yet."""
+        """The number of words that are not executed yet: the rest of the last `feed`.
+
+        A half-drawn instruction counts with all its words, also the words of an earlier `feed`.
+        """
         self.odd_byte = b""
         """The first byte of a word whose second byte has not arrived."""
         self.leave()

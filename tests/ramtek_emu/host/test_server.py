@@ -477,6 +477,19 @@ def test_a_reset_within_an_instruction_leaves_it_out_of_the_recording(
     assert session.unexecuted == 0
 
 
+def test_a_reset_between_two_instructions_leaves_both_in_the_recording(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("ramtek_emu.host.server.SLICE_SECONDS", 0.0)
+    recorded: list[bytes] = []
+    session = HostSession(Ramtek9300(SMALL), recorded.append)
+    pauses = session.feed(NO_OPERATION + LONG + NO_OPERATION)
+    next(pauses)
+    session.reset()
+    list(pauses)
+    assert b"".join(recorded) == NO_OPERATION + packet("0500") + LONG + NO_OPERATION
+
+
 @quick
 @given(
     st.lists(sliced_instructions() | streams(12).map(sent_words), min_size=1, max_size=4),
