@@ -483,11 +483,12 @@ def test_a_reset_between_two_instructions_leaves_both_in_the_recording(
     monkeypatch.setattr("ramtek_emu.host.server.SLICE_SECONDS", 0.0)
     recorded: list[bytes] = []
     session = HostSession(Ramtek9300(SMALL), recorded.append)
-    pauses = session.feed(NO_OPERATION + LONG + NO_OPERATION)
+    drawn = packet("0902 0044 7 5 5 5 5")
+    pauses = session.feed(NO_OPERATION + drawn + LONG)
     next(pauses)
     session.reset()
     list(pauses)
-    assert b"".join(recorded) == NO_OPERATION + packet("0500") + LONG + NO_OPERATION
+    assert b"".join(recorded) == NO_OPERATION + packet("0500") + drawn + LONG
 
 
 @quick
