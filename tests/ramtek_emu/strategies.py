@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from ramtek_emu import Configuration
-from ramtek_emu.instruction_set.instruction import encode, normal
+from ramtek_emu.instruction_set.instruction import OperandValue, encode, normal
 from ramtek_emu.memory.scan_orders import Point, Window
 
 quick = settings(deadline=None, max_examples=60)
@@ -46,7 +46,7 @@ def sent_words(numbers: Iterable[int]) -> NDArray[np.uint16]:
 def sliced_instructions(draw: st.DrawFn) -> NDArray[np.uint16]:
     """An instruction that can be executed in slices, with small or far coordinates and any flags."""
     coordinate = st.integers(-6, 18) | st.sampled_from([-0x8000, 0x7FFF])
-    operands = {
+    operands: dict[str, st.SearchStrategy[OperandValue | None]] = {
         "mask": masks,
         "foreground": st.integers(0, 1023),
         "background": st.integers(0, 1023),

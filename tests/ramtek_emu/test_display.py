@@ -152,7 +152,7 @@ def test_slices_leave_the_display_that_an_instruction_in_one_piece_leaves(
 
 
 PATH = [(1, 1), (11, 1), (11, 3), (60, 60), (4, 7), (4, 7), (0, 2), (12, 8)]
-HALF_DRAWN = {
+HALF_DRAWN: dict[str, Callable[[list[tuple[int, int]]], NDArray[np.uint16]]] = {
     "linked": lambda places: encode(normal("WVL", {"foreground": 9}, sent_words(np.ravel(places)))),
     "separate": lambda places: encode(
         normal("WVU", {}, sent_words(np.ravel([(3, 3, *place) for place in places])))
