@@ -68,8 +68,8 @@ class Ramtek9300:
         """Send words as `send` does, and pause after each instruction: yields how many words are executed.
 
         A long instruction is executed in slices of a few milliseconds, with pauses between them. Such a pause
-        yields the same number as the pause before. A reset during it abandons the rest of the instruction.
-        With a beam there are no such pauses.
+        yields the same number as the pause before the instruction. A reset during it abandons the rest of the
+        instruction. With a beam there are no such pauses.
         """
         stream = checked_stream(words)
         self.words_received += len(stream)
