@@ -180,6 +180,7 @@ def test_a_signal_ends_a_command_within_a_long_instruction(command: str, code: i
     assert process.stderr is not None
     data = stream(np.concatenate((drawn, long)))
     with ExitStack() as stack:
+        stack.callback(process.kill)
         if "--port" in command:
             host = stack.enter_context(
                 socket.create_connection(("127.0.0.1", int(process.stdout.readline().rpartition(b":")[2])))
