@@ -207,4 +207,6 @@ def numbered(counts: Numbers) -> tuple[Indices, Numbers]:
     [[0, 0, 2, 2, 2], [0, 1, 0, 1, 2]]
     """
     which = np.arange(len(counts)).repeat(counts)
-    return which, np.arange(len(which)) - (counts.cumsum() - counts)[which]
+    numbers = np.arange(len(which))
+    numbers -= (counts.cumsum() - counts)[which]
+    return which, numbers
