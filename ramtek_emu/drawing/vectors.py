@@ -167,11 +167,17 @@ def points(
         numbers += first[which]
         over = divisor[which]
         half = over >> 1
-        elements, lines = (
-            starts[which, axis] + direction[which, axis] * ((numbers * doubled[which, axis] + half) // over)
-            for axis in (0, 1)
-        )
-        yield elements, lines, numbers, which
+        places = []
+        for axis in (0, 1):
+            # Compute in place, because each temporary array costs page faults.
+            place = doubled[which, axis]
+            place *= numbers
+            place += half
+            place //= over
+            place *= direction[which, axis]
+            place += starts[which, axis]
+            places.append(place)
+        yield places[0], places[1], numbers, which
 
 
 MOST_POINTS: Final = 1 << 15
