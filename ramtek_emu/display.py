@@ -21,7 +21,7 @@ from ramtek_emu.memory.cursors import Cursors, Joystick
 from ramtek_emu.memory.frame_buffer import FrameBuffer
 from ramtek_emu.memory.lookup_table import LookupTable
 from ramtek_emu.processor import cursor_executors, drawing_executors, environment_executors, image_executors
-from ramtek_emu.processor.processor import Executors, Processor, Status
+from ramtek_emu.processor.processor import Executors, Pauses, Processor, Status
 from ramtek_emu.video.beam import Beam
 from ramtek_emu.video.scan_out import ScanOut
 
@@ -36,6 +36,8 @@ class Ramtek9300:
     def __init__(self, configuration: Configuration | str = GMR_9300) -> None:
         configuration = checked_configuration(configuration)
         self.configuration = configuration
+        self.resets = 0
+        """The number of times that RESET was pressed; it never decreases."""
         self.words_received = 0
         """The number of words that hosts sent since power-on; it never decreases."""
         self.frame_buffer = FrameBuffer(configuration)
@@ -63,19 +65,32 @@ class Ramtek9300:
             pass
 
     def send_stepwise(self, words: Words) -> Iterator[int]:
-        """Send words as `send` does, and pause after each instruction: yields how many words are executed."""
+        """Send words as `send` does, and pause after each instruction: yields how many words are executed.
+
+        A long instruction is executed in slices of a few milliseconds, with pauses between them. Such a pause
+        yields the same number as the pause before the instruction. A reset during it abandons the rest of the
+        instruction. With a beam there are no such pauses.
+        """
         stream = checked_stream(words)
         self.words_received += len(stream)
         return self._take(stream)
 
     def _take(self, stream: Words) -> Iterator[int]:
+        executed = 0
         for instruction in self.decoder.feed(stream, in_rows=self.beam is None):
             # A reset during the pause feeds the decoder, too.
             used = self.decoder.used
             if self.beam is None:
-                execute(self.processor, instruction)
+                pauses = execute_in_slices(self.processor, instruction)
+                if pauses is not None:
+                    resets = self.resets
+                    for _ in pauses:
+                        yield executed
+                        if self.resets != resets:
+                            break
             else:
                 self._execute_in_time(instruction, self.beam)
+            executed = used
             yield used
 
     def _execute_in_time(self, instruction: Instruction, beam: Beam) -> None:
@@ -93,6 +108,7 @@ class Ramtek9300:
         Hardware: PRG introdoc (the switch), DRIVER.c (the interface's hard reset).
         Assumed: the lookup table and loaded characters stay, as after the instruction RSET.
         """
+        self.resets += 1
         self.decoder.clear()
         self.processor.clear_replies()
         self.cursors.hide()
@@ -144,10 +160,16 @@ class Ramtek9300:
 
 def execute(processor: Processor, instruction: Instruction) -> None:
     """Set the operands of an instruction, then execute it; no instruction raises an error."""
+    for _ in execute_in_slices(processor, instruction) or ():
+        pass
+
+
+def execute_in_slices(processor: Processor, instruction: Instruction) -> Pauses | None:
+    """Begin an instruction as `execute` does; returns the pauses of a long one, None if it is complete."""
     format = instruction.format
     if format.is_normal and instruction.operands and not format.requests_operands:
         processor.parameters.take(instruction.operands, instruction.low_byte)
-    EXECUTORS[format.name](processor, instruction)
+    return EXECUTORS[format.name](processor, instruction)
 
 
 EXECUTORS: Final[Executors] = (

@@ -107,9 +107,10 @@ WAIT_SECONDS: Final = 0.1
 class Run:
     """A display that runs for hosts or from a file, the signal that ends it, and its outputs.
 
-    A signal interrupts nothing: it is remembered, and noticed between two instructions and while waiting for
-    the host. If an output cannot be written, that is reported, and the display goes on with its other
-    outputs.
+    A signal is remembered, and noticed between two instructions, between two slices of a long instruction,
+    and while waiting for the host. An instruction that a signal cuts off stays half drawn in the picture and
+    in the snapshot. It counts as not executed, and the recording ends with the instruction before it. If an
+    output cannot be written, that is reported, and the display goes on with its other outputs.
     """
 
     def __init__(self) -> None:

@@ -6,13 +6,14 @@ square (Assumed: a radius in elements is one in lines).
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import lru_cache
 from typing import Final
 
 import numpy as np
 
 from ramtek_emu.arrays import Booleans, Numbers
-from ramtek_emu.drawing.vectors import steps
+from ramtek_emu.drawing.vectors import numbered, slices
 from ramtek_emu.memory.frame_buffer import FrameBuffer, WriteEnable
 from ramtek_emu.memory.scan_orders import Point, Window
 
@@ -26,8 +27,11 @@ at its edges.
 
 def write_circles(
     frame_buffer: FrameBuffer, centers: Numbers, radii: Numbers, word: int, enable: WriteEnable
-) -> None:
-    """Draw the outlines of circles around (n, 2) centers.
+) -> Iterator[int]:
+    """Draw the outlines of circles around (n, 2) centers, in slices.
+
+    After a slice the iterator yields how many circles are drawn; it draws the next slice when it is asked for
+    more.
 
     Hardware: JPL rtekinc.h, NCAR (center, then the radius; in elements, by a comment of NCAR).
     Assumed: in each octant, at every step the pixel nearest to the circle; radius 0 is a point.
@@ -35,23 +39,29 @@ def write_circles(
     inside = frame_buffer.window.intersection(enable.window)
     if inside.is_empty:
         return
-    crossing = may_cross(centers, radii, inside)
+    crossing = np.flatnonzero(may_cross(centers, radii, inside))
     centers, radii = centers[crossing], radii[crossing]
-    reach = (radii * 0.7072).astype(np.int64) + 1
-    for axis, (low, high) in enumerate(((inside.left, inside.right), (inside.top, inside.bottom))):
-        # Along this axis, compute only the steps that lie within the memory.
-        middle = centers[:, axis]
-        first = np.maximum(low - middle, -reach)
-        counts = np.maximum(np.minimum(high - middle, reach) - first + 1, 0)
-        for which, numbers in steps(counts):
-            across = first[which] + numbers
-            down = nearest_root(radii[which] ** 2 - across * across)
-            flat = np.abs(across) <= down
-            which, across, down = which[flat], across[flat], down[flat]
-            along, other = middle[which] + across, centers[which, 1 - axis]
-            for aside in (other + down, other - down):
-                elements, lines = (aside, along) if axis else (along, aside)
-                frame_buffer.write_points(elements, lines, word, enable)
+    reach = (radii * 0.7072).astype(np.int64)[:, np.newaxis] + 1
+    # Along either axis, compute only the steps that lie within the memory.
+    first = np.maximum(np.array((inside.left, inside.top)) - centers, -reach)
+    last = np.minimum(np.array((inside.right, inside.bottom)) - centers, reach)
+    counts = np.maximum(last - first + 1, 0)
+    for rows in slices(counts.sum(axis=1)):
+        # Number the steps along lines, then the steps across them.
+        circles = rows.stop - rows.start
+        which, numbers = numbered(counts[rows].T.reshape(-1))
+        across = numbers + first[rows].T.reshape(-1)[which]
+        down = nearest_root(np.tile(radii[rows] ** 2, 2)[which] - across * across)
+        flat = np.abs(across) <= down
+        which, across, down = which[flat], across[flat], down[flat]
+        along = across + centers[rows].T.reshape(-1)[which]
+        other = centers[rows, ::-1].T.reshape(-1)[which]
+        turn = int(which.searchsorted(circles))
+        for aside in (other + down, other - down):
+            elements = np.concatenate((along[:turn], aside[turn:]))
+            lines = np.concatenate((aside[:turn], along[turn:]))
+            frame_buffer.write_points(elements, lines, word, enable)
+        yield int(crossing[rows.stop - 1]) + 1
 
 
 def may_cross(centers: Numbers, radii: Numbers, window: Window) -> Booleans:

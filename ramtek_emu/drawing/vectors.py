@@ -47,12 +47,14 @@ class Ink(NamedTuple):
         return (pattern >> bits & 1).astype(np.bool_)
 
 
-def write_linked(frame_buffer: FrameBuffer, vertices: Numbers, ink: Ink, enable: WriteEnable) -> None:
-    """Draw lines from vertex to vertex of (n, 2) vertices.
+def write_linked(
+    frame_buffer: FrameBuffer, vertices: Numbers, ink: Ink, enable: WriteEnable
+) -> Iterator[int]:
+    """Draw lines from vertex to vertex of (n, 2) vertices, in slices as `write_lines` does.
 
     Assumed: the texture continues from line to line, and starts again with the next instruction.
     """
-    write_lines(frame_buffer, vertices[:-1], vertices[1:], ink, enable, runs_on=True)
+    return write_lines(frame_buffer, vertices[:-1], vertices[1:], ink, enable, runs_on=True)
 
 
 def write_lines(
@@ -62,8 +64,12 @@ def write_lines(
     ink: Ink,
     enable: WriteEnable,
     runs_on: bool = False,
-) -> None:
-    """Draw lines from the (n, 2) starts to the (n, 2) ends."""
+) -> Iterator[int]:
+    """Draw lines from the (n, 2) starts to the (n, 2) ends, in slices.
+
+    After a slice the iterator yields how many lines are drawn; it draws the next slice when it is asked for
+    more. A few lines are drawn in a single step.
+    """
     inside = frame_buffer.window.intersection(enable.window)
     if inside.is_empty:
         return
@@ -76,15 +82,15 @@ def write_lines(
     for elements, lines, numbers, which in points(starts, ends, inside):
         if ink.is_solid:
             frame_buffer.write_points(elements, lines, ink.word, enable)
-            continue
-        if runs_on:
-            numbers = numbers + before[which]
-        ones = ink.is_one(numbers)
-        if ink.transparent:
-            frame_buffer.write_points(elements[ones], lines[ones], ink.word, enable)
         else:
-            words = np.where(ones, np.uint16(ink.word), np.uint16(ink.background))
-            frame_buffer.write_points(elements, lines, words, enable)
+            ones = ink.is_one(numbers + before[which] if runs_on else numbers)
+            if ink.transparent:
+                frame_buffer.write_points(elements[ones], lines[ones], ink.word, enable)
+            else:
+                words = np.where(ones, np.uint16(ink.word), np.uint16(ink.background))
+                frame_buffer.write_points(elements, lines, words, enable)
+        if len(which):
+            yield int(which[-1]) + 1
 
 
 def write_line(
@@ -154,34 +160,59 @@ def points(
         beside = still & ((begin < low) | (begin > high))
         first = np.maximum(first, np.where(still, 0, enters))
         last = np.minimum(last, np.where(still, np.where(beside, -1, length), leaves))
-    for which, numbers in steps(np.maximum(last - first + 1, 0)):
-        numbers = numbers + first[which]
+    counts = np.maximum(last - first + 1, 0)
+    for rows in slices(counts):
+        which, numbers = numbered(counts[rows])
+        which += rows.start
+        numbers += first[which]
         over = divisor[which]
         half = over >> 1
-        elements, lines = (
-            starts[which, axis] + direction[which, axis] * ((numbers * doubled[which, axis] + half) // over)
-            for axis in (0, 1)
-        )
-        yield elements, lines, numbers, which
+        places = []
+        for axis in (0, 1):
+            # Compute in place, because each temporary array costs page faults.
+            place = doubled[which, axis]
+            place *= numbers
+            place += half
+            place //= over
+            place *= direction[which, axis]
+            place += starts[which, axis]
+            places.append(place)
+        yield places[0], places[1], numbers, which
 
 
 MOST_POINTS: Final = 1 << 15
-"""The number of points computed at once, or a whole row if it has more. Limit: a bound on memory."""
+"""The number of points in a slice, or a whole row if it has more.
+
+Limit: a bound on memory, and on the time between two pauses: a slice takes 1 to 2 ms.
+"""
 
 
-def steps(counts: Numbers) -> Iterator[tuple[Indices, Numbers]]:
-    """Number the points of lines or circles; a line or circle is a row, and `counts` are its points.
+def slices(counts: Numbers) -> Iterator[slice]:
+    """Cut lines or circles into slices of some thousands of points.
 
-    Yields some thousands of points at once: their rows, and their numbers in the row from 0.
+    A line or circle is a row, and `counts` are the points of each row.
 
-    >>> [(rows.tolist(), numbers.tolist()) for rows, numbers in steps(np.array([2, 0, 3]))]
-    [([0, 0, 2, 2, 2], [0, 1, 0, 1, 2])]
+    >>> list(slices(np.array([30000, 0, 3, 30000, 70000, 1])))
+    [slice(0, 3, None), slice(3, 4, None), slice(4, 5, None), slice(5, 6, None)]
     """
-    done = np.cumsum(counts)
-    rows = np.arange(len(counts))
+    done = counts.cumsum()
     row = before = 0
+    if len(counts) and done[-1] <= MOST_POINTS:
+        yield slice(0, len(counts))
+        return
     while row < len(counts):
         until = max(row + 1, int(np.searchsorted(done, before + MOST_POINTS, side="right")))
-        which = np.repeat(rows[row:until], counts[row:until])
-        yield which, np.arange(before, before + len(which)) - (done - counts)[which]
+        yield slice(row, until)
         row, before = until, int(done[until - 1])
+
+
+def numbered(counts: Numbers) -> tuple[Indices, Numbers]:
+    """The row of each point, for rows of `counts` points, and its number in the row from 0.
+
+    >>> [array.tolist() for array in numbered(np.array([2, 0, 3]))]
+    [[0, 0, 2, 2, 2], [0, 1, 0, 1, 2]]
+    """
+    which = np.arange(len(counts)).repeat(counts)
+    numbers = np.arange(len(which))
+    numbers -= (counts.cumsum() - counts)[which]
+    return which, numbers

@@ -47,7 +47,7 @@ Record = Callable[[bytes], object]
 """A function that records the bytes of whole instructions, in order."""
 
 SLICE_SECONDS: Final = 0.004
-"""How long words are executed before the session pauses; a pause is between two instructions."""
+"""How long words are executed before the session pauses; a long instruction has pauses within it."""
 REPLY_PIECE: Final = 1 << 15
 """The words of waiting replies at which the session pauses, and the most that are returned at once."""
 
@@ -64,7 +64,10 @@ class HostSession:
         self._record = record
         self._unrecorded = NO_WORDS
         self.unexecuted = 0
-        """The number of words of the last `feed` that are not executed yet."""
+        """The number of words that are not executed yet: the rest of the last `feed`.
+
+        A half-drawn instruction counts with all its words, also the words of an earlier `feed`.
+        """
         self.odd_byte = b""
         """The first byte of a word whose second byte has not arrived."""
         self.leave()
@@ -87,22 +90,30 @@ class HostSession:
 
     def _execute(self, words: Words) -> Iterator[bytes]:
         processor, clock = self.display.processor, time.perf_counter
+        # The first instruction may have begun with words of the last feed.
+        begun = self.display.decoder.pending_words
         steps = self.display.send_stepwise(words)
-        begin = place = 0
+        begin = place = previous = 0
         while self.unexecuted:
             due = clock() + SLICE_SECONDS
             for place in steps:
                 if clock() >= due or processor.waiting >= REPLY_PIECE:
-                    self.unexecuted = len(words) - place
+                    self.unexecuted = len(words) - place + (0 if place else begun)
                     break
+                previous = place
             else:
                 self.unexecuted = 0
             if self._record is not None:
                 self._record_words(self._record, words[begin:place], words[place:])
             begin = place
+            is_within, previous, resets = place == previous, place, self.display.resets
             yield self._reply()
             while processor.waiting:
                 yield self._reply()
+            if is_within and self.unexecuted and self.display.resets != resets:
+                # Leave the instruction that the reset abandoned out of the recording.
+                begin = place = previous = next(steps)
+                self.unexecuted = len(words) - place
 
     def _record_words(self, record: Record, executed: Words, rest: Words) -> None:
         """Record whole instructions; at the end, keep the words of an incomplete instruction for later."""

@@ -71,9 +71,11 @@ class FrameBuffer:
         refuse_outside(place, self.window)
         self._store(place, NORMAL_ORDER, block, EVERYTHING)
 
-    def fill(self, window: Window, word: int, enable: WriteEnable = EVERYTHING) -> None:
-        """Fill a window with a word."""
-        self._store(window, NORMAL_ORDER, np.uint16(word & 0xFFFF), enable)
+    def fill(
+        self, window: Window, word: int, enable: WriteEnable = EVERYTHING, dots: Dots | None = None
+    ) -> None:
+        """Fill a window with a word; with [line, element] `dots`, only pixels whose dot is true."""
+        self._store(window, NORMAL_ORDER, np.uint16(word & 0xFFFF), enable, dots)
 
     def write_scan(
         self,
@@ -200,7 +202,9 @@ class FrameBuffer:
                 memory[...] = block & np.uint16(mask)
             self.written += memory.size
             return
-        mixed = (memory & np.uint16(~mask & 0xFFFF)) | (block & np.uint16(mask))
+        mixed = block & np.uint16(mask)
+        if mask != self._every_plane:
+            mixed = (memory & np.uint16(~mask & 0xFFFF)) | mixed
         np.copyto(memory, mixed, where=True if dots is None else dots)
         self.written += memory.size if dots is None else int(np.count_nonzero(dots))
 

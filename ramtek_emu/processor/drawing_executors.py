@@ -6,17 +6,19 @@ unchanged, as its name suggests; without it the background word is written there
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Final
 
 import numpy as np
 
+from ramtek_emu.arrays import Numbers
 from ramtek_emu.drawing import curves, text, vectors
 from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.instruction_set.table import Flags
 from ramtek_emu.memory.character_rom import characters
-from ramtek_emu.memory.parameters import STANDARD_FONT, register
+from ramtek_emu.memory.parameters import STANDARD_FONT, Parameters, register
 from ramtek_emu.memory.scan_orders import Point
-from ramtek_emu.processor.processor import Executors, Processor
+from ramtek_emu.processor.processor import Executors, Pauses, Processor
 
 
 def ink(processor: Processor, instruction: Instruction) -> vectors.Ink:
@@ -26,7 +28,15 @@ def ink(processor: Processor, instruction: Instruction) -> vectors.Ink:
     return vectors.Ink(foreground, background, processor.parameters.texture, transparent)
 
 
-def write_linked_vectors(processor: Processor, instruction: Instruction) -> None:
+def follow(parameters: Parameters, points: Numbers, slices: Iterator[int]) -> Pauses:
+    """Pause after each slice, with the operating point at the last of the (n, 2) points that are drawn."""
+    for drawn in slices:
+        parameters.start = Point(*points[drawn - 1].tolist())
+        yield
+    parameters.start = Point(*points[-1].tolist())
+
+
+def write_linked_vectors(processor: Processor, instruction: Instruction) -> Pauses | None:
     """Draw from the operating point through all vertices; the operating point moves to the last.
 
     Hardware: LIN, BTL, JPL (from the operating point through every vertex; it ends at the last); BTL (a
@@ -34,21 +44,25 @@ def write_linked_vectors(processor: Processor, instruction: Instruction) -> None
     """
     parameters = processor.parameters
     vertices = processor.placed(processor.points(instruction), instruction.low_byte)
-    if len(vertices):
-        linked = np.concatenate(([parameters.start], vertices))
-        vectors.write_linked(processor.frame_buffer, linked, ink(processor, instruction), parameters.enable)
-        parameters.start = Point(*vertices[-1].tolist())
+    if not len(vertices):
+        return None
+    linked = np.concatenate(([parameters.start], vertices))
+    style = ink(processor, instruction)
+    slices = vectors.write_linked(processor.frame_buffer, linked, style, parameters.enable)
+    return follow(parameters, vertices, slices)
 
 
-def write_unlinked_vectors(processor: Processor, instruction: Instruction) -> None:
+def write_unlinked_vectors(processor: Processor, instruction: Instruction) -> Pauses | None:
     """Assumed: four numbers for each vector, start and end; the operating point moves to the last end."""
     parameters = processor.parameters
     points = processor.points(instruction, 4).reshape(-1, 2)
-    if len(points):
-        points = processor.placed(points, instruction.low_byte)
-        lines = points[0::2], points[1::2]
-        vectors.write_lines(processor.frame_buffer, *lines, ink(processor, instruction), parameters.enable)
-        parameters.start = Point(*points[-1].tolist())
+    if not len(points):
+        return None
+    points = processor.placed(points, instruction.low_byte)
+    starts, ends = points[0::2], points[1::2]
+    style = ink(processor, instruction)
+    slices = vectors.write_lines(processor.frame_buffer, starts, ends, style, parameters.enable)
+    return follow(parameters, ends, slices)
 
 
 def write_points(processor: Processor, instruction: Instruction) -> None:
@@ -61,7 +75,7 @@ def write_points(processor: Processor, instruction: Instruction) -> None:
         parameters.start = Point(*points[-1].tolist())
 
 
-def write_circles(processor: Processor, instruction: Instruction) -> None:
+def write_circles(processor: Processor, instruction: Instruction) -> Pauses | None:
     """Hardware: JPL rtekinc.h, NCAR (center, radius); NCAR (the operating point becomes the center).
 
     Assumed: three numbers for each of several circles; radii are 16-bit numbers without a sign; with relative
@@ -70,11 +84,12 @@ def write_circles(processor: Processor, instruction: Instruction) -> None:
     parameters = processor.parameters
     circles = processor.points(instruction, 3)
     if not len(circles):
-        return
+        return None
     word, _ = processor.colors(instruction)
     centers = processor.placed(circles[:, :2], instruction.low_byte)
-    curves.write_circles(processor.frame_buffer, centers, circles[:, 2] & 0xFFFF, word, parameters.enable)
-    parameters.start = Point(*centers[-1].tolist())
+    radii = circles[:, 2] & 0xFFFF
+    slices = curves.write_circles(processor.frame_buffer, centers, radii, word, parameters.enable)
+    return follow(parameters, centers, slices)
 
 
 def write_conic(processor: Processor, instruction: Instruction) -> None:

@@ -16,7 +16,7 @@ from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.instruction_set.table import Flags
 from ramtek_emu.memory.parameters import register
 from ramtek_emu.memory.scan_orders import Point, Window, paired_parts
-from ramtek_emu.processor.processor import Executors, Processor
+from ramtek_emu.processor.processor import Executors, Pauses, Processor
 
 
 def erase(processor: Processor, instruction: Instruction) -> None:
@@ -113,7 +113,7 @@ def write_random_pixels(processor: Processor, instruction: Instruction) -> None:
         parameters.start = Point(*points[-1].tolist())
 
 
-def fill(processor: Processor, instruction: Instruction) -> None:
+def fill(processor: Processor, instruction: Instruction) -> Pauses:
     """Fill the area around the operating point with the foreground.
 
     Hardware: NCAR (disabled code: mode 0 is "fill until"; a circle was drawn in the foreground before; words
@@ -136,11 +136,15 @@ def fill(processor: Processor, instruction: Instruction) -> None:
         open_pixels = part == part[line, element]
     else:
         open_pixels = part != np.uint16(foreground & parameters.whole_word) & mask
-    lines, elements = np.nonzero(area(open_pixels, line, element))
-    frame_buffer.write_points(elements + inside.left, lines + inside.top, foreground, parameters.enable)
+    filled = yield from area(open_pixels, line, element)
+    frame_buffer.fill(inside, foreground, parameters.enable, filled)
 
 
-def copy_image(processor: Processor, instruction: Instruction) -> None:
+MOST_COPIED: Final = 1 << 20
+"""The number of words that are copied at once. Limit: a bound on the time between two pauses, 1 to 8 ms."""
+
+
+def copy_image(processor: Processor, instruction: Instruction) -> Pauses:
     """Copy the window to another place.
 
     Assumed: the data are the element and the line of the corner where the scan of the copy starts; without
@@ -155,14 +159,20 @@ def copy_image(processor: Processor, instruction: Instruction) -> None:
     parameters.start = corner
     if inside.is_empty:
         return
-    words, _ = processor.frame_buffer.read_scan(
-        inside, order, order.corner(inside), inside.width * inside.height
-    )
-    words &= np.uint16(parameters.read_mask)
     first, origin = order.corner(inside), order.corner(parameters.window)
     place = Point(corner.element + first.element - origin.element, corner.line + first.line - origin.line)
     along, runs = order.inner_and_outer(inside)
-    processor.frame_buffer.write_block(place, order, words.reshape(runs, along), parameters.enable)
+    at_once = max(1, MOST_COPIED // along)
+    blocks = []
+    for run in range(0, runs, at_once):
+        count = along * min(at_once, runs - run)
+        words, _ = processor.frame_buffer.read_scan(inside, order, order.stepped(first, 0, run), count)
+        words &= np.uint16(parameters.read_mask)
+        blocks.append(words.reshape(-1, along))
+        yield
+    for run, block in zip(range(0, runs, at_once), blocks, strict=True):
+        processor.frame_buffer.write_block(order.stepped(place, 0, run), order, block, parameters.enable)
+        yield
 
 
 def load_lookup_table(processor: Processor, instruction: Instruction) -> None:

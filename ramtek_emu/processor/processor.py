@@ -2,7 +2,8 @@
 
 Each instruction has a row in the instruction table and an executor: a function of the processor and the
 instruction, which raises no error. A new instruction is a row of the instruction table, a function in the
-module of executors for its subject, and a row of the table at the foot of that module.
+module of executors for its subject, and a row of the table at the foot of that module. An executor that may
+take more than about 20 ms returns its pauses.
 
 What is modeled: the parameters, the addressing modes, image modes, replies in order, the illegal-instruction
 bit. What is **not**: logical functions other than replacement; they replace (Assumed: FUNC; no source
@@ -12,7 +13,7 @@ its only client, NCAR, sends the corner of the window along with coordinates tha
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from enum import IntFlag
 from typing import Final
 
@@ -149,5 +150,10 @@ class Processor:
         return (pair[1], pair[0]) if instruction.low_byte & Flags.SWAP else pair
 
 
-Executors = dict[str, Callable[[Processor, Instruction], None]]
-"""Executors by the name of the instruction."""
+Pauses = Iterator[None]
+"""The pauses of a long instruction: each step of the iterator draws a slice, and the last step ends it.
+
+Between two steps anything may be read, and the display may be reset; then the iterator is dropped.
+"""
+Executors = dict[str, Callable[[Processor, Instruction], Pauses | None]]
+"""Executors by the name of the instruction. An executor returns None if it has executed everything."""

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 import numpy as np
+import pytest
 
 from ramtek_emu import Configuration, Ramtek9300, instructions
 from tests.ramtek_emu.strategies import sent_words
@@ -14,6 +18,16 @@ def sent(*texts: str, configuration: Configuration | None = None) -> Ramtek9300:
     for text in texts:
         display.send(np.array([int(word, 16) for word in text.split()], np.uint16))
     return display
+
+
+@contextmanager
+def smallest_slices() -> Iterator[None]:
+    """Long instructions are executed in the smallest slices: by single lines, circles and runs."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("ramtek_emu.drawing.vectors.MOST_POINTS", 1)
+        patch.setattr("ramtek_emu.drawing.areas.MOST_RUNS", 1)
+        patch.setattr("ramtek_emu.processor.image_executors.MOST_COPIED", 1)
+        yield
 
 
 def box(display: Ramtek9300) -> tuple[int, int, int, int]:

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from ramtek_emu import Configuration
+from ramtek_emu.instruction_set.instruction import OperandValue, encode, normal
 from ramtek_emu.memory.scan_orders import Point, Window
 
 quick = settings(deadline=None, max_examples=60)
@@ -39,3 +40,30 @@ def cuts(stream: list[int], places: list[int]) -> list[NDArray[np.uint16]]:
 def sent_words(numbers: Iterable[int]) -> NDArray[np.uint16]:
     """Numbers as 16-bit words; negative numbers in two's complement."""
     return np.array([number & 0xFFFF for number in numbers], np.uint16)
+
+
+@st.composite
+def sliced_instructions(draw: st.DrawFn) -> NDArray[np.uint16]:
+    """An instruction that can be executed in slices, with small or far coordinates and any flags."""
+    coordinate = st.integers(-6, 18) | st.sampled_from([-0x8000, 0x7FFF])
+    operands: dict[str, st.SearchStrategy[OperandValue | None]] = {
+        "mask": masks,
+        "foreground": st.integers(0, 1023),
+        "background": st.integers(0, 1023),
+        "index_1": st.tuples(coordinate, coordinate),
+        "window": windows(),
+        "scan_order": st.integers(0, 7),
+        "start": st.tuples(coordinate, coordinate),
+        "read_mask": masks,
+        "write_window": windows(),
+        "texture": st.tuples(st.sampled_from([0xFFFF, 0xAAAA, 0xF731]), st.integers(0, 3)),
+    }
+    given_operands = draw(st.fixed_dictionaries({}, optional=operands))
+    flags = (
+        draw(st.sampled_from([0, 0x40, 0xC0]))
+        | draw(st.sampled_from([0, 0x10]))
+        | draw(st.sampled_from([0, 0x20]))
+    )
+    data = sent_words(draw(st.lists(coordinate, max_size=40)))
+    name = draw(st.sampled_from(["WVL", "WVU", "CIRC", "FILL", "COPY"]))
+    return encode(normal(name, given_operands, data, flags=flags))

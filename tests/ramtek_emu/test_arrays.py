@@ -11,6 +11,7 @@ from ramtek_emu import Ramtek9300, arrays
 from ramtek_emu.drawing.areas import area
 from ramtek_emu.drawing.curves import conic_pixels
 from ramtek_emu.memory.scan_orders import Point
+from tests.ramtek_emu.drawing.test_areas import returned
 
 
 def kind_of(array_type: object) -> object:
@@ -26,7 +27,7 @@ def kind_of(array_type: object) -> object:
         ("Colors", Ramtek9300().entries),
         ("Colors", Ramtek9300().field()),
         ("PackedColors", Ramtek9300().lookup_table.packed),
-        ("Dots", area(np.ones((2, 2), np.bool_), 0, 0)),
+        ("Dots", returned(area(np.ones((2, 2), np.bool_), 0, 0))),
         ("Numbers", conic_pixels((1, 1, 0, -4, 0, 0), Point(0, 0), None)[0]),
         ("Bytes", np.frombuffer(b"12", np.uint8)),
     ],

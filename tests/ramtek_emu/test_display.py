@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from numpy.typing import NDArray
 from PIL import Image
 
 from ramtek_emu import (
@@ -27,13 +28,14 @@ from ramtek_emu import (
     instructions,
 )
 from ramtek_emu.display import EXECUTORS
+from ramtek_emu.instruction_set.instruction import encode, normal
 from ramtek_emu.instruction_set.table import FORMATS, ILLEGAL
 from ramtek_emu.memory.character_rom import characters
 from ramtek_emu.snapshot import snapshot_bytes
 from ramtek_emu.testing import check_words_within_planes, streams
-from tests.ramtek_emu.displays import sent
+from tests.ramtek_emu.displays import sent, smallest_slices
 from tests.ramtek_emu.recorded_streams import RECORDED
-from tests.ramtek_emu.strategies import SMALL, cuts, sent_words, thorough
+from tests.ramtek_emu.strategies import SMALL, cuts, sent_words, sliced_instructions, thorough
 from tests.ramtek_emu.test_hostile import sessions
 
 
@@ -122,6 +124,103 @@ def test_no_instruction_takes_long(name: str) -> None:
     display.send(sent_words([*WORST[name], 0x0700]))
     assert display.decoder.pending_words == 0
     check_words_within_planes(display.words)
+
+
+def state_of(display: Ramtek9300) -> tuple[object, ...]:
+    """The picture, the parameters, and the number of words written."""
+    return display.words.tolist(), display.processor.parameters, display.frame_buffer.written
+
+
+@thorough
+@given(st.lists(sliced_instructions(), min_size=1, max_size=4))
+def test_slices_leave_the_display_that_an_instruction_in_one_piece_leaves(
+    parts: list[NDArray[np.uint16]],
+) -> None:
+    whole, sliced = Ramtek9300(SMALL), Ramtek9300(SMALL)
+    ends = np.cumsum([len(part) for part in parts]).tolist()
+    pauses: list[int] = []
+    for part in parts:
+        whole.send(part)
+    with smallest_slices():
+        for executed in sliced.send_stepwise(np.concatenate(parts)):
+            pauses.append(executed)
+            check_words_within_planes(sliced.words)
+            sliced.field()
+    assert state_of(sliced) == state_of(whole)
+    assert pauses == sorted(pauses)
+    assert sorted(set(pauses) - {0}) == ends
+
+
+PATH = [(1, 1), (11, 1), (11, 3), (60, 60), (4, 7), (4, 7), (0, 2), (12, 8)]
+HALF_DRAWN: dict[str, Callable[[list[tuple[int, int]]], NDArray[np.uint16]]] = {
+    "linked": lambda places: encode(normal("WVL", {"foreground": 9}, sent_words(np.ravel(places)))),
+    "separate": lambda places: encode(
+        normal("WVU", {}, sent_words(np.ravel([(3, 3, *place) for place in places])))
+    ),
+    "textured": lambda places: encode(
+        normal("WVL", {"texture": (0xF731, 1), "background": 3}, sent_words(np.ravel(places)))
+    ),
+    "circles": lambda places: instructions.write_circles([(*place, 3) for place in places], 9),
+}
+
+
+@pytest.mark.parametrize("kind", HALF_DRAWN)
+def test_a_half_drawn_instruction_has_drawn_everything_up_to_the_operating_point(kind: str) -> None:
+    words = HALF_DRAWN[kind]
+    shorter = []
+    for count in range(1, len(PATH) + 1):
+        display = Ramtek9300(SMALL)
+        display.send(words(PATH[:count]))
+        shorter.append((display.words.tolist(), display.processor.parameters.start))
+    display = Ramtek9300(SMALL)
+    seen = []
+    with smallest_slices():
+        for _ in display.send_stepwise(words(PATH)):
+            seen.append((display.words.tolist(), display.processor.parameters.start))
+    # A circle outside the memory takes no slice.
+    assert len(seen) >= len(PATH) - 1
+    assert all(state in shorter for state in seen)
+
+
+def test_a_reset_within_an_instruction_abandons_the_rest_of_it() -> None:
+    display, twin = Ramtek9300(SMALL), Ramtek9300(SMALL)
+    drawn = instructions.write_vectors(PATH, 9)
+    after = instructions.write_vectors([(3, 3), (5, 5)], 7)
+    with smallest_slices():
+        steps = display.send_stepwise(np.concatenate((drawn, after)))
+        assert (next(steps), next(steps)) == (0, 0)
+        assert display.words.any()
+        display.reset()
+        assert not display.words.any()
+        assert next(steps) == len(drawn)
+        assert not display.words.any()
+        assert list(steps)[-1] == len(drawn) + len(after)
+    twin.send(after)
+    assert display.words.tolist() == twin.words.tolist()
+    assert display.processor.parameters == twin.processor.parameters
+
+
+def test_a_display_with_a_beam_pauses_between_instructions_only() -> None:
+    display = Ramtek9300(replace(SMALL, timing=Timing()))
+    drawn = instructions.write_vectors(PATH, 9)
+    with smallest_slices():
+        assert list(display.send_stepwise(np.concatenate((drawn, drawn)))) == [len(drawn), 2 * len(drawn)]
+
+
+@pytest.mark.parametrize("copied", [copy.deepcopy, lambda display: pickle.loads(pickle.dumps(display))])
+def test_a_copy_of_a_display_within_an_instruction_does_not_finish_it(
+    copied: Callable[[Ramtek9300], Ramtek9300],
+) -> None:
+    display = Ramtek9300(SMALL)
+    with smallest_slices():
+        steps = display.send_stepwise(instructions.write_vectors(PATH, 9))
+        next(steps)
+        twin = copied(display)
+        half = twin.words.copy()
+        list(steps)
+    twin.send(sent_words([0x0700]))
+    assert (twin.words == half).all()
+    assert (display.words != half).any()
 
 
 def test_the_reset_switch_hides_the_cursors_and_drops_unfinished_words() -> None:

@@ -17,7 +17,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ramtek_emu import PortError, Ramtek9300
+from docs.generate.blocks import blocks_of
+from ramtek_emu import PortError, Ramtek9300, instructions
 from ramtek_emu.commands.tty import refuse_systems_without_pidfd, terminal
 from ramtek_emu.host.device import MACHINES
 from ramtek_emu.host.server import UnixServer
@@ -99,6 +100,48 @@ def test_quick_writes_of_all_sizes_are_rounded_down_singly(display: UnixServer, 
     assert (done.returncode, done.stderr) == (0, b"")
     assert display.display.words[9, :600].tolist() == expected
     assert display.display.processor.illegal_words == 0
+
+
+READS_AN_IMAGE = r"""
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+int main(void)
+{
+    static unsigned char instruction[] = {0x01, 0x0B, 0xFE, 0xFF}, reply[65534];
+    int device = open(getenv("RAMTEK_DEVICE"), O_RDWR);
+    ssize_t got;
+
+    write(device, instruction, 4);
+    got = read(device, reply, sizeof reply);
+    printf("%zd %d %d\n", got, reply[65532], reply[65533]);
+    return 0;
+}
+"""
+
+
+def test_the_library_of_the_docs_makes_every_read_of_a_program_whole(
+    display: UnixServer, tmp_path: Path
+) -> None:
+    compiler = shutil.which("cc") or shutil.which("gcc")
+    if compiler is None:
+        pytest.skip("a C compiler is not installed")
+    (library,) = [
+        block.text for block in blocks_of((ROOT / "docs" / "RAMTEK.md").read_text()) if block.language == "c"
+    ]
+    (tmp_path / "whole_reads.c").write_text(library)
+    (tmp_path / "old.c").write_text(READS_AN_IMAGE)
+    for command in ("-shared -fPIC -o whole_reads.so whole_reads.c -ldl", "-o old old.c"):
+        subprocess.run([compiler, *command.split()], cwd=tmp_path, check=True, capture_output=True)
+    display.display.send(instructions.write_image(np.full((480, 640), 0x155)))
+    preload = f"LD_PRELOAD={tmp_path / 'whole_reads.so'}"
+    done = tty(display, "env", preload, tmp_path / "old")
+    assert (done.returncode, done.stdout, done.stderr) == (0, b"65534 85 1\n", b"")
+    # The library leaves all other files alone.
+    done = tty(display, "env", preload, "sh", "-c", "printf 'one\\ntwo' | { read line; echo $line; }")
+    assert (done.returncode, done.stdout, done.stderr) == (0, b"one\n", b"")
 
 
 LINE_BUFFERED = """

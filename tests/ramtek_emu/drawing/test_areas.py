@@ -1,5 +1,8 @@
 from __future__ import annotations
 
+from collections.abc import Generator
+from typing import TypeVar
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -9,6 +12,18 @@ from numpy.typing import NDArray
 
 from ramtek_emu.drawing.areas import area, connected, links
 from tests.ramtek_emu.strategies import thorough
+
+Result = TypeVar("Result")
+
+
+def returned(pauses: Generator[None, None, Result]) -> Result:
+    """What a generator returns after all its pauses."""
+    while True:
+        try:
+            next(pauses)
+        except StopIteration as end:
+            result: Result = end.value
+            return result
 
 
 def reached(open_pixels: NDArray[np.bool_], line: int, element: int) -> set[tuple[int, int]]:
@@ -33,7 +48,7 @@ def test_an_area_has_the_pixels_that_a_walk_reaches(
 ) -> None:
     line = data.draw(st.integers(0, open_pixels.shape[0] - 1))
     element = data.draw(st.integers(0, open_pixels.shape[1] - 1))
-    filled = {(n, e) for n, e in np.argwhere(area(open_pixels, line, element)).tolist()}
+    filled = {(n, e) for n, e in np.argwhere(returned(area(open_pixels, line, element))).tolist()}
     assert filled == reached(open_pixels, line, element)
 
 
@@ -52,8 +67,8 @@ def test_a_spiral_is_one_area_from_its_end_to_its_middle(side: int) -> None:
                 open_pixels[line, element] = True
             turn += 1
         length -= 2
-    assert (area(open_pixels, 0, 0) == open_pixels).all()
-    assert (area(open_pixels, line, element) == open_pixels).all()
+    assert (returned(area(open_pixels, 0, 0)) == open_pixels).all()
+    assert (returned(area(open_pixels, line, element)) == open_pixels).all()
 
 
 def test_runs_touch_when_they_share_an_element_of_neighboring_lines() -> None:
@@ -68,7 +83,7 @@ def test_runs_touch_when_they_share_an_element_of_neighboring_lines() -> None:
 def test_linked_runs_have_equal_labels(count: int, pairs: list[tuple[int, int]]) -> None:
     pairs = [(one % count, other % count) for one, other in pairs]
     one, other = (np.array([pair[side] for pair in pairs], np.intp) for side in (0, 1))
-    labels = connected(one, other, count).tolist()
+    labels = returned(connected(one, other, count)).tolist()
     groups = [{number} for number in range(count)]
     for first, second in pairs:
         merged = groups[first] | groups[second]

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ramtek_emu import NCAR_9460, Ramtek9300, instructions
-from ramtek_emu.drawing.vectors import MOST_POINTS, points, steps
+from ramtek_emu.drawing.vectors import MOST_POINTS, numbered, points, slices
 from ramtek_emu.memory.scan_orders import Window
 from tests.ramtek_emu import reference
 from tests.ramtek_emu.strategies import SMALL, masks, quick, sent_words, thorough, windows
@@ -188,9 +188,14 @@ def test_a_vector_across_the_whole_range_takes_no_more_points_than_the_memory_sh
 @given(st.lists(st.integers(0, 5) | st.integers(MOST_POINTS - 3, MOST_POINTS + 3), max_size=12))
 def test_every_row_is_numbered_from_0_in_order(counts: list[int]) -> None:
     rows, numbers = [], []
-    for which, part in steps(np.array(counts, np.int64)):
-        assert len(which) <= max(MOST_POINTS, *counts)
-        rows += which.tolist()
-        numbers += part.tolist()
+    end = 0
+    for part in slices(np.array(counts, np.int64)):
+        assert part.start == end
+        assert part.stop - part.start == 1 or sum(counts[part]) <= MOST_POINTS
+        end = part.stop
+        which, numbers_of_part = numbered(np.array(counts[part], np.int64))
+        rows += (which + part.start).tolist()
+        numbers += numbers_of_part.tolist()
+    assert end == len(counts)
     assert rows == [row for row, count in enumerate(counts) for _ in range(count)]
     assert numbers == [number for count in counts for number in range(count)]

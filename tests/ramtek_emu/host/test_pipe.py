@@ -27,6 +27,7 @@ from ramtek_emu.instruction_set.disassembler import items
 from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.monitor.window import Monitor
 from ramtek_emu.testing import check_words_within_planes, streams
+from tests.ramtek_emu.displays import shown
 from tests.ramtek_emu.film_reader import decoded
 from tests.ramtek_emu.processes import stream
 from tests.ramtek_emu.recorded_streams import OUTLINE, RECORDED
@@ -97,6 +98,32 @@ def test_a_pipe_is_shown_in_slices_of_time_and_its_replies_come(on_screen: str) 
     until(has_ended)
     assert b"".join(replies) == display.words[100, 100:103].astype("<u2").tobytes()
     monitor.close()
+
+
+def test_a_window_shows_a_long_instruction_while_it_is_drawn(
+    on_screen: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("ramtek_emu.host.server.SLICE_SECONDS", 0.0)
+    display = Ramtek9300()
+    display.send(instructions.load_entries(5, [[255, 255, 255]]))
+    lines = [(0, line, 639, line) for line in range(480)]
+    pieces = [b"", stream(instructions.write_segments(lines, 5))]
+    pipe = PolledPipe(HostSession(display), pop_of(pieces))
+    monitor = Monitor(display, on_tick=lambda: pipe.serve_for(0.0))
+    monitor.open()
+    lit: list[int] = []
+
+    def has_ended() -> bool:
+        monitor.step()
+        lit.append(int(shown().any(axis=(1, 2)).sum()))
+        return pipe.ended
+
+    until(has_ended)
+    scale = len(shown()) // 480
+    monitor.close()
+    # A slice is 51 lines of 640 words.
+    assert sorted(set(lit)) == [scale * line for line in (*range(0, 480, 51), 480)]
+    assert lit == sorted(lit)
 
 
 class Clock:

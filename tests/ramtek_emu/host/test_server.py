@@ -20,9 +20,10 @@ from ramtek_emu.arrays import Words
 from ramtek_emu.host.port import UnixPort, Wire, packet_socket
 from ramtek_emu.host.server import REPLY_BYTES, Client, HostSession, TcpServer, UnixServer
 from ramtek_emu.testing import streams
+from tests.ramtek_emu.displays import smallest_slices
 from tests.ramtek_emu.recorded_streams import OUTLINE, RECORDED, words
 from tests.ramtek_emu.serving import READ_EVERYTHING, serving, serving_at, until
-from tests.ramtek_emu.strategies import SMALL, quick
+from tests.ramtek_emu.strategies import SMALL, quick, sent_words, sliced_instructions
 
 
 def connected(server: TcpServer) -> socket.socket:
@@ -429,6 +430,93 @@ def test_the_words_that_arrived_and_were_not_executed_are_counted(monkeypatch: p
     host.close()
     client.leave()
     assert client.session.unexecuted == 0
+
+
+LONG = packet("0E03 0002 9 18 0 0 C 0 C 1 0 1 0 2 C 2")
+"""A WVL of six vertices in 16 words, which is drawn in slices of a line each."""
+NO_OPERATION = packet("0700")
+
+
+@pytest.mark.parametrize("cut", [0, 2, 9, 30])
+def test_a_half_drawn_instruction_is_not_executed_and_not_recorded(
+    cut: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("ramtek_emu.host.server.SLICE_SECONDS", 0.0)
+    recorded: list[bytes] = []
+    session = HostSession(Ramtek9300(SMALL), recorded.append)
+    list(session.feed(NO_OPERATION + LONG[:cut]))
+    drawn = []
+    with smallest_slices():
+        for _ in session.feed(LONG[cut:] + NO_OPERATION):
+            drawn.append(int(np.count_nonzero(session.display.words)))
+            if len(drawn) <= 6:
+                assert session.unexecuted == 17
+                assert b"".join(recorded) == NO_OPERATION
+    assert drawn[:6] == [1, 13, 14, 26, 27, 39]
+    assert session.unexecuted == 0
+    assert b"".join(recorded) == NO_OPERATION + LONG + NO_OPERATION
+
+
+def test_a_reset_within_an_instruction_leaves_it_out_of_the_recording(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("ramtek_emu.host.server.SLICE_SECONDS", 0.0)
+    recorded: list[bytes] = []
+    session = HostSession(Ramtek9300(SMALL), recorded.append)
+    after = packet("0902 0044 7 5 5 5 5")
+    list(session.feed(NO_OPERATION + LONG[:10]))
+    with smallest_slices():
+        pauses = session.feed(LONG[10:] + after)
+        next(pauses)
+        assert session.display.words.any()
+        session.reset()
+        assert not session.display.words.any()
+        list(pauses)
+    assert np.argwhere(session.display.words).tolist() == [[5, 5]]
+    assert b"".join(recorded) == NO_OPERATION + packet("0500") + after
+    assert session.unexecuted == 0
+
+
+def test_a_reset_between_two_instructions_leaves_both_in_the_recording(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("ramtek_emu.host.server.SLICE_SECONDS", 0.0)
+    recorded: list[bytes] = []
+    session = HostSession(Ramtek9300(SMALL), recorded.append)
+    drawn = packet("0902 0044 7 5 5 5 5")
+    pauses = session.feed(NO_OPERATION + drawn + LONG)
+    next(pauses)
+    session.reset()
+    list(pauses)
+    assert b"".join(recorded) == NO_OPERATION + packet("0500") + drawn + LONG
+
+
+@quick
+@given(
+    st.lists(sliced_instructions() | streams(12).map(sent_words), min_size=1, max_size=4),
+    st.integers(0, 400),
+    st.sets(st.integers(0, 40), max_size=4),
+)
+def test_a_recording_with_resets_at_any_pause_gives_the_same_display(
+    parts: list[Words], cut: int, resets: set[int]
+) -> None:
+    recorded: list[bytes] = []
+    session = HostSession(Ramtek9300(SMALL), recorded.append)
+    data = np.concatenate(parts).astype("<u2").tobytes()
+    pause = 0
+    with smallest_slices(), pytest.MonkeyPatch.context() as patch:
+        patch.setattr("ramtek_emu.host.server.SLICE_SECONDS", 0.0)
+        for piece in (data[:cut], data[cut:]):
+            for _ in session.feed(piece):
+                if pause in resets:
+                    session.reset()
+                pause += 1
+    again = Ramtek9300(SMALL)
+    again.send(np.frombuffer(b"".join(recorded), "<u2").astype(np.uint16))
+    assert again.decoder.pending_words == 0
+    assert (again.words == session.display.words).all()
+    assert (again.entries == session.display.entries).all()
+    assert again.processor.parameters == session.display.processor.parameters
 
 
 def test_the_time_that_the_display_takes_is_no_silence_of_the_host(monkeypatch: pytest.MonkeyPatch) -> None:

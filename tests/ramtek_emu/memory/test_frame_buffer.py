@@ -79,20 +79,24 @@ def test_reading_a_run_equals_a_walk_word_by_word(
 
 
 @quick
-@given(rasters(), windows(), words(16), masks)
+@given(rasters(), windows(), words(16), masks, st.none() | st.integers(0, 1 << 32))
 def test_a_fill_equals_a_run_of_a_repeated_word(
-    raster: NDArray[np.uint16], window: Window, word: int, mask: int
+    raster: NDArray[np.uint16], window: Window, word: int, mask: int, seed: int | None
 ) -> None:
     buffer, twin = filled(raster), filled(raster)
-    buffer.fill(window, word, WriteEnable(mask))
     size = window.width * window.height
+    dots = None if seed is None else np.random.default_rng(seed).random(size) < 0.5
+    shape = window.height, window.width
+    buffer.fill(window, word, WriteEnable(mask), None if dots is None else dots.reshape(shape))
     twin.write_scan(
         window,
         SCAN_ORDERS[0],
         Point(window.left, window.top),
         np.full(size, word, np.uint16),
         WriteEnable(mask),
+        dots,
     )
+    assert buffer.written == twin.written
     assert buffer.words.tolist() == twin.words.tolist()
 
 
