@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from typing import TYPE_CHECKING, Any, Final
 
 import click
@@ -99,7 +100,7 @@ def inspect(
         from ramtek_emu.inspection.inspector import inspect
 
         replay.go_to(0 if at is None else at)
-        inspect(replay, f"{stream} - RAMTEK {sizes.name.replace('_', ' ')}")
+        inspect(replay, f"{os.path.basename(stream)} - RAMTEK {sizes.name.replace('_', ' ')}")
         return
     if rest := len(replay.stream.words) - int(replay.stream.ends[-1]):
         tell(f"the stream ends within an instruction: its {rest} words are not counted")
