@@ -273,7 +273,7 @@ def run(code: str, timeout: float = 60) -> str:
     return ended.stdout
 
 
-WITH_PYGAME = {"ramtek_emu.monitor.glass", "ramtek_emu.monitor.window"}
+WITH_PYGAME = {"ramtek_emu.inspection.inspector", "ramtek_emu.monitor.glass", "ramtek_emu.monitor.window"}
 WITH_PILLOW = {"ramtek_emu.films", "ramtek_emu.png", *WITH_PYGAME}
 
 IMPORTING_ALONE = """

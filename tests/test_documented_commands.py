@@ -26,6 +26,8 @@ NOT_RUN = {
     "autocolor show scenes/coupe --to tcp://127.0.0.1:9300": "it runs until its user leaves",
     "autocolor show scenes/coupe --to tcp://127.0.0.1:9300 &": "it runs until its user leaves",
     "autocolor show scenes/coupe --to tcp://127.0.0.1:9300 --timeout 300": "it runs until its user leaves",
+    "ramtek inspect chart.ramtek": "it opens a window",
+    "ramtek serve --port 9300 --inspect": "it waits for hosts",
     "ramtek play fade.ramtek --loads-per-second 24": "it opens a window",
     "ramtek serve --unix /tmp/display --window &": "it waits for hosts",
     "ramtek tty /tmp/display -- old_program {}": "it runs a program that the reader has",

@@ -20,8 +20,10 @@ CLOSE = 1.0
 """The mean difference of components. Fewer colors make 0.25 of it, and a missing drag at least 5."""
 
 SCREENS = [picture for picture in PICTURES if "open_viewer" in inspect.getsource(picture)]
-DRAWN = [picture for picture in PICTURES if re.search(r"upper_half|played", inspect.getsource(picture))]
-"""The pictures of the listings in display.md. They have few colors, so no color is lost."""
+DRAWN = [
+    picture for picture in PICTURES if re.search(r"upper_half|played|Inspector\(", inspect.getsource(picture))
+]
+"""The pictures of the listings in display.md and inspect.md. They have few colors, so no color is lost."""
 
 
 def test_every_image_is_small_and_in_a_guide() -> None:

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 from autocolor.screens.viewer import BINDINGS, WINDOW_KEYS
 from docs.generate.keys import ROOT, document
+from ramtek_emu.inspection.inspector import help_rows
 from ramtek_emu.monitor.overlay import KEYS
 
 
@@ -11,10 +12,10 @@ def test_the_document_is_up_to_date() -> None:
 
 
 def test_every_key_has_a_row_of_its_own_window() -> None:
-    studio, display = document().split("\n## ")[1:]
+    studio, display, inspector = document().split("\n## ")[1:]
     for binding in BINDINGS:
         assert f"\n| {binding} | {binding.does} |\n" in studio
-    for part, rows in ((studio, WINDOW_KEYS), (display, KEYS)):
+    for part, rows in ((studio, WINDOW_KEYS), (display, KEYS), (inspector, help_rows(is_live=True))):
         for keys, action in rows:
             assert f"\n| {keys} | {action} |\n" in part
 

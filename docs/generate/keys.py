@@ -10,6 +10,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from autocolor.screens.viewer import rows_of_help
+from ramtek_emu.inspection.inspector import help_rows
 from ramtek_emu.monitor.overlay import KEYS
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -27,9 +28,13 @@ keys: its joystick unit reaches everything through the menu.
 DISPLAY = """The window of `ramtek`, `ramtek play` and `ramtek serve --window`, which shows what a host draws.
 """
 
+INSPECTOR = """The window of `ramtek inspect` and of `ramtek serve --inspect`. Space is for a running display.
+"""
+
 TABLES: tuple[tuple[str, str, Sequence[tuple[str, str]]], ...] = (
     ("The studio", STUDIO, rows_of_help()),
     ("The display", DISPLAY, KEYS),
+    ("The inspector", INSPECTOR, help_rows(is_live=True)),
 )
 
 

@@ -1,4 +1,4 @@
-"""The pictures of display.md, paper.md, elsewhere.md and emulators.md.
+"""The pictures of display.md, inspect.md, paper.md, elsewhere.md and emulators.md.
 
 `python -m docs.guides.pictures_of_displays` writes them. As in `pictures`, each function returns the picture
 that is named after it. The display draws the pictures of display.md from its listings and examples.
@@ -25,7 +25,12 @@ import autocolor
 from docs.generate.blocks import blocks_of
 from docs.guides.pictures import GUIDES, write
 from ramtek_emu import Ramtek9300
+from ramtek_emu.inspection.inspector import Inspector
+from ramtek_emu.inspection.replay import Replay
+from ramtek_emu.inspection.session import InspectionSession
+from ramtek_emu.inspection.stream import Stream
 from ramtek_emu.instruction_set.assembler import assemble
+from ramtek_emu.monitor.input_queue import Key, Pointer
 from scenes.figures import Field, captioned, click, open_viewer, point_at
 
 
@@ -216,9 +221,25 @@ def emulators_lines() -> Field:
             return np.asarray(picture.convert("RGB"))
 
 
+def inspect_pixel() -> Field:
+    """The window of inspect.md at the instruction that wrote a pixel of the white bar."""
+    blocks = blocks_of((GUIDES / "inspect.md").read_text("utf-8"))
+    (listing,) = (block.text for block in blocks if block.text.startswith("; chart.txt"))
+    words = np.frombuffer(b"".join(assemble(listing.splitlines())), "<u2")
+    inspector = Inspector(InspectionSession(Replay(Stream(words=words.astype(np.uint16)))))
+    for key in ("end", "["):
+        inspector.press(Key(key))
+        if key == "end":
+            for action in ("move", "press", "release"):
+                inspector.point(Pointer(500, 300, False, action, 0 if action == "move" else 1))
+        while inspector.session.is_busy:
+            inspector.session.tick()
+    return inspector.page.colors()
+
+
 PICTURES: Final[Sequence[Callable[[], Field]]] = (
     display_areas, display_lines, display_curves, display_text, display_images, display_cursors,
-    display_view, display_ball, display_stripes,
+    display_view, display_ball, display_stripes, inspect_pixel,
     paper_terms, paper_controls, paper_words, paper_blends,
     elsewhere_lights, emulators_lines,
 )  # fmt: skip

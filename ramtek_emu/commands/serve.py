@@ -29,12 +29,14 @@ if TYPE_CHECKING:
     from ramtek_emu.commands.displays import Run
     from ramtek_emu.host.joystick import JoystickLines
     from ramtek_emu.host.pipe import Read, Write
-    from ramtek_emu.host.server import HostSession, Server, TcpServer, UnixServer
+    from ramtek_emu.host.server import HostSession, Record, Server, TcpServer, UnixServer
+    from ramtek_emu.inspection.running_host import RunningHost
 
 EXAMPLES: Final = """\b
 Examples:
   ramtek serve --port 9300                          a display at tcp://127.0.0.1:9300
   ramtek serve --port 0 --window                    any free port, which is printed, and a window
+  ramtek serve --port 9300 --inspect                stop its host, step, ask who wrote a pixel
   ramtek serve --unix /tmp/display                  one for `ramtek tty` and programs of the time
   ramtek serve --port 9300 --joystick -             type `cursor 100 200 enter` to point at something
   old_program | ramtek serve --stdio -o out.png     a program that only draws
@@ -60,6 +62,7 @@ MOST_WRITTEN: Final = 1 << 16
 @click.option("--stdio", is_flag=True, help="Words on stdin, replies on stdout.")
 @click.option("--host", default="127.0.0.1", show_default=True, help="The address to listen at.")
 @click.option("--window", is_flag=True, help="Show the display in a window.")
+@click.option("--inspect", is_flag=True, help="In a window, pause the host, step, and look back.")
 @click.option(
     "--joystick",
     metavar="FILE",
@@ -81,6 +84,7 @@ def serve(
     stdio: bool,
     host: str,
     window: bool,
+    inspect: bool,
     joystick: str | None,
     idle: float,
     once: bool,
@@ -112,34 +116,64 @@ def serve(
     from ramtek_emu.host.joystick import JoystickLines
     from ramtek_emu.host.server import HostSession, TcpServer, UnixServer
 
+    inspected: RunningHost | None = None
+    if inspect:
+        from ramtek_emu.inspection.running_host import RunningHost
+
+        inspected = RunningHost(display)
+
     def lines_for(resettable: HostSession | Server) -> JoystickLines | None:
         if joystick is None:
             return None
         return JoystickLines(joystick, display.joystick, resettable.reset, tell)
 
     with running(display, output, snapshot, record, force) as run:
+        recording = run.record if inspected is None else recording_in_both(run, inspected)
+        gate = None if inspected is None else inspected.gate
         if stdio:
-            session = HostSession(display, run.record)
-            serve_stdio(session, run, window, lines_for(session))
+            session = HostSession(display, recording, gate)
+            serve_stdio(session, run, window, lines_for(session), inspected)
         else:
             server: TcpServer | UnixServer
             if unix is not None:
-                server = UnixServer(display, unix, idle_seconds=idle, record=run.record)
+                server = UnixServer(display, unix, idle_seconds=idle, record=recording)
             else:
-                server = TcpServer(display, port or 0, host, idle_seconds=idle, record=run.record)
+                server = TcpServer(display, port or 0, host, idle_seconds=idle, record=recording)
+            server.gate = gate
             with server:
-                serve_hosts(server, run, window, once, lines_for(server))
+                serve_hosts(server, run, window, once, lines_for(server), inspected)
                 tell_unexecuted(server.unexecuted)
 
 
-def serve_stdio(session: HostSession, run: Run, window: bool, lines: JoystickLines | None = None) -> None:
+def recording_in_both(run: Run, inspected: RunningHost) -> Record:
+    """A function that records words for an inspected host, and for the recording of the run if it has one."""
+    also = run.record
+
+    def record(data: bytes) -> None:
+        if also is not None:
+            also(data)
+        inspected.record(data)
+
+    return record
+
+
+def serve_stdio(
+    session: HostSession,
+    run: Run,
+    window: bool,
+    lines: JoystickLines | None = None,
+    inspected: RunningHost | None = None,
+) -> None:
     """Serve the program at the other end of stdin and stdout until it closes its end."""
     from ramtek_emu.host.pipe import PolledPipe, serve_pipe
     from ramtek_emu.host.port import waiting_bytes
 
     read, write = standard_streams(run)
     source: HostSession | PolledPipe = session
-    if window:
+    if inspected is not None:
+        source = pipe = PolledPipe(session, read, write)
+        inspect_host(inspected, run, lines, lambda _: pipe.step())
+    elif window:
         source = pipe = PolledPipe(session, read, write)
         show(session.display, run, obeying(lines, pipe.serve_for))
     elif lines is None:
@@ -152,6 +186,19 @@ def serve_stdio(session: HostSession, run: Run, window: bool, lines: JoystickLin
                 time.sleep(PIPE_SECONDS)
     tell_the_end(session)
     tell_unexecuted(source.unexecuted + (waiting_bytes(sys.stdin.fileno()) // 2 if sys.stdin else 0))
+
+
+def inspect_host(
+    inspected: RunningHost, run: Run, lines: JoystickLines | None, step: Callable[[float], bool]
+) -> None:
+    """Follow the display in the window of an inspector until it is closed, or a signal ends it."""
+    from ramtek_emu.inspection import inspector
+
+    inspected.step = step
+    if lines is not None:
+        inspected.obey = lines.obey
+    name = inspected.display.configuration.name.replace("_", " ")
+    inspector.inspect_host(inspected, f"RAMTEK {name}", lambda: run.ends)
 
 
 def obeying(lines: JoystickLines | None, serve_for: Callable[[float], None]) -> Callable[[float], None]:
@@ -208,15 +255,24 @@ def replies_to(stdout: int) -> tuple[int, int]:
 
 
 def serve_hosts(
-    server: TcpServer | UnixServer, run: Run, window: bool, once: bool, lines: JoystickLines | None = None
+    server: TcpServer | UnixServer,
+    run: Run,
+    window: bool,
+    once: bool,
+    lines: JoystickLines | None = None,
+    inspected: RunningHost | None = None,
 ) -> None:
     """Serve hosts until a signal, until the window is closed, or, with `once`, until a host leaves."""
-    if window:
+    if window or inspected is not None:
         from ramtek_emu.monitor.window import open_screen
 
         # Fail before the address is printed.
         open_screen()
         announce(server)
+        if inspected is not None:
+            inspected.is_connected = lambda: server.busy
+            inspect_host(inspected, run, lines, server.step)
+            return
         serve_for = partial(server.serve_for, wait=HOST_SECONDS)
         show(server.display, run, obeying(lines, serve_for), lambda: server.busy)
         return

@@ -52,6 +52,35 @@ REPLY_PIECE: Final = 1 << 15
 """The words of waiting replies at which the session pauses, and the most that are returned at once."""
 
 
+class Gate:
+    """Decides how many instructions a display executes, for a program that stops its hosts."""
+
+    def __init__(self) -> None:
+        self.left: int | None = None
+        """How many more instructions may be executed; None for any number."""
+        self.is_within = False
+        """Whether the last pause was within a long instruction."""
+        self._place = 0
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether hosts must wait."""
+        return self.left == 0
+
+    def begin(self) -> None:
+        """Note that the words of a host begin at place 0."""
+        self._place = 0
+
+    def closes_at(self, place: int) -> bool:
+        """Note how many words are executed; returns whether no further instruction may be."""
+        self.is_within = place == self._place
+        if not self.is_within:
+            self._place = place
+            if self.left:
+                self.left -= 1
+        return self.left == 0 and not self.is_within
+
+
 class HostSession:
     """A host at a display: passes the bytes of its words on and the bytes of replies back, on any wire.
 
@@ -59,9 +88,10 @@ class HostSession:
     they outgrow the processor's bound.
     """
 
-    def __init__(self, display: Ramtek9300, record: Record | None = None) -> None:
+    def __init__(self, display: Ramtek9300, record: Record | None = None, gate: Gate | None = None) -> None:
         self.display = display
         self._record = record
+        self._gate = gate
         self._unrecorded = NO_WORDS
         self.unexecuted = 0
         """The number of words that are not executed yet: the rest of the last `feed`.
@@ -71,6 +101,11 @@ class HostSession:
         self.odd_byte = b""
         """The first byte of a word whose second byte has not arrived."""
         self.leave()
+
+    @property
+    def is_stopped(self) -> bool:
+        """Whether the host must wait until a gate opens."""
+        return self._gate is not None and self._gate.is_closed
 
     @property
     def unfinished(self) -> bool:
@@ -89,7 +124,11 @@ class HostSession:
         return self._execute(words)
 
     def _execute(self, words: Words) -> Iterator[bytes]:
-        processor, clock = self.display.processor, time.perf_counter
+        processor, clock, gate = self.display.processor, time.perf_counter, self._gate
+        if gate is not None:
+            gate.begin()
+        while self.unexecuted and self.is_stopped:
+            yield b""
         # The first instruction may have begun with words of the last feed.
         begun = self.display.decoder.pending_words
         steps = self.display.send_stepwise(words)
@@ -97,7 +136,8 @@ class HostSession:
         while self.unexecuted:
             due = clock() + SLICE_SECONDS
             for place in steps:
-                if clock() >= due or processor.waiting >= REPLY_PIECE:
+                closes = gate is not None and gate.closes_at(place)
+                if closes or clock() >= due or processor.waiting >= REPLY_PIECE:
                     self.unexecuted = len(words) - place + (0 if place else begun)
                     break
                 previous = place
@@ -108,7 +148,7 @@ class HostSession:
             begin = place
             is_within, previous, resets = place == previous, place, self.display.resets
             yield self._reply()
-            while processor.waiting:
+            while processor.waiting or (self.unexecuted and self.is_stopped):
                 yield self._reply()
             if is_within and self.unexecuted and self.display.resets != resets:
                 # Leave the instruction that the reset abandoned out of the recording.
@@ -260,6 +300,9 @@ class Client:
 
     def work(self) -> bool:
         """Execute a piece of the host's words; returns whether there was a piece."""
+        if self.session.is_stopped:
+            # Stop the clocks of a host that must wait.
+            self._last_transfer = self._last_complete = time.monotonic()
         if not self.has_work or self._pending is None:
             return False
         begin = time.monotonic()
@@ -317,6 +360,8 @@ class Server:
         self.record = record
         self.idle_seconds = idle_seconds
         self.partial_seconds = PARTIAL_SECONDS
+        self.gate: Gate | None = None
+        """Stops the hosts that connect from now on; None lets all instructions through."""
         self.served = 0
         """The number of hosts that were served and have left; it never decreases."""
         self._listener = listener
@@ -393,7 +438,7 @@ class Server:
         except OSError:
             connected.close()
             return True
-        session = HostSession(self.display, self.record)
+        session = HostSession(self.display, self.record, self.gate)
         self._client = Client(wire, session, self.idle_seconds, self.partial_seconds)
         # While this host is served, other hosts wait in the listener's line.
         self._selector.unregister(self._listener)

@@ -3,6 +3,8 @@
 What is modeled: the field at the largest whole multiple that fits, centered, each pixel a k x k block. A
 window that is smaller than the field shows it whole, blurred. What is **not**: the phosphor, the beam.
 
+The field is that of a `FieldSource`: the `ScanOut` of a display, or a page that a program draws.
+
 Only lines that changed are enlarged and sent to the screen; an X server gets them directly. Measured with
 Xvfb, from an event of the mouse to the moved cursor: 0.2 ms at 640 x 480 and 0.3 ms at 1280 x 960; with whole
 fields 0.4 and 2.7 ms; with whole fields through OpenGL, as the library would choose, 2.4 and 8.7 ms.
@@ -14,7 +16,7 @@ import os
 import sys
 import warnings
 from pathlib import Path
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple, Protocol
 
 import numpy as np
 
@@ -24,10 +26,11 @@ os.environ["PYGAME_HIDE_SUPPORT_PROMPT"] = "1"
 os.environ["SDL_WINDOWS_DPI_AWARENESS"] = os.environ.get("SDL_WINDOWS_DPI_AWARENESS", "permonitorv2")
 import pygame
 
+from ramtek_emu.arrays import Colors, PackedColors
 from ramtek_emu.errors import NoScreenError, escaped
 from ramtek_emu.monitor.input_queue import Close, InputQueue, Key, Pointer
 from ramtek_emu.monitor.overlay import Overlay
-from ramtek_emu.video.scan_out import Run, ScanOut, Stamp
+from ramtek_emu.video.scan_out import Run
 
 KEY_DELAY: Final = 400
 KEY_INTERVAL: Final = 33
@@ -67,6 +70,34 @@ def open_screen() -> None:
         )
 
 
+class FieldSource(Protocol):
+    """Makes the fields that a window shows, (lines, elements). Fields with equal stamps are equal."""
+
+    lines: int
+    elements: int
+    blink_is_on: bool
+    """Whether blinking cursors are shown; the window sets it."""
+
+    @property
+    def stamp(self) -> Any:
+        """A value that changes whenever a pixel may have changed."""
+
+    def lines_changed_since(self, last: Any) -> tuple[Run, ...]:
+        """The lines that may have changed since the stamp `last`, as runs from the top; all for None."""
+        ...
+
+    def scan_out_changes_into(self, pixels: PackedColors, last: Any) -> Any:
+        """Bring pixels with the stamp `last` up to date; returns their new stamp. None writes all pixels."""
+
+    def table(self) -> PackedColors:
+        """The colors of all words, 0x00RRGGBB."""
+        ...
+
+    def field(self) -> Colors:
+        """The field of a screenshot or a film, (lines, elements, 3) uint8."""
+        ...
+
+
 class Glass:
     """The window of a display, closed at first; `size` is the size of the field, (elements, lines)."""
 
@@ -78,7 +109,7 @@ class Glass:
         self._window_size = size
         self._redrawn = 0
         """The number of times that the window lost the field."""
-        self._shown: tuple[pygame.Surface, Viewport, Stamp] | None = None
+        self._shown: tuple[pygame.Surface, Viewport, Any] | None = None
         """The surface of the last field, its place in the window, and the stamp of that field."""
 
     @property
@@ -170,7 +201,7 @@ class Glass:
         self._redrawn += 1
         self._shown = None
 
-    def show(self, scan_out: ScanOut, overlay: Overlay, title: str, hides_mouse: bool) -> None:
+    def show(self, source: FieldSource, overlay: Overlay, title: str, hides_mouse: bool) -> None:
         """Show the current field with its overlay, and show or hide the pointer of the mouse."""
         pygame.mouse.set_visible(not hides_mouse)
         screen = pygame.display.get_surface()
@@ -179,12 +210,12 @@ class Glass:
         surface = screen if is_direct else self._field
         last = self._shown[2] if self._shown is not None and self._shown[:2] == (surface, place) else None
         has_overlay = any(overlay.stamp)
-        changed = scan_out.lines_changed_since(None if has_overlay else last)
+        changed = source.lines_changed_since(None if has_overlay else last)
         # The surface is locked while the array exists.
         pixels = np.asarray(surface.get_view("2")).T
-        stamp = scan_out.scan_out_changes_into(pixels, last)
+        stamp = source.scan_out_changes_into(pixels, last)
         if has_overlay:
-            overlay.draw(pixels, scan_out.table(), title)
+            overlay.draw(pixels, source.table(), title)
         del pixels
         self._shown = None if has_overlay else (surface, place, stamp)
         is_blurred = self._is_blurred(place)

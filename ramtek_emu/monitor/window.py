@@ -8,7 +8,8 @@ and ticks are passed as plain values to the program that uses the display. After
 field, the field is shown before the next input is handled, so that input never outruns the picture.
 
 A program that draws its own pages handles F1, F4 and F12 itself. If the picture belongs to a host, the
-monitor shows pages over the field; see `overlay`.
+monitor shows pages over the field; see `overlay`. A window may also show a page of a program, such as an
+inspector with the field in it; then the program decides which places of the mouse are the joystick's.
 
 F3 records the fields that are shown, with their times, as a film; see `ramtek_emu.films.TimedFilm`. Closing
 the window saves the film, too.
@@ -25,6 +26,7 @@ from typing import TYPE_CHECKING, Final
 from ramtek_emu.command_line import report
 from ramtek_emu.display import Ramtek9300
 from ramtek_emu.errors import RamtekError
+from ramtek_emu.monitor.glass import FieldSource as FieldSource
 from ramtek_emu.monitor.glass import Glass
 from ramtek_emu.monitor.glass import open_screen as open_screen
 from ramtek_emu.monitor.input_queue import Close, Input, InputQueue, Release
@@ -54,6 +56,7 @@ class Monitor:
         display: Ramtek9300,
         caption: str = "RAMTEK 9300",
         *,
+        source: FieldSource | None = None,
         fit: bool = False,
         full_screen: bool = False,
         screenshots: str | os.PathLike[str] = ".",
@@ -67,6 +70,8 @@ class Monitor:
     ) -> None:
         """Prepare a window; `open` opens it. Screenshots and films are saved in the folder `screenshots`.
 
+        `source` is shown instead of the display's field. The mouse then moves no joystick: `on_pointer` gets
+        places of the source's field, and may call `steer` with places of the display's.
         `on_key` returns whether it handled the key; if it did not, F1 and F4 show a page over the field, Esc
         closes that page, and F12 saves the field. In full screen, Esc first leaves full screen. `on_release`
         gets the name of a released key after its press was handled, also when another window gets the
@@ -75,6 +80,7 @@ class Monitor:
         in full screen over the field.
         """
         self._display = display
+        self._source = source
         self.full_screen = full_screen
         self.screenshots = Path(screenshots)
         self.file_name = "ramtek"
@@ -95,7 +101,7 @@ class Monitor:
         self.refreshed = 0
         """The number of times that the field was shown; it never decreases."""
         self._caption = caption
-        self._glass = Glass((display.scan_out.elements, display.scan_out.lines), fit)
+        self._glass = Glass((self.source.elements, self.source.lines), fit)
         self._shown: tuple[object, ...] | None = None
 
     @property
@@ -111,6 +117,11 @@ class Monitor:
         display.joystick.move_to(*self._display.joystick.position)
         self._display = display
         self._glass.forget_shown()
+
+    @property
+    def source(self) -> FieldSource:
+        """What makes the fields that the window shows: the display's scan-out, or a page of a program."""
+        return self._display.scan_out if self._source is None else self._source
 
     @property
     def fit(self) -> bool:
@@ -158,7 +169,7 @@ class Monitor:
             self._film = None
 
     def _to_be_shown(self) -> tuple[object, ...]:
-        return self.display.scan_out.stamp, self._glass.stamp, self.overlay.stamp
+        return self.source.stamp, self._glass.stamp, self.overlay.stamp
 
     def show_message(self, message: str) -> None:
         """Show a message in the title bar of the window, or over the field in full screen."""
@@ -187,7 +198,7 @@ class Monitor:
             self.handle(self.input.take())
         if self.is_open and self.on_tick is not None:
             self.on_tick()
-        self.display.scan_out.blink_is_on = int(time.monotonic() / BLINK_SECONDS) % 2 == 0
+        self.source.blink_is_on = int(time.monotonic() / BLINK_SECONDS) % 2 == 0
         if self.is_open and self._shown != self._to_be_shown():
             self.refresh()
         return self.is_open
@@ -197,10 +208,11 @@ class Monitor:
         self._shown = self._to_be_shown()
         self.refreshed += 1
         # Hide the mouse pointer while a cursor of the display follows the mouse.
-        hides_mouse = any(cursor.is_visible for cursor in self.display.joystick.driven)
-        self._glass.show(self.display.scan_out, self.overlay, self._caption, hides_mouse)
+        driven = self.display.joystick.driven if self._source is None else ()
+        hides_mouse = any(cursor.is_visible for cursor in driven)
+        self._glass.show(self.source, self.overlay, self._caption, hides_mouse)
         if self._film is not None and not self._film.has_ended:
-            self._film.show(self.display.field(), time.monotonic())
+            self._film.show(self.source.field(), time.monotonic())
             if self._film.is_full:
                 self._tell_of_film(self._film, "the film is full: ")
 
@@ -218,7 +230,7 @@ class Monitor:
         """Save the field under the next free number, never over a file; OutputError or WriteError."""
         from ramtek_emu.png import save_numbered
 
-        return save_numbered(self.display.field(), self.screenshots, self.file_name)
+        return save_numbered(self.source.field(), self.screenshots, self.file_name)
 
     def toggle_recording(self) -> None:
         """Begin a film with the field that is shown; or end it, save it, and show its path."""
@@ -227,7 +239,7 @@ class Monitor:
             return
         from ramtek_emu.films import TimedFilm
 
-        self._film = TimedFilm(self.display.field(), time.monotonic())
+        self._film = TimedFilm(self.source.field(), time.monotonic())
         # A program that gets messages would draw this message into the film.
         self.show_message("F3 ends it")
 
@@ -340,14 +352,19 @@ class Monitor:
             self.tell(str(refusal))
 
     def handle_pointer(self, pointer: Pointer) -> None:
-        """Move the joystick, set its switches, and call `on_pointer`."""
-        joystick = self.display.joystick
-        joystick.move_to(pointer.element, pointer.line)
+        """Move the joystick and set its switches, unless a program's page is shown; call `on_pointer`."""
         if pointer.button == LEFT:
             self._enter = pointer.action == "press"
-            if self._enter:
-                joystick.press_enter()
-        elif pointer.button == RIGHT:
-            joystick.track = pointer.action == "press"
+        if self._source is None:
+            self.steer(pointer)
         if self.on_pointer is not None:
             self.on_pointer(pointer._replace(enter=self._enter))
+
+    def steer(self, pointer: Pointer) -> None:
+        """Move the joystick to a place of the display's field, and set its switches by the buttons."""
+        joystick = self.display.joystick
+        joystick.move_to(pointer.element, pointer.line)
+        if pointer.button == LEFT and pointer.action == "press":
+            joystick.press_enter()
+        elif pointer.button == RIGHT:
+            joystick.track = pointer.action == "press"

@@ -119,7 +119,7 @@ class ScanOut:
         rest = (
             self._frame_buffer.written,
             view_of(self._parameters()),
-            self._has_sections and self._first_entry(),
+            self._has_sections and self.first_entry,
             beam and beam.lines_done,
         )
         return Stamp(self._lookup_table.written, self._marks(), rest)
@@ -242,10 +242,11 @@ class ScanOut:
                 low = (table >> 4 & 0xF0 | table & 0x0F) if short else table & 0xFF
                 self._gray = self._lookup_table.written, (low * 0x010101).astype(np.uint32)
             table = self._gray[1]
-        first = self._first_entry()
+        first = self.first_entry
         return table[first : first + self._words] if self._has_sections else table
 
-    def _first_entry(self) -> int:
+    @property
+    def first_entry(self) -> int:
         """The first entry of the section of the table that is shown."""
         return self._lookup_table.addressed_entry // self._words * self._words if self._has_sections else 0
 

@@ -356,6 +356,7 @@ def test_a_window_closes_at_once_while_a_host_is_still_sending(on_screen: str) -
     [
         ["play", "-", "--record", "r"],
         ["serve", "--stdio", "--window", "--record", "r", "--snapshot", "s.png"],
+        ["serve", "--stdio", "--inspect", "--record", "r", "--snapshot", "s.png"],
     ],
 )
 def test_a_command_with_a_window_runs_until_a_signal(
@@ -397,9 +398,10 @@ def test_a_signal_during_service_closes_the_window_afterwards(number: signal.Sig
     assert served == 1
 
 
-def test_the_server_s_window_is_a_command(on_screen: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("view", ["--window", "--inspect"])
+def test_the_server_s_window_is_a_command(on_screen: str, tmp_path: Path, view: str) -> None:
     process = subprocess.Popen(
-        [sys.executable, "-m", "ramtek_emu", "serve", "--port", "0", "--window"],
+        [sys.executable, "-m", "ramtek_emu", "serve", "--port", "0", view, "--record", "words"],
         cwd=tmp_path,
         env={**os.environ, "PYTHONPATH": str(ROOT)},
         stdout=subprocess.PIPE,
@@ -414,3 +416,4 @@ def test_the_server_s_window_is_a_command(on_screen: str, tmp_path: Path) -> Non
     process.send_signal(signal.SIGINT)
     process.communicate(timeout=60)
     assert process.returncode == 0
+    assert (tmp_path / "words").stat().st_size > 2 * len(stream)

@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 from ramtek_emu import HostPort, OutputError, OutputExistsError, PortError, Ramtek9300, TcpPort, instructions
 from ramtek_emu.arrays import Words
 from ramtek_emu.host.port import UnixPort, Wire, packet_socket
-from ramtek_emu.host.server import REPLY_BYTES, Client, HostSession, TcpServer, UnixServer
+from ramtek_emu.host.server import REPLY_BYTES, Client, Gate, HostSession, TcpServer, UnixServer
 from ramtek_emu.testing import streams
 from tests.ramtek_emu.displays import smallest_slices
 from tests.ramtek_emu.recorded_streams import OUTLINE, RECORDED, words
@@ -721,3 +721,28 @@ def test_packets_of_random_bytes_act_as_their_whole_words(tmp_path: Path) -> Non
         assert (server.display.words == twin.words).all()
         assert (server.display.entries == twin.entries).all()
         assert server.display.processor.waiting == 0
+
+
+@quick
+@given(words=streams(), counts=st.lists(st.integers(0, 3), max_size=12))
+def test_a_gate_lets_so_many_instructions_through(words: list[int], counts: list[int]) -> None:
+    display, gate = Ramtek9300(SMALL), Gate()
+    recorded = bytearray()
+    session = HostSession(display, recorded.extend, gate)
+    data = np.array(words, "<u2").tobytes()
+    # Illegal words in a row are executed at once.
+    steps = [0, *Ramtek9300(SMALL).send_stepwise(np.array(words, np.uint16))]
+    waiting = session.feed(data)
+    done = 0
+    for count in counts:
+        gate.left = count
+        for _ in range(3):
+            next(waiting, None)
+        done = min(done + count, len(steps) - 1)
+        assert len(recorded) == 2 * steps[done]
+        assert session.is_stopped == (gate.left == 0)
+    gate.left = None
+    for _ in waiting:
+        pass
+    assert len(recorded) == 2 * steps[-1]
+    assert session.unexecuted == 0

@@ -13,6 +13,7 @@ import pytest
 from PIL import Image
 
 from ramtek_emu import NoScreenError, Ramtek9300, instructions
+from ramtek_emu.arrays import Colors, PackedColors
 from ramtek_emu.monitor.glass import viewport
 from ramtek_emu.monitor.input_queue import Close, Release
 from ramtek_emu.monitor.pattern import pattern
@@ -691,6 +692,59 @@ def test_the_mouse_moves_the_joystick_and_its_buttons_are_the_switches(unopened:
         (True, "release", 3),
         (False, "release", 1),
     ]
+
+
+class Card:
+    """A picture of one color, which changes as a whole."""
+
+    def __init__(self, lines: int, elements: int) -> None:
+        self.lines, self.elements = lines, elements
+        self.blink_is_on = True
+        self.color = 0x102030
+
+    @property
+    def stamp(self) -> int:
+        return self.color
+
+    def lines_changed_since(self, last: object) -> tuple[tuple[int, int], ...]:
+        return () if last == self.color else ((0, self.lines),)
+
+    def scan_out_changes_into(self, pixels: PackedColors, last: object) -> int:
+        pixels[...] = self.color
+        return self.color
+
+    def table(self) -> PackedColors:
+        return np.full(1024, self.color, np.uint32)
+
+    def field(self) -> Colors:
+        return np.full((2, 3, 3), self.color & 0xFF, np.uint8)
+
+
+def test_a_program_s_picture_is_shown_and_its_mouse_is_no_joystick(
+    display: Ramtek9300, tmp_path: Path
+) -> None:
+    given: list[Pointer] = []
+    card = Card(200, 300)
+    monitor = Monitor(display, source=card, screenshots=tmp_path, on_pointer=given.append)
+    monitor.open()
+    resize(monitor, (600, 400))
+    for color in (0x102030, 0x405060):
+        card.color = color
+        monitor.step()
+        assert (shown() == (color >> 16, color >> 8 & 0xFF, color & 0xFF)).all()
+    given.clear()
+    place = display.joystick.position
+    pygame.event.post(pygame.event.Event(pygame.MOUSEBUTTONDOWN, pos=(599, 399), button=1))
+    monitor.step()
+    assert given == [Pointer(299, 199, True, "press", 1)]
+    assert display.joystick.position == place
+    assert not display.cursors.enter_is_pressed
+    monitor.steer(given[0])
+    assert display.joystick.position == (299, 199)
+    assert display.cursors.enter_is_pressed
+    with Image.open(monitor.screenshot()) as picture:
+        assert picture.size == (3, 2)
+    monitor.close()
 
 
 def test_the_mouse_dropped_files_and_closing_are_reported(unopened: UnopenedMonitor) -> None:

@@ -1,0 +1,85 @@
+"""RunningHost: the host of a running display, which can be stopped, and the instructions it has sent.
+
+What moves the cursors beside the instructions, such as the joystick, is kept with the states of the replay.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Final
+
+import numpy as np
+
+from ramtek_emu.display import Ramtek9300
+from ramtek_emu.host.server import Gate
+from ramtek_emu.inspection.replay import Replay
+from ramtek_emu.inspection.stream import Stream
+from ramtek_emu.instruction_set.instruction import NO_WORDS
+from ramtek_emu.memory.cursors import Cursors
+
+PIECE_SECONDS: Final = 0.006
+"""How long a tick prepares states, searches, or executes the words of a host."""
+HOST_SECONDS: Final = 0.005
+"""How long the input of the window may wait while a connected host sends nothing."""
+MOST_BYTES: Final = 1 << 28
+"""Limit: the bytes of the words of a running display, and of the states to go back to."""
+
+
+class RunningHost:
+    """The host of a running display, which a session may stop."""
+
+    def __init__(self, display: Ramtek9300) -> None:
+        self.display = display
+        self.gate = Gate()
+        """The gate for the sessions of the hosts."""
+        self.step: Callable[[float], bool] = lambda _: False
+        """Executes a piece of a host's words, as far as the gate allows.
+
+        It waits up to so many seconds for words, and returns whether it has done anything.
+        """
+        self.obey: Callable[[], object] = lambda: None
+        """Moves the joystick or presses RESET, if lines of text ask for it."""
+        self.is_connected: Callable[[], bool] = lambda: False
+        """Whether a host is connected, so that its words are worth waiting for."""
+        self.replay = Replay(Stream(display.configuration), display)
+        """The instructions that the display has executed.
+
+        When they and their states take MOST_BYTES, another replay begins with the display as it is.
+        """
+        self._cursors = cursor_states(display.cursors)
+        """The cursors and switches after the last instruction."""
+
+    def record(self, data: bytes) -> None:
+        """Note the bytes of whole instructions that the display has executed."""
+        words = np.frombuffer(data, "<u2").astype(np.uint16)
+        if self.gate.is_within:
+            # The display has begun another instruction, so that its state cannot be kept.
+            self.replay.stream.append(words)
+        else:
+            self.replay.note(words, self.display)
+            size = self.replay.stream.words.nbytes + self.replay.state_bytes
+            if size > MOST_BYTES:
+                self.replay = Replay(Stream(self.display.configuration), self.display)
+
+    def serve(self, instructions: int | None) -> None:
+        """Execute the host's words for some milliseconds: at most so many instructions; None for all.
+
+        With 0 only replies are sent.
+        """
+        self.obey()
+        if cursor_states(self.display.cursors) != self._cursors and not self.gate.is_within:
+            # No instruction has moved the cursors to where the joystick has moved them.
+            self.replay.note(NO_WORDS, self.display, has_moved=True)
+        self.gate.left = instructions
+        end = time.monotonic() + PIECE_SECONDS
+        is_done = not self.step(HOST_SECONDS if instructions != 0 and self.is_connected() else 0.0)
+        while not is_done and not self.gate.is_closed and time.monotonic() < end:
+            is_done = not self.step(0.0)
+        self._cursors = cursor_states(self.display.cursors)
+
+
+def cursor_states(cursors: Cursors) -> tuple[object, ...]:
+    """The places and states of all cursors, and the switches, to compare."""
+    places = [(cursor.element, cursor.line, cursor.state, cursor.enter) for cursor in cursors.all]
+    return *places, cursors.track, cursors.enter_is_pressed

@@ -1,0 +1,59 @@
+"""Sessions at rest, their panels as text, and hosts that a session can stop."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ramtek_emu import Ramtek9300, instructions
+from ramtek_emu.host.server import HostSession
+from ramtek_emu.inspection.panels import Line
+from ramtek_emu.inspection.running_host import RunningHost
+from ramtek_emu.inspection.session import InspectionSession
+from tests.ramtek_emu.inspection.replays import replay_of
+
+BOXES = (
+    instructions.erase((0, 0, 12, 8), 5),
+    instructions.load_entries(5, [[10, 20, 30]]),
+    instructions.erase((2, 2, 4, 4), 7),
+    instructions.erase((3, 3, 9, 6), 5),
+    instructions.load_entries(5, [[40, 50, 60]]),
+)
+
+
+def at_rest(session: InspectionSession) -> InspectionSession:
+    """The session after all waiting work."""
+    while session.is_busy:
+        session.tick()
+    return session
+
+
+def text_of(line: Line) -> str:
+    return "".join(span.text for span in line)
+
+
+def session_of(*streams: object) -> InspectionSession:
+    """A prepared session of instructions for the small display."""
+    words = np.concatenate([np.asarray(stream, np.uint16) for stream in streams])
+    return at_rest(InspectionSession(replay_of(words.tolist())))
+
+
+class Served:
+    """A host session that a stopped display executes, and the replies to its host."""
+
+    def __init__(self, display: Ramtek9300) -> None:
+        self.host = RunningHost(display)
+        self.session = HostSession(display, self.host.record, self.host.gate)
+        self.host.step = self.step
+        self.replies = b""
+        self._waiting: Iterator[bytes] = iter(())
+
+    def send(self, words: np.ndarray[tuple[int], np.dtype[np.uint16]]) -> None:
+        assert next(self._waiting, None) is None
+        self._waiting = self.session.feed(words.astype("<u2").tobytes())
+
+    def step(self, seconds: float) -> bool:
+        reply = next(self._waiting, None)
+        self.replies += reply or b""
+        return reply is not None

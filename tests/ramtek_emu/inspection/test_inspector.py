@@ -1,0 +1,290 @@
+"""The window of an inspector: keys, the mouse, and a real window once."""
+
+from __future__ import annotations
+
+import threading
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from ramtek_emu import Configuration, Ramtek9300, TcpPort, instructions
+from ramtek_emu.host.server import TcpServer
+from ramtek_emu.inspection.inspector import BINDINGS, MOUSE, MOUSE_LIVE, Inspector
+from ramtek_emu.inspection.running_host import RunningHost
+from ramtek_emu.inspection.session import EntryRange, InspectionSession
+from ramtek_emu.memory.scan_orders import Point
+from ramtek_emu.monitor.input_queue import Key, Pointer
+from ramtek_emu.snapshot import snapshot_bytes
+from ramtek_emu.testing import streams
+from tests.ramtek_emu.displays import shown
+from tests.ramtek_emu.inspection.replays import moments, replay_of
+from tests.ramtek_emu.recorded_streams import OUTLINE
+from tests.ramtek_emu.strategies import SMALL, quick
+
+pygame = pytest.importorskip("pygame")
+
+LARGE = Configuration(name="LARGE", elements=640, lines=480, planes=10)
+
+
+def inspector_of(words: object, configuration: Configuration = LARGE) -> Inspector:
+    return at_rest(Inspector(InspectionSession(replay_of(np.asarray(words).tolist(), configuration))))
+
+
+def at_rest(inspector: Inspector) -> Inspector:
+    while inspector.session.is_busy:
+        inspector.session.tick()
+    return inspector
+
+
+def press(inspector: Inspector, *names: str) -> Inspector:
+    for name in names:
+        shift, plain = name.startswith("shift "), name.removeprefix("shift ")
+        text = plain if len(plain) == 1 else ""
+        assert inspector.press(Key(plain, text.upper() if shift else text, shift=shift))
+    return at_rest(inspector)
+
+
+def point(inspector: Inspector, *actions: tuple[str, int, int]) -> Inspector:
+    """The mouse at places of the page: "press", "move", "release" of the left button."""
+    for action, element, line in actions:
+        inspector.point(Pointer(element, line, False, action, 0 if action == "move" else 1))
+    return at_rest(inspector)
+
+
+def click(inspector: Inspector, element: int, line: int) -> Inspector:
+    return point(inspector, ("press", element, line), ("release", element, line))
+
+
+BOXES = np.concatenate(
+    (
+        instructions.erase((0, 0, 639, 479), 5),
+        instructions.load_entries(5, [[10, 20, 30]]),
+        instructions.erase((100, 100, 200, 200), 7),
+        instructions.erase((150, 150, 300, 250), 5),
+        instructions.load_entries(5, [[40, 50, 60]]),
+    )
+)
+
+KEYS = st.sampled_from([*"123goncwiers[]", "shift n"]) | st.sampled_from(
+    [key for binding in BINDINGS for key in binding.keys] + ["return", "backspace", "f12"]
+)
+POINTERS = st.builds(
+    Pointer,
+    st.integers(0, 1167),
+    st.integers(0, 640),
+    st.just(False),
+    st.sampled_from(["press", "press", "move", "release", "wheel up", "wheel down"]),
+    st.sampled_from([1, 1, 1, 2, 3]),
+)
+
+
+@settings(quick, max_examples=40)
+@given(words=streams(), actions=st.lists(KEYS | POINTERS, max_size=20))
+def test_no_keys_and_clicks_lead_away_from_the_stream(words: list[int], actions: list[str | Pointer]) -> None:
+    inspector = inspector_of(words, SMALL)
+    expected = moments(inspector.session.replay)
+    for action in actions:
+        if isinstance(action, Pointer):
+            inspector.point(action)
+        else:
+            shift, plain = action.startswith("shift "), action.removeprefix("shift ")
+            inspector.press(Key(plain, plain if len(plain) == 1 else "", shift=shift))
+        at_rest(inspector)
+        number = inspector.session.state.number
+        assert snapshot_bytes(inspector.session.display) == expected[number][0]
+    inspector.page.draw()
+
+
+def test_keys_step_forward_and_back() -> None:
+    inspector, numbers = inspector_of(OUTLINE), []
+    for key in ("right", "down", "page down", "left", "up", "page up", "end", "right", "home", "left"):
+        press(inspector, key)
+        numbers.append(inspector.session.state.number)
+    last = len(inspector.session.replay.stream)
+    assert numbers == [1, 2, 12, 11, 10, 0, last, last, 0, 0]
+
+
+def test_a_number_and_an_opcode_are_typed() -> None:
+    inspector = inspector_of(BOXES)
+    assert press(inspector, "4", "return").session.state.number == 4
+    assert press(inspector, "home", "o", "l", "a", "m", "return").session.state.number == 2
+    assert press(inspector, "g", "7", "o", "escape", "n").session.state.number == 5
+    assert press(inspector, "shift n").session.state.number == 2
+
+
+def test_a_bracket_is_known_by_its_text() -> None:
+    inspector = inspector_of(BOXES)
+    click(press(inspector, "end"), 160, 160)
+    inspector.press(Key("8", "["))
+    assert at_rest(inspector).session.state.number == 4
+
+
+def test_a_button_does_what_its_key_does() -> None:
+    by_button, by_key = inspector_of(BOXES), inspector_of(BOXES)
+    for number, binding in enumerate(by_button.buttons):
+        box = by_button.page.layout.buttons[number]
+        # Escape leaves a prompt or a page, but not the position.
+        click(press(by_button, "escape"), box.left + 2, box.top + 2)
+        press(by_key, "escape", binding.keys[0])
+        assert by_button.session.state == by_key.session.state
+
+
+def test_a_click_on_a_pixel_shows_its_history_and_a_click_on_a_row_goes_there() -> None:
+    inspector = press(inspector_of(BOXES), "end")
+    click(inspector, 160, 170)
+    session = inspector.session
+    assert session.state.selection == (160, 170, 160, 170)
+    assert [write.number for write in session.state.writes or ()] == [4, 3, 1]
+    history, listing = (inspector.page.layout.boxes[name] for name in ("history", "listing"))
+    click(inspector, history.left + 5, history.top + 2 * 11 + 3)
+    assert session.state.number == 3
+    click(inspector, listing.left + 5, listing.top + 3 * 11 + 3)
+    assert session.state.number == 2
+
+
+def test_a_rectangle_is_dragged_and_its_changes_are_found() -> None:
+    inspector = inspector_of(BOXES)
+    point(inspector, ("press", 290, 240), ("move", 250, 220), ("release", 240, 210))
+    assert inspector.session.state.selection == (240, 210, 290, 240)
+    numbers = [press(inspector, "c").session.state.number for _ in range(3)]
+    assert numbers == [1, 1, 1]
+    inspector.point(Pointer(5, 5, False, "press", 3))
+    assert inspector.session.state.selection is None
+
+
+def test_entries_are_selected_on_their_page() -> None:
+    inspector = press(inspector_of(BOXES), "end", "f4")
+    boxes = [inspector.page._cell(word) for word in (5, 7)]
+    click(inspector, boxes[0].left + 3, boxes[0].top + 3)
+    assert [write.number for write in inspector.session.state.writes or ()] == [5, 2]
+    ends = [("press", boxes[1]), ("move", boxes[0]), ("release", boxes[0])]
+    point(inspector, *((action, box.left + 3, box.top + 3) for action, box in ends))
+    assert inspector.session.state.selection == EntryRange(5, 8)
+
+
+def test_the_bar_is_dragged_over_the_whole_stream() -> None:
+    inspector = inspector_of(OUTLINE)
+    bar, last = inspector.page.layout.bar, len(inspector.session.replay.stream)
+    places = [bar.left + bar.width // 2, bar.left - 50, bar.left + bar.width + 500]
+    inspector.point(Pointer(places[0], bar.top + 2, False, "press", 1))
+    numbers = [at_rest(inspector).session.state.number]
+    for place in places[1:]:
+        # The pointer may leave the bar while its button is down.
+        inspector.point(Pointer(place, 30, False, "move"))
+        numbers.append(at_rest(inspector).session.state.number)
+    assert numbers == [(last + 1) // 2, 0, last]
+
+
+def test_the_wheel_scrolls_the_listing_and_steps_on_the_bar() -> None:
+    inspector = inspector_of(np.tile(OUTLINE, 9))
+    for part, element, line in (("listing", 700, 60), ("bar", 60, inspector.page.layout.bar.top)):
+        assert inspector.page.panel_at(Point(element, line))[0] == part
+        inspector.point(Pointer(element, line, False, "wheel down", steps=2))
+    assert inspector.session.state.number == 2
+    inspector.point(Pointer(700, 60, False, "wheel down", steps=3))
+    assert inspector.session.state.first_listed == 9
+
+
+def test_the_help_page_has_every_key_and_fits() -> None:
+    for host in (None, RunningHost(Ramtek9300())):
+        inspector = Inspector(InspectionSession(replay_of([]) if host is None else host.replay, host))
+        rows = inspector.page._help_rows
+        assert {binding.keys_text for binding in inspector.bindings} <= {keys for keys, _ in rows}
+        assert (len(rows) + 2) * 16 + 16 <= 480
+        assert (MOUSE_LIVE[0] in rows) == (host is not None)
+        assert set(MOUSE) <= set(rows)
+        assert max(len(action) for _, action in rows) <= 60
+
+
+def test_no_key_has_two_meanings() -> None:
+    keys = [key for binding in BINDINGS for key in binding.keys]
+    assert len(keys) == len(set(keys))
+
+
+def test_the_mouse_is_the_joystick_of_a_display_that_runs_and_inspects_a_paused_display() -> None:
+    host = RunningHost(Ramtek9300())
+    inspector = Inspector(InspectionSession(host.replay, host))
+    point(inspector, ("move", 30, 40), ("press", 31, 41), ("release", 32, 42))
+    assert host.display.joystick.position == (32, 42)
+    assert host.display.cursors.enter_is_pressed
+    assert inspector.session.state.selection is None
+    inspector.press(Key("space", " "))
+    click(inspector, 60, 70)
+    assert host.display.joystick.position == (32, 42)
+    assert inspector.session.state.selection == (60, 70, 60, 70)
+
+
+@pytest.fixture
+def opened(on_screen: str) -> Inspector:
+    inspector = inspector_of(BOXES)
+    inspector.monitor.open()
+    return inspector
+
+
+def test_the_window_shows_the_page_after_keys_and_clicks(opened: Inspector) -> None:
+    monitor, page = opened.monitor, opened.page
+    keys = (
+        pygame.K_RIGHT,
+        pygame.K_END,
+        pygame.K_LEFT,
+        pygame.K_F4,
+        pygame.K_F4,
+        pygame.K_F1,
+        pygame.K_ESCAPE,
+    )
+    for key in keys:
+        pygame.event.post(pygame.event.Event(pygame.KEYDOWN, key=key, unicode="", mod=0))
+        pygame.event.post(pygame.event.Event(pygame.KEYUP, key=key, mod=0))
+        monitor.step(5)
+        assert np.array_equal(shown(), page.colors())
+    assert opened.session.state.number == 4
+    for kind in (pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP):
+        pygame.event.post(pygame.event.Event(kind, pos=(160, 170), button=1))
+    while opened.session.state.writes is None:
+        monitor.step(5)
+    assert opened.session.state.selection == (160, 170, 160, 170)
+    assert np.array_equal(shown(), page.colors())
+    event = pygame.event.Event(pygame.KEYDOWN, key=pygame.K_q, unicode="\x11", mod=pygame.KMOD_LCTRL)
+    pygame.event.post(event)
+    opened.run()
+    assert not monitor.is_open
+
+
+def test_a_host_draws_in_the_window_of_an_inspector_and_can_be_paused(on_screen: str) -> None:
+    host = RunningHost(Ramtek9300())
+    with TcpServer(host.display, record=host.record) as server:
+        server.gate, host.step, host.is_connected = host.gate, server.step, lambda: server.busy
+        inspector = Inspector(InspectionSession(host.replay, host))
+        replies: list[list[int]] = []
+
+        def draw() -> None:
+            with TcpPort(server.address) as port:
+                for word in (3, 4, 5):
+                    port.send(instructions.erase((0, 0, 9, 9), word))
+                    stream, count = next(instructions.read_image(0, 0, 1, 1))
+                    port.send(stream)
+                    replies.append(port.receive(count).tolist())
+
+        inspector.press(Key("space", " "))
+        program = threading.Thread(target=draw)
+        program.start()
+        inspector.monitor.open()
+        while not server.busy:
+            inspector.monitor.step()
+        for _ in range(2):
+            inspector.press(Key("right"))
+            while inspector.session.state.wanted:
+                inspector.monitor.step()
+        while not replies:
+            inspector.monitor.step()
+        assert (len(host.replay.stream), host.display.words[0, 0]) == (2, 3)
+        inspector.press(Key("space", " "))
+
+        def ends() -> bool:
+            return not program.is_alive()
+
+        inspector.run(ends)
+        assert replies == [[3], [4], [5]]
+        assert len(host.replay.stream) == 6

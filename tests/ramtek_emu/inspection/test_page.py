@@ -1,0 +1,183 @@
+"""The page of a session: its layout, its drawing and the places of the mouse on it."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from ramtek_emu import Configuration
+from ramtek_emu.configuration import CONFIGURATIONS
+from ramtek_emu.inspection.page import InspectorPage, PageBox, PageLayout, layout_of
+from ramtek_emu.inspection.session import EntryRange, InspectionSession
+from ramtek_emu.memory.scan_orders import Point, Window
+from ramtek_emu.monitor.pattern import pattern
+from ramtek_emu.testing import streams
+from tests.ramtek_emu.inspection.replays import prepare, replay_of
+from tests.ramtek_emu.strategies import SMALL, quick
+
+BUTTONS = ("<", ">", "entries")
+
+
+def page_of(session: InspectionSession) -> InspectorPage:
+    return InspectorPage(session, BUTTONS, [("Esc", "back")], "a page")
+
+
+def session_of(words: list[int], configuration: Configuration = SMALL) -> InspectionSession:
+    session = InspectionSession(replay_of(words, configuration))
+    prepare(session.replay)
+    session.tick()
+    return session
+
+
+def boxes_of(layout: PageLayout) -> dict[str, PageBox]:
+    buttons = {f"button {number}": box for number, box in enumerate(layout.buttons)}
+    return {"stage": layout.stage, **layout.boxes, **buttons, "status": layout.status, "bar": layout.bar}
+
+
+def outside(inner: PageBox, outer: PageBox) -> bool:
+    return not (
+        outer.left <= inner.left
+        and inner.left + inner.width <= outer.left + outer.width
+        and outer.top <= inner.top
+        and inner.top + inner.height <= outer.top + outer.height
+    )
+
+
+def overlap(a: PageBox, b: PageBox) -> bool:
+    return (
+        a.left < b.left + b.width
+        and b.left < a.left + a.width
+        and a.top < b.top + b.height
+        and b.top < a.top + a.height
+    )
+
+
+@quick
+@given(elements=st.integers(1, 4096), lines=st.integers(1, 4096), cursors=st.integers(0, 8))
+def test_no_part_of_a_page_covers_another(elements: int, lines: int, cursors: int) -> None:
+    layout = layout_of(elements, lines, cursors, BUTTONS)
+    boxes = boxes_of(layout)
+    whole = PageBox(0, 0, layout.elements, layout.lines)
+    assert [name for name, box in boxes.items() if outside(box, whole)] == []
+    pairs = itertools.combinations(boxes.items(), 2)
+    assert [(a, b) for (a, one), (b, other) in pairs if overlap(one, other)] == []
+    assert not outside(layout.field, layout.stage)
+    assert layout.field[2:] == (elements * layout.zoom, lines * layout.zoom)
+    assert boxes["listing"].rows >= 8
+    assert boxes["history"].rows >= 4
+
+
+@pytest.mark.parametrize(
+    ("name", "most"), [("GMR_9300", (1216, 720)), ("NCAR_9460", (1920, 1080)), ("JPL_9460", (1216, 720))]
+)
+def test_a_page_fits_on_usual_screens(name: str, most: tuple[int, int]) -> None:
+    sizes = CONFIGURATIONS[name]
+    layout = layout_of(sizes.shown_elements, sizes.shown_lines, sizes.cursors, BUTTONS)
+    assert layout.elements <= most[0]
+    assert layout.lines <= most[1]
+
+
+ACTIONS: st.SearchStrategy[Callable[[InspectionSession], object]] = st.one_of(
+    st.integers(0, 60).map(lambda number: lambda session: session.go(number)),
+    st.sampled_from(["entries", "help"]).map(lambda page: lambda session: session.turn_to(page)),
+    st.builds(
+        lambda e, n, w: lambda session: session.select(Window(e, n, min(12, e + w), min(8, n + w))),
+        st.integers(0, 12),
+        st.integers(0, 8),
+        st.integers(0, 4),
+    ),
+    st.integers(0, 900).map(lambda n: lambda session: session.select(EntryRange(n, n + 1 + n % 3))),
+    st.just(lambda session: session.select(None)),
+    st.just(lambda session: session.ask("opcode", "WI")),
+    st.just(lambda session: session.point_at(Point(3, 4))),
+    st.integers(-9, 9).map(lambda rows: lambda session: session.scroll_listing(rows)),
+)
+
+
+@settings(quick, max_examples=25)
+@given(words=streams(), actions=st.lists(ACTIONS, max_size=10))
+def test_what_changes_is_drawn_as_the_whole_page_is(
+    words: list[int], actions: list[Callable[[InspectionSession], object]]
+) -> None:
+    session = session_of(words)
+    page = page_of(session)
+    shown = np.zeros((page.lines, page.elements), np.uint32)
+    stamp = None
+    for action in actions:
+        action(session)
+        while session.is_busy:
+            session.tick()
+        before, runs = shown.copy(), page.lines_changed_since(stamp)
+        stamp = page.scan_out_changes_into(shown, stamp)
+        assert stamp == page.stamp
+        first_listed = session.state.first_listed
+        fresh = page_of(session)
+        session._change(first_listed=first_listed)
+        whole = np.zeros_like(shown)
+        fresh.scan_out_changes_into(whole, None)
+        assert np.array_equal(shown, whole)
+        unchanged = np.ones(len(shown), np.bool_)
+        for first, end in runs:
+            unchanged[first:end] = False
+        assert np.array_equal(shown[unchanged], before[unchanged])
+        assert page.lines_changed_since(stamp) == ()
+
+
+def test_a_message_changes_only_its_lines() -> None:
+    session = session_of(pattern().tolist(), CONFIGURATIONS["GMR_9300"])
+    page = page_of(session)
+    stamp = page.scan_out_changes_into(np.zeros((page.lines, page.elements), np.uint32), None)
+    session.tell("a message")
+    status = page.layout.status
+    assert page.lines_changed_since(stamp) == ((status.top, status.top + status.height),)
+
+
+@pytest.mark.parametrize("name", CONFIGURATIONS)
+def test_the_field_is_shown_at_a_whole_multiple(name: str) -> None:
+    session = session_of(pattern(CONFIGURATIONS[name]).tolist(), CONFIGURATIONS[name])
+    session.go(session.state.length)
+    page = page_of(session)
+    left, top, width, height = page.layout.field
+    field = session.display.field()
+    zoom = page.layout.zoom
+    expected = field.repeat(zoom, axis=0).repeat(zoom, axis=1)
+    assert np.array_equal(page.colors()[top : top + height, left : left + width], expected)
+    assert np.array_equal(page.field(), field)
+
+
+def test_the_places_of_the_mouse_are_those_that_are_seen() -> None:
+    session = session_of(pattern().tolist(), CONFIGURATIONS["GMR_9300"])
+    page = page_of(session)
+    for number, button in enumerate(page.layout.buttons):
+        assert page.panel_at(Point(button.left, button.top)) == ("button", number)
+    listing = page.layout.boxes["listing"]
+    assert page.panel_at(Point(listing.left, listing.top)) == ("listing", -1)
+    assert page.panel_at(Point(listing.left, listing.top + 11)) == ("listing", 0)
+    assert page.panel_at(Point(100, 100)) == ("stage", 0)
+    assert page.panel_at(Point(100, page.layout.bar.top)) == ("bar", 0)
+    assert page.panel_at(Point(page.elements - 1, page.lines - 1)) == ("", 0)
+    assert page.field_place(Point(-5, 700)) == (0, 479)
+    for number in range(session.state.length + 1):
+        assert page.number_at(page.layout.bar.left + page.bar_place(number)) == number
+
+
+@pytest.mark.parametrize("name", CONFIGURATIONS)
+def test_every_entry_has_its_cell(name: str) -> None:
+    session = session_of(pattern(CONFIGURATIONS[name]).tolist(), CONFIGURATIONS[name])
+    session.go(session.state.length)
+    page = page_of(session)
+    colors = session.display.scan_out.table()
+    session.turn_to("entries")
+    shown = np.zeros((page.lines, page.elements), np.uint32)
+    page.scan_out_changes_into(shown, None)
+    for word in range(len(colors)):
+        box = page._cell(word)
+        entry = session.display.scan_out.first_entry + word
+        for place in (Point(*box[:2]), Point(box.left + box.width - 1, box.top + box.height - 1)):
+            assert page.entry_at(place) == entry
+            assert shown[place.line, place.element] == colors[word]

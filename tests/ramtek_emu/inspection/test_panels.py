@@ -1,0 +1,81 @@
+from __future__ import annotations
+
+import numpy as np
+
+from ramtek_emu import instructions
+from ramtek_emu.inspection import panels
+from ramtek_emu.inspection.panels import Span, wrapped
+from ramtek_emu.inspection.session import LONGEST_MEANING, EntryRange, InspectionSession, meaning_of
+from ramtek_emu.memory.scan_orders import Point, Window
+from ramtek_emu.monitor.overlay import ORANGE, WHITE
+from tests.ramtek_emu.inspection.sessions import BOXES, Served, at_rest, session_of, text_of
+from tests.ramtek_emu.recorded_streams import listing, words
+
+
+def test_a_long_meaning_is_cut_and_an_illegal_word_is_raw() -> None:
+    session = session_of(instructions.write_image(np.arange(117).reshape(9, 13)), [0xFFFF])
+    texts = [meaning_of(session.replay.stream.item(number)) for number in (1, 2)]
+    assert len(texts[0]) == LONGEST_MEANING
+    assert texts[1] == "raw FFFF ; begins no instruction"
+
+
+def test_long_lines_of_a_listing_are_wrapped_and_nothing_is_lost() -> None:
+    stream = words("0A0F 80C1 0020 00FF 0000 0000 027F 01DF 0000 000A 0001 0001 0004 0100 0302")
+    lines = listing(stream.astype("<u2").tobytes())
+    for width in (50, 64, 200):
+        parts = list(wrapped(lines, width))
+        assert all(len(part) <= width for part in parts)
+        assert " ".join(parts).split() == " ".join(lines).split()
+    assert parts == lines
+
+
+def test_parameters_differ_from_a_reset_and_from_the_position_before() -> None:
+    session = session_of(*BOXES)
+    rows = {text_of(line[:1]).strip(): line for line in panels.parameters(session)}
+    assert {row[1].color for row in rows.values()} == {panels.GRAY}
+    session.go(1)
+    session.go(3)
+    rows = {text_of(line[:1]).strip(): line for line in panels.parameters(session)}
+    assert (rows["background"][1], rows["mask"][1]) == (
+        Span("*7", ORANGE),
+        Span(" 0xFFFF", panels.GRAY),
+    )
+    session.go(2)
+    session.go(1)
+    rows = {text_of(line[:1]).strip(): line for line in panels.parameters(session)}
+    assert rows["background"][1] == Span("*5", WHITE)
+
+
+def test_a_pixel_is_shown_with_its_word_its_entry_and_its_color() -> None:
+    session = session_of(*BOXES)
+    session.go(2)
+    session.point_at(Point(3, 4))
+    session.select(Window(5, 6, 5, 6))
+    pointer, selected = panels.pixels(at_rest(session))
+    assert text_of(pointer).split() == ["pointer", "3,4", "word", "0005", "=", "5", "entry", "5", "#0A141E"]
+    assert text_of(selected).split() == ["selected", "5,6", "word", "0005", "=", "5", "entry", "5", "#0A141E"]
+    assert pointer[2].background == 0x0A141E
+    session.point_at(entry=5)
+    session.select(EntryRange(5, 8))
+    assert [text_of(line).split() for line in panels.pixels(session)] == [
+        ["pointer", "entry", "5", "#0A141E"],
+        ["selected", "entries", "5", "to", "7"],
+    ]
+
+
+def test_the_title_says_whether_a_host_runs_and_what_is_incomplete() -> None:
+    served = Served(session_of(BOXES[0]).display)
+    session = InspectionSession(served.host.replay, served.host)
+    assert text_of(panels.title(session)) == "instruction 0 of 0  running"
+    session.pause()
+    assert text_of(panels.title(session)) == "instruction 0 of 0  paused"
+    assert (
+        text_of(panels.title(session_of(BOXES[0], BOXES[2][:4]))) == "instruction 0 of 1  4 words of the next"
+    )
+
+
+def test_cursors_and_the_reply_that_reads_them_are_shown() -> None:
+    session = session_of(instructions.write_cursor(0, 3, 4), instructions.read_cursor(0))
+    session.go(2)
+    assert text_of(panels.cursors(session)[0]).split() == ["cursor", "0", "3,4", "visible"]
+    assert text_of(panels.words_of_the_instruction(session, 9, 64)[-1]) == "reply  0003 0404"

@@ -1,0 +1,106 @@
+from __future__ import annotations
+
+import time
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from ramtek_emu import Ramtek9300, TcpPort, instructions
+from ramtek_emu.host import server as module_of_servers
+from ramtek_emu.host.server import TcpServer
+from ramtek_emu.inspection import panels
+from ramtek_emu.inspection import running_host as module
+from ramtek_emu.inspection.running_host import RunningHost
+from ramtek_emu.inspection.session import InspectionSession
+from tests.ramtek_emu.inspection.sessions import Served, text_of
+from tests.ramtek_emu.recorded_streams import OUTLINE
+
+
+def test_a_paused_host_waits_and_is_not_disconnected(monkeypatch: pytest.MonkeyPatch) -> None:
+    host = RunningHost(Ramtek9300())
+    with TcpServer(host.display, idle_seconds=5, record=host.record) as server:
+        server.gate, host.step, host.is_connected = host.gate, server.step, lambda: server.busy
+        session = InspectionSession(host.replay, host)
+        port = TcpPort(server.address)
+        read = instructions.read_cursor(0)
+        port.send(np.concatenate((read, read, read)))
+        while not server.busy:
+            session.tick()
+        session.step(1)
+        while session.state.wanted:
+            session.tick()
+        number = session.state.number
+        offset = 0.0
+        later = SimpleNamespace(monotonic=lambda: time.monotonic() + offset, perf_counter=time.perf_counter)
+        monkeypatch.setattr(module_of_servers, "time", later)
+        for _ in range(100):
+            # The host is silent for minutes in all, but it is let execute nothing.
+            offset += 4
+            session.tick()
+        assert len(host.replay.stream) == number
+        assert server.busy
+        monkeypatch.undo()
+        assert port.receive(2).tolist() == [0, 0]
+        session.go_on()
+        while len(host.replay.stream) < 3:
+            session.tick()
+        assert port.receive(4).tolist() == [0, 0, 0, 0]
+        port.close = lambda *_: None  # type: ignore[method-assign]
+        port.wire.socket.close()
+
+
+def test_the_past_of_a_running_display_has_its_cursors_where_the_joystick_moved_them() -> None:
+    served = Served(Ramtek9300())
+    session = InspectionSession(served.host.replay, served.host)
+    served.host.display.joystick.move_to(200, 100)
+    served.send(OUTLINE)
+    while served.session.unexecuted:
+        session.tick()
+    session.go(len(session.replay.stream) - 1)
+    assert "200,100" in text_of(panels.cursors(session)[0])
+
+
+def test_a_running_display_forgets_its_past_before_memory_is_full(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "MOST_BYTES", 3 << 20)
+    served = Served(Ramtek9300())
+    session = InspectionSession(served.host.replay, served.host)
+    first = served.host.replay
+    image = instructions.write_image(np.arange(480 * 640).reshape(480, 640) % 1024)
+    while served.host.replay is first:
+        served.send(image)
+        while served.session.unexecuted:
+            session.tick()
+    session.pause()
+    session.go(0)
+    assert session.replay is served.host.replay
+    assert (session.display.words == np.arange(480 * 640).reshape(480, 640) % 1024).any()
+    assert session.state.length == len(session.replay.stream) < len(first.stream)
+
+
+def test_a_host_can_be_paused_within_a_long_instruction(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module_of_servers, "SLICE_SECONDS", 0.0)
+    points = np.random.default_rng(1).integers(0, (640, 480), (16000, 2))
+    words = np.concatenate([instructions.write_vectors(points + shift, 7 + shift) for shift in (0, 1)])
+    served = Served(Ramtek9300())
+    served.send(words)
+    # Serve as little as a tick can, until some of the first instruction is drawn.
+    monkeypatch.setattr(module, "PIECE_SECONDS", 0.0)
+    session = InspectionSession(served.host.replay, served.host)
+    while not served.host.display.words.any():
+        session.tick()
+    session.pause()
+    drawn = served.host.display.words.copy()
+    for _ in range(5):
+        session.tick()
+    assert session.state.length == 0
+    assert np.array_equal(session.display.words, drawn)
+    expected = Ramtek9300()
+    for number in (1, 2):
+        session.step(1)
+        while session.state.wanted:
+            session.tick()
+        expected.send(session.replay.stream.words_between(number - 1, number))
+        assert session.state.number == session.state.length == number
+        assert np.array_equal(session.display.words, expected.words)
+        assert np.array_equal(session.replay.display.words, expected.words)

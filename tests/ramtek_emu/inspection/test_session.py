@@ -1,0 +1,337 @@
+"""Sessions without a window: of streams, and of running displays whose hosts can be stopped."""
+
+from __future__ import annotations
+
+import copy
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from ramtek_emu import Ramtek9300, instructions
+from ramtek_emu.inspection import panels
+from ramtek_emu.inspection import session as module
+from ramtek_emu.inspection.histories import finished, next_change, writes_to_entry, writes_to_pixel
+from ramtek_emu.inspection.session import (
+    EntryRange,
+    InspectionSession,
+    name_of,
+    opcode_of,
+    parameter_texts,
+)
+from ramtek_emu.instruction_set.disassembler import items
+from ramtek_emu.instruction_set.table import FORMAT_OF_NAME, FORMATS
+from ramtek_emu.memory.scan_orders import Point, Window
+from ramtek_emu.snapshot import snapshot_bytes
+from ramtek_emu.testing import streams
+from tests.ramtek_emu.inspection.replays import moments, replay_of, states_every
+from tests.ramtek_emu.inspection.sessions import BOXES, Served, at_rest, session_of, text_of
+from tests.ramtek_emu.strategies import SMALL, cuts, quick
+
+STEPS = st.one_of(
+    st.tuples(st.just("go"), st.integers(-2, 70)),
+    st.tuples(st.just("step"), st.integers(-12, 12)),
+    st.tuples(st.just("next_opcode"), st.none() | st.sampled_from([f.opcode for f in FORMATS])),
+    st.tuples(st.just("select"), st.builds(Window, st.just(3), st.just(2), st.integers(3, 12), st.just(8))),
+    st.tuples(st.just("select"), st.builds(Window, st.just(3), st.just(2), st.just(3), st.just(2))),
+    st.tuples(st.just("select"), st.builds(lambda n: EntryRange(n, n + 1), st.integers(0, 1023))),
+    st.tuples(st.just("click_history"), st.integers(0, 3)),
+    st.tuples(st.just("click_listing"), st.integers(0, 30)),
+    st.tuples(st.just("scroll_listing"), st.integers(-30, 30)),
+    st.just(("next_change",)),
+)
+
+
+@quick
+@given(words=streams(), steps=st.lists(STEPS, max_size=12), width=st.integers(50, 90))
+def test_after_any_steps_display_and_panels_are_of_that_instruction(
+    words: list[int], steps: list[tuple[str, object]], width: int
+) -> None:
+    session = at_rest(InspectionSession(replay_of(words)))
+    expected = moments(session.replay)
+    listed = list(items([np.array(words, "<u2").tobytes()], SMALL))
+    for name, *values in steps:
+        getattr(session, name)(*values)
+        at_rest(session)
+        number = session.state.number
+        assert session.state.target == number
+        assert snapshot_bytes(session.display) == expected[number][0]
+        texts = [text_of(line) for line in panels.words_of_the_instruction(session, 1000, width)]
+        assert all(len(text) <= width for text in texts)
+        reply = expected[number][1]
+        assert any(text.startswith("reply") for text in texts) == bool(len(reply))
+        if number:
+            lines = " ".join(listed[number - 1].lines()).split()
+            assert " ".join(texts).split()[: len(lines)] == lines
+        marked = [text_of(line) for line in panels.listing(session) if text_of(line).startswith(">")]
+        assert all(int(text[1:].split()[0]) == number for text in marked)
+        values_shown = [text_of(line[1:]).strip("* ") for line in panels.parameters(session)]
+        fresh = parameter_texts(session.display.processor.parameters)
+        assert values_shown[: len(fresh)] == list(fresh.values())
+
+
+@quick
+@given(words=streams(), places=st.lists(st.integers(0, 60), min_size=1, max_size=4))
+def test_the_histories_and_the_next_change_are_those_of_the_stream(
+    words: list[int], places: list[int]
+) -> None:
+    with states_every(0):
+        session = at_rest(InspectionSession(replay_of(words)))
+        for place in places:
+            session.go(place)
+            line, element = place % 9, place % 13
+            session.select(Window(element, line, element, line))
+            at_rest(session)
+            number = session.state.number
+            history = finished(writes_to_pixel(session.replay, line, element, number))
+            assert session.state.writes == tuple(reversed(history))
+            change = finished(next_change(session.replay, Window(element, line, element, line), number))
+            session.next_change()
+            assert at_rest(session).state.number == (number if change is None else change)
+            session.select(EntryRange(place, place + 1))
+            at_rest(session)
+            loads = finished(writes_to_entry(session.replay, place, session.state.number))
+            assert session.state.writes == tuple(reversed(loads))
+
+
+def test_the_history_of_a_pixel_leads_through_the_stream() -> None:
+    session = session_of(*BOXES)
+    session.go(5)
+    session.select(Window(4, 4, 4, 4))
+    assert [text_of(line).split()[:4] for line in panels.history(at_rest(session))] == [
+        ["4", "0007", "to", "0005"],
+        ["3", "0005", "to", "0007"],
+        ["1", "0000", "to", "0005"],
+    ]
+    numbers = []
+    for back in (True, True, True, True, False):
+        session.next_write(back)
+        numbers.append(session.state.number)
+    assert numbers == [4, 3, 1, 1, 3]
+    session.click_history(0)
+    assert session.state.number == 4
+    assert text_of(panels.history_title(session)) == "history of pixel 4,4: 3 writes, newest first"
+
+
+def test_the_history_of_an_entry_shows_its_colors() -> None:
+    session = session_of(*BOXES)
+    session.go(5)
+    session.select(EntryRange(5, 6))
+    assert [text_of(line).strip(">").split()[:4] for line in panels.history(at_rest(session))] == [
+        ["5", "#0A141E", "to", "#28323C"],
+        ["2", "#000000", "to", "#0A141E"],
+    ]
+    session.go(2)
+    session.next_change()
+    assert at_rest(session).state.number == 5
+    session.next_change()
+    assert at_rest(session).state.message == "entry 5: no change after instruction 5"
+
+
+def test_the_next_change_of_a_rectangle_skips_writes_of_the_same_words() -> None:
+    session = session_of(*BOXES)
+    session.select(Window(8, 4, 9, 6))
+    session.go(1)
+    session.next_change()
+    assert at_rest(session).state.message == "rectangle 8,4..9,6: no change after instruction 1"
+    session.select(Window(2, 2, 2, 2))
+    session.next_change()
+    assert at_rest(session).state.number == 3
+
+
+def test_the_next_and_the_last_of_an_opcode_are_found_by_name() -> None:
+    session = session_of(*BOXES)
+    for character in "ers":
+        session.ask("opcode", session.state.typed)
+        session.type(character)
+    session.enter()
+    numbers = [session.state.number]
+    for back in (False, False, False, True, True, True):
+        session.next_opcode(back=back)
+        numbers.append(session.state.number)
+    assert numbers == [1, 3, 4, 4, 3, 1, 1]
+    assert session.state.message == "no ERS before instruction 1"
+
+
+def test_an_unknown_opcode_is_refused() -> None:
+    session = session_of(*BOXES)
+    session.ask("opcode")
+    for character in "XYZ":
+        session.type(character)
+    session.enter()
+    message = "an opcode must be a name such as WI, or two digits, not XYZ"
+    assert (session.state.message, session.state.prompt, session.state.number) == (message, "", 0)
+
+
+def test_every_opcode_is_known_by_its_name() -> None:
+    for format in FORMATS:
+        assert opcode_of(name_of(format.opcode)) == format.opcode
+    assert [opcode_of("0a"), opcode_of("zz"), opcode_of("A")] == [0x0A, None, None]
+
+
+def test_a_typed_number_is_gone_to_and_can_be_corrected() -> None:
+    session = session_of(*BOXES)
+    session.ask("instruction", "3")
+    assert not session.takes("A")
+    session.type("9")
+    session.erase_typed()
+    assert text_of(panels.status(session)) == "go to instruction: 3_"
+    session.enter()
+    assert session.state.number == 3
+
+
+def test_escape_leaves_what_was_begun_last() -> None:
+    session = session_of(*BOXES)
+    session.select(Window(1, 1, 2, 2))
+    session.turn_to("entries")
+    session.ask("opcode")
+    left = []
+    for _ in range(3):
+        session.escape()
+        left.append((session.state.prompt, session.state.page, session.state.selection is None))
+    assert left == [("", "entries", False), ("", "", False), ("", "", True)]
+
+
+def test_a_far_instruction_is_gone_to_when_states_are_prepared(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "PIECE_SECONDS", 0.0)
+    session = InspectionSession(replay_of(np.tile(instructions.erase((0, 0, 3, 3), 5), 100).tolist()))
+    session.go(100)
+    assert (session.state.number, session.state.target) == (0, 100)
+    assert text_of(panels.status(session)).startswith("preparing")
+    ticks = 0
+    while session.is_busy:
+        session.tick()
+        ticks += 1
+    assert session.state.number == 100
+    assert ticks > 10
+    assert session.display.words[3, 3] == 5
+
+
+def test_a_click_before_the_states_are_prepared_asks_about_the_instruction_to_come(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(module, "PIECE_SECONDS", 0.0)
+    session = InspectionSession(replay_of(np.tile(instructions.erase((0, 0, 3, 3), 5), 100).tolist()))
+    session.go(100)
+    session.select(Window(1, 1, 1, 1))
+    assert (session.state.number, session.state.writes) == (0, None)
+    assert len(at_rest(session).state.writes or ()) == session.state.number == 100
+
+
+def test_stepping_needs_no_prepared_states() -> None:
+    session = InspectionSession(replay_of(np.concatenate(BOXES).tolist()))
+    session.step(1)
+    assert (session.state.number, session.replay.prepared) == (1, 0)
+
+
+def test_a_rectangle_of_the_screen_is_one_of_the_memory() -> None:
+    session = session_of(*BOXES)
+    places = Point(5, 4), Point(2, 1)
+    assert session.memory_window(*places) == (2, 1, 5, 4)
+    zoom = np.array([FORMAT_OF_NAME["ZOOM"].opcode << 8, 0x0101], np.uint16)
+    session.display.send(np.concatenate((instructions.set_parameters(origin=(3, 2)), zoom)))
+    assert session.display.processor.parameters.zoom == (2, 2)
+    assert session.memory_window(*places) == (4, 2, 5, 4)
+    session.display.processor.parameters.origin_at_bottom = True
+    # The screen has nine lines: lines 1 to 4 are 7 to 4 from the bottom.
+    assert session.memory_window(*places) == (4, 4, 5, 5)
+
+
+# Running displays.
+
+
+@quick
+@given(
+    words=streams(),
+    places=st.lists(st.integers(0, 60), max_size=3),
+    actions=st.lists(st.sampled_from(["pause", "go_on", "on", "back", "far"]), max_size=12),
+)
+def test_a_stopped_display_executes_what_it_is_let_and_all_of_it_in_the_end(
+    words: list[int], places: list[int], actions: list[str]
+) -> None:
+    served = Served(Ramtek9300(SMALL))
+    session = InspectionSession(served.host.replay, served.host)
+    expected = moments(replay_of(words))
+    for piece in cuts(words, places):
+        session.pause()
+        served.send(piece)
+        for action in actions:
+            done = len(session.replay.stream)
+            is_following = action == "go_on" or (session.state.is_following and action == "on")
+            if action in ("pause", "go_on"):
+                getattr(session, action)()
+            else:
+                session.step({"on": 1, "back": -1, "far": 3}[action])
+            wanted = session.state.wanted
+            session.tick()
+            count = len(session.replay.stream) - done
+            if not is_following:
+                # Illegal words in a row are executed at once.
+                assert count <= wanted or any(
+                    session.replay.stream.item(number).instruction is None
+                    for number in range(done + 1, done + count + 1)
+                )
+            number = session.state.number
+            if number == session.state.length == len(session.replay.stream):
+                assert session.display is served.host.display
+            if not session.state.is_following:
+                assert snapshot_of_whole(session) == expected[number][0]
+        session.go_on()
+        while served.session.unexecuted:
+            session.tick()
+    session.pause()
+    assert len(session.replay.stream) == len(expected) - 1
+    assert snapshot_of_whole(session) == expected[-1][0]
+    assert served.replies == b"".join(reply.astype("<u2").tobytes() for _, reply in expected)
+
+
+def snapshot_of_whole(session: InspectionSession) -> bytes:
+    """The snapshot of the display, without the words of an incomplete instruction and their count."""
+    display = copy.deepcopy(session.display)
+    display.decoder.clear()
+    stream = session.replay.stream
+    display.words_received = int(stream.ends[session.state.number])
+    return snapshot_bytes(display)
+
+
+def test_a_paused_host_runs_to_an_opcode_or_to_a_change() -> None:
+    served = Served(Ramtek9300(SMALL))
+    session = InspectionSession(served.host.replay, served.host)
+    session.select(Window(6, 6, 6, 6))
+    served.send(np.concatenate(BOXES))
+    numbers = []
+    for begin in (
+        session.next_change,
+        lambda: session.next_opcode(FORMAT_OF_NAME["LAM"].opcode),
+        session.next_change,
+        lambda: session.next_opcode(FORMAT_OF_NAME["WI"].opcode),
+    ):
+        begin()
+        while session.state.search or session.state.awaited:
+            session.tick()
+            if not served.session.unexecuted:
+                break
+        numbers.append((session.state.number, session.state.awaited))
+    # Instructions 3 and 4 do not change the pixel, and no WI is sent.
+    assert [number for number, _ in numbers[:2]] == [1, 2]
+    assert numbers[2][1] == "a change of pixel 6,6"
+    assert numbers[3][1] == "WI"
+    assert session.display.words[6, 6] == 5
+    session.escape()
+    assert (session.state.awaited, session.state.message) == ("", "paused: the host waits")
+    assert len(session.replay.stream) == 5
+
+
+def test_a_paused_host_runs_to_a_change_of_an_entry() -> None:
+    served = Served(Ramtek9300(SMALL))
+    session = InspectionSession(served.host.replay, served.host)
+    session.select(EntryRange(5, 6))
+    served.send(np.concatenate(BOXES))
+    numbers = []
+    for _ in range(2):
+        session.next_change()
+        while session.state.search or session.state.awaited:
+            session.tick()
+        numbers.append(session.state.number)
+    assert numbers == [2, 5]
