@@ -65,6 +65,9 @@ INPUTS = {
     "car.obj": "".join(f"v {x} {y} {z}\n" for x, y, z in CORNERS) + "g hood\nf 1 2 4\ng floor\nf 1 3 2\n",
     "tour.csv": 'name,time,view.eye,lights.key.intensity\nstart,0,"[-6.9, -5.1, 2.1]",\n'
     'low,3,"[-7.5, 0, 0.9]",0.4\nend,4,"[-6.9, 5.1, 2.1]",\n',
+    # Two streams of NOP.
+    "yesterday.ramtek": "\0\a",
+    "today.ramtek": "\0\a",
 }
 """Files that the reader has, by the names that the documents give them."""
 

@@ -34,7 +34,7 @@ class State:
     reply: Words | None
     """The reply of the last instruction; None if it is not known."""
     touched: bytes | None = None
-    """The words written since the state before, a bit each, deflated; None if they are not known."""
+    """The words written since the state before, a bit each; None if they are not known."""
 
     def display(self) -> Ramtek9300:
         """A new display in this state."""
@@ -95,16 +95,16 @@ def _joined(first: State, second: State) -> bytes | None:
     """What was touched before either of two states; None if it is not known."""
     if first.touched is None or second.touched is None:
         return None
-    bits = [np.frombuffer(zlib.decompress(each), np.uint8) for each in (first.touched, second.touched)]
-    return zlib.compress((bits[0] | bits[1]).tobytes(), LEVEL)
+    bits = [np.frombuffer(each, np.uint8) for each in (first.touched, second.touched)]
+    return (bits[0] | bits[1]).tobytes()
 
 
 def packed_dots(dots: Dots) -> bytes:
-    """Dots as bits, deflated."""
-    return zlib.compress(np.packbits(dots).tobytes(), LEVEL)
+    """Dots as bits. Measured: deflating them would take as long as all else when states are dropped."""
+    return np.packbits(dots).tobytes()
 
 
 def unpacked_dots(packed: bytes, shape: tuple[int, int]) -> Dots:
     """The (lines, elements) dots of `packed_dots`."""
-    bits = np.frombuffer(zlib.decompress(packed), np.uint8)
+    bits = np.frombuffer(packed, np.uint8)
     return np.unpackbits(bits, count=shape[0] * shape[1]).view(np.bool_).reshape(shape)
