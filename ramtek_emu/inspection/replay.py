@@ -117,7 +117,7 @@ class Replay:
     def go_to(self, number: int) -> None:
         """Bring the display to an instruction, forward or back."""
         state = self.state_before(number)
-        if not state.number <= self.number <= number or number == state.number:
+        if not state.number < self.number <= number:
             self.display, self.number, self.reply = state.display(), state.number, state.reply
         if number > self.number:
             words_before = self.stream.words_between(self.number, number - 1)
