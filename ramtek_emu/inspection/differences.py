@@ -41,7 +41,11 @@ def first_difference(first: Stream, second: Stream, start: Ramtek9300 | None = N
     reply_of(display)
     other = deepcopy(display)
     for later in range(number + 1, max(len(first), len(second)) + 1):
-        replies = [_execute(which, stream, later) for which, stream in ((display, first), (other, second))]
+        words, other_words = (_words_of(stream, later) for stream in (first, second))
+        replies = _reply_to(display, words), _reply_to(other, other_words)
+        # Two displays that were alike before the same instruction are alike after it.
+        if np.array_equal(words, other_words):
+            continue
         where = dict(_differences(display, other, *replies))
         if where:
             return Difference(later, where)
@@ -58,11 +62,13 @@ def first_different_instruction(first: Stream, second: Stream) -> int:
     return int(np.searchsorted(first.ends, place, side="right"))
 
 
-def _execute(display: Ramtek9300, stream: Stream, number: int) -> Words:
-    """Execute an instruction if the stream has it; returns the reply."""
-    if number > len(stream):
-        return NO_WORDS
-    display.send(stream.words_between(number - 1, number))
+def _words_of(stream: Stream, number: int) -> Words:
+    """The words of an instruction; no words after the end of the stream."""
+    return stream.words_between(number - 1, number) if number <= len(stream) else NO_WORDS
+
+
+def _reply_to(display: Ramtek9300, words: Words) -> Words:
+    display.send(words)
     return reply_of(display)
 
 
