@@ -132,14 +132,30 @@ def _check_pattern(pattern: Path, overwrite: bool) -> None:
             f" {fspath(pattern)!r}; or end the name in .apng for an animated PNG"
         )
     refuse_output(numbered(fspath(pattern), 1), overwrite)
-    before, after = pattern.name[: numbers[0].start()], pattern.name[numbers[0].end() :]
-    name = re.compile(f"{re.escape(before)}[0-9]+{re.escape(after)}")
     try:
         others = [] if overwrite else sorted(os.listdir(pattern.parent))
     except OSError as error:
         raise refusal(pattern.parent, error) from None
-    for other in filter(name.fullmatch, others):
+    for other in filter(_picture_names(pattern).fullmatch, others):
         refuse_output(pattern.parent / other, overwrite)
+
+
+def _picture_names(pattern: Path) -> re.Pattern[str]:
+    """The names of the pictures of a pattern with a number."""
+    before, _, after = NUMBER.split(pattern.name)
+    return re.compile(f"{re.escape(before)}[0-9]+{re.escape(after)}")
+
+
+def is_numbered(path: str | PathLike[str], film: str | PathLike[str]) -> bool:
+    """Whether a path may be one of the pictures of a film of numbered pictures.
+
+    >>> is_numbered("frame-0007.png", "frame-{number:04}.png"), is_numbered("7.webp", "8.webp")
+    (True, False)
+    """
+    path, film = Path(path), Path(film)
+    if film.suffix.lower() != PICTURES or not _picture_names(film).fullmatch(path.name):
+        return False
+    return os.path.realpath(path.parent) == os.path.realpath(film.parent)
 
 
 def numbered(pattern: str, number: int) -> str:

@@ -47,9 +47,8 @@ def diff(
     display = display_asked_for(configuration, start)
 
     from ramtek_emu.inspection.differences import first_difference, first_different_instruction
-    from ramtek_emu.inspection.stream import Stream
 
-    streams = [Stream(display.configuration, read_stream(path)) for path in (first, second)]
+    streams = [read_stream(path, display.configuration) for path in (first, second)]
     found = first_difference(streams[0], streams[1], display)
     listed = [
         stream.item(found.number) if found is not None and found.number <= len(stream) else None

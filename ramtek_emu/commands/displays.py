@@ -15,14 +15,14 @@ import click
 
 from ramtek_emu import command_line
 from ramtek_emu.command_line import ENDING, SIGNALS
-from ramtek_emu.configuration import CONFIGURATIONS, GMR_9300
-from ramtek_emu.errors import MissingInputError, RamtekError, reason_of
+from ramtek_emu.configuration import CONFIGURATIONS, GMR_9300, Configuration
+from ramtek_emu.errors import MissingInputError, RamtekError, WordsError, reason_of
 from ramtek_emu.writing import Output, refuse_output, same_outputs
 
 if TYPE_CHECKING:
-    from ramtek_emu.arrays import Words
     from ramtek_emu.display import Ramtek9300
     from ramtek_emu.host.server import HostSession, Record
+    from ramtek_emu.inspection.stream import Stream
 
 
 Function = TypeVar("Function", bound=Callable[..., object])
@@ -217,20 +217,43 @@ def open_stream(path: str) -> BinaryIO:
         ) from None
 
 
-def read_stream(path: str) -> Words:
-    """All words of a file, uint16, or of stdin for `-`; MissingInputError if it cannot be read."""
+MOST_READ: Final = 1 << 28
+"""Limit: bytes of a stream that is read whole, about 430 pictures of 640 x 480 words."""
+
+
+def read_stream(path: str, configuration: Configuration) -> Stream:
+    """The instructions of a file, or of stdin for `-`; an incomplete end is reported.
+
+    Raises MissingInputError if it cannot be read, and WordsError if it is too long.
+    """
     import numpy as np
+
+    from ramtek_emu.inspection.stream import Stream
 
     with open_stream(path) as file:
         try:
-            data = file.read()
+            data = file.read(MOST_READ + 1)
         except OSError as cause:
-            raise MissingInputError(
-                f"a stream must be readable to its end, not fail ({reason_of(cause)}); try a copy of it"
-            ) from None
+            raise unreadable(cause) from None
+    if len(data) > MOST_READ:
+        raise WordsError(
+            f"a stream must be at most {MOST_READ:,} bytes here, not more ({path}); run it with play, "
+            "and inspect the first or the last part"
+        )
+    words = np.frombuffer(data, "<u2", len(data) // 2).astype(np.uint16, copy=False)
+    stream = Stream(configuration, words)
+    if rest := len(words) - int(stream.ends[-1]):
+        tell(f"the stream {path} ends within an instruction: its {rest} words were dropped")
     if len(data) % 2:
-        tell("the stream ends within a word: its last byte was dropped")
-    return np.frombuffer(data, "<u2", len(data) // 2).astype(np.uint16, copy=False)
+        tell(f"the stream {path} ends within a word: its last byte was dropped")
+    return stream
+
+
+def unreadable(cause: OSError) -> MissingInputError:
+    """The error for a stream that was opened and cannot be read to its end."""
+    return MissingInputError(
+        f"a stream must be readable to its end, not fail ({reason_of(cause)}); try a copy of it"
+    )
 
 
 tell: Final = command_line.report

@@ -20,8 +20,9 @@ from ramtek_emu.commands.displays import (
     tell,
     tell_the_end,
     tell_unexecuted,
+    unreadable,
 )
-from ramtek_emu.errors import ColorsError, MissingInputError, reason_of
+from ramtek_emu.errors import ColorsError
 
 if TYPE_CHECKING:
     from ramtek_emu.host.pipe import CutReader
@@ -113,9 +114,7 @@ def play(
             try:
                 return os.read(number, most) if run.wait(number) else b""
             except OSError as cause:
-                raise MissingInputError(
-                    f"a stream must be readable to its end, not fail ({reason_of(cause)}); try a copy of it"
-                ) from None
+                raise unreadable(cause) from None
 
         session = HostSession(display, run.record)
         if in_window:
@@ -151,12 +150,17 @@ def refuse_film(context: click.Context, film: str | None, force: bool) -> None:
             "a film must be written without a window, not with --window; leave it out, or press F3"
             " in the window to record what it shows"
         )
-    from ramtek_emu.films import check_film
+    from ramtek_emu.films import check_film, is_numbered
 
     try:
         check_film(film, context.params["fps"], force)
     except ColorsError as refusal:
         raise click.UsageError(str(refusal)) from None
+    for other in filter(None, map(context.params.get, ("output", "snapshot", "record"))):
+        if is_numbered(other, film):
+            raise click.UsageError(
+                f"two outputs must be two files, not {other} and a picture of {film}; rename one"
+            )
 
 
 def write_fields(

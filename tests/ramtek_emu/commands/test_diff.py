@@ -40,3 +40,14 @@ def test_streams_that_differ_without_a_difference(tmp_path: Path) -> None:
     (tmp_path / "second").write_bytes(b"\x00\x07\x01\x07")
     text = run("diff", str(tmp_path / "first"), str(tmp_path / "second")).stdout.decode()
     assert "alike after every instruction; the streams differ from 2 on" in text
+
+
+def test_an_incomplete_end_is_dropped_and_reported_with_its_file(tmp_path: Path) -> None:
+    path = tmp_path / "cut"
+    path.write_bytes(SQUARES.astype("<u2").tobytes() + b"\x00\x03\x00\x00!")
+    done = run("diff", "-", str(path), data=SQUARES.astype("<u2").tobytes())
+    assert "the streams are the same" in done.stdout.decode()
+    assert done.stderr.decode().splitlines() == [
+        f"the stream {path} ends within an instruction: its 2 words were dropped",
+        f"the stream {path} ends within a word: its last byte was dropped",
+    ]

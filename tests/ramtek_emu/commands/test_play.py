@@ -128,6 +128,7 @@ REFUSED: list[tuple[list[object], int, str]] = [
         "a film must end in .webp, .apng, .gif, or in .png with a number, not in '.mp4'",
     ),
     (["--film", "a.png"], 73, "numbered pictures must have one number in their name"),
+    (["--film", "{number:02}.png", "--force", "--record", "./001.png"], 2, "rename one"),
     (["--film", "frames.apng"], 73, "which exists; choose another name"),
     (["--film", "a.gif", "--fps", 60], 2, "a film must have 0.1 to 50 fields per second, not 60"),
     (["--film", "a.webp", "--fps", "nan"], 2, "a film must have 0.1 to 100 fields per second, not nan"),
