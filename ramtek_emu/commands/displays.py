@@ -117,7 +117,7 @@ class Run:
         self.signal = 0
         """The number of the first signal that is to end the display; 0 if there was none."""
         self.exit_code = 0
-        """The exit code of the first output that failed; 0 if none has."""
+        """The exit code of the first failure; 0 if there was none."""
         self.record: Record | None = None
         """Records words; None if no recording was asked for."""
 
@@ -149,10 +149,14 @@ class Run:
         except MissingInputError:
             raise
         except RamtekError as failure:
-            tell(f"ramtek: {failure}")
-            self.exit_code = self.exit_code or failure.exit_code
+            self.fail(failure)
             return False
         return True
+
+    def fail(self, failure: RamtekError) -> None:
+        """Report a failure; the command ends with the exit code of the first."""
+        tell(f"ramtek: {failure}")
+        self.exit_code = self.exit_code or failure.exit_code
 
 
 @contextmanager

@@ -22,7 +22,7 @@ from ramtek_emu.commands.displays import (
     tell_unexecuted,
     unreadable,
 )
-from ramtek_emu.errors import ColorsError
+from ramtek_emu.errors import ColorsError, MissingInputError
 
 if TYPE_CHECKING:
     from ramtek_emu.host.pipe import CutReader
@@ -116,11 +116,19 @@ def play(
             except OSError as cause:
                 raise unreadable(cause) from None
 
+        def read_for_window(most: int) -> bytes:
+            # The window stays open with the words that were read.
+            try:
+                return read(most)
+            except MissingInputError as failure:
+                run.fail(failure)
+                return b""
+
         session = HostSession(display, run.record)
         if in_window:
-            paced = read
+            paced: pipe.Read = read_for_window
             if loads_per_second is not None:
-                paced = pipe.PacedReader(read, loads_per_second, display.configuration)
+                paced = pipe.PacedReader(paced, loads_per_second, display.configuration)
             show(display, run, pipe.PolledPipe(session, paced).serve_for)
             return
         waiting = 0
