@@ -14,7 +14,7 @@ import numpy as np
 
 from ramtek_emu.arrays import AnyArray, Words
 from ramtek_emu.display import Ramtek9300
-from ramtek_emu.inspection.replay import reply_of
+from ramtek_emu.inspection.replay import Replay, reply_of
 from ramtek_emu.inspection.stream import Stream
 from ramtek_emu.instruction_set.instruction import NO_WORDS
 from ramtek_emu.memory.parameters import Parameters
@@ -35,7 +35,7 @@ def first_difference(first: Stream, second: Stream, start: Ramtek9300 | None = N
     None if the displays are alike after every instruction.
     """
     number = first_different_instruction(first, second) - 1
-    display = Ramtek9300(first.configuration) if start is None else deepcopy(start)
+    display = Replay(first, start).display
     # Displays that execute the same instructions are alike.
     display.send(first.words_between(0, number))
     reply_of(display)

@@ -4,6 +4,7 @@ import json
 import subprocess
 from pathlib import Path
 
+from ramtek_emu.commands.diff import lines_of
 from tests.ramtek_emu import processes
 from tests.ramtek_emu.recorded_streams import SQUARES
 
@@ -50,4 +51,12 @@ def test_an_incomplete_end_is_dropped_and_reported_with_its_file(tmp_path: Path)
     assert done.stderr.decode().splitlines() == [
         f"the stream {path} ends within an instruction: its 2 words were dropped",
         f"the stream {path} ends within a word: its last byte was dropped",
+    ]
+
+
+def test_a_reply_is_printed_from_its_first_difference_on() -> None:
+    lines = lines_of({"reply": [[5, 6, *range(20)], [5, 6]], "status": ["READY", "ILLEGAL|READY"]})
+    assert list(lines) == [
+        "reply: 22 and 2 words; from word 2 on 0 1 2 3 4 5 6 7 ... and nothing",
+        'status: "READY" and "ILLEGAL|READY"',
     ]
