@@ -233,7 +233,7 @@ def differing_area(field: Colors, before: Colors | None) -> Rectangle:
 
 
 class _Fields(Image.Image):
-    """The rest of the fields of a film as one image, which Pillow is given as often as there may be fields.
+    """The fields of a film after the first, as one image. Pillow gets this image MOST_FIELDS times.
 
     `n_frames` is 1 while there is a field. Pillow asks for `n_frames`, seeks the field, and encodes it.
     """

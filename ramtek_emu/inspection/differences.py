@@ -1,6 +1,6 @@
 """Differences: the first instruction after which two streams have made different displays, and where.
 
-Instructions are paired by their numbers. When a stream has ended, its display stays as it is.
+Instructions are paired by their numbers. After the end of the shorter stream, its display does not change.
 """
 
 from __future__ import annotations

@@ -32,7 +32,7 @@ LEAST_STATE_BYTES: Final = 64 << 20
 
 
 class Replay:
-    """A stream, and a display that was brought to one of its instructions."""
+    """A stream, and a display that goes to any of its instructions, forward or back."""
 
     def __init__(self, stream: Stream, start: Ramtek9300 | None = None) -> None:
         """Begin with a display as it is at power-on, or like the display `start`."""
