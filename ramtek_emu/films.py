@@ -179,10 +179,10 @@ def _alike(fields: Iterable[Colors]) -> Iterator[Colors]:
     size: tuple[int, ...] | None = None
     for number, field in enumerate(fields, 1):
         size = size or field.shape
-        if field.shape != size or field.dtype != np.uint8 or field.ndim != 3:
+        if field.shape != size or field.dtype != np.uint8 or size[2:] != (3,) or not field.size:
             raise ColorsError(
                 f"a film must have (lines, elements, 3) uint8 fields of one size, not field {number}"
-                f" of shape {field.shape} after {size}; render them alike"
+                f" of shape {field.shape}, {field.dtype}, after {size}; render them alike"
             )
         if number > MOST_FIELDS:
             raise ColorsError(f"a film must have at most {MOST_FIELDS:,} fields, not more; choose fewer")
