@@ -184,7 +184,7 @@ def is_load(instruction: Instruction) -> bool:
 
 
 def every(count: int) -> Callable[[Instruction], bool]:
-    """A function that is true for each `count`-th of its calls, with any instruction."""
+    """A function that returns True at every `count`-th call."""
     number = 0
 
     def is_cut(_: Instruction) -> bool:

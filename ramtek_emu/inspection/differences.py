@@ -58,7 +58,7 @@ def first_different_instruction(first: Stream, second: Stream) -> int:
     length = min(first.ends[both], second.ends[both])
     differing = np.flatnonzero(first.words[:length] != second.words[:length])
     place = int(differing[0]) if len(differing) else int(length)
-    # Up to there the words are the same, and so are the ends.
+    # Equal words make equal instructions, so the ends of both streams are equal up to this place.
     return int(np.searchsorted(first.ends, place, side="right"))
 
 

@@ -4,7 +4,7 @@ A display cannot run backwards. So states are kept on the way, and a display is 
 from the last state before it. States are STATE_SECONDS of work apart while they take at most STATE_BYTES for
 each word of the stream; if they would take more, every second state is dropped.
 
-The replies to instructions that read are dropped, as `ramtek play` does; only that of the last is kept.
+Replies are dropped, as by `ramtek play`. Only the reply of the last instruction is kept, in `reply`.
 """
 
 from __future__ import annotations

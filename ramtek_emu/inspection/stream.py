@@ -44,7 +44,7 @@ class Stream:
 
     @property
     def words(self) -> Words:
-        """All words, uint16, with those of an instruction that is not complete yet."""
+        """All words, uint16, with the words of an incomplete instruction at the end."""
         return self._words[: self._word_count]
 
     @property
