@@ -241,8 +241,7 @@ def read_stream(path: str, configuration: Configuration) -> Stream:
             raise unreadable(cause) from None
     if len(data) > MOST_READ:
         raise WordsError(
-            f"a stream must be at most {MOST_READ:,} bytes here, not more ({path}); run it with play, "
-            "and inspect the first or the last part"
+            f"a stream must be at most {MOST_READ:,} bytes here, not more ({path}); give a part of it"
         )
     words = np.frombuffer(data, "<u2", len(data) // 2).astype(np.uint16, copy=False)
     stream = Stream(configuration, words)
