@@ -300,8 +300,12 @@ def tell_unexecuted(words: int) -> None:
         tell(f"{words:,} {'word' if words == 1 else 'words'} of the host arrived and were not executed")
 
 
-def tell_the_end(session: HostSession) -> None:
-    """Report words that were not executed: illegal words, instructions without effect, an incomplete end."""
+def tell_the_end(session: HostSession, is_cut_off: bool = False) -> None:
+    """Report words that were not executed: illegal words, instructions without effect, an incomplete end.
+
+    With `is_cut_off`, a signal ended the stream.
+    """
+    end = "a signal ended the stream" if is_cut_off else "the stream ends"
     processor = session.display.processor
     illegal, unknown = processor.illegal_words, processor.unimplemented
     if illegal:
@@ -310,6 +314,6 @@ def tell_the_end(session: HostSession) -> None:
         plural = "instruction is" if unknown == 1 else "instructions are"
         tell(f"{unknown} {plural} known by name only: without effect")
     if rest := session.display.decoder.pending_words:
-        tell(f"the stream ends within an instruction: its {rest} words were dropped")
+        tell(f"{end} within an instruction: its {rest} words were dropped")
     if session.odd_byte:
-        tell("the stream ends within a word: its last byte was dropped")
+        tell(f"{end} within a word: its last byte was dropped")

@@ -139,7 +139,7 @@ def play(
             cut = pipe.CutReader(read, display.configuration, is_cut)
             write_fields(film, session, cut, run, fps, not once, force)
             waiting = cut.waiting
-        tell_the_end(session)
+        tell_the_end(session, is_cut_off=run.ends)
         tell_unexecuted(session.unexecuted + (waiting + waiting_bytes(number)) // 2)
     if run.signal:
         raise Ended(run.signal)

@@ -225,12 +225,14 @@ def test_an_interrupted_film_has_the_frames_so_far(tmp_path: Path) -> None:
     arguments = ("--film", tmp_path / "{number}.png", "--every", 2, "-o", tmp_path / "end.png")
     with started("play", "-", *arguments) as process:
         assert process.stdin is not None
-        process.stdin.write(stream(FRAMES))
+        process.stdin.write(stream(FRAMES) + b"\0\3\0\0!")
         until((tmp_path / "2.png").exists)
         process.send_signal(signal.SIGINT)
         assert process.wait(60) in (-signal.SIGINT, 128 + signal.SIGINT)
         assert process.stderr is not None
-        assert re.search(rb"wrote .*\{number\}\.png, [23] frames", process.stderr.read())
+        messages = process.stderr.read()
+    assert re.search(rb"wrote .*\{number\}\.png, [23] frames", messages)
+    assert b"a signal ended the stream within an instruction: its 2 words were dropped" in messages
     numbers = sorted(int(path.stem) for path in tmp_path.glob("[0-9]*.png"))
     assert numbers in ([1, 2], [1, 2, 3])
     assert np.array_equal(field_of(tmp_path / f"{numbers[-1]}.png"), field_of(tmp_path / "end.png"))
