@@ -140,8 +140,11 @@ STOPPED_WITHIN = """
 import sys, time
 from ramtek_emu.__main__ import main
 from ramtek_emu.commands.displays import Run
+from ramtek_emu.host import server
 from ramtek_emu.memory.frame_buffer import FrameBuffer
 
+# Pause after every slice, however fast the machine is.
+server.SLICE_SECONDS = 0
 signals = []
 receive, write_points = Run.receive, FrameBuffer.write_points
 
