@@ -24,6 +24,8 @@ from ramtek_emu.video.view import PLAIN_VIEW, pixel_at, view_of
 
 GRAY: Final = 0x8C929C
 BLUE: Final = 0x9CC4FF
+PAUSE: Final = "pause"
+"""The button that pauses a host, or lets it go on."""
 MARKED: Final = 0x26405F
 """The background of the current instruction."""
 
@@ -97,9 +99,10 @@ def words_of_the_instruction(session: InspectionSession, rows: int, width: int) 
     if reply is None and item.instruction is not None and item.instruction.format.replies:
         lines.append((Span("reply  ", YELLOW), Span("not known", GRAY)))
     elif reply is not None and len(reply):
-        words = " ".join(f"{word:04X}" for word in reply[:8].tolist())
-        more = f" .. {len(reply):,} words" if len(reply) > 8 else ""
-        lines.append((Span("reply  ", YELLOW), Span(f"{words}{more}")))
+        more = f" .. {len(reply):,} words"
+        shown = (width - len("reply  ") - len(more)) // len("0000 ")
+        words = " ".join(f"{word:04X}" for word in reply[:shown].tolist())
+        lines.append((Span("reply  ", YELLOW), Span(words + (more if len(reply) > shown else ""))))
     return lines
 
 
@@ -199,8 +202,9 @@ def history_title(session: InspectionSession) -> Line:
             Span("  click a pixel, or an entry on the page of entries", GRAY),
         )
     count = len(state.writes)
-    text = f"{selection_text(state.selection)}: {count:,} write{'' if count == 1 else 's'}, newest first"
-    return (Span(f"history of {text}", YELLOW),)
+    text = f"history of {selection_text(state.selection)}: {count:,} write{'' if count == 1 else 's'}"
+    until = "" if state.writes_until == state.length else f" up to instruction {state.writes_until:,}"
+    return Span(text, YELLOW), Span(until, GRAY)
 
 
 def history(session: InspectionSession) -> list[Line]:
@@ -242,6 +246,11 @@ def status(session: InspectionSession) -> Line:
     if session.host is None and state.prepared < state.length:
         return (Span(f"preparing {100 * state.prepared // state.length} %", GRAY),)
     return ()
+
+
+def button_text(session: InspectionSession, button: str) -> str:
+    """The text of a button: "pause" reads "go on" while a host waits."""
+    return "go on" if button == PAUSE and not session.state.is_following else button
 
 
 def wrapped(lines: Iterable[str], width: int) -> Iterator[str]:

@@ -82,6 +82,8 @@ class SessionState:
     selection: Window | EntryRange | None = None
     writes: tuple[Write, ...] | None = None
     """The instructions that wrote the selected pixel or entry, newest first; None if nothing was asked."""
+    writes_until: int = 0
+    """The last instruction that `writes` may have."""
     page: str = ""
     """"help" or "entries" instead of the field; "" for the field."""
     prompt: str = ""
@@ -95,7 +97,7 @@ class SessionState:
     first_write: int = 0
     """The first row of the history."""
     parameters_before: Mapping[str, str] = field(default_factory=dict)
-    """The values of the parameters at the position before."""
+    """The values of the parameters at the position before; empty while a display runs."""
     opcode: int | None = None
     """The opcode that was last searched for."""
 
@@ -266,7 +268,9 @@ class InspectionSession:
 
     def _stand_at_the_end(self, length: int) -> None:
         if self.state.number != length:
-            self._change(parameters_before=values_of(self.display))
+            # A paused host has changed its display since, but not the display of the replay.
+            is_before = not self.state.is_following and self.replay.number == self.state.number
+            self._change(parameters_before=values_of(self.replay.display) if is_before else {})
         self._change(length=length, number=length, target=length, prepared=self.replay.prepared)
         self._change(first_listed=self._listed_with(length))
 
@@ -385,6 +389,7 @@ class InspectionSession:
             return
         self.pause()
         until, what = self.state.target, f"writes of {selection_text(selection)}"
+        self._change(writes_until=until)
         if isinstance(selection, EntryRange):
             if selection.end - selection.first == 1:
                 search = histories.writes_to_entry(self.replay, selection.first, until)

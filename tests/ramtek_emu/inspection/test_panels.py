@@ -46,6 +46,45 @@ def test_parameters_differ_from_a_reset_and_from_the_position_before() -> None:
     assert rows["background"][1] == Span("*5", WHITE)
 
 
+def test_parameters_that_an_instruction_of_a_paused_host_changed_are_orange() -> None:
+    served = Served(session_of().display)
+    session = InspectionSession(served.host.replay, served.host)
+    served.send(np.concatenate(BOXES))
+    session.pause()
+    colors = []
+    for number in range(1, 6):
+        session.step(1)
+        while session.state.wanted:
+            session.tick()
+        assert session.state.number == number
+        rows = {text_of(line[:1]).strip(): line for line in panels.parameters(session)}
+        colors.append((rows["background"][1].color, rows["next entry"][1].color))
+    # Instructions 2 and 5 load an entry, the others erase.
+    gray = panels.GRAY
+    assert colors == [(ORANGE, gray), (WHITE, ORANGE), (ORANGE, WHITE), (ORANGE, WHITE), (WHITE, WHITE)]
+    session.go_on()
+    served.send(instructions.erase((0, 0, 1, 1), 9))
+    while served.session.unexecuted:
+        session.tick()
+    assert ORANGE not in {line[1].color for line in panels.parameters(session)}
+
+
+def test_a_history_says_up_to_which_instruction_it_is() -> None:
+    session = session_of(*BOXES)
+    session.go(3)
+    session.select(Window(4, 4, 4, 4))
+    titles = [text_of(panels.history_title(at_rest(session)))]
+    session.go(5)
+    titles.append(text_of(panels.history_title(session)))
+    session.select(Window(4, 4, 4, 4))
+    titles.append(text_of(panels.history_title(at_rest(session))))
+    assert titles == [
+        "history of pixel 4,4: 2 writes up to instruction 3",
+        "history of pixel 4,4: 2 writes up to instruction 3",
+        "history of pixel 4,4: 3 writes",
+    ]
+
+
 def test_a_pixel_is_shown_with_its_word_its_entry_and_its_color() -> None:
     session = session_of(*BOXES)
     session.go(2)
