@@ -47,6 +47,7 @@ class RunningHost:
 
         When they and their states take MOST_BYTES, another replay begins with the display as it is.
         """
+        self._resets = display.resets
         self._cursors = cursor_states(display.cursors)
         """The cursors and switches after the last instruction."""
 
@@ -57,7 +58,9 @@ class RunningHost:
             # The display has begun another instruction, so that its state cannot be kept.
             self.replay.stream.append(words)
         else:
-            self.replay.note(words, self.display)
+            # RESET also hides the cursors, which the recorded instruction does not.
+            is_reset, self._resets = self.display.resets != self._resets, self.display.resets
+            self.replay.note(words, self.display, has_moved=is_reset)
             size = self.replay.stream.words.nbytes + self.replay.state_bytes
             if size > MOST_BYTES:
                 self.replay = Replay(Stream(self.display.configuration), self.display)

@@ -267,10 +267,11 @@ class InspectionSession:
         self._change(length=0, number=0, target=0, prepared=0, first_listed=0, message=message)
 
     def _stand_at_the_end(self, length: int) -> None:
-        if self.state.number != length:
-            # A paused host has changed its display since, but not the display of the replay.
-            is_before = not self.state.is_following and self.replay.number == self.state.number
-            self._change(parameters_before=values_of(self.replay.display) if is_before else {})
+        if self.state.is_following:
+            self._change(parameters_before={})
+        elif self.replay.number == self.state.number != length:
+            # The host has changed its display since, but not the display of the replay.
+            self._change(parameters_before=values_of(self.replay.display))
         self._change(length=length, number=length, target=length, prepared=self.replay.prepared)
         self._change(first_listed=self._listed_with(length))
 

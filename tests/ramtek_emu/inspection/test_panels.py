@@ -6,6 +6,7 @@ from ramtek_emu import instructions
 from ramtek_emu.inspection import panels
 from ramtek_emu.inspection.panels import Span, wrapped
 from ramtek_emu.inspection.session import LONGEST_MEANING, EntryRange, InspectionSession, meaning_of
+from ramtek_emu.instruction_set.table import FORMAT_OF_NAME
 from ramtek_emu.memory.scan_orders import Point, Window
 from ramtek_emu.monitor.overlay import ORANGE, WHITE
 from tests.ramtek_emu.inspection.sessions import BOXES, Served, at_rest, session_of, text_of
@@ -62,8 +63,13 @@ def test_parameters_that_an_instruction_of_a_paused_host_changed_are_orange() ->
     # Instructions 2 and 5 load an entry, the others erase.
     gray = panels.GRAY
     assert colors == [(ORANGE, gray), (WHITE, ORANGE), (ORANGE, WHITE), (ORANGE, WHITE), (WHITE, WHITE)]
+    served.send(np.concatenate(BOXES))
+    session.next_opcode(FORMAT_OF_NAME["LAM"].opcode)
+    while session.state.awaited:
+        session.tick()
+    rows = {text_of(line[:1]).strip(): line for line in panels.parameters(session)}
+    assert (session.state.number, rows["window"][1].color) == (7, ORANGE)
     session.go_on()
-    served.send(instructions.erase((0, 0, 1, 1), 9))
     while served.session.unexecuted:
         session.tick()
     assert ORANGE not in {line[1].color for line in panels.parameters(session)}
