@@ -100,7 +100,7 @@ def layout_of(elements: int, lines: int, cursors: int, buttons: Sequence[str]) -
         boxes[name] = PageBox(right, top, side, rows * ROW)
         top += rows * ROW + GAP
 
-    left_rows = (bottom - top - 4 * GAP) // ROW - 3
+    left_rows = (bottom - top - 4 * GAP) // ROW - 4
     if is_tall:
         left_rows -= parameter_rows + cursors + 1
     place("listing", left_rows * 45 // 100)
@@ -113,7 +113,7 @@ def layout_of(elements: int, lines: int, cursors: int, buttons: Sequence[str]) -
         down = stage.height + GAP
         boxes["parameters"] = PageBox(GAP, down, stage.width - GAP, parameter_rows * ROW)
         boxes["cursors"] = PageBox(GAP, down + parameter_rows * ROW, stage.width - GAP, cursors * ROW)
-    place("pixels", 2)
+    place("pixels", 3)
     place("history", (bottom - top) // ROW)
     places = []
     left = GAP

@@ -147,19 +147,19 @@ def cursors(session: InspectionSession) -> list[Line]:
 
 
 def pixels(session: InspectionSession) -> list[Line]:
-    """The pixel or entry under the pointer, and the selection."""
+    """The pixel or entry under the pointer, the selection, and, in another view, the place on the screen."""
     state = session.state
     lines: list[Line] = []
+    view: list[Line] = []
     if state.pointed_entry is not None:
         lines.append((Span("pointer   ", YELLOW), *entry_spans(session, state.pointed_entry)))
     elif state.pointer is not None:
         display = session.display
         parameters = display.processor.parameters
         element, line = pixel_at(parameters, display.configuration, *state.pointer)
-        spans = Span("pointer   ", YELLOW), *pixel_spans(session, element, line)
+        lines.append((Span("pointer   ", YELLOW), *pixel_spans(session, element, line)))
         if view_of(parameters) != PLAIN_VIEW:
-            spans = *spans, Span(f"  at {state.pointer.element},{state.pointer.line}", GRAY)
-        lines.append(spans)
+            view = [(Span(f"screen    {state.pointer.element},{state.pointer.line}", GRAY),)]
     else:
         lines.append((Span("pointer", YELLOW),))
     selection = state.selection
@@ -169,7 +169,9 @@ def pixels(session: InspectionSession) -> list[Line]:
         lines.append((Span("selected  ", YELLOW), *pixel_spans(session, selection.left, selection.top)))
     elif selection is not None:
         lines.append((Span("selected  ", YELLOW), Span(selection_text(selection))))
-    return lines
+    else:
+        lines.append(())
+    return lines + view
 
 
 def pixel_spans(session: InspectionSession, element: int, line: int) -> Line:

@@ -459,7 +459,7 @@ class InspectionSession:
         elif state.wanted or state.awaited:
             self._change(wanted=0, awaited="", message="paused: the host waits")
         elif state.number != state.target:
-            self._change(target=state.number, message="")
+            self._change(target=state.number, first_listed=self._listed_with(state.number), message="")
         elif state.page:
             self.turn_to(state.page)
         else:

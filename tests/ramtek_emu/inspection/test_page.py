@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ramtek_emu import Configuration, Ramtek9300
+from ramtek_emu import Configuration, Ramtek9300, instructions
 from ramtek_emu.configuration import CONFIGURATIONS
 from ramtek_emu.inspection import panels
 from ramtek_emu.inspection.page import InspectorPage, PageBox, PageLayout, layout_of
@@ -155,7 +155,7 @@ def test_the_button_that_pauses_reads_go_on_while_the_host_waits() -> None:
 
 
 @pytest.mark.parametrize("name", CONFIGURATIONS)
-def test_the_longest_texts_of_cursors_and_messages_are_not_cut(name: str) -> None:
+def test_the_longest_texts_of_cursors_pixels_and_messages_are_not_cut(name: str) -> None:
     session = session_of([], CONFIGURATIONS[name])
     sizes = session.display.configuration
     for cursor in session.display.cursors.all:
@@ -166,6 +166,16 @@ def test_the_longest_texts_of_cursors_and_messages_are_not_cut(name: str) -> Non
     cursors = ["".join(span.text for span in line) for line in panels.cursors(session)]
     assert max(map(len, cursors)) <= boxes["cursors"].width // ADVANCE
     assert len(cursors) == boxes["cursors"].rows
+    parameters = session.display.processor.parameters
+    parameters.origin = Point(sizes.elements - 1, sizes.lines - 1)
+    session.display.send(instructions.erase(word=sizes.largest_word))
+    session.point_at(Point(0, 0))
+    last = Window(sizes.elements - 1, sizes.lines - 1, sizes.elements - 1, sizes.lines - 1)
+    session.select(last)
+    pixels = ["".join(span.text for span in line) for line in panels.pixels(session)]
+    assert max(map(len, pixels)) <= boxes["pixels"].width // ADVANCE
+    assert [pixel.split()[0] for pixel in pixels] == ["pointer", "selected", "screen"]
+    assert len(pixels) == boxes["pixels"].rows
     whole = Window(sizes.elements - 100, sizes.lines - 100, sizes.elements - 1, sizes.lines - 1)
     session.select(whole)
     session._await(f"a change of {selection_text(whole)}", lambda: False)

@@ -220,6 +220,17 @@ def test_a_click_before_the_states_are_prepared_asks_about_the_instruction_to_co
     assert len(at_rest(session).state.writes or ()) == session.state.number == 100
 
 
+def test_escape_before_the_states_are_prepared_lists_the_instruction_that_is_shown(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(module, "PIECE_SECONDS", 0.0)
+    session = InspectionSession(replay_of(np.tile(instructions.erase((0, 0, 3, 3), 5), 100).tolist()))
+    session.go(100)
+    assert session.state.first_listed > 0
+    session.escape()
+    assert (session.state.number, session.state.target, session.state.first_listed) == (0, 0, 0)
+
+
 def test_stepping_needs_no_prepared_states() -> None:
     session = InspectionSession(replay_of(np.concatenate(BOXES).tolist()))
     session.step(1)
