@@ -36,12 +36,13 @@ class Replay:
     """A stream, and a display that was brought to one of its instructions."""
 
     def __init__(self, stream: Stream, start: Ramtek9300 | None = None) -> None:
-        """Begin with a display as it is at power-on, or like the display `start`."""
+        """Begin with a display as it is at power-on, or like `start` without its pending words."""
         self.stream = stream
         self.number = 0
         """How many instructions the display has executed; 0 is power-on."""
         self.display = Ramtek9300(stream.configuration) if start is None else copy.deepcopy(start)
         """The display after `number` instructions. `go_to` may replace it."""
+        self.display.decoder.clear()
         self.reply: Words | None = NO_WORDS
         """The reply of the last instruction, uint16; None if it is not known."""
         self._packer = Packer()

@@ -40,6 +40,8 @@ class State:
         """A new display in this state."""
         buffers = [bytearray().join(map(zlib.decompress, blocks)) for blocks in self.arrays]
         display: Ramtek9300 = pickle.loads(self.data, buffers=buffers)
+        # A running display may have the first words of the next instruction, which the stream has, too.
+        display.decoder.clear()
         return display
 
 

@@ -12,11 +12,15 @@ from ramtek_emu.host.server import TcpServer
 from ramtek_emu.inspection import panels
 from ramtek_emu.inspection import running_host as module
 from ramtek_emu.inspection.differences import _differences
+from ramtek_emu.inspection.histories import finished, writes_to_pixel
 from ramtek_emu.inspection.running_host import RunningHost
 from ramtek_emu.inspection.session import InspectionSession
 from ramtek_emu.instruction_set.instruction import NO_WORDS
-from tests.ramtek_emu.inspection.sessions import Served, text_of
+from ramtek_emu.snapshot import snapshot_bytes
+from tests.ramtek_emu.inspection.replays import moments, replay_of, states_every
+from tests.ramtek_emu.inspection.sessions import BOXES, Served, text_of
 from tests.ramtek_emu.recorded_streams import OUTLINE
+from tests.ramtek_emu.strategies import SMALL
 
 
 def test_a_paused_host_waits_and_is_not_disconnected(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -61,6 +65,26 @@ def test_the_past_of_a_running_display_has_its_cursors_where_the_joystick_moved_
         session.tick()
     session.go(len(session.replay.stream) - 1)
     assert "200,100" in text_of(panels.cursors(session)[0])
+
+
+def test_the_past_is_right_wherever_the_words_of_a_host_are_cut() -> None:
+    words = np.concatenate(BOXES)
+    expected = moments(replay_of(words.tolist()))
+    for place in range(1, len(words)):
+        with states_every(0.0):
+            served = Served(Ramtek9300(SMALL))
+            session = InspectionSession(served.host.replay, served.host)
+            for piece in (words[:place], words[place:]):
+                served.send(piece)
+                while served.session.unexecuted:
+                    session.tick()
+        for number in range(len(expected)):
+            session.go(number)
+            display = session.replay.display
+            display.words_received = int(session.replay.stream.ends[number])
+            assert snapshot_bytes(display) == expected[number][0]
+        writes = finished(writes_to_pixel(session.replay, 4, 4, len(expected) - 1))
+        assert [write.number for write in writes] == [1, 3, 4]
 
 
 def test_a_running_display_forgets_its_past_before_memory_is_full(monkeypatch: pytest.MonkeyPatch) -> None:
