@@ -21,7 +21,7 @@ from ramtek_emu.inspection import panels
 from ramtek_emu.inspection.panels import GRAY, Line, Span
 from ramtek_emu.inspection.session import EntryRange, InspectionSession
 from ramtek_emu.memory.scan_orders import Point, Window
-from ramtek_emu.monitor.overlay import ADVANCE, BLACK, ORANGE, WHITE, entries_page, help_page, write
+from ramtek_emu.monitor.overlay import ADVANCE, BLACK, ORANGE, WHITE, cells_of, entries_page, help_page, write
 from ramtek_emu.video.scan_out import Run, united
 from ramtek_emu.video.view import screen_at
 
@@ -334,18 +334,12 @@ class InspectorPage:
 
     def _cell(self, word: int) -> PageBox:
         """The cell of a word on the page of entries, as `entries_page` divides the stage."""
-        columns, rows = self._cells()
+        columns, rows = cells_of(len(self.table()))
         stage = self.layout.stage
         row, column = divmod(word, columns)
         left, top = -(-column * stage.width // columns), -(-row * stage.height // rows)
         right, bottom = -(-(column + 1) * stage.width // columns), -(-(row + 1) * stage.height // rows)
         return PageBox(left, top, right - left, bottom - top)
-
-    def _cells(self) -> tuple[int, int]:
-        """The columns and the rows of the page of entries."""
-        words = len(self.table())
-        columns = 1 << ((words - 1).bit_length() + 1) // 2
-        return columns, -(-words // columns)
 
     def _draw_rows(self, name: str, lines: Sequence[Line], runs: list[Run]) -> None:
         """Draw the rows of a panel that changed; parameters are in columns, which are read down."""
@@ -449,7 +443,7 @@ class InspectorPage:
 
     def entry_at(self, place: Point) -> int | None:
         """The entry at a place of the page of entries; None if there is none."""
-        columns, rows = self._cells()
+        columns, rows = cells_of(len(self.table()))
         stage = self.layout.stage
         element = min(max(place.element, 0), stage.width - 1)
         line = min(max(place.line, 0), stage.height - 1)

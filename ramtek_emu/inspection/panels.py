@@ -266,8 +266,10 @@ def wrapped(lines: Iterable[str], width: int) -> Iterator[str]:
         elif len(line) <= width:
             yield line
         else:
-            yield f"{place}: {words}".rstrip()
-            yield from (f"{'':7}{part}" for part in textwrap.wrap(text, width - 7))
+            if words:
+                yield f"{place}: {words}"
+            first = "" if words else f"{place}: "
+            yield from textwrap.wrap(text, width, initial_indent=f"{first:7}", subsequent_indent=f"{'':7}")
 
 
 def color_spans(color: int) -> Line:

@@ -23,7 +23,7 @@ PIECE_SECONDS: Final = 0.006
 HOST_SECONDS: Final = 0.005
 """How long the input of the window may wait while a connected host sends nothing."""
 MOST_BYTES: Final = 1 << 28
-"""Limit: the bytes of the words of a running display, and of the states to go back to."""
+"""Limit: the bytes of the instructions of a running display, and of the states to go back to."""
 
 
 class RunningHost:
@@ -61,8 +61,8 @@ class RunningHost:
             # RESET also hides the cursors, which the recorded instruction does not.
             is_reset, self._resets = self.display.resets != self._resets, self.display.resets
             self.replay.note(words, self.display, has_moved=is_reset)
-            size = self.replay.stream.words.nbytes + self.replay.state_bytes
-            if size > MOST_BYTES:
+            stream = self.replay.stream
+            if stream.words.nbytes + stream.ends.nbytes + self.replay.state_bytes > MOST_BYTES:
                 self.replay = Replay(Stream(self.display.configuration), self.display)
 
     def serve(self, instructions: int | None) -> None:

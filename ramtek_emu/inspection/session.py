@@ -280,7 +280,6 @@ class InspectionSession:
         if self.state.is_following:
             self._change(is_following=False, message="paused: the host waits")
             self._stand_at_the_end(len(self.replay.stream))
-            self._change(target=self.state.length)
             self.replay.go_to(self.state.length)
 
     def go_on(self) -> None:
