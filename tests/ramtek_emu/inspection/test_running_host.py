@@ -199,3 +199,24 @@ def test_a_reset_that_the_host_asks_for_hides_the_cursors_of_the_past() -> None:
         session.go(number)
         visible.append(session.replay.display.cursors[0].is_visible)
     assert visible == [True, False, False]
+
+
+def test_the_joystick_moves_within_a_long_instruction(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module_of_servers, "SLICE_SECONDS", 0.0)
+    monkeypatch.setattr(module, "PIECE_SECONDS", 0.0)
+    with states_every(1000.0):
+        served = Served(Ramtek9300())
+    session = InspectionSession(served.host.replay, served.host)
+    served.host.display.joystick.move_to(1, 1)
+    points = np.random.default_rng(1).integers(0, (640, 480), (16000, 2))
+    served.send(instructions.write_vectors(points, 7))
+    while not served.host.display.words.any():
+        session.tick()
+    served.host.display.joystick.move_to(30, 40)
+    while served.session.unexecuted:
+        session.tick()
+    session.pause()
+    session.go(0)
+    session.go(1)
+    cursor = session.replay.display.cursors[0]
+    assert (cursor.element, cursor.line) == (30, 40)
