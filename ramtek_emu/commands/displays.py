@@ -297,7 +297,8 @@ def show(
 def tell_unexecuted(words: int) -> None:
     """Report words that had arrived when the display ended."""
     if words:
-        tell(f"{words:,} {'word' if words == 1 else 'words'} of the host arrived and were not executed")
+        things = "word of the host arrived and was" if words == 1 else "words of the host arrived and were"
+        tell(f"{words:,} {things} not executed")
 
 
 def tell_the_end(session: HostSession, is_cut_off: bool = False) -> None:

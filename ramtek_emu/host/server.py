@@ -67,9 +67,9 @@ class Gate:
         """Whether hosts must wait."""
         return self.left == 0
 
-    def begin(self) -> None:
-        """Note that the words of a host begin at place 0."""
-        self._place = 0
+    def begin(self, place: int) -> None:
+        """Note that the next instruction begins at a place of the host's words."""
+        self._place, self.is_within = place, False
 
     def closes_at(self, place: int) -> bool:
         """Note how many words are executed; returns whether no further instruction may be."""
@@ -126,7 +126,7 @@ class HostSession:
     def _execute(self, words: Words) -> Iterator[bytes]:
         processor, clock, gate = self.display.processor, time.perf_counter, self._gate
         if gate is not None:
-            gate.begin()
+            gate.begin(0)
         while self.unexecuted and self.is_stopped:
             yield b""
         # The first instruction may have begun with words of the last feed.
@@ -154,6 +154,8 @@ class HostSession:
                 # Leave the instruction that the reset abandoned out of the recording.
                 begin = place = previous = next(steps)
                 self.unexecuted = len(words) - place
+                if gate is not None:
+                    gate.begin(place)
 
     def _record_words(self, record: Record, executed: Words, rest: Words) -> None:
         """Record whole instructions; at the end, keep the words of an incomplete instruction for later."""
@@ -175,6 +177,8 @@ class HostSession:
         """
         self._unrecorded = NO_WORDS
         self.display.reset()
+        if self._gate is not None:
+            self._gate.is_within = False
         if self._record is not None:
             self._record(instructions.reset().astype("<u2", copy=False).tobytes())
 

@@ -87,12 +87,6 @@ def next_entry_change(replay: Replay, first: int, end: int, after: int) -> Searc
     return None
 
 
-def next_opcode(replay: Replay, opcode: int, after: int) -> int | None:
-    """The first instruction after `after` with an opcode; None if none has it."""
-    found = np.flatnonzero(replay.stream.opcodes[after:] == opcode)
-    return after + 1 + int(found[0]) if len(found) else None
-
-
 class WordsWritten(NamedTuple):
     """An instruction that wrote to a window, with the words of the window before and after it."""
 

@@ -11,6 +11,7 @@ from collections.abc import Callable
 from typing import Final, NamedTuple
 
 from ramtek_emu.inspection.page import InspectorPage
+from ramtek_emu.inspection.panels import PAUSE
 from ramtek_emu.inspection.replay import Replay
 from ramtek_emu.inspection.running_host import RunningHost
 from ramtek_emu.inspection.session import EntryRange, InspectionSession
@@ -204,9 +205,7 @@ def pause_or_go_on(session: InspectionSession) -> None:
 
 
 BINDINGS: Final = (
-    KeyBinding(
-        "Space", "pause the host, or let it go on", ("space",), pause_or_go_on, "pause/go on", True, True
-    ),
+    KeyBinding("Space", "pause the host, or let it go on", ("space",), pause_or_go_on, PAUSE, True, True),
     KeyBinding(
         "Home", "the start, before the first instruction", ("home",), lambda session: session.go(0), "|<"
     ),

@@ -1,8 +1,8 @@
 """Page: the picture of an inspector, with the field of a display at its left and panels around it.
 
 Below the field are the parameters; at its right the listing, the words of the instruction, the pixels and the
-history; at the bottom the buttons and the bar of the whole stream. Beside a tall field, the parameters are at
-the right, too. A field of few lines is enlarged by a whole number.
+history; at the bottom the buttons, the bar of the whole stream and the messages. Beside a tall field, the
+parameters are at the right, too. A field of few lines is enlarged by a whole number.
 
 Only rows and lines that changed are drawn again. Measured with Xvfb, from a key to the new page, with the
 work of the display in it: a step takes 2 ms and a step back 13 ms in a stream of 60,000 lines on 640 x 480,
@@ -18,10 +18,10 @@ import numpy as np
 
 from ramtek_emu.arrays import Colors, PackedColors
 from ramtek_emu.inspection import panels
-from ramtek_emu.inspection.panels import GRAY, Line
+from ramtek_emu.inspection.panels import GRAY, Line, Span
 from ramtek_emu.inspection.session import EntryRange, InspectionSession
 from ramtek_emu.memory.scan_orders import Point, Window
-from ramtek_emu.monitor.overlay import ADVANCE, BLACK, ORANGE, WHITE, entries_page, help_page, write
+from ramtek_emu.monitor.overlay import ADVANCE, BLACK, ORANGE, WHITE, cells_of, entries_page, help_page, write
 from ramtek_emu.video.scan_out import Run, united
 from ramtek_emu.video.view import screen_at
 
@@ -77,7 +77,6 @@ class PageLayout(NamedTuple):
     boxes: dict[str, PageBox]
     """The panels by name; the first row of some is their title."""
     buttons: tuple[PageBox, ...]
-    status: PageBox
     bar: PageBox
 
 
@@ -90,9 +89,8 @@ def layout_of(elements: int, lines: int, cursors: int, buttons: Sequence[str]) -
     is_tall = stage.height >= TALL_LINES
     right, side = stage.width + GAP, SIDE_CHARACTERS * ADVANCE
     columns = 2 if is_tall else 3
-    cursor_rows = -(-cursors // 2)
-    parameter_rows = -(-PARAMETERS // columns) + cursor_rows
-    below = 0 if is_tall else parameter_rows * ROW + GAP
+    parameter_rows = -(-PARAMETERS // columns)
+    below = 0 if is_tall else (parameter_rows + cursors) * ROW + 2 * GAP
     bottom = stage.height + below
     boxes: dict[str, PageBox] = {}
     top = GAP // 2
@@ -102,21 +100,20 @@ def layout_of(elements: int, lines: int, cursors: int, buttons: Sequence[str]) -
         boxes[name] = PageBox(right, top, side, rows * ROW)
         top += rows * ROW + GAP
 
-    left_rows = (bottom - top - 4 * GAP) // ROW - 3
+    left_rows = (bottom - top - 4 * GAP) // ROW - 4
     if is_tall:
-        left_rows -= parameter_rows + 1
+        left_rows -= parameter_rows + cursors + 1
     place("listing", left_rows * 45 // 100)
     place("words", left_rows * 22 // 100)
     if is_tall:
-        place("parameters", parameter_rows - cursor_rows)
+        place("parameters", parameter_rows)
         top -= GAP
-        place("cursors", cursor_rows)
+        place("cursors", cursors)
     else:
-        across, down = GAP, stage.height + GAP
-        boxes["parameters"] = PageBox(across, down, stage.width - GAP, (parameter_rows - cursor_rows) * ROW)
-        down += boxes["parameters"].height
-        boxes["cursors"] = PageBox(across, down, stage.width - GAP, cursor_rows * ROW)
-    place("pixels", 2)
+        down = stage.height + GAP
+        boxes["parameters"] = PageBox(GAP, down, stage.width - GAP, parameter_rows * ROW)
+        boxes["cursors"] = PageBox(GAP, down + parameter_rows * ROW, stage.width - GAP, cursors * ROW)
+    place("pixels", 3)
     place("history", (bottom - top) // ROW)
     places = []
     left = GAP
@@ -125,9 +122,9 @@ def layout_of(elements: int, lines: int, cursors: int, buttons: Sequence[str]) -
         places.append(PageBox(left, bottom + 4, width, BUTTON_LINES))
         left += width + 4
     whole = right + side + GAP
-    status = PageBox(left + GAP, bottom + 4, whole - left - 2 * GAP, BUTTON_LINES)
     bar = PageBox(GAP, bottom + 4 + BUTTON_LINES + 5, whole - 2 * GAP, BAR_LINES)
-    return PageLayout(whole, bar.top + bar.height + 6, zoom, stage, field, boxes, tuple(places), status, bar)
+    boxes["status"] = status = PageBox(GAP, bar.top + bar.height + 3, whole - 2 * GAP, ROW)
+    return PageLayout(whole, status.top + ROW + 2, zoom, stage, field, boxes, tuple(places), bar)
 
 
 def with_margin(window: Window, margin: int) -> Window:
@@ -230,19 +227,18 @@ class InspectorPage:
         self._draw_rows("cursors", panels.cursors(session), runs)
         self._draw_rows("pixels", panels.pixels(session), runs)
         self._draw_rows("history", [panels.history_title(session), *panels.history(session)], runs)
-        self._draw_status(runs)
+        self._draw_rows("status", [panels.status(session)], runs)
+        self._draw_buttons(runs)
         self._draw_bar(runs)
         self._before, self._drawn = self._drawn, stamp
         self._runs = united(runs, self.lines)
 
     def _draw_frame(self) -> None:
-        stage, bottom = self.layout.stage, self.layout.status.top - 4
+        stage = self.layout.stage
+        bottom = self.layout.bar.top - BUTTON_LINES - 9
         self._pixels[: stage.height, : stage.width] = 0
         self._pixels[:bottom, stage.width] = RAISED
         self._pixels[stage.height, : stage.width] = self._pixels[bottom] = RAISED
-        for box, label in zip(self.layout.buttons, self._buttons, strict=True):
-            self._pixels[box.top : box.top + box.height, box.left : box.left + box.width] = RAISED
-            write(self._pixels, label, box.left + ADVANCE, box.top + 3, WHITE, RAISED)
 
     def _draw_stage(self, runs: list[Run]) -> None:
         session, stage, field = self.session, self.layout.stage, self.layout.field
@@ -338,33 +334,21 @@ class InspectorPage:
 
     def _cell(self, word: int) -> PageBox:
         """The cell of a word on the page of entries, as `entries_page` divides the stage."""
-        columns, rows = self._cells()
+        columns, rows = cells_of(len(self.table()))
         stage = self.layout.stage
         row, column = divmod(word, columns)
         left, top = -(-column * stage.width // columns), -(-row * stage.height // rows)
         right, bottom = -(-(column + 1) * stage.width // columns), -(-(row + 1) * stage.height // rows)
         return PageBox(left, top, right - left, bottom - top)
 
-    def _cells(self) -> tuple[int, int]:
-        """The columns and the rows of the page of entries."""
-        words = len(self.table())
-        columns = 1 << ((words - 1).bit_length() + 1) // 2
-        return columns, -(-words // columns)
-
     def _draw_rows(self, name: str, lines: Sequence[Line], runs: list[Run]) -> None:
-        """Draw the rows of a panel that changed; parameters and cursors are in columns."""
+        """Draw the rows of a panel that changed; parameters are in columns, which are read down."""
         box = self.layout.boxes[name]
-        half = box.width // 2 // ADVANCE
         widths: Sequence[int] = (box.width // ADVANCE,)
         if name == "parameters":
             widths = PARAMETER_COLUMNS[-(-PARAMETERS // box.rows)]
-        elif name == "cursors":
-            widths = half, half
         for index in range(len(widths) * box.rows):
-            # Parameters read down, cursors read across.
             column, row = divmod(index, box.rows)
-            if name == "cursors":
-                row, column = divmod(index, len(widths))
             line = lines[index] if index < len(lines) else ()
             key = name, column, row
             if self._rows.get(key) != line:
@@ -393,14 +377,15 @@ class InspectorPage:
                 row[:, begin:] = span.background
                 write(row, text, begin, 1, span.color, span.background)
 
-    def _draw_status(self, runs: list[Run]) -> None:
-        box = self.layout.status
-        line = panels.status(self.session)
-        key = "status", 0, 0
-        if self._rows.get(key) != line:
-            self._rows[key] = line
-            self._write(line, PageBox(box.left, box.top + 2, box.width, ROW))
-            runs.append((box.top, box.top + box.height))
+    def _draw_buttons(self, runs: list[Run]) -> None:
+        labels = [panels.button_text(self.session, button) for button in self._buttons]
+        for number, (box, label) in enumerate(zip(self.layout.buttons, labels, strict=True)):
+            key, line = ("button", number, 0), (Span(f" {label} "),)
+            if self._rows.get(key) != line:
+                self._rows[key] = line
+                self._pixels[box.top : box.top + box.height, box.left : box.left + box.width] = RAISED
+                self._write(line, PageBox(box.left, box.top + 2, box.width, ROW), RAISED)
+                runs.append((box.top, box.top + box.height))
 
     def _draw_bar(self, runs: list[Run]) -> None:
         state, box = self.session.state, self.layout.bar
@@ -458,7 +443,7 @@ class InspectorPage:
 
     def entry_at(self, place: Point) -> int | None:
         """The entry at a place of the page of entries; None if there is none."""
-        columns, rows = self._cells()
+        columns, rows = cells_of(len(self.table()))
         stage = self.layout.stage
         element = min(max(place.element, 0), stage.width - 1)
         line = min(max(place.line, 0), stage.height - 1)

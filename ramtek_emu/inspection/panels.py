@@ -24,6 +24,8 @@ from ramtek_emu.video.view import PLAIN_VIEW, pixel_at, view_of
 
 GRAY: Final = 0x8C929C
 BLUE: Final = 0x9CC4FF
+PAUSE: Final = "pause"
+"""The button that pauses a host, or lets it go on."""
 MARKED: Final = 0x26405F
 """The background of the current instruction."""
 
@@ -97,9 +99,10 @@ def words_of_the_instruction(session: InspectionSession, rows: int, width: int) 
     if reply is None and item.instruction is not None and item.instruction.format.replies:
         lines.append((Span("reply  ", YELLOW), Span("not known", GRAY)))
     elif reply is not None and len(reply):
-        words = " ".join(f"{word:04X}" for word in reply[:8].tolist())
-        more = f" .. {len(reply):,} words" if len(reply) > 8 else ""
-        lines.append((Span("reply  ", YELLOW), Span(f"{words}{more}")))
+        more = f" .. {len(reply):,} words"
+        shown = (width - len("reply  ") - len(more)) // len("0000 ")
+        words = " ".join(f"{word:04X}" for word in reply[:shown].tolist())
+        lines.append((Span("reply  ", YELLOW), Span(words + (more if len(reply) > shown else ""))))
     return lines
 
 
@@ -144,19 +147,19 @@ def cursors(session: InspectionSession) -> list[Line]:
 
 
 def pixels(session: InspectionSession) -> list[Line]:
-    """The pixel or entry under the pointer, and the selection."""
+    """The pixel or entry under the pointer, the selection, and, in another view, the place on the screen."""
     state = session.state
     lines: list[Line] = []
+    view: list[Line] = []
     if state.pointed_entry is not None:
         lines.append((Span("pointer   ", YELLOW), *entry_spans(session, state.pointed_entry)))
     elif state.pointer is not None:
         display = session.display
         parameters = display.processor.parameters
         element, line = pixel_at(parameters, display.configuration, *state.pointer)
-        spans = Span("pointer   ", YELLOW), *pixel_spans(session, element, line)
+        lines.append((Span("pointer   ", YELLOW), *pixel_spans(session, element, line)))
         if view_of(parameters) != PLAIN_VIEW:
-            spans = *spans, Span(f"  at {state.pointer.element},{state.pointer.line}", GRAY)
-        lines.append(spans)
+            view = [(Span(f"screen    {state.pointer.element},{state.pointer.line}", GRAY),)]
     else:
         lines.append((Span("pointer", YELLOW),))
     selection = state.selection
@@ -166,7 +169,9 @@ def pixels(session: InspectionSession) -> list[Line]:
         lines.append((Span("selected  ", YELLOW), *pixel_spans(session, selection.left, selection.top)))
     elif selection is not None:
         lines.append((Span("selected  ", YELLOW), Span(selection_text(selection))))
-    return lines
+    else:
+        lines.append(())
+    return lines + view
 
 
 def pixel_spans(session: InspectionSession, element: int, line: int) -> Line:
@@ -199,8 +204,9 @@ def history_title(session: InspectionSession) -> Line:
             Span("  click a pixel, or an entry on the page of entries", GRAY),
         )
     count = len(state.writes)
-    text = f"{selection_text(state.selection)}: {count:,} write{'' if count == 1 else 's'}, newest first"
-    return (Span(f"history of {text}", YELLOW),)
+    text = f"history of {selection_text(state.selection)}: {count:,} write{'' if count == 1 else 's'}"
+    until = "" if state.writes_until == state.length else f" up to instruction {state.writes_until:,}"
+    return Span(text, YELLOW), Span(until, GRAY)
 
 
 def history(session: InspectionSession) -> list[Line]:
@@ -244,6 +250,11 @@ def status(session: InspectionSession) -> Line:
     return ()
 
 
+def button_text(session: InspectionSession, button: str) -> str:
+    """The text of a button: "pause" reads "go on" while a host waits."""
+    return "go on" if button == PAUSE and not session.state.is_following else button
+
+
 def wrapped(lines: Iterable[str], width: int) -> Iterator[str]:
     """The lines of a listing; the meaning of the words is on lines of its own where it does not fit."""
     for line in lines:
@@ -255,8 +266,10 @@ def wrapped(lines: Iterable[str], width: int) -> Iterator[str]:
         elif len(line) <= width:
             yield line
         else:
-            yield f"{place}: {words}".rstrip()
-            yield from (f"{'':7}{part}" for part in textwrap.wrap(text, width - 7))
+            if words:
+                yield f"{place}: {words}"
+            first = "" if words else f"{place}: "
+            yield from textwrap.wrap(text, width, initial_indent=f"{first:7}", subsequent_indent=f"{'':7}")
 
 
 def color_spans(color: int) -> Line:

@@ -35,7 +35,7 @@ class Replay:
     """A stream, and a display that goes to any of its instructions, forward or back."""
 
     def __init__(self, stream: Stream, start: Ramtek9300 | None = None) -> None:
-        """Begin with a display as it is at power-on, or like the display `start`."""
+        """Begin with a display as it is at power-on, or like `start` without its pending words."""
         self.stream = stream
         self.number = 0
         """How many instructions the display has executed; 0 is power-on."""

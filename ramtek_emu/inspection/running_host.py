@@ -11,6 +11,7 @@ from typing import Final
 
 import numpy as np
 
+from ramtek_emu.arrays import Words
 from ramtek_emu.display import Ramtek9300
 from ramtek_emu.host.server import Gate
 from ramtek_emu.inspection.replay import Replay
@@ -23,7 +24,7 @@ PIECE_SECONDS: Final = 0.006
 HOST_SECONDS: Final = 0.005
 """How long the input of the window may wait while a connected host sends nothing."""
 MOST_BYTES: Final = 1 << 28
-"""Limit: the bytes of the words of a running display, and of the states to go back to."""
+"""Limit: the bytes of the instructions of a running display, and of the states to go back to."""
 
 
 class RunningHost:
@@ -47,8 +48,10 @@ class RunningHost:
 
         When they and their states take MOST_BYTES, another replay begins with the display as it is.
         """
-        self._cursors = cursor_states(display.cursors)
-        """The cursors and switches after the last instruction."""
+        self._cursors, self._resets = cursor_states(display.cursors), display.resets
+        """The cursors and switches after the last instruction, and the number of resets."""
+        self._has_moved = False
+        """Whether the joystick has moved cursors since the last state, which no instruction repeats."""
 
     def record(self, data: bytes) -> None:
         """Note the bytes of whole instructions that the display has executed."""
@@ -56,11 +59,18 @@ class RunningHost:
         if self.gate.is_within:
             # The display has begun another instruction, so that its state cannot be kept.
             self.replay.stream.append(words)
-        else:
-            self.replay.note(words, self.display)
-            size = self.replay.stream.words.nbytes + self.replay.state_bytes
-            if size > MOST_BYTES:
-                self.replay = Replay(Stream(self.display.configuration), self.display)
+            return
+        self._note(words)
+        stream = self.replay.stream
+        if stream.words.nbytes + stream.ends.nbytes + self.replay.state_bytes > MOST_BYTES:
+            self.replay = Replay(Stream(self.display.configuration), self.display)
+
+    def _note(self, words: Words) -> None:
+        """Note instructions, and the state of the display after them if no instruction leads to it."""
+        # RESET also hides the cursors, which the recorded instruction does not.
+        has_moved = self._has_moved or self.display.resets != self._resets
+        self.replay.note(words, self.display, has_moved)
+        self._has_moved, self._resets = False, self.display.resets
 
     def serve(self, instructions: int | None) -> None:
         """Execute the host's words for some milliseconds: at most so many instructions; None for all.
@@ -68,9 +78,9 @@ class RunningHost:
         With 0 only replies are sent.
         """
         self.obey()
-        if cursor_states(self.display.cursors) != self._cursors and not self.gate.is_within:
-            # No instruction has moved the cursors to where the joystick has moved them.
-            self.replay.note(NO_WORDS, self.display, has_moved=True)
+        self._has_moved |= cursor_states(self.display.cursors) != self._cursors
+        if self._has_moved and not self.gate.is_within:
+            self._note(NO_WORDS)
         self.gate.left = instructions
         end = time.monotonic() + PIECE_SECONDS
         is_done = not self.step(HOST_SECONDS if instructions != 0 and self.is_connected() else 0.0)

@@ -82,6 +82,8 @@ class SessionState:
     selection: Window | EntryRange | None = None
     writes: tuple[Write, ...] | None = None
     """The instructions that wrote the selected pixel or entry, newest first; None if nothing was asked."""
+    writes_until: int = 0
+    """The last instruction that `writes` may have."""
     page: str = ""
     """"help" or "entries" instead of the field; "" for the field."""
     prompt: str = ""
@@ -95,7 +97,7 @@ class SessionState:
     first_write: int = 0
     """The first row of the history."""
     parameters_before: Mapping[str, str] = field(default_factory=dict)
-    """The values of the parameters at the position before."""
+    """The values of the parameters at the position before; empty while a display runs."""
     opcode: int | None = None
     """The opcode that was last searched for."""
 
@@ -265,8 +267,11 @@ class InspectionSession:
         self._change(length=0, number=0, target=0, prepared=0, first_listed=0, message=message)
 
     def _stand_at_the_end(self, length: int) -> None:
-        if self.state.number != length:
-            self._change(parameters_before=values_of(self.display))
+        if self.state.is_following:
+            self._change(parameters_before={})
+        elif self.replay.number == self.state.number != length:
+            # The host has changed its display since, but not the display of the replay.
+            self._change(parameters_before=values_of(self.replay.display))
         self._change(length=length, number=length, target=length, prepared=self.replay.prepared)
         self._change(first_listed=self._listed_with(length))
 
@@ -275,7 +280,6 @@ class InspectionSession:
         if self.state.is_following:
             self._change(is_following=False, message="paused: the host waits")
             self._stand_at_the_end(len(self.replay.stream))
-            self._change(target=self.state.length)
             self.replay.go_to(self.state.length)
 
     def go_on(self) -> None:
@@ -385,6 +389,7 @@ class InspectionSession:
             return
         self.pause()
         until, what = self.state.target, f"writes of {selection_text(selection)}"
+        self._change(writes_until=until)
         if isinstance(selection, EntryRange):
             if selection.end - selection.first == 1:
                 search = histories.writes_to_entry(self.replay, selection.first, until)
@@ -453,7 +458,7 @@ class InspectionSession:
         elif state.wanted or state.awaited:
             self._change(wanted=0, awaited="", message="paused: the host waits")
         elif state.number != state.target:
-            self._change(target=state.number, message="")
+            self._change(target=state.number, first_listed=self._listed_with(state.number), message="")
         elif state.page:
             self.turn_to(state.page)
         else:

@@ -78,10 +78,15 @@ def help_page(lines: int, elements: int, title: str, rows: Sequence[tuple[str, s
     return page
 
 
+def cells_of(words: int) -> tuple[int, int]:
+    """The columns and rows of the page of entries for so many words."""
+    columns = 1 << ((words - 1).bit_length() + 1) // 2
+    return columns, -(-words // columns)
+
+
 def entries_page(colors: PackedColors, lines: int, elements: int) -> PackedColors:
     """A page of (lines, elements) pixels with the colors of all words: 32 x 32 cells for 1024 words."""
-    columns = 1 << ((len(colors) - 1).bit_length() + 1) // 2
-    rows = -(-len(colors) // columns)
+    columns, rows = cells_of(len(colors))
     row_of_line = np.arange(lines) * rows // lines
     column_of_element = np.arange(elements) * columns // elements
     words = row_of_line[:, np.newaxis] * columns + column_of_element

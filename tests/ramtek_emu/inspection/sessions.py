@@ -35,7 +35,7 @@ def text_of(line: Line) -> str:
 
 def session_of(*streams: object) -> InspectionSession:
     """A prepared session of instructions for the small display."""
-    words = np.concatenate([np.asarray(stream, np.uint16) for stream in streams])
+    words = np.concatenate([np.zeros(0, np.uint16), *(np.asarray(stream, np.uint16) for stream in streams)])
     return at_rest(InspectionSession(replay_of(words.tolist())))
 
 

@@ -13,7 +13,6 @@ from ramtek_emu.inspection.histories import (
     finished,
     next_change,
     next_entry_change,
-    next_opcode,
     writes_to_entry,
     writes_to_pixel,
 )
@@ -146,16 +145,3 @@ def test_the_history_of_an_entry(
     after = min(after, last)
     changes = [write.number for write in writes if write.number > after and write.before != write.after]
     assert finished(next_entry_change(replay, entry, entry + 1, after)) == (changes[0] if changes else None)
-
-
-@quick
-@given(streams(), st.integers(0, 60), st.integers(0, 255))
-def test_the_next_of_an_opcode(words: list[int], after: int, opcode: int) -> None:
-    replay = replay_of(words)
-    after %= len(replay.stream) + 1
-    later = [
-        number
-        for number in range(after + 1, len(replay.stream) + 1)
-        if replay.stream.words_between(number - 1, number)[0] >> 8 == opcode
-    ]
-    assert next_opcode(replay, opcode, after) == (later[0] if later else None)

@@ -10,11 +10,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ramtek_emu import Configuration
+from ramtek_emu import Configuration, Ramtek9300, instructions
 from ramtek_emu.configuration import CONFIGURATIONS
+from ramtek_emu.inspection import panels
 from ramtek_emu.inspection.page import InspectorPage, PageBox, PageLayout, layout_of
-from ramtek_emu.inspection.session import EntryRange, InspectionSession
+from ramtek_emu.inspection.panels import PAUSE
+from ramtek_emu.inspection.running_host import RunningHost
+from ramtek_emu.inspection.session import EntryRange, InspectionSession, selection_text
+from ramtek_emu.memory.cursors import BLINK, VISIBLE
 from ramtek_emu.memory.scan_orders import Point, Window
+from ramtek_emu.monitor.overlay import ADVANCE
 from ramtek_emu.monitor.pattern import pattern
 from ramtek_emu.testing import streams
 from tests.ramtek_emu.inspection.replays import prepare, replay_of
@@ -36,7 +41,7 @@ def session_of(words: list[int], configuration: Configuration = SMALL) -> Inspec
 
 def boxes_of(layout: PageLayout) -> dict[str, PageBox]:
     buttons = {f"button {number}": box for number, box in enumerate(layout.buttons)}
-    return {"stage": layout.stage, **layout.boxes, **buttons, "status": layout.status, "bar": layout.bar}
+    return {"stage": layout.stage, **layout.boxes, **buttons, "bar": layout.bar}
 
 
 def outside(inner: PageBox, outer: PageBox) -> bool:
@@ -133,8 +138,48 @@ def test_a_message_changes_only_its_lines() -> None:
     page = page_of(session)
     stamp = page.scan_out_changes_into(np.zeros((page.lines, page.elements), np.uint32), None)
     session.tell("a message")
-    status = page.layout.status
+    status = page.layout.boxes["status"]
     assert page.lines_changed_since(stamp) == ((status.top, status.top + status.height),)
+
+
+def test_the_button_that_pauses_reads_go_on_while_the_host_waits() -> None:
+    host = RunningHost(Ramtek9300(SMALL))
+    session = InspectionSession(host.replay, host)
+    page = InspectorPage(session, ["<", PAUSE], [], "a page")
+    pictures = []
+    for action in (session.go_on, session.pause, session.go_on):
+        action()
+        left, top, width, height = page.layout.buttons[1]
+        pictures.append(page.colors()[top : top + height, left : left + width].tolist())
+    assert pictures[0] == pictures[2] != pictures[1]
+
+
+@pytest.mark.parametrize("name", CONFIGURATIONS)
+def test_the_longest_texts_of_cursors_pixels_and_messages_are_not_cut(name: str) -> None:
+    session = session_of([], CONFIGURATIONS[name])
+    sizes = session.display.configuration
+    for cursor in session.display.cursors.all:
+        cursor.element, cursor.line, cursor.enter = sizes.elements - 1, sizes.lines - 1, True
+        cursor.state = VISIBLE | BLINK
+    session.display.cursors.track = True
+    boxes = page_of(session).layout.boxes
+    cursors = ["".join(span.text for span in line) for line in panels.cursors(session)]
+    assert max(map(len, cursors)) <= boxes["cursors"].width // ADVANCE
+    assert len(cursors) == boxes["cursors"].rows
+    parameters = session.display.processor.parameters
+    parameters.origin = Point(sizes.elements - 1, sizes.lines - 1)
+    session.display.send(instructions.erase(word=sizes.largest_word))
+    session.point_at(Point(0, 0))
+    last = Window(sizes.elements - 1, sizes.lines - 1, sizes.elements - 1, sizes.lines - 1)
+    session.select(last)
+    pixels = ["".join(span.text for span in line) for line in panels.pixels(session)]
+    assert max(map(len, pixels)) <= boxes["pixels"].width // ADVANCE
+    assert [pixel.split()[0] for pixel in pixels] == ["pointer", "selected", "screen"]
+    assert len(pixels) == boxes["pixels"].rows
+    whole = Window(sizes.elements - 100, sizes.lines - 100, sizes.elements - 1, sizes.lines - 1)
+    session.select(whole)
+    session._await(f"a change of {selection_text(whole)}", lambda: False)
+    assert len(session.state.message) <= boxes["status"].width // ADVANCE
 
 
 @pytest.mark.parametrize("name", CONFIGURATIONS)

@@ -6,6 +6,7 @@ from ramtek_emu import instructions
 from ramtek_emu.inspection import panels
 from ramtek_emu.inspection.panels import Span, wrapped
 from ramtek_emu.inspection.session import LONGEST_MEANING, EntryRange, InspectionSession, meaning_of
+from ramtek_emu.instruction_set.table import FORMAT_OF_NAME
 from ramtek_emu.memory.scan_orders import Point, Window
 from ramtek_emu.monitor.overlay import ORANGE, WHITE
 from tests.ramtek_emu.inspection.sessions import BOXES, Served, at_rest, session_of, text_of
@@ -44,6 +45,50 @@ def test_parameters_differ_from_a_reset_and_from_the_position_before() -> None:
     session.go(1)
     rows = {text_of(line[:1]).strip(): line for line in panels.parameters(session)}
     assert rows["background"][1] == Span("*5", WHITE)
+
+
+def test_parameters_that_an_instruction_of_a_paused_host_changed_are_orange() -> None:
+    served = Served(session_of().display)
+    session = InspectionSession(served.host.replay, served.host)
+    served.send(np.concatenate(BOXES))
+    session.pause()
+    colors = []
+    for number in range(1, 6):
+        session.step(1)
+        while session.state.wanted:
+            session.tick()
+        assert session.state.number == number
+        rows = {text_of(line[:1]).strip(): line for line in panels.parameters(session)}
+        colors.append((rows["background"][1].color, rows["next entry"][1].color))
+    # Instructions 2 and 5 load an entry, the others erase.
+    gray = panels.GRAY
+    assert colors == [(ORANGE, gray), (WHITE, ORANGE), (ORANGE, WHITE), (ORANGE, WHITE), (WHITE, WHITE)]
+    served.send(np.concatenate(BOXES))
+    session.next_opcode(FORMAT_OF_NAME["LAM"].opcode)
+    while session.state.awaited:
+        session.tick()
+    rows = {text_of(line[:1]).strip(): line for line in panels.parameters(session)}
+    assert (session.state.number, rows["window"][1].color) == (7, ORANGE)
+    session.go_on()
+    while served.session.unexecuted:
+        session.tick()
+    assert ORANGE not in {line[1].color for line in panels.parameters(session)}
+
+
+def test_a_history_says_up_to_which_instruction_it_is() -> None:
+    session = session_of(*BOXES)
+    session.go(3)
+    session.select(Window(4, 4, 4, 4))
+    titles = [text_of(panels.history_title(at_rest(session)))]
+    session.go(5)
+    titles.append(text_of(panels.history_title(session)))
+    session.select(Window(4, 4, 4, 4))
+    titles.append(text_of(panels.history_title(at_rest(session))))
+    assert titles == [
+        "history of pixel 4,4: 2 writes up to instruction 3",
+        "history of pixel 4,4: 2 writes up to instruction 3",
+        "history of pixel 4,4: 3 writes",
+    ]
 
 
 def test_a_pixel_is_shown_with_its_word_its_entry_and_its_color() -> None:

@@ -143,3 +143,13 @@ def test_a_replay_does_not_change_what_others_hold() -> None:
     replay.go_to(0)
     replay.go_to(1)
     assert snapshot_bytes(replay.display) == snapshot_bytes(held)
+
+
+def test_a_replay_may_begin_with_a_display_that_has_words_of_the_first_instruction() -> None:
+    words = instructions.erase((2, 2, 4, 4), 7)
+    begun = Ramtek9300(SMALL)
+    begun.send(words[:3])
+    replay = Replay(Stream(SMALL, words), begun)
+    replay.go_to(1)
+    assert (replay.display.words == 7).sum() == 9
+    assert begun.decoder.pending_words == 3

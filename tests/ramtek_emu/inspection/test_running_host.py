@@ -11,10 +11,16 @@ from ramtek_emu.host import server as module_of_servers
 from ramtek_emu.host.server import TcpServer
 from ramtek_emu.inspection import panels
 from ramtek_emu.inspection import running_host as module
+from ramtek_emu.inspection.differences import _differences
+from ramtek_emu.inspection.histories import finished, writes_to_pixel
 from ramtek_emu.inspection.running_host import RunningHost
 from ramtek_emu.inspection.session import InspectionSession
-from tests.ramtek_emu.inspection.sessions import Served, text_of
+from ramtek_emu.instruction_set.instruction import NO_WORDS
+from ramtek_emu.snapshot import snapshot_bytes
+from tests.ramtek_emu.inspection.replays import moments, replay_of, states_every
+from tests.ramtek_emu.inspection.sessions import BOXES, Served, text_of
 from tests.ramtek_emu.recorded_streams import OUTLINE
+from tests.ramtek_emu.strategies import SMALL
 
 
 def test_a_paused_host_waits_and_is_not_disconnected(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -61,6 +67,26 @@ def test_the_past_of_a_running_display_has_its_cursors_where_the_joystick_moved_
     assert "200,100" in text_of(panels.cursors(session)[0])
 
 
+def test_the_past_is_right_wherever_the_words_of_a_host_are_cut() -> None:
+    words = np.concatenate(BOXES)
+    expected = moments(replay_of(words.tolist()))
+    for place in range(1, len(words)):
+        with states_every(0.0):
+            served = Served(Ramtek9300(SMALL))
+            session = InspectionSession(served.host.replay, served.host)
+            for piece in (words[:place], words[place:]):
+                served.send(piece)
+                while served.session.unexecuted:
+                    session.tick()
+        for number in range(len(expected)):
+            session.go(number)
+            display = session.replay.display
+            display.words_received = int(session.replay.stream.ends[number])
+            assert snapshot_bytes(display) == expected[number][0]
+        writes = finished(writes_to_pixel(session.replay, 4, 4, len(expected) - 1))
+        assert [write.number for write in writes] == [1, 3, 4]
+
+
 def test_a_running_display_forgets_its_past_before_memory_is_full(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "MOST_BYTES", 3 << 20)
     served = Served(Ramtek9300())
@@ -104,3 +130,93 @@ def test_a_host_can_be_paused_within_a_long_instruction(monkeypatch: pytest.Monk
         assert session.state.number == session.state.length == number
         assert np.array_equal(session.display.words, expected.words)
         assert np.array_equal(session.replay.display.words, expected.words)
+
+
+@pytest.mark.parametrize("is_paused", [False, True])
+@pytest.mark.parametrize("has_more", [False, True])
+def test_a_reset_within_a_long_instruction_is_in_the_past(
+    is_paused: bool, has_more: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(module_of_servers, "SLICE_SECONDS", 0.0)
+    points = np.random.default_rng(1).integers(0, (640, 480), (16000, 2))
+    more = [instructions.write_vectors(points[::-1], 9), instructions.erase((9, 9, 90, 90), 3)]
+    first = [instructions.write_cursor(0, 100, 100), instructions.write_vectors(points, 7)]
+    served = Served(Ramtek9300())
+    served.send(np.concatenate([*first, *(more if has_more else [])]))
+    monkeypatch.setattr(module, "PIECE_SECONDS", 0.0)
+    session = InspectionSession(served.host.replay, served.host)
+    while not (served.host.display.words == 7).any():
+        session.tick()
+    assert served.host.gate.is_within
+    if is_paused:
+        session.pause()
+    served.session.reset()
+    served.host.display.joystick.move_to(30, 40)
+    if is_paused:
+        for number in (2, *((3, 4) if has_more else ())):
+            session.step(0 if number == 2 else 1)
+            session.tick()
+            while session.state.wanted:
+                session.tick()
+            assert session.state.number == len(session.replay.stream) == number
+            assert not dict(_differences(session.replay.display, served.host.display, NO_WORDS, NO_WORDS))
+    session.go_on()
+    if has_more and not is_paused:
+        while not (served.host.display.words == 9).any():
+            session.tick()
+        assert served.host.gate.is_within
+    while served.session.unexecuted:
+        session.tick()
+    served.send(instructions.erase((50, 50, 52, 52), 5))
+    while served.session.unexecuted:
+        session.tick()
+    session.pause()
+    assert len(session.replay.stream) == (5 if has_more else 3)
+    session.go(session.state.length - 1)
+    session.go(session.state.length)
+    assert not dict(_differences(session.replay.display, served.host.display, NO_WORDS, NO_WORDS))
+
+
+def test_a_reset_that_the_host_asks_for_hides_the_cursors_of_the_past() -> None:
+    served = Served(Ramtek9300())
+    session = InspectionSession(served.host.replay, served.host)
+    served.send(instructions.write_cursor(0, 5, 6))
+    while served.session.unexecuted:
+        session.tick()
+    step = served.host.step
+
+    def reset(_: float) -> bool:
+        served.session.reset()
+        served.host.step = step
+        return True
+
+    served.host.step = reset
+    served.send(instructions.erase((0, 0, 20, 20), 4))
+    while served.session.unexecuted:
+        session.tick()
+    visible = []
+    for number in (1, 2, 3):
+        session.go(number)
+        visible.append(session.replay.display.cursors[0].is_visible)
+    assert visible == [True, False, False]
+
+
+def test_the_joystick_moves_within_a_long_instruction(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module_of_servers, "SLICE_SECONDS", 0.0)
+    monkeypatch.setattr(module, "PIECE_SECONDS", 0.0)
+    with states_every(1000.0):
+        served = Served(Ramtek9300())
+    session = InspectionSession(served.host.replay, served.host)
+    served.host.display.joystick.move_to(1, 1)
+    points = np.random.default_rng(1).integers(0, (640, 480), (16000, 2))
+    served.send(instructions.write_vectors(points, 7))
+    while not served.host.display.words.any():
+        session.tick()
+    served.host.display.joystick.move_to(30, 40)
+    while served.session.unexecuted:
+        session.tick()
+    session.pause()
+    session.go(0)
+    session.go(1)
+    cursor = session.replay.display.cursors[0]
+    assert (cursor.element, cursor.line) == (30, 40)

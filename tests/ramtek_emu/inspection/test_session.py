@@ -6,7 +6,7 @@ import copy
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from ramtek_emu import Ramtek9300, instructions
@@ -44,6 +44,7 @@ STEPS = st.one_of(
 
 
 @quick
+@example(words=[0x0400, 0, 0x0300], steps=[("go", 1)], width=50)
 @given(words=streams(), steps=st.lists(STEPS, max_size=12), width=st.integers(50, 90))
 def test_after_any_steps_display_and_panels_are_of_that_instruction(
     words: list[int], steps: list[tuple[str, object]], width: int
@@ -111,7 +112,7 @@ def test_the_history_of_a_pixel_leads_through_the_stream() -> None:
     assert numbers == [4, 3, 1, 1, 3]
     session.click_history(0)
     assert session.state.number == 4
-    assert text_of(panels.history_title(session)) == "history of pixel 4,4: 3 writes, newest first"
+    assert text_of(panels.history_title(session)) == "history of pixel 4,4: 3 writes"
 
 
 def test_the_history_of_an_entry_shows_its_colors() -> None:
@@ -217,6 +218,17 @@ def test_a_click_before_the_states_are_prepared_asks_about_the_instruction_to_co
     session.select(Window(1, 1, 1, 1))
     assert (session.state.number, session.state.writes) == (0, None)
     assert len(at_rest(session).state.writes or ()) == session.state.number == 100
+
+
+def test_escape_before_the_states_are_prepared_lists_the_instruction_that_is_shown(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(module, "PIECE_SECONDS", 0.0)
+    session = InspectionSession(replay_of(np.tile(instructions.erase((0, 0, 3, 3), 5), 100).tolist()))
+    session.go(100)
+    assert session.state.first_listed > 0
+    session.escape()
+    assert (session.state.number, session.state.target, session.state.first_listed) == (0, 0, 0)
 
 
 def test_stepping_needs_no_prepared_states() -> None:
