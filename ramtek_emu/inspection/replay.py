@@ -9,7 +9,6 @@ The replies to instructions that read are dropped, as `ramtek play` does; only t
 
 from __future__ import annotations
 
-import copy
 from bisect import bisect_left
 from collections.abc import Iterator
 from time import perf_counter, thread_time
@@ -40,8 +39,6 @@ class Replay:
         self.stream = stream
         self.number = 0
         """How many instructions the display has executed; 0 is power-on."""
-        self.display = Ramtek9300(stream.configuration) if start is None else copy.deepcopy(start)
-        """The display after `number` instructions. `go_to` may replace it."""
         self.reply: Words | None = NO_WORDS
         """The reply of the last instruction, uint16; None if it is not known."""
         self._packer = Packer()
@@ -49,7 +46,10 @@ class Replay:
         self._due = 0.0
         self._bytes = 0
         self._states: list[State] = []
-        self._keep(self._packer.pack(self.display, 0, NO_WORDS))
+        begin = Ramtek9300(stream.configuration) if start is None else start
+        self._keep(self._packer.pack(begin, 0, NO_WORDS))
+        self.display = self._states[0].display()
+        """The display after `number` instructions. `go_to` may replace it."""
         self._preparing = self._prepare()
 
     def __repr__(self) -> str:
@@ -117,7 +117,7 @@ class Replay:
     def go_to(self, number: int) -> None:
         """Bring the display to an instruction, forward or back."""
         state = self.state_before(number)
-        if not state.number <= self.number <= number or number == state.number:
+        if not state.number < self.number <= number:
             self.display, self.number, self.reply = state.display(), state.number, state.reply
         if number > self.number:
             words_before = self.stream.words_between(self.number, number - 1)

@@ -37,9 +37,14 @@ class State:
     """The words written since the state before, a bit each; None if they are not known."""
 
     def display(self) -> Ramtek9300:
-        """A new display in this state."""
+        """A new display in this state.
+
+        The words of an incomplete instruction, and replies that wait, belong to a host and are left out.
+        """
         buffers = [bytearray().join(map(zlib.decompress, blocks)) for blocks in self.arrays]
         display: Ramtek9300 = pickle.loads(self.data, buffers=buffers)
+        display.decoder.clear()
+        display.processor.clear_replies()
         return display
 
 
