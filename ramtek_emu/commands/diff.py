@@ -47,9 +47,8 @@ def diff(
     display = display_asked_for(configuration, start)
 
     from ramtek_emu.inspection.differences import first_difference, first_different_instruction
-    from ramtek_emu.inspection.stream import Stream
 
-    streams = [Stream(display.configuration, read_stream(path)) for path in (first, second)]
+    streams = [read_stream(path, display.configuration) for path in (first, second)]
     found = first_difference(streams[0], streams[1], display)
     listed = [
         stream.item(found.number) if found is not None and found.number <= len(stream) else None
@@ -62,7 +61,7 @@ def diff(
     elif found is None:
         number = first_different_instruction(streams[0], streams[1])
         if number > max(map(len, streams)):
-            click.echo(f"the streams are the same: {len(streams[0])} instructions")
+            click.echo(f"the instructions of the streams are the same: {len(streams[0])}")
         else:
             click.echo(f"the displays are alike after every instruction; the streams differ from {number} on")
     else:

@@ -15,14 +15,14 @@ import click
 
 from ramtek_emu import command_line
 from ramtek_emu.command_line import ENDING, SIGNALS
-from ramtek_emu.configuration import CONFIGURATIONS, GMR_9300
+from ramtek_emu.configuration import CONFIGURATIONS, GMR_9300, Configuration
 from ramtek_emu.errors import MissingInputError, RamtekError, reason_of
 from ramtek_emu.writing import Output, refuse_output, same_outputs
 
 if TYPE_CHECKING:
-    from ramtek_emu.arrays import Words
     from ramtek_emu.display import Ramtek9300
     from ramtek_emu.host.server import HostSession, Record
+    from ramtek_emu.inspection.stream import Stream
 
 
 Function = TypeVar("Function", bound=Callable[..., object])
@@ -217,9 +217,14 @@ def open_stream(path: str) -> BinaryIO:
         ) from None
 
 
-def read_stream(path: str) -> Words:
-    """All words of a file, uint16, or of stdin for `-`; MissingInputError if it cannot be read."""
+def read_stream(path: str, configuration: Configuration) -> Stream:
+    """The instructions of a file, or of stdin for `-`; MissingInputError if it cannot be read.
+
+    An instruction and a word that the end of the stream cuts off are dropped and reported.
+    """
     import numpy as np
+
+    from ramtek_emu.inspection.stream import Stream
 
     with open_stream(path) as file:
         try:
@@ -228,9 +233,13 @@ def read_stream(path: str) -> Words:
             raise MissingInputError(
                 f"a stream must be readable to its end, not fail ({reason_of(cause)}); try a copy of it"
             ) from None
+    stream = Stream(configuration, np.frombuffer(data, "<u2", len(data) // 2).astype(np.uint16, copy=False))
+    name = "the stream" if path == "-" else path
+    if rest := len(stream.words) - int(stream.ends[-1]):
+        tell(f"{name} ends within an instruction: its {rest} words were dropped")
     if len(data) % 2:
-        tell("the stream ends within a word: its last byte was dropped")
-    return np.frombuffer(data, "<u2", len(data) // 2).astype(np.uint16, copy=False)
+        tell(f"{name} ends within a word: its last byte was dropped")
+    return stream
 
 
 tell: Final = command_line.report

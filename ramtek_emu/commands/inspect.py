@@ -86,13 +86,12 @@ def inspect(
     display = display_asked_for(configuration, start)
 
     from ramtek_emu.inspection.replay import Replay
-    from ramtek_emu.inspection.stream import Stream
 
     sizes = display.configuration
     refuse_outside("a line", None if who is None else who[0], sizes.lines - 1)
     refuse_outside("an element", None if who is None else who[1], sizes.elements - 1)
     refuse_outside("an entry", who_entry, sizes.entries - 1)
-    replay = Replay(Stream(sizes, read_stream(stream)), display)
+    replay = Replay(read_stream(stream, sizes), display)
     last = len(replay.stream)
     refuse_outside("an instruction", at, last, stream)
     number = last if at is None else at
@@ -102,8 +101,6 @@ def inspect(
         replay.go_to(0 if at is None else at)
         inspect(replay, f"{os.path.basename(stream)} - RAMTEK {sizes.name.replace('_', ' ')}")
         return
-    if rest := len(replay.stream.words) - int(replay.stream.ends[-1]):
-        tell(f"the stream ends within an instruction: its {rest} words are not counted")
     if output is not None or (who is None and who_entry is None):
         replay.go_to(number)
     if output is not None:

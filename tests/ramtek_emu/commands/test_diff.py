@@ -40,3 +40,16 @@ def test_streams_that_differ_without_a_difference(tmp_path: Path) -> None:
     (tmp_path / "second").write_bytes(b"\x00\x07\x01\x07")
     text = run("diff", str(tmp_path / "first"), str(tmp_path / "second")).stdout.decode()
     assert "alike after every instruction; the streams differ from 2 on" in text
+
+
+def test_the_end_of_each_stream_that_is_cut_off_is_reported(tmp_path: Path) -> None:
+    first, second = tmp_path / "first", tmp_path / "second"
+    whole = SQUARES.astype("<u2").tobytes()
+    first.write_bytes(whole + b"\x02\x09\x04\x00")
+    second.write_bytes(whole + b"\x00")
+    done = run("diff", str(first), str(second))
+    assert "the instructions of the streams are the same" in done.stdout.decode()
+    assert done.stderr.decode().splitlines() == [
+        f"{first} ends within an instruction: its 2 words were dropped",
+        f"{second} ends within a word: its last byte was dropped",
+    ]
