@@ -128,8 +128,11 @@ STOPPED_WITHIN = """
 import sys, time
 from ramtek_emu.__main__ import main
 from ramtek_emu.commands.displays import Run
+from ramtek_emu.host import server
 from ramtek_emu.memory.frame_buffer import FrameBuffer
 
+# A session looks for signals after every slice of an instruction, not after some milliseconds.
+server.SLICE_SECONDS = 0
 signals = []
 receive, write_points = Run.receive, FrameBuffer.write_points
 
