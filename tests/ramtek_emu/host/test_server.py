@@ -731,13 +731,14 @@ def test_a_gate_lets_so_many_instructions_through(words: list[int], counts: list
     session = HostSession(display, recorded.extend, gate)
     data = np.array(words, "<u2").tobytes()
     # Illegal words in a row are executed at once.
-    steps = [0, *Ramtek9300(SMALL).send_stepwise(np.array(words, np.uint16))]
+    # A pause within a long instruction repeats the number before.
+    steps = sorted({0, *Ramtek9300(SMALL).send_stepwise(np.array(words, np.uint16))})
     waiting = session.feed(data)
     done = 0
     for count in counts:
         gate.left = count
-        for _ in range(3):
-            next(waiting, None)
+        while next(waiting, None) is not None and not gate.is_closed:
+            pass
         done = min(done + count, len(steps) - 1)
         assert len(recorded) == 2 * steps[done]
         assert session.is_stopped == (gate.left == 0)
