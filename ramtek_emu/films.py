@@ -132,14 +132,30 @@ def _check_pattern(pattern: Path, overwrite: bool) -> None:
             f" {fspath(pattern)!r}; or end the name in .apng for an animated PNG"
         )
     refuse_output(numbered(fspath(pattern), 1), overwrite)
-    before, after = pattern.name[: numbers[0].start()], pattern.name[numbers[0].end() :]
-    name = re.compile(f"{re.escape(before)}[0-9]+{re.escape(after)}")
     try:
         others = [] if overwrite else sorted(os.listdir(pattern.parent))
     except OSError as error:
         raise refusal(pattern.parent, error) from None
-    for other in filter(name.fullmatch, others):
+    for other in filter(_picture_names(pattern).fullmatch, others):
         refuse_output(pattern.parent / other, overwrite)
+
+
+def _picture_names(pattern: Path) -> re.Pattern[str]:
+    """The names of the pictures of a pattern with a number."""
+    before, _, after = NUMBER.split(pattern.name)
+    return re.compile(f"{re.escape(before)}[0-9]+{re.escape(after)}")
+
+
+def is_numbered(path: str | PathLike[str], film: str | PathLike[str]) -> bool:
+    """Whether a path may be one of the pictures of a film of numbered pictures.
+
+    >>> is_numbered("frame-0007.png", "frame-{number:04}.png"), is_numbered("7.webp", "8.webp")
+    (True, False)
+    """
+    path, film = Path(path), Path(film)
+    if film.suffix.lower() != PICTURES or not _picture_names(film).fullmatch(path.name):
+        return False
+    return os.path.realpath(path.parent) == os.path.realpath(film.parent)
 
 
 def numbered(pattern: str, number: int) -> str:
@@ -163,10 +179,10 @@ def _alike(fields: Iterable[Colors]) -> Iterator[Colors]:
     size: tuple[int, ...] | None = None
     for number, field in enumerate(fields, 1):
         size = size or field.shape
-        if field.shape != size or field.dtype != np.uint8 or field.ndim != 3:
+        if field.shape != size or field.dtype != np.uint8 or size[2:] != (3,) or not field.size:
             raise ColorsError(
                 f"a film must have (lines, elements, 3) uint8 fields of one size, not field {number}"
-                f" of shape {field.shape} after {size}; render them alike"
+                f" of shape {field.shape}, {field.dtype}, after {size}; render them alike"
             )
         if number > MOST_FIELDS:
             raise ColorsError(f"a film must have at most {MOST_FIELDS:,} fields, not more; choose fewer")
@@ -217,7 +233,7 @@ def differing_area(field: Colors, before: Colors | None) -> Rectangle:
 
 
 class _Fields(Image.Image):
-    """The rest of the fields of a film as one image, which Pillow is given as often as there may be fields.
+    """The fields of a film after the first, as one image. Pillow gets this image MOST_FIELDS times.
 
     `n_frames` is 1 while there is a field. Pillow asks for `n_frames`, seeks the field, and encodes it.
     """

@@ -1,7 +1,8 @@
 """The sent screen: what the last edit sent to the display, as instructions in the form of `ramtek list`.
 
-An edit of a color sends a load of entries, and an edit of the view sends the words of the picture. These
-words are listed as they went to the display. The words that drew menus and panels are only counted.
+An edit of a color sends a load of entries, and an edit of the view sends the words of the picture. The
+listing has these words in the order in which they were sent. The words for menus and panels are only
+counted.
 """
 
 from __future__ import annotations
@@ -84,7 +85,7 @@ class SentScreen(Pages):
 
 
 def rows_of_edit(edit: LastEdit, configuration: Configuration) -> list[ListingRow]:
-    """The rows of an edit: what it was, the sums of its words, the share of each instruction, the listing."""
+    """The rows of an edit: its description, numbers of words, shares of instructions, and the listing."""
     listed = list(items([edit.words.astype("<u2").tobytes()], configuration))
     what = describe(edit.before, edit.after, MOST_DESCRIBED) or "no change"
     return [

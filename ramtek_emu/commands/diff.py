@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from itertools import takewhile
 from typing import Any, Final
 
 import click
@@ -16,6 +17,9 @@ Examples:
   ramtek diff yesterday.ramtek today.ramtek --json
   ramtek inspect today.ramtek --at 120        the display after the instruction that was found
 """
+
+MOST_SHOWN: Final = 8
+"""The most words of a reply that are printed."""
 
 
 @click.command(epilog=EXAMPLES)
@@ -61,7 +65,7 @@ def diff(
     elif found is None:
         number = first_different_instruction(streams[0], streams[1])
         if number > max(map(len, streams)):
-            click.echo(f"the instructions of the streams are the same: {len(streams[0])}")
+            click.echo(f"the streams are the same: {len(streams[0])} instructions")
         else:
             click.echo(f"the displays are alike after every instruction; the streams differ from {number} on")
     else:
@@ -87,7 +91,19 @@ def lines_of(where: dict[str, Any]) -> Iterator[str]:
                 f"entries: {value['count']} differ; the first is {value['first']}: "
                 f"{value['values'][0]} and {value['values'][1]}"
             )
+        elif name == "reply":
+            pairs = zip(*value, strict=False)
+            alike = sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], pairs))
+            counts = " and ".join(f"{len(words):,}" for words in value)
+            rests = " and ".join(_beginning(words[alike:]) for words in value)
+            yield f"reply: {counts} words; from word {alike} on {rests}"
         elif isinstance(value, str):
             yield f"{name}: they {value}"
         else:
             yield f"{name}: {json.dumps(value[0])} and {json.dumps(value[1])}"
+
+
+def _beginning(words: list[int]) -> str:
+    """The first words of a reply."""
+    shown = [*map(str, words[:MOST_SHOWN]), *(["..."] if len(words) > MOST_SHOWN else [])]
+    return " ".join(shown) or "nothing"

@@ -16,7 +16,7 @@ import click
 from ramtek_emu import command_line
 from ramtek_emu.command_line import ENDING, SIGNALS
 from ramtek_emu.configuration import CONFIGURATIONS, GMR_9300, Configuration
-from ramtek_emu.errors import MissingInputError, RamtekError, reason_of
+from ramtek_emu.errors import MissingInputError, RamtekError, WordsError, reason_of
 from ramtek_emu.writing import Output, refuse_output, same_outputs
 
 if TYPE_CHECKING:
@@ -117,7 +117,7 @@ class Run:
         self.signal = 0
         """The number of the first signal that is to end the display; 0 if there was none."""
         self.exit_code = 0
-        """The exit code of the first output that failed; 0 if none has."""
+        """The exit code of the first failure; 0 if there was none."""
         self.record: Record | None = None
         """Records words; None if no recording was asked for."""
 
@@ -149,10 +149,14 @@ class Run:
         except MissingInputError:
             raise
         except RamtekError as failure:
-            tell(f"ramtek: {failure}")
-            self.exit_code = self.exit_code or failure.exit_code
+            self.fail(failure)
             return False
         return True
+
+    def fail(self, failure: RamtekError) -> None:
+        """Report a failure; the command ends with the exit code of the first."""
+        tell(f"ramtek: {failure}")
+        self.exit_code = self.exit_code or failure.exit_code
 
 
 @contextmanager
@@ -217,10 +221,14 @@ def open_stream(path: str) -> BinaryIO:
         ) from None
 
 
-def read_stream(path: str, configuration: Configuration) -> Stream:
-    """The instructions of a file, or of stdin for `-`; MissingInputError if it cannot be read.
+MOST_READ: Final = 1 << 28
+"""Limit: bytes of a stream that is read whole, about 430 pictures of 640 x 480 words."""
 
-    An instruction and a word that the end of the stream cuts off are dropped and reported.
+
+def read_stream(path: str, configuration: Configuration) -> Stream:
+    """The instructions of a file, or of stdin for `-`; an incomplete end is reported.
+
+    Raises MissingInputError if it cannot be read, and WordsError if it is too long.
     """
     import numpy as np
 
@@ -228,18 +236,27 @@ def read_stream(path: str, configuration: Configuration) -> Stream:
 
     with open_stream(path) as file:
         try:
-            data = file.read()
+            data = file.read(MOST_READ + 1)
         except OSError as cause:
-            raise MissingInputError(
-                f"a stream must be readable to its end, not fail ({reason_of(cause)}); try a copy of it"
-            ) from None
-    stream = Stream(configuration, np.frombuffer(data, "<u2", len(data) // 2).astype(np.uint16, copy=False))
-    name = "the stream" if path == "-" else path
-    if rest := len(stream.words) - int(stream.ends[-1]):
-        tell(f"{name} ends within an instruction: its {rest} words were dropped")
+            raise unreadable(cause) from None
+    if len(data) > MOST_READ:
+        raise WordsError(
+            f"a stream must be at most {MOST_READ:,} bytes here, not more ({path}); give a part of it"
+        )
+    words = np.frombuffer(data, "<u2", len(data) // 2).astype(np.uint16, copy=False)
+    stream = Stream(configuration, words)
+    if rest := len(words) - int(stream.ends[-1]):
+        tell(f"the stream {path} ends within an instruction: its {rest} words were dropped")
     if len(data) % 2:
-        tell(f"{name} ends within a word: its last byte was dropped")
+        tell(f"the stream {path} ends within a word: its last byte was dropped")
     return stream
+
+
+def unreadable(cause: OSError) -> MissingInputError:
+    """The error for a stream that was opened and cannot be read to its end."""
+    return MissingInputError(
+        f"a stream must be readable to its end, not fail ({reason_of(cause)}); try a copy of it"
+    )
 
 
 tell: Final = command_line.report
@@ -283,8 +300,12 @@ def tell_unexecuted(words: int) -> None:
         tell(f"{words:,} {'word' if words == 1 else 'words'} of the host arrived and were not executed")
 
 
-def tell_the_end(session: HostSession) -> None:
-    """Report words that were not executed: illegal words, instructions without effect, an incomplete end."""
+def tell_the_end(session: HostSession, is_cut_off: bool = False) -> None:
+    """Report words that were not executed: illegal words, instructions without effect, an incomplete end.
+
+    With `is_cut_off`, a signal ended the stream.
+    """
+    end = "a signal ended the stream" if is_cut_off else "the stream ends"
     processor = session.display.processor
     illegal, unknown = processor.illegal_words, processor.unimplemented
     if illegal:
@@ -293,6 +314,6 @@ def tell_the_end(session: HostSession) -> None:
         plural = "instruction is" if unknown == 1 else "instructions are"
         tell(f"{unknown} {plural} known by name only: without effect")
     if rest := session.display.decoder.pending_words:
-        tell(f"the stream ends within an instruction: its {rest} words were dropped")
+        tell(f"{end} within an instruction: its {rest} words were dropped")
     if session.odd_byte:
-        tell("the stream ends within a word: its last byte was dropped")
+        tell(f"{end} within a word: its last byte was dropped")

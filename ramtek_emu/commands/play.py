@@ -20,8 +20,9 @@ from ramtek_emu.commands.displays import (
     tell,
     tell_the_end,
     tell_unexecuted,
+    unreadable,
 )
-from ramtek_emu.errors import ColorsError, MissingInputError, reason_of
+from ramtek_emu.errors import ColorsError, MissingInputError
 
 if TYPE_CHECKING:
     from ramtek_emu.host.pipe import CutReader
@@ -113,15 +114,21 @@ def play(
             try:
                 return os.read(number, most) if run.wait(number) else b""
             except OSError as cause:
-                raise MissingInputError(
-                    f"a stream must be readable to its end, not fail ({reason_of(cause)}); try a copy of it"
-                ) from None
+                raise unreadable(cause) from None
+
+        def read_for_window(most: int) -> bytes:
+            # The window stays open with the words that were read.
+            try:
+                return read(most)
+            except MissingInputError as failure:
+                run.fail(failure)
+                return b""
 
         session = HostSession(display, run.record)
         if in_window:
-            paced = read
+            paced: pipe.Read = read_for_window
             if loads_per_second is not None:
-                paced = pipe.PacedReader(read, loads_per_second, display.configuration)
+                paced = pipe.PacedReader(paced, loads_per_second, display.configuration)
             show(display, run, pipe.PolledPipe(session, paced).serve_for)
             return
         waiting = 0
@@ -132,7 +139,7 @@ def play(
             cut = pipe.CutReader(read, display.configuration, is_cut)
             write_fields(film, session, cut, run, fps, not once, force)
             waiting = cut.waiting
-        tell_the_end(session)
+        tell_the_end(session, is_cut_off=run.ends)
         tell_unexecuted(session.unexecuted + (waiting + waiting_bytes(number)) // 2)
     if run.signal:
         raise Ended(run.signal)
@@ -151,12 +158,17 @@ def refuse_film(context: click.Context, film: str | None, force: bool) -> None:
             "a film must be written without a window, not with --window; leave it out, or press F3"
             " in the window to record what it shows"
         )
-    from ramtek_emu.films import check_film
+    from ramtek_emu.films import check_film, is_numbered
 
     try:
         check_film(film, context.params["fps"], force)
     except ColorsError as refusal:
         raise click.UsageError(str(refusal)) from None
+    for other in filter(None, map(context.params.get, ("output", "snapshot", "record"))):
+        if is_numbered(other, film):
+            raise click.UsageError(
+                f"two outputs must be two files, not {other} and a picture of {film}; rename one"
+            )
 
 
 def write_fields(

@@ -184,7 +184,7 @@ def serve_stdio(
             lines.obey()
             if pipe.ended or not pipe.step():
                 time.sleep(PIPE_SECONDS)
-    tell_the_end(session)
+    tell_the_end(session, is_cut_off=run.ends)
     tell_unexecuted(source.unexecuted + (waiting_bytes(sys.stdin.fileno()) // 2 if sys.stdin else 0))
 
 

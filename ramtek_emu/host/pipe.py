@@ -184,7 +184,7 @@ def is_load(instruction: Instruction) -> bool:
 
 
 def every(count: int) -> Callable[[Instruction], bool]:
-    """A function that is true for each `count`-th of its calls, with any instruction."""
+    """A function that returns True at every `count`-th call."""
     number = 0
 
     def is_cut(_: Instruction) -> bool:
@@ -238,11 +238,11 @@ class PacedReader:
 
 
 class StreamFields:
-    """The fields of a stream, which is executed as they are taken: one after each cut, and one at the end.
+    """The fields of a stream after each cut and at its end. The stream is executed when fields are taken.
 
-    The last field is left out if it equals the field before. There are at most `most` fields: after so many
-    cuts, the rest of the stream is executed, and has its last field alone. When `ends()` is true, the rest of
-    the words is not executed. Replies are dropped.
+    If the field at the end equals the field before, it is left out. There are at most `most` fields: the
+    fields after the first cuts, and the field at the end. When `ends()` is true, the rest of the words is not
+    executed. Replies are dropped.
     """
 
     def __init__(

@@ -1,4 +1,4 @@
-"""Inspection: a stream of instructions under glass: any moment of it, and who wrote each pixel.
+"""Inspection: a display after any instruction of a stream, and the instructions that wrote a pixel.
 
 Uses the basic modules, instruction_set, memory, display, host and monitor. The display does not know it.
 """

@@ -1,6 +1,6 @@
 """Differences: the first instruction after which two streams have made different displays, and where.
 
-Instructions are paired by their numbers. When a stream has ended, its display stays as it is.
+Instructions are paired by their numbers. After the end of the shorter stream, its display does not change.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy as np
 
 from ramtek_emu.arrays import AnyArray, Words
 from ramtek_emu.display import Ramtek9300
-from ramtek_emu.inspection.replay import reply_of
+from ramtek_emu.inspection.replay import Replay, reply_of
 from ramtek_emu.inspection.stream import Stream
 from ramtek_emu.instruction_set.instruction import NO_WORDS
 from ramtek_emu.memory.parameters import Parameters
@@ -35,13 +35,17 @@ def first_difference(first: Stream, second: Stream, start: Ramtek9300 | None = N
     None if the displays are alike after every instruction.
     """
     number = first_different_instruction(first, second) - 1
-    display = Ramtek9300(first.configuration) if start is None else deepcopy(start)
+    display = Replay(first, start).display
     # Displays that execute the same instructions are alike.
     display.send(first.words_between(0, number))
     reply_of(display)
     other = deepcopy(display)
     for later in range(number + 1, max(len(first), len(second)) + 1):
-        replies = [_execute(which, stream, later) for which, stream in ((display, first), (other, second))]
+        words, other_words = (_words_of(stream, later) for stream in (first, second))
+        replies = _reply_to(display, words), _reply_to(other, other_words)
+        # Two displays that were alike before the same instruction are alike after it.
+        if np.array_equal(words, other_words):
+            continue
         where = dict(_differences(display, other, *replies))
         if where:
             return Difference(later, where)
@@ -54,15 +58,17 @@ def first_different_instruction(first: Stream, second: Stream) -> int:
     length = min(first.ends[both], second.ends[both])
     differing = np.flatnonzero(first.words[:length] != second.words[:length])
     place = int(differing[0]) if len(differing) else int(length)
-    # Up to there the words are the same, and so are the ends.
+    # Equal words make equal instructions, so the ends of both streams are equal up to this place.
     return int(np.searchsorted(first.ends, place, side="right"))
 
 
-def _execute(display: Ramtek9300, stream: Stream, number: int) -> Words:
-    """Execute an instruction if the stream has it; returns the reply."""
-    if number > len(stream):
-        return NO_WORDS
-    display.send(stream.words_between(number - 1, number))
+def _words_of(stream: Stream, number: int) -> Words:
+    """The words of an instruction; no words after the end of the stream."""
+    return stream.words_between(number - 1, number) if number <= len(stream) else NO_WORDS
+
+
+def _reply_to(display: Ramtek9300, words: Words) -> Words:
+    display.send(words)
     return reply_of(display)
 
 

@@ -133,7 +133,7 @@ class EntriesWritten(NamedTuple):
 
 
 def _entries_written(replay: Replay, after: int, until: int) -> Iterator[EntriesWritten]:
-    """The loads of the lookup table. No other instruction bears on them, so that no other is executed."""
+    """The loads of the lookup table. No other instruction changes entries, so only loads are executed."""
     display = replay.first_display()
     touched = watched_table(display).watch()
     loads = np.flatnonzero(replay.stream.opcodes[:until] == LOAD) + 1

@@ -4,7 +4,7 @@ A display cannot run backwards. So states are kept on the way, and a display is 
 from the last state before it. States are STATE_SECONDS of work apart while they take at most STATE_BYTES for
 each word of the stream; if they would take more, every second state is dropped.
 
-The replies to instructions that read are dropped, as `ramtek play` does; only that of the last is kept.
+Replies are dropped, as by `ramtek play`. Only the reply of the last instruction is kept, in `reply`.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ LEAST_STATE_BYTES: Final = 64 << 20
 
 
 class Replay:
-    """A stream, and a display that was brought to one of its instructions."""
+    """A stream, and a display that goes to any of its instructions, forward or back."""
 
     def __init__(self, stream: Stream, start: Ramtek9300 | None = None) -> None:
         """Begin with a display as it is at power-on, or like the display `start`."""

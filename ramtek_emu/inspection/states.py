@@ -1,4 +1,4 @@
-"""States: displays packed into little memory; states that follow each other share what stayed the same.
+"""States: displays packed into little memory; consecutive states share equal blocks.
 
 A state is a pickled display. Its arrays are cut into blocks. A block that equals the block of the state
 before is the same object, and the others are deflated.

@@ -5,6 +5,7 @@ Instruction 1 is the first; 0 stands for power-on. An illegal word counts as an 
 
 from __future__ import annotations
 
+from array import array
 from dataclasses import replace
 from typing import Final, TypeVar
 
@@ -43,7 +44,7 @@ class Stream:
 
     @property
     def words(self) -> Words:
-        """All words, uint16, with those of an instruction that is not complete yet."""
+        """All words, uint16, with the words of an incomplete instruction at the end."""
         return self._words[: self._word_count]
 
     @property
@@ -66,11 +67,11 @@ class Stream:
         self._ends[self._count + 1 : self._count + 1 + len(ends)] = ends
         self._count += len(ends)
 
-    def _ends_from(self, place: int) -> list[int]:
-        """The ends of the whole instructions from a place on."""
+    def _ends_from(self, place: int) -> array[int]:
+        """The ends of the whole instructions from a place on, 64 bits each."""
         extended = self.configuration.extended
         formats = formats_of_opcodes(extended)
-        ends: list[int] = []
+        ends = array("q")
         while place < self._word_count:
             # Numbers of Python are faster here than those of numpy.
             first, words = place, self.words[place : place + PIECE + MOST_HEAD].tolist()
@@ -101,10 +102,10 @@ class Stream:
         return replace(item, place=self.place(number))
 
 
-def _with_room(array: Array, used: int, more: int) -> Array:
-    """The array, or a longer one with the same first items, so that `more` items can follow them."""
-    if used + more <= len(array):
-        return array
-    longer = np.zeros(max(2 * len(array), used + more), array.dtype)
-    longer[:used] = array[:used]
+def _with_room(items: Array, used: int, more: int) -> Array:
+    """The items, or a longer array that begins with the items in use, with room for more."""
+    if used + more <= len(items):
+        return items
+    longer = np.zeros(max(2 * len(items), used + more), items.dtype)
+    longer[:used] = items[:used]
     return longer  # type: ignore[return-value]

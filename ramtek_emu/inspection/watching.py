@@ -1,4 +1,4 @@
-"""Memories of a display that note what is written: words of the frame buffer, entries of the lookup table."""
+"""Memories of a display that note their writes: words of the frame buffer, entries of the lookup table."""
 
 from __future__ import annotations
 

@@ -102,12 +102,14 @@ class Cursors:
         cursor.element, cursor.line, cursor.state = element, line, state
 
     def state_of(self, number: int) -> int:
-        """The state bits as the host reads them; reading clears the ENTER of this cursor."""
+        """The state bits of a cursor, with the switches."""
         cursor = self.all[number]
-        state = (
-            cursor.state & ~(TRACK | ENTER) | (TRACK if self.track else 0) | (ENTER if cursor.enter else 0)
-        )
-        cursor.enter = False
+        return cursor.state & ~(TRACK | ENTER) | (TRACK if self.track else 0) | (ENTER if cursor.enter else 0)
+
+    def read_state(self, number: int) -> int:
+        """The state bits as the host reads them; reading clears the ENTER of this cursor."""
+        state = self.state_of(number)
+        self.all[number].enter = False
         return state
 
     def set_shape(self, number: int, rows: Bytes) -> None:

@@ -98,6 +98,8 @@ class Monitor:
         self._enter = False
         self._film: TimedFilm | None = None
         """The film that is recorded, or that could not be saved."""
+        self._drops_film = False
+        """Whether the user knows that closing the window drops the film."""
         self.refreshed = 0
         """The number of times that the field was shown; it never decreases."""
         self._caption = caption
@@ -240,6 +242,7 @@ class Monitor:
         from ramtek_emu.films import TimedFilm
 
         self._film = TimedFilm(self.source.field(), time.monotonic())
+        self._drops_film = False
         # A program that gets messages would draw this message into the film.
         self.show_message("F3 ends it")
 
@@ -283,11 +286,12 @@ class Monitor:
         """
         if self.on_close is not None and not self.on_close():
             return
-        if self._film is not None and not self._film.has_ended:
+        if self._film is not None and not self._drops_film:
             try:
                 report(self._save_film(self._film))
             except RamtekError as refusal:
                 self.tell(f"{refusal}; F3 tries again, and closing again drops the film")
+                self._drops_film = True
                 return
         self.close()
 

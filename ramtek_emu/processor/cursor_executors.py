@@ -64,7 +64,7 @@ def read_cursor(processor: Processor, instruction: Instruction) -> None:
     if not has_cursor(processor, instruction):
         return processor.reply(np.zeros(2, np.uint16))
     cursor = processor.cursors[instruction.low_byte]
-    state = processor.cursors.state_of(instruction.low_byte)
+    state = processor.cursors.read_state(instruction.low_byte)
     words = cursor.element & element_bits(processor), cursor.line & LINE_BITS | state & ~LINE_BITS
     processor.reply(np.array(words, np.uint16))
 
@@ -75,7 +75,7 @@ def read_cursor_at_pixel(processor: Processor, instruction: Instruction) -> None
         return processor.reply(np.zeros(2, np.uint16))
     cursor = processor.cursors[instruction.low_byte]
     element, line = pixel_at(processor.parameters, processor.configuration, cursor.element, cursor.line)
-    state = processor.cursors.state_of(instruction.low_byte)
+    state = processor.cursors.read_state(instruction.low_byte)
     processor.reply(np.array((element, line & LINE_BITS | state & ~LINE_BITS), np.uint16))
 
 
@@ -84,7 +84,7 @@ def read_global_cursor(processor: Processor, instruction: Instruction) -> None:
     if not has_cursor(processor, instruction):
         return processor.reply(np.zeros(3, np.uint16))
     cursor = processor.cursors[instruction.low_byte]
-    state = processor.cursors.state_of(instruction.low_byte)
+    state = processor.cursors.read_state(instruction.low_byte)
     processor.reply(np.array((cursor.element & 0xFFFF, cursor.line & 0xFFFF, state), np.uint16))
 
 

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import math
 import os
+import re
 import weakref
 from collections.abc import Iterator
 from io import BytesIO
@@ -278,9 +279,23 @@ def test_a_timed_film_is_full_at_its_limits(limit: str, monkeypatch: pytest.Monk
 
 
 @pytest.mark.parametrize("suffix", FORMATS)
-def test_fields_of_different_sizes_make_no_film(suffix: str, tmp_path: Path) -> None:
-    fields = [np.zeros((2, 3, 3), np.uint8), np.zeros((3, 2, 3), np.uint8)]
-    with pytest.raises(ColorsError, match=r"not field 2 of shape \(3, 2, 3\) after \(2, 3, 3\)"):
+@pytest.mark.parametrize(
+    ("fields", "sentence"),
+    [
+        (
+            [np.zeros((2, 3, 3), np.uint8), np.zeros((3, 2, 3), np.uint8)],
+            "2 of shape (3, 2, 3), uint8",
+        ),
+        ([np.zeros((2, 3, 3))], "1 of shape (2, 3, 3), float64"),
+        ([np.zeros((2, 3, 4), np.uint8)], "1 of shape (2, 3, 4)"),
+        ([np.zeros((2, 3), np.uint8)], "1 of shape (2, 3)"),
+        ([np.zeros((0, 3, 3), np.uint8)], "1 of shape (0, 3, 3)"),
+    ],
+)
+def test_fields_that_are_not_alike_make_no_film(
+    suffix: str, fields: list[Any], sentence: str, tmp_path: Path
+) -> None:
+    with pytest.raises(ColorsError, match=re.escape(f"not field {sentence}")):
         write_film(tmp_path / f"film{suffix}", fields, fields_per_second=24)
     assert os.listdir(tmp_path) == []
 

@@ -4,6 +4,7 @@ import json
 import subprocess
 from pathlib import Path
 
+from ramtek_emu.commands.diff import lines_of
 from tests.ramtek_emu import processes
 from tests.ramtek_emu.recorded_streams import SQUARES
 
@@ -42,14 +43,20 @@ def test_streams_that_differ_without_a_difference(tmp_path: Path) -> None:
     assert "alike after every instruction; the streams differ from 2 on" in text
 
 
-def test_the_end_of_each_stream_that_is_cut_off_is_reported(tmp_path: Path) -> None:
-    first, second = tmp_path / "first", tmp_path / "second"
-    whole = SQUARES.astype("<u2").tobytes()
-    first.write_bytes(whole + b"\x02\x09\x04\x00")
-    second.write_bytes(whole + b"\x00")
-    done = run("diff", str(first), str(second))
-    assert "the instructions of the streams are the same" in done.stdout.decode()
+def test_an_incomplete_end_is_dropped_and_reported_with_its_file(tmp_path: Path) -> None:
+    path = tmp_path / "cut"
+    path.write_bytes(SQUARES.astype("<u2").tobytes() + b"\x00\x03\x00\x00!")
+    done = run("diff", "-", str(path), data=SQUARES.astype("<u2").tobytes())
+    assert "the streams are the same" in done.stdout.decode()
     assert done.stderr.decode().splitlines() == [
-        f"{first} ends within an instruction: its 2 words were dropped",
-        f"{second} ends within a word: its last byte was dropped",
+        f"the stream {path} ends within an instruction: its 2 words were dropped",
+        f"the stream {path} ends within a word: its last byte was dropped",
+    ]
+
+
+def test_a_reply_is_printed_from_its_first_difference_on() -> None:
+    lines = lines_of({"reply": [[5, 6, *range(20)], [5, 6]], "status": ["READY", "ILLEGAL|READY"]})
+    assert list(lines) == [
+        "reply: 22 and 2 words; from word 2 on 0 1 2 3 4 5 6 7 ... and nothing",
+        'status: "READY" and "ILLEGAL|READY"',
     ]

@@ -20,11 +20,13 @@ from ramtek_emu import (
     Ramtek9300,
     TcpPort,
     UnixPort,
+    WordsError,
     WriteError,
     instructions,
     read_snapshot,
 )
 from ramtek_emu.command_line import ENDING
+from ramtek_emu.commands import displays
 from ramtek_emu.commands.displays import running
 from ramtek_emu.commands.ramtek import ramtek
 from ramtek_emu.writing import Output
@@ -35,14 +37,24 @@ from tests.ramtek_emu.serving import until
 from tests.signals import Row, attack, filling, printing, recording, row_of, unread
 
 
-@pytest.mark.parametrize("command", [[], ["play"], ["list"], ["serve"]])
+@pytest.mark.parametrize("command", [[], ["play"], ["list"], ["serve"], ["inspect"], ["diff"]])
 def test_the_names_of_configurations_are_completed(command: list[str]) -> None:
     shell = BashComplete(ramtek, {}, "ramtek", "_RAMTEK_COMPLETE")
     found = shell.get_completions([*command, "--configuration"], "p")
     assert [item.value for item in found] == ["PRINCETON_9300"]
 
 
-@pytest.mark.parametrize("command", ["play", "list", "assemble", "serve"])
+def test_a_stream_that_is_read_whole_has_a_limit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "long"
+    path.write_bytes(bytes(10))
+    monkeypatch.setattr(displays, "MOST_READ", 10)
+    assert len(displays.read_stream(str(path), PRINCETON_9300)) == 5
+    monkeypatch.setattr(displays, "MOST_READ", 9)
+    with pytest.raises(WordsError, match="at most 9 bytes here"):
+        displays.read_stream(str(path), PRINCETON_9300)
+
+
+@pytest.mark.parametrize("command", ["play", "list", "assemble", "serve", "inspect", "diff"])
 def test_help_has_examples_and_loads_nothing_heavy(command: str) -> None:
     script = (
         "import sys; from ramtek_emu.commands.ramtek import ramtek\n"
@@ -131,7 +143,7 @@ from ramtek_emu.commands.displays import Run
 from ramtek_emu.host import server
 from ramtek_emu.memory.frame_buffer import FrameBuffer
 
-# A session looks for signals after every slice of an instruction, not after some milliseconds.
+# Pause after every slice, however fast the machine is.
 server.SLICE_SECONDS = 0
 signals = []
 receive, write_points = Run.receive, FrameBuffer.write_points

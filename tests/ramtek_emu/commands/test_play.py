@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import re
 import signal
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +10,15 @@ import pytest
 from click.testing import CliRunner, Result
 from PIL import Image
 
-from ramtek_emu import MissingInputError, RamtekError, WriteError, instructions, read_snapshot
+from ramtek_emu import (
+    MissingInputError,
+    Ramtek9300,
+    RamtekError,
+    WriteError,
+    instructions,
+    read_snapshot,
+)
+from ramtek_emu.commands.displays import Run
 from ramtek_emu.commands.ramtek import ramtek
 from ramtek_emu.writing import Output
 from tests.ramtek_emu.film_reader import decoded, durations_of
@@ -128,6 +137,7 @@ REFUSED: list[tuple[list[object], int, str]] = [
         "a film must end in .webp, .apng, .gif, or in .png with a number, not in '.mp4'",
     ),
     (["--film", "a.png"], 73, "numbered pictures must have one number in their name"),
+    (["--film", "{number:02}.png", "--force", "--record", "./001.png"], 2, "rename one"),
     (["--film", "frames.apng"], 73, "which exists; choose another name"),
     (["--film", "a.gif", "--fps", 60], 2, "a film must have 0.1 to 50 fields per second, not 60"),
     (["--film", "a.webp", "--fps", "nan"], 2, "a film must have 0.1 to 100 fields per second, not nan"),
@@ -173,9 +183,9 @@ def test_a_film_that_fails_is_reported_and_the_stream_goes_on(
     assert sorted(path.name for path in Path().iterdir()) == ["end.png", "frames.ramtek"]
 
 
-def test_a_stream_that_cannot_be_read_to_its_end_makes_no_film(
-    frames: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+@pytest.fixture
+def _broken(frames: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Streams that cannot be read to their ends."""
     pieces = [stream(FRAMES)]
 
     def read(_: int, __: int) -> bytes:
@@ -184,6 +194,28 @@ def test_a_stream_that_cannot_be_read_to_its_end_makes_no_film(
         raise OSError("broken")
 
     monkeypatch.setattr("ramtek_emu.commands.play.os.read", read)
+
+
+@pytest.mark.usefixtures("_broken")
+def test_a_window_stays_open_when_its_stream_cannot_be_read_to_its_end(
+    frames: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def show(display: Ramtek9300, run: Run, serve_for: Callable[[float], None]) -> None:
+        def has_failed() -> bool:
+            serve_for(0.01)
+            return run.exit_code != 0 and display.words_received == len(FRAMES)
+
+        until(has_failed)
+
+    monkeypatch.setattr("ramtek_emu.commands.play.show", show)
+    failed = play(frames, "--window", "-o", "a.png")
+    assert failed.exit_code == MissingInputError.exit_code
+    assert "ramtek: a stream must be readable to its end" in failed.stderr
+    assert field_of(Path("a.png"))[0, 0, 0] == 100
+
+
+@pytest.mark.usefixtures("_broken")
+def test_a_stream_that_cannot_be_read_to_its_end_makes_no_film(frames: str) -> None:
     failed = play(frames, "--film", "a.apng", "-o", "a.png")
     assert isinstance(failed.exception, MissingInputError)
     assert [path.name for path in Path().iterdir()] == [frames]
@@ -193,12 +225,14 @@ def test_an_interrupted_film_has_the_frames_so_far(tmp_path: Path) -> None:
     arguments = ("--film", tmp_path / "{number}.png", "--every", 2, "-o", tmp_path / "end.png")
     with started("play", "-", *arguments) as process:
         assert process.stdin is not None
-        process.stdin.write(stream(FRAMES))
+        process.stdin.write(stream(FRAMES) + b"\0\3\0\0!")
         until((tmp_path / "2.png").exists)
         process.send_signal(signal.SIGINT)
         assert process.wait(60) in (-signal.SIGINT, 128 + signal.SIGINT)
         assert process.stderr is not None
-        assert re.search(rb"wrote .*\{number\}\.png, [23] frames", process.stderr.read())
+        messages = process.stderr.read()
+    assert re.search(rb"wrote .*\{number\}\.png, [23] frames", messages)
+    assert b"a signal ended the stream within an instruction: its 2 words were dropped" in messages
     numbers = sorted(int(path.stem) for path in tmp_path.glob("[0-9]*.png"))
     assert numbers in ([1, 2], [1, 2, 3])
     assert np.array_equal(field_of(tmp_path / f"{numbers[-1]}.png"), field_of(tmp_path / "end.png"))

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from ramtek_emu import Ramtek9300, instructions
 from ramtek_emu.inspection.differences import first_difference, first_different_instruction
 from ramtek_emu.inspection.stream import Stream
+from ramtek_emu.memory.cursors import ENTER
 from ramtek_emu.snapshot import snapshot_bytes
 from ramtek_emu.testing import streams
 from tests.ramtek_emu.inspection.replays import moments, replay_of
@@ -39,6 +40,19 @@ def test_the_first_different_instruction(words: list[int], number: int) -> None:
     shorter = Stream(SMALL, stream.words_between(0, number))
     assert first_different_instruction(stream, shorter) == number + 1
     assert first_different_instruction(stream, stream) == len(stream) + 1
+
+
+def test_a_cursor_that_only_one_stream_reads_differs_by_its_enter() -> None:
+    start = Ramtek9300(SMALL)
+    start.joystick.press_enter()
+    alike, read = instructions.no_operation(), instructions.read_cursor(0)
+    words = [np.concatenate((alike, last)) for last in (instructions.no_operation(), read)]
+    words[0][0] |= 1
+    found = first_difference(Stream(SMALL, words[0]), Stream(SMALL, words[1]), start)
+    assert found is not None
+    assert found.number == 2
+    states = [cursors[0]["state"] for cursors in found.where["cursors"]]
+    assert states == [ENTER, 0]
 
 
 def test_a_difference_says_where() -> None:
