@@ -41,14 +41,15 @@ static unsigned pixel(int display)
 
 int main(int argc, char **argv)
 {
-    static const uint16_t box[] = {0x0912, 0x0042, 5, 100, 100, 199, 149}; /* ERS BK FORE WIN */
+    /* LAM of entry 5, and ERS BK FORE WIN: at power-on all entries are black. */
+    static const uint16_t box[] = {0x0300, 10, 4, 0x4646, 0x00EB, 0x0912, 0x0042, 5, 100, 100, 199, 149};
     uint16_t reply[MOST_WORDS];
     struct sockaddr_un place = {.sun_family = AF_UNIX};
     int display = socket(AF_UNIX, SOCK_SEQPACKET, 0);
     strncpy(place.sun_path, argc > 1 ? argv[1] : "", sizeof place.sun_path - 1);
     if (connect(display, (struct sockaddr *)&place, sizeof place) < 0)
         err(1, "connect");
-    write_words(display, box, 7);
+    write_words(display, box, 12);
     printf("the pixel is %u\n", pixel(display));
     write_words(display, box, 0); /* An empty packet asks for a hard reset, and is the answer. */
     if (read_words(display, reply) != 0)

@@ -51,7 +51,7 @@ A message says what must hold, what was found, and what to do. Of several lines,
 
 MEANINGS = {
     0: "done",
-    1: "done, but with `--strict` something was repaired or left out",
+    1: "done, but with `--strict` something was repaired or left out, or `ramtek diff` found a difference",
     2: "the command line is wrong",
     65: "the input is wrong",
     66: "the input is not there",
@@ -71,6 +71,7 @@ COMMANDS = (
     (0, "autocolor sql car 'SELECT name FROM lights' --csv"),
     (0, "ramtek play lines.ramtek -o lines.png"),
     (1, "autocolor validate torn.obj --strict"),
+    (1, "ramtek diff lines.ramtek others.ramtek"),
     (2, "autocolor rendr car"),
     (2, "autocolor render car --size 1280"),
     (2, "autocolor render car --smooth 5"),
@@ -161,11 +162,13 @@ FILES = {
     "broken.obj": "v 0 0\n",
     "here.png": "",
     "lines.txt": "WVL FORE=255 STRT=10,10\n",
+    "others.txt": "WVL FORE=255 STRT=10,20\n",
     "wrong.txt": "WVL FORE=white\n",
 }
 MADE = (
     "autocolor render car --save car.npz --size 64x48",
     "ramtek assemble lines.txt -o lines.ramtek",
+    "ramtek assemble others.txt -o others.ramtek",
 )
 
 
@@ -219,7 +222,7 @@ def ran(line: str, place: Path) -> Ran:
     """How a line ended. A line that reads stdin is interrupted once it has begun to record."""
     if not needs_process(line):
         code, out, err = here(line, place)
-        return Ran(code, last_line(code, out, err))
+        return Ran(code, last_line(out, err))
     with process(line, place) as started:
         return _ended(line, place, started)
 
@@ -250,9 +253,9 @@ def here(line: str, place: Path, **given: str) -> tuple[int, str, str]:
     return code, out.read(), err.read()
 
 
-def last_line(code: int, out: str, err: str) -> str:
-    """The last line of a command's messages, or of its result if it ended well and said nothing."""
-    lines = [text for text in (out if code == 0 and not err else err).splitlines() if text]
+def last_line(out: str | None, err: str) -> str:
+    """The last line of a command's messages, or of its result if there are no messages."""
+    lines = [text for text in (err or out or "").splitlines() if text]
     return lines[-1] if lines else ""
 
 
@@ -270,7 +273,7 @@ def _ended(line: str, place: Path, started: subprocess.Popen[str]) -> Ran:
     else:
         out, err = started.communicate("", timeout=60)
         code = started.returncode
-    return Ran(code, last_line(code, out, err))
+    return Ran(code, last_line(out, err))
 
 
 def completed(line: str, place: Path) -> list[str]:

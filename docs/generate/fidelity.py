@@ -252,8 +252,13 @@ def instructions_and_operands() -> str:
 
     parts = [
         "\n## Instructions and operands: where each format comes from\n\nThe rows of"
-        " `ramtek_emu.instruction_set.table`.\n\n| opcode | instruction | source |\n|---|---|---|\n",
-        *(f"| {row.opcode:02X} | {row.name}: {row.meaning} | {row.source} |\n" for row in SUBSTANTIATED),
+        " `ramtek_emu.instruction_set.table`.\n\n| opcode | instruction | words that follow | source |\n"
+        "|---|---|---|---|\n",
+        *(
+            f"| {row.opcode:02X} | {row.name}: {row.meaning} | {words} | {row.source} |\n"
+            for row in SUBSTANTIATED
+            for words in ("named by flags" if row.fixed is None else ", ".join(row.fixed) or "none",)
+        ),
         f"\nNCAR ramtek.h alone has the numbers and the names of {len(UNIMPLEMENTED)} other opcodes: ",
         ", ".join(f"{opcode:02X} {name}" for opcode, name, _ in UNIMPLEMENTED),
         ".\n\n| flag word, bit | operand | words | source |\n|---|---|---|---|\n",

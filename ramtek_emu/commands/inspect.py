@@ -35,7 +35,7 @@ Examples:
     "--at",
     type=click.IntRange(min=0),
     metavar="N",
-    help="The instruction, counted as `ramtek list` shows them; 0 is power-on. The last if not given.",
+    help="The instruction: its line in `ramtek list --json`, or 0 for power-on. The last if not given.",
 )
 @click.option("-o", "--output", type=click.Path(), metavar="PNG", help="Write the picture, open no window.")
 @click.option(

@@ -9,7 +9,7 @@ from PIL import Image
 
 from ramtek_emu import Ramtek9300
 from tests.ramtek_emu import processes
-from tests.ramtek_emu.recorded_streams import SQUARES
+from tests.ramtek_emu.recorded_streams import SQUARES, words
 
 DATA = SQUARES.astype("<u2").tobytes()
 
@@ -54,6 +54,15 @@ def test_a_moment_in_json() -> None:
     assert moment["number"] == 3
     assert moment["instruction"]["name"] == "SET"
     assert (moment["foreground"], moment["background"]) == (4, 0)
+
+
+def test_the_number_of_an_instruction_is_its_line_in_a_listing_in_json() -> None:
+    data = words("A3FF").astype("<u2").tobytes() + DATA
+    lines = run("list", "-", "--json", data=data).stdout.decode().splitlines()
+    for number in (1, 2, len(lines)):
+        listed = json.loads(lines[number - 1].strip("[ ,]"))
+        moment = json.loads(run("inspect", "-", "--at", str(number), "--json", data=data).stdout)
+        assert (moment["of"], moment["instruction"]["place"]) == (len(lines), listed["place"])
 
 
 def test_numbers_beyond_the_stream_and_the_memory_are_refused() -> None:
