@@ -9,7 +9,7 @@ from typing import Any, Final
 
 import click
 
-from ramtek_emu.commands.displays import complete_configurations, display_asked_for, read_stream
+from ramtek_emu.commands.displays import configuration_option, display_asked_for, read_stream, start_option
 
 EXAMPLES: Final = """\b
 Examples:
@@ -25,13 +25,8 @@ MOST_SHOWN: Final = 8
 @click.command(epilog=EXAMPLES)
 @click.argument("first", type=click.Path())
 @click.argument("second", type=click.Path())
-@click.option(
-    "--configuration",
-    metavar="NAME",
-    shell_complete=complete_configurations,
-    help="The display; GMR_9300 if not given.",
-)
-@click.option("--start", type=click.Path(), metavar="SNAPSHOT", help="Begin with the display of a snapshot.")
+@configuration_option
+@start_option
 @click.option("--json", "as_json", is_flag=True, help="The answer as JSON; null if there is no difference.")
 @click.pass_context
 def diff(

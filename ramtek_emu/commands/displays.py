@@ -33,19 +33,23 @@ def complete_configurations(_: click.Context, __: click.Parameter, incomplete: s
     return [name for name in CONFIGURATIONS if name.startswith(incomplete.upper())]
 
 
+configuration_option: Final = click.option(
+    "--configuration",
+    metavar="NAME",
+    shell_complete=complete_configurations,
+    help="The display; GMR_9300 if not given.",
+)
+start_option: Final = click.option(
+    "--start", type=click.Path(), metavar="SNAPSHOT", help="Go on with the display of a snapshot."
+)
+
+
 def display_options(function: Function) -> Function:
     """Add the options of all commands with a display: the configuration, and the files to write."""
     for option in (
         click.option("--force", is_flag=True, help="Overwrite what exists."),
-        click.option(
-            "--configuration",
-            metavar="NAME",
-            shell_complete=complete_configurations,
-            help="The display; GMR_9300 if not given.",
-        ),
-        click.option(
-            "--start", type=click.Path(), metavar="SNAPSHOT", help="Go on with the display of a snapshot."
-        ),
+        configuration_option,
+        start_option,
         click.option("--record", type=click.Path(), metavar="OUT", help="Record the words that are sent."),
         click.option(
             "--snapshot", type=click.Path(), metavar="PNG", help="Save the display: words, table, parameters."

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 from ramtek_emu.commands.displays import (
-    complete_configurations,
+    configuration_option,
     display_asked_for,
     read_stream,
     refuse_outputs,
+    start_option,
     tell,
 )
 
@@ -58,13 +59,8 @@ Examples:
     help="The answer as JSON; without a question: the instruction and the parameters after it.",
 )
 @click.option("--force", is_flag=True, help="Overwrite the picture if it exists.")
-@click.option(
-    "--configuration",
-    metavar="NAME",
-    shell_complete=complete_configurations,
-    help="The display; GMR_9300 if not given.",
-)
-@click.option("--start", type=click.Path(), metavar="SNAPSHOT", help="Begin with the display of a snapshot.")
+@configuration_option
+@start_option
 def inspect(
     stream: str,
     at: int | None,

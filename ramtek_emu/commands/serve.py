@@ -46,8 +46,6 @@ Examples:
 STEP_SECONDS: Final = 0.1
 JOYSTICK_SECONDS: Final = 0.02
 """How long a line for the joystick may wait while no words arrive."""
-HOST_SECONDS: Final = 0.005
-"""How long the input of a window may wait while a connected host sends nothing. Its words never wait."""
 PIPE_SECONDS: Final = 0.002
 """How long words on a pipe may wait if `--joystick` is given."""
 WRITTEN_AT_ONCE: Final[int] = getattr(select, "PIPE_BUF", 512)
@@ -273,6 +271,8 @@ def serve_hosts(
             inspected.is_connected = lambda: server.busy
             inspect_host(inspected, run, lines, server.step)
             return
+        from ramtek_emu.host.server import HOST_SECONDS
+
         serve_for = partial(server.serve_for, wait=HOST_SECONDS)
         show(server.display, run, obeying(lines, serve_for), lambda: server.busy)
         return

@@ -48,6 +48,8 @@ Record = Callable[[bytes], object]
 
 SLICE_SECONDS: Final = 0.004
 """How long words are executed before the session pauses; a long instruction has pauses within it."""
+HOST_SECONDS: Final = 0.005
+"""How long the input of a window may wait while a connected host sends nothing. Its words never wait."""
 REPLY_PIECE: Final = 1 << 15
 """The words of waiting replies at which the session pauses, and the most that are returned at once."""
 

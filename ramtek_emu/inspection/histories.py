@@ -128,9 +128,10 @@ class EntriesWritten(NamedTuple):
 
 def _entries_written(replay: Replay, after: int, until: int) -> Iterator[EntriesWritten]:
     """The loads of the lookup table. No other instruction changes entries, so only loads are executed."""
-    display = replay.first_display()
+    state = replay.state_before(after)
+    display = state.display()
     touched = watched_table(display).watch()
-    loads = np.flatnonzero(replay.stream.opcodes[:until] == LOAD) + 1
+    loads = np.flatnonzero(replay.stream.opcodes[state.number : until] == LOAD) + state.number + 1
     before = display.lookup_table.packed.copy()
     for number in loads.tolist():
         touched[...] = False

@@ -9,8 +9,9 @@ Replies are dropped, as by `ramtek play`. Only the reply of the last instruction
 
 from __future__ import annotations
 
-from bisect import bisect_left
+from bisect import bisect_right
 from collections.abc import Iterator
+from operator import attrgetter
 from time import perf_counter, thread_time
 from typing import Final, NamedTuple
 
@@ -128,9 +129,7 @@ class Replay:
 
     def state_before(self, number: int) -> State:
         """The last state that was kept before an instruction, or after it exactly."""
-        numbers = [state.number for state in self._states]
-        index = bisect_left(numbers, number)
-        return self._states[index if index < len(numbers) and numbers[index] == number else index - 1]
+        return self._states[bisect_right(self._states, number, key=attrgetter("number")) - 1]
 
     def stretches(self, after: int, until: int) -> Iterator[Stretch]:
         """The parts of the stream between states that hold the instructions after `after` up to `until`."""
@@ -144,10 +143,6 @@ class Replay:
     def _touched(self, state: State) -> Dots | None:
         shape = self.display.words.shape
         return None if state.touched is None else unpacked_dots(state.touched, (shape[0], shape[1]))
-
-    def first_display(self) -> Ramtek9300:
-        """A new display at power-on, or as the stream found it."""
-        return self._states[0].display()
 
     def steps(self, display: Ramtek9300, number: int, end: int) -> Iterator[int]:
         """Run a display from `number` to `end`; yields the number after each instruction.

@@ -13,7 +13,7 @@ import numpy as np
 
 from ramtek_emu.arrays import Words
 from ramtek_emu.display import Ramtek9300
-from ramtek_emu.host.server import Gate
+from ramtek_emu.host.server import HOST_SECONDS, Gate
 from ramtek_emu.inspection.replay import Replay
 from ramtek_emu.inspection.stream import Stream
 from ramtek_emu.instruction_set.instruction import NO_WORDS
@@ -21,8 +21,6 @@ from ramtek_emu.memory.cursors import Cursors
 
 PIECE_SECONDS: Final = 0.006
 """How long a tick prepares states, searches, or executes the words of a host."""
-HOST_SECONDS: Final = 0.005
-"""How long the input of the window may wait while a connected host sends nothing."""
 MOST_BYTES: Final = 1 << 28
 """Limit: the bytes of the instructions of a running display, and of the states to go back to."""
 

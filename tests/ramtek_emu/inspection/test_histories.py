@@ -129,7 +129,10 @@ def test_the_history_of_an_entry(
         for address, data, device in loads
         for word in (0x0300 | device, address, 2 * len(data), *data, 0x0700)
     ]
-    replay = Replay(Stream(configuration, np.array(words, np.uint16)))
+    # A search may begin at any state.
+    with states_every(0):
+        replay = Replay(Stream(configuration, np.array(words, np.uint16)))
+        prepare(replay)
     # The slow way, word by word.
     per_entry = 1 if configuration.entry_format is EntryFormat.WORD_12 else 2
     display = Ramtek9300(configuration)
