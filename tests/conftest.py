@@ -1,6 +1,7 @@
-"""How much hypothesis tries: a little at a desk, the same every time in CI, much on request.
+"""How much hypothesis tries, which cases wait for a thorough run, and what all tests find around them.
 
-`HYPOTHESIS_PROFILE=thorough python -m pytest` takes minutes.
+`HYPOTHESIS_PROFILE=thorough python -m pytest -m "property or thorough or needs"` tries a hundred examples of
+each property, and the cases that the usual run leaves out.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ import signal
 import sys
 import tempfile
 from collections.abc import Iterator
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -18,9 +20,9 @@ from hypothesis import HealthCheck, Phase, settings
 
 UNHURRIED = (HealthCheck.too_slow, HealthCheck.data_too_large)
 
-settings.register_profile("desk", deadline=None, max_examples=25, suppress_health_check=UNHURRIED)
+settings.register_profile("desk", deadline=None, max_examples=10, suppress_health_check=UNHURRIED)
 settings.register_profile(
-    "ci", deadline=None, max_examples=25, derandomize=True, suppress_health_check=UNHURRIED
+    "ci", deadline=None, max_examples=10, derandomize=True, suppress_health_check=UNHURRIED
 )
 # A mutant is killed by any failing example; the smallest one is not looked for.
 settings.register_profile(
@@ -31,7 +33,13 @@ settings.register_profile(
     phases=(Phase.explicit, Phase.generate),
     suppress_health_check=UNHURRIED,
 )
-settings.register_profile("thorough", deadline=None, max_examples=1000, suppress_health_check=UNHURRIED)
+settings.register_profile(
+    "thorough",
+    deadline=None,
+    max_examples=100,
+    derandomize=os.environ.get("CI") == "true",
+    suppress_health_check=UNHURRIED,
+)
 settings.load_profile(
     os.environ.get("HYPOTHESIS_PROFILE", "ci" if os.environ.get("CI") == "true" else "desk")
 )
@@ -56,6 +64,22 @@ if len(tempfile.gettempdir()) > 20 and os.access("/tmp", os.W_OK):
 
 # The width of help.
 os.environ["COLUMNS"] = "80"
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Mark the tests of properties."""
+    for item in items:
+        if getattr(getattr(item, "obj", None), "is_hypothesis_test", False):
+            item.add_marker("property")
+
+
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Skip a test that needs a package that is not installed, and name it."""
+    missing = [name for mark in item.iter_markers("needs") for name in mark.args if find_spec(name) is None]
+    if missing:
+        pytest.skip(f"needs {' and '.join(missing)}: install autocolor[test-all]")
+
 
 _NUMBERS = itertools.count()
 

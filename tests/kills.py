@@ -51,7 +51,7 @@ from autocolor.scene.scalar import MeshScalar
 from ramtek_emu import Ramtek9300, read_snapshot, write_snapshot, writing
 from ramtek_emu.instructions import write_image
 from ramtek_emu.png import save_png
-from tests.autocolor.meshes import decal_on_ground
+from tests.autocolor.decals import decal_on_ground
 
 STEPS: Final = ("open", "mkdir", "rename", "replace", "link", "unlink", "rmdir", "fsync")
 """The functions of `os` that are steps."""

@@ -20,8 +20,8 @@ from autocolor.screens.session import PICTURE
 from autocolor.widgets.sheet import Sheet
 from ramtek_emu import Ramtek9300
 from tests.autocolor.random_hand import RandomHandWithKeys
-from tests.autocolor.sessions import held
 from tests.autocolor.test_random_sessions import SCENES, begun
+from tests.small import held
 
 GESTURES = 1000
 

@@ -242,7 +242,7 @@ KEYS = (
 def written_scenes(folder: Path) -> None:
     """The scenes that the window and the studio open."""
     from tests.autocolor.files.store.stores import small_scene
-    from tests.autocolor.sessions import car
+    from tests.small import car
 
     write_scene(folder / "car", car())
     write_scene(folder / "small.sqlite", small_scene())

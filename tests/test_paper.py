@@ -21,9 +21,9 @@ from autocolor import Flap, Light, Mesh, Paint, Reflectance, Scene, Studio, View
 from autocolor.screens.viewer import Viewer
 from autocolor.testing import Recoloring, check_entries_outside_range_stay, check_recoloring_moves_no_word
 from ramtek_emu import Configuration, Ramtek9300
-from tests.autocolor.meshes import STRETCHED, cube, grid, sphere, wall, wall_scene
 from tests.autocolor.reference import first_hit, ray
 from tests.autocolor.screens.painting_hand import PaintingHand, boxes_scene
+from tests.small import STRETCHED, cube, grid, sphere, wall, wall_scene
 
 pytestmark = pytest.mark.paper
 

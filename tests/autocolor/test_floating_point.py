@@ -10,7 +10,7 @@ from autocolor.images import display_image
 from autocolor.mapping.legend import legend
 from autocolor.scene.mesh_faults import mesh_faults
 from autocolor.scene.scalar import COMPUTED
-from tests.autocolor.meshes import cube, sphere
+from tests.small import cube, sphere
 
 DEGENERATE = Mesh(
     np.array([[0.0, 0, 0], [1, 0, 0], [2, 0, 0], [0, 1, 0]]),

@@ -39,8 +39,7 @@ from autocolor.testing import scenes
 from ramtek_emu import GMR_9300, Configuration, ConfigurationError, Ramtek9300
 from ramtek_emu.arrays import Colors
 from ramtek_emu.testing import entries, rasters
-from tests.autocolor.meshes import STRETCHED, cube, wall_scene
-from tests.autocolor.sessions import SMALL, car, held, opened
+from tests.small import SMALL, STRETCHED, car, cube, held, opened, wall_scene
 
 
 @given(scenes())

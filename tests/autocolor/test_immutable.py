@@ -12,7 +12,7 @@ import pytest
 from autocolor import Light, Picture, Scene, Surface, View, render, scene_of
 from autocolor.arrays import Floats
 from autocolor.immutable import Immutable, read_only
-from tests.autocolor.meshes import cube
+from tests.small import cube
 
 Copy = Callable[[Any], Any]
 

@@ -43,8 +43,7 @@ from autocolor.layers import (
 from autocolor.rendering import rendering
 from autocolor.testing import scenes
 from autocolor.visibility.visible_points import Sight
-from tests.autocolor.meshes import cube, wall_scene
-from tests.autocolor.sessions import car
+from tests.small import car, cube, wall_scene
 
 SIZE = (24, 32)
 

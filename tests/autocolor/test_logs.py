@@ -9,7 +9,7 @@ import pytest
 
 from autocolor import render, scene_of
 from autocolor.logs import logger_of, timed
-from tests.autocolor.meshes import cube
+from tests.small import cube
 
 
 def test_a_stage_is_told_with_its_time_to_those_who_listen(caplog: pytest.LogCaptureFixture) -> None:

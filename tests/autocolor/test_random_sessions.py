@@ -19,10 +19,9 @@ from autocolor.widgets.sheet import Sheet
 from ramtek_emu import HostPort, Ramtek9300, TcpPort, instructions
 from ramtek_emu.host.server import TcpServer
 from tests.autocolor.journal.random_steps import summary
-from tests.autocolor.meshes import grid, wall_scene
 from tests.autocolor.random_hand import RandomHand
-from tests.autocolor.sessions import car, held, is_true_to_its_file
 from tests.ramtek_emu.serving import in_a_thread
+from tests.small import car, grid, held, is_true_to_its_file, wall_scene
 
 GESTURES = 120
 MANY = 60

@@ -19,8 +19,8 @@ from autocolor.lighting.shading import shade
 from autocolor.rendering import BLOCKS, PICTURE_SECONDS, Rendering, block_for, blocks_of, rendering
 from autocolor.testing import scenes
 from autocolor.visibility.visible_points import PointChunk
-from tests.autocolor.meshes import cube, grid, sphere
 from tests.closeness import all_close
+from tests.small import cube, grid, sphere
 
 ROOT = Path(__file__).resolve().parents[2]
 

@@ -11,7 +11,7 @@ from autocolor.images import display_image, send_picture
 from autocolor.mapping.legend import legend
 from autocolor.sending import send_image, shown_colors, shown_words
 from ramtek_emu import GMR_9300, EntryFormat, Ramtek9300
-from tests.autocolor.meshes import wall_scene
+from tests.small import wall_scene
 
 
 @pytest.mark.parametrize("display", ["tcp://127.0.0.1:9300", None, Ramtek9300])

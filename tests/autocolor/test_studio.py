@@ -41,8 +41,7 @@ from autocolor.testing import (
     vectors,
 )
 from ramtek_emu import Ramtek9300
-from tests.autocolor.meshes import cube
-from tests.autocolor.sessions import SMALL, car, fresh, held, opened
+from tests.small import SMALL, car, cube, fresh, held, opened
 
 Edit = tuple[str, str, dict[str, Any]]
 
@@ -301,7 +300,6 @@ def test_a_recolored_picture_is_the_fresh_one_in_the_new_colors(edits: list[Edit
     assert display.field().tobytes() == anew.field().tobytes()
 
 
-@settings(max_examples=40)
 @given(st.lists(any_edits, min_size=1, max_size=6))
 def test_after_any_edits_the_display_holds_what_a_fresh_studio_sends(edits: list[Edit]) -> None:
     studio, display = opened()
@@ -333,7 +331,6 @@ def test_undo_and_redo_bring_back_every_word_and_entry(edits: list[Edit]) -> Non
     assert not studio.redo()
 
 
-@settings(max_examples=15)
 @given(scenes())
 def test_any_scene_is_shown_as_its_words_and_entries_say(scene: Scene) -> None:
     studio, display = opened(scene)
@@ -433,7 +430,7 @@ def turn(studio: Studio, angle: float) -> None:
 
 
 @given(scenes(), scenes())
-@settings(max_examples=25, suppress_health_check=[HealthCheck.too_slow])
+@settings(suppress_health_check=[HealthCheck.too_slow])
 def test_the_lines_that_are_watched_are_the_picture_that_the_display_has(one: Scene, other: Scene) -> None:
     studio, display = opened(one)
     studio.edit(other)
@@ -468,7 +465,7 @@ def test_watching_refines_a_coarse_picture_and_is_no_step() -> None:
 
 
 @pytest.mark.usefixtures("slow")
-@settings(max_examples=30, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.lists(any_edits | st.just("turn") | st.just("refine"), min_size=1, max_size=8))
 def test_after_movements_a_refined_picture_is_the_fresh_one(edits: list[Any]) -> None:
     studio, display = opened()
@@ -892,7 +889,6 @@ def test_a_studio_says_why_it_is_not_pickled(pickled: Callable[[Studio], object]
 LIGHT_NAMES = st.sampled_from(["key", "fill", "a", "b"])
 
 
-@settings(max_examples=30)
 @given(st.lists(st.tuples(st.sampled_from(["add", "remove", "undo", "redo"]), LIGHT_NAMES), max_size=10))
 def test_lights_come_and_go_and_come_back(edits: list[tuple[str, str]]) -> None:
     studio, display = opened()
@@ -1018,7 +1014,6 @@ def test_while_the_picture_is_coarse_the_block_of_a_pixel_counts() -> None:
     assert studio.sight.block == 1
 
 
-@settings(max_examples=30)
 @given(st.lists(any_edits, min_size=1, max_size=3))
 def test_what_another_scene_looks_like_is_told_and_not_shown(edits: list[Edit]) -> None:
     studio, display = opened()

@@ -12,7 +12,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 import autocolor
@@ -37,8 +37,7 @@ from autocolor.journal.history import History
 from autocolor.journal.places import Source, checksum_of
 from ramtek_emu import Ramtek9300
 from tests.autocolor.journal.random_steps import journal_of, summary
-from tests.autocolor.meshes import cube
-from tests.autocolor.sessions import SMALL, car, is_true_to_its_file, opened
+from tests.small import SMALL, car, cube, is_true_to_its_file, opened
 
 
 def outside_toml(path: Path) -> None:
@@ -283,7 +282,6 @@ def take(studio: Studio, kind: str, path: Path, number: int) -> None:
         getattr(studio, kind)()
 
 
-@settings(max_examples=15)
 @given(random_moves)
 @example(
     [("edit", None), ("reopen", None), ("edit", None), ("undo", None), ("edit", None), ("save", FILES[0])]

@@ -18,7 +18,6 @@ from autocolor import InputError, Scene, Studio, image, read_picture
 from autocolor.rendering import Rendering, rendering
 from autocolor.testing import colors, numbers
 from ramtek_emu import Ramtek9300, Recorder
-from tests.autocolor.sessions import car, fresh, held, opened
 from tests.autocolor.test_studio import (
     SURFACES,
     Edit,
@@ -29,6 +28,7 @@ from tests.autocolor.test_studio import (
     recolorings,
     turn,
 )
+from tests.small import car, fresh, held, opened
 
 shown_edits = st.tuples(
     st.just("scene"),
@@ -214,7 +214,7 @@ def test_holding_the_exposure_of_normals_changes_no_entry() -> None:
 
 
 @pytest.mark.usefixtures("slow")
-@settings(max_examples=30, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.lists(any_edits | st.just("turn") | st.just("refine"), min_size=1, max_size=8))
 def test_after_movements_over_normals_a_refined_picture_is_the_fresh_one(edits: list[Any]) -> None:
     studio, display = opened_with_normals()

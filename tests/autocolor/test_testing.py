@@ -25,8 +25,7 @@ from autocolor.testing import (
     scenes,
 )
 from ramtek_emu import Ramtek9300
-from tests.autocolor.meshes import cube
-from tests.autocolor.sessions import SMALL, car, opened
+from tests.small import SMALL, car, cube, opened
 
 PAGE = Path(__file__).parents[2] / "docs" / "TESTING.md"
 

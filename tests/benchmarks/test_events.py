@@ -23,7 +23,7 @@ from benchmarks.events import (
     text,
 )
 from ramtek_emu.monitor.input_queue import Key
-from tests.autocolor.sessions import car
+from tests.small import car
 
 pytest.importorskip("pygame")
 

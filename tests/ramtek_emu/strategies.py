@@ -6,16 +6,12 @@ import itertools
 from collections.abc import Iterable
 
 import numpy as np
-from hypothesis import settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from ramtek_emu import Configuration
 from ramtek_emu.instruction_set.instruction import OperandValue, encode, normal
 from ramtek_emu.memory.scan_orders import Point, Window
-
-quick = settings(deadline=None, max_examples=60)
-thorough = settings(deadline=None, max_examples=150)
 
 SMALL = Configuration(name="SMALL", elements=13, lines=9, planes=10)
 

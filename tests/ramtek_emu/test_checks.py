@@ -14,12 +14,10 @@ from ramtek_emu.checks import (
     whole_numbers,
 )
 from ramtek_emu.errors import ColorsError, WordsError
-from tests.ramtek_emu.strategies import quick
 
 KINDS = st.sampled_from([np.uint16, np.int16, np.int64, np.uint64, ">u2"])
 
 
-@quick
 @given(st.lists(st.integers(-5, 1030), min_size=1, max_size=12), st.integers(1, 10))
 def test_words_that_fit_the_planes_are_accepted(row: list[int], planes: int) -> None:
     if all(0 <= word < 1 << planes for word in row):
@@ -46,7 +44,6 @@ def test_words_that_are_no_raster_are_refused_with_their_shape(shape: tuple[int,
     )
 
 
-@quick
 @given(st.lists(st.integers(0, 0x7FFF), max_size=20), KINDS)
 def test_a_stream_of_any_whole_type_arrives_as_16_bit_words(row: list[int], kind: type[np.integer]) -> None:
     checked = checked_stream(np.array(row, kind))
@@ -59,7 +56,6 @@ def test_a_stream_of_16_bit_words_is_taken_as_it_is() -> None:
     assert checked_stream(words) is words
 
 
-@quick
 @given(st.integers(0, 1023), st.lists(st.tuples(*[st.integers(0, 255)] * 3), max_size=9), KINDS)
 def test_colors_are_taken_when_the_table_holds_them_all(
     first: int, colors: list[tuple[int, int, int]], kind: type[np.integer]

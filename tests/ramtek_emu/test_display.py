@@ -35,11 +35,10 @@ from ramtek_emu.snapshot import snapshot_bytes
 from ramtek_emu.testing import check_words_within_planes, streams
 from tests.ramtek_emu.displays import sent, smallest_slices
 from tests.ramtek_emu.recorded_streams import RECORDED
-from tests.ramtek_emu.strategies import SMALL, cuts, sent_words, sliced_instructions, thorough
+from tests.ramtek_emu.strategies import SMALL, cuts, sent_words, sliced_instructions
 from tests.ramtek_emu.test_hostile import sessions
 
 
-@thorough
 @given(streams(200), st.lists(st.integers(0, 200), max_size=5))
 def test_no_words_at_all_raise_or_leave_the_planes(stream: list[int], places: list[int]) -> None:
     whole = Ramtek9300(SMALL)
@@ -131,7 +130,6 @@ def state_of(display: Ramtek9300) -> tuple[object, ...]:
     return display.words.tolist(), display.processor.parameters, display.frame_buffer.written
 
 
-@thorough
 @given(st.lists(sliced_instructions(), min_size=1, max_size=4))
 def test_slices_leave_the_display_that_an_instruction_in_one_piece_leaves(
     parts: list[NDArray[np.uint16]],

@@ -50,7 +50,7 @@ from ramtek_emu.snapshot import (
 from ramtek_emu.testing import streams
 from ramtek_emu.timing import Timing
 from tests.ramtek_emu.recorded_streams import BYTE_IMAGE, DECODED, OUTLINE, words
-from tests.ramtek_emu.strategies import SMALL, quick, thorough
+from tests.ramtek_emu.strategies import SMALL
 
 CURSORS = words("1600 0064 0C64 1601 0032 0440")
 
@@ -100,7 +100,6 @@ def test_a_snapshot_read_back_is_the_same_display(name: str) -> None:
     same(display, again)
 
 
-@thorough
 @given(streams(), streams())
 def test_after_any_words_a_snapshot_goes_on_as_the_display_does(before: list[int], after: list[int]) -> None:
     display = Ramtek9300(SMALL)
@@ -241,7 +240,6 @@ def test_a_value_that_does_not_fit_is_refused_by_name(keyword: str, old: str, ne
     assert len(str(refusal.value)) < 700
 
 
-@quick
 @given(
     st.lists(st.integers(0, 0xFFFF), min_size=6, max_size=6),
     st.lists(st.booleans(), min_size=11, max_size=11),
@@ -262,7 +260,6 @@ def test_plain_values_are_restored_through_json(words: list[int], dots: list[boo
         assert np.array_equal(again, value) if isinstance(value, np.ndarray) else again == value
 
 
-@quick
 @given(st.binary(max_size=200), st.integers(0, 3))
 def test_packed_bytes_are_unpacked_when_they_are_as_many_as_expected(data: bytes, more: int) -> None:
     text = packed(data)
@@ -410,7 +407,6 @@ def test_a_hostile_file_is_refused_by_one_sentence(data: bytes, part: str) -> No
 names = st.text(st.characters(min_codepoint=32, max_codepoint=126), min_size=1, max_size=20)
 
 
-@quick
 @given(
     arrays.arrays(np.uint16, st.tuples(st.integers(1, 6), st.integers(1, 6))),
     st.dictionaries(names, names, max_size=3),

@@ -18,8 +18,8 @@ from autocolor.rendering import ALGORITHMS
 from autocolor.scene.columns import Tier
 from ramtek_emu import GMR_9300, Ramtek9300
 from ramtek_emu.host.pipe import PacedReader
-from tests.autocolor.meshes import cube, wall_scene
 from tests.ramtek_emu.film_reader import decoded
+from tests.small import cube, wall_scene
 
 SIZE = (40, 30)
 SCENE = wall_scene(cube(), lights=[Light("key", (0.5, -4, 3), aim=(0.5, 0.5, 0.5))]).with_view(

@@ -12,7 +12,7 @@ from autocolor import InputError, Light, Scene, UsageError, Variant, View, frame
 from autocolor.batches.frames import frames_of_tracks, in_step
 from autocolor.batches.table import Rows, varied
 from autocolor.files.settings import scene_with
-from tests.autocolor.meshes import wall_scene
+from tests.small import wall_scene
 
 SCENE = wall_scene(lights=[Light("key", (0, -4, 2), aim=(0, 0, 0))])
 RED: dict[str, object] = {"surfaces.wall.object_color": "red"}

@@ -43,7 +43,7 @@ from autocolor.batches.table import Result, Variant, variants_of
 from autocolor.files.settings import scene_with
 from autocolor.rendering import Rendering, rendering
 from autocolor.scene.columns import Tier
-from tests.autocolor.meshes import wall_scene
+from tests.small import wall_scene
 
 SIZE = (16, 12)
 GRID = grid(

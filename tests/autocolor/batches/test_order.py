@@ -11,7 +11,7 @@ from autocolor.batches.table import variants_of
 from autocolor.files.settings import scene_with
 from autocolor.scene.columns import Tier
 from autocolor.scene.scene import cost_of_edit
-from tests.autocolor.meshes import wall_scene
+from tests.small import wall_scene
 
 AXES: dict[str, list[object]] = {
     "surfaces.wall.object_color": ["red", "navy", "gold"],

@@ -14,7 +14,7 @@ from PIL import Image
 from autocolor import Mesh, Scene, UsageError, Variant, render
 from autocolor.batches.outputs import FORMS, Pattern, base_mark, form_of, mark_in, mark_of
 from autocolor.files.writing import write_atomically
-from tests.autocolor.meshes import wall, wall_scene
+from tests.small import wall, wall_scene
 
 MARK = "0123456789abcdef" * 4
 

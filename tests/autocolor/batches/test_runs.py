@@ -17,7 +17,7 @@ from autocolor.files.settings import scene_with
 from autocolor.rendering import Rendering, rendering
 from autocolor.scene.columns import Tier
 from autocolor.scene.scene import cost_of_edit
-from tests.autocolor.meshes import cube, wall_scene
+from tests.small import cube, wall_scene
 
 SETTINGS = st.fixed_dictionaries(
     {},

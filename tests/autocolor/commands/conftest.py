@@ -13,37 +13,9 @@ import pytest
 
 from autocolor.commands.autocolor import autocolor
 from ramtek_emu.command_line import run_command
+from tests.small import TWO_PARTS, scene_folder
 
 ROOT = Path(__file__).parents[3]
-
-MESH = """\
-v 0 0 0
-v 1 0 0
-v 1 0 1
-v 0 0 1
-v 1 1 0
-v 1 1 1
-g front.low
-f 1 2 3 4
-g side
-f 2 5 6 3
-"""
-
-SCENE = """\
-[[mesh]]
-file = "two.obj"
-[surfaces."front.low"]
-object_color = "#102030"
-[surfaces.side]
-[[lights]]
-name = "key"
-position = [2.0, -3.0, 4.0]
-aim = [0, 0, 0]
-flaps.z = { minimum = 0.0, maximum = 0.5 }
-[[lights]]
-name = "key.2"
-position = [-2.0, -3.0, 4.0]
-"""
 
 
 class Ran(NamedTuple):
@@ -60,10 +32,8 @@ Run = Callable[..., Ran]
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """The current folder: two.obj, a mesh of two parts, and scene/scene.toml, a scene of it."""
-    (tmp_path / "two.obj").write_text(MESH)
-    (tmp_path / "scene").mkdir()
-    (tmp_path / "scene" / "two.obj").write_text(MESH)
-    (tmp_path / "scene" / "scene.toml").write_text(SCENE)
+    (tmp_path / "two.obj").write_text(TWO_PARTS)
+    scene_folder(tmp_path / "scene")
     monkeypatch.chdir(tmp_path)
     return tmp_path
 

@@ -10,7 +10,7 @@ from autocolor import read_scene, render, write_picture
 from autocolor.images import display_image
 from autocolor.scene.scalar import MeshScalar
 from tests.autocolor.commands.conftest import Run
-from tests.autocolor.meshes import LYING, wall_scene
+from tests.small import LYING, wall_scene
 
 
 def test_the_facts_stand_on_stdout_and_nothing_on_stderr(folder: Path, run: Run) -> None:

@@ -8,7 +8,7 @@ import pytest
 from autocolor.commands.options import as_usage, with_normals
 from autocolor.errors import InputError, MissingInputError, UsageError
 from tests.autocolor.commands.conftest import Run
-from tests.autocolor.sessions import car
+from tests.small import car
 
 
 def test_every_problem_of_a_value_from_the_command_line_is_told_as_wrong_usage() -> None:

@@ -7,7 +7,7 @@ import pytest
 
 from autocolor import read_palette, read_picture, render, write_palette, write_picture
 from tests.autocolor.commands.conftest import Run
-from tests.autocolor.meshes import wall_scene
+from tests.small import wall_scene
 
 
 @pytest.fixture

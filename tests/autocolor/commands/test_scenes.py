@@ -13,7 +13,7 @@ from autocolor.files.scene_report import SceneReport
 from autocolor.files.scene_sources import read_scene_with_report
 from autocolor.scene.defaults import default_lights, framed
 from tests.autocolor.commands.conftest import Run
-from tests.autocolor.meshes import wall_scene
+from tests.small import wall_scene
 
 
 @click.command

@@ -26,7 +26,7 @@ from tests.autocolor.commands.conftest import Run
 from tests.autocolor.commands.test_view import monitors as monitors
 from tests.autocolor.files.store.stores import run as run_on_store
 from tests.autocolor.journal.random_steps import journal_of
-from tests.autocolor.sessions import SMALL, car
+from tests.small import SMALL, car
 
 NO_JOURNAL = "session.jsonl: a journal must begin as autocolor writes it; choose another file"
 

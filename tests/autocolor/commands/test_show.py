@@ -26,7 +26,7 @@ from ramtek_emu import PortError, Ramtek9300
 from ramtek_emu.host.server import Server, TcpServer, UnixServer
 from tests.autocolor.commands.conftest import Run
 from tests.autocolor.screens.hand import folded_section_of
-from tests.autocolor.sessions import car
+from tests.small import car
 
 SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\ng lid\nf 1 2 3 4\n"
 

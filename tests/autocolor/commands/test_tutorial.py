@@ -10,7 +10,7 @@ from autocolor.journal.history import History
 from autocolor.screens.viewer import Viewer
 from ramtek_emu import Ramtek9300
 from tests.autocolor.commands.conftest import Run
-from tests.autocolor.sessions import car
+from tests.small import car
 
 
 def test_the_panel_stands_over_the_first_screen() -> None:

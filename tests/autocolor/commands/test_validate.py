@@ -16,7 +16,7 @@ from autocolor.mapping.legend import legend
 from autocolor.scene.mesh_faults import KINDS, Fault, mesh_faults
 from autocolor.scene.scalar import POLYGON, MeshScalar
 from tests.autocolor.commands.conftest import Run
-from tests.autocolor.meshes import cube
+from tests.small import cube
 
 
 def test_a_scene_without_a_problem_says_so(folder: Path, run: Run) -> None:

@@ -169,7 +169,7 @@ def test_leaving_by_the_menu_closes_the_window(monkeypatch: pytest.MonkeyPatch) 
     from autocolor.screens.viewer import Viewer
     from ramtek_emu import Ramtek9300
     from ramtek_emu.monitor.window import Monitor
-    from tests.autocolor.sessions import car
+    from tests.small import car
 
     display = Ramtek9300()
     viewer = Viewer(car(), display)
@@ -189,7 +189,7 @@ def test_the_clipboard_of_the_window_is_that_of_the_viewer(monkeypatch: pytest.M
     from autocolor.screens.viewer import Viewer
     from ramtek_emu import Ramtek9300
     from ramtek_emu.monitor.window import Monitor
-    from tests.autocolor.sessions import car
+    from tests.small import car
 
     monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
     display = Ramtek9300()
@@ -212,7 +212,7 @@ def test_the_window_is_recorded_beside_the_screenshots_of_the_viewer(tmp_path: P
     from autocolor.screens.viewer import Viewer
     from ramtek_emu import Ramtek9300
     from ramtek_emu.monitor.window import Key, Monitor
-    from tests.autocolor.sessions import car
+    from tests.small import car
 
     display = Ramtek9300()
     viewer = Viewer(car(), display, tmp_path)

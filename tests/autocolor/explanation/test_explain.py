@@ -17,8 +17,7 @@ from autocolor.mapping.display_image import DisplayImage
 from autocolor.rendering import Rendering, rendering
 from autocolor.testing import scenes
 from autocolor.visibility.visible_points import Sight
-from tests.autocolor.meshes import wall_scene
-from tests.autocolor.sessions import car, opened
+from tests.small import car, opened, wall_scene
 
 LINES, ELEMENTS = 24, 32
 

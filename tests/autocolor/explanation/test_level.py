@@ -28,8 +28,7 @@ from autocolor.scene.curves import CURVES
 from autocolor.scene.scalar import COMPUTED
 from autocolor.testing import blended_paints, numbers, scales
 from autocolor.visibility.visible_points import Sight
-from tests.autocolor.meshes import sphere
-from tests.autocolor.sessions import car, opened
+from tests.small import car, opened, sphere
 
 LINES, ELEMENTS = 24, 32
 

@@ -15,7 +15,7 @@ from autocolor.explanation.light import (
 )
 from autocolor.explanation.point import dot, unit
 from autocolor.scene.reflection_models import SpecularGrowth
-from tests.autocolor.meshes import wall_scene
+from tests.small import wall_scene
 
 DOWN: dict[str, Any] = {"position": (0.0, 0.0, 1.0), "direction": (0.0, 0.0, -1.0)}
 

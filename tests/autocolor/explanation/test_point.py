@@ -17,8 +17,8 @@ from autocolor.explanation.point import (
     unit,
 )
 from autocolor.visibility.visible_surfaces import visible_surfaces
-from tests.autocolor.meshes import sphere
 from tests.autocolor.reference import ray
+from tests.small import sphere
 
 LINES, ELEMENTS = 24, 32
 

@@ -6,7 +6,7 @@ import pytest
 
 from autocolor import Light, Scene
 from autocolor.explanation.text import LABEL, PAGE, WIDTH, TextRow, rows_of_text
-from tests.autocolor.sessions import car, opened
+from tests.small import car, opened
 
 
 def page_of(scene: Scene) -> list[TextRow]:

@@ -34,8 +34,8 @@ from autocolor.files.formats import (
 )
 from autocolor.scene.scalar import NODE, MeshScalar
 from autocolor.scene.surfaces import Surface
-from tests.autocolor.meshes import cube, wall_scene
 from tests.kills import Killed, killed, steps
+from tests.small import cube, wall_scene
 
 MESH_OUTPUTS = [each for each in outputs() if each.name in {known.name for known in MESH_FORMATS}]
 

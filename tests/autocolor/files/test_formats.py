@@ -25,7 +25,7 @@ from autocolor.files.formats import (
 from autocolor.files.meshes.npy_tables import write_npy_tables
 from autocolor.files.meshes.repair import MeshReport
 from autocolor.files.scene_sources import SCENE_FORMATS
-from tests.autocolor.meshes import cube
+from tests.small import cube
 
 SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n"
 

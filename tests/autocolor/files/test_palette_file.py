@@ -32,7 +32,7 @@ from autocolor.files.palette_file import (
     is_palette,
 )
 from ramtek_emu import Ramtek9300
-from tests.autocolor.meshes import cube
+from tests.small import cube
 
 COLORS = st.tuples(*[st.integers(0, 255)] * 3)
 NAMES = st.text(max_size=LONGEST_NAME).filter(str.isprintable).map(str.strip)

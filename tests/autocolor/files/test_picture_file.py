@@ -44,7 +44,7 @@ from autocolor.scene.columns import keys_of
 from autocolor.scene.scalar import MeshScalar
 from autocolor.scene.surfaces import Paint, Reflectance, Surface
 from tests.autocolor.linked_scenes import linked_scenes
-from tests.autocolor.meshes import cube, grid, wall, wall_scene
+from tests.small import cube, grid, wall, wall_scene
 
 LINES, ELEMENTS = 9, 12
 

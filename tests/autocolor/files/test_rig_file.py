@@ -24,7 +24,7 @@ from autocolor.files.rig_file import is_rig
 from autocolor.files.scene_toml.toml_text import LARGEST_TEXT
 from autocolor.scene.lights import HalfSpace, Links
 from tests.autocolor.linked_scenes import linked_scenes
-from tests.autocolor.meshes import cube
+from tests.small import cube
 
 DOORS = (HalfSpace("left", (0, 0, 0), (1, 0, 0), 1 / 3), HalfSpace("my door", (0, 0, 0), (0, 1, 0), on=False))
 BOUNDS = "minimum = [0, 0, 0]\nmaximum = [1, 1, 1]\n"

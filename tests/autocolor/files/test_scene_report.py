@@ -11,7 +11,7 @@ from autocolor import InputError, Light, Mesh, Surface, View
 from autocolor.files.meshes.repair import MeshReport
 from autocolor.files.scene_report import scene_report
 from autocolor.scene.defaults import created_surface
-from tests.autocolor.meshes import cube, wall_scene
+from tests.small import cube, wall_scene
 
 VIEW = View((0, -4, 0), target=(0, 0, 0))
 

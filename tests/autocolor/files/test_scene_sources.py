@@ -18,7 +18,7 @@ from autocolor.files.scene_writing import write_scene
 from autocolor.scene.columns import fields_of
 from autocolor.scene.defaults import MAPPING_FIELDS
 from tests.autocolor.files.store.stores import is_equal, small_scene, small_store
-from tests.autocolor.meshes import wall_scene
+from tests.small import wall_scene
 
 CAR = "v 0 0 0\nv 1 0 0\nv 1 1 3\nv 0 1 0\ng hood\nf 1 2 3 4\n"
 

@@ -34,8 +34,8 @@ from autocolor.files import scene_writing
 from autocolor.files.scene_writing import write_scene_with_tables
 from autocolor.scene.columns import with_values
 from autocolor.testing import scenes
-from tests.autocolor.meshes import cube
 from tests.autocolor.strategies import of_mesh
+from tests.small import cube
 
 COUPE = Path(__file__).parents[3] / "scenes" / "coupe"
 

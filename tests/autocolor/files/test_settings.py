@@ -9,7 +9,7 @@ from autocolor import InputError, Scene, UsageError
 from autocolor.commands.settings import keys_after
 from autocolor.files.settings import field_of, place_of, scene_with, value_at
 from autocolor.testing import scenes
-from tests.autocolor.meshes import wall_scene
+from tests.small import wall_scene
 
 
 def keys_of_scene(scene: Scene) -> list[str]:

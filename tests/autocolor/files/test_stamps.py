@@ -13,7 +13,7 @@ import pytest
 import autocolor
 from autocolor.files.stamps import look_at, stamp_of
 from tests.autocolor.files.store.stores import hostile_journal, run, small_store
-from tests.autocolor.sessions import car
+from tests.small import car
 
 BRIGHTER = "UPDATE lights SET intensity = intensity + 1"
 

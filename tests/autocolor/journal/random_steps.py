@@ -16,9 +16,8 @@ from autocolor.journal.journal import MeshesBeside, first_line, step_line
 from autocolor.journal.places import Source, checksum_of
 from autocolor.testing import lights, named_views, scene_columns, surfaces, views
 from tests.autocolor.linked_scenes import linked
-from tests.autocolor.meshes import cube
-from tests.autocolor.sessions import car
 from tests.autocolor.test_studio import any_edits, apply, recolorings
+from tests.small import car, cube
 
 OBJ = "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 1 1\ng a\nf 1 2 3\ng b\nf 1 3 4\n"
 

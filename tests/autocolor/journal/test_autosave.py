@@ -27,7 +27,7 @@ from autocolor.journal.autosave import (
 from autocolor.journal.history import History
 from autocolor.journal.places import ScenePlace, Source
 from tests.autocolor.journal.random_steps import journal_of, summary
-from tests.autocolor.sessions import car
+from tests.small import car
 
 ROOT = Path(__file__).parents[3]
 

@@ -9,8 +9,8 @@ import pytest
 from autocolor import Scene
 from autocolor.journal.description import describe
 from autocolor.scene.columns import with_values
-from tests.autocolor.meshes import cube
 from tests.autocolor.scene.test_every_column import EDITS, ROWS, edited, every_column, start
+from tests.small import cube
 
 LONG = 400
 """Characters that suffice for every detail."""

@@ -10,7 +10,7 @@ from autocolor import UsageError
 from autocolor.journal import history as history_module
 from autocolor.journal.history import Edit, History, Variants
 from autocolor.journal.places import Opened, ScenePlace, Source
-from tests.autocolor.sessions import car
+from tests.small import car
 
 CAR = car()
 SCENES = [CAR, *(CAR.replace(ambient=number / 8) for number in range(4))]

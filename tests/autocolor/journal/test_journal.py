@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import autocolor
@@ -35,7 +35,7 @@ from tests.autocolor.journal.random_steps import (
     take_move,
     written_scenes,
 )
-from tests.autocolor.sessions import SMALL, car
+from tests.small import SMALL, car
 
 
 @pytest.fixture(scope="module")
@@ -61,7 +61,6 @@ def session_of(source: Source) -> History:
     return History(read_scene(source.path), place_of(source))
 
 
-@settings(max_examples=30)
 @given(st.lists(moves, max_size=8), st.lists(st.floats(0, 1), min_size=4, max_size=4), st.data())
 def test_any_session_is_read_back_and_a_cut_journal_gives_the_session_up_to_a_step(
     source: Source, taken: list[tuple[str, Any, Any]], cuts: list[float], data: st.DataObject

@@ -12,7 +12,7 @@ from autocolor.files.stamps import stamp_of
 from autocolor.journal.places import NO_STAMP, PACKAGE, Source, checksum_of, file_of, opened, place_of
 from autocolor.scene.columns import to_plain
 from autocolor.scene.scalar import MeshScalar
-from tests.autocolor.sessions import car
+from tests.small import car
 
 
 @pytest.fixture

@@ -18,7 +18,7 @@ from autocolor.journal.history import History
 from autocolor.journal.places import PACKAGE, ScenePlace, Source, opened
 from autocolor.journal.saving import SavedFiles
 from ramtek_emu import Ramtek9300
-from tests.autocolor.sessions import SMALL, car
+from tests.small import SMALL, car
 
 COMMENT = "# The car of the fair.\n"
 

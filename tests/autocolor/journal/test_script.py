@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import autocolor
@@ -20,7 +20,7 @@ from autocolor.journal.script import literal, script_of, step_statement
 from autocolor.scene.changes import HalfSpaceChanges, LightChanges
 from ramtek_emu import Ramtek9300
 from tests.autocolor.journal.random_steps import CAR, LARGER, moves, take_move, written_scenes
-from tests.autocolor.sessions import SMALL, held
+from tests.small import SMALL, held
 
 
 @pytest.fixture(scope="module")
@@ -63,7 +63,6 @@ def states(studio: Studio, display: Ramtek9300) -> list[State]:
     return found
 
 
-@settings(max_examples=15)
 @given(st.lists(moves, max_size=8))
 def test_a_script_that_is_run_gives_the_session_byte_for_byte(
     written: Path, taken: list[tuple[str, Any, Any]]

@@ -38,7 +38,7 @@ from autocolor.scene.lights import Links
 from autocolor.testing import directions, lights, numbers, scenes, some_of, vectors, views
 from autocolor.visibility.visible_points import POINT, VisiblePoints
 from autocolor.visibility.visible_surfaces import visible_surfaces
-from tests.autocolor.meshes import sphere, wall, wall_scene
+from tests.small import sphere, wall, wall_scene
 
 
 def wall_points() -> VisiblePoints:

@@ -12,7 +12,7 @@ from autocolor.scene.reflection_models import BlinnPhong, CookTorrance, Phong, R
 from autocolor.testing import lights, scenes
 from autocolor.visibility.visible_points import VisiblePoints
 from autocolor.visibility.visible_surfaces import visible_surfaces
-from tests.autocolor.meshes import cube, sphere
+from tests.small import cube, sphere
 
 RASTER = (12, 16)
 SOME_MODELS: list[ReflectionModel] = [

@@ -54,8 +54,7 @@ from autocolor.scene.reflection_models import BlinnPhong, CookTorrance, Phong, R
 from autocolor.testing import directions, lights, numbers, outside_views, vectors
 from autocolor.visibility.visible_points import Seen, Sight, seen_at
 from ramtek_emu import Ramtek9300
-from tests.autocolor.meshes import cube, grid, sphere, wall, wall_scene
-from tests.autocolor.sessions import car
+from tests.small import car, cube, grid, sphere, wall, wall_scene
 
 LINES, ELEMENTS = 60, 80
 COARSE_LINES, COARSE_ELEMENTS = 12, 16

@@ -11,8 +11,8 @@ from autocolor import Light, Picture, Scene, render
 from autocolor.mapping.intensity import words_of
 from autocolor.mapping.ranges import level_ranges
 from autocolor.testing import lights, scenes
-from tests.autocolor.meshes import sphere, wall_scene
 from tests.closeness import all_close
+from tests.small import sphere, wall_scene
 
 
 def close_to(expected: object, largest: float) -> object:

@@ -22,7 +22,7 @@ from autocolor.lighting.rays import (
 from autocolor.testing import directions, numbers, outside_views, vectors
 from autocolor.visibility.visible_points import NORMAL, REFLECTED_VIEW, VisiblePoints
 from autocolor.visibility.visible_surfaces import visible_surfaces
-from tests.autocolor.meshes import cube, sphere, wall, wall_scene
+from tests.small import cube, sphere, wall, wall_scene
 
 BALL = sphere(12, 8)
 

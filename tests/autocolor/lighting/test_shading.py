@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from autocolor import (
@@ -37,10 +37,10 @@ from autocolor.scene.reflection_models import BlinnPhong, CookTorrance, Phong, R
 from autocolor.testing import flaps, lights, numbers, outside_views, surfaces
 from autocolor.visibility.visible_points import VisiblePoints, point_chunks, surface_slices
 from autocolor.visibility.visible_surfaces import visible_surfaces
-from tests.autocolor.meshes import cube, grid, sphere, wall, wall_scene
 from tests.autocolor.reference import Lit, controlled, light_at, ray
 from tests.autocolor.strategies import reflectances
 from tests.closeness import all_close
+from tests.small import cube, grid, sphere, wall, wall_scene
 
 LINES, ELEMENTS = 12, 16
 WALLS = [wall(), wall(7, 5)]
@@ -348,7 +348,6 @@ NEAR_LIGHTS: dict[str, dict[str, Any]] = {
 
 @pytest.mark.parametrize("fields", NEAR_LIGHTS.values(), ids=NEAR_LIGHTS)
 @pytest.mark.parametrize("size", [1e4, 1e6, 1e8])
-@settings(max_examples=5)
 @given(angle=numbers(-180, 180), height=numbers(-1, 2))
 def test_a_small_wall_before_a_large_plate_is_lit_by_the_closed_form(
     fields: dict[str, Any], size: float, angle: float, height: float
@@ -362,7 +361,6 @@ def test_a_small_wall_before_a_large_plate_is_lit_by_the_closed_form(
 
 @pytest.mark.parametrize("fields", NEAR_LIGHTS.values(), ids=NEAR_LIGHTS)
 @pytest.mark.parametrize("size", [1e3, 1e5])
-@settings(max_examples=5)
 @given(angle=numbers(-180, 180), height=numbers(-1, 2))
 def test_a_small_wall_on_a_floor_that_reaches_behind_the_eye_is_lit_by_the_closed_form(
     fields: dict[str, Any], size: float, angle: float, height: float

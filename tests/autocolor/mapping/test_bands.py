@@ -23,7 +23,7 @@ from autocolor.mapping.ranges import SURFACE_WORDS
 from autocolor.scene.color_scales import scale_colors
 from autocolor.scene.scalar import MeshScalar
 from autocolor.testing import scenes
-from tests.autocolor.meshes import grid
+from tests.small import grid
 
 values = st.floats(-20, 20, width=32) | st.just(math.nan) | st.sampled_from([1e30, -1e30, 0.0, 1.0, 4.0])
 

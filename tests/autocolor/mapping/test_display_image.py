@@ -20,9 +20,8 @@ from autocolor.scene.columns import Tier
 from autocolor.scene.scene import costs_at_least
 from autocolor.testing import MAPPINGS, colors, exposures, limits, numbers, paints, scalars, scales, scenes
 from autocolor.visibility.projection import Projection
-from tests.autocolor.meshes import wall_scene
-from tests.autocolor.sessions import car
 from tests.autocolor.strategies import rasters, soups
+from tests.small import car, wall_scene
 
 LINES, ELEMENTS = 9, 12
 

@@ -30,8 +30,8 @@ from autocolor.mapping.ranges import level_ranges
 from autocolor.testing import MAPPINGS, scenes
 from autocolor.visibility.visible_points import SurfaceSlice
 from ramtek_emu.testing import check_words_within_planes
-from tests.autocolor.meshes import wall_scene
 from tests.autocolor.reference import level_of, trimmed
+from tests.small import wall_scene
 
 
 def picture_of(*intensities: list[float]) -> Picture:

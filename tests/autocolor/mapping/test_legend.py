@@ -32,7 +32,7 @@ from autocolor.mapping.legend import (
 )
 from autocolor.mapping.ranges import SCREENS
 from autocolor.scene.color_scales import scale_colors
-from tests.autocolor.meshes import sphere
+from tests.small import sphere
 
 
 def ball(**scalar: Any) -> Scene:

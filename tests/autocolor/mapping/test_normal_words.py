@@ -34,7 +34,7 @@ from autocolor.scene.scene import AUTO, OBJECT, Exposure
 from autocolor.testing import scenes
 from autocolor.visibility.visible_points import SurfaceSlice
 from tests.autocolor import reference
-from tests.autocolor.meshes import sphere
+from tests.small import sphere
 
 LINES, ELEMENTS = 24, 32
 

@@ -10,7 +10,7 @@ from autocolor import render
 from autocolor.images import display_image
 from autocolor.mapping.display_image import DisplayImage
 from autocolor.mapping.palette import in_palette, thumbnail
-from tests.autocolor.sessions import car
+from tests.small import car
 
 SMALL = stn.arrays(np.uint8, st.tuples(st.integers(1, 6), st.integers(1, 6), st.just(3)))
 

@@ -35,7 +35,7 @@ from autocolor.scalars.computed import (
 from autocolor.scene.scalar import COMPUTED, MeshScalar, Scalar
 from autocolor.testing import numbers
 from autocolor.visibility.visible_points import VisiblePoints
-from tests.autocolor.meshes import cube, grid, sphere, wall, wall_scene
+from tests.small import cube, grid, sphere, wall, wall_scene
 
 
 def seen(mesh: Mesh, view: View | None = None, lines: int = 30, elements: int = 40) -> VisiblePoints:

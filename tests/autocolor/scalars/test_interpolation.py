@@ -14,8 +14,8 @@ from autocolor.scalars import interpolation
 from autocolor.scalars.interpolation import corner_weights, interpolated, polygon_runs, weighted_points
 from autocolor.scene.scene import INVARIANT
 from autocolor.testing import numbers, vectors
-from tests.autocolor.meshes import sphere, uneven_wall, wall, wall_scene
 from tests.autocolor.reference import on_triangles, ray
+from tests.small import sphere, uneven_wall, wall, wall_scene
 
 
 def test_runs_are_the_polygons_of_the_points() -> None:

@@ -32,9 +32,9 @@ from autocolor.scene.columns import (
 )
 from autocolor.scene.kinds import Number, Whole
 from autocolor.testing import lights, scenes, surfaces, views
-from tests.autocolor.meshes import wall_scene
 from tests.autocolor.scene.spans import Span, sentences
 from tests.autocolor.strategies import of_mesh
+from tests.small import wall_scene
 
 
 def test_a_row_holds_its_values_as_its_kinds_do() -> None:

@@ -17,7 +17,7 @@ from autocolor.scene.creation import DISTANCE, SHARED, TURNS, new_light_of
 from autocolor.scene.defaults import MAPPING_FIELDS, created_surface
 from autocolor.scene.surfaces import MOST_SURFACES
 from autocolor.testing import scenes
-from tests.autocolor.meshes import cube, grid
+from tests.small import cube, grid
 
 PARTS = ("door", "hood", "pane")
 VIEW = View((0, -9, 0), target=(0, 0, 0))

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from autocolor.arrays import Singles
 from autocolor.scene.curves import CURVES, mapping_curve
 from autocolor.testing import MAPPINGS
-from tests.autocolor.meshes import ramp
+from tests.small import ramp
 
 ALONG_THE_RANGE = [mapping for mapping in MAPPINGS if mapping != "equalize"]
 

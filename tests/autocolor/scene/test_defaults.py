@@ -13,7 +13,7 @@ from autocolor.checks import Vector
 from autocolor.scene import defaults
 from autocolor.scene.defaults import default_lights, default_view, framed, object_bounds, object_coordinates
 from autocolor.testing import directions, meshes, numbers, vectors
-from tests.autocolor.meshes import cube, grid, sphere
+from tests.small import cube, grid, sphere
 
 
 def assert_framed(view: View, mesh: Mesh) -> None:

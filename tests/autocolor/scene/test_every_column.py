@@ -47,7 +47,7 @@ from autocolor.scene.scalar import Scalar
 from autocolor.scene.surfaces import Part, Surface
 from autocolor.scene.view import View
 from tests.autocolor.linked_scenes import linked_scenes
-from tests.autocolor.meshes import cube, grid
+from tests.small import cube, grid
 
 Values = Mapping[str, Any]
 

@@ -36,8 +36,7 @@ from autocolor.scene.following import (
     names_to_follow,
 )
 from autocolor.testing import directions, lights, outside_views, vectors, views
-from tests.autocolor.meshes import wall_scene
-from tests.autocolor.sessions import car, fresh, held, opened
+from tests.small import car, fresh, held, opened, wall_scene
 
 VIEW = View((0.0, -4.0, 0.0), target=(0.0, 0.0, 0.0))
 

@@ -38,7 +38,7 @@ from autocolor.scene.scene import cost_of_edit
 from autocolor.testing import directions, lights, numbers, some_of, vectors
 from ramtek_emu import Ramtek9300
 from tests.autocolor.journal.random_steps import journal_of
-from tests.autocolor.meshes import grid
+from tests.small import grid
 
 
 @given(lights())

@@ -14,7 +14,7 @@ from autocolor.scene.columns import Row, RowError, replaced
 from autocolor.scene.following import _in_words
 from autocolor.scene.kinds import AngleCurveKind, ColorKind
 from autocolor.scene.scalar import MeshScalar, Scalar
-from tests.autocolor.meshes import wall_scene
+from tests.small import wall_scene
 
 SCENE = wall_scene()
 WALL = SCENE.surfaces[0]

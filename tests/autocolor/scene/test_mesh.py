@@ -14,7 +14,7 @@ from autocolor.scene import mesh as mesh_module
 from autocolor.scene.mesh import has_same_tables
 from autocolor.scene.scalar import MeshScalar
 from autocolor.testing import meshes
-from tests.autocolor.meshes import cube, grid, sphere
+from tests.small import cube, grid, sphere
 
 
 def mesh_of(**fields: Any) -> Mesh:

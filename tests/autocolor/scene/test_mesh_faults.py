@@ -22,7 +22,7 @@ from autocolor.scene.mesh_faults import (
     repeated_polygons,
     repeated_rows,
 )
-from tests.autocolor.meshes import cube
+from tests.small import cube
 
 
 def faulty() -> Mesh:

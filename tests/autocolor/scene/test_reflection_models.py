@@ -29,8 +29,8 @@ from autocolor.scene.reflection_models import (
     SpecularGrowth,
 )
 from autocolor.testing import angle_curves, growths, numbers
-from tests.autocolor.meshes import ramp
 from tests.closeness import all_close
+from tests.small import ramp
 
 exponents = st.sampled_from([0.0, 1e-3, 0.3, 1.0, 5.0, 20.0, 100.0])
 models: st.SearchStrategy[ReflectionModel] = st.one_of(

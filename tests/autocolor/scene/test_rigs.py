@@ -14,7 +14,7 @@ from autocolor.scene.following import detached
 from autocolor.scene.lights import AXES
 from autocolor.scene.rigs import mirrored
 from autocolor.testing import coordinates, lights, scenes
-from tests.autocolor.meshes import cube, wall_scene
+from tests.small import cube, wall_scene
 
 
 @given(scenes())

@@ -9,7 +9,7 @@ from autocolor import InputError, Mesh, scene_of
 from autocolor.scene.columns import Tier, cost
 from autocolor.scene.scalar import MeshScalar, Scalar
 from autocolor.scene.scene import cost_of_edit
-from tests.autocolor.meshes import cube, grid
+from tests.small import cube, grid
 
 
 @pytest.mark.parametrize(

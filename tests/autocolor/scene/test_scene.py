@@ -11,7 +11,7 @@ from autocolor.scene.curves import CURVES
 from autocolor.scene.defaults import object_coordinates
 from autocolor.scene.scene import cost_of_edit
 from autocolor.testing import scenes
-from tests.autocolor.meshes import cube, grid
+from tests.small import cube, grid
 
 
 def car() -> Mesh:

@@ -25,7 +25,7 @@ from autocolor.scene.swatches import (
     swatches,
 )
 from autocolor.testing import colors, surfaces
-from tests.autocolor.meshes import STRETCHED, sphere
+from tests.small import STRETCHED, sphere
 
 
 def field() -> Bytes:

@@ -7,8 +7,8 @@ from pathlib import Path
 from autocolor import Flap, Flaps, Light, Mesh, Scene, Surface, View, scene_of
 from autocolor.screens.viewer import Viewer
 from ramtek_emu import Ramtek9300
-from tests.autocolor.meshes import grid, sphere
 from tests.autocolor.screens.hand import Hand
+from tests.small import grid, sphere
 
 MIDDLE = 320, 240
 """The element and line of the middle of the picture, where the ball is nearest."""

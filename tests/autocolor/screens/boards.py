@@ -12,7 +12,7 @@ from autocolor.screens.viewer import Viewer
 from autocolor.widgets.bars import Bar
 from autocolor.widgets.widget import Button, Entry, Gap, Widget
 from ramtek_emu import HostPort, Ramtek9300
-from tests.autocolor.meshes import wall_scene
+from tests.small import wall_scene
 
 
 class Desk(Screen):

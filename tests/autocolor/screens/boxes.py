@@ -1,4 +1,4 @@
-"""A small scene for the screens, and a hand on the unit of its display."""
+"""A hand on the unit of a display that shows the boxes, and what it sees."""
 
 from __future__ import annotations
 
@@ -6,34 +6,12 @@ from pathlib import Path
 
 import numpy as np
 
-from autocolor import Flap, Flaps, Light, Mesh, Scene, Surface, View, scene_of
+from autocolor import Scene
 from autocolor.mapping.ranges import SCREENS
 from autocolor.screens.viewer import Viewer
 from ramtek_emu import Ramtek9300
-from tests.autocolor.meshes import STRETCHED, cube
 from tests.autocolor.screens.hand import Hand
-
-KEY = Light(
-    "key",
-    (2, -3, 4),
-    aim=(0.5, 0.5, 0.5),
-    concentration=4,
-    cone_angle=60,
-    flaps=Flaps(x=Flap(-0.5, 1.5), z=Flap(maximum=0.75, on=False)),
-)
-
-
-def boxes() -> Scene:
-    """A cube of two surfaces under two lights."""
-    mesh = Mesh(cube().coordinates, cube().node_numbers, np.array([0, 0, 0, 1, 1, 1]), ("low", "high"))
-    return scene_of(
-        mesh,
-        surfaces=[Surface("low"), Surface("high")],
-        surface_of_part={"low": "low", "high": "high"},
-        lights=[KEY, Light("fill", (-3, -3, 1), intensity=0.5)],
-        view=View((-2, -3, 2), target=(0.5, 0.5, 0.5)),
-        name="boxes",
-    ).replace(**STRETCHED)
+from tests.small import boxes
 
 
 def hand_at(folder: Path, screen: str, scene: Scene | None = None) -> Hand:

@@ -11,8 +11,8 @@ from autocolor.studio import Studio
 from autocolor.widgets.items import Area
 from autocolor.widgets.widget import Widget
 from ramtek_emu import Ramtek9300, instructions
-from tests.autocolor.meshes import cube
 from tests.autocolor.screens.hand import Hand
+from tests.small import cube
 
 PAINTS = (Paint((176, 16, 32), (255, 250, 240), 0.4), Paint((30, 90, 200), (255, 255, 255), 0.7, 80.0))
 

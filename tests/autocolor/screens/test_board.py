@@ -44,7 +44,7 @@ from autocolor.widgets.sheet import Sheet
 from autocolor.widgets.widget import Button, Choice, Place, Widget
 from ramtek_emu import PRINCETON_9300, Ramtek9300
 from tests.autocolor.screens.boards import Desk, desk_viewer, middle_of, point
-from tests.autocolor.sessions import car
+from tests.small import car
 
 
 @pytest.fixture

@@ -46,9 +46,9 @@ from autocolor.widgets.items import Area
 from autocolor.widgets.menu import WORK
 from autocolor.widgets.widget import ROW_LINES, Choice
 from ramtek_emu import Ramtek9300
-from tests.autocolor.meshes import LYING, wall_scene
-from tests.autocolor.screens.boxes import boxes, hand_at, hint_of, told, undo
+from tests.autocolor.screens.boxes import hand_at, hint_of, told, undo
 from tests.autocolor.screens.hand import Hand
+from tests.small import LYING, boxes, wall_scene
 
 
 @pytest.fixture

@@ -9,8 +9,8 @@ from autocolor.screens.message_line import MESSAGE
 from autocolor.screens.viewer import Viewer, rows_of_help
 from autocolor.widgets.items import ORANGE, SCREEN, WHITE, text
 from ramtek_emu import Ramtek9300
-from tests.autocolor.meshes import wall_scene
 from tests.autocolor.screens.hand import Hand
+from tests.small import wall_scene
 
 ROWS = rows_of_help()
 

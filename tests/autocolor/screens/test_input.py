@@ -26,9 +26,9 @@ from autocolor.screens.input import (
 from autocolor.screens.viewer import Viewer
 from ramtek_emu import Ramtek9300, TcpPort
 from ramtek_emu.host.server import TcpServer
-from tests.autocolor.meshes import wall_scene
 from tests.autocolor.screens.boards import desk_viewer, middle_of
 from tests.ramtek_emu.serving import in_a_thread
+from tests.small import wall_scene
 
 
 def kinds(gestures: list[Gesture]) -> list[str]:
@@ -258,7 +258,7 @@ def moving(display: Ramtek9300) -> Callable[[Step], None]:
     return move
 
 
-@settings(max_examples=8, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(session=steps)
 def test_the_same_gestures_in_process_and_over_tcp_give_the_same_words(
     tmp_path: Path, session: list[Step]

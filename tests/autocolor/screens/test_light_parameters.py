@@ -22,8 +22,8 @@ from autocolor.screens.session import Session
 from autocolor.studio import Studio
 from autocolor.widgets.widget import Choice
 from ramtek_emu import Ramtek9300
-from tests.autocolor.meshes import cube
 from tests.closeness import all_close
+from tests.small import cube
 
 AIMED = Light("key", (2.0, -3.0, 4.0), aim=(0.5, 0.5, 1.0), concentration=2.0, cone_angle=30.0)
 

@@ -26,16 +26,9 @@ from autocolor.widgets.bars import Bar
 from autocolor.widgets.items import SCREEN, Area
 from autocolor.widgets.menu import WORK
 from autocolor.widgets.widget import Button, Place, Widget
-from tests.autocolor.screens.boxes import (
-    KEY,
-    boxes,
-    hand_at,
-    hint_of,
-    told,
-    undo,
-    words_are_those_of_the_scene,
-)
+from tests.autocolor.screens.boxes import hand_at, hint_of, told, undo, words_are_those_of_the_scene
 from tests.autocolor.screens.hand import Hand
+from tests.small import KEY, boxes
 
 NUMBERS: dict[str, Callable[[Light], object]] = {
     **{f"position {axis}": lambda light, n=n: light.position[n] for n, axis in enumerate("xyz")},  # type: ignore[misc]

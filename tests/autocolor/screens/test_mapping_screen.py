@@ -33,9 +33,9 @@ from autocolor.screens.mapping_screen import (
 from autocolor.widgets.items import YELLOW
 from autocolor.widgets.menu import WORK
 from ramtek_emu import Ramtek9300
-from tests.autocolor.meshes import grid
-from tests.autocolor.screens.boxes import boxes, hand_at, hint_of, told, undo, words_are_those_of_the_scene
+from tests.autocolor.screens.boxes import hand_at, hint_of, told, undo, words_are_those_of_the_scene
 from tests.autocolor.screens.hand import Hand
+from tests.small import boxes, grid
 
 
 @pytest.fixture

@@ -15,8 +15,8 @@ from autocolor.screens.viewer import Viewer
 from autocolor.widgets.bars import Bar
 from autocolor.widgets.menu import WIDE_BAR, laid_out
 from ramtek_emu import Ramtek9300, instructions
-from tests.autocolor.screens.boxes import boxes
 from tests.autocolor.widgets.drawing import checksum
+from tests.small import boxes
 
 PAGES = {
     "picture": 473489948,

@@ -12,8 +12,9 @@ from autocolor.scene.color_scales import COLOR_SCALES
 from autocolor.scene.columns import fields_of
 from autocolor.scene.scalar import MeshScalar, Scalar
 from autocolor.screens.scalar_screen import NAMED, ScalarScreen, color_choice
-from tests.autocolor.screens.boxes import boxes, hand_at, undo, words_are_those_of_the_scene
+from tests.autocolor.screens.boxes import hand_at, undo, words_are_those_of_the_scene
 from tests.autocolor.screens.hand import Hand
+from tests.small import boxes
 
 
 def boxes_with_stress() -> Scene:

@@ -22,7 +22,8 @@ from autocolor.widgets.items import SCREEN, text
 from ramtek_emu import GMR_9300, PRINCETON_9300, Ramtek9300, Recorder, instructions
 from ramtek_emu.instruction_set.assembler import assemble
 from ramtek_emu.instruction_set.disassembler import items
-from tests.autocolor.screens.boxes import boxes, hand_at
+from tests.autocolor.screens.boxes import hand_at
+from tests.small import boxes
 
 SCENE = boxes()
 
@@ -86,7 +87,7 @@ def listing_of(words: Words) -> list[ListingRow]:
     return rows[max(number for number, row in enumerate(rows) if not row.text) + 1 :]
 
 
-@settings(max_examples=15, suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(names=st.lists(st.sampled_from([*EDITS, "undo", "redo"]), max_size=8))
 def test_the_words_are_those_that_the_display_received(tmp_path: Path, names: list[str]) -> None:
     recorded = Recorded(tmp_path)
@@ -205,7 +206,6 @@ def test_a_listing_that_is_whole_assembles_to_the_words(colors: list[tuple[int, 
 
 
 @given(st.integers(1, 30), st.integers(1, 300), st.integers(0, 2**32 - 1))
-@settings(max_examples=30)
 def test_a_long_listing_says_how_many_words_it_leaves_out(lines: int, elements: int, seed: int) -> None:
     image = np.random.default_rng(seed).integers(0, 3, (lines, elements)).astype(np.uint16)
     words = instructions.write_image(image)

@@ -39,11 +39,10 @@ from autocolor.screens.session import (
 from autocolor.screens.viewer import Viewer
 from ramtek_emu import Ramtek9300, RamtekError
 from tests.autocolor.files.store.stores import run, small_scene
-from tests.autocolor.meshes import wall_scene
 from tests.autocolor.screens.ball import MIDDLE, ball_scene, hand_before, seen_on
-from tests.autocolor.screens.boxes import KEY, boxes
 from tests.autocolor.screens.hand import Hand
 from tests.autocolor.screens.test_viewer import control, is_true_to
+from tests.small import KEY, boxes, wall_scene
 
 
 @pytest.fixture

@@ -14,7 +14,7 @@ from autocolor.widgets.menu import WORK
 from autocolor.widgets.widget import MARGIN
 from ramtek_emu import Ramtek9300
 from tests.autocolor.screens.hand import Hand
-from tests.autocolor.sessions import car
+from tests.small import car
 
 ROOT = Path(__file__).parents[3]
 

@@ -13,9 +13,9 @@ from autocolor.mapping.ranges import SCREENS
 from autocolor.screens.variants_screen import ELEMENTS, FRAME, LINES, ON_PAGE, PLACES
 from autocolor.widgets.menu import WORK
 from ramtek_emu import Ramtek9300
-from tests.autocolor.meshes import grid
 from tests.autocolor.screens.boxes import hand_at, hint_of, told, undo
 from tests.autocolor.screens.hand import Hand
+from tests.small import grid
 
 
 @pytest.fixture

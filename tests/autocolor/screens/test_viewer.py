@@ -29,8 +29,8 @@ from autocolor.widgets.menu import MESSAGE_CHARACTERS
 from autocolor.widgets.sheet import Sheet
 from autocolor.widgets.widget import Button
 from ramtek_emu import GMR_9300, Ramtek9300
-from tests.autocolor.meshes import cube, grid, wall_scene
 from tests.autocolor.screens.boards import Desk, desk_viewer, middle_of, point
+from tests.small import cube, grid, wall_scene
 
 KEY = Light("key", (2, -3, 4), aim=(0, 0, 0))
 

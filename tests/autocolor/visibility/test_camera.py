@@ -20,7 +20,7 @@ from autocolor.visibility.camera import (
     clipped_at_near_plane,
     rotated,
 )
-from tests.autocolor.meshes import cube, grid, sphere
+from tests.small import cube, grid, sphere
 
 
 @given(meshes(), views() | outside_views())

@@ -24,9 +24,10 @@ from autocolor.visibility.depth import (
 from autocolor.visibility.projection import LARGEST_PLANE_ERROR, Projection, projection
 from autocolor.visibility.scan_lines import extents_of_polygons
 from autocolor.visibility.visible_surfaces import visible_surfaces
-from tests.autocolor.meshes import ROUNDINGS, decal_on_ground, grid
+from tests.autocolor.decals import ROUNDINGS, decal_on_ground
 from tests.autocolor.strategies import rasters
 from tests.autocolor.visibility.test_scan_lines import extent_on
+from tests.small import grid
 
 depths = st.floats(1e-9, 1.0)
 

@@ -26,9 +26,10 @@ from autocolor.visibility.projection import (
     split_quads,
 )
 from autocolor.visibility.visible_surfaces import visible_surfaces
-from tests.autocolor.meshes import cube, decal_on_ground, grid, sphere
+from tests.autocolor.decals import decal_on_ground
 from tests.autocolor.reference import ray
 from tests.autocolor.strategies import interpolations, rasters
+from tests.small import cube, grid, sphere
 
 
 @given(vectors(), directions(), rasters)

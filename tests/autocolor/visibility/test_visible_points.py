@@ -31,10 +31,9 @@ from autocolor.visibility.visible_points import (
 )
 from autocolor.visibility.visible_surfaces import visible_surfaces
 from autocolor.visibility.watkins import watkins
-from tests.autocolor.meshes import cube, grid, sphere, wall, wall_scene
 from tests.autocolor.reference import first_hit, ray
-from tests.autocolor.sessions import car
 from tests.autocolor.strategies import soups
+from tests.small import car, cube, grid, sphere, wall, wall_scene
 
 counts_of_surfaces = st.lists(st.integers(0, 40), max_size=6)
 

@@ -9,7 +9,7 @@ import tracemalloc
 import numpy as np
 import numpy.typing as npt
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Mesh, View
@@ -33,9 +33,10 @@ from autocolor.visibility.visible_surfaces import (
     visible_surfaces,
 )
 from autocolor.visibility.watkins import watkins
-from tests.autocolor.meshes import ROUNDINGS, cube, decal_on_ground, grid, sphere, uneven_wall
+from tests.autocolor.decals import ROUNDINGS, decal_on_ground
 from tests.autocolor.reference import first_hit, on_triangles, ray
 from tests.autocolor.strategies import rasters, soups
+from tests.small import cube, grid, sphere, uneven_wall
 
 
 def assert_as_ray_casting(mesh: Mesh, view: View, lines: int, elements: int) -> None:
@@ -364,7 +365,6 @@ def test_the_far_side_of_a_ball_is_culled_except_near_its_rim(distance: float) -
     assert len(tested) < 0.9 * behind
 
 
-@settings(max_examples=10)
 @given(st.integers(0, 1 << 32), st.booleans())
 def test_culling_segments_changes_no_pixel(seed: int, in_planes: bool) -> None:
     random = np.random.default_rng(seed)

@@ -17,8 +17,9 @@ from autocolor.visibility.projection import projection
 from autocolor.visibility.visible_points import VisiblePoints
 from autocolor.visibility.visible_surfaces import visible_surfaces
 from autocolor.visibility.watkins import numbers_by_line, watkins
-from tests.autocolor.meshes import ROUNDINGS, cube, decal_on_ground, grid, sphere
+from tests.autocolor.decals import ROUNDINGS, decal_on_ground
 from tests.autocolor.strategies import interpolations, rasters, soups
+from tests.small import cube, grid, sphere
 
 
 def assert_same(one: VisiblePoints, other: VisiblePoints) -> None:

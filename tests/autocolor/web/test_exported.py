@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from autocolor import (
@@ -42,8 +42,6 @@ from autocolor.web.exported import (
     packed_plane,
     packed_words,
 )
-from tests.autocolor.meshes import cube, wall_scene
-from tests.autocolor.sessions import car
 from tests.autocolor.web.twin import (
     entries_in,
     relit_words,
@@ -52,6 +50,7 @@ from tests.autocolor.web.twin import (
     with_legend,
     words_in,
 )
+from tests.small import car, cube, wall_scene
 
 SIZE = (24, 32)
 
@@ -78,7 +77,6 @@ def test_a_packed_plane_is_unpacked_number_by_number(shares: list[int]) -> None:
     assert unpacked_plane(packed) == shares
 
 
-@settings(max_examples=60)
 @given(
     st.sampled_from(MAPPINGS),
     numbers(0, 1),
@@ -124,7 +122,6 @@ def test_a_surface_without_extent_has_its_middle_level_in_any_light() -> None:
 # Words, entries and legends.
 
 
-@settings(max_examples=25)
 @given(scenes())
 def test_an_export_has_the_words_the_entries_and_the_ranges_of_the_display_image(scene: Scene) -> None:
     try:
@@ -201,7 +198,6 @@ def relit(scene: Scene, exposure: Any, strengths: Mapping[str, float]) -> Scene:
     return scene.replace(lights=lights, exposure=exposure)
 
 
-@settings(max_examples=40)
 @given(scenes(words="levels"), st.tuples(*[numbers(0, 3)] * 3))
 def test_planes_and_thresholds_give_the_words_of_a_rendering_in_other_light(
     scene: Scene, strengths: tuple[float, ...]

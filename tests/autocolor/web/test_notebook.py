@@ -26,9 +26,8 @@ from autocolor.testing import colors
 from autocolor.web import notebook
 from ramtek_emu import PRINCETON_9300, Configuration, PortError, Ramtek9300, instructions
 from ramtek_emu.timing import Timing
-from tests.autocolor.meshes import cube
-from tests.autocolor.sessions import SMALL, car, opened
 from tests.autocolor.web.twin import unpacked_words
+from tests.small import SMALL, car, cube, opened
 
 pytest.importorskip("anywidget")
 

@@ -23,8 +23,7 @@ from autocolor import (
 )
 from autocolor.web.exported import export_of
 from autocolor.web.page import page_of, without_comments
-from tests.autocolor.meshes import sphere
-from tests.autocolor.sessions import car
+from tests.small import car, sphere
 
 SIZE = (24, 32)
 WEB = Path(__file__).resolve().parents[3] / "autocolor" / "web"

@@ -4,7 +4,7 @@ import io
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor.arrays import Words
@@ -48,7 +48,6 @@ def sessions(draw: st.DrawFn) -> list[Page]:
 
 
 @pytest.mark.parametrize("configuration", [TINY, SHORT], ids=["tiny", "short"])
-@settings(max_examples=60)
 @given(data=st.data())
 def test_after_any_pages_the_display_has_what_the_last_one_alone_gives(
     configuration: Configuration, data: st.DataObject
@@ -63,7 +62,6 @@ def test_after_any_pages_the_display_has_what_the_last_one_alone_gives(
     assert np.array_equal(display.entries, fresh.entries)
 
 
-@settings(max_examples=60)
 @given(pages=sessions())
 def test_a_sheet_returns_its_words_with_those_for_entries_first(pages: list[Page]) -> None:
     file, replayed = io.BytesIO(), Ramtek9300(TINY)

@@ -11,7 +11,6 @@ from hypothesis.extra import numpy as arrays
 from numpy.typing import NDArray
 
 from ramtek_emu.drawing.areas import area, connected, links
-from tests.ramtek_emu.strategies import thorough
 
 Result = TypeVar("Result")
 
@@ -41,7 +40,6 @@ def reached(open_pixels: NDArray[np.bool_], line: int, element: int) -> set[tupl
     return filled
 
 
-@thorough
 @given(arrays.arrays(np.bool_, st.tuples(st.integers(1, 8), st.integers(1, 9))), st.data())
 def test_an_area_has_the_pixels_that_a_walk_reaches(
     open_pixels: NDArray[np.bool_], data: st.DataObject
@@ -78,7 +76,6 @@ def test_runs_touch_when_they_share_an_element_of_neighboring_lines() -> None:
     assert list(zip(upper.tolist(), lower.tolist(), strict=True)) == [(0, 1), (1, 3)]
 
 
-@thorough
 @given(st.integers(1, 12), st.lists(st.tuples(st.integers(0, 11), st.integers(0, 11)), max_size=15))
 def test_linked_runs_have_equal_labels(count: int, pairs: list[tuple[int, int]]) -> None:
     pairs = [(one % count, other % count) for one, other in pairs]

@@ -10,7 +10,7 @@ from ramtek_emu import Ramtek9300, instructions
 from ramtek_emu.drawing.curves import MOST_PIXELS, conic_pixels, traced
 from ramtek_emu.memory.scan_orders import Point, Window
 from tests.ramtek_emu import reference
-from tests.ramtek_emu.strategies import SMALL, masks, quick, sent_words, thorough, windows
+from tests.ramtek_emu.strategies import SMALL, masks, sent_words, windows
 
 far = st.integers(-40, 60)
 
@@ -27,7 +27,6 @@ def circle_places(center: tuple[int, int], radius: int) -> set[tuple[int, int]]:
     return places
 
 
-@thorough
 @given(
     st.lists(st.tuples(far, far, st.integers(0, 60)), min_size=1, max_size=3),
     st.sampled_from([0x00, 0x40, 0xC0]),
@@ -73,7 +72,6 @@ def is_connected(pixels: list[tuple[int, int]]) -> bool:
     return bool((np.abs(steps).max(axis=1) == 1).all())
 
 
-@quick
 @given(st.integers(2, 120), st.integers(0, 3))
 def test_a_closed_conic_is_a_circle_once_around(radius: int, quarter: int) -> None:
     across, down = [(1, 0), (0, 1), (-1, 0), (0, -1)][quarter]
@@ -94,7 +92,6 @@ def test_a_closed_conic_is_a_circle_once_around(radius: int, quarter: int) -> No
     assert turned > 0
 
 
-@quick
 @given(
     st.integers(1, 9), st.integers(1, 9), st.integers(-4, 4), st.integers(-900, 900), st.integers(-900, 900)
 )
@@ -147,7 +144,6 @@ whole = (
 )
 
 
-@thorough
 @given(
     st.tuples(whole, whole, whole, whole, whole),
     st.integers(0, 60),
@@ -192,7 +188,6 @@ def test_only_circles_that_reach_into_the_memory_are_drawn(monkeypatch: pytest.M
     assert sum(points) == 0
 
 
-@quick
 @given(st.lists(st.tuples(far, far, st.integers(0, 90)), min_size=1, max_size=40))
 def test_circles_drawn_together_equal_circles_drawn_singly(circles: list[tuple[int, int, int]]) -> None:
     together, apart = Ramtek9300(SMALL), Ramtek9300(SMALL)

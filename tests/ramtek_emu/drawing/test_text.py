@@ -12,7 +12,7 @@ from ramtek_emu.memory.character_rom import characters
 from ramtek_emu.memory.scan_orders import SCAN_ORDERS, Point, ScanOrder, Window
 from ramtek_emu.snapshot import display_of, snapshot_bytes
 from tests.ramtek_emu import reference
-from tests.ramtek_emu.strategies import SMALL, masks, points, quick, scan_codes, sent_words, thorough, windows
+from tests.ramtek_emu.strategies import SMALL, masks, points, scan_codes, sent_words, windows
 
 
 def test_a_cell_has_1_to_16_dots_in_each_direction() -> None:
@@ -30,7 +30,6 @@ def test_a_cell_has_1_to_16_dots_in_each_direction() -> None:
             assert style.cell == (2 * expected[0], 3 * expected[1])
 
 
-@quick
 @given(scan_codes, st.text(st.characters(min_codepoint=32, max_codepoint=126), min_size=1, max_size=5))
 def test_the_scan_order_turns_text(code: int, text: str) -> None:
     display = Ramtek9300()
@@ -180,7 +179,6 @@ def test_text_of_a_size_that_the_display_does_not_have_is_refused() -> None:
 small = st.integers(1, 4)
 
 
-@thorough
 @given(
     st.binary(min_size=1, max_size=9),
     windows(),

@@ -11,12 +11,11 @@ from ramtek_emu import NCAR_9460, Ramtek9300, instructions
 from ramtek_emu.drawing.vectors import MOST_POINTS, numbered, points, slices
 from ramtek_emu.memory.scan_orders import Window
 from tests.ramtek_emu import reference
-from tests.ramtek_emu.strategies import SMALL, masks, quick, sent_words, thorough, windows
+from tests.ramtek_emu.strategies import SMALL, masks, sent_words, windows
 
 far = st.integers(-40, 60)
 
 
-@thorough
 @given(st.lists(st.tuples(far, far), min_size=2, max_size=6))
 def test_vectors_are_the_nearest_pixels_with_both_ends(vertices: list[tuple[int, int]]) -> None:
     display = Ramtek9300(SMALL)
@@ -54,7 +53,6 @@ vertex_lists = st.lists(st.tuples(far, far), min_size=1, max_size=12)
 addressings = st.sampled_from([0x00, 0x40, 0x80, 0xC0])
 
 
-@thorough
 @given(
     vertex_lists,
     st.tuples(far, far),
@@ -116,7 +114,6 @@ def test_vectors_of_every_kind_equal_the_twin(
     assert display.processor.parameters.start == places[-1]
 
 
-@quick
 @given(st.lists(st.tuples(far, far, st.integers(0, 0xFFFF)), min_size=1, max_size=30), masks)
 def test_random_pixels_and_points_land_where_they_say(pixels: list[tuple[int, int, int]], mask: int) -> None:
     display = Ramtek9300(SMALL)
@@ -156,7 +153,6 @@ def test_few_and_many_lines_are_drawn_alike(count: int) -> None:
 wide = st.tuples(st.integers(-900, 900), st.integers(-900, 900))
 
 
-@quick
 @given(st.lists(st.tuples(wide, wide), min_size=1, max_size=5), windows())
 def test_only_the_points_inside_are_computed(
     lines: list[tuple[tuple[int, int], tuple[int, int]]], window: Window
@@ -184,7 +180,6 @@ def test_a_vector_across_the_whole_range_takes_no_more_points_than_the_memory_sh
     assert np.bincount(part[3], minlength=4).tolist() == [480, 0, 640, 0]
 
 
-@quick
 @given(st.lists(st.integers(0, 5) | st.integers(MOST_POINTS - 3, MOST_POINTS + 3), max_size=12))
 def test_every_row_is_numbered_from_0_in_order(counts: list[int]) -> None:
     rows, numbers = [], []

@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from ramtek_emu import GMR_9300, Ramtek9300, instructions
@@ -231,7 +231,6 @@ long_streams = st.lists(
 ).map(b"".join)
 
 
-@settings(max_examples=25)
 @given(data=long_streams, cuts=cuts, count=st.integers(0, 4))
 def test_a_film_of_a_stream_has_the_fields_after_its_instructions(
     data: bytes, cuts: list[int], count: int, tmp_path_factory: pytest.TempPathFactory

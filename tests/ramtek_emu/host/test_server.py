@@ -23,7 +23,7 @@ from ramtek_emu.testing import streams
 from tests.ramtek_emu.displays import smallest_slices
 from tests.ramtek_emu.recorded_streams import OUTLINE, RECORDED, words
 from tests.ramtek_emu.serving import READ_EVERYTHING, serving, serving_at, until
-from tests.ramtek_emu.strategies import SMALL, quick, sent_words, sliced_instructions
+from tests.ramtek_emu.strategies import SMALL, sent_words, sliced_instructions
 
 
 def connected(server: TcpServer) -> socket.socket:
@@ -352,7 +352,6 @@ def test_a_session_never_lets_more_replies_wait_than_the_display_holds() -> None
     assert session.unexecuted == 0
 
 
-@quick
 @given(streams(), st.binary(max_size=1), st.lists(st.integers(0, 200), max_size=4))
 def test_a_display_gets_the_words_whatever_pieces_their_bytes_come_in(
     stream: list[int], odd_byte: bytes, places: list[int]
@@ -370,7 +369,6 @@ def test_a_display_gets_the_words_whatever_pieces_their_bytes_come_in(
     assert session.unfinished == bool(odd_byte or twin.decoder.pending_words)
 
 
-@quick
 @given(streams(), st.integers(0, 200))
 def test_a_recording_ends_with_a_whole_instruction(stream: list[int], cut: int) -> None:
     recorded: list[bytes] = []
@@ -491,7 +489,6 @@ def test_a_reset_between_two_instructions_leaves_both_in_the_recording(
     assert b"".join(recorded) == NO_OPERATION + packet("0500") + drawn + LONG
 
 
-@quick
 @given(
     st.lists(sliced_instructions() | streams(12).map(sent_words), min_size=1, max_size=4),
     st.integers(0, 400),
@@ -723,7 +720,6 @@ def test_packets_of_random_bytes_act_as_their_whole_words(tmp_path: Path) -> Non
         assert server.display.processor.waiting == 0
 
 
-@quick
 @given(words=streams(), counts=st.lists(st.integers(0, 3), max_size=12))
 def test_a_gate_lets_so_many_instructions_through(words: list[int], counts: list[int]) -> None:
     display, gate = Ramtek9300(SMALL), Gate()

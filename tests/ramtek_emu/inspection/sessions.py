@@ -6,20 +6,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ramtek_emu import Ramtek9300, instructions
+from ramtek_emu import Ramtek9300
 from ramtek_emu.host.server import HostSession
 from ramtek_emu.inspection.panels import Line
 from ramtek_emu.inspection.running_host import RunningHost
 from ramtek_emu.inspection.session import InspectionSession
 from tests.ramtek_emu.inspection.replays import replay_of
-
-BOXES = (
-    instructions.erase((0, 0, 12, 8), 5),
-    instructions.load_entries(5, [[10, 20, 30]]),
-    instructions.erase((2, 2, 4, 4), 7),
-    instructions.erase((3, 3, 9, 6), 5),
-    instructions.load_entries(5, [[40, 50, 60]]),
-)
 
 
 def at_rest(session: InspectionSession) -> InspectionSession:

@@ -11,10 +11,9 @@ from ramtek_emu.memory.cursors import ENTER
 from ramtek_emu.snapshot import snapshot_bytes
 from ramtek_emu.testing import streams
 from tests.ramtek_emu.inspection.replays import moments, replay_of
-from tests.ramtek_emu.strategies import SMALL, quick
+from tests.ramtek_emu.strategies import SMALL
 
 
-@quick
 @given(streams(), streams(), streams())
 def test_the_first_difference(begin: list[int], one: list[int], other: list[int]) -> None:
     first, second = replay_of(begin + one), replay_of(begin + other)
@@ -32,7 +31,6 @@ def test_the_first_difference(begin: list[int], one: list[int], other: list[int]
     assert found is None or found.where
 
 
-@quick
 @given(streams(), st.integers(0, 60))
 def test_the_first_different_instruction(words: list[int], number: int) -> None:
     stream = Stream(SMALL, np.array(words, np.uint16))

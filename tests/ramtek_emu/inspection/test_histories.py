@@ -22,7 +22,7 @@ from ramtek_emu.instruction_set.table import FORMAT_OF_NAME
 from ramtek_emu.memory.scan_orders import Window
 from ramtek_emu.testing import streams
 from tests.ramtek_emu.inspection.replays import prepare, replay_of, states_every
-from tests.ramtek_emu.strategies import SMALL, quick
+from tests.ramtek_emu.strategies import SMALL
 
 READS_WHAT_IT_WRITES = {FORMAT_OF_NAME["COPY"].opcode, FORMAT_OF_NAME["FILL"].opcode}
 
@@ -45,7 +45,6 @@ def watched_writes(stream: Stream, line: int, element: int) -> list[Write]:
     return writes
 
 
-@quick
 @given(
     words=streams(120),
     line=st.integers(0, 8),
@@ -81,7 +80,6 @@ def test_a_copy_and_a_fill_write_also_words_that_stay_the_same() -> None:
     assert history[-1].number == names.index("COPY") + 1
 
 
-@quick
 @given(
     words=streams(120),
     corner=st.tuples(st.integers(0, 8), st.integers(0, 12)),
@@ -119,7 +117,6 @@ loads = st.lists(
 
 @pytest.mark.parametrize("configuration", [SMALL, PRINCETON_9300])
 @example([(3, [], 0)], 0, 1)
-@quick
 @given(loads, st.integers(0, 12), st.sampled_from([0, 1, 2, 1022, 1023]))
 def test_the_history_of_an_entry(
     configuration: Configuration, loads: list[tuple[int, list[int], int]], after: int, entry: int

@@ -6,7 +6,7 @@ import threading
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from ramtek_emu import Configuration, Ramtek9300, TcpPort, instructions
@@ -21,7 +21,7 @@ from ramtek_emu.testing import streams
 from tests.ramtek_emu.displays import shown
 from tests.ramtek_emu.inspection.replays import moments, replay_of
 from tests.ramtek_emu.recorded_streams import OUTLINE
-from tests.ramtek_emu.strategies import SMALL, quick
+from tests.ramtek_emu.strategies import SMALL
 
 pygame = pytest.importorskip("pygame")
 
@@ -80,7 +80,6 @@ POINTERS = st.builds(
 )
 
 
-@settings(quick, max_examples=40)
 @given(words=streams(), actions=st.lists(KEYS | POINTERS, max_size=20))
 def test_no_keys_and_clicks_lead_away_from_the_stream(words: list[int], actions: list[str | Pointer]) -> None:
     inspector = inspector_of(words, SMALL)

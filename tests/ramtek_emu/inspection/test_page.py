@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from ramtek_emu import Configuration, Ramtek9300, instructions
@@ -23,7 +23,7 @@ from ramtek_emu.monitor.overlay import ADVANCE
 from ramtek_emu.monitor.pattern import pattern
 from ramtek_emu.testing import streams
 from tests.ramtek_emu.inspection.replays import prepare, replay_of
-from tests.ramtek_emu.strategies import SMALL, quick
+from tests.ramtek_emu.strategies import SMALL
 
 BUTTONS = ("<", ">", "entries")
 
@@ -62,7 +62,6 @@ def overlap(a: PageBox, b: PageBox) -> bool:
     )
 
 
-@quick
 @given(elements=st.integers(1, 4096), lines=st.integers(1, 4096), cursors=st.integers(0, 8))
 def test_no_part_of_a_page_covers_another(elements: int, lines: int, cursors: int) -> None:
     layout = layout_of(elements, lines, cursors, BUTTONS)
@@ -104,7 +103,6 @@ ACTIONS: st.SearchStrategy[Callable[[InspectionSession], object]] = st.one_of(
 )
 
 
-@settings(quick, max_examples=25)
 @given(words=streams(), actions=st.lists(ACTIONS, max_size=10))
 def test_what_changes_is_drawn_as_the_whole_page_is(
     words: list[int], actions: list[Callable[[InspectionSession], object]]

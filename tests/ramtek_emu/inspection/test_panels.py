@@ -9,8 +9,9 @@ from ramtek_emu.inspection.session import LONGEST_MEANING, EntryRange, Inspectio
 from ramtek_emu.instruction_set.table import FORMAT_OF_NAME
 from ramtek_emu.memory.scan_orders import Point, Window
 from ramtek_emu.monitor.overlay import ORANGE, WHITE
-from tests.ramtek_emu.inspection.sessions import BOXES, Served, at_rest, session_of, text_of
+from tests.ramtek_emu.inspection.sessions import Served, at_rest, session_of, text_of
 from tests.ramtek_emu.recorded_streams import listing, words
+from tests.small import BOXES_STREAM
 
 
 def test_a_long_meaning_is_cut_and_an_illegal_word_is_raw() -> None:
@@ -31,7 +32,7 @@ def test_long_lines_of_a_listing_are_wrapped_and_nothing_is_lost() -> None:
 
 
 def test_parameters_differ_from_a_reset_and_from_the_position_before() -> None:
-    session = session_of(*BOXES)
+    session = session_of(*BOXES_STREAM)
     rows = {text_of(line[:1]).strip(): line for line in panels.parameters(session)}
     assert {row[1].color for row in rows.values()} == {panels.GRAY}
     session.go(1)
@@ -50,7 +51,7 @@ def test_parameters_differ_from_a_reset_and_from_the_position_before() -> None:
 def test_parameters_that_an_instruction_of_a_paused_host_changed_are_orange() -> None:
     served = Served(session_of().display)
     session = InspectionSession(served.host.replay, served.host)
-    served.send(np.concatenate(BOXES))
+    served.send(np.concatenate(BOXES_STREAM))
     session.pause()
     colors = []
     for number in range(1, 6):
@@ -63,7 +64,7 @@ def test_parameters_that_an_instruction_of_a_paused_host_changed_are_orange() ->
     # Instructions 2 and 5 load an entry, the others erase.
     gray = panels.GRAY
     assert colors == [(ORANGE, gray), (WHITE, ORANGE), (ORANGE, WHITE), (ORANGE, WHITE), (WHITE, WHITE)]
-    served.send(np.concatenate(BOXES))
+    served.send(np.concatenate(BOXES_STREAM))
     session.next_opcode(FORMAT_OF_NAME["LAM"].opcode)
     while session.state.awaited:
         session.tick()
@@ -76,7 +77,7 @@ def test_parameters_that_an_instruction_of_a_paused_host_changed_are_orange() ->
 
 
 def test_a_history_says_up_to_which_instruction_it_is() -> None:
-    session = session_of(*BOXES)
+    session = session_of(*BOXES_STREAM)
     session.go(3)
     session.select(Window(4, 4, 4, 4))
     titles = [text_of(panels.history_title(at_rest(session)))]
@@ -92,7 +93,7 @@ def test_a_history_says_up_to_which_instruction_it_is() -> None:
 
 
 def test_a_pixel_is_shown_with_its_word_its_entry_and_its_color() -> None:
-    session = session_of(*BOXES)
+    session = session_of(*BOXES_STREAM)
     session.go(2)
     session.point_at(Point(3, 4))
     session.select(Window(5, 6, 5, 6))
@@ -109,13 +110,14 @@ def test_a_pixel_is_shown_with_its_word_its_entry_and_its_color() -> None:
 
 
 def test_the_title_says_whether_a_host_runs_and_what_is_incomplete() -> None:
-    served = Served(session_of(BOXES[0]).display)
+    served = Served(session_of(BOXES_STREAM[0]).display)
     session = InspectionSession(served.host.replay, served.host)
     assert text_of(panels.title(session)) == "instruction 0 of 0  running"
     session.pause()
     assert text_of(panels.title(session)) == "instruction 0 of 0  paused"
     assert (
-        text_of(panels.title(session_of(BOXES[0], BOXES[2][:4]))) == "instruction 0 of 1  4 words of the next"
+        text_of(panels.title(session_of(BOXES_STREAM[0], BOXES_STREAM[2][:4])))
+        == "instruction 0 of 1  4 words of the next"
     )
 
 

@@ -16,7 +16,7 @@ from ramtek_emu.snapshot import snapshot_bytes
 from ramtek_emu.testing import streams
 from tests.ramtek_emu import recorded_streams
 from tests.ramtek_emu.inspection.replays import moments, prepare, replay_of, states_every
-from tests.ramtek_emu.strategies import SMALL, quick
+from tests.ramtek_emu.strategies import SMALL
 
 TIMED = Configuration(name="TIMED", elements=13, lines=9, planes=10, timing=Timing())
 RECORDED = {
@@ -27,7 +27,6 @@ RECORDED = {
 
 
 @pytest.mark.parametrize("configuration", [SMALL, TIMED])
-@quick
 @given(
     words=streams(),
     numbers=st.lists(st.integers(0, 60), min_size=1, max_size=8),
@@ -101,7 +100,6 @@ def test_a_replay_begins_with_the_display_that_is_given_and_leaves_it_alone() ->
     assert snapshot_bytes(start) == before
 
 
-@quick
 @given(st.lists(st.tuples(streams(), st.booleans(), st.booleans()), max_size=6), st.sampled_from([0, 1e9]))
 def test_a_running_display_is_noted_with_what_moved_beside_its_instructions(
     rounds: list[tuple[list[int], bool, bool]], seconds: float

@@ -18,9 +18,10 @@ from ramtek_emu.inspection.session import InspectionSession
 from ramtek_emu.instruction_set.instruction import NO_WORDS
 from ramtek_emu.snapshot import snapshot_bytes
 from tests.ramtek_emu.inspection.replays import moments, replay_of, states_every
-from tests.ramtek_emu.inspection.sessions import BOXES, Served, text_of
+from tests.ramtek_emu.inspection.sessions import Served, text_of
 from tests.ramtek_emu.recorded_streams import OUTLINE
 from tests.ramtek_emu.strategies import SMALL
+from tests.small import BOXES_STREAM
 
 
 def test_a_paused_host_waits_and_is_not_disconnected(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -68,7 +69,7 @@ def test_the_past_of_a_running_display_has_its_cursors_where_the_joystick_moved_
 
 
 def test_the_past_is_right_wherever_the_words_of_a_host_are_cut() -> None:
-    words = np.concatenate(BOXES)
+    words = np.concatenate(BOXES_STREAM)
     expected = moments(replay_of(words.tolist()))
     for place in range(1, len(words)):
         with states_every(0.0):

@@ -26,8 +26,9 @@ from ramtek_emu.memory.scan_orders import Point, Window
 from ramtek_emu.snapshot import snapshot_bytes
 from ramtek_emu.testing import streams
 from tests.ramtek_emu.inspection.replays import moments, replay_of, states_every
-from tests.ramtek_emu.inspection.sessions import BOXES, Served, at_rest, session_of, text_of
-from tests.ramtek_emu.strategies import SMALL, cuts, quick
+from tests.ramtek_emu.inspection.sessions import Served, at_rest, session_of, text_of
+from tests.ramtek_emu.strategies import SMALL, cuts
+from tests.small import BOXES_STREAM
 
 STEPS = st.one_of(
     st.tuples(st.just("go"), st.integers(-2, 70)),
@@ -43,7 +44,6 @@ STEPS = st.one_of(
 )
 
 
-@quick
 @example(words=[0x0400, 0, 0x0300], steps=[("go", 1)], width=50)
 @given(words=streams(), steps=st.lists(STEPS, max_size=12), width=st.integers(50, 90))
 def test_after_any_steps_display_and_panels_are_of_that_instruction(
@@ -72,7 +72,6 @@ def test_after_any_steps_display_and_panels_are_of_that_instruction(
         assert values_shown[: len(fresh)] == list(fresh.values())
 
 
-@quick
 @given(words=streams(), places=st.lists(st.integers(0, 60), min_size=1, max_size=4))
 def test_the_histories_and_the_next_change_are_those_of_the_stream(
     words: list[int], places: list[int]
@@ -97,7 +96,7 @@ def test_the_histories_and_the_next_change_are_those_of_the_stream(
 
 
 def test_the_history_of_a_pixel_leads_through_the_stream() -> None:
-    session = session_of(*BOXES)
+    session = session_of(*BOXES_STREAM)
     session.go(5)
     session.select(Window(4, 4, 4, 4))
     assert [text_of(line).split()[:4] for line in panels.history(at_rest(session))] == [
@@ -116,7 +115,7 @@ def test_the_history_of_a_pixel_leads_through_the_stream() -> None:
 
 
 def test_the_history_of_an_entry_shows_its_colors() -> None:
-    session = session_of(*BOXES)
+    session = session_of(*BOXES_STREAM)
     session.go(5)
     session.select(EntryRange(5, 6))
     assert [text_of(line).strip(">").split()[:4] for line in panels.history(at_rest(session))] == [
@@ -131,7 +130,7 @@ def test_the_history_of_an_entry_shows_its_colors() -> None:
 
 
 def test_the_next_change_of_a_rectangle_skips_writes_of_the_same_words() -> None:
-    session = session_of(*BOXES)
+    session = session_of(*BOXES_STREAM)
     session.select(Window(8, 4, 9, 6))
     session.go(1)
     session.next_change()
@@ -142,7 +141,7 @@ def test_the_next_change_of_a_rectangle_skips_writes_of_the_same_words() -> None
 
 
 def test_the_next_and_the_last_of_an_opcode_are_found_by_name() -> None:
-    session = session_of(*BOXES)
+    session = session_of(*BOXES_STREAM)
     for character in "ers":
         session.ask("opcode", session.state.typed)
         session.type(character)
@@ -156,7 +155,7 @@ def test_the_next_and_the_last_of_an_opcode_are_found_by_name() -> None:
 
 
 def test_an_unknown_opcode_is_refused() -> None:
-    session = session_of(*BOXES)
+    session = session_of(*BOXES_STREAM)
     session.ask("opcode")
     for character in "XYZ":
         session.type(character)
@@ -172,7 +171,7 @@ def test_every_opcode_is_known_by_its_name() -> None:
 
 
 def test_a_typed_number_is_gone_to_and_can_be_corrected() -> None:
-    session = session_of(*BOXES)
+    session = session_of(*BOXES_STREAM)
     session.ask("instruction", "3")
     assert not session.takes("A")
     session.type("9")
@@ -183,7 +182,7 @@ def test_a_typed_number_is_gone_to_and_can_be_corrected() -> None:
 
 
 def test_escape_leaves_what_was_begun_last() -> None:
-    session = session_of(*BOXES)
+    session = session_of(*BOXES_STREAM)
     session.select(Window(1, 1, 2, 2))
     session.turn_to("entries")
     session.ask("opcode")
@@ -232,13 +231,13 @@ def test_escape_before_the_states_are_prepared_lists_the_instruction_that_is_sho
 
 
 def test_stepping_needs_no_prepared_states() -> None:
-    session = InspectionSession(replay_of(np.concatenate(BOXES).tolist()))
+    session = InspectionSession(replay_of(np.concatenate(BOXES_STREAM).tolist()))
     session.step(1)
     assert (session.state.number, session.replay.prepared) == (1, 0)
 
 
 def test_a_rectangle_of_the_screen_is_one_of_the_memory() -> None:
-    session = session_of(*BOXES)
+    session = session_of(*BOXES_STREAM)
     places = Point(5, 4), Point(2, 1)
     assert session.memory_window(*places) == (2, 1, 5, 4)
     zoom = np.array([FORMAT_OF_NAME["ZOOM"].opcode << 8, 0x0101], np.uint16)
@@ -253,7 +252,6 @@ def test_a_rectangle_of_the_screen_is_one_of_the_memory() -> None:
 # Running displays.
 
 
-@quick
 @given(
     words=streams(),
     places=st.lists(st.integers(0, 60), max_size=3),
@@ -311,7 +309,7 @@ def test_a_paused_host_runs_to_an_opcode_or_to_a_change() -> None:
     served = Served(Ramtek9300(SMALL))
     session = InspectionSession(served.host.replay, served.host)
     session.select(Window(6, 6, 6, 6))
-    served.send(np.concatenate(BOXES))
+    served.send(np.concatenate(BOXES_STREAM))
     numbers = []
     for begin in (
         session.next_change,
@@ -339,7 +337,7 @@ def test_a_paused_host_runs_to_a_change_of_an_entry() -> None:
     served = Served(Ramtek9300(SMALL))
     session = InspectionSession(served.host.replay, served.host)
     session.select(EntryRange(5, 6))
-    served.send(np.concatenate(BOXES))
+    served.send(np.concatenate(BOXES_STREAM))
     numbers = []
     for _ in range(2):
         session.next_change()

@@ -11,10 +11,9 @@ from ramtek_emu import Ramtek9300, instructions
 from ramtek_emu.inspection.states import Packer, State, packed_dots, size_of, thinned, unpacked_dots
 from ramtek_emu.snapshot import snapshot_bytes
 from ramtek_emu.testing import streams
-from tests.ramtek_emu.strategies import SMALL, quick
+from tests.ramtek_emu.strategies import SMALL
 
 
-@quick
 @given(st.lists(streams(), min_size=1, max_size=5))
 def test_every_state_gives_its_display_back(rounds: list[list[int]]) -> None:
     display, packer = Ramtek9300(SMALL), Packer()
@@ -49,13 +48,11 @@ def test_unchanged_displays_are_not_deflated_again() -> None:
     assert all(one is other for one, other in zip(first.arrays, second.arrays, strict=True))
 
 
-@quick
 @given(arrays(np.bool_, (9, 13)))
 def test_dots_are_packed(dots: np.ndarray[tuple[int, ...], np.dtype[np.bool_]]) -> None:
     assert (unpacked_dots(packed_dots(dots), (9, 13)) == dots).all()
 
 
-@quick
 @given(st.lists(st.none() | st.integers(0, 7), min_size=1, max_size=12))
 def test_fewer_states_know_what_was_touched_before_them(places: list[int | None]) -> None:
     def dots(*touched: int) -> bytes:

@@ -10,11 +10,10 @@ from ramtek_emu.inspection import stream as module
 from ramtek_emu.inspection.stream import Stream
 from ramtek_emu.instruction_set.disassembler import items
 from ramtek_emu.testing import streams
-from tests.ramtek_emu.strategies import cuts, quick
+from tests.ramtek_emu.strategies import cuts
 
 
 @pytest.mark.parametrize("configuration", [GMR_9300, PRINCETON_9300])
-@quick
 @given(words=streams(), places=st.lists(st.integers(0, 60), max_size=5), piece=st.integers(1, 70))
 def test_instructions_are_counted_as_the_listing_shows_them(
     configuration: Configuration, words: list[int], places: list[int], piece: int

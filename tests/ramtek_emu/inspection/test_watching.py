@@ -11,10 +11,9 @@ from ramtek_emu.inspection.watching import watched, watched_table
 from ramtek_emu.memory.frame_buffer import WriteEnable
 from ramtek_emu.memory.scan_orders import SCAN_ORDERS, Window
 from ramtek_emu.testing import streams
-from tests.ramtek_emu.strategies import SMALL, masks, points, quick, scan_codes, windows
+from tests.ramtek_emu.strategies import SMALL, masks, points, scan_codes, windows
 
 
-@quick
 @given(st.data(), windows(), scan_codes, masks, windows())
 def test_a_scan_touches_the_words_that_it_writes(
     data: st.DataObject, window: Window, code: int, mask: int, enabled: Window
@@ -44,7 +43,6 @@ def test_a_scan_touches_the_words_that_it_writes(
     assert (touched == differs_less[watch.top : watch.bottom + 1, watch.left : watch.right + 1]).all()
 
 
-@quick
 @given(st.lists(points, max_size=12), masks, windows())
 def test_points_touch_the_words_that_they_write(
     places: list[tuple[int, int]], mask: int, enabled: Window
@@ -62,7 +60,6 @@ def test_points_touch_the_words_that_they_write(
     assert (touched == expected[1:8, 2:10]).all()
 
 
-@quick
 @given(streams())
 def test_a_watched_display_draws_as_any_other(words: list[int]) -> None:
     plain, display = Ramtek9300(SMALL), Ramtek9300(SMALL)

@@ -18,10 +18,8 @@ from ramtek_emu.instruction_set.assembler import (
 )
 from ramtek_emu.testing import streams
 from tests.ramtek_emu.recorded_streams import listing, words
-from tests.ramtek_emu.strategies import quick, thorough
 
 
-@thorough
 @given(streams(), st.binary(max_size=1), st.sampled_from([GMR_9300, PRINCETON_9300]))
 def test_assembling_a_listing_gives_any_words_back(
     stream: list[int], odd_byte: bytes, configuration: Configuration
@@ -30,7 +28,6 @@ def test_assembling_a_listing_gives_any_words_back(
     assert b"".join(assemble(listing(data, configuration))) == data
 
 
-@thorough
 @given(st.binary(max_size=3000))
 def test_assembling_a_listing_gives_any_bytes_back(data: bytes) -> None:
     assert b"".join(assemble(listing(data))) == data
@@ -85,7 +82,6 @@ def test_wrong_listings_are_refused_with_their_line(line: str, sentence: str) ->
     assert str(refusal.value).startswith(f"line {number}: {sentence}")
 
 
-@thorough
 @given(
     st.lists(st.text(max_size=30) | st.sampled_from(["SET", "WT", "to 1,2", 'text "a"', "raw 0"]), max_size=8)
 )
@@ -109,7 +105,6 @@ def test_a_line_is_split_into_tokens(line: str, tokens: list[str]) -> None:
     assert tokens_of(line, 1) == tokens
 
 
-@quick
 @given(st.lists(st.integers(-0x8000, 0xFFFF), min_size=1, max_size=6), st.booleans())
 def test_numbers_become_words_in_decimal_and_in_hexadecimal(numbers: list[int], in_hexadecimal: bool) -> None:
     words = [number & 0xFFFF for number in numbers]
@@ -121,7 +116,6 @@ def test_a_window_is_two_points_with_two_dots_between_them() -> None:
     assert numbers_of("-1,2..639,479", 1) == (0xFFFF, 2, 639, 479)
 
 
-@quick
 @given(st.lists(st.tuples(st.integers(0, 0xFFFF), st.integers(1, 9)), max_size=8))
 def test_a_product_is_its_word_so_many_times(products: list[tuple[int, int]]) -> None:
     tokens = [f"{word:04X}*{times}" for word, times in products]
@@ -129,7 +123,6 @@ def test_a_product_is_its_word_so_many_times(products: list[tuple[int, int]]) ->
     assert hexadecimal_words(tokens, 1).tolist() == expected
 
 
-@quick
 @given(st.binary(max_size=20))
 def test_a_string_of_escapes_holds_any_bytes(data: bytes) -> None:
     assert string_of('"' + "".join(f"\\x{byte:02X}" for byte in data) + '"', 1) == data

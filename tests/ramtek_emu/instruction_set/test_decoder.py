@@ -12,7 +12,7 @@ from ramtek_emu.instruction_set.instruction import encode
 from ramtek_emu.instruction_set.table import ILLEGAL
 from ramtek_emu.testing import streams, words
 from tests.ramtek_emu import reference
-from tests.ramtek_emu.strategies import cuts, quick, thorough
+from tests.ramtek_emu.strategies import cuts
 
 
 def decoded(pieces: list[np.ndarray[tuple[int], np.dtype[np.uint16]]]) -> tuple[list[list[int]], Decoder]:
@@ -21,7 +21,6 @@ def decoded(pieces: list[np.ndarray[tuple[int], np.dtype[np.uint16]]]) -> tuple[
     return encoded, decoder
 
 
-@thorough
 @given(streams(), st.lists(st.integers(0, 60), max_size=8))
 def test_instructions_do_not_depend_on_the_cuts(stream: list[int], places: list[int]) -> None:
     whole, _ = decoded([np.array(stream, np.uint16)])
@@ -29,7 +28,6 @@ def test_instructions_do_not_depend_on_the_cuts(stream: list[int], places: list[
     assert decoded([np.array([word], np.uint16) for word in stream])[0] == whole
 
 
-@thorough
 @given(streams())
 def test_the_decoder_splits_as_a_reader_of_single_words_does(stream: list[int]) -> None:
     encoded, decoder = decoded([np.array(stream, np.uint16)])
@@ -39,7 +37,6 @@ def test_the_decoder_splits_as_a_reader_of_single_words_does(stream: list[int]) 
     assert decoder.pending_words == len(stream) - sum(map(len, twin))
 
 
-@quick
 @given(st.lists(words(16), max_size=2000))
 def test_pending_words_are_never_more_than_one_instruction(stream: list[int]) -> None:
     decoder = Decoder()
@@ -60,7 +57,6 @@ def test_a_word_that_begins_nothing_is_skipped_alone() -> None:
     assert names == ["???", "???", "NOP"]
 
 
-@thorough
 @given(
     st.integers(0, 0xFFFF), st.integers(0, 255), st.lists(st.sampled_from([0, 1, 4, 8, 0xFFFF]), max_size=60)
 )
@@ -83,7 +79,6 @@ def test_six_coefficients_are_taken_where_twelve_make_no_sense() -> None:
     assert [instruction.operands["start"] for instruction in instructions] == [(100, 100)] * 2
 
 
-@quick
 @given(streams(300), st.booleans())
 def test_rows_of_illegal_words_equal_single_illegal_words(stream: list[int], extended: bool) -> None:
     configuration = GMR_9300 if extended else PRINCETON_9300

@@ -9,7 +9,7 @@ from ramtek_emu.instruction_set.assembler import assemble
 from ramtek_emu.instruction_set.disassembler import items
 from ramtek_emu.testing import streams
 from tests.ramtek_emu.recorded_streams import DECODED, RECORDED, listing, words
-from tests.ramtek_emu.strategies import cuts, thorough
+from tests.ramtek_emu.strategies import cuts
 
 
 def texts(text: str) -> list[str]:
@@ -18,7 +18,6 @@ def texts(text: str) -> list[str]:
     return [line[38:].strip() for line in lines if line[38:].strip()]
 
 
-@thorough
 @given(streams(), st.lists(st.integers(0, 200), max_size=5))
 def test_a_listing_does_not_depend_on_how_the_stream_was_cut(stream: list[int], places: list[int]) -> None:
     whole = np.array(stream, "<u2").tobytes()

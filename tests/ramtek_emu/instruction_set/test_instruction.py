@@ -8,10 +8,8 @@ from ramtek_emu import InstructionError
 from ramtek_emu.instruction_set.decoder import Decoder
 from ramtek_emu.instruction_set.instruction import encode, normal
 from ramtek_emu.testing import streams
-from tests.ramtek_emu.strategies import quick
 
 
-@quick
 @given(streams())
 def test_an_instruction_is_equal_to_its_own_words_read_again(stream: list[int]) -> None:
     for instruction in Decoder().feed(np.array(stream, np.uint16)):

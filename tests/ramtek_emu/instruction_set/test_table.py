@@ -17,7 +17,6 @@ from ramtek_emu.instruction_set.table import (
     UNIMPLEMENTED,
     operands_named,
 )
-from tests.ramtek_emu.strategies import quick
 
 DOCS = Path(__file__).parents[3] / "docs"
 
@@ -64,7 +63,6 @@ def test_names_and_mnemonics_of_operands_are_unique() -> None:
     assert len(words) == len(set(words))
 
 
-@quick
 @given(st.integers(0, 0xFFFF), st.integers(0, 0xFFFF))
 def test_flag_words_name_operands_in_the_order_of_their_bits(first: int, second: int) -> None:
     expected = []

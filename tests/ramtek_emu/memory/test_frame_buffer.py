@@ -15,7 +15,7 @@ from ramtek_emu.memory.frame_buffer import FrameBuffer, WriteEnable
 from ramtek_emu.memory.scan_orders import SCAN_ORDERS, Point, Window
 from ramtek_emu.testing import rasters, words
 from tests.ramtek_emu import reference
-from tests.ramtek_emu.strategies import SMALL, masks, points, quick, scan_codes, thorough, windows
+from tests.ramtek_emu.strategies import SMALL, masks, points, scan_codes, windows
 
 
 def filled(raster: NDArray[np.uint16]) -> FrameBuffer:
@@ -24,7 +24,6 @@ def filled(raster: NDArray[np.uint16]) -> FrameBuffer:
     return buffer
 
 
-@thorough
 @given(
     rasters(),
     windows(),
@@ -52,7 +51,6 @@ def test_writing_a_run_equals_a_walk_word_by_word(
     assert after == twin_after
 
 
-@quick
 @given(rasters(), windows(), scan_codes, st.integers(0, 12), st.integers(0, 14), masks)
 def test_whole_runs_of_a_window_are_written_as_a_walk_writes_them(
     raster: NDArray[np.uint16], window: Window, code: int, first: int, count: int, mask: int
@@ -67,7 +65,6 @@ def test_whole_runs_of_a_window_are_written_as_a_walk_writes_them(
     assert buffer.words.tolist() == twin
 
 
-@quick
 @given(rasters(), windows(), scan_codes, points, st.integers(0, 300))
 def test_reading_a_run_equals_a_walk_word_by_word(
     raster: NDArray[np.uint16], window: Window, code: int, start: Point, count: int
@@ -78,7 +75,6 @@ def test_reading_a_run_equals_a_walk_word_by_word(
     assert after == twin_after
 
 
-@quick
 @given(rasters(), windows(), words(16), masks, st.none() | st.integers(0, 1 << 32))
 def test_a_fill_equals_a_run_of_a_repeated_word(
     raster: NDArray[np.uint16], window: Window, word: int, mask: int, seed: int | None

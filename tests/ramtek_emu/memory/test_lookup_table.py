@@ -10,10 +10,8 @@ from hypothesis import strategies as st
 from ramtek_emu import GMR_9300, PRINCETON_9300, ColorsError, Configuration, Ramtek9300, instructions
 from ramtek_emu.memory.lookup_table import LookupTable
 from ramtek_emu.testing import words
-from tests.ramtek_emu.strategies import quick
 
 
-@quick
 @given(st.integers(0, 0xFFFF), st.lists(words(16), max_size=40), st.integers(1, 70))
 def test_a_load_lands_word_by_word_at_the_counter_and_wraps(first: int, row: list[int], repeats: int) -> None:
     row = (row * repeats)[:2300]
@@ -32,7 +30,6 @@ def test_a_load_lands_word_by_word_at_the_counter_and_wraps(first: int, row: lis
 runs = st.tuples(st.integers(0, 2047), st.sampled_from([0, 1, 2, 3, 50, 2048, 2049]))
 
 
-@quick
 @given(
     st.sampled_from([GMR_9300, PRINCETON_9300]),
     st.lists(runs, min_size=1, max_size=4),
@@ -68,7 +65,6 @@ def test_loading_the_same_entries_repeatedly_counts_as_one_range() -> None:
     assert table.entries_written_since(table.written - 1) == (13, 14)
 
 
-@quick
 @given(st.integers(0, 0xFFFF), st.integers(0, 5000))
 def test_a_read_wraps_and_moves_the_counter(first: int, count: int) -> None:
     table = LookupTable()
@@ -78,7 +74,6 @@ def test_a_read_wraps_and_moves_the_counter(first: int, count: int) -> None:
     assert table.address == (first + count) % 2048
 
 
-@quick
 @given(st.integers(0, 0xFFFF), st.lists(words(16), min_size=1, max_size=30))
 def test_twelve_bit_words_come_back_as_they_were_sent(first: int, row: list[int]) -> None:
     table = LookupTable(PRINCETON_9300)

@@ -11,7 +11,7 @@ from ramtek_emu.memory.scan_orders import Point, Window
 from ramtek_emu.testing import words
 from tests.ramtek_emu import reference
 from tests.ramtek_emu.displays import box, sent
-from tests.ramtek_emu.strategies import SMALL, quick, scan_codes, windows
+from tests.ramtek_emu.strategies import SMALL, scan_codes, windows
 
 
 def test_operands_stay_until_they_are_set_again() -> None:
@@ -33,14 +33,12 @@ def test_addresses_count_from_index_registers_and_the_operating_point() -> None:
     assert box(display) == (20, 30, 26, 38)
 
 
-@quick
 @given(words(16))
 def test_a_word_is_a_number_in_two_s_complement(word: int) -> None:
     assert signed(word) & 0xFFFF == word
     assert -0x8000 <= signed(word) <= 0x7FFF
 
 
-@quick
 @given(st.lists(st.integers(-0x8000, 0x7FFF), min_size=6, max_size=6))
 def test_a_conic_is_the_same_in_single_words_and_in_pairs(numbers: list[int]) -> None:
     words = [number & 0xFFFF for number in numbers]
@@ -52,7 +50,6 @@ def test_a_pair_with_a_high_word_is_a_number_of_32_bits() -> None:
     assert coefficients((1, 2, 0xFFFF, 0xFFFE, *[0] * 8)) == (0x10002, -2, 0, 0, 0, 0)
 
 
-@quick
 @given(windows(), scan_codes, st.sampled_from([0, Flags.INDEX_1, Flags.INDEX_2, Flags.RELATIVE]))
 def test_a_window_moves_the_operating_point_to_where_its_scan_starts(
     window: Window, code: int, addressing: int

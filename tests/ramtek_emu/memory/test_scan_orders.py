@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 from ramtek_emu.memory.scan_orders import SCAN_ORDERS, Point, Window, blocks, paired_parts
 from tests.ramtek_emu import reference
-from tests.ramtek_emu.strategies import points, quick, scan_codes, windows
+from tests.ramtek_emu.strategies import points, scan_codes, windows
 
 
 def places(window: Window) -> set[tuple[int, int]]:
@@ -18,7 +18,6 @@ small = st.integers(-3, 6)
 small_windows = st.builds(Window, small, small, small, small)
 
 
-@quick
 @given(small_windows, small_windows, st.builds(Point, small, small))
 @example(Window(0, 0, 3, 3), Window(2, 2, 5, 5), Point(3, 3))
 def test_windows_meet_where_pixels_are_in_both(one: Window, other: Window, point: Point) -> None:
@@ -29,7 +28,6 @@ def test_windows_meet_where_pixels_are_in_both(one: Window, other: Window, point
     assert places(one.moved(2, -1)) == {(element + 2, line - 1) for element, line in places(one)}
 
 
-@quick
 @given(windows(), scan_codes, points, st.integers(0, 400))
 def test_a_run_steps_along_the_scan(window: Window, code: int, start: Point, count: int) -> None:
     order = SCAN_ORDERS[code]
@@ -42,7 +40,6 @@ def test_a_run_steps_along_the_scan(window: Window, code: int, start: Point, cou
     assert not 0 < before <= count or not reference.inside(places[0], window)
 
 
-@quick
 @given(windows(), scan_codes, points, st.integers(0, 400))
 def test_blocks_take_every_word_once_and_in_order(
     window: Window, code: int, start: Point, count: int
@@ -56,7 +53,6 @@ def test_blocks_take_every_word_once_and_in_order(
     assert done == count
 
 
-@quick
 @given(windows(), scan_codes, points, st.integers(1, 400))
 def test_pixels_in_pairs_take_every_place_of_the_twin_in_order(
     window: Window, code: int, start: Point, count: int

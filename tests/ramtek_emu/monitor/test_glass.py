@@ -18,7 +18,6 @@ from ramtek_emu.errors import escaped
 from ramtek_emu.monitor.glass import Glass, enlarged, pixel_under, viewport
 from ramtek_emu.monitor.overlay import Overlay
 from ramtek_emu.monitor.pattern import pattern
-from tests.ramtek_emu.strategies import quick
 from tests.virtual_screen import virtual_screen
 
 pygame = pytest.importorskip("pygame")
@@ -126,7 +125,6 @@ def test_the_parts_that_are_sent_are_seen_on_the_screen(
             glass.close()
 
 
-@quick
 @given(st.integers(1, 700), st.integers(1, 500), st.integers(1, 4000), st.integers(1, 3000))
 def test_the_field_is_placed_at_the_largest_whole_multiple(w: int, h: int, width: int, height: int) -> None:
     left, top, across, down = viewport((w, h), (width, height))
@@ -144,7 +142,6 @@ def test_the_field_is_placed_at_the_largest_whole_multiple(w: int, h: int, width
     assert abs(2 * top + down - height) <= 1
 
 
-@quick
 @given(st.integers(1, 70), st.integers(1, 50), st.integers(70, 400), st.integers(50, 300), st.booleans())
 def test_every_place_of_the_window_is_over_the_nearest_pixel(
     w: int, h: int, width: int, height: int, fit: bool

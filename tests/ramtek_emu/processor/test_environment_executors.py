@@ -8,10 +8,9 @@ from ramtek_emu import PRINCETON_9300, Ramtek9300, instructions
 from ramtek_emu.instruction_set.table import FORMATS, OPERANDS
 from ramtek_emu.processor.processor import Status
 from tests.ramtek_emu.displays import sent
-from tests.ramtek_emu.strategies import SMALL, quick, sent_words
+from tests.ramtek_emu.strategies import SMALL, sent_words
 
 
-@quick
 @given(st.dictionaries(st.sampled_from(sorted(OPERANDS)), st.integers(0, 0xFFFF)))
 def test_parameters_are_read_as_they_were_set(chosen: dict[str, int]) -> None:
     display = Ramtek9300()

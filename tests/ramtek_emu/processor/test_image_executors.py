@@ -13,7 +13,7 @@ from ramtek_emu.memory.scan_orders import Point, Window
 from ramtek_emu.testing import rasters
 from tests.ramtek_emu import reference
 from tests.ramtek_emu.displays import box, sent
-from tests.ramtek_emu.strategies import SMALL, masks, points, quick, scan_codes, sent_words, thorough, windows
+from tests.ramtek_emu.strategies import SMALL, masks, points, scan_codes, sent_words, windows
 
 addressings = st.sampled_from([0x00, 0x40, 0x80, 0xC0])
 
@@ -30,7 +30,6 @@ def packed(data: bytes, low_first: bool) -> list[int]:
     return words
 
 
-@thorough
 @given(
     rasters(),
     windows(),
@@ -94,7 +93,6 @@ def test_images_of_every_kind_equal_the_twin(
     assert display.receive(display.processor.waiting).tolist() == read
 
 
-@thorough
 @given(
     rasters(),
     windows(),
@@ -139,7 +137,6 @@ def test_rasters_of_every_kind_equal_the_twin(
     assert display.processor.parameters.start == places[-1]
 
 
-@thorough
 @given(
     rasters(), st.integers(0, 3), points, windows(), st.integers(0, 1), st.sampled_from([0, 1, 2, 3, 0xFFFF])
 )
@@ -178,7 +175,6 @@ def test_a_filled_area_has_the_pixels_that_a_walk_reaches(
     assert display.processor.parameters.start == start
 
 
-@thorough
 @given(rasters(), windows(), scan_codes, points, masks, masks, windows(), st.booleans())
 def test_a_copy_is_every_word_of_the_window_at_once(
     raster: NDArray[np.uint16],
@@ -220,7 +216,6 @@ def test_a_bulk_erase_heeds_the_mask_and_no_window() -> None:
     assert (display.words == 6).all()
 
 
-@quick
 @given(st.integers(0, 40), st.integers(0, 300))
 def test_dots_that_go_around_a_small_window_leave_the_last_ones(width: int, count: int) -> None:
     display = Ramtek9300(SMALL)
@@ -276,7 +271,6 @@ def test_an_image_without_operands_continues_the_last_image() -> None:
     assert display.words[1:3, 2:5].tolist() == [[1, 2, 3], [4, 5, 6]]
 
 
-@quick
 @given(windows(), scan_codes, st.lists(st.integers(0, 1023), min_size=1, max_size=60))
 def test_images_follow_the_scan_order_and_are_read_back(
     window: tuple[int, ...], code: int, row: list[int]
@@ -308,7 +302,6 @@ def test_a_whole_picture_survives_the_stream() -> None:
     assert (np.concatenate(received).reshape(480, 640) == words).all()
 
 
-@quick
 @given(st.integers(1, 70), st.integers(1, 1200), st.integers(-40, 40))
 def test_images_of_any_shape_arrive_whole(lines: int, elements: int, left: int) -> None:
     configuration = Configuration(name="WIDE", elements=1300, lines=80, planes=10)

@@ -11,7 +11,7 @@ from ramtek_emu import Ramtek9300, ReplyError
 from ramtek_emu.instruction_set.instruction import normal
 from ramtek_emu.instruction_set.table import Flags
 from tests.ramtek_emu.displays import sent
-from tests.ramtek_emu.strategies import SMALL, quick
+from tests.ramtek_emu.strategies import SMALL
 
 
 def test_asking_for_more_than_waits_is_refused_by_name() -> None:
@@ -31,7 +31,6 @@ def test_unread_replies_do_not_fill_the_memory() -> None:
     assert display.processor.waiting == 1 << 22
 
 
-@quick
 @given(st.lists(st.integers(0, 9), max_size=6), st.lists(st.integers(0, 12), max_size=8))
 def test_replies_are_read_in_order_however_many_words_are_taken(sizes: list[int], takes: list[int]) -> None:
     processor = Ramtek9300(SMALL).processor
@@ -54,7 +53,6 @@ def test_the_swap_flag_changes_the_two_colors() -> None:
     assert processor.colors(normal("ERS", {}, flags=Flags.SWAP)) == (2, 7)
 
 
-@quick
 @given(st.lists(st.tuples(*[st.integers(-0x8000, 0x7FFF)] * 2), min_size=1, max_size=5))
 def test_relative_points_are_counted_on_in_registers_of_16_bits(points: list[tuple[int, int]]) -> None:
     processor = Ramtek9300(SMALL).processor

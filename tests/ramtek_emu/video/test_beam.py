@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from ramtek_emu import GMR_9300, Ramtek9300, Timing
 from ramtek_emu.video.beam import Beam
-from tests.ramtek_emu.strategies import quick, sent_words
+from tests.ramtek_emu.strategies import sent_words
 
 TIMED = replace(GMR_9300, timing=Timing())
 
@@ -39,7 +39,6 @@ def test_cursors_blink_with_the_fields() -> None:
     assert sum(a != b for a, b in itertools.pairwise(seen)) in (3, 4)
 
 
-@quick
 @given(st.integers(1, 50), st.integers(0, 9), st.integers(1, 1000), st.integers(0, 10**7))
 def test_the_time_gives_the_line_of_the_beam(
     lines: int, blanked: int, line_time: int, nanoseconds: int
@@ -52,7 +51,6 @@ def test_the_time_gives_the_line_of_the_beam(
     )  # fmt: skip
 
 
-@quick
 @given(st.integers(0, 10**6), st.integers(0, 11))
 def test_a_wait_ends_where_its_line_begins_and_takes_less_than_a_field(nanoseconds: int, line: int) -> None:
     beam = Beam(Timing(line=1000, blanked_lines=2), 10)

@@ -26,10 +26,9 @@ from ramtek_emu.testing import rasters, streams, words
 from ramtek_emu.video.scan_out import Mark, Stamp, draw, lines_with, marks
 from tests.ramtek_emu import reference
 from tests.ramtek_emu.displays import colored
-from tests.ramtek_emu.strategies import SMALL, cuts, quick, sent_words, thorough
+from tests.ramtek_emu.strategies import SMALL, cuts, sent_words
 
 
-@quick
 @given(rasters(), st.integers(0, 2**32 - 1))
 def test_the_field_is_each_word_s_entry(raster: NDArray[np.uint16], seed: int) -> None:
     colors = np.random.default_rng(seed).integers(0, 256, (1024, 3))
@@ -166,7 +165,6 @@ def do(display: Ramtek9300, name: str, value: Any) -> None:
 
 
 @given(st.sampled_from(KINDS), st.integers(1, 4), STEPS)
-@thorough
 def test_an_updated_field_equals_a_whole_scan_out(
     kind: dict[str, Any], strip: int, steps: list[tuple[tuple[str, Any], bool]]
 ) -> None:
@@ -215,7 +213,6 @@ def test_after_a_load_only_lines_that_may_show_its_entries_are_written() -> None
 TALL = replace(SMALL, elements=40, lines=150)
 
 
-@quick
 @given(
     st.lists(
         st.tuples(st.integers(0, 1), st.integers(0, 60), st.integers(0, 170), st.integers(0, 3)),
@@ -442,7 +439,6 @@ def test_words_written_behind_the_beam_wait_for_the_next_field() -> None:
     assert display.field()[:, 0, 0].tolist() == [0] * 200 + [200] * 100 + [0] * 180
 
 
-@quick
 @given(streams(200), st.lists(st.integers(0, 200), max_size=5))
 def test_the_same_stream_gives_the_same_field_however_it_is_cut(stream: list[int], places: list[int]) -> None:
     slow = Timing(instruction=400_000, word=20_000, pixel=9_000)
@@ -493,7 +489,6 @@ def test_a_part_of_a_field_takes_its_part_of_the_mark() -> None:
     assert (whole == part).all()
 
 
-@quick
 @given(rasters(60, 5), st.integers(0, 1023), st.integers(1, 1024))
 def test_the_lines_that_show_a_run_of_entries_are_found(
     raster: NDArray[np.uint16], first: int, count: int

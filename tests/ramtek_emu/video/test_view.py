@@ -11,7 +11,7 @@ from ramtek_emu import Ramtek9300, instructions
 from ramtek_emu.memory.parameters import Parameters
 from ramtek_emu.memory.scan_orders import Point
 from ramtek_emu.video.view import PLAIN_VIEW, copy_shown, pixel_at, screen_at, shown_at, view_of
-from tests.ramtek_emu.strategies import SMALL, quick, sent_words, thorough
+from tests.ramtek_emu.strategies import SMALL, sent_words
 
 
 def twin_field(
@@ -31,7 +31,6 @@ def twin_field(
     return field
 
 
-@thorough
 @given(
     st.integers(1, 13), st.integers(1, 9), st.tuples(*[st.integers(-0x8000, 0x7FFF)] * 2),
     st.tuples(*[st.integers(1, 16)] * 2), st.booleans(),
@@ -65,7 +64,6 @@ def parameters_of(view: tuple[Point, tuple[int, int], bool]) -> Parameters:
     return parameters
 
 
-@quick
 @given(views)
 def test_a_whole_screen_is_copied_as_pixel_after_pixel_is_found(
     view: tuple[Point, tuple[int, int], bool],
@@ -80,7 +78,6 @@ def test_a_whole_screen_is_copied_as_pixel_after_pixel_is_found(
             assert screen[line, element] == words[down, across]
 
 
-@quick
 @given(views)
 def test_arrays_of_places_give_the_pixels_of_single_places(
     view: tuple[Point, tuple[int, int], bool],
@@ -91,7 +88,6 @@ def test_arrays_of_places_give_the_pixels_of_single_places(
     assert lines.tolist() == [pixel_at(parameters, SMALL, 0, line)[1] for line in range(2, 9)]
 
 
-@quick
 @given(views, st.integers(0, 12), st.integers(0, 8))
 def test_where_a_pixel_is_shown_that_pixel_is_found(
     view: tuple[Point, tuple[int, int], bool], element: int, line: int

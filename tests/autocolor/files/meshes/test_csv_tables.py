@@ -26,7 +26,7 @@ from autocolor.files.meshes.number_text import Problems
 from autocolor.files.meshes.repair import MeshReport
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalar import MeshScalar
-from tests.autocolor.meshes import cube
+from tests.small import cube
 
 NODES = "node,x,y,z\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n"
 POLYGONS = "polygon,part,node1,node2,node3,node4\n1,hood,1,2,3,4\n2,roof,1,2,3,\n"

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Mesh, View, read_scene, render, scene_of
@@ -33,9 +33,10 @@ from autocolor.files.meshes.repair import Placement
 from autocolor.scene.scalar import MeshScalar
 from autocolor.testing import meshes, outside_views, views
 from autocolor.visibility import projection as projection_room
+from tests.autocolor.decals import decal_on_ground
 from tests.autocolor.files.refusals import refusal
-from tests.autocolor.meshes import cube, decal_on_ground, grid
 from tests.autocolor.strategies import rasters
+from tests.small import cube, grid
 
 
 def folder_of(folder: Path, **tables: AnyArray) -> Path:
@@ -499,7 +500,6 @@ def test_files_that_are_missing_or_no_files_are_refused(tmp_path: Path) -> None:
         mapped(tmp_path / "empty.npy")
 
 
-@settings(max_examples=10)
 @given(st.integers(0, 255))
 def test_any_other_byte_in_the_header_is_refused_or_gives_a_table_of_the_same_size(
     tmp_path_factory: pytest.TempPathFactory, byte: int

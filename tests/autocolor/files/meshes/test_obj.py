@@ -36,7 +36,7 @@ from autocolor.files.meshes.repair import MeshReport, Placement
 from autocolor.files.reading import read_bytes
 from autocolor.scene.defaults import COLORED_PAINT, created_surface
 from tests.autocolor.files.refusals import is_read_or_refused, refusal
-from tests.autocolor.meshes import cube, sphere
+from tests.small import cube, sphere
 
 SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
 

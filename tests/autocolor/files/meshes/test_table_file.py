@@ -15,7 +15,7 @@ from autocolor.files.meshes.repair import Placement
 from autocolor.files.meshes.table_file import TABLE_FILE, table_file_bytes
 from autocolor.scene.scalar import MeshScalar
 from autocolor.testing import meshes
-from tests.autocolor.meshes import cube
+from tests.small import cube
 
 
 @given(meshes())

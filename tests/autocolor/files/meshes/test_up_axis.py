@@ -10,7 +10,7 @@ from autocolor import Mesh
 from autocolor.arrays import Floats
 from autocolor.files.formats import MESH_FORMATS
 from autocolor.files.meshes.up_axis import _rests, _symmetries, seems_to_lie
-from tests.autocolor.meshes import cube, sphere
+from tests.small import cube, sphere
 
 OBJ = next(each.prior_of_y for each in MESH_FORMATS if each.name == "OBJ") or 0.0
 PRIORS = sorted({each.prior_of_y for each in MESH_FORMATS if each.prior_of_y is not None})

@@ -30,7 +30,7 @@ from autocolor.files.scene_toml.scene_meshes import (
 )
 from autocolor.files.scene_toml.toml_text import SceneProblems
 from autocolor.scene.scalar import MeshScalar
-from tests.autocolor.meshes import cube
+from tests.small import cube
 
 CAR = "v 0 0 0\nv 1 0 0\nv 1 1 2\nv 0 1 0\ng hood\nf 1 2 3 4\n"
 MESH = '[[mesh]]\nfile = "car.obj"\n'

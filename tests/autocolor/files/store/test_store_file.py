@@ -35,7 +35,7 @@ from tests.autocolor.linked_scenes import linked_scenes
 
 OWN_INDEXES = "SELECT name FROM sqlite_master WHERE type = 'index' AND sql IS NOT NULL"
 
-ONE_FILE = settings(max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture])
+ONE_FILE = settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 
 
 @ONE_FILE

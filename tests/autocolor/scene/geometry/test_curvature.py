@@ -11,7 +11,7 @@ from hypothesis import given
 from autocolor import Mesh
 from autocolor.scene.geometry import curvature
 from autocolor.testing import meshes
-from tests.autocolor.meshes import cube, grid, sphere, wall
+from tests.small import cube, grid, sphere, wall
 
 Array = npt.NDArray[np.float64]
 

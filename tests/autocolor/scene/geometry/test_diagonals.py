@@ -10,7 +10,7 @@ from autocolor.checks import Vector
 from autocolor.scene.geometry import diagonals as module
 from autocolor.scene.geometry.diagonals import NO_DIAGONAL, quad_diagonals
 from autocolor.testing import meshes, vectors
-from tests.autocolor.meshes import grid, sphere
+from tests.small import grid, sphere
 
 DART = [(0.0, 0.0, 0.0), (2.0, 5.0, 0.0), (4.0, 0.0, 0.0), (2.0, 1.0, 0.0)]
 SQUARE = [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (1.0, 1.0, 0.0), (0.0, 1.0, 0.0)]

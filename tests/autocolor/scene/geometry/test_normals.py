@@ -23,7 +23,7 @@ from autocolor.scene.geometry.normals import (
     united_items,
 )
 from autocolor.testing import meshes
-from tests.autocolor.meshes import cube, grid, sphere
+from tests.small import cube, grid, sphere
 
 EPSILON = float(np.finfo(np.float32).eps)
 """Normals are computed in float64 and rounded once."""

@@ -25,7 +25,8 @@ from autocolor.scene.geometry.planes import (
     unite_in_fitted_planes,
 )
 from autocolor.testing import meshes
-from tests.autocolor.meshes import ROUNDINGS, cube, decal_on_ground, grid, sphere
+from tests.autocolor.decals import ROUNDINGS, decal_on_ground
+from tests.small import cube, grid, sphere
 
 GROUND = grid(3, 2, (-1, 0, -1), (2, 0, 0), (0, 0, 2), "ground")
 DECAL = grid(2, 2, (-0.4, 0, -0.3), (0.5, 0, 0.1), (-0.1, 0, 0.5), "decal")

@@ -10,8 +10,8 @@ from autocolor.screens.light_and_view.light_and_view_screen import LightAndViewS
 from autocolor.screens.screen import Handle
 from autocolor.screens.viewer import Viewer
 from ramtek_emu import Ramtek9300
-from tests.autocolor.meshes import cube
 from tests.autocolor.screens.hand import Hand
+from tests.small import cube
 
 KEY = Light("key", (2.0, -3.0, 4.0), aim=(0.5, 0.5, 0.5), concentration=2.0)
 FILL = Light("fill", (-3.0, -3.0, 1.0), intensity=0.5)

@@ -34,7 +34,7 @@ from autocolor.testing import directions, meshes, views
 from autocolor.visibility.projection import projection
 from autocolor.visibility.visible_surfaces import visible_surfaces
 from autocolor.widgets.items import Area
-from tests.autocolor.meshes import CUBE_NODES, CUBE_QUADS, cube, grid, sphere, wall
+from tests.small import CUBE_NODES, CUBE_QUADS, cube, grid, sphere, wall
 
 AREA = area_of_picture(PICTURE_AREA)
 EYE = View((4.0, -5.0, 3.0), target=(0.5, 0.5, 0.5))

@@ -30,7 +30,7 @@ from autocolor.screens.light_and_view.orthographic_views import (
 from autocolor.testing import scenes, vectors
 from autocolor.widgets.items import Area
 from autocolor.widgets.menu import WORK
-from tests.autocolor.meshes import cube, grid
+from tests.small import cube, grid
 
 coordinates = st.floats(-1e6, 1e6).map(lambda value: value + 0.0)
 points = st.tuples(coordinates, coordinates, coordinates)

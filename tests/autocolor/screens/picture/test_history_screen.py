@@ -10,8 +10,9 @@ from autocolor.studio import Studio
 from autocolor.widgets.items import GRAY, WHITE
 from ramtek_emu import Ramtek9300
 from tests.autocolor.screens.ball import seen_on
-from tests.autocolor.screens.boxes import boxes, hint_of
+from tests.autocolor.screens.boxes import hint_of
 from tests.autocolor.screens.hand import Hand
+from tests.small import boxes
 
 
 def hand_after(steps: int, folder: Path) -> Hand:

@@ -18,9 +18,8 @@ from autocolor.studio import Studio
 from autocolor.widgets.sheet import Sheet
 from ramtek_emu import Ramtek9300
 from tests.autocolor.screens.ball import MIDDLE, ball_scene, hand_before
-from tests.autocolor.screens.boxes import boxes
 from tests.autocolor.screens.hand import Hand
-from tests.autocolor.sessions import car
+from tests.small import boxes, car
 
 FLOOR = 320, 430
 BACKGROUND = 20, 20

@@ -29,7 +29,7 @@ from autocolor.screens.picture.picture_edits import (
 from autocolor.screens.session import Session
 from autocolor.studio import Studio
 from ramtek_emu import Ramtek9300
-from tests.autocolor.meshes import cube, grid, wall_scene
+from tests.small import cube, grid, wall_scene
 
 
 @pytest.fixture

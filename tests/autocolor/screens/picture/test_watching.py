@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Scene
@@ -20,7 +20,7 @@ from autocolor.testing import scenes
 from autocolor.widgets.items import WHITE, Area, filled
 from ramtek_emu import Ramtek9300
 from tests.autocolor.screens.hand import Hand
-from tests.autocolor.sessions import SMALL, car
+from tests.small import SMALL, car
 
 CLOSE = car().with_view(field_of_view=8.0)
 """A scene that is seen on every line, so that each one that is not there is missed."""
@@ -282,7 +282,6 @@ def test_what_stands_over_the_picture_comes_back_after_watching(
 
 
 @given(scenes(), st.lists(st.floats(0, 0.4), max_size=8))
-@settings(max_examples=25, deadline=None)
 def test_at_any_time_the_lines_that_are_there_are_those_of_the_picture(
     scene: Scene, parts: list[float]
 ) -> None:

@@ -10,8 +10,9 @@ from autocolor import CookTorrance, Surface
 from autocolor.scene.columns import fields_of
 from autocolor.scene.reflection_models import MODELS, START_CURVE, SpecularGrowth
 from autocolor.widgets.bars import Bar
-from tests.autocolor.screens.boxes import boxes, hand_at, told, undo, words_are_those_of_the_scene
+from tests.autocolor.screens.boxes import hand_at, told, undo, words_are_those_of_the_scene
 from tests.autocolor.screens.hand import Hand
+from tests.small import boxes
 
 NUMBERS: dict[str, Callable[[Surface], object]] = {
     "diffuse": lambda surface: surface.reflectance.diffuse,

@@ -1,15 +1,37 @@
-"""Meshes that the tests know all about."""
+"""The small things that tests are made of: meshes, scenes, a scene's folder, studios, a stream.
+
+Each is made here once. A test that needs another part, light or file changes a copy of these.
+"""
 
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 
-from autocolor import Mesh, Reflectance, Scene, Surface, View, scene_of
+from autocolor import (
+    Flap,
+    Flaps,
+    Light,
+    Mesh,
+    Reflectance,
+    Scene,
+    Studio,
+    Surface,
+    View,
+    read_scene,
+    scene_of,
+)
 from autocolor.checks import Vector
+from autocolor.journal.places import checksum_of
 from autocolor.scene.changes import SceneFields
+from autocolor.scene.scalar import MeshScalar
+from ramtek_emu import Configuration, Ramtek9300, instructions
+
+SMALL = Configuration(name="small", elements=32, lines=24, planes=10)
+"""A display for a picture whose size is not the subject."""
 
 STRETCHED: SceneFields = {
     "scaling": "surface",
@@ -136,49 +158,123 @@ def ramp(count: int) -> npt.NDArray[np.float32]:
     return np.linspace(0, 1, count, dtype=np.float32)
 
 
-def decal_on_ground(seed: int, rounding: str = "none") -> tuple[Mesh, View]:
-    """A ground of a few polygons in a random plane, a decal on it, and a view; part 1 is the decal.
-
-    `rounding` is "none", "float32" or "decimals" (six of them).
-    """
-    random = np.random.default_rng(seed)
-    normal, some = random.normal(size=(2, 3))
-    across = np.cross(normal, some) / np.linalg.norm(np.cross(normal, some))
-    up = np.cross(normal, across) / np.linalg.norm(normal)
-    middle, size = random.uniform(-1, 1, 3), random.uniform(0.5, 3)
-
-    def patch(center: npt.NDArray[np.float64], half: npt.NDArray[np.float64], name: str) -> Mesh:
-        turn = random.uniform(0, 2 * math.pi)
-        along = 2 * half[0] * (math.cos(turn) * across + math.sin(turn) * up)
-        upward = 2 * half[1] * (math.cos(turn) * up - math.sin(turn) * across)
-        columns, rows = random.integers(1, 9, 2).tolist()
-        corner = tuple((center - along / 2 - upward / 2).tolist())
-        flat = grid(columns, rows, corner, tuple(along.tolist()), tuple(upward.tolist()), name)
-        quads = flat.node_numbers
-        if random.random() < 0.5:
-            quads = np.concatenate([quads[:, [0, 1, 2, 2]], quads[:, [0, 2, 3, 3]]])
-        return Mesh(flat.coordinates, quads, np.zeros(len(quads), np.intp), (name,))
-
-    offset = random.uniform(-0.3, 0.3, 2) * size
-    both = Mesh.joined(
+def car() -> Scene:
+    """A round body, a pane and wheels, under two lights of the studio, with a scalar that the body lacks."""
+    mesh = Mesh.joined(
         [
-            patch(middle, np.array([size, size]), "ground"),
-            patch(middle + offset[0] * across + offset[1] * up, random.uniform(0.1, 0.6, 2) * size, "decal"),
+            Mesh(
+                sphere(16, 10).coordinates,
+                sphere(16, 10).node_numbers,
+                sphere(16, 10).part_numbers,
+                ("hood",),
+            ),
+            grid(2, 2, (-1.3, -1.2, -0.4), (1.0, 0.2, 0), (0, 0, 1.0), "pane"),
+            cube(1.2),
         ]
     )
-    coordinates = {
-        "none": both.coordinates,
-        "float32": both.coordinates.astype(np.float32).astype(np.float64),
-        "decimals": both.coordinates.round(6),
-    }[rounding]
-    eye = random.normal(size=3)
-    eye *= random.uniform(2, 6) * size / np.linalg.norm(eye)
-    view = View(
-        tuple((middle + eye).tolist()),
-        target=tuple((middle + random.uniform(-0.3, 0.3, 3)).tolist()),
-        field_of_view=random.uniform(20, 70),
-    )
-    return Mesh(coordinates, both.node_numbers, both.part_numbers, both.part_names), view
+    stress = np.where(mesh.part_numbers == 0, np.nan, mesh.coordinates[mesh.node_numbers[:, 0], 0])
+    mesh = mesh.with_scalars(MeshScalar("stress", stress, "polygon"))
+    return scene_of(
+        mesh,
+        surface_of_part={"hood": "body", "pane": "glass", "cube": "wheels"},
+        surfaces=[Surface("body"), Surface("glass"), Surface("wheels")],
+        lights=[
+            Light("key", (2.0, -4.0, 3.0), aim=(0, 0, 0), concentration=5, cone_angle=60),
+            Light("fill", (-3.0, -2.0, 1.0), 0.4, flaps=Flaps(z=Flap(-0.5, 0.9, on=False))),
+        ],
+        view=View((1.0, -4.0, 1.0), target=(0.0, 0.0, 0.0), field_of_view=40.0),
+    ).replace(**STRETCHED)
 
 
-ROUNDINGS = ("none", "float32", "decimals")
+def opened(scene: Scene | None = None) -> tuple[Studio, Ramtek9300]:
+    display = Ramtek9300(SMALL)
+    return Studio(car() if scene is None else scene, display), display
+
+
+def held(display: Ramtek9300) -> tuple[bytes, bytes]:
+    return display.words.tobytes(), display.entries.tobytes()
+
+
+def fresh(scene: Scene) -> tuple[bytes, bytes]:
+    return held(opened(scene)[1])
+
+
+def is_true_to_its_file(studio: Studio) -> bool:
+    """Whether the file of a scene that counts as saved gives that scene, whatever its name."""
+    path = next(iter(studio.history.files), None)
+    if studio.is_changed or path is None:
+        return True
+    return checksum_of(read_scene(path).replace(name=studio.scene.name)) == checksum_of(studio.scene)
+
+
+TWO_PARTS = """\
+v 0 0 0
+v 1 0 0
+v 1 0 1
+v 0 0 1
+v 1 1 0
+v 1 1 1
+g front.low
+f 1 2 3 4
+g side
+f 2 5 6 3
+"""
+"""An OBJ file of two squares, which are two parts."""
+
+TWO_PARTS_SCENE = """\
+[[mesh]]
+file = "two.obj"
+[surfaces."front.low"]
+object_color = "#102030"
+[surfaces.side]
+[[lights]]
+name = "key"
+position = [2.0, -3.0, 4.0]
+aim = [0, 0, 0]
+flaps.z = { minimum = 0.0, maximum = 0.5 }
+[[lights]]
+name = "key.2"
+position = [-2.0, -3.0, 4.0]
+"""
+"""A scene file of them, with two lights."""
+
+
+def scene_folder(folder: Path) -> Path:
+    """A folder that is made with the scene file of two squares and their mesh."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "two.obj").write_text(TWO_PARTS)
+    (folder / "scene.toml").write_text(TWO_PARTS_SCENE)
+    return folder
+
+
+KEY = Light(
+    "key",
+    (2, -3, 4),
+    aim=(0.5, 0.5, 0.5),
+    concentration=4,
+    cone_angle=60,
+    flaps=Flaps(x=Flap(-0.5, 1.5), z=Flap(maximum=0.75, on=False)),
+)
+
+
+def boxes() -> Scene:
+    """A cube of two surfaces under two lights."""
+    mesh = Mesh(cube().coordinates, cube().node_numbers, np.array([0, 0, 0, 1, 1, 1]), ("low", "high"))
+    return scene_of(
+        mesh,
+        surfaces=[Surface("low"), Surface("high")],
+        surface_of_part={"low": "low", "high": "high"},
+        lights=[KEY, Light("fill", (-3, -3, 1), intensity=0.5)],
+        view=View((-2, -3, 2), target=(0.5, 0.5, 0.5)),
+        name="boxes",
+    ).replace(**STRETCHED)
+
+
+BOXES_STREAM = (
+    instructions.erase((0, 0, 12, 8), 5),
+    instructions.load_entries(5, [[10, 20, 30]]),
+    instructions.erase((2, 2, 4, 4), 7),
+    instructions.erase((3, 3, 9, 6), 5),
+    instructions.load_entries(5, [[40, 50, 60]]),
+)
+"""Five instructions for a small display: areas over each other, and an entry that changes."""
