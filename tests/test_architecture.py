@@ -65,18 +65,20 @@ DOORS_OF_THE_DISPLAY = {
 }  # fmt: skip
 OUTSIDE = {"numpy", "click", "PIL", "pygame"}
 
-FOR_TESTS = {"hypothesis"}
-"""The packages of the extra `testing`."""
-
-READING_FOR_US = {"meshio", "trimesh"}
-"""The packages of the extra `meshes`."""
-
-
-WRITING_LAYERS = {"OpenEXR"}
-"""The package of the extra `exr`."""
-
-IN_NOTEBOOKS = {"anywidget", "traitlets"}
-"""The packages of the extra `notebook`."""
+PLACES = {
+    ("pygame",): {("ramtek_emu.monitor.glass", True)},
+    # Colors written as "#rrggbb" need no Pillow: it is loaded for the first name.
+    ("PIL",): {
+        ("ramtek_emu.png", True), ("ramtek_emu.films", True), ("autocolor.batches.outputs", False),
+        ("autocolor.batches.sheet", False), ("autocolor.scene.kinds", False),
+    },
+    ("meshio", "trimesh"): {("autocolor.files.meshes.foreign_worker", False)},
+    ("OpenEXR",): {("autocolor.layers", False)},
+    # The studio names the class of its widgets for type checkers.
+    ("anywidget", "traitlets"): {("autocolor.web.notebook", False), ("autocolor.studio", False)},
+    ("hypothesis",): {("autocolor.testing", True), ("ramtek_emu.testing", True)},
+}  # fmt: skip
+"""The modules that import a library, and whether they do so when they are loaded themselves."""
 
 
 class Import(NamedTuple):
@@ -146,38 +148,15 @@ def test_the_renderer_knows_the_display_only_where_they_meet_and_only_by_its_doo
             assert not used or name in KNOWING_THE_DISPLAY or name.startswith(WINGS_KNOWING_THE_DISPLAY), name
 
 
-def test_pygame_is_in_one_file() -> None:
-    assert {name for name, _ in importers({"pygame"})} == {"ramtek_emu.monitor.glass"}
-
-
-def test_pillow_is_in_files_for_pictures_and_films_for_the_names_of_colors_and_in_batches() -> None:
-    # Colors written as "#rrggbb" need no Pillow: it is loaded for the first name.
-    encoders = {("ramtek_emu.png", True), ("ramtek_emu.films", True)}
-    batches = {(f"autocolor.batches.{name}", False) for name in ("outputs", "sheet")}
-    assert importers({"PIL"}) == {*encoders, *batches, ("autocolor.scene.kinds", False)}
+@pytest.mark.parametrize(("libraries", "places"), PLACES.items())
+def test_a_library_is_in_its_place(libraries: tuple[str, ...], places: set[tuple[str, bool]]) -> None:
+    assert importers(set(libraries)) == places
 
 
 def test_nothing_is_imported_that_is_no_dependency() -> None:
     used = {top(i.target) for imports in IMPORTS.values() for i in imports}
-    used_by_us = {*PUBLIC_NAMES, *OUTSIDE, *FOR_TESTS, *READING_FOR_US, *WRITING_LAYERS, *IN_NOTEBOOKS}
-    assert used <= {*used_by_us, *sys.stdlib_module_names}
-
-
-def test_the_libraries_that_read_meshes_are_in_one_file_and_loaded_when_they_are_needed() -> None:
-    assert importers(READING_FOR_US) == {("autocolor.files.meshes.foreign_worker", False)}
-
-
-def test_hypothesis_is_in_the_two_modules_that_are_for_tests() -> None:
-    assert {name for name, _ in importers(FOR_TESTS)} == {"autocolor.testing", "ramtek_emu.testing"}
-
-
-def test_the_library_that_writes_layers_is_in_one_file_and_loaded_when_it_is_needed() -> None:
-    assert importers(WRITING_LAYERS) == {("autocolor.layers", False)}
-
-
-def test_the_libraries_of_widgets_are_in_one_file_and_loaded_when_they_are_needed() -> None:
-    # The studio names the class of its widgets for type checkers.
-    assert importers(IN_NOTEBOOKS) == {("autocolor.web.notebook", False), ("autocolor.studio", False)}
+    allowed = {*PUBLIC_NAMES, *OUTSIDE, *(name for names in PLACES for name in names)}
+    assert used <= {*allowed, *sys.stdlib_module_names}
 
 
 def test_constants_are_final_and_array_types_stand_in_one_module() -> None:
@@ -191,15 +170,6 @@ def test_constants_are_final_and_array_types_stand_in_one_module() -> None:
                 assert isinstance(node, ast.AnnAssign), f"{name}: {names} must be Final"
                 assert ast.unparse(node.annotation).startswith("Final"), f"{name}: {names} must be Final"
         assert ("NDArray" in MODULES[name].read_text("utf-8")) == (name == f"{top(name)}.arrays"), name
-
-
-def test_every_subject_has_its_tests_at_the_mirrored_place() -> None:
-    mirrored = [
-        path.relative_to(ROOT).with_name(f"test_{path.name}")
-        for path in MODULES.values()
-        if not path.stem.startswith("__")
-    ]
-    assert [str(path) for path in mirrored if not (ROOT / "tests" / path).is_file()] == []
 
 
 def test_every_wing_has_its_place_in_the_order() -> None:
@@ -243,13 +213,6 @@ def test_no_modules_import_each_other_in_a_circle() -> None:
 
     for name in MODULES:
         visit(name, ())
-
-
-def test_no_two_modules_of_a_wing_have_the_same_name() -> None:
-    names = Counter(
-        (top(name), wing_of(name), path.stem) for name, path in MODULES.items() if path.stem != "__init__"
-    )
-    assert [name for name, count in names.items() if count > 1] == []
 
 
 def test_no_two_classes_have_the_same_name() -> None:

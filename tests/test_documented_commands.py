@@ -18,6 +18,7 @@ from autocolor import read_scene
 from docs.generate.blocks import Command, blocks_of, commands_of
 from docs.generate.commands import ROOT, here, process
 from tests.ramtek_emu.serving import serving
+from tests.tables import first
 
 NOT_RUN = {
     "autocolor view coupe": "it opens a window",
@@ -78,6 +79,9 @@ DOCUMENTS = {
     if (blocks := blocks_of(path.read_text("utf-8")))
 }
 
+IN_ORDER = sorted(DOCUMENTS, key=("README.md", "start.md").__contains__, reverse=True)
+"""First the documents that a newcomer reads."""
+
 THE_DISPLAY = "tcp://127.0.0.1:9300"
 """The address of the display that the reader has started."""
 
@@ -112,7 +116,9 @@ def ended(line: str, folder: Path) -> tuple[int, str, str]:
         return started.returncode, out, err
 
 
-@pytest.mark.parametrize("document", DOCUMENTS)
+@pytest.mark.parametrize(
+    "document", first(2, sorted(DOCUMENTS, key=("start.md", "README.md").__contains__, reverse=True))
+)
 def test_every_code_block_of_a_document_ends_well(document: str, tmp_path: Path) -> None:
     make_inputs(tmp_path)
     names: dict[str, object] = {}

@@ -14,6 +14,8 @@ import autocolor
 from examples import choose_paint, light_a_scan, stress_on_a_bracket
 from scenes.modeling import head
 
+pytestmark = pytest.mark.thorough
+
 ROOT = Path(__file__).parents[1]
 PICTURES = {"paints.png", "scan.png", "flatter.png", "stress.png", "stress-viridis.png"}
 
@@ -56,11 +58,11 @@ def test_the_sheet_of_paints_has_25_of_200_and_no_two_look_alike(
     assert min(differences) > 0.5
 
 
+@pytest.mark.needs("scipy")
 def test_scipy_finds_about_the_place_of_the_light_that_the_coupe_s_scene_has(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """The author of the scene placed the light by eye. Coming from above, it shows no crease."""
-    pytest.importorskip("scipy.optimize")
     from examples import flatter
 
     monkeypatch.setattr(flatter, "LINES", 120)
@@ -92,13 +94,6 @@ def test_a_scan_stands_up_and_its_own_lights_leave_one_side_dark(
     assert specks(upright) > 2 * specks(smooth)
     on_head = smooth > 10
     assert (lit[on_head] < 30).mean() > 0.2 > (smooth[on_head] < 30).mean()
-
-
-def test_a_scan_of_the_user_is_lit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(light_a_scan, "LINES", 30)
-    monkeypatch.setattr(light_a_scan, "ELEMENTS", 40)
-    light_a_scan.main(tmp_path, ROOT / "scenes" / "pyramid" / "pyramid.obj")
-    assert pixels_of(tmp_path / "scan.png").shape == (60, 80, 3)
 
 
 def test_the_scanned_head_is_noisy_and_has_a_hole(tmp_path: Path) -> None:

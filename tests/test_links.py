@@ -39,16 +39,6 @@ def test_every_link_of_a_document_leads_to_a_file_and_a_heading(document: str) -
     assert not lost
 
 
-def test_a_link_to_a_missing_file_or_heading_is_lost() -> None:
-    assert not is_lost("README.md", "docs/COLUMNS.md#view")
-    assert not is_lost("docs/COLUMNS.md", "#view")
-    assert is_lost("README.md", "docs/COLUMNS.md#eye")
-    assert is_lost("docs/COLUMNS.md", "#eye")
-    assert is_lost("docs/COLUMNS.md", "docs/COLUMNS.md")
-    assert is_lost("README.md", "docs/recolor.webp#view")
-    assert is_lost("README.md", "docs")
-
-
 def test_links_in_code_and_on_other_sites_are_left_alone() -> None:
     text = "[a](b.md) `[c](d.md)` ![e](f.png)\n```\n[g](h.md)\n```\n[i](https://j.org/k) [l](#m)\n"
     assert [link[0] for link in links_of(text)] == ["b.md", "f.png", "#m"]
