@@ -27,13 +27,14 @@ def refused(
     """
     rows = list(cases)
 
-    @pytest.mark.parametrize(("given", "sentence"), rows, ids=[sentence[:60] for _, sentence in rows])
     def test(given: Any, sentence: str) -> None:
         with pytest.raises(error) as caught:
             act(given)
         assert str(caught.value) == sentence
 
-    return test
+    names = [sentence[:60] for _, sentence in rows]
+    table: Callable[[Any, str], None] = pytest.mark.parametrize(("given", "sentence"), rows, ids=names)(test)
+    return table
 
 
 def call(function: Callable[[], object]) -> object:
