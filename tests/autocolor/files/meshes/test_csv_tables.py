@@ -9,13 +9,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor.errors import InputError
-from autocolor.files.formats import format_of_folder, read_mesh
+from autocolor.files.formats import format_of_folder
 from autocolor.files.meshes.csv_tables import (
     NOTHING,
     ROWS_AT_ONCE,
     CellKind,
     CsvRows,
-    NameCells,
     NumberCells,
     WholeCells,
     csv_tables_bytes,
@@ -26,7 +25,7 @@ from autocolor.files.meshes.number_text import Problems
 from autocolor.files.meshes.repair import MeshReport
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalar import MeshScalar
-from tests.small import cube
+from tests.autocolor.files.meshes.written import assert_equal, writable_meshes
 
 NODES = "node,x,y,z\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n"
 POLYGONS = "polygon,part,node1,node2,node3,node4\n1,hood,1,2,3,4\n2,roof,1,2,3,\n"
@@ -207,12 +206,6 @@ def test_cells_converted_at_once_are_those_converted_one_by_one(cells: list[str]
             assert value == one or (math.isnan(value) and math.isnan(one))
 
 
-def test_names_are_numbered_in_their_order_and_made_printable() -> None:
-    names = NameCells("file")
-    assert names.at_once(["hood", "", " hood", "a\0b", "hood"]).tolist() == [0, 1, 0, 2, 0]
-    assert list(names.rows) == ["hood", "file", "a?b"]
-
-
 def test_rows_of_many_blocks_keep_their_numbers_and_values(tmp_path: Path) -> None:
     count = 2 * ROWS_AT_ONCE + 5
     path = tmp_path / "a.csv"
@@ -257,52 +250,11 @@ def test_a_mesh_is_two_tables_with_its_scalars() -> None:
     )
 
 
-NAMES = st.text(st.characters(exclude_categories=("C", "Z")), min_size=1, max_size=9)
-SCALAR_NAMES = NAMES | st.sampled_from(["x", "X", "node5", "scalar", "scalar x", "part", "nodes"])
-VALUES = st.floats(-1e30, 1e30) | st.just(math.nan)
-
-
-@given(
-    parts=st.lists(NAMES, min_size=2, max_size=2, unique=True),
-    names=st.lists(SCALAR_NAMES, max_size=4, unique=True),
-    places=st.lists(st.floats(-1e3, 1e3), min_size=4, max_size=4),
-    values=st.lists(VALUES, min_size=4, max_size=4),
-)
-def test_a_mesh_reads_back_equal(
-    parts: list[str],
-    names: list[str],
-    places: list[float],
-    values: list[float],
-    tmp_path_factory: pytest.TempPathFactory,
-) -> None:
-    coordinates = SQUARE.copy()
-    coordinates[:, 2] = places
-    scalars = [
-        MeshScalar(name, np.array(values), "node")
-        if number % 2 == 0
-        else MeshScalar(name, np.array(values[:2]), "polygon")
-        for number, name in enumerate(names)
-    ]
-    mesh = Mesh(coordinates, TWO, np.array([0, 1]), tuple(parts), scalars=tuple(scalars))
-    folder = tmp_path_factory.getbasetemp()
-    paths = folder / "nodes.csv", folder / "polygons.csv"
-    for path, data in zip(paths, csv_tables_bytes(mesh), strict=True):
-        path.write_bytes(data)
-    report = read_csv_tables(*paths)
-    assert report.repairs == ()
-    assert report.mesh.part_names == mesh.part_names
-    for name in ("coordinates", "node_numbers", "part_numbers"):
-        np.testing.assert_array_equal(getattr(report.mesh, name), getattr(mesh, name))
-    found = {each.name: each for each in report.mesh.scalars}
-    assert set(found) == set(names)
-    for scalar in scalars:
-        assert found[scalar.name].of == scalar.of
-        np.testing.assert_array_equal(found[scalar.name].values, scalar.values)
-
-
-def test_the_tables_of_a_mesh_are_a_folder_that_is_read_again(tmp_path: Path) -> None:
-    write_csv_tables(tmp_path, cube())
-    assert format_of_folder(tmp_path).name == "CSV"  # type: ignore[union-attr]
-    again = read_mesh({"nodes": tmp_path / "nodes.csv", "polygons": tmp_path / "polygons.csv"})
-    assert np.array_equal(again.mesh.coordinates, cube().coordinates)
-    assert again.repairs == ()
+@given(mesh=writable_meshes())
+def test_a_mesh_reads_back_equal(mesh: Mesh, tmp_path_factory: pytest.TempPathFactory) -> None:
+    folder = tmp_path_factory.getbasetemp() / "written"
+    write_csv_tables(folder, mesh, overwrite=folder.exists())
+    found = format_of_folder(folder)
+    assert found is not None
+    assert found.name == "CSV"
+    assert_equal(read_csv_tables(folder / "nodes.csv", folder / "polygons.csv"), mesh)

@@ -55,13 +55,6 @@ def test_a_header_says_elements_and_where_their_data_begin(feed: str) -> None:
     assert (header.length, header.lines) == (len(data), 9)
 
 
-@pytest.mark.parametrize(
-    ("name", "order"), [("ascii", ""), ("binary_little_endian", "<"), ("binary_big_endian", ">")]
-)
-def test_a_format_is_a_byte_order(name: str, order: str) -> None:
-    assert parsed_header(text("ply", f"format {name} 1.0", "end_header"), "a.ply").order == order
-
-
 def test_types_have_old_and_new_names() -> None:
     assert list(TYPES.values())[:8] == list(TYPES.values())[8:16]
 
@@ -333,10 +326,6 @@ def test_a_value_may_be_missing_or_infinite_and_a_whole_number_of_any_size() -> 
         ].columns["x"]
     )
     assert str(found) == "[nan, -inf, 1.2345678901234568e+22]"
-
-
-def test_lines_after_the_last_element_are_counted() -> None:
-    assert tables(HEAD + "1 0\n2 0\n\n3 0\n4 0\n \n")[1] == ("skipped lines after the last element: 2",)
 
 
 WIDTH = "a line of an element 'vertex' must have the values of x, of_it, and this has too {}; correct it"
