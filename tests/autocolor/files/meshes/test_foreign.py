@@ -27,7 +27,6 @@ from autocolor.files.meshes.foreign import (
     MOST_LEVELS,
     RESULT,
     ForeignMesh,
-    foreign_mesh_bytes,
     largest_result,
     most_memory,
     most_seconds,
@@ -36,8 +35,7 @@ from autocolor.files.meshes.foreign import (
     size_of_3mf,
     size_of_gltf,
 )
-from autocolor.files.meshes.repair import MeshReport, Placement, RawPolygons
-from autocolor.scene.scalar import MeshScalar
+from autocolor.files.meshes.repair import MeshReport, Placement
 from tests.autocolor.files.refusals import refusal
 from tests.mutations import Seed, mutated
 from tests.tables import first
@@ -533,23 +531,6 @@ def test_limits_grow_with_the_size_of_the_file() -> None:
 
 NODES = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.0]])
 
-MESH = ForeignMesh(
-    RawPolygons(
-        NODES,
-        np.array([0, 1, 2, 3, 0, 1, 2]),
-        np.array([4, 3]),
-        np.array([0, 1]),
-        ("hood", "roof"),
-        (
-            MeshScalar("stress", np.array([1, 2, np.nan, 4])),
-            MeshScalar("heat", np.array([5.0, 6.0]), "polygon"),
-        ),
-    ),
-    ("skipped lines: 3",),
-    {"hood": "red"},
-    {"red": (200, 10, 20)},
-)
-
 HEADER = {"part_names": ["p"], "mesh_scalars": [], "sentences": [], "material_of_part": {}, "colors": {}}
 ARRAYS: dict[str, Any] = {
     "coordinates": NODES,
@@ -561,19 +542,6 @@ ARRAYS: dict[str, Any] = {
 
 def result(folder: Path, data: bytes) -> ForeignMesh:
     return read_foreign_mesh(write(folder, "result.npz", data), "a.glb", "trimesh")
-
-
-def test_a_mesh_comes_back_as_it_was_sent(tmp_path: Path) -> None:
-    found = result(tmp_path, foreign_mesh_bytes(MESH))
-    for name in ("coordinates", "corners", "corner_counts", "part_numbers", "part_names"):
-        assert np.array_equal(getattr(found.polygons, name), getattr(MESH.polygons, name)), name
-    assert [(each.name, each.of, str(each.values.tolist())) for each in found.polygons.scalars] == [
-        ("stress", "node", "[1.0, 2.0, nan, 4.0]"),
-        ("heat", "polygon", "[5.0, 6.0]"),
-    ]
-    assert found.sentences == MESH.sentences
-    assert found.material_of_part == MESH.material_of_part
-    assert {name: tuple(color) for name, color in found.colors.items()} == MESH.colors
 
 
 FAR = "a node whose coordinates are not finite and at most 1e30 in size, "
@@ -613,6 +581,8 @@ def test_a_coordinate_may_be_the_largest(tmp_path: Path) -> None:
         assert np.all(result(tmp_path, data).polygons.coordinates == value)
 
 
-@pytest.mark.parametrize("data", [b"", b"PK", b"\x80\x04N.", foreign_mesh_bytes(MESH)[:-30]])
+@pytest.mark.parametrize(
+    "data", [b"", b"PK", b"\x80\x04N.", array_file_bytes(RESULT, HEADER, {**ARRAYS})[:-30]]
+)
 def test_what_is_no_result_is_refused(tmp_path: Path, data: bytes) -> None:
     assert refusal(result, tmp_path, data).startswith("a.glb: trimesh gave no mesh ")
