@@ -5,10 +5,9 @@ from pathlib import Path
 import pytest
 
 from autocolor.errors import InputError
-from autocolor.files.formats import format_of
 from autocolor.files.meshes.byu import read_byu
 from autocolor.files.meshes.repair import MeshReport, Placement
-from tests.autocolor.files.refusals import refusal, refused, swapped
+from tests.autocolor.files.refusals import refused, swapped
 
 CUBE = [[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)]
 
@@ -57,32 +56,20 @@ def test_numbers_in_columns_may_touch(tmp_path: Path, width: int) -> None:
     assert mesh.node_numbers.tolist() == read(tmp_path, FREE).mesh.node_numbers.tolist()
 
 
-def test_whole_numbers_that_fill_their_columns_touch_without_a_sign(tmp_path: Path) -> None:
-    nodes = 10_000
-    polygons = nodes - 1
-    lines = [f"{1:5}{nodes:5}{polygons:5}{3 * polygons:5}", f"{1:5}{polygons:5}"]
-    lines += [f"{at / 7:12.5E}{at * at:12.5E}{1.5:12.5E}" for at in range(nodes)]
-    lines += [f"{9998:5}{10000:5}{-999:5}", *(f"{1:5}{at:5}{-at - 1:5}" for at in range(2, nodes))]
-    mesh = read(tmp_path, "\n".join(lines)).mesh
-    assert mesh.node_numbers[0].tolist() == [9997, 9999, 998, 998]
-    assert mesh.coordinates[:, 1].tolist() == [float(f"{at * at:.5E}") for at in range(nodes)]
-
-
 @pytest.mark.parametrize("width", [4, 5, 6, 7, 8, 9, 10, 11])
 def test_columns_of_whole_numbers_are_5_to_10_wide(tmp_path: Path, width: int) -> None:
     # Zeros fill the columns, so that no space is between the numbers.
-    lines = FREE.split("\n")
-    text = "\n".join(
-        "".join(word.zfill(width) for word in line.split()) if at not in (2, 3) else line
-        for at, line in enumerate(lines)
-    )
+    lines = [line.split() for line in FREE.splitlines()]
+    wholes = ["".join(word.zfill(width) for word in words) for words in lines]
+    places = ["".join(f"{float(word):.5E}".zfill(12) for word in words) for words in lines]
+    text = "\n".join([*wholes[:2], *places[2:4], *wholes[4:]])
     if width in (4, 11):
         with pytest.raises(InputError):
             read(tmp_path, text)
     else:
-        assert (
-            read(tmp_path, text).mesh.node_numbers.tolist() == read(tmp_path, FREE).mesh.node_numbers.tolist()
-        )
+        mesh = read(tmp_path, text).mesh
+        assert mesh.coordinates.tolist() == CUBE
+        assert mesh.node_numbers.tolist() == read(tmp_path, FREE).mesh.node_numbers.tolist()
 
 
 @pytest.mark.parametrize("ending", ["\n", "\r\n", "\r"])
@@ -113,83 +100,84 @@ def test_up_and_scale_place_the_mesh(tmp_path: Path) -> None:
     assert mesh.coordinates[7].tolist() == [2, -2, 2]
 
 
-WRONG = [
-    (
-        "2 8 6",
-        "2 8.5 6",
-        "cube.byu, line 1: a count in the header must be a whole number, not '8.5'; correct it",
-    ),
-    ("2 8 6", "2 0 6", "cube.byu, line 1: a count in the header must be at least 1, not '0'; correct it"),
-    (
-        "2 8 6",
-        "2 9000000000 6",
-        "cube.byu, line 1: a count must be at most 56, the count of words in the file, not '9000000000';"
-        " correct it",
-    ),
-    (
-        "6 24",
-        "25 24",
-        "cube.byu, line 1: the polygons must be at most as many as their corners, 24, not '25'; correct it",
-    ),
-    (
-        "4 8 -6",
-        "",
-        "cube.byu: there must be 56 numbers up to the end of the connectivity, not 53; the file is cut"
-        " short or its counts are wrong",
-    ),
-    (
-        "1 5 6 6",
-        "1 5 6 7",
-        "cube.byu, line 2: part 2 must have polygons of 1 to 6, in order, not 6 to 7; correct its range",
-    ),
-    (
-        "0 0 1 1 0",
-        "0 0 1 nan 0",
-        "cube.byu, line 4: a coordinate must be a decimal number of at most 1e30 in size, not 'nan';"
-        " correct it",
-    ),
-    (
-        "1 3 4 -2",
-        "1 3 9 -2",
-        "cube.byu, line 5: a corner must be a node number of 1 to 8, or minus one, not '9'; correct it",
-    ),
-    (
-        "8 -6",
-        "8 6",
-        "cube.byu, line 6: the last corner of the last polygon must be negative, not '6'; correct it",
-    ),
-    (
-        "3 4 -2",
-        "3 4 2",
-        "cube.byu: there must be 6 polygons, as the header says, not 5, each ended by a negative corner;"
-        " correct the header or the connectivity",
-    ),
-]
+COUNT = "a count in the header must be"
+CUT = "the file is cut short or its counts are wrong"
+HEADER = "correct the header or the connectivity"
+LARGE = "a coordinate must be a decimal number of at most 1e30 in size, not 'nan'; correct it"
+CORNER = "a corner must be a node number of 1 to 8, or minus one"
 
-test_a_wrong_number_is_refused_with_its_line = refused(
-    "cube.byu", [(swapped(FREE, old, new), sentence) for old, new, sentence in WRONG]
+
+def overlapping(parts: int) -> str:
+    return f"{parts} 3 2 6\n" + "1 2\n" * parts + "0 0 0 1 0 0 0 1 0\n1 2 -3 2 3 -1\n"
+
+
+def test_parts_may_overlap_a_hundred_times(tmp_path: Path) -> None:
+    mesh = read(tmp_path, overlapping(100)).mesh
+    assert mesh.part_numbers.tolist() == [99, 99]
+
+
+test_what_is_refused = refused(
+    "cube.byu",
+    [
+        (swapped(FREE, old, new), f"cube.byu{sentence}")
+        for old, new, sentence in (
+            ("2 8 6", "2 8.5 6", f", line 1: {COUNT} a whole number, not '8.5'; correct it"),
+            ("2 8 6", "2 0 6", f", line 1: {COUNT} at least 1, not '0'; correct it"),
+            ("2 8 6", "-1 8 6", f", line 1: {COUNT} at least 0, not '-1'; correct it"),
+            (
+                "2 8 6",
+                "2 57 6",
+                ", line 1: a count must be at most 56, the count of words in the file, not '57'; correct it",
+            ),
+            (
+                "6 24",
+                "25 24",
+                ", line 1: the polygons must be at most as many as their corners, 24, not '25'; correct it",
+            ),
+            ("4 8 -6", "", f": there must be 56 numbers up to the end of the connectivity, not 53; {CUT}"),
+            *(
+                (
+                    "1 5 6 6",
+                    f"1 5 {wrong}",
+                    f", line 2: part 2 must have polygons of 1 to 6, in order, not {told}; correct its range",
+                )
+                for wrong, told in (("6 7", "6 to 7"), ("0 6", "0 to 6"), ("6 5", "6 to 5"))
+            ),
+            (
+                "0 0 1 1 0",
+                "0 0 1 nan 0",
+                f", line 4: {LARGE}",
+            ),
+            *(
+                (
+                    "1 3 4 -2",
+                    f"1 3 {corner} -2",
+                    f", line 5: {CORNER}, not '{corner}'; correct it",
+                )
+                for corner in (9, 0)
+            ),
+            (
+                "8 -6",
+                "8 6",
+                ", line 6: the last corner of the last polygon must be negative, not '6'; correct it",
+            ),
+            (
+                "3 4 -2",
+                "3 4 2",
+                ": there must be 6 polygons, as the header says, not 5, each ended by a negative corner;"
+                f" {HEADER}",
+            ),
+        )
+    ]
+    + [
+        (data, f"cube.byu: {sentence}")
+        for data, sentence in (
+            (
+                overlapping(101).encode(),
+                "the ranges of 101 parts must overlap less; give each polygon one part",
+            ),
+            (b"CDF\0", "a Movie.BYU file must be text, not hold a NUL byte (line 1); save it as UTF-8 text"),
+            (b"", f"there must be 4 numbers up to the end of the header, not 0; {CUT}"),
+        )
+    ],
 )
-
-
-def test_parts_that_overlap_too_often_are_refused(tmp_path: Path) -> None:
-    text = "102 3 1 3\n" + "1 1\n" * 102 + "0 0 0 1 0 0 0 1 0\n1 2 -3\n"
-    assert refusal(read, tmp_path, text) == (
-        "cube.byu: the ranges of 102 parts must overlap less; give each polygon one part"
-    )
-
-
-def test_what_is_no_text_is_refused(tmp_path: Path) -> None:
-    assert refusal(read, tmp_path, b"CDF\0") == (
-        "cube.byu: a Movie.BYU file must be text, not hold a NUL byte (line 1); save it as UTF-8 text"
-    )
-    assert refusal(read, tmp_path, b"") == (
-        "cube.byu: there must be 4 numbers up to the end of the header, not 0; the file is cut short or its"
-        " counts are wrong"
-    )
-
-
-def test_its_suffixes_are_known() -> None:
-    for name in ("a.g", "a.byu", "A.BYU"):
-        found = format_of(Path(name))
-        assert found is not None
-        assert found.name == "Movie.BYU"

@@ -8,14 +8,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor.errors import InputError, MissingInputError
-from autocolor.files.formats import format_of_folder, read_mesh
+from autocolor.errors import InputError
+from autocolor.files.formats import format_of_folder
 from autocolor.files.meshes.csv_tables import (
     NOTHING,
     ROWS_AT_ONCE,
     CellKind,
     CsvRows,
-    NameCells,
     NumberCells,
     WholeCells,
     csv_tables_bytes,
@@ -26,7 +25,7 @@ from autocolor.files.meshes.number_text import Problems
 from autocolor.files.meshes.repair import MeshReport
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalar import MeshScalar
-from tests.small import cube
+from tests.autocolor.files.meshes.written import assert_equal, writable_meshes
 
 NODES = "node,x,y,z\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n"
 POLYGONS = "polygon,part,node1,node2,node3,node4\n1,hood,1,2,3,4\n2,roof,1,2,3,\n"
@@ -45,13 +44,6 @@ def refusal(folder: Path, nodes: str | bytes = NODES, polygons: str | bytes = PO
     return list(caught.value.problems)
 
 
-def test_two_tables_are_a_mesh(tmp_path: Path) -> None:
-    mesh = read(tmp_path).mesh
-    assert mesh.coordinates.tolist() == [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
-    assert mesh.node_numbers.tolist() == [[0, 1, 2, 3], [0, 1, 2, 2]]
-    assert mesh.part_names == ("hood", "roof")
-
-
 def test_columns_may_stand_in_any_order_and_optional_ones_be_missing(tmp_path: Path) -> None:
     nodes = "z, x ,y\n0,0,0\n\n0,1,0\n0,1,1\n,,\n"
     mesh = read(tmp_path, nodes, "node4,node1,node2,node3\n,1,2,3\n").mesh
@@ -60,24 +52,18 @@ def test_columns_may_stand_in_any_order_and_optional_ones_be_missing(tmp_path: P
 
 
 def test_node_numbers_are_any_whole_numbers(tmp_path: Path) -> None:
-    nodes = "node,x,y,z\n700,0,0,0\n-3,1,0,0\n0,1,1,0\n"
-    mesh = read(tmp_path, nodes, "node1,node2,node3,node4\n0,700,-3\n").mesh
-    assert mesh.node_numbers.tolist() == [[2, 0, 1, 1]]
+    nodes = "node,x,y,z\n700,0,0,0\n-3,1,0,0\n0,1,1,0\n999999999999999999,0,1,0\n"
+    polygons = "polygon,part,node1,node2,node3,node4\n8,roof,0,700,-3\n7,hood,999999999999999999,700,-3,0\n"
+    mesh = read(tmp_path, nodes, polygons).mesh
+    assert mesh.coordinates.tolist() == [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
+    assert mesh.node_numbers.tolist() == [[2, 0, 1, 1], [3, 0, 1, 2]]
+    assert (mesh.part_names, mesh.part_numbers.tolist()) == (("roof", "hood"), [0, 1])
 
 
 @pytest.mark.parametrize("ending", ["\n", "\r\n", "\r"])
 def test_lines_end_in_any_way_and_cells_may_be_quoted(tmp_path: Path, ending: str) -> None:
     polygons = '\ufeffpart,node1,node2,node3,node4\n"a, ""b""",1,2,"3",4\n'.replace("\n", ending)
     assert read(tmp_path, NODES.replace("\n", ending), polygons).mesh.part_names == ('a, "b"',)
-
-
-def test_a_node_that_is_not_in_the_table_is_refused(tmp_path: Path) -> None:
-    assert refusal(tmp_path, polygons=POLYGONS + "3,roof,1,2,40,\n") == [
-        "polygons.csv, row 4: node 40 is not in the node table (1 to 4)"
-    ]
-    assert refusal(tmp_path, NODES + "9,0,0,0\n", POLYGONS + "3,roof,1,2,7,\n") == [
-        "polygons.csv, row 4: node 7 is not in the node table (1 to 9, with gaps)"
-    ]
 
 
 def test_every_problem_of_both_tables_is_named(tmp_path: Path) -> None:
@@ -98,32 +84,67 @@ def test_every_problem_of_both_tables_is_named(tmp_path: Path) -> None:
     ]
 
 
-@pytest.mark.parametrize("number", ["1_0", "0x1", "\u0661", "inf", "1d2", "1,5"])
-def test_numbers_are_strict(tmp_path: Path, number: str) -> None:
-    assert "not " in refusal(tmp_path, f'x,y,z\n"{number}",0,0\n')[0]
-    assert "a whole number" in refusal(tmp_path, polygons=f'node1,node2,node3,node4\n"{number}",2,3,\n')[0]
+COORDINATE = "row 2: a coordinate must be a decimal number of at most 1e30 in size, not {!r}; correct it"
+VALUE = (
+    "row 3: a value must be a decimal number of at most 1e30 in size, or empty if it is missing, not {!r};"
+    " correct it"
+)
+NODE = "row 4: node {} is not in the node table ({})"
+NO_COLUMN = "row 1: there is no column {!r}; "
+MANY = ",".join(["x", "y", "z", *(f"s{number}" for number in range(1010))])
+STRICT = ("1_0", "0x1", "\u0661", "inf", "1d2", "1,5")
 
 
 @pytest.mark.parametrize(
-    ("header", "sentence"),
+    ("nodes", "sentence"),
     [
-        ("node;x;y;z", "nodes.csv, row 1: there is no column 'node;x;y;z'; choose 'node', 'x', 'y' or 'z'"),
-        ("nod,x,y,z", "nodes.csv, row 1: there is no column 'nod'; did you mean 'node'?"),
-        ("x,y,z,x", "nodes.csv, row 1: a column name must be unique, not repeated: 'x'; remove one"),
-        ("x,y", "nodes.csv, row 1: there must be a column 'z', not only x, y; add it"),
+        *((f'x,y,z\n"{number}",0,0\n', COORDINATE.format(number)) for number in STRICT),
+        *(
+            (f"x,y,z,s\n1,0,0,\n2,1,0,{number}\n", VALUE.format(number))
+            for number in ("nan", "1e31", "-1.0000000000000002e30", "1_0", "x")
+        ),
+        ("node;x;y;z\n", NO_COLUMN.format("node;x;y;z") + "choose 'node', 'x', 'y' or 'z'"),
+        ("nod,x,y,z\n", NO_COLUMN.format("nod") + "did you mean 'node'?"),
+        ("x,y,z,x\n", "row 1: a column name must be unique, not repeated: 'x'; remove one"),
+        ("x,y\n", "row 1: there must be a column 'z', not only x, y; add it"),
+        (MANY, "row 1: there must be at most 1,000 columns of scalars, not 1,013; remove some"),
     ],
 )
-def test_a_wrong_header_is_refused_with_the_nearest_name(tmp_path: Path, header: str, sentence: str) -> None:
-    assert refusal(tmp_path, header + "\n0,0,0\n") == [sentence]
+def test_what_is_refused_in_a_node_table(tmp_path: Path, nodes: str, sentence: str) -> None:
+    assert refusal(tmp_path, nodes)[0] == f"nodes.csv, {sentence}"
+
+
+@pytest.mark.parametrize(
+    ("polygons", "sentence"),
+    [
+        *(
+            (
+                f'node1,node2,node3,node4\n"{number}",2,3,\n',
+                f"row 2: a corner must be a whole number, not {number!r}; correct it",
+            )
+            for number in STRICT
+        ),
+        (POLYGONS + "3,roof,1,2,40,\n", NODE.format(40, "1 to 9, with gaps")),
+        *(
+            (f"{known}node1,node2,node3,node4,{name}\n", NO_COLUMN.format(name))
+            for known, name in (("", "polygn"), ("polygon,", "Part"), ("part,", "node5"), ("part,", ""))
+        ),
+    ],
+)
+def test_what_is_refused_in_a_polygon_table(tmp_path: Path, polygons: str, sentence: str) -> None:
+    assert refusal(tmp_path, NODES + "9,0,0,0\n", polygons)[0].startswith(f"polygons.csv, {sentence}")
 
 
 def test_an_empty_table_is_refused(tmp_path: Path) -> None:
     assert refusal(tmp_path, "") == ["nodes.csv: a table must start with a row of column names, not be empty"]
-    assert refusal(tmp_path, "x,y,z\n")[0] == (
-        "polygons.csv, row 2: node 1 is not in the node table (it is empty)"
+    assert refusal(tmp_path, "x,y,z\n", POLYGONS + "3,a,1,1,4\n")[-1] == (
+        f"polygons.csv, {NODE.format(4, 'it is empty')}"
     )
     assert refusal(tmp_path, polygons="node1,node2,node3,node4\n") == [
         "polygons.csv: a mesh must have a polygon with area, not none; add polygons"
+    ]
+    assert refusal(tmp_path, polygons=POLYGONS + "3,roof,1,2,5,\n") == [
+        f"polygons.csv, {NODE.format(5, '1 to 4')}"
     ]
 
 
@@ -143,12 +164,6 @@ def test_an_empty_table_is_refused(tmp_path: Path) -> None:
 )
 def test_what_is_no_table_is_refused_shortly(tmp_path: Path, data: bytes) -> None:
     assert len("\n".join(refusal(tmp_path, data))) < 3000
-
-
-def test_a_missing_table_is_missing_input(tmp_path: Path) -> None:
-    (tmp_path / "nodes.csv").write_text(NODES)
-    with pytest.raises(MissingInputError):
-        read_csv_tables(tmp_path / "nodes.csv", tmp_path / "polygons.csv")
 
 
 @given(data=st.binary(max_size=100) | st.text('node1234xyz,"\n\r. -', max_size=100).map(str.encode))
@@ -172,31 +187,6 @@ def test_further_columns_are_scalars_and_empty_cells_missing_values(tmp_path: Pa
     ]
 
 
-@pytest.mark.parametrize("value", ["nan", "1e31", "1_0", "x"])
-def test_the_values_of_scalars_are_strict(tmp_path: Path, value: str) -> None:
-    assert refusal(tmp_path, NODES.replace("z\n", "z,s\n").replace("2,1,0,0", f"2,1,0,0,{value}")) == [
-        "nodes.csv, row 3: a value must be a decimal number of at most 1e30 in size, or empty if it is"
-        f" missing, not {value!r}; correct it"
-    ]
-
-
-@pytest.mark.parametrize("name", ["polygn", "Part", "node5", ""])
-def test_a_column_that_is_nearly_one_of_the_mesh_is_no_scalar(tmp_path: Path, name: str) -> None:
-    known = "part" if name != "Part" else "polygon"
-    header = (
-        f"{known},node1,node2,node3,node4,{name}" if name != "polygn" else f"node1,node2,node3,node4,{name}"
-    )
-    (sentence,) = refusal(tmp_path, polygons=f"{header}\n")
-    assert sentence.startswith(f"polygons.csv, row 1: there is no column {name!r}; ")
-
-
-def test_there_are_at_most_a_thousand_columns_of_scalars(tmp_path: Path) -> None:
-    header = ",".join(["x", "y", "z", *(f"s{number}" for number in range(1010))])
-    assert refusal(tmp_path, header) == [
-        "nodes.csv, row 1: there must be at most 1,000 columns of scalars, not 1,013; remove some"
-    ]
-
-
 CELL = st.text("0123456789+-.eE _nx\u0661 ", max_size=6) | st.floats().map(repr) | st.integers().map(str)
 
 
@@ -214,12 +204,6 @@ def test_cells_converted_at_once_are_those_converted_one_by_one(cells: list[str]
         for value, cell in zip(values.tolist(), cells, strict=True):
             one = kind.one(cell, refuse)
             assert value == one or (math.isnan(value) and math.isnan(one))
-
-
-def test_names_are_numbered_in_their_order_and_made_printable() -> None:
-    names = NameCells("file")
-    assert names.at_once(["hood", "", " hood", "a\0b", "hood"]).tolist() == [0, 1, 0, 2, 0]
-    assert list(names.rows) == ["hood", "file", "a?b"]
 
 
 def test_rows_of_many_blocks_keep_their_numbers_and_values(tmp_path: Path) -> None:
@@ -266,52 +250,11 @@ def test_a_mesh_is_two_tables_with_its_scalars() -> None:
     )
 
 
-NAMES = st.text(st.characters(exclude_categories=("C", "Z")), min_size=1, max_size=9)
-SCALAR_NAMES = NAMES | st.sampled_from(["x", "X", "node5", "scalar", "scalar x", "part", "nodes"])
-VALUES = st.floats(-1e30, 1e30) | st.just(math.nan)
-
-
-@given(
-    parts=st.lists(NAMES, min_size=2, max_size=2, unique=True),
-    names=st.lists(SCALAR_NAMES, max_size=4, unique=True),
-    places=st.lists(st.floats(-1e3, 1e3), min_size=4, max_size=4),
-    values=st.lists(VALUES, min_size=4, max_size=4),
-)
-def test_a_mesh_reads_back_equal(
-    parts: list[str],
-    names: list[str],
-    places: list[float],
-    values: list[float],
-    tmp_path_factory: pytest.TempPathFactory,
-) -> None:
-    coordinates = SQUARE.copy()
-    coordinates[:, 2] = places
-    scalars = [
-        MeshScalar(name, np.array(values), "node")
-        if number % 2 == 0
-        else MeshScalar(name, np.array(values[:2]), "polygon")
-        for number, name in enumerate(names)
-    ]
-    mesh = Mesh(coordinates, TWO, np.array([0, 1]), tuple(parts), scalars=tuple(scalars))
-    folder = tmp_path_factory.getbasetemp()
-    paths = folder / "nodes.csv", folder / "polygons.csv"
-    for path, data in zip(paths, csv_tables_bytes(mesh), strict=True):
-        path.write_bytes(data)
-    report = read_csv_tables(*paths)
-    assert report.repairs == ()
-    assert report.mesh.part_names == mesh.part_names
-    for name in ("coordinates", "node_numbers", "part_numbers"):
-        np.testing.assert_array_equal(getattr(report.mesh, name), getattr(mesh, name))
-    found = {each.name: each for each in report.mesh.scalars}
-    assert set(found) == set(names)
-    for scalar in scalars:
-        assert found[scalar.name].of == scalar.of
-        np.testing.assert_array_equal(found[scalar.name].values, scalar.values)
-
-
-def test_the_tables_of_a_mesh_are_a_folder_that_is_read_again(tmp_path: Path) -> None:
-    write_csv_tables(tmp_path, cube())
-    assert format_of_folder(tmp_path).name == "CSV"  # type: ignore[union-attr]
-    again = read_mesh({"nodes": tmp_path / "nodes.csv", "polygons": tmp_path / "polygons.csv"})
-    assert np.array_equal(again.mesh.coordinates, cube().coordinates)
-    assert again.repairs == ()
+@given(mesh=writable_meshes())
+def test_a_mesh_reads_back_equal(mesh: Mesh, tmp_path_factory: pytest.TempPathFactory) -> None:
+    folder = tmp_path_factory.getbasetemp() / "written"
+    write_csv_tables(folder, mesh, overwrite=folder.exists())
+    found = format_of_folder(folder)
+    assert found is not None
+    assert found.name == "CSV"
+    assert_equal(read_csv_tables(folder / "nodes.csv", folder / "polygons.csv"), mesh)

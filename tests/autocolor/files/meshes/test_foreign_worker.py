@@ -20,13 +20,6 @@ from autocolor.files.meshes.foreign_worker import (
 )
 
 
-def run(code: str) -> subprocess.CompletedProcess[str]:
-    text = f"from autocolor.files.meshes import foreign_worker as worker\n{code}"
-    return subprocess.run(
-        [sys.executable, "-c", text], capture_output=True, text=True, timeout=60, check=False
-    )
-
-
 def test_what_a_reader_has_no_need_of_is_refused(tmp_path: Path) -> None:
     folder = tmp_path / "meshes"
     folder.mkdir()
@@ -49,16 +42,16 @@ def test_what_a_reader_has_no_need_of_is_refused(tmp_path: Path) -> None:
             refuse(event, ())
 
 
-def test_a_process_with_the_guard_has_no_network_and_starts_no_program(tmp_path: Path) -> None:
-    done = run(
-        f"""
+GUARDED = """
 import pathlib, socket, subprocess, sys
-sys.addaudithook(worker.guard(pathlib.Path({str(tmp_path)!r}), pathlib.Path({str(tmp_path / "result")!r})))
+from autocolor.files.meshes import foreign_worker as worker
+folder = pathlib.Path(sys.argv[1])
+sys.addaudithook(worker.guard(folder, folder / "result"))
 for act in (
     lambda: socket.create_connection(("127.0.0.1", 9)),
     lambda: subprocess.run(["true"]),
     lambda: open("/etc/passwd"),
-    lambda: open({str(tmp_path / "other")!r}, "w"),
+    lambda: open(folder / "other", "w"),
 ):
     try:
         act()
@@ -66,24 +59,12 @@ for act in (
     except PermissionError:
         print("refused")
 """
-    )
+
+
+def test_a_process_with_the_guard_has_no_network_and_starts_no_program(tmp_path: Path) -> None:
+    command = [sys.executable, "-c", GUARDED, os.fspath(tmp_path)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=True)
     assert done.stdout.split() == ["refused"] * 4
-
-
-def test_memory_is_limited_by_the_system() -> None:
-    done = run("worker.limit(0)\nimport numpy\nnumpy.ones(1 << 28)")
-    assert "MemoryError" in done.stderr
-
-
-def test_the_size_of_a_result_is_limited_by_the_system(tmp_path: Path) -> None:
-    path = tmp_path / "result"
-    done = run(f"worker.limit(0)\nopen({str(path)!r}, 'wb', 0).write(bytes(20 << 20))")
-    assert done.returncode in (0, 1, -25)
-    assert path.stat().st_size <= 16 << 20
-
-
-def test_time_is_limited_by_the_system() -> None:
-    assert run("worker.limit(0)\nwhile True: pass").returncode < 0
 
 
 def test_a_failure_is_one_line_of_limited_length() -> None:

@@ -73,3 +73,17 @@ def test_there_are_at_most_twenty_problems() -> None:
     with pytest.raises(InputError) as caught:
         problems.note("a.csv", 19, "wrong")
     assert len(caught.value.problems) == 20
+
+
+@pytest.mark.parametrize(
+    ("data", "firsts", "longest"),
+    [
+        (b"\n 1 -2\t+3\n4e1\n", [0, 3], 9),
+        (b"1 2\n\n3\n", [0, 2], 4),
+        (b"  1\n 2 3", [0, 1], 5),
+        (b"", [], 1),
+    ],
+)
+def test_lines_begin_with_their_first_word(data: bytes, firsts: list[int], longest: int) -> None:
+    found, size = NumberText(data, "").lines()
+    assert (found.tolist(), size) == (firsts, longest)

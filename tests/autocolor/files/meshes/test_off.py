@@ -8,7 +8,7 @@ from autocolor.errors import InputError
 from autocolor.files.formats import format_of
 from autocolor.files.meshes.off import read_off
 from autocolor.files.meshes.repair import MeshReport
-from tests.autocolor.files.refusals import refusal, refused, swapped
+from tests.autocolor.files.refusals import refused, swapped
 
 CUBE = """OFF
 # a cube
@@ -86,77 +86,67 @@ def test_polygons_of_many_sides_are_split_and_what_follows_is_told(tmp_path: Pat
     )
 
 
-WRONG = [
-    (
-        "OFF\n",
-        "4OFF\n",
-        "cube.off: an OFF file must begin OFF, COFF, NOFF or STOFF, not '4OFF'; write it with three"
-        " coordinates, as text",
-    ),
-    (
-        "8 6 12",
-        "x 6 12",
-        "cube.off, line 3: a count in the header must be a whole number, not 'x'; correct it",
-    ),
-    (
-        "8 6 12",
-        "8000000000 6 12",
-        "cube.off, line 3: a count must be from 1 to 57, the count of words in the file, not"
-        " '8000000000'; correct it",
-    ),
-    (
-        "8 6 12",
-        "20 6 12",
-        "cube.off: there must be 63 numbers up to the end of the nodes, not 57; the file is cut short"
-        " or its counts are wrong",
-    ),
-    (
-        "8 6 12",
-        "8 7 12",
-        "cube.off: there must be 7 lines of polygons, as the header says, not 6; correct the header or"
-        " the polygons",
-    ),
-    (
-        "1 1 0\n",
-        "1 inf 0\n",
-        "cube.off, line 6: a coordinate must be a decimal number of at most 1e30 in size, not 'inf';"
-        " correct it",
-    ),
-    (
-        "4 0 1 5 4",
-        "4 0 1 5 8",
-        "cube.off, line 14: a corner must be a node number from 0 to 7, not '8'; correct it",
-    ),
-    (
-        "4 0 1 5 4",
-        "4 0 1 5.5 4",
-        "cube.off, line 14: a corner must be a node number from 0 to 7, not '5.5'; correct it",
-    ),
-    (
-        "4 0 1 5 4",
-        "4 0 1 inf 4",
-        "cube.off, line 14: a corner must be a node number from 0 to 7, not 'inf'; correct it",
-    ),
-    (
-        "4 0 1 5 4",
-        "5 0 1 5 4",
-        "cube.off, line 14: a polygon must begin with the number of the corners on its line, not '5';"
-        " correct it",
-    ),
-]
+WORD = ", line 14: a corner must be a node number from 0 to 7, not {!r}; correct it"
+LARGE = "a coordinate must be a decimal number of at most 1e30 in size, not 'inf'; correct it"
+CUT = "the file is cut short or its counts are wrong"
 
-test_a_wrong_number_is_refused_with_its_line = refused(
-    "cube.off", [(swapped(CUBE, old, new), sentence) for old, new, sentence in WRONG]
+test_what_is_refused = refused(
+    "cube.off",
+    [
+        (swapped(CUBE, old, new), f"cube.off{sentence}")
+        for old, new, sentence in (
+            (
+                "OFF\n",
+                "4OFF\n",
+                ": an OFF file must begin OFF, COFF, NOFF or STOFF, not '4OFF'; write it with three"
+                " coordinates, as text",
+            ),
+            (
+                "8 6 12",
+                "x 6 12",
+                ", line 3: a count in the header must be a whole number, not 'x'; correct it",
+            ),
+            *(
+                (
+                    "8 6 12",
+                    f"{count} 6 12",
+                    ", line 3: a count must be from 1 to 57, the count of words in the file, not"
+                    f" '{count}'; correct it",
+                )
+                for count in (0, 58, 8_000_000_000)
+            ),
+            ("8 6 12", "20 6 12", f": there must be 63 numbers up to the end of the nodes, not 57; {CUT}"),
+            (
+                "8 6 12",
+                "8 7 12",
+                ": there must be 7 lines of polygons, as the header says, not 6; correct the header or the"
+                " polygons",
+            ),
+            (
+                "1 1 0\n",
+                "1 inf 0\n",
+                f", line 6: {LARGE}",
+            ),
+            *(("4 0 1 5 4", f"4 0 1 5 {word}", WORD.format(word)) for word in ("8", "-1", "5.5", "inf")),
+            *(
+                (
+                    "4 0 1 5 4",
+                    f"{count} 0 1 5 4",
+                    ", line 14: a polygon must begin with the number of the corners on its line, not"
+                    f" '{count}'; correct it",
+                )
+                for count in ("5", "-1", "3.5")
+            ),
+        )
+    ]
+    + [
+        (
+            b"OFF BINARY\n\0\0\0\1",
+            "cube.off: an OFF file must be text, not hold a NUL byte (line 2); save it as UTF-8 text",
+        ),
+        (b"", f"cube.off: there must be 3 numbers up to the end of the header, not 0; {CUT}"),
+    ],
 )
-
-
-def test_binary_and_empty_files_are_refused(tmp_path: Path) -> None:
-    assert refusal(read, tmp_path, b"OFF BINARY\n\0\0\0\1").startswith(
-        "cube.off: an OFF file must be text, not hold a NUL"
-    )
-    assert refusal(read, tmp_path, b"").startswith(
-        "cube.off: there must be 3 numbers up to the end of the header, not 0"
-    )
 
 
 def test_a_file_is_known_by_its_suffix_and_its_first_word(tmp_path: Path) -> None:

@@ -1,0 +1,362 @@
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from autocolor import Surface
+from autocolor.files.meshes.obj import MOST_LIBRARIES, MOST_LIBRARY_PROBLEMS, read_obj
+from autocolor.files.meshes.repair import MeshReport
+from autocolor.scene.defaults import COLORED_PAINT, created_surface
+
+RED = b"newmtl red\nKd 1 0 0\n"
+BLUE = b"newmtl blue\nKd 0 0 1\n"
+DEFAULT = {"specular": 0.0, "blend": 1.0}
+"""The properties of a material that is defined by its name alone: it has no highlight."""
+
+SHINY = {"specular": 0.5, "blend": COLORED_PAINT.blend}
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A folder with two libraries, a folder with one, a pipe and links, and a library outside."""
+    folder = tmp_path / "car"
+    (folder / "more").mkdir(parents=True)
+    (folder / "red.mtl").write_bytes(RED)
+    (folder / "my blue.mtl").write_bytes(BLUE)
+    (folder / "more" / "green.mtl").write_bytes(b"newmtl green\nKd 0 1 0\n")
+    (tmp_path / "outside.mtl").write_bytes(b"newmtl red\nKd 1 1 1\n")
+    os.mkfifo(folder / "pipe.mtl")
+    (folder / "inside.mtl").symlink_to(folder / "red.mtl")
+    (folder / "link.mtl").symlink_to(tmp_path / "outside.mtl")
+    (folder / "linked").symlink_to(tmp_path)
+    return folder
+
+
+def read(
+    folder: Path, *libraries: bytes, wanted: tuple[bytes, ...] = (b"red", b"blue", b"green")
+) -> MeshReport:
+    """A square for each material that is wanted, with lines that name libraries, read from car.obj."""
+    text = b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n" + b"".join(b"mtllib %s\n" % name for name in libraries)
+    text += b"".join(b"usemtl %s\nf 1 2 3 4\n" % name for name in wanted)
+    (folder / "car.obj").write_bytes(text)
+    return read_obj(folder / "car.obj")
+
+
+def described(folder: Path, statements: str | bytes, *wanted: bytes) -> MeshReport:
+    """A mesh with a library of some statements; it wants a red material unless others are named."""
+    data = statements if isinstance(statements, bytes) else statements.encode()
+    (folder / "car.mtl").write_bytes(data)
+    return read(folder, b"car.mtl", wanted=wanted or (b"red",))
+
+
+def surface(name: str = "red", **changes: Any) -> Surface:
+    return created_surface(name, COLORED_PAINT.object_color).replace(**{**DEFAULT, **changes})
+
+
+def names_of(report: MeshReport) -> list[str]:
+    return [each.name for each in report.materials]
+
+
+@pytest.mark.parametrize(
+    ("statements", "changes"),
+    [
+        ("Kd 1 0.5 0", {"object_color": (255, 128, 0)}),
+        ("Kd 0.2", {"object_color": (51, 51, 51)}),
+        ("Kd 2 1.0001 1e300", {"object_color": (255, 255, 255)}),
+        ("Kd .5 1. +0.25", {"object_color": (128, 255, 64)}),
+        ("Kd 5e-1 5E-1 0.5 # gray", {"object_color": (128, 128, 128)}),
+        ("\tKd  1\t0 0 ", {"object_color": (255, 0, 0)}),
+        ("Kd 0 1 0\nKd 1 0 0 0.5", {"object_color": (255, 0, 0)}),
+        ("Ks 0.2 0.5 0.1", SHINY),
+        ("Ks 0.5\nillum 2", SHINY),
+        ("Ks 0.5 0.5 0.5\nillum 3", SHINY),
+        ("Ks 999999.5 0 0", {**SHINY, "specular": 999999.5}),
+        ("Ks 0 0 0", {}),
+        ("Ks 0.5 0.5 0.5\nillum 0", {}),
+        ("illum 1\nKs 0.5", {}),
+        ("Ns 0", {"exponent": 1}),
+        ("Ns 0.75", {"exponent": 1}),
+        ("Ns 32.5", {"exponent": 32.5}),
+        ("newmtl red\nKd 0 1 0", {}),
+        *(
+            (statement, {})
+            for statement in (
+                *("", "# Kd 1 1 1", "Ka 1 1 1", "illum 2", "Ni 1.5", "Tf 1 1 1", "Ke 0 0 0", "sharpness 60"),
+                *(
+                    "odd",
+                    "d 1",
+                    "d 1.0",
+                    "Tr 0",
+                    "Tr 0.000",
+                    "newmtl",
+                    "newmtl none\nKd 1 0 0\nd 0.5\nbump a",
+                ),
+            )
+        ),
+    ],
+)
+def test_a_material_has_the_properties_of_its_statements(
+    folder: Path, statements: str, changes: dict[str, Any]
+) -> None:
+    report = described(folder, f"Kd 0 1 0\nnewmtl red\n{statements}\n")
+    assert report.materials == (surface(**changes),)
+    assert report.repairs == ()
+
+
+@pytest.mark.parametrize(
+    "keyword", ["map_Kd", "map_Ks", "bump", "map_Bump", "MAP_KD", "disp", "decal", "refl", "norm"]
+)
+def test_textures_are_told_as_left_out(folder: Path, keyword: str) -> None:
+    report = described(folder, f"newmtl red\n{keyword} -s 1 1 1 a.png\n")
+    assert report.repairs == ("car.mtl: left out the textures of 1 material",)
+    assert report.materials == (surface(),)
+
+
+@pytest.mark.parametrize("statement", ["d 0.5", "Tr 0.5", "d 0", "Tr 1"])
+def test_what_is_left_out_is_counted_by_materials_that_are_wanted(folder: Path, statement: str) -> None:
+    text = "".join(
+        f"newmtl {name}\nmap_Kd a.png\nmap_Ks a.png\n{statement}\n" for name in ("red", "blue", "unused")
+    )
+    assert described(folder, text, b"red", b"blue").repairs == (
+        "car.mtl: left out the textures of 2 materials",
+        "car.mtl: left out the transparency of 2 materials",
+    )
+
+
+@pytest.mark.parametrize(
+    "statement",
+    [
+        *(
+            f"Kd {words}"
+            for words in ("", "x", "-1 0 0", "nan", "inf", "1e999", "0x10", "1_0", "1,0,0", "1 1 x")
+        ),
+        *(
+            "Kd 1 2",
+            "Ks 1 2",
+            "Ks 1e6",
+            "Ks 0 0 1e6",
+            "Ns -0.5",
+            "illum x",
+            "d -halo 0.5",
+            "Tr 2e6",
+            "Kd \u0663",
+        ),
+    ],
+)
+def test_a_bad_number_is_told_with_its_line_and_the_default_is_used(folder: Path, statement: str) -> None:
+    report = described(folder, f"# a library\nnewmtl red\n{statement}\n")
+    keyword, _, words = statement.partition(" ")
+    assert report.repairs == (
+        f"car.mtl, line 3: {keyword} must have one number or three, from 0 to 1e+06, not {words!r};"
+        " the default is used",
+    )
+    assert report.materials == (surface(),)
+
+
+def test_a_library_of_rubbish_is_a_few_short_sentences(folder: Path) -> None:
+    sentences = described(folder, "newmtl red\n" + f"Kd {'x' * 10_000}\n" * 300).repairs
+    assert len(sentences) == MOST_LIBRARY_PROBLEMS + 1
+    assert sentences[-1] == f"car.mtl: {300 - MOST_LIBRARY_PROBLEMS} more such lines"
+    assert all(len(sentence) < 200 for sentence in sentences)
+
+
+@pytest.mark.parametrize("ending", [b"\n", b"\r\n", b"\r"])
+def test_lines_of_a_library_end_in_any_way(folder: Path, ending: bytes) -> None:
+    report = described(folder, b"\xef\xbb\xbf" + (BLUE + RED).replace(b"\n", ending), b"red", b"blue")
+    assert report.materials == (
+        surface(object_color=(255, 0, 0)),
+        surface("blue", object_color=(0, 0, 255)),
+    )
+
+
+@pytest.mark.parametrize(
+    ("written", "name"),
+    [
+        (b"my red", "my red"),
+        (b"\t red \t", "red"),
+        (b"h\xc3\xa4ube", "h\u00e4ube"),
+        (b"h\xe4ube", "h\u00e4ube"),
+        (b"\x1b[31m", "?[31m"),
+        (b"x" * 1000, "x" * 200),
+    ],
+)
+def test_a_material_has_the_name_that_an_obj_file_gives_it(folder: Path, written: bytes, name: str) -> None:
+    report = described(folder, b"newmtl %s\nKd 1 0 0\n" % written, name.encode(), b"Red")
+    assert names_of(report) == [name]
+    assert report.repairs == ("no library defines material 'Red'; default colors are used",)
+
+
+def test_parts_have_materials_and_these_their_surfaces(folder: Path) -> None:
+    (folder / "car.obj").write_text(
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\nmtllib red.mtl\ng hood\nf 1 2 3\nusemtl red\nf 1 2 3\ng door\n"
+        "f 1 2 3\nusemtl blue\nf 1 2 3\n"
+    )
+    report = read_obj(folder / "car.obj")
+    assert report.mesh.part_names == ("car", "hood", "hood red", "door", "door blue")
+    assert report.material_of_part == {"hood red": "red", "door": "red", "door blue": "blue"}
+    assert report.materials == (surface(object_color=(255, 0, 0)),)
+
+
+def test_materials_that_no_library_defines_are_told(folder: Path) -> None:
+    rule = "; default colors are used"
+    assert read(folder, b"red.mtl").repairs == (f"no library defines material 'blue', 'green'{rule}",)
+    for count, more in ((3, ""), (4, " and 1 more"), (9, " and 6 more")):
+        wanted = (b"red", *(b"tin%d" % number for number in range(count)))
+        assert read(folder, b"red.mtl", wanted=wanted).repairs == (
+            f"no library defines material 'tin0', 'tin1', 'tin2'{more}{rule}",
+        )
+    assert read(folder).repairs == ()
+
+
+@pytest.mark.parametrize(
+    ("libraries", "names"),
+    [
+        ([b" red.mtl "], ["red"]),
+        ([b'"red.mtl"'], ["red"]),
+        ([b"./red.mtl"], ["red"]),
+        ([b"inside.mtl"], ["red"]),
+        ([b"my blue.mtl"], ["blue"]),
+        ([b'"my blue.mtl"'], ["blue"]),
+        ([b"more\\green.mtl"], ["green"]),
+        ([b"red.mtl more/green.mtl"], ["red", "green"]),
+        ([b"none.mtl red.mtl"], ["red"]),
+        ([b"C:\\Users\\anna\\cars\\red.mtl"], ["red"]),
+        ([b"C:\\Users\\anna\\my blue.mtl"], ["blue"]),
+        ([b"/home/anna/cars/red.mtl"], ["red"]),
+        ([b"../red.mtl"], ["red"]),
+        ([b"\\\\server\\share\\red.mtl"], ["red"]),
+        ([b"more/green.mtl", b"my blue.mtl", b"red.mtl"], ["red", "blue", "green"]),
+    ],
+)
+def test_a_library_is_found_in_the_folder_of_the_obj_file_or_below_it(
+    folder: Path, libraries: list[bytes], names: list[str]
+) -> None:
+    report = read(folder, *libraries)
+    assert names_of(report) == names
+    assert all("no library defines" in sentence for sentence in report.repairs)
+
+
+@pytest.mark.parametrize(
+    "library",
+    [
+        *(b"none.mtl", b"../outside.mtl", b"more/../../outside.mtl", b"linked/outside.mtl", b"link.mtl"),
+        *(b"more", b".", b"pipe.mtl", b"a\xffb.mtl", b"*", b"x" * 5000),
+        *(b"http://example.org/none.mtl", b"https://example.org/a/none.mtl", b"file:///none.mtl"),
+    ],
+)
+def test_a_library_outside_or_that_is_no_file_or_an_address_is_not_read(
+    folder: Path, library: bytes, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("socket.socket", None)
+    report = read(folder, library)
+    assert report.materials == ()
+    (sentence,) = report.repairs
+    assert sentence.startswith("the materials have default colors: there is no library ")
+    assert sentence.endswith(" in the folder of car.obj; copy it there")
+    assert sentence.isprintable()
+
+
+def test_of_a_material_in_several_libraries_the_first_counts(folder: Path) -> None:
+    (folder / "other.mtl").write_bytes(b"newmtl red\nKd 0 1 0\nnewmtl red\nKd 1 1 1\n")
+    for libraries, color in (
+        ((b"red.mtl", b"other.mtl"), (255, 0, 0)),
+        ((b"other.mtl", b"red.mtl"), (0, 255, 0)),
+        ((b"other.mtl red.mtl",), (0, 255, 0)),
+    ):
+        (material,) = read(folder, *libraries).materials
+        assert material.paint.object_color == color
+
+
+def test_without_a_library_that_of_the_same_name_beside_it_is_read(folder: Path) -> None:
+    beside = folder / "car.mtl"
+    assert read(folder).materials == ()
+    beside.symlink_to(folder.parent / "outside.mtl")
+    assert read(folder).materials == ()
+    beside.unlink()
+    os.mkfifo(beside)
+    assert read(folder).materials == ()
+    beside.unlink()
+    beside.write_bytes(BLUE)
+    for libraries in ((), (b"none.mtl",)):
+        report = read(folder, *libraries)
+        assert names_of(report) == ["blue"]
+        assert len(report.repairs) == 1
+    assert names_of(read(folder, b"red.mtl")) == ["red"]
+
+
+def test_without_materials_no_library_is_read(folder: Path) -> None:
+    (folder / "red.mtl").write_bytes(b"\0")
+    (folder / "car.obj").write_text("mtllib red.mtl none.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n")
+    assert read_obj(folder / "car.obj").repairs == ()
+
+
+@pytest.mark.parametrize(
+    ("data", "sentence"),
+    [
+        (RED.decode().encode("utf-16"), "must be text in UTF-8, not UTF-16; save it as UTF-8"),
+        (RED + b"\0", "must be text, not hold a NUL byte (line 3); save it as UTF-8 text"),
+    ],
+)
+def test_a_library_that_is_no_text_is_told_and_the_others_are_read(
+    folder: Path, data: bytes, sentence: str
+) -> None:
+    (folder / "red.mtl").write_bytes(data)
+    report = read(folder, b"red.mtl", b"my blue.mtl", wanted=(b"blue",))
+    assert report.repairs == (f"the materials have default colors: red.mtl: a material library {sentence}",)
+    assert names_of(report) == ["blue"]
+
+
+@pytest.mark.parametrize("more", [-1, 0, 1])
+def test_libraries_have_a_limited_size_together(folder: Path, more: int) -> None:
+    (folder / "red.mtl").write_bytes(RED.ljust((4 << 20) - len(BLUE) + more))
+    report = read(folder, b"red.mtl", b"my blue.mtl", wanted=(b"red", b"blue"))
+    assert names_of(report) == (["red", "blue"] if more <= 0 else ["red"])
+    assert len(report.repairs) == (0 if more <= 0 else 2)
+
+
+def test_a_library_that_is_named_twice_is_read_once(folder: Path) -> None:
+    (folder / "red.mtl").write_bytes(RED + b"d 0.5\n")
+    libraries = (b"red.mtl ./red.mtl red.mtl", b"red.mtl", b"inside.mtl red.mtl")
+    assert read(folder, *libraries, wanted=(b"red", b"blue")).repairs == (
+        "red.mtl: left out the transparency of 1 material",
+        "no library defines material 'blue'; default colors are used",
+    )
+
+
+@pytest.mark.parametrize("separator", [b" ", b"\nmtllib "], ids=["one line", "many lines"])
+def test_a_library_is_looked_for_among_the_first_alone(folder: Path, separator: bytes) -> None:
+    for before in (MOST_LIBRARIES - 1, MOST_LIBRARIES):
+        names = [*(b"none%d.mtl" % number for number in range(before)), b"red.mtl"]
+        report = read(folder, separator.join(names), wanted=(b"red",))
+        assert names_of(report) == (["red"] if before < MOST_LIBRARIES else [])
+    assert len(report.repairs) == (1 if separator == b" " else MOST_LIBRARY_PROBLEMS)
+
+
+WORDS = st.sampled_from(
+    [b"newmtl", b"red", b"Kd", b"Ks", b"Ns", b"d", b"Tr", b"map_Kd", b"1", b"0.5", b"-1", b"1e308", b"1e-308",
+     b"9" * 400, b"nan", b"#", b"\xff", b"./", b"\\", b"a:"]
+)  # fmt: skip
+LINES = st.lists(WORDS, max_size=5).map(b" ".join)
+
+
+@given(
+    st.binary(max_size=100) | st.lists(LINES, max_size=20).map(b"\n".join),
+    st.lists(LINES | st.text("./\\:ab", min_size=1, max_size=9).map(str.encode), max_size=3),
+)
+def test_any_library_gives_surfaces_that_there_can_be_and_sentences_that_can_be_shown(
+    tmp_path_factory: pytest.TempPathFactory, data: bytes, libraries: list[bytes]
+) -> None:
+    folder = tmp_path_factory.getbasetemp() / "any"
+    folder.mkdir(exist_ok=True)
+    (folder / "car.mtl").write_bytes(data)
+    report = read(folder, *libraries, wanted=(b"red", b"Kd"))
+    for material in report.materials:
+        assert material.name in ("red", "Kd")
+        assert all(0 <= part <= 255 for part in material.paint.object_color)
+        assert material.reflectance.specular >= 0
+    assert all(sentence.isprintable() and len(sentence) < 250 for sentence in report.repairs)
