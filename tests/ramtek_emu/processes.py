@@ -22,10 +22,10 @@ def environment() -> dict[str, str]:
     return {**inherited, "PYTHONPATH": str(ROOT)}
 
 
-def run(*arguments: object, data: bytes = b"") -> subprocess.CompletedProcess[bytes]:
+def run(*arguments: object, data: bytes = b"", **variables: str) -> subprocess.CompletedProcess[bytes]:
     return subprocess.run(
         [sys.executable, "-m", "ramtek_emu", *map(str, arguments)],
-        env=environment(),
+        env={**environment(), **variables},
         input=data,
         capture_output=True,
         timeout=60,
@@ -35,7 +35,7 @@ def run(*arguments: object, data: bytes = b"") -> subprocess.CompletedProcess[by
 
 @contextmanager
 def started(*arguments: object, **variables: str) -> Iterator[subprocess.Popen[bytes]]:
-    """A running command, with pipes for stdin, stdout and stderr, and further variables of the environment."""
+    """A running command with pipes, and with further variables of the environment."""
     process = subprocess.Popen(
         [sys.executable, "-m", "ramtek_emu", *map(str, arguments)],
         env={**environment(), **variables},
