@@ -35,20 +35,11 @@ class Library:
     def color(self, word: int) -> None:
         self.send(0x0802, 0x0002, word)
 
-    def background(self, word: int) -> None:
-        self.send(0x0802, 0x0004, word)
-
-    def mask(self, planes: int) -> None:
-        self.send(0x0802, 0x0001, planes)
-
     def window(self, box: Box) -> None:
         self.send(0x0802, 0x0040, *box)
 
     def scan(self, order: int) -> None:
         self.send(0x0802, 0x0080, order)
-
-    def origin(self, element: int, line: int) -> None:
-        self.send(0x0802, 0x0020, element, line)
 
     def start(self, element: int, line: int) -> None:
         self.send(0x0802, 0x8000, element, line)
@@ -70,15 +61,6 @@ class Library:
     def text(self, box: Box, text: str, swapped: bool = False) -> None:
         self.send(0x0C13 if swapped else 0x0C03, 0x0040, *box, len(text), *pairs(text.encode()))
 
-    def text_here(self, text: str) -> None:
-        """Write text in upper case, in a window at the operating point."""
-        text = text.upper()
-        self.send(0x0CC3, 0x0040, 0, 0, 7 * len(text), 9, len(text), *pairs(text.encode()))
-
-    def raster(self, box: Box, dots: NDArray[np.bool_]) -> None:
-        data = np.packbits(dots.reshape(-1)).tobytes()
-        self.send(0x0D03, 0x0040, *box, len(data), *pairs(data))
-
     def vectors(self, *vertices: Place) -> None:
         self.send(0x0E01, 4 * len(vertices), *(number for vertex in vertices for number in vertex))
 
@@ -86,11 +68,6 @@ class Library:
         self.send(
             0x0F03, 0x1000, *(word for coefficient in coefficients for word in (0, coefficient)), 4, *stop
         )
-
-    def load_table(self, first: int, words: Iterable[int]) -> None:
-        row = list(words)
-        self.send(0x0300, first, 2 * len(row), *row)
-        self.send(0x0300, 0x03FF, 2, 0)
 
     def write_cursor(self, number: int, place: Place, state: int) -> None:
         self.send(0x1600 | number, place[0], place[1] | state)
@@ -134,14 +111,6 @@ def mirror_image(library: Library, box: Box, corner: Place) -> None:
     library.scan(0)
 
 
-def dim_table(port: HostPort, count: int) -> None:
-    """Read entries of 24 bits, halve them, load them again."""
-    port.send(sent_words([0x0400, 0, 4 * count]))
-    words = port.receive(2 * count)
-    halved = (words >> 1) & 0x7F7F
-    port.send(sent_words([0x2901, 0x0300, 0, 4 * count, *halved.tolist(), 0x0300, 0, 0]))
-
-
 def draft(library: Library, color: int, hand: Callable[[], object]) -> list[list[Place]]:
     """Follow cursor 0 with lines while TRACK is on, until ENTER; `hand` moves and presses for the user."""
     library.color(color)
@@ -161,14 +130,6 @@ def draft(library: Library, color: int, hand: Callable[[], object]) -> list[list
             library.vectors((element, line))
             strokes[-1].append((element, line))
         pen_is_down = bool(state & TRACK)
-
-
-def follow_with_origin(library: Library, steps: int, hand: Callable[[], object], size: Place) -> None:
-    """Move the origin so that the cursor stays over memory (0, 0)."""
-    for _ in range(steps):
-        hand()
-        element, line, _ = library.read_cursor(0)
-        library.origin(size[0] - element, size[1] - line)
 
 
 def chase(library: Library, places: Iterable[Place], size: int) -> None:

@@ -14,8 +14,6 @@ from ramtek_emu.testing import check_words_within_planes
 from tests.ramtek_emu.clients import Library, chase, fill_polygon, mirror_image
 from tests.ramtek_emu.strategies import sent_words
 
-EACH = 40
-
 
 class Listener(Ramtek9300):
     """A display that records the words that it was sent."""
@@ -78,12 +76,13 @@ def with_faults(stream: NDArray[np.uint16], random: np.random.Generator) -> NDAr
     "configuration", [GMR_9300, PRINCETON_9300, NCAR_9460], ids=lambda configuration: configuration.name
 )
 @pytest.mark.parametrize("session", range(3))
+@pytest.mark.parametrize("count", [12, pytest.param(100, marks=pytest.mark.thorough)])
 def test_streams_with_faults_are_drawn_somehow_and_do_no_harm(
-    configuration: Configuration, session: int
+    configuration: Configuration, session: int, count: int
 ) -> None:
     random = np.random.default_rng(session)
     display = Ramtek9300(configuration)
-    for _ in range(EACH):
+    for _ in range(count):
         display.send(with_faults(sessions()[session], random))
         check_words_within_planes(display.words, configuration.planes)
         assert display.decoder.pending_words < 0x8100

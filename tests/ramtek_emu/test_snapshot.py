@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import json
 import random
 import struct
 import tracemalloc
@@ -29,7 +28,6 @@ from ramtek_emu import (
 )
 from ramtek_emu.arrays import Words
 from ramtek_emu.configuration import CONFIGURATIONS
-from ramtek_emu.memory.parameters import Parameters
 from ramtek_emu.memory.scan_orders import Point
 from ramtek_emu.monitor.pattern import pattern
 from ramtek_emu.snapshot import (
@@ -40,7 +38,6 @@ from ramtek_emu.snapshot import (
     picture_bytes,
     picture_of,
     snapshot_bytes,
-    to_plain,
 )
 from ramtek_emu.testing import streams
 from ramtek_emu.timing import Timing
@@ -221,26 +218,6 @@ def test_a_value_that_does_not_fit_is_refused_by_name(keyword: str, old: str, ne
     assert part in str(refusal.value)
     assert "\n" not in str(refusal.value)
     assert len(str(refusal.value)) < 700
-
-
-@given(
-    st.lists(st.integers(0, 0xFFFF), min_size=6, max_size=6),
-    st.lists(st.booleans(), min_size=11, max_size=11),
-)
-def test_plain_values_are_restored_through_json(words: list[int], dots: list[bool]) -> None:
-    parameters = Parameters.at_reset(SMALL)
-    parameters.conic = tuple(words)
-    parameters.background = words[0]
-    state = {
-        "parameters": parameters,
-        "words": np.array(words, np.uint16).reshape(2, 3),
-        "dots": np.array(dots),
-        "configuration": GMR_9300,
-    }
-    for name, value in state.items():
-        pattern = value if name != "parameters" else Parameters.at_reset(SMALL)
-        again = from_plain(pattern, json.loads(json.dumps(to_plain(value))), name)
-        assert np.array_equal(again, value) if isinstance(value, np.ndarray) else again == value
 
 
 @pytest.mark.parametrize(

@@ -20,9 +20,8 @@ from ramtek_emu import Ramtek9300, TcpPort, UnixPort, instructions, read_snapsho
 from ramtek_emu.commands.displays import running, show
 from ramtek_emu.host.server import TcpServer
 from ramtek_emu.monitor.window import Monitor
-from tests.ramtek_emu.displays import shown
 from tests.ramtek_emu.processes import PipedHost, address_of, ended, field_of, run, started, stream
-from tests.ramtek_emu.recorded_streams import BARS, OUTLINE, words
+from tests.ramtek_emu.recorded_streams import OUTLINE, words
 from tests.ramtek_emu.serving import until
 
 
@@ -164,57 +163,11 @@ def test_lines_on_stdin_move_the_joystick_of_a_server() -> None:
         ended(process, signal.SIGTERM)
 
 
-def test_a_fifo_moves_the_joystick_of_a_display_on_a_pipe(tmp_path: Path) -> None:
-    os.mkfifo(tmp_path / "stick")
-    with started("serve", "--stdio", "--joystick", tmp_path / "stick") as process:
-        host = PipedHost(process)
-        host.send(words("1600 0005 0406 1700"))
-        assert host.receive(2).tolist() == [5, 0x406]
-        for number in (1, 2):
-            # A writer closes the FIFO, which stays open for the next writer.
-            (tmp_path / "stick").write_text(f"cursor {number} 9 enter\n?\n")
-            assert process.stderr is not None
-            assert f"line {2 * number}:".encode() in process.stderr.readline()
-            host.send(words("1700"))
-            assert host.receive(2).tolist() == [number, 0x2409]
-        host.send(words("0B03 0040 0 0 9F 9F C800"))
-        host.into.close()
-        assert len(host.out.read()) == 0xC800
-        assert process.wait(60) == 0
-
-
 def test_a_host_address_other_than_loopback_is_served_with_a_warning() -> None:
     with started("serve", "--port", 0, "--host", "0.0.0.0") as process:
         port = int(address_of(process).rpartition(":")[2])
         socket.create_connection(("127.0.0.1", port), 5).close()
         assert "whoever reaches tcp://0.0.0.0" in ended(process, signal.SIGINT)
-
-
-def test_the_window_shows_the_drawing_of_a_remote_host_at_once(on_screen: str) -> None:
-    with TcpServer(Ramtek9300()) as server:
-        monitor = Monitor(server.display, on_tick=lambda: server.serve_for(0.01))
-        monitor.open()
-        host = TcpPort(server.address)
-        host.send(instructions.load_entries(0, [[n % 256, n // 4, 0] for n in range(1024)]))
-        counts = []
-        sent = 3 + 2 * 1024
-        for part in np.split(BARS, 8):
-            host.send(part)
-            sent += len(part)
-            while server.display.words_received < sent:
-                monitor.step(2)
-            monitor.step()
-            counts.append(monitor.refreshed)
-            multiple = len(shown()) // 480
-            assert (shown()[::multiple, ::multiple] == server.display.field()).all()
-        assert len(set(counts)) == 8
-        # Closing waits for the server, which this thread steps.
-        closing = threading.Thread(target=host.close)
-        closing.start()
-        while closing.is_alive():
-            monitor.step(2)
-        assert server.display.words.max() == 319
-        monitor.close()
 
 
 def test_a_host_that_polls_the_joystick_of_a_window_does_not_wait_for_its_ticks(

@@ -15,13 +15,12 @@ from PIL import Image
 from ramtek_emu import NoScreenError, Ramtek9300, instructions
 from ramtek_emu.arrays import Colors, PackedColors
 from ramtek_emu.monitor.glass import viewport
-from ramtek_emu.monitor.input_queue import Close, Release
+from ramtek_emu.monitor.input_queue import Close
 from ramtek_emu.monitor.pattern import pattern
 from ramtek_emu.monitor.window import Key, Monitor, Pointer
 from tests.ramtek_emu.displays import shown
 from tests.ramtek_emu.film_reader import decoded, durations_of
 from tests.ramtek_emu.serving import until
-from tests.tables import first
 
 QUIT = (pygame.K_q, "\x11", pygame.KMOD_LCTRL)
 
@@ -96,17 +95,6 @@ def test_the_window_refreshes_only_when_something_was_written(monitor: Monitor) 
     assert monitor.refreshed == before + 1
 
 
-@pytest.mark.parametrize("scale", [1, 2])
-def test_a_field_that_is_recolored_again_and_again_is_shown(monitor: Monitor, scale: int) -> None:
-    resize(monitor, (640 * scale, 480 * scale))
-    for number in range(4):
-        if number == 2:
-            monitor.display.send(instructions.erase((100, 400, 200, 450), 9))
-        load(monitor, number)
-        monitor.step()
-        assert (shown()[::scale, ::scale] == monitor.display.field()).all()
-
-
 def test_full_screen_keeps_whole_multiples_and_the_window_s_size(monitor: Monitor) -> None:
     size = pygame.display.get_window_size()
     press(monitor, pygame.K_F11)
@@ -173,29 +161,6 @@ def test_a_field_is_shown_between_any_two_keys_and_between_press_and_release(mon
         assert monitor.refreshed == before + number
         assert monitor.display.entries[9, 0] == ord(letter)
         assert np.array_equal(shown(), monitor.display.field())
-
-
-def test_of_repeats_and_motions_that_wait_only_the_last_is_handled(monitor: Monitor) -> None:
-    keys: list[Key] = []
-    places: list[tuple[int, int]] = []
-    monitor.on_key = keys.append
-    monitor.on_pointer = lambda pointer: places.append((pointer.element, pointer.line))
-    resize(monitor, (640, 480))
-    places.clear()
-    for step in range(20):
-        post(pygame.KEYDOWN, key=pygame.K_LEFT, unicode="", mod=0)
-        post(pygame.MOUSEMOTION, pos=(step, step), rel=(1, 1), buttons=(0,))
-    assert monitor.is_at_rest
-    monitor.step()
-    assert keys == [Key("left"), Key("left", repeated=True)]
-    assert places[-1] == (19, 19)
-    assert not monitor.is_at_rest
-    # After the keys were released, no input waits.
-    for kind in (pygame.KEYDOWN, pygame.KEYDOWN, pygame.KEYUP):
-        post(kind, key=pygame.K_LEFT, unicode="", mod=0)
-    monitor.step()
-    assert len(keys) == 2
-    assert monitor.is_at_rest
 
 
 def test_closing_asks_whoever_drives_the_display(monitor: Monitor) -> None:
@@ -368,26 +333,6 @@ def test_the_mouse_and_dropped_files_are_reported_in_elements_and_lines(monitor:
     assert [(wheel.action, wheel.steps) for wheel in wheels] == [("wheel down", 3)] * 3
 
 
-@pytest.mark.parametrize("size", first(2, [(1399, 1001), (500, 300), (640, 480), (1280, 960)]))
-def test_a_cursor_that_moves_leaves_nothing_behind(monitor: Monitor, size: tuple[int, int]) -> None:
-    display = monitor.display
-    display.send(instructions.write_cursor(0, 300, 200))
-    resize(monitor, size)
-    left, top, width, _ = viewport((640, 480), size)
-    for number, place in enumerate(((300, 200), (310, 210), (0, 0), (250, 299), (620, 470), (80, 150))):
-        display.joystick.move_to(*place)
-        if number == 3:
-            load(monitor, 200)
-        monitor.step()
-        if width < 640:
-            continue
-        blocks = display.field().repeat(width // 640, axis=0).repeat(width // 640, axis=1)
-        assert np.array_equal(shown()[top:, left:][: len(blocks), :width], blocks)
-    moved = shown().copy()
-    resize(monitor, size)
-    assert np.array_equal(shown(), moved)
-
-
 def test_a_blinking_cursor_comes_and_goes(monitor: Monitor, monkeypatch: pytest.MonkeyPatch) -> None:
     monitor.display.send(np.array([0x1600, 50, 0xC00 | 60], np.uint16))
     resize(monitor, (640, 480))
@@ -538,15 +483,6 @@ def test_escape_leaves_full_screen_before_it_goes_to_the_program(unopened: Unope
         unopened.handle_key(key)
     assert unopened.asked == ["toggle"] * 4
     assert taken == [Key("escape")]
-
-
-def test_a_released_key_is_reported_by_name_unless_it_is_a_modifier(unopened: UnopenedMonitor) -> None:
-    unopened.handle(Release("a"))
-    given: list[str] = []
-    unopened.on_release = given.append
-    for name in ("a", "left shift", "f1"):
-        unopened.handle(Release(name))
-    assert given == ["a", "f1"]
 
 
 def test_a_screenshot_takes_the_next_free_number_or_is_a_message(
