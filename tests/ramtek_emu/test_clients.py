@@ -1,98 +1,14 @@
-"""Programs that draw, read words back and draw again; and the habits of the drivers of the time."""
+"""The habits of the drivers of the time: long sessions in which parameters stay set."""
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Iterator
-
 import numpy as np
-import pytest
 from numpy.typing import NDArray
 
-from ramtek_emu import GMR_9300, JPL_9460, NCAR_9460, PRINCETON_9300, Configuration, Ramtek9300
+from ramtek_emu import JPL_9460, NCAR_9460, PRINCETON_9300, Ramtek9300
 from ramtek_emu.memory.character_rom import characters
 from ramtek_emu.processor.processor import Status
-from tests.ramtek_emu import reference
-from tests.ramtek_emu.clients import (
-    Library,
-    draft,
-    fill_polygon,
-    mirror_image,
-    pairs,
-)
 from tests.ramtek_emu.strategies import sent_words
-
-
-@pytest.mark.parametrize("configuration", [GMR_9300, PRINCETON_9300], ids=str)
-def test_a_polygon_is_filled_between_the_outlines_that_are_read_back(configuration: Configuration) -> None:
-    display = Ramtek9300(configuration)
-    library = Library(display)
-    library.reset()
-    corners = [(100, 40), (180, 90), (150, 170), (60, 150), (50, 80)]
-    fill_polygon(library, corners, 9, 4)
-    words = display.words
-    assert set(np.unique(words)) == {0, 4, 9}
-    for line in range(40, 171):
-        row = words[line]
-        edge = np.flatnonzero(row == 9)
-        assert (row[edge[0] : edge[-1] + 1] > 0).all()
-        assert not row[: edge[0]].any()
-        assert not row[edge[-1] + 1 :].any()
-    assert display.status == Status.READY
-    assert display.processor.waiting == 0
-
-
-def test_an_image_that_was_read_is_written_mirrored() -> None:
-    display = Ramtek9300(PRINCETON_9300)
-    library = Library(display)
-    picture = np.random.default_rng(4).integers(0, 1024, (30, 50))
-    library.write_image((200, 100, 249, 129), picture.reshape(-1))
-    mirror_image(library, (200, 100, 249, 129), (10, 300))
-    assert (display.words[300:330, 10:60] == picture[:, ::-1]).all()
-
-
-def test_a_drawing_follows_the_cursor_while_track_is_on_until_enter() -> None:
-    display = Ramtek9300(PRINCETON_9300)
-    joystick = display.joystick
-
-    def hand() -> Iterator[None]:
-        yield
-        joystick.track = True
-        for step in range(5):
-            joystick.move_to(100 + 20 * step, 100 + 7 * step)
-            yield
-        joystick.track = False
-        joystick.move_to(300, 300)
-        yield
-        joystick.track = True
-        yield
-        joystick.move_by(0, 50)
-        yield
-        joystick.press_enter()
-        yield
-
-    user = hand()
-    strokes = draft(Library(display), 6, lambda: next(user))
-    assert strokes == [[(100 + 20 * step, 100 + 7 * step) for step in range(5)], [(300, 300), (300, 350)]]
-    twin = np.zeros_like(display.words)
-    for stroke in strokes:
-        for start, end in itertools.pairwise([stroke[0], *stroke]):
-            for element, line in reference.line_places(start, end):
-                twin[line, element] = 6
-    assert (display.words == twin).all()
-    assert not display.cursors[0].is_visible
-
-
-def test_a_conic_of_the_library_is_an_arc() -> None:
-    display = Ramtek9300(PRINCETON_9300)
-    library = Library(display)
-    library.start(300, 200)
-    # A quarter of a circle around (260, 200), whose -80 travels as a word with nothing above it.
-    library.conic((1, 1, 0, 80, 0, 0), (260, 240))
-    lines, elements = np.nonzero(display.words)
-    assert np.abs(np.hypot(elements - 260, lines - 200) - 40).max() < 0.75
-    assert (lines >= 200).all()
-    assert (elements >= 260).all()
 
 
 def plot_session(display: Ramtek9300) -> None:
@@ -110,7 +26,7 @@ def plot_session(display: Ramtek9300) -> None:
         [0x0802, 0x8000, 10, 501],
         [0x0E01, 4, 100, 451],
         [0x0902, 0x0044, 2, 100, 331, 200, 411],
-        [0x0C0B, 0x0040, 100, 451, 619, 511, 6, *pairs(b"HELLO ", low_first=True)],
+        [0x0C0B, 0x0040, 100, 451, 619, 511, 6, *packed(b"HELLO ")],
     ):
         display.send(sent_words(words))
 
@@ -130,20 +46,22 @@ def test_the_plot_library_draws_lines_boxes_and_text() -> None:
     assert display.status == Status.READY
 
 
-def bytes_of(lines: NDArray[np.uint8]) -> list[int]:
-    return pairs(lines.tobytes(), low_first=True)
+def packed(data: bytes | NDArray[np.uint8]) -> list[int]:
+    """Bytes as words, reverse packed."""
+    words: list[int] = np.frombuffer(bytes(data), "<u2").tolist()
+    return words
 
 
 def test_the_image_driver_writes_and_reads_lines_of_bytes() -> None:
     display = Ramtek9300(JPL_9460)
     picture = np.random.default_rng(11).integers(0, 256, (20, 100), np.uint8)
     for line in range(20):
-        row = bytes_of(picture[line])
+        row = packed(picture[line])
         head = [0x0A0F, 0x80C1, 0x0020, 0x00FF, 0, 0, 639, 479, 0, 50, 60 + line, 1, 100]
         display.send(sent_words([*head, *row]))
     assert (display.words[60:80, 50:150] == picture).all()
     display.send(sent_words([0x0B0F, 0x80C0, 0x0021, 0, 0, 639, 479, 0, 50, 65, 0x00FF, 1, 100]))
-    assert display.receive(50).tolist() == bytes_of(picture[5])
+    assert display.receive(50).tolist() == packed(picture[5])
 
 
 def test_the_weather_driver_clips_draws_and_colors() -> None:
@@ -154,7 +72,7 @@ def test_the_weather_driver_clips_draws_and_colors() -> None:
     assert (display.words[512:, :640] == 3).all()
     assert not display.words[:512].any()
     assert not display.words[:, 640:].any()
-    image = [0x0A0F, 0x00C0, 0x0020, 8, 528, 11, 531, 0, 1, 16, *bytes_of(np.arange(1, 17, dtype=np.uint8))]
+    image = [0x0A0F, 0x00C0, 0x0020, 8, 528, 11, 531, 0, 1, 16, *packed(np.arange(1, 17, dtype=np.uint8))]
     display.send(sent_words(image))
     assert display.words[528:532, 8:12].tolist() == np.arange(1, 17).reshape(4, 4).tolist()
     # Draw a line that leaves the clip window.
@@ -168,21 +86,3 @@ def test_the_weather_driver_clips_draws_and_colors() -> None:
     assert display.field()[1023 - 528, 8].tolist() == [255, 0, 0]
     display.send(sent_words([0x2C00, 700, 0x400 | 900, 0x2E00]))
     assert display.receive(2).tolist() == [700, 0x400 | 900]
-
-
-def test_sessions_do_not_depend_on_how_they_are_cut() -> None:
-    class Cut(Ramtek9300):
-        """A display that gets its words one at a time."""
-
-        def send(self, words: NDArray[np.uint16]) -> None:
-            for word in words:
-                super().send(np.array([word], np.uint16))
-
-    whole, cut = Ramtek9300(PRINCETON_9300), Cut(PRINCETON_9300)
-    for display in (whole, cut):
-        plot_session(display)
-        fill_polygon(Library(display), [(100, 40), (130, 50), (120, 70)], 9, 4)
-        mirror_image(Library(display), (90, 30, 140, 80), (300, 300))
-    assert (whole.words == cut.words).all()
-    assert (whole.entries == cut.entries).all()
-    assert whole.processor.parameters == cut.processor.parameters

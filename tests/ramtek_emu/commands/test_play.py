@@ -167,9 +167,9 @@ def test_a_film_that_fails_is_reported_and_the_stream_goes_on(
     assert sorted(path.name for path in Path().iterdir()) == ["end.png", "frames.ramtek"]
 
 
-@pytest.fixture
-def _broken(frames: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Streams that cannot be read to their ends."""
+def test_of_a_stream_that_cannot_be_read_to_its_end_a_window_shows_the_beginning(
+    frames: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     pieces = [stream(FRAMES)]
 
     def read(_: int, __: int) -> bytes:
@@ -177,13 +177,6 @@ def _broken(frames: str, monkeypatch: pytest.MonkeyPatch) -> None:
             return pieces.pop()
         raise OSError("broken")
 
-    monkeypatch.setattr("ramtek_emu.commands.play.os.read", read)
-
-
-@pytest.mark.usefixtures("_broken")
-def test_a_window_stays_open_when_its_stream_cannot_be_read_to_its_end(
-    frames: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
     def show(display: Ramtek9300, run: Run, serve_for: Callable[[float], None]) -> None:
         def has_failed() -> bool:
             serve_for(0.01)
@@ -191,18 +184,16 @@ def test_a_window_stays_open_when_its_stream_cannot_be_read_to_its_end(
 
         until(has_failed)
 
+    monkeypatch.setattr("ramtek_emu.commands.play.os.read", read)
     monkeypatch.setattr("ramtek_emu.commands.play.show", show)
     failed = play(frames, "--window", "-o", "a.png")
     assert failed.exit_code == MissingInputError.exit_code
     assert "ramtek: a stream must be readable to its end" in failed.stderr
     assert field_of(Path("a.png"))[0, 0, 0] == 100
-
-
-@pytest.mark.usefixtures("_broken")
-def test_a_stream_that_cannot_be_read_to_its_end_makes_no_film(frames: str) -> None:
-    failed = play(frames, "--film", "a.apng", "-o", "a.png")
-    assert isinstance(failed.exception, MissingInputError)
-    assert [path.name for path in Path().iterdir()] == [frames]
+    # Nothing is left of a film.
+    pieces.append(stream(FRAMES))
+    assert isinstance(play(frames, "--film", "a.apng", "-o", "b.png").exception, MissingInputError)
+    assert sorted(path.name for path in Path().iterdir()) == ["a.png", frames]
 
 
 def test_an_interrupted_film_has_the_frames_so_far(tmp_path: Path) -> None:

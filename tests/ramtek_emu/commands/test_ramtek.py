@@ -81,8 +81,6 @@ REFUSED = (
     ),
     ("serve --stdio --joystick none", 66, "ramtek: a joystick's lines must"),
     ("serve --port 0 --joystick .", 66, "ramtek: a joystick's lines must"),
-    ("tty none -- 'no such program'", 66, "ramtek: a program must be executable"),
-    ("tty none -- true", 69, "ramtek: a display must listen at none"),
 )
 """Arguments, the exit code, and the start of the sentence on stderr."""
 

@@ -6,14 +6,10 @@ import os
 import signal
 import socket
 import stat
-import subprocess
-import sys
 import threading
-import time
 from pathlib import Path
 
 import numpy as np
-import pygame
 import pytest
 
 from ramtek_emu import Ramtek9300, TcpPort, UnixPort, instructions, read_snapshot
@@ -202,36 +198,6 @@ def test_a_host_that_polls_the_joystick_of_a_window_does_not_wait_for_its_ticks(
             show(server.display, run, serve_for, lambda: server.busy)
         host.join(60)
     assert waits == {0}
-
-
-def test_a_window_closes_at_once_while_a_host_is_still_sending(on_screen: str) -> None:
-    slow = np.tile(np.concatenate((instructions.write_image(np.full((480, 640), 5)), OUTLINE)), 20)
-    with TcpServer(Ramtek9300()) as server:
-        monitor = Monitor(server.display, on_tick=lambda: server.serve_for(0.01))
-        monitor.open()
-        program = (
-            "import sys, socket; s = socket.create_connection(('127.0.0.1', int(sys.argv[1])))\n"
-            "d = sys.stdin.buffer.read()\n"
-            "try:\n"
-            "    while True: s.sendall(d)\n"
-            "except OSError: pass"
-        )
-        host = subprocess.Popen([sys.executable, "-c", program, str(server.port)], stdin=subprocess.PIPE)
-        assert host.stdin is not None
-        host.stdin.write(slow.astype("<u2").tobytes())
-        host.stdin.close()
-        while not server.display.words.any():
-            monitor.step(5)
-        for _ in range(5):
-            monitor.step(5)
-        assert server.busy
-        pygame.event.post(pygame.event.Event(pygame.QUIT))
-        begin = time.thread_time()
-        monitor.step(5)
-        assert not monitor.is_open
-        server.close()
-        assert time.thread_time() - begin < 0.25
-        host.wait(60)
 
 
 @pytest.mark.parametrize(
