@@ -22,7 +22,6 @@ REACHED: dict[str, tuple[st.SearchStrategy[Any], Callable[[Any], bool]]] = {
     },
     "no words": (streams(), lambda stream: stream == []),
     "all words that may be": (streams(9), lambda stream: len(stream) == 9),
-    "60 words": (streams(), lambda stream: len(stream) == 60),
     "a raster with a word of 0 and the largest": (
         rasters(2, 3),
         lambda raster: raster.min() == 0 and raster.max() == 1023,
@@ -30,8 +29,15 @@ REACHED: dict[str, tuple[st.SearchStrategy[Any], Callable[[Any], bool]]] = {
     "a raster of 16 planes": (rasters(1, 1, 16), lambda raster: raster[0, 0] == 0xFFFF),
     "an entry of 0 and 255": (entries(2), lambda table: table.min() == 0 and table.max() == 255),
     **{
-        f"a stream of {word:04X}": (streams(1), lambda stream, word=word: stream == [word])
-        for word in (0, 12, 0x7FFF, 0xFFFF, *(format.opcode << 8 for format in FORMATS))
+        f"the word {word}": (streams(1), lambda stream, word=word: stream == [word])
+        for word in (0, 12, 0xFFFF)
+    },
+    **{
+        f"the instruction {format.name}": (
+            streams(1),
+            lambda stream, opcode=format.opcode: bool(stream) and stream[0] >> 8 == opcode,
+        )
+        for format in FORMATS
     },
     "an instruction without flags": (streams(1), lambda stream: stream == [SUBSTANTIATED[0].opcode << 8]),
     "an instruction with all": (streams(1), lambda stream: stream == [SUBSTANTIATED[0].opcode << 8 | 0xFF]),

@@ -12,6 +12,7 @@ from click.shell_completion import BashComplete
 from ramtek_emu.command_line import run_command
 from ramtek_emu.commands.ramtek import RamtekGroup, ramtek
 from tests.ramtek_emu.processes import ROOT, run
+from tests.tables import first
 
 NO_SCREEN = b"ramtek: a window must have a screen, and "
 
@@ -114,15 +115,25 @@ BROKEN = {
 }
 
 
-WITH_A_WINDOW = ("play -", "serve --stdio --window", "serve --port 0 --window")
-
-
 @pytest.mark.parametrize(
-    ("kind", "arguments"), [(kind, "") for kind in BROKEN] + [("missing", each) for each in WITH_A_WINDOW]
+    "broken",
+    first(
+        4,
+        [
+            ("missing", ""),
+            ("half installed", ""),
+            ("silent", "serve --port 0 --window"),
+            ("missing", "play -"),
+            ("missing", "serve --stdio --window"),
+            ("without its library", ""),
+            ("of another version", ""),
+        ],
+    ),
 )
 def test_a_missing_or_broken_pygame_is_reported_with_the_package_to_install(
-    tmp_path: Path, kind: str, arguments: str
+    tmp_path: Path, broken: tuple[str, str]
 ) -> None:
+    kind, arguments = broken
     (tmp_path / "pygame.py").write_text(BROKEN[kind], "utf-8")
     path = f"{tmp_path}{os.pathsep}{ROOT}"
     done = run(*arguments.split(), PYTHONPATH=path)
@@ -133,7 +144,7 @@ def test_a_missing_or_broken_pygame_is_reported_with_the_package_to_install(
     assert said.endswith(f"); install it with `pip install {name}`, or ask for a picture file instead\n")
     assert "()" not in said
     assert said.count("\n") == 1
-    if not arguments:
+    if broken == ("missing", ""):
         picture = tmp_path / "pattern.png"
         assert run("-o", picture, PYTHONPATH=path).returncode == 0
         assert picture.stat().st_size > 1000

@@ -71,17 +71,22 @@ def test_a_reply_comes_before_the_next_word_is_sent_and_dribbled_bytes_are_words
     ("sent", "replies", "said"),
     [
         (
-            "A3FF 0B03 0040 0 0 0 0 2 0A01 0008",
+            "A3FF 1100 1200 0B03 0040 0 0 0 0 2 0A01 0008",
             b"\0\0",
             [
                 "1 word begins no instruction: skipped",
+                "2 instructions are known by name only: without effect",
                 "the stream ends within an instruction: its 2 words were dropped",
             ],
         ),
-        ("1100 1200 0500", b"", ["2 instructions are known by name only: without effect"]),
-        ("1100", b"", ["1 instruction is known by name only: without effect"]),
-        ("A3FF A4FF", b"", ["2 words begin no instruction: skipped"]),
-        ("", b"", []),
+        (
+            "A3FF A4FF 1100",
+            b"",
+            [
+                "2 words begin no instruction: skipped",
+                "1 instruction is known by name only: without effect",
+            ],
+        ),
     ],
 )
 def test_only_replies_are_on_stdout_and_the_rest_is_said_on_stderr(

@@ -169,9 +169,10 @@ def test_closing_asks_whoever_drives_the_display(monitor: Monitor) -> None:
     monitor.on_close = lambda: answers.pop(0)
     press(monitor, *QUIT)
     post(pygame.QUIT)
-    monitor.step()
+    assert monitor.step() is True
     assert monitor.is_open
-    press(monitor, *QUIT)
+    post(pygame.QUIT)
+    assert monitor.step() is False
     assert not monitor.is_open
     assert not answers
 
@@ -368,9 +369,12 @@ def test_help_and_entries_stand_over_the_field_and_touch_no_word(monitor: Monito
 
 def test_another_display_takes_the_place_of_the_first_in_the_open_window(monitor: Monitor) -> None:
     resize(monitor, (640, 480))
+    # As much was written in both, elsewhere.
+    monitor.display.send(instructions.erase((0, 0, 99, 99), 1))
+    settle(monitor)
     other = Ramtek9300()
     other.send(pattern())
-    other.send(instructions.erase((0, 0, 99, 99), 1))
+    other.send(instructions.erase((100, 200, 199, 299), 2))
     assert not np.array_equal(other.field(), monitor.display.field())
     monitor.display.joystick.move_to(123, 45)
     monitor.display = other
