@@ -1,6 +1,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
+from operator import eq
 from typing import Any
 
 import numpy as np
@@ -14,31 +16,31 @@ from ramtek_emu.instruction_set.table import FORMATS, SUBSTANTIATED
 from ramtek_emu.testing import check_words_within_planes, entries, rasters, streams, words
 from tests.ramtek_emu.strategies import SMALL
 
+
+def begins(opcode: int, stream: list[int]) -> bool:
+    """Whether a stream begins with an instruction."""
+    return bool(stream) and stream[0] >> 8 == opcode
+
+
 REACHED: dict[str, tuple[st.SearchStrategy[Any], Callable[[Any], bool]]] = {
     **{
-        f"{word} of {planes} planes": (words(planes), lambda found, word=word: found == word)
+        f"{word} of {planes} planes": (words(planes), partial(eq, word))
         for planes in (1, 8, 10, 16)
         for word in (0, (1 << planes) - 1)
     },
-    "no words": (streams(), lambda stream: stream == []),
+    "no words": (streams(), partial(eq, [])),
     "all words that may be": (streams(9), lambda stream: len(stream) == 9),
     "a raster of 0": (rasters(1, 1), lambda raster: raster[0, 0] == 0),
     "a raster of the largest word": (rasters(1, 1), lambda raster: raster[0, 0] == 1023),
     "a raster of 16 planes": (rasters(1, 1, 16), lambda raster: raster[0, 0] == 0xFFFF),
     "an entry of 0 and 255": (entries(2), lambda table: table.min() == 0 and table.max() == 255),
+    **{f"the word {word}": (streams(1), partial(eq, [word])) for word in (0, 12, 0xFFFF)},
     **{
-        f"the word {word}": (streams(1), lambda stream, word=word: stream == [word])
-        for word in (0, 12, 0xFFFF)
-    },
-    **{
-        f"the instruction {format.name}": (
-            streams(1),
-            lambda stream, opcode=format.opcode: bool(stream) and stream[0] >> 8 == opcode,
-        )
+        f"the instruction {format.name}": (streams(1), partial(begins, format.opcode))
         for format in (SUBSTANTIATED[-1], FORMATS[0], FORMATS[-1])
     },
-    "an instruction without flags": (streams(1), lambda stream: stream == [SUBSTANTIATED[0].opcode << 8]),
-    "an instruction with all": (streams(1), lambda stream: stream == [SUBSTANTIATED[0].opcode << 8 | 0xFF]),
+    "an instruction without flags": (streams(1), partial(eq, [SUBSTANTIATED[0].opcode << 8])),
+    "an instruction with all": (streams(1), partial(eq, [SUBSTANTIATED[0].opcode << 8 | 0xFF])),
 }
 """Values at the edges, by what they are: a strategy, and what is looked for."""
 

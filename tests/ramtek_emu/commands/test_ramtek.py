@@ -25,7 +25,7 @@ NO_SCREEN = b"ramtek: a window must have a screen, and "
 def test_a_missing_screen_is_reported_in_one_sentence(
     arguments: tuple[str, ...], screen: dict[str, str]
 ) -> None:
-    done = run(*arguments, SDL_VIDEODRIVER="", **screen)
+    done = run(*arguments, data=b"", SDL_VIDEODRIVER="", **screen)
     assert (done.returncode, done.stdout) == (69, b"")
     assert done.stderr.startswith(NO_SCREEN)
     assert done.stderr.endswith(b"; run it on a desktop, or ask for a picture file instead\n")

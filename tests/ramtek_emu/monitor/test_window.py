@@ -7,6 +7,7 @@ import subprocess
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pygame
@@ -57,7 +58,7 @@ def resize(monitor: Monitor, size: tuple[int, int]) -> None:
     settle(monitor)
 
 
-def post(kind: int, **values: object) -> None:
+def post(kind: int, **values: Any) -> None:
     pygame.event.post(pygame.event.Event(kind, **values))
 
 
