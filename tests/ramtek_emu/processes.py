@@ -22,10 +22,10 @@ def environment() -> dict[str, str]:
     return {**inherited, "PYTHONPATH": str(ROOT)}
 
 
-def run(*arguments: object, data: bytes = b"") -> subprocess.CompletedProcess[bytes]:
+def run(*arguments: object, data: bytes = b"", **variables: str) -> subprocess.CompletedProcess[bytes]:
     return subprocess.run(
         [sys.executable, "-m", "ramtek_emu", *map(str, arguments)],
-        env=environment(),
+        env={**environment(), **variables},
         input=data,
         capture_output=True,
         timeout=60,
@@ -34,11 +34,11 @@ def run(*arguments: object, data: bytes = b"") -> subprocess.CompletedProcess[by
 
 
 @contextmanager
-def started(*arguments: object) -> Iterator[subprocess.Popen[bytes]]:
-    """A running command, with pipes for stdin, stdout and stderr."""
+def started(*arguments: object, **variables: str) -> Iterator[subprocess.Popen[bytes]]:
+    """A running command with pipes, and with further variables of the environment."""
     process = subprocess.Popen(
         [sys.executable, "-m", "ramtek_emu", *map(str, arguments)],
-        env=environment(),
+        env={**environment(), **variables},
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
@@ -52,6 +52,20 @@ def started(*arguments: object) -> Iterator[subprocess.Popen[bytes]]:
         for pipe in (process.stdin, process.stdout, process.stderr):
             if pipe is not None:
                 pipe.close()
+
+
+def address_of(process: subprocess.Popen[bytes]) -> str:
+    """The address that a server prints."""
+    assert process.stdout is not None
+    return process.stdout.readline().decode().strip()
+
+
+def ended(process: subprocess.Popen[bytes], number: int) -> str:
+    """End a server by a signal, in order. Returns what it said on stderr."""
+    process.send_signal(number)
+    assert process.wait(60) == 0
+    assert process.stderr is not None
+    return process.stderr.read().decode()
 
 
 def stream(numbers: object) -> bytes:

@@ -5,15 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ramtek_emu.checks import (
-    checked_colors,
-    checked_number,
-    checked_stream,
-    checked_words,
-    is_whole,
-    whole_numbers,
-)
-from ramtek_emu.errors import ColorsError, WordsError
+from ramtek_emu.checks import checked_colors, checked_number, checked_size, checked_stream, checked_words
+from ramtek_emu.errors import ColorsError, InstructionError, WordsError
+from tests.tables import call, refused
 
 KINDS = st.sampled_from([np.uint16, np.int16, np.int64, np.uint64, ">u2"])
 
@@ -34,26 +28,12 @@ def test_words_that_fit_the_planes_are_accepted(row: list[int], planes: int) -> 
     )
 
 
-@pytest.mark.parametrize("shape", [(3,), (0, 3), (3, 0), (1, 2, 3)])
-def test_words_that_are_no_raster_are_refused_with_their_shape(shape: tuple[int, ...]) -> None:
-    with pytest.raises(WordsError) as refusal:
-        checked_words(np.zeros(shape, np.uint16))
-    assert str(refusal.value) == (
-        f"words must be a (lines, elements) array with at least one word, not of shape {shape}; "
-        "pass words[np.newaxis] for one line"
-    )
-
-
 @given(st.lists(st.integers(0, 0x7FFF), max_size=20), KINDS)
 def test_a_stream_of_any_whole_type_arrives_as_16_bit_words(row: list[int], kind: type[np.integer]) -> None:
     checked = checked_stream(np.array(row, kind))
     assert checked.dtype == np.uint16
     assert checked.tolist() == row
-
-
-def test_a_stream_of_16_bit_words_is_taken_as_it_is() -> None:
-    words = np.arange(5, dtype=np.uint16)
-    assert checked_stream(words) is words
+    assert checked_stream(checked) is checked
 
 
 @given(st.integers(0, 1023), st.lists(st.tuples(*[st.integers(0, 255)] * 3), max_size=9), KINDS)
@@ -61,81 +41,111 @@ def test_colors_are_taken_when_the_table_holds_them_all(
     first: int, colors: list[tuple[int, int, int]], kind: type[np.integer]
 ) -> None:
     array = np.array(colors, kind).reshape(-1, 3)
-    if first + len(colors) <= 1024:
-        checked = checked_colors(first, array)
-        assert checked.dtype == np.uint8
-        assert checked.tolist() == [list(color) for color in colors]
-    else:
-        with pytest.raises(ColorsError, match="a run of entries must end at 1023"):
-            checked_colors(first, array)
+    first = min(first, 1024 - len(colors))
+    checked = checked_colors(first, array)
+    assert checked.dtype == np.uint8
+    assert checked.tolist() == [list(color) for color in colors]
 
 
-def test_an_argument_that_is_no_array_of_whole_numbers_is_refused() -> None:
-    for error in (WordsError, ColorsError):
-        with pytest.raises(error) as refusal:
-            whole_numbers([[1], [2, 3]], "things", error)
-        assert str(refusal.value) == (
-            "things must be an array of whole numbers, not list; pass a numpy array"
-        )
-        with pytest.raises(error, match="things must be whole numbers, not bool; convert them first"):
-            whole_numbers([True], "things", error)
-    assert whole_numbers([], "things", WordsError).size == 0
-
-
-def test_numbers_of_python_and_numpy_are_whole_and_truth_values_are_not() -> None:
-    for whole in (3, np.uint8(3), np.int64(3)):
-        assert is_whole(whole)
+def test_numbers_of_python_and_numpy_are_whole_and_limits_are_taken() -> None:
+    for whole in (1, 16, np.uint8(1), np.int64(16)):
         checked = checked_number(whole, "a factor", 1, 16, "choose another", WordsError)
-        assert (type(checked), checked) == (int, 3)
-    for other in (True, np.bool_(True), 3.0, np.float64(3), "3", None, np.array([3])):
-        assert not is_whole(other)
-
-
-@pytest.mark.parametrize(
-    ("value", "rule"),
-    [
-        (0, "1 to 16, not 0"),
-        (np.int64(17), "1 to 16, not 17"),
-        (True, "a whole number from 1 to 16, not True"),
-        (np.float32(2), "a whole number from 1 to 16, not 2.0"),
-        ("2", "a whole number from 1 to 16, not '2'"),
-        (None, "a whole number from 1 to 16, not None"),
-    ],
-)
-def test_a_number_that_does_not_fit_is_refused_as_it_was_given(value: object, rule: str) -> None:
-    with pytest.raises(ColorsError) as refusal:
-        checked_number(value, "a factor", 1, 16, "choose another", ColorsError)
-    assert str(refusal.value) == f"a factor must be {rule}; choose another"
-
-
-@pytest.mark.parametrize("data", [b"\x00\x07", bytearray(b"\x00\x07"), memoryview(b"\x00\x07")])
-def test_bytes_are_no_stream_since_nobody_can_tell_their_order(data: object) -> None:
-    with pytest.raises(WordsError) as refusal:
-        checked_stream(data)
-    assert str(refusal.value) == (
-        f"a stream of words must be whole numbers, not {type(data).__name__}; "
-        "pass np.frombuffer(data, '<u2') if its low bytes come first"
-    )
-
-
-@pytest.mark.parametrize(
-    ("words", "sentence"),
-    [
-        ("0700", "whole numbers, not text; pass a list or an array of them"),
-        (None, "whole numbers, not NoneType; pass a list or an array of them"),
-        ({1792}, "whole numbers, not set; pass a list or an array of them"),
-        (iter([1792]), "whole numbers, not list_iterator; pass a list or an array of them"),
-        ([10**30], "whole numbers, not objects; pass a list or an array of them"),
-        ([1792.5], "whole numbers, not float64; convert them first, rounding half up"),
-        (1792, "one row, not the number 1792; put it in a list"),
-        ([[1792]], "one row, not of shape (1, 1); flatten it first"),
-    ],
-)
-def test_a_stream_must_be_a_row_of_whole_numbers(words: object, sentence: str) -> None:
-    with pytest.raises(WordsError) as refusal:
-        checked_stream(words)
-    assert str(refusal.value) == f"a stream of words must be {sentence}"
-
-
-def test_no_colors_may_be_an_empty_list() -> None:
+        assert (type(checked), checked) == (int, int(whole))
+    assert checked_size(16) == checked_size([16, np.int64(16)]) == (16, 16)
+    assert checked_stream([0xFFFF, 0]).tolist() == [0xFFFF, 0]
     assert checked_colors(5, []).shape == (0, 3)
+    assert checked_colors(1021, [[255, 0, 0]] * 3).shape == checked_colors(0, [[0, 0, 0]] * 3).shape
+
+
+def factor(value: object) -> int:
+    return checked_number(value, "a factor", 1, 16, "choose another", ColorsError)
+
+
+LISTED = "a stream of words must be whole numbers, not {}; pass a list or an array of them"
+ROW = "a stream of words must be one row, not {}"
+BYTES = (
+    "a stream of words must be whole numbers, not {}; "
+    "pass np.frombuffer(data, '<u2') if its low bytes come first"
+)
+test_what_is_refused = refused(
+    call,
+    [
+        (lambda: factor(0), "a factor must be 1 to 16, not 0; choose another"),
+        (lambda: factor(np.int64(17)), "a factor must be 1 to 16, not 17; choose another"),
+        (lambda: factor(True), "a factor must be a whole number from 1 to 16, not True; choose another"),
+        (
+            lambda: factor(np.float32(2)),
+            "a factor must be a whole number from 1 to 16, not 2.0; choose another",
+        ),
+        (lambda: factor("2"), "a factor must be a whole number from 1 to 16, not '2'; choose another"),
+        (lambda: factor(None), "a factor must be a whole number from 1 to 16, not None; choose another"),
+        (
+            lambda: checked_words(np.zeros(3, np.uint16)),
+            "words must be a (lines, elements) array with at least one word, not of shape (3,); "
+            "pass words[np.newaxis] for one line",
+        ),
+        (
+            lambda: checked_words(np.zeros((3, 0), np.uint16)),
+            "words must be a (lines, elements) array with at least one word, not of shape (3, 0); "
+            "pass words[np.newaxis] for one line",
+        ),
+        (
+            lambda: checked_words([[1], [2, 3]]),
+            "words must be an array of whole numbers, not list; pass a numpy array",
+        ),
+        (
+            lambda: checked_colors(0, [[True] * 3]),
+            "colors must be whole numbers, not bool; convert them first, rounding half up",
+        ),
+        (
+            lambda: checked_colors(0, [[1, 2]]),
+            "colors must be an (n, 3) array of red, green, blue, not of shape (1, 2); reshape it",
+        ),
+        (
+            lambda: checked_colors(1024, []),
+            "the first entry must be 0 to 1023, not 1024; choose an entry of the table",
+        ),
+        (
+            lambda: checked_colors(-1, []),
+            "the first entry must be 0 to 1023, not -1; choose an entry of the table",
+        ),
+        (
+            lambda: checked_colors(1022, [[1, 2, 3]] * 3),
+            "a run of entries must end at 1023, not 1024 (3 from 1022 on); send fewer",
+        ),
+        (
+            lambda: checked_colors(7, [[1, 2, 3], [4, 256, 6]]),
+            "a color must be 0 to 255, not 256 (entry 8, green); clip it first",
+        ),
+        (
+            lambda: checked_colors(7, [[1, 2, -1]]),
+            "a color must be 0 to 255, not -1 (entry 7, blue); clip it first",
+        ),
+        (
+            lambda: checked_size((1, 2, 3)),
+            "the size of text must be one number or two, not (1, 2, 3); give both",
+        ),
+        (lambda: checked_size((1, 17)), "the size of text must be 1 to 16, not 17; write it smaller"),
+        (lambda: checked_stream(bytearray(2)), BYTES.format("bytearray")),
+        (lambda: checked_stream(memoryview(b"12")), BYTES.format("memoryview")),
+        (lambda: checked_stream("0700"), LISTED.format("text")),
+        (lambda: checked_stream(None), LISTED.format("NoneType")),
+        (lambda: checked_stream(iter([1792])), LISTED.format("list_iterator")),
+        (lambda: checked_stream([10**30]), LISTED.format("objects")),
+        (
+            lambda: checked_stream([1792.5]),
+            "a stream of words must be whole numbers, not float64; convert them first, rounding half up",
+        ),
+        (lambda: checked_stream(1792), ROW.format("the number 1792; put it in a list")),
+        (lambda: checked_stream([[1792]]), ROW.format("of shape (1, 1); flatten it first")),
+        (
+            lambda: checked_stream([0, 0x10000]),
+            "a word of a stream must be 0 to 65535, not 65536 (word 1); mask it to 16 bits",
+        ),
+        (
+            lambda: checked_stream([-1]),
+            "a word of a stream must be 0 to 65535, not -1 (word 0); mask it to 16 bits",
+        ),
+    ],
+    (WordsError, ColorsError, InstructionError),
+)

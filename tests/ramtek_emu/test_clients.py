@@ -1,188 +1,14 @@
-"""Programs that draw, read words back and draw again; and the habits of the drivers of the time."""
+"""The habits of the drivers of the time: long sessions in which parameters stay set."""
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Iterator
-
 import numpy as np
-import pytest
 from numpy.typing import NDArray
 
-from ramtek_emu import GMR_9300, JPL_9460, NCAR_9460, PRINCETON_9300, Configuration, Ramtek9300, instructions
+from ramtek_emu import JPL_9460, NCAR_9460, PRINCETON_9300, Ramtek9300
 from ramtek_emu.memory.character_rom import characters
 from ramtek_emu.processor.processor import Status
-from tests.ramtek_emu import reference
-from tests.ramtek_emu.clients import (
-    VISIBLE,
-    Library,
-    chase,
-    dim_table,
-    draft,
-    fill_polygon,
-    follow_with_origin,
-    mirror_image,
-    pairs,
-)
 from tests.ramtek_emu.strategies import sent_words
-
-both_9300s = pytest.mark.parametrize(
-    "configuration", [GMR_9300, PRINCETON_9300], ids=lambda configuration: configuration.name
-)
-
-
-@both_9300s
-def test_a_polygon_is_filled_between_the_outlines_that_are_read_back(configuration: Configuration) -> None:
-    display = Ramtek9300(configuration)
-    library = Library(display)
-    library.reset()
-    corners = [(100, 40), (180, 90), (150, 170), (60, 150), (50, 80)]
-    fill_polygon(library, corners, 9, 4)
-    words = display.words
-    assert set(np.unique(words)) == {0, 4, 9}
-    for line in range(40, 171):
-        row = words[line]
-        edge = np.flatnonzero(row == 9)
-        assert (row[edge[0] : edge[-1] + 1] > 0).all()
-        assert not row[: edge[0]].any()
-        assert not row[edge[-1] + 1 :].any()
-    assert display.status == Status.READY
-    assert display.processor.waiting == 0
-
-
-@both_9300s
-def test_an_image_that_was_read_is_written_mirrored(configuration: Configuration) -> None:
-    display = Ramtek9300(configuration)
-    library = Library(display)
-    picture = np.random.default_rng(4).integers(0, 1024, (30, 50))
-    library.write_image((200, 100, 249, 129), picture.reshape(-1))
-    mirror_image(library, (200, 100, 249, 129), (10, 300))
-    assert (display.words[300:330, 10:60] == picture[:, ::-1]).all()
-
-
-def test_an_image_reader_that_asks_beyond_the_screen_goes_on() -> None:
-    display = Ramtek9300(PRINCETON_9300)
-    library = Library(display)
-    library.erase(5)
-    assert library.read_image((638, 10, 640, 10)).tolist() == [5, 5, 0]
-    assert library.read_image((-2, -1, 0, 0)).tolist() == [0, 0, 0, 0, 0, 5]
-
-
-def test_a_table_is_read_changed_and_loaded_again() -> None:
-    display = Ramtek9300()
-    colors = np.random.default_rng(8).integers(0, 256, (1024, 3))
-    display.send(instructions.load_entries(0, colors))
-    dim_table(display, 1024)
-    assert (display.entries == colors // 2).all()
-    assert display.lookup_table.address == 0
-
-
-@both_9300s
-def test_a_drawing_follows_the_cursor_while_track_is_on_until_enter(configuration: Configuration) -> None:
-    display = Ramtek9300(configuration)
-    joystick = display.joystick
-
-    def hand() -> Iterator[None]:
-        yield
-        joystick.track = True
-        for step in range(5):
-            joystick.move_to(100 + 20 * step, 100 + 7 * step)
-            yield
-        joystick.track = False
-        joystick.move_to(300, 300)
-        yield
-        joystick.track = True
-        yield
-        joystick.move_by(0, 50)
-        yield
-        joystick.press_enter()
-        yield
-
-    user = hand()
-    strokes = draft(Library(display), 6, lambda: next(user))
-    assert strokes == [[(100 + 20 * step, 100 + 7 * step) for step in range(5)], [(300, 300), (300, 350)]]
-    twin = np.zeros_like(display.words)
-    for stroke in strokes:
-        for start, end in itertools.pairwise([stroke[0], *stroke]):
-            for element, line in reference.line_places(start, end):
-                twin[line, element] = 6
-    assert (display.words == twin).all()
-    assert not display.cursors[0].is_visible
-
-
-def test_the_origin_follows_the_cursor() -> None:
-    display = Ramtek9300(PRINCETON_9300)
-    library = Library(display)
-    library.load_table(0, range(1024))
-    library.write_image((0, 0, 0, 0), [0xF00])
-    display.send(sent_words([0x0300, 0x0000, 4, 0, 0x0F00, 0x0A03, 0x0040, 0, 0, 0, 0, 2, 1]))
-    places = [(5, 7), (600, 400), (320, 511)]
-    moves = iter(places)
-    for place in places:
-        follow_with_origin(library, 1, lambda: display.joystick.move_to(*next(moves)), (640, 512))
-        red = np.argwhere(display.field()[..., 0] == 255)
-        assert red.tolist() == [[place[1], place[0]]]
-
-
-def test_a_square_is_chased_over_the_edges() -> None:
-    display = Ramtek9300(PRINCETON_9300)
-    chase(Library(display), [(600, 500), (630, 505), (-10, -10), (-300, 20), (3, -2)], 16)
-    lines, elements = np.nonzero(display.words)
-    assert (elements.min(), lines.min(), elements.max(), lines.max()) == (3, 0, 18, 13)
-    assert display.status == Status.READY
-
-
-def test_two_overlays_keep_to_their_planes() -> None:
-    display = Ramtek9300(PRINCETON_9300)
-    library = Library(display)
-    library.mask(0x000F)
-    library.window((10, 10, 50, 50))
-    library.erase(0x00FF)
-    library.mask(0x00F0)
-    library.window((30, 30, 70, 70))
-    library.erase(0x00FF)
-    assert [int(display.words[place, place]) for place in (20, 40, 60, 80)] == [0x0F, 0xFF, 0xF0, 0]
-    library.mask(0x000F)
-    library.window((0, 0, 639, 511))
-    library.erase(0)
-    assert [int(display.words[place, place]) for place in (20, 40, 60)] == [0, 0xF0, 0xF0]
-
-
-def test_relative_text_starts_where_the_operating_point_was_set() -> None:
-    display = Ramtek9300(PRINCETON_9300)
-    library = Library(display)
-    library.color(3)
-    library.start(200, 150)
-    library.text_here("Ramtek")
-    cells = np.concatenate([characters()[ord(letter)] for letter in "RAMTEK"], axis=1)
-    assert (display.words[150:159, 200:242] == 3 * cells).all()
-
-
-def test_a_raster_of_one_bit_a_pixel_is_shown_in_order() -> None:
-    display = Ramtek9300(PRINCETON_9300)
-    dots = np.random.default_rng(2).random((40, 64)) < 0.5
-    library = Library(display)
-    library.color(8)
-    library.background(2)
-    library.raster((100, 50, 163, 89), dots)
-    assert (display.words[50:90, 100:164] == np.where(dots, 8, 2)).all()
-
-
-def test_a_conic_of_the_library_is_an_arc() -> None:
-    display = Ramtek9300(PRINCETON_9300)
-    library = Library(display)
-    library.start(300, 200)
-    # A quarter of a circle around (260, 200), whose -80 travels as a word with nothing above it.
-    library.conic((1, 1, 0, 80, 0, 0), (260, 240))
-    lines, elements = np.nonzero(display.words)
-    assert np.abs(np.hypot(elements - 260, lines - 200) - 40).max() < 0.75
-    assert (lines >= 200).all()
-    assert (elements >= 260).all()
-    library.start(220, 200)
-    library.conic((1, 1, 0, -80, 0, 0), (260, 160))
-    lines, elements = np.nonzero(display.words)
-    assert np.abs(np.hypot(elements - 260, lines - 200) - 40).max() < 0.75
-    assert (lines[elements < 260] <= 200).all()
 
 
 def plot_session(display: Ramtek9300) -> None:
@@ -200,7 +26,7 @@ def plot_session(display: Ramtek9300) -> None:
         [0x0802, 0x8000, 10, 501],
         [0x0E01, 4, 100, 451],
         [0x0902, 0x0044, 2, 100, 331, 200, 411],
-        [0x0C0B, 0x0040, 100, 451, 619, 511, 6, *pairs(b"HELLO ", low_first=True)],
+        [0x0C0B, 0x0040, 100, 451, 619, 511, 6, *packed(b"HELLO ")],
     ):
         display.send(sent_words(words))
 
@@ -220,71 +46,22 @@ def test_the_plot_library_draws_lines_boxes_and_text() -> None:
     assert display.status == Status.READY
 
 
-def bytes_of(lines: NDArray[np.uint8]) -> list[int]:
-    return pairs(lines.tobytes(), low_first=True)
+def packed(data: bytes | NDArray[np.uint8]) -> list[int]:
+    """Bytes as words, reverse packed."""
+    words: list[int] = np.frombuffer(bytes(data), "<u2").tolist()
+    return words
 
 
 def test_the_image_driver_writes_and_reads_lines_of_bytes() -> None:
     display = Ramtek9300(JPL_9460)
     picture = np.random.default_rng(11).integers(0, 256, (20, 100), np.uint8)
     for line in range(20):
-        row = bytes_of(picture[line])
+        row = packed(picture[line])
         head = [0x0A0F, 0x80C1, 0x0020, 0x00FF, 0, 0, 639, 479, 0, 50, 60 + line, 1, 100]
         display.send(sent_words([*head, *row]))
     assert (display.words[60:80, 50:150] == picture).all()
     display.send(sent_words([0x0B0F, 0x80C0, 0x0021, 0, 0, 639, 479, 0, 50, 65, 0x00FF, 1, 100]))
-    assert display.receive(50).tolist() == bytes_of(picture[5])
-
-
-def test_the_image_driver_sets_text_at_the_edge_before_its_window() -> None:
-    display = Ramtek9300(JPL_9460)
-    # Its window counts from 1 (1, 1 to 640, 480), its operating point from 0: here 0, 190 and -21, 300.
-    for element, line in ((0, 190), (-21, 300)):
-        display.send(sent_words([0x0C0B, 0x8443, 255, 7, 1, 1, 640, 480, 0, element, line, 6]))
-        display.send(sent_words(pairs(b"VICAR ", low_first=True)))
-    cells = np.concatenate([characters()[ord(letter)] for letter in "VICAR "], axis=1)
-    assert (display.words[190:199, :42] == 7 * cells).all()
-    assert (display.words[300:309, :21] == 7 * cells[:, 21:]).all()
-    assert np.count_nonzero(display.words) == cells.sum() + cells[:, 21:].sum()
-
-
-def test_the_image_driver_changes_a_pixel_at_the_edge_of_an_odd_window() -> None:
-    display = Ramtek9300(JPL_9460)
-    picture = np.arange(480 * 640).reshape(480, 640) % 251
-    display.send(instructions.write_image(picture))
-    # Pixels are sent in pairs from even elements on; the window begins at element 101, the pixel is 101, 60.
-    head = [0x80C1, 0x0020, 0x00FF, 101, 20, 300, 99, 0, 100, 60, 1, 2]
-    display.send(sent_words([0x0B0F, *head]))
-    (pair,) = display.receive(1).tolist()
-    assert pair == picture[60, 101] << 8 | picture[60, 100]
-    display.send(sent_words([0x0A0F, *head, 255 << 8 | pair & 0xFF]))
-    picture[60, 101] = 255
-    assert (display.words == picture).all()
-
-
-def test_an_area_of_too_many_bytes_continues_in_the_next_instruction() -> None:
-    display = Ramtek9300(JPL_9460)
-    picture = np.random.default_rng(12).integers(0, 256, (400, 300), np.uint8)
-    flat = picture.reshape(-1)
-    head = [0x0A0F, 0x80C1, 0x0020, 0x00FF, 100, 20, 399, 419, 0, 100, 20, 1, 64000]
-    display.send(sent_words([*head, *bytes_of(flat[:64000])]))
-    display.send(sent_words([0x0A09, len(flat) - 64000, *bytes_of(flat[64000:])]))
-    assert (display.words[20:420, 100:400] == picture).all()
-
-
-def test_the_image_driver_pans_and_zooms_and_moves_its_cursor() -> None:
-    display = Ramtek9300(JPL_9460)
-    display.send(instructions.load_entries(0, np.repeat(np.arange(256)[:, np.newaxis], 3, axis=1)))
-    display.send(instructions.park_table())
-    picture = np.random.default_rng(13).integers(0, 256, (480, 640), np.uint8)
-    display.send(instructions.write_image(picture))
-    display.send(sent_words([0x0802, 0x0020, 10, 20, 0x2600, 0x0101]))
-    shown = np.repeat(np.repeat(picture[20:260, 10:330], 2, axis=0), 2, axis=1)
-    assert (display.field()[..., 1] == shown).all()
-    display.send(sent_words([0x2D00, 100, 200, 0x0600, 0x2F00]))
-    assert display.receive(3).tolist() == [100, 200, 0x0600]
-    changed = np.argwhere(display.field()[..., 1] != shown)
-    assert (np.abs(changed - (200, 100)) <= 7).all()
+    assert display.receive(50).tolist() == packed(picture[5])
 
 
 def test_the_weather_driver_clips_draws_and_colors() -> None:
@@ -295,7 +72,7 @@ def test_the_weather_driver_clips_draws_and_colors() -> None:
     assert (display.words[512:, :640] == 3).all()
     assert not display.words[:512].any()
     assert not display.words[:, 640:].any()
-    image = [0x0A0F, 0x00C0, 0x0020, 8, 528, 11, 531, 0, 1, 16, *bytes_of(np.arange(1, 17, dtype=np.uint8))]
+    image = [0x0A0F, 0x00C0, 0x0020, 8, 528, 11, 531, 0, 1, 16, *packed(np.arange(1, 17, dtype=np.uint8))]
     display.send(sent_words(image))
     assert display.words[528:532, 8:12].tolist() == np.arange(1, 17).reshape(4, 4).tolist()
     # Draw a line that leaves the clip window.
@@ -309,29 +86,3 @@ def test_the_weather_driver_clips_draws_and_colors() -> None:
     assert display.field()[1023 - 528, 8].tolist() == [255, 0, 0]
     display.send(sent_words([0x2C00, 700, 0x400 | 900, 0x2E00]))
     assert display.receive(2).tolist() == [700, 0x400 | 900]
-
-
-def test_a_drawing_program_that_sees_its_cursor_only_draws_what_it_sends() -> None:
-    display = Ramtek9300()
-    Library(display).write_cursor(0, (100, 100), VISIBLE)
-    display.joystick.move_to(50, 60)
-    display.joystick.track = True
-    assert not display.words.any()
-
-
-def test_sessions_do_not_depend_on_how_they_are_cut() -> None:
-    class Cut(Ramtek9300):
-        """A display that gets its words one at a time."""
-
-        def send(self, words: NDArray[np.uint16]) -> None:
-            for word in words:
-                super().send(np.array([word], np.uint16))
-
-    whole, cut = Ramtek9300(PRINCETON_9300), Cut(PRINCETON_9300)
-    for display in (whole, cut):
-        plot_session(display)
-        fill_polygon(Library(display), [(100, 40), (130, 50), (120, 70)], 9, 4)
-        mirror_image(Library(display), (90, 30, 140, 80), (300, 300))
-    assert (whole.words == cut.words).all()
-    assert (whole.entries == cut.entries).all()
-    assert whole.processor.parameters == cut.processor.parameters

@@ -17,6 +17,7 @@ from typing import ClassVar, NamedTuple
 
 import click
 import pytest
+from click.testing import CliRunner
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -67,20 +68,11 @@ def after(cause: BaseException, error: BaseException) -> BaseException:
     return error
 
 
-def test_success_ends_with_0(end: End) -> None:
+def test_a_command_ends_with_0_or_a_code_of_its_own(end: End) -> None:
     assert end(lambda: None, "a", "b") == (0, "a b\n", "")
-
-
-def test_a_command_may_end_with_a_code_of_its_own(end: End) -> None:
     assert end(lambda: click.get_current_context().exit(1)).code == 1
-
-
-def test_a_refusal_ends_with_its_sentence_and_its_code(end: End) -> None:
-    assert end(raising(OutputExistsError("the file\n\x1b must be new"))) == (
-        73,
-        "\n",
-        "tool: the file\\n\\x1b must be new\n",
-    )
+    # Names that are no text are shown with backslashes.
+    assert end(lambda: None, "\udcff").out == "\\udcff\n"
 
 
 class TwoProblemsError(Exception):
@@ -117,6 +109,7 @@ STRANGE = "\u202e\x00\x16\x1b[2J\x7f\x85\u2028\u2066\u061c\udcff\n"
         raising(click.BadParameter(STRANGE)),
         lambda: tell(STRANGE, STRANGE),
     ],
+    ids=["refusal", "two problems", "fault", "usage", "parameter", "message"],
 )
 def test_strange_characters_of_names_are_escaped_in_every_message(
     end: End, does: Callable[[], object]
@@ -124,12 +117,6 @@ def test_strange_characters_of_names_are_escaped_in_every_message(
     left = end(does)
     assert has_no_commands_for_a_terminal(left.err)
     assert "\\u202e\\x00\\x16\\x1b[2J" in left.err
-
-
-def test_strange_characters_of_arguments_are_escaped(end: End) -> None:
-    left = end(lambda: None, f"--{STRANGE}")
-    assert left.code == 2
-    assert has_no_commands_for_a_terminal(left.err)
 
 
 @pytest.mark.parametrize(
@@ -148,7 +135,7 @@ def test_strange_characters_of_arguments_are_escaped(end: End) -> None:
         ),
         (RuntimeError("Out of memory"), 71, "(tool a\\n: out of memory)"),
         (after(MemoryError("no"), OutputExistsError("out of memory.png exists")), 71, "(tool a\\n: no)"),
-        (OutputExistsError("out of memory.png exists"), 73, "out of memory.png exists"),
+        (OutputExistsError("out of memory.png\n\x1b exists"), 73, "tool: out of memory.png\\n\\x1b exists\n"),
         (
             after(FileNotFoundError(2, "No such file", "out of memory"), OutputExistsError("no")),
             73,
@@ -192,12 +179,9 @@ def test_the_first_signal_ends_a_command_and_later_signals_do_nothing(
     assert end(does) == (code, "\n", f"tool: {sentence}\n")
 
 
-def test_a_signal_that_was_ignored_at_the_start_stays_ignored(end: End) -> None:
-    signal.signal(signal.SIGTERM, signal.SIG_IGN)
-    assert end(lambda: signal.raise_signal(signal.SIGTERM)) == (0, "\n", "")
-
-
-def test_a_signal_ends_a_command_whose_library_raises_another_exception(end: End) -> None:
+def test_a_signal_ends_a_command_whose_library_raises_another_exception_unless_it_was_ignored(
+    end: End,
+) -> None:
     def does() -> None:
         try:
             signal.raise_signal(signal.SIGTERM)
@@ -205,6 +189,8 @@ def test_a_signal_ends_a_command_whose_library_raises_another_exception(end: End
             raise ValueError("interrupted") from None
 
     assert end(does) == (143, "\n", "tool: ended by SIGTERM\n")
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    assert end(does) == (0, "\n", "")
 
 
 WITH_TIMERS = pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="this system has no timers")
@@ -251,35 +237,16 @@ def test_what_is_put_in_order_after_a_signal_is_not_interrupted(end: End) -> Non
     assert orders == ["done"]
 
 
-def test_after_several_commands_in_a_process_an_uncaught_error_is_shown_once(
-    end: End, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    shown: list[BaseException] = []
-    monkeypatch.setattr(sys, "excepthook", lambda kind, error, trace: shown.append(error))
-    end(lambda: None)
-    end(lambda: None)
-    error = ValueError()
-    sys.excepthook(ValueError, error, None)
-    assert shown == [error]
-
-
 def test_a_reader_of_stdout_that_left_ends_a_command_in_silence(end: End) -> None:
     assert end(raising(BrokenPipeError(errno.EPIPE, "Broken pipe"))) == (141, "\n", "")
 
 
-def test_debug_shows_the_traceback_and_is_no_argument(end: End) -> None:
+def test_debug_shows_the_traceback_and_is_no_argument_before_two_dashes(end: End) -> None:
     left = end(raising(ValueError("x")), "a", "--debug", "b")
     assert (left.code, left.out) == (70, "a b\n")
     assert "Traceback" in left.err
     assert left.err.endswith("ValueError: x; report it\n")
-
-
-def test_debug_after_two_dashes_is_an_argument(end: End) -> None:
     assert end(lambda: None, "--", "a", "--debug") == (0, "a --debug\n", "")
-
-
-def test_names_that_are_no_text_are_shown_with_backslashes(end: End) -> None:
-    assert end(lambda: None, "\udcff").out == "\\udcff\n"
 
 
 def test_a_process_without_a_stdout_fails_when_it_writes(
@@ -310,40 +277,32 @@ def group(monkeypatch: pytest.MonkeyPatch) -> TwoCommands:
     return TwoCommands("house")
 
 
-def run_group(group: TwoCommands, *arguments: str) -> tuple[int, str]:
-    from click.testing import CliRunner
-
-    result = CliRunner().invoke(group, arguments)
-    return result.exit_code, result.output
-
-
-def test_a_command_is_loaded_from_the_module_of_its_name(group: TwoCommands) -> None:
-    assert run_group(group, "paint") == (0, "red\n")
-    assert run_group(group, "list") == (0, "hall\n")
-
-
-def test_help_shows_the_table_in_its_order_and_loads_no_command(
-    group: TwoCommands, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.delitem(sys.modules, "tests_of_command_line.paint")
-    code, shown = run_group(group, "--help")
-    assert code == 0
-    assert shown.index("paint the house") < shown.index("list the rooms")
-
-
-def test_a_wrong_name_is_answered_with_the_nearest_command(group: TwoCommands) -> None:
-    assert "there is no command 'pant'; did you mean 'paint'?" in run_group(group, "pant")[1]
-    assert "there is no command 'xyz'; known are paint, list" in run_group(group, "xyz")[1]
-
-
-def test_a_file_without_a_command_is_answered_with_the_place_of_a_command(
-    group: TwoCommands, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(
+    ("argument", "code", "shown"),
+    [
+        ("paint", 0, "red\n"),
+        ("list", 0, "hall\n"),
+        ("--help", 0, "Commands:\n  paint  paint the house\n  list   list the rooms\n"),
+        ("pant", 2, "Error: there is no command 'pant'; did you mean 'paint'?\n"),
+        ("xyz", 2, "Error: there is no command 'xyz'; known are paint, list\n"),
+        (
+            "car.obj",
+            2,
+            "Error: a command must stand before a file, as in `house paint car.obj`; known are paint, list\n",
+        ),
+    ],
+)
+def test_a_command_is_loaded_by_its_name_from_the_module_of_that_name(
+    argument: str, code: int, shown: str, group: TwoCommands, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "car.obj").write_text("")
-    code, said = run_group(group, "car.obj")
-    assert code == 2
-    assert "a command must stand before a file, as in `house paint car.obj`; known are paint, list" in said
+    Path("car.obj").touch()
+    if argument == "--help":
+        # Help loads no command.
+        monkeypatch.delitem(sys.modules, "tests_of_command_line.paint")
+    result = CliRunner().invoke(group, [argument])
+    assert result.exit_code == code
+    assert result.output.endswith(shown)
 
 
 COLORS = ["color=red", "color=dark red", "size=1"]
@@ -359,30 +318,26 @@ def paint(set: str, to: str, name: str) -> None:
     """Do nothing."""
 
 
-def candidates(monkeypatch: pytest.MonkeyPatch, *words: str) -> list[str]:
-    """The candidates for the words that bash made of a line; the last word is incomplete."""
-    monkeypatch.setenv("COMP_WORDS", "\n".join(words))
-    monkeypatch.setenv("COMP_CWORD", str(len(words) - 1))
-    return WholeWords(paint, {}, "paint", "_PAINT_COMPLETE").complete().splitlines()
-
-
-def test_values_are_completed_after_an_equals_sign(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert candidates(monkeypatch, "paint", "--set", "color", "=") == ["plain,red", "plain,dark\\ red"]
-    assert candidates(monkeypatch, "paint", "--set", "color", "=", "r") == ["plain,red"]
-    assert candidates(monkeypatch, "paint", "--set", "=", "color", "=", "da") == ["plain,dark\\ red"]
-    assert candidates(monkeypatch, "paint", "--set", "=", "si") == ["plain,size=1"]
-
-
-def test_a_bash_that_leaves_words_whole_gets_whole_candidates(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert candidates(monkeypatch, "paint", "--set", "color=d") == ["plain,color=dark\\ red"]
-
-
-def test_an_argument_after_an_equals_sign_is_the_next_one(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert candidates(monkeypatch, "paint", "--set", "size", "=", "1", "") == ["plain,size=1"]
-
-
-def test_files_are_left_to_bash(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert candidates(monkeypatch, "paint", "--to", "x\\ y") == ["file,x y"]
+@pytest.mark.parametrize(
+    ("words", "candidates"),
+    [
+        (["--set", "color", "="], ["plain,red", "plain,dark\\ red"]),
+        (["--set", "color", "=", "r"], ["plain,red"]),
+        (["--set", "=", "color", "=", "da"], ["plain,dark\\ red"]),
+        (["--set", "=", "si"], ["plain,size=1"]),
+        # A bash that leaves words whole gets whole candidates.
+        (["--set", "color=d"], ["plain,color=dark\\ red"]),
+        # The next argument.
+        (["--set", "size", "=", "1", ""], ["plain,size=1"]),
+        (["--to", "x\\ y"], ["file,x y"]),
+    ],
+)
+def test_the_last_of_the_words_that_bash_made_of_a_line_is_completed(
+    words: list[str], candidates: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COMP_WORDS", "\n".join(["paint", *words]))
+    monkeypatch.setenv("COMP_CWORD", str(len(words)))
+    assert WholeWords(paint, {}, "paint", "_PAINT_COMPLETE").complete().splitlines() == candidates
 
 
 def test_words_are_joined_around_equals_signs_alone() -> None:

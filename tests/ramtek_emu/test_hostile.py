@@ -11,38 +11,13 @@ from numpy.typing import NDArray
 from ramtek_emu import GMR_9300, NCAR_9460, PRINCETON_9300, Configuration, Ramtek9300, instructions
 from ramtek_emu.monitor.pattern import pattern
 from ramtek_emu.testing import check_words_within_planes
-from tests.ramtek_emu.clients import Library, chase, fill_polygon, mirror_image
+from tests.ramtek_emu.recorded_streams import RECORDED
 from tests.ramtek_emu.strategies import sent_words
-
-EACH = 40
-
-
-class Listener(Ramtek9300):
-    """A display that records the words that it was sent."""
-
-    def __init__(self, configuration: Configuration = GMR_9300) -> None:
-        super().__init__(configuration)
-        self.heard: list[NDArray[np.uint16]] = []
-
-    def send(self, words: NDArray[np.uint16]) -> None:
-        self.heard.append(words)
-        super().send(words)
 
 
 @lru_cache
 def sessions() -> tuple[NDArray[np.uint16], ...]:
     """The streams of some programs."""
-    drawing = Listener()
-    library = Library(drawing)
-    library.reset()
-    fill_polygon(library, [(100, 40), (130, 50), (120, 70)], 9, 4)
-    mirror_image(library, (90, 30, 120, 60), (300, 300))
-    chase(library, [(600, 470), (-10, -10), (3, -2)], 16)
-    library.text((10, 10, 90, 30), "What is this?", swapped=True)
-    library.start(300, 200)
-    library.conic((1, 1, 0, 80, 0, 0), (260, 240))
-    library.write_cursor(0, (5, 6), 0x400)
-    library.read_cursor(0)
     modern = sent_words(
         [
             *[0x2701, 0x080E, 0x0041, 0x0006, 0xFF, 0, 512, 639, 1023, 0, 512, 639, 1023, 0, 512, 0x4EFF],
@@ -52,7 +27,7 @@ def sessions() -> tuple[NDArray[np.uint16], ...]:
             *[0x3901, 6, 9, 9, 3, 0x2B00, 0x2402, 0xFFFF, 0x2500, 0x2C00, 3, 4],
         ]
     )
-    return np.concatenate(drawing.heard), modern, pattern()[:6000]
+    return np.concatenate(RECORDED), modern, pattern()[:6000]
 
 
 def with_faults(stream: NDArray[np.uint16], random: np.random.Generator) -> NDArray[np.uint16]:
@@ -78,12 +53,13 @@ def with_faults(stream: NDArray[np.uint16], random: np.random.Generator) -> NDAr
     "configuration", [GMR_9300, PRINCETON_9300, NCAR_9460], ids=lambda configuration: configuration.name
 )
 @pytest.mark.parametrize("session", range(3))
+@pytest.mark.parametrize("count", [12, pytest.param(100, marks=pytest.mark.thorough)])
 def test_streams_with_faults_are_drawn_somehow_and_do_no_harm(
-    configuration: Configuration, session: int
+    configuration: Configuration, session: int, count: int
 ) -> None:
     random = np.random.default_rng(session)
     display = Ramtek9300(configuration)
-    for _ in range(EACH):
+    for _ in range(count):
         display.send(with_faults(sessions()[session], random))
         check_words_within_planes(display.words, configuration.planes)
         assert display.decoder.pending_words < 0x8100

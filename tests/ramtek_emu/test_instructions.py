@@ -1,7 +1,5 @@
 from __future__ import annotations
 
-import subprocess
-import sys
 from typing import Any
 
 import numpy as np
@@ -60,9 +58,3 @@ def test_encoders_take_numbers_and_rows_of_python_and_of_numpy_alike() -> None:
         encoders.read_image(one, one, two, three), encoders.read_image(1, 1, 2, 3), strict=True
     ):
         assert (encoded.tolist(), count) == (expected.tolist(), again)
-
-
-def test_the_encoders_are_there_without_an_import_of_their_own() -> None:
-    program = "import ramtek_emu; print(*ramtek_emu.instructions.reset())"
-    ran = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True)
-    assert ran.stdout == "1280\n"

@@ -1,40 +1,78 @@
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
+from operator import eq
 from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import find, given
+from hypothesis import Phase, find, given, settings
+from hypothesis import strategies as st
 
 from ramtek_emu import Ramtek9300
 from ramtek_emu.arrays import Colors, Raster
+from ramtek_emu.instruction_set.table import FORMATS, SUBSTANTIATED
 from ramtek_emu.testing import check_words_within_planes, entries, rasters, streams, words
 from tests.ramtek_emu.strategies import SMALL
 
 
-@pytest.mark.parametrize("planes", [1, 8, 10, 16])
-def test_the_largest_and_the_least_word_are_those_of_the_planes(planes: int) -> None:
-    largest = (1 << planes) - 1
-    assert find(words(planes), lambda word: word == largest) == largest
-    assert find(words(planes), lambda word: True) == 0
+def begins(opcode: int, stream: list[int]) -> bool:
+    """Whether a stream begins with an instruction."""
+    return bool(stream) and stream[0] >> 8 == opcode
 
 
-@given(rasters(3, 4), entries(5))
+REACHED: dict[str, tuple[st.SearchStrategy[Any], Callable[[Any], bool]]] = {
+    **{
+        f"{word} of {planes} planes": (words(planes), partial(eq, word))
+        for planes in (1, 8, 10, 16)
+        for word in (0, (1 << planes) - 1)
+    },
+    "no words": (streams(), partial(eq, [])),
+    "all words that may be": (streams(9), lambda stream: len(stream) == 9),
+    "a raster of 0": (rasters(1, 1), lambda raster: raster[0, 0] == 0),
+    "a raster of the largest word": (rasters(1, 1), lambda raster: raster[0, 0] == 1023),
+    "a raster of 16 planes": (rasters(1, 1, 16), lambda raster: raster[0, 0] == 0xFFFF),
+    "an entry of 0 and 255": (entries(2), lambda table: table.min() == 0 and table.max() == 255),
+    **{f"the word {word}": (streams(1), partial(eq, [word])) for word in (0, 12, 0xFFFF)},
+    **{
+        f"the instruction {format.name}": (streams(1), partial(begins, format.opcode))
+        for format in (SUBSTANTIATED[-1], FORMATS[0], FORMATS[-1])
+    },
+    "an instruction without flags": (streams(1), partial(eq, [SUBSTANTIATED[0].opcode << 8])),
+    "an instruction with all": (streams(1), partial(eq, [SUBSTANTIATED[0].opcode << 8 | 0xFF])),
+}
+"""Values at the edges, by what they are: a strategy, and what is looked for."""
+
+
+@pytest.mark.parametrize("value", REACHED)
+def test_the_strategies_reach_the_values_at_their_edges(value: str) -> None:
+    strategy, is_it = REACHED[value]
+    unhurried = settings(max_examples=20_000, phases=[Phase.generate], database=None, derandomize=True)
+    assert is_it(find(strategy, is_it, settings=unhurried))
+
+
+@given(rasters(3, 4), entries(5), rasters(), entries(), streams(7))
 def test_rasters_and_entries_have_the_shapes_and_types_of_the_memories(
-    raster: Raster[np.uint16], table: Colors
+    raster: Raster[np.uint16], table: Colors, usual: Raster[np.uint16], whole: Colors, stream: list[int]
 ) -> None:
-    assert (raster.shape, raster.dtype.str) == ((3, 4), "<u2")
-    assert (table.shape, table.dtype.str) == ((5, 3), "|u1")
+    assert (raster.shape, raster.dtype.str, usual.shape) == ((3, 4), "<u2", (9, 13))
+    assert (table.shape, table.dtype.str, whole.shape) == ((5, 3), "|u1", (1024, 3))
     check_words_within_planes(raster)
+    assert len(stream) <= 7
+    check_words_within_planes(stream, 16)
 
 
-def test_the_simplest_stream_that_writes_a_word_is_short() -> None:
+def test_the_simplest_example_is_found_of_a_stream_that_writes_and_of_a_word() -> None:
     def writes_a_word(stream: list[int]) -> bool:
         display = Ramtek9300(SMALL)
         display.send(np.array(stream, np.uint16))
         return bool(display.words.any())
 
     assert len(find(streams(), writes_a_word)) <= 6
+    assert find(words(), lambda word: word >= 700) == 700
+    assert find(rasters(2, 2), lambda raster: raster.any()).sum() == 1
+    assert find(entries(3), lambda table: table.any()).max() == 1
 
 
 @pytest.mark.parametrize(
@@ -47,6 +85,7 @@ def test_the_simplest_stream_that_writes_a_word_is_short() -> None:
         (4096, 12, "from 0 to 4095, not 4096"),
         ([[0.5]], 10, "from 0 to 1023, not float64"),
         ([True], 10, "from 0 to 1023, not bool"),
+        ([[[0, 9999]]], 10, "from 0 to 1023, not 9999 (at (0, 0, 1))"),
     ],
 )
 def test_words_outside_of_the_planes_are_told_with_their_place(wrong: Any, planes: int, message: str) -> None:

@@ -38,12 +38,7 @@ def test_a_played_stream_gives_its_picture_its_recording_and_its_snapshot(tmp_pa
     assert display.words.any()
     assert (field_of(picture) == display.field()).all()
     assert record.read_bytes() == path.read_bytes()[:-1]
-    again = run(*arguments)
-    assert again.returncode == 73
-    assert (
-        b"which exists; choose another name, or overwrite it with --force (overwrite=True in Python)"
-        in again.stderr
-    )
+    assert run(*arguments).returncode == 73
     assert run("play", "-", "-o", picture, "--force", data=record.read_bytes()).returncode == 0
     assert run("play", path, "--loads-per-second", "30").returncode == 69
 
@@ -70,15 +65,14 @@ def frames(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
 
 
 @pytest.mark.parametrize(
-    ("options", "expected"),
+    ("name", "options", "expected"),
     [
-        ([], [20, 40, 60, 80, 100]),
-        (["--every", 1], [20, 40, 60, 80, 100]),
-        (["--every", 2], [40, 80, 100]),
-        (["--every", 9], [100]),
+        ("a.webp", [], [20, 40, 60, 80, 100]),
+        ("a.gif", ["--every", 1], [20, 40, 60, 80, 100]),
+        ("a.apng", ["--every", 2], [40, 80, 100]),
+        ("a.apng", ["--every", 9], [100]),
     ],
 )
-@pytest.mark.parametrize("name", ["a.apng", "a.webp", "a.gif"])
 def test_a_film_has_a_frame_after_each_load_or_after_some_instructions(
     frames: str, name: str, options: list[object], expected: list[int]
 ) -> None:
@@ -93,16 +87,12 @@ def test_a_film_has_a_frame_after_each_load_or_after_some_instructions(
 def test_a_film_goes_on_from_a_snapshot_and_is_written_with_all_other_outputs(frames: str) -> None:
     assert play(frames, "--configuration", "PRINCETON_9300", "--snapshot", "a.png").exit_code == 0
     Path("nop.ramtek").write_bytes(stream(instructions.no_operation()))
-    others = ("--record", "b.ramtek", "--snapshot", "b.png")
-    assert play("nop.ramtek", "--start", "a.png", "--film", "b{number}.png", *others).exit_code == 0
-    assert np.array_equal(decoded("b1.png")[0], read_snapshot("a.png").field())
+    options = ("--start", "a.png", "--film", "b.apng", "--fps", 5, "--once")
+    assert play("nop.ramtek", *options, "--record", "b.ramtek", "--snapshot", "b.png").exit_code == 0
+    assert np.array_equal(decoded("b.apng")[0], read_snapshot("b.png").field())
     assert Path("b.ramtek").read_bytes() == Path("nop.ramtek").read_bytes()
-
-
-def test_a_film_is_as_fast_as_it_should_be_and_is_shown_once_if_asked(frames: str) -> None:
-    assert play(frames, "--film", "a.apng", "--fps", 5, "--once").exit_code == 0
-    assert durations_of(Path("a.apng")) == [200] * 5
-    with Image.open("a.apng") as film:
+    assert durations_of(Path("b.apng")) == [200]
+    with Image.open("b.apng") as film:
         assert film.info["loop"] == 1
 
 
@@ -120,27 +110,21 @@ def test_a_film_that_is_too_long_has_the_last_frame_and_says_so(
 
 
 def test_a_gif_says_what_it_lost(frames: str) -> None:
-    # A word of many colors on each pixel.
     pixels = np.arange(640 * 480, dtype=np.uint16).reshape(480, 640) % 1024
     colors = np.stack([np.arange(1024) % 256, np.arange(1024) // 4, np.arange(1024) % 7], axis=1)
     Path("many.ramtek").write_bytes(
         stream(np.concatenate([instructions.write_image(pixels), instructions.load_entries(0, colors)]))
     )
-    played = play("many.ramtek", "--film", "a.gif")
-    assert re.search(r"^1 of 1 frames lost colors, by at most \d+ of 255; \.webp and", played.stderr)
+    assert re.search(
+        r"^1 of 1 frames lost colors, by at most \d+", play("many.ramtek", "--film", "a.gif").stderr
+    )
 
 
 REFUSED: list[tuple[list[object], int, str]] = [
-    (
-        ["--film", "a.mp4"],
-        73,
-        "a film must end in .webp, .apng, .gif, or in .png with a number, not in '.mp4'",
-    ),
-    (["--film", "a.png"], 73, "numbered pictures must have one number in their name"),
-    (["--film", "{number:02}.png", "--force", "--record", "./001.png"], 2, "rename one"),
-    (["--film", "frames.apng"], 73, "which exists; choose another name"),
-    (["--film", "a.gif", "--fps", 60], 2, "a film must have 0.1 to 50 fields per second, not 60"),
-    (["--film", "a.webp", "--fps", "nan"], 2, "a film must have 0.1 to 100 fields per second, not nan"),
+    (["--film", "a.mp4"], 73, "a film must end in"),
+    (["--film", "{number:02}.png", "--force", "--record", "./001.png"], 2, "a picture of {number:02}.png"),
+    (["--film", "frames.apng"], 73, "which exists"),
+    (["--film", "a.gif", "--fps", 60], 2, "fields per second"),
     (["--film", "a.webp", "--every", 0], 2, "'--every': 0 is not in the range"),
     (["--film", "a.webp", "--window"], 2, "leave it out, or press F3 in the window"),
     (["--film", "a.webp", "--loads-per-second", 9], 2, "--loads-per-second is for the window"),
@@ -183,9 +167,9 @@ def test_a_film_that_fails_is_reported_and_the_stream_goes_on(
     assert sorted(path.name for path in Path().iterdir()) == ["end.png", "frames.ramtek"]
 
 
-@pytest.fixture
-def _broken(frames: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Streams that cannot be read to their ends."""
+def test_of_a_stream_that_cannot_be_read_to_its_end_a_window_shows_the_beginning(
+    frames: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     pieces = [stream(FRAMES)]
 
     def read(_: int, __: int) -> bytes:
@@ -193,13 +177,6 @@ def _broken(frames: str, monkeypatch: pytest.MonkeyPatch) -> None:
             return pieces.pop()
         raise OSError("broken")
 
-    monkeypatch.setattr("ramtek_emu.commands.play.os.read", read)
-
-
-@pytest.mark.usefixtures("_broken")
-def test_a_window_stays_open_when_its_stream_cannot_be_read_to_its_end(
-    frames: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
     def show(display: Ramtek9300, run: Run, serve_for: Callable[[float], None]) -> None:
         def has_failed() -> bool:
             serve_for(0.01)
@@ -207,18 +184,16 @@ def test_a_window_stays_open_when_its_stream_cannot_be_read_to_its_end(
 
         until(has_failed)
 
+    monkeypatch.setattr("ramtek_emu.commands.play.os.read", read)
     monkeypatch.setattr("ramtek_emu.commands.play.show", show)
     failed = play(frames, "--window", "-o", "a.png")
     assert failed.exit_code == MissingInputError.exit_code
     assert "ramtek: a stream must be readable to its end" in failed.stderr
     assert field_of(Path("a.png"))[0, 0, 0] == 100
-
-
-@pytest.mark.usefixtures("_broken")
-def test_a_stream_that_cannot_be_read_to_its_end_makes_no_film(frames: str) -> None:
-    failed = play(frames, "--film", "a.apng", "-o", "a.png")
-    assert isinstance(failed.exception, MissingInputError)
-    assert [path.name for path in Path().iterdir()] == [frames]
+    # Nothing is left of a film.
+    pieces.append(stream(FRAMES))
+    assert isinstance(play(frames, "--film", "a.apng", "-o", "b.png").exception, MissingInputError)
+    assert sorted(path.name for path in Path().iterdir()) == ["a.png", frames]
 
 
 def test_an_interrupted_film_has_the_frames_so_far(tmp_path: Path) -> None:

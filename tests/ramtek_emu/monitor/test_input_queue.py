@@ -9,119 +9,96 @@ from hypothesis import strategies as st
 from ramtek_emu.monitor.input_queue import Close, Input, InputQueue, Key, Pointer, Release
 
 
-def taken(queue: InputQueue) -> list[Input]:
+def after(*added: Input) -> list[Input]:
+    """What waits after these inputs; a release is the release of a key."""
+    queue = InputQueue()
+    for user_input in added:
+        if isinstance(user_input, Release):
+            queue.release(user_input.name)
+        else:
+            queue.add(user_input)
     return [queue.take() for _ in range(len(queue))]
 
 
-def test_inputs_are_taken_in_their_order() -> None:
-    queue = InputQueue()
-    inputs: list[Input] = [Key("a", "a"), Pointer(1, 2, False, "press", 1), Path("scene.toml"), Close()]
-    for user_input in inputs:
-        queue.add(user_input)
-    assert taken(queue) == inputs
+def move(element: int) -> Pointer:
+    return Pointer(element, 1, False, "move")
+
+
+def wheel(direction: str = "up", steps: int = 1, shift: bool = False, control: bool = False) -> Pointer:
+    return Pointer(0, 0, False, f"wheel {direction}", steps=steps, shift=shift, control=control)
+
+
+PRESS, LIFT = Pointer(2, 1, False, "press", 1), Pointer(4, 1, False, "release", 1)
+LEFT, UP = Key("left"), Key("up")
+AGAIN = Key("left", repeated=True)
+ORDER: list[Input] = [Key("a", "a"), PRESS, Path("scene.toml"), Close(), PRESS, Close()]
+
+
+@pytest.mark.parametrize(
+    ("added", "waiting"),
+    [
+        pytest.param(ORDER, ORDER, id="all inputs in their order"),
+        pytest.param(
+            [LEFT, LEFT, UP, LEFT, LEFT, UP],
+            [LEFT, UP, AGAIN, Key("up", repeated=True)],
+            id="of the repeats of a key only the last",
+        ),
+        pytest.param(
+            [LEFT, LEFT, UP, Release("left"), Release("left")],
+            [LEFT, UP, Release("left")],
+            id="after a release no repeat",
+        ),
+        pytest.param(
+            [LEFT, Release("left"), LEFT],
+            [LEFT, Release("left"), LEFT],
+            id="a press after a release is no repeat",
+        ),
+        pytest.param(
+            [move(1), move(2), PRESS, move(3), move(4), LIFT, move(5)],
+            [move(2), PRESS, move(4), LIFT, move(5)],
+            id="of places of the mouse in a row only the last",
+        ),
+        pytest.param(
+            [wheel(), wheel(steps=2), wheel("down")],
+            [wheel(steps=3), wheel("down")],
+            id="the sum of the wheel",
+        ),
+        pytest.param(
+            [wheel(), wheel(), wheel(shift=True), wheel(control=True), wheel()],
+            [wheel(steps=2), wheel(shift=True), wheel(control=True), wheel()],
+            id="movements with other modifiers are not one",
+        ),
+        pytest.param(
+            [Key("8", "[", control=True, alt=True), Key("9", "9", control=True), Key("7", "7", alt=True)],
+            [Key("8", "["), Key("9", "9", control=True), Key("7", "7", alt=True)],
+            id="a character typed with AltGr has no Ctrl and Alt",
+        ),
+        pytest.param(
+            [Key("z", "\x1a", control=True, alt=True), Key("f4", "", control=True, alt=True)],
+            [Key("z", "\x1a", control=True, alt=True), Key("f4", "", control=True, alt=True)],
+            id="a key that types no character keeps them",
+        ),
+    ],
+)
+def test_what_waits(added: list[Input], waiting: list[Input]) -> None:
+    assert after(*added) == waiting
+
+
+def test_nothing_waits_in_a_new_queue() -> None:
     with pytest.raises(IndexError):
-        queue.take()
-
-
-def test_of_the_repeats_of_a_key_only_the_last_waits() -> None:
-    queue = InputQueue()
-    for name in ("left", "left", "up", "left", "left", "up"):
-        queue.add(Key(name))
-    assert taken(queue) == [Key("left"), Key("up"), Key("left", repeated=True), Key("up", repeated=True)]
-
-
-def test_a_released_key_leaves_its_first_press_and_the_release_and_no_repeat() -> None:
-    queue = InputQueue()
-    queue.add(Key("left"))
-    queue.add(Key("left"))
-    queue.add(Key("up"))
-    queue.release("left")
-    assert taken(queue) == [Key("left"), Key("up"), Release("left")]
-    assert queue.down == {"up"}
-    # A second release, as when the keyboard comes back, finds no key down.
-    queue.release("left")
-    assert taken(queue) == []
-    # The next press is no repeat.
-    queue.add(Key("left"))
-    assert taken(queue) == [Key("left")]
-
-
-def test_of_successive_places_of_the_mouse_only_the_last_waits() -> None:
-    queue = InputQueue()
-    for user_input in (
-        Pointer(1, 1, False, "move"),
-        Pointer(2, 1, False, "move"),
-        Pointer(2, 1, False, "press", 1),
-        Pointer(3, 1, False, "move"),
-        Pointer(4, 1, False, "move"),
-        Pointer(4, 1, False, "release", 1),
-        Pointer(5, 1, False, "move"),
-    ):
-        queue.add(user_input)
-    assert [
-        (pointer.element, pointer.action) for pointer in taken(queue) if isinstance(pointer, Pointer)
-    ] == [
-        (2, "move"),
-        (2, "press"),
-        (4, "move"),
-        (4, "release"),
-        (5, "move"),
-    ]
-
-
-def test_steps_of_the_wheel_are_added_up() -> None:
-    queue = InputQueue()
-    for action, steps in (("wheel up", 1), ("wheel up", 2), ("wheel down", 1)):
-        queue.add(Pointer(0, 0, False, action, steps=steps))
-    assert taken(queue) == [Pointer(0, 0, False, "wheel up", steps=3), Pointer(0, 0, False, "wheel down")]
-
-
-def test_movements_with_other_modifiers_are_not_one() -> None:
-    queue = InputQueue()
-    for shift in (False, False, True, True, False):
-        queue.add(Pointer(0, 0, False, "wheel up", shift=shift))
-    assert [(pointer.steps, pointer.shift) for pointer in taken(queue) if isinstance(pointer, Pointer)] == [
-        (2, False),
-        (2, True),
-        (1, False),
-    ]
+        InputQueue().take()
 
 
 def test_when_the_keyboard_goes_elsewhere_nothing_is_down() -> None:
     queue = InputQueue()
-    for user_input in (
-        Key("left"),
-        Key("left"),
-        Pointer(0, 0, False, "press", 3),
-        Key("right"),
-        Key("right"),
-    ):
+    for user_input in (LEFT, LEFT, Pointer(0, 0, False, "press", 3), Key("right"), Key("right")):
         queue.add(user_input)
     assert queue.down == {"left", "right", 3}
     queue.release_everything()
     assert queue.down == frozenset()
-    assert taken(queue) == [
-        Key("left"),
-        Pointer(0, 0, False, "press", 3),
-        Key("right"),
-        Release("left"),
-        Release("right"),
-    ]
-
-
-def test_a_character_typed_with_altgr_has_no_ctrl_and_alt() -> None:
-    queue = InputQueue()
-    for key in (
-        Key("8", "[", control=True, alt=True),
-        Key("z", "\x1a", control=True, alt=True),
-        Key("f4", "", control=True, alt=True),
-    ):
-        queue.add(key)
-    assert taken(queue) == [
-        Key("8", "["),
-        Key("z", "\x1a", control=True, alt=True),
-        Key("f4", "", control=True, alt=True),
-    ]
+    assert [queue.take() for _ in range(len(queue))] == [
+        LEFT, Pointer(0, 0, False, "press", 3), Key("right"), Release("left"), Release("right"),
+    ]  # fmt: skip
 
 
 @given(st.lists(st.tuples(st.sampled_from(["down", "up", "move", "wheel"]), st.sampled_from("abc"))))
@@ -135,12 +112,11 @@ def test_the_pressed_keys_bound_the_waiting_inputs(events: list[tuple[str, str]]
         elif kind == "up":
             queue.release(name)
         else:
-            queue.add(Pointer(0, 0, False, "move" if kind == "move" else "wheel up"))
+            queue.add(move(1) if kind == "move" else wheel())
     # All presses stay, and the releases of all keys that are up; a key has at most one repeat.
-    waiting = taken(queue)
+    waiting = [queue.take() for _ in range(len(queue))]
     keys = [key for key in waiting if isinstance(key, Key)]
-    releases = [release for release in waiting if isinstance(release, Release)]
-    assert len(releases) == presses - len(queue.down)
+    assert sum(isinstance(release, Release) for release in waiting) == presses - len(queue.down)
     assert sum(not key.repeated for key in keys) == presses
     repeats = [key.name for key in keys if key.repeated]
     assert len(repeats) == len(set(repeats))

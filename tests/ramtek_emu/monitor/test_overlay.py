@@ -3,7 +3,19 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ramtek_emu.monitor.overlay import BLACK, WHITE, Overlay, entries_page, help_page, write, write_message
+from ramtek_emu.memory.character_rom import characters
+from ramtek_emu.monitor.overlay import (
+    BLACK,
+    KEYS,
+    ORANGE,
+    WHITE,
+    YELLOW,
+    Overlay,
+    entries_page,
+    help_page,
+    write,
+    write_message,
+)
 
 
 @pytest.mark.parametrize(
@@ -23,28 +35,39 @@ def test_the_colors_of_all_words_stand_in_cells_row_by_row(words: int, columns: 
 
 def test_text_is_drawn_in_whole_multiples_and_clipped() -> None:
     plain, twice = np.zeros((12, 20), np.uint32), np.zeros((24, 40), np.uint32)
-    write(plain, "Hi", 1, 1)
-    write(twice, "Hi", 2, 2, size=2)
+    write(plain, "Hi", 1, 2)
+    write(twice, "Hi", 2, 4, size=2)
     assert np.array_equal(plain.repeat(2, axis=0).repeat(2, axis=1), twice)
-    assert {0, BLACK, WHITE} == set(plain.ravel().tolist())
     small = np.zeros((12, 6), np.uint32)
-    write(small, "Hi", 1, 1)
+    write(small, "Hi", 1, 2)
     assert np.array_equal(small, plain[:, :6])
+    for left, letter in ((1, "H"), (9, "i")):
+        cell = plain[2:11, left : left + 8]
+        assert np.array_equal(cell[:, :7], np.where(characters()[ord(letter)], WHITE, BLACK))
+        assert (cell[:, 7] == BLACK).all()
+    plain[2:11, 1:17] = 0
+    assert not plain.any()
 
 
-def test_a_message_that_is_too_long_ends_in_two_periods() -> None:
-    pixels, expected = np.zeros((2, 480, 640), np.uint32)
-    write_message(pixels, "x" * 100)
-    write_message(expected, "x" * 76 + "..")
-    assert np.array_equal(pixels, expected)
-    assert not pixels[:464].any()
+@pytest.mark.parametrize("size", [1, 2])
+def test_a_message_stands_on_the_last_lines_and_ends_in_two_periods_if_it_is_too_long(size: int) -> None:
+    for message, shown in (("x" * 78, "x" * 78), ("x" * 79, "x" * 76 + "..")):
+        pixels, expected = np.zeros((2, 480 * size, 640 * size), np.uint32)
+        write_message(pixels, message)
+        expected[464 * size :] = BLACK
+        write(expected, shown, 8 * size, 467 * size, size=size)
+        assert np.array_equal(pixels, expected)
 
 
-def test_the_help_fits_on_every_display() -> None:
-    for lines, elements in ((480, 640), (512, 512), (256, 320), (1024, 1280)):
-        page = help_page(lines, elements, "RAMTEK 9300")
-        assert page.shape == (lines, elements)
-        assert WHITE in page
+@pytest.mark.parametrize(("lines", "elements"), [(480, 640), (512, 512), (256, 320), (1024, 1280)])
+def test_the_help_has_a_line_for_each_key(lines: int, elements: int) -> None:
+    size = 2 if elements == 1280 else 1
+    expected = np.full((lines, elements), BLACK, np.uint32)
+    write(expected, "RAMTEK 9300", 8 * size, 8 * size, YELLOW, size=2 * size)
+    for number, (keys, action) in enumerate(KEYS):
+        write(expected, keys, 8 * size, (48 + 16 * number) * size, ORANGE, size=size)
+        write(expected, action, 136 * size, (48 + 16 * number) * size, size=size)
+    assert np.array_equal(help_page(lines, elements, "RAMTEK 9300"), expected)
 
 
 def test_a_page_is_turned_to_and_back() -> None:
@@ -67,6 +90,6 @@ def test_a_message_passes(monkeypatch: pytest.MonkeyPatch) -> None:
     overlay = Overlay()
     monkeypatch.setattr("time.monotonic", lambda: 100.0)
     overlay.message = "saved"
-    assert overlay.stamp == ("", "saved")
-    monkeypatch.setattr("time.monotonic", lambda: 106.0)
-    assert overlay.stamp == ("", "")
+    for now, message in ((100.0, "saved"), (104.9, "saved"), (105.0, "")):
+        monkeypatch.setattr("time.monotonic", lambda now=now: now)
+        assert overlay.stamp == ("", message)
