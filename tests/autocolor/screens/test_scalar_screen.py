@@ -7,11 +7,10 @@ import numpy as np
 import pytest
 
 from autocolor import Mesh, Scene, scene_of
-from autocolor.checks import Color
 from autocolor.scene.color_scales import COLOR_SCALES
 from autocolor.scene.columns import fields_of
 from autocolor.scene.scalar import MeshScalar, Scalar
-from autocolor.screens.scalar_screen import NAMED, ScalarScreen, color_choice
+from autocolor.screens.scalar_screen import ScalarScreen
 from tests.autocolor.screens.boxes import hand_at, undo, words_are_those_of_the_scene
 from tests.autocolor.screens.hand import Hand
 from tests.small import boxes
@@ -36,15 +35,6 @@ def scalar_of(hand: Hand) -> Scalar:
 
 def labels_of(hand: Hand) -> set[str]:
     return {row.label for row in hand.viewer.board.screen.rows()}
-
-
-def test_without_a_scalar_there_is_the_choice_of_one_alone(tmp_path: Path) -> None:
-    hand = hand_at(tmp_path, "scalar", boxes_with_stress())
-    assert labels_of(hand) == {"scalar"}
-    hand.choose("scalar", "stress")
-    assert scalar_of(hand).name == "stress"
-    hand.choose("scalar", "none")
-    assert hand.viewer.studio.scene.scalar is None
 
 
 def test_every_scalar_of_the_mesh_and_every_computed_one_is_reached_by_clicks(hand: Hand) -> None:
@@ -87,22 +77,6 @@ def test_the_legend_is_dragged_and_let_go_again(hand: Hand) -> None:
     assert hand.viewer.studio.scene is before
 
 
-def test_only_scalars_that_are_computed_with_them_have_a_direction_and_stripes(hand: Hand) -> None:
-    assert not {"direction x", "stripes"} & labels_of(hand)
-    hand.viewer.session.edit(hand.viewer.studio.scene.with_scalar(name="slope"))
-    assert {"direction x", "stripes"} & labels_of(hand) == {"direction x"}
-
-
-def test_another_scale_sends_no_word_and_is_one_step(hand: Hand) -> None:
-    before, words = hand.viewer.studio.scene, hand.viewer.studio.words
-    hand.choose("scale", "turbo")
-    assert scalar_of(hand).scale == "turbo"
-    assert scalar_of(hand).scale in COLOR_SCALES
-    assert hand.viewer.studio.words is words
-    undo(hand)
-    assert hand.viewer.studio.scene is before
-
-
 def test_a_scale_is_reversed_and_stays_so_when_another_is_chosen(hand: Hand) -> None:
     hand.pick("reversed")
     assert scalar_of(hand).scale == "viridis_r"
@@ -140,21 +114,6 @@ def test_the_other_colors_are_chosen_by_clicks(hand: Hand, label: str) -> None:
     assert vars(scalar_of(hand))[label] == (0, 255, 255) != before
 
 
-def test_the_legend_is_switched(hand: Hand) -> None:
-    assert not hand.viewer.board.screen.items()
-    hand.pick("legend")
-    assert scalar_of(hand).legend
-    assert hand.viewer.board.screen.items()
-
-
-def test_a_surface_gets_its_own_colors_and_those_of_the_scalar_again(hand: Hand) -> None:
-    assert hand.viewer.session.surface_name == "low"
-    hand.pick("colored")
-    assert scalar_of(hand).surfaces == ("high",)
-    hand.pick("colored")
-    assert scalar_of(hand).surfaces == ("low", "high")
-
-
 def test_another_scalar_comes_in_its_own_range_and_stripes_in_black_and_white(hand: Hand) -> None:
     screen: Any = hand.viewer.board.screen
     hand.viewer.session.edit(hand.viewer.studio.scene.with_scalar(limits=[1, 2], scale="turbo"))
@@ -171,22 +130,6 @@ def test_a_click_tells_the_value_that_is_seen_there(hand: Hand) -> None:
     value = hand.viewer.studio.picture.scalar
     assert value is not None
     assert f"stress {value[240, 250]:.5g}, shade " in hand.viewer.message
-
-
-def test_the_row_tells_a_color_by_its_name_or_in_digits() -> None:
-    def present(color: Color | None) -> str:
-        return color_choice("below", "", color, lambda _: None, has_none=True).present
-
-    assert [present((255, 0, 255)), present((1, 2, 3)), present(None)] == ["magenta", "#010203", "none"]
-
-
-def test_all_colors_and_none_are_reached_by_clicks() -> None:
-    taken: list[Color | None] = []
-    row = color_choice("below", "", None, taken.append, has_none=True)
-    for name in row.names:
-        row.choose(name)
-    assert taken == [None, *NAMED.values()]
-    assert "none" not in color_choice("missing", "", (0, 0, 0), taken.append, has_none=False).names
 
 
 @pytest.fixture
@@ -230,11 +173,6 @@ def test_the_own_range_is_held_and_followed_again(colored_hand: Hand) -> None:
     colored_hand.pull("low limit", 0.1, 0.5)
     colored_hand.pick("own range")
     assert scalar_of(colored_hand).limits is None
-
-
-def test_limits_around_zero_are_as_far_as_the_farther_one(colored_hand: Hand) -> None:
-    colored_hand.pick("around zero")
-    assert scalar_of(colored_hand).limits == (-1.0, 1.0)
 
 
 def test_a_held_range_has_the_fewest_digits(tmp_path: Path) -> None:
