@@ -107,11 +107,39 @@ def test_bands_and_shades_are_set_along_their_bars(hand: Hand, label: str) -> No
     assert words_are_those_of_the_scene(hand)
 
 
-@pytest.mark.parametrize("label", ["below", "above", "missing"])
-def test_the_other_colors_are_chosen_by_clicks(hand: Hand, label: str) -> None:
-    before: Any = vars(scalar_of(hand))[label]
-    hand.choose(label, "cyan")
-    assert vars(scalar_of(hand))[label] == (0, 255, 255) != before
+@pytest.mark.parametrize(
+    ("label", "name", "column", "value"),
+    [
+        ("below", "cyan", "below", (0, 255, 255)),
+        ("above", "red", "above", (255, 0, 0)),
+        ("missing", "magenta", "missing", (255, 0, 255)),
+        ("scale", "turbo", "scale", "turbo"),
+        ("legend", "", "legend", True),
+        ("colored", "", "surfaces", ("high",)),
+        ("around zero", "", "limits", (-1.0, 1.0)),
+        ("own range", "", "limits", (0.0, 1.0)),
+    ],
+)
+def test_a_click_sets_a_column_alone_and_is_one_step_without_rendering(
+    colored_hand: Hand, label: str, name: str, column: str, value: object
+) -> None:
+    before, picture = colored_hand.scene, colored_hand.viewer.studio.picture
+    colored_hand.pick(label)
+    if name:
+        colored_hand.pick(name)
+    assert scalar_of(colored_hand) == before.with_scalar(**{column: value}).scalar  # type: ignore[arg-type]
+    assert colored_hand.viewer.studio.picture is picture
+    undo(colored_hand)
+    assert colored_hand.scene is before
+
+
+def test_a_scalar_is_chosen_and_taken_away(colored_hand: Hand) -> None:
+    colored_hand.choose("scalar", "none")
+    assert colored_hand.scene.scalar is None
+    assert labels_of(colored_hand) == {"scalar"}
+    colored_hand.choose("scalar", "slope")
+    # Only scalars that are computed with them have a direction and stripes.
+    assert {"direction x", "stripes"} & labels_of(colored_hand) == {"direction x"}
 
 
 def test_another_scalar_comes_in_its_own_range_and_stripes_in_black_and_white(hand: Hand) -> None:

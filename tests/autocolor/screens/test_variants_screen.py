@@ -11,6 +11,7 @@ from autocolor.images import display_image
 from autocolor.mapping.palette import thumbnail
 from autocolor.mapping.ranges import SCREENS
 from autocolor.screens.variants_screen import ELEMENTS, FRAME, LINES, ON_PAGE, PLACES
+from autocolor.widgets.menu import WORK
 from ramtek_emu import Ramtek9300
 from tests.autocolor.screens.boxes import hand_at, told, undo
 from tests.autocolor.screens.hand import Hand
@@ -45,6 +46,12 @@ def shown_at(hand: Hand, place: int) -> np.ndarray[tuple[int, ...], np.dtype[np.
 
 def names(hand: Hand) -> list[str]:
     return [each.label for each in hand.viewer.board.screen.widgets()]
+
+
+def test_without_a_variant_there_is_nothing_to_come_back_to(hand: Hand) -> None:
+    for label in ("come back", "drop"):
+        hand.pick(label)
+        assert told(hand) == (f"{label}: no variant is kept yet", True)
 
 
 def test_a_scene_is_kept_and_come_back_to_in_one_step(hand: Hand) -> None:
@@ -93,6 +100,7 @@ def test_a_variant_has_a_name_of_its_own_where_there_is_a_keyboard(hand: Hand) -
 def test_small_pictures_have_true_colors_all_at_once(hand: Hand, number: int) -> None:
     keep(hand, number)
     rest(hand)
+    assert all(WORK.covers(place) for place in PLACES)
     for place in {0, number - 1}:
         scene = list(hand.viewer.studio.variants.values())[place].scene
         picture = render(scene, lines=2 * LINES, elements=2 * ELEMENTS)
@@ -109,6 +117,8 @@ def test_small_pictures_come_in_turn_while_nothing_moves(hand: Hand) -> None:
         hand.viewer.on_tick()
         assert len(hand.viewer.board.screen.items()) == number
     assert not hand.viewer.board.screen.idle()
+    hand.pick("< picture")
+    assert np.array_equal(hand.display.entries, hand.viewer.studio.entries)
 
 
 def test_the_words_of_the_menu_keep_their_entries(hand: Hand) -> None:
@@ -126,6 +136,12 @@ def test_many_variants_have_pages(hand: Hand) -> None:
     keep(hand, ON_PAGE + 3)
     assert len(names(hand)) == 3
     assert hand.widget("page").present == "2 of 2"  # type: ignore[attr-defined]
+    # It opens at the page of the last variant.
+    hand.pick("page")
+    hand.pick("< picture")
+    hand.open_menu()
+    hand.pick("variants")
+    assert len(names(hand)) == 3
     hand.pick("page")
     assert len(names(hand)) == ON_PAGE
     hand.pick("page")

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from autocolor import InputError, Light, Mesh, Scene, Surface, View, read_picture, scene_of
+from autocolor import InputError, Light, Mesh, Scene, Surface, View, scene_of
 from autocolor.arrays import Words
 from autocolor.scene.defaults import framed
 from autocolor.screens.message_line import MESSAGE
@@ -428,26 +428,6 @@ def test_the_caption_marks_unsaved_changes(hand: Hand) -> None:
         assert ("*" in hand.viewer.caption) is is_changed
 
 
-def test_saving_names_its_files_and_overwrites_none(hand: Hand, tmp_path: Path) -> None:
-    (tmp_path / "box.npz").write_bytes(b"mine")
-    hand.press("c", "Ctrl+s")
-    assert hand.message.startswith("saved ")
-    assert "*" not in hand.viewer.caption
-    assert b"mine" in [path.read_bytes() for path in tmp_path.iterdir() if path.is_file()]
-    hand.press("left", "Ctrl+s")
-    assert "*" not in hand.viewer.caption
-    pictures = [read_picture(path) for path in tmp_path.glob("*.npz") if path.read_bytes() != b"mine"]
-    assert hand.scene.view in [picture.scene.view for picture in pictures]
-
-
-@pytest.mark.parametrize("name", first(2, ["a/b\0c", "", "..", "x" * 300, "\udcff"]))
-def test_a_scene_of_any_name_can_be_saved(name: str, tmp_path: Path) -> None:
-    hand = Hand(Viewer(box_scene().replace(name=name), Ramtek9300(), tmp_path))
-    hand.press("Ctrl+s")
-    assert hand.message.startswith("saved ")
-    assert os.listdir(tmp_path)
-
-
 @pytest.mark.parametrize("key", ["Ctrl+s", "f12", "Shift+f12"])
 def test_a_refused_save_shows_a_message_and_stays_unsaved(hand: Hand, tmp_path: Path, key: str) -> None:
     hand.viewer.session.folder = tmp_path / "none"
@@ -585,20 +565,6 @@ def drag(hand: Hand, *places: tuple[int, int], released: bool = True) -> None:
         hand.viewer.on_pointer(*place, "move")
     if released:
         hand.viewer.on_pointer(*places[-1], "release", 1)
-
-
-def test_a_drag_turns_around_the_object_and_is_one_step(hand: Hand) -> None:
-    before = hand.scene
-    drag(hand, (300, 200), (320, 200), (340, 190))
-    eye = hand.scene.view.eye
-    assert eye != before.view.eye
-    assert distance(hand.scene) == pytest.approx(distance(before))
-    drag(hand, (340, 190), (360, 190))
-    hand.press("Ctrl+Z")
-    assert hand.scene.view.eye == eye
-    hand.press("Ctrl+Z")
-    assert hand.scene is before
-    assert not hand.viewer.studio.undo()
 
 
 def test_escape_takes_a_drag_back(hand: Hand) -> None:
