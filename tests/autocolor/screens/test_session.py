@@ -170,12 +170,17 @@ def go_to_the_mapping_and_back(hand: Hand) -> None:
     hand.pick("< picture")
 
 
+def undo_and_redo(hand: Hand) -> None:
+    pick_row(hand, " ", 0.1)
+    pick_row(hand, " ", 0.9)
+
+
 ENDINGS: dict[str, Callable[[Hand], object]] = {
     "a drag over the picture": lambda hand: hand.drag((60, 60), (90, 60)),
     "an undo": lambda hand: pick_row(hand, " ", 0.1),
     "a drag where the highlight is": lambda hand: hand.drag(PLACE, (300, 200)),
     "a switch": lambda hand: pick_row(hand, "fill", 0.95),
-    "an undo with a redo": lambda hand: (pick_row(hand, " ", 0.1), pick_row(hand, " ", 0.9)),
+    "an undo with a redo": undo_and_redo,
     "a key": lambda hand: hand.press("c"),
     "another screen": go_to_the_mapping_and_back,
     "watching": lambda hand: hand.press("w", "escape"),

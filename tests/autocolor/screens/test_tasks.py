@@ -5,6 +5,7 @@ The table of docs/guides/studio.md tells the same numbers.
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable, Sequence
 from functools import cache
@@ -13,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from autocolor import Light, Scene, read_scene
+from autocolor import Flap, Light, Scene, read_scene
 from autocolor.scene.scalar import Scalar
 from autocolor.scene.surfaces import Paint
 from autocolor.scene.swatches import swatches
@@ -48,7 +49,12 @@ def pick(label: str, share: float = 0.25) -> Act:
 
 def menu(label: str, share: float = 0.25) -> Act:
     """Bring the menu, and pick a row of it."""
-    return lambda hand: (hand.open_menu(), hand.pick(label, share))
+
+    def act(hand: Hand) -> None:
+        hand.open_menu()
+        hand.pick(label, share)
+
+    return act
 
 
 def pull(label: str, start: float, end: float) -> Act:
@@ -88,6 +94,10 @@ def all_differ(before: Sequence[float] | None, now: Sequence[float] | None) -> b
     return before is not None and now is not None and all(np.not_equal(before, now))
 
 
+def cuts(flap: Flap | None) -> bool:
+    return flap is not None and flap.on and math.isfinite(flap.minimum)
+
+
 def is_split_elsewhere(hand: Hand) -> bool:
     words = hand.display.words[:400, 200:320].copy()
     hand.drag((200, 200), (320, 200))
@@ -106,7 +116,7 @@ TASKS: dict[str, tuple[Sequence[Act], Act]] = {
     ),
     "set a flap": (
         [menu("lights"), pick("flaps z", BOX), pick("z minimum", BOX)],
-        lambda hand: key(hand).flaps.z and key(hand).flaps.z.on and np.isfinite(key(hand).flaps.z.minimum),
+        lambda hand: cuts(key(hand).flaps.z),
     ),
     "switch a cone on and off": (
         [menu("lights"), pick("cone angle", BOX), pick("cone angle", BOX)],
