@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import os
 from datetime import datetime
+from itertools import combinations
 from pathlib import Path
 
 import numpy as np
@@ -556,3 +557,14 @@ def test_a_small_picture_of_any_shape_is_in_its_place(folder: Path, lines: int, 
     assert area is not None
     assert THUMBNAIL.inset(FRAME).covers(area)
     assert area.width / area.height == pytest.approx(elements / lines, rel=0.2)
+
+
+@pytest.mark.parametrize("letters", range(12, 25))
+def test_a_long_name_is_whole_and_has_no_date_where_there_is_no_room(letters: int) -> None:
+    row = FileRow("row", value="picture", shown="x" * letters, date="24 Nov").at(
+        LEFT._replace(bottom=LEFT.top + 15)
+    )
+    ground, *texts = row.items(lit=False)
+    assert not any(one.area.overlaps(other.area) for one, other in combinations(texts, 2))
+    assert all(ground.area.covers(each.area) for each in texts)
+    assert dates_in(row) == (letters <= 17)

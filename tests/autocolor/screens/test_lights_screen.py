@@ -7,13 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from autocolor import Flap, Flaps, HalfSpace, Light
+from autocolor import Flap, Flaps, HalfSpace, Light, View
 from autocolor.scene.changes import LightChanges
 from autocolor.scene.columns import keys_of
 from autocolor.scene.following import detached
-from autocolor.screens.lights_screen import LIGHTS_A_PAGE, LightRow
+from autocolor.screens.lights_screen import LIGHTS_A_PAGE, LightRow, places_of
 from autocolor.widgets.bars import Bar
-from autocolor.widgets.items import YELLOW
+from autocolor.widgets.items import SCREEN, YELLOW
 from autocolor.widgets.menu import WORK
 from autocolor.widgets.widget import Choice
 from tests.autocolor.screens.boxes import hand_at, hint_of, told, undo, words_are_those_of_the_scene
@@ -496,3 +496,9 @@ def test_the_list_covers_handles_which_are_free_when_panels_are_hidden(hand: Han
     element, line = hand.handle("highlight of key")
     assert element < end.right
     assert line < end.bottom
+
+
+def test_points_behind_the_eye_have_no_place() -> None:
+    view = View((0.0, -4.0, 0.0), direction=(0.0, 1.0, 0.0))
+    points = np.array([(0.0, -9.0, 0.0), (0.0, 0.0, 0.0)])
+    assert places_of(points, view).tolist() == [[SCREEN.width / 2 - 0.5, SCREEN.height / 2 - 0.5]]

@@ -15,6 +15,7 @@ from autocolor.scene.curves import CURVES, CurvePoints
 from autocolor.screens.mapping_screen import (
     ACROSS,
     LEAST_APART,
+    MOST_COUNTED,
     PANEL,
     STRAIGHT,
     Curve,
@@ -424,3 +425,10 @@ def strips(count: int) -> Scene:
     """Strips side by side, each of its own surface."""
     strips = [grid(1, 1, (number, 0, 0), (1, 0, 0), (0, 0, 9), f"strip {number}") for number in range(count)]
     return autocolor.scene_of(Mesh.joined(strips), surfaces="parts")
+
+
+def test_shares_of_a_range_without_extent_and_of_many_intensities_are_finite() -> None:
+    assert shares_of(np.full(3 * MOST_COUNTED, 0.5, np.float32), 0.5, 0.5).max() == 1
+    assert not shares_of(np.zeros(0, np.float32), 0.0, 1.0).any()
+    # A range of a few roundings of float32.
+    assert shares_of(np.array([0.5, 0.5000005], np.float32), 0.5, 0.5000005).max() == 1

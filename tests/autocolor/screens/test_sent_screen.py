@@ -15,11 +15,11 @@ from hypothesis import strategies as st
 from autocolor import Scene
 from autocolor.arrays import Words
 from autocolor.screens.message_line import MESSAGE
-from autocolor.screens.sent_screen import ROWS_A_PAGE, ListingRow, rows_of_edit
+from autocolor.screens.sent_screen import CHARACTERS, ROWS_A_PAGE, ListingRow, rows_of_edit
 from autocolor.screens.session import LastEdit
 from autocolor.screens.viewer import Viewer
 from autocolor.widgets.items import SCREEN, text
-from ramtek_emu import GMR_9300, Ramtek9300, Recorder, instructions
+from ramtek_emu import GMR_9300, PRINCETON_9300, Ramtek9300, Recorder, instructions
 from ramtek_emu.instruction_set.assembler import assemble
 from ramtek_emu.instruction_set.disassembler import items
 from tests.small import boxes
@@ -224,3 +224,23 @@ def test_an_edit_of_colors_on_the_screen_is_listed_there(recorded: Recorded) -> 
     area = text(rows[0].text, 8, 50).area
     places = slice(area.top, area.bottom + 1), slice(area.left, area.right + 1)
     assert np.array_equal(recorded.display.words[places], whole.words[places])
+
+
+@given(st.integers(1, 30), st.integers(1, 300), st.integers(0, 2**32 - 1))
+def test_a_long_listing_says_how_many_words_it_leaves_out(lines: int, elements: int, seed: int) -> None:
+    image = np.random.default_rng(seed).integers(0, 3, (lines, elements)).astype(np.uint16)
+    words = instructions.write_image(image)
+    rows = [row.text.removesuffix(f"{2 * image.size} bytes") for row in listing_of(words)]
+    left_out = re.fullmatch(r" *and ([\d,]+) words? more of this instruction", rows[-1])
+    listed = " ".join(line[37:] for line in rows[: -1 if left_out else None])
+    # A repeated word is written as 0010*640.
+    repeats = re.findall(r"\b[0-9A-F]{4}(?:\*(\d+))?(?= |$)", listed)
+    count = sum(int(repeat or 1) for repeat in repeats)
+    assert count + (int(left_out[1].replace(",", "")) if left_out else 0) == image.size
+    assert all(len(row) <= CHARACTERS for row in rows)
+
+
+def test_a_display_with_short_entries_counts_a_word_for_each() -> None:
+    words = instructions.load_short_entries(3, np.zeros((40, 3), np.uint8))
+    rows = rows_of_edit(LastEdit(SCENE, SCENE, words, 0), PRINCETON_9300)
+    assert "40 entries" in rows[1].text
