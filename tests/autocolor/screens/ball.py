@@ -8,7 +8,7 @@ from autocolor import Flap, Flaps, Light, Mesh, Scene, Surface, View, scene_of
 from autocolor.screens.viewer import Viewer
 from ramtek_emu import Ramtek9300
 from tests.autocolor.screens.hand import Hand
-from tests.small import grid, sphere
+from tests.small import grid, held, sphere
 
 MIDDLE = 320, 240
 """The element and line of the middle of the picture, where the ball is nearest."""
@@ -48,6 +48,4 @@ def hand_before(scene: Scene, folder: Path) -> Hand:
 
 def seen_on(hand: Hand) -> tuple[bytes, bytes]:
     """The words and the entries of the display."""
-    display = hand.viewer.display
-    assert isinstance(display, Ramtek9300)
-    return display.words.tobytes(), display.entries.tobytes()
+    return held(hand.display)

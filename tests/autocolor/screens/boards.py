@@ -1,22 +1,30 @@
-"""A viewer with a screen of the tests, whose widgets set values that the tests look at."""
+"""Screens that are made for tests: a desk with all kinds of rows, and a room with lists and sections."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
 
-from autocolor.screens.board import Board
+from autocolor.arrays import Words
+from autocolor.errors import UsageError
 from autocolor.screens.input import Gesture
 from autocolor.screens.screen import Handle, Screen
+from autocolor.screens.session import Session
 from autocolor.screens.viewer import Viewer
 from autocolor.widgets.bars import Bar
-from autocolor.widgets.widget import Button, Entry, Gap, Widget
-from ramtek_emu import HostPort, Ramtek9300
+from autocolor.widgets.items import Area
+from autocolor.widgets.menu import Section
+from autocolor.widgets.widget import Button, Choice, Entry, Gap, Widget
+from ramtek_emu import Ramtek9300
+from tests.autocolor.screens.hand import Hand
 from tests.small import wall_scene
+
+EYE = 200, 160
+"""The element and line of the desk's handle."""
 
 
 class Desk(Screen):
-    """A screen with a bar for the ambient light, a button, a name, and a handle for each light."""
+    """A screen with a bar for the ambient light, a button, a name, and handles, some of them covered."""
 
     name = "desk"
     title = "desk"
@@ -47,29 +55,70 @@ class Desk(Screen):
         return [
             Handle("eye", round(200 + 10 * x), round(200 + 10 * y), "the eye"),
             Handle("hidden", 508, 300, "?"),
+            Handle("low", 100, 455, "the low handle"),
         ]
 
     def place(self, handle: Handle, element: int, line: int) -> None:
+        if element > 490:
+            raise UsageError("an eye must be elsewhere")
         *_, z = self.session.scene.view.eye
         eye = ((element - 200) / 10, (line - 200) / 10, z)
         self.session.edit(self.session.scene.with_view(eye=eye))
 
 
-def desk_viewer(folder: Path, display: HostPort | None = None) -> Viewer:
-    """A viewer that shows the desk, without a message."""
-    viewer = Viewer(wall_scene(), Ramtek9300() if display is None else display, folder=folder)
-    viewer.screens["desk"] = Desk(viewer.session)
-    viewer.session.turn_to("desk")
-    viewer.tell("")
-    return viewer
+def desk_hand(folder: Path, display: Ramtek9300 | None = None) -> Hand:
+    """A hand before the desk, without a message."""
+    hand = Hand(Viewer(wall_scene(), Ramtek9300() if display is None else display, folder))
+    hand.viewer.screens["desk"] = Desk(hand.viewer.session)
+    hand.go_to("desk")
+    return hand
 
 
-def point(viewer: Viewer, kind: str, element: int, line: int) -> None:
-    """A gesture."""
-    viewer.point(Gesture(kind, element, line))
+NAMES = ("matte", "gloss", "chrome", "satin", "glass")
 
 
-def middle_of(board: Board, label: str) -> tuple[int, int]:
-    """The middle of the widget with a label."""
-    area = next(each.area for each in board.widgets() if each.label == label)
-    return (area.left + area.right) // 2, (area.top + area.bottom) // 2
+class Room(Screen):
+    """A screen over the picture with a list, sections, and a panel."""
+
+    name = "room"
+    title = "room"
+    help = "the room"
+    shows_picture = True
+
+    def __init__(self, session: Session) -> None:
+        super().__init__(session)
+        self.chosen = "chrome"
+        self.rows_of: dict[str, int] = {"near": 3, "far": 15, "farther": 15}
+        self.did: list[object] = []
+
+    def base(self) -> Words:
+        return self.session.studio.words
+
+    def rows(self) -> list[Widget]:
+        def choose(name: str) -> None:
+            if name == "glass":
+                raise UsageError("a finish must not be glass; choose another")
+            self.chosen = name
+
+        rows: list[Widget] = [
+            Choice("finish", "The finish.", names=NAMES, present=self.chosen, choose=choose),
+            Choice("page", names=("1", "2", "3", "4"), present="1", choose=self.did.append, turns_pages=True),
+        ]
+        for title, count in self.rows_of.items():
+            rows += [Section(title), *(self._button(f"{title} {number}") for number in range(count))]
+        return rows
+
+    def widgets(self) -> list[Widget]:
+        return [self._button("panel").at(Area(8, 8, 99, 23))]
+
+    def handles(self) -> list[Handle]:
+        return [Handle("covered", 470, 30, "?"), Handle("free", 300, 200, "a handle")]
+
+    def pick(self, gesture: Gesture) -> None:
+        self.did.append("pick")
+
+    def drag(self, start: Gesture, last: Gesture, now: Gesture) -> None:
+        self.did.append((start.element, last.element, now.element))
+
+    def _button(self, label: str) -> Button:
+        return Button(label, run=lambda: self.did.append(label))

@@ -31,10 +31,10 @@ def told(hand: Hand) -> tuple[str, bool]:
 
 def hint_of(hand: Hand, label: str) -> str:
     """What the message line says while the pointer is on a row."""
-    left, top, right, bottom = hand.widget(label).area
+    place = hand.middle(label)
     hand.viewer.tell("")
-    hand.move((left + right) / 2, (top + bottom) / 2)
-    return hand.viewer.board.messages[-1].text
+    hand.move(*place)
+    return hand.hint
 
 
 def undo(hand: Hand) -> None:
@@ -44,9 +44,8 @@ def undo(hand: Hand) -> None:
 
 def words_are_those_of_the_scene(hand: Hand) -> bool:
     """Whether the display has the words of the picture beside panels, but for lines over it."""
-    display, studio = hand.viewer.display, hand.viewer.studio
-    assert isinstance(display, Ramtek9300)
-    shown, words = np.array(display.words[:200, :500]), studio.words[:200, :500]
+    studio = hand.viewer.studio
+    shown, words = np.array(hand.display.words[:200, :500]), studio.words[:200, :500]
     for left, top, right, bottom in (widget.area for widget in hand.viewer.board.layout.beside):
         shown[top : bottom + 1, left : right + 1] = words[top : bottom + 1, left : right + 1]
     others = shown[shown != words]

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import numpy as np
+
+from autocolor import Scene, Studio
 from autocolor.screens.board import rows_of_menu
 from autocolor.screens.viewer import Viewer
 from autocolor.widgets.menu import Section, sections_of
+from autocolor.widgets.sheet import Sheet
 from autocolor.widgets.widget import Widget
 from ramtek_emu import Ramtek9300
 
@@ -15,9 +19,30 @@ class Hand:
     def __init__(self, viewer: Viewer) -> None:
         assert isinstance(viewer.display, Ramtek9300)
         self.viewer = viewer
+        self.display = viewer.display
         self.joystick = viewer.display.joystick
         self.steps = 0
         viewer.poll()
+
+    @property
+    def scene(self) -> Scene:
+        """The scene of the session."""
+        return self.viewer.studio.scene
+
+    @property
+    def message(self) -> str:
+        """The last message."""
+        return self.viewer.message
+
+    @property
+    def hint(self) -> str:
+        """The last part of the message line: the message, the typed text, or else the hint."""
+        return self.viewer.board.messages[-1].text
+
+    @property
+    def labels(self) -> list[str]:
+        """The labels of all that can be pointed at, the topmost first."""
+        return [each.label for each in self.viewer.board.widgets()]
 
     def move(self, element: float, line: float) -> None:
         """Move the pointer."""
@@ -31,17 +56,42 @@ class Hand:
         self.viewer.poll()
         self.steps += 1
 
-    def drag(self, *places: tuple[float, float]) -> None:
-        """Hold TRACK from the first place, over the others, to the last one."""
-        self.move(*places[0])
+    def grab(self, element: float, line: float) -> None:
+        """Begin to hold TRACK at a place."""
+        self.move(element, line)
         self.joystick.track = True
         self.viewer.poll()
-        for place in places[1:]:
-            self.move(*place)
+
+    def drop(self) -> None:
+        """Let go of TRACK."""
         self.joystick.track = False
         self.viewer.poll()
         self.steps += 1
         self.viewer.on_tick()
+
+    def drag(self, *places: tuple[float, float]) -> None:
+        """Hold TRACK from the first place, over the others, to the last one."""
+        self.grab(*places[0])
+        for place in places[1:]:
+            self.move(*place)
+        self.drop()
+
+    def press(self, *keys: str, repeated: bool = False) -> bool:
+        """Press keys, such as `Ctrl+Z`, and return whether the last one does anything."""
+        taken = False
+        for key in keys:
+            name = key.removeprefix("Ctrl+").removeprefix("Shift+")
+            control, shift = key.startswith("Ctrl+"), "Shift+" in key
+            typed = name if len(name) == 1 and not control else ""
+            taken = self.viewer.on_key(
+                name.lower(), control, shift, typed.upper() if shift else typed.lower(), repeated
+            )
+        return taken
+
+    def type(self, text: str) -> None:
+        """Type a text on the keyboard."""
+        for letter in text:
+            self.viewer.on_key(letter.lower(), typed=letter)
 
     def open_menu(self) -> None:
         """Bring the menu by moving the pointer to the right edge."""
@@ -78,6 +128,32 @@ class Hand:
         line = (top + bottom) / 2
         self.drag(*((left + share * (right - left), line) for share in (start, (start + end) / 2, end)))
 
+    def middle(self, label: str) -> tuple[int, int]:
+        """The middle of a widget."""
+        left, top, right, bottom = self.widget(label).area
+        return (left + right) // 2, (top + bottom) // 2
+
+    def go_to(self, screen: str) -> None:
+        """Turn to a screen at once, without a message."""
+        self.viewer.session.turn_to(screen)
+        self.viewer.tell("")
+
+    def shows(self, scene: Scene) -> bool:
+        """Whether the display has what it has after that scene alone was sent to it, but for the message."""
+        message = self.message
+        self.viewer.tell("")
+        fresh = Ramtek9300()
+        Studio(scene, fresh)
+        is_shown = has_the_same(self.display, fresh)
+        self.viewer.tell(message)
+        return is_shown
+
+    def is_drawn_whole(self) -> bool:
+        """Whether the display has what the present page alone gives."""
+        fresh = Ramtek9300(self.display.configuration)
+        Sheet(fresh).show(self.viewer.board.page())
+        return has_the_same(self.display, fresh)
+
     def handle(self, label: str) -> tuple[int, int]:
         """The place of a handle whose label begins so."""
         for each in self.viewer.board.screen.handles():
@@ -85,6 +161,11 @@ class Hand:
                 return each.element, each.line
         labels = [each.label for each in self.viewer.board.screen.handles()]
         raise AssertionError(f"{label!r} is not among {labels}")
+
+
+def has_the_same(one: Ramtek9300, other: Ramtek9300) -> bool:
+    """Whether two displays have the same words and the same entries."""
+    return np.array_equal(one.words, other.words) and np.array_equal(one.entries, other.entries)
 
 
 def folded_section_of(viewer: Viewer, label: str) -> str:

@@ -11,7 +11,7 @@ from autocolor.studio import Studio
 from autocolor.widgets.items import Area
 from autocolor.widgets.widget import Widget
 from ramtek_emu import Ramtek9300, instructions
-from tests.autocolor.screens.hand import Hand
+from tests.autocolor.screens.hand import Hand, has_the_same
 from tests.small import cube
 
 PAINTS = (Paint((176, 16, 32), (255, 250, 240), 0.4), Paint((30, 90, 200), (255, 255, 255), 0.7, 80.0))
@@ -39,12 +39,6 @@ def boxes_scene(count: int = 2, levels: int | None = None) -> Scene:
 
 class PaintingHand(Hand):
     """A hand that goes to other screens by their rows, and sees words, colors and the chosen paint."""
-
-    @property
-    def display(self) -> Ramtek9300:
-        """The display."""
-        assert isinstance(self.viewer.display, Ramtek9300)
-        return self.viewer.display
 
     @property
     def paint(self) -> Paint:
@@ -88,5 +82,4 @@ class PaintingHand(Hand):
         """Whether words and entries are those of a display that was sent that scene alone."""
         fresh = Ramtek9300()
         Studio(scene, fresh)
-        same_words = np.array_equal(self.display.words, fresh.words)
-        return same_words and np.array_equal(self.display.entries, fresh.entries)
+        return has_the_same(self.display, fresh)

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-import time
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -8,462 +8,159 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor.arrays import Words
-from autocolor.errors import UsageError
-from autocolor.screens.board import (
-    REACH,
-    Board,
-    Layout,
-    handles_near,
-    last_rows,
-    rows_of_menu,
-    with_loads,
-)
-from autocolor.screens.input import Gesture
-from autocolor.screens.message_line import MESSAGE, MessagePart, message_items
-from autocolor.screens.screen import Handle, Screen
-from autocolor.screens.session import MESSAGE_SECONDS, Session
+from autocolor.screens.board import REACH, handles_near
+from autocolor.screens.message_line import MESSAGE
+from autocolor.screens.screen import Handle
+from autocolor.screens.session import MESSAGE_SECONDS
 from autocolor.screens.viewer import Viewer
-from autocolor.widgets.bars import Bar
-from autocolor.widgets.items import (
-    GRAY,
-    NIGHT,
-    ORANGE,
-    SCREEN,
-    SLATE,
-    WHITE,
-    WIDTH,
-    YELLOW,
-    Area,
-    filled,
-    text,
-)
+from autocolor.widgets.items import GRAY, ORANGE, SCREEN, SLATE, WHITE, WIDTH, Area, filled
 from autocolor.widgets.letters import PANEL as LETTER_PANEL
-from autocolor.widgets.menu import MENU, WIDE_BAR, Section, laid_out, page_of_menu
-from autocolor.widgets.sheet import Sheet
-from autocolor.widgets.widget import Button, Choice, Place, Widget
+from autocolor.widgets.menu import MENU, WIDE_BAR
+from autocolor.widgets.widget import Button
 from ramtek_emu import PRINCETON_9300, Ramtek9300
-from tests.autocolor.screens.boards import Desk, desk_viewer, middle_of, point
-from tests.small import car
+from tests.autocolor.screens.boards import EYE, NAMES, Desk, Room, desk_hand
+from tests.autocolor.screens.boxes import hint_of, told, undo
+from tests.autocolor.screens.hand import Hand
+from tests.small import wall_scene
 
 
 @pytest.fixture
-def viewer(tmp_path: Path) -> Viewer:
-    return desk_viewer(tmp_path)
+def hand(tmp_path: Path) -> Hand:
+    return desk_hand(tmp_path)
 
 
-@pytest.fixture
-def board(viewer: Viewer) -> Board:
-    return viewer.board
+def eye_of(hand: Hand) -> tuple[float, ...]:
+    return tuple(hand.scene.view.eye)
 
 
-def display_of(viewer: Viewer) -> Ramtek9300:
-    assert isinstance(viewer.display, Ramtek9300)
-    return viewer.display
+# Rows and hints.
 
 
-def is_drawn_whole(viewer: Viewer) -> bool:
-    """Whether the display has what the page alone gives."""
-    fresh = Ramtek9300(display_of(viewer).configuration)
-    Sheet(fresh).show(viewer.board.page())
-    display = display_of(viewer)
-    return np.array_equal(display.words, fresh.words) and np.array_equal(display.entries, fresh.entries)
-
-
-def test_the_row_under_the_pointer_is_lit_and_few_words_are_written(viewer: Viewer, board: Board) -> None:
-    place = middle_of(board, "ambient")
-    written = display_of(viewer).frame_buffer.written
-    point(viewer, "hover", *place)
-    assert display_of(viewer).words[place[1] - 6, place[0]] == SLATE
+def test_the_row_under_the_pointer_is_lit_and_few_words_are_written(hand: Hand) -> None:
+    place = hand.middle("ambient")
+    written = hand.display.frame_buffer.written
+    hand.move(*place)
+    assert hand.display.words[place[1] - 6, place[0]] == SLATE
     # A row, and the hint in the message line.
-    assert display_of(viewer).frame_buffer.written - written < 3 * (136 * 16 + WIDTH * 16)
-    assert board.messages[-1].text == "The light from everywhere."
-    point(viewer, "hover", 100, 100)
-    assert display_of(viewer).words[place[1] - 6, place[0]] != SLATE
-    assert is_drawn_whole(viewer)
+    assert hand.display.frame_buffer.written - written < 3 * (136 * 16 + WIDTH * 16)
+    hand.move(100, 100)
+    assert hand.display.words[place[1] - 6, place[0]] != SLATE
+    assert hand.is_drawn_whole()
 
 
-def test_a_gap_says_nothing_and_a_dim_row_says_why(viewer: Viewer, board: Board) -> None:
-    point(viewer, "hover", *middle_of(board, "a gap"))
-    assert board.messages[-1].text == "the desk"
-    point(viewer, "hover", *middle_of(board, "do it"))
-    assert board.messages[-1].text == "not today"
-    point(viewer, "pick", *middle_of(board, "do it"))
-    assert board.messages[0][:2] == ("do it: not today", ORANGE)
+def test_the_hint_is_that_of_the_row_or_of_the_screen_and_a_dim_row_says_why(hand: Hand) -> None:
+    assert hand.hint == "the desk"
+    hints = {"ambient": "The light from everywhere.", "a gap": "the desk", "do it": "not today"}
+    assert {label: hint_of(hand, label) for label in hints} == hints
+    hand.pick("do it")
+    assert told(hand) == ("do it: not today", True)
+    assert (hand.display.words[MESSAGE.top :] == ORANGE).any()
 
 
 def test_of_two_rows_with_one_name_the_one_under_the_pointer_is_lit(
-    viewer: Viewer, board: Board, monkeypatch: pytest.MonkeyPatch
+    hand: Hand, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     rows = Desk.rows
     monkeypatch.setattr(Desk, "rows", lambda desk: [*rows(desk), *rows(desk)])
-    viewer.tell("")
-    first, second = [each.area for each in board.widgets() if each.label == "ambient"]
-    point(viewer, "hover", second.left + 9, second.top + 1)
-    words = display_of(viewer).words
-    assert words[second.top, second.left] == SLATE
-    assert words[first.top, first.left] != SLATE
+    hand.viewer.tell("")
+    first, second = [each.area for each in hand.viewer.board.widgets() if each.label == "ambient"]
+    hand.move(second.left + 9, second.top + 1)
+    assert hand.display.words[second.top, second.left] == SLATE
+    assert hand.display.words[first.top, first.left] != SLATE
 
 
-def test_a_second_pick_places_what_the_first_one_took(viewer: Viewer, board: Board) -> None:
-    before = viewer.studio.scene
-    element, line = board.screen.handles()[0][1:3]
-    point(viewer, "pick", element + 5, line)
-    assert board.mark == (element, line)
-    assert viewer.message == "the eye: pick its new place"
-    # The menu's own ground, and a hover, let it be held.
-    point(viewer, "pick", MENU.left + 50, MENU.bottom - 3)
-    point(viewer, "pick", 250, 170)
-    assert viewer.studio.scene.view.eye[:2] == (5.0, -3.0)
-    assert board.held is None
-    viewer.on_key("z", control=True)
-    assert viewer.studio.scene is before
+def test_tab_and_arrows_and_return_do_what_a_pointer_does(hand: Hand) -> None:
+    hints = ["Back to the picture.", "The light from everywhere.", "not today"]
+    assert [hand.hint for key in ("tab", "down", "down") if hand.press(key)] == hints
+    hand.press("up", "right")
+    assert hand.scene.ambient == 0.01
+    # From the first row, the light goes round to the last one.
+    hand.press("up", "up", "left")
+    assert hand.scene.ambient == 0
+    hand.press("down", "return")
+    assert hand.viewer.page == "picture"
 
 
-def test_a_place_that_is_refused_is_told_and_the_handle_still_held(
-    viewer: Viewer, board: Board, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize("by_key", [True, False])
+def test_the_edge_opens_the_menu_of_the_picture_and_leaving_or_escape_closes_it(
+    hand: Hand, by_key: bool
 ) -> None:
-    from autocolor import UsageError
-
-    def refuse(*_: object) -> None:
-        raise UsageError("an eye must be elsewhere")
-
-    element, line = board.screen.handles()[0][1:3]
-    point(viewer, "pick", element, line)
-    monkeypatch.setattr(board.screen, "place", refuse)
-    point(viewer, "pick", 250, 170)
-    assert board.messages[0][:2] == ("an eye must be elsewhere", ORANGE)
-    assert board.held is not None
-    assert viewer.on_key("escape")
-    assert board.held is None
-
-
-def test_a_drag_of_a_handle_is_one_step_and_escape_takes_it_back(viewer: Viewer, board: Board) -> None:
-    before = viewer.studio.scene
-    element, line = board.screen.handles()[0][1:3]
-    for end in ("drop", "escape"):
-        point(viewer, "grab", element, line)
-        for step in range(1, 5):
-            point(viewer, "drag", element + 3 * step, line)
-        assert viewer.studio.scene is not before
-        if end == "drop":
-            point(viewer, "drop", element + 12, line)
-            viewer.on_key("z", control=True)
-        else:
-            viewer.on_key("escape")
-            point(viewer, "drag", element + 40, line)
-        assert viewer.studio.scene is before
-        assert not board.is_dragging
-    assert not viewer.studio.undo()
-
-
-def test_a_handle_below_the_menu_cannot_be_reached(viewer: Viewer, board: Board) -> None:
-    assert board.handle_at(508, 300) is None
-    assert board.handle_at(502, 300) is None
-    before = viewer.studio.scene
-    # Nor can the screen be dragged by the ground of the menu.
-    point(viewer, "grab", 508, MENU.bottom - 3)
-    assert not board.is_dragging
-    point(viewer, "drag", 300, 300)
-    assert viewer.studio.scene is before
-
-
-def test_enter_during_a_drag_does_not_end_its_step(viewer: Viewer, board: Board) -> None:
-    before = viewer.studio.scene
-    element, line = board.screen.handles()[0][1:3]
-    point(viewer, "grab", element, line)
-    point(viewer, "drag", element + 10, line)
-    point(viewer, "pick", element + 10, line)
-    point(viewer, "drag", element + 20, line)
-    point(viewer, "drop", element + 20, line)
-    viewer.on_key("z", control=True)
-    assert viewer.studio.scene is before
-
-
-def test_undo_by_a_key_during_a_drag_lets_go(viewer: Viewer, board: Board) -> None:
-    before = viewer.studio.scene
-    place = middle_of(board, "ambient")
-    point(viewer, "grab", *place)
-    point(viewer, "drag", place[0] + 20, place[1])
-    assert viewer.studio.scene is not before
-    viewer.on_key("z", control=True)
-    assert viewer.studio.scene is before
-    point(viewer, "drag", place[0] + 30, place[1])
-    assert viewer.studio.scene is before
-
-
-def test_a_widget_that_is_gone_is_dragged_no_more(
-    viewer: Viewer, board: Board, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    place = middle_of(board, "ambient")
-    point(viewer, "grab", *place)
-    monkeypatch.setattr(Desk, "rows", lambda desk: [])
-    before = viewer.studio.scene
-    point(viewer, "drag", place[0] + 20, place[1])
-    assert viewer.studio.scene is before
-    assert not board.is_dragging
-
-
-def test_a_bar_goes_on_where_it_was_grabbed_though_rows_move(
-    viewer: Viewer, board: Board, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    place = middle_of(board, "ambient")
-    point(viewer, "grab", *place)
-    rows = Desk.rows
-    monkeypatch.setattr(Desk, "rows", lambda desk: list(reversed(rows(desk))))
-    point(viewer, "drag", MENU.right, place[1])
-    assert viewer.studio.scene.ambient == 1.0
-
-
-def test_a_drag_beyond_the_screen_stays_at_its_edge(viewer: Viewer, board: Board) -> None:
-    element, line = board.screen.handles()[0][1:3]
-    point(viewer, "grab", element, line)
-    point(viewer, "drag", -300, -5)
-    point(viewer, "drop", -300, -5)
-    point(viewer, "pick", 3, 3)
-    assert viewer.studio.scene.view.eye[:2] == (-50.0, -20.5)
-    assert is_drawn_whole(viewer)
-
-
-def test_a_click_opens_the_wide_bar_and_a_second_one_closes_it(viewer: Viewer, board: Board) -> None:
-    place = middle_of(board, "ambient")
-    point(viewer, "pick", *place)
-    assert board.layout.widget_at(300, WIDE_BAR.top + 5) is not None
-    point(viewer, "pick", WIDE_BAR.left + 3, WIDE_BAR.top + 5)
-    assert viewer.studio.scene.ambient == 0.0
-    assert is_drawn_whole(viewer)
-    point(viewer, "pick", *place)
-    assert board.layout.widget_at(300, WIDE_BAR.top + 5) is None
-    point(viewer, "pick", *place)
-    assert viewer.on_key("escape")
-    assert board.layout.widget_at(300, WIDE_BAR.top + 5) is None
-
-
-def test_a_number_is_typed_over_its_bar(viewer: Viewer, board: Board) -> None:
-    point(viewer, "hover", *middle_of(board, "ambient"))
-    for sign in "0.25":
-        viewer.on_key(sign, typed=sign)
-    assert board.messages[-1].text == "ambient: 0.25_"
-    viewer.on_key("return", typed="\r")
-    assert viewer.studio.scene.ambient == 0.25
-    viewer.on_key("z", control=True)
-    assert viewer.studio.scene.ambient == 0.0
-
-
-def test_a_text_that_is_no_number_is_refused_and_can_be_corrected(
-    viewer: Viewer, board: Board, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    before = viewer.studio.scene
-    point(viewer, "hover", *middle_of(board, "ambient"))
-    for sign in "0.x":
-        viewer.on_key(sign, typed=sign)
-    viewer.on_key("return", typed="\r")
-    assert board.messages[0][:2] == ("ambient must be a number, not '0.x'; type one, such as 1.5", ORANGE)
-    assert (display_of(viewer).words[MESSAGE.top - 12 :] == ORANGE).any()
-    assert viewer.studio.scene is before
-    # The refused text stands below the refusal, selected.
-    assert board.messages[1] == MessagePart("ambient: 0.x", YELLOW, len("ambient: "))
-    _, ground, *_ = message_items(board.messages, MENU.left)
-    assert ground.area.top < MESSAGE.top
-    now = time.monotonic()
-    monkeypatch.setattr("time.monotonic", lambda: now + MESSAGE_SECONDS + 1)
-    assert [each.text for each in board.messages] == ["ambient: 0.x"]
-    for name, typed in (("5", "5"), ("return", "\r")):
-        viewer.on_key(name, typed=typed)
-    assert viewer.studio.scene.ambient == 5.0
-    assert not board.typing.is_on
-
-
-def test_a_click_elsewhere_takes_the_typed_text_unless_it_is_refused(viewer: Viewer, board: Board) -> None:
-    point(viewer, "hover", *middle_of(board, "ambient"))
-    viewer.on_key("1", typed="1")
-    point(viewer, "pick", 100, 100)
-    assert viewer.studio.scene.ambient == 1.0
-    point(viewer, "hover", *middle_of(board, "ambient"))
-    for sign in "-3":
-        viewer.on_key(sign, typed=sign)
-    point(viewer, "pick", 100, 100)
-    assert board.messages[0].ink == ORANGE
-    assert board.typing.is_on
-    viewer.on_key("escape")
-    assert not board.typing.is_on
-    assert viewer.studio.scene.ambient == 1.0
-
-
-CORNER = LETTER_PANEL.left + 2, LETTER_PANEL.top + 2
-"""A place of the letter panel beside its keys."""
-
-
-def pick_letters(viewer: Viewer, board: Board, *labels: str) -> None:
-    for label in labels:
-        point(viewer, "pick", *middle_of(board, label))
-
-
-def test_letters_are_picked_where_there_is_no_keyboard(viewer: Viewer, board: Board) -> None:
-    assert not board.is_on_letters(*CORNER)
-    pick_letters(viewer, board, "name")
-    assert board.typing.shown == MessagePart("name: scene", YELLOW, 6)
-    assert board.is_on_letters(*CORNER)
-    assert board.is_covered(*CORNER)
-    pick_letters(viewer, board, "end", "back", "back", "space", "2", "-", "x")
-    assert board.typing.shown.text == "name: sce 2-x_"
-    # Between the keys nothing is picked, and nothing taken.
-    point(viewer, "pick", *CORNER)
-    point(viewer, "grab", *CORNER)
-    point(viewer, "drop", *CORNER)
-    assert viewer.studio.scene.name == "scene"
-    pick_letters(viewer, board, "OK")
-    assert viewer.studio.scene.name == "sce 2-x"
-    assert not board.is_on_letters(*CORNER)
-
-
-def test_picked_letters_are_given_up_by_cancel_and_taken_by_a_pick_elsewhere(
-    viewer: Viewer, board: Board
-) -> None:
-    pick_letters(viewer, board, "name", "a", "cancel")
-    assert not board.typing.is_on
-    assert viewer.studio.scene.name == "scene"
-    pick_letters(viewer, board, "name", "b")
-    point(viewer, "pick", 100, 100)
-    assert viewer.studio.scene.name == "b"
-    assert not board.typing.is_on
-
-
-def test_the_letters_go_when_a_key_is_pressed(viewer: Viewer, board: Board) -> None:
-    pick_letters(viewer, board, "name", "a")
-    viewer.on_key("b", typed="b")
-    assert not board.is_on_letters(*CORNER)
-    assert "OK" not in [widget.label for widget in board.widgets()]
-    viewer.on_key("return")
-    assert viewer.studio.scene.name == "ab"
-
-
-def test_an_entry_is_typed_after_a_pick_where_there_is_a_keyboard(viewer: Viewer, board: Board) -> None:
-    element, line = middle_of(board, "name")
-    viewer.on_pointer(element, line, "press", 1)
-    viewer.on_pointer(element, line, "release", 1)
-    for sign in "new":
-        viewer.on_key(sign, typed=sign)
-    viewer.on_key("return", typed="\r")
-    assert viewer.studio.scene.name == "new"
-
-
-def test_tab_and_arrows_and_return_do_what_a_pointer_does(viewer: Viewer, board: Board) -> None:
-    viewer.on_key("tab", typed="\t")
-    seen = [board.lit]
-    for _ in range(3):
-        viewer.on_key("down")
-        seen.append(board.lit)
-    assert seen == ["< picture", "ambient", "do it", "name"]
-    viewer.on_key("up")
-    viewer.on_key("up")
-    viewer.on_key("right")
-    assert viewer.studio.scene.ambient == 0.01
-    viewer.on_key("up")
-    viewer.on_key("return", typed="\r")
-    assert viewer.page == "picture"
-
-
-def test_the_edge_opens_the_menu_of_the_picture_and_leaving_closes_it(viewer: Viewer, board: Board) -> None:
-    viewer.session.turn_to("picture")
-    viewer.tell("")
-    assert not board.has_menu
-    point(viewer, "hover", 638, 100)
-    assert board.has_menu
-    point(viewer, "hover", MENU.left + 2, 100)
-    assert board.has_menu
-    point(viewer, "hover", MENU.left - 1, 100)
-    assert not board.has_menu
-    assert np.array_equal(display_of(viewer).words, viewer.studio.words)
-    point(viewer, "hover", 638, 100)
-    assert viewer.on_key("escape")
-    assert not board.has_menu
+    hand.go_to("picture")
+    for element in (MENU.left + 2, WIDTH - 5):
+        hand.move(element, 100)
+        assert hand.labels == []
+    for element in (WIDTH - 4, MENU.left):
+        hand.move(element, 100)
+        assert "lights" in hand.labels
+    if by_key:
+        assert hand.press("escape")
+    else:
+        hand.move(MENU.left - 1, 100)
+    assert hand.labels == []
+    hand.viewer.tell("")
+    assert np.array_equal(hand.display.words, hand.viewer.studio.words)
 
 
 def test_every_page_of_a_long_menu_is_reached_and_a_menu_that_shrinks_shows_its_last(
-    viewer: Viewer, board: Board, monkeypatch: pytest.MonkeyPatch
+    hand: Hand, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(Desk, "rows_more", 70)
-    viewer.tell("")
-    seen: set[str] = set()
+    hand.viewer.tell("")
+    seen: list[str] = []
     for _ in range(3):
-        seen |= {each.label for each in board.widgets()}
-        point(viewer, "pick", *middle_of(board, "more"))
-    assert {f"row {number}" for number in range(70)} <= seen
-    # It is at the first page again.
-    assert "ambient" in {each.label for each in board.widgets()}
+        seen += [label for label in hand.labels if label.startswith("row")]
+        assert hand.labels[-3:] == ["more", "undo gap", " "]
+        assert all(MENU.covers(widget.area) for widget in hand.viewer.board.widgets())
+        hand.pick("more")
+    assert seen == [f"row {number}" for number in range(70)]
+    assert "ambient" in hand.labels
     for _ in range(2):
-        point(viewer, "pick", *middle_of(board, "more"))
+        hand.pick("more")
     monkeypatch.setattr(Desk, "rows_more", 30)
-    viewer.tell("")
-    assert {"row 29", "more"} <= {each.label for each in board.widgets()}
+    hand.viewer.tell("")
+    assert {"row 29", "more"} <= set(hand.labels)
     monkeypatch.setattr(Desk, "rows_more", 0)
-    viewer.tell("")
-    assert "ambient" in {each.label for each in board.widgets()}
+    hand.viewer.tell("")
+    assert "ambient" in hand.labels
 
 
-def test_a_click_that_slips_along_the_undo_row_undoes_nothing(viewer: Viewer, board: Board) -> None:
-    viewer.on_key("c", typed="c")
-    viewer.session.turn_to("desk")
-    viewer.tell("")
-    scene = viewer.studio.scene
-    element, line = middle_of(board, " ")
-    point(viewer, "grab", element, line)
-    for step in range(10):
-        point(viewer, "drag", element - step, line)
-    point(viewer, "drop", element, line)
-    assert viewer.studio.scene is scene
-    point(viewer, "pick", element, line)
-    assert (viewer.page, viewer.studio.scene) == ("history", scene)
-    point(viewer, "pick", *middle_of(board, " "))
-    assert (viewer.page, viewer.studio.scene) == ("picture", scene)
-    viewer.session.turn_to("desk")
-    viewer.tell("")
-    point(viewer, "pick", element - 40, line)
-    assert viewer.studio.scene is not scene
+def test_undo_and_redo_are_dim_while_there_is_no_step_for_them(hand: Hand) -> None:
+    def inks() -> list[bool]:
+        hand.move(20, 20)
+        left, top, right, bottom = hand.widget(" ").area
+        row = hand.display.words[top : bottom + 1, left : right + 1]
+        thirds = np.array_split(row, [row.shape[1] // 3, 2 * row.shape[1] // 3], axis=1)
+        assert all((third == WHITE).any() != (third == GRAY).any() for third in thirds)
+        return [bool((third == WHITE).any()) for third in thirds]
+
+    assert inks() == [False] * 3
+    assert hint_of(hand, " ") == "there is no step to undo"
+    hand.viewer.session.edit(hand.scene.replace(ambient=0.7))
+    hand.viewer.tell("")
+    assert inks() == [True, True, False]
+    undo(hand)
+    assert inks() == [False, True, True]
+    assert hint_of(hand, " ").startswith("Undo the last step")
 
 
-def test_without_a_pointer_the_hint_is_that_of_the_screen(viewer: Viewer, board: Board) -> None:
-    assert board.messages[-1].text == "the desk"
+def test_a_click_that_slips_along_the_undo_row_undoes_nothing(hand: Hand) -> None:
+    hand.press("c")
+    hand.go_to("desk")
+    scene = hand.scene
+    element, line = hand.middle(" ")
+    hand.drag((element, line), (element - 5, line), (element - 60, line))
+    assert hand.scene is scene
+    # Between undo and redo is the list of steps.
+    hand.pick(" ", 0.5)
+    assert (hand.viewer.page, hand.scene) == ("history", scene)
+    hand.pick(" ", 0.5)
+    assert (hand.viewer.page, hand.scene) == ("picture", scene)
+    hand.go_to("desk")
+    undo(hand)
+    assert hand.scene is not scene
 
 
-def test_the_whole_of_a_larger_display_shows_the_picture(tmp_path: Path) -> None:
-    viewer = desk_viewer(tmp_path, Ramtek9300(PRINCETON_9300))
-    point(viewer, "hover", *middle_of(viewer.board, "ambient"))
-    assert is_drawn_whole(viewer)
-    viewer.session.turn_to("picture")
-    viewer.tell("")
-    assert np.array_equal(display_of(viewer).words, viewer.studio.words)
-
-
-def test_entries_that_change_while_some_are_borrowed_are_there_afterwards(
-    viewer: Viewer, board: Board, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    borrowed = np.full((64, 3), 77, np.uint8)
-    monkeypatch.setattr(board.screen, "loads", lambda: [(1, borrowed)])
-    viewer.tell("")
-    assert np.array_equal(display_of(viewer).entries[1:65], borrowed)
-    viewer.session.paint(object_color="red")
-    viewer.tell("")
-    assert np.array_equal(display_of(viewer).entries[1:65], borrowed)
-    assert np.array_equal(display_of(viewer).entries[65:], viewer.studio.entries[65:])
-    viewer.session.turn_to("picture")
-    viewer.tell("")
-    assert np.array_equal(display_of(viewer).entries, viewer.studio.entries)
-
-
-def test_the_mark_goes_when_the_pointer_is_exactly_on_it(tmp_path: Path) -> None:
-    viewer = Viewer(car(), Ramtek9300(), tmp_path)
-    viewer.session.turn_to("light and view")
-    viewer.on_tick()
-    handle = viewer.board.screen.handles()[-1]
-    viewer.on_pointer(handle.element + 3, handle.line + 3, "move")
-    assert viewer.board.mark is not None
-    viewer.on_pointer(*viewer.board.mark, "move")
-    assert viewer.board.mark is None
-
-
-# What a layout has is tried through the board, in test_board.py.
+# Handles and drags.
 
 places = st.tuples(st.integers(90, 110), st.integers(90, 110))
 
@@ -480,518 +177,534 @@ def test_the_nearest_handle_within_reach_comes_first_the_last_of_those_as_near(
     )
 
 
-def test_the_wide_bar_covers_what_is_below_it(tmp_path: Path) -> None:
-    screen = desk_viewer(tmp_path).board.screen
-    rows = laid_out([Bar("ambient"), Button("go")])
-    closed, opened = (Layout(screen, rows, opened=key) for key in ("", "ambient"))
-    place = (100, WIDE_BAR.top + 3)
-    assert not closed.is_covered(*place)
-    assert opened.is_covered(*place)
-    assert opened.widget_at(*place) is opened.wide
-    assert Layout(screen, rows, opened="gone").wide is None
+def test_a_handle_that_can_be_grabbed_is_marked_and_named(hand: Hand) -> None:
+    mark = hand.display.cursors[1]
+    hand.move(EYE[0] + REACH, EYE[1])
+    assert (mark.is_visible, mark.element, mark.line) == (True, *EYE)
+    assert hand.hint == "the eye: drag it, or click here and where it goes"
+    hand.move(EYE[0] + REACH + 1, EYE[1])
+    assert (mark.is_visible, hand.hint) == (False, "the desk")
+    # Two cursors at one place would be invisible.
+    hand.move(*EYE)
+    assert not mark.is_visible
 
 
-def test_a_widget_is_found_again_by_its_key_and_stays_where_it_was_grabbed(board: Board) -> None:
-    before = laid_out([Bar("x", value=1.0), Button("x")])
-    after = laid_out([Button("new"), Bar("x", value=2.0)])
-    now = Layout(board.screen, after).now(before[0])
-    assert isinstance(now, Bar)
-    assert (now.value, now.area) == (2.0, before[0].area)
-    assert Layout(board.screen, after).now(before[1]) is None
+def test_a_second_pick_places_what_the_first_one_took(hand: Hand) -> None:
+    before = hand.scene
+    hand.click(EYE[0] + 5, EYE[1])
+    assert told(hand) == ("the eye: pick its new place", False)
+    # The menu's own ground lets it be held.
+    hand.click(MENU.left + 50, MENU.bottom - 3)
+    hand.click(250, 170)
+    assert eye_of(hand)[:2] == (5.0, -3.0)
+    hand.click(300, 300)
+    assert eye_of(hand)[:2] == (5.0, -3.0)
+    undo(hand)
+    assert hand.scene is before
 
 
-# What a page looks like is tried through the board, in test_board.py.
+def test_a_place_that_is_refused_is_told_and_the_handle_is_held_until_escape(hand: Hand) -> None:
+    before = hand.scene
+    hand.click(*EYE)
+    hand.click(495, 170)
+    assert told(hand) == ("an eye must be elsewhere", True)
+    hand.viewer.tell("")
+    hand.move(250, 170)
+    assert hand.hint == "the eye: pick its new place"
+    assert hand.press("escape")
+    hand.click(250, 170)
+    assert hand.scene is before
 
 
-def test_entries_without_loads_are_the_same_array() -> None:
-    entries = np.zeros((1024, 3), np.uint8)
-    assert with_loads(entries, []) is entries
+def test_a_drag_of_a_handle_is_one_step_and_escape_takes_it_back(hand: Hand) -> None:
+    before = hand.scene
+    for end in ("drop", "escape"):
+        hand.grab(*EYE)
+        for step in range(1, 5):
+            hand.move(EYE[0] + 3 * step, EYE[1])
+        assert eye_of(hand)[:2] == (1.2, -4.0)
+        if end == "drop":
+            hand.drop()
+            undo(hand)
+        else:
+            hand.press("escape")
+            hand.move(EYE[0] + 40, EYE[1])
+            hand.drop()
+        assert hand.scene is before
+    assert not hand.viewer.studio.undo()
 
 
-def test_loads_replace_runs_and_leave_the_entries_as_they_were() -> None:
-    entries = np.zeros((1024, 3), np.uint8)
-    table = with_loads(entries, [(5, np.full((3, 3), 9, np.uint8)), (7, np.full((2, 3), 4, np.uint8))])
-    assert table[4:10, 0].tolist() == [0, 9, 9, 4, 4, 0]
-    assert not entries.any()
+def test_two_drags_are_two_steps_and_enter_during_a_drag_does_not_end_its_step(hand: Hand) -> None:
+    seen = []
+    for shift in (20, 40):
+        seen.append(hand.scene)
+        hand.grab(EYE[0] + shift - 20, EYE[1])
+        hand.move(EYE[0] + shift - 10, EYE[1])
+        hand.joystick.press_enter()
+        hand.move(EYE[0] + shift, EYE[1])
+        hand.drop()
+    for scene in reversed(seen):
+        undo(hand)
+        assert hand.scene is scene
 
 
-def test_a_message_stands_over_all_that_a_screen_draws(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+def test_a_handle_that_the_menu_or_a_wide_bar_covers_cannot_be_reached(hand: Hand) -> None:
+    before = hand.scene
+    for element in (502, 508):
+        hand.drag((element, 300), (300, 300))
+    # Nor can the screen be dragged by the ground of the menu.
+    hand.drag((508, MENU.bottom - 3), (300, 300))
+    hand.move(100, WIDE_BAR.bottom)
+    assert hand.hint.startswith("the low handle")
+    hand.pick("ambient")
+    hand.drag((100, WIDE_BAR.top + 1), (60, WIDE_BAR.top + 1))
+    assert hand.scene.view is before.view
+
+
+@pytest.mark.parametrize("place", ["ambient", "handle"])
+def test_undo_by_a_key_during_a_drag_lets_go(hand: Hand, place: str) -> None:
+    before = hand.scene
+    element, line = hand.middle("ambient") if place == "ambient" else EYE
+    hand.grab(element, line)
+    hand.move(element + 20, line)
+    assert hand.scene is not before
+    hand.press("Ctrl+Z")
+    hand.move(element + 30, line)
+    assert hand.scene is before
+
+
+def test_a_bar_goes_on_where_it_was_grabbed_though_rows_move_until_it_is_gone(
+    hand: Hand, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    viewer: Viewer = desk_viewer(tmp_path)
-    viewer.tell("a message")
-    told = [item for item in viewer.board.page().items if MESSAGE.covers(item.area)]
-    monkeypatch.setattr(viewer.board.screen, "items", lambda: [filled(SCREEN, 3)])
-    items = list(viewer.board.page().items)
-    assert items.index(filled(SCREEN, 3)) < min(items.index(item) for item in told)
+    element, line = hand.middle("ambient")
+    rows = Desk.rows
+    hand.grab(element, line)
+    monkeypatch.setattr(Desk, "rows", lambda desk: list(reversed(rows(desk))))
+    hand.move(MENU.right, line)
+    assert hand.scene.ambient == 1.0
+    monkeypatch.setattr(Desk, "rows", lambda desk: [Button("ambient")])
+    hand.viewer.tell("")
+    hand.move(element - 20, line)
+    monkeypatch.setattr(Desk, "rows", rows)
+    hand.move(element - 30, line)
+    assert hand.scene.ambient == 1.0
 
 
-# What is dragged on a board is tried in test_board.py; here, what is asked of the screen.
+def test_a_drag_of_the_mouse_beyond_the_screen_goes_there(hand: Hand) -> None:
+    hand.viewer.on_pointer(*EYE, "press", 1)
+    for action in ("move", "release"):
+        hand.viewer.on_pointer(-300, -5, action, 1)
+    assert eye_of(hand)[:2] == (-50.0, -20.5)
+    assert hand.is_drawn_whole()
 
 
-class Told(Screen):
-    """A screen that notes what it is asked for."""
-
-    def __init__(self, session: Session) -> None:
-        super().__init__(session)
-        self.did: list[object] = []
-
-    def handles(self) -> list[Handle]:
-        return [Handle("a", 100, 100, "a")]
-
-    def hold(self, handle: Handle) -> None:
-        self.did.append(("hold", handle.key))
-
-    def place(self, handle: Handle, element: int, line: int) -> None:
-        self.did.append(("place", handle.key, element, line))
-
-    def drag(self, start: Gesture, last: Gesture, now: Gesture) -> None:
-        self.did.append(("drag", start.element, last.element, now.element))
+def test_a_click_opens_the_wide_bar_and_a_second_one_or_escape_closes_it(hand: Hand) -> None:
+    for close in (lambda: hand.pick("ambient"), lambda: hand.press("escape")):
+        hand.pick("ambient")
+        assert hand.labels.count("ambient") == 2
+        assert hand.hint == "ambient: pick a value on the wide bar; a pick on the row takes it away"
+        hand.click(WIDE_BAR.right - 60, WIDE_BAR.top + 5)
+        assert hand.scene.ambient > 0
+        hand.click(WIDE_BAR.left + 3, WIDE_BAR.top + 5)
+        assert hand.scene.ambient == 0
+        assert hand.is_drawn_whole()
+        close()
+        assert hand.labels.count("ambient") == 1
 
 
-def test_a_handle_is_held_and_placed_and_the_screen_dragged_step_by_step(viewer: Viewer) -> None:
-    screen = Told(viewer.session)
-    board = Board(viewer.session, {"desk": screen})
-    board.take(Gesture("grab", 102, 100))
-    board.take(Gesture("drag", 110, 90))
-    assert board.is_dragging
-    board.release()
-    board.take(Gesture("drag", 120, 90))
-    assert screen.did == [("hold", "a"), ("place", "a", 110, 90)]
-    screen.did.clear()
-    board.take(Gesture("grab", 200, 200))
-    for element in (210, 225):
-        board.take(Gesture("drag", element, 200))
-    assert screen.did == [("drag", 200, 200, 210), ("drag", 200, 210, 225)]
-
-
-def test_the_words_below_a_second_line_come_back(viewer: Viewer) -> None:
-    viewer.session.turn_to("picture")
-    viewer.tell("")
-    words = display_of(viewer).words.copy()
-    viewer.tell("a long message " * 8)
-    assert (display_of(viewer).words[MESSAGE.top - 10] != words[MESSAGE.top - 10]).any()
-    assert is_drawn_whole(viewer)
-    viewer.tell("")
-    assert np.array_equal(display_of(viewer).words, words)
-
-
-def test_a_message_gives_way_to_the_hint_of_another_thing(
-    viewer: Viewer, board: Board, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    viewer.studio.edit(viewer.studio.scene.replace(ambient=0.5))
-    undone = "undone: ambient 0 -> 0.5"
-    element, line = middle_of(board, "name")
-    point(viewer, "hover", element, line)
-    now = time.monotonic()
-    viewer.on_key("z", control=True)
-    monkeypatch.setattr("time.monotonic", lambda: now + 1.5)
-    point(viewer, "hover", element + 1, line)
-    assert board.messages[0].text == undone
-    point(viewer, "hover", *middle_of(board, "ambient"))
-    assert board.messages[0].text == "The light from everywhere."
-    # A warning stands its whole time.
-    viewer.session.warn("careful")
-    monkeypatch.setattr("time.monotonic", lambda: now + 4)
-    point(viewer, "hover", *middle_of(board, "name"))
-    assert board.messages[0].text == "careful"
-
-
-def test_a_message_is_shown_a_while_even_if_the_pointer_rests_elsewhere_at_once(
-    viewer: Viewer, board: Board, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    viewer.studio.edit(viewer.studio.scene.replace(ambient=0.5))
-    point(viewer, "hover", *middle_of(board, "name"))
-    viewer.on_key("z", control=True)
-    now = time.monotonic()
-    point(viewer, "hover", *middle_of(board, "ambient"))
-    assert board.messages[0].text == "undone: ambient 0 -> 0.5"
-    monkeypatch.setattr("time.monotonic", lambda: now + 1.5)
-    viewer.on_tick()
-    assert board.messages[0].text == "The light from everywhere."
-    assert is_drawn_whole(viewer)
-
-
-def rows(viewer: Viewer, name: str) -> list[Widget]:
-    return rows_of_menu(viewer.session, viewer.screens[name], viewer.screens.values())
-
-
-def test_the_picture_leads_to_every_screen_and_every_screen_back(tmp_path: Path) -> None:
-    viewer = desk_viewer(tmp_path)
-    labels = [row.label for row in rows(viewer, "picture")]
-    for name, screen in viewer.screens.items():
-        if name == "picture":
-            continue
-        assert (screen.title in labels) is screen.is_in_menu
-        back = next(row for row in rows(viewer, name) if row.label == "< picture")
-        viewer.session.turn_to(name)
-        back.pick(Place(0, 0))
-        assert viewer.session.screen == "picture"
-
-
-def test_each_menu_undoes_and_redoes(tmp_path: Path) -> None:
-    viewer = desk_viewer(tmp_path)
-    session, before = viewer.session, viewer.studio.scene
-    for screen in viewer.screens.values():
-        session.edit(before.replace(ambient=0.7))
-        after = session.scene
-        undo = next(row for row in last_rows(session, screen) if row.help.startswith("Undo"))
-        undo.nudge(-1)
-        assert session.scene is before
-        undo.nudge(1)
-        assert session.scene is after
-        session.undo()
-
-
-def test_the_last_row_of_a_page_turns_to_the_next_and_around() -> None:
-    rows: list[Widget] = [Button(str(number)) for number in range(60)]
-    seen: list[int] = []
-    number = 0
+def test_the_wheel_over_a_bar_is_one_step(hand: Hand) -> None:
+    before = hand.scene
     for _ in range(3):
-        page = page_of_menu(rows, (), number, seen.append)
-        page[-1].pick(Place(0, 0))
-        number = seen[-1]
-    assert seen == [1, 2, 0]
-    assert [row.label for row in page_of_menu(rows, (), 9, seen.append)] == [
-        row.label for row in page_of_menu(rows, (), 2, seen.append)
-    ]
+        hand.viewer.on_pointer(*hand.middle("ambient"), "wheel up", steps=2)
+    assert hand.scene.ambient == 0.06
+    hand.press("Ctrl+Z")
+    assert hand.scene is before
 
 
-def test_every_page_of_a_long_menu_ends_with_undo(tmp_path: Path) -> None:
-    viewer = desk_viewer(tmp_path)
-    rows: list[Widget] = [Button(str(number)) for number in range(60)]
-    last = last_rows(viewer.session, viewer.screens["picture"])
-    labels = []
-    for number in range(3):
-        page = page_of_menu(rows, last, number, lambda _: None)
-        assert [row.label for row in page[-3:]] == [row.label for row in last]
-        assert all(MENU.covers(row.area) for row in page)
-        labels += [row.label for row in page[:-4]]
-    assert labels == [row.label for row in rows]
+# Typing.
 
 
-def test_undo_and_redo_are_dim_while_there_is_no_step_for_them(tmp_path: Path) -> None:
-    viewer = desk_viewer(tmp_path)
-    session = viewer.session
+def test_a_number_is_typed_over_its_bar(hand: Hand) -> None:
+    hand.move(*hand.middle("ambient"))
+    hand.type("0.2")
+    assert hand.hint == "ambient: 0.2_"
+    hand.press("return")
+    assert hand.scene.ambient == 0.2
+    hand.type("1e")
+    # A letter that is typed is no key of the window, but one with control is.
+    assert hand.hint == "ambient: 1e_"
+    hand.press("Ctrl+Z")
+    assert (hand.scene.ambient, hand.message) == (0.0, "undone: ambient 0 -> 0.2")
 
-    def inks() -> list[int]:
-        undo = last_rows(session, viewer.screens["desk"])[1].at(MENU)
-        return [
-            next(
-                word
-                for word in (WHITE, GRAY)
-                if text(label, item.area.left, item.area.top, word, NIGHT) == item
-            )
-            for label, item in zip(("undo", "steps", "redo"), undo.items(lit=False)[1:], strict=True)
-        ]
 
-    undo = last_rows(session, viewer.screens["desk"])[1]
-    assert (inks(), undo.why_not) == ([GRAY] * 3, "there is no step to undo")
-    session.edit(session.scene.replace(ambient=0.7))
-    assert inks() == [WHITE, WHITE, GRAY]
-    session.undo()
-    assert inks() == [GRAY, WHITE, WHITE]
-    assert not last_rows(session, viewer.screens["desk"])[1].why_not
+def test_a_text_that_is_no_number_is_refused_and_can_be_corrected(
+    hand: Hand, wait: Callable[[float], None]
+) -> None:
+    before = hand.scene
+    hand.move(*hand.middle("ambient"))
+    hand.type("0.x")
+    hand.press("return")
+    assert told(hand)[0].startswith("ambient must be a number, not '0.x'")
+    assert hand.scene is before
+    # The refused text stands below the refusal, selected.
+    assert (hand.display.words[MESSAGE.top - 12 :] == ORANGE).any()
+    wait(MESSAGE_SECONDS)
+    hand.viewer.on_tick()
+    assert not (hand.display.words[MESSAGE.top - 12 :] == ORANGE).any()
+    assert hand.hint == "ambient: 0.x"
+    hand.press("5", "return")
+    assert hand.scene.ambient == 5.0
+
+
+def test_a_click_elsewhere_takes_the_typed_text_unless_it_is_refused(hand: Hand) -> None:
+    hand.move(*hand.middle("ambient"))
+    hand.press("1")
+    hand.click(100, 100)
+    assert hand.scene.ambient == 1.0
+    hand.move(*hand.middle("ambient"))
+    hand.type("-3")
+    hand.click(100, 100)
+    assert told(hand)[1]
+    assert hand.hint == "ambient: -3"
+    hand.press("escape")
+    assert (hand.scene.ambient, hand.hint) == (1.0, "the desk")
+
+
+CORNER = LETTER_PANEL.left + 2, LETTER_PANEL.top + 2
+"""A place of the letter panel beside its keys."""
+
+
+def pick_letters(hand: Hand, *labels: str) -> None:
+    for label in labels:
+        hand.pick(label)
+
+
+def test_letters_are_picked_where_there_is_no_keyboard(hand: Hand) -> None:
+    hand.pick("name")
+    assert hand.hint == "name: scene"
+    pick_letters(hand, "end", "back", "back", "space", "2", "-", "x")
+    assert hand.hint == "name: sce 2-x_"
+    # Between the keys nothing is picked, and nothing taken.
+    hand.click(*CORNER)
+    hand.drag(CORNER, CORNER)
+    assert hand.scene.name == "scene"
+    hand.pick("OK")
+    assert hand.scene.name == "sce 2-x"
+    assert "OK" not in hand.labels
+
+
+def test_picked_letters_are_given_up_by_cancel_and_taken_by_a_pick_elsewhere(hand: Hand) -> None:
+    pick_letters(hand, "name", "a", "cancel")
+    assert (hand.scene.name, hand.hint) == ("scene", "the desk")
+    pick_letters(hand, "name", "b")
+    hand.click(100, 100)
+    assert (hand.scene.name, hand.hint) == ("b", "the desk")
+
+
+def test_the_letters_go_when_a_key_is_pressed_or_a_mouse_is_used(hand: Hand) -> None:
+    pick_letters(hand, "name", "a")
+    hand.press("b")
+    assert "OK" not in hand.labels
+    hand.press("return")
+    assert hand.scene.name == "ab"
+    other = desk_hand(hand.viewer.folder)
+    place = other.middle("name")
+    for action in ("press", "release"):
+        other.viewer.on_pointer(*place, action, 1)
+    assert "OK" not in other.labels
+    other.type("new")
+    other.press("return")
+    assert other.scene.name == "new"
+
+
+def test_a_key_goes_to_the_typed_text_then_to_the_screen_then_to_its_binding(
+    hand: Hand, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[str] = []
+
+    def key(desk: Desk, name: str, typed: str) -> bool:
+        asked.append(name)
+        return name == "c"
+
+    monkeypatch.setattr(Desk, "key", key)
+    scene = hand.scene
+    assert hand.press("c")
+    assert hand.scene is scene
+    hand.press("e")
+    assert hand.scene is not scene
+    hand.move(*hand.middle("ambient"))
+    hand.press("1", "e")
+    assert asked == ["c", "e"]
+
+
+# The page.
+
+
+def test_the_whole_of_a_larger_display_shows_the_picture(tmp_path: Path) -> None:
+    hand = desk_hand(tmp_path, Ramtek9300(PRINCETON_9300))
+    hand.move(*hand.middle("ambient"))
+    assert hand.is_drawn_whole()
+    hand.go_to("picture")
+    assert np.array_equal(hand.display.words, hand.viewer.studio.words)
+
+
+def test_entries_that_change_while_some_are_borrowed_are_there_afterwards(
+    hand: Hand, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    loads = [(1, np.full((64, 3), 77, np.uint8)), (60, np.full((10, 3), 9, np.uint8))]
+    monkeypatch.setattr(hand.viewer.board.screen, "loads", lambda: loads)
+    for _ in range(2):
+        hand.viewer.tell("")
+        assert hand.display.entries[:71, 0].tolist()[1:70] == [77] * 59 + [9] * 10
+        assert np.array_equal(hand.display.entries[70:], hand.viewer.studio.entries[70:])
+        hand.viewer.session.paint(object_color="red")
+    hand.go_to("picture")
+    assert np.array_equal(hand.display.entries, hand.viewer.studio.entries)
+
+
+def test_a_message_stands_over_all_that_a_screen_draws_and_its_second_line_goes_again(
+    hand: Hand, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(hand.viewer.board.screen, "items", lambda: [filled(SCREEN, 3)])
+    hand.viewer.tell("")
+    words = hand.display.words.copy()
+    hand.viewer.tell("a long message " * 8)
+    for top in (MESSAGE.top - 12, MESSAGE.top):
+        assert (hand.display.words[top : top + 12, :400] == WHITE).any()
+    assert hand.is_drawn_whole()
+    hand.viewer.tell("")
+    assert np.array_equal(hand.display.words, words)
+
+
+def test_a_message_gives_way_to_the_hint_of_another_thing_when_it_had_its_time(
+    hand: Hand, wait: Callable[[float], None]
+) -> None:
+    hand.viewer.session.edit(hand.scene.replace(ambient=0.5))
+    element, line = hand.middle("name")
+    hand.move(element, line)
+    hand.press("Ctrl+Z")
+    undone = "undone: ambient 0 -> 0.5"
+    wait(1.5)
+    hand.move(element + 1, line)
+    assert hand.hint == undone
+    hand.move(*hand.middle("ambient"))
+    assert hand.hint == "The light from everywhere."
+    # Where the pointer goes at once, the message is still read for a while.
+    hand.press("Ctrl+Y")
+    hand.move(element, line)
+    assert hand.hint.startswith("redone: ")
+    wait(1.5)
+    hand.viewer.on_tick()
+    assert not hand.hint.startswith("redone: ")
+    assert hand.is_drawn_whole()
+    # A warning stands its whole time.
+    hand.viewer.session.warn("careful")
+    wait(4)
+    hand.move(*hand.middle("ambient"))
+    assert hand.hint == "careful"
 
 
 # Lists, sections and hiding.
 
-NAMES = ("matte", "gloss", "chrome", "satin", "glass")
-
-
-class Room(Screen):
-    """A screen over the picture with a list, sections, and a panel."""
-
-    name = "room"
-    title = "room"
-    help = "the room"
-    shows_picture = True
-
-    def __init__(self, session: Session) -> None:
-        super().__init__(session)
-        self.chosen = "chrome"
-        self.rows_of: dict[str, int] = {"near": 3, "far": 15, "farther": 15}
-        self.did: list[str] = []
-
-    def base(self) -> Words:
-        return self.session.studio.words
-
-    def rows(self) -> list[Widget]:
-        def choose(name: str) -> None:
-            if name == "glass":
-                raise UsageError("a finish must not be glass; choose another")
-            self.chosen = name
-
-        rows: list[Widget] = [
-            Choice("finish", "The finish.", names=NAMES, present=self.chosen, choose=choose),
-            Choice("page", names=("1", "2", "3", "4"), present="1", choose=self.did.append, turns_pages=True),
-        ]
-        for title, count in self.rows_of.items():
-            rows += [Section(title), *(self._button(f"{title} {number}") for number in range(count))]
-        return rows
-
-    def widgets(self) -> list[Widget]:
-        return [self._button("panel").at(Area(8, 8, 99, 23))]
-
-    def handles(self) -> list[Handle]:
-        return [Handle("covered", 470, 30, "?"), Handle("free", 300, 200, "a handle")]
-
-    def pick(self, gesture: Gesture) -> None:
-        self.did.append("pick")
-
-    def drag(self, start: Gesture, last: Gesture, now: Gesture) -> None:
-        self.did.append("drag")
-
-    def _button(self, label: str) -> Button:
-        return Button(label, run=lambda: self.did.append(label))
-
 
 @pytest.fixture
-def room(viewer: Viewer) -> Room:
-    room = viewer.screens["room"] = Room(viewer.session)
-    viewer.session.turn_to("room")
-    viewer.tell("")
+def room(hand: Hand) -> Room:
+    room = hand.viewer.screens["room"] = Room(hand.viewer.session)
+    hand.go_to("room")
     return room
 
 
-def labels(board: Board) -> list[str]:
-    return [widget.label for widget in board.widgets()]
-
-
-def pick(viewer: Viewer, label: str) -> None:
-    point(viewer, "pick", *middle_of(viewer.board, label))
-
-
-def hint_at(viewer: Viewer, label: str) -> str:
-    point(viewer, "hover", *middle_of(viewer.board, label))
-    return viewer.board.messages[-1].text
-
-
-def test_a_row_of_many_names_opens_a_list_from_which_a_name_is_taken(viewer: Viewer, room: Room) -> None:
-    board = viewer.board
-    assert hint_at(viewer, "finish") == "The finish; a click lists all 5."
-    assert "gloss" not in labels(board)
-    pick(viewer, "finish")
+def test_a_row_of_many_names_opens_a_list_from_which_a_name_is_taken(hand: Hand, room: Room) -> None:
+    assert hint_of(hand, "finish") == "The finish; a click lists all 5."
+    assert "gloss" not in hand.labels
+    hand.pick("finish")
     assert room.chosen == "chrome"
-    assert labels(board)[: len(NAMES)] == list(NAMES)
-    assert board.messages[-1].text == "finish: pick a name on the list; a pick on the row takes it away"
-    assert hint_at(viewer, "gloss") == "finish: gloss. A click elsewhere closes the list."
-    assert is_drawn_whole(viewer)
-    pick(viewer, "gloss")
+    assert hand.labels[: len(NAMES)] == list(NAMES)
+    assert hand.hint == "finish: pick a name on the list; a pick on the row takes it away"
+    assert hint_of(hand, "gloss") == "finish: gloss. A click elsewhere closes the list."
+    assert hand.is_drawn_whole()
+    hand.pick("gloss")
     assert room.chosen == "gloss"
-    assert "gloss" not in labels(board)
-    assert is_drawn_whole(viewer)
+    assert "gloss" not in hand.labels
+    assert hand.is_drawn_whole()
 
 
-def test_rows_that_turn_pages_and_drags_and_the_wheel_open_no_list(viewer: Viewer, room: Room) -> None:
-    pick(viewer, "page")
+def test_rows_that_turn_pages_and_drags_and_the_wheel_open_no_list(hand: Hand, room: Room) -> None:
+    hand.pick("page")
     assert room.did == ["2"]
-    element, line = middle_of(viewer.board, "finish")
-    viewer.point(Gesture("wheel", element, line, steps=1))
+    element, line = hand.middle("finish")
+    hand.viewer.on_pointer(element, line, "wheel up")
     assert room.chosen == "satin"
-    for kind, place in (("grab", element), ("drag", MENU.left), ("drop", MENU.left)):
-        point(viewer, kind, place, line)
+    hand.drag((element, line), (MENU.left, line))
     assert room.chosen == "matte"
-    assert "gloss" not in labels(viewer.board)
+    assert "gloss" not in hand.labels
 
 
-def test_the_row_and_escape_and_a_pick_elsewhere_close_a_list(viewer: Viewer, room: Room) -> None:
-    board = viewer.board
-    for close in (
-        lambda: pick(viewer, "finish"),
-        lambda: viewer.on_key("escape"),
-        # Beside the menu, this pick does nothing else: neither the screen, nor its panel or handle has it.
-        lambda: point(viewer, "pick", 200, 300),
-        lambda: pick(viewer, "panel"),
-        lambda: point(viewer, "pick", 302, 200),
-    ):
-        pick(viewer, "finish")
-        assert "gloss" in labels(board)
-        close()
-        assert "gloss" not in labels(board)
-        assert (room.chosen, room.did, board.held) == ("chrome", [], None)
-        assert is_drawn_whole(viewer)
-    pick(viewer, "finish")
-    pick(viewer, "near 1")
-    assert room.did == ["near 1"]
-    assert "gloss" not in labels(board)
-    pick(viewer, "finish")
-    for kind, element in (("grab", 100), ("drag", 120), ("drop", 120)):
-        point(viewer, kind, element, 300)
-    assert room.did == ["near 1", "drag"]
-    assert "gloss" not in labels(board)
+@pytest.mark.parametrize("by", ["the row", "escape", "the screen", "a panel", "a handle"])
+def test_a_list_is_closed_by_its_row_by_escape_and_by_a_pick_elsewhere_which_does_no_more(
+    hand: Hand, room: Room, by: str
+) -> None:
+    hand.pick("finish")
+    closes: dict[str, Callable[[], object]] = {
+        "the row": lambda: hand.pick("finish"),
+        "escape": lambda: hand.press("escape"),
+        "the screen": lambda: hand.click(200, 300),
+        "a panel": lambda: hand.pick("panel"),
+        "a handle": lambda: hand.click(302, 200),
+    }
+    closes[by]()
+    assert "gloss" not in hand.labels
+    assert (room.chosen, room.did, hand.message) == ("chrome", [], "")
+    assert hand.is_drawn_whole()
 
 
-def test_a_list_over_a_picture_covers_what_is_below_it(viewer: Viewer, room: Room) -> None:
-    assert viewer.board.handle_at(470, 30) is not None
-    pick(viewer, "finish")
-    (area,) = {viewer.board.layout.listed.area} if viewer.board.layout.listed else {SCREEN}
-    assert area.has(470, 30)
-    assert viewer.board.handle_at(470, 30) is None
+def test_a_pick_on_another_row_and_a_drag_close_a_list_and_are_done(hand: Hand, room: Room) -> None:
+    hand.pick("finish")
+    hand.pick("near 1")
+    assert (room.did, "gloss" in hand.labels) == (["near 1"], False)
+    hand.pick("finish")
+    hand.drag((100, 300), (120, 300), (125, 300))
+    # The screen is told where the drag began, where it was last, and where it is.
+    assert room.did == ["near 1", (100, 100, 120), (100, 120, 125)]
+    assert "gloss" not in hand.labels
 
 
-def test_a_name_that_is_refused_leaves_the_list_open(viewer: Viewer, room: Room) -> None:
-    pick(viewer, "finish")
-    pick(viewer, "glass")
-    assert viewer.message == "a finish must not be glass; choose another"
+def test_a_list_covers_the_handles_below_it(hand: Hand, room: Room) -> None:
+    hand.move(470, 31)
+    assert hand.hint.startswith("?: drag it")
+    hand.pick("finish")
+    hand.click(470, 31)
+    assert "pick its new place" not in hand.message
+
+
+def test_a_name_that_is_refused_leaves_the_list_open(hand: Hand, room: Room) -> None:
+    hand.choose("finish", "glass")
+    assert told(hand) == ("a finish must not be glass; choose another", True)
     assert room.chosen == "chrome"
-    pick(viewer, "satin")
+    hand.pick("satin")
     assert room.chosen == "satin"
 
 
-def test_keys_go_through_a_list_and_back_to_its_row(viewer: Viewer, room: Room) -> None:
-    board = viewer.board
-    viewer.on_key("tab")
-    while board.lit != "finish":
-        viewer.on_key("down")
-    viewer.on_key("return")
-    assert board.lit == "finish.chrome"
-    viewer.on_key("down")
-    assert board.lit == "finish.satin"
-    viewer.on_key("down")
-    viewer.on_key("down")
-    assert board.lit == "finish.matte"
-    viewer.on_key("return")
+def test_keys_go_through_a_list_and_back_to_its_row(hand: Hand, room: Room) -> None:
+    hand.press("tab", "down")
+    assert hand.hint.startswith("The finish")
+    hand.press("return")
+    hints = [f"finish: {name}. A click elsewhere closes the list." for name in ("satin", "glass", "matte")]
+    assert [hand.hint for _ in hints if hand.press("down")] == hints
+    hand.press("return")
     assert room.chosen == "matte"
-    assert board.lit == "finish"
-    viewer.on_key("return")
-    assert board.lit == "finish.matte"
-    viewer.on_key("escape")
-    assert (board.lit, room.chosen) == ("finish", "matte")
-    assert board.has_focus
+    assert hand.hint.startswith("The finish")
+    hand.press("return", "down", "escape")
+    assert hand.hint.startswith("The finish")
+    assert room.chosen == "matte"
+    # The keys still go to the menu.
+    hand.press("right")
+    assert room.chosen == "gloss"
 
 
-def test_the_menu_of_the_picture_stays_while_its_list_is_open(viewer: Viewer) -> None:
-    board = viewer.board
-    viewer.session.turn_to("picture")
-    viewer.tell("")
-    point(viewer, "hover", 638, 100)
-    pick(viewer, "view")
-    assert board.layout.listed is not None
-    point(viewer, "hover", 100, 100)
-    assert board.has_menu
-    point(viewer, "pick", 100, 100)
-    assert not board.has_menu
+def test_the_menu_of_the_picture_stays_while_its_list_is_open(hand: Hand) -> None:
+    hand.go_to("picture")
+    hand.open_menu()
+    hand.pick("view")
+    hand.move(100, 100)
+    assert "top" in hand.labels
+    hand.click(100, 100)
+    assert hand.labels == []
 
 
-def test_a_list_whose_row_went_is_not_open_when_the_row_is_back(viewer: Viewer) -> None:
-    board, session = viewer.board, viewer.session
+def test_a_list_whose_row_went_is_not_open_when_the_row_is_back(hand: Hand) -> None:
+    session = hand.viewer.session
     named = session.scene
     for angle in range(4):
         named = named.with_view(angle=angle).with_saved_view()
     session.edit(named)
-    session.turn_to("picture")
-    viewer.tell("")
-    point(viewer, "hover", 638, 100)
-    pick(viewer, "other actions")
-    pick(viewer, "camera")
-    assert board.layout.listed is not None
+    hand.go_to("picture")
+    hand.open_menu()
+    hand.pick("camera")
+    names = [view.name for view in named.views]
+    assert names[-1] in hand.labels
     session.edit(named.replace(views=()))
-    viewer.tell("")
-    point(viewer, "hover", 100, 100)
-    assert not board.has_menu
+    hand.viewer.tell("")
+    hand.move(100, 100)
+    assert hand.labels == []
     session.edit(named)
-    point(viewer, "hover", 638, 100)
-    assert board.has_menu
-    assert board.layout.listed is None
+    hand.open_menu()
+    assert "camera" in hand.labels
+    assert names[-1] not in hand.labels
 
 
-def test_sections_fold_and_unfold_and_each_screen_keeps_its_own(viewer: Viewer, room: Room) -> None:
-    board = viewer.board
-    assert {"near 0", "far 14"} <= set(labels(board))
-    assert "farther 0" not in labels(board)
-    assert hint_at(viewer, "farther").startswith("A click shows farther 0, farther 1, ")
-    assert hint_at(viewer, "far") == "A click folds these rows."
-    pick(viewer, "farther")
-    assert {"near 0", "farther 14"} <= set(labels(board))
-    assert "far 0" not in labels(board)
-    pick(viewer, "near")
-    assert "near 0" not in labels(board)
-    assert is_drawn_whole(viewer)
-    viewer.session.turn_to("desk")
-    viewer.tell("")
-    viewer.session.turn_to("room")
-    viewer.tell("")
-    assert not {"near 0", "far 0"} & set(labels(board))
-    assert "farther 14" in labels(board)
-    assert "more" not in labels(board)
+def test_sections_fold_and_unfold_and_each_screen_keeps_its_own(hand: Hand, room: Room) -> None:
+    assert {"near 0", "far 14"} <= set(hand.labels)
+    assert "farther 0" not in hand.labels
+    assert hint_of(hand, "farther").startswith("A click shows farther 0, farther 1, ")
+    assert hint_of(hand, "far") == "A click folds these rows."
+    hand.pick("farther")
+    assert {"near 0", "farther 14"} <= set(hand.labels)
+    assert "far 0" not in hand.labels
+    hand.pick("near")
+    assert "near 0" not in hand.labels
+    assert hand.is_drawn_whole()
+    hand.go_to("desk")
+    hand.go_to("room")
+    assert not {"near 0", "far 0"} & set(hand.labels)
+    assert "farther 14" in hand.labels
+    assert "more" not in hand.labels
 
 
-def test_the_section_of_a_row_that_was_used_stays_open_when_it_grows(viewer: Viewer, room: Room) -> None:
-    pick(viewer, "far 3")
+def test_the_section_of_a_row_that_was_used_stays_open_when_it_grows(hand: Hand, room: Room) -> None:
+    # The rows at the end of the menu are in no section.
+    hand.pick("compare")
+    assert "farther 0" not in hand.labels
+    hand.pick("far 3")
     room.rows_of["far"] = 18
-    viewer.tell("")
-    assert "far 17" in labels(viewer.board)
-    assert "near 0" not in labels(viewer.board)
+    hand.viewer.tell("")
+    assert "far 17" in hand.labels
+    assert "near 0" not in hand.labels
 
 
-def test_the_rows_at_the_end_of_the_menu_are_in_no_section(viewer: Viewer, room: Room) -> None:
-    pick(viewer, "compare")
-    assert "farther 0" not in labels(viewer.board)
-    assert "far 0" in labels(viewer.board)
+@pytest.mark.parametrize("by_key", [True, False])
+def test_the_menu_and_all_panels_are_hidden_and_brought_back(hand: Hand, room: Room, by_key: bool) -> None:
+    def switch(label: str) -> None:
+        if by_key:
+            hand.press("h")
+        else:
+            hand.open_menu()
+            hand.pick(label)
 
-
-def test_a_section_that_is_too_long_alone_comes_in_pages(viewer: Viewer, room: Room) -> None:
-    room.rows_of["farther"] = 40
-    viewer.tell("")
-    pick(viewer, "farther")
-    seen: set[str] = set()
-    for _ in range(3):
-        seen |= set(labels(viewer.board))
-        pick(viewer, "more")
-    assert {f"farther {number}" for number in range(40)} <= seen
-
-
-def test_one_key_hides_the_menu_and_all_panels_and_brings_them_back(viewer: Viewer, room: Room) -> None:
-    board = viewer.board
-    assert "panel" in labels(board)
-    viewer.on_key("h", typed="h")
-    assert labels(board) == []
-    assert not board.has_menu
-    assert "H shows them again" in viewer.message
-    viewer.tell("")
-    assert np.array_equal(display_of(viewer).words, viewer.studio.words)
+    hand.viewer.board.over = lambda: [Button("over", area=Area(100, 400, 200, 415))]
+    hand.viewer.tell("")
+    assert {"panel", "over"} <= set(hand.labels)
+    switch("hide panels")
+    assert "H shows them again" in hand.message
+    hand.viewer.tell("")
+    hand.move(110, 100)
+    assert hand.labels == []
+    assert np.array_equal(hand.display.words, hand.viewer.studio.words)
     # The picture below is free, and the menu comes on demand.
-    point(viewer, "pick", 20, 15)
+    hand.click(20, 15)
     assert room.did == ["pick"]
-    point(viewer, "hover", 638, 100)
-    assert board.has_menu
-    assert "panel" not in labels(board)
-    viewer.on_key("h", typed="h")
-    assert "panel" in labels(board)
-    assert board.has_menu
-    assert is_drawn_whole(viewer)
+    hand.open_menu()
+    assert "finish" in hand.labels
+    assert not {"panel", "over"} & set(hand.labels)
+    switch("show panels")
+    assert {"panel", "over", "finish"} <= set(hand.labels)
+    assert hand.is_drawn_whole()
 
 
-def test_a_row_hides_the_panels_and_a_row_at_the_right_edge_brings_them_back(
-    viewer: Viewer, room: Room
-) -> None:
-    board = viewer.board
-    pick(viewer, "hide panels")
-    assert labels(board) == []
-    point(viewer, "hover", 100, 100)
-    point(viewer, "hover", 638, 100)
-    pick(viewer, "show panels")
-    assert "panel" in labels(board)
+def test_escape_and_another_screen_bring_hidden_panels_back(hand: Hand, room: Room) -> None:
+    hand.press("h", "escape")
+    assert "panel" in hand.labels
+    assert hand.viewer.page == "room"
+    hand.press("h")
+    hand.go_to("desk")
+    assert "ambient" in hand.labels
+    assert "hide panels" not in hand.labels
 
 
-def test_escape_and_another_screen_bring_hidden_panels_back(viewer: Viewer, room: Room) -> None:
-    viewer.on_key("h", typed="h")
-    viewer.on_key("escape")
-    assert "panel" in labels(viewer.board)
-    assert viewer.page == "room"
-    viewer.on_key("h", typed="h")
+def test_a_pointer_that_was_not_moved_yet_reaches_no_handle(tmp_path: Path) -> None:
+    viewer = Viewer(wall_scene(), Ramtek9300(), tmp_path)
+    viewer.screens["desk"] = Desk(viewer.session)
+    viewer.session.edit(viewer.studio.scene.with_view(eye=(-19.8, -19.8, 2)))
     viewer.session.turn_to("desk")
     viewer.tell("")
-    assert "ambient" in labels(viewer.board)
-    assert "hide panels" not in labels(viewer.board)
-
-
-def test_hidden_widgets_over_every_screen_come_back_too(viewer: Viewer, room: Room) -> None:
-    viewer.board.over = lambda: [Button("over", area=Area(100, 400, 200, 415))]
-    viewer.tell("")
-    assert "over" in labels(viewer.board)
-    viewer.on_key("h", typed="h")
-    assert "over" not in labels(viewer.board)
-    viewer.on_key("h", typed="h")
-    assert "over" in labels(viewer.board)
+    assert viewer.board.messages[-1].text == "the desk"

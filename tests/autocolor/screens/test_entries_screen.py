@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -11,11 +10,9 @@ from autocolor.screens.entries_screen import (
     CELL_WIDTH,
     SIDE,
     cell_words,
-    entries_items,
     named_cells,
 )
-from autocolor.widgets.items import BLACK, CHARACTER, WHITE, YELLOW, Item, text
-from ramtek_emu import Ramtek9300, instructions
+from autocolor.widgets.items import CHARACTER, YELLOW
 
 RANGES = {"body": LevelRange(1, 500), "glass": LevelRange(501, 40)}
 
@@ -58,28 +55,6 @@ def test_a_line_runs_between_cells_of_different_owners(word: int) -> None:
     for has_neighbor, step, edge in edges:
         apart = has_neighbor and owner(word) != owner(word + step)
         assert (edge == (YELLOW if apart else word)).all()
-
-
-def drawn(items: list[Item]) -> Ramtek9300:
-    display = Ramtek9300()
-    display.send(instructions.write_image(cell_words(tuple(RANGES.values()))))
-    for item in items:
-        display.send(np.frombuffer(item.stream, np.uint16))
-    return display
-
-
-def test_the_page_has_the_name_of_each_range() -> None:
-    # The body begins at the second cell, the glass at the 22nd of its row, the screens in the middle.
-    places = (("body", 0, 1), ("glass", 15, 21), ("screens", 31, 16))
-    expected = [
-        text(name, element * CELL_WIDTH + 3, line * CELL_HEIGHT + 3, WHITE, BLACK)
-        for name, line, element in places
-    ]
-    assert np.array_equal(drawn(entries_items(RANGES)).words, drawn(expected).words)
-
-
-def test_equal_ranges_have_the_same_page() -> None:
-    assert cell_words(tuple(RANGES.values())) is cell_words(tuple(dict(RANGES).values()))
 
 
 @given(st.lists(st.tuples(st.text("abc", min_size=1, max_size=30), st.integers(2, 300)), max_size=6))

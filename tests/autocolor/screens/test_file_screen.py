@@ -11,7 +11,6 @@ from PIL import Image
 
 from autocolor import (
     Light,
-    Scene,
     image,
     read_picture,
     read_scene,
@@ -23,11 +22,8 @@ from autocolor import (
     write_scene,
 )
 from autocolor.budget import allowing
-from autocolor.errors import AutocolorError
-from autocolor.files.picture_file import SavedPicture
-from autocolor.files.state import MOST_FILES, note_file, recent_files
+from autocolor.files.state import note_file, recent_files
 from autocolor.mapping.ranges import SCREENS
-from autocolor.screens import file_screen
 from autocolor.screens.file_screen import (
     FRAME,
     LEFT,
@@ -35,7 +31,6 @@ from autocolor.screens.file_screen import (
     MOST_ROWS,
     RIGHT,
     THUMBNAIL,
-    THUMBNAIL_LINES,
     TICKS_TO_EXPORT,
     FileRow,
     date_of,
@@ -43,12 +38,10 @@ from autocolor.screens.file_screen import (
 )
 from autocolor.screens.session import PICTURE, Clipboard
 from autocolor.widgets.items import Area
-from autocolor.widgets.menu import WORK
-from autocolor.widgets.widget import ROW_LINES, Choice
-from ramtek_emu import Ramtek9300
+from autocolor.widgets.widget import Choice
 from tests.autocolor.screens.boxes import hand_at, hint_of, told, undo
 from tests.autocolor.screens.hand import Hand
-from tests.small import LYING, boxes, wall_scene
+from tests.small import LYING, wall_scene
 
 
 @pytest.fixture
@@ -69,10 +62,6 @@ def hand(folder: Path) -> Hand:
     return hand_at(folder, "file")
 
 
-def scene_of(hand: Hand) -> Scene:
-    return hand.viewer.studio.scene
-
-
 def rows_of(hand: Hand, recent: bool = False) -> dict[str, FileRow]:
     """The rows of files, by the names that are shown."""
     column = RIGHT if recent else LEFT
@@ -80,79 +69,91 @@ def rows_of(hand: Hand, recent: bool = False) -> dict[str, FileRow]:
     return {row.shown: row for row in rows if isinstance(row, FileRow) and column.covers(row.area)}
 
 
-def labels(hand: Hand) -> list[str]:
-    return [widget.label for widget in hand.viewer.board.widgets()]
-
-
 def pick(hand: Hand, name: str, recent: bool = False) -> None:
     area = rows_of(hand, recent)[name].area
     hand.click(area.left + 40, area.top + 8)
 
 
-def test_files_are_listed_with_their_kinds(hand: Hand) -> None:
-    assert {name: row.value for name, row in rows_of(hand).items()} == {
-        "broken.obj": "mesh",
-        "rig.toml": "rig",
-        "wall": "scene",
-        "deeper": "folder",
-    }
-
-
 def test_a_file_is_opened_by_a_click_and_undo_brings_the_scene_back(hand: Hand) -> None:
-    before = scene_of(hand)
+    before = hand.scene
     pick(hand, "wall")
-    assert scene_of(hand).name == "wall"
+    assert hand.scene.name == "wall"
     assert told(hand) == ("opened wall; undo goes back", False)
     assert hand.viewer.session.screen == PICTURE
     hand.open_menu()
     undo(hand)
-    assert scene_of(hand) is before
+    assert hand.scene is before
     hand.pick(" ", 0.8)
-    assert scene_of(hand).name == "wall"
+    assert hand.scene.name == "wall"
 
 
-def test_a_file_in_a_folder_below_is_opened(hand: Hand) -> None:
-    pick(hand, "deeper")
-    assert list(rows_of(hand)) == ["..", "triangle.obj"]
-    pick(hand, "..")
-    pick(hand, "deeper")
-    pick(hand, "triangle.obj")
-    assert scene_of(hand).name == "triangle"
+def remove(path: Path) -> None:
+    """Remove a file, or a folder with its files."""
+    for each in path.iterdir() if path.is_dir() else ():
+        each.unlink()
+    path.rmdir() if path.is_dir() else path.unlink()
+
+
+@pytest.mark.parametrize(
+    ("name", "becomes", "starts"),
+    [
+        ("broken.obj", "as it is", "broken.obj"),
+        ("broken.obj", "gone", ""),
+        ("broken.obj", "outside/scene.toml", "broken.obj: a file to open must be in the folder inside"),
+        ("deeper", "gone", "deeper: a folder must be readable"),
+        ("deeper", ".", "deeper: "),
+    ],
+)
+def test_a_row_that_cannot_be_opened_is_refused_in_an_orange_sentence(
+    hand: Hand, folder: Path, name: str, becomes: str, starts: str
+) -> None:
+    before = hand.scene
+    if becomes != "as it is":
+        remove(folder / name)
+    if becomes not in ("as it is", "gone"):
+        # A link to elsewhere.
+        (folder / name).symlink_to(folder.parent / becomes)
+    pick(hand, name)
+    message, is_warning = told(hand)
+    assert is_warning
+    assert message.startswith(starts)
+    assert message.isprintable()
+    assert hand.scene is before
+    assert hand.viewer.page == "file"
+    assert {"rig.toml", "wall"} <= set(rows_of(hand))
+    hand.pick("refresh")
+    assert (name in rows_of(hand)) == (becomes == "as it is")
 
 
 def test_a_mesh_that_lies_is_hinted_and_set_up_by_a_row_as_one_step(hand: Hand, folder: Path) -> None:
-    before = scene_of(hand)
+    before = hand.scene
     (folder / "spire.obj").write_text(LYING)
     hand.pick("refresh")
     pick(hand, "spire.obj")
-    lying = scene_of(hand)
+    lying = hand.scene
     assert told(hand) == ("opened spire.obj; lying? up: y; undo goes back", False)
     hand.open_menu()
     hand.pick("lying? up: y")
     assert told(hand) == ("read again with y up; undo goes back", False)
-    assert np.ptp(scene_of(hand).mesh.coordinates, axis=0).tolist() == [4, 4, 5]
-    assert "lying? up: y" not in labels(hand)
+    assert np.ptp(hand.scene.mesh.coordinates, axis=0).tolist() == [4, 4, 5]
+    assert "lying? up: y" not in hand.labels
     undo(hand)
-    assert scene_of(hand) is lying
-    assert "lying? up: y" in labels(hand)
+    assert hand.scene is lying
+    assert "lying? up: y" in hand.labels
     undo(hand)
-    assert scene_of(hand) is before
-    assert "lying? up: y" not in labels(hand)
-
-
-def test_a_mesh_that_is_read_with_an_axis_is_not_hinted(hand: Hand, folder: Path) -> None:
-    (folder / "spire.obj").write_text(LYING)
+    assert hand.scene is before
+    assert "lying? up: y" not in hand.labels
+    # A mesh that is read with an axis is not hinted.
     hand.viewer.session.place_meshes("y", 1.0)
-    hand.pick("refresh")
-    pick(hand, "spire.obj")
+    hand.viewer.on_drop(folder / "spire.obj")
     assert told(hand) == ("opened spire.obj; undo goes back", False)
 
 
 def test_a_rig_is_put_on_the_scene_and_fitted(hand: Hand) -> None:
-    before = scene_of(hand)
+    before = hand.scene
     pick(hand, "rig.toml")
-    (lamp,) = scene_of(hand).lights
-    assert scene_of(hand).mesh is before.mesh
+    (lamp,) = hand.scene.lights
+    assert hand.scene.mesh is before.mesh
     # The wall is 2 x 0 x 2 around the origin, the cube 1 x 1 x 1 around its middle.
     scale = (3 / 8) ** 0.5
     assert lamp.position == pytest.approx((0.5, 0.5 - 2 * scale, 0.5))
@@ -160,50 +161,20 @@ def test_a_rig_is_put_on_the_scene_and_fitted(hand: Hand) -> None:
     assert told(hand) == ("the lights of rig.toml, fitted to boxes; undo goes back", False)
     hand.open_menu()
     undo(hand)
-    assert scene_of(hand) is before
+    assert hand.scene is before
 
 
 def test_paints_are_opened_for_color_mixing_and_are_no_step(hand: Hand, folder: Path) -> None:
-    before, recent = scene_of(hand), recent_files()
+    before, recent = hand.scene, recent_files()
     write_palette(folder / "ral.act", ["red", "navy"])
     hand.pick("refresh")
     assert rows_of(hand)["ral.act"].value == "paints"
     pick(hand, "ral.act")
     assert hand.viewer.page == "mixing"
     assert told(hand) == ("2 paints of ral.act: take them in color mixing", False)
-    assert scene_of(hand) is before
+    assert hand.scene is before
     # Nothing is written unasked.
     assert recent_files() == recent
-
-
-def test_an_unreadable_file_is_refused_in_an_orange_sentence(hand: Hand) -> None:
-    before = scene_of(hand)
-    pick(hand, "broken.obj")
-    message, is_warning = told(hand)
-    assert is_warning
-    assert message.startswith("broken.obj")
-    assert "\n" not in message
-    assert scene_of(hand) is before
-    assert hand.viewer.session.screen == "file"
-
-
-def test_a_file_that_is_gone_since_is_refused(hand: Hand, folder: Path) -> None:
-    (folder / "broken.obj").unlink()
-    pick(hand, "broken.obj")
-    assert told(hand)[1]
-    hand.pick("refresh")
-    assert "broken.obj" not in rows_of(hand)
-
-
-def test_a_folder_that_is_gone_since_is_refused(hand: Hand, folder: Path) -> None:
-    for path in (folder / "deeper").iterdir():
-        path.unlink()
-    (folder / "deeper").rmdir()
-    pick(hand, "deeper")
-    message, is_warning = told(hand)
-    assert is_warning
-    assert message.startswith("deeper: a folder must be readable")
-    assert "wall" in rows_of(hand)
 
 
 def test_a_session_in_a_folder_that_is_gone_still_shows_its_screen(tmp_path: Path) -> None:
@@ -228,34 +199,18 @@ def test_a_pointer_from_elsewhere_keeps_to_the_folder(hand: Hand, folder: Path) 
     hand.pick("< picture")
     hand.open_menu()
     hand.pick("file")
-    assert list(rows_of(hand)) == ["broken.obj", "file link.obj", "rig.toml", "wall", "deeper"]
+    kinds = {name: row.value for name, row in rows_of(hand).items()}
+    assert list(kinds) == ["broken.obj", "file link.obj", "rig.toml", "wall", "deeper"]
+    assert list(kinds.values()) == ["mesh", "mesh", "rig", "scene", "folder"]
     assert list(rows_of(hand, recent=True)) == ["wall/scene.toml"]
-
-
-def test_a_listed_file_that_became_a_link_out_is_refused(hand: Hand, folder: Path) -> None:
-    before = scene_of(hand)
-    (folder / "broken.obj").unlink()
-    (folder / "broken.obj").symlink_to(folder.parent / "outside" / "scene.toml")
-    pick(hand, "broken.obj")
-    assert told(hand) == (
-        "broken.obj: a file to open must be in the folder inside, and not a link to elsewhere;"
-        " choose another",
-        True,
-    )
-    for path in (folder / "deeper").iterdir():
-        path.unlink()
-    (folder / "deeper").rmdir()
-    (folder / "deeper").symlink_to(folder.parent)
-    pick(hand, "deeper")
-    assert told(hand)[1]
-    assert next(iter(rows_of(hand))) == "broken.obj"
-    assert scene_of(hand) is before
-
-
-def test_a_user_elsewhere_sees_no_path_of_the_machine(hand: Hand, folder: Path) -> None:
+    # No path of the machine is shown.
     pick(hand, "deeper")
     shown = [row.help for row in rows_of(hand).values()]
     assert shown == ["Look into inside", "Open inside/deeper/triangle.obj"]
+    pick(hand, "..")
+    pick(hand, "deeper")
+    hand.pick("refresh", 0.75)
+    assert "wall" in rows_of(hand)
 
 
 def test_the_user_of_the_machine_goes_up_and_opens_recent_files(folder: Path) -> None:
@@ -269,14 +224,10 @@ def test_the_user_of_the_machine_goes_up_and_opens_recent_files(folder: Path) ->
     assert list(rows_of(hand, recent=True)) == ["outside"]
     pick(hand, "..")
     assert {"inside", "outside"} <= set(rows_of(hand))
+    hand.pick("save the rig")
+    assert (folder.parent / "boxes-rig.toml").exists()
     pick(hand, "outside", recent=True)
-    assert scene_of(hand).name == "outside"
-
-
-def test_home_is_the_folder_of_the_session(hand: Hand) -> None:
-    pick(hand, "deeper")
-    hand.pick("refresh", 0.75)
-    assert "wall" in rows_of(hand)
+    assert hand.scene.name == "outside"
 
 
 def test_saving_shows_a_message_and_lists_the_saved_files(hand: Hand, folder: Path) -> None:
@@ -284,7 +235,8 @@ def test_saving_shows_a_message_and_lists_the_saved_files(hand: Hand, folder: Pa
     message, is_warning = told(hand)
     assert not is_warning
     assert message.startswith("saved")
-    assert not hand.viewer.studio.is_changed
+    assert "*" not in hand.viewer.caption
+    assert rows_of(hand, recent=True)
     before = set(rows_of(hand))
     hand.pick("save the rig")
     assert told(hand) == ("saved boxes-rig.toml", False)
@@ -296,27 +248,7 @@ def test_saving_shows_a_message_and_lists_the_saved_files(hand: Hand, folder: Pa
     assert first.read_bytes() == second.read_bytes()
 
 
-def test_a_saved_scene_is_a_recent_file_at_once(hand: Hand, folder: Path) -> None:
-    before = set(rows_of(hand, recent=True))
-    hand.pick("save")
-    assert set(rows_of(hand, recent=True)) - before
-
-
-def test_a_saved_scene_can_be_opened_again(hand: Hand, folder: Path) -> None:
-    hand.viewer.studio.recolor("low", object_color="#123456")
-    hand.pick("save")
-    opened = []
-    for path in folder.iterdir():
-        try:
-            opened.append(read_scene(path))
-        except AutocolorError:
-            continue
-    assert any(
-        each.name == "boxes" and each.surface("low").paint.object_color == (18, 52, 86) for each in opened
-    )
-
-
-@pytest.mark.parametrize("number", [MOST_ROWS, MOST_ROWS + 1, 200])
+@pytest.mark.parametrize("number", [MOST_ROWS, MOST_ROWS + 1])
 def test_the_pages_of_a_large_folder_show_all_files(tmp_path: Path, number: int) -> None:
     for each in range(number):
         (tmp_path / f"{each}.obj").touch()
@@ -334,59 +266,19 @@ def test_the_pages_of_a_large_folder_show_all_files(tmp_path: Path, number: int)
         assert "page" in [row.label for row in hand.viewer.board.screen.widgets()]
 
 
-def test_rows_stay_in_their_columns_with_names_of_any_length(tmp_path: Path) -> None:
-    (tmp_path / ("a very long name of a fender " * 5 + "12.obj")).touch()
-    hand = hand_at(tmp_path, "file")
-    (row,) = rows_of(hand).values()
-    for item in row.items(lit=True):
-        assert LEFT.covers(item.area)
-    for item in hand.viewer.board.screen.items():
-        assert WORK.covers(item.area)
-
-
-def test_an_empty_folder_says_so(tmp_path: Path) -> None:
-    hand = hand_at(tmp_path, "file")
-    assert rows_of(hand) == rows_of(hand, recent=True) == {}
-    assert len(hand.viewer.board.screen.items()) == 6
-
-
-def test_the_scene_of_a_session_is_not_changed_by_looking(hand: Hand) -> None:
-    before = scene_of(hand)
-    pick(hand, "deeper")
-    pick(hand, "..")
-    hand.pick("refresh")
-    assert scene_of(hand) is before
-    assert before.name == boxes().name
-
-
-def test_the_up_axis_of_a_mesh_is_chosen_before_it_is_opened(hand: Hand, folder: Path) -> None:
+def test_the_up_axis_and_the_scale_of_a_mesh_are_chosen_before_it_is_opened(hand: Hand, folder: Path) -> None:
     row = next(each for each in hand.viewer.board.layout.rows if each.label == "mesh up")
     # From z to x and y.
     for _ in range(2):
         hand.click(row.area.right - 8, row.area.top + 8)
+    hand.choose("mesh scale", "100")
     pick(hand, "deeper")
     pick(hand, "triangle.obj")
     # What was up to y is up to z now: z has become -y.
-    assert scene_of(hand).mesh.coordinates.tolist() == [[0, 0, 0], [1, 0, 0], [0, -1, 0]]
+    assert hand.scene.mesh.coordinates.tolist() == [[0, 0, 0], [100, 0, 0], [0, -100, 0]]
     # Other files give their own.
     hand.viewer.session.open(folder / "wall")
-    assert scene_of(hand).name == "wall"
-
-
-def test_the_scale_of_a_mesh_is_chosen_before_it_is_opened(hand: Hand) -> None:
-    hand.choose("mesh scale", "100")
-    pick(hand, "deeper")
-    pick(hand, "triangle.obj")
-    assert scene_of(hand).mesh.coordinates.max() == 100
-
-
-def test_the_scale_of_the_command_line_can_be_pointed_at(hand: Hand) -> None:
-    hand.viewer.session.place_meshes("y", 25.4)
-    choice = next(each for each in hand.viewer.board.screen.rows() if each.label == "mesh scale")
-    assert isinstance(choice, Choice)
-    assert choice.names == ("0.001", "0.01", "0.0254", "0.3048", "1", "10", "25.4", "100", "1000")
-    hand.choose("mesh scale", "100")
-    assert (hand.viewer.session.mesh_up, hand.viewer.session.mesh_scale) == ("y", 100)
+    assert hand.scene.name == "wall"
 
 
 # Saving in the folder that is shown.
@@ -435,14 +327,6 @@ def test_a_shown_folder_that_became_a_link_out_is_not_saved_to(hand: Hand, folde
     assert sorted(folder.parent.rglob("*")) == before
 
 
-def test_the_user_of_the_machine_saves_in_any_folder(hand: Hand, folder: Path) -> None:
-    hand.viewer.session.is_at_hand = True
-    hand.pick("refresh", 0.75)
-    pick(hand, "..")
-    hand.pick("save the rig")
-    assert (folder.parent / "boxes-rig.toml").exists()
-
-
 # Save as.
 
 
@@ -462,13 +346,10 @@ def test_a_scene_is_saved_under_a_name_of_picked_letters(hand: Hand, folder: Pat
     hand.pick("save")
     assert read_scene(folder / "red-1").surface("low").paint.object_color == (18, 52, 86)
     assert "boxes" not in rows_of(hand)
-
-
-def test_a_free_name_is_proposed_and_taken_by_ok(hand: Hand, folder: Path) -> None:
-    hand.pick("save")
+    # A free name is proposed, and taken by OK.
     save_as(hand)
-    assert (folder / "boxes-2" / "scene.toml").exists()
-    assert scene_of(hand).name == "boxes-2"
+    assert hand.scene.name == "red-1-2"
+    assert (folder / "red-1-2" / "scene.toml").exists()
 
 
 def test_a_pasted_name_saves_nothing_before_return(hand: Hand, folder: Path) -> None:
@@ -476,54 +357,31 @@ def test_a_pasted_name_saves_nothing_before_return(hand: Hand, folder: Path) -> 
     hand.viewer.session.clipboard = Clipboard(lambda _: True, lambda: "red car")
     hand.move(*hand.widget("save as").area[:2])
     hand.viewer.on_key("v", control=True)
-    assert hand.viewer.board.typing.text == "red car"
+    assert hand.hint == "save as: red car_"
     assert set(folder.iterdir()) == before
+    # Nor does a pick elsewhere.
+    hand.pick("mesh up")
+    assert hand.hint != "save as: red car_"
+    assert set(folder.iterdir()) == before
+    hand.move(*hand.widget("save as").area[:2])
+    hand.viewer.on_key("v", control=True)
     hand.viewer.on_key("return")
     assert (folder / "red car" / "scene.toml").exists()
 
 
-def test_a_pick_beside_the_letters_saves_nothing(hand: Hand, folder: Path) -> None:
-    before = set(folder.iterdir())
-    hand.pick("save as")
-    hand.pick("x")
-    hand.pick("mesh up")
-    assert not hand.viewer.board.typing.is_on
-    assert set(folder.iterdir()) == before
-
-
-@pytest.mark.parametrize(
-    ("name", "sentence"),
-    [
-        ("wall", "a new file must have a name of its own, and wall exists; choose another"),
-        (
-            "..",
-            'a file name must be 1 to 100 characters, with none of "*/:<>?\\| and no period or space first,'
-            " not '..'; choose another",
-        ),
-    ],
-)
+@pytest.mark.parametrize("name", ["wall", ".."])
 def test_a_refused_name_stays_selected_and_the_next_letter_replaces_it(
-    hand: Hand, folder: Path, name: str, sentence: str
+    hand: Hand, folder: Path, name: str
 ) -> None:
     before = set(folder.iterdir())
     save_as(hand, *name)
-    assert told(hand) == (sentence, True)
-    typing = hand.viewer.board.typing
-    assert typing.shown.text == f"save as: {name}"
+    assert told(hand)[1]
+    assert hand.hint == f"save as: {name}"
     assert set(folder.iterdir()) == before
     hand.pick("a")
-    assert typing.shown.text == "save as: a_"
+    assert hand.hint == "save as: a_"
     hand.pick("OK")
     assert (folder / "a" / "scene.toml").exists()
-
-
-def test_a_name_is_typed_with_a_keyboard(hand: Hand, folder: Path) -> None:
-    hand.viewer.session.has_keyboard = True
-    hand.pick("save as")
-    for letter in "Red Car":
-        hand.viewer.on_key(letter.lower(), typed=letter)
-    hand.viewer.on_key("return")
-    assert (folder / "Red Car" / "scene.toml").exists()
 
 
 # Export.
@@ -548,16 +406,28 @@ def test_an_image_is_exported_as_a_display_shows_it_and_never_over_a_file(hand: 
     assert not (folder / "boxes.png").exists()
     settle(hand)
     assert told(hand) == ("saved boxes.png: 640x480, smoothness 1", False)
-    scene = scene_of(hand)
+    scene = hand.scene
     assert (np.asarray(Image.open(folder / "boxes.png")) == image(scene, render(scene))).all()
     first = (folder / "boxes.png").read_bytes()
+    # The screen may be left at once.
     hand.pick("export")
-    settle(hand)
-    assert told(hand)[0].startswith("saved boxes-2.png")
+    hand.pick("< picture")
+    assert (folder / "boxes-2.png").exists()
     assert (folder / "boxes.png").read_bytes() == first
 
 
 def test_an_image_is_exported_at_another_size_and_smoothness(hand: Hand, folder: Path) -> None:
+    hand.pick("other size")
+    for key in ("5", "x", "OK"):
+        hand.pick(key)
+    assert told(hand)[1]
+    assert row_of(hand, "size").present == "640x480"
+    hand.pick("cancel")
+    with allowing(0.001):
+        hand.pick("export")
+        settle(hand)
+    assert told(hand)[1]
+    assert not (folder / "boxes.png").exists()
     hand.pick("other size")
     for key in (*"60x40", "OK"):
         hand.pick(key)
@@ -567,37 +437,9 @@ def test_an_image_is_exported_at_another_size_and_smoothness(hand: Hand, folder:
     hand.pick("export")
     settle(hand)
     assert told(hand) == ("saved boxes.png: 60x40, smoothness 3", False)
-    scene = scene_of(hand)
+    scene = hand.scene
     save_image(folder / "expected.png", scene, render(scene, 40, 60, smooth=3))
     assert (folder / "boxes.png").read_bytes() == (folder / "expected.png").read_bytes()
-
-
-def test_a_size_that_is_none_is_refused(hand: Hand) -> None:
-    hand.pick("other size")
-    for key in ("5", "x", "OK"):
-        hand.pick(key)
-    assert told(hand) == (
-        "a size must be ELEMENTSxLINES, each from 1 to 4096, not '5x'; write it as in 1280x960",
-        True,
-    )
-    assert row_of(hand, "size").present == "640x480"
-
-
-def test_an_image_that_needs_too_much_memory_is_refused(hand: Hand, folder: Path) -> None:
-    with allowing(0.001):
-        hand.pick("export")
-        settle(hand)
-    assert told(hand)[1]
-    assert told(hand)[0].startswith(
-        "a picture of 640 x 480 pixels, each the mean of 2 x 2, must take at most 4.0 MB of memory"
-    )
-    assert not (folder / "boxes.png").exists()
-
-
-def test_an_image_is_exported_although_the_screen_is_left_at_once(hand: Hand, folder: Path) -> None:
-    hand.pick("export")
-    hand.pick("< picture")
-    assert (folder / "boxes.png").exists()
 
 
 # Dates.
@@ -642,17 +484,6 @@ def dates_in(row: FileRow) -> int:
     return len(row.items(lit=False)) - 3
 
 
-@pytest.mark.parametrize("letters", range(12, 25))
-def test_a_long_name_is_whole_and_has_no_date_where_there_is_no_room(letters: int) -> None:
-    row = FileRow("row", value="picture", shown="x" * letters, date="24 Nov").at(
-        LEFT._replace(bottom=LEFT.top + 15)
-    )
-    ground, *texts = row.items(lit=False)
-    assert not any(one.area.overlaps(other.area) for one, other in combinations(texts, 2))
-    assert all(ground.area.covers(each.area) for each in texts)
-    assert dates_in(row) == (letters <= 17)
-
-
 # Small pictures.
 
 
@@ -683,8 +514,8 @@ def test_the_picture_of_the_file_under_the_pointer_is_shown_in_borrowed_entries(
     hand = saved_hand
     note_file(folder / "wall.npz")
     hand.pick("refresh")
-    hand.viewer.screens["file"].enter()
-    hand.viewer.tell("")
+    hand.go_to("picture")
+    hand.go_to("file")
     point_at(hand, "wall.npz", recent)
     assert small_picture(hand) is None
     settle(hand)
@@ -693,45 +524,21 @@ def test_the_picture_of_the_file_under_the_pointer_is_shown_in_borrowed_entries(
     assert (area.width, area.height) == (96, 48)
     assert THUMBNAIL.covers(area)
     saved = read_picture(folder / "wall.npz")
-    display = hand.viewer.display
-    assert isinstance(display, Ramtek9300)
-    shown = display.field()[area.top : area.bottom + 1, area.left : area.right + 1]
+    shown = hand.display.field()[area.top : area.bottom + 1, area.left : area.right + 1]
     errors = np.abs(shown.astype(int) - image(saved.scene, saved.picture).astype(int))
     assert errors.max() <= 2
     # On another row the entries are those of the scene again.
-    point_at(hand, "wall")
-    assert small_picture(hand) is None
-    assert np.array_equal(display.entries, hand.viewer.studio.entries)
-
-
-def test_a_damaged_picture_file_has_no_small_picture_and_is_read_once(
-    saved_hand: Hand, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    reads: list[Path] = []
-
-    def count(path: Path, limit: float) -> SavedPicture:
-        reads.append(path)
-        return read_picture(path, limit=limit)
-
-    monkeypatch.setattr(file_screen, "read_picture", count)
-    point_at(saved_hand, "damaged.npz")
-    before = saved_hand.viewer.message
-    settle(saved_hand)
-    settle(saved_hand)
-    assert small_picture(saved_hand) is None
-    assert len(reads) == 1
-    assert saved_hand.viewer.message == before
-
-
-def test_a_picture_that_was_saved_again_is_read_again(saved_hand: Hand, folder: Path) -> None:
-    point_at(saved_hand, "wall.npz")
-    settle(saved_hand)
-    scene = wall_scene(name="wall")
-    write_picture(folder / "wall.npz", scene, render(scene, 30, 40), overwrite=True)
-    saved_hand.pick("refresh")
-    point_at(saved_hand, "wall.npz")
-    settle(saved_hand)
-    area = small_picture(saved_hand)
+    for name in ("wall", "damaged.npz"):
+        point_at(hand, name)
+        settle(hand)
+        assert small_picture(hand) is None
+    assert np.array_equal(hand.display.entries, hand.viewer.studio.entries)
+    # A picture that was saved again is read again.
+    write_picture(folder / "wall.npz", saved.scene, render(saved.scene, 30, 40), overwrite=True)
+    hand.pick("refresh")
+    point_at(hand, "wall.npz", recent)
+    settle(hand)
+    area = small_picture(hand)
     assert area is not None
     assert (area.width, area.height) == (40, 30)
 
@@ -752,5 +559,12 @@ def test_a_small_picture_of_any_shape_is_in_its_place(folder: Path, lines: int, 
     assert area.width / area.height == pytest.approx(elements / lines, rel=0.2)
 
 
-def test_the_last_recent_file_is_above_the_small_picture() -> None:
-    assert RIGHT.top + ROW_LINES * MOST_FILES <= THUMBNAIL.bottom - THUMBNAIL_LINES - 2 * FRAME - ROW_LINES
+@pytest.mark.parametrize("letters", range(12, 25))
+def test_a_long_name_is_whole_and_has_no_date_where_there_is_no_room(letters: int) -> None:
+    row = FileRow("row", value="picture", shown="x" * letters, date="24 Nov").at(
+        LEFT._replace(bottom=LEFT.top + 15)
+    )
+    ground, *texts = row.items(lit=False)
+    assert not any(one.area.overlaps(other.area) for one, other in combinations(texts, 2))
+    assert all(ground.area.covers(each.area) for each in texts)
+    assert dates_in(row) == (letters <= 17)

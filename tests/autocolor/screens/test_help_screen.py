@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from autocolor.screens.help_screen import LEFT, LIMITS, MIDDLE, ROWS_A_PAGE, STEP, TITLE, TOP, help_items
+from autocolor.screens.help_screen import LEFT, MIDDLE, ROWS_A_PAGE, STEP, TITLE, TOP, help_items
 from autocolor.screens.message_line import MESSAGE
 from autocolor.screens.viewer import Viewer, rows_of_help
 from autocolor.widgets.items import ORANGE, SCREEN, WHITE, text
@@ -28,12 +28,6 @@ def test_every_row_is_on_a_page_and_nothing_overlaps(count: int) -> None:
             top = TOP + STEP * number
             assert text(keys, LEFT, top, ORANGE) in items
             assert text(does, MIDDLE, top, WHITE) in items
-
-
-def test_the_limits_of_the_method_stand_apart_from_the_rows() -> None:
-    *_, last, first, _ = help_items(TITLE, ROWS * 9)
-    assert first.area.top - last.area.bottom > STEP
-    assert len(LIMITS) == 2
 
 
 def test_the_rows_are_plain_text() -> None:

@@ -10,12 +10,10 @@ from hypothesis import strategies as st
 
 import autocolor
 from autocolor import Mesh, Scene
-from autocolor.mapping.intensity import held_name
 from autocolor.scene.columns import fields_of
 from autocolor.scene.curves import CURVES, CurvePoints
 from autocolor.screens.mapping_screen import (
     ACROSS,
-    CURVE,
     LEAST_APART,
     MOST_COUNTED,
     PANEL,
@@ -23,7 +21,6 @@ from autocolor.screens.mapping_screen import (
     Curve,
     added,
     curve_of,
-    fractions_of,
     moved,
     panel_items,
     place_of,
@@ -31,7 +28,6 @@ from autocolor.screens.mapping_screen import (
     shares_of,
 )
 from autocolor.widgets.items import YELLOW
-from autocolor.widgets.menu import WORK
 from ramtek_emu import Ramtek9300
 from tests.autocolor.screens.boxes import hand_at, hint_of, told, undo, words_are_those_of_the_scene
 from tests.autocolor.screens.hand import Hand
@@ -43,12 +39,8 @@ def hand(tmp_path: Path) -> Hand:
     return hand_at(tmp_path, "mapping")
 
 
-def scene_of(hand: Hand) -> Scene:
-    return hand.viewer.studio.scene
-
-
 def points_of(hand: Hand) -> CurvePoints:
-    mapping = scene_of(hand).mapping
+    mapping = hand.scene.mapping
     assert not isinstance(mapping, str)
     return mapping
 
@@ -61,35 +53,20 @@ def test_every_parameter_of_the_mapping_has_a_row(hand: Hand) -> None:
 
 @pytest.mark.parametrize("label", ["scaling", "contrast", "dither", "division", "interpolation"])
 def test_a_choice_goes_to_the_other_and_back(hand: Hand, label: str) -> None:
-    before = vars(scene_of(hand))[label]
+    before = vars(hand.scene)[label]
     hand.pick(label)
-    assert vars(scene_of(hand))[label] != before
+    assert vars(hand.scene)[label] != before
     assert words_are_those_of_the_scene(hand)
     hand.pick(label)
-    assert vars(scene_of(hand))[label] == before
+    assert vars(hand.scene)[label] == before
 
 
-def test_ambient_light_is_set_along_its_bar_in_one_step(hand: Hand) -> None:
-    before = scene_of(hand)
-    hand.pull("ambient", 0.3, 0.6)
-    assert scene_of(hand).ambient == hand.widget("ambient").value  # type: ignore[attr-defined]
-    assert scene_of(hand).ambient != before.ambient
-    undo(hand)
-    assert scene_of(hand) is before
-
-
-def test_every_curve_is_reached_by_clicks(hand: Hand) -> None:
-    seen = []
-    for name in (*CURVES, "points"):
+def test_every_curve_is_reached_by_clicks_and_the_points_of_a_named_curve_lie_on_it(hand: Hand) -> None:
+    for name in CURVES:
         hand.choose("mapping", name)
-        mapping = scene_of(hand).mapping
-        seen.append(mapping if isinstance(mapping, str) else "points")
-    assert sorted(seen) == sorted([*CURVES, "points"])
-
-
-def test_the_points_of_a_named_curve_lie_on_it(hand: Hand) -> None:
+        assert hand.scene.mapping == name
     # Equalize depends on the picture.
-    hand.viewer.session.edit(scene_of(hand).replace(mapping="equalize"))
+    hand.choose("mapping", "equalize")
     hand.choose("mapping", "points")
     for x, y in points_of(hand):
         assert 0 <= x <= 1
@@ -104,7 +81,7 @@ def test_the_points_of_a_named_curve_lie_on_it(hand: Hand) -> None:
 
 def test_a_dragged_point_changes_the_words_in_one_step(hand: Hand) -> None:
     hand.pick("straight")
-    before, words = scene_of(hand), hand.viewer.studio.words
+    before, words = hand.scene, hand.viewer.studio.words
     hand.drag(place_of(0.5, 0.5), place_of(0.5, 0.6), place_of(0.4, 0.7))
     assert points_of(hand)[2] == pytest.approx((0.4, 0.7), abs=0.01)
     assert [*points_of(hand)[:2], *points_of(hand)[3:]] == [*STRAIGHT[:2], *STRAIGHT[3:]]
@@ -112,42 +89,20 @@ def test_a_dragged_point_changes_the_words_in_one_step(hand: Hand) -> None:
     assert (hand.viewer.studio.words != words).any()
     assert words_are_those_of_the_scene(hand)
     undo(hand)
-    assert scene_of(hand) is before
-
-
-def test_a_point_is_picked_and_placed(hand: Hand) -> None:
-    hand.pick("straight")
+    assert hand.scene is before
     hand.click(*place_of(0.75, 0.75))
     assert told(hand) == ("intensity 0.75, level 0.75: pick its new place", False)
     hand.click(*place_of(0.8, 0.95))
     assert points_of(hand)[3] == pytest.approx((0.8, 0.95), abs=0.01)
 
 
-def test_a_curve_that_is_dragged_anywhere_stays_a_rising_one(hand: Hand) -> None:
-    hand.pick("straight")
-    for start in STRAIGHT:
-        hand.drag(place_of(*start), (CURVE.right, CURVE.bottom), (0, 0), (CURVE.left, 479), (639, 0))
-        xs, ys = zip(*points_of(hand), strict=True)
-        assert all(a < b for a, b in pairwise(xs))
-        assert all(a <= b for a, b in pairwise(ys))
-
-
-def test_a_click_in_the_panel_adds_a_point(hand: Hand) -> None:
-    hand.pick("straight")
-    surface = hand.viewer.session.surface_name
-    hand.click(*place_of(0.6, 0.7))
-    assert len(points_of(hand)) == 6
-    assert points_of(hand)[3] == pytest.approx((0.6, 0.7), abs=0.01)
-    assert hand.viewer.session.surface_name == surface
-
-
 @pytest.mark.parametrize("mapping", CURVES)
 def test_a_click_in_the_panel_makes_points_of_a_named_curve(hand: Hand, mapping: str) -> None:
-    hand.viewer.session.edit(scene_of(hand).replace(mapping=mapping))
+    hand.viewer.session.edit(hand.scene.replace(mapping=mapping))
     hand.click(*place_of(0.6, 0.97))
     assert len(points_of(hand)) == 6
     undo(hand)
-    assert scene_of(hand).mapping == mapping
+    assert hand.scene.mapping == mapping
 
 
 def test_the_point_that_was_touched_last_is_removed(hand: Hand) -> None:
@@ -156,32 +111,31 @@ def test_the_point_that_was_touched_last_is_removed(hand: Hand) -> None:
     hand.drag(place_of(0.5, 0.5), place_of(0.5, 0.6))
     hand.pick("remove point")
     assert points_of(hand) == (*STRAIGHT[:2], *STRAIGHT[3:])
-    before = scene_of(hand)
+    before = hand.scene
     hand.pick("remove point")
-    assert scene_of(hand) is before
-
-
-def test_ends_and_named_curves_have_nothing_to_remove(hand: Hand) -> None:
+    assert hand.scene is before
+    # An end of the curve, and a curve with a name, have nothing to remove.
+    hand.drag(place_of(0, 0), place_of(0.2, 0.1))
+    assert points_of(hand)[0] == pytest.approx((0, 0.1), abs=0.01)
+    hand.pick("remove point")
+    assert told(hand) == ("remove point: the ends of the curve stay; click at another point first", True)
+    hand.choose("mapping", "linear")
     hand.pick("remove point")
     assert told(hand) == (
         "remove point: a curve with a name has no points; click in it to make some",
         True,
     )
-    hand.pick("straight")
-    hand.drag(place_of(0, 0), place_of(0, 0.1))
-    hand.pick("remove point")
-    assert told(hand) == ("remove point: the ends of the curve stay; click at another point first", True)
-    assert len(points_of(hand)) == 5
+    assert hand.scene.mapping == "linear"
 
 
 def test_a_drag_beside_the_points_makes_a_point_there_and_moves_it(hand: Hand) -> None:
     hand.pick("straight")
-    before = scene_of(hand)
+    before = hand.scene
     hand.drag(place_of(0.6, 0.8), place_of(0.62, 0.75), place_of(0.65, 0.7))
     assert len(points_of(hand)) == 6
     assert points_of(hand)[3] == pytest.approx((0.65, 0.7), abs=0.01)
     undo(hand)
-    assert scene_of(hand) is before
+    assert hand.scene is before
 
 
 def test_the_pointer_says_what_a_drag_on_the_panel_will_do(hand: Hand) -> None:
@@ -195,14 +149,6 @@ def test_the_pointer_says_what_a_drag_on_the_panel_will_do(hand: Hand) -> None:
         assert hint in hand.viewer.board.messages[-1].text
 
 
-def test_the_panel_does_not_turn_the_object_behind_it(hand: Hand) -> None:
-    before = scene_of(hand)
-    hand.drag((PANEL.left + 2, PANEL.top + 2), (PANEL.left + 90, PANEL.top + 60))
-    assert scene_of(hand).view == before.view
-    hand.drag((400, 100), (430, 90))
-    assert scene_of(hand).view != before.view
-
-
 def test_the_exposure_is_held_and_released_and_the_row_shows_which(hand: Hand) -> None:
     words = hand.viewer.studio.words
     assert hand.widget("exposure").present == "auto"  # type: ignore[attr-defined]
@@ -213,10 +159,10 @@ def test_the_exposure_is_held_and_released_and_the_row_shows_which(hand: Hand) -
     hand.pull("ambient", 0.2, 0.0)
     assert not (hand.viewer.studio.words > words).any()
     hand.pick("exposure")
-    assert scene_of(hand).exposure == hand.widget("exposure").present == "99.5 %"  # type: ignore[attr-defined]
+    assert hand.scene.exposure == hand.widget("exposure").present == "99.5 %"  # type: ignore[attr-defined]
     assert told(hand) == ("the exposure follows the picture", False)
     hand.pick("exposure")
-    assert scene_of(hand).exposure == "auto"
+    assert hand.scene.exposure == "auto"
 
 
 def test_a_picture_without_light_has_no_exposure_to_hold(tmp_path: Path) -> None:
@@ -225,14 +171,10 @@ def test_a_picture_without_light_has_no_exposure_to_hold(tmp_path: Path) -> None
     message, is_warning = told(hand)
     assert is_warning
     assert message.startswith("to hold the exposure, a surface must have different intensities")
-    assert scene_of(hand).exposure == "auto"
+    assert hand.scene.exposure == "auto"
     for mapping in CURVES:
-        hand.viewer.session.edit(scene_of(hand).replace(mapping=mapping))
+        hand.viewer.session.edit(hand.scene.replace(mapping=mapping))
         hand.click(*place_of(0.6, 0.9))
-
-
-def test_a_surface_that_is_not_visible_has_no_curve_of_its_own(hand: Hand) -> None:
-    assert curve_of(hand.viewer.studio.picture, "surface", "linear", "auto", "nowhere") is None
 
 
 @pytest.mark.parametrize("mapping", CURVES)
@@ -247,32 +189,12 @@ def test_the_levels_of_a_curve_rise_from_end_to_end(hand: Hand, mapping: str, sc
     assert shares.max() == 1
 
 
-@given(st.floats(0, 1), st.floats(0, 1))
-def test_a_place_is_that_of_its_fractions(x: float, y: float) -> None:
-    element, line = place_of(x, y)
-    assert CURVE.has(element, line)
-    assert fractions_of(element, line) == pytest.approx((x, y), abs=0.003)
-
-
-def test_places_beyond_the_curve_have_its_ends() -> None:
-    assert fractions_of(0, 479) == (0, 0)
-    assert fractions_of(639, 0) == (1, 1)
-
-
 def drawn(curve: Curve) -> np.ndarray[tuple[int, ...], np.dtype[np.uint16]]:
     display = Ramtek9300()
     for item in panel_items(curve):
         assert PANEL.covers(item.area)
         display.send(np.frombuffer(item.stream, np.uint16))
     return display.words
-
-
-def test_the_panel_stays_within_its_area_however_long_the_name() -> None:
-    zeros = np.zeros_like(ACROSS)
-    words = drawn(Curve("fender of the left front door", ACROSS, zeros, STRAIGHT, 0, "99.95 %")).copy()
-    words[PANEL.top : PANEL.bottom + 1, PANEL.left : PANEL.right + 1] = 0
-    assert not words.any()
-    assert WORK.covers(PANEL)
 
 
 def test_the_curve_goes_through_its_points_and_the_touched_one_is_yellow() -> None:
@@ -292,13 +214,6 @@ def test_shares_tell_how_often_intensities_are_seen() -> None:
     assert shares.shape == ACROSS.shape
     assert (shares[0], shares[len(shares) // 2], shares[-1]) == pytest.approx((1, 0.5, 0.2))
     assert np.count_nonzero(shares) == 3
-
-
-def test_shares_of_a_range_without_extent_and_of_many_intensities_are_finite() -> None:
-    assert shares_of(np.full(3 * MOST_COUNTED, 0.5, np.float32), 0.5, 0.5).max() == 1
-    assert not shares_of(np.zeros(0, np.float32), 0.0, 1.0).any()
-    # A range of a few roundings of float32.
-    assert shares_of(np.array([0.5, 0.5000005], np.float32), 0.5, 0.5000005).max() == 1
 
 
 FRACTIONS = st.floats(0, 1)
@@ -333,40 +248,43 @@ def test_whatever_is_done_the_curve_rises_from_end_to_end(acts: list[tuple[str, 
         assert is_a_curve(points)
 
 
-def test_a_point_goes_where_it_is_put_between_its_neighbors() -> None:
-    assert moved(STRAIGHT, 1, 0.3, 0.4)[1] == (0.3, 0.4)
-    assert moved(STRAIGHT, 1, 0.9, 0.9)[1] == (0.49, 0.5)
-    assert moved(STRAIGHT, 2, 0.0, 0.0)[2] == (0.26, 0.25)
+CLOSE = ((0.0, 0.0), (0.5, 0.2), (0.505, 0.4), (0.51, 0.6), (1.0, 1.0))
 
 
-def test_the_ends_move_up_and_down_alone() -> None:
-    assert moved(STRAIGHT, 0, 0.5, 0.2)[0] == (0, 0.2)
-    assert moved(STRAIGHT, 4, 0.5, 0.8)[4] == (1, 0.8)
+@pytest.mark.parametrize(
+    ("points", "number", "to", "lands"),
+    [
+        (STRAIGHT, 1, (0.3, 0.4), (0.3, 0.4)),
+        # Between its neighbors.
+        (STRAIGHT, 1, (0.9, 0.9), (0.49, 0.5)),
+        (STRAIGHT, 2, (0.0, 0.0), (0.26, 0.25)),
+        # The ends, and a point between close neighbors, move up and down alone.
+        (STRAIGHT, 0, (0.5, 0.2), (0, 0.2)),
+        (STRAIGHT, 4, (0.5, 0.8), (1, 0.8)),
+        (CLOSE, 2, (0.9, 0.5), (0.505, 0.5)),
+    ],
+)
+def test_a_point_goes_where_it_is_put_as_far_as_its_neighbors_let_it(
+    points: CurvePoints, number: int, to: tuple[float, float], lands: tuple[float, float]
+) -> None:
+    assert moved(points, number, *to) == (*points[:number], lands, *points[number + 1 :])
 
 
-def test_a_point_between_close_neighbors_moves_up_and_down_alone() -> None:
-    close = ((0.0, 0.0), (0.5, 0.2), (0.505, 0.4), (0.51, 0.6), (1.0, 1.0))
-    assert moved(close, 2, 0.9, 0.5)[2] == (0.505, 0.5)
-
-
-def test_a_new_point_lands_where_it_was_put_and_others_make_way() -> None:
-    points, number = added(STRAIGHT, 0.3, 0.9)
-    assert number == 2
-    assert points == ((0.0, 0.0), (0.25, 0.25), (0.3, 0.9), (0.5, 0.9), (0.75, 0.9), (1.0, 1.0))
-    points, number = added(STRAIGHT, 0.6, 0.1)
-    assert number == 3
-    assert points == ((0.0, 0.0), (0.25, 0.1), (0.5, 0.1), (0.6, 0.1), (0.75, 0.75), (1.0, 1.0))
-
-
-def test_a_point_too_close_to_another_is_that_one() -> None:
-    points, number = added(STRAIGHT, 0.252, 0.9)
-    assert number == 1
-    assert points == ((0.0, 0.0), (0.25, 0.9), (0.5, 0.9), (0.75, 0.9), (1.0, 1.0))
-
-
-def test_ends_are_not_removed() -> None:
-    assert removed(STRAIGHT, 0) == removed(STRAIGHT, 4) == STRAIGHT
-    assert removed(STRAIGHT, 2) == (*STRAIGHT[:2], *STRAIGHT[3:])
+@pytest.mark.parametrize(
+    ("to", "number", "ys"),
+    [
+        ((0.3, 0.9), 2, (0.0, 0.25, 0.9, 0.9, 0.9, 1.0)),
+        ((0.6, 0.1), 3, (0.0, 0.1, 0.1, 0.1, 0.75, 1.0)),
+        # Too close to another point it is that one.
+        ((0.252, 0.9), 1, (0.0, 0.9, 0.9, 0.9, 1.0)),
+    ],
+)
+def test_a_new_point_lands_where_it_was_put_and_others_make_way(
+    to: tuple[float, float], number: int, ys: tuple[float, ...]
+) -> None:
+    points, at = added(STRAIGHT, *to)
+    xs = {x for x, _ in STRAIGHT} | ({to[0]} if len(ys) == 6 else set())
+    assert (points, at) == (tuple(zip(sorted(xs), ys, strict=True)), number)
 
 
 HELD = (("low", (0.1, 0.5)), ("object", (0.0, 2.0)))
@@ -378,21 +296,6 @@ def labels_of(hand: Hand) -> list[str]:
 
 def limits_of(hand: Hand, name: str) -> tuple[float, float]:
     return dict(hand.viewer.studio.scene.exposure)[name]  # type: ignore[arg-type]
-
-
-@pytest.mark.parametrize(
-    ("surface", "name"), [("low", "low"), ("high", "object"), ("object", "object"), ("", "object")]
-)
-def test_a_surface_has_its_own_range_or_that_of_the_object(surface: str, name: str) -> None:
-    assert held_name(HELD, surface) == name
-
-
-def test_what_is_not_held_has_no_name() -> None:
-    assert held_name("auto", "low") == held_name(HELD[:1], "high") == ""
-
-
-def test_nothing_is_held_of_an_exposure_that_follows_the_picture(tmp_path: Path) -> None:
-    assert "maximum" not in labels_of(hand_at(tmp_path, "mapping"))
 
 
 def test_a_drag_sets_one_end_of_what_is_held_as_one_step(tmp_path: Path) -> None:
@@ -418,27 +321,21 @@ def test_a_minimum_is_below_its_maximum_however_far_it_is_dragged(tmp_path: Path
     hand.pull("maximum", 0.9, 0.0)
     low, high = limits_of(hand, "low")
     assert low < high < 0.6
-
-
-def test_all_surfaces_without_a_range_of_their_own_share_one(tmp_path: Path) -> None:
-    hand = hand_at(tmp_path, "mapping", boxes().replace(exposure=HELD))
+    # All surfaces without a range of their own share one.
     hand.viewer.session.choose_surface("high")
     hand.pull("minimum", 0.1, 0.2)
     assert limits_of(hand, "object")[0] > 0
-    assert limits_of(hand, "low") == (0.1, 0.5)
-
-
-def test_a_dark_scene_can_hold_a_range_too(tmp_path: Path) -> None:
-    dark = boxes().replace(exposure=HELD, ambient=0.0, lights=())
-    hand = hand_at(tmp_path, "mapping", dark)
-    hand.pull("maximum", 0.2, 0.4)
-    assert limits_of(hand, "low")[1] != 0.5
+    assert limits_of(hand, "low") == (low, high)
 
 
 def test_hidden_panels_leave_the_picture_below_the_curve_free(hand: Hand) -> None:
     hand.pick("straight")
-    before = scene_of(hand)
+    before = hand.scene
     assert len(hand.viewer.board.screen.handles()) == 5
+    # The panel does not turn the object behind it.
+    hand.drag((PANEL.left + 2, PANEL.top + 2), (PANEL.left + 90, PANEL.top + 60))
+    assert hand.scene.view == before.view
+    undo(hand)
     hand.pick("hide panels")
     screen = hand.viewer.board.screen
     assert not screen.handles()
@@ -446,10 +343,10 @@ def test_hidden_panels_leave_the_picture_below_the_curve_free(hand: Hand) -> Non
     middle = place_of(0.5, 0.5)
     assert "makes a point" not in screen.hint(*middle)
     hand.click(*middle)
-    assert scene_of(hand) is before
+    assert hand.scene is before
     hand.drag(middle, (middle[0] + 20, middle[1]))
-    assert scene_of(hand).view != before.view
-    assert scene_of(hand).mapping == before.mapping
+    assert hand.scene.view != before.view
+    assert hand.scene.mapping == before.mapping
 
 
 def test_a_row_for_each_surface_says_whether_its_range_is_held_and_flips_it(tmp_path: Path) -> None:
@@ -468,10 +365,10 @@ def test_a_row_for_each_surface_says_whether_its_range_is_held_and_flips_it(tmp_
     assert states() == [True, True, "all held"]
     hand.pick("high", 0.95)
     assert states() == [True, False, "mixed"]
-    assert "object" not in dict(scene_of(hand).exposure)  # type: ignore[arg-type]
+    assert "object" not in dict(hand.scene.exposure)  # type: ignore[arg-type]
     hand.pick("low", 0.95)
     assert states() == [False, False, "auto"]
-    assert scene_of(hand).exposure == "auto"
+    assert hand.scene.exposure == "auto"
     assert np.array_equal(hand.viewer.studio.words, words)
     hand.pick("high", 0.2)
     assert hand.viewer.session.surface_name == "high"
@@ -484,41 +381,42 @@ def test_holding_one_surface_of_a_percentage_changes_no_word_and_its_release_ret
         hand = hand_at(tmp_path, "mapping", boxes().replace(exposure="90 %", scaling=scaling))
         words = hand.viewer.studio.words
         hand.pick("low", 0.95)
-        assert {*dict(scene_of(hand).exposure)} >= {"low", "object"}  # type: ignore[arg-type]
+        assert {*dict(hand.scene.exposure)} >= {"low", "object"}  # type: ignore[arg-type]
         assert np.array_equal(hand.viewer.studio.words, words)
         hand.pick("low", 0.95)
         hand.pick("high", 0.95)
-        assert scene_of(hand).exposure == "90 %"
+        assert hand.scene.exposure == "90 %"
         assert told(hand) == ("the range of high: 90 %", False)
 
 
 def test_a_surface_that_leaves_the_range_of_the_object_leaves_it_to_the_others(tmp_path: Path) -> None:
     hand = hand_at(tmp_path, "mapping", boxes().replace(exposure={"object": (0, 2)}))
     hand.pick("low", 0.95)
-    assert scene_of(hand).exposure == (("high", (0, 2)),)
+    assert hand.scene.exposure == (("high", (0, 2)),)
 
 
-def test_a_surface_of_one_intensity_has_no_range_to_hold(tmp_path: Path) -> None:
-    hand = hand_at(tmp_path, "mapping", boxes().replace(lights=(), ambient=0.2))
+@pytest.mark.parametrize(
+    ("scene", "why"),
+    [
+        (boxes().replace(lights=(), ambient=0.2), "all its points have one intensity; light it first"),
+        (
+            boxes().with_view(eye=(0, -9, 0), direction=(0, -1, 0)),
+            "no point of it is seen; turn it to the eye first",
+        ),
+    ],
+)
+def test_a_surface_of_one_intensity_or_out_of_sight_has_no_range_to_hold(
+    tmp_path: Path, scene: Scene, why: str
+) -> None:
+    hand = hand_at(tmp_path, "mapping", scene)
     hand.pick("low", 0.95)
-    message, is_warning = told(hand)
-    assert is_warning
-    assert message == "low has no range to hold, as all its points have one intensity; light it first"
-
-
-def test_a_surface_that_is_not_seen_has_no_range_to_hold(tmp_path: Path) -> None:
-    away = boxes().with_view(eye=(0, -9, 0), direction=(0, -1, 0))
-    hand = hand_at(tmp_path, "mapping", away)
-    hand.pick("low", 0.95)
-    message, is_warning = told(hand)
-    assert is_warning
-    assert message == "low has no range to hold, as no point of it is seen; turn it to the eye first"
-    assert scene_of(hand) is away
+    assert told(hand) == (f"low has no range to hold, as {why}", True)
+    assert hand.scene is scene
 
 
 def test_many_surfaces_have_no_rows(tmp_path: Path) -> None:
     hand = hand_at(tmp_path, "mapping", strips(11))
-    assert "strip 0" not in labels_of(hand)
+    assert not {"strip 0", "maximum"} & set(labels_of(hand))
     assert "strip 0" in labels_of(hand_at(tmp_path, "mapping", strips(10)))
     assert hand.widget("exposure").present == "99.5 %"  # type: ignore[attr-defined]
 
@@ -527,3 +425,10 @@ def strips(count: int) -> Scene:
     """Strips side by side, each of its own surface."""
     strips = [grid(1, 1, (number, 0, 0), (1, 0, 0), (0, 0, 9), f"strip {number}") for number in range(count)]
     return autocolor.scene_of(Mesh.joined(strips), surfaces="parts")
+
+
+def test_shares_of_a_range_without_extent_and_of_many_intensities_are_finite() -> None:
+    assert shares_of(np.full(3 * MOST_COUNTED, 0.5, np.float32), 0.5, 0.5).max() == 1
+    assert not shares_of(np.zeros(0, np.float32), 0.0, 1.0).any()
+    # A range of a few roundings of float32.
+    assert shares_of(np.array([0.5, 0.5000005], np.float32), 0.5, 0.5000005).max() == 1

@@ -7,20 +7,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor.errors import UsageError
 from autocolor.screens.message_line import (
     MESSAGE,
     MessagePart,
-    TypingLine,
     lines_of_message,
     message_items,
 )
-from autocolor.widgets.bars import Bar
 from autocolor.widgets.items import BLACK, WHITE, WIDTH, YELLOW, Area, filled, text
 from autocolor.widgets.menu import MENU, MESSAGE_CHARACTERS
-from autocolor.widgets.widget import Entry
 from ramtek_emu import Ramtek9300
-from tests.autocolor.screens.boards import desk_viewer
+from tests.autocolor.screens.boards import desk_hand
 
 # How long a message stands, and what it leaves, is tried through the viewer, in test_viewer.py.
 
@@ -64,67 +60,36 @@ def test_an_empty_message_is_an_empty_line() -> None:
     assert text("a", 8, MESSAGE.top + 3, WHITE, BLACK) in message_items([MessagePart("a", WHITE)])
 
 
-@pytest.fixture
-def typing(tmp_path: Path) -> TypingLine:
-    session = desk_viewer(tmp_path).session
-    session.has_keyboard = True
-    return TypingLine(session)
+@pytest.mark.parametrize(
+    ("keys", "name"),
+    [
+        (["return"], "scene"),
+        (["a", "b", "backspace", "return"], "a"),
+        (["end", "a", "return"], "scenea"),
+        (["right", "backspace", "return"], "scen"),
+        (["backspace", "x", "enter"], "x"),
+        (["x", "tab"], "x"),
+        (["x", "escape"], "scene"),
+    ],
+)
+def test_the_first_character_replaces_the_text_unless_an_arrow_goes_to_its_end(
+    tmp_path: Path, keys: list[str], name: str
+) -> None:
+    hand = desk_hand(tmp_path)
+    hand.viewer.session.has_keyboard = True
+    hand.pick("name")
+    assert hand.hint == "name: scene"
+    hand.press(*keys)
+    assert hand.scene.name == name
+    assert hand.hint != f"name: {name}"
+    assert bool(hand.viewer.studio.history.to_undo) == (name != "scene")
 
 
-def typed(typing: TypingLine, signs: str) -> None:
-    for sign in signs:
-        typing.key(sign, sign)
-
-
-def test_the_first_character_replaces_the_text_and_an_arrowless_edit_keeps_it(typing: TypingLine) -> None:
-    taken: list[str] = []
-    entry = Entry("name", value="key", take=taken.append)
-    typing.begin(entry)
-    assert typing.shown == MessagePart("name: key", YELLOW, 6)
-    typed(typing, "ab")
-    typing.key("backspace", "\b")
-    typing.key("return", "\r")
-    assert taken == ["a"]
-    assert not typing.is_on
-
-
-def test_a_text_that_was_not_changed_and_one_that_is_given_up_are_not_taken(typing: TypingLine) -> None:
-    taken: list[str] = []
-    for key in ("return", "escape"):
-        typing.begin(Entry("name", value="key", take=taken.append))
-        if key == "escape":
-            typed(typing, "x")
-        typing.key(key, "")
-        assert not typing.is_on
-    assert taken == []
-
-
-def test_a_proposed_text_is_taken_unchanged_but_not_by_a_pick_elsewhere(typing: TypingLine) -> None:
-    taken: list[str] = []
-    entry = Entry("save as", value="car-2", take=taken.append, is_proposed=True)
-    typing.begin(entry)
-    typing.key("return", "")
-    assert taken == ["car-2"]
-    typing.begin(entry)
-    typed(typing, "x")
-    typing.leave()
-    assert not typing.is_on
-    assert taken == ["car-2"]
-
-
-def test_a_text_that_is_refused_stays(typing: TypingLine) -> None:
-    typing.begin(Bar("ambient"), "-")
-    typed(typing, "z")
-    with pytest.raises(UsageError):
-        typing.key("return", "\r")
-    assert typing.shown == MessagePart("ambient: -z", YELLOW, 9)
-    typed(typing, "5")
-    assert typing.shown.text == "ambient: 5_"
-
-
-def test_numbers_begin_over_bars_that_can_be_used_alone(typing: TypingLine) -> None:
-    assert typing.would_begin(Bar("ambient"), "7")
-    assert not typing.would_begin(Bar("ambient"), "s")
-    assert not typing.would_begin(Bar("ambient"), "")
-    assert not typing.would_begin(Bar("ambient", why_not="no"), "7")
-    assert not typing.would_begin(Entry("name"), "7")
+def test_numbers_begin_over_bars_alone(tmp_path: Path) -> None:
+    hand = desk_hand(tmp_path)
+    for row, key in (("ambient", "7"), ("ambient", "-"), ("ambient", "."), ("ambient", "x"), ("name", "7")):
+        hand.move(*hand.middle(row))
+        hand.press(key)
+        assert (hand.hint == f"{row}: {key}_") == (row == "ambient" and key != "x")
+        hand.press("escape")
+        hand.go_to("desk")

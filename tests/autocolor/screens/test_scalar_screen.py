@@ -7,11 +7,10 @@ import numpy as np
 import pytest
 
 from autocolor import Mesh, Scene, scene_of
-from autocolor.checks import Color
 from autocolor.scene.color_scales import COLOR_SCALES
 from autocolor.scene.columns import fields_of
 from autocolor.scene.scalar import MeshScalar, Scalar
-from autocolor.screens.scalar_screen import NAMED, ScalarScreen, color_choice
+from autocolor.screens.scalar_screen import ScalarScreen
 from tests.autocolor.screens.boxes import hand_at, undo, words_are_those_of_the_scene
 from tests.autocolor.screens.hand import Hand
 from tests.small import boxes
@@ -36,15 +35,6 @@ def scalar_of(hand: Hand) -> Scalar:
 
 def labels_of(hand: Hand) -> set[str]:
     return {row.label for row in hand.viewer.board.screen.rows()}
-
-
-def test_without_a_scalar_there_is_the_choice_of_one_alone(tmp_path: Path) -> None:
-    hand = hand_at(tmp_path, "scalar", boxes_with_stress())
-    assert labels_of(hand) == {"scalar"}
-    hand.choose("scalar", "stress")
-    assert scalar_of(hand).name == "stress"
-    hand.choose("scalar", "none")
-    assert hand.viewer.studio.scene.scalar is None
 
 
 def test_every_scalar_of_the_mesh_and_every_computed_one_is_reached_by_clicks(hand: Hand) -> None:
@@ -87,22 +77,6 @@ def test_the_legend_is_dragged_and_let_go_again(hand: Hand) -> None:
     assert hand.viewer.studio.scene is before
 
 
-def test_only_scalars_that_are_computed_with_them_have_a_direction_and_stripes(hand: Hand) -> None:
-    assert not {"direction x", "stripes"} & labels_of(hand)
-    hand.viewer.session.edit(hand.viewer.studio.scene.with_scalar(name="slope"))
-    assert {"direction x", "stripes"} & labels_of(hand) == {"direction x"}
-
-
-def test_another_scale_sends_no_word_and_is_one_step(hand: Hand) -> None:
-    before, words = hand.viewer.studio.scene, hand.viewer.studio.words
-    hand.choose("scale", "turbo")
-    assert scalar_of(hand).scale == "turbo"
-    assert scalar_of(hand).scale in COLOR_SCALES
-    assert hand.viewer.studio.words is words
-    undo(hand)
-    assert hand.viewer.studio.scene is before
-
-
 def test_a_scale_is_reversed_and_stays_so_when_another_is_chosen(hand: Hand) -> None:
     hand.pick("reversed")
     assert scalar_of(hand).scale == "viridis_r"
@@ -133,26 +107,39 @@ def test_bands_and_shades_are_set_along_their_bars(hand: Hand, label: str) -> No
     assert words_are_those_of_the_scene(hand)
 
 
-@pytest.mark.parametrize("label", ["below", "above", "missing"])
-def test_the_other_colors_are_chosen_by_clicks(hand: Hand, label: str) -> None:
-    before: Any = vars(scalar_of(hand))[label]
-    hand.choose(label, "cyan")
-    assert vars(scalar_of(hand))[label] == (0, 255, 255) != before
+@pytest.mark.parametrize(
+    ("label", "name", "column", "value"),
+    [
+        ("below", "cyan", "below", (0, 255, 255)),
+        ("above", "red", "above", (255, 0, 0)),
+        ("missing", "magenta", "missing", (255, 0, 255)),
+        ("scale", "turbo", "scale", "turbo"),
+        ("legend", "", "legend", True),
+        ("colored", "", "surfaces", ("high",)),
+        ("around zero", "", "limits", (-1.0, 1.0)),
+        ("own range", "", "limits", (0.0, 1.0)),
+    ],
+)
+def test_a_click_sets_a_column_alone_and_is_one_step_without_rendering(
+    colored_hand: Hand, label: str, name: str, column: str, value: object
+) -> None:
+    before, picture = colored_hand.scene, colored_hand.viewer.studio.picture
+    colored_hand.pick(label)
+    if name:
+        colored_hand.pick(name)
+    assert scalar_of(colored_hand) == before.with_scalar(**{column: value}).scalar  # type: ignore[arg-type]
+    assert colored_hand.viewer.studio.picture is picture
+    undo(colored_hand)
+    assert colored_hand.scene is before
 
 
-def test_the_legend_is_switched(hand: Hand) -> None:
-    assert not hand.viewer.board.screen.items()
-    hand.pick("legend")
-    assert scalar_of(hand).legend
-    assert hand.viewer.board.screen.items()
-
-
-def test_a_surface_gets_its_own_colors_and_those_of_the_scalar_again(hand: Hand) -> None:
-    assert hand.viewer.session.surface_name == "low"
-    hand.pick("colored")
-    assert scalar_of(hand).surfaces == ("high",)
-    hand.pick("colored")
-    assert scalar_of(hand).surfaces == ("low", "high")
+def test_a_scalar_is_chosen_and_taken_away(colored_hand: Hand) -> None:
+    colored_hand.choose("scalar", "none")
+    assert colored_hand.scene.scalar is None
+    assert labels_of(colored_hand) == {"scalar"}
+    colored_hand.choose("scalar", "slope")
+    # Only scalars that are computed with them have a direction and stripes.
+    assert {"direction x", "stripes"} & labels_of(colored_hand) == {"direction x"}
 
 
 def test_another_scalar_comes_in_its_own_range_and_stripes_in_black_and_white(hand: Hand) -> None:
@@ -171,22 +158,6 @@ def test_a_click_tells_the_value_that_is_seen_there(hand: Hand) -> None:
     value = hand.viewer.studio.picture.scalar
     assert value is not None
     assert f"stress {value[240, 250]:.5g}, shade " in hand.viewer.message
-
-
-def test_the_row_tells_a_color_by_its_name_or_in_digits() -> None:
-    def present(color: Color | None) -> str:
-        return color_choice("below", "", color, lambda _: None, has_none=True).present
-
-    assert [present((255, 0, 255)), present((1, 2, 3)), present(None)] == ["magenta", "#010203", "none"]
-
-
-def test_all_colors_and_none_are_reached_by_clicks() -> None:
-    taken: list[Color | None] = []
-    row = color_choice("below", "", None, taken.append, has_none=True)
-    for name in row.names:
-        row.choose(name)
-    assert taken == [None, *NAMED.values()]
-    assert "none" not in color_choice("missing", "", (0, 0, 0), taken.append, has_none=False).names
 
 
 @pytest.fixture
@@ -230,11 +201,6 @@ def test_the_own_range_is_held_and_followed_again(colored_hand: Hand) -> None:
     colored_hand.pull("low limit", 0.1, 0.5)
     colored_hand.pick("own range")
     assert scalar_of(colored_hand).limits is None
-
-
-def test_limits_around_zero_are_as_far_as_the_farther_one(colored_hand: Hand) -> None:
-    colored_hand.pick("around zero")
-    assert scalar_of(colored_hand).limits == (-1.0, 1.0)
 
 
 def test_a_held_range_has_the_fewest_digits(tmp_path: Path) -> None:

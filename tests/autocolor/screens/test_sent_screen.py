@@ -22,7 +22,6 @@ from autocolor.widgets.items import SCREEN, text
 from ramtek_emu import GMR_9300, PRINCETON_9300, Ramtek9300, Recorder, instructions
 from ramtek_emu.instruction_set.assembler import assemble
 from ramtek_emu.instruction_set.disassembler import items
-from tests.autocolor.screens.boxes import hand_at
 from tests.small import boxes
 
 SCENE = boxes()
@@ -126,11 +125,6 @@ def test_a_color_sends_entries_and_no_word_of_the_picture(recorded: Recorded) ->
     assert "100.0%" in rows[4]
 
 
-def test_a_view_sends_words_of_the_picture(recorded: Recorded) -> None:
-    recorded.edit(EDITS["view"](SCENE))
-    assert "WI" in names_in(last_edit(recorded.viewer).words)
-
-
 def test_an_edit_of_what_is_not_shown_sends_nothing(recorded: Recorded) -> None:
     recorded.edit(EDITS["name"](SCENE))
     last = last_edit(recorded.viewer)
@@ -190,39 +184,11 @@ def test_a_coarse_picture_is_followed_by_the_words_of_its_refined_picture(
     assert "WI" in names_in(refined.words)
 
 
-def test_held_words_are_read_only_and_at_most_one_page(recorded: Recorded) -> None:
-    recorded.edit(EDITS["view"](SCENE))
-    last = last_edit(recorded.viewer)
-    assert not last.words.flags.writeable
-    held = last.words if last.words.base is None else last.words.base
-    assert held.size == len(last.words) + last.other_words
-
-
 @given(st.lists(st.tuples(st.integers(0, 255), st.integers(0, 255)), min_size=1, max_size=20))
 def test_a_listing_that_is_whole_assembles_to_the_words(colors: list[tuple[int, int]]) -> None:
     words = instructions.load_entries(7, [(red, green, 9) for red, green in colors])
     lines = [row.text for row in listing_of(words)]
     assert b"".join(assemble(lines)) == words.astype("<u2").tobytes()
-
-
-@given(st.integers(1, 30), st.integers(1, 300), st.integers(0, 2**32 - 1))
-def test_a_long_listing_says_how_many_words_it_leaves_out(lines: int, elements: int, seed: int) -> None:
-    image = np.random.default_rng(seed).integers(0, 3, (lines, elements)).astype(np.uint16)
-    words = instructions.write_image(image)
-    rows = [row.text.removesuffix(f"{2 * image.size} bytes") for row in listing_of(words)]
-    left_out = re.fullmatch(r" *and ([\d,]+) words? more of this instruction", rows[-1])
-    listed = " ".join(line[37:] for line in rows[: -1 if left_out else None])
-    # A repeated word is written as 0010*640.
-    repeats = re.findall(r"\b[0-9A-F]{4}(?:\*(\d+))?(?= |$)", listed)
-    count = sum(int(repeat or 1) for repeat in repeats)
-    assert count + (int(left_out[1].replace(",", "")) if left_out else 0) == image.size
-    assert all(len(row) <= CHARACTERS for row in rows)
-
-
-def test_a_display_with_short_entries_counts_a_word_for_each() -> None:
-    words = instructions.load_short_entries(3, np.zeros((40, 3), np.uint8))
-    rows = rows_of_edit(LastEdit(SCENE, SCENE, words, 0), PRINCETON_9300)
-    assert "40 entries" in rows[1].text
 
 
 def test_the_pages_have_every_row_once_and_nothing_overlaps(recorded: Recorded) -> None:
@@ -260,20 +226,21 @@ def test_an_edit_of_colors_on_the_screen_is_listed_there(recorded: Recorded) -> 
     assert np.array_equal(recorded.display.words[places], whole.words[places])
 
 
-def test_the_menu_of_the_picture_leads_there(tmp_path: Path) -> None:
-    hand = hand_at(tmp_path, "mapping")
-    hand.pick("< picture")
-    hand.open_menu()
-    hand.pick("what was sent")
-    assert hand.viewer.page == "sent"
+@given(st.integers(1, 30), st.integers(1, 300), st.integers(0, 2**32 - 1))
+def test_a_long_listing_says_how_many_words_it_leaves_out(lines: int, elements: int, seed: int) -> None:
+    image = np.random.default_rng(seed).integers(0, 3, (lines, elements)).astype(np.uint16)
+    words = instructions.write_image(image)
+    rows = [row.text.removesuffix(f"{2 * image.size} bytes") for row in listing_of(words)]
+    left_out = re.fullmatch(r" *and ([\d,]+) words? more of this instruction", rows[-1])
+    listed = " ".join(line[37:] for line in rows[: -1 if left_out else None])
+    # A repeated word is written as 0010*640.
+    repeats = re.findall(r"\b[0-9A-F]{4}(?:\*(\d+))?(?= |$)", listed)
+    count = sum(int(repeat or 1) for repeat in repeats)
+    assert count + (int(left_out[1].replace(",", "")) if left_out else 0) == image.size
+    assert all(len(row) <= CHARACTERS for row in rows)
 
 
-def test_lights_that_are_rendered_late_are_no_edit(recorded: Recorded) -> None:
-    viewer = recorded.viewer
-    recorded.edit(SCENE.replace(words="normals"))
-    recorded.edit(EDITS["light"](viewer.studio.scene))
-    last = last_edit(viewer)
-    assert names_in(last.words) == ["LAM"]
-    assert viewer.studio.picture is viewer.studio.display_image.picture
-    viewer.tell("")
-    assert last_edit(viewer) is last
+def test_a_display_with_short_entries_counts_a_word_for_each() -> None:
+    words = instructions.load_short_entries(3, np.zeros((40, 3), np.uint8))
+    rows = rows_of_edit(LastEdit(SCENE, SCENE, words, 0), PRINCETON_9300)
+    assert "40 entries" in rows[1].text

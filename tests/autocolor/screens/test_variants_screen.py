@@ -13,7 +13,7 @@ from autocolor.mapping.ranges import SCREENS
 from autocolor.screens.variants_screen import ELEMENTS, FRAME, LINES, ON_PAGE, PLACES
 from autocolor.widgets.menu import WORK
 from ramtek_emu import Ramtek9300
-from tests.autocolor.screens.boxes import hand_at, hint_of, told, undo
+from tests.autocolor.screens.boxes import hand_at, told, undo
 from tests.autocolor.screens.hand import Hand
 from tests.small import grid
 
@@ -48,9 +48,8 @@ def names(hand: Hand) -> list[str]:
     return [each.label for each in hand.viewer.board.screen.widgets()]
 
 
-def test_nothing_to_come_back_to_is_said(hand: Hand) -> None:
+def test_without_a_variant_there_is_nothing_to_come_back_to(hand: Hand) -> None:
     for label in ("come back", "drop"):
-        assert hint_of(hand, label) == "no variant is kept yet"
         hand.pick(label)
         assert told(hand) == (f"{label}: no variant is kept yet", True)
 
@@ -101,6 +100,7 @@ def test_a_variant_has_a_name_of_its_own_where_there_is_a_keyboard(hand: Hand) -
 def test_small_pictures_have_true_colors_all_at_once(hand: Hand, number: int) -> None:
     keep(hand, number)
     rest(hand)
+    assert all(WORK.covers(place) for place in PLACES)
     for place in {0, number - 1}:
         scene = list(hand.viewer.studio.variants.values())[place].scene
         picture = render(scene, lines=2 * LINES, elements=2 * ELEMENTS)
@@ -117,6 +117,8 @@ def test_small_pictures_come_in_turn_while_nothing_moves(hand: Hand) -> None:
         hand.viewer.on_tick()
         assert len(hand.viewer.board.screen.items()) == number
     assert not hand.viewer.board.screen.idle()
+    hand.pick("< picture")
+    assert np.array_equal(hand.display.entries, hand.viewer.studio.entries)
 
 
 def test_the_words_of_the_menu_keep_their_entries(hand: Hand) -> None:
@@ -130,19 +132,16 @@ def test_the_words_of_the_menu_keep_their_entries(hand: Hand) -> None:
     assert ends[-1][1] <= SCREENS.first
 
 
-def test_leaving_gives_the_entries_back(hand: Hand) -> None:
-    keep(hand, 2)
-    rest(hand)
-    hand.pick("< picture")
-    display = hand.viewer.display
-    assert isinstance(display, Ramtek9300)
-    assert np.array_equal(display.entries, hand.viewer.studio.entries)
-
-
 def test_many_variants_have_pages(hand: Hand) -> None:
     keep(hand, ON_PAGE + 3)
     assert len(names(hand)) == 3
     assert hand.widget("page").present == "2 of 2"  # type: ignore[attr-defined]
+    # It opens at the page of the last variant.
+    hand.pick("page")
+    hand.pick("< picture")
+    hand.open_menu()
+    hand.pick("variants")
+    assert len(names(hand)) == 3
     hand.pick("page")
     assert len(names(hand)) == ON_PAGE
     hand.pick("page")
@@ -150,38 +149,6 @@ def test_many_variants_have_pages(hand: Hand) -> None:
         hand.pick("drop")
     assert len(names(hand)) == ON_PAGE
     assert "page" not in [row.label for row in hand.viewer.board.screen.rows()]
-
-
-def test_it_opens_at_the_page_of_the_last_variant(hand: Hand) -> None:
-    for _ in range(ON_PAGE + 1):
-        hand.viewer.studio.keep_variant()
-    hand.pick("< picture")
-    hand.open_menu()
-    hand.pick("variants")
-    assert names(hand) == ["Q"]
-
-
-def test_variants_that_are_gone_are_forgotten(hand: Hand) -> None:
-    keep(hand, 2)
-    rest(hand)
-    screen = hand.viewer.board.screen
-    hand.pick("drop")
-    hand.pick("< picture")
-    assert len(vars(screen)["_small"]) == 1
-
-
-def test_places_are_beside_the_menu_and_apart() -> None:
-    assert len(PLACES) == ON_PAGE
-    assert all(WORK.covers(place) for place in PLACES)
-    assert not any(a.overlaps(b) for n, a in enumerate(PLACES) for b in PLACES[:n])
-
-
-def test_a_long_name_is_cut_within_its_place(hand: Hand) -> None:
-    hand.viewer.studio.keep_variant("the red one with the very bright lights")
-    hand.viewer.tell("")
-    for widget in hand.viewer.board.screen.widgets():
-        for item in widget.items(lit=True):
-            assert widget.area.covers(item.area)
 
 
 def test_a_small_picture_that_is_refused_is_black(tmp_path: Path) -> None:
