@@ -42,6 +42,7 @@ from tests.autocolor.screens.light_and_view.pointing import (
     screen_of,
     words_of,
 )
+from tests.autocolor.screens.painting_hand import boxes_scene
 from tests.autocolor.widgets.drawing import drawing_on
 
 MIDDLE = round(PICTURE_AREA.middle[0]), round(PICTURE_AREA.middle[1])
@@ -271,8 +272,12 @@ def test_rescale_moves_nearer_and_farther_and_fits_everything_with_space_on_all_
         for corner in ((0, 0, 0), (1, 1, 1)):
             assert side.area.inset(15).has(*screen_of(hand).views.position(side, corner))
     assert screen_of(hand).views.scale > 2 * scale
+    hand = opened(boxes_scene())
+    hand.viewer.session.choose_surface("box 1")
     hand.pick("fit surface")
-    assert hand.viewer.message == "the views show low"
+    assert hand.viewer.message == "the views show box 1"
+    for side in SIDES:
+        assert screen_of(hand).views.position(side, (1.9, 0.5, 0.5)) == pytest.approx(side.area.middle)
 
 
 def test_the_views_stay_where_no_surface_is_in_use() -> None:
