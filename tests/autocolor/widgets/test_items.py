@@ -120,11 +120,6 @@ def test_a_line_inside_its_area_is_drawn_as_one_instruction_draws_it() -> None:
     assert np.array_equal(painted(lines([vertices], WHITE, Area(0, 0, 47, 39))).words, expected.words)
 
 
-def test_an_outline_is_one_pixel_wide() -> None:
-    display = painted(outline(Area(5, 6, 14, 12), WHITE))
-    assert np.count_nonzero(display.words == WHITE) == 2 * 10 + 2 * 5
-
-
 def test_an_image_is_shown_word_by_word_also_across_the_edge() -> None:
     words = np.arange(60, dtype=np.uint16).reshape(6, 10)
     display = painted(image(words, -4, -2))

@@ -203,19 +203,3 @@ def test_the_base_fills_all_that_the_display_shows(configuration: Configuration)
     picture = (np.arange(shown[0] * shown[1]) % 1000).astype(np.uint16).reshape(shown)
     sheet.show(Page(picture, [], TABLES[0]))
     assert np.array_equal(display.words, picture)
-
-
-def test_where_a_text_goes_the_ground_below_it_is_drawn_there_alone() -> None:
-    display = Ramtek9300()
-    sheet = Sheet(display)
-    ground = filled(Area(504, 0, 639, 479), 5)
-    rows = [filled(Area(505, 16 * n, 639, 16 * n + 15), 6) for n in range(1, 10)]
-    words = [text("a row", 520, 16 * n + 3, WHITE, 6) for n in range(1, 10)]
-    long, short = (text(line, 560, 16 * 4 + 3, WHITE, 6) for line in ("12.50", "9.5"))
-    sheet.show(page(ground, *rows, *words, long))
-    written = display.frame_buffer.written
-    sheet.show(page(ground, *rows, *words, short))
-    assert display.frame_buffer.written - written == long.area.width * 9 + short.area.width * 9
-    fresh = Ramtek9300()
-    Sheet(fresh).show(page(ground, *rows, *words, short))
-    assert np.array_equal(display.words, fresh.words)

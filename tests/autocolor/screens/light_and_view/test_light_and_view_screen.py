@@ -303,6 +303,16 @@ def test_angle_frame_and_a_drag_of_the_picture_change_the_view_by_one_step_each(
         assert is_undone_at_once(hand, before)
 
 
+def test_the_front_names_the_views_from_the_sides() -> None:
+    hand = opened(boxed(KEY))
+    for front, name in (("x", "right: x "), ("-y", "front: x "), ("unknown", "from -y: x ")):
+        hand.choose("front", front)
+        assert scene_of_hand(hand).front == (None if front == "unknown" else front)
+        hand.viewer.tell("")
+        hand.move(20, 440)
+        assert hand.viewer.board.messages[-1].text.startswith(name)
+
+
 def test_the_wheel_rescales_the_views_and_moves_the_eye_over_the_picture() -> None:
     hand = opened(boxed(KEY))
     scale, eye = screen_of(hand).views.scale, scene_of_hand(hand).view.eye
@@ -334,23 +344,6 @@ def test_the_message_line_tells_what_is_where_the_pointer_is() -> None:
     ):
         hand.move(*place)
         assert hand.viewer.board.messages[-1].text.startswith(hint)
-
-
-def test_what_is_chosen_is_yellow() -> None:
-    hand = opened(boxed(KEY, FILL))
-    counts = []
-    for movable in (
-        MovablePoint(LIGHT, "top", "key"),
-        MovablePoint(EYE, "top"),
-        MovablePoint(LIGHT, "top", "fill"),
-    ):
-        element, line = place_of(hand, movable)
-        for _ in range(2):
-            hand.click(element, line)
-        counts.append((words_of(hand)[line, element - 4 : element + 5] == YELLOW).sum())
-    assert counts[0] == counts[2] == 9
-    assert counts[1] >= 3
-    assert scene_of_hand(hand).lights == boxed(KEY, FILL).lights
 
 
 def test_a_page_that_changed_step_by_step_is_the_page_drawn_at_once_and_leaving_restores_the_picture() -> (

@@ -206,15 +206,6 @@ def test_the_diagonals_of_divided_sides_are_no_creases() -> None:
     assert (len(edges.features), len(edges.smooth)) == (12, 6)
 
 
-def test_an_open_grid_has_its_border() -> None:
-    edges = mesh_edges(grid(4, 3, (0, 0, 0), (4, 0, 0), (0, 3, 0)))
-    assert len(edges.features) == 2 * (4 + 3)
-    assert len(edges.smooth) == 3 * 3 + 4 * 2
-    for pair in lines(edges):
-        (ax, ay, _), (bx, by, _) = pair
-        assert (ax == bx and ax in (0, 4)) or (ay == by and ay in (0, 3))
-
-
 @pytest.mark.parametrize(("fold", "creases"), [(0, 0), (29.9, 0), (30, 0), (30.1, 1), (90, 1), (179, 1)])
 def test_a_crease_is_an_angle_above_the_crease_angle(fold: float, creases: int) -> None:
     for sign in (1, -1):
@@ -318,16 +309,6 @@ def test_all_strokes_are_within_the_area(mesh: Mesh, view: View) -> None:
     found = perspective_strokes(edges.coordinates, edges.features, view, AREA)
     assert (found >= [AREA.left, AREA.top] * 2).all()
     assert (found <= [AREA.right, AREA.bottom] * 2).all()
-
-
-def test_no_size_of_the_object_makes_a_difference() -> None:
-    edges = mesh_edges(sphere(8, 5), crease_angle=1)
-    view = View((3.0, 4.0, 1.0), target=(0.0, 0.0, 0.0))
-    expected = perspective_strokes(edges.coordinates, edges.features, view, AREA)
-    for size in (2.0**-60, 2.0**60):
-        scaled = View((3 * size, 4 * size, size), target=(0.0, 0.0, 0.0))
-        found = perspective_strokes(edges.coordinates * size, edges.features, scaled, AREA)
-        assert found == pytest.approx(expected)
 
 
 def turned_at_random(mesh: Mesh, seed: int) -> Mesh:

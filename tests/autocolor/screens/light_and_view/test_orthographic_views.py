@@ -63,14 +63,6 @@ def test_the_viewer_has_right_and_up_where_the_view_has_them(side: ViewSide) -> 
     assert np.cross(right, up).tolist() == list(side.toward)
 
 
-@given(some_views(), points)
-def test_a_point_is_in_one_column_of_the_top_and_front_view_and_on_one_line_of_front_and_side(
-    views: OrthographicViews, point: Vector
-) -> None:
-    assert views.position(TOP, point)[0] == views.position(FRONT, point)[0]
-    assert views.position(FRONT, point)[1] == views.position(SIDE, point)[1]
-
-
 @given(some_views(), sides, st.lists(points, max_size=4))
 def test_many_points_are_where_each_of_them_is(
     views: OrthographicViews, side: ViewSide, many: list[Vector]
@@ -150,12 +142,6 @@ def test_a_single_point_and_none_have_space_around_them() -> None:
     assert fitted_views(np.empty((0, 3))) == OrthographicViews((0.0, 0.0, 0.0), views.scale)
 
 
-def test_nearer_and_farther_again_is_the_same_around_the_same_center() -> None:
-    nearer = UNIT.zoomed(2)
-    assert nearer == OrthographicViews(UNIT.center, 20)
-    assert nearer.zoomed(0.5) == UNIT
-
-
 def test_nearer_ends_where_coordinates_can_no_longer_tell_a_pixel_from_the_next() -> None:
     views = OrthographicViews((1000.0, 0.0, 0.0), 1.0)
     for _ in range(200):
@@ -166,25 +152,6 @@ def test_nearer_ends_where_coordinates_can_no_longer_tell_a_pixel_from_the_next(
     for _ in range(400):
         views = views.zoomed(0.5)
     assert views.scale == pytest.approx(1e-30)
-
-
-def test_the_edges_of_a_cube_are_strokes_from_corner_to_corner() -> None:
-    views = OrthographicViews((0.5, 0.5, 0.5), 100.0)
-    strokes = views.strokes(FRONT, cube().coordinates, np.array([(0, 1), (0, 2), (0, 4)]))
-    element, line = FRONT.area.middle
-    assert strokes.tolist() == [
-        [element - 50, line + 50, element + 50, line + 50],
-        [element - 50, line + 50, element - 50, line + 50],
-        [element - 50, line + 50, element - 50, line - 50],
-    ]
-
-
-@pytest.mark.parametrize("size", [2.0**-90, 2.0**90])
-def test_no_size_of_the_object_makes_a_difference(size: float) -> None:
-    pairs = np.array([(0, 1), (0, 7), (3, 4)])
-    expected = fitted_views(cube().coordinates).strokes(SIDE, cube().coordinates, pairs)
-    coordinates = cube(size).coordinates
-    assert fitted_views(coordinates).strokes(SIDE, coordinates, pairs) == pytest.approx(expected)
 
 
 def test_a_place_is_in_the_view_whose_area_holds_it_or_in_none() -> None:

@@ -64,14 +64,10 @@ def test_a_click_goes_to_a_step_and_one_on_an_undone_step_goes_forward(tmp_path:
     assert hand.viewer.page == "history"
     hand.viewer.on_key("y", control=True)
     assert [row.is_chosen for row in rows_of(hand)] == [False, True, False, False, False]
-
-
-def test_another_edit_forgets_the_undone_steps(tmp_path: Path) -> None:
-    hand = hand_after(4, tmp_path)
-    hand.pick("step 2")
+    # Another edit forgets the undone steps.
     hand.viewer.session.edit(hand.viewer.session.scene.replace(ambient=0.4))
-    hand.viewer.board.forget()
-    assert len(rows_of(hand)) == 4
+    hand.viewer.tell("")
+    assert [row.label for row in rows_of(hand)] == ["step 0", "step 1", "step 2"]
     assert rows_of(hand)[-1].shown.endswith("ambient 0.1 -> 0.4")
 
 
