@@ -113,13 +113,6 @@ def test_a_line_of_any_length_keeps_its_slope() -> None:
     assert (np.diagonal(display.words[:40, :40]) == WHITE).all()
 
 
-def test_a_line_inside_its_area_is_drawn_as_one_instruction_draws_it() -> None:
-    vertices = [(3, 4), (30, 17), (8, 30)]
-    expected = painted(filled(Area(0, 0, -1, -1), 0))
-    expected.send(instructions.write_vectors(vertices, WHITE))
-    assert np.array_equal(painted(lines([vertices], WHITE, Area(0, 0, 47, 39))).words, expected.words)
-
-
 def test_an_image_is_shown_word_by_word_also_across_the_edge() -> None:
     words = np.arange(60, dtype=np.uint16).reshape(6, 10)
     display = painted(image(words, -4, -2))

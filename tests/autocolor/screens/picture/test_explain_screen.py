@@ -89,6 +89,11 @@ def test_arrows_and_a_click_in_the_magnifier_explain_a_neighbor(hand: Hand) -> N
     assert session.pixel == (LINE - 2, ELEMENT + 4)
     hand.click(20, 300)
     assert session.pixel == (LINE - 2, ELEMENT + 4)
+    # An edit is explained at once.
+    before = shown(hand)
+    hand.viewer.on_key("2", typed="2")
+    assert hand.viewer.page == "explain"
+    assert shown(hand) == expected(hand, LINE - 2, ELEMENT + 4) != before
 
 
 def test_a_neighbor_stays_in_the_picture(hand: Hand) -> None:
@@ -99,14 +104,6 @@ def test_a_neighbor_stays_in_the_picture(hand: Hand) -> None:
     # The pixels beside the picture are those at its edge.
     hand.click(MAGNIFIER.left + SIDE // 2, MAGNIFIER.top + SIDE // 2)
     assert hand.viewer.session.pixel == (0, 0)
-
-
-def test_an_edit_is_explained_at_once(hand: Hand) -> None:
-    click_with_shift(hand, ELEMENT, LINE)
-    before = shown(hand)
-    hand.viewer.on_key("2", typed="2")
-    assert hand.viewer.page == "explain"
-    assert shown(hand) == expected(hand, LINE, ELEMENT) != before
 
 
 def test_the_magnifier_shows_the_words_around_the_pixel(hand: Hand) -> None:

@@ -120,21 +120,3 @@ def test_the_surface_is_chosen_by_a_click_in_the_picture_or_in_the_menu(hand: Ha
     assert surface_of(hand) == boxes().surface("low")
     hand.pick("surface")
     assert hand.viewer.session.surface_name == "low"
-
-
-def test_colors_are_not_among_the_properties(hand: Hand) -> None:
-    labels = {row.label for row in hand.viewer.board.screen.rows()}
-    assert labels.isdisjoint(name.replace("_", " ") for name in vars(surface_of(hand).paint))
-
-
-def test_a_refused_edit_shows_a_message_and_changes_nothing(hand: Hand) -> None:
-    hand.viewer.session.has_keyboard = True
-    before = hand.viewer.studio.scene
-    hand.move(560, hand.widget("diffuse").area.top + 4)
-    hand.viewer.on_key("-", typed="-")
-    hand.viewer.on_key("1", typed="1")
-    hand.viewer.on_key("return")
-    message, is_warning = told(hand)
-    assert is_warning
-    assert "diffuse must be" in message
-    assert hand.viewer.studio.scene is before
