@@ -68,9 +68,10 @@ def test_one_row_more_than_fits_makes_a_page_more(count: int, last: int, sizes: 
         assert labels[size:] == [*(["more"] if len(sizes) > 1 else []), *(row.label for row in ends)]
         shown += labels[:size]
         if len(sizes) > 1:
-            assert isinstance(page[size], Button)
-            assert page[size].value == f"{number + 1} of {len(sizes)}"
-            page[size].pick(Place(0, 0))
+            more = page[size]
+            assert isinstance(more, Button)
+            assert more.value == f"{number + 1} of {len(sizes)}"
+            more.pick(Place(0, 0))
             assert turned[-1] == (number + 1) % len(sizes)
     assert shown == [row.label for row in rows]
     # If there are fewer pages than before, the last one is shown.

@@ -342,7 +342,7 @@ def test_a_list_is_made_by_its_box_and_names_go_in_and_out_in_the_order_of_their
     menu = Posts()
     assert menu.ticked == {"walls": False}
     menu.rows()["walls"].pick(NEXT)
-    assert menu.lamp.walls == ()
+    assert vars(menu.lamp)["walls"] == ()
     assert menu.ticked == {"walls": True, "  a": False, "  b": False, "  c": False}
     for label in ("  b", "  c", "  a", "  b"):
         menu.rows()[label].pick(NEXT)
