@@ -8,6 +8,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from hypothesis import strategies as st
 
+from autocolor.mapping.ranges import SCREENS
 from autocolor.widgets.items import Area, Item, filled, image, lines, outline, text
 from ramtek_emu import Configuration, Ramtek9300
 from ramtek_emu.testing import words
@@ -66,3 +67,9 @@ def checksum(drawn: Iterable[Item], *, skips_images: bool = False) -> int:
         if not (skips_images and item.stream.startswith(IMAGE)):
             total = zlib.crc32(item.stream, total)
     return total
+
+
+def drawing_on(display: Ramtek9300) -> int:
+    """A number for what stands over the picture: words of the picture itself depend on rounding."""
+    words = display.words
+    return zlib.crc32(np.where(words >= SCREENS.first, words, 0).astype(np.uint16).tobytes())

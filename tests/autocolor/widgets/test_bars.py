@@ -13,12 +13,11 @@ from autocolor.widgets.bars import (
     ComponentBar,
     LevelBar,
     PercentBar,
-    digits_of,
     levels_along,
     number_text,
     rounded_to,
 )
-from autocolor.widgets.items import GRAY, RED, SLATE, WHITE, YELLOW, Area
+from autocolor.widgets.items import RED, WHITE, Area
 from autocolor.widgets.menu import WIDE_BAR
 from autocolor.widgets.widget import Place, Widget
 from ramtek_emu import Ramtek9300
@@ -46,11 +45,6 @@ def test_a_whole_number_of_steps_is_written_and_read_again(step: float, count: i
     assert float(number_text(value, step)) == pytest.approx(value)
 
 
-@given(st.sampled_from(STEPS), st.floats(-1e5, 1e5))
-def test_rounding_is_to_the_nearest_step(step: float, value: float) -> None:
-    assert abs(rounded_to(value, step) - value) <= step / 2 + 1e-6
-
-
 @pytest.mark.parametrize(
     ("value", "step", "shown"),
     [
@@ -60,14 +54,11 @@ def test_rounding_is_to_the_nearest_step(step: float, value: float) -> None:
         (-0.0, 0.1, "0.0"),
         (12.345, 1, "12.3"),
         (0.78, 0.1, "0.78"),
+        (1 / 3, 1 / 3, "0.3333333333"),
     ],
 )
 def test_a_number_is_shown_with_the_digits_of_its_step(value: float, step: float, shown: str) -> None:
     assert number_text(value, step) == shown
-
-
-def test_a_step_that_has_no_end_has_nine_digits() -> None:
-    assert digits_of(1 / 3) == 9
 
 
 @pytest.mark.parametrize("area", [ROW, WIDE_BAR])
@@ -89,6 +80,10 @@ def test_the_ends_of_a_bar_are_those_of_its_range_even_between_steps() -> None:
     assert bar.value_at(0) == 0.05
     assert bar.value_at(639) == 0.97
     assert 0.05 <= bar.value_at(ROW.right - 9) <= 0.97
+    assert Bar("bar", area=ROW, value=1.0, low=1.0, high=1.0).share == 0.0
+    assert rounded_to(0.123, 0) == 0.123
+    typed = Bar("position x", area=ROW, value=-0.525909, step=0.1)
+    assert (typed.number, typed.typed.text) == ("-0.53", "-0.525909")
 
 
 def test_a_bar_is_set_by_pick_drag_step_and_text() -> None:
@@ -111,11 +106,7 @@ def test_a_bar_is_set_by_pick_drag_step_and_text() -> None:
 @given(st.sampled_from(STEPS), st.floats(-1e5, 1e5))
 def test_a_number_is_shown_to_a_twentieth_of_its_step(step: float, value: float) -> None:
     assert abs(float(number_text(value, step)) - value) <= step / 20 + 1e-9
-
-
-def test_a_number_is_typed_over_with_all_its_digits() -> None:
-    bar = Bar("position x", area=ROW, value=-0.525909, step=0.1)
-    assert (bar.number, bar.typed.text) == ("-0.53", "-0.525909")
+    assert abs(rounded_to(value, step) - value) <= step / 2 + 1e-6
 
 
 def test_a_number_that_can_be_absent_has_a_box() -> None:
@@ -142,11 +133,6 @@ def test_a_bar_stays_in_its_area(area: Area, value: float | None, lit: bool) -> 
     assert all(area.covers(item.area) for item in items)
 
 
-def test_a_bar_of_no_length_has_no_share() -> None:
-    assert Bar("bar", area=ROW, value=1.0, low=1.0, high=1.0).share == 0.0
-    assert rounded_to(0.123, 0) == 0.123
-
-
 AREA = Area(176, 24, 495, 47)
 FIRST = 192
 
@@ -171,33 +157,9 @@ def test_each_element_is_a_value() -> None:
     component_bar(0, found).drag(Place(0, 0), Place(0, 0), Place(0, 0))
     component_bar(0, found).drag(Place(0, 0), Place(0, 0), Place(600, 0))
     assert found[-2:] == [0, 255]
-
-
-@pytest.mark.parametrize("value", [0, 1, 143, 255])
-@pytest.mark.parametrize("lit", [False, True])
-def test_the_bar_is_as_long_as_its_component_lit_or_not(value: int, lit: bool) -> None:
-    line = drawn(component_bar(value), lit).words[36]
-    track = line[FIRST : FIRST + 256]
-    assert (track[:value] == RED).all()
-    assert track[value] == WHITE
-    assert (track[value + 1 :] == SLATE).all()
-
-
-@pytest.mark.parametrize("value", [0, 16, 255])
-def test_letter_and_number_stand_inside_the_area_and_are_lit(value: int) -> None:
-    for lit, ink in ((False, WHITE), (True, YELLOW)):
-        words = drawn(component_bar(value), lit).words
-        lines, elements = np.nonzero(words)
-        assert AREA.covers(Area(elements.min(), lines.min(), elements.max(), lines.max()))
-        assert (words[:, : FIRST - 1] == ink).any()
-        assert (words[:, FIRST + 256 :] == ink).any()
-
-
-def test_a_step_is_one() -> None:
-    found: list[float] = []
-    component_bar(100, found).nudge(1)
-    component_bar(100, found).nudge(-3)
-    assert found == [101, 97]
+    for steps in (1, -3):
+        component_bar(100, found).nudge(steps)
+    assert found[-2:] == [101, 97]
 
 
 LYING = Area(8, 100, 495, 139)
@@ -225,21 +187,17 @@ def test_levels_rise_evenly_from_end_to_end(length: int, levels: int) -> None:
 
 
 @pytest.mark.parametrize("levels", [2, 40, 488, 800])
-def test_a_lying_bar_shows_the_levels_from_the_left(levels: int) -> None:
-    bar = level_bar(levels)
-    strip = bar.strip
-    assert strip == Area(8, 100 + LANE, 495, 139 - LANE)
-    words = drawn(bar).words[strip.top : strip.bottom + 1, strip.left : strip.right + 1]
-    assert np.array_equal(words, np.broadcast_to(200 + levels_along(488, levels), words.shape))
-
-
-@pytest.mark.parametrize("levels", [2, 40, 416, 800])
-def test_an_upright_bar_shows_the_levels_from_below(levels: int) -> None:
-    bar = level_bar(levels, upright=True)
-    strip = bar.strip
-    assert strip == Area(500 + LANE, 24, 531, 439)
-    words = drawn(bar).words[strip.top : strip.bottom + 1, strip.left : strip.right + 1]
-    assert np.array_equal(words, np.broadcast_to(200 + levels_along(416, levels)[::-1, None], words.shape))
+def test_a_lying_bar_shows_the_levels_from_the_left_and_an_upright_bar_from_below(levels: int) -> None:
+    for upright, strip in (
+        (False, Area(8, 100 + LANE, 495, 139 - LANE)),
+        (True, Area(500 + LANE, 24, 531, 439)),
+    ):
+        bar = level_bar(levels, upright=upright)
+        assert bar.strip == strip
+        words = drawn(bar).words[strip.top : strip.bottom + 1, strip.left : strip.right + 1]
+        along = levels_along(strip.height if upright else strip.width, levels)
+        wanted = along[::-1, None] if upright else along
+        assert np.array_equal(words, np.broadcast_to(200 + wanted, words.shape))
 
 
 @pytest.mark.parametrize("upright", [False, True])
@@ -266,27 +224,6 @@ def test_a_step_is_a_level(level: int, steps: float, to: int) -> None:
     assert found == [to]
 
 
-@pytest.mark.parametrize("upright", [False, True])
-@pytest.mark.parametrize("level", [0, 20, 59])
-@pytest.mark.parametrize("lit", [False, True])
-def test_the_handle_points_at_its_level_and_leaves_the_levels_uncovered(
-    upright: bool, level: int, lit: bool
-) -> None:
-    bar = level_bar(60, level, upright)
-    words = drawn(bar, lit).words
-    strip, ink = bar.strip, YELLOW if lit else WHITE
-    if upright:
-        (line,) = np.flatnonzero(words[:, strip.left - 2] == ink)
-        assert words[line, strip.left] == 200 + level
-    else:
-        for lane in (strip.top - 2, strip.bottom + 2):
-            (element,) = np.flatnonzero(words[lane] == ink)
-            assert words[strip.top, element] == 200 + level
-    assert not np.isin(
-        words[strip.top : strip.bottom + 1, strip.left : strip.right + 1], [WHITE, YELLOW]
-    ).any()
-
-
 def test_a_percentage_is_a_share_of_the_height() -> None:
     found: list[float] = []
     bar = PercentBar("percent", area=Area(600, 0, 635, 200), value=25.0, put=found.append)
@@ -302,16 +239,6 @@ def test_a_percentage_is_a_share_of_the_height() -> None:
     assert np.flatnonzero(words[:, 602] == WHITE).tolist() == [150]
 
 
-@pytest.mark.parametrize("upright", [False, True])
-def test_a_bar_is_framed_so_that_its_ends_are_seen_on_a_dark_picture(upright: bool) -> None:
-    bar = level_bar(40, level=20, upright=upright)
-    words = drawn(bar).words
-    left, top, right, bottom = bar.strip
-    assert (words[[top - 1, bottom + 1], left - 1] == GRAY).all()
-    assert (words[[top - 1, bottom + 1], right + 1] == GRAY).all()
-    assert words[top - 1, left + 1] == words[bottom + 1, left + 1] == GRAY
-
-
 LEVELS = np.arange(900, 916, dtype=np.uint16)
 TALL = Area(400, 20, 430, 220)
 COMPONENT = Area(20, 20, 339, 35)
@@ -325,6 +252,8 @@ DRAWN = [
     (Bar("bar", area=WIDE_BAR, value=0.3, unit="degrees", word=RED), 1594393171, 1561743892),
     (Bar("bar", area=ROW._replace(bottom=60), value=0.3), 1982306133, 1325038702),
     (ComponentBar("red", area=COMPONENT, value=77, letter="R", word=RED), 1317594259, 3894026590),
+    (ComponentBar("red", area=COMPONENT, value=255, letter="R", word=RED), 463163399, 2395040169),
+    (LevelBar("levels", area=TALL, words=LEVELS, level=15, upright=True), 3206733488, 3190181059),
     (LevelBar("levels", area=Area(20, 20, 219, 60), words=LEVELS, level=5), 1359616466, 3955108515),
     (LevelBar("levels", area=TALL, words=LEVELS, level=5, number="5", upright=True), 3848373696, 4287666951),
     (PercentBar("percent", area=TALL, value=30), 3844272778, 3672469405),

@@ -7,16 +7,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor.arrays import Booleans, Floats
-from autocolor.mapping.ranges import SCREENS
-from autocolor.widgets import items as colors
+from autocolor.arrays import Booleans
 from autocolor.widgets.items import (
     DOWN,
     DRAWABLE,
     LEFT,
-    NIGHT,
     RIGHT,
-    SCREEN,
     UP,
     WHITE,
     Area,
@@ -83,15 +79,6 @@ def test_a_display_without_the_operands_of_the_9400_draws_the_same(item: Item) -
     assert np.array_equal(princeton.words[:40, :48], tiny.words)
 
 
-def test_text_stays_in_its_cells() -> None:
-    display = painted(text("Hg", 10, 5, size=2), ground=NIGHT)
-    line_numbers, elements = np.nonzero(display.words == WHITE)
-    assert line_numbers.min() >= 5
-    assert line_numbers.max() < 23
-    assert elements.min() >= 10
-    assert elements.max() < 38
-
-
 def test_characters_that_cannot_be_printed_are_drawn_as_question_marks() -> None:
     assert text("a\x00\x1b\u202e\udcffb", 10, 5) == text("a????b", 10, 5)
 
@@ -124,18 +111,6 @@ def test_lines_that_leave_an_area_are_drawn_inside_it_and_come_back() -> None:
 def test_a_line_of_any_length_keeps_its_slope() -> None:
     display = painted(lines([[(-1e6, -1e6), (1e6, 1e6)]], WHITE, Area(0, 0, 39, 39)))
     assert (np.diagonal(display.words[:40, :40]) == WHITE).all()
-
-
-def test_a_line_inside_its_area_is_drawn_as_one_instruction_draws_it() -> None:
-    vertices = [(3, 4), (30, 17), (8, 30)]
-    expected = painted(filled(Area(0, 0, -1, -1), 0))
-    expected.send(instructions.write_vectors(vertices, WHITE))
-    assert np.array_equal(painted(lines([vertices], WHITE, Area(0, 0, 47, 39))).words, expected.words)
-
-
-def test_an_outline_is_one_pixel_wide() -> None:
-    display = painted(outline(Area(5, 6, 14, 12), WHITE))
-    assert np.count_nonzero(display.words == WHITE) == 2 * 10 + 2 * 5
 
 
 def test_an_image_is_shown_word_by_word_also_across_the_edge() -> None:
@@ -186,56 +161,31 @@ def test_areas_meet_where_pixels_are_in_both(one: Area, other: Area) -> None:
         assert len(pixels(one)) == one.width * one.height
 
 
-def test_the_screen_is_640_elements_wide_and_480_lines_high() -> None:
-    assert SCREEN == (0, 0, 639, 479)
-    assert DRAWABLE == (-32768, -32768, 32767, 32767)
-    assert (SCREEN.width, SCREEN.height, SCREEN.middle) == (640, 480, (319.5, 239.5))
-    assert SCREEN.inset(2) == (2, 2, 637, 477)
-
-
-def test_the_words_of_the_screens_belong_to_the_screens_and_differ() -> None:
-    names = (
-        "BLACK", "WHITE", "LIGHT_GRAY", "GRAY", "SLATE", "NIGHT", "YELLOW", "ORANGE", "RED", "GREEN", "BLUE",
-    )  # fmt: skip
-    words = [getattr(colors, name) for name in names]
-    assert len(set(words)) == len(words)
-    assert all(SCREENS.first <= word <= SCREENS.last for word in words)
-
-
 AREA = Area(10, 20, 40, 40)
 
 places = st.tuples(st.floats(-100, 100), st.floats(-100, 100))
 
 
-def stroke(*numbers: float) -> Floats:
-    return np.array([numbers], np.float64)
-
-
-def test_a_stroke_within_the_area_stays_as_it_is() -> None:
-    inside = stroke(10, 20, 40.0, 33.3)
-    assert clipped(inside, AREA).tolist() == inside.tolist()
-
-
-def test_a_stroke_across_the_area_ends_at_its_borders() -> None:
-    assert clipped(stroke(0, 30, 100, 30), AREA).tolist() == [[10, 30, 40, 30]]
-    assert clipped(stroke(15, 90, 15, -90), AREA).tolist() == [[15, 40, 15, 20]]
-    assert clipped(stroke(0, 20, 30, 50), AREA) == pytest.approx(stroke(10, 30, 20, 40))
-
-
-def test_a_stroke_beside_the_area_is_left_out() -> None:
-    assert len(clipped(stroke(0, 19, 100, 19), AREA)) == 0
-    assert len(clipped(stroke(41, 0, 41, 100), AREA)) == 0
-    # Between the borders of either axis at some time, but never of both.
-    assert len(clipped(stroke(0, 25, 15, 0), AREA)) == 0
-
-
-def test_a_point_is_kept_where_it_is_in_the_area() -> None:
-    assert clipped(stroke(12, 22, 12, 22), AREA).tolist() == [[12, 22, 12, 22]]
-    assert len(clipped(stroke(9, 22, 9, 22), AREA)) == 0
-
-
-def test_nothing_is_clipped_to_nothing() -> None:
-    assert clipped(np.empty((0, 4)), AREA).shape == (0, 4)
+@pytest.mark.parametrize(
+    ("stroke", "left"),
+    [
+        ((10, 20, 40.0, 33.25), [10, 20, 40, 33.25]),
+        ((0, 30, 100, 30), [10, 30, 40, 30]),
+        ((15, 90, 15, -90), [15, 40, 15, 20]),
+        ((0, 20, 30, 50), [10, 30, 20, 40]),
+        ((0, 19, 100, 19), None),
+        ((41, 0, 41, 100), None),
+        # Between the borders of either axis at some time, but never of both.
+        ((0, 25, 15, 0), None),
+        ((12, 22, 12, 22), [12, 22, 12, 22]),
+        ((9, 22, 9, 22), None),
+    ],
+)
+def test_a_stroke_ends_at_the_borders_of_the_area(
+    stroke: tuple[float, ...], left: list[float] | None
+) -> None:
+    found = clipped(np.array([stroke], np.float64), AREA)
+    assert found.tolist() == ([] if left is None else [pytest.approx(left)])
 
 
 @given(places, places)
@@ -273,28 +223,18 @@ def test_strokes_of_any_size_end_within_the_area() -> None:
     assert (found <= np.tile([AREA.right, AREA.bottom], 2)).all()
 
 
-def test_a_polyline_is_joined_by_one_stroke_less_than_it_has_positions() -> None:
-    assert joined([(1, 2), (3, 4), (5, 6)]).tolist() == [[1, 2, 3, 4], [3, 4, 5, 6]]
-    assert joined([(1, 2)]).shape == (0, 4)
-    assert together([joined([(0, 0), (1, 1)]), joined([])]).tolist() == [[0, 0, 1, 1]]
-    assert together([]).shape == (0, 4)
-
-
 def test_drawn_strokes_go_from_pixel_to_pixel_and_none_twice() -> None:
     strokes = np.array([(0.4, 0.5, 9.6, 0.4), (10.2, -0.5, 0.49, 1.0), (10, 0, 0, 1), (3, 3, 3.2, 3.1)])
     assert drawn(strokes).tolist() == [[10, 0, 0, 1]]
     strokes = np.array([(5.0, 5, 3, 5), (3, 5, 5, 5), (3, 5, 6, 5)])
     assert drawn(strokes).tolist() == [[3, 5, 5, 5], [3, 5, 6, 5]]
-
-
-def test_a_mesh_smaller_than_a_pixel_is_a_point() -> None:
     assert drawn(np.array([(4.1, 4.1, 4.2, 4.2), (4.2, 4.2, 4.1, 4.1)])).tolist() == [[4, 4, 4, 4]]
-    assert drawn(np.empty((0, 4))).shape == (0, 4)
-
-
-def test_of_too_many_strokes_the_longest_are_drawn() -> None:
+    # Of too many strokes the longest are drawn.
     strokes = np.array([(0, line, line + 1, line) for line in range(100)], np.float64)
     assert drawn(strokes, most=10).tolist() == strokes[90:].tolist()
+    for nothing in (drawn(np.empty((0, 4))), clipped(np.empty((0, 4)), AREA), together([]), joined([(1, 2)])):
+        assert nothing.shape == (0, 4)
+    assert joined([(1, 2), (3, 4), (5, 6)]).tolist() == [[1, 2, 3, 4], [3, 4, 5, 6]]
 
 
 @pytest.mark.parametrize("towards", [RIGHT, DOWN, LEFT, UP])

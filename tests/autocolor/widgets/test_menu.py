@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -17,10 +18,11 @@ from autocolor.widgets.menu import (
     list_of,
     menu_items,
     open_sections,
+    page_of_menu,
     pages_of,
     sections_of,
 )
-from autocolor.widgets.widget import ROW_LINES, Button, Choice, Gap, Heading, Widget
+from autocolor.widgets.widget import ROW_LINES, Button, Choice, Gap, Heading, Place, Widget
 
 rows = st.lists(st.sampled_from([Button, Gap, Heading]), max_size=120).map(
     lambda kinds: [kind(str(number)) for number, kind in enumerate(kinds)]
@@ -36,13 +38,55 @@ def test_the_pages_of_a_menu_have_all_rows_in_their_order(rows: list[Widget]) ->
         assert [row.label for row in laid_out(shown)] == [row.label for row in shown]
 
 
-def test_a_heading_is_on_the_page_of_what_is_below_it() -> None:
-    rows = [Button(str(number)) for number in range(60)]
-    rows_a_page = len(pages_of(rows)[0])
-    headed = [*rows[: rows_a_page - 1], Heading("more of it"), *rows[rows_a_page - 1 :]]
-    first, second, *_ = pages_of(headed)
-    assert len(first) == rows_a_page - 1
-    assert second[0].label == "more of it"
+FIT = MOST_LINES // ROW_LINES
+"""The rows of one page."""
+
+
+def buttons(count: int) -> list[Widget]:
+    return [Button(str(number)) for number in range(count)]
+
+
+@pytest.mark.parametrize(
+    ("count", "last", "sizes"),
+    [
+        (FIT, 0, [FIT]),
+        (FIT + 1, 0, [FIT - 1, 2]),
+        (2 * FIT - 2, 0, [FIT - 1, FIT - 1]),
+        (2 * FIT - 1, 0, [FIT - 1, FIT - 1, 1]),
+        (FIT - 2, 2, [FIT - 2]),
+        (FIT - 1, 2, [FIT - 3, 2]),
+    ],
+)
+def test_one_row_more_than_fits_makes_a_page_more(count: int, last: int, sizes: list[int]) -> None:
+    rows, turned = buttons(count), list[int]()
+    ends = [Button(f"end {number}") for number in range(last)]
+    shown: list[str] = []
+    for number, size in enumerate(sizes):
+        page = page_of_menu(rows, ends, number, turned.append)
+        labels = [row.label for row in page]
+        assert all(MENU.covers(row.area) for row in page)
+        assert labels[size:] == [*(["more"] if len(sizes) > 1 else []), *(row.label for row in ends)]
+        shown += labels[:size]
+        if len(sizes) > 1:
+            more = page[size]
+            assert isinstance(more, Button)
+            assert more.value == f"{number + 1} of {len(sizes)}"
+            more.pick(Place(0, 0))
+            assert turned[-1] == (number + 1) % len(sizes)
+    assert shown == [row.label for row in rows]
+    # If there are fewer pages than before, the last one is shown.
+    assert [row.label for row in page_of_menu(rows, ends, 99, turned.append)] == labels
+
+
+@pytest.mark.parametrize(
+    ("over", "goes_with"),
+    [(Heading("over"), True), (Section("over"), True), (Section("over", is_open=False), False)],
+)
+def test_a_heading_is_on_the_page_of_the_row_below_it(over: Widget, goes_with: bool) -> None:
+    rows = buttons(60)
+    first, second, *_ = pages_of([*rows[: FIT - 2], over, *rows[FIT - 2 :]])
+    assert (over in second, len(first)) == (goes_with, FIT - 2 if goes_with else FIT - 1)
+    assert folded(rows, {}, lambda *_: None, MOST_LINES) == rows
 
 
 @given(rows)
@@ -115,14 +159,9 @@ def test_a_list_without_the_present_name_begins_at_its_first() -> None:
     shown = list_of(choice_of(["a", "b", "c", "d"], "another"), None, lambda _: None, lambda _: None)
     assert shown.chosen.label == "a"
     assert not any(row.is_chosen for row in shown.rows if isinstance(row, Button))
-
-
-def test_the_row_of_a_list_that_is_lit_alone_looks_different() -> None:
-    shown = list_of(choice_of(["a", "b", "c", "d"], "b"), None, lambda _: None, lambda _: None)
     dark, lit = set(shown.items(None)), set(shown.items(shown.rows[3]))
     assert lit != dark
     assert all(shown.rows[3].area.covers(item.area) for item in lit ^ dark)
-    assert shown.rows[1] is shown.chosen
 
 
 # Sections.
@@ -206,16 +245,3 @@ def test_folding_leaves_rows_out_and_changes_no_order(sizes: list[int], uses: li
     fixed = 2 + len(sizes)
     if fixed + max([len(whole[name]) for name in used[-1:]], default=0) <= MOST_LINES // ROW_LINES:
         assert lines_of(shown) <= MOST_LINES
-
-
-def test_a_menu_without_sections_stays_as_it_is() -> None:
-    rows = [Button(str(number)) for number in range(60)]
-    assert folded(rows, {}, lambda *_: None, MOST_LINES) == rows
-
-
-def test_an_open_section_is_on_the_page_of_its_first_row() -> None:
-    rows = [*(Button(str(number)) for number in range(60))]
-    rows_a_page = len(pages_of(rows)[0])
-    for is_open, label in ((True, "section"), (False, str(rows_a_page - 1))):
-        headed = [*rows[: rows_a_page - 1], Section("section", is_open=is_open), *rows[rows_a_page - 1 :]]
-        assert pages_of(headed)[1][0].label == label

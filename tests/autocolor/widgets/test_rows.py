@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor.checks import Color, Vector
-from autocolor.scene.columns import WORLD_UNITS, BarRange, Column, Row, Tier, fields_of, replaced
+from autocolor.scene.columns import WORLD_UNITS, BarRange, Column, Row, Tier, replaced
 from autocolor.scene.kinds import (
     AngleCurve,
     AngleCurveKind,
@@ -25,10 +25,10 @@ from autocolor.scene.kinds import (
     VectorKind,
     Whole,
 )
-from autocolor.scene.row_kinds import NamedRows, Nested, OneRowOf, Reference, References, Referring
+from autocolor.scene.row_kinds import NamedRows, Nested, OneRowOf, Reference, References
 from autocolor.widgets.bars import Bar
 from autocolor.widgets.items import Area
-from autocolor.widgets.rows import NAMES_A_PAGE, TableNames, World, reference_rows, rows_of
+from autocolor.widgets.rows import NAMES_A_PAGE, TableNames, World, rows_of
 from autocolor.widgets.widget import Choice, Entry, Heading, Place, Switch, Widget
 
 MIX = Tier.MIX
@@ -111,6 +111,7 @@ class Lamp(Row):
     curve: Annotated[str, Column(CurveKind({"linear": 1}), MIX, "Its curve.")] = "linear"
     hoods: Annotated[tuple[Hood, ...], Column(NamedRows(Hood), MIX, "Its hoods.")] = ()
     follows: Annotated[str | None, Column(Reference("lamps", "sun"), MIX, "What it follows.")] = None
+    post: Annotated[str, Column(Reference("posts"), MIX, "Its post.")] = "a"
     walls: Annotated[tuple[str, ...] | None, Column(References("walls"), MIX, "Its walls.")] = None
 
 
@@ -142,22 +143,19 @@ def test_each_kind_of_column_has_its_rows_in_their_order(table: Table) -> None:
         "name": Entry, "share": Bar, "tilt angle": Bar, "blades": Bar, "count": Bar, "reach": Bar,
         "on": Switch, "mode": Choice, "tint": Entry, "place x": Bar, "place y": Bar, "place z": Bar,
         "finish": Choice, "grain": Bar, "density": Bar, "shutters x": Switch, "shutters z": Switch,
-        "sheen": Switch, "follows": Choice, "walls": Switch,
+        "sheen": Switch, "follows": Choice, "post": Choice, "walls": Switch,
     }  # fmt: skip
     assert {label: type(row) for label, row in table.rows().items()} == kinds
     assert list(table.rows()) == list(kinds)
-
-
-def test_what_is_left_out_has_no_row(table: Table) -> None:
     assert not {"name", "place x"} & set(table.rows(leave_out=("name", "place")))
-
-
-def test_the_unit_is_told_with_the_help(table: Table) -> None:
     rows = table.rows()
     assert rows["tilt angle"].help == "A tilt. In degrees."
     assert rows["place y"].help == "Where it is. In world units."
     assert rows["share"].help == "A share."
     assert table.bar("tilt angle").unit == "degrees"
+    given = Table(Lamp(facing=(0.0, 0.0, -1.0)))
+    given.bar("facing x").put(0.5)
+    assert given.lamp.facing == (0.5, 0, -1)
 
 
 @pytest.mark.parametrize(
@@ -170,20 +168,27 @@ def test_pointing_along_a_bar_puts_the_number_at_that_place(table: Table, label:
     assert after.value is not None
     assert after.value != before
     assert after.low < after.value < after.high
-    others = [key for key in vars(Lamp()) if vars(table.lamp)[key] != vars(Lamp())[key]]
-    assert len(others) == 1
-
-
-def test_coordinates_reach_the_whole_size_around_the_object(table: Table) -> None:
-    bar = table.bar("place y")
-    assert (bar.low, bar.high) == pytest.approx((-2 - SIZE, 2 + SIZE))
-    assert (table.bar("reach").low, table.bar("reach").high) == pytest.approx((-2 - SIZE, 2 + SIZE))
-
-
-def test_whole_numbers_stay_whole(table: Table) -> None:
-    table.bar("blades").put(7.0)
-    assert table.lamp.blades == 7
+    changed = {key: value for key, value in vars(table.lamp).items() if value != vars(Lamp())[key]}
+    assert len(changed) == 1
     assert type(table.lamp.blades) is int
+
+
+def test_bars_reach_the_whole_size_around_the_object_or_to_their_limits(table: Table) -> None:
+    given = Table(Lamp(facing=(0.0, 0.0, -1.0), hoods=(Hood("left"),)))
+    for label, low, high in (
+        ("place x", -1 - SIZE, 1 + SIZE),
+        ("place y", -2 - SIZE, 2 + SIZE),
+        ("reach", -2 - SIZE, 2 + SIZE),
+        ("facing x", -1, 1),
+        ("tilt angle", 0, 90),
+        ("  width", 0, SIZE),
+    ):
+        assert (given.bar(label).low, given.bar(label).high) == pytest.approx((low, high))
+    # A number that must be above 0 begins with a step.
+    given.bar("  length").pick(Place(632, 8))
+    assert given.lamp.hoods[0].length == given.bar("  length").step == given.bar("  length").low
+    nowhere = World((3.0, 3.0, 3.0), (3.0, 3.0, 3.0)).range_of("x")
+    assert (nowhere.low, nowhere.high) == (2, 4)
 
 
 def test_an_absent_number_begins_at_its_start_or_the_lowest_of_its_range(table: Table) -> None:
@@ -206,14 +211,6 @@ def test_switches_choices_and_texts_put_their_values(table: Table) -> None:
     assert (lamp.on, lamp.mode, lamp.name, lamp.tint) == (False, "narrow", "sun", (0, 0, 255))
 
 
-def test_a_vector_that_is_given_has_three_bars(table: Table) -> None:
-    given = Table(Lamp(facing=(0.0, 0.0, -1.0)))
-    assert "facing x" not in table.rows()
-    given.bar("facing x").put(0.5)
-    assert given.lamp.facing == (0.5, 0, -1)
-    assert (given.bar("facing x").low, given.bar("facing x").high) == (-1, 1)
-
-
 def test_a_row_of_one_of_several_classes_has_the_parameters_of_that_class(table: Table) -> None:
     table.bar("grain").put(0.75)
     assert table.lamp.finish == Smooth(0.75)
@@ -222,11 +219,6 @@ def test_a_row_of_one_of_several_classes_has_the_parameters_of_that_class(table:
     assert "grain" not in table.rows()
     table.bar("size").put(5.0)
     assert repr(table.lamp.finish) == repr(Coarse(5))
-
-
-def test_a_row_within_the_row_changes_in_its_place(table: Table) -> None:
-    table.bar("density").put(0.5)
-    assert table.lamp.haze == Haze(0.5)
 
 
 def test_a_curve_over_angles_is_switched_and_has_a_bar_for_each_of_its_points(table: Table) -> None:
@@ -277,20 +269,6 @@ def test_the_end_beyond_everything_is_less_than_two_steps_away(
             assert margin - 1e-6 <= distance <= margin + 2 * step + 1e-6
 
 
-def test_a_point_without_size_has_a_range_too() -> None:
-    nowhere = World((3.0, 3.0, 3.0), (3.0, 3.0, 3.0))
-    usual = nowhere.range_of("x")
-    assert (usual.low, usual.high) == (2, 4)
-
-
-def test_a_length_reaches_from_nothing_to_the_size_of_the_object() -> None:
-    table = Table(Lamp(hoods=(Hood("left"),)))
-    assert (table.bar("  width").low, table.bar("  width").high) == pytest.approx((0, SIZE))
-    # One that must be above 0 begins with a step.
-    table.bar("  length").pick(Place(632, 8))
-    assert table.lamp.hoods[0].length == table.bar("  length").step == table.bar("  length").low
-
-
 def test_each_row_by_name_has_a_box_and_below_it_its_rows() -> None:
     table = Table(Lamp(hoods=(Hood("left"), Hood("x", on=False))))
     rows = rows_of(
@@ -317,133 +295,82 @@ def test_each_row_by_name_has_a_box_and_below_it_its_rows() -> None:
     assert width.high == pytest.approx(SIZE)
 
 
-def test_names_of_other_tables_are_chosen_among_those_that_the_world_knows() -> None:
-    tables = {"lamps": ("lamp", "sky"), "walls": ("north", "south")}
-    world = World(WORLD.low, WORLD.high, TableNames(tables.__getitem__, {}))
-    table = Table()
-    for label in ("follows", "walls", "  south"):
-        rows = {row.label: row.at(AREA) for row in rows_of(table.lamp, table.put, world)}
-        rows[label].pick(Place(632, 8))
-    assert (table.lamp.follows, table.lamp.walls) == ("sun", ("south",))
-
-
 # Names of rows of other tables are chosen by pointing: one of them, or a list.
 
 NEXT = Place(600, 8)
 
 
-@dataclass(frozen=True)
-class Rope(Row):
-    """A column of each kind of reference."""
+class Posts(Table):
+    """A lamp in a world that knows some names."""
 
-    post: Annotated[str, Column(Reference("posts"), Tier.MIX, "Its post.")] = "a"
-    hook: Annotated[str | None, Column(Reference("posts"), Tier.MIX, "Its hook.")] = None
-    end: Annotated[str | None, Column(Reference("posts", "ground"), Tier.MIX, "Its end.")] = None
-    only_posts: Annotated[tuple[str, ...] | None, Column(References("posts"), Tier.MIX, "Posts.")] = None
-
-
-class Menu:
-    """The rows of one column, which change its value."""
-
-    def __init__(self, name: str, value: Any = None, posts: Sequence[str] = ("a", "b", "c")) -> None:
-        self.field = fields_of(Rope)[name]
-        self.value, self.posts = value, posts
+    def __init__(self, lamp: Lamp | None = None, names: Sequence[str] = ("a", "b", "c")) -> None:
+        super().__init__(lamp)
         self.pages: dict[str, int] = {}
+        self.names = names
 
-    def take(self, value: Any) -> None:
-        self.value = value
-
-    def _posts(self, table: str) -> Sequence[str]:
-        assert table == "posts"
-        return self.posts
-
-    @property
-    def rows(self) -> list[Widget]:
-        kind = self.field.column.kind
-        assert isinstance(kind, Referring)
-        known = TableNames(self._posts, self.pages)
-        found = reference_rows("its posts", self.field, kind, self.value, self.take, known)
-        return [row.at(AREA) for row in found]
+    def rows(self, **options: Any) -> dict[str, Widget]:
+        world = World(WORLD.low, WORLD.high, TableNames(lambda table: self.names, self.pages))
+        left_out = [name for name in vars(self.lamp) if name not in ("post", "follows", "walls")]
+        return {row.label: row.at(AREA) for row in rows_of(self.lamp, self.put, world, leave_out=left_out)}
 
     @property
     def ticked(self) -> dict[str, bool]:
-        return {row.label: row.is_on for row in self.rows if isinstance(row, Switch)}
+        return {label: row.is_on for label, row in self.rows().items() if isinstance(row, Switch)}
 
 
-def test_one_name_is_chosen_among_those_of_its_table() -> None:
-    menu = Menu("post", "a")
-    (row,) = menu.rows
-    assert isinstance(row, Choice)
-    assert list(row.names) == ["a", "b", "c"]
-    row.pick(NEXT)
-    assert menu.value == "b"
+@pytest.mark.parametrize(
+    ("label", "names", "shown", "taken"),
+    [
+        ("post", ("a", "b", "c"), ["a", "b", "c"], ["b", "c", "a"]),
+        ("follows", ("a", "sun", "none"), ["none", "sun", "a"], ["sun", "a", None]),
+    ],
+)
+def test_a_name_is_chosen_among_those_of_its_table_or_none_if_it_may_be_absent(
+    label: str, names: Sequence[str], shown: list[str], taken: list[str | None]
+) -> None:
+    menu, found = Posts(names=names), []
+    for _ in names:
+        row = menu.rows()[label]
+        assert isinstance(row, Choice)
+        assert list(row.names) == shown
+        row.pick(NEXT)
+        found.append(getattr(menu.lamp, label))
+    assert found == taken
 
 
-def test_a_name_that_may_be_absent_can_be_none() -> None:
-    menu = Menu("hook", "c")
-    menu.rows[0].pick(NEXT)
-    assert menu.value is None
-    assert isinstance(menu.rows[0], Choice)
-    assert menu.rows[0].present == "none"
-
-
-def test_a_word_is_among_the_names() -> None:
-    menu = Menu("end", posts=("a", "ground", "none"))
-    (row,) = menu.rows
-    assert isinstance(row, Choice)
-    assert list(row.names) == ["none", "ground", "a"]
-    taken = []
-    for _ in row.names:
-        menu.rows[0].pick(NEXT)
-        taken.append(menu.value)
-    assert taken == ["ground", "a", None]
-
-
-def test_a_list_that_is_absent_is_one_box_that_makes_it_without_a_name() -> None:
-    menu = Menu("only_posts")
-    assert menu.ticked == {"its posts": False}
-    menu.rows[0].pick(NEXT)
-    assert menu.value == ()
-    assert menu.ticked == {"its posts": True, "  a": False, "  b": False, "  c": False}
-    menu.rows[0].pick(NEXT)
-    assert menu.value is None
-
-
-def test_names_are_put_into_a_list_and_taken_out_in_the_order_of_their_table() -> None:
-    menu = Menu("only_posts", ("b",))
-    assert menu.ticked["  b"]
-    for row in (3, 1, 2):
-        menu.rows[row].pick(NEXT)
-    assert menu.value == ("a", "c")
-    assert menu.rows[1].help == "Remove a from the list: its posts."
-    assert menu.rows[2].help == "Add b to the list: its posts."
-
-
-def test_the_same_name_in_two_lists_is_told_apart() -> None:
-    (*_, row) = Menu("only_posts", ()).rows
-    assert row.key == "its posts.  c"
+def test_a_list_is_made_by_its_box_and_names_go_in_and_out_in_the_order_of_their_table() -> None:
+    menu = Posts()
+    assert menu.ticked == {"walls": False}
+    menu.rows()["walls"].pick(NEXT)
+    assert vars(menu.lamp)["walls"] == ()
+    assert menu.ticked == {"walls": True, "  a": False, "  b": False, "  c": False}
+    for label in ("  b", "  c", "  a", "  b"):
+        menu.rows()[label].pick(NEXT)
+    assert menu.lamp.walls == ("a", "c")
+    assert menu.rows()["  a"].help == "Remove a from the list: walls."
+    assert menu.rows()["  b"].help == "Add b to the list: walls."
+    assert menu.rows()["  c"].key == "walls.  c"
+    menu.rows()["walls"].pick(NEXT)
+    assert menu.lamp.walls is None
 
 
 def test_many_names_come_in_pages() -> None:
-    posts = [f"post {number}" for number in range(2 * NAMES_A_PAGE + 1)]
-    menu = Menu("only_posts", ("post 24",), posts)
-    seen = []
+    names = [f"n{number}" for number in range(2 * NAMES_A_PAGE + 1)]
+    menu, seen = Posts(Lamp(walls=("n24",)), names), list[str]()
     for title in ("1 to 12", "13 to 24", "25 to 25"):
-        _, page, *boxes = menu.rows
+        page = menu.rows()["walls"]
         assert isinstance(page, Choice)
-        assert (page.label, page.present) == ("posts", title)
-        assert page.help == "The page of the 25 posts that is shown below; 1 are in the list."
-        assert len(boxes) <= NAMES_A_PAGE
-        seen += [box.label.strip() for box in boxes]
+        assert page.present == title
+        assert page.help == "The page of the 25 walls that is shown below; 1 are in the list."
+        seen += [label.strip() for label in menu.ticked if label != "walls"]
         page.pick(NEXT)
-    assert seen == posts
-    assert menu.value == ("post 24",)
-    assert menu.rows[2].label == "  post 0"
+    assert seen == names
+    assert menu.lamp.walls == ("n24",)
+    assert "  n0" in menu.ticked
 
 
 @pytest.mark.parametrize("count", [0, 1, 12, 13])
 def test_a_page_that_is_no_more_there_gives_way_to_the_last(count: int) -> None:
-    menu = Menu("only_posts", (), [f"post {number}" for number in range(count)])
-    menu.pages["posts"] = 5
-    last = [row.label for row in menu.rows][-1]
-    assert last == (f"  post {count - 1}" if count else "its posts")
+    menu = Posts(Lamp(walls=()), [f"n{number}" for number in range(count)])
+    menu.pages["walls"] = 5
+    assert list(menu.ticked)[-1] == (f"  n{count - 1}" if count else "walls")

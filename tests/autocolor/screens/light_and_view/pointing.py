@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from autocolor import Light, Mesh, Scene, Surface, View, scene_of
+from autocolor.arrays import Words
 from autocolor.screens.light_and_view.handles import MovablePoint
 from autocolor.screens.light_and_view.light_and_view_screen import LightAndViewScreen
+from autocolor.screens.light_and_view.orthographic_views import OrthographicViews
 from autocolor.screens.screen import Handle
 from autocolor.screens.viewer import Viewer
 from ramtek_emu import Ramtek9300
@@ -15,6 +17,7 @@ from tests.small import cube
 
 KEY = Light("key", (2.0, -3.0, 4.0), aim=(0.5, 0.5, 0.5), concentration=2.0)
 FILL = Light("fill", (-3.0, -3.0, 1.0), intensity=0.5)
+VIEWS = OrthographicViews((0.0, 0.0, 0.0), 10.0)
 
 
 def boxed(*lights: Light) -> Scene:
@@ -31,6 +34,17 @@ def opened(scene: Scene) -> Hand:
     viewer.session.turn_to("light and view")
     viewer.tell("")
     return Hand(viewer)
+
+
+def display_of(hand: Hand) -> Ramtek9300:
+    """The display."""
+    assert isinstance(hand.viewer.display, Ramtek9300)
+    return hand.viewer.display
+
+
+def words_of(hand: Hand) -> Words:
+    """The words of the display."""
+    return display_of(hand).words
 
 
 def screen_of(hand: Hand) -> LightAndViewScreen:
@@ -54,6 +68,21 @@ def place_of(hand: Hand, movable: MovablePoint) -> tuple[int, int]:
     """Where something can be taken hold of."""
     handle = handle_of(hand, movable)
     return handle.element, handle.line
+
+
+def grab(hand: Hand, *places: tuple[int, int]) -> None:
+    """Hold TRACK at the first place, go over the others, and do not let go."""
+    hand.move(*places[0])
+    hand.joystick.track = True
+    hand.viewer.poll()
+    for place in places[1:]:
+        hand.move(*place)
+
+
+def let_go(hand: Hand) -> None:
+    """Let go of TRACK."""
+    hand.joystick.track = False
+    hand.viewer.poll()
 
 
 def is_undone_at_once(hand: Hand, before: Scene) -> bool:

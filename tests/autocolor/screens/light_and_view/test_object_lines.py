@@ -46,17 +46,6 @@ def on_a_floor() -> Scene:
     return scene_of(Mesh.joined([cube(), floor]), view=EYE).with_part("floor", stage=True)
 
 
-def test_the_lines_of_a_cube_are_its_edges_in_each_view() -> None:
-    scene = scene_of(cube(), view=EYE)
-    views = fitted_views(scene.object_coordinates)
-    lines = ObjectLines()
-    for side in SIDES:
-        strokes = lines.of_side(scene, views, side)
-        # From the side, edges cover each other in pairs, and those toward the viewer are points.
-        assert len(strokes.features) == 4
-        assert len(strokes.silhouette) == len(strokes.stage) == 0
-
-
 def test_a_ball_is_drawn_as_its_outline() -> None:
     scene = scene_of(sphere(32, 16), view=EYE)
     views = fitted_views(scene.object_coordinates)
@@ -102,12 +91,17 @@ def test_what_is_hidden_is_left_out_one_view_at_a_time() -> None:
     assert not lines.leave_out_hidden(scene)
 
 
-def test_the_eye_sees_all_edges_of_a_cube_or_those_that_are_not_hidden() -> None:
+def test_the_lines_of_a_cube_are_its_edges_or_those_that_are_not_hidden() -> None:
     scene = scene_of(cube(), view=EYE)
     lines = ObjectLines()
     assert len(lines.of_eye(scene, AREA).features) == 12
     visible = visible_depths(visible_surfaces(scene.mesh, EYE, (1,), 480, 640))
     assert len(lines.of_eye(scene, AREA, visible).features) == 9
+    # From the side, edges cover each other in pairs, and those toward the viewer are points.
+    views = fitted_views(scene.object_coordinates)
+    for side in SIDES:
+        strokes = lines.of_side(scene, views, side)
+        assert list(map(len, strokes)) == [0, 4, 0]
 
 
 def test_a_scene_without_polygons_has_no_lines() -> None:
@@ -145,16 +139,6 @@ def test_the_far_side_of_a_cube_is_hidden_within_a_ring_around_it(side: ViewSide
     }
 
 
-def test_the_eye_sees_nine_edges_of_a_cube() -> None:
-    view = View((4.0, 5.0, 6.0), target=(0.5, 0.5, 0.5))
-    edges = mesh_edges(cube())
-    depths = visible_depths(visible_surfaces(cube(), view, (1,), 240, 320))
-    found = without_hidden(edges.features, edges.coordinates, depths)
-    # The three that meet in the far corner are hidden.
-    assert len(found) == 9
-    assert (edges.coordinates[found] != 0).any(axis=2).all()
-
-
 def test_an_edge_outside_of_the_picture_counts_as_visible() -> None:
     view = View((4.0, 5.0, 6.0), direction=(-1.0, -1.0, -1.0))
     edges = mesh_edges(cube())
@@ -166,7 +150,7 @@ def test_an_edge_outside_of_the_picture_counts_as_visible() -> None:
 
 
 def test_the_silhouette_of_a_fine_sphere_is_not_hidden() -> None:
-    mesh = sphere(200, 101)
+    mesh = sphere(120, 61)
     edges = mesh_edges(mesh)
     for side in SIDES:
         outline = silhouette_toward(edges, side.toward)
@@ -192,22 +176,6 @@ def test_a_stage_hides_nothing() -> None:
         assert len(without_hidden(edges.features, edges.coordinates, depths)) == count
 
 
-def test_there_are_no_depths_of_nothing() -> None:
-    assert depths_toward(Mesh(np.zeros((0, 3)), np.zeros((0, 4), np.intp)), TOP) is None
-    assert depths_toward(cube(), TOP, []) is None
-
-
-@given(meshes())
-def test_what_is_not_hidden_is_some_of_the_edges_in_their_order(mesh: Mesh) -> None:
-    edges = mesh_edges(mesh)
-    for side in SIDES:
-        depths = depths_toward(mesh, side)
-        assert depths is not None
-        rows = iter(edges.features.tolist())
-        found = without_hidden(edges.features, edges.coordinates, depths)
-        assert all(pair in rows for pair in found.tolist())
-
-
 Place = tuple[float, ...]
 
 
@@ -231,49 +199,17 @@ def folded(degrees: float) -> Mesh:
     return Mesh(np.array([*coordinates, *bent]), np.array([(0, 1, 2, 3), (1, 4, 5, 2)]))
 
 
-def test_a_cube_has_twelve_creases() -> None:
-    edges = mesh_edges(cube())
-    assert len(edges.features) == 12
-    assert len(edges.smooth) == 0
-    assert {len({a != b for a, b in zip(*pair, strict=True)}) for pair in map(tuple, lines(edges))} == {2}
-    assert all(sum(a != b for a, b in zip(*pair, strict=True)) == 1 for pair in map(tuple, lines(edges)))
-
-
 def test_the_diagonals_of_divided_sides_are_no_creases() -> None:
     triangles = [three for a, b, c, d in CUBE_QUADS for three in ((a, b, c), (a, c, d))]
     edges = mesh_edges(Mesh(np.array(CUBE_NODES), np.array(triangles)))
     assert lines(edges) == lines(mesh_edges(cube()))
-    assert len(edges.smooth) == 6
-
-
-def test_a_sphere_has_no_feature() -> None:
-    edges = mesh_edges(sphere(32, 16))
-    assert len(edges.features) == 0
-    assert len(edges.smooth) == sphere(32, 16).edge_count
-
-
-def test_an_open_grid_has_its_border() -> None:
-    edges = mesh_edges(grid(4, 3, (0, 0, 0), (4, 0, 0), (0, 3, 0)))
-    assert len(edges.features) == 2 * (4 + 3)
-    assert len(edges.smooth) == 3 * 3 + 4 * 2
-    for pair in lines(edges):
-        (ax, ay, _), (bx, by, _) = pair
-        assert (ax == bx and ax in (0, 4)) or (ay == by and ay in (0, 3))
+    assert (len(edges.features), len(edges.smooth)) == (12, 6)
 
 
 @pytest.mark.parametrize(("fold", "creases"), [(0, 0), (29.9, 0), (30, 0), (30.1, 1), (90, 1), (179, 1)])
 def test_a_crease_is_an_angle_above_the_crease_angle(fold: float, creases: int) -> None:
     for sign in (1, -1):
         assert len(mesh_edges(folded(sign * fold), crease_angle=30).features) == 6 + creases
-
-
-def test_a_cylinder_of_twelve_sides_has_two_rims_and_no_lines_along_it() -> None:
-    turns = np.radians(np.arange(0, 360, 30))
-    rim = np.stack([np.cos(turns), np.sin(turns), 0 * turns], axis=1)
-    coordinates = np.concatenate([rim, rim + np.array([0, 0, 1])])
-    quads = [(k, (k + 1) % 12, 12 + (k + 1) % 12, 12 + k) for k in range(12)]
-    edges = mesh_edges(Mesh(coordinates, np.array(quads)))
-    assert (len(edges.features), len(edges.smooth)) == (24, 12)
 
 
 def test_polygons_of_different_parts_are_divided_by_a_line_and_of_one_part_by_none() -> None:
@@ -290,20 +226,6 @@ def test_a_part_can_be_left_out() -> None:
     assert lines(mesh_edges(both, [0])) == lines(mesh_edges(left))
     assert lines(mesh_edges(both, [1])) == lines(mesh_edges(stage))
     assert len(mesh_edges(both, []).features) == 0
-
-
-@given(st.integers(0, 1 << 32))
-def test_the_way_the_polygons_run_does_not_matter(seed: int) -> None:
-    mesh = sphere(24, 12)
-    turned = np.random.default_rng(seed).integers(0, 2, len(mesh.node_numbers)).astype(bool)
-    numbers = mesh.node_numbers.copy()
-    numbers[turned] = numbers[turned][:, [1, 0, 3, 2]]
-    triangle = turned & (mesh.node_numbers[:, 2] == mesh.node_numbers[:, 3])
-    numbers[triangle] = mesh.node_numbers[triangle][:, [1, 0, 2, 2]]
-    edges = mesh_edges(Mesh(mesh.coordinates, numbers))
-    assert len(edges.features) == 0
-    one, other = edges.polygons
-    assert edges.same_direction.tolist() == (turned[one] != turned[other]).tolist()
 
 
 def test_a_sheet_whose_polygons_are_there_for_each_face_has_its_border_alone() -> None:
@@ -340,11 +262,6 @@ def test_each_edge_of_polygons_with_an_area_is_a_feature_or_smooth(mesh: Mesh) -
     smooth = {frozenset(map(tuple, pair)) for pair in mesh.coordinates[edges.smooth].tolist()}
     assert lines(edges) | smooth == expected
     assert len(edges.features) + len(edges.smooth) == len(expected)
-
-
-def test_a_mesh_without_polygons_has_no_edges() -> None:
-    edges = mesh_edges(Mesh(np.zeros((0, 3)), np.zeros((0, 4), np.intp)))
-    assert edges.features.shape == edges.smooth.shape == (0, 2)
 
 
 def test_of_too_many_features_the_longest_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -386,29 +303,12 @@ def test_what_is_behind_the_eye_is_left_out_and_what_passes_it_is_cut_off() -> N
     assert found.tolist() == [[*one, *end], [*end, *one]]
 
 
-def test_an_eye_within_the_object_sees_its_edges() -> None:
-    view = View((0.5, 0.5, 0.5), direction=(0.3, 1.0, 0.1), field_of_view=120.0)
-    edges = mesh_edges(cube())
-    found = perspective_strokes(edges.coordinates, edges.features, view, AREA)
-    assert 4 <= len(found) < 12
-
-
 @given(meshes(), views())
 def test_all_strokes_are_within_the_area(mesh: Mesh, view: View) -> None:
     edges = mesh_edges(mesh)
     found = perspective_strokes(edges.coordinates, edges.features, view, AREA)
     assert (found >= [AREA.left, AREA.top] * 2).all()
     assert (found <= [AREA.right, AREA.bottom] * 2).all()
-
-
-def test_no_size_of_the_object_makes_a_difference() -> None:
-    edges = mesh_edges(sphere(8, 5), crease_angle=1)
-    view = View((3.0, 4.0, 1.0), target=(0.0, 0.0, 0.0))
-    expected = perspective_strokes(edges.coordinates, edges.features, view, AREA)
-    for size in (2.0**-60, 2.0**60):
-        scaled = View((3 * size, 4 * size, size), target=(0.0, 0.0, 0.0))
-        found = perspective_strokes(edges.coordinates * size, edges.features, scaled, AREA)
-        assert found == pytest.approx(expected)
 
 
 def turned_at_random(mesh: Mesh, seed: int) -> Mesh:
@@ -418,17 +318,6 @@ def turned_at_random(mesh: Mesh, seed: int) -> Mesh:
     turned &= numbers[:, 2] != numbers[:, 3]
     numbers[turned] = numbers[turned][:, ::-1]
     return Mesh(mesh.coordinates, numbers)
-
-
-def test_the_silhouette_of_a_sphere_is_a_circle() -> None:
-    columns = 32
-    edges = mesh_edges(sphere(columns, 17))
-    found = silhouette_toward(edges, (0.0, 0.0, 1.0))
-    # The rows beside the equator are its neighbors.
-    assert len(found) == columns
-    heights = edges.coordinates[found][..., 2]
-    assert np.ptp(heights) == pytest.approx(0, abs=1e-12)
-    assert abs(heights[0, 0]) < np.sin(np.pi / 17)
 
 
 @given(directions(), st.integers(0, 1 << 32))
@@ -450,24 +339,8 @@ def test_a_distant_eye_sees_the_silhouette_of_its_direction(direction: Vector) -
     assume(np.abs(toward @ edges.normals).min() > 1e-6)
     expected = silhouette_toward(edges, toward.tolist())
     assert silhouette_from(edges, (1e9 * toward).tolist()).tolist() == expected.tolist()
-
-
-def test_an_eye_nearby_sees_a_smaller_cap_of_a_sphere() -> None:
-    edges = mesh_edges(sphere(64, 33))
-    found = silhouette_from(edges, (0.0, 0.0, 2.0))
-    # The horizon as seen from the distance 2 is at the height 1 / 2.
-    assert len(found) == 64
-    assert np.abs(edges.coordinates[found][..., 2] - 0.5).max() < 0.1
-
-
-def test_an_eye_within_sees_no_silhouette() -> None:
-    assert len(silhouette_from(mesh_edges(sphere()), (0.1, 0.2, 0.0))) == 0
-
-
-def test_looking_along_a_cylinder_shows_no_lines_along_it() -> None:
-    turns = np.linspace(0, 2 * np.pi, 40, endpoint=False)
-    rim = np.stack([np.cos(turns), np.sin(turns), 0 * turns], axis=1)
-    quads = [(k, (k + 1) % 40, 40 + (k + 1) % 40, 40 + k) for k in range(40)]
-    edges = mesh_edges(Mesh(np.concatenate([rim, rim + np.array([0, 0, 1])]), np.array(quads)))
-    assert len(silhouette_toward(edges, (0.0, 0.0, 1.0))) == 0
-    assert len(silhouette_toward(edges, (0.6, 0.8, 0.0))) == 2
+    # The horizon as seen from the distance 2 is at half of the radius, and from within there is none.
+    ball = mesh_edges(sphere(48, 25))
+    found = silhouette_from(ball, (2 * toward).tolist())
+    assert ball.coordinates[found].reshape(-1, 3) @ toward == pytest.approx(0.5, abs=0.15)
+    assert len(silhouette_from(ball, (0.2 * toward).tolist())) == 0

@@ -61,13 +61,10 @@ def test_the_unit_explains_by_a_row_of_the_menu_and_a_click(hand: Hand) -> None:
     assert hand.viewer.message == "click the pixel to explain"
     hand.click(element, line)
     assert (hand.viewer.page, hand.viewer.session.pixel) == ("explain", (line, element))
-    # The next click in the picture is a plain one.
+    # The next click in the picture is a plain one, and one after the row was taken back.
     hand.viewer.on_key("escape")
     hand.click(ELEMENT + 40, LINE + 40)
     assert hand.viewer.page == "picture"
-
-
-def test_escape_takes_the_row_of_the_menu_back(hand: Hand) -> None:
     hand.open_menu()
     hand.pick("explain a pixel")
     hand.viewer.on_key("escape")
@@ -92,6 +89,11 @@ def test_arrows_and_a_click_in_the_magnifier_explain_a_neighbor(hand: Hand) -> N
     assert session.pixel == (LINE - 2, ELEMENT + 4)
     hand.click(20, 300)
     assert session.pixel == (LINE - 2, ELEMENT + 4)
+    # An edit is explained at once.
+    before = shown(hand)
+    hand.viewer.on_key("2", typed="2")
+    assert hand.viewer.page == "explain"
+    assert shown(hand) == expected(hand, LINE - 2, ELEMENT + 4) != before
 
 
 def test_a_neighbor_stays_in_the_picture(hand: Hand) -> None:
@@ -104,24 +106,6 @@ def test_a_neighbor_stays_in_the_picture(hand: Hand) -> None:
     assert hand.viewer.session.pixel == (0, 0)
 
 
-def test_an_edit_is_explained_at_once(hand: Hand) -> None:
-    click_with_shift(hand, ELEMENT, LINE)
-    before = shown(hand)
-    hand.viewer.on_key("2", typed="2")
-    assert hand.viewer.page == "explain"
-    assert shown(hand) == expected(hand, LINE, ELEMENT) != before
-
-
-def test_a_page_of_rows_stands_above_the_message_line(hand: Hand) -> None:
-    row = rows_of_text(hand.viewer.studio.explain(LINE, ELEMENT))[0]
-    for number in range(PAGE):
-        for item in items_of_row(row._replace(says="long " * 40), number):
-            assert SCREEN.covers(item.area)
-            assert not MESSAGE.overlaps(item.area)
-            assert not MAGNIFIER.overlaps(item.area)
-            assert item.area.top >= TOP
-
-
 def test_the_magnifier_shows_the_words_around_the_pixel(hand: Hand) -> None:
     click_with_shift(hand, ELEMENT, LINE)
     display, words = hand.viewer.display, hand.viewer.studio.words
@@ -131,3 +115,16 @@ def test_the_magnifier_shows_the_words_around_the_pixel(hand: Hand) -> None:
             top = MAGNIFIER.top + SIDE * (down + 2) + SIDE // 2
             left = MAGNIFIER.left + SIDE * (across + 4) + SIDE // 2
             assert display.words[top, left] == words[LINE + down, ELEMENT + across]
+
+
+def test_the_rows_and_the_magnifier_are_drawn_as_they_were_above_the_message_line(hand: Hand) -> None:
+    rows = rows_of_text(hand.viewer.studio.explain(LINE, ELEMENT))
+    items = []
+    for number in range(PAGE):
+        row = rows[number % len(rows)]._replace(says="long " * 40)
+        items += items_of_row(row, number)
+    for item in items:
+        assert SCREEN.covers(item.area)
+        assert not MESSAGE.overlaps(item.area)
+        assert not MAGNIFIER.overlaps(item.area)
+        assert item.area.top >= TOP

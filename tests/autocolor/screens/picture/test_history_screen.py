@@ -6,10 +6,8 @@ import pytest
 
 from autocolor.screens.picture.history_screen import BEGIN, MOST_LETTERS, MOST_ROWS, StepRow
 from autocolor.screens.viewer import Viewer
-from autocolor.studio import Studio
 from autocolor.widgets.items import GRAY, WHITE
 from ramtek_emu import Ramtek9300
-from tests.autocolor.screens.ball import seen_on
 from tests.autocolor.screens.boxes import hint_of
 from tests.autocolor.screens.hand import Hand
 from tests.small import boxes
@@ -64,28 +62,11 @@ def test_a_click_goes_to_a_step_and_one_on_an_undone_step_goes_forward(tmp_path:
     assert hand.viewer.page == "history"
     hand.viewer.on_key("y", control=True)
     assert [row.is_chosen for row in rows_of(hand)] == [False, True, False, False, False]
-
-
-def test_another_edit_forgets_the_undone_steps(tmp_path: Path) -> None:
-    hand = hand_after(4, tmp_path)
-    hand.pick("step 2")
+    # Another edit forgets the undone steps.
     hand.viewer.session.edit(hand.viewer.session.scene.replace(ambient=0.4))
-    hand.viewer.board.forget()
-    assert len(rows_of(hand)) == 4
-    assert rows_of(hand)[-1].shown.endswith("ambient 0.1 -> 0.4")
-
-
-def test_a_click_is_drawn_as_a_fresh_studio_draws_the_scene(tmp_path: Path) -> None:
-    hand = hand_after(4, tmp_path)
-    hand.pick("step 2")
-    scene = hand.viewer.studio.scene
-    hand.open_menu()
-    hand.pick("< picture")
-    hand.move(300, 300)
     hand.viewer.tell("")
-    display = Ramtek9300()
-    Studio(scene, display)
-    assert seen_on(hand) == (display.words.tobytes(), display.entries.tobytes())
+    assert [row.label for row in rows_of(hand)] == ["step 0", "step 1", "step 2"]
+    assert rows_of(hand)[-1].shown.endswith("ambient 0.1 -> 0.4")
 
 
 @pytest.mark.parametrize("steps", [MOST_ROWS - 1, MOST_ROWS, 3 * MOST_ROWS])

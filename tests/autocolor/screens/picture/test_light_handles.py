@@ -1,11 +1,12 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
-from autocolor import Light, Scene, Studio
+from autocolor import Light, Scene
 from autocolor.lighting.picking import cone_placed, highlight_placed, rims, specular_shares
 from autocolor.screens.message_line import MESSAGE
 from autocolor.screens.picture.light_handles import HandleKey
@@ -103,49 +104,26 @@ def test_a_highlight_is_refused_on_the_background_and_still_held(hand: Hand) -> 
     hand.click(*hand.handle("highlight of key"))
     hand.click(*BACKGROUND)
     assert scene_of(hand) is before
-    assert hand.viewer.message == (
-        "a highlight must be dragged to a surface, not to the background; choose another pixel"
-    )
+    assert hand.viewer.session.news.is_warning
     hand.click(*PLACE)
     assert hand.viewer.studio.highlight_of("key") == PLACE[::-1]
-
-
-def test_a_drag_over_the_background_keeps_the_last_good_place(hand: Hand) -> None:
-    hand.drag(hand.handle("highlight of key"), PLACE, BACKGROUND)
-    assert hand.viewer.studio.highlight_of("key") == PLACE[::-1]
+    # A drag over the background keeps the last good place, and Escape takes a drag back.
+    placed = scene_of(hand)
+    hand.drag(hand.handle("highlight of key"), MIDDLE, BACKGROUND)
+    assert hand.viewer.studio.highlight_of("key") == MIDDLE[::-1]
     assert hand.viewer.session.news.is_warning
-    assert len(hand.viewer.studio.history.to_undo) == 1
-
-
-def test_escape_takes_a_drag_back(hand: Hand) -> None:
-    before = scene_of(hand)
+    hand.viewer.session.undo()
     hand.move(*hand.handle("highlight of key"))
     hand.joystick.track = True
     hand.viewer.poll()
-    hand.move(*PLACE)
-    assert scene_of(hand) is not before
+    hand.move(*MIDDLE)
+    assert scene_of(hand) is not placed
     hand.viewer.on_key("escape")
-    assert scene_of(hand) is before
-    assert not hand.viewer.studio.history.to_undo
+    assert scene_of(hand) is placed
+    assert hand.viewer.studio.history.to_undo == (before,)
 
 
-def test_a_highlight_that_was_placed_is_where_it_was_placed_and_not_searched(
-    at_lights: Hand, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    hand = at_lights
-    start = hand.handle("highlight of key")
-
-    def search(studio: Studio, light: str) -> None:
-        raise AssertionError
-
-    monkeypatch.setattr(Studio, "highlight_of", search)
-    hand.drag(start, (330, 240), PLACE)
-    assert hand.handle("highlight of key") == PLACE
-    hand.drag(hand.handle("end of the cone of key"), (330, 240))
-    assert hand.handle("highlight of key") == PLACE
-
-
-def test_a_dragged_highlight_keeps_beside_the_menu(at_lights: Hand) -> None:
+def test_a_dragged_highlight_keeps_beside_the_menu_of_its_screen(at_lights: Hand) -> None:
     hand = at_lights
     scene = scene_of(hand)
     hand.viewer.session.edit(scene.replace(view=scene.view.replace(field_of_view=12.0)))
@@ -241,6 +219,7 @@ def test_the_marks_are_at_the_handles_and_leave_the_picture_as_it_was(at_lights:
     hand.pick("on", 0.95)
     assert not key(hand).on
     assert not yellow(hand)
+    assert not hand.viewer.board.screen.handles()
     display = hand.viewer.display
     assert isinstance(display, Ramtek9300)
     beside = np.s_[hand.viewer.board.layout.beside[-1].area.bottom + 1 : WORK.bottom + 1, : WORK.right + 1]
@@ -260,50 +239,29 @@ def test_while_something_is_dragged_the_rims_are_left_out(at_lights: Hand) -> No
     assert len(yellow(hand)) > 40
 
 
-def test_a_light_that_is_off_has_no_handles(hand: Hand) -> None:
-    hand.viewer.studio.remove_light("fill")
-    hand.open_menu()
-    hand.pick("key", 0.95)
-    assert not hand.viewer.board.screen.handles()
-    hand.pick("key", 0.95)
-    assert hand.viewer.board.screen.handles()
-
-
-def test_the_picture_has_the_highlights_of_all_lights_and_no_mark(hand: Hand) -> None:
-    labels = [each.label for each in hand.viewer.board.screen.handles()]
-    assert labels == ["highlight of fill", "highlight of key"]
-    assert not yellow(hand)
-
-
 def test_without_a_menu_the_message_line_names_a_highlight_under_the_pointer_and_nothing_else(
     hand: Hand,
 ) -> None:
     foot = slice(MESSAGE.top, MESSAGE.bottom + 1)
     hand.viewer.tell("")
     hand.move(20, 20)
+    assert not yellow(hand)
+    assert [each.label for each in hand.viewer.board.screen.handles()] == [
+        "highlight of fill",
+        "highlight of key",
+    ]
     display, picture = hand.viewer.display, hand.viewer.studio.words
     assert isinstance(display, Ramtek9300)
     assert (display.words[foot] == picture[foot]).all()
     hand.move(*hand.handle("highlight of key"))
     assert hand.viewer.board.messages[-1].text.startswith("highlight of key: drag it")
     assert (display.words[foot] != picture[foot]).any()
+    # It does not depend on the message before.
+    hand.viewer.tell("a long message " * 8)
+    hand.viewer.tell("")
+    assert hand.viewer.board.messages[-1].text.startswith("highlight of key")
     hand.move(20, 20)
     assert (display.words[foot] == picture[foot]).all()
-
-
-def test_the_hint_of_a_highlight_does_not_depend_on_the_message_before_and_goes_with_the_pointer(
-    hand: Hand,
-) -> None:
-    viewer, place = hand.viewer, hand.handle("highlight of key")
-    display, picture = viewer.display, viewer.studio.words
-    assert isinstance(display, Ramtek9300)
-    hand.move(*place)
-    viewer.tell("a long message " * 8)
-    viewer.tell("")
-    assert viewer.board.page() == viewer.board.page()
-    assert viewer.board.messages[-1].text.startswith("highlight of key")
-    viewer.clear()
-    assert (display.words == picture).all()
 
 
 def test_the_lights_screen_marks_all_highlights_at_rest_and_the_chosen_one_is_yellow(at_lights: Hand) -> None:
@@ -338,28 +296,20 @@ def test_of_two_highlights_the_press_takes_the_light_that_shines_there_most(hand
         assert {each.label for each in screen.preferred(near, element, line)} == {x.label for x in near}
 
 
-def test_beside_the_highlight_a_drag_turns_around_the_object(hand: Hand) -> None:
+@pytest.mark.parametrize("held", [{"aside": REACH + 1}, {"shift": True}, {"control": True}, {"button": 2}])
+def test_beside_the_highlight_with_modifiers_or_the_middle_button_a_drag_moves_the_view(
+    hand: Hand, held: dict[str, Any]
+) -> None:
     hand.viewer.studio.remove_light("fill")
     hand.viewer.tell("")
     element, line = hand.handle("highlight of key")
-    lights = scene_of(hand).lights
-    hand.drag((element + REACH + 1, line), (element + 40, line))
-    assert scene_of(hand).lights == lights
-    assert scene_of(hand).view != ball_scene().view
-
-
-@pytest.mark.parametrize("held", [{"shift": True}, {"control": True}, {"button": 2}])
-def test_with_modifiers_or_the_middle_button_a_drag_at_the_highlight_moves_the_view(
-    hand: Hand, held: dict[str, int]
-) -> None:
-    element, line = hand.handle("highlight of key")
-    lights = scene_of(hand).lights
-    viewer, button = hand.viewer, held.pop("button", 1)
-    viewer.on_pointer(element, line, "press", button, **held)  # type: ignore[arg-type]
-    viewer.on_pointer(element + 30, line + 30, "move", **held)  # type: ignore[arg-type]
-    viewer.on_pointer(element + 30, line + 30, "release", button, **held)  # type: ignore[arg-type]
-    assert scene_of(hand).lights == lights
-    assert scene_of(hand).view != ball_scene().view
+    before, button = scene_of(hand), held.pop("button", 1)
+    element += held.pop("aside", 0)
+    hand.viewer.on_pointer(element, line, "press", button, **held)
+    hand.viewer.on_pointer(element + 30, line + 30, "move", **held)
+    hand.viewer.on_pointer(element + 30, line + 30, "release", button, **held)
+    assert scene_of(hand).lights == before.lights
+    assert scene_of(hand).view != before.view
 
 
 def test_what_can_be_grabbed_is_marked_before(at_lights: Hand) -> None:

@@ -9,7 +9,7 @@ import pytest
 from autocolor import Paint, Scene, View
 from autocolor.mapping.legend import legend
 from autocolor.screens.input import turn_between, wheel_ratio
-from autocolor.screens.picture.over_picture import legend_items, surface_row
+from autocolor.screens.picture.over_picture import legend_items
 from autocolor.screens.picture.picture_edits import moved, panned, turned
 from autocolor.screens.session import Clipboard
 from autocolor.screens.viewer import Viewer
@@ -19,7 +19,7 @@ from autocolor.widgets.sheet import Sheet
 from ramtek_emu import Ramtek9300
 from tests.autocolor.screens.ball import MIDDLE, ball_scene, hand_before
 from tests.autocolor.screens.hand import Hand
-from tests.small import boxes, car
+from tests.small import boxes
 
 FLOOR = 320, 430
 BACKGROUND = 20, 20
@@ -48,6 +48,15 @@ def test_a_pick_names_and_chooses_part_and_surface(hand: Hand) -> None:
     assert hand.viewer.message == f"ball - paint, {level_at(hand, *MIDDLE)}"
     assert (session.surface_name, session.part_name) == ("paint", "ball")
     assert hand.viewer.studio.scene is hand.viewer.studio.history.start
+    hand.click(*BACKGROUND)
+    assert hand.viewer.message == "the background"
+    assert (session.surface_name, session.part_name) == ("paint", "ball")
+    hand.viewer.on_key("tab")
+    hand.viewer.tell("")
+    hand.move(*MIDDLE)
+    assert hand.viewer.board.messages[-1].text == f"ball - paint, {level_at(hand, *MIDDLE)}"
+    hand.move(*BACKGROUND)
+    assert hand.viewer.board.messages[-1].text == hand.viewer.board.screen.help
 
 
 def test_a_place_beyond_the_screen_is_the_background(hand: Hand, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -58,17 +67,11 @@ def test_a_place_beyond_the_screen_is_the_background(hand: Hand, monkeypatch: py
     assert screen.hint(320, 882) == screen.hint(900, 430) == screen.help
 
 
-def test_a_click_on_the_legend_tells_that_it_is_one(tmp_path: Path) -> None:
-    hand = hand_before(ball_scene().with_scalar(name="z"), tmp_path)
-    hand.click(600, 100)
-    assert hand.viewer.message == "the legend: drag it"
-    hand.click(*BACKGROUND)
-    assert hand.viewer.message == "the background"
-
-
 def test_the_legend_of_another_state_is_not_moved(tmp_path: Path) -> None:
     hand = hand_before(ball_scene().with_scalar(name="z"), tmp_path)
     session = hand.viewer.session
+    hand.click(600, 100)
+    assert hand.viewer.message == "the legend: drag it"
     session.edit(session.scene.replace(scalar=None))
     before = session.scene
     hand.viewer.compare()
@@ -77,22 +80,6 @@ def test_the_legend_of_another_state_is_not_moved(tmp_path: Path) -> None:
     hand.drag((600, 100), (500, 150))
     assert session.scene.view != before.view
     assert not session.news.is_warning
-
-
-def test_the_background_changes_no_choice(hand: Hand) -> None:
-    hand.click(*FLOOR)
-    hand.click(*BACKGROUND)
-    assert hand.viewer.message == "the background"
-    assert (hand.viewer.session.surface_name, hand.viewer.session.part_name) == ("floor", "floor")
-
-
-def test_beside_an_open_menu_what_is_pointed_at_is_named(hand: Hand) -> None:
-    hand.viewer.on_key("tab")
-    hand.viewer.tell("")
-    hand.move(*MIDDLE)
-    assert hand.viewer.board.messages[-1].text == f"ball - paint, {level_at(hand, *MIDDLE)}"
-    hand.move(*BACKGROUND)
-    assert hand.viewer.board.messages[-1].text == hand.viewer.board.screen.help
 
 
 def test_what_is_pointed_at_is_named_as_soon_as_the_picture_is_back(hand: Hand) -> None:
@@ -143,16 +130,9 @@ def test_a_drag_turns_moves_or_comes_closer(hand: Hand, name: str) -> None:
     viewer.on_pointer(430, 110, "release", button, 1, **held)
     assert viewer.studio.scene.view == view_of(before)
     assert viewer.studio.history.to_undo == (before,)
-
-
-def test_the_wheel_comes_closer(hand: Hand) -> None:
-    before = hand.viewer.studio.scene
-    hand.viewer.on_pointer(400, 100, "wheel up", steps=2)
-    assert hand.viewer.studio.scene.view == moved(before, wheel_ratio(2))
-
-
-def test_without_a_legend_there_is_nothing_to_draw() -> None:
-    assert legend_items(None) == ()
+    viewer.studio.undo()
+    viewer.on_pointer(400, 100, "wheel up", steps=2)
+    assert viewer.studio.scene.view == moved(before, wheel_ratio(2))
 
 
 def test_a_screen_draws_the_same_legend_as_a_studio(tmp_path: Path) -> None:
@@ -184,18 +164,6 @@ def test_it_stands_where_a_screen_has_room(tmp_path: Path, screen: str, left: in
     viewer.session.turn_to("blending")
     viewer.tell("")
     assert not viewer.board.screen.items()
-
-
-def test_the_row_has_the_surfaces_in_use_and_chooses_one(tmp_path: Path) -> None:
-    session = Viewer(car(), Ramtek9300(), tmp_path).session
-    row = surface_row(session, "which")
-    assert (tuple(row.names), row.present) == (("body", "glass", "wheels"), "body")
-    row.nudge(1)
-    assert session.surface_name == "glass"
-    chosen: list[str] = []
-    surface_row(session, "which", chosen.append).nudge(1)
-    assert chosen == ["wheels"]
-    assert session.surface_name == "glass"
 
 
 def color_seen(hand: Hand, element: int, line: int) -> tuple[int, ...]:
@@ -267,10 +235,3 @@ def test_the_color_under_the_pointer_is_copied_and_pasted_as_the_object_color(ha
     hand.move(*BACKGROUND)
     hand.viewer.on_key("c", control=True)
     assert hand.viewer.message == "nothing is there to copy; point at a color"
-
-
-def test_a_clipboard_that_refuses_a_color_is_told(hand: Hand) -> None:
-    hand.viewer.session.clipboard = Clipboard(lambda _: False, lambda: "")
-    hand.move(*MIDDLE)
-    hand.viewer.on_key("c", control=True)
-    assert "is not copied, because this display has no clipboard" in hand.viewer.message

@@ -38,37 +38,15 @@ def session(tmp_path: Path) -> Session:
     return Session(Studio(wall_scene(lights=[]), display), display, tmp_path)
 
 
-def test_a_light_that_a_scene_does_not_have_is_told(session: Session) -> None:
-    PictureEdits(session).switch_light(0)
-    assert session.message == "the scene has no light 1"
-
-
-def test_an_edit_of_a_movement_passes_on_that_it_is_one(
-    session: Session, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    told: list[tuple[bool, bool]] = []
-    monkeypatch.setattr(
-        session.studio, "edit", lambda scene, same_step, moving: told.append((same_step, moving))
-    )
-    for is_one in (False, True):
-        session.same_step = session.moving = is_one
-        PictureEdits(session).turn(5, 0)
-    assert told == [(False, False), (True, True)]
-
-
 colors = st.sampled_from(OBJECT_COLORS) | st.just("#123456")
 
 
 @given(colors, st.sampled_from([1, -1]))
-def test_a_step_and_its_opposite_come_back_to_the_same_color(own: str, step: int) -> None:
-    assert color_after(color_after(own, own, step), own, -step) == own
-
-
-@given(colors)
-def test_steps_in_one_direction_go_through_all_colors_and_the_own_one(own: str) -> None:
+def test_steps_go_through_all_colors_and_the_own_one_and_back(own: str, step: int) -> None:
     present, seen = own, []
     for _ in range(len({own, *OBJECT_COLORS})):
-        present = color_after(present, own, 1)
+        assert color_after(color_after(present, own, step), own, -step) == present
+        present = color_after(present, own, step)
         seen.append(present)
     assert present == own
     assert set(seen) == {own, *OBJECT_COLORS}
@@ -90,13 +68,9 @@ def test_going_around_keeps_the_distance_and_the_target(right: float, up: float)
     view = turned(scene, right, up)
     assert view.target == (0, 0, 0.5)
     assert distance(view) == pytest.approx(distance(scene.view))
-
-
-def test_going_around_right_and_left_again_comes_back() -> None:
-    scene = wall_scene(view=View((3, -4, 1), target=(0, 0, 0)))
-    there = turned(scene, 5, 0)
-    assert there.eye[2] == pytest.approx(1)
-    assert turned(scene.replace(view=there), -5, 0).eye == pytest.approx(scene.view.eye)
+    level = turned(scene, right, 0)
+    assert level.eye[2] == pytest.approx(1)
+    assert turned(scene.replace(view=level), -right, 0).eye == pytest.approx(scene.view.eye)
 
 
 def test_the_eye_stays_away_from_straight_above() -> None:
@@ -113,12 +87,9 @@ def test_a_direction_is_gone_around_without_a_jump() -> None:
     assert np.allclose(target_of(scene), 0)
     view = turned(scene, 0, 0)
     assert view.eye == pytest.approx(scene.view.eye)
+    # What lies behind the eye is not gone around.
+    assert target_of(wall_scene(view=View((0, -4, 0), direction=(0, -1, 0))))[1] < -4
     assert np.allclose(view.axes, scene.view.axes)
-
-
-def test_what_lies_behind_the_eye_is_not_gone_around() -> None:
-    scene = wall_scene(view=View((0, -4, 0), direction=(0, -1, 0)))
-    assert target_of(scene)[1] < -4
 
 
 def test_moving_closer_and_farther_again_comes_back() -> None:
@@ -198,16 +169,12 @@ def test_at_the_stage_a_turn_ends_and_the_session_says_why(tmp_path: Path) -> No
     assert session.scene.view == STAGED.view
 
 
-def test_an_eye_below_the_stage_and_scenes_without_stage_are_free(tmp_path: Path) -> None:
-    free = STAGED.with_part("floor", stage=False)
-    assert stage_top(free.mesh, free.parts) == -math.inf
-    for scene in (free, STAGED.replace(view=View((3, -4, 0.1), target=(0.5, 0.5, 0.5)))):
+def test_a_pan_at_the_stage_stays_in_the_picture_plane_and_without_a_stage_goes_below() -> None:
+    below = STAGED.replace(view=View((3, -4, 0.1), target=(0.5, 0.5, 0.5)))
+    for scene in (STAGED.with_part("floor", stage=False), below):
         top = stage_top(scene.mesh, scene.parts)
         assert turned(scene, 0, -40, top).eye[2] < 0
         assert panned(scene, 0, -900, 480, 640, top).eye[2] < 0
-
-
-def test_a_pan_at_the_stage_stays_in_the_picture_plane() -> None:
     view = panned(STAGED, 30, -900, 480, 640, 0.2)
     shift = np.array(view.eye) - np.array(STAGED.view.eye)
     assert float(shift @ STAGED.view.axes[2]) == pytest.approx(0, abs=1e-9)
@@ -265,19 +232,16 @@ def test_sides_have_the_names_that_the_front_gives_them(front: Any) -> None:
     assert np.allclose(seen["front"].axes[0], -seen["left"].axes[2])
     assert np.allclose(seen["back"].axes[2], -seen["front"].axes[2])
     assert np.allclose(seen["right"].axes[2], -seen["left"].axes[2])
-    plain = seen_from(scene_of(cube()), "three quarters")
+    # Three quarters is the direction of a created view, from wherever.
+    alone = scene_of(cube())
+    plain = seen_from(alone.replace(view=turned(alone, 50, 10)), "three quarters")
+    assert plain.eye == pytest.approx(alone.view.eye)
     corner = seen["three quarters"]
     assert float(corner.axes[2] @ seen["front"].axes[2]) == pytest.approx(plain.axes[2][1])
     assert corner.axes[2][2] == pytest.approx(plain.axes[2][2])
     for side in ("front", "left", "back", "right"):
         toward = -seen[side].axes[2]
         assert side_name(scene, (round(toward[0]), round(toward[1]), 0.0)) == side
-
-
-def test_three_quarters_is_the_direction_of_a_created_view() -> None:
-    scene = scene_of(cube())
-    turned_away = scene.replace(view=turned(scene, 50, 10))
-    assert seen_from(turned_away, "three quarters").eye == pytest.approx(scene.view.eye)
 
 
 def test_of_equal_named_views_the_one_that_was_taken_is_shown_and_removed(session: Session) -> None:

@@ -88,6 +88,7 @@ def watching(viewer: Viewer, clock: Clock) -> Viewer:
 def test_the_picture_is_blanked_and_comes_in_line_by_line(viewer: Viewer, clock: Clock) -> None:
     assert (viewer.studio.words != BACKGROUND).any(axis=1).all()
     viewer.on_key("w", typed="w")
+    written, entries = display_of(viewer).frame_buffer.written, display_of(viewer).lookup_table.written
     assert lines_there(viewer) == 0
     assert viewer.caption.endswith(MESSAGE)
     after(viewer, clock, 0.5 / 24)
@@ -97,18 +98,9 @@ def test_the_picture_is_blanked_and_comes_in_line_by_line(viewer: Viewer, clock:
         assert lines_there(viewer) == line + 1
     assert is_whole(viewer)
     assert MESSAGE not in viewer.caption
-    written = display_of(viewer).frame_buffer.written
+    # Each word is sent once, and no entry.
     after(viewer, clock, 1)
-    assert display_of(viewer).frame_buffer.written == written
-
-
-def test_watching_sends_each_word_once_and_no_entry(viewer: Viewer, clock: Clock) -> None:
     display = display_of(viewer)
-    viewer.on_key("w", typed="w")
-    written, entries = display.frame_buffer.written, display.lookup_table.written
-    for _ in range(30):
-        after(viewer, clock, 1 / 24)
-    assert is_whole(viewer)
     assert display.frame_buffer.written - written == viewer.studio.words.size
     assert display.lookup_table.written == entries
 
@@ -178,11 +170,6 @@ def test_the_whole_picture_is_shown_at_once(watching: Viewer, clock: Clock, name
     assert watching.studio.scene is scene
 
 
-def test_escape_ends_watching_before_it_leaves(watching: Viewer) -> None:
-    assert watching.on_key("escape")
-    assert not watching.on_key("escape")
-
-
 @pytest.mark.parametrize("name", EDITS)
 def test_an_edit_shows_the_whole_picture_and_is_done(watching: Viewer, name: str) -> None:
     before = watching.studio.scene
@@ -209,63 +196,28 @@ def test_a_drag_that_goes_on_ends_watching(viewer: Viewer, clock: Clock) -> None
     assert is_whole(viewer)
 
 
-def test_the_mouse_moving_over_the_picture_does_not_end_watching(watching: Viewer) -> None:
+def test_the_mouse_moving_and_the_key_held_down_do_not_end_watching_and_escape_does_first(
+    watching: Viewer,
+) -> None:
     watching.on_pointer(9, 5, "move")
-    assert lines_there(watching) == 12
-
-
-def test_the_key_held_down_goes_on_watching(watching: Viewer) -> None:
     assert watching.on_key("w", typed="w", repeated=True)
     assert lines_there(watching) == 12
-
-
-@pytest.mark.parametrize("page", ["f1", "f4"])
-def test_from_a_page_watching_returns_to_the_picture(viewer: Viewer, clock: Clock, page: str) -> None:
-    viewer.on_key(page)
-    viewer.on_key("w", typed="w")
-    assert viewer.page == "picture"
-    assert lines_there(viewer) == 0
-    after(viewer, clock, 2)
-    assert is_whole(viewer)
-    assert display_of(viewer).entries.tolist() == viewer.studio.entries.tolist()
+    assert watching.on_key("escape")
+    assert not watching.on_key("escape")
 
 
 @pytest.mark.parametrize("page", ["f1", "f4"])
 def test_a_page_covers_all_of_a_picture_that_comes_in(watching: Viewer, clock: Clock, page: str) -> None:
+    watching.on_key(page)
+    watching.on_key("w", typed="w")
+    # From a page, watching returns to the picture.
+    assert (watching.page, lines_there(watching)) == ("picture", 0)
     watching.on_key(page)
     words = display_of(watching).words.copy()
     after(watching, clock, 0.3)
     assert display_of(watching).words.tolist() == words.tolist()
     watching.on_key(page)
     assert is_whole(watching)
-
-
-def test_a_scene_dropped_while_another_comes_in_is_shown_whole(
-    watching: Viewer, clock: Clock, tmp_path: Path
-) -> None:
-    write_scene(tmp_path / "other.toml", car().with_view(angle=40))
-    watching.on_drop(tmp_path / "other.toml")
-    assert watching.studio.scene.view.angle == 40
-    after(watching, clock, 0.2)
-    assert is_whole(watching)
-
-
-def test_a_message_waits_until_the_picture_is_there(tmp_path: Path, clock: Clock) -> None:
-    viewer = Viewer(CLOSE, Ramtek9300(), folder=tmp_path)
-    assert not is_whole(viewer)
-    viewer.on_key("w", typed="w")
-    viewer.on_tick()
-    viewer.tell("a screenshot")
-    assert lines_there(viewer) == 0
-    clock.now += 2 * PICTURE_SECONDS
-    viewer.on_tick()
-    assert is_whole(viewer)
-    viewer.on_key("w", typed="w")
-    viewer.on_tick()
-    viewer.tell("a screenshot")
-    viewer.on_key("q", typed="q")
-    assert np.array_equal(display_of(viewer).words[:464], viewer.studio.words[:464])
-    assert not is_whole(viewer)
 
 
 def test_what_stands_over_the_picture_comes_back_after_watching(
@@ -279,6 +231,16 @@ def test_what_stands_over_the_picture_comes_back_after_watching(
     viewer.on_key("q", typed="q")
     assert (display_of(viewer).words[3:9, 3:9] == WHITE).all()
     assert np.array_equal(display_of(viewer).words[9:], viewer.studio.words[9:])
+
+
+def test_a_scene_dropped_while_another_comes_in_is_shown_whole(
+    watching: Viewer, clock: Clock, tmp_path: Path
+) -> None:
+    write_scene(tmp_path / "other.toml", car().with_view(angle=40))
+    watching.on_drop(tmp_path / "other.toml")
+    assert watching.studio.scene.view.angle == 40
+    after(watching, clock, 0.2)
+    assert is_whole(watching)
 
 
 @given(scenes(), st.lists(st.floats(0, 0.4), max_size=8))

@@ -12,7 +12,6 @@ from autocolor.screens.surface.mixing_palette import (
     GRAYS,
     HUES,
     SHADE_STEPS,
-    MixingWords,
     Ranges,
     crop_of,
     mixing_words,
@@ -77,27 +76,16 @@ def test_loads_put_each_color_into_its_word(ranges: Ranges) -> None:
     assert np.array_equal(table[palette.hues], HUES)
     assert np.array_equal(table[palette.swatches], swatches)
     assert (np.delete(table, palette.borrowed, axis=0) == 7).all()
-
-
-def test_words_that_follow_each_other_are_one_load() -> None:
-    palette = mixing_words(TWO_RANGES, "body", 12)
-    assert len(palette.loads((0, 0, 0), (0, 0, 0), np.zeros((12, 3), np.uint8))) == 1
-
-
-def test_equal_surfaces_have_the_same_palette() -> None:
-    palette = mixing_words(TWO_RANGES, "body", 12)
-    assert isinstance(palette, MixingWords)
-    assert mixing_words(tuple(TWO_RANGES), "body", 12) is palette
+    # Words that follow each other are one load, and equal surfaces have the same palette.
+    assert ranges is not TWO_RANGES or len(palette.loads((0, 0, 0), (0, 0, 0), swatches)) == 1
+    assert mixing_words(tuple(ranges), "body", 12) is palette
+    # The hues go once around in equal steps.
+    thirds = HUES[:: (len(HUES) - 1) // 3].tolist()
+    assert thirds == [[255, 0, 0], [0, 255, 0], [0, 0, 255], [255, 0, 0]]
 
 
 def random_entries(seed: int) -> Bytes:
     return np.random.default_rng(seed).integers(0, 256, (1024, 3)).astype(np.uint8)
-
-
-def test_the_hues_go_once_around_in_equal_steps() -> None:
-    assert HUES[0].tolist() == HUES[-1].tolist() == [255, 0, 0]
-    assert HUES[len(HUES) // 3].tolist() == [0, 255, 0]
-    assert HUES[2 * len(HUES) // 3].tolist() == [0, 0, 255]
 
 
 @pytest.mark.parametrize("ranges", [ALONE, LARGE, TWO_RANGES])
@@ -178,14 +166,11 @@ def test_a_small_surface_is_shown_at_its_full_size() -> None:
     assert crop.pixel_at(8 + 244, 224 + 120) == (205, 360)
 
 
-def test_without_pixels_of_the_surface_the_whole_picture_is_shown() -> None:
-    crop = crop_of(np.zeros((480, 640), np.bool_), ROOM)
-    assert (crop.lines[0], crop.elements[0], crop.area.width) == (1, 1, 320)
-
-
 def test_a_place_beside_a_crop_has_no_pixel() -> None:
     crop = crop_of(np.ones((480, 640), np.bool_), ROOM)
     assert crop.pixel_at(crop.area.left - 1, crop.area.top) is None
     assert crop.pixel_at(crop.area.left, crop.area.top) == (crop.lines[0], crop.elements[0])
+    nothing = crop_of(np.zeros((480, 640), np.bool_), ROOM)
+    assert (nothing.lines[0], nothing.elements[0], nothing.area.width) == (1, 1, 320)
     words = np.arange(480 * 640).reshape(480, 640).astype(np.uint16)
     assert crop.of(words)[3, 5] == words[crop.lines[3], crop.elements[5]]

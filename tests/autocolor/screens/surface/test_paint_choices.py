@@ -17,6 +17,7 @@ from autocolor.widgets.widget import Choice, Place
 from ramtek_emu import Ramtek9300
 from tests.autocolor.screens.mixing import ZERO, bar_is_right, line_of, mixing, shades_are_right
 from tests.autocolor.screens.painting_hand import PaintingHand, boxes_scene
+from tests.autocolor.widgets.drawing import draw_items
 
 
 @pytest.fixture
@@ -65,8 +66,11 @@ def test_a_finish_keeps_the_object_color(hand: PaintingHand, name: str) -> None:
 def test_mixed_colors_are_recent_colors_when_the_mixing_ends(hand: PaintingHand) -> None:
     hand.click(ZERO + 99, line_of(hand, "object, green"))
     hand.click(ZERO + 100, line_of(hand, "object, green"))
+    hand.click(ZERO + 99, line_of(hand, "object, blue"))
+    hand.pick(" ", 0.1)
     assert recent_colors() == ()
     hand.leave()
+    # An undone color is none of them.
     assert recent_colors() == ((176, 100, 32),)
     hand.turn_to("color mixing")
     # Another surface takes it over.
@@ -76,6 +80,10 @@ def test_mixed_colors_are_recent_colors_when_the_mixing_ends(hand: PaintingHand)
     assert (hand.colors(Area(*place, place[0] + 4, place[1] + 4)) == [176, 100, 32]).all()
     hand.click(*place)
     assert hand.paint.object_color == (176, 100, 32)
+    # Choosing another surface ends the mixing.
+    hand.click(ZERO + 99, line_of(hand, "light source, green"))
+    hand.pick("surface")
+    assert (255, 99, 255) in recent_colors()
 
 
 def choose_again(hand: PaintingHand) -> None:
@@ -109,21 +117,6 @@ def test_a_ramp_that_is_taken_whole_fills_the_recent_colors_once(
     monkeypatch.setattr(paint_choices, "note_color", noted.append)
     choose_again(hand)
     assert noted == ramp[-MOST_RECENT:]
-
-
-def test_an_undone_color_is_no_recent_color(hand: PaintingHand) -> None:
-    hand.click(ZERO + 99, line_of(hand, "object, green"))
-    hand.pick(" ", 0.1)
-    hand.leave()
-    assert recent_colors() == ()
-
-
-def test_choosing_another_surface_ends_the_mixing(hand: PaintingHand) -> None:
-    hand.click(ZERO + 99, line_of(hand, "light source, green"))
-    hand.pick("surface")
-    assert recent_colors() == ((255, 99, 240),)
-    hand.leave()
-    assert recent_colors() == ((255, 99, 240),)
 
 
 FILE = "paints.gpl"
@@ -173,13 +166,6 @@ def test_the_paints_of_a_file_come_before_the_swatches(hand: PaintingHand, paint
     # The last page has the swatches.
     assert color_of_paint(hand, 0) == tuple(swatches()[0])
     assert hand.viewer.studio.scene is scene
-
-
-def test_few_paints_have_large_cells(hand: PaintingHand) -> None:
-    bring(hand, FEW)
-    assert (hand.widget("paints").width, MANY.colors.shape) == (2 * CELL_ELEMENTS, (430, 3))  # type: ignore[attr-defined]
-    bring(hand, MANY)
-    assert hand.widget("paints").width == CELL_ELEMENTS  # type: ignore[attr-defined]
 
 
 def test_the_name_of_a_paint_is_shown_under_the_pointer_and_when_it_is_taken(hand: PaintingHand) -> None:
@@ -251,6 +237,9 @@ def test_a_name_that_is_typed_or_pasted_is_a_paint_before_it_is_a_color_of_css(h
         assert hand.paint.object_color == color
     board.paste("old red")
     assert hand.paint.object_color == (165, 32, 25)
+    hand.leave()
+    hand.viewer.board.paste("teal")
+    assert hand.paint.object_color == (248, 243, 43)
 
 
 def test_a_paint_is_taken_for_a_color_of_a_ramp(hand: PaintingHand) -> None:
@@ -263,13 +252,6 @@ def test_a_paint_is_taken_for_a_color_of_a_ramp(hand: PaintingHand) -> None:
     assert hand.paint.ramp == (*ramp[:3], (248, 243, 43), *ramp[4:])
     hand.viewer.board.paste("signal red")
     assert hand.paint.ramp == (*ramp[:3], (165, 32, 25), *ramp[4:])
-
-
-def test_a_name_that_is_pasted_in_the_picture_is_a_paint(hand: PaintingHand) -> None:
-    bring(hand, FEW)
-    hand.leave()
-    hand.viewer.board.paste("teal")
-    assert hand.paint.object_color == (248, 243, 43)
 
 
 def test_the_key_of_the_next_color_goes_through_the_paints(hand: PaintingHand) -> None:
@@ -298,57 +280,19 @@ def test_paints_that_cannot_be_read_leave_those_before(hand: PaintingHand) -> No
     assert hand.viewer.session.paints == FEW
 
 
-AREA = Area(176, 312, 255, 367)
-
-
-def field_of(count: int, found: list[int] | None = None) -> SwatchField:
-    found = [] if found is None else found
+@pytest.mark.parametrize("count", [0, 1, 5, 7, 20])
+def test_a_pick_or_a_drag_takes_the_cell_that_is_shown_there_and_nothing_beside(count: int) -> None:
+    area, found, display = Area(176, 312, 255, 367), list[int](), Ramtek9300()
     words = np.arange(100, 100 + count, dtype=np.uint16)
-    return SwatchField("paints", words=words, across=5, width=16, height=14, take=found.append, area=AREA)
-
-
-def drawn(field: SwatchField) -> Ramtek9300:
-    display = Ramtek9300()
-    for item in field.items(lit=False):
-        display.send(np.frombuffer(item.stream, np.uint16))
-    return display
-
-
-@pytest.mark.parametrize("count", [1, 5, 7, 20])
-def test_a_pick_takes_the_cell_that_is_shown_there(count: int) -> None:
-    found: list[int] = []
-    field = field_of(count, found)
-    words = drawn(field).words
-    for line in range(AREA.top, AREA.bottom + 1, 14):
-        for element in range(AREA.left, AREA.right + 1, 16):
-            before = len(found)
-            field.pick(Place(element + 3, line + 3))
-            word = int(words[line + 3, element + 3])
-            assert found[before:] == ([word - 100] if 100 <= word < 100 + count else [])
-    assert found == list(range(count))
-
-
-def test_nothing_is_drawn_or_taken_beyond_the_cells() -> None:
-    found: list[int] = []
-    field = field_of(20, found)
-    lines, elements = np.nonzero(drawn(field).words)
-    assert AREA.covers(Area(elements.min(), lines.min(), elements.max(), lines.max()))
-    for place in ((175, 320), (256, 320), (200, 311), (200, 368)):
-        field.drag(Place(200, 320), Place(200, 320), Place(*place))
-    assert found == []
-
-
-def test_a_drag_takes_every_cell_that_it_reaches() -> None:
-    found: list[int] = []
-    field = field_of(20, found)
-    for element in (180, 200, 220):
-        field.drag(Place(180, 315), Place(180, 315), Place(element, 330))
-    assert found == [5, 6, 7]
-
-
-def test_without_cells_there_is_nothing() -> None:
-    found: list[int] = []
-    field = field_of(0, found)
-    assert field.items(lit=True) == []
-    field.pick(Place(180, 315))
-    assert found == []
+    field = SwatchField("paints", words=words, across=5, width=16, height=14, take=found.append, area=area)
+    draw_items(display, field.items(lit=False))
+    for down, line in enumerate(range(area.top - 14, area.bottom + 15, 14), start=-1):
+        for across, element in enumerate(range(area.left - 16, area.right + 17, 16), start=-1):
+            number = 5 * down + across
+            is_there = 0 <= across < 5 and 0 <= number < count
+            assert (display.words[line, element] == 100 + number) == is_there
+            for act in (field.pick, lambda place: field.drag(Place(180, 315), Place(180, 315), place)):
+                for place in (Place(element, line), Place(element + 15, line + 13)):
+                    found.clear()
+                    act(place)
+                    assert found == ([number] if is_there else [])
