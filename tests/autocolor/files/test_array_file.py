@@ -20,11 +20,7 @@ from autocolor.files.array_file import (
     Series,
     array_file_bytes,
     read_array_file,
-    scalar_members,
-    scalar_rows,
-    scalars_of,
 )
-from autocolor.scene.scalar import MeshScalar
 from tests.tables import refused
 
 KIND = ArrayFileKind(
@@ -108,14 +104,3 @@ def test_a_sparse_file_and_overlapping_members_are_refused_before_they_are_read(
         archive.filelist = archive.filelist * 9
     with pytest.raises(InputError, match="file: to read 9,000 bytes"), allowing(9000 / MEMORY):
         read_array_file(KIND, path)
-
-
-def test_scalars_come_back_from_their_rows_and_members() -> None:
-    scalars = (MeshScalar("stress", np.array([1.0, np.nan])), MeshScalar("load", np.zeros(3), "polygon"))
-    rows, members = scalar_rows(scalars), scalar_members(scalars)
-    assert rows == [{"name": "stress", "of": "node"}, {"name": "load", "of": "polygon"}]
-    assert list(members) == ["mesh_scalar_0", "mesh_scalar_1"]
-    again = scalars_of({"mesh_scalars": rows}, members)
-    assert [(each.name, each.of) for each in again] == [("stress", "node"), ("load", "polygon")]
-    assert np.array_equal(again[0].values, scalars[0].values, equal_nan=True)
-    assert scalars_of({}, {}) == ()

@@ -2,7 +2,6 @@ from __future__ import annotations
 
 import copy
 import pickle
-import re
 import tempfile
 from pathlib import Path
 from typing import Any
@@ -12,20 +11,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-import autocolor
 from autocolor import (
+    InputError,
     MissingInputError,
     OutputError,
     Palette,
-    Studio,
-    Surface,
     read_palette,
-    scene_of,
     write_palette,
 )
 from autocolor.files.palette_file import LARGEST, LONGEST_NAME, MOST_COLORS, PALETTE_FORMATS, is_palette
-from ramtek_emu import Ramtek9300
-from tests.small import cube
 from tests.tables import refused
 
 COLORS = st.tuples(*[st.integers(0, 255)] * 3)
@@ -178,21 +172,15 @@ test_what_is_refused_in_a_color_table = refused(
         ),
     ],
 )
-test_files_of_other_endings_are_refused = refused(
-    lambda name: read(name, b"x"),
-    [
-        (
-            "a.gpk",
-            "a.gpk: a palette must end in .act, .csv or .gpl, not in '.gpk'; did you mean '.gpl'?; save it as"
-            " one of these",
-        )
-    ],
-)
 
 
 def test_a_palette_that_is_not_there_is_missing(tmp_path: Path) -> None:
     with pytest.raises(MissingInputError, match=r"no\.gpl: there is no such file"):
         read_palette(tmp_path / "no.gpl")
+    with pytest.raises(
+        InputError, match=r"^a\.gpk: a palette must end in .*\.gpl'\?; save it as one of these$"
+    ):
+        read("a.gpk", b"x")
 
 
 def zeros(count: int) -> Any:
@@ -293,25 +281,3 @@ def test_files_of_paints_are_told_from_other_files(
 ) -> None:
     (tmp_path / name).write_bytes(data)
     assert is_palette(tmp_path / name) is is_one
-
-
-def test_the_example_of_the_document_brings_the_same_entries_back(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    root = Path(__file__).parents[3]
-    (tmp_path / "examples").symlink_to(root / "examples")
-    monkeypatch.chdir(tmp_path)
-    body = dict.fromkeys(cube().part_names, "body")
-    studio = Studio(scene_of(cube(), surfaces=[Surface("body")], surface_of_part=body), Ramtek9300())
-    document = (root / "docs" / "guides" / "studio.md").read_text("utf-8")
-    (example,) = re.findall("^(paints = .*?)```", document, re.DOTALL | re.MULTILINE)
-    names = {"autocolor": autocolor, "studio": studio}
-    entries, paints = [], []
-    for line in example.splitlines():
-        exec(line, names)
-        entries.append(studio.entries)
-        paints.append(studio.scene.surface("body").paint)
-    assert paints[1].object_color == (200, 16, 32)
-    assert len(paints[3].ramp or ()) == studio.level_ranges["body"].levels
-    assert np.array_equal(entries[1], entries[3])
-    assert read_palette("hot.csv").names == ("low", "middle", "high")
