@@ -74,6 +74,7 @@ def test_a_series_has_as_many_arrays_as_the_header_tells(count: int) -> None:
         assert again.arrays[f"row_{number}"].tolist() == [number] * number
 
 
+WRONG_ROWS: tuple[object, ...] = (None, {}, "ab", 3, [0] * 4)
 ROWS = "file, header: rows must be a list of at most 3 rows, not"
 OTHER = "file: a test file must be whole and as autocolor wrote it, not with members like 'header.npy'"
 ADVICE = "; make it again"
@@ -86,7 +87,7 @@ test_what_is_refused = refused(
             content(0, format="test 2", rows=[]),
             f"file, header: it must have exactly the keys of its format{ADVICE}",
         ),
-        *((content(0, rows=rows), f"{ROWS} {rows!r}{ADVICE}") for rows in (None, {}, "ab", 3, [0] * 4)),
+        *((content(0, rows=rows), f"{ROWS} {rows!r}{ADVICE}") for rows in WRONG_ROWS),
         (content(1, rows=[0, 0]), f"{OTHER}, 'numbers.npy', 'row_0.npy'{ADVICE}"),
         (content(3, rows=[0, 0]), f"{OTHER}, 'numbers.npy', 'row_0.npy'{ADVICE}"),
     ],

@@ -144,7 +144,8 @@ def test_a_folder_of_all_its_files_gives_the_files_of_its_keys(
         assert format_of_folder(tmp_path) is None
         (tmp_path / key).touch()
     found = format_of_folder(tmp_path)
-    assert found is format_of(tmp_path) is not None
+    assert found is not None
+    assert found is format_of(tmp_path)
     assert found.name == name
     files = {"nodes": tmp_path / keys[0], "polygons": tmp_path / keys[1]}
     assert files_of_folder(tmp_path, found) == files

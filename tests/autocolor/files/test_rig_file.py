@@ -82,10 +82,6 @@ test_a_strangers_file_is_refused_with_every_problem_and_its_line = refused(
         ),
         (BOUNDS + "lights = 3", "rig.toml, line 3, lights must be a list of Light rows, not 3"),
         ("\0", "rig.toml: a rig file must be text, not hold a NUL byte (line 1); save it as UTF-8 text"),
-        (
-            "a" * (LARGEST_TEXT + 1),
-            "rig.toml: a file must have at most 1,048,576 bytes, not more; split or simplify it",
-        ),
     ],
 )
 

@@ -233,13 +233,6 @@ def test_a_mesh_file_outside_of_the_folder_is_written_beside(car: Path, tmp_path
     assert "# The sun." in text
 
 
-def test_a_mesh_file_that_was_changed_since_is_not_named(tmp_path: Path) -> None:
-    (tmp_path / "car.obj").write_text(CAR)
-    scene = read_scene(tmp_path / "car.obj")
-    (tmp_path / "car.obj").write_text(CAR.replace("0.1", "0.2"))
-    assert 'file = "mesh.obj"' in saved(tmp_path, scene)
-
-
 def test_materials_become_surfaces_and_the_scene_of_a_picture_file_is_written_with_its_mesh(
     tmp_path: Path,
 ) -> None:
@@ -270,7 +263,7 @@ def test_a_name_that_utf_8_lacks_is_refused(tmp_path: Path) -> None:
         ({"half_spaces": {"\ud800": {"point": (0, 0, 0), "direction": (0, 0, 1)}}}, "'key'"),
     ):
         with pytest.raises(InputError) as refusal:
-            write_scene(tmp_path / "cube", scene_of(cube()).with_light("key", **fields))  # type: ignore[arg-type]
+            write_scene(tmp_path / "cube", scene_of(cube()).with_light("key", **fields))
         assert str(refusal.value) == f"light {name}: a name in a file must be text in UTF-8; rename it"
     assert list(tmp_path.iterdir()) == []
     saved(tmp_path, scene_of(cube()).with_light("key", name="\ud7ff\ue000"))

@@ -8,6 +8,7 @@ from hypothesis import given
 from autocolor import Scene
 from autocolor.commands.settings import keys_after
 from autocolor.files.settings import field_of, place_of, scene_with, value_at
+from autocolor.scene.lights import HalfSpace
 from autocolor.testing import scenes
 from tests.small import wall_scene
 from tests.tables import refused
@@ -82,7 +83,7 @@ def test_a_whole_row_is_set_before_its_fields_in_any_order(whole: object, bands:
     assert (one.scalar.name, one.scalar.bands) == ("z", bands)
 
 
-DOOR = {"door": {"point": (0, 0, 0), "direction": (1, 0, 0)}}
+DOOR = (HalfSpace("door", (0, 0, 0), (1, 0, 0)),)
 NAMED = "a name cannot be set; change it in the scene file"
 
 HALF_SPACES = "lights.key.half_spaces"
@@ -118,3 +119,10 @@ test_what_is_refused = refused(
         ),
     ],
 )
+
+
+def test_a_value_that_is_absent_is_none() -> None:
+    scene = wall_scene()
+    more = scene.with_new_light("nobody", position=(1, 1, 1))
+    for key in ("lights.nobody.on", "lights.key.flaps.z.maximum", "scalar.name", "surfaces.wall.nothing"):
+        assert value_at(scene, place_of(more, key)) is None

@@ -89,6 +89,7 @@ only_parts = ["hood"]
 """
         in text
     )
+    assert '[[mesh]]\nfile = "car.obj"\n\n' in text
     whole = scene_text(scene, report.mesh_files)
     # Ends of flaps that are nowhere are left out.
     assert "flaps.z = { minimum = 0.5, on = true, edge_width = 0.0 }\n" in whole
