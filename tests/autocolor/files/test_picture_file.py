@@ -241,8 +241,15 @@ def test_an_existing_file_is_kept_unless_it_may_be_overwritten(tmp_path: Path) -
     with pytest.raises(OutputError):
         write_picture(path, scene, picture)
     assert path.read_bytes() == b"mine"
-    write_picture(path, scene, picture, overwrite=True)
-    assert path.read_bytes() == content(lit_wall)
+    guarded: list[bytes] = []
+    write_picture(
+        path,
+        scene,
+        picture,
+        overwrite=True,
+        guard=lambda _: lambda: guarded.append(path.read_bytes()),
+    )
+    assert (guarded, path.read_bytes()) == ([b"mine"], content(lit_wall))
 
 
 def test_a_picture_that_is_not_of_the_scene_or_has_another_suffix_is_not_written(tmp_path: Path) -> None:

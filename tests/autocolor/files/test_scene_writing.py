@@ -291,7 +291,11 @@ def test_a_complete_file_has_all_keys_and_tells_what_was_written(car: Path) -> N
     text = (car / "scene.toml").read_text()
     for line in ("two_sided = true", "crease_angle = 40.0", 'exposure = "99.5 %"'):
         assert f"{line}\n" in text
-    assert write_scene_with_tables(car, scene_of(cube()), overwrite=True) == [car / "scene.toml"]
+    guarded: list[str] = []
+    written = write_scene_with_tables(
+        car, scene_of(cube()), overwrite=True, guard=lambda path: lambda: guarded.append(path.read_text())
+    )
+    assert (written, guarded) == ([car / "scene.toml"], [text])
     assert (car / "scene.toml").read_text() == text
 
 

@@ -127,7 +127,6 @@ def test_a_scene_file_without_valid_meshes_has_the_stamp_of_its_bytes(tmp_path: 
     assert stamp_of(tmp_path / "scene.toml") == hashlib.sha256(text.encode()).hexdigest()
 
 
-@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="the system has no pipes with names")
 def test_a_pipe_has_no_stamp_and_is_not_waited_for(tmp_path: Path) -> None:
     for name in ("scene.toml", "car.npz", "car.sqlite"):
         os.mkfifo(tmp_path / name)

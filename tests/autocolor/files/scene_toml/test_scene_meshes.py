@@ -1,9 +1,7 @@
 from __future__ import annotations
 
 import dataclasses
-import gc
 import tomllib
-import weakref
 from pathlib import Path
 
 import numpy as np
@@ -18,7 +16,6 @@ from autocolor.files.scene_toml.scene_meshes import (
     GROWTH,
     MeshSource,
     entries_of,
-    keep_source,
     meshes_of,
     meshes_there,
     reports_of,
@@ -157,16 +154,6 @@ def test_a_folder_of_tables_is_the_place_of_its_files(folder: Path) -> None:
         (folder / name).rename(tables / table)
     entry = {"nodes": "nodes.csv", "polygons": "polygons.csv", "up": "z"}
     assert source_of(read_scene(tables).mesh) == MeshSource(tables, (entry,), None)
-
-
-def test_a_source_is_forgotten_with_its_mesh(folder: Path) -> None:
-    mesh = cube()
-    source = MeshSource(folder, ())
-    keep_source(mesh, source)
-    kept = weakref.ref(source)
-    del source, mesh
-    gc.collect()
-    assert kept() is None
 
 
 # The files for a mesh that is saved.

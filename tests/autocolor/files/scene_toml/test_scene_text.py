@@ -225,6 +225,12 @@ def test_surfaces_in_another_order_are_written_in_that_order(meshes: list[MeshRe
             assert after.startswith("# Mine.\n")
 
 
+def test_a_renamed_light_keeps_its_place_and_its_comment(meshes: list[MeshReport]) -> None:
+    text = HEADERS.replace('"rim"\n', '"rim"  # behind\n')
+    scene = read(text.encode(), meshes).with_light("rim", name="moon")
+    assert edited(text, scene, meshes) == text.replace('"rim"', '"moon"')
+
+
 def test_a_text_that_cannot_be_read_or_never_gives_the_scene_is_given_up(meshes: list[MeshReport]) -> None:
     scene = read(DOTTED.encode(), meshes)
 
