@@ -1,16 +1,15 @@
 from __future__ import annotations
 
+import dataclasses
 import os
 from pathlib import Path
 
 import pytest
 
 from autocolor.errors import InputError
-from autocolor.files import formats
 from autocolor.files.formats import (
     MESH_FORMATS,
     Format,
-    MeshFormat,
     files_of_folder,
     format_named,
     format_of,
@@ -22,8 +21,8 @@ from autocolor.files.formats import (
     suffix_rule,
     suffixes_of,
 )
-from autocolor.files.meshes.npy_tables import write_npy_tables
-from autocolor.files.meshes.repair import MeshReport
+from autocolor.files.meshes.csv_tables import CSV_FILES
+from autocolor.files.meshes.npy_tables import MAGIC, write_npy_tables
 from autocolor.files.scene_sources import SCENE_FORMATS
 from tests.small import cube
 
@@ -35,20 +34,16 @@ ANYTHING = Format("ANYTHING", (".any",))
 ALL = (ANYTHING, PLAIN, SOLID)
 
 
-def test_every_mesh_format_has_its_suffixes_and_abilities() -> None:
-    table = {each.name: each.suffixes for each in MESH_FORMATS}
-    own = {
-        "CSV": (".csv",), "Movie.BYU": (".g", ".byu"), "npy": (".npy",), "OBJ": (".obj",), "OFF": (".off",),
-        "PLY": (".ply",), "STL": (".stl",), "VTK": (".vtk",), "VTP": (".vtp",),
-    }  # fmt: skip
-    assert {name: table[name] for name in own} == own
-    assert [each.name for each in MESH_FORMATS if each.mapped] == ["npy"]
-    assert [each.name for each in MESH_FORMATS if each.in_folder] == ["CSV", "npy"]
-    assert [each.name for each in MESH_FORMATS if each.written] == ["OBJ", "PLY", "STL", "tables"]
-    assert [each.name for each in MESH_FORMATS if each.write] == ["CSV", "npy"]
-
-
-def test_suffixes_are_each_listed_once() -> None:
+def test_no_two_formats_have_a_suffix_or_a_name_in_common() -> None:
+    every: tuple[Format, ...] = (*MESH_FORMATS, *SCENE_FORMATS)
+    suffixes = [suffix for each in every for suffix in each.suffixes]
+    assert sorted(suffixes) == sorted(set(suffixes))
+    assert len({each.name for each in every}) == len(every)
+    assert all(suffix.startswith(".") and suffix == suffix.lower() for suffix in suffixes)
+    assert all(each.suffixes for each in every)
+    own = {".g", ".byu", ".csv", ".npy", ".obj", ".off", ".ply", ".stl", ".tables", ".vtk", ".vtp"}
+    assert own < {*suffixes}
+    assert own - {".csv", ".npy"} < {*mesh_suffixes()}
     assert suffixes_of((*ALL, Format("another", (".any",)))) == (".any", ".plain", ".sld", ".solid")
 
 
@@ -100,107 +95,60 @@ def test_the_rule_for_a_suffix_lists_all_and_the_nearest(
     assert suffix_rule(Path(name), suffixes) == rule
 
 
-def test_no_two_formats_have_a_suffix_or_a_name_in_common() -> None:
-    every: tuple[Format, ...] = (*MESH_FORMATS, *SCENE_FORMATS)
-    suffixes = [suffix for each in every for suffix in each.suffixes]
-    assert sorted(suffixes) == sorted(set(suffixes))
-    assert len({each.name for each in every}) == len(every)
-    assert all(suffix.startswith(".") and suffix == suffix.lower() for suffix in suffixes)
-    assert all(each.suffixes for each in every)
-
-
 def test_a_mesh_file_of_another_name_is_known_by_how_it_begins(tmp_path: Path) -> None:
     (tmp_path / "car.model").write_text("# exported\no car\n" + SQUARE)
-    report = read_mesh({"file": tmp_path / "car.model"})
-    assert len(report.mesh.node_numbers) == 1
+    assert read_mesh({"file": tmp_path / "car.model"}).repairs == ()
+    (tmp_path / "car.off").write_text(SQUARE)
+    assert read_mesh({"file": tmp_path / "car.off"}).repairs == (
+        "car.off: it begins as OBJ and was read as that, not as OFF; rename it",
+    )
     (tmp_path / "notes").write_text("various things\nv\n")
     assert format_of(tmp_path / "notes") is None
 
 
-def test_a_folder_is_a_mesh_where_all_its_files_are_there(tmp_path: Path) -> None:
-    (tmp_path / "nodes.csv").write_text("x,y,z\n")
-    assert format_of_folder(tmp_path) is None
-    (tmp_path / "polygons.csv").write_text("node1,node2,node3,node4\n")
-    found = format_of_folder(tmp_path)
-    assert found is not None
-    assert found.name == "CSV"
-
-
-def test_an_unknown_format_is_refused_with_those_that_are_known(tmp_path: Path) -> None:
+def test_files_of_no_format_are_refused(tmp_path: Path) -> None:
     (tmp_path / "car.shape").write_text("car")
     with pytest.raises(InputError) as refusal:
         read_mesh({"file": tmp_path / "car.shape"})
-    *others, last = mesh_suffixes()
-    assert str(refusal.value) == (
-        f"car.shape: a mesh file must end in {', '.join(others)} or {last}, not in '.shape'; export it as one"
-        " of these"
-    )
-
-
-def read_nothing(*_: object) -> MeshReport:
-    raise InputError("nothing")
-
-
-PAIR = ("nodes", "polygons")
-LOOSE = MeshFormat("LOOSE", (), read_nothing, PAIR, in_folder=("nodes.csv", "polygons.csv"))
-BINARY = MeshFormat(
-    "BINARY",
-    (".bin",),
-    read_nothing,
-    PAIR,
-    in_folder=("nodes.bin", "polygons.bin", "more.bin"),
-    begins=lambda head: head == b"BIN",
-)
-FOLDER = MeshFormat("FOLDER", (), read_nothing, in_folder=("index",))
-
-
-@pytest.fixture
-def pairs(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Only a format that takes any pair of files, a format of binary pairs, and a format of folders."""
-    monkeypatch.setattr(formats, "MESH_FORMATS", (LOOSE, BINARY, FOLDER))
+    rule = suffix_rule(Path("car.shape"), mesh_suffixes())
+    assert str(refusal.value) == f"car.shape: a mesh file must {rule}; export it as one of these"
+    write_npy_tables(tmp_path / "tables", cube())
+    with pytest.raises(InputError, match="must be a regular file, not a folder"):
+        read_mesh({"file": tmp_path / "tables"})
 
 
 @pytest.mark.parametrize(
     ("name", "content", "found"),
     [
-        ("nodes.bin", b"BIN", BINARY),
-        ("nodes.csv", b"x,y,z", LOOSE),
-        ("nodes", b"BIN", BINARY),
-        ("nodes.txt", b"x,y,z", LOOSE),
+        ("nodes.npy", b"", "npy"),
+        ("nodes.csv", b"x,y,z", "CSV"),
+        ("nodes", MAGIC, "npy"),
+        ("nodes.txt", b"x,y,z", "CSV"),
     ],
 )
-@pytest.mark.usefixtures("pairs")
 def test_pairs_of_files_are_told_apart_by_their_suffix_and_their_first_bytes(
-    tmp_path: Path, name: str, content: bytes, found: MeshFormat
+    tmp_path: Path, name: str, content: bytes, found: str
 ) -> None:
     (tmp_path / name).write_bytes(content)
-    assert format_of_files({"nodes": tmp_path / name, "polygons": tmp_path / "p"}) is found
+    several = format_of_files({"nodes": tmp_path / name, "polygons": tmp_path / "p"})
+    assert several is not None
+    assert several.name == found
     assert format_of_files({"file": tmp_path / name}) is None
 
 
-@pytest.mark.usefixtures("pairs")
-def test_a_folder_gives_the_files_of_its_keys_or_itself(tmp_path: Path) -> None:
-    for name in BINARY.in_folder:
-        (tmp_path / name).touch()
-    assert format_of_folder(tmp_path) is format_of(tmp_path) is BINARY
-    assert files_of_folder(tmp_path, BINARY) == {
-        "nodes": tmp_path / "nodes.bin",
-        "polygons": tmp_path / "polygons.bin",
-    }
-    (tmp_path / "inner").mkdir()
-    (tmp_path / "inner" / "index").touch()
-    assert format_of_files({"file": tmp_path / "inner"}) is FOLDER
-    assert files_of_folder(tmp_path / "inner", FOLDER) == {"file": tmp_path / "inner"}
-
-
-def test_a_file_of_the_wrong_suffix_is_read_as_what_it_is_and_that_is_told(tmp_path: Path) -> None:
-    (tmp_path / "car.off").write_text(SQUARE)
-    assert read_mesh({"file": tmp_path / "car.off"}).repairs == (
-        "car.off: it begins as OBJ and was read as that, not as OFF; rename it",
-    )
-
-
-def test_a_folder_is_no_mesh_file(tmp_path: Path) -> None:
-    write_npy_tables(tmp_path / "tables", cube())
-    with pytest.raises(InputError, match="must be a regular file, not a folder"):
-        read_mesh({"file": tmp_path / "tables"})
+@pytest.mark.parametrize(("name", "keys"), [("npy", ("nodes.npy", "polygons.npy")), ("CSV", CSV_FILES)])
+def test_a_folder_of_all_its_files_gives_the_files_of_its_keys(
+    tmp_path: Path, name: str, keys: tuple[str, ...]
+) -> None:
+    for key in keys:
+        assert format_of_folder(tmp_path) is None
+        (tmp_path / key).touch()
+    found = format_of_folder(tmp_path)
+    assert found is not None
+    assert found is format_of(tmp_path)
+    assert found.name == name
+    files = {"nodes": tmp_path / keys[0], "polygons": tmp_path / keys[1]}
+    assert files_of_folder(tmp_path, found) == files
+    # A folder that is a file has one key.
+    alone = dataclasses.replace(found, keys=("file",))
+    assert files_of_folder(tmp_path, alone) == {"file": tmp_path}

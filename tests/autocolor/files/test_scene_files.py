@@ -9,32 +9,22 @@ from autocolor import InputError
 from autocolor.files.scene_files import MOST_LISTED, Openable, kind_of, openables_of, stays_within
 
 
-def names(folder: Path) -> list[tuple[str, str]]:
-    return [(path.name, kind) for path, kind in openables_of(folder)]
-
-
 def test_what_can_be_opened_is_listed_in_natural_order_with_folders_last(tmp_path: Path) -> None:
-    for name in (
-        "car10.obj",
-        "car2.obj",
-        "Car3.OBJ",
-        "notes.txt",
-        ".hidden.obj",
-        "lights.toml",
-        "a.npz",
-        "b.GPL",
-    ):
+    files = "car10.obj car2.obj Car3.OBJ notes.txt .hidden.obj lights.toml a.npz a.db b.GPL c.act d.csv"
+    for name in files.split():
         (tmp_path / name).write_text("")
     for name in ("b", "a scene", "a mesh", ".git"):
         (tmp_path / name).mkdir()
     (tmp_path / "a scene" / "scene.toml").write_text("")
     for name in ("nodes.csv", "polygons.csv"):
         (tmp_path / "a mesh" / name).write_text("")
-    assert names(tmp_path) == [
+    assert [(path.name, kind) for path, kind in openables_of(tmp_path)] == [
         ("a mesh", "mesh"),
         ("a scene", "scene"),
+        ("a.db", "store"),
         ("a.npz", "picture"),
         ("b.GPL", "paints"),
+        ("c.act", "paints"),
         ("car2.obj", "mesh"),
         ("Car3.OBJ", "mesh"),
         ("car10.obj", "mesh"),

@@ -3,11 +3,7 @@ from __future__ import annotations
 import dataclasses
 from typing import Any
 
-import pytest
-from hypothesis import given
-from hypothesis import strategies as st
-
-from autocolor import InputError, Light, Mesh, Surface, View
+from autocolor import Mesh, Surface, View
 from autocolor.files.meshes.repair import MeshReport
 from autocolor.files.scene_report import scene_report
 from autocolor.scene.defaults import created_surface
@@ -33,47 +29,21 @@ def created(parts: int = 1, **fields: Any) -> tuple[str, ...]:
 
 
 def test_of_a_bare_mesh_everything_is_created_and_said() -> None:
-    assert scene_report(read(cube())).created == (
+    report = scene_report(read(cube()))
+    assert report.created == (
         "a view was created that frames the object",
         "4 studio lights were created",
         "surface 'surface' was created",
     )
+    assert (report.is_view_created, report.are_lights_created) == (True, True)
 
 
 def test_nothing_is_said_of_what_was_given() -> None:
-    report = scene_report(
-        read(cube()), view=VIEW, lights=[Light("key", (0, -3, 0))], surfaces=[Surface("cube")]
-    )
-    assert report.created == ()
-    assert report.scene.view == VIEW
-
-
-def test_no_lights_are_lights_that_were_given() -> None:
-    assert created() == ("surface '0' was created",)
-    assert created(lights=None)[0] == "4 studio lights were created"
-
-
-@given(st.integers(1, 30), st.data())
-def test_as_many_surfaces_are_said_as_the_scene_has_beside_the_given(parts: int, data: st.DataObject) -> None:
-    names = [str(part) for part in range(parts)]
-    given_names = data.draw(st.sets(st.sampled_from(names)))
-    report = scene_report(
-        read(mesh_of(parts)),
-        view=VIEW,
-        lights=(),
-        surfaces=[Surface(name) for name in sorted(given_names)],
-        surface_of_part={name: name for name in names},
-    )
-    missing = [surface.name for surface in report.scene.surfaces if surface.name not in given_names]
-    assert len(missing) == parts - len(given_names)
-    if not missing:
-        assert report.created == ()
-    elif len(missing) == 1:
-        assert report.created == (f"surface '{missing[0]}' was created",)
-    else:
-        (sentence,) = report.created
-        assert sentence.startswith(f"{len(missing)} surfaces were created: '{missing[0]}', '{missing[1]}'")
-        assert sentence.endswith(" more") == (len(missing) > 12)
+    fields: dict[str, Any] = {"view": VIEW, "lights": (), "surfaces": [Surface("cube")]}
+    report = scene_report(read(cube()), mesh_files=({"file": "car.obj"},), **fields)
+    assert (report.created, report.mesh_files) == ((), ({"file": "car.obj"},))
+    assert (report.is_view_created, report.are_lights_created) == (False, False)
+    assert (report.scene.view, report.scene.lights) == (VIEW, ())
 
 
 def test_a_list_of_many_surfaces_is_cut_and_says_how_many_more() -> None:
@@ -88,17 +58,6 @@ def test_a_part_that_shares_a_surface_as_asked_is_not_counted() -> None:
     assert created(parts=300)[-1] == "46 parts share surface '254', because a scene has at most 255"
 
 
-def test_the_repairs_and_mesh_files_are_handed_on() -> None:
-    report = scene_report(read(cube(), repairs=("car.obj: a repair",)), mesh_files=({"file": "car.obj"},))
-    assert report.repairs == ("car.obj: a repair",)
-    assert report.mesh_files == ({"file": "car.obj"},)
-
-
-def test_a_scene_that_breaks_a_rule_is_refused() -> None:
-    with pytest.raises(InputError, match="ambient must be a finite number of at least 0, not -1"):
-        scene_report(read(wall_scene().mesh), ambient=-1)
-
-
 def test_of_parts_and_materials_of_several_meshes_the_first_count() -> None:
     red, blue = Surface("red"), Surface("red", two_sided=False)
     reports = [
@@ -110,11 +69,6 @@ def test_of_parts_and_materials_of_several_meshes_the_first_count() -> None:
     assert [part.surface for part in report.scene.parts] == ["red", "red"]
     assert report.scene.surfaces == (red,)
     assert report.created == ("surface 'red' was created",)
-
-
-def test_the_repairs_of_all_meshes_are_told_in_their_order() -> None:
-    reports = [MeshReport(cube(), ("one", "two")), MeshReport(wall_scene().mesh, ("three",))]
-    assert scene_report(reports).repairs == ("one", "two", "three")
 
 
 def test_materials_of_one_name_that_differ_are_kept_apart() -> None:
@@ -131,10 +85,15 @@ def test_materials_of_one_name_that_differ_are_kept_apart() -> None:
 
 def test_a_part_of_several_meshes_has_the_first_material_and_the_others_are_told() -> None:
     read = [
-        MeshReport(cube()),
-        MeshReport(cube(), material_of_part={"cube": "red"}),
+        MeshReport(cube(), ("one", "two")),
+        MeshReport(cube(), ("three",), material_of_part={"cube": "red"}),
         MeshReport(cube(), material_of_part={"cube": "blue"}),
     ]
     report = scene_report(read)
     assert report.scene.parts[0].surface == "red"
-    assert report.repairs == ("part 'cube' is in several meshes: it has material 'red'",)
+    assert report.repairs == (
+        "one",
+        "two",
+        "three",
+        "part 'cube' is in several meshes: it has material 'red'",
+    )

@@ -2,9 +2,7 @@ from __future__ import annotations
 
 import dataclasses
 import difflib
-import errno
 import os
-import shutil
 from pathlib import Path
 from typing import Any
 
@@ -13,14 +11,10 @@ import pytest
 from hypothesis import given
 
 from autocolor import (
-    Flap,
-    Flaps,
     InputError,
     Light,
-    Mesh,
     MeshScalar,
     OutputError,
-    Part,
     Scene,
     UsageError,
     WriteError,
@@ -36,38 +30,6 @@ from autocolor.scene.columns import with_values
 from autocolor.testing import scenes
 from tests.autocolor.strategies import of_mesh
 from tests.small import cube
-
-COUPE = Path(__file__).parents[3] / "scenes" / "coupe"
-
-SCALARS = (
-    MeshScalar("stress", np.array([np.nan, *range(7)])),
-    MeshScalar("load", np.linspace(-1, 1, 6), "polygon"),
-)
-
-
-def test_a_scene_with_scalars_is_written_without_loss(tmp_path: Path) -> None:
-    scene = scene_of(cube().with_scalars(*SCALARS), scalar={"name": "load", "limits": (-2, 2), "bands": 5})
-    write_scene(tmp_path / "scene.toml", scene)
-    again = read_scene(tmp_path / "scene.toml")
-    assert again.scalar == scene.scalar
-    assert [(each.name, each.of) for each in again.mesh.scalars] == [("stress", "node"), ("load", "polygon")]
-    for one, other in zip(again.mesh.scalars, SCALARS, strict=True):
-        assert np.array_equal(one.values, other.values, equal_nan=True)
-    one_picture, other_picture = (render(each, 12, 16).scalar for each in (scene, again))
-    assert one_picture is not None
-    assert other_picture is not None
-    assert one_picture.tobytes() == other_picture.tobytes()
-
-
-def test_a_scalar_that_changes_is_written_to_a_new_file(tmp_path: Path) -> None:
-    scene = scene_of(cube().with_scalars(*SCALARS))
-    write_scene(tmp_path / "scene.toml", scene)
-    mesh = read_scene(tmp_path / "scene.toml").mesh
-    stronger = MeshScalar("stress", np.arange(8.0) * 2)
-    write_scene(tmp_path / "scene.toml", scene.replace(mesh=mesh.with_scalars(stronger)), overwrite=True)
-    (scalar,) = read_scene(tmp_path / "scene.toml").mesh.scalars
-    assert scalar.values.tolist() == stronger.values.tolist()
-
 
 HAND_WRITTEN = """\
 # A car by hand.
@@ -97,8 +59,8 @@ name = "lamp"  # on the street
 position = [ 5, 0, 3 ]
 aim = [ 0, 0, 0 ]
 """
-
 CAR = "v 0 0 0\nv 1 0 0\nv 1 1 0.1\nv 0 1 0\no hood\nf 1 2 3 4\no roof\nf 1 2 3\n"
+MINE = '# Mine.\n[[mesh]]\nfile = "car.obj"\n'
 
 
 def same(one: Scene, other: Scene) -> bool:
@@ -127,29 +89,23 @@ def car(tmp_path: Path) -> Path:
     return folder
 
 
-@given(scenes())
-def test_every_column_of_a_scene_of_arrays_is_read_back(
-    tmp_path_factory: pytest.TempPathFactory, scene: Scene
-) -> None:
-    folder = tmp_path_factory.mktemp("scene")
-    write_scene(folder, scene)
-    again = read_scene(folder)
-    assert same(again, scene)
-    # Written again, nothing of it changes.
-    before = (folder / "scene.toml").read_text()
-    write_scene(folder, again, overwrite=True)
-    assert (folder / "scene.toml").read_text() == before
-    assert len(list(folder.iterdir())) == 2
+def saved(folder: Path, scene: Scene) -> str:
+    """The text of the scene file of a folder when the scene was saved there, and is read back."""
+    write_scene(folder, scene, overwrite=True)
+    assert same(read_scene(folder), scene)
+    return (folder / "scene.toml").read_text()
 
 
 @given(scenes(), scenes())
-def test_a_scene_that_is_saved_over_another_one_is_read_back(
+def test_every_column_of_a_scene_is_read_back_also_over_another_one(
     tmp_path_factory: pytest.TempPathFactory, first: Scene, second: Scene
 ) -> None:
     folder = tmp_path_factory.mktemp("scene")
-    write_scene(folder, first)
-    write_scene(folder, second, overwrite=True)
-    assert same(read_scene(folder), second)
+    before = saved(folder, first)
+    assert len(list(folder.iterdir())) == 2
+    # Written again, nothing of it changes.
+    assert saved(folder, read_scene(folder)) == before
+    saved(folder, second)
 
 
 @given(scenes())
@@ -158,24 +114,34 @@ def test_any_edit_of_a_file_that_says_little_is_read_back(
 ) -> None:
     folder = tmp_path_factory.mktemp("scene")
     (folder / "car.obj").write_text(CAR.replace("hood", "part 0").replace("roof", "part 1"))
-    (folder / "scene.toml").write_text('# Mine.\n[[mesh]]\nfile = "car.obj"\n')
-    scene = of_mesh(drawn, read_scene(folder).mesh)
-    write_scene(folder, scene, overwrite=True)
-    assert same(read_scene(folder), scene)
-    assert (folder / "scene.toml").read_text().count("# Mine.") == 1
+    (folder / "scene.toml").write_text(MINE)
+    assert saved(folder, of_mesh(drawn, read_scene(folder).mesh)).count("# Mine.") == 1
     assert not (folder / "mesh.obj").exists()
 
 
-def test_what_was_not_changed_stays_as_it_was_written(car: Path) -> None:
-    write_scene(car, read_scene(car), overwrite=True)
-    assert (car / "scene.toml").read_text() == HAND_WRITTEN
+def test_a_scene_with_scalars_is_written_without_loss_and_a_new_scalar_to_a_new_file(tmp_path: Path) -> None:
+    stress = MeshScalar("stress", np.array([np.nan, *range(7)]))
+    load = MeshScalar("load", np.linspace(-1, 1, 6), "polygon")
+    scene = scene_of(
+        cube().with_scalars(stress, load), scalar={"name": "load", "limits": (-2, 2), "bands": 5}
+    )
+    write_scene(tmp_path / "scene.toml", scene)
+    again = read_scene(tmp_path / "scene.toml")
+    assert again.scalar == scene.scalar
+    for given_scalar, scalar in zip((stress, load), again.mesh.scalars, strict=True):
+        assert (scalar.name, scalar.of) == (given_scalar.name, given_scalar.of)
+        assert np.array_equal(scalar.values, given_scalar.values, equal_nan=True)
+    stronger = MeshScalar("load", np.arange(6.0) * 2, "polygon")
+    write_scene(tmp_path, again.replace(mesh=again.mesh.with_scalars(stronger)), overwrite=True)
+    (scalar,) = read_scene(tmp_path).mesh.scalars
+    assert scalar.values.tolist() == stronger.values.tolist()
 
 
-def test_a_changed_value_is_changed_in_its_place(car: Path) -> None:
+def test_only_what_was_changed_is_changed_in_its_place(car: Path) -> None:
+    assert saved(car, read_scene(car)) == HAND_WRITTEN
     scene = read_scene(car).with_surface("paint", object_color="#00ff00").with_light("sun", intensity=2.5)
     scene = scene.with_light("sun", flaps={"x": {"minimum": 0.3}}).with_part("roof", stage=True)
-    write_scene(car, scene.replace(ambient=0.25), overwrite=True)
-    assert changed_lines(HAND_WRITTEN, (car / "scene.toml").read_text()) == [
+    assert changed_lines(HAND_WRITTEN, saved(car, scene.replace(ambient=0.25))) == [
         "-ambient = 0.20   # as at dusk",
         "+ambient = 0.25   # as at dusk",
         '-object_color = "#B01020"  # Ferrari',
@@ -186,135 +152,57 @@ def test_a_changed_value_is_changed_in_its_place(car: Path) -> None:
         "+flaps.x = { minimum = 0.3, on = true }",
         "+intensity = 2.5",
     ]
-    assert same(read_scene(car), scene.replace(ambient=0.25))
-
-
-def test_the_coupe_keeps_its_comments(tmp_path: Path) -> None:
-    shutil.copytree(COUPE, tmp_path / "coupe")
-    scene = read_scene(tmp_path / "coupe").with_light("side", intensity=0.9)
-    scene = scene.with_surface("body", object_color="#0000ff")
-    write_scene(tmp_path / "coupe" / "scene.toml", scene, overwrite=True)
-    after = (tmp_path / "coupe" / "scene.toml").read_text()
-    assert changed_lines((COUPE / "scene.toml").read_text(), after) == [
-        '-object_color = "#d8142c"',
-        '+object_color = "#0000ff"',
-        "-intensity = 0.7",
-        "+intensity = 0.9",
-    ]
-    assert same(read_scene(tmp_path / "coupe"), scene)
-    assert sorted(os.listdir(tmp_path / "coupe")) == sorted(os.listdir(COUPE))
-
-
-def test_a_removed_light_goes_with_its_comment_and_the_others_keep_theirs(car: Path) -> None:
-    scene = read_scene(car)
-    added = Light("moon", (9.0, 9.0, 9.0), flaps=Flaps(z=Flap(maximum=0.5)))
-    write_scene(car, scene.replace(lights=(scene.light("lamp"), added)), overwrite=True)
-    text = (car / "scene.toml").read_text()
-    assert "The sun" not in text
-    assert text.endswith(
-        '[[lights]]\nname = "lamp"  # on the street\nposition = [ 5, 0, 3 ]\naim = [ 0, 0, 0 ]\n\n'
-        '[[lights]]\nname = "moon"\nposition = [9.0, 9.0, 9.0]\nflaps.z = { maximum = 0.5 }\n'
-    )
-
-
-def test_lights_in_another_order_take_their_comments_along(car: Path) -> None:
-    scene = read_scene(car)
-    write_scene(car, scene.replace(lights=scene.lights[::-1]), overwrite=True)
-    text = (car / "scene.toml").read_text()
-    assert text.index("on the street") < text.index("# The sun.")
-    assert [light.name for light in read_scene(car).lights] == ["lamp", "sun"]
-
-
-def test_a_renamed_light_keeps_its_place_and_its_comment(car: Path) -> None:
-    write_scene(car, read_scene(car).with_light("sun", name="moon"), overwrite=True)
-    lines = changed_lines(HAND_WRITTEN, (car / "scene.toml").read_text())
-    assert lines == ['-name = "sun"', '+name = "moon"']
-
-
-def test_a_view_that_was_created_is_written_once_it_is_changed(car: Path) -> None:
-    scene = read_scene(car)
-    write_scene(car, scene, overwrite=True)
-    assert "[view]" not in (car / "scene.toml").read_text()
-    write_scene(car, scene.with_view(angle=10), overwrite=True)
-    assert "[view]\neye = " in (car / "scene.toml").read_text()
-    assert same(read_scene(car), scene.with_view(angle=10))
-
-
-def test_lights_that_were_created_stay_when_the_view_is_changed(tmp_path: Path) -> None:
-    (tmp_path / "car.obj").write_text(CAR)
-    (tmp_path / "scene.toml").write_text('# Mine.\n[[mesh]]\nfile = "car.obj"\n')
-    scene = read_scene(tmp_path)
-    moved = scene.with_view(eye=(9.0, 9.0, 9.0), target=(0.0, 0.0, 0.0))
-    write_scene(tmp_path, moved, overwrite=True)
-    text = (tmp_path / "scene.toml").read_text()
-    # Those that the new view would create are others.
-    assert text.count("[[lights]]") == 4
-    assert text.startswith("# Mine.\n")
-    assert same(read_scene(tmp_path), moved)
 
 
 def test_no_lights_are_written_as_none(car: Path) -> None:
-    write_scene(car, read_scene(car).replace(lights=()), overwrite=True)
-    text = (car / "scene.toml").read_text()
+    text = saved(car, read_scene(car).replace(lights=()))
     assert "lights = []" in text
     assert "[[lights]]" not in text
-    assert read_scene(car).lights == ()
-    sun = Light("sun", (1.0, 2.0, 3.0))
-    write_scene(car, read_scene(car).replace(lights=(sun,)), overwrite=True)
-    assert read_scene(car).lights == (sun,)
+    saved(car, read_scene(car).replace(lights=(Light("sun", (1.0, 2.0, 3.0)),)))
+
+
+def test_what_was_created_is_written_once_it_is_changed(tmp_path: Path) -> None:
+    (tmp_path / "car.obj").write_text(CAR)
+    (tmp_path / "scene.toml").write_text(MINE)
+    scene = read_scene(tmp_path)
+    assert saved(tmp_path, scene) == MINE
+    text = saved(tmp_path, scene.with_view(eye=(9.0, 9.0, 9.0), target=(0.0, 0.0, 0.0)))
+    assert text.startswith("# Mine.\n")
+    assert "[view]\neye = " in text
+    # Those that the new view would create are others.
+    assert text.count("[[lights]]") == 4
 
 
 def test_the_crease_angle_is_changed_where_the_file_gives_it(car: Path) -> None:
     (car / "scene.toml").write_text(HAND_WRITTEN.replace('"car.obj"', '"car.obj"\ncrease_angle = 30 # sharp'))
     scene = read_scene(car)
-    mesh = dataclasses.replace(scene.mesh, crease_angle=50.0)
-    write_scene(car, scene.replace(mesh=mesh), overwrite=True)
-    assert "crease_angle = 50.0 # sharp\n" in (car / "scene.toml").read_text()
-    assert read_scene(car).mesh.crease_angle == 50.0
+    text = saved(car, scene.replace(mesh=dataclasses.replace(scene.mesh, crease_angle=50.0)))
+    assert "crease_angle = 50.0 # sharp\n" in text
     assert not (car / "mesh.obj").exists()
 
 
 def test_a_changed_mesh_is_written_beside_and_the_comments_stay(car: Path) -> None:
     scene = read_scene(car)
     mesh = dataclasses.replace(scene.mesh, coordinates=scene.mesh.coordinates / 3)
-    write_scene(car, scene.replace(mesh=mesh), overwrite=True)
+    lines = changed_lines(HAND_WRITTEN, saved(car, scene.replace(mesh=mesh)))
     assert (car / "car.obj").read_text() == CAR
-    text = (car / "scene.toml").read_text()
-    lines = changed_lines(HAND_WRITTEN, text)
     assert [line for line in lines if line.startswith("-")] == ['-file = "car.obj"']
     # A view of the new mesh would be created otherwise.
     assert {'+file = "mesh.obj"', "+[view]"} <= set(lines)
-    assert same(read_scene(car), scene.replace(mesh=mesh))
 
 
-def test_a_file_of_the_same_object_is_told_by_the_parts_of_its_mesh(tmp_path: Path) -> None:
-    (tmp_path / "car.obj").write_text(CAR)
-    (tmp_path / "scene.toml").write_text('# Mine.\n[[mesh]]\nfile = "car.obj"\n')
-    mesh = dataclasses.replace(read_scene(tmp_path).mesh, part_names=("hood", "door"))
-    write_scene(tmp_path, scene_of(mesh), overwrite=True)
-    assert (tmp_path / "scene.toml").read_text().startswith("# Mine.\n")
-    assert same(read_scene(tmp_path), scene_of(mesh))
-
-
-def test_parts_that_are_gone_go_from_the_file(car: Path) -> None:
-    scene = read_scene(car)
-    hood = Mesh(scene.mesh.coordinates, np.array([[0, 1, 2, 3]]), np.array([0]), ("hood",))
-    scene = scene.replace(mesh=hood, parts=scene.parts[:1])
-    write_scene(car, scene, overwrite=True)
-    text = (car / "scene.toml").read_text()
-    assert "roof" not in text
-    assert "# The sun." in text
-    assert same(read_scene(car), scene)
-
-
-def test_over_the_file_of_another_object_nothing_of_it_is_kept(
-    car: Path, caplog: pytest.LogCaptureFixture
+def test_a_file_of_the_same_object_is_told_by_the_parts_of_its_mesh(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
+    (tmp_path / "car.obj").write_text(CAR)
+    (tmp_path / "scene.toml").write_text(MINE)
+    mesh = dataclasses.replace(read_scene(tmp_path).mesh, part_names=("hood", "door"))
     with caplog.at_level("WARNING", "autocolor"):
-        write_scene(car, scene_of(cube()), overwrite=True)
-    assert caplog.messages == [f"{car / 'scene.toml'}: written anew; its old content and comments are lost"]
-    assert "by hand" not in (car / "scene.toml").read_text()
-    assert same(read_scene(car), scene_of(cube()))
+        assert saved(tmp_path, scene_of(mesh)).startswith("# Mine.\n")
+        assert caplog.messages == []
+        assert "# Mine." not in saved(tmp_path, scene_of(cube()))
+    file = tmp_path / "scene.toml"
+    assert caplog.messages == [f"{file}: written anew; its old content and comments are lost"]
 
 
 @pytest.mark.parametrize("text", ["", "ambient = ", "\0", "ambient = 1\n", '[[mesh]]\nfile = "no.obj"\n'])
@@ -323,106 +211,62 @@ def test_a_file_that_cannot_be_read_is_replaced_when_it_may_be(tmp_path: Path, t
     with pytest.raises(OutputError, match="exists"):
         write_scene(tmp_path, scene_of(cube()))
     assert [path.name for path in tmp_path.iterdir()] == ["scene.toml"]
-    write_scene(tmp_path, scene_of(cube()), overwrite=True)
-    assert same(read_scene(tmp_path), scene_of(cube()))
+    saved(tmp_path, scene_of(cube()))
 
 
-def test_a_mesh_file_in_the_folder_is_named(tmp_path: Path) -> None:
+def test_a_mesh_file_in_the_folder_is_named_also_if_it_was_repaired(tmp_path: Path) -> None:
     (tmp_path / "parts").mkdir()
-    (tmp_path / "parts" / "car.obj").write_text(CAR)
-    scene = read_scene(tmp_path / "parts" / "car.obj", up="y")
-    write_scene(tmp_path / "scene.toml", scene)
-    assert '[[mesh]]\nfile = "parts/car.obj"\nup = "y"\n' in (tmp_path / "scene.toml").read_text()
-    assert same(read_scene(tmp_path), scene)
+    (tmp_path / "parts" / "car.obj").write_text(CAR + "f 1 1 2\nf 1 2 3 4 1 3\n")
+    text = saved(tmp_path, read_scene(tmp_path / "parts" / "car.obj", up="y"))
+    assert '[[mesh]]\nfile = "parts/car.obj"\nup = "y"\n' in text
     assert not (tmp_path / "mesh.obj").exists()
 
 
 def test_a_mesh_file_outside_of_the_folder_is_written_beside(car: Path, tmp_path: Path) -> None:
-    for source in (car, car / "car.obj"):
-        scene = read_scene(source)
-        write_scene(tmp_path / source.name / "again", scene) if source.is_dir() else write_scene(
-            tmp_path / "new", scene
-        )
-    assert same(read_scene(tmp_path / "new"), read_scene(car / "car.obj"))
-    assert sorted(os.listdir(tmp_path / "new")) == ["mesh.obj", "scene.toml"]
-    assert sorted(os.listdir(car / "again")) == ["mesh.obj", "scene.toml"]
-    assert same(read_scene(car / "again"), read_scene(car))
-
-
-def test_a_scene_that_names_a_file_outside_is_saved_with_its_mesh_inside(car: Path) -> None:
-    (car.parent / "car.obj").write_text(CAR)
+    for folder, source in ((tmp_path / "new", car / "car.obj"), (car / "again", car)):
+        saved(folder, read_scene(source))
+        assert sorted(os.listdir(folder)) == ["mesh.obj", "scene.toml"]
+    (tmp_path / "car.obj").write_text(CAR)
     (car / "scene.toml").write_text(HAND_WRITTEN.replace('"car.obj"', '"../car.obj" # shared'))
-    scene = read_scene(car, outside=True).with_light("sun", intensity=3)
-    write_scene(car, scene, overwrite=True)
-    text = (car / "scene.toml").read_text()
+    text = saved(car, read_scene(car, outside=True).with_light("sun", intensity=3))
     assert 'file = "mesh.obj"' in text
     assert "# The sun." in text
-    assert same(read_scene(car), scene)
 
 
-def test_a_mesh_file_that_was_changed_since_is_not_named(tmp_path: Path) -> None:
-    (tmp_path / "car.obj").write_text(CAR)
-    scene = read_scene(tmp_path / "car.obj")
-    (tmp_path / "car.obj").write_text(CAR.replace("0.1", "0.2"))
-    write_scene(tmp_path, scene)
-    assert 'file = "mesh.obj"' in (tmp_path / "scene.toml").read_text()
-    assert same(read_scene(tmp_path), scene)
-
-
-def test_a_mesh_that_was_repaired_is_that_of_its_file(tmp_path: Path) -> None:
-    (tmp_path / "car.obj").write_text(CAR + "f 1 1 2\nf 1 2 3 4 1 3\n")
-    scene = read_scene(tmp_path) if (tmp_path / "scene.toml").exists() else read_scene(tmp_path / "car.obj")
-    write_scene(tmp_path, scene)
-    assert 'file = "car.obj"' in (tmp_path / "scene.toml").read_text()
-    assert same(read_scene(tmp_path), scene)
-
-
-def test_materials_become_surfaces(tmp_path: Path) -> None:
+def test_materials_become_surfaces_and_the_scene_of_a_picture_file_is_written_with_its_mesh(
+    tmp_path: Path,
+) -> None:
     (tmp_path / "car.obj").write_text("mtllib car.mtl\n" + CAR.replace("o roof", "usemtl red\no roof"))
     (tmp_path / "car.mtl").write_text("newmtl red\nKd 1 0.5 0\nKs 0.25 0.25 0.25\nNs 9\n")
     scene = read_scene(tmp_path / "car.obj")
-    write_scene(tmp_path, scene)
-    write_scene(tmp_path / "elsewhere", scene)
-    assert same(read_scene(tmp_path), scene)
-    assert same(read_scene(tmp_path / "elsewhere"), scene)
-    assert "[surfaces.red]" in (tmp_path / "elsewhere" / "scene.toml").read_text()
-
-
-def test_the_scene_of_a_picture_file_is_written_with_its_mesh(car: Path, tmp_path: Path) -> None:
-    scene = read_scene(car)
-    write_picture(tmp_path / "car.npz", scene, render(scene, 24, 32))
-    again = read_scene(tmp_path / "car.npz")
-    write_scene(tmp_path / "new", again)
-    assert same(read_scene(tmp_path / "new"), scene)
+    saved(tmp_path, scene)
+    assert "[surfaces.red]" in saved(tmp_path / "elsewhere", scene)
+    write_picture(tmp_path / "car.npz", scene, render(scene, 12, 16))
+    assert same(read_scene(tmp_path / "car.npz"), scene)
+    saved(tmp_path / "new", read_scene(tmp_path / "car.npz"))
 
 
 @pytest.mark.parametrize(
-    "name", ["a b", 'a"b', "a.b", "ö", " a", "a\n", "a\\", "#", "o\nv 0 0 0", "x" * 300, "\x7f", "="]
+    "name", ['a"b', "a.b", "ö", " a", "a\n", "a\\", "#", "o\nv 0 0 0", "x" * 300, "\x7f", "="]
 )
 def test_names_of_any_characters_are_read_back(tmp_path: Path, name: str) -> None:
     scene = scene_of(dataclasses.replace(cube(), part_names=(name,)), surfaces="parts")
     scene = scene.with_light("key", name=name).replace(exposure={name: (0.0, 1.5)})
-    write_scene(tmp_path, scene)
-    assert same(read_scene(tmp_path), scene)
-    write_scene(tmp_path, scene.with_surface(name, blend=0.125), overwrite=True)
-    assert read_scene(tmp_path).surface(name).paint.blend == 0.125
+    saved(tmp_path, scene)
+    saved(tmp_path, scene.with_surface(name, blend=0.125))
 
 
 def test_a_name_that_utf_8_lacks_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(
-        InputError, match=r"light '\\ud800': a name in a file must be text in UTF-8; rename it"
+    for fields, name in (
+        ({"name": "\ud800"}, "'\\ud800'"),
+        ({"name": "\ue000\udfff"}, "'\\ue000\\udfff'"),
+        ({"half_spaces": {"\ud800": {"point": (0, 0, 0), "direction": (0, 0, 1)}}}, "'key'"),
     ):
-        write_scene(tmp_path, scene_of(cube()).with_light("key", name="\ud800"))
+        with pytest.raises(InputError) as refusal:
+            write_scene(tmp_path / "cube", scene_of(cube()).with_light("key", **fields))
+        assert str(refusal.value) == f"light {name}: a name in a file must be text in UTF-8; rename it"
     assert list(tmp_path.iterdir()) == []
-
-
-def test_a_name_inside_a_row_that_utf_8_lacks_is_refused(tmp_path: Path) -> None:
-    scene = scene_of(cube()).with_light(
-        "key", half_spaces={"a\ud800": {"point": (0, 0, 0), "direction": (0, 0, 1)}}
-    )
-    with pytest.raises(InputError, match="light 'key': a name in a file must be text in UTF-8; rename it"):
-        write_scene(tmp_path / "cube", scene)
-    assert list(tmp_path.iterdir()) == []
+    saved(tmp_path, scene_of(cube()).with_light("key", name="\ud7ff\ue000"))
 
 
 def test_fields_at_their_defaults_are_left_out(tmp_path: Path) -> None:
@@ -432,8 +276,7 @@ def test_fields_at_their_defaults_are_left_out(tmp_path: Path) -> None:
         view={"eye": (0, -5, 0), "direction": (0, 1, 0)},
         lights=[Light("sun", (1.0, 2.0, 3.0))],
     )
-    write_scene(tmp_path, scene.with_surface("cube", diffuse=0.7, specular=0.5, exponent=20))
-    assert (tmp_path / "scene.toml").read_text() == (
+    assert saved(tmp_path, scene.with_surface("cube", diffuse=0.7, specular=0.5, exponent=20)) == (
         "[view]\neye = [0.0, -5.0, 0.0]\ndirection = [0.0, 1.0, 0.0]\n\n"
         '[[mesh]]\nfile = "mesh.obj"\n\n'
         '[parts.cube]\nsurface = "cube"\n\n'
@@ -442,23 +285,21 @@ def test_fields_at_their_defaults_are_left_out(tmp_path: Path) -> None:
     )
 
 
-def test_what_was_created_is_written_out(tmp_path: Path) -> None:
-    write_scene(tmp_path, scene_of(cube()))
-    text = (tmp_path / "scene.toml").read_text()
-    assert text.count("[[lights]]") == 4
-    assert "[view]\neye" in text
-    assert "ambient = 0.13\n" in text
-    assert 'exposure = "99.5 %"\n' in text
-
-
 def test_a_complete_file_has_all_keys_and_tells_what_was_written(car: Path) -> None:
     written = write_scene_with_tables(car, scene_of(cube()), overwrite=True)
     assert written == [car / "mesh.obj", car / "scene.toml"]
-    assert "two_sided = true\n" in (car / "scene.toml").read_text()
+    text = (car / "scene.toml").read_text()
+    for line in ("two_sided = true", "crease_angle = 40.0", 'exposure = "99.5 %"'):
+        assert f"{line}\n" in text
+    guarded: list[str] = []
+    written = write_scene_with_tables(
+        car, scene_of(cube()), overwrite=True, guard=lambda path: lambda: guarded.append(path.read_text())
+    )
+    assert (written, guarded) == ([car / "scene.toml"], [text])
+    assert (car / "scene.toml").read_text() == text
 
 
 def test_a_folder_that_does_not_exist_is_made_but_not_those_around_it(tmp_path: Path) -> None:
-    write_scene(tmp_path / "cube", scene_of(cube()))
     write_scene(tmp_path / "other" / "cube.toml", scene_of(cube()))
     assert sorted(os.listdir(tmp_path / "other")) == ["cube.toml", "mesh.obj"]
     assert read_scene(tmp_path / "other" / "cube.toml").name == "cube"
@@ -467,45 +308,37 @@ def test_a_folder_that_does_not_exist_is_made_but_not_those_around_it(tmp_path: 
     assert not (tmp_path / "no").exists()
 
 
-@pytest.mark.parametrize("name", ["cube.obj", "cube.npz", "cube.PNG.npz", "there.txt"])
-def test_a_path_of_another_kind_of_file_is_refused(tmp_path: Path, name: str) -> None:
-    (tmp_path / "there.txt").write_text("mine")
-    with pytest.raises(
-        UsageError, match=r"a scene must be written to a folder or to a file that ends in \.toml"
-    ):
-        write_scene(tmp_path / name, scene_of(cube()), overwrite=True)
-    assert [path.name for path in tmp_path.iterdir()] == ["there.txt"]
+PLACE = "a scene must be written to a folder or to a file that ends in .toml, .sqlite or .db, not to"
 
 
-@pytest.mark.parametrize("name", ["a\0b", "a\0b.toml", "x" * 300, "x" * 300 + ".toml"])
-def test_a_path_that_the_system_cannot_hold_is_refused(tmp_path: Path, name: str) -> None:
-    with pytest.raises(OutputError):
-        write_scene(tmp_path / name, scene_of(cube()))
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_an_empty_path_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(
+    ("name", "kind", "sentence"),
+    [
+        *(
+            (name, UsageError, f"{PLACE} {name}; choose another name")
+            for name in ("cube.obj", "a.npz", "mine.txt")
+        ),
+        ("", UsageError, "a scene must have a place, not an empty name; for the current folder write '.'"),
+        *((name, OutputError, "") for name in ("a\0b", "a\0b.toml", "x" * 300, "x" * 300 + ".toml")),
+    ],
+)
+def test_a_path_where_no_scene_can_be_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, kind: type[Exception], sentence: str
+) -> None:
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(
-        UsageError, match=r"must have a place, not an empty name; for the current folder write '\.'"
-    ):
-        write_scene("", scene_of(cube()))
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_a_value_that_is_no_scene_is_refused_in_words(tmp_path: Path) -> None:
-    with pytest.raises(UsageError, match=r"a scene must be a Scene, not '.*'; read a scene from files"):
-        write_scene(tmp_path / "new", "scenes/coupe")  # type: ignore[arg-type]
-    assert list(tmp_path.iterdir()) == []
+    (tmp_path / "mine.txt").write_text("mine")
+    with pytest.raises(kind) as refusal:
+        write_scene(name, scene_of(cube()), overwrite=True)
+    assert sentence in str(refusal.value)
+    assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]
 
 
 def test_no_mesh_file_is_ever_overwritten(tmp_path: Path) -> None:
     (tmp_path / "mesh.obj").write_text(CAR)
-    write_scene(tmp_path, scene_of(cube()))
-    write_scene(tmp_path, scene_of(cube(2.0)), overwrite=True)
+    saved(tmp_path, scene_of(cube()))
+    saved(tmp_path, scene_of(cube(2.0)))
     assert (tmp_path / "mesh.obj").read_text() == CAR
     assert sorted(os.listdir(tmp_path)) == ["mesh-2.obj", "mesh-3.obj", "mesh.obj", "scene.toml"]
-    assert same(read_scene(tmp_path), scene_of(cube(2.0)))
 
 
 @pytest.mark.parametrize("is_new", [True, False])
@@ -527,41 +360,17 @@ def test_if_the_scene_file_cannot_be_written_nothing_is_changed(
     assert folder.exists() != is_new
 
 
-def test_a_folder_that_cannot_be_written_to_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def refuse(*_: Any, **__: Any) -> None:
-        raise OSError(errno.EROFS, os.strerror(errno.EROFS))
-
-    monkeypatch.setattr(os, "open", refuse)
-    with pytest.raises(OutputError, match=r"cannot be made \(read-only file system\); choose another place"):
-        write_scene(tmp_path, scene_of(cube()))
-    monkeypatch.undo()
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_a_scene_of_too_many_parts_is_refused_and_nothing_is_left(
+def test_a_scene_file_that_would_be_too_long_is_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("autocolor.files.scene_writing.LARGEST_TEXT", 1_000)
-    count = 40
-    names = tuple(f"part {number}" for number in range(count))
-    mesh = Mesh(cube().coordinates, np.tile([[0, 2, 3, 1]], (count, 1)), np.arange(count), names)
-    with pytest.raises(OutputError, match=r"a scene file must have at most 1,000 bytes"):
-        write_scene(tmp_path, scene_of(mesh))
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_line_ends_of_other_systems_are_kept(car: Path) -> None:
-    (car / "scene.toml").write_bytes(HAND_WRITTEN.replace("\n", "\r\n").encode())
-    write_scene(car, read_scene(car).with_light("sun", intensity=3.0), overwrite=True)
-    data = (car / "scene.toml").read_bytes()
-    assert data.count(b"\r\n") == data.count(b"\n")
-    assert b"intensity = 3.0\r\n" in data
-
-
-def test_a_new_part_is_written_beside_the_others(car: Path) -> None:
-    scene = read_scene(car)
-    mesh = dataclasses.replace(scene.mesh, part_names=("hood", "door"))
-    parts = (scene.parts[0], Part("door", "paint", stage=True))
-    write_scene(car, scene.replace(mesh=mesh, parts=parts), overwrite=True)
-    text = (car / "scene.toml").read_text()
-    assert '[parts]\nhood.surface = "paint"\ndoor.surface = "paint"\ndoor.stage = true\n' in text
+    scene = scene_of(cube(), lights=())
+    size = len(saved(tmp_path / "cube", scene))
+    monkeypatch.setattr(scene_writing, "LARGEST_TEXT", size)
+    saved(tmp_path / "cube", scene)
+    saved(tmp_path / "again", scene)
+    monkeypatch.setattr(scene_writing, "LARGEST_TEXT", size - 1)
+    with pytest.raises(
+        OutputError, match=f"a scene file must have at most {size - 1:,} bytes and give the same"
+    ):
+        write_scene(tmp_path / "new", scene)
+    assert not (tmp_path / "new").exists()

@@ -6,6 +6,7 @@ import os
 import shutil
 from collections.abc import Iterator
 from contextlib import suppress
+from functools import partial
 from itertools import count
 from pathlib import Path
 
@@ -19,21 +20,14 @@ from autocolor.files import reading
 from autocolor.files.formats import read_mesh
 from autocolor.files.reading import COMMITTED, NAMES, TableFiles, read_together
 from autocolor.files.scene_files import kind_of
-from autocolor.files.writing import write_atomically, write_together
+from autocolor.files.writing import refuse_output, write_atomically, write_together
 from ramtek_emu import writing
 from tests.kills import KINDS, Killed, killed, mesh_sum, steps
 
 
-def test_a_new_file_has_the_bytes_and_nothing_stands_beside_it(tmp_path: Path) -> None:
+def test_files_are_written_whole_and_overwritten_only_if_asked(tmp_path: Path) -> None:
     path = tmp_path / "a.npz"
-    write_atomically(path, b"new", overwrite=False)
-    assert path.read_bytes() == b"new"
-    assert os.listdir(tmp_path) == ["a.npz"]
-
-
-def test_an_existing_file_is_refused_without_overwrite(tmp_path: Path) -> None:
-    path = tmp_path / "a.npz"
-    path.write_bytes(b"old")
+    write_atomically(path, b"old", overwrite=False)
     with pytest.raises(OutputError) as caught:
         write_atomically(path, b"new", overwrite=False)
     assert str(caught.value) == (
@@ -41,49 +35,17 @@ def test_an_existing_file_is_refused_without_overwrite(tmp_path: Path) -> None:
         " with --force (overwrite=True in Python)"
     )
     assert path.read_bytes() == b"old"
+    write_atomically(path, b"new", overwrite=True)
+    assert path.read_bytes() == b"new"
     assert os.listdir(tmp_path) == ["a.npz"]
 
 
-def test_a_link_to_nothing_exists(tmp_path: Path) -> None:
-    path = tmp_path / "a.npz"
-    path.symlink_to(tmp_path / "b.npz")
-    with pytest.raises(OutputError, match="exists"):
-        write_atomically(path, b"new", overwrite=False)
-
-
-def test_overwriting_replaces_and_keeps_the_permissions(tmp_path: Path) -> None:
-    path = tmp_path / "a.npz"
-    path.write_bytes(b"old")
-    path.chmod(0o640)
-    write_atomically(path, b"new", overwrite=True)
-    assert path.read_bytes() == b"new"
-    assert path.stat().st_mode & 0o777 == 0o640
-
-
-def test_overwriting_through_a_link_keeps_the_link(tmp_path: Path) -> None:
-    target, link = tmp_path / "a.npz", tmp_path / "b.npz"
-    target.write_bytes(b"old")
-    link.symlink_to(target)
-    write_atomically(link, b"new", overwrite=True)
-    assert link.is_symlink()
-    assert target.read_bytes() == b"new"
-
-
-def test_a_missing_folder_is_no_place(tmp_path: Path) -> None:
-    with pytest.raises(OutputError, match="there is no folder"):
-        write_atomically(tmp_path / "none" / "a.npz", b"new", overwrite=True)
-
-
-def test_a_folder_is_no_output(tmp_path: Path) -> None:
-    with pytest.raises(OutputError) as caught:
-        write_atomically(tmp_path, b"new", overwrite=True)
-    assert str(caught.value) == f"an output must be a file, not the folder {tmp_path}; add a file name"
-
-
-def test_a_name_with_a_nul_byte_or_of_endless_length_is_no_place(tmp_path: Path) -> None:
-    for name in ("a\0b", "a" * 5000):
+@pytest.mark.parametrize("name", ["none/a.npz", "", "a\0b", "a" * 5000])
+def test_what_is_no_place_for_a_file_is_refused_at_once(tmp_path: Path, name: str) -> None:
+    for write in (refuse_output, partial(write_atomically, data=b"")):
         with pytest.raises(OutputError):
-            write_atomically(tmp_path / name, b"new", overwrite=True)
+            write(tmp_path / name, overwrite=True)
+    assert os.listdir(tmp_path) == []
 
 
 @pytest.mark.parametrize(
@@ -123,31 +85,6 @@ def test_an_interruption_leaves_nothing_behind(tmp_path: Path, monkeypatch: pyte
     with pytest.raises(KeyboardInterrupt):
         write_atomically(tmp_path / "a.npz", b"new", overwrite=False)
     assert os.listdir(tmp_path) == []
-
-
-def test_a_file_system_without_links_gets_the_file_all_the_same(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def refuse(*_: object) -> None:
-        raise OSError(errno.EPERM, "no links here")
-
-    monkeypatch.setattr(os, "link", refuse)
-    write_atomically(tmp_path / "a.npz", b"new", overwrite=False)
-    assert os.listdir(tmp_path) == ["a.npz"]
-
-
-def test_a_file_that_came_meanwhile_is_not_replaced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    path = tmp_path / "a.npz"
-    link = os.link
-
-    def late(source: str, target: str) -> None:
-        path.write_bytes(b"other")
-        link(source, target)
-
-    monkeypatch.setattr(os, "link", late)
-    with pytest.raises(OutputError, match="exists"):
-        write_atomically(path, b"new", overwrite=False)
-    assert path.read_bytes() == b"other"
 
 
 # Folders of tables.
@@ -199,38 +136,37 @@ def test_tables_that_cannot_be_written_leave_nothing(tmp_path: Path) -> None:
             write_together(folder, [], others=(), overwrite=True)
 
 
-@pytest.mark.parametrize(
-    ("name", "has_old"), [("CSV tables", True), ("CSV tables", False), ("npy tables", True)]
-)
-def test_a_save_of_tables_that_is_killed_leaves_the_old_or_the_new(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, has_old: bool
+def content_of(folder: Path) -> dict[str, bytes]:
+    """The content of the tables of a folder, as our readers find them."""
+    names = ("nodes.npy", "polygons.npy", "parts.npy", "scalars/1.npy")
+
+    def read(files: TableFiles) -> dict[str, bytes]:
+        return {name: files.path(folder, name).read_bytes() for name in names if files.has(folder, name)}
+
+    return read_together(read)
+
+
+@pytest.mark.parametrize("has_old", [True, False])
+def test_tables_whose_save_is_killed_at_any_step_are_the_old_or_the_new(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, has_old: bool
 ) -> None:
-    # What is not synced is still there after a kill in this process.
     monkeypatch.setattr(os, "fsync", lambda _: None)
-    kind = KINDS[name]
-    reads: list[object] = []
-    for each in (0, 2):
-        (tmp_path / str(each)).mkdir()
-        kind.save(tmp_path / str(each), each)
-        reads.append(kind.read(tmp_path / str(each)))
+    for old in (True, False):
+        tables_of(tmp_path / str(old), old=old)
+    kinds = [content_of(tmp_path / "True") if has_old else {}, content_of(tmp_path / "False")]
     found = []
     for number in count():
         folder = tmp_path / f"killed {number}"
-        folder.mkdir()
         if has_old:
-            shutil.copytree(tmp_path / "0" / "t", folder / "t")
+            tables_of(folder, old=True)
         with suppress(Killed), steps(number, killed) as done:
-            kind.save(folder, 2)
-        try:
-            found.append(reads.index(kind.read(folder)))
-        except InputError:
-            found.append(0)
-            assert not has_old
-        if number % 3 == 0 or len(done) < number:
-            # The next save moves the tables that are left, and removes temporary files.
-            writing._SWEPT.clear()
-            kind.save(folder, 2)
-            assert names_in(folder) == names_in(tmp_path / "2")
+            tables_of(folder, old=False)
+        found.append(kinds.index(content_of(folder)))
+        # The next save moves the tables that are left, and removes temporary files.
+        writing._SWEPT.clear()
+        tables_of(folder, old=False)
+        assert names_in(folder) == names_in(tmp_path / "False")
+        assert content_of(folder) == kinds[1]
         if len(done) < number:
             break
     assert found == sorted(found)
@@ -338,10 +274,6 @@ def test_scalars_are_not_written_through_a_link(tmp_path: Path) -> None:
         KINDS["npy tables"].save(tmp_path, 1)
     assert os.listdir(tmp_path / "elsewhere") == []
     assert os.listdir(tmp_path / "t") == ["scalars"]
-
-
-def test_the_names_of_a_save_are_in_the_locked_file() -> None:
-    assert NAMES == writing.PART_LOCK
 
 
 def test_tables_keep_their_permissions(tmp_path: Path) -> None:

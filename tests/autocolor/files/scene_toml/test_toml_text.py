@@ -20,6 +20,7 @@ from autocolor.files.scene_toml.toml_text import (
     toml_value,
 )
 from autocolor.scene.columns import Problem
+from tests.tables import refused
 
 
 def refusal(data: bytes | str) -> str:
@@ -27,17 +28,6 @@ def refusal(data: bytes | str) -> str:
         parsed_toml(data if isinstance(data, bytes) else data.encode(), "scene.toml")
     assert len(caught.value.problems) == 1
     return str(caught.value)
-
-
-def test_toml_is_parsed() -> None:
-    text = (
-        'a = 1\r\n["b.c"."d \\" ["]\n"""'.replace('"""', "")
-        + "e = '''x\n[y]'''\n# [[[[\nf = [[1.5, 2.5], []]\n"
-    )
-    assert parsed_toml(text.encode(), "x") == {
-        "a": 1,
-        "b.c": {'d " [': {"e": "x\n[y]", "f": [[1.5, 2.5], []]}},
-    }
 
 
 @pytest.mark.parametrize(
@@ -54,39 +44,38 @@ def test_a_syntax_error_is_one_sentence_with_its_line(text: str, line: int, plac
     assert sentence.endswith("); correct the line")
 
 
-def test_other_encodings_are_refused() -> None:
-    assert refusal("a = 1".encode("utf-16")) == (
-        "scene.toml: a scene file must be text in UTF-8, not UTF-16; save it as UTF-8"
-    )
-    assert refusal(b"a = 1\nb = '\xe4'") == (
-        "scene.toml, line 2: a scene file must be text in UTF-8, not bytes like 0xe4; save it as UTF-8"
-    )
-    assert refusal(b"a = 1\n\0") == (
-        "scene.toml: a scene file must be text, not hold a NUL byte (line 2); save it as UTF-8 text"
-    )
+A = "scene.toml: a scene file must be text"
+WORD = "must have at most 100 digits or letters, not 5,000; write it shorter, or in quotes"
+DEEP = "a key must have at most 8 parts between dots, not more; shorten it"
+KEYS = [each.encode() for each in ("a" + ".a" * 20_000, "a" + " . 'b'" * 20_000, '"a"' + '."b"' * 20_000)]
 
-
-@pytest.mark.parametrize("brackets", ["[" * 1000, "[" * 1000 + "]" * 1000, "{a=" * 1000, "[{a=" * 500])
-def test_deep_nesting_is_refused_before_parsing(brackets: str) -> None:
-    assert refusal("b = 1\na = " + brackets) == (
-        "scene.toml, line 2: brackets must be nested at most 16 deep, not deeper; flatten them"
-    )
-
-
-@pytest.mark.parametrize("key", ["a" + ".a" * 20_000, "a" + " . 'b'" * 20_000, '"a"' + '."b"' * 20_000])
-@pytest.mark.parametrize("form", ["{} = 1", "[{}]", "[[{}]]", "a = {{ {} = 1 }}"])
-def test_long_dotted_keys_are_refused_before_parsing(key: str, form: str) -> None:
-    assert refusal("\n" + form.format(key)) == (
-        "scene.toml, line 2: a key must have at most 8 parts between dots, not more; shorten it"
-    )
-
-
-@pytest.mark.parametrize("word", ["1" * 5000, "0x" + "f" * 4998, "-1" + "_1" * 2499, "1e" + "9" * 4998])
-def test_endless_numbers_are_refused_before_parsing(word: str) -> None:
-    assert refusal("a = " + word) == (
-        "scene.toml, line 1: a number or a key must have at most 100 digits or letters, not 5,000; write it"
-        " shorter, or in quotes"
-    )
+test_what_is_refused_before_parsing = refused(
+    lambda data: parsed_toml(data, "scene.toml"),
+    [
+        ("a = 1".encode("utf-16"), f"{A} in UTF-8, not UTF-16; save it as UTF-8"),
+        (b"a = 1\n\0", f"{A}, not hold a NUL byte (line 2); save it as UTF-8 text"),
+        (
+            b"a = 1\nb = '\xe4'",
+            "scene.toml, line 2: a scene file must be text in UTF-8, not bytes like 0xe4; save it as UTF-8",
+        ),
+        *(
+            (
+                b"b = 1\na = " + brackets,
+                "scene.toml, line 2: brackets must be nested at most 16 deep, not deeper; flatten them",
+            )
+            for brackets in (b"[" * 1000, b"[" * 1000 + b"]" * 1000, b"{a=" * 1000, b"[{a=" * 500)
+        ),
+        *(
+            (b"\n" + form.replace(b"K", key), f"scene.toml, line 2: {DEEP}")
+            for key in KEYS
+            for form in (b"K = 1", b"[K]", b"[[K]]", b"a = { K = 1 }")
+        ),
+        *(
+            (b"a = " + word, f"scene.toml, line 1: a number or a key {WORD}")
+            for word in (b"1" * 5000, b"0x" + b"f" * 4998, b"-1" + b"_1" * 2499, b"1e" + b"9" * 4998)
+        ),
+    ],
+)
 
 
 def test_nesting_key_parts_and_words_may_reach_their_limits() -> None:
@@ -99,6 +88,7 @@ def test_nesting_key_parts_and_words_may_reach_their_limits() -> None:
         for number in (most - 1, most):
             assert parsed_toml(text(number).encode(), "scene.toml")
         assert sentence in refusal(text(most + 1))
+    assert len(parsed_toml(b"a = [" + b"1.5, " * 1000 + b"]", "x")["a"]) == 1000
     # Brackets that are closed again do not count, nor do closing brackets too many.
     assert parsed_toml(b"a = [" + b"[[]], " * 40 + b"]", "x")
     assert "at most 16 deep" in refusal("]]]]\na = " + "[" * 17)
@@ -134,10 +124,6 @@ def test_a_text_is_cut_into_its_statements(text: str, statements: list[tuple[str
     assert "".join(above + statement + after for above, statement, _, after in statements_of(text)) == text
 
 
-def test_a_list_of_many_numbers_is_no_dotted_key() -> None:
-    assert len(parsed_toml(b"a = [" + b"1.5, " * 1000 + b"]", "x")["a"]) == 1000
-
-
 @pytest.mark.parametrize(
     "text", ["a = 'x", 'a = "x\\', 'a = """x', "a = '''x''", 'a = """""', "]]]]", '"' * 9999]
 )
@@ -160,44 +146,6 @@ def test_any_text_is_written_so_that_it_can_be_printed_and_reads_back_equal(text
     written = toml_value(text)
     assert written.isprintable()
     assert tomllib.loads(f"name = {written}") == {"name": text}
-
-
-def test_every_key_has_its_line() -> None:
-    text = """
-ambient = 1
-"a = b" . c = 2
-[view]
-eye = [
-    1,
-    2,
-]
-
-[[lights]]
-name = 'a' # comment
-flaps.z = { on = true }
-[[lights]]
-name = '''
-b'''
-on = true
-[surfaces."a.b"]
-"""
-    assert key_lines(text.encode()) == {
-        ("ambient",): 2,
-        ("a = b",): 3,
-        ("a = b", "c"): 3,
-        ("view",): 4,
-        ("view", "eye"): 5,
-        ("lights",): 10,
-        ("lights", 0): 10,
-        ("lights", 0, "name"): 11,
-        ("lights", 0, "flaps"): 12,
-        ("lights", 0, "flaps", "z"): 12,
-        ("lights", 1): 13,
-        ("lights", 1, "name"): 14,
-        ("lights", 1, "on"): 16,
-        ("surfaces",): 17,
-        ("surfaces", "a.b"): 17,
-    }
 
 
 TEXT = """ambient = 1
@@ -247,39 +195,18 @@ def sentences_of(problems: SceneProblems) -> tuple[str, ...]:
     ],
 )
 def test_a_problem_has_the_line_the_table_and_the_key(path: tuple[str | int, ...], sentence: str) -> None:
-    problems = problems_of()
-    problems.note(path, "must be so")
-    assert sentences_of(problems) == (sentence,)
-
-
-def test_a_wrong_name_is_told_the_nearest_right_one() -> None:
-    problems = problems_of()
-    problems.note(("parts", "hod"), "no mesh has a part of this name", ("hod", ["hood", "roof"]))
-    assert sentences_of(problems) == (
-        "scene.toml, [parts.hod]: no mesh has a part of this name; did you mean 'hood'?",
-    )
-
-
-def test_problems_of_a_row_are_noted_under_its_path() -> None:
-    problems = problems_of()
-    problems.note_all(
-        [Problem(("name",), "must be so"), Problem((), "it must have an aim")], path=("lights", 1)
-    )
-    assert sentences_of(problems) == (
-        "scene.toml, line 13, lights[2]: name must be so",
-        "scene.toml, line 13, lights[2]: it must have an aim",
-    )
+    noted, under = problems_of(), problems_of()
+    noted.note(path, "must be so")
+    under.note_all([Problem(path[2:], "must be so")], path[:2])
+    assert sentences_of(noted) == sentences_of(under) == (sentence,)
 
 
 def test_problems_stand_in_the_order_of_the_lines_and_of_noting() -> None:
     problems = problems_of()
+    problems.raise_any()
     for path, text in ((("view", "eye"), "must a"), (("ambient",), "must b"), (("view", "eye"), "must c")):
         problems.note(path, text)
     assert [sentence[-1] for sentence in sentences_of(problems)] == ["b", "a", "c"]
-
-
-def test_without_a_problem_nothing_is_raised() -> None:
-    problems_of().raise_any()
 
 
 def test_a_mesh_file_has_places_of_its_own() -> None:
