@@ -261,8 +261,10 @@ class Session:
         """Show a message for some seconds; with `persistent`, until the next action.
 
         An empty message takes the last message away. Letters that cannot be printed, as in names of files,
-        are escaped.
+        are escaped. Users of another machine do not see the folders above `root`.
         """
+        if not self.is_at_hand:
+            message = message.replace(str(self.root), self.root.name or "/")
         self.news = Message(escaped(message), is_warning, time.monotonic(), persistent, MESSAGE_SECONDS)
 
     def warn(self, message: object) -> None:

@@ -692,9 +692,14 @@ def mtl_text(surfaces: Iterable[tuple[str, Surface]]) -> bytes:
         color = " ".join(f"{component / 255:.6g}" for component in surface.paint.color)
         specular = surface.reflectance.specular
         exponent = vars(surface.reflectance.model).get("exponent")
-        lines += [f"newmtl {name}", f"Kd {color}", f"Ks {specular!r} {specular!r} {specular!r}"]
+        lines += [_statement("newmtl", name), f"Kd {color}", f"Ks {specular!r} {specular!r} {specular!r}"]
         lines += ["illum 2"] if exponent is None else [f"Ns {exponent!r}", "illum 2"]
     return "\n".join([*lines, ""]).encode("utf-8", "replace")
+
+
+def _statement(keyword: str, name: str) -> str:
+    """The line that names something; a space after a last backslash keeps it from continuing the line."""
+    return f"{keyword} {name} " if name.endswith("\\") else f"{keyword} {name}"
 
 
 def _lines(mesh: Mesh, materials: Sequence[str], library: str) -> Iterator[str]:
@@ -709,9 +714,9 @@ def _lines(mesh: Mesh, materials: Sequence[str], library: str) -> Iterator[str]:
         parts = mesh.part_numbers[chunk].tolist()
         for part, corners in zip(parts, (mesh.node_numbers[chunk] + 1).tolist(), strict=True):
             if part != before:
-                yield f"o {mesh.part_names[part]}"
+                yield _statement("o", mesh.part_names[part])
                 if materials:
-                    yield f"usemtl {materials[part]}"
+                    yield _statement("usemtl", materials[part])
                 before = part
             a, b, c, d = corners
             yield f"f {a} {b} {c}" if c == d else f"f {a} {b} {c} {d}"

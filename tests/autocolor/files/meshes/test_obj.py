@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
+from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Mesh, Surface
@@ -500,8 +500,6 @@ def test_every_coordinate_reads_back_to_the_last_bit(
 def test_a_mesh_reads_back_equal_however_it_is_cut(
     mesh: Mesh, at_once: int, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
-    # A backslash at its end would continue the line of a name.
-    assume(not any(name.endswith("\\") for name in mesh.part_names))
     mesh = dataclasses.replace(mesh, scalars=())
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(module, "ROWS_AT_ONCE", at_once)

@@ -12,7 +12,10 @@ from autocolor.scene.scalar import MeshScalar
 COORDINATES = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0.1, 1 / 3, 1e-300], [7, 8, 9]])
 POLYGONS = ([0, 1, 2, 3], [0, 1, 2, 2], [1, 2, 4, 4], [2, 3, 4, 1])
 WITH_ALL_NODES = [[0, 1, 2, 3], [3, 4, 5, 5]]
-NAMES = st.text(st.characters(exclude_categories=("C", "Z")), min_size=1, max_size=12)
+NAMES = st.text(st.characters(exclude_categories=("C", "Z")), min_size=1, max_size=12).flatmap(
+    # A backslash at the end of a line continues it in some formats.
+    lambda name: st.sampled_from([name, f"{name}\\"])
+)
 WITH_MEANING = st.sampled_from(
     [
         "x",
