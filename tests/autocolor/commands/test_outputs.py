@@ -23,13 +23,13 @@ def test_new_names_of_the_right_kind_are_taken(folder: Path) -> None:
 
 
 test_what_is_refused_even_with_force = refused(
-    lambda given: refuse_outputs(*given[:2], True, *given[2:]),
+    lambda given: refuse_outputs(given[0], given[1], True, given[2]),
     [
-        (("", None), "an output must have a name, not an empty name; name a file"),
-        (("-", None), "an output must be a file, not stdout; name a file"),
-        (("a.jpg", None), "-o must be the name of a PNG, not 'a.jpg'; end it in .png"),
-        ((None, "a"), "--save must be the name of a picture file, not 'a'; end it in .npz"),
-        ((None, "a.png"), "--save must be the name of a picture file, not 'a.png'; end it in .npz"),
+        (("", None, {}), "an output must have a name, not an empty name; name a file"),
+        (("-", None, {}), "an output must be a file, not stdout; name a file"),
+        (("a.jpg", None, {}), "-o must be the name of a PNG, not 'a.jpg'; end it in .png"),
+        ((None, "a", {}), "--save must be the name of a picture file, not 'a'; end it in .npz"),
+        ((None, "a.png", {}), "--save must be the name of a picture file, not 'a.png'; end it in .npz"),
         (
             (None, None, {"--layers": "a.jpg"}),
             "--layers must be the name of an OpenEXR file, not 'a.jpg'; end it in .exr",
@@ -37,11 +37,11 @@ test_what_is_refused_even_with_force = refused(
         ((None, None, {"--words": "a"}), "--words must be the name of a PNG, not 'a'; end it in .png"),
         ((None, None, {"--indexed": "a"}), "--indexed must be the name of a PNG, not 'a'; end it in .png"),
         (
-            ("no/a.png", None),
+            ("no/a.png", None, {}),
             "an output must be in an existing folder, not no; create it or choose another",
         ),
         (
-            ("/dev/null/a.png", None),
+            ("/dev/null/a.png", None, {}),
             "an output must be in an existing folder, not /dev/null; create it or choose another",
         ),
         (

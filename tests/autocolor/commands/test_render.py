@@ -135,14 +135,6 @@ def test_a_picture_has_the_size_that_is_asked_for(folder: Path, run: Run) -> Non
     assert read_picture("a.npz").picture.intensity.shape == (2 * 20, 2 * 30)
 
 
-def test_the_up_axis_turns_a_bare_mesh(folder: Path, run: Run) -> None:
-    for up in "xyz":
-        assert (
-            run("render", "two.obj", "--surfaces", "parts", "--up", up, "-o", f"{up}.png", *SMALL).code == 0
-        )
-    assert len({(folder / f"{up}.png").read_bytes() for up in "xyz"}) == 3
-
-
 @pytest.mark.parametrize(
     ("line", "code", "sentence"),
     [
@@ -238,85 +230,35 @@ v 0 0 0
 v 1 0 0
 v 1 0 1
 v 0 0 1
-v 1 1 0
-v 1 1 1
 v 1 0 2
 v 0 0 2
 g front
 usemtl red
 f 1 2 3 4
 usemtl glass
-f 4 3 7 8
-g side
-usemtl rubber
-f 2 5 6 3
-"""
-LIBRARY = """\
-newmtl red
-Kd 1 0 0
-Ks 0
-newmtl glass
-Kd 0 0 1
-Ks 0
-newmtl rubber
-Kd 0 1 0
-Ks 0
+f 4 3 5 6
 """
 
 
-@pytest.fixture
-def materials(folder: Path) -> Path:
-    """car.obj, a mesh with three materials, in the current folder."""
-    (folder / "car.mtl").write_text(LIBRARY)
-    (folder / "car.obj").write_text(CAR)
-    return folder / "car.obj"
-
-
-def test_a_mesh_is_rendered_in_the_colors_of_its_materials(materials: Path, run: Run) -> None:
+def test_a_mesh_is_rendered_in_the_colors_of_its_materials(folder: Path, run: Run, refused: Refused) -> None:
+    Path("car.mtl").write_text("newmtl red\nKd 1 0 0\nKs 0\nnewmtl glass\nKd 0 0 1\nKs 0\n")
+    Path("car.obj").write_text(CAR)
     written = ("--save", "car.npz", "-o", "car.png")
     assert run("render", "car.obj", *SMALL, *written) == (0, "", "wrote car.png\nwrote car.npz\n")
     picture, scene = read_picture("car.npz")
-    assert {part.name: part.surface for part in scene.parts} == {
-        "front": "red",
-        "front glass": "glass",
-        "side": "rubber",
-    }
-    assert picture.surfaces == ("red", "glass", "rubber")
+    assert {part.name: part.surface for part in scene.parts} == {"front": "red", "front glass": "glass"}
+    assert picture.surfaces == ("red", "glass")
     colors = pixels("car.png")
     # Each object color is of one component; no other is shown where the surface is seen.
-    for number, component in ((1, 0), (2, 2), (3, 1)):
+    for number, component in ((1, 0), (2, 2)):
         seen = colors[picture.surface_number == number]
-        assert len(seen)
         assert seen[:, component].any()
         assert not np.delete(seen, component, axis=1).any()
-
-
-def test_surfaces_of_parts_come_before_those_of_materials_where_that_is_asked(
-    materials: Path, run: Run, refused: Refused
-) -> None:
-    line = "render car.obj --size 32x24 --set 'surfaces.front glass.object_color=#00ff00' --save car.npz"
+    # Surfaces of parts come before those of materials where that is asked.
+    line = "render car.obj --size 32x24 --set 'surfaces.front glass.object_color=#00ff00' --save parts.npz"
     refused(line, 2)
     assert run(*shlex.split(line), "--surfaces", "parts").code == 0
-    assert read_picture("car.npz").picture.surfaces == ("front", "front glass", "side")
-
-
-def test_a_scene_file_gives_surfaces_before_the_materials_do(materials: Path, run: Run) -> None:
-    Path("scene.toml").write_text(
-        '[[mesh]]\nfile = "car.obj"\n[parts.side]\nsurface = "body"\nstage = true\n'
-        '[surfaces.body]\n[surfaces."front glass"]\n'
-    )
-    assert run("render", "scene.toml", *SMALL, "--save", "scene.npz").code == 0
-    scene = read_picture("scene.npz").scene
-    assert [part.surface for part in scene.parts] == ["red", "front glass", "body"]
-    assert [surface.name for surface in scene.surfaces] == ["body", "front glass", "red"]
-    assert [part.stage for part in scene.parts] == [False, False, True]
-
-
-def test_what_is_left_out_of_materials_is_told_and_counts_under_strict(materials: Path, run: Run) -> None:
-    Path("car.mtl").write_text(LIBRARY + "map_Kd car.png\n")
-    ran = run("render", "car.obj", *SMALL, "--strict")
-    assert (ran.code, ran.out) == (1, "")
-    assert ran.err == "autocolor: car.mtl: left out the textures of 1 material\nwrote car.png\n"
+    assert read_picture("parts.npz").picture.surfaces == ("front", "front glass")
 
 
 def test_words_that_stand_for_normals_are_asked_for_by_an_option_or_a_setting(folder: Path, run: Run) -> None:

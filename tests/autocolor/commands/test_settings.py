@@ -10,7 +10,7 @@ import pytest
 from autocolor import Flap, Flaps, HalfSpace, Phong, Scene, Surface, read_scene
 from autocolor.commands.settings import keys_after, with_settings
 from autocolor.errors import UsageError
-from autocolor.files.settings import SettingPlace, field_of, place_of, value_at, value_of
+from autocolor.files.settings import field_of, place_of, value_at, value_of
 from autocolor.scene.changes import HalfSpaceChanges
 from tests.small import scene_folder
 from tests.tables import refused
@@ -236,49 +236,6 @@ test_what_cannot_be_set = refused(
 
 
 # Keys, as completion and the studio know them.
-
-
-@pytest.mark.parametrize(
-    ("text", "place", "default"),
-    [
-        ("ambient", ("", "", ("ambient",)), 0.1),
-        ("view.eye", ("view", "", ("eye",)), ...),
-        ("scalar.name", ("scalar", "", ("name",)), ...),
-        ("scalar", ("", "", ("scalar",)), ...),
-        ("lights.key.cone_angle", ("lights", "key", ("cone_angle",)), None),
-        ("lights.key.2.follows", ("lights", "key.2", ("follows",)), None),
-        ('surfaces."front.low".blend', ("surfaces", "front.low", ("blend",)), 0.6),
-        ("surfaces.side.exponent", ("surfaces", "side", ("exponent",)), 20.0),
-        ("surfaces.side.roughness", ("surfaces", "side", ("roughness",)), 0.3),
-        ("surfaces.side.fresnel_curve", ("surfaces", "side", ("fresnel_curve",)), None),
-        ("lights.key.flaps.z", ("lights", "key", ("flaps", "z")), None),
-        ("lights.key.flaps.z.on", ("lights", "key", ("flaps", "z", "on")), True),
-        ("lights.key.half_spaces", ("lights", "key", ("half_spaces",)), ...),
-        ("lights.key.half_spaces.left", ("lights", "key", ("half_spaces", "left")), ...),
-        ("lights.key.half_spaces.'ne.w'", ("lights", "key", ("half_spaces", "ne.w")), ...),
-        ("lights.key.half_spaces.a.b.on", ("lights", "key", ("half_spaces", "a.b", "on")), True),
-        (
-            "lights.key.half_spaces.left.edge_width",
-            ("lights", "key", ("half_spaces", "left", "edge_width")),
-            0,
-        ),
-        ("lights.key.only_parts", ("lights", "key", ("only_parts",)), None),
-    ],
-)
-def test_a_key_leads_to_a_table_a_row_and_a_field_in_it(
-    text: str, place: SettingPlace, default: object
-) -> None:
-    assert place_of(scene(), text) == place
-    field = field_of(place_of(scene(), text))
-    assert field is not None
-    if default is not ...:
-        assert field.default is not None
-        assert field.default() == default
-
-
-def test_a_key_that_its_row_has_not_has_no_field() -> None:
-    assert field_of(SettingPlace("lights", "key", ("brightness",))) is None
-    assert field_of(SettingPlace("lights", "key", ("on", "off"))) is None
 
 
 @pytest.mark.parametrize(

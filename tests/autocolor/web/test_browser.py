@@ -69,13 +69,6 @@ def small(coupe: autocolor.Scene) -> autocolor.Picture:
     return autocolor.render(coupe, lines=120, elements=160, smooth=2)
 
 
-@pytest.fixture(scope="module")
-def stress() -> tuple[autocolor.Scene, autocolor.Picture]:
-    """The bracket with bands and a legend, as a smooth picture."""
-    scene = autocolor.read_scene(ROOT / "scenes" / "bracket").with_scalar(name="stress", limits=(0, 150))
-    return scene, autocolor.render(scene, lines=300, elements=400, smooth=2)
-
-
 @pytest.fixture
 def opened(browser: Browser, tmp_path: Path) -> Iterator[Open]:
     """Opens a page from its file, without a network. At the end no page has asked or complained."""
@@ -207,9 +200,9 @@ def test_a_saved_png_is_the_image_of_the_new_colors(
     assert (png == image(coupe.with_surface("body", paint=paint), small)).all()
 
 
-def test_a_saved_png_has_the_legend_and_a_page_says_what_is_fixed(
-    opened: Open, stress: tuple[autocolor.Scene, autocolor.Picture], tmp_path: Path
-) -> None:
+def test_a_saved_png_has_the_legend_and_a_page_says_what_is_fixed(opened: Open, tmp_path: Path) -> None:
+    scene = autocolor.read_scene(ROOT / "scenes" / "bracket").with_scalar(name="stress", limits=(0, 150))
+    stress = scene, autocolor.render(scene, lines=300, elements=400, smooth=2)
     page = opened(*stress)
     png = np.asarray(Image.open(io.BytesIO(saved(page, "Save PNG"))).convert("RGB"))
     save_image(tmp_path / "stress.png", *stress)

@@ -40,7 +40,6 @@ from autocolor.web.exported import (
     check_canvas,
     export_of,
     least_intensities,
-    packed_plane,
     packed_words,
 )
 from tests.autocolor.web.twin import (
@@ -71,12 +70,6 @@ def values_through_json(scene: Scene, **options: Any) -> Any:
 def test_packed_words_are_unpacked_word_by_word(given_words: list[int], lines: int) -> None:
     words = np.array(given_words, np.uint16).reshape(lines, -1)
     assert (unpacked_words(packed_words(words), *words.shape) == words).all()
-
-
-@given(st.lists(st.integers(0, 65535), max_size=40))
-def test_a_packed_plane_is_unpacked_number_by_number(shares: list[int]) -> None:
-    packed = packed_plane(np.array(shares, np.uint16))
-    assert unpacked_plane(packed) == shares
 
 
 @given(
