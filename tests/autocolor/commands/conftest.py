@@ -3,19 +3,26 @@
 from __future__ import annotations
 
 import os
+import shlex
 import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import numpy as np
+import numpy.typing as npt
 import pytest
+from PIL import Image
 
 from autocolor.commands.autocolor import autocolor
 from ramtek_emu.command_line import run_command
+from tests.autocolor.files.store.stores import contents
 from tests.small import TWO_PARTS, scene_folder
 
 ROOT = Path(__file__).parents[3]
+SMALL = ("--size", "32x24", "--smooth", "1")
+"""Options for a picture whose size is not the subject."""
 
 
 class Ran(NamedTuple):
@@ -27,6 +34,7 @@ class Ran(NamedTuple):
 
 
 Run = Callable[..., Ran]
+Refused = Callable[..., str]
 
 
 @pytest.fixture
@@ -55,6 +63,33 @@ def run(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> 
 
 
 @pytest.fixture
+def saved(folder: Path, run: Run) -> Path:
+    """A saved picture of the scene, scene.npz, beside its picture scene.png."""
+    assert run("render", "scene", *SMALL, "-o", "scene.png", "--save", "scene.npz").code == 0
+    return folder / "scene.npz"
+
+
+@pytest.fixture
+def refused(folder: Path, run: Run) -> Refused:
+    """Run a line that must end with a code, print nothing on stdout and leave all files as they are.
+
+    Returns the last line on stderr, a sentence of the command or of click.
+    """
+
+    def run_refused(line: str, code: int) -> str:
+        before = contents(folder)
+        ran = run(*shlex.split(line))
+        assert (ran.code, ran.out) == (code, "")
+        assert contents(folder) == before
+        *_, last = ran.err.splitlines()
+        assert last.startswith(("autocolor: ", "Error: "))
+        assert len(last) > 25
+        return last.removeprefix("autocolor: ")
+
+    return run_refused
+
+
+@pytest.fixture
 def process(folder: Path) -> Run:
     """Run `autocolor` with the arguments in a process of its own, without a screen."""
 
@@ -71,3 +106,14 @@ def process(folder: Path) -> Run:
         return Ran(done.returncode, out, err)
 
     return run_process
+
+
+def pixels(path: str | Path) -> npt.NDArray[np.uint8]:
+    """The colors of a picture file such as a PNG, (lines, elements, 3)."""
+    with Image.open(path) as image:
+        return np.asarray(image.convert("RGB"))
+
+
+def is_same(*names: str) -> bool:
+    """Whether files have the same bytes."""
+    return len({Path(name).read_bytes() for name in names}) == 1

@@ -9,25 +9,16 @@ from autocolor import MissingInputError
 from autocolor.commands import demo
 
 
-def test_the_demo_of_a_checkout_is_the_coupe() -> None:
-    assert (demo.demo_folder() / "scene.toml").is_file()
-
-
 def test_a_demo_that_is_not_there_is_missing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(demo, "PLACES", (tmp_path,))
     with pytest.raises(MissingInputError, match="install autocolor again"):
-        demo.demo_folder()
+        autocolor.demo()
 
 
-def test_the_demo_is_a_scene_to_go_on_with() -> None:
+def test_the_demo_is_the_coupe_and_is_saved_elsewhere_with_its_mesh(tmp_path: Path) -> None:
     scene = autocolor.demo()
     assert scene.name == "coupe"
     assert [light.name for light in scene.lights] == ["key", "side", "back", "rim"]
-    assert scene.with_surface("body", object_color="#1f3f8f").surface("body").paint.object_color[2] == 0x8F
-
-
-def test_the_demo_is_saved_elsewhere_with_its_mesh(tmp_path: Path) -> None:
-    scene = autocolor.demo()
     autocolor.write_scene(tmp_path / "coupe", scene)
     again = autocolor.read_scene(tmp_path / "coupe")
     assert again.replace(mesh=scene.mesh).equals(scene)

@@ -7,7 +7,7 @@ import pytest
 
 from autocolor import read_scene, render
 from autocolor.explanation.text import WIDTH
-from tests.autocolor.commands.conftest import Run
+from tests.autocolor.commands.conftest import Refused, Run
 
 
 def test_a_pixel_is_explained_in_rows_of_a_terminal(folder: Path, run: Run) -> None:
@@ -19,39 +19,22 @@ def test_a_pixel_is_explained_in_rows_of_a_terminal(folder: Path, run: Run) -> N
     assert {"node 1", "light", "intensity", "level", "word", "color"} <= {row[:13].strip() for row in rows}
 
 
-def test_json_has_the_intensity_of_the_picture(folder: Path, run: Run) -> None:
-    ran = run("explain", "scene", "240", "320", "--json")
+def test_json_has_the_intensity_of_the_picture_with_its_settings_and_size(folder: Path, run: Run) -> None:
+    ran = run("explain", "scene", "12", "16", "--size", "32x24", "--set", "ambient=0.5", "--json")
     assert (ran.code, ran.err) == (0, "")
     facts = json.loads(ran.out)
-    intensity = float(render(read_scene("scene")).intensity[240, 320])
-    assert facts["intensity"] == pytest.approx(intensity, rel=1e-5)
-    assert [light["name"] for light in facts["lights"]] != []
-
-
-def test_settings_and_the_size_count(folder: Path, run: Run) -> None:
-    ran = run("explain", "scene", "12", "16", "--size", "32x24", "--set", "ambient=0.5", "--json")
-    facts = json.loads(ran.out)
+    intensity = render(read_scene("scene").replace(ambient=0.5), 24, 32).intensity[12, 16]
     assert facts["ambient"] == 0.5
-    scene = read_scene("scene").replace(ambient=0.5)
-    assert facts["intensity"] == pytest.approx(float(render(scene, 24, 32).intensity[12, 16]), rel=1e-5)
+    assert facts["intensity"] == pytest.approx(float(intensity), rel=1e-5)
+    assert sorted(light["name"] for light in facts["lights"]) == ["key", "key.2"]
 
 
 def test_on_the_background_nothing_is_seen(folder: Path, run: Run) -> None:
-    ran = run("explain", "scene", "0", "0")
+    ran = run("explain", "scene", "0", "0", "--size", "32x24")
     assert (ran.code, ran.err) == (0, "")
     assert "nothing: the background" in ran.out
 
 
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (("480", "0"), "autocolor: a line must be 0 to 479, not 480; choose another"),
-        (("0", "640"), "autocolor: an element must be 0 to 639, not 640; choose another"),
-        (("0", "24", "--size", "24x24"), "autocolor: an element must be 0 to 23, not 24; choose another"),
-    ],
-)
-def test_a_pixel_outside_of_the_picture_is_refused(
-    arguments: tuple[str, ...], message: str, folder: Path, run: Run
-) -> None:
-    ran = run("explain", "scene", *arguments)
-    assert (ran.code, ran.out, ran.err.splitlines()) == (2, "", [message])
+@pytest.mark.parametrize("pixel", ["24 0", "0 32"])
+def test_a_pixel_outside_of_the_picture_is_refused(pixel: str, refused: Refused) -> None:
+    refused(f"explain scene {pixel} --size 32x24", 2)

@@ -8,14 +8,7 @@ from typing import Any
 import pytest
 
 from autocolor import read_picture, render, save_page, write_picture
-from tests.autocolor.commands.conftest import Run
-
-
-@pytest.fixture
-def saved(folder: Path, run: Run) -> Path:
-    """A saved picture of the scene, of 64 x 48 pixels."""
-    assert run("render", "scene", "--size", "64x48", "--smooth", "1", "--save", "scene.npz").code == 0
-    return folder / "scene.npz"
+from tests.autocolor.commands.conftest import SMALL, Refused, Run, is_same
 
 
 def picture_in(path: str) -> Any:
@@ -32,31 +25,30 @@ def test_a_picture_becomes_a_page_without_its_mesh(saved: Path, run: Run) -> Non
     assert run("page", "scene.npz") == (0, "", "wrote scene.html\n")
     picture, scene = read_picture(saved)
     save_page("python.html", scene, picture)
-    assert Path("scene.html").read_bytes() == Path("python.html").read_bytes()
+    assert is_same("scene.html", "python.html")
     values = picture_in("scene.html")
-    assert (values["name"], values["lines"], values["elements"]) == ("scene", 48, 64)
+    assert (values["name"], values["lines"], values["elements"]) == ("scene", 24, 32)
     assert values["lights"] is None
 
 
 def test_a_scene_is_rendered_with_smooth_edges(folder: Path, run: Run) -> None:
-    ran = run("page", "scene", "--size", "64x48", "--set", "surfaces.side.object_color=red", "-o", "a.html")
-    assert ran == (0, "", "wrote a.html\n")
+    color = ("--set", "surfaces.side.object_color=red")
+    assert run("page", "scene", "--size", "64x48", *color, "-o", "a.html") == (0, "", "wrote a.html\n")
     values = picture_in("a.html")
     assert (values["lines"], values["elements"], values["smooth"]) == (96, 128, 2)
     assert values["surfaces"][1]["paint"]["object_color"] == "#ff0000"
-    assert run("page", "two.obj", "--size", "64x48", "--smooth", "1").code == 0
-    assert picture_in("two.html")["lines"] == 48
+    assert run("page", "two.obj", *SMALL).code == 0
+    assert picture_in("two.html")["lines"] == 24
 
 
 def test_a_scene_that_is_too_large_for_samples_has_none(
-    folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+    folder: Path, run: Run, refused: Refused, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("autocolor.web.exported.LARGEST_CANVAS", 64 * 48)
-    assert run("page", "scene", "--size", "64x48").code == 0
-    assert picture_in("scene.html")["smooth"] == 1
-    ran = run("page", "scene", "--size", "64x48", "--smooth", "2", "-o", "a.html")
-    assert ran.code == 65
-    assert "at most 3,072 pixels, which canvases of phones hold, not 128 x 96; render it smaller" in ran.err
+    monkeypatch.setattr("autocolor.web.exported.LARGEST_CANVAS", 4 * 32 * 24)
+    for size, smooth in (("32x24", 2), ("64x48", 1)):
+        assert run("page", "scene", "--size", size, "--force").code == 0
+        assert picture_in("scene.html")["smooth"] == smooth
+    refused("page scene --size 64x48 --smooth 2 -o a.html", 65)
 
 
 def test_a_page_has_lights_and_variants(saved: Path, run: Run) -> None:
@@ -77,44 +69,31 @@ def test_a_page_has_lights_and_variants(saved: Path, run: Run) -> None:
     }
 
 
-def test_a_variant_that_replaces_a_ramp_is_told(saved: Path, run: Run) -> None:
-    arguments = ("--set", "surfaces.side.ramp=[red, blue]", "--vary", "surfaces.side.object_color=red")
-    ran = run("page", "scene.npz", *arguments)
-    assert ran.code == 0
-    assert "autocolor: side: two colors and their blend replace its ramp\n" in ran.err
+OF_A_SCENE = "--size and --smooth are for a scene, not for a picture file; leave them out"
 
 
 @pytest.mark.parametrize(
-    ("arguments", "code", "message"),
+    ("line", "code", "sentence"),
     [
-        (("-o", "side.png"), 2, "a page must be written to a file that ends in .html, not to side.png"),
-        (("-o", "old.html"), 73, "an output must be a new file, not old.html, which exists;"),
-        (("--size", "32x24"), 2, "--size and --smooth are for a scene, not for a picture file; leave"),
-        (("--smooth", "1"), 2, "--size and --smooth are for a scene, not for a picture file; leave"),
-        (("--set", "view.angle=3"), 2, "--set: a setting of a picture must need no rendering"),
-        (("--vary", "view.angle=1,2"), 2, "variant '1': view.angle: a variant of a page must change paints"),
-        (("--vary", "lights.key.on=true,false"), 2, "lights.key.on: the page must have lights for it; add"),
-        (("--vary", "surfaces.sde.blend=0,1"), 2, "--vary surfaces.sde.blend: there is no surface 'sde'"),
-        (("--table", "views.csv"), 65, "views.csv: variant '3': view.angle: a variant of a page must change"),
-        (("--table", "none.csv"), 66, "there is no such file"),
+        ("--size 640x480", 2, OF_A_SCENE),
+        ("--smooth 1", 2, OF_A_SCENE),
+        ("--vary surfaces.sde.blend=0,1", 2, "--vary surfaces.sde.blend: there is no surface 'sde'"),
+        ("--table views.csv", 65, "views.csv: variant '3': "),
+        ("-o side.png", 2, ""),
+        ("--set view.angle=3", 2, ""),
+        ("--vary view.angle=1,2", 2, ""),
+        ("--vary lights.key.on=true,false", 2, ""),
+        ("--table none.csv", 66, ""),
     ],
-)  # fmt: skip
+)
 def test_what_cannot_be_a_page_is_refused(
-    saved: Path, run: Run, arguments: tuple[str, ...], code: int, message: str
+    saved: Path, refused: Refused, line: str, code: int, sentence: str
 ) -> None:
-    Path("old.html").write_text("old")
     Path("views.csv").write_text("view.angle\n3\n")
-    ran = run("page", "scene.npz", *arguments)
-    assert (ran.code, ran.out) == (code, "")
-    assert message in ran.err
-    assert Path("old.html").read_text() == "old"
-    assert not Path("scene.html").exists()
+    assert refused(f"page scene.npz {line}", code).startswith(sentence)
 
 
-def test_lights_of_a_picture_that_its_scene_does_not_give_are_refused(saved: Path, run: Run) -> None:
-    picture, scene = read_picture(saved)
-    write_picture("other.npz", scene.with_light("key", intensity=0.5), render(scene, 48, 64))
-    ran = run("page", "other.npz", "--lights")
-    assert ran.code == 65
-    assert "the lights of a picture must be computed from the scene that it was rendered from" in ran.err
-    assert picture.lines == 48
+def test_lights_of_a_picture_that_its_scene_does_not_give_are_refused(saved: Path, refused: Refused) -> None:
+    _, scene = read_picture(saved)
+    write_picture("other.npz", scene.with_light("key", intensity=0.5), render(scene, 24, 32))
+    refused("page other.npz --lights", 65)

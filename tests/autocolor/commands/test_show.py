@@ -14,22 +14,20 @@ from types import SimpleNamespace
 
 import pytest
 
-from autocolor import Studio, UnavailableError, UsageError, read_journal, read_scene
+from autocolor import Studio, UnavailableError, read_journal, read_scene
 from autocolor.commands.demo import demo_folder
-from autocolor.commands.show import BUTTONS, attend, folder_of, port_to, refuse_address, session_elsewhere
+from autocolor.commands.show import BUTTONS, attend, folder_of, port_to, session_elsewhere
 from autocolor.journal.autosave import JOURNAL, left_sessions
 from autocolor.journal.history import History
 from autocolor.journal.places import Source
 from autocolor.screens.message_line import MessagePart, lines_of_message
 from autocolor.screens.viewer import Viewer
-from ramtek_emu import PortError, Ramtek9300
+from ramtek_emu import Ramtek9300
 from ramtek_emu.host.server import Server, TcpServer, UnixServer
-from tests.autocolor.commands.conftest import Run
+from tests.autocolor.commands.conftest import ROOT, Refused, Run
 from tests.autocolor.screens.hand import folded_section_of
 from tests.small import car
-
-SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\ng lid\nf 1 2 3 4\n"
-
+from tests.tables import first
 
 Act = Callable[[Ramtek9300], object]
 AGAIN = "again"
@@ -66,39 +64,43 @@ def server() -> Iterator[Served]:
     served.stop()
 
 
-def test_a_picture_is_shown_once_on_a_display_behind_a_port(tmp_path: Path, run: Run, server: Served) -> None:
-    mesh = tmp_path / "square.obj"
-    mesh.write_text(SQUARE)
-    ran = run("show", str(mesh), "--to", server.address, "--once")
-    assert ran == (0, "", f"reading {mesh}\nshown on {server.address}\n")
+NOWHERE = "tcp://127.0.0.1:1"
+
+
+def test_a_picture_is_shown_once_on_a_display_behind_a_port(folder: Path, run: Run, server: Served) -> None:
+    ran = run("show", "two.obj", "--set", "ambient=0.3", "--to", server.address, "--once")
+    assert ran == (0, "", f"reading two.obj\nshown on {server.address}\n")
     here = Ramtek9300()
-    Studio(read_scene(mesh), here)
+    Studio(read_scene("two.obj").replace(ambient=0.3), here)
     assert (server.display.field() == here.field()).all()
 
 
-@pytest.mark.parametrize("address", ["127.0.0.1:9300", "tcp://127.0.0.1:0", "http://x:1"])
-def test_what_is_no_address_is_refused_in_a_sentence(address: str, tmp_path: Path, run: Run) -> None:
-    (tmp_path / "square.obj").write_text(SQUARE)
-    ran = run("show", str(tmp_path / "square.obj"), "--to", address)
-    assert ran.code == 2
-    assert ran.err.startswith("autocolor: --to: an address must be tcp://host:port")
+EITHER = "show must have either SCENE or --recover; name a scene"
+OF_SCENE = "--set and --once are for SCENE, not for sessions; leave them out"
+ADDRESS = "--to: an address must be tcp://host:port"
+PAINTS = "--paints is for an interactive session, not for --once; leave one of them out"
 
 
 @pytest.mark.parametrize(
-    ("arguments", "rule"),
+    ("line", "code", "sentence"),
     [
-        ((), "show must have either SCENE or --recover; name a scene"),
-        (("scene", "--recover", "newest"), "show must have either SCENE or --recover; name a scene"),
-        (("--recover", "--once"), "--set and --once are for SCENE, not for sessions; leave them out"),
-        (
-            ("scene", "--paints", "a.gpl", "--once"),
-            "--paints is for an interactive session, not for --once; leave one of them out",
-        ),
+        (f"--to {NOWHERE}", 2, EITHER),
+        (f"scene --recover newest --to {NOWHERE}", 2, EITHER),
+        (f"--recover --once --to {NOWHERE}", 2, OF_SCENE),
+        (f"--recover --set ambient=1 --to {NOWHERE}", 2, OF_SCENE),
+        (f"scene --paints a.gpl --once --to {NOWHERE}", 2, PAINTS),
+        ("scene --to 127.0.0.1:9300", 2, ADDRESS),
+        ("scene --to tcp://x", 2, ADDRESS),
+        ("scene --to http://x:1", 2, ADDRESS),
+        ("scene --to display", 2, ADDRESS),
+        ("scene", 2, "Error: Missing option '--to'"),
+        (f"scene --timeout 0.05 --to {NOWHERE}", 2, "Error: Invalid value for '--timeout'"),
+        (f"scene --to {NOWHERE}", 69, f"a display must listen at {NOWHERE}, and it is not reached"),
+        (f"--recover --to {NOWHERE}", 66, ""),
     ],
 )
-def test_a_scene_or_a_session_is_shown(folder: Path, run: Run, arguments: tuple[str, ...], rule: str) -> None:
-    ran = run("show", "--to", "tcp://127.0.0.1:1", *arguments)
-    assert (ran.code, ran.err) == (2, f"autocolor: {rule}\n")
+def test_what_cannot_be_shown_is_refused(refused: Refused, line: str, code: int, sentence: str) -> None:
+    assert refused(f"show {line}", code).startswith(sentence)
 
 
 def test_paints_are_brought_to_a_display_elsewhere(
@@ -117,18 +119,10 @@ def test_paints_are_brought_to_a_display_elsewhere(
     assert messages == ["2 paints of few.csv: take them in color mixing"]
 
 
-def test_a_display_that_is_not_there_is_told(folder: Path, run: Run) -> None:
-    ran = run("show", "scene", "--to", "tcp://127.0.0.1:1")
-    assert ran.code == 69
-    assert ran.err.startswith(
-        "reading scene\nautocolor: a display must listen at tcp://127.0.0.1:1, and it is not reached"
-    )
-
-
 @pytest.mark.skipif(os.name == "nt", reason="Windows ends programs without a signal")
-@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 128 + signal.SIGTERM)])
+@pytest.mark.parametrize("number", first(1, [signal.SIGTERM, signal.SIGINT]))
 def test_a_session_that_is_ended_by_a_signal_is_recovered(
-    folder: Path, number: int, code: int, monkeypatch: pytest.MonkeyPatch
+    folder: Path, number: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The joystick turns the object by TRACK, before and after the session is recovered."""
     with TcpServer(Ramtek9300()) as server:
@@ -137,7 +131,7 @@ def test_a_session_that_is_ended_by_a_signal_is_recovered(
             return subprocess.Popen(
                 [sys.executable, "-m", "autocolor", "show", *arguments, "--to", server.address],
                 cwd=folder,
-                env={**os.environ, "PYTHONPATH": str(Path(__file__).parents[3])},
+                env={**os.environ, "PYTHONPATH": str(ROOT)},
                 stderr=subprocess.PIPE,
                 text=True,
             )
@@ -175,7 +169,7 @@ def test_a_session_that_is_ended_by_a_signal_is_recovered(
             while process.poll() is None or server.busy:
                 server.step(0.01)
             _, err = process.communicate(timeout=60)
-            assert process.returncode == code, err
+            assert process.returncode == 128 + number, err
     (left,) = left_sessions()
     history = read_journal(left / JOURNAL).history
     assert len(history.to_undo) == 3
@@ -185,7 +179,6 @@ def test_a_session_that_is_ended_by_a_signal_is_recovered(
 def test_files_are_in_the_folder_of_the_scene_and_never_in_that_of_the_demo(folder: Path) -> None:
     assert folder_of(Source("scene")) == folder / "scene"
     assert folder_of(Source("scene/scene.toml")) == folder / "scene"
-    assert folder_of(Source("two.obj")) == folder
     assert folder_of(Source(str(demo_folder()))) == folder
 
 
@@ -300,14 +293,21 @@ def on(viewer_of: list[Viewer], label: str, share: float = 0.5) -> Act:
     return act
 
 
-def test_it_is_left_by_the_menu_and_the_picture_stays(
+def test_it_is_left_by_the_menu_once_changes_were_told_and_the_picture_stays(
     server: Served, tmp_path: Path, capsys: pytest.CaptureFixture[str], state: Path
 ) -> None:
     seen: list[Viewer] = []
-    session_elsewhere(
-        History(car()), server.address, tmp_path, None, acting(server, seen, menu, on(seen, "leave"))
-    )
+    messages: list[str] = []
+    leave = on(seen, "leave")
+
+    def note(_: Ramtek9300) -> None:
+        messages.append(seen[0].message)
+
+    prepare = acting(server, seen, menu, on(seen, "turn", 0.9), leave, note, leave)
+    session_elsewhere(History(car()), server.address, tmp_path, None, prepare)
     assert capsys.readouterr().err.startswith(f"shown on {server.address}; pick `leave` in the menu there")
+    assert messages == ["not saved: save it, or leave once more to discard the changes"]
+    assert seen[0].studio.is_changed
     display = server.display
     assert (display.words == seen[0].studio.words).all()
     assert not any(cursor.is_visible for cursor in display.cursors.all)
@@ -321,20 +321,12 @@ def test_the_first_message_names_the_buttons_also_beside_a_session_that_was_left
     seen: list[Viewer] = []
     first: list[MessagePart] = []
 
-    def crash(_: Ramtek9300) -> None:
-        raise RuntimeError
-
     def note(_: Ramtek9300) -> None:
         first.extend(seen[-1].board.messages)
 
     if was_left:
-        prepare = acting(server, seen, menu, on(seen, "turn", 0.9), crash)
-        with pytest.raises(RuntimeError):
-            session_elsewhere(History(car()), server.address, tmp_path, None, prepare)
-        # This process still runs.
-        folders = [path.parent for path in state.glob(f"sessions/*/{JOURNAL}")]
-        monkeypatch.setattr("autocolor.commands.sessions.left_sessions", lambda: folders)
-        seen.clear()
+        monkeypatch.setattr("autocolor.commands.sessions.left_sessions", lambda: [tmp_path])
+        monkeypatch.setattr("autocolor.commands.sessions.written_at", lambda _: 0.0)
     prepare = acting(server, seen, note, menu, on(seen, "leave"))
     session_elsewhere(History(car()), server.address, tmp_path, None, prepare)
     (part,) = first
@@ -342,20 +334,6 @@ def test_the_first_message_names_the_buttons_also_beside_a_session_that_was_left
     assert ("a session was not closed" in part.text) == was_left
     # The message is shown whole.
     assert lines_of_message(part, 89)[-1].text.endswith("TRACK (right button) drags")
-
-
-def test_unsaved_changes_are_told_before_it_is_left(server: Served, tmp_path: Path) -> None:
-    seen: list[Viewer] = []
-    messages: list[str] = []
-    leave = on(seen, "leave")
-
-    def note(_: Ramtek9300) -> None:
-        messages.append(seen[0].message)
-
-    prepare = acting(server, seen, menu, on(seen, "turn", 0.9), leave, note, leave)
-    session_elsewhere(History(car()), server.address, tmp_path, None, prepare)
-    assert messages == ["not saved: save it, or leave once more to discard the changes"]
-    assert seen[0].studio.is_changed
 
 
 def test_a_pointer_elsewhere_saves_in_the_folder_of_the_scene(server: Served, tmp_path: Path) -> None:
@@ -385,20 +363,6 @@ def test_a_display_that_goes_away_leaves_the_session_to_be_recovered(
     assert str(told.value).endswith("; `autocolor show --recover --to ADDRESS` continues the session")
     (path,) = state.glob(f"sessions/*/{JOURNAL}")
     assert read_journal(path).history.scene.view == seen[0].studio.scene.view != car().view
-
-
-def test_a_display_that_does_not_answer_is_given_up(tmp_path: Path) -> None:
-    with TcpServer(Ramtek9300()) as silent, port_to(silent.address) as port:
-        # Nobody serves it, but the system takes the connection.
-        port.timeout = 0.2
-        with pytest.raises(UnavailableError, match=r"must answer within 0\.2 seconds, and tcp.* does not"):
-            session_with(port, silent.address, tmp_path)
-
-
-def session_with(port: object, address: str, folder: Path) -> None:
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("autocolor.commands.show.port_to", lambda *_: port)
-        session_elsewhere(History(car()), address, folder)
 
 
 def test_the_unit_is_polled_at_least_sixty_times_a_second_and_the_program_sleeps(
@@ -442,41 +406,18 @@ def test_a_unix_socket_is_addressed_by_its_path(tmp_path: Path) -> None:
     assert (served.display.words == seen[0].studio.words).all()
 
 
-@pytest.mark.parametrize("address", ["127.0.0.1:9300", "tcp://x", "http://x:1", "display"])
-def test_what_is_no_address_is_refused(address: str) -> None:
-    with pytest.raises(UsageError, match="--to: an address must be tcp://host:port with a port"):
-        refuse_address(address)
+Serve = Callable[[socket.socket], object]
 
 
-def test_a_port_to_no_display_is_refused() -> None:
-    with pytest.raises(PortError, match="start `ramtek serve` there"):
-        port_to("tcp://127.0.0.1:1")
+def replying(reply: Callable[[bytes], bytes], greeting: bytes = b"") -> Serve:
+    """What another server does: it sends a greeting, and a reply to all that it receives."""
 
+    def serve(host: socket.socket) -> None:
+        host.sendall(greeting)
+        while data := host.recv(1 << 16):
+            host.sendall(reply(data))
 
-def banner(host: socket.socket) -> None:
-    host.sendall(b"SSH-2.0-OpenSSH_9.6\r\n")
-    while host.recv(1 << 16):
-        pass
-
-
-def echo(host: socket.socket) -> None:
-    while data := host.recv(1 << 16):
-        host.sendall(data)
-
-
-def garbage(host: socket.socket) -> None:
-    while host.recv(1 << 16):
-        host.sendall(bytes(range(256)) * 256)
-
-
-def zeros(host: socket.socket) -> None:
-    while host.recv(1 << 16):
-        host.sendall(bytes(1 << 16))
-
-
-def silence(host: socket.socket) -> None:
-    while host.recv(1 << 16):
-        pass
+    return serve
 
 
 def deafness(host: socket.socket) -> None:
@@ -485,25 +426,26 @@ def deafness(host: socket.socket) -> None:
         host.sendall(b"\r\n")
 
 
-@pytest.mark.parametrize("interactive", [False, True])
+BANNER = b"SSH-2.0-OpenSSH_9.6\r\n"
+NO_ANSWER = "must answer within 0.3 seconds, and"
+ANOTHER = "and another server does; check the address, or start `ramtek serve` there"
+
+
+@pytest.mark.parametrize("options", ["", "--once"])
 @pytest.mark.parametrize(
     ("serve", "seconds", "sentence"),
     [
-        (banner, 0.3, "must answer within 0.3 seconds, and"),
-        (silence, 0.3, "must answer within 0.3 seconds, and"),
-        (echo, 60.0, "and another server does; check the address, or start `ramtek serve` there"),
-        (garbage, 60.0, "and another server does"),
-        (zeros, 60.0, "and another server does"),
+        (replying(lambda _: b"", BANNER), 0.3, NO_ANSWER),
+        (replying(lambda _: b""), 0.3, NO_ANSWER),
         (deafness, 0.3, ""),
+        (replying(lambda data: data), 60.0, ANOTHER),
+        (replying(lambda _: bytes(range(256)) * 256), 60.0, ANOTHER),
+        (replying(lambda _: bytes(1 << 16)), 60.0, ANOTHER),
     ],
+    ids=["banner", "silence", "deafness", "echo", "garbage", "zeros"],
 )
 def test_a_server_that_is_no_display_is_refused(
-    serve: Callable[[socket.socket], None],
-    seconds: float,
-    sentence: str,
-    interactive: bool,
-    folder: Path,
-    run: Run,
+    serve: Serve, seconds: float, sentence: str, options: str, refused: Refused
 ) -> None:
     with socket.create_server(("127.0.0.1", 0)) as listening:
 
@@ -515,9 +457,5 @@ def test_a_server_that_is_no_display_is_refused(
         thread = Thread(target=accept)
         thread.start()
         address = f"tcp://127.0.0.1:{listening.getsockname()[1]}"
-        once = [] if interactive else ["--once"]
-        ran = run("show", "scene", "--to", address, "--timeout", f"{seconds}", *once)
+        assert sentence in refused(f"show scene --to {address} --timeout {seconds} {options}", 69)
         thread.join(60)
-    assert (ran.code, ran.out) == (69, "")
-    assert sentence in ran.err
-    assert "shown" not in ran.err

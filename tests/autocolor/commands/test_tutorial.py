@@ -9,7 +9,7 @@ from autocolor.commands.tutorial import teach
 from autocolor.journal.history import History
 from autocolor.screens.viewer import Viewer
 from ramtek_emu import Ramtek9300
-from tests.autocolor.commands.conftest import Run
+from tests.autocolor.commands.conftest import Refused, Run
 from tests.small import car
 
 
@@ -18,11 +18,10 @@ def test_the_panel_stands_over_the_first_screen() -> None:
     viewer = Viewer(car(), display)
     before = display.field()
     teach(viewer)
-    after = display.field()
     labels = [each.label for each in viewer.board.widgets()]
     assert labels == ["skip", "end", "up", "tutorial"]
     panel = viewer.board.widgets()[-1].area
-    changed = before != after
+    changed = before != display.field()
     assert changed[panel.top : panel.bottom + 1, panel.left : panel.right + 1].any()
     # The first message of the viewer was at the bottom.
     assert not changed[: panel.top].any()
@@ -30,27 +29,22 @@ def test_the_panel_stands_over_the_first_screen() -> None:
 
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows always has a screen")
-def test_without_a_screen_render_is_named(folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_a_screen_render_is_named(refused: Refused, monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER"):
         monkeypatch.delenv(name, raising=False)
-    ran = run("tutorial")
-    assert (ran.code, ran.out) == (69, "")
-    assert "; `autocolor render` writes the demo to coupe.png, and `autocolor render SCENE" in ran.err
+    assert "; `autocolor render` writes the demo to coupe.png" in refused("tutorial", 69)
 
 
-def test_it_is_taught_on_a_display_elsewhere(folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    from autocolor.commands import tutorial
-
+def test_it_is_taught_on_a_display_elsewhere(
+    folder: Path, run: Run, refused: Refused, monkeypatch: pytest.MonkeyPatch
+) -> None:
     asked: list[tuple[str, str, Path, float]] = []
 
     def session(history: History, address: str, place: Path, prepare: object, timeout: float) -> None:
         assert prepare is teach
         asked.append((history.scene.name, address, place, timeout))
 
-    monkeypatch.setattr(tutorial, "session_elsewhere", session)
+    monkeypatch.setattr("autocolor.commands.tutorial.session_elsewhere", session)
     assert run("tutorial", "--to", "tcp://127.0.0.1:9300", "--timeout", "200").code == 0
     assert asked == [("coupe", "tcp://127.0.0.1:9300", folder, 200.0)]
-
-
-def test_a_wrong_address_is_refused(folder: Path, run: Run) -> None:
-    assert run("tutorial", "--to", "127.0.0.1").code == 2
+    refused("tutorial --to 127.0.0.1", 2)

@@ -9,20 +9,24 @@ from typing import Any
 import numpy as np
 import pytest
 
+from autocolor.commands import view
+from autocolor.commands.view import connected
+from autocolor.files import scene_sources
 from autocolor.files.state import recent_files
-from tests.autocolor.commands.conftest import Run
-
-pygame = pytest.importorskip("pygame")
+from autocolor.screens.viewer import Viewer
+from ramtek_emu import NoScreenError, Ramtek9300
+from ramtek_emu.monitor import window
+from ramtek_emu.monitor.window import Key, Monitor, Pointer
+from tests.autocolor.commands.conftest import Refused, Run
+from tests.small import car
 
 
 @pytest.fixture
 def monitors(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     """The monitors that a command opens; each is driven by `script` instead of by a user."""
-    from ramtek_emu.monitor import window
-
     opened: list[Any] = []
 
-    class Driven(window.Monitor):
+    class Driven(Monitor):
         script: Callable[[Any], object] = staticmethod(lambda monitor: None)
 
         def run(self) -> None:
@@ -44,29 +48,14 @@ def test_a_scene_is_shown_until_the_window_is_closed(folder: Path, run: Run, mon
     assert monitor.display.words.any()
 
 
-def test_options_of_the_window_reach_it(folder: Path, run: Run, monitors: list[Any]) -> None:
-    assert run("view", "two.obj", "--up", "y", "--full-screen", "--fit").code == 0
-    assert monitors[1].full_screen
-    assert monitors[1].fit
-
-
-def test_a_scene_that_is_viewed_is_among_the_recent_files(
-    folder: Path, run: Run, monitors: list[Any]
-) -> None:
-    assert run("view", "two.obj", "--up", "y").code == 0
+def test_what_is_set_and_options_of_the_window_reach_it(folder: Path, run: Run, monitors: list[Any]) -> None:
+    settings = ("--set", "background=#102030", "--set", "parts.side.stage=true")
+    assert run("view", "two.obj", "--up", "y", "--full-screen", "--fit", *settings).code == 0
+    assert (monitors[1].full_screen, monitors[1].fit) == (True, True)
+    assert monitors[1].display.entries[0].tolist() == [16, 32, 48]
+    # What is viewed is among the recent files, the last first.
     assert run("view", "scene").code == 0
     assert recent_files()[:2] == (folder / "scene", folder / "two.obj")
-
-
-def test_what_is_set_is_shown(folder: Path, run: Run, monitors: list[Any]) -> None:
-    assert run("view", "scene", "--set", "background=#102030", "--set", "parts.side.stage=true").code == 0
-    entries = monitors[1].display.entries
-    assert entries[0].tolist() == [16, 32, 48]
-    ran = run("view", "scene", "--set", "backgruond=red")
-    assert (ran.code, ran.err) == (
-        2,
-        "autocolor: --set backgruond: there is no field 'backgruond'; did you mean 'background'?\n",
-    )
 
 
 @pytest.mark.parametrize("line", [("view", "scene", "--paints", "few.csv"), ("--paints", "few.csv")])
@@ -77,28 +66,19 @@ def test_paints_are_brought_along(folder: Path, run: Run, monitors: list[Any], l
 
 
 @pytest.mark.parametrize(
-    ("line", "code", "message"),
+    ("line", "code", "sentence"),
     [
-        (
-            ("view", "scene", "--paints", "no.gpl"),
-            66,
-            "no.gpl: there is no such file or folder; check",
-        ),
-        (("--paints", "two.obj"), 65, "two.obj: a palette must end in .act, .csv or .gpl, not in '.obj';"),
-        (
-            ("view", "--sessions", "--paints", "few.csv"),
-            2,
-            "--paints is for a scene or a session that is shown;",
-        ),
-        (("--paints", "few.csv", "view", "scene"), 2, "--paints before a command is for the demo; write it"),
+        ("--paints few.csv view scene", 2, "--paints before a command is for the demo; write it after"),
+        ("view scene --paints no.gpl", 66, ""),
+        ("--paints two.obj", 65, ""),
+        ("view scene --set backgruond=red", 2, ""),
+        ("view none.obj", 66, ""),
     ],
 )
-def test_paints_that_cannot_be_shown_are_refused_before_anything_is_read(
-    folder: Path, run: Run, monitors: list[Any], line: tuple[str, ...], code: int, message: str
+def test_what_cannot_be_shown_opens_no_window(
+    refused: Refused, monitors: list[Any], line: str, code: int, sentence: str
 ) -> None:
-    ran = run(*line)
-    assert (ran.code, ran.out) == (code, "")
-    assert ran.err.startswith(f"autocolor: {message}")
+    assert refused(line, code).startswith(sentence)
     assert len(monitors) == 1
 
 
@@ -109,8 +89,6 @@ def test_repairs_count_under_strict(folder: Path, run: Run, monitors: list[Any])
 
 
 def test_keys_drops_and_closing_reach_the_viewer(folder: Path, run: Run, monitors: list[Any]) -> None:
-    from ramtek_emu.monitor.window import Key
-
     captions = []
 
     def note(monitor: Any) -> None:
@@ -141,8 +119,6 @@ def test_keys_drops_and_closing_reach_the_viewer(folder: Path, run: Run, monitor
 def test_the_mouse_reaches_the_viewer(
     folder: Path, run: Run, monitors: list[Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from ramtek_emu.monitor.window import Pointer
-
     # However slow the machine is, no picture of the drag is coarse.
     monkeypatch.setattr("autocolor.studio.perf_counter", lambda: 0.0)
     fields = []
@@ -164,37 +140,31 @@ def test_the_mouse_reaches_the_viewer(
     assert fields[1] == fields[2]
 
 
-def test_leaving_by_the_menu_closes_the_window(monkeypatch: pytest.MonkeyPatch) -> None:
-    from autocolor.commands.view import connected
-    from autocolor.screens.viewer import Viewer
-    from ramtek_emu import Ramtek9300
-    from ramtek_emu.monitor.window import Monitor
-    from tests.small import car
-
+@pytest.fixture
+def pair(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[Monitor, Viewer]:
+    """A window without a screen and its viewer."""
+    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
     display = Ramtek9300()
-    viewer = Viewer(car(), display)
-    monitor = connected(Monitor(display), viewer)
+    viewer = Viewer(car(), display, tmp_path)
+    return connected(Monitor(display), viewer), viewer
+
+
+def test_leaving_by_the_menu_closes_the_window(
+    pair: tuple[Monitor, Viewer], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monitor, viewer = pair
     closed: list[bool] = []
     monkeypatch.setattr(monitor, "close", lambda: closed.append(True))
     assert monitor.on_tick is not None
-    monitor.on_tick()
-    assert closed == []
-    viewer.session.leave()
-    monitor.on_tick()
-    assert closed == [True]
+    for leaves in (False, True):
+        if leaves:
+            viewer.session.leave()
+        monitor.on_tick()
+        assert closed == [True] * leaves
 
 
-def test_the_clipboard_of_the_window_is_that_of_the_viewer(monkeypatch: pytest.MonkeyPatch) -> None:
-    from autocolor.commands.view import connected
-    from autocolor.screens.viewer import Viewer
-    from ramtek_emu import Ramtek9300
-    from ramtek_emu.monitor.window import Monitor
-    from tests.small import car
-
-    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
-    display = Ramtek9300()
-    viewer = Viewer(car(), display)
-    monitor = connected(Monitor(display), viewer)
+def test_the_clipboard_of_the_window_is_that_of_the_viewer(pair: tuple[Monitor, Viewer]) -> None:
+    monitor, viewer = pair
     monitor.open()
     try:
         viewer.session.turn_to("mixing")
@@ -207,16 +177,10 @@ def test_the_clipboard_of_the_window_is_that_of_the_viewer(monkeypatch: pytest.M
         monitor.close()
 
 
-def test_the_window_is_recorded_beside_the_screenshots_of_the_viewer(tmp_path: Path) -> None:
-    from autocolor.commands.view import connected
-    from autocolor.screens.viewer import Viewer
-    from ramtek_emu import Ramtek9300
-    from ramtek_emu.monitor.window import Key, Monitor
-    from tests.small import car
-
-    display = Ramtek9300()
-    viewer = Viewer(car(), display, tmp_path)
-    monitor = connected(Monitor(display), viewer)
+def test_the_window_is_recorded_beside_the_screenshots_of_the_viewer(
+    pair: tuple[Monitor, Viewer], tmp_path: Path
+) -> None:
+    monitor, viewer = pair
     viewer.session.tell("")
     for _ in range(2):
         monitor.handle_key(Key("f3"))
@@ -226,8 +190,6 @@ def test_the_window_is_recorded_beside_the_screenshots_of_the_viewer(tmp_path: P
 
 
 def test_modifiers_and_released_keys_reach_the_viewer(folder: Path, run: Run, monitors: list[Any]) -> None:
-    from ramtek_emu.monitor.window import Key, Pointer
-
     fields = []
 
     def field(monitor: Any) -> bytes:
@@ -261,8 +223,6 @@ def test_a_bare_command_shows_the_demo(folder: Path, run: Run, monitors: list[An
 def test_the_demo_is_saved_to_new_files_and_a_scene_that_was_named_to_its_own(
     folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from autocolor.commands import view
-
     shown: list[Any] = []
     monkeypatch.setattr(view, "show", lambda history, *_, **__: shown.append(history.first_place))
     assert run().code == run("view", "scene").code == run("view", "two.obj").code == 0
@@ -270,33 +230,25 @@ def test_the_demo_is_saved_to_new_files_and_a_scene_that_was_named_to_its_own(
     assert [Path(place.source.path).name for place in shown[1:]] == ["scene", "two.obj"]
 
 
-def test_bad_input_opens_no_window(folder: Path, run: Run, monitors: list[Any]) -> None:
-    assert run("view", "none.obj").code == 66
-    assert len(monitors) == 1
-
-
-@pytest.mark.parametrize("arguments", [(), ("view", "scene")])
+@pytest.mark.skipif(os.name == "nt", reason="Windows always has a screen")
+@pytest.mark.parametrize("line", ["", "view scene"])
 def test_without_a_screen_render_is_named(
-    folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch, arguments: tuple[str, ...]
+    refused: Refused, monkeypatch: pytest.MonkeyPatch, line: str
 ) -> None:
     for name in ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER"):
         monkeypatch.delenv(name, raising=False)
-    if os.name == "nt":
-        pytest.skip("Windows always has a screen")
     # The scene is not rendered first.
     monkeypatch.setattr("autocolor.screens.viewer.Viewer", None)
-    ran = run(*arguments)
-    assert (ran.code, ran.out) == (69, "")
-    assert ran.err.count("\n") == 1
-    assert "; `autocolor render` writes the demo to coupe.png, and `autocolor render SCENE" in ran.err
+    assert refused(line, 69).endswith(
+        "; `autocolor render` writes the demo to coupe.png, and `autocolor render SCENE -o PNG` renders any"
+        " scene"
+    )
 
 
 @pytest.mark.skipif(os.name != "posix", reason="needs an X display that can be missing")
 def test_a_screen_that_does_not_answer_is_no_screen(process: Run, folder: Path) -> None:
     ran = process("view", "scene", environment={"DISPLAY": ":4711", "XDG_RUNTIME_DIR": str(folder)})
-    assert (ran.code, ran.out) == (69, "")
-    assert ran.err.count("\n") == 1
-    assert "autocolor render SCENE -o PNG" in ran.err
+    assert (ran.code, ran.out, ran.err.count("\n")) == (69, "", 1)
 
 
 # The window in which the user waits.
@@ -306,14 +258,12 @@ class Waited:
     """What a window showed while the user waited; `on_step` is called at each step with the monitor."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        from ramtek_emu.monitor import window
-
         self.captions: list[str] = []
         self.fields: list[bytes] = []
         self.on_step: Callable[[Any], object] = lambda monitor: None
         waited = self
 
-        class Stepped(window.Monitor):
+        class Stepped(Monitor):
             opened = False
 
             @property
@@ -344,15 +294,13 @@ class Waited:
 @pytest.fixture
 def slow(monkeypatch: pytest.MonkeyPatch) -> threading.Event:
     """Reading a scene waits for this event."""
-    import autocolor.files.scene_sources as module
-
-    event, read = threading.Event(), module.read_scene_with_report
+    event, read = threading.Event(), scene_sources.read_scene_with_report
 
     def slowly(*arguments: Any, **options: Any) -> Any:
         assert event.wait(60)
         return read(*arguments, **options)
 
-    monkeypatch.setattr(module, "read_scene_with_report", slowly)
+    monkeypatch.setattr(scene_sources, "read_scene_with_report", slowly)
     return event
 
 
@@ -382,7 +330,7 @@ def test_closing_the_window_ends_the_command_while_a_scene_is_read(
 
 
 def test_an_error_that_is_found_while_the_user_waits_closes_the_window(
-    folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch, slow: threading.Event
+    folder: Path, refused: Refused, monkeypatch: pytest.MonkeyPatch, slow: threading.Event
 ) -> None:
     waited = Waited(monkeypatch)
     monitors: list[Any] = []
@@ -393,10 +341,7 @@ def test_an_error_that_is_found_while_the_user_waits_closes_the_window(
 
     waited.on_step = note
     (folder / "two.obj").write_text("v 0 0\n")
-    ran = run("view", "two.obj")
-    assert (ran.code, ran.out) == (65, "")
-    assert ran.err.startswith("autocolor: two.obj, line 1")
-    assert ran.err.count("\n") == 1
+    refused("view two.obj", 65)
     assert not monitors[0].is_open
 
 
@@ -414,9 +359,6 @@ def test_a_signal_ends_the_command_while_a_scene_is_read(
 def test_without_a_screen_an_error_of_the_scene_comes_first(
     folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch, slow: threading.Event
 ) -> None:
-    from ramtek_emu import NoScreenError
-    from ramtek_emu.monitor import window
-
     Waited(monkeypatch)
 
     def refuse(_: Any) -> None:

@@ -2,7 +2,8 @@ from __future__ import annotations
 
 import json
 from base64 import b64decode
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from contextlib import nullcontext
 from typing import Any
 
 import numpy as np
@@ -39,7 +40,6 @@ from autocolor.web.exported import (
     check_canvas,
     export_of,
     least_intensities,
-    packed_plane,
     packed_words,
 )
 from tests.autocolor.web.twin import (
@@ -51,6 +51,7 @@ from tests.autocolor.web.twin import (
     words_in,
 )
 from tests.small import car, cube, wall_scene
+from tests.tables import first
 
 SIZE = (24, 32)
 
@@ -69,12 +70,6 @@ def values_through_json(scene: Scene, **options: Any) -> Any:
 def test_packed_words_are_unpacked_word_by_word(given_words: list[int], lines: int) -> None:
     words = np.array(given_words, np.uint16).reshape(lines, -1)
     assert (unpacked_words(packed_words(words), *words.shape) == words).all()
-
-
-@given(st.lists(st.integers(0, 65535), max_size=40))
-def test_a_packed_plane_is_unpacked_number_by_number(shares: list[int]) -> None:
-    packed = packed_plane(np.array(shares, np.uint16))
-    assert unpacked_plane(packed) == shares
 
 
 @given(
@@ -161,21 +156,6 @@ def test_words_for_normals_are_exported_but_fixed() -> None:
     assert {each["fixed"] for each in values["surfaces"]} == {
         "Words stand for normals here, so the colors cannot be edited."
     }
-    with pytest.raises(UsageError, match="must have words that stand for levels, not for normals"):
-        values_through_json(scene, lights=True)
-
-
-def test_a_picture_larger_than_the_canvas_of_a_phone_is_refused() -> None:
-    check_canvas(4096, 4096)
-    with pytest.raises(InputError, match=r"at most 16,777,216 pixels, which .* not 4,096 x 4,097; render"):
-        check_canvas(4096, 4097)
-
-
-def test_the_words_of_the_coupe_are_small() -> None:
-    scene = demo()
-    values = export_of(scene, render(scene))
-    assert len(b64decode(values["words"])) < 31_600
-    assert len(b64decode(values["entries"])) < 100
 
 
 # Lights.
@@ -240,7 +220,7 @@ def test_the_plane_of_a_light_is_within_half_a_unit_of_its_contribution() -> Non
             assert np.abs(shares * unit - expected).max() <= 0.501 * unit
 
 
-@pytest.mark.parametrize("dither", ["off", "ordered"])
+@pytest.mark.parametrize("dither", first(1, ["ordered", "off"]))
 def test_few_pixels_of_the_coupe_are_a_level_off_and_none_two(dither: Any) -> None:
     scene = demo().replace(dither=dither)
     picture = render(scene)
@@ -292,33 +272,40 @@ def test_lights_whose_planes_do_not_fit_in_the_budget_are_exported_too() -> None
         export_of(scene, picture, lights=True)
 
 
+def lit(edited: Scene, rendered: Scene | None = None) -> object:
+    return export_of(edited, render(rendered or edited, *SIZE), lights=True)
+
+
 @pytest.mark.parametrize(
-    ("edit", "message"),
+    ("act", "sentence"),
     [
-        (lambda scene: scene.with_light("key", intensity=0.9), "the lights of a picture must be computed"),
-        (lambda scene: scene.with_view(angle=5), "the lights of a picture must be computed from the scene"),
-        (lambda scene: scene.replace(lights=()), "must have a light in its scene, not none; leave"),
+        (
+            lambda: lit(car().with_light("key", intensity=0.9), car()),
+            "the lights of a picture must be computed",
+        ),
+        (lambda: lit(car().with_view(angle=5), car()), "the lights of a picture must be computed"),
+        (lambda: lit(car().replace(lights=()), car()), "a page with lights must have a light in its scene"),
+        (lambda: lit(car().only_lights()), "the picture of a page with lights must have more than one"),
+        (
+            lambda: lit(car().replace(words="normals")),
+            "a page with lights must have words",
+        ),
+        (lambda: check_canvas(4096, 4097), "a picture in a browser must have at most 16,777,216 pixels"),
     ],
 )
-def test_lights_of_another_scene_are_refused(edit: Any, message: str) -> None:
-    scene = car()
-    with pytest.raises(InputError, match=message):
-        export_of(edit(scene), render(scene, *SIZE), lights=True)
+def test_what_a_browser_cannot_show_is_refused(act: Callable[[], object], sentence: str) -> None:
+    check_canvas(4096, 4096)
+    with pytest.raises((InputError, UsageError)) as caught:
+        act()
+    assert str(caught.value).startswith(sentence)
 
 
-def test_an_exposure_that_cannot_be_held_is_refused() -> None:
-    scene = car().only_lights()
-    with pytest.raises(
-        InputError, match="must have more than one intensity, or there is no exposure to hold"
-    ):
-        export_of(scene, render(scene, *SIZE), lights=True)
-
-
-def test_more_planes_than_a_browser_holds_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(exported, "MOST_PLANE_POINTS", 100)
-    message = r"at most 100 visible points of all lights together, not \d+ of 2 lights; render fewer"
-    with pytest.raises(InputError, match=message):
-        export_of(car(), render(car(), *SIZE), lights=True)
+@pytest.mark.parametrize("off", [0, 1])
+def test_more_planes_than_a_browser_holds_are_refused(monkeypatch: pytest.MonkeyPatch, off: int) -> None:
+    picture = render(car(), *SIZE)
+    monkeypatch.setattr(exported, "MOST_PLANE_POINTS", 2 * len(picture.pixels) - off)
+    with pytest.raises(InputError, match="must have at most") if off else nullcontext():
+        export_of(car(), picture, lights=True)
 
 
 def test_a_picture_that_sees_nothing_is_exported() -> None:
@@ -355,26 +342,36 @@ def test_a_variant_has_the_fields_of_paints_and_lights_that_it_changes() -> None
     ]
 
 
+PAINTS = "a variant of a page must change paints"
+
+
 @pytest.mark.parametrize(
-    ("row", "message"),
+    ("row", "sentence"),
     [
-        ({"view.angle": 3}, "variant '3': view.angle: a variant of a page must change paints, such as"),
-        ({"surfaces.body.levels": 3}, "surfaces.body.levels: a variant of a page must change paints"),
-        ({"lights.key.position": [1, 2, 3]}, "lights.key.position: a variant of a page must change paints"),
-        ({"lights.key.on": True}, "lights.key.on: the page must have lights for it; add --lights"),
-        ({"surfaces.wheels.blend": 1}, "its colors must stand for a paint, not for a scalar; leave this"),
-        ({"surfaces.body.blend": 2}, "variant '2': surface 'body': blend must be"),
-        ({"surfaces.bdy.blend": 2}, "there is no surface 'bdy'; did you mean 'body'?"),
+        ({"view.angle": 3}, f"variant '3': view.angle: {PAINTS}"),
+        ({"surfaces.body.levels": 3}, f"variant '3': surfaces.body.levels: {PAINTS}"),
+        ({"lights.key.position": [1, 2, 3]}, f"variant '1,2,3': lights.key.position: {PAINTS}"),
+        (
+            {"lights.key.on": True},
+            "variant 'true': lights.key.on: the page must have lights",
+        ),
+        (
+            {"surfaces.wheels.blend": 1},
+            "variant '1': surfaces.wheels.blend: its colors",
+        ),
+        ({"surfaces.body.blend": 2}, "variant '2': surface 'body': "),
+        ({"surfaces.bdy.blend": 2}, "surfaces.bdy.blend: "),
     ],
 )
-def test_what_a_page_cannot_change_is_refused(row: Mapping[str, object], message: str) -> None:
+def test_what_a_page_cannot_change_is_refused(row: Mapping[str, object], sentence: str) -> None:
     scene = car().with_scalar(name="stress", surfaces=["wheels"])
-    with pytest.raises((UsageError, InputError)) as refused:
+    with pytest.raises((UsageError, InputError)) as caught:
         values_through_json(scene, variants=[row])
-    assert message in str(refused.value)
+    assert str(caught.value).startswith(sentence)
 
 
-def test_so_many_variants_are_refused() -> None:
-    rows = [{"surfaces.body.blend": number / 2000} for number in range(1001)]
-    with pytest.raises(UsageError, match="at most 1,000 variants, not 1,001; leave some out"):
+@pytest.mark.parametrize("count", [1000, 1001])
+def test_so_many_variants_are_refused(count: int) -> None:
+    rows = [{"surfaces.body.blend": number / 2000} for number in range(count)]
+    with pytest.raises(UsageError, match="at most 1,000 variants") if count > 1000 else nullcontext():
         values_through_json(car(), variants=rows)
