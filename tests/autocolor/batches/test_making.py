@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import csv
+import importlib
 import itertools
 import multiprocessing
 import os
@@ -158,8 +159,7 @@ def test_processes_give_the_same_bytes_from_a_scene_and_from_a_picture() -> None
 
 @pytest.mark.needs("distributed")
 def test_a_cluster_of_dask_gives_the_same_bytes() -> None:
-    import distributed
-
+    distributed: Any = importlib.import_module("distributed")
     scene = wall_scene()
     with (
         distributed.LocalCluster(
