@@ -3,7 +3,6 @@ from __future__ import annotations
 import importlib
 import re
 from pathlib import Path
-from types import ModuleType
 
 import numpy as np
 import pytest
@@ -23,7 +22,6 @@ from scenes import (
     figure_10,
     figure_15,
     figure_curvature,
-    figure_following,
     figure_half_spaces,
     figure_highlight,
     figure_incidence,
@@ -32,6 +30,7 @@ from scenes import (
     figure_part,
     figures,
 )
+from tests.tables import first
 
 EXPECTED = {
     "04": {"figure-04.png", "figure-04-a.png", "figure-04-b.png", "figure-04-c.png"},
@@ -61,7 +60,7 @@ def coarse(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(figures, "SMOOTH", 1)
 
 
-@pytest.mark.parametrize("number", figures.FIGURES)
+@pytest.mark.parametrize("number", first(2, figures.FIGURES))
 def test_each_figure_leaves_its_labeled_pictures(
     number: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -89,6 +88,7 @@ def test_the_gallery_shows_the_picture_of_every_script() -> None:
     assert not missing, "run: python -m scenes.figures docs/figures --small"
 
 
+@pytest.mark.thorough
 def test_a_small_figure_is_one_picture_of_panels_of_half_the_size(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -121,12 +121,6 @@ def test_a_click_on_a_bar_of_a_screen_mixes_a_color_and_leaves_the_words_and_the
     assert recent_colors() == ((1, 2, 3),)
 
 
-def test_a_click_on_the_upright_bar_of_figure_14_chooses_the_level_at_its_height() -> None:
-    with figures.open_viewer("coupe", "blending") as (viewer, _):
-        figures.click(viewer, "blend level", 0.3)
-        assert viewer.studio.scene.surface("body").paint.blend == pytest.approx(0.3, abs=0.02)
-
-
 def test_the_views_of_figure_5_show_the_object_and_marks_for_all_lights_and_the_eye() -> None:
     with figures.open_viewer("coupe", "light and view") as (viewer, _):
         figures.click(viewer, "fit all", 0.75)
@@ -156,27 +150,6 @@ def test_no_panel_of_lacquer_is_brighter_than_the_range_of_all_panels() -> None:
         assert autocolor.render(lacquered, 960, 1280).ranges.whole.maximum < most
 
 
-def test_few_pixels_of_the_body_are_curved_beyond_the_colors() -> None:
-    scene = figures.read_scene("coupe").with_scalar(**figure_curvature.MEAN)
-    scalar = autocolor.render(scene, 240, 320).scalar
-    assert scalar is not None
-    low, high = figure_curvature.MEAN["limits"]
-    seen = scalar[np.isfinite(scalar)]
-    assert ((seen < low) | (seen > high)).mean() < 0.02
-
-
-@pytest.mark.parametrize("module", [figures, figure_normals])
-def test_help_says_what_a_script_does_and_writes_nothing(
-    module: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("sys.argv", ["figure", "--help"])
-    with pytest.raises(SystemExit, match="0"):
-        module.main()
-    assert f"python -m {module.__name__} [-h]" in capsys.readouterr().out
-    assert list(tmp_path.iterdir()) == []
-
-
 def brightest_of_plane(scene: autocolor.Scene) -> float:
     picture = autocolor.render(scene, 240, 320)
     return picture.ranges.surfaces["plane"].maximum
@@ -191,12 +164,6 @@ def test_aiming_the_light_at_the_pyramid_takes_the_bright_spot_off_the_plane() -
     assert brightest_of_plane(spot) < 0.2 * brightest_of_plane(point)
     side = autocolor.render(spot, 240, 320).ranges.surfaces["pyramid"]
     assert side.maximum > 0.9 * autocolor.render(flood, 240, 320).ranges.surfaces["pyramid"].maximum
-
-
-def test_the_lamp_of_figure_4_stands_half_as_high_as_the_pyramid() -> None:
-    scene = autocolor.read_scene(figures.SCENES / "pyramid")
-    height = scene.mesh.bounds[1][2] - scene.mesh.bounds[0][2]
-    assert scene.light("lamp").position[2] == pytest.approx(height / 2)
 
 
 def test_the_three_blends_of_figure_15_differ_only_in_the_body() -> None:
@@ -383,18 +350,7 @@ def test_the_highlights_of_the_coupe_are_where_their_crosses_are(caption: str) -
     assert studio.highlight_of("back", seen.surface) == place
 
 
-def test_the_falling_light_leaves_the_tail_of_the_coupe_darker_than_its_nose() -> None:
-    coupe = autocolor.read_scene(figures.SCENES / "coupe").replace(ambient=0)
-    lamp = autocolor.Light("lamp", figure_following.LAMP)
-    whole, falling = (
-        autocolor.render(coupe.replace(lights=[each]), 120, 160).intensity
-        for each in (lamp, lamp.replace(falloff="quadratic", reach=8))
-    )
-    left = falling[whole > 0] / whole[whole > 0]
-    assert left.min() == 0
-    assert 0.5 < left.max() < 1
-
-
+@pytest.mark.thorough
 def test_a_recorded_round_of_the_light_is_a_picture_and_then_loads_of_the_table_alone(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -410,16 +366,6 @@ def test_a_recorded_round_of_the_light_is_a_picture_and_then_loads_of_the_table_
     around = Ramtek9300()
     autocolor.Studio(figure_normals.coupe().replace(words="normals"), around)
     assert (display.field() == around.field()).all()
-
-
-def test_the_light_that_circles_the_car_passes_over_it() -> None:
-    studio = autocolor.Studio(figure_normals.coupe().replace(words="normals"), Ramtek9300())
-    entries = studio.entries
-    changed = []
-    for angle in list(figure_normals.angles())[::20]:
-        studio.light("circling", position=figure_normals.position(angle))
-        changed.append((studio.entries != entries).any(axis=1).sum())
-    assert min(changed) > 200
 
 
 def test_the_barn_doors_of_the_figure_leave_a_part_of_what_the_lamp_lights() -> None:

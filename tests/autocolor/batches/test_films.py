@@ -9,7 +9,19 @@ from typing import Any
 import numpy as np
 import pytest
 
-from autocolor import InputError, Light, Scene, UsageError, Variant, animate, batch, frames, image, render
+from autocolor import (
+    InputError,
+    Light,
+    OutputError,
+    Scene,
+    UsageError,
+    Variant,
+    animate,
+    batch,
+    frames,
+    image,
+    render,
+)
 from autocolor.arrays import Bytes
 from autocolor.budget import allowing
 from autocolor.files.settings import scene_with
@@ -212,6 +224,20 @@ def test_a_webp_that_does_not_fit_in_memory_is_refused(tmp_path: Path) -> None:
     ):
         animate(SCENE, [frame.settings for frame in many], tmp_path / "film.webp", size=(32, 24))
     assert os.listdir(tmp_path) == []
+
+
+@pytest.mark.parametrize("name", ["film.webp", "cycle.ramtek", "{number}.png"])
+def test_an_existing_file_is_refused_before_anything_is_rendered_unless_it_may_be_overwritten(
+    name: str, visible: list[object], tmp_path: Path
+) -> None:
+    path = tmp_path / name.replace("{number}", "3")
+    path.write_bytes(b"mine")
+    with pytest.raises(OutputError, match="exists"):
+        animate(SCENE, FADE, tmp_path / name, size=None if "ramtek" in name else SIZE)
+    assert visible == []
+    assert (os.listdir(tmp_path), path.read_bytes()) == ([path.name], b"mine")
+    animate(SCENE, FADE, tmp_path / name, size=None if "ramtek" in name else SIZE, overwrite=True)
+    assert path.read_bytes() != b"mine"
 
 
 REFUSED: list[tuple[str, dict[str, Any], str]] = [

@@ -83,8 +83,8 @@ def eyes(scene: Scene, made: tuple[Variant, ...]) -> np.ndarray[Any, np.dtype[np
 
 
 def test_a_turn_goes_around_the_target_at_the_same_height() -> None:
-    scene = SCENE.with_view(eye=(3, 0, 5), target=(1, 0, 1))
-    expected = [(3, 0, 5), (1, 2, 5), (-1, 0, 5), (1, -2, 5)]
+    scene = SCENE.with_view(eye=(3, 7, 5), target=(1, 7, 1))
+    expected = [(3, 7, 5), (1, 9, 5), (-1, 7, 5), (1, 5, 5)]
     assert eyes(scene, frames(scene, [], 4, turn=360)) == pytest.approx(np.array(expected))
     assert eyes(scene, frames(scene, [], 4, turn=-360)) == pytest.approx(np.array(expected)[[0, 3, 2, 1]])
     # A turn that is not whole does not come back to its first frame, so it has both ends.
@@ -93,7 +93,7 @@ def test_a_turn_goes_around_the_target_at_the_same_height() -> None:
 
 
 def test_a_view_with_a_direction_turns_around_the_object_on_its_line_of_sight() -> None:
-    scene = SCENE.with_view(eye=(0, -4, 1), direction=(0, 2, -0.5))
+    scene = SCENE.with_view(eye=(0.5, -4, 1), direction=(-0.2, 2, -0.5))
     point = np.array(scene.view.orbit_target(*scene.object_bounds))
     for frame in frames(scene, [], 5, turn=360):
         view = scene_with(scene, frame.settings).view
@@ -109,8 +109,9 @@ def test_a_turn_and_variants_go_together() -> None:
 
 
 def test_the_eye_of_a_table_turns_around_the_target() -> None:
-    made = frames(SCENE, [{"view.eye": [4, 0, 0]}, {"view.eye": [0, 4, 0]}], 3)
-    assert eyes(SCENE, made)[1] == pytest.approx((math.sqrt(8), math.sqrt(8), 0))
+    scene = SCENE.with_view(target=(1, 2, 0))
+    made = frames(scene, [{"view.eye": [5, 2, 0]}, {"view.eye": [1, 6, 0]}], 3)
+    assert eyes(scene, made)[1] == pytest.approx((1 + math.sqrt(8), 2 + math.sqrt(8), 0))
 
 
 def test_between_a_target_and_a_direction_there_are_directions() -> None:

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import csv
+import importlib
 import itertools
 import multiprocessing
 import os
@@ -156,8 +157,9 @@ def test_processes_give_the_same_bytes_from_a_scene_and_from_a_picture() -> None
             assert [result.problem for result in there] == [result.problem for result in here]
 
 
+@pytest.mark.needs("distributed")
 def test_a_cluster_of_dask_gives_the_same_bytes() -> None:
-    distributed = pytest.importorskip("distributed")
+    distributed: Any = importlib.import_module("distributed")
     scene = wall_scene()
     with (
         distributed.LocalCluster(
@@ -334,6 +336,11 @@ def test_a_batch_starts_from_a_path_of_a_picture_or_a_scene(tmp_path: Path) -> N
     expected = images(batch((saved.scene, saved.picture), PAINTS, form="png"))
     assert images(batch(str(path), PAINTS, form="png")) == expected
     assert images(batch(saved, PAINTS, form="png")) == expected
+    # The size and smooth that the picture has may be given, in pixels of its image, and no others.
+    assert images(batch(saved, PAINTS, size=SIZE, smooth=2, form="png")) == expected
+    for size, smooth in (((32, 24), 2), (SIZE, 1), ((32, 24), 1)):
+        with pytest.raises(UsageError, match="must be those of its picture, 16 x 12 and 2"):
+            batch(saved, PAINTS, size=size, smooth=smooth)
     colors = batch(path, PAINTS[:1])[0].image
     edited = scene_with(scene, PAINTS[0].settings)
     assert np.array_equal(colors, image(edited, render(edited, 12, 16, smooth=2)))  # type: ignore[arg-type]

@@ -1,7 +1,7 @@
 from __future__ import annotations
 
+import dataclasses
 import zlib
-from collections.abc import Callable
 from io import BytesIO
 from pathlib import Path
 
@@ -14,6 +14,7 @@ from PIL import Image
 from autocolor import Mesh, Scene, UsageError, Variant, render
 from autocolor.batches.outputs import FORMS, Pattern, base_mark, form_of, mark_in, mark_of
 from autocolor.files.writing import write_atomically
+from autocolor.scene.scalar import MeshScalar
 from tests.small import wall, wall_scene
 
 MARK = "0123456789abcdef" * 4
@@ -139,21 +140,40 @@ def moved(scene: Scene) -> Scene:
     return scene.replace(mesh=Mesh(nodes, mesh.node_numbers, mesh.part_numbers, mesh.part_names))
 
 
+def stressed(*stress: float, name: str = "stress") -> Scene:
+    """A wall with a scalar of its nodes, which colors it."""
+    return wall_scene(wall().with_scalars(MeshScalar(name, np.array(stress)))).with_scalar(name="z")
+
+
 @pytest.mark.parametrize(
-    "changed",
+    ("base", "changed"),
     [
-        lambda: base_mark(moved(wall_scene()), None, ()),
-        lambda: base_mark(wall_scene().replace(ambient=0.5), None, ()),
-        lambda: base_mark(wall_scene(), None, (1,)),
-        lambda: base_mark(wall_scene(), render(wall_scene(), 6, 8), ()),
-        lambda: base_mark(wall_scene(wall(2)), None, ()),
+        (wall_scene(), moved(wall_scene())),
+        (wall_scene(), wall_scene().replace(ambient=0.5)),
+        (wall_scene(), wall_scene(wall(2))),
+        (stressed(1, 2, 3, 4), stressed(1, 2, 3, 5)),
+        (stressed(1, 2, 3, 4), stressed(1, 2, 3, 4, name="load")),
+        (stressed(1, 2, 3, 4), wall_scene().with_scalar(name="z")),
     ],
 )
-def test_a_change_of_mesh_table_picture_or_drawing_changes_the_mark(changed: Callable[[], str]) -> None:
+def test_a_change_of_mesh_scalar_or_table_changes_the_mark(base: Scene, changed: Scene) -> None:
+    assert base_mark(base, None, ()) != base_mark(changed, None, ())
+    pictures = [render(scene, 6, 8) for scene in (base, base.replace(ambient=0.7), base.with_view(angle=9))]
+    marks = {base_mark(base, picture, drawn) for picture in (None, *pictures) for drawn in ((), (1,))}
+    assert len(marks) == 8
+
+
+def test_the_mark_of_a_picture_has_the_values_of_its_scalar() -> None:
+    scene = stressed(1, 2, 3, 4).with_scalar(name="stress")
+    picture = render(scene, 6, 8)
+    assert picture.scalar_values is not None
+    other = dataclasses.replace(picture, scalar_values=picture.scalar_values + 1)
+    assert base_mark(scene, picture, ()) != base_mark(scene, other, ())
+
+
+def test_the_mark_leaves_out_the_columns_that_no_picture_shows() -> None:
     base = base_mark(wall_scene(), None, ())
-    # No picture shows the columns of this tier.
     assert base == base_mark(wall_scene().replace(name="moved", front="x"), None, ())
-    assert changed() != base
 
 
 def test_the_mark_of_a_variant_depends_on_its_settings_and_not_on_its_name() -> None:

@@ -228,6 +228,8 @@ def test_a_table_of_another_kind_and_a_large_file_are_refused(tmp_path: Path) ->
         ),
         (lambda: grid({"a": "red"}), "a: an axis must be a list of values, not 'red'; write it as a list"),
         (lambda: grid(["a"]), "a grid must be lists of values by key, not ['a']"),  # type: ignore[arg-type]
+        (lambda: products([]), "a grid must have 1 to 100,000 variants, not 0; give a value for each key"),
+        (lambda: products([varied("a=1,2"), ()]), "a grid must have 1 to 100,000 variants, not 0"),
         (lambda: products([varied("a=1,2"), varied("a=3")]), "a key must be in one table or list, not 'a'"),
         (lambda: varied("a"), "--vary must be KEY=A,B,C or KEY=START:STOP:COUNT, not 'a'; write it as in"),
         (lambda: varied("=1"), "--vary must be KEY=A,B,C"),
