@@ -798,8 +798,8 @@ HUGE = Light("key", (2, -3, 3), 1e300)
 REFUSED = [
     (
         wall_scene(sphere(), lights=[Light("key", (2, -3, 3), 1e39), Light("fill", (2, -3, 3))]),
-        "surface 'sphere' under light 'key': intensities must stay below 3.4e+38, not reach 1.46e+39; lower the light's"
-        " intensity or the surface's diffuse and specular",
+        "surface 'sphere' under light 'key': intensities must stay below 3.4e+38, not reach 1.46e+39; lower"
+        " the light's intensity or the surface's diffuse and specular",
     ),
     (wall_scene(sphere(), ambient=1e39), "ambient must stay below 3.4e+38, not 1e+39; lower it"),
     (
