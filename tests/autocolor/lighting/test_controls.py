@@ -12,7 +12,6 @@ from autocolor import Flap, Flaps, HalfSpace, InputError, Light, Scene, View, re
 from autocolor.arrays import Booleans, Floats, Singles
 from autocolor.checks import Vector
 from autocolor.explanation.light import edge_share
-from autocolor.explanation.point import dot, unit
 from autocolor.lighting import controls as light_controls
 from autocolor.lighting.controls import (
     CONTROLS,
@@ -21,7 +20,6 @@ from autocolor.lighting.controls import (
     Cone,
     Falloff,
     LightControl,
-    LinkedParts,
     LitPoints,
     Sides,
     SoftCone,
@@ -54,11 +52,6 @@ def lit_at(cosines: Singles) -> LitPoints:
     return LitPoints(cosines, nobody_asks, nobody_asks)
 
 
-def test_a_point_source_without_flaps_has_no_controls() -> None:
-    for light in (Light("light", (0, -1, 0)), Light("light", (0, -1, 0), direction=(0, 1, 0))):
-        assert controls_of(light, wall_points()) == ()
-
-
 @given(lights())
 def test_a_light_has_the_controls_that_its_fields_ask_for(light: Light) -> None:
     used = {type(control) for control in controls_of(light, wall_points())}
@@ -71,44 +64,6 @@ def test_a_light_has_the_controls_that_its_fields_ask_for(light: Light) -> None:
     is_soft = light.inner_angle is not None and light.inner_angle != light.cone_angle
     assert (SoftCone in used) == is_soft
     assert (Concentration in used) == (light.concentration > 0)
-
-
-def test_a_control_is_added_by_one_registered_class(monkeypatch: pytest.MonkeyPatch) -> None:
-
-    class Ramp(LightControl):
-        """Half the light left of the middle, and from cos(L) = 0.9 inward in proportion to it."""
-
-        directed = True
-        least_cosine = 0.9
-
-        def __init__(self, points: VisiblePoints) -> None:
-            self.points = points
-
-        @classmethod
-        def of(cls, light: Light, points: VisiblePoints) -> Ramp:
-            return cls(points)
-
-        def lit_points(self, rows: Singles, pixels: slice) -> Booleans:
-            return np.asarray(rows[POINT][0] > 0)
-
-        def factor(self, lit: LitPoints, out: Singles) -> Singles:
-            assert lit.cos_light is not None
-            return np.divide(lit.cos_light, 2, out=out)
-
-    monkeypatch.setattr(light_controls, "CONTROLS", (*CONTROLS, Ramp))
-
-    light = Light("light", (0.0, -1.0, 0.0), direction=(0, 1, 0), concentration=3)
-    controlled = render(wall_scene(lights=[light]), 40, 40)
-    monkeypatch.undo()
-    free = render(wall_scene(lights=[light.replace(concentration=0)]), 40, 40)
-    points = visible_surfaces(wall(), wall_scene().view, (1,), 40, 40)
-    x, _, z = points.world_points.T
-    cos_light = np.zeros(1600)
-    cos_light[points.pixels] = 1 / np.sqrt(1 + x * x + z * z)
-    right = np.zeros(1600, np.bool_)
-    right[points.pixels] = x > 0
-    left_of_it = np.where((cos_light >= 0.9) & right, cos_light**3 * cos_light / 2, 0)
-    assert controlled.intensity.ravel() == pytest.approx(left_of_it * free.intensity.ravel(), rel=1e-4)
 
 
 @pytest.mark.parametrize("is_aimed", [True, False])
@@ -154,46 +109,12 @@ def test_a_factor_may_depend_on_distance_and_place_of_any_light(
 EPSILON = float(np.finfo(np.float32).eps)
 
 
-@given(directions(), numbers(-2, 2))
-def test_the_row_of_a_side_gives_the_distance_from_its_plane(direction: Vector, least: float) -> None:
-    points = wall_points()
-    x, y, z = unit(direction)
-    side = side_of(points, (x, y, z), least, 0.5)
-    distance = (side.row[:3] @ points.rows[POINT] + side.row[3]) * points.unit
-    expected = [dot((x, y, z), point) - least for point in points.world_points.tolist()]
-    assert distance == pytest.approx(expected, abs=1e-6)
-    assert side.edge_width * points.unit == 0.5
-
-
-def test_a_sharp_side_has_room_for_the_rounding_of_points_and_a_soft_one_has_none() -> None:
-    points = wall_points()
-    sharp, soft = (side_of(points, (0.0, 1.0, 0.0), 0.0, width) for width in (0.0, 0.1))
-    assert sharp.row[3] - soft.row[3] == pytest.approx(4 * EPSILON * points.radius)
-    assert is_inside(sharp.row, points.rows).all()
-
-
 @pytest.mark.parametrize(("least", "inside"), [(1e300, False), (-1e300, True), (1e36, False)])
 def test_a_plane_may_be_farther_than_a_single_can_hold(least: float, inside: bool) -> None:
     points = wall_points()
     side = side_of(points, (1.0, 0.0, 0.0), least, 0.0)
     assert abs(side.row[3]) == pytest.approx(FARTHEST_PLANE)
     assert is_inside(side.row, points.rows).tolist() == [inside] * len(points.pixels)
-
-
-@given(views(), numbers(-1, 1), numbers(0, 1))
-def test_sharp_flaps_have_the_sides_they_always_had(view: View, least: float, extent: float) -> None:
-    points = visible_surfaces(wall(), view, (1,), 12, 12)
-    light = Light("light", (0, -1, 0), flaps=Flaps(*[Flap(least, least + extent)] * 3))
-    rows = []
-    for axis in range(3):
-        coordinate = points.world_coordinate(axis)
-        for sign, limit in ((1.0, least), (-1.0, least + extent)):
-            in_units = np.array([0, 0, 0, sign * limit / points.unit])
-            rows.append(sign * coordinate - (in_units - 4 * EPSILON * points.largest_distance))
-    control = Sides.of(light, points)
-    assert control is not None
-    assert np.array_equal(control.sides, np.array(rows, np.float32))
-    assert len(flap_sides(light, points)) == 6
 
 
 @given(lights(), st.lists(st.tuples(*[numbers(-1, 1)] * 3), min_size=1, max_size=20))
@@ -249,19 +170,6 @@ def test_a_point_is_lit_on_the_side_to_which_the_direction_leads(point: Vector, 
     distance = (wall_points().world_points - point) @ direction / np.linalg.norm(direction)
     clear = np.abs(distance) > 1e-5
     assert lit[clear].tolist() == (distance[clear] > 0).tolist()
-
-
-@given(directions(), numbers(1e-30, 1e30))
-def test_the_length_of_the_direction_does_not_matter(direction: Vector, length: float) -> None:
-    x, y, z = direction
-    longer = (x * length, y * length, z * length)
-    sides = [
-        half_space_sides(
-            Light("light", (0, 0, 0), half_spaces=(HalfSpace("left", (0.1, 0.2, 0), each),)), wall_points()
-        )["left"].row
-        for each in (direction, longer)
-    ]
-    assert sides[1] == pytest.approx(sides[0], rel=1e-12, abs=1e-12)
 
 
 @given(
@@ -447,18 +355,6 @@ def test_the_shares_of_several_soft_edges_are_multiplied() -> None:
     assert np.ptp(expected) > 0
 
 
-def test_edges_that_are_sharp_or_off_or_at_infinity_are_no_soft_ones() -> None:
-    plane = HalfSpace("left", (0, 0, 0), (1, 0, 0))
-    for light in (
-        Light("light", (0, -1, 0), flaps=Flaps(x=Flap(0, 1)), half_spaces=(plane,)),
-        Light(
-            "light", (0, -1, 0), flaps=Flaps(x=Flap(0, 1, on=False, edge_width=1.0), y=Flap(edge_width=1.0))
-        ),
-        Light("light", (0, -1, 0), half_spaces=(plane.replace(edge_width=0.5, on=False),)),
-    ):
-        assert SoftSides.of(light, wall_points()) is None
-
-
 def factor(cosines: list[float], concentration: float) -> Singles:
     given_as = np.array(cosines, np.float32)
     return Concentration(concentration).factor(lit_at(given_as), out=np.empty_like(given_as))
@@ -481,12 +377,6 @@ def test_half_is_left_at_the_papers_angles(concentration: float, degrees: float)
 def test_the_factor_never_leaves_0_to_1(cosines: list[float], concentration: float) -> None:
     values = factor([*cosines, 1.0000002], concentration)
     assert ((values >= 0) & (values <= 1)).all()
-
-
-def test_a_factor_may_overwrite_the_cosines() -> None:
-    cosines = np.array([0.5, 1.0], np.float32)
-    assert Concentration(2.0).factor(lit_at(cosines), out=cosines) is cosines
-    assert cosines.tolist() == [0.25, 1.0]
 
 
 @pytest.mark.parametrize(
@@ -515,15 +405,6 @@ def test_a_point_is_in_the_cone_up_to_its_rim_and_before_a_concentrated_light(
     assert all(control.directed for control in controls)
     least = max(control.least_cosine for control in controls)
     assert bool(np.float32(cosine) >= np.float32(least)) == lit
-
-
-@given(numbers(3, 177), numbers(-1, 1))
-def test_the_largest_least_cosine_is_the_cone_and_the_hemisphere(cone_angle: float, cosine: float) -> None:
-    light = Light("light", (0, -1, 0), direction=(0, 1, 0), cone_angle=cone_angle, concentration=1)
-    least = np.float32(max(control.least_cosine for control in controls_of(light, wall_points())))
-    rim = np.float32(math.cos(math.radians(cone_angle)) - np.finfo(np.float32).eps)
-    for each in (np.float32(cosine), rim, np.float32(0), np.nextafter(rim, np.float32(-2))):
-        assert (each >= least) == (each >= rim and each > 0)
 
 
 def cosine(degrees: float) -> float:
@@ -587,17 +468,6 @@ def test_a_soft_cone_is_smooth_at_both_angles_and_on_the_axis() -> None:
     assert np.abs(np.diff(slope)).max() < 1e-3
 
 
-def test_a_cone_without_an_inner_angle_or_with_that_of_the_cone_is_sharp() -> None:
-    assert SoftCone.of(spot(30, None), wall_points()) is None
-    assert SoftCone.of(spot(30, 30), wall_points()) is None
-    sharp, soft_one, narrow = (
-        render(wall_scene(lights=[spot(15, inner)]), 30, 40).intensity for inner in (None, 15, 14)
-    )
-    assert sharp.tobytes() == soft_one.tobytes()
-    assert (narrow <= sharp).all()
-    assert narrow.tobytes() != sharp.tobytes()
-
-
 @pytest.mark.parametrize(("outer", "inner"), [(1e-6, 0.0), (180.0, math.nextafter(180.0, 0.0)), (30.0, 0.0)])
 def test_the_share_stays_within_0_and_1_however_narrow_the_edge(outer: float, inner: float) -> None:
     control = SoftCone.of(spot(outer, inner), wall_points())
@@ -638,32 +508,10 @@ def test_a_light_falls_to_a_half_and_to_a_quarter_at_half_its_reach() -> None:
         assert control.factor(at, out=np.empty(5, np.float32)).tolist() == pytest.approx(expected, abs=1e-6)
 
 
-@given(vectors(numbers(-3, 3)), FALLING, numbers(0.01, 6) | st.sampled_from([1e-300, 1e-9, 1e30, 1e36]))
-def test_all_points_that_a_light_reaches_may_be_lit_and_the_factor_is_0_to_1_at_all(
-    position: Vector, falloff: str, reach: float
-) -> None:
-    points = wall_points()
-    (control,) = controls_of(Light("light", position, falloff=falloff, reach=reach), points)
-    may_be_lit = control.lit_points(points.rows, slice(None))
-    away = np.array([math.dist(point, position) for point in points.world_points.tolist()])
-    assert may_be_lit is not None
-    assert may_be_lit[away < reach].all()
-    assert not may_be_lit[away > reach + 1e-2].any()
-    lengths = np.maximum(away / points.unit, 1e-18).astype(np.float32)
-    at = LitPoints(None, lambda: lengths, lambda: points.rows[:3])
-    factor = control.factor(at, out=np.empty_like(lengths))
-    assert ((factor >= 0) & (factor <= 1)).all()
-
-
 @given(FALLING, st.sampled_from([1e12, 1e20, 1e36]))
 def test_a_light_beyond_all_that_falls_gives_nothing_here(falloff: str, distance: float) -> None:
     light = Light("light", (0, -distance, 0), falloff=falloff, reach=3)
     assert not render(wall_scene(lights=[light]), 4, 4).intensity.any()
-
-
-def test_a_light_without_a_falloff_is_left_as_it_is() -> None:
-    for light in (Light("light", (0, -1, 0)), Light("light", (0, -1, 0), reach=2)):
-        assert not any(isinstance(each, Falloff) for each in controls_of(light, wall_points()))
 
 
 @pytest.mark.parametrize(
@@ -691,24 +539,6 @@ def test_a_falloff_without_a_reach_or_at_infinity_is_refused(
 PARTS = ["part 0", "part 1"]
 
 
-def test_only_a_light_that_is_linked_to_parts_has_the_control() -> None:
-    points = wall_points()
-    for links in (Links(), Links(only_surfaces=("wall",)), Links(except_surfaces=("wall",))):
-        assert controls_of(Light("light", (0, -1, 0), links=links), points) == ()
-    assert "numbers" not in vars(points.parts), "part numbers that nobody needs were worked out"
-    for links, lit in (
-        (Links(only_parts=("wall",)), True),
-        (Links(only_parts=()), False),
-        (Links(except_parts=("wall",)), False),
-        (Links(except_parts=()), True),
-    ):
-        (control,) = controls_of(Light("light", (0, -1, 0), links=links), points)
-        assert isinstance(control, LinkedParts)
-        for chunk in points.chunks:
-            rows = points.rows[:, chunk.pixels]
-            assert set(control.lit_points(rows, chunk.pixels).tolist()) == {lit}
-
-
 @given(scenes(), lights(), some_of(PARTS), st.booleans())
 def test_a_light_linked_to_parts_is_the_light_of_all_where_they_are_and_nothing_elsewhere(
     scene: Scene, light: Light, names: tuple[str, ...], is_only: bool
@@ -721,22 +551,3 @@ def test_a_light_linked_to_parts_is_the_light_of_all_where_they_are_and_nothing_
     is_lit = np.isin(free.part_number, numbers)
     assert not linked.intensity[~is_lit].any()
     assert linked.intensity[is_lit] == pytest.approx(free.intensity[is_lit], rel=1e-5, abs=1e-30)
-
-
-def test_the_parts_may_be_asked_of_any_slice_and_the_answer_be_written_to() -> None:
-    points = wall_points()
-    (control,) = controls_of(Light("light", (0, -1, 0), links=Links(only_parts=("wall",))), points)
-    lit = control.lit_points(points.rows[:, 3:9], slice(3, 9))
-    assert lit is not None
-    lit[:] = False
-    again = control.lit_points(points.rows[:, 3:9], slice(3, 9))
-    assert again is not None
-    assert again.all()
-    assert again.shape == (6,)
-
-
-@given(scenes())
-def test_a_light_sees_the_same_parts_as_the_mesh_has(scene: Scene) -> None:
-    points = visible_surfaces(scene.mesh, scene.view, scene.surface_number_of_part, 9, 12)
-    assert points.parts.names == scene.mesh.part_names
-    assert (points.parts.numbers - 1 == scene.mesh.part_numbers[points.polygon_numbers]).all()

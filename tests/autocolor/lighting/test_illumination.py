@@ -108,17 +108,6 @@ def test_another_model_computes_its_own_surface_again_and_no_other() -> None:
         assert planes.values[1, of_cube.pixels].tobytes() != old[1, of_cube.pixels].tobytes()
 
 
-@pytest.mark.parametrize(("other", "is_reused"), [(Phong(20), True), (BlinnPhong(20), False)])
-def test_an_equal_model_is_not_computed_again_and_another_of_the_same_exponent_is(
-    other: ReflectionModel, is_reused: bool
-) -> None:
-    scene, changed = modeled(Phong(), Phong(20.0)), modeled(Phong(), other)
-    points = points_of(scene)
-    before = illuminate(scene, points)
-    after = illuminate(changed, points, Previous(scene, before))
-    assert (after.light_planes["key"].values is before.light_planes["key"].values) == is_reused
-
-
 def test_an_edit_of_s_that_grows_keeps_every_plane_and_one_of_its_growth_its_own_surface_alone() -> None:
     grown = SpecularGrowth(refractive_index=1.5)
     scene = modeled(Phong(growth=grown), BlinnPhong(growth=grown))
@@ -140,17 +129,6 @@ def test_an_edit_of_s_that_grows_keeps_every_plane_and_one_of_its_growth_its_own
         assert planes.values[:, of_sphere.pixels].tobytes() == old[:, of_sphere.pixels].tobytes()
         assert planes.values[0, of_cube.pixels].tobytes() == old[0, of_cube.pixels].tobytes()
         assert planes.values[1, of_cube.pixels].tobytes() != old[1, of_cube.pixels].tobytes()
-
-
-def test_a_light_off_keeps_its_planes_until_a_model_changes() -> None:
-    scene = two_surfaces()
-    points = points_of(scene)
-    first = illuminate(scene, points)
-    dark = scene.with_light("key", on=False)
-    second = illuminate(dark, points, Previous(scene, first))
-    assert second.light_planes["key"] is first.light_planes["key"]
-    duller = dark.with_surface("cube", exponent=3)
-    assert "key" not in illuminate(duller, points, Previous(dark, second)).light_planes
 
 
 def test_a_light_that_was_off_is_computed_when_a_model_changes_as_it_is_switched_on() -> None:

@@ -34,18 +34,15 @@ from autocolor.lighting.picking import (
     Plane,
     Rim,
     cone_placed,
-    cosines_from_afar,
     flap_placed,
     half_space_placed,
     highlight_of,
     highlight_placed,
     rims,
-    seen_from_afar,
     seen_highlight,
     specular_shares,
 )
 from autocolor.lighting.picture import Picture
-from autocolor.lighting.rays import direction_between
 from autocolor.lighting.shading import LightPlanes
 from autocolor.rendering import Rendering, rendering
 from autocolor.scene.columns import with_values
@@ -111,14 +108,6 @@ def test_a_light_with_an_aim_is_aimed_at_the_point_and_keeps_all_else(
     assert after.light("light").position == pytest.approx(expected)
     assert after.light("light").aim == point
     assert after.light("light").replace(position=position, aim=before.aim) == before
-
-
-def test_placing_a_highlight_again_at_the_same_point_changes_nothing() -> None:
-    seen = at((0.25, 0.0, 0.5), (0.0, -1.0, 0.0), (0.6, -0.8, 0.0))
-    once = highlight_placed(lit(Light("light", (3.0, -4.0, 0.5), aim=(0, 0, 0))), seen, "light")
-    twice = highlight_placed(once, seen, "light").light("light")
-    assert twice.position == pytest.approx(once.light("light").position, abs=1e-12)
-    assert twice.aim == once.light("light").aim
 
 
 def test_a_highlight_needs_a_surface_that_faces_the_eye_and_a_light_away_from_it() -> None:
@@ -350,14 +339,6 @@ def test_an_unknown_axis_or_end_of_a_flap_is_refused(axis: Axis, end: FlapEnd, m
     assert str(caught.value) == message
 
 
-def test_a_flap_is_not_dragged_to_the_background() -> None:
-    with pytest.raises(UsageError) as caught:
-        flap_placed(lit(Light("light", (0.0, -3.0, 0.0))), None, "light", "x", "minimum", add=True)
-    assert str(caught.value) == (
-        "a flap must be dragged to a surface, not to the background; choose another pixel"
-    )
-
-
 def test_the_inner_angle_of_a_cone_stays_within_it() -> None:
     light = Light("light", (0.0, -2.0, 0.0), aim=(0.0, 0.0, 0.0), cone_angle=30, inner_angle=20)
     wide = cone_placed(lit(light), at((3.0, 0.0, 0.0)), "light").light("light")
@@ -502,12 +483,6 @@ def test_there_is_no_highlight_where_no_light_is_reflected_to_the_eye() -> None:
     assert highlight_of(sight_of(rendered(nothing)), "light") is None
 
 
-def test_the_highlight_of_a_coarse_picture_is_in_the_middle_of_a_block() -> None:
-    points = rendered(wall_scene(lights=[Light("light", (0.1, -3.0, 0.3))]))
-    line, element = highlight_of(sight_of(points), "light") or (0, 0)
-    assert highlight_of(Sight(points.scene, points.points, 4), "light") == (4 * line + 2, 4 * element + 2)
-
-
 def test_unknown_lights_and_surfaces_are_refused() -> None:
     sight = sight_of(rendered(wall_scene(cube(), lights=[Light("key", (0.1, -3.0, 0.3))])))
     with pytest.raises(UsageError, match=r"there is no light 'kee'; did you mean 'key'\?"):
@@ -530,35 +505,6 @@ AIMS: list[dict[str, Any]] = [
 def ball(kind: dict[str, Any]) -> Scene:
     lights = [Light("key", (1.0, -2.0, 2.0), **kind)]
     return wall_scene(sphere(96, 48), view=VIEW, lights=lights).replace(words="normals")
-
-
-def test_a_point_seen_from_afar_is_in_the_middle_with_its_own_normal() -> None:
-    studio = Studio(ball({}), Ramtek9300())
-    seen = studio.seen_at(220, 300)
-    assert seen is not None
-    far = seen_from_afar(studio.scene, seen)
-    to_eye = direction_between((0, 0, 0), VIEW.eye)
-    assert far.normal == seen.normal
-    assert far.point == pytest.approx((0, 0, 0), abs=1e-12)
-    expected = minus(times(2 * dot(seen.normal, to_eye), seen.normal), to_eye)
-    assert far.reflected_view == pytest.approx(expected)
-
-
-def test_the_cosines_from_afar_are_between_reflected_view_and_light() -> None:
-    scene = ball({})
-    rendered = rendering(scene, 48, 64)
-    (surface,) = rendered.points.slices
-    cosines = cosines_from_afar(scene, scene.lights[0], rendered.points, surface.pixels)
-    to_eye, to_light = (
-        direction_between((0, 0, 0), VIEW.eye),
-        direction_between((0, 0, 0), scene.lights[0].position),
-    )
-    for normal, cosine in zip(rendered.points.world_normals.tolist(), cosines.tolist(), strict=True):
-        reflected = minus(times(2 * dot(normal, to_eye), normal), to_eye)
-        behind = dot(normal, to_light) <= 0
-        assert cosine == pytest.approx(-1 if behind else dot(reflected, to_light), abs=1e-5) or (
-            abs(dot(normal, to_light)) < 1e-6
-        )
 
 
 @cache
@@ -676,31 +622,6 @@ def test_the_rim_of_a_flap_is_where_the_light_ends(rim: Rim, flaps: Flaps, view:
     assert found[rim].tolist() == twin
 
 
-def test_every_control_has_a_rim_of_its_own() -> None:
-    flaps = Flaps(Flap(-0.5, 0.5), Flap(-0.4, 0.4), Flap(-0.3, 0.3))
-    light = Light("light", (0.2, -6.0, 0.1), aim=(0.0, 0.0, 0.0), cone_angle=6, flaps=flaps)
-    scene = wall_scene(sphere(64, 32), view=WALL_VIEWS[1], lights=[light])
-    found = rims(wall_sight(scene), "light")
-    assert len(found) == 7
-    for rim, pixels in found.items():
-        alone = Light("light", light.position, aim=light.aim)
-        if rim == "cone":
-            alone = alone.replace(cone_angle=6)
-        else:
-            assert not isinstance(rim, Plane)
-            axis, end = rim
-            limit = getattr(getattr(flaps, axis), end)
-            alone = alone.replace(flaps=Flaps(**{axis: Flap(**{end: limit})}))
-            # The pixels are next to the end of the flap, also where the sphere turns away from the eye.
-            coordinate = points_at(wall_sight(scene), pixels)[:, "xyz".index(axis)]
-            inward = coordinate - limit if end == "minimum" else limit - coordinate
-            assert inward.min(initial=0.0) > -1e-5
-            assert inward.max(initial=0.0) < 0.2
-        assert rims(wall_sight(scene.replace(lights=[alone])), "light")[rim].tolist() == pixels.tolist()
-    assert len(found["cone"]) > 20
-    assert len(found["y", "maximum"]) == 0
-
-
 def test_a_silhouette_is_no_rim() -> None:
     floating = Mesh.joined([cube(0.7), grid(2, 2, (-3.0, 4.0, -3.0), (6.0, 0.0, 0.0), (0.0, 0.0, 6.0))])
     light = Light("light", (0.0, -9.0, 0.0), flaps=Flaps(y=Flap(maximum=2.0)))
@@ -740,11 +661,6 @@ def test_the_rim_of_a_coarse_picture_is_in_the_middle_of_its_blocks() -> None:
     assert coarse.tolist() == (2 * fine + 1).tolist()
 
 
-def test_the_rims_of_an_unknown_light_are_refused() -> None:
-    with pytest.raises(UsageError, match=r"there is no light 'kee'"):
-        rims(wall_sight(wall_scene()), "kee")
-
-
 @pytest.mark.parametrize("view", WALL_VIEWS)
 @pytest.mark.parametrize("edge_width", [0.0, 0.4])
 @pytest.mark.parametrize("carried", [False, True])
@@ -772,19 +688,6 @@ def test_a_soft_cone_ends_at_its_cone_angle() -> None:
         for each in (light, light.replace(inner_angle=4))
     ]
     assert found[0] == found[1]
-
-
-def test_any_number_of_half_spaces_have_rims_of_their_own() -> None:
-    planes = tuple(
-        HalfSpace(f"plane {number}", (0.1 * number - 0.9, 0, 0), (1, 0, 0.1)) for number in range(19)
-    )
-    light = Light("light", (0.2, -6.0, 0.1), half_spaces=planes, flaps=Flaps(z=Flap(-0.5, 0.5)))
-    found = rims(wall_sight(wall_scene(wall(half=2.0), view=FILLING, lights=[light])), "light")
-    assert len(found) == 21
-    for plane in planes:
-        alone = light.replace(half_spaces=(plane,), flaps=Flaps())
-        rim = rims(wall_sight(wall_scene(wall(half=2.0), view=FILLING, lights=[alone])), "light")
-        assert found[Plane(plane.name)].tolist() == rim[Plane(plane.name)].tolist() != []
 
 
 @cache

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from autocolor import Light, Picture, Scene, render
 from autocolor.mapping.intensity import words_of
 from autocolor.mapping.ranges import level_ranges
-from autocolor.testing import lights, scenes
+from autocolor.testing import scenes
 from tests.closeness import all_close
 from tests.small import sphere, wall_scene
 
@@ -37,17 +37,6 @@ def test_ranges_are_the_minima_and_maxima_of_the_arrays(scene: Scene) -> None:
         assert picture.ranges.whole == (0, 0)
 
 
-@given(scenes())
-def test_the_picture_is_the_ambient_and_the_sum_of_the_single_lights(scene: Scene) -> None:
-    dark = scene.replace(ambient=0.0)
-    singles = [
-        render(dark.replace(lights=(light,)), 12, 16).intensity.astype(np.float64) for light in scene.lights
-    ]
-    picture = render(scene, 12, 16)
-    ambient = np.where(picture.surface_number > 0, scene.ambient, 0.0)
-    assert picture.intensity == close_to(sum(singles, ambient), picture.ranges.whole.maximum)
-
-
 def linked(scene: Scene, surface: str) -> Scene:
     """The scene with the lights that shine on a surface, none of them linked to surfaces."""
     lights = [
@@ -66,21 +55,6 @@ def test_each_surface_is_as_in_a_picture_with_no_other_lights_than_shine_on_it(s
         here = picture.surface_number == number
         largest = max(picture.ranges.whole.maximum, alone.ranges.whole.maximum)
         assert picture.intensity[here] == close_to(alone.intensity[here], largest)
-
-
-@given(scenes(), lights(), st.sampled_from(["only", "except"]))
-def test_a_light_linked_to_a_surface_is_to_the_bit_one_without_d_and_s_on_the_others(
-    scene: Scene, light: Light, which: str
-) -> None:
-    # A surface without reflection keeps the scale: one that the light shines on has D = 1.
-    scene = scene.replace(ambient=0.0, lights=()).with_surface("body", diffuse=1.0, specular=0.5)
-    dark = scene.with_surface("glass", diffuse=0.0, specular=0.0)
-    names = ["body"] if which == "only" else ["glass"]
-    linked = light.replace(**{f"{which}_surfaces": names})  # type: ignore[arg-type]
-    one, other = (
-        render(each.replace(lights=(shining,)), 12, 16) for each, shining in ((scene, linked), (dark, light))
-    )
-    assert one.intensity.tobytes() == other.intensity.tobytes()
 
 
 @given(scenes())
@@ -171,13 +145,6 @@ def test_strong_and_weak_lights_are_no_different(intensity: float) -> None:
     )
     assert one.relative.tobytes() == other.relative.tobytes()
     assert all_close(other.intensity, one.intensity * np.float32(intensity), rel=1e-6)
-
-
-def test_a_picture_shows_itself_and_tells_about_itself() -> None:
-    picture = render(wall_scene(sphere(), lights=[Light("key", (2, -3, 3))]), 12, 16)
-    assert picture._repr_png_().startswith(b"\x89PNG")
-    assert repr(picture).startswith("Picture(12 x 16, ")
-    assert render(wall_scene(sphere(), lights=[]), 12, 16)._repr_png_().startswith(b"\x89PNG")
 
 
 @given(scenes())

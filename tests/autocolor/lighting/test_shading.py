@@ -41,6 +41,7 @@ from tests.autocolor.reference import Lit, controlled, light_at, ray
 from tests.autocolor.strategies import reflectances
 from tests.closeness import all_close
 from tests.small import cube, grid, sphere, wall, wall_scene
+from tests.tables import first, refused
 
 LINES, ELEMENTS = 12, 16
 WALLS = [wall(), wall(7, 5)]
@@ -48,10 +49,10 @@ WALLS = [wall(), wall(7, 5)]
 
 MODELS: list[ReflectionModel] = [
     Phong(12.0),
-    Phong(12.0, SpecularGrowth(base_reflectance=0.04)),
-    BlinnPhong(12.0),
     BlinnPhong(12.0, SpecularGrowth(refractive_index=1.5)),
     CookTorrance(0.3),
+    Phong(12.0, SpecularGrowth(base_reflectance=0.04)),
+    BlinnPhong(12.0),
     CookTorrance(1.0, 0.5),
 ]
 
@@ -157,7 +158,7 @@ def along_glass(cosines: Floats) -> Floats:
     ids=["F0", "index", "curve"],
 )
 @pytest.mark.parametrize("model", [Phong, BlinnPhong])
-@pytest.mark.parametrize("angle", [10, 30, 45, 70, 80, 87])
+@pytest.mark.parametrize("angle", first(3, [10, 45, 87, 30, 70, 80]))
 def test_s_on_a_wall_grows_by_the_closed_form_of_the_angle_of_incidence(
     growth: SpecularGrowth,
     closed_form: Callable[[Floats], Floats],
@@ -189,16 +190,6 @@ def test_s_on_a_wall_grows_by_the_closed_form_of_the_angle_of_incidence(
     # Near grazing incidence, float32 rounds the half vector more than the reflected view.
     error = 1e-5 if model is Phong else 1e-4
     assert all_close(specular, cosines**4 * closed_form(cos_incidence), rel=error)
-
-
-@pytest.mark.parametrize("model", [Phong, BlinnPhong])
-def test_s_that_grows_is_itself_at_normal_incidence(model: type[Phong | BlinnPhong]) -> None:
-    view = View((0.0, -4.0, 0.0), target=(0.0, 0.0, 0.0), field_of_view=0.01)
-    points = visible_surfaces(wall(), view, (1,), 3, 3)
-    light = Light("light", (0.0, -4.0, 0.0))
-    plain = planes_of(light, points, model(20.0))
-    for growth in (SpecularGrowth(base_reflectance=0.001), SpecularGrowth(refractive_index=1.5)):
-        assert planes_of(light, points, model(20.0, growth)) == pytest.approx(plain, rel=1e-6)
 
 
 @given(
@@ -269,8 +260,8 @@ def test_the_spot_of_a_light_that_almost_touches_the_wall_is_right(
         assert_as_the_paper(wall_scene(view=view, lights=[light]))
 
 
-@pytest.mark.parametrize("distance", [5.0, 211.0, 500.0, 5e3, 1e4])
-@pytest.mark.parametrize("gap", [0.3, 0.1, 0.01])
+@pytest.mark.parametrize("distance", first(2, [5.0, 1e4, 211.0, 500.0, 5e3]))
+@pytest.mark.parametrize("gap", [0.3, 0.01])
 @pytest.mark.parametrize("concentration", [0, 40])
 def test_the_wall_is_as_exact_through_a_telephoto_lens(
     distance: float, gap: float, concentration: float
@@ -347,7 +338,7 @@ NEAR_LIGHTS: dict[str, dict[str, Any]] = {
 
 
 @pytest.mark.parametrize("fields", NEAR_LIGHTS.values(), ids=NEAR_LIGHTS)
-@pytest.mark.parametrize("size", [1e4, 1e6, 1e8])
+@pytest.mark.parametrize("size", first(1, [1e6, 1e4, 1e8]))
 @given(angle=numbers(-180, 180), height=numbers(-1, 2))
 def test_a_small_wall_before_a_large_plate_is_lit_by_the_closed_form(
     fields: dict[str, Any], size: float, angle: float, height: float
@@ -360,7 +351,7 @@ def test_a_small_wall_before_a_large_plate_is_lit_by_the_closed_form(
 
 
 @pytest.mark.parametrize("fields", NEAR_LIGHTS.values(), ids=NEAR_LIGHTS)
-@pytest.mark.parametrize("size", [1e3, 1e5])
+@pytest.mark.parametrize("size", first(1, [1e5, 1e3]))
 @given(angle=numbers(-180, 180), height=numbers(-1, 2))
 def test_a_small_wall_on_a_floor_that_reaches_behind_the_eye_is_lit_by_the_closed_form(
     fields: dict[str, Any], size: float, angle: float, height: float
@@ -391,13 +382,16 @@ def test_a_floor_that_lies_on_a_flap_is_lit_to_the_horizon_and_just_beyond_the_f
 
 
 STEEP: list[ReflectionModel] = [
-    *(Phong(exponent) for exponent in (101.0, 333.3, 1e3, 1e5)),
-    *(BlinnPhong(exponent) for exponent in (101.0, 333.3, 1e3, 1e5)),
-    *(CookTorrance(roughness) for roughness in (0.2, 0.05, 0.02)),
+    Phong(333.3),
+    BlinnPhong(1e5),
+    CookTorrance(0.05),
+    *(model(exponent) for model in (Phong, BlinnPhong) for exponent in (101.0, 1e3)),
+    Phong(1e5),
+    *(CookTorrance(roughness) for roughness in (0.2, 0.02)),
 ]
 
 
-@pytest.mark.parametrize("model", STEEP, ids=repr)
+@pytest.mark.parametrize("model", first(3, STEEP), ids=repr)
 @given(
     eye=st.tuples(numbers(-2, 2), numbers(-4, -2), numbers(-2, 2)),
     x=numbers(-0.9, 0.9),
@@ -416,7 +410,7 @@ def test_steep_highlights_on_a_wall_are_the_closed_form(
     assert_exact_on_wall(light, visible_surfaces(wall(), view, (1,), 24, 32), model)
 
 
-@pytest.mark.parametrize("model", STEEP, ids=repr)
+@pytest.mark.parametrize("model", first(3, STEEP), ids=repr)
 @given(light=st.tuples(*[numbers(-6, 6)] * 3), view=outside_views())
 def test_steep_highlights_on_a_sphere_are_the_closed_form(
     model: ReflectionModel, light: tuple[float, float, float], view: View
@@ -438,11 +432,18 @@ def test_steep_highlights_on_a_sphere_are_the_closed_form(
 
 @pytest.mark.parametrize(
     "beam",
-    [
-        *({"concentration": c} for c in (101.0, 1e3, 1e5)),
-        *({"cone_angle": a, "inner_angle": a - 0.1} for a in (0.1, 0.3, 3.0, 20.0, 60.0)),
-        *({"cone_angle": a} for a in (0.1, 0.5, 2.5)),
-    ],
+    first(
+        4,
+        [
+            {"concentration": 1e3},
+            {"cone_angle": 0.3, "inner_angle": 0.2},
+            {"cone_angle": 20.0, "inner_angle": 19.9},
+            {"cone_angle": 0.5},
+            *({"concentration": c} for c in (101.0, 1e5)),
+            *({"cone_angle": a, "inner_angle": a - 0.1} for a in (0.1, 3.0, 60.0)),
+            *({"cone_angle": a} for a in (0.1, 2.5)),
+        ],
+    ),
     ids=repr,
 )
 @given(distance=st.sampled_from([1.0, 4.0, 50.0]), turn=numbers(0, 360), aside=numbers(-0.3, 0.3))
@@ -522,21 +523,6 @@ def test_a_cone_of_more_than_90_degrees_lights_behind_a_light_without_concentrat
     assert narrow.ranges.whole.maximum == 0
 
 
-def test_a_light_without_concentration_and_cone_is_a_point_source_in_every_direction() -> None:
-    point = render(wall_scene(lights=[Light("light", (0.2, -1.0, 0.1))]), 20, 20)
-    for direction in ((0.0, 1.0, 0.0), (0.0, -1.0, 0.0), (1.0, 0.2, 0.3)):
-        directed = render(wall_scene(lights=[Light("light", (0.2, -1.0, 0.1), direction=direction)]), 20, 20)
-        assert directed.intensity.tobytes() == point.intensity.tobytes()
-
-
-def test_an_aim_is_the_direction_from_the_light_to_it() -> None:
-    place, aim = (1.0, -2.0, 0.5), (0.25, 0.0, -0.25)
-    by_aim = Light("light", place, aim=aim, concentration=10, cone_angle=30)
-    by_direction = Light("light", place, direction=aimed(place, list(aim)), concentration=10, cone_angle=30)
-    pictures = [render(wall_scene(lights=[light]), 20, 20).intensity for light in (by_aim, by_direction)]
-    assert pictures[0] == pytest.approx(pictures[1], abs=1e-6)
-
-
 @pytest.mark.parametrize("away", [2.0, 0.05])
 @pytest.mark.parametrize(
     ("limits", "lit_side"),
@@ -562,13 +548,6 @@ def test_a_wall_that_lies_on_a_flap_is_lit(limit: Flap) -> None:
     )
     whole = render(wall_scene(view=view, lights=[Light("light", (0.3, -2.0, 0.1))]), 30, 40)
     assert lit.intensity.tobytes() == whole.intensity.tobytes()
-
-
-def test_flaps_that_are_off_change_nothing() -> None:
-    off = Flaps(*[Flap(0.2, 0.3, on=False)] * 3)
-    scenes = [wall_scene(lights=[Light("light", (0.3, -2.0, 0.1), flaps=each)]) for each in (off, Flaps())]
-    one, other = (render(scene, 20, 20).intensity.tobytes() for scene in scenes)
-    assert one == other
 
 
 @given(light=lights(on=True, intensity=1.0), power=st.integers(-95, 95))
@@ -623,7 +602,7 @@ def test_a_sphere_is_lit_as_the_paper_says(two_sided: bool) -> None:
             assert float(picture.intensity[line, element]) == pytest.approx(expected, abs=0.01)
 
 
-@pytest.mark.parametrize("model", MODELS, ids=repr)
+@pytest.mark.parametrize("model", first(3, MODELS), ids=repr)
 @given(light=lights(), view=wall_views())
 def test_under_every_model_the_controls_leave_their_multiple_of_the_light(
     model: ReflectionModel, light: Light, view: View
@@ -642,7 +621,7 @@ def test_under_every_model_the_controls_leave_their_multiple_of_the_light(
     assert not left[:, dark].any()
 
 
-@pytest.mark.parametrize("model", MODELS, ids=repr)
+@pytest.mark.parametrize("model", first(3, MODELS), ids=repr)
 @given(
     place=st.tuples(numbers(-3, 3), numbers(-4, -1), numbers(-3, 3)),
     cone_angle=st.none() | st.sampled_from([3.0, 20.0]),
@@ -685,31 +664,6 @@ def test_each_surface_is_reflected_by_its_own_model() -> None:
         assert alone[1, surface.pixels].any()
 
 
-@pytest.mark.parametrize("model", MODELS, ids=repr)
-def test_few_lit_points_are_computed_as_all_of_them_would_be(
-    model: ReflectionModel, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    points = visible_surfaces(sphere(), View((0, -4, 1), target=(0, 0, 0)), (1,), 40, 40)
-    light = Light("light", (1.0, -3.0, 2.0), aim=(0, 0, 0), cone_angle=6, concentration=3)
-    planes = []
-    for few in (0.0, 2.0):
-        monkeypatch.setattr("autocolor.lighting.shading.FEW", few)
-        planes.append(planes_of(light, points, model))
-    lit = np.count_nonzero(planes[0][0] > 0)
-    assert 0 < lit < 0.3 * len(points.pixels)
-    assert planes[0] == pytest.approx(planes[1], rel=1e-6)
-
-
-def test_no_ray_is_computed_where_flaps_leave_everything_dark(monkeypatch: pytest.MonkeyPatch) -> None:
-    points = visible_surfaces(wall(), View((0, -4, 0), target=(0, 0, 0)), (1,), 12, 12)
-    light = Light("light", (0.0, -1.0, 0.0), flaps=Flaps(y=Flap(1.0, 2.0)))
-    planes = np.full((2, len(points.pixels)), np.float32(7))
-    monkeypatch.setattr("autocolor.lighting.shading.rays_to", None)
-    for chunk in points.chunks:
-        shade(planes, controlled_light(light, points), points, chunk, {1: Phong()})
-    assert not planes.any()
-
-
 @given(light=lights(on=True, intensity=1.0, direction=(1.0, 2.0, -0.5)), view=wall_views())
 def test_a_light_at_infinity_lights_like_a_light_a_million_times_as_far_away(
     light: Light, view: View
@@ -742,12 +696,6 @@ def test_at_infinity_concentration_and_cone_leave_all_of_the_light_and_flaps_do_
     assert narrow.intensity.tobytes() == whole.intensity.tobytes()
     assert (flapped.intensity[:, :7] == 0).all()
     assert (flapped.intensity[:, 9:] == whole.intensity[:, 9:]).all()
-
-
-def test_no_ray_is_computed_beyond_the_reach_of_a_light(monkeypatch: pytest.MonkeyPatch) -> None:
-    light = Light("light", (0, -3, 0), falloff="linear", reach=2.5)
-    monkeypatch.setattr("autocolor.lighting.shading.rays_to", None)
-    assert not render(wall_scene(lights=[light]), 12, 16).intensity.any()
 
 
 @given(st.lists(st.integers(0, 30), min_size=1, max_size=5), st.integers(1, 40), st.integers(0, 1 << 32))
@@ -846,38 +794,35 @@ def test_a_light_of_any_intensity_is_not_refused_for_surfaces_that_it_does_not_r
         render(wall_scene(sphere(), lights=[strong.replace(only_parts=["sphere"])]), 12, 16)
 
 
+HUGE = Light("key", (2, -3, 3), 1e300)
+REFUSED = [
+    (
+        wall_scene(sphere(), lights=[Light("key", (2, -3, 3), 1e39), Light("fill", (2, -3, 3))]),
+        "surface 'sphere' under light 'key': intensities must stay below 3.4e+38, not reach 1.46e+39; lower"
+        " the light's intensity or the surface's diffuse and specular",
+    ),
+    (wall_scene(sphere(), ambient=1e39), "ambient must stay below 3.4e+38, not 1e+39; lower it"),
+    (
+        wall_scene(ambient=1e39).with_view(eye=(0, 40, 0), direction=(0, 1, 0)),
+        "ambient must stay below 3.4e+38, not 1e+39; lower it",
+    ),
+    (
+        wall_scene(sphere(), lights=[HUGE]).with_surface("sphere", diffuse=1e300),
+        "surface 'sphere' under light 'key': intensities must stay below 3.4e+38, not reach inf; lower the"
+        " light's intensity or the surface's diffuse and specular",
+    ),
+    # The largest factor of a model counts.
+    (
+        wall_scene(
+            reflectance=Reflectance(0.0, 1.0, CookTorrance(0.3, 0.05)),
+            lights=[Light("key", (0, -1, 0), 1e37)],
+        ),
+        "surface 'wall' under light 'key': intensities must stay below 3.4e+38, not reach 9.81012e+38; lower"
+        " the light's intensity or the surface's diffuse and specular",
+    ),
+]
+test_intensities_that_float32_cannot_hold_are_refused = refused(lambda scene: render(scene, 9, 12), REFUSED)
+
+
 def test_nothing_at_all_has_a_scale_of_1() -> None:
     assert light_mix({}, (), (), 0.0, ()) == (1.0, np.float32(0), {})
-
-
-def test_the_largest_factor_of_a_model_counts_against_the_range_of_float32() -> None:
-    both = (Surface("one", Reflectance(0.0, 1.0, 20.0)), Surface("other"))
-    lights = [Light("key", (0, 0, 0), 1e37)]
-    light_mix({1: Phong()}, both, lights, 0.0, ())
-    with pytest.raises(InputError) as refused:
-        light_mix({1: CookTorrance(0.3, 0.05)}, both, lights, 0.0, ())
-    assert str(refused.value) == (
-        "surface 'one' under light 'key': intensities must stay below 3.4e+38, not reach 9.81012e+38; lower"
-        " the light's intensity or the surface's diffuse and specular"
-    )
-
-
-def test_intensities_that_float32_cannot_hold_are_refused_with_surface_and_light() -> None:
-    lights = [Light("key", (2, -3, 3), 1e39), Light("fill", (2, -3, 3), 1.0)]
-    with pytest.raises(
-        InputError, match=r"surface 'sphere' under light 'key': intensities must stay below 3.4e\+38"
-    ):
-        render(wall_scene(sphere(), lights=lights))
-    with pytest.raises(InputError, match=r"ambient must stay below 3.4e\+38, not 1e\+39; lower it"):
-        render(wall_scene(sphere(), lights=[], ambient=1e39))
-    huge = wall_scene(sphere(), lights=[Light("key", (2, -3, 3), 1e300)])
-    with pytest.raises(InputError, match="lower the light's intensity"):
-        render(huge.with_surface("sphere", reflectance=Reflectance(1e300, 0, 1)))
-
-
-def test_an_ambient_that_float32_cannot_hold_is_refused_even_where_nothing_is_visible() -> None:
-    scene = wall_scene().replace(ambient=1e39)
-    for each in (scene, scene.with_view(eye=(0, 40, 0), direction=(0, 1, 0))):
-        with pytest.raises(InputError) as refused:
-            render(each, 9, 12)
-        assert str(refused.value) == "ambient must stay below 3.4e+38, not 1e+39; lower it"

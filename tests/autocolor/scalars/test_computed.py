@@ -12,11 +12,8 @@ from autocolor import Mesh, View
 from autocolor.explanation.level import corner_weights
 from autocolor.rendering import rendering
 from autocolor.scalars.computed import (
-    _RANGES,
     COMPUTING,
-    MOST_RANGES,
     ScalarValues,
-    cached_range,
     coordinate,
     direction_of,
     distance,
@@ -28,7 +25,6 @@ from autocolor.scalars.computed import (
     scalar_values,
     slope,
     smallest_curvature,
-    widened,
     within,
     zebra,
 )
@@ -40,10 +36,6 @@ from tests.small import cube, grid, sphere, wall, wall_scene
 
 def seen(mesh: Mesh, view: View | None = None, lines: int = 30, elements: int = 40) -> VisiblePoints:
     return rendering(wall_scene(mesh, view=view), lines, elements).points
-
-
-def test_each_name_has_a_function() -> None:
-    assert tuple(COMPUTING) == COMPUTED
 
 
 @pytest.mark.parametrize("name", COMPUTED)
@@ -93,17 +85,6 @@ def test_a_constant_is_in_the_middle_of_its_range(value: float, limits: tuple[fl
     assert range_of(np.array([value, value])) == limits
 
 
-def test_an_extent_that_is_too_small_is_none() -> None:
-    assert widened(-1e-9, 1e-9, least=1e-3) == pytest.approx((-1e-3, 1e-3), rel=1e-5)
-    assert widened(5.0, 5.0, least=1e-3) == (2.5, 7.5)
-    assert widened(0.0, 1.0, least=1e-3) == (0, 1)
-
-
-def test_noise_counts_as_a_constant() -> None:
-    low, high = widened(1000.0, 1000.0 + 1e-4)
-    assert high - low == pytest.approx(1000, rel=1e-3)
-
-
 @given(st.lists(st.floats(-1e30, 1e30), min_size=1))
 def test_every_value_is_in_the_range_also_as_a_single(numbers: list[float]) -> None:
     low, high = range_of(np.array(numbers))
@@ -121,26 +102,6 @@ def test_values_that_rounding_put_beyond_the_limits_are_clipped() -> None:
     values = np.array([-1e-9, 0.5, np.nan, 1 + 1e-6], np.float32)
     found = within(values, (0, 1))
     assert np.array_equal(found.values, np.array([0, 0.5, np.nan, 1], np.float32), equal_nan=True)
-
-
-def test_a_range_is_computed_once_for_a_mesh_and_a_key() -> None:
-    asked = []
-
-    def compute() -> tuple[float, float]:
-        asked.append(1)
-        return 0.0, 1.0
-
-    one, other = wall(), wall()
-    for mesh, key in ((one, "a"), (one, "a"), (one, "b"), (other, "a"), (one, "a")):
-        assert cached_range(mesh, key, compute) == (0, 1)
-    assert len(asked) == 3
-
-
-def test_a_mesh_has_a_bounded_number_of_cached_ranges() -> None:
-    mesh = wall()
-    for step in range(10 * MOST_RANGES):
-        cached_range(mesh, step, lambda: (0.0, 1.0))
-    assert len(_RANGES[mesh]) <= MOST_RANGES
 
 
 PITCH = 35.0
@@ -255,16 +216,6 @@ def test_a_surface_that_is_flat_but_for_rounding_has_the_middle_of_the_range() -
         values, (low, high) = found(mesh, ANY, points)
         assert len(values) > 10
         assert np.abs((values - low) / (high - low) - 0.5).max() < 0.01
-
-
-def test_the_sides_of_a_box_are_flat() -> None:
-    mesh = cube()
-    size = 3**0.5
-    for found in (mean_curvature, gaussian_curvature, largest_curvature, smallest_curvature):
-        values, limits = found(mesh, ANY, rendering(wall_scene(mesh), 12, 16).points)
-        assert not np.any(np.abs(values) > 1e-9)
-        least = (0.01 / size) ** (2 if found is gaussian_curvature else 1)
-        assert limits == pytest.approx((-least, least))
 
 
 @pytest.mark.parametrize("axis", [0, 1, 2])
@@ -456,13 +407,6 @@ def test_a_polygon_with_a_missing_corner_is_missing_and_no_other() -> None:
     values, limits = values_of(mesh, "stress", points)
     assert np.array_equal(np.isnan(values), points.polygon_numbers == 0)
     assert limits == (1, 24)
-
-
-def test_nodes_that_no_polygon_uses_are_not_in_the_range() -> None:
-    one = wall()
-    mesh = Mesh(np.vstack([one.coordinates, [(9.0, 9.0, 9.0)]]), one.node_numbers, part_names=("wall",))
-    mesh = mesh.with_scalars(MeshScalar("stress", np.array([1.0, 2.0, 3.0, 4.0, 1000.0])))
-    assert values_of(mesh, "stress", seen(mesh)).limits == (1, 4)
 
 
 def test_a_scalar_of_the_mesh_comes_before_a_computed_one() -> None:

@@ -11,25 +11,11 @@ from hypothesis import strategies as st
 from autocolor.explanation import level as plain
 from autocolor.rendering import rendering
 from autocolor.scalars import interpolation
-from autocolor.scalars.interpolation import corner_weights, interpolated, polygon_runs, weighted_points
+from autocolor.scalars.interpolation import corner_weights, interpolated, weighted_points
 from autocolor.scene.scene import INVARIANT
 from autocolor.testing import numbers, vectors
 from tests.autocolor.reference import on_triangles, ray
-from tests.small import sphere, uneven_wall, wall, wall_scene
-
-
-def test_runs_are_the_polygons_of_the_points() -> None:
-    points = rendering(wall_scene(sphere(12, 8)), 24, 32).points
-    polygons, counts = polygon_runs(points)
-    assert np.repeat(polygons, counts).tolist() == points.polygon_numbers.tolist()
-    assert (polygons[1:] != polygons[:-1]).all()
-
-
-def test_a_view_that_sees_nothing_has_no_runs() -> None:
-    scene = wall_scene(wall()).with_view(target=(0.0, -9.0, 0.0))
-    points = rendering(scene, 6, 8).points
-    assert len(polygon_runs(points)[0]) == 0
-    assert list(weighted_points(scene.mesh, points)) == []
+from tests.small import sphere, uneven_wall, wall_scene
 
 
 def test_values_do_not_depend_on_the_chunks(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -130,15 +116,6 @@ def test_weights_in_a_triangle_are_barycentric(corners: list[tuple[float, ...]],
     assert weights_at(table, [wanted @ table])[0] == pytest.approx([*wanted, 0], abs=1e-9)
 
 
-@pytest.mark.parametrize("place", range(4))
-def test_a_triangle_may_repeat_any_corner(place: int) -> None:
-    triangle = np.array([(0.0, 0.0, 1.0), (4.0, 0.0, 1.0), (0.0, 4.0, 3.0)])
-    order = np.roll([0, 1, 2, 2], place)
-    wanted = np.array([0.2, 0.3, 0.5])
-    found = weights_at(triangle[order], [wanted @ triangle])[0]
-    assert np.bincount(order, found) == pytest.approx(wanted)
-
-
 def test_each_corner_has_all_the_weight_at_itself_and_none_on_the_sides_across() -> None:
     quad = on_a_circle([0.1, 1.5, 2.8, 5.0])
     assert weights_at(quad, quad) == pytest.approx(np.eye(4), abs=1e-12)
@@ -188,14 +165,6 @@ def test_a_warped_quad_is_seen_along_its_normal() -> None:
     warped = [(0.0, 0.0, 0.1), (1.0, 0.0, -0.1), (1.0, 1.0, 0.1), (0.0, 1.0, -0.1)]
     flat = [(x, y, 0.0) for x, y, _ in warped]
     assert weights_at(warped, [(0.2, 0.7, 0.05)]) == pytest.approx(weights_at(flat, [(0.2, 0.7, 0)]))
-
-
-@given(quads, st.integers(-20, 20))
-def test_weights_are_the_same_at_any_size(corners: list[tuple[float, ...]], exponent: int) -> None:
-    points = [np.mean(corners, axis=0)]
-    scale = 2.0**exponent
-    scaled = weights_at(np.array(corners) * scale, np.array(points) * scale)
-    assert scaled == pytest.approx(weights_at(corners, points), abs=1e-9)
 
 
 def test_polygons_of_all_kinds_can_be_mixed() -> None:
