@@ -304,11 +304,6 @@ def picture_of_start() -> Picture:
 
 
 def by_scene_file(scene: Scene, folder: Path, session: Session) -> Scene:
-    write_scene(folder, scene)
-    return read_scene(folder)
-
-
-def by_scene_file_saved_over(scene: Scene, folder: Path, session: Session) -> Scene:
     write_scene(folder, start())
     write_scene(folder, scene, overwrite=True)
     return read_scene(folder)
@@ -366,7 +361,6 @@ def by_script(scene: Scene, folder: Path, session: Session) -> Scene:
 
 WAYS = (
     by_scene_file,
-    by_scene_file_saved_over,
     by_table_store,
     by_picture_file,
     by_plain_values,

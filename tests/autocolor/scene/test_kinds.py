@@ -294,11 +294,6 @@ def test_every_column_of_a_scene_has_a_kind_of_these_tables_or_is_of_rows() -> N
     assert {type(kind) for kind in kinds_of(Scene)} == tried | {Nested, OneRowOf, RowList, NamedRows}
 
 
-@given(st.floats(allow_nan=False, allow_infinity=False))
-def test_a_finite_number_is_held_unchanged(number: float) -> None:
-    assert accepted((Number(), number)) == number
-
-
 @given(angle_curves())
 def test_a_curve_is_held_as_it_is_whatever_lists_it_came_in(curve: AngleCurve) -> None:
     assert accepted((ANGLES, [list(point) for point in curve])) == curve

@@ -1,13 +1,11 @@
 from __future__ import annotations
 
 import math
-import pickle
 from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import given
-from hypothesis import strategies as st
 
 from autocolor import InputError, Mesh
 from autocolor.scene import mesh as mesh_module
@@ -40,20 +38,6 @@ def test_a_mesh_is_a_copy_that_never_changes() -> None:
     assert mesh.coordinates.tolist() == np.eye(3).tolist()
     for table in (mesh.coordinates, mesh.node_numbers, mesh.part_numbers):
         assert not table.flags.writeable
-
-
-def test_the_transpose_of_each_table_is_a_contiguous_view_of_its_type() -> None:
-    mesh = grid(3, 2, (0, 0, 0), (1, 0, 0), (0, 1, 0))
-    for each in (mesh, pickle.loads(pickle.dumps(mesh))):
-        for table, dtype in (
-            (each.coordinates, np.float64),
-            (each.node_numbers, np.intp),
-            (each.part_numbers, np.intp),
-            (each.normals.vectors, np.float32),
-            (each.normals.numbers, np.intp),
-        ):
-            assert table.dtype == dtype
-            assert table.T.flags.c_contiguous
 
 
 @pytest.mark.parametrize(
@@ -127,12 +111,6 @@ def test_a_mesh_that_breaks_a_rule_is_refused(fields: dict[str, Any], sentence: 
     assert sentence in refusal.value.problems
 
 
-def test_a_fault_of_the_nodes_is_not_repeated_for_the_polygons() -> None:
-    with pytest.raises(InputError) as refusal:
-        mesh_of(coordinates=np.eye(3)[:, :2])
-    assert refusal.value.problems == ("node table: its shape must be (rows, 3), not (3, 2)",)
-
-
 def test_an_empty_mesh_is_a_mesh() -> None:
     empty = Mesh(np.empty((0, 3)), np.empty((0, 4), np.intp), np.empty(0, np.intp), ())
     assert (empty.edge_count, empty.triangle_count, empty.parts_in_use) == (0, 0, ())
@@ -148,51 +126,6 @@ def test_joined_meshes_keep_their_polygons_and_share_parts_of_the_same_name(one:
     corners = joined.coordinates[joined.node_numbers]
     both = [*one.coordinates[one.node_numbers], *other.coordinates[other.node_numbers]]
     assert corners.tolist() == [each.tolist() for each in both]
-
-
-def test_the_parts_in_use_have_a_polygon() -> None:
-    mesh = mesh_of(part_names=("hood", "door", "roof"), part_numbers=[1])
-    assert mesh.parts_in_use == (1,)
-
-
-@given(meshes(parts=3), st.sets(st.integers(0, 2)))
-def test_the_coordinates_of_parts_are_the_coordinates_of_their_nodes(mesh: Mesh, chosen: set[int]) -> None:
-    nodes = sorted(
-        {
-            int(node)
-            for polygon, part in zip(mesh.node_numbers, mesh.part_numbers, strict=True)
-            if int(part) in chosen
-            for node in polygon
-        }
-    )
-    assert mesh.coordinates_of_parts(sorted(chosen)).tolist() == mesh.coordinates[nodes].tolist()
-    assert mesh.coordinates_of_parts(range(3)).tolist() == mesh.used_coordinates.tolist()
-
-
-def test_joining_meshes_of_many_parts_takes_no_time_in_proportion_to_their_square() -> None:
-    class Name(str):
-        comparisons = 0
-
-        def __eq__(self, other: object) -> bool:
-            Name.comparisons += 1
-            return str.__eq__(self, other)
-
-        __hash__ = str.__hash__
-
-    count = 500
-    parts = [
-        Mesh(np.eye(3), np.array([[0, 1, 2]]), np.zeros(1, np.intp), (Name(f"part {number}"),))
-        for number in range(count)
-    ]
-    joined = Mesh.joined(parts)
-    assert joined.part_numbers.tolist() == list(range(count))
-    assert Name.comparisons < 20 * count
-
-
-def test_a_mesh_without_part_numbers_is_one_part() -> None:
-    mesh = Mesh(np.eye(3), [[0, 1, 2], [2, 1, 0]])  # type: ignore[arg-type]
-    assert (mesh.part_names, mesh.part_numbers.tolist()) == (("mesh",), [0, 0])
-    assert mesh_of(part_numbers=None, part_names=("hood",)).part_names == ("hood",)
 
 
 @given(meshes())

@@ -222,15 +222,6 @@ def light(*rows: HalfSpace, **fields: Any) -> Light:
     return Light("key", (0, 0, 1), half_spaces=rows, **fields)
 
 
-def test_they_are_given_as_rows_or_as_tables_by_name_and_held_by_name() -> None:
-    expected = light(LEFT, RIGHT)
-    assert expected.half_spaces == (LEFT, RIGHT)
-    assert light(RIGHT, LEFT) == expected
-    tables = {"right": {"point": [1, 0, 0], "direction": [-1, 0, 0], "edge_width": 0.5}, "left": LEFT}
-    assert from_plain(Light, {"name": "key", "position": [0, 0, 1], "half_spaces": tables}) == expected
-    assert light().half_spaces == ()
-
-
 OTHER = LEFT.replace(direction=(0, 1, 0))
 
 
@@ -272,14 +263,13 @@ def test_what_is_written_gives_the_same_rows(rows: list[HalfSpace]) -> None:
     assert from_plain(Light, keys) == light(*rows)
 
 
-def test_an_edit_costs_the_planes_of_its_light() -> None:
-    both = light(LEFT, RIGHT)
-    assert cost(both, light(LEFT)) is Tier.LIGHT
-    assert cost(both, light(LEFT, RIGHT.replace(on=False))) is Tier.LIGHT
-    assert cost(both, light(RIGHT, LEFT)) is None
-
-
 FULL = light(*(LEFT.replace(name=f"{number:03}") for number in range(MOST_NAMED_ROWS)))
+
+
+def test_rows_are_held_by_name() -> None:
+    assert light(RIGHT, LEFT).half_spaces == (LEFT, RIGHT)
+    assert cost(light(LEFT, RIGHT), light(RIGHT, LEFT)) is None
+    assert cost(light(LEFT, RIGHT), light(LEFT)) is Tier.LIGHT
 
 
 def test_all_rows_are_changed_or_replaced_at_once() -> None:

@@ -38,13 +38,6 @@ def car_scene() -> Scene:
     return scene_of(car(), surfaces="parts")
 
 
-@given(scenes())
-def test_a_scene_replaced_by_nothing_shares_everything(scene: Scene) -> None:
-    same = scene.replace()
-    for name in ("mesh", "parts", "surfaces", "lights", "view", "views"):
-        assert getattr(same, name) is getattr(scene, name)
-
-
 def test_an_edit_shares_all_that_it_does_not_change() -> None:
     scene = scene_of(car(), lights=[Light("key", (0, -1, 0)), Light("fill", (0, -2, 0))])
     edited = scene.with_light("key", intensity=2)
@@ -108,26 +101,9 @@ def test_all_lights_are_on_again_after_some_were_alone(scene: Scene) -> None:
     assert alone.with_all_lights_on().equals(scene.with_all_lights_on())
 
 
-def test_a_rig_carries_the_lights_of_one_scene_to_another() -> None:
-    scene = scene_of(car(), lights=[Light("key", (1, -2, 3))])
-    assert scene.rig.lights == scene.lights
-    assert (scene.rig.minimum, scene.rig.maximum) == scene.object_bounds
-    assert scene_of(cube(3.0)).with_rig(scene.rig).rig.fitted(*scene.object_bounds)[0].position == (
-        pytest.approx((1, -2, 3))
-    )
-
-
 def test_a_renamed_light_keeps_its_place() -> None:
     scene = scene_of(car(), lights=[Light("key", (0, -1, 0)), Light("rim", (0, 2, 0))])
     assert [light.name for light in scene.with_light("key", name="main").lights] == ["main", "rim"]
-
-
-def test_every_row_is_changed_by_its_name() -> None:
-    scene = scene_of(car(), surface_of_part={"door": "door", "pane": "hood", "hood": "hood"})
-    assert scene.with_part("door", surface="hood").part("door").surface == "hood"
-    assert scene.with_surface("hood", diffuse=0.1).surface("hood").reflectance.diffuse == 0.1
-    assert scene.with_view(angle=5).view.angle == 5.0
-    assert [light.on for light in scene.only_lights("fill").lights] == [False, True, False, False]
 
 
 def test_a_scene_has_at_most_255_surfaces_and_64_named_views() -> None:

@@ -273,17 +273,6 @@ def test_what_is_no_scalar_is_left_out_in_a_sentence(values: Any, caplog: pytest
     assert caplog.messages == ["data of a node left out, since they are no scalar: vectors"]
 
 
-@pytest.mark.parametrize("data", [{"load": [[1.0]]}, {"load": 3}, {"load": [[1.0], [2.0], [3.0]]}, [1], 3])
-def test_data_of_cells_in_other_blocks_are_left_out(data: Any) -> None:
-    mesh = Mesh.of(meshio(cell_data=data, quad=[QUAD], triangle=[TRIANGLE]))
-    assert scalars_of(mesh) in ({}, {"load": ("polygon", [1, 2])})
-
-
-def test_a_name_of_nodes_and_of_polygons_becomes_two() -> None:
-    mesh = Mesh.of(polydata(QUAD, point_data={"stress": np.zeros(6)}, cell_data={"stress": np.ones(1)}))
-    assert scalars_of(mesh) == {"stress": ("node", [0] * 6), "stress of polygons": ("polygon", [1])}
-
-
 def test_endless_values_are_missing(caplog: pytest.LogCaptureFixture) -> None:
     given = np.array([np.inf, -1e31, np.nan, 3.0, 4.0, 5.0])
     with caplog.at_level(logging.INFO, "autocolor"):
