@@ -3,7 +3,8 @@ from __future__ import annotations
 import dataclasses
 import pickle
 from collections.abc import Iterator
-from typing import Any
+from dataclasses import dataclass
+from typing import Annotated, Any, ClassVar
 
 import pytest
 from hypothesis import given
@@ -30,9 +31,8 @@ from autocolor.scene.columns import (
     replaced,
     to_plain,
 )
-from autocolor.scene.kinds import Number, Whole
+from autocolor.scene.kinds import Number, Text, Whole
 from autocolor.testing import lights, scenes, surfaces, views
-from tests.autocolor.scene.spans import Span
 from tests.autocolor.strategies import of_mesh
 from tests.small import wall_scene
 from tests.tables import call, refused
@@ -43,6 +43,25 @@ NUMBERS = [
     for key, (column, _, _) in keys_of(cls).items()
     if isinstance(column.kind, (Number, Whole))
 ]
+
+
+@dataclass(frozen=True)
+class Span(Row):
+    """A row with a rule between its columns, and alternatives."""
+
+    noun: ClassVar[str] = "span"
+    alternatives: ClassVar[tuple[tuple[str, ...], ...]] = (("end",), ("length",))
+
+    name: Annotated[str, Column(Text(), Tier.NOTHING, "What it is called.")]
+    begin: Annotated[float, Column(Number(), Tier.LIGHT, "Where it begins.")] = 0.0
+    end: Annotated[float | None, Column(Number(), Tier.LIGHT, "Where it ends.")] = None
+    length: Annotated[float | None, Column(Number(at_least=0), Tier.MIX, "How long it is.")] = None
+
+    def rules(self) -> Iterator[Problem]:
+        if self.end is not None and self.length is not None:
+            yield Problem((), "it must have an end or a length, not both")
+        if self.end is not None and self.begin > self.end:
+            yield Problem(("begin",), f"must not be above the end, not {self.begin:g}")
 
 
 @pytest.mark.parametrize("column", NUMBERS)

@@ -13,6 +13,7 @@ from autocolor.scene.mesh import has_same_tables
 from autocolor.scene.scalar import MeshScalar
 from autocolor.testing import meshes
 from tests.small import cube, grid, sphere
+from tests.tables import refused
 
 
 def mesh_of(**fields: Any) -> Mesh:
@@ -61,33 +62,23 @@ def test_the_bounds_hold_the_nodes_that_polygons_use_and_no_other(mesh: Mesh) ->
     assert high.tolist() == used.max(axis=0).tolist()
 
 
-@pytest.mark.parametrize(
-    ("fields", "sentence"),
+ROWS = "polygon table: a node number must be a row of the node table (0 to 2), not"
+NUMBERS = "it must be an array of numbers, not list; convert it"
+WHOLE = "it must be an array of whole numbers, not"
+
+test_a_mesh_that_breaks_a_rule_is_refused = refused(
+    lambda fields: mesh_of(**fields),
     [
         (
             {"coordinates": np.array([[0, 0, 0], [0, math.nan, 0], [0, 0, 1]])},
             "node table: coordinates must be finite and at most 1e30 in size, not [0.0, nan, 0.0] (row 1)",
         ),
+        # A fault of the nodes is not repeated for the polygons.
         ({"coordinates": np.eye(3)[:, :2]}, "node table: its shape must be (rows, 3), not (3, 2)"),
-        ({"coordinates": [[1, 2], [3]]}, "node table: it must be an array of numbers, not list; convert it"),
-        (
-            {"coordinates": [["1", "2", "3"]] * 3},
-            "node table: it must be an array of numbers, not list; convert it",
-        ),
-        (
-            {"node_numbers": [[0, 1, 2.5]]},
-            "polygon table: it must be an array of whole numbers, not of float64; convert it",
-        ),
-        ({"node_numbers": [[0, 1]]}, "polygon table: its shape must be (rows, 3) or (rows, 4), not (1, 2)"),
-        (
-            {"node_numbers": [[0, 1, 3]]},
-            "polygon table: a node number must be a row of the node table (0 to 2), not [0, 1, 3, 3] (row 0)",
-        ),
-        (
-            {"node_numbers": [[0, 1, -1]]},
-            "polygon table: a node number must be a row of the node table (0 to 2), not [0, 1, -1, -1]"
-            " (row 0)",
-        ),
+        ({"coordinates": [[1, 2], [3]]}, f"node table: {NUMBERS}"),
+        ({"coordinates": [["1", "2", "3"]] * 3}, f"node table: {NUMBERS}"),
+        ({"node_numbers": [[0, 1, 3]]}, f"{ROWS} [0, 1, 3, 3] (row 0)"),
+        ({"node_numbers": [[0, 1, -1]]}, f"{ROWS} [0, 1, -1, -1] (row 0)"),
         (
             {"part_numbers": [1]},
             "polygon table: a part number must be a row of the part table (0 to 0), not 1 (row 0)",
@@ -96,16 +87,22 @@ def test_the_bounds_hold_the_nodes_that_polygons_use_and_no_other(mesh: Mesh) ->
             {"part_numbers": [0, 0]},
             "polygon table: there must be one part number a polygon (1), not an array of shape (2,)",
         ),
-        (
-            {"part_numbers": [0.5]},
-            "part numbers: it must be an array of whole numbers, not of float64; convert it",
-        ),
-        ({"part_numbers": "x"}, "part numbers: it must be an array of whole numbers, not str; convert it"),
         ({"part_names": ("door", "door")}, "part table: part names must differ, not repeat"),
         ({"crease_angle": 181}, "mesh: crease_angle must be a number from 0 to 180, not 181"),
     ],
 )
-def test_a_mesh_that_breaks_a_rule_is_refused(fields: dict[str, Any], sentence: str) -> None:
+
+
+@pytest.mark.parametrize(
+    ("fields", "sentence"),
+    [
+        ({"node_numbers": [[0, 1]]}, "polygon table: its shape must be (rows, 3) or (rows, 4), not (1, 2)"),
+        ({"node_numbers": [[0, 1, 2.5]]}, f"polygon table: {WHOLE} of float64; convert it"),
+        ({"part_numbers": [0.5]}, f"part numbers: {WHOLE} of float64; convert it"),
+        ({"part_numbers": "x"}, f"part numbers: {WHOLE} str; convert it"),
+    ],
+)
+def test_tables_of_no_numbers_are_refused(fields: dict[str, Any], sentence: str) -> None:
     with pytest.raises(InputError) as refusal:
         mesh_of(**fields)
     assert sentence in refusal.value.problems

@@ -9,7 +9,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Light, Part, Surface
-from autocolor.errors import InputError
 from autocolor.scene.columns import (
     Column,
     Row,
@@ -201,21 +200,6 @@ half_spaces = st.builds(
     st.booleans(),
 )
 several = st.lists(half_spaces, max_size=5, unique_by=lambda row: row.name)
-anything = st.recursive(
-    st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=3) | st.binary(max_size=2),
-    lambda inner: (
-        st.lists(inner, max_size=3)
-        | st.tuples(inner, inner)
-        | st.dictionaries(
-            st.sampled_from(["a", "point", "direction", "edge_width", "on", "name"])
-            | st.text(max_size=2)
-            | st.integers(),
-            inner,
-            max_size=4,
-        )
-    ),
-    max_leaves=12,
-)
 
 
 def light(*rows: HalfSpace, **fields: Any) -> Light:
@@ -336,16 +320,3 @@ test_what_is_invalid_is_told_with_its_place = refused(
         for changes, told in cases
     ],
 )
-
-
-@given(anything)
-def test_whatever_is_given_makes_a_row_or_is_refused_in_sentences(value: Any) -> None:
-    for rows in ((), (LEFT, HalfSpace("a", (0, 0, 0), (0, 0, 1)))):
-        told = ""
-        try:
-            row = replaced(light(*rows), {"half_spaces": value})
-        except InputError as error:
-            told = str(error)
-        else:
-            assert [each.name for each in row.half_spaces] == sorted({each.name for each in row.half_spaces})
-        assert all(each.startswith("light 'key': half_spaces") for each in told.splitlines())

@@ -117,7 +117,8 @@ def surfaces(count: int) -> list[Surface]:
 
 
 def views(count: int) -> list[NamedView]:
-    return [NamedView(str(number), car_scene().view) for number in range(count)]
+    view = View((0, -4, 0), target=(0, 0, 0))
+    return [NamedView(str(number), view) for number in range(count)]
 
 
 KEY = Light("key", (0, -1, 0))

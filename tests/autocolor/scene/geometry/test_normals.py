@@ -13,10 +13,8 @@ from autocolor import Mesh
 from autocolor.arrays import Singles
 from autocolor.scene.geometry import normals as normals_module
 from autocolor.scene.geometry.normals import (
-    group_numbers,
     node_normals,
     polygon_normals,
-    unite,
 )
 from autocolor.testing import meshes
 from tests.small import cube, grid, sphere
@@ -224,35 +222,3 @@ def test_making_the_normals_needs_few_bytes_a_polygon() -> None:
     finally:
         tracemalloc.stop()
     assert peak < 250 * len(mesh.node_numbers)
-
-
-COUNT = 30
-
-items = st.integers(0, COUNT - 1)
-batches = st.lists(st.lists(st.tuples(items, items), max_size=20), max_size=4)
-
-
-def roots_one_by_one(pairs: list[tuple[int, int]]) -> list[int]:
-    """The lowest of each item's group, by passing it on until nothing changes."""
-    lowest = list(range(COUNT))
-    changed = True
-    while changed:
-        changed = False
-        for one, other in pairs:
-            if lowest[one] != lowest[other]:
-                lowest[one] = lowest[other] = min(lowest[one], lowest[other])
-                changed = True
-    return lowest
-
-
-@given(batches)
-def test_items_are_in_one_group_when_pairs_lead_from_one_to_the_other(
-    several: list[list[tuple[int, int]]],
-) -> None:
-    parents = np.arange(COUNT)
-    for pairs in several:
-        one, other = np.array(pairs, np.intp).reshape(-1, 2).T
-        unite(parents, one, other)
-    lowest = roots_one_by_one([pair for pairs in several for pair in pairs])
-    in_order = sorted(set(lowest))
-    assert group_numbers(parents).tolist() == [in_order.index(each) for each in lowest]
