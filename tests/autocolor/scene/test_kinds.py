@@ -164,8 +164,8 @@ REFUSED_VALUES: list[tuple[Kind, list[Any]]] = [
             {1: 0, 2: 0, 3: 0}, {1, 2, 3}, b"abc", (HUGE, HUGE, HUGE),
         ],
     ),
-    (LimitsKind(), [(2, 1), (0, NAN), (0, INF), (1,), "12", 5, (1, 2, 3)]),
-    (PlaceKind(), [(-0.1, 0), (0,), "01", (0, 0, 0)]),
+    (LimitsKind(), [(2, 1), (0, NAN), (0, INF), (1,), "12", 5, (1, 2, 3), {0, 1}, {0: 1, 1: 2}, b"\0\1"]),
+    (PlaceKind(), [(-0.1, 0), (0,), "01", (0, 0, 0), {0, 1}, {0: 1, 1: 2}, b"\0\1"]),
     (
         RANGES,
         [
@@ -201,6 +201,7 @@ REFUSED_VALUES: list[tuple[Kind, list[Any]]] = [
             np.eye(3, dtype=int),
         ],
     ),
+    (ColorsKind(3), [{"red", "blue"}, {"red": 1, "blue": 2}, 5]),
     (ScaleKind(), ["jet", [(1, 2, 3)], [(1, 2, 3)] * 257, 5, None]),
 ]  # fmt: skip
 """Kinds, and further values that they refuse by their rules."""

@@ -222,7 +222,7 @@ test_links_to_what_is_not_in_the_scene_are_refused_by_name = refused(
             f"light 'key': except_parts 'd' {NOT_IN_PARTS}",
         ),
         (
-            lambda: panels().with_light("key", links={"only_parts": ["d"]}),  # type: ignore[call-arg]
+            lambda: panels().with_light("key", links={"only_parts": ["d"]}),
             f"light 'key': only_parts 'd' {NOT_IN_PARTS}",
         ),
         (

@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Light, Part, Surface
+from autocolor.errors import InputError
 from autocolor.scene.columns import (
     Column,
     Row,
@@ -164,6 +165,11 @@ test_a_row_inside_a_row_is_refused_with_the_keys_that_lead_there = refused(
         (lambda: from_plain(Stack, {"boxes": {}}), "boxes must be a list of Box rows, not {}"),
     ],
 )
+
+
+def test_a_table_of_more_than_a_million_rows_is_refused_at_once() -> None:
+    with pytest.raises(InputError, match=r"^boxes must be a list of Box rows, not \("):
+        Stack((Box("a"),) * 1_000_001)
 
 
 def test_names_that_refer_to_other_rows_are_found_and_words_are_none() -> None:

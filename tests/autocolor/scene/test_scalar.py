@@ -19,7 +19,8 @@ NAN = math.nan
 def stressed(**fields: Any) -> Scene:
     """A cube that has a scalar of its own, and shows it."""
     mesh = cube().with_scalars(MeshScalar("stress", np.arange(8.0)))
-    return scene_of(mesh, scalar={"name": "stress", **fields})
+    scalar: Any = {"name": "stress", **fields}
+    return scene_of(mesh, scalar=scalar)
 
 
 @pytest.mark.parametrize(
@@ -104,7 +105,7 @@ test_what_is_no_scalar_of_a_mesh_is_refused = refused(
         ),
         *(
             (
-                lambda value=value: MeshScalar("stress", np.array([1.0, NAN, value])),  # type: ignore[misc]
+                lambda value=value: MeshScalar("stress", np.array([1.0, NAN, value])),
                 "scalar 'stress': a value must be at most 1e30 in size, or NaN if it is missing, not"
                 f" {value:g} (row 2)",
             )

@@ -49,7 +49,7 @@ def test_a_paint_becomes_another_by_their_difference_and_comes_back_from_its_val
 def test_the_color_of_a_ramp_is_in_its_middle() -> None:
     assert Paint(ramp=RAMP).color == (255, 102, 0)
     assert Paint(ramp=RAMP[:2]).color == (145, 51, 0)
-    assert Paint("#b01020").color == (176, 16, 32)
+    assert Paint((176, 16, 32)).color == (176, 16, 32)
 
 
 def test_a_reflectance_has_phongs_model_unless_it_is_given_another() -> None:
@@ -114,7 +114,7 @@ test_surfaces_and_parts_that_break_a_rule_are_refused_with_their_names = refused
         ),
         *(
             (
-                lambda wrong=wrong: BODY.replace(reflectance=wrong, diffuse=0.5),  # type: ignore[misc]
+                lambda wrong=wrong: BODY.replace(reflectance=wrong, diffuse=0.5),
                 f"surface 'body': reflectance must be a Reflectance, not {wrong!r}",
             )
             for wrong in (None, 5, Phong(3), np.zeros(3))
