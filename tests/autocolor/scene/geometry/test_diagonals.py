@@ -58,6 +58,8 @@ def test_the_warp_is_the_distance_between_the_diagonals(size: float) -> None:
 def test_a_triangle_is_not_cut_whichever_node_it_repeats(place: int) -> None:
     polygon = np.roll([0, 1, 2, 2], place)
     (start,), (warp,) = Mesh(np.array(SQUARE), polygon[None]).diagonals
+    # Without a diagonal, it is the triangle of the first three corners.
+    assert start == (NO_DIAGONAL if place < 2 else 0)
     halves = (
         [[0, 1, 2]]
         if start == NO_DIAGONAL

@@ -277,11 +277,17 @@ NONE = Rounding(EXACT, EXACT)
 
 
 def levels_of(
-    heights: list[float], noise: float, turn: npt.NDArray[np.float64], rounding: Rounding = NONE
+    heights: list[float],
+    noise: float,
+    turn: npt.NDArray[np.float64],
+    rounding: Rounding = NONE,
+    beside: float = 0.0,
 ) -> list[int]:
     """The levels of a wall and posters at some heights; the corners are noisy, and then turned."""
     random = np.random.default_rng(len(heights))
-    posters = [POSTER.coordinates + np.array([0.05 * k, height, 0]) for k, height in enumerate(heights)]
+    posters = [
+        POSTER.coordinates + np.array([beside + 0.05 * k, height, 0]) for k, height in enumerate(heights)
+    ]
     corners = np.concatenate([WALL.coordinates, *posters])
     corners[:, 1] += random.uniform(-noise, noise, len(corners))
     first_nodes = range(len(WALL.coordinates), len(corners), 4)
@@ -312,6 +318,14 @@ def test_scattered_corners_are_on_one_level(seed: int, posters: int) -> None:
 def test_patches_farther_than_they_are_scattered_have_levels_of_their_own(seed: int) -> None:
     heights = [1e-6, 0.0, -2e-6, 1e-6, 0.0]
     assert levels_of(heights, 1e-8, turned(seed), Rounding(1e-8, EXACT)) in ([1, 0, 2, 1, 0], [2, 0, 1, 2, 0])
+
+
+def test_the_farther_a_patch_is_from_the_largest_the_less_its_distance_counts() -> None:
+    rounding = Rounding(1e-6, EXACT)
+    # The wall is 1 x 0.8: ten units beside it, its plane is off by some 25 times the rounding of a corner.
+    found = [levels_of([height], 0.0, turned(3), rounding, 10.0) for height in (6e-5, 3e-4)]
+    assert found == [[0], [1]]
+    assert levels_of([6e-5], 0.0, turned(3), rounding) == [1]
 
 
 def test_less_than_the_rounding_of_a_corner_is_no_distance_unless_along_an_axis() -> None:
