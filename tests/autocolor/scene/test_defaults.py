@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import dataclasses
 import math
 
 import numpy as np
@@ -10,7 +11,14 @@ from hypothesis import strategies as st
 from autocolor import Mesh, Part, View, render, scene_of
 from autocolor.checks import Vector
 from autocolor.scene import defaults
-from autocolor.scene.defaults import default_lights, default_view, framed, object_coordinates
+from autocolor.scene.defaults import (
+    default_lights,
+    default_view,
+    framed,
+    object_bounds,
+    object_coordinates,
+    stage_top,
+)
 from autocolor.testing import directions, meshes, numbers, vectors
 from tests.small import cube, grid, sphere
 
@@ -18,7 +26,6 @@ from tests.small import cube, grid, sphere
 def assert_framed(view: View, mesh: Mesh) -> None:
     """Every node that a polygon uses is before the eye and within 0.9 of the picture from its middle."""
     used = mesh.coordinates[np.unique(mesh.node_numbers)]
-    right, down, deep = (used - np.array(view.eye)) @ view.axes.T[:, 0], 0, 0
     places = (used - np.array(view.eye)) @ view.axes.T
     right, down, deep = places.T
     slope = np.tan(np.radians(view.field_of_view) / 2)
@@ -169,14 +176,24 @@ def on_a_floor(mesh: Mesh) -> Mesh:
 def test_the_coordinates_of_the_object_are_those_of_all_parts_that_are_not_stage(
     mesh: Mesh, stage: set[str]
 ) -> None:
-    polygons = [
-        nodes
-        for nodes, part in zip(mesh.node_numbers.tolist(), mesh.part_numbers.tolist(), strict=True)
-        if mesh.part_names[part] not in stage
-    ]
+    parts = staged(mesh, *stage)
+    before, behind = set[int](), set[int]()
+    for nodes, part in zip(mesh.node_numbers.tolist(), mesh.part_numbers.tolist(), strict=True):
+        (behind if mesh.part_names[part] in stage else before).update(nodes)
     # A scene of nothing but its stage is looked at as a whole.
-    nodes = sorted({node for polygon in polygons or mesh.node_numbers.tolist() for node in polygon})
-    assert object_coordinates(mesh, staged(mesh, *stage)).tolist() == mesh.coordinates[nodes].tolist()
+    found = mesh.coordinates[sorted(before or behind)]
+    assert object_coordinates(mesh, parts).tolist() == found.tolist()
+    low, high = object_bounds(mesh, parts)
+    assert (low.tolist(), high.tolist()) == (found.min(axis=0).tolist(), found.max(axis=0).tolist())
+    is_beside = before and behind
+    assert stage_top(mesh, parts) == (mesh.coordinates[sorted(behind), 2].max() if is_beside else -math.inf)
+
+
+def test_a_part_without_polygons_is_neither_stage_nor_object() -> None:
+    mesh = dataclasses.replace(cube(), part_names=("cube", "none"))
+    for stage in ("none", "cube"):
+        assert object_bounds(mesh, staged(mesh, stage)) is mesh.bounds
+        assert stage_top(mesh, staged(mesh, stage)) == -math.inf
 
 
 @pytest.mark.parametrize("mesh", [cube(), sphere()], ids=repr)
