@@ -3,7 +3,8 @@ from __future__ import annotations
 import dataclasses
 import pickle
 from collections.abc import Iterator
-from typing import Any
+from dataclasses import dataclass
+from typing import Annotated, Any, ClassVar
 
 import pytest
 from hypothesis import given
@@ -30,45 +31,11 @@ from autocolor.scene.columns import (
     replaced,
     to_plain,
 )
-from autocolor.scene.kinds import Number, Whole
+from autocolor.scene.kinds import Number, Text, Whole
 from autocolor.testing import lights, scenes, surfaces, views
-from tests.autocolor.scene.spans import Span, sentences
 from tests.autocolor.strategies import of_mesh
 from tests.small import wall_scene
-
-
-def test_a_row_holds_its_values_as_its_kinds_do() -> None:
-    span = Span("a", 1, 2)
-    assert (span.begin, type(span.begin)) == (1.0, float)
-    assert span.length is None
-
-
-def test_every_problem_of_a_row_is_told_with_its_noun_and_name() -> None:
-    assert sentences(lambda: Span("a", "x", "y")) == (  # type: ignore[arg-type]
-        "span 'a': begin must be a finite number, not 'x'",
-        "span 'a': end must be a finite number, not 'y'",
-    )
-    assert sentences(lambda: Span("", 0)) == (
-        "span: name must be a string of at least one character, not ''",
-    )
-
-
-def test_a_rule_between_columns_is_checked_beside_a_value_that_is_refused() -> None:
-    assert sentences(lambda: Span("a", "x", 3, 4)) == (  # type: ignore[arg-type]
-        "span 'a': begin must be a finite number, not 'x'",
-        "span 'a': it must have an end or a length, not both",
-    )
-    assert sentences(lambda: Span("a", 5, 3)) == ("span 'a': begin must not be above the end, not 5",)
-
-
-@pytest.mark.parametrize("cls", [Flap, Light, Surface, View, Scene])
-def test_every_column_has_a_line_of_help_that_is_a_sentence(cls: type[Row]) -> None:
-    columns = [field.column for field in fields_of(cls).values()]
-    for column in [*columns, *(key.column for key in keys_of(cls).values())]:
-        assert column.help[0].isupper()
-        assert column.help.endswith(".")
-        assert "\n" not in column.help
-
+from tests.tables import call, refused
 
 NUMBERS = [
     pytest.param(column, id=f"{cls.__name__}.{key}")
@@ -76,6 +43,25 @@ NUMBERS = [
     for key, (column, _, _) in keys_of(cls).items()
     if isinstance(column.kind, (Number, Whole))
 ]
+
+
+@dataclass(frozen=True)
+class Span(Row):
+    """A row with a rule between its columns, and alternatives."""
+
+    noun: ClassVar[str] = "span"
+    alternatives: ClassVar[tuple[tuple[str, ...], ...]] = (("end",), ("length",))
+
+    name: Annotated[str, Column(Text(), Tier.NOTHING, "What it is called.")]
+    begin: Annotated[float, Column(Number(), Tier.LIGHT, "Where it begins.")] = 0.0
+    end: Annotated[float | None, Column(Number(), Tier.LIGHT, "Where it ends.")] = None
+    length: Annotated[float | None, Column(Number(at_least=0), Tier.MIX, "How long it is.")] = None
+
+    def rules(self) -> Iterator[Problem]:
+        if self.end is not None and self.length is not None:
+            yield Problem((), "it must have an end or a length, not both")
+        if self.end is not None and self.begin > self.end:
+            yield Problem(("begin",), f"must not be above the end, not {self.begin:g}")
 
 
 @pytest.mark.parametrize("column", NUMBERS)
@@ -123,16 +109,6 @@ def test_a_rounded_value_is_on_the_bar_and_the_nearest_step(bar: BarRange, value
     assert bar.rounded(rounded) == rounded
 
 
-def test_values_are_multiples_of_the_step_or_the_ends() -> None:
-    bar = BarRange(0.01, 1, 0.05)
-    assert [bar.rounded(value) for value in (0, 0.04, 0.31, 2)] == [0.01, 0.05, 0.3, 1.0]
-
-
-def test_halves_are_rounded_up_and_written_short() -> None:
-    bar = BarRange(-1, 1, 0.1)
-    assert [bar.rounded(value) for value in (0.25, -0.25, 0.30000000000000004)] == [0.3, -0.2, 0.3]
-
-
 @given(bars, st.floats(0, 1))
 def test_the_value_at_a_fraction_has_that_fraction_but_for_a_step(bar: BarRange, fraction: float) -> None:
     assert abs(bar.fraction(bar.at(fraction)) - fraction) * (bar.high - bar.low) <= bar.step * 0.5000001
@@ -159,13 +135,6 @@ def test_problems_say_where_they_are() -> None:
     assert caught.value.row == "light 'key'"
 
 
-@given(st.lists(st.sampled_from(["begin", "end", 0, 7]), max_size=4))
-def test_a_problem_under_another_place_has_the_path_from_there(path: list[Any]) -> None:
-    problem = Problem(("z",), "must be so").under(tuple(path))
-    assert problem.path == (*path, "z")
-    assert problem.sentence.endswith("z must be so")
-
-
 def test_an_error_can_be_sent_to_another_process() -> None:
     with pytest.raises(RowError) as caught:
         Light("key", (1, 2), intensity=-1)  # type: ignore[arg-type]
@@ -174,29 +143,13 @@ def test_an_error_can_be_sent_to_another_process() -> None:
     assert (copy.problems, copy.row_problems, copy.row) == (error.problems, error.row_problems, error.row)
 
 
-def test_a_change_checks_what_it_changes_and_the_rules() -> None:
-    span = Span("a", 1, 2)
-    assert replaced(span, {"begin": 1.5}) == Span("a", 1.5, 2)
-    assert sentences(lambda: replaced(span, {"begin": 3})) == (
-        "span 'a': begin must not be above the end, not 3",
-    )
-    assert span == Span("a", 1, 2)
-
-
 def test_giving_one_alternative_drops_the_others() -> None:
     span = Span("a", 1, 2)
     assert replaced(span, {"length": 4}) == Span("a", 1, None, 4)
     assert replaced(replaced(span, {"length": 4}), {"end": 9}) == Span("a", 1, 9)
     assert replaced(span, {"end": None}) == Span("a", 1)
-    with pytest.raises(RowError, match="not both"):
-        replaced(span, {"end": 3, "length": 4})
-
-
-def test_an_unknown_key_is_told_with_the_nearest_right_one() -> None:
-    assert sentences(lambda: replaced(Span("a"), {"beginn": 3, "x": 1})) == (
-        "span 'a': there is no field 'beginn'; did you mean 'begin'?",
-        "span 'a': there is no field 'x'; choose 'name', 'begin', 'end' or 'length'",
-    )
+    assert span == from_plain(Span, {"name": "a", "begin": 1, "end": 2.0})
+    assert difference(span, Span("b", 1)) == {"name": "b", "end": None}
 
 
 def test_a_change_keeps_nothing_that_was_computed_of_the_row() -> None:
@@ -207,51 +160,9 @@ def test_a_change_keeps_nothing_that_was_computed_of_the_row() -> None:
     assert turned.axes[2].tolist() == [1, 0, 0]
 
 
-def test_a_row_of_a_table_has_defaults_for_what_is_left_out() -> None:
-    assert from_plain(Span, {"name": "a", "end": 2}) == Span("a", end=2)
-
-
-def test_what_is_missing_is_told_beside_what_is_wrong() -> None:
-    assert sentences(lambda: from_plain(Span, {"begin": "x", "z": 1})) == (
-        "span: there is no field 'z'; choose 'name', 'begin', 'end' or 'length'",
-        "span: name must be a string of at least one character, not missing; add it",
-        "span: begin must be a finite number, not 'x'",
-    )
-
-
-@pytest.mark.parametrize("table", [None, 3, "x", [], [("name", "a")]])
-def test_what_is_no_table_makes_no_row(table: object) -> None:
-    assert sentences(lambda: from_plain(Span, table)) == (
-        f"must be a table of name, begin, end and length, not {table!r}",
-    )
-
-
-def test_a_table_of_very_many_keys_is_refused_at_once() -> None:
-    assert sentences(lambda: from_plain(Span, {f"key{number}": 0 for number in range(1000)})) == (
-        "span: it must be a table of at most 64 keys, not 1,000",
-    )
-
-
 @given(lights() | surfaces("body") | views())
 def test_a_row_comes_back_from_its_plain_values(row: Row) -> None:
     assert from_plain(type(row), to_plain(row)) == row
-
-
-@given(scenes())
-def test_plain_values_are_texts_numbers_switches_lists_and_tables(scene: Scene) -> None:
-    def check(value: object) -> None:
-        if isinstance(value, dict):
-            assert all(isinstance(key, str) for key in value)
-            for inner in value.values():
-                check(inner)
-        elif isinstance(value, (list, tuple)):
-            for inner in value:
-                check(inner)
-        else:
-            assert type(value) in (str, float, int, bool)
-            assert value == value, "not a number"
-
-    check(to_plain(scene))
 
 
 def test_an_edit_costs_the_most_of_what_it_changes() -> None:
@@ -280,12 +191,6 @@ def test_a_change_of_a_surface_costs_the_tier_of_its_column(change: dict[str, An
     assert cost(Surface("body"), replaced(Surface("body"), change)) == tier
 
 
-@given(surfaces("body"), surfaces("body"))
-def test_an_edit_costs_nothing_at_all_where_rows_are_equal(one: Surface, other: Surface) -> None:
-    assert (cost(one, other) is None) == (one == other)
-    assert cost(one, dataclasses.replace(one)) is None
-
-
 @given(scenes(), scenes())
 def test_a_difference_makes_of_one_row_the_other_and_of_equal_ones_is_empty(one: Scene, other: Scene) -> None:
     rows: list[tuple[Row, Row]] = [
@@ -299,10 +204,6 @@ def test_a_difference_makes_of_one_row_the_other_and_of_equal_ones_is_empty(one:
         assert bool(told) == (before != after)
         assert difference(after, replaced(after, {})) == {}
         assert "name" not in told or vars(before)["name"] != vars(after)["name"]
-
-
-def test_a_difference_tells_what_was_taken_away() -> None:
-    assert difference(Span("a", 1, 2), Span("b", 1)) == {"name": "b", "end": None}
 
 
 def values_in(row: Row) -> Iterator[tuple[Column, object]]:
@@ -352,3 +253,61 @@ def test_a_row_of_another_class_and_tables_of_other_rows_hold() -> None:
     moved = scene.with_light("rim", position=(4, 0, 0))
     assert scene.between(moved, 0.5).light("rim").position == (3, 0, 0)
     assert scene.between(moved.without_light("key"), 0.5).lights is scene.lights
+
+
+NO_FIELD = "there is no field"
+MISSING = "must be a string of at least one character, not"
+
+test_rows_that_break_a_rule_are_refused_with_every_problem_and_their_noun_and_name = refused(
+    call,
+    [
+        (
+            lambda: Span("a", "x", "y"),  # type: ignore[arg-type]
+            "span 'a': begin must be a finite number, not 'x'\n"
+            "span 'a': end must be a finite number, not 'y'",
+        ),
+        (lambda: Span("", 0), f"span: name {MISSING} ''"),
+        # A rule between columns is checked beside a value that is refused.
+        (
+            lambda: Span("a", "x", 3, 4),  # type: ignore[arg-type]
+            "span 'a': begin must be a finite number, not 'x'\n"
+            "span 'a': it must have an end or a length, not both",
+        ),
+        (lambda: Span("a", 5, 3), "span 'a': begin must not be above the end, not 5"),
+        (
+            lambda: replaced(Span("a", 1, 2), {"begin": 3}),
+            "span 'a': begin must not be above the end, not 3",
+        ),
+        (
+            lambda: replaced(Span("a"), {"beginn": 3, "x": 1}),
+            f"span 'a': {NO_FIELD} 'beginn'; did you mean 'begin'?\n"
+            f"span 'a': {NO_FIELD} 'x'; choose 'name', 'begin', 'end' or 'length'",
+        ),
+        (
+            lambda: from_plain(Span, {"begin": "x", "z": 1}),
+            f"span: {NO_FIELD} 'z'; choose 'name', 'begin', 'end' or 'length'\n"
+            f"span: name {MISSING} missing; add it\n"
+            "span: begin must be a finite number, not 'x'",
+        ),
+        (
+            lambda: from_plain(Span, [("name", "a")]),
+            "must be a table of name, begin, end and length, not [('name', 'a')]",
+        ),
+        (
+            lambda: from_plain(Span, {f"key{number}": 0 for number in range(65)}),
+            "span: it must be a table of at most 64 keys, not 65",
+        ),
+        (
+            lambda: from_plain(Span, {f"key{number}": 0 for number in range(64)}),
+            "\n".join(
+                [
+                    *(
+                        f"span: {NO_FIELD} 'key{number}'; choose 'name', 'begin', 'end' or 'length'"
+                        for number in range(64)
+                    ),
+                    f"span: name {MISSING} missing; add it",
+                ]
+            ),
+        ),
+    ],
+)

@@ -9,7 +9,7 @@ import json
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
@@ -20,6 +20,7 @@ from autocolor import (
     Mesh,
     MeshScalar,
     NamedView,
+    Picture,
     Scene,
     Studio,
     frames,
@@ -41,15 +42,34 @@ from autocolor.journal.journal import MeshesBeside, first_line, step_line
 from autocolor.journal.places import Source
 from autocolor.journal.script import script_of
 from autocolor.mapping.normal_words import far_light
-from autocolor.scene.columns import Row, fields_of, from_plain, keys_of, to_plain, with_values
+from autocolor.scene.columns import (
+    Row,
+    RowError,
+    Tier,
+    fields_of,
+    from_plain,
+    keys_of,
+    to_plain,
+    with_values,
+)
+from autocolor.scene.kinds import Number, Whole
 from autocolor.scene.lights import Flap, HalfSpace
 from autocolor.scene.scalar import Scalar
+from autocolor.scene.scene import costs_at_least
 from autocolor.scene.surfaces import Part, Surface
 from autocolor.scene.view import View
 from tests.autocolor.linked_scenes import linked_scenes
 from tests.small import cube, grid
 
 Values = Mapping[str, Any]
+
+OF_A_VIEW: dict[str, Values] = {
+    "eye": {"eye": [1, -5, 2]},
+    "direction": {"direction": [0, 1, 0.25]},
+    "target": {"target": [0.25, 0, 0.5]},
+    "angle": {"angle": 12},
+    "field_of_view": {"field_of_view": 50},
+}
 
 EDITS: dict[str, dict[str, Values]] = {
     "": {
@@ -65,20 +85,8 @@ EDITS: dict[str, dict[str, Values]] = {
         "front": {"front": "-x"},
         "background": {"background": "#102030"},
     },
-    "view": {
-        "eye": {"eye": [1, -5, 2]},
-        "direction": {"direction": [0, 1, 0.25]},
-        "target": {"target": [0.25, 0, 0.5]},
-        "angle": {"angle": 12},
-        "field_of_view": {"field_of_view": 50},
-    },
-    "views": {
-        "eye": {"eye": [1, -5, 2]},
-        "direction": {"direction": [0, 1, 0.25]},
-        "target": {"target": [0.25, 0, 0.5]},
-        "angle": {"angle": 12},
-        "field_of_view": {"field_of_view": 50},
-    },
+    "view": OF_A_VIEW,
+    "views": OF_A_VIEW,
     "scalar": {
         "name": {"name": "stress"},
         "limits": {"name": "z", "limits": [-0.25, 0.5]},
@@ -260,71 +268,99 @@ def same(one: Scene, other: Scene) -> bool:
     return with_values(one, {"mesh": other.mesh, "name": other.name}).equals(other)
 
 
-def by_scene_file(scene: Scene, folder: Path) -> Scene:
-    write_scene(folder, scene)
-    return read_scene(folder)
+class Session(NamedTuple):
+    """A session that begins with the start: its folder, what it read, and the names of its script."""
+
+    folder: Path
+    start: Scene
+    names: dict[str, Any]
+
+    def history(self, scene: Scene) -> History:
+        """The history of the session, in which the edit that makes the scene is a step."""
+        history = History(self.start)
+        history.take(self.read(scene))
+        return history
+
+    def read(self, scene: Scene) -> Scene:
+        """The scene as if it were read from the folder."""
+        return with_values(scene, {"mesh": self.start.mesh, "name": self.start.name})
+
+    def script_of(self, history: History) -> str:
+        return script_of(history, Source(str(self.folder)), MeshesBeside())
 
 
-def by_scene_file_saved_over(scene: Scene, folder: Path) -> Scene:
+@pytest.fixture(scope="module")
+def session(tmp_path_factory: pytest.TempPathFactory) -> Session:
+    folder = tmp_path_factory.mktemp("session")
+    write_scene(folder, start())
+    session = Session(folder, read_scene(folder), {})
+    exec(session.script_of(History(session.start)), session.names)
+    return session
+
+
+@cache
+def picture_of_start() -> Picture:
+    return render(start(), 12, 16)
+
+
+def by_scene_file(scene: Scene, folder: Path, session: Session) -> Scene:
     write_scene(folder, start())
     write_scene(folder, scene, overwrite=True)
     return read_scene(folder)
 
 
-def by_table_store(scene: Scene, folder: Path) -> Scene:
+def by_table_store(scene: Scene, folder: Path, session: Session) -> Scene:
     write_scene(folder / "scene.sqlite", scene)
     return read_scene(folder / "scene.sqlite")
 
 
-def by_picture_file(scene: Scene, folder: Path) -> Scene:
-    write_picture(folder / "scene.npz", scene, render(scene, 12, 16))
+def by_picture_file(scene: Scene, folder: Path, session: Session) -> Scene:
+    # An edit that costs less than a sum of lights leaves the picture as it is.
+    is_rendered = costs_at_least(start(), scene, Tier.MIX)
+    picture = render(scene, 12, 16) if is_rendered else picture_of_start()
+    write_picture(folder / "scene.npz", scene, picture)
     return read_picture(folder / "scene.npz").scene
 
 
-def by_plain_values(scene: Scene, folder: Path) -> Scene:
+def by_plain_values(scene: Scene, folder: Path, session: Session) -> Scene:
     plain = json.loads(json.dumps(plain_scene(scene)))
     fields = {name: plain[name] for name in fields_of(Scene) if name in plain}
     return from_plain(Scene, {**fields, "mesh": scene.mesh})
 
 
-def session(scene: Scene, folder: Path) -> History:
-    """A session with the start, in which the edit is a step."""
-    write_scene(folder, start())
-    history = History(read_scene(folder))
-    history.take(with_values(scene, {"mesh": history.scene.mesh, "name": history.scene.name}))
-    return history
-
-
-def replayed(history: History, folder: Path) -> History:
+def replayed(history: History, folder: Path, session: Session) -> History:
     """The history that the journal of a history gives."""
     meshes = MeshesBeside()
     lines = [step_line(step, history.start, meshes) for step in history.steps]
-    (folder / "journal").write_text("".join([first_line(history.start, Source(str(folder))), *lines]))
+    first = first_line(history.start, Source(str(session.folder)))
+    (folder / "journal").write_text("".join([first, *lines]))
     return read_journal(folder / "journal").history
 
 
-def by_journal(scene: Scene, folder: Path) -> Scene:
-    return replayed(session(scene, folder), folder).scene
+def by_journal(scene: Scene, folder: Path, session: Session) -> Scene:
+    return replayed(session.history(scene), folder, session).scene
 
 
-def by_start_of_journal(scene: Scene, folder: Path) -> Scene:
+def by_start_of_journal(scene: Scene, folder: Path, session: Session) -> Scene:
     """The journal of a session that began with the edited scene."""
-    edits = session(scene, folder)
-    return replayed(History(edits.scene), folder).start
+    return replayed(History(session.read(scene)), folder, session).start
 
 
-def by_script(scene: Scene, folder: Path) -> Scene:
-    """The script of a session, after it was run."""
-    names: dict[str, Any] = {}
-    exec(script_of(session(scene, folder), Source(str(folder)), MeshesBeside()), names)
-    studio = names["studio"]
+def by_script(scene: Scene, folder: Path, session: Session) -> Scene:
+    """The step of the script of a session, whose beginning was run before."""
+    beginning = session.script_of(History(session.start))
+    script = session.script_of(session.history(scene))
+    assert script.startswith(beginning)
+    exec(script.removeprefix(beginning), session.names)
+    studio = session.names["studio"]
     assert isinstance(studio, Studio)
-    return studio.scene
+    edited = studio.scene
+    studio.undo()
+    return edited
 
 
 WAYS = (
     by_scene_file,
-    by_scene_file_saved_over,
     by_table_store,
     by_picture_file,
     by_plain_values,
@@ -335,13 +371,53 @@ WAYS = (
 
 
 @every_column
-def test_a_column_comes_through_every_way(tmp_path: Path, table: str, key: str) -> None:
+def test_a_column_comes_through_every_way(tmp_path: Path, session: Session, table: str, key: str) -> None:
     scene = edited(start(), table, key)
     assert not same(scene, start())
     for way in WAYS:
         folder = tmp_path / way.__name__
         folder.mkdir()
-        assert same(scene, way(scene, folder)), way
+        assert same(scene, way(scene, folder, session)), way
+
+
+@every_column
+def test_a_value_of_another_kind_is_refused_by_the_rule_of_the_column(table: str, key: str) -> None:
+    rule = keys_of(CLASSES[table])[key].column.kind.rule()
+    with pytest.raises(RowError) as caught:
+        from_plain(CLASSES[table], {**EDITS[table][key], key: {1, 2}})
+    sentences = [problem.sentence for problem in caught.value.row_problems]
+    assert any(sentence.startswith(f"{key} {rule}, not {{1, 2}}") for sentence in sentences)
+
+
+NUMBERS = {
+    "finite number of at least 0": "ambient surfaces.diffuse surfaces.specular surfaces.exponent "
+    "lights.intensity lights.concentration flaps.edge_width half_spaces.edge_width",
+    "finite number": "view.angle views.angle flaps.minimum flaps.maximum",
+    "number from 0.01 to 179": "view.field_of_view views.field_of_view",
+    "whole number from 2 to 256": "scalar.bands",
+    "whole number from 1 to 256": "scalar.shades",
+    "number from 1 to 1000": "scalar.stripes",
+    "number from 0.001 to 1": "surfaces.base_reflectance surfaces.normal_reflectance",
+    "number from 1.07 to 10": "surfaces.refractive_index",
+    "number from 0.01 to 1": "surfaces.roughness",
+    "number from 0 to 1": "surfaces.blend",
+    "number from 0 to 100": "surfaces.light_percentage",
+    "whole number from 2 to 1000000": "surfaces.levels",
+    "number above 0 and at most 180": "lights.cone_angle",
+    "number from 0 to 180": "lights.inner_angle",
+    "number above 0": "lights.reach",
+}
+"""The columns of numbers, by what each of them must be."""
+
+
+def test_every_number_has_its_limits() -> None:
+    rules = {
+        f"{table}.{key}".strip("."): column.kind.rule()
+        for table, cls in CLASSES.items()
+        for key, (column, _, _) in keys_of(cls).items()
+        if isinstance(column.kind, (Number, Whole))
+    }
+    assert rules == {key: f"must be a {rule}" for rule, keys in NUMBERS.items() for key in keys.split()}
 
 
 @every_column
@@ -414,6 +490,7 @@ NOT_DRAWN = {("", "words")}
 """Words for normals have tests of their own, as no scalar goes with them."""
 
 
+@pytest.mark.thorough
 def test_the_random_scenes_have_other_values_in_every_column() -> None:
     seen: set[tuple[str, str]] = set()
 

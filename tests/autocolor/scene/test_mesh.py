@@ -1,13 +1,11 @@
 from __future__ import annotations
 
 import math
-import pickle
 from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import given
-from hypothesis import strategies as st
 
 from autocolor import InputError, Mesh
 from autocolor.scene import mesh as mesh_module
@@ -15,6 +13,7 @@ from autocolor.scene.mesh import has_same_tables
 from autocolor.scene.scalar import MeshScalar
 from autocolor.testing import meshes
 from tests.small import cube, grid, sphere
+from tests.tables import refused
 
 
 def mesh_of(**fields: Any) -> Mesh:
@@ -42,20 +41,6 @@ def test_a_mesh_is_a_copy_that_never_changes() -> None:
         assert not table.flags.writeable
 
 
-def test_the_transpose_of_each_table_is_a_contiguous_view_of_its_type() -> None:
-    mesh = grid(3, 2, (0, 0, 0), (1, 0, 0), (0, 1, 0))
-    for each in (mesh, pickle.loads(pickle.dumps(mesh))):
-        for table, dtype in (
-            (each.coordinates, np.float64),
-            (each.node_numbers, np.intp),
-            (each.part_numbers, np.intp),
-            (each.normals.vectors, np.float32),
-            (each.normals.numbers, np.intp),
-        ):
-            assert table.dtype == dtype
-            assert table.T.flags.c_contiguous
-
-
 @pytest.mark.parametrize(
     ("mesh", "counts"), [(cube(), (8, 6, 12)), (grid(3, 2, (0, 0, 0), (1, 0, 0), (0, 1, 0)), (12, 6, 17))]
 )
@@ -77,33 +62,23 @@ def test_the_bounds_hold_the_nodes_that_polygons_use_and_no_other(mesh: Mesh) ->
     assert high.tolist() == used.max(axis=0).tolist()
 
 
-@pytest.mark.parametrize(
-    ("fields", "sentence"),
+ROWS = "polygon table: a node number must be a row of the node table (0 to 2), not"
+NUMBERS = "it must be an array of numbers, not list; convert it"
+WHOLE = "it must be an array of whole numbers, not"
+
+test_a_mesh_that_breaks_a_rule_is_refused = refused(
+    lambda fields: mesh_of(**fields),
     [
         (
             {"coordinates": np.array([[0, 0, 0], [0, math.nan, 0], [0, 0, 1]])},
             "node table: coordinates must be finite and at most 1e30 in size, not [0.0, nan, 0.0] (row 1)",
         ),
+        # A fault of the nodes is not repeated for the polygons.
         ({"coordinates": np.eye(3)[:, :2]}, "node table: its shape must be (rows, 3), not (3, 2)"),
-        ({"coordinates": [[1, 2], [3]]}, "node table: it must be an array of numbers, not list; convert it"),
-        (
-            {"coordinates": [["1", "2", "3"]] * 3},
-            "node table: it must be an array of numbers, not list; convert it",
-        ),
-        (
-            {"node_numbers": [[0, 1, 2.5]]},
-            "polygon table: it must be an array of whole numbers, not of float64; convert it",
-        ),
-        ({"node_numbers": [[0, 1]]}, "polygon table: its shape must be (rows, 3) or (rows, 4), not (1, 2)"),
-        (
-            {"node_numbers": [[0, 1, 3]]},
-            "polygon table: a node number must be a row of the node table (0 to 2), not [0, 1, 3, 3] (row 0)",
-        ),
-        (
-            {"node_numbers": [[0, 1, -1]]},
-            "polygon table: a node number must be a row of the node table (0 to 2), not [0, 1, -1, -1]"
-            " (row 0)",
-        ),
+        ({"coordinates": [[1, 2], [3]]}, f"node table: {NUMBERS}"),
+        ({"coordinates": [["1", "2", "3"]] * 3}, f"node table: {NUMBERS}"),
+        ({"node_numbers": [[0, 1, 3]]}, f"{ROWS} [0, 1, 3, 3] (row 0)"),
+        ({"node_numbers": [[0, 1, -1]]}, f"{ROWS} [0, 1, -1, -1] (row 0)"),
         (
             {"part_numbers": [1]},
             "polygon table: a part number must be a row of the part table (0 to 0), not 1 (row 0)",
@@ -112,25 +87,25 @@ def test_the_bounds_hold_the_nodes_that_polygons_use_and_no_other(mesh: Mesh) ->
             {"part_numbers": [0, 0]},
             "polygon table: there must be one part number a polygon (1), not an array of shape (2,)",
         ),
-        (
-            {"part_numbers": [0.5]},
-            "part numbers: it must be an array of whole numbers, not of float64; convert it",
-        ),
-        ({"part_numbers": "x"}, "part numbers: it must be an array of whole numbers, not str; convert it"),
         ({"part_names": ("door", "door")}, "part table: part names must differ, not repeat"),
         ({"crease_angle": 181}, "mesh: crease_angle must be a number from 0 to 180, not 181"),
     ],
 )
-def test_a_mesh_that_breaks_a_rule_is_refused(fields: dict[str, Any], sentence: str) -> None:
+
+
+@pytest.mark.parametrize(
+    ("fields", "sentence"),
+    [
+        ({"node_numbers": [[0, 1]]}, "polygon table: its shape must be (rows, 3) or (rows, 4), not (1, 2)"),
+        ({"node_numbers": [[0, 1, 2.5]]}, f"polygon table: {WHOLE} of float64; convert it"),
+        ({"part_numbers": [0.5]}, f"part numbers: {WHOLE} of float64; convert it"),
+        ({"part_numbers": "x"}, f"part numbers: {WHOLE} str; convert it"),
+    ],
+)
+def test_tables_of_no_numbers_are_refused(fields: dict[str, Any], sentence: str) -> None:
     with pytest.raises(InputError) as refusal:
         mesh_of(**fields)
     assert sentence in refusal.value.problems
-
-
-def test_a_fault_of_the_nodes_is_not_repeated_for_the_polygons() -> None:
-    with pytest.raises(InputError) as refusal:
-        mesh_of(coordinates=np.eye(3)[:, :2])
-    assert refusal.value.problems == ("node table: its shape must be (rows, 3), not (3, 2)",)
 
 
 def test_an_empty_mesh_is_a_mesh() -> None:
@@ -148,51 +123,6 @@ def test_joined_meshes_keep_their_polygons_and_share_parts_of_the_same_name(one:
     corners = joined.coordinates[joined.node_numbers]
     both = [*one.coordinates[one.node_numbers], *other.coordinates[other.node_numbers]]
     assert corners.tolist() == [each.tolist() for each in both]
-
-
-def test_the_parts_in_use_have_a_polygon() -> None:
-    mesh = mesh_of(part_names=("hood", "door", "roof"), part_numbers=[1])
-    assert mesh.parts_in_use == (1,)
-
-
-@given(meshes(parts=3), st.sets(st.integers(0, 2)))
-def test_the_coordinates_of_parts_are_the_coordinates_of_their_nodes(mesh: Mesh, chosen: set[int]) -> None:
-    nodes = sorted(
-        {
-            int(node)
-            for polygon, part in zip(mesh.node_numbers, mesh.part_numbers, strict=True)
-            if int(part) in chosen
-            for node in polygon
-        }
-    )
-    assert mesh.coordinates_of_parts(sorted(chosen)).tolist() == mesh.coordinates[nodes].tolist()
-    assert mesh.coordinates_of_parts(range(3)).tolist() == mesh.used_coordinates.tolist()
-
-
-def test_joining_meshes_of_many_parts_takes_no_time_in_proportion_to_their_square() -> None:
-    class Name(str):
-        comparisons = 0
-
-        def __eq__(self, other: object) -> bool:
-            Name.comparisons += 1
-            return str.__eq__(self, other)
-
-        __hash__ = str.__hash__
-
-    count = 500
-    parts = [
-        Mesh(np.eye(3), np.array([[0, 1, 2]]), np.zeros(1, np.intp), (Name(f"part {number}"),))
-        for number in range(count)
-    ]
-    joined = Mesh.joined(parts)
-    assert joined.part_numbers.tolist() == list(range(count))
-    assert Name.comparisons < 20 * count
-
-
-def test_a_mesh_without_part_numbers_is_one_part() -> None:
-    mesh = Mesh(np.eye(3), [[0, 1, 2], [2, 1, 0]])  # type: ignore[arg-type]
-    assert (mesh.part_names, mesh.part_numbers.tolist()) == (("mesh",), [0, 0])
-    assert mesh_of(part_numbers=None, part_names=("hood",)).part_names == ("hood",)
 
 
 @given(meshes())

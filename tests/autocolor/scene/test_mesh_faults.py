@@ -103,21 +103,6 @@ def test_the_edges_agree_with_a_count_in_a_table(rows: list[list[int]]) -> None:
         assert of_polygons.tolist() == sorted({number for edge in expected for number in owners[edge]})
 
 
-def test_a_closed_surface_has_no_fault_and_a_turned_polygon_four() -> None:
-    table = cube().node_numbers
-    found = edge_faults(table, 8)
-    assert (len(found.borders), len(found.turned), len(found.crowded)) == (0, 0, 0)
-    turned = table.copy()
-    turned[2] = turned[2, ::-1]
-    found = edge_faults(turned, 8)
-    assert len(found.turned) == 4
-    assert 2 in found.turned_polygons.tolist()
-
-
-def test_a_mesh_without_polygons_has_no_edges() -> None:
-    assert edge_faults(np.empty((0, 4), np.intp), 0).borders.shape == (0, 2)
-
-
 def test_a_box_without_two_of_its_sides_has_two_holes() -> None:
     mesh = cube()
     box = mesh.node_numbers
@@ -142,10 +127,6 @@ def test_holes_that_share_a_node_are_one_branching_hole_and_longer_holes_come_fi
     assert (branching.edges, branching.node, branching.is_closed) == (6, 0, False)
 
 
-def test_no_border_is_no_hole() -> None:
-    assert holes_of(np.zeros((3, 3)), np.empty((0, 2), np.intp)) == []
-
-
 @pytest.mark.parametrize(
     ("corners", "shapes"),
     [
@@ -167,11 +148,6 @@ def test_the_shape_of_a_quad_does_not_depend_on_its_size(
             np.array(corners) * scale, np.array([quad, quad[[0, 1, 2, 2]]]), np.zeros(2, np.intp), ("a",)
         )
         assert quad_shapes(mesh) == shapes
-
-
-def test_a_mesh_of_triangles_has_no_quads() -> None:
-    mesh = Mesh(np.eye(3), np.array([[0, 1, 2, 2]]), np.zeros(1, np.intp), ("a",))
-    assert quad_shapes(mesh) == QuadShapes(0, 0, 0, 0)
 
 
 def test_polygons_without_area_are_no_quads_of_another_shape() -> None:

@@ -1,97 +1,81 @@
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
 import pytest
 
-from autocolor import InputError, Mesh, scene_of
-from autocolor.scene.columns import Tier, cost
-from autocolor.scene.scalar import MeshScalar, Scalar
+from autocolor import Mesh, Scene, scene_of
+from autocolor.scene.columns import Tier
+from autocolor.scene.scalar import MeshScalar
 from autocolor.scene.scene import cost_of_edit
 from tests.small import cube, grid
+from tests.tables import call, refused
+
+NAN = math.nan
+
+
+def stressed(**fields: Any) -> Scene:
+    """A cube that has a scalar of its own, and shows it."""
+    mesh = cube().with_scalars(MeshScalar("stress", np.arange(8.0)))
+    scalar: Any = {"name": "stress", **fields}
+    return scene_of(mesh, scalar=scalar)
 
 
 @pytest.mark.parametrize(
-    ("change", "tier"),
+    ("before", "change", "tier"),
     [
-        ({"scale": "grays"}, Tier.ENTRIES),
-        ({"missing": "#ffffff"}, Tier.ENTRIES),
-        ({"limits": [0, 1]}, Tier.LEVELS),
-        ({"bands": 5}, Tier.LEVELS),
-        ({"shades": 3}, Tier.LEVELS),
-        ({"name": "y"}, Tier.MIX),
+        ({}, {"scale": "grays"}, Tier.ENTRIES),
+        ({}, {"missing": "#ffffff"}, Tier.ENTRIES),
+        ({}, {"limits": [0, 1]}, Tier.LEVELS),
+        ({}, {"bands": 5}, Tier.LEVELS),
+        ({}, {"shades": 3}, Tier.LEVELS),
+        ({}, {"name": "y"}, Tier.MIX),
+        # A color beyond a limit has words of its own.
+        ({}, {"below": "red"}, Tier.LEVELS),
+        ({"below": "red"}, {"below": "blue"}, Tier.ENTRIES),
+        ({"below": "red"}, {"below": None}, Tier.LEVELS),
     ],
 )
-def test_an_edit_costs_what_it_changes(change: Any, tier: Tier) -> None:
-    scene = scene_of(cube(), scalar={"name": "x"})
-    edited = scene.replace(scalar=change)
-    assert isinstance(edited.scalar, Scalar)
-    assert cost_of_edit(scene, edited) is tier
+def test_an_edit_costs_what_it_changes(before: Any, change: Any, tier: Tier) -> None:
+    scene = stressed(**before)
+    assert cost_of_edit(scene, scene.replace(scalar=change)) is tier
 
 
-def test_surfaces_that_it_colors_must_exist() -> None:
-    with pytest.raises(InputError, match="'glas' is not in the surface table"):
-        scene_of(cube(), scalar={"name": "x", "surfaces": ["glas"]})
+def test_a_computed_scalar_is_shown_as_well_as_one_of_the_mesh() -> None:
+    scene = stressed().replace(scalar={"name": "z"})
+    assert scene.scalar is not None
+    assert scene.scalar.name == "z"
+    assert scene.scalar_names[:3] == ("stress", "x", "y")
 
 
-@pytest.mark.parametrize("limits", [(1, 1), (2, 1), (0, float("nan")), (0, float("inf")), (1,), "12", 5])
-def test_limits_are_two_finite_numbers_the_second_above_the_first(limits: object) -> None:
-    with pytest.raises(InputError, match=r"must be two finite numbers, the second above the"):
-        Scalar("stress", limits)  # type: ignore[arg-type]
+RULE = "scalar.name must be a scalar of the mesh or a computed scalar, not"
 
-
-def test_a_color_beyond_a_limit_has_words_of_its_own() -> None:
-    without, red, blue = (Scalar("stress", below=color) for color in (None, (255, 0, 0), (0, 0, 255)))
-    assert cost(without, red) is Tier.LEVELS
-    assert cost(red, blue) is Tier.ENTRIES
-
-
-def test_all_color_scales_are_named_where_none_is_near() -> None:
-    with pytest.raises(InputError, match=r"not 'jet'; choose 'viridis', .*'coolwarm'") as refusal:
-        Scalar("stress", scale="jet")
-    assert "_r'" not in str(refusal.value)
-
-
-def test_an_unknown_color_scale_is_refused_with_the_nearest_name() -> None:
-    with pytest.raises(InputError, match=r"must be the name of a color scale, or a list of 2"):
-        Scalar("stress", scale="virids")
-    with pytest.raises(InputError, match=r"did you mean 'coolwarm'\?"):
-        Scalar("stress", scale="cool-warm")
-    for colors in (["red", "#00f"], "red, #00f", "[red, '#00f']"):
-        assert Scalar("stress", scale=colors).scale == ((255, 0, 0), (0, 0, 255))  # type: ignore[arg-type]
-    with pytest.raises(InputError, match=r"scale\[2\] must be \"#rrggbb\""):
-        Scalar("stress", scale="red, grean")
-
-
-def test_a_scalar_of_the_mesh_and_a_computed_one_can_be_shown() -> None:
-    mesh = cube().with_scalars(MeshScalar("stress", np.arange(8.0)))
-    for name in ("stress", "z"):
-        scene = scene_of(mesh, scalar={"name": name})
-        assert scene.scalar is not None
-        assert scene.scalar.name == name
-
-
-def test_an_unknown_scalar_is_refused_with_the_nearest_of_both() -> None:
-    mesh = cube().with_scalars(MeshScalar("stress", np.arange(8.0)))
-    scene = scene_of(mesh, scalar={"name": "stress"})
-    with pytest.raises(InputError) as refused:
-        scene.replace(scalar={"name": "strss"})
-    assert refused.value.problems == (
-        "scalar.name must be a scalar of the mesh or a computed scalar, not 'strss'; did you mean 'stress'?",
-    )
-    with pytest.raises(InputError, match="not 'Z'; did you mean 'z'"):
-        scene.replace(scalar={"name": "Z"})
+test_a_scalar_that_does_not_go_with_its_scene_is_refused = refused(
+    call,
+    [
+        (
+            lambda: stressed().replace(scalar={"name": "strss"}),
+            f"{RULE} 'strss'; did you mean 'stress'?",
+        ),
+        (lambda: stressed().replace(scalar={"name": "Z"}), f"{RULE} 'Z'; did you mean 'z'?"),
+        (
+            lambda: stressed().replace(scalar={"surfaces": ["surfac"]}),
+            "scalar 'stress': surfaces 'surfac' is not in the surface table; did you mean 'surface'?",
+        ),
+        (
+            lambda: stressed().replace(words="normals"),
+            "words must be 'levels' where a scalar colors surfaces, not 'normals'; change it, or remove the"
+            " scalar",
+        ),
+    ],
+)
 
 
 def test_a_mesh_without_the_scalar_that_is_shown_is_refused() -> None:
-    mesh = cube().with_scalars(MeshScalar("stress", np.arange(8.0)))
-    scene = scene_of(mesh, scalar={"name": "stress"})
-    with pytest.raises(InputError, match="a computed scalar, not 'stress'"):
-        scene.replace(mesh=cube())
-
-
-NAN = float("nan")
+    with pytest.raises(ValueError, match=f"^{RULE} 'stress'; choose 'x', "):
+        stressed().replace(mesh=cube())
 
 
 def plate(*scalars: MeshScalar) -> Mesh:
@@ -107,33 +91,47 @@ def test_values_are_float64_and_a_copy_unless_they_are_read_only() -> None:
     assert MeshScalar("again", scalar.values).values is scalar.values
 
 
-@pytest.mark.parametrize(
-    ("fields", "sentence"),
+def test_values_are_at_most_1e30_in_size_or_missing() -> None:
+    assert MeshScalar("a", np.array([1e30, -1e30, NAN])).values[:2].tolist() == [1e30, -1e30]
+
+
+test_what_is_no_scalar_of_a_mesh_is_refused = refused(
+    call,
     [
-        ({"name": ""}, "a scalar must have a name, not ''; give it a name"),
-        ({"of": "part"}, "scalar 'stress': it must be of 'node' or 'polygon', not 'part'; choose one"),
         (
-            {"values": [1.0, np.inf]},
-            "scalar 'stress': a value must be at most 1e30 in size, or NaN if it is missing, not inf (row 1)",
+            lambda: MeshScalar("", np.zeros(2), "part"),
+            "a scalar must have a name, not ''; give it a name\n"
+            "scalar '': it must be of 'node' or 'polygon', not 'part'; choose one",
+        ),
+        *(
+            (
+                lambda value=value: MeshScalar("stress", np.array([1.0, NAN, value])),
+                "scalar 'stress': a value must be at most 1e30 in size, or NaN if it is missing, not"
+                f" {value:g} (row 2)",
+            )
+            for value in (
+                math.inf,
+                -math.inf,
+                math.nextafter(1e30, math.inf),
+                -math.nextafter(1e30, math.inf),
+            )
         ),
         (
-            {"values": np.zeros((2, 2))},
+            lambda: MeshScalar("stress", np.zeros((2, 2))),
             "scalar 'stress': its values must be numbers in one dimension, not float64 of shape (2, 2);"
             " convert them",
         ),
+        (
+            lambda: plate(MeshScalar("a", np.zeros(2)), MeshScalar("b", np.zeros(3), "polygon")),
+            "scalar 'a': there must be one value a node (6), not 2\n"
+            "scalar 'b': there must be one value a polygon (2), not 3",
+        ),
+        (
+            lambda: plate(MeshScalar("a", np.zeros(6)), MeshScalar("a", np.zeros(2), "polygon")),
+            "scalar 'a': its name must be unique, not repeated; rename one",
+        ),
     ],
 )
-def test_what_is_no_scalar_is_refused(fields: dict[str, Any], sentence: str) -> None:
-    with pytest.raises(InputError) as caught:
-        MeshScalar(**{"name": "stress", "values": [0.0, 1.0], **fields})
-    assert str(caught.value) == sentence
-
-
-def test_a_mesh_has_one_value_for_each_row_and_one_scalar_of_each_name() -> None:
-    with pytest.raises(InputError, match=r"scalar 'a': there must be one value a node \(6\), not 2"):
-        plate(MeshScalar("a", np.zeros(2)))
-    with pytest.raises(InputError, match=r"scalar 'a': its name must be unique, not repeated; rename one"):
-        plate(MeshScalar("a", np.zeros(6)), MeshScalar("a", np.zeros(2), "polygon"))
 
 
 def test_a_mesh_with_other_scalars_shares_its_tables_and_what_was_computed_of_them() -> None:

@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import colorsys
 import itertools
 
 import numpy as np
@@ -9,8 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Surface, UsageError, image, render, scene_of
-from autocolor.arrays import Bytes, Floats
-from autocolor.mapping.colors import entries_of
+from autocolor.arrays import Bytes
 from autocolor.scene.swatches import (
     CAR_PAINTS,
     COLUMNS,
@@ -33,21 +31,6 @@ def field() -> Bytes:
     return found
 
 
-def luminance(colors: Bytes) -> Floats:
-    """The relative luminance of sRGB colors, from its definition."""
-    encoded = colors / 255
-    linear = np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
-    found: Floats = linear @ np.array([0.2126, 0.7152, 0.0722])
-    return found
-
-
-def test_the_field_has_two_hundred_swatches_to_read_only() -> None:
-    assert swatches().shape == (200, 3)
-    assert swatches().dtype == np.uint8
-    assert not swatches().flags.writeable
-    assert len(np.unique(swatches(), axis=0)) == 200
-
-
 def test_grays_go_from_white_to_black_and_car_paints_are_as_they_are() -> None:
     grays = field()[:, 0]
     assert (np.ptp(grays.astype(int), axis=1) == 0).all()
@@ -56,24 +39,6 @@ def test_grays_go_from_white_to_black_and_car_paints_are_as_they_are() -> None:
     assert grays[-1].tolist() == [0] * 3
     assert [tuple(color) for color in field()[:, -1].tolist()] == list(CAR_PAINTS)
     assert len(GRAYS) == len(CAR_PAINTS) == ROWS
-
-
-def test_hues_get_darker_from_row_to_row_and_muted_rows_stand_last() -> None:
-    found = luminance(field()[:8, 1:-1])
-    assert (np.diff(found, axis=0) < 0).all()
-    spread = np.ptp(field()[:, 1:-1].astype(int), axis=2)
-    assert (spread[8:].max(axis=0) < spread[3:8].max(axis=0)).all()
-
-
-def test_a_row_is_about_equally_light_and_goes_once_around_the_hues() -> None:
-    for row in field()[:8, 1:-1]:
-        found = luminance(row)
-        assert found.max() / found.min() < 1.9
-        hues = np.array([colorsys.rgb_to_hsv(*color)[0] for color in (row / 255).tolist()])
-        steps = np.diff(np.append(hues, hues[0])) % 1
-        assert len(row) == HUES
-        assert (steps > 0).all()
-        assert round(steps.sum(), 6) == 1.0
 
 
 def test_rows_have_the_lightness_and_columns_the_hue_that_oklab_says() -> None:
@@ -128,14 +93,6 @@ def test_the_finishes_of_a_menu_are_these() -> None:
     assert list(FINISHES) == ["plastic", "paint", "metallic", "metal", "rubber", "glass"]
     with pytest.raises(UsageError, match=r"^there is no finish 'metl'; did you mean 'metal'\?$"):
         finished(Surface("body"), "metl")
-
-
-@given(colors(), names)
-def test_more_light_is_never_clearly_darker(color: tuple[int, int, int], name: str) -> None:
-    surface = Surface("body").replace(object_color=color)
-    paint = surface.replace(**finished(surface, name)).paint
-    brightness = entries_of(paint, 128).astype(int).sum(axis=1)
-    assert (np.maximum.accumulate(brightness) - brightness).max() <= 45
 
 
 def test_each_finish_looks_different() -> None:

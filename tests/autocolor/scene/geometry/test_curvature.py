@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 
 import numpy as np
@@ -12,6 +11,7 @@ from autocolor import Mesh
 from autocolor.scene.geometry import curvature
 from autocolor.testing import meshes
 from tests.small import cube, grid, sphere, wall
+from tests.tables import first
 
 Array = npt.NDArray[np.float64]
 
@@ -51,8 +51,8 @@ def heights(columns: int, rows: int, height: Callable[[Array, Array], Array], si
     return Mesh(np.stack([x, y, height(x, y)], axis=1), flat.node_numbers, part_names=("patch",))
 
 
-def scattered(count: int, seed: int, shape: Callable[[Array, Array], Array]) -> Mesh:
-    """Triangles of random density over the unit square; `shape` gives their places, (nodes, 3)."""
+def scattered(count: int, seed: int) -> Mesh:
+    """Triangles of random density on a patch of the unit sphere."""
     random = np.random.default_rng(seed)
 
     def line() -> Array:
@@ -71,19 +71,22 @@ def scattered(count: int, seed: int, shape: Callable[[Array, Array], Array]) -> 
     turned = random.random(len(quads)) < 0.5
     quads[turned] = np.roll(quads[turned], 1, axis=1)
     triangles = np.concatenate([quads[:, [0, 1, 2, 2]], quads[:, [0, 2, 3, 3]]])
-    return Mesh(shape(across.ravel(), upward.ravel()), triangles, part_names=("patch",))
+    x, y = 2 * across.ravel(), upward.ravel() - 0.5
+    places = np.stack([np.cos(y) * np.cos(x), np.cos(y) * np.sin(x), np.sin(y)], axis=1)
+    return Mesh(places, triangles, part_names=("patch",))
 
 
 def test_the_mean_curvature_of_a_sphere_is_the_inverse_of_its_radius() -> None:
-    for columns, rows in ((60, 120), (120, 60)):
-        for radius in (0.5, 1.0, 20.0):
-            mesh = sphere(columns, rows, radius)
-            assert mesh.curvatures.mean * radius == pytest.approx(1, abs=0.01)
-            assert mesh.curvatures.gaussian * radius**2 == pytest.approx(1, abs=0.01)
+    for columns, rows, radius in ((60, 120, 0.5), (120, 60, 20.0)):
+        mesh = sphere(columns, rows, radius)
+        assert mesh.curvatures.mean * radius == pytest.approx(1, abs=0.01)
+        assert mesh.curvatures.gaussian * radius**2 == pytest.approx(1, abs=0.01)
+        inward = Mesh(mesh.coordinates, mesh.node_numbers[:, ::-1], part_names=("sphere",))
+        assert inward.curvatures.mean * radius == pytest.approx(-1, abs=0.03)
 
 
-@pytest.mark.parametrize("tube", [0.25, 0.4, 0.7])
-@pytest.mark.parametrize("sides", [(80, 160), (160, 80)])
+@pytest.mark.parametrize("tube", first(2, [0.7, 0.25, 0.4]))
+@pytest.mark.parametrize("sides", first(1, [(80, 160), (160, 80)]))
 def test_both_curvatures_of_a_torus_are_those_of_the_formula(tube: float, sides: tuple[int, int]) -> None:
     mesh = torus(*sides, tube=tube)
     x, y, _ = places(mesh).T
@@ -92,13 +95,6 @@ def test_both_curvatures_of_a_torus_are_those_of_the_formula(tube: float, sides:
     mean, gaussian = (1 / tube + of_ring) / 2, of_ring / tube
     assert mesh.curvatures.mean == pytest.approx(mean, abs=0.005 * np.abs(mean).max())
     assert mesh.curvatures.gaussian == pytest.approx(gaussian, abs=0.005 * np.abs(gaussian).max())
-
-
-def test_a_surface_that_faces_inward_has_the_opposite_mean_curvature() -> None:
-    mesh = sphere(60, 30)
-    inward = Mesh(mesh.coordinates, mesh.node_numbers[:, ::-1], part_names=("sphere",))
-    assert inward.curvatures.mean == pytest.approx(-1, abs=0.02)
-    assert inward.curvatures.gaussian == pytest.approx(1, abs=0.04)
 
 
 def test_a_flat_surface_has_no_curvature() -> None:
@@ -123,34 +119,14 @@ def test_a_cylinder_bends_one_way_up_to_its_rims(bands: int) -> None:
     assert mesh.curvatures.gaussian == pytest.approx(0, abs=1e-5)
 
 
-def test_a_saddle_has_a_negative_gaussian_curvature_and_a_bowl_and_a_hill_a_positive_one() -> None:
-    at_middle = {}
-    for name, height in (
-        ("saddle", lambda x, y: x * x - y * y),
-        ("bowl", lambda x, y: x * x + y * y),
-        ("hill", lambda x, y: -x * x - y * y),
-    ):
-        mesh = heights(20, 20, height, 0.2)
-        middle = np.abs(places(mesh)).sum(axis=1).argmin()
-        found = mesh.curvatures
-        at_middle[name] = (found.mean[middle], found.gaussian[middle])
-    assert at_middle["saddle"] == pytest.approx((0, -4), abs=0.02)
-    assert at_middle["bowl"] == pytest.approx((-2, 4), abs=0.02)
-    assert at_middle["hill"] == pytest.approx((2, 4), abs=0.02)
-
-
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", first(1, range(3)))
 def test_the_density_of_triangles_does_not_matter(seed: int) -> None:
-    def cap(across: Array, upward: Array) -> Array:
-        flat = np.cos(upward - 0.5)
-        return np.stack([flat * np.cos(2 * across), flat * np.sin(2 * across), np.sin(upward - 0.5)], axis=1)
-
-    off = np.abs(scattered(40, seed, cap).curvatures.mean - 1)
+    off = np.abs(scattered(40, seed).curvatures.mean - 1)
     assert np.median(off) < 0.01
     assert np.quantile(off, 0.95) < 0.05
 
 
-@pytest.mark.parametrize("scale", [1e-20, 1e-3, 1e6, 1e20])
+@pytest.mark.parametrize("scale", [1e-20, 1e20])
 def test_curvature_scales_with_the_object(scale: float) -> None:
     mesh = torus(24, 16)
     scaled = Mesh(mesh.coordinates * scale, mesh.node_numbers, part_names=("torus",))
@@ -168,19 +144,6 @@ def test_a_crease_has_no_curvature_across_it() -> None:
     mesh = heights(20, 6, shape, 0.8)
     assert len(mesh.normals.vectors) > len(mesh.coordinates)
     assert mesh.curvatures.mean == pytest.approx(0.25, rel=0.05)
-
-
-def test_the_rim_of_a_patch_has_the_curvature_next_to_it() -> None:
-    def cap(across: Array, upward: Array) -> Array:
-        flat = np.cos(upward - 0.5)
-        return np.stack([flat * np.cos(2 * across), flat * np.sin(2 * across), np.sin(upward - 0.5)], axis=1)
-
-    mesh = scattered(30, 7, cap)
-    rim = np.isin(nodes_of_normals(mesh) % 31, (0, 30)) | np.isin(nodes_of_normals(mesh) // 31, (0, 30))
-    off = np.abs(mesh.curvatures.mean - 1)[rim]
-    assert rim.sum() == 120
-    assert np.median(off) < 0.02
-    assert off.max() < 0.5
 
 
 def test_nodes_that_are_repeated_are_as_those_that_are_shared() -> None:
@@ -208,9 +171,3 @@ def test_any_mesh_has_finite_curvatures(mesh: Mesh) -> None:
         assert values.shape == (len(mesh.normals.vectors),)
         assert np.isfinite(values).all()
         assert not values.flags.writeable
-
-
-def test_a_mesh_without_polygons_has_none() -> None:
-    empty = Mesh(np.zeros((0, 3)), np.zeros((0, 4), np.intp), np.zeros(0, np.intp))
-    assert len(empty.curvatures.mean) == 0
-    assert math.isfinite(empty.curvatures.gaussian.sum())

@@ -12,8 +12,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor import InputError, Mesh, UsageError, render, scene_of
+from autocolor import Mesh, UsageError, render, scene_of
 from autocolor.scene.scalar import MeshScalar
+from tests.tables import refused
 
 POINTS = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0.5, 0.5, 1], [0.5, 1.5, 0]]
 TRIANGLES = [[0, 1, 4], [1, 2, 4]]
@@ -109,85 +110,73 @@ def test_a_part_may_be_named_and_a_mesh_of_ours_stays_itself() -> None:
     assert scene_of(mesh).mesh is mesh
 
 
-@pytest.mark.parametrize(
-    "source",
+test_what_is_no_mesh_is_refused = refused(
+    scene_of,
     [
-        None, 3, [POINTS, TRIANGLES], (POINTS, TRIANGLES), SimpleNamespace(points=POINTS),
-        SimpleNamespace(points=POINTS, cells=np.array([4, 0, 1, 2, 4]), celltypes=np.array([10])),
-        SimpleNamespace(vertices=POINTS), SimpleNamespace(geometry={}),
+        *(
+            (
+                source,
+                "a mesh must be a Mesh, nodes and polygons, or a surface of trimesh, PyVista or meshio, not"
+                f" {type(source).__name__}; take its surface, or give its nodes and its polygons as two"
+                " arguments",
+            )
+            for source in (
+                None,
+                [POINTS, TRIANGLES],
+                SimpleNamespace(points=POINTS),
+                SimpleNamespace(points=POINTS, cells=np.array([4, 0, 1, 2, 4]), celltypes=np.array([10])),
+                SimpleNamespace(vertices=POINTS),
+                SimpleNamespace(geometry={}),
+            )
+        ),
+        *(
+            (source, f"a mesh must be in memory, not a file, {source!r}; read that with read_scene")
+            for source in ("car.obj", Path("car.obj"))
+        ),
     ],
-)  # fmt: skip
-def test_anything_else_is_refused_in_a_sentence(source: Any) -> None:
-    with pytest.raises(UsageError) as refusal:
-        scene_of(source)
-    assert str(refusal.value) == (
-        "a mesh must be a Mesh, nodes and polygons, or a surface of trimesh, PyVista or meshio, not"
-        f" {type(source).__name__}; take its surface, or give its nodes and its polygons as two arguments"
-    )
+    UsageError,
+)
 
+ALONE = "a mesh must have polygons, not nodes alone; add some"
+SIDES = "a polygon must have 3 to 1,000 node numbers, not"
+FACES = "faces must have as many numbers after each count, not"
 
-@pytest.mark.parametrize("source", ["car.obj", Path("car.obj")])
-def test_a_file_is_sent_to_read_scene(source: object) -> None:
-    with pytest.raises(UsageError) as refusal:
-        scene_of(source)
-    assert str(refusal.value) == (
-        f"a mesh must be in memory, not a file, {source!r}; read that with read_scene"
-    )
-
-
-def test_cells_that_are_no_cell_blocks_are_refused() -> None:
-    with pytest.raises(InputError) as refusal:
-        scene_of(SimpleNamespace(points=POINTS, cells=[("triangle", [[0, 1, 2]])]))
-    assert str(refusal.value) == (
-        "cells must be cell blocks with a type and data, as in meshio, not ('triangle', [[0, 1, 2]]);"
-        " convert them"
-    )
-
-
-@pytest.mark.parametrize(
-    ("source", "sentence"),
+test_tables_that_break_a_rule_are_refused_in_a_sentence = refused(
+    lambda source: Mesh.of(*source),
     [
-        ((POINTS, []), "a mesh must have polygons, not nodes alone; add some"),
-        ((polydata(),), "a mesh must have polygons, not nodes alone; add some"),
+        ((POINTS, []), ALONE),
+        ((polydata(),), ALONE),
         ((POINTS, 3), "polygons must be a table of node numbers, not 3; give rows of them"),
         ((POINTS, "abc"), "polygons must be a table of node numbers, not 'abc'; give rows of them"),
-        (
-            (POINTS, [[0, 1], QUAD]),
-            "a polygon must have 3 to 1,000 node numbers, not [0, 1] (row 0); correct it",
-        ),
-        (
-            (POINTS, [QUAD, [0, 1, 2.5]]),
-            "a polygon must have 3 to 1,000 node numbers, not [0, 1, 2.5] (row 1); correct it",
-        ),
-        (
-            (POINTS, [QUAD, [0, 1, [2, 3]]]),
-            "a polygon must have 3 to 1,000 node numbers, not [0, 1, [2, 3]] (row 1); correct it",
-        ),
-        (
-            (POINTS, [QUAD, [0, 1, 6]]),
-            f"{NODE}, not 6 (row 1); correct it",
-        ),
-        (
-            (POINTS, [PENTAGON, [0, 1, -1]]),
-            f"{NODE}, not -1 (row 1); correct it",
-        ),
+        ((POINTS, [[0, 1], QUAD]), f"{SIDES} [0, 1] (row 0); correct it"),
+        ((POINTS, [QUAD, [0, 1, 2.5]]), f"{SIDES} [0, 1, 2.5] (row 1); correct it"),
+        ((POINTS, [QUAD, [0, 1, [2, 3]]]), f"{SIDES} [0, 1, [2, 3]] (row 1); correct it"),
+        ((POINTS, [QUAD, [0, 1, 6]]), f"{NODE}, not 6 (row 1); correct it"),
+        ((POINTS, [PENTAGON, [0, 1, -1]]), f"{NODE}, not -1 (row 1); correct it"),
         (
             ([[0, 1], [1, 2]], [PENTAGON]),
-            "nodes must be numbers of shape (nodes, 3), not (2, 2)",
+            "nodes must be numbers of shape (nodes, 3), not (2, 2); convert them",
         ),
-        ((POINTS, [[0, 1, 6]]), "polygon table: a node number must be a row of the node table (0 to 5), not"),
-        ((np.array(POINTS) * np.nan, [PENTAGON]), "node table: coordinates must be finite"),
+        (
+            (POINTS, [[0, 1, 6]]),
+            "polygon table: a node number must be a row of the node table (0 to 5), not [0, 1, 6, 6] (row 0)",
+        ),
         (
             (SimpleNamespace(points=POINTS, faces=np.array([3, 0, 1, 2, 4, 0, 1])),),
-            "faces must have as many numbers after each count, not 2 after 4 (polygon 1); correct them",
+            f"{FACES} 2 after 4 (polygon 1); correct them",
         ),
         (
             (SimpleNamespace(points=POINTS, faces=np.array([3, 0, 1, 2, -1, 0])),),
-            "faces must have as many numbers after each count, not 1 after -1 (polygon 1); correct them",
+            f"{FACES} 1 after -1 (polygon 1); correct them",
         ),
         (
             (SimpleNamespace(points=POINTS, faces=np.array([3.0, 0, 1, 2])),),
             "faces must be whole numbers in one row, a count before each polygon; convert them",
+        ),
+        (
+            (SimpleNamespace(points=POINTS, cells=[("triangle", [[0, 1, 2]])]),),
+            "cells must be cell blocks with a type and data, as in meshio, not ('triangle', [[0, 1, 2]]);"
+            " convert them",
         ),
         (
             (meshio(tetra=[[0, 1, 2, 4]] * 1000),),
@@ -196,10 +185,6 @@ def test_cells_that_are_no_cell_blocks_are_refused() -> None:
         ((meshio(),), "a mesh must have triangles or quads, not none; take its surface"),
     ],
 )
-def test_tables_that_break_a_rule_are_refused_in_a_sentence(source: tuple[Any, ...], sentence: str) -> None:
-    with pytest.raises(InputError) as refusal:
-        Mesh.of(*source)
-    assert str(refusal.value).startswith(sentence)
 
 
 TRIANGLE = [3, 2, 4]
@@ -271,17 +256,6 @@ def test_what_is_no_scalar_is_left_out_in_a_sentence(values: Any, caplog: pytest
         mesh = Mesh.of(polydata(QUAD, point_data={"vectors": values, "stress": np.arange(6.0)}))
     assert list(scalars_of(mesh)) == ["stress"]
     assert caplog.messages == ["data of a node left out, since they are no scalar: vectors"]
-
-
-@pytest.mark.parametrize("data", [{"load": [[1.0]]}, {"load": 3}, {"load": [[1.0], [2.0], [3.0]]}, [1], 3])
-def test_data_of_cells_in_other_blocks_are_left_out(data: Any) -> None:
-    mesh = Mesh.of(meshio(cell_data=data, quad=[QUAD], triangle=[TRIANGLE]))
-    assert scalars_of(mesh) in ({}, {"load": ("polygon", [1, 2])})
-
-
-def test_a_name_of_nodes_and_of_polygons_becomes_two() -> None:
-    mesh = Mesh.of(polydata(QUAD, point_data={"stress": np.zeros(6)}, cell_data={"stress": np.ones(1)}))
-    assert scalars_of(mesh) == {"stress": ("node", [0] * 6), "stress of polygons": ("polygon", [1])}
 
 
 def test_endless_values_are_missing(caplog: pytest.LogCaptureFixture) -> None:

@@ -5,7 +5,6 @@ import math
 import tracemalloc
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -14,16 +13,12 @@ from autocolor import Mesh
 from autocolor.arrays import Singles
 from autocolor.scene.geometry import normals as normals_module
 from autocolor.scene.geometry.normals import (
-    fans_of_corners,
-    group_numbers,
     node_normals,
-    places_of_corners,
     polygon_normals,
-    unite,
-    united_items,
 )
 from autocolor.testing import meshes
 from tests.small import cube, grid, sphere
+from tests.tables import first
 
 EPSILON = float(np.finfo(np.float32).eps)
 """Normals are computed in float64 and rounded once."""
@@ -45,23 +40,6 @@ def test_a_box_keeps_its_edges_sharp() -> None:
     assert corner_normals(mesh) == pytest.approx(np.repeat(flat[:, None], 4, axis=1))
     outward = mesh.coordinates[mesh.node_numbers].mean(axis=1) - 0.5
     assert (outward * flat).sum(axis=1) == pytest.approx(np.full(6, 0.5))
-
-
-def test_a_box_is_smooth_where_the_crease_angle_allows_it() -> None:
-    mesh = with_polygons(cube(), cube().node_numbers, crease_angle=90.0)
-    corners = mesh.coordinates[mesh.node_numbers] - 0.5
-    assert corner_normals(mesh) == pytest.approx(corners / np.linalg.norm(corners, axis=2)[..., None])
-
-
-def test_a_sphere_is_smooth() -> None:
-    mesh = sphere(24, 12)
-    assert len(mesh.normals.vectors) == len(mesh.coordinates)
-    assert np.abs(corner_normals(mesh) - mesh.coordinates[mesh.node_numbers]).max() < 0.02
-
-
-def test_a_wall_has_one_normal_all_over() -> None:
-    mesh = grid(4, 3, (0, 0, 0), (1, 0, 0), (0, 0, 1))
-    assert corner_normals(mesh) == pytest.approx(np.broadcast_to((0, -1, 0), (12, 4, 3)))
 
 
 @given(st.integers(0, 1 << 32))
@@ -119,16 +97,6 @@ def test_nodes_at_the_same_place_count_as_one() -> None:
     # The triangles of the poles have two nodes in one place here.
     assert corner_normals(torn)[24:-24] == pytest.approx(corner_normals(whole)[24:-24], abs=EPSILON)
     assert np.abs(corner_normals(torn)[:, :3] - corner_normals(whole)[:, :3]).max() <= EPSILON
-
-
-def test_how_a_face_is_cut_to_polygons_does_not_turn_the_normals() -> None:
-    quads = with_polygons(cube(), cube().node_numbers, crease_angle=180.0)
-    triangles = with_polygons(
-        cube(),
-        [half for a, b, c, d in cube().node_numbers.tolist() for half in ((a, b, c, c), (a, c, d, d))],
-        crease_angle=180.0,
-    )
-    assert corner_normals(triangles)[0, 0] == pytest.approx(corner_normals(quads)[0, 0])
 
 
 def test_normals_that_cancel_leave_each_polygon_its_own() -> None:
@@ -223,33 +191,7 @@ def test_the_corners_of_a_fan_agree_with_a_search_one_by_one(mesh: Mesh) -> None
         )
 
 
-@given(meshes())
-def test_fans_are_numbered_by_their_first_corners_and_paired_with_fans_of_opposite_winding(
-    mesh: Mesh,
-) -> None:
-    places = places_of_corners(mesh.coordinates.T, mesh.node_numbers.T)
-    normals = polygon_normals(mesh.coordinates.T[:, mesh.node_numbers.T])
-    numbers, opposite_pairs = fans_of_corners(places, mesh.part_numbers, normals, mesh.crease_angle)
-    assert list(dict.fromkeys(numbers.tolist())) == list(range(numbers.max() + 1))
-    for one, other in opposite_pairs:
-        assert len(one) == len(other) > 0
-        assert set(one) | set(other) <= set(numbers)
-
-
-@given(meshes())
-def test_corners_share_a_place_where_their_coordinates_are_equal(mesh: Mesh) -> None:
-    corners = [tuple(place) for row in mesh.coordinates[mesh.node_numbers].tolist() for place in row]
-    places = places_of_corners(mesh.coordinates.T, mesh.node_numbers.T).T.ravel().tolist()
-    for one, other in itertools.combinations(range(len(corners)), 2):
-        assert (places[one] == places[other]) == (corners[one] == corners[other])
-
-
-def test_minus_zero_is_the_same_place_as_zero() -> None:
-    rows: npt.NDArray[np.float64] = np.array([[0.0, -0.0], [1.0, 1.0], [-0.0, 0.0]])
-    assert places_of_corners(rows, np.array([[0], [1], [0], [1]])).tolist() == [[0]] * 4
-
-
-@pytest.mark.parametrize("at_once", [1, 7, 100])
+@pytest.mark.parametrize("at_once", first(1, [7, 1, 100]))
 def test_the_normals_do_not_depend_on_how_many_corners_are_worked_on_at_once(
     at_once: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -270,6 +212,7 @@ def test_the_normals_do_not_depend_on_how_many_corners_are_worked_on_at_once(
         assert one == pytest.approx(other, abs=1.2e-7)
 
 
+@pytest.mark.thorough
 def test_making_the_normals_needs_few_bytes_a_polygon() -> None:
     mesh = grid(400, 400, (0, 0, 0), (1, 0, 0), (0, 0, 1))
     tracemalloc.start()
@@ -279,54 +222,3 @@ def test_making_the_normals_needs_few_bytes_a_polygon() -> None:
     finally:
         tracemalloc.stop()
     assert peak < 250 * len(mesh.node_numbers)
-
-
-COUNT = 30
-
-items = st.integers(0, COUNT - 1)
-batches = st.lists(st.lists(st.tuples(items, items), max_size=20), max_size=4)
-
-
-def roots_one_by_one(pairs: list[tuple[int, int]]) -> list[int]:
-    """The lowest of each item's group, by passing it on until nothing changes."""
-    lowest = list(range(COUNT))
-    changed = True
-    while changed:
-        changed = False
-        for one, other in pairs:
-            if lowest[one] != lowest[other]:
-                lowest[one] = lowest[other] = min(lowest[one], lowest[other])
-                changed = True
-    return lowest
-
-
-@given(batches)
-def test_items_are_in_one_group_when_pairs_lead_from_one_to_the_other(
-    several: list[list[tuple[int, int]]],
-) -> None:
-    parents = np.arange(COUNT)
-    for pairs in several:
-        one, other = np.array(pairs, np.intp).reshape(-1, 2).T
-        unite(parents, one, other)
-    lowest = roots_one_by_one([pair for pairs in several for pair in pairs])
-    in_order = sorted(set(lowest))
-    assert group_numbers(parents).tolist() == [in_order.index(each) for each in lowest]
-
-
-def test_a_long_chain_in_any_order_is_one_group(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(normals_module, "CORNERS_AT_ONCE", 100)
-    chain = np.random.default_rng(7).permutation(10_000)
-    parents = np.arange(len(chain))
-    links = np.random.default_rng(8).permutation(len(chain) - 1)
-    for some in np.array_split(links, 5):
-        unite(parents, chain[some], chain[some + 1])
-    assert not group_numbers(parents).any()
-
-
-def test_united_items_are_not_the_root_of_their_group() -> None:
-    parents = np.arange(9)
-    unite(parents, np.array([1, 4, 7]), np.array([5, 5, 2]))
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(normals_module, "CORNERS_AT_ONCE", 4)
-        assert united_items(parents).tolist() == [4, 5, 7]
-    assert united_items(np.arange(0)).tolist() == []
