@@ -342,8 +342,9 @@ class CookTorrance(ReflectionModel):
         half = _half_vector(cosines.incidence, view, cosines.eye)
         fresnel = self._fresnel(half.view)
         gain = float(fresnel.max(initial=1)) / max(float(view.min(initial=1)), LEAST_FACING)
+        attenuation = _attenuation(cosines.incidence, view, half)
         np.multiply(self._distribution(half, cosines, gain), fresnel, out=out)
-        out *= _attenuation(cosines.incidence, view, half)
+        out *= attenuation
         out /= np.maximum(view, np.float32(LEAST_FACING))
         return out
 
