@@ -1,15 +1,12 @@
-"""Signals at every moment: `python -m tests.signals [--rounds N] [--row TEXT]`.
+"""The attacks `signals`: commands that get a signal at any moment.
 
-A row is a command and a moment. For each signal that ends a program the command is started in a folder of its
-own, and it gets the signal at that moment. Then it must end with the row's exit code and without a traceback,
-its outputs must be whole, and nothing else may be left in the folder. The script prints the longest time from
-a signal to the end of each row, and leaves with 1 if a row failed. Windows are tried if there is a screen
-(`xvfb-run python -m tests.signals`).
+A row is a command and a moment. The command is started in a folder of its own, and gets a signal at that
+moment. Then it must end with the row's exit code and without a traceback, its outputs must be whole, and
+nothing else may be left in the folder. Windows are tried if there is a screen (`xvfb-run`).
 """
 
 from __future__ import annotations
 
-import argparse
 import os
 import random
 import select
@@ -18,7 +15,6 @@ import signal
 import socket
 import subprocess
 import sys
-import tempfile
 import time
 from array import array
 from collections.abc import Callable
@@ -32,6 +28,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ramtek_emu import NCAR_9460, Ramtek9300, instructions, read_snapshot
+from tests.attacks import Trial
 from tests.ramtek_emu.processes import environment, stream
 from tests.ramtek_emu.serving import serving_at
 
@@ -168,6 +165,11 @@ class Row(NamedTuple):
     has_display: bool = False
     """Whether a display is served at `display`."""
 
+    @property
+    def moment_name(self) -> str:
+        """The name of the moment's function."""
+        return str(getattr(self.moment, "func", self.moment).__name__)
+
 
 OUTPUTS = "-o o.png --snapshot s.png --record r.ramtek --configuration NCAR_9460"
 WRITTEN = ("o.png", "s.png", "r.ramtek")
@@ -303,31 +305,18 @@ def check(row: Row, number: signal.Signals, place: Path, code: int, said: str) -
         assert np.array_equal(read_snapshot(place / "s.png").words, twin.words), "the recording is cut"
 
 
-def main() -> None:
-    """Attack each row by each signal, and print what happened."""
-    parser = argparse.ArgumentParser(prog="python -m tests.signals", description=__doc__)
-    parser.add_argument("--rounds", type=int, default=1, help="how often each row gets each signal")
-    parser.add_argument("--row", default="", help="only the rows with this text in their command or moment")
-    options = parser.parse_args()
-    # Jobs in a shell's background ignore SIGINT, and nohup ignores SIGHUP. The commands would respect that.
-    signal.signal(signal.SIGINT, signal.default_int_handler)
-    signal.signal(signal.SIGHUP, signal.SIG_DFL)
-    failed = 0
-    for row in ROWS + (WINDOWS if "DISPLAY" in os.environ else ()):
-        moment = getattr(row.moment, "func", row.moment).__name__
-        if options.row not in f"{row.arguments} {moment}":
-            continue
-        longest, faults = 0.0, []
-        for number in ENDING * options.rounds:
-            with tempfile.TemporaryDirectory() as place:
-                try:
-                    longest = max(longest, attack(row, number, Path(place))[0])
-                except (AssertionError, subprocess.TimeoutExpired) as fault:
-                    faults.append(f"  {number.name}: {fault}")
-        print(f"{longest:6.3f} s  {moment:12} {row.module} {row.arguments}", *faults, sep="\n", flush=True)
-        failed += len(faults)
-    sys.exit(1 if failed else 0)
+class Signalled(Trial):
+    """A row that gets each signal."""
+
+    def __init__(self, row: Row) -> None:
+        self.row = row
+
+    def attempt(self, chance: random.Random) -> str:
+        attack(self.row, chance.choice(ENDING), Path.cwd())
+        return ""
 
 
-if __name__ == "__main__":
-    main()
+def trials() -> dict[str, Callable[[], Trial]]:
+    """The attacks by their names."""
+    rows = ROWS + (WINDOWS if "DISPLAY" in os.environ else ())
+    return {f"{row.moment_name}, {row.module} {row.arguments}": partial(Signalled, row) for row in rows}
