@@ -42,15 +42,14 @@ from autocolor.images import display_image
 from autocolor.journal.autosave import JOURNAL, Autosave
 from autocolor.journal.history import History
 from autocolor.journal.places import Source, place_of
-from autocolor.scene.scalar import MeshScalar
 from ramtek_emu import GMR_9300, NCAR_9460, PRINCETON_9300, Ramtek9300, instructions
 from ramtek_emu.errors import RamtekError
 from ramtek_emu.instruction_set.assembler import assemble
 from ramtek_emu.instruction_set.disassembler import items
 from ramtek_emu.snapshot import read_snapshot, snapshot_bytes
 from tests.attacks import Trial
-from tests.mutations import OBJ_TEXT, damaged, seeds
-from tests.small import BOXES_STREAM, SMALL, boxes
+from tests.mutations import OBJ_TEXT, damaged, scene, seeds
+from tests.small import BOXES_STREAM, SMALL
 
 BETWEEN: Final = b"\n-- the next file --\n"
 """What divides the files of an input that has several."""
@@ -138,14 +137,6 @@ def fault_of_refusal(refusal: Exception, files: Mapping[str, bytes]) -> str:
 
 
 # Meshes and scenes.
-
-
-@cache
-def scene() -> Scene:
-    """A cube of two parts with scalars of both kinds, under two lights."""
-    stress = MeshScalar("stress", np.array([1, 2, np.nan, 4, 5, 6, 7, 8.0]))
-    mesh = boxes().mesh.with_scalars(stress, MeshScalar("area", np.arange(6.0), "polygon"))
-    return boxes().replace(mesh=mesh)
 
 
 def fault_of_mesh(mesh: Mesh) -> str:

@@ -1,8 +1,8 @@
 """The attacks `kills`: programs are killed while they save, and the old or the new must be there.
 
-A child process saves over what an earlier save wrote, and is killed: every other time at a random moment of
-the duration that was measured first, otherwise before a random step, which is a system call that changes
-names or syncs. Then our readers must read the old or the new, whole, and the next save must succeed and leave
+A child process saves over what an earlier save wrote, and is killed: at a random moment of the duration that
+was measured first, before a random step, which is a system call that changes names or syncs, or at a random
+byte of a file. Then our readers must read the old or the new, whole, and the next save must succeed and leave
 no temporary file. A folder of tables is also read while a child saves to it without end.
 """
 
@@ -11,6 +11,7 @@ from __future__ import annotations
 import hashlib
 import os
 import random
+import resource
 import shutil
 import signal
 import sqlite3
@@ -34,7 +35,6 @@ from autocolor.files.meshes.csv_tables import write_csv_tables
 from autocolor.files.meshes.npy_tables import write_npy_tables
 from autocolor.files.picture_file import read_picture, write_picture
 from autocolor.files.reading import COMMITTED
-from autocolor.files.rig_file import read_rig, write_rig
 from autocolor.journal.autosave import Autosave, journal_in, left_sessions
 from autocolor.journal.history import History
 from autocolor.journal.places import ScenePlace, Source, checksum_of, place_of
@@ -43,7 +43,6 @@ from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalar import MeshScalar
 from ramtek_emu import Ramtek9300, read_snapshot, write_snapshot, writing
 from ramtek_emu.instructions import write_image
-from ramtek_emu.png import save_png
 from tests.attacks import Trial
 from tests.small import uneven_wall, wall_scene
 
@@ -218,14 +217,6 @@ KINDS: Final = {
         lambda folder, number: save_picture(folder / "p.npz", number),
         lambda folder: checksum_of(read_picture(folder / "p.npz").scene),
     ),
-    "PNG": Kind(
-        lambda folder, number: save_png(np.full((9, 9, 3), number, np.uint8), folder / "p.png"),
-        lambda folder: (folder / "p.png").read_bytes(),
-    ),
-    "rig": Kind(
-        lambda folder, number: write_rig(folder / "r.toml", scene_number(number), overwrite=True),
-        lambda folder: repr(read_rig(folder / "r.toml")),
-    ),
     "snapshot": Kind(
         lambda folder, number: save_snapshot(folder / "s.png", number),
         lambda folder: read_snapshot(folder / "s.png").words.tobytes(),
@@ -243,8 +234,8 @@ NUMBERS: Final = range(4)
 """The scenes that are saved."""
 
 
-def child(save: Callable[[], object], at: int = 1 << 30) -> int:
-    """The process of a child that saves, and kills itself before step number `at`."""
+def child(save: Callable[[], object], at: int = 1 << 30, most_bytes: int = -1) -> int:
+    """The process of a child that saves, and is killed before step number `at` or when a file is too long."""
     process = os.fork()
     if process:
         return process
@@ -252,6 +243,9 @@ def child(save: Callable[[], object], at: int = 1 << 30) -> int:
     try:
         # The child is a new program as to the folders that it swept.
         writing._SWEPT.clear()
+        signal.signal(signal.SIGXFSZ, signal.SIG_DFL)
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        resource.setrlimit(resource.RLIMIT_FSIZE, (most_bytes, most_bytes))
         with steps(at, lambda: os.kill(os.getpid(), signal.SIGKILL)) as seen:
             save()
         code = min(len(seen), 254)
@@ -295,9 +289,13 @@ class Killing(Trial):
         old, new, last = chance.sample(NUMBERS, 3)
         here = Path.cwd()
         shutil.copytree(self.saved / str(old), here, symlinks=True, dirs_exist_ok=True)
-        # SQLite makes its steps itself.
-        if chance.random() < 0.5 and self.steps[new] > 2:
-            process = child(partial(self.kind.save, here, new), chance.randrange(self.steps[new]))
+        way = chance.randrange(3)
+        if way == 0:
+            # SQLite makes its steps itself, and has none here.
+            process = child(partial(self.kind.save, here, new), chance.randrange(self.steps[new] + 1))
+        elif way == 1:
+            sizes = [path.stat().st_size for path in (self.saved / str(new)).rglob("*") if path.is_file()]
+            process = child(partial(self.kind.save, here, new), most_bytes=chance.randrange(max(sizes)))
         else:
             process = child(partial(self.kind.save, here, new))
             time.sleep(chance.uniform(0, self.seconds[new]))
