@@ -44,7 +44,7 @@ from autocolor.scene.scalar import MeshScalar
 from ramtek_emu import Ramtek9300, read_snapshot, write_snapshot, writing
 from ramtek_emu.instructions import write_image
 from tests.attacks import Trial
-from tests.small import uneven_wall, wall_scene
+from tests.small import grid, wall_scene
 
 STEPS: Final = ("open", "mkdir", "rename", "replace", "link", "unlink", "rmdir", "fsync")
 """The functions of `os` that are steps."""
@@ -83,7 +83,9 @@ def steps(at: int, stop: Callable[[], None]) -> Iterator[list[str]]:
 
 def scene_number(number: int) -> Scene:
     """A small scene that differs from that of every other number, also in how many tables it has."""
-    mesh = uneven_wall(number)
+    # Two parts in one plane have a table of planes.
+    decal = grid(1, 1, (-1, 0, -1), (2, 0, 0), (0, 0, 2), "decal")
+    mesh = Mesh.joined([grid(3, 2 + number, (-3, 0, -3), (6, 0, 0), (0, 0, 6)), decal])
     values = np.arange(len(mesh.coordinates), dtype=np.float64) * (number + 1)
     scalars = [MeshScalar(f"scalar {each}", values + each) for each in range(number % 3)]
     scene = wall_scene(mesh.with_scalars(*scalars), ambient=0.1 + number % 90 / 100)
