@@ -160,9 +160,7 @@ class Arena:
             # What a circle of objects keeps open is closed when it is collected.
             gc.collect()
         more = Holdings.of(os.getpid()).more_than(before)
-        return (
-            Fault("left " + " ".join(word for word in more.split() if word.isalpha()), more) if more else None
-        )
+        return Fault("left behind", more) if more else None
 
 
 def empty(folder: Path) -> None:

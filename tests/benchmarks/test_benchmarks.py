@@ -12,8 +12,9 @@ from benchmarks import __main__ as benchmarks
 
 SLOW = {
     "targets", "scaling", "start", "steps", "movement", "events", "reading", "mapped_tables", "form", "page",
-    "inspection", "display", "ports",
+    "inspection", "display", "ports", "scalars",
 }  # fmt: skip
+SMALLER = {"benchmarks.mapped_tables.FEW": (400, 4000), "benchmarks.reading.QUICK_POLYGONS": 500}
 ROWS = [
     pytest.param(name, marks=pytest.mark.thorough if name in SLOW else ())
     for name in (*benchmarks.PARTS, *benchmarks.PROGRAMS)
@@ -26,6 +27,8 @@ def test_each_benchmark_runs_in_its_quick_form(
 ) -> None:
     arguments = ["benchmarks", name, "--quick", "--rounds", "1", "--into", str(tmp_path)]
     monkeypatch.setattr(sys, "argv", arguments)
+    for constant, value in SMALLER.items():
+        monkeypatch.setattr(constant, value)
     with pytest.raises(SystemExit) as ended:
         benchmarks.main()
     # A busy machine may miss a target.
