@@ -49,7 +49,7 @@ def test_there_is_a_reader_for_every_mesh_format() -> None:
 @pytest.mark.thorough
 @pytest.mark.parametrize(
     "name",
-    ["reads/obj", "kills/npy tables", "signals/starting, ramtek_emu list", "uses/screens, car", "uses/unix"],
+    ["reads/obj", "kills/npy tables", "signals/printing, ramtek_emu list", "uses/screens, car", "uses/unix"],
 )
 def test_an_attempt_of_each_kind_of_attack_finds_nothing(name: str, tmp_path: Path) -> None:
     assert main([name, "--seed", "1", "--number", "0", "--keep", str(tmp_path)]) == 0
