@@ -1,29 +1,23 @@
-"""Kill programs while they save, at random moments and at every step, and require the old or the new.
+"""The attacks `kills`: programs are killed while they save, and the old or the new must be there.
 
-    python -m tests.kills --count 500
-    python -m tests.kills --count 100 --kind "npy tables" --seed 7
-
-A child process saves over what an earlier save wrote, and is killed: every other time at a random moment of
-the duration that was measured first, otherwise before a random step, which is a system call that changes
-names or syncs. Then our readers must read the old or the new, whole, and the next save must succeed and leave
-no temporary file. A folder of tables is also read while a child saves to it without end. The exit code is 1
-if anything else was read.
+A child process saves over what an earlier save wrote, and is killed: at a random moment of the duration that
+was measured first, before a random step, which is a system call that changes names or syncs, or at a random
+byte of a file. Then our readers must read the old or the new, whole, and the next save must succeed and leave
+no temporary file. A folder of tables is also read while a child saves to it without end.
 """
 
 from __future__ import annotations
 
-import argparse
 import hashlib
 import os
 import random
+import resource
 import shutil
 import signal
 import sqlite3
 import sys
-import tempfile
 import time
-from collections import Counter
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, closing, contextmanager
 from functools import partial
 from itertools import cycle
@@ -33,7 +27,7 @@ from unittest import mock
 
 import numpy as np
 
-from autocolor import Scene, read_journal, read_scene, render, scene_of, write_scene
+from autocolor import Scene, read_journal, read_scene, render, write_scene
 from autocolor.errors import AutocolorError, InputError
 from autocolor.files.conversion import write_obj
 from autocolor.files.formats import read_mesh
@@ -41,7 +35,6 @@ from autocolor.files.meshes.csv_tables import write_csv_tables
 from autocolor.files.meshes.npy_tables import write_npy_tables
 from autocolor.files.picture_file import read_picture, write_picture
 from autocolor.files.reading import COMMITTED
-from autocolor.files.rig_file import read_rig, write_rig
 from autocolor.journal.autosave import Autosave, journal_in, left_sessions
 from autocolor.journal.history import History
 from autocolor.journal.places import ScenePlace, Source, checksum_of, place_of
@@ -50,8 +43,8 @@ from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalar import MeshScalar
 from ramtek_emu import Ramtek9300, read_snapshot, write_snapshot, writing
 from ramtek_emu.instructions import write_image
-from ramtek_emu.png import save_png
-from tests.autocolor.decals import decal_on_ground
+from tests.attacks import Trial
+from tests.small import grid, wall_scene
 
 STEPS: Final = ("open", "mkdir", "rename", "replace", "link", "unlink", "rmdir", "fsync")
 """The functions of `os` that are steps."""
@@ -90,17 +83,13 @@ def steps(at: int, stop: Callable[[], None]) -> Iterator[list[str]]:
 
 def scene_number(number: int) -> Scene:
     """A small scene that differs from that of every other number, also in how many tables it has."""
-    mesh, view = decal_on_ground(number)
+    # Two parts in one plane have a table of planes.
+    decal = grid(1, 1, (-1, 0, -1), (2, 0, 0), (0, 0, 2), "decal")
+    mesh = Mesh.joined([grid(3, 2 + number, (-3, 0, -3), (6, 0, 0), (0, 0, 6)), decal])
     values = np.arange(len(mesh.coordinates), dtype=np.float64) * (number + 1)
     scalars = [MeshScalar(f"scalar {each}", values + each) for each in range(number % 3)]
-    return scene_of(mesh.with_scalars(*scalars), view=view, ambient=0.1 + number % 90 / 100)
-
-
-def colored(number: int) -> Scene:
-    """Scene `number` with its own surface and its own light."""
-    scene = scene_number(number)
-    name = scene.surfaces[0].name
-    return scene.with_surface(name, object_color=(number, 2, 3)).with_light(
+    scene = wall_scene(mesh.with_scalars(*scalars), ambient=0.1 + number % 90 / 100)
+    return scene.with_surface(scene.surfaces[0].name, object_color=(number, 2, 3)).with_light(
         scene.lights[0].name, intensity=0.1 + number / 10
     )
 
@@ -223,20 +212,12 @@ KINDS: Final = {
         read_saved_store,
     ),
     "OBJ and library": Kind(
-        lambda folder, number: write_obj(folder / "s.obj", colored(number), True),
+        lambda folder, number: write_obj(folder / "s.obj", scene_number(number), True),
         lambda folder: checksum_of(read_scene(folder / "s.obj")),
     ),
     "picture": Kind(
         lambda folder, number: save_picture(folder / "p.npz", number),
         lambda folder: checksum_of(read_picture(folder / "p.npz").scene),
-    ),
-    "PNG": Kind(
-        lambda folder, number: save_png(np.full((9, 9, 3), number, np.uint8), folder / "p.png"),
-        lambda folder: (folder / "p.png").read_bytes(),
-    ),
-    "rig": Kind(
-        lambda folder, number: write_rig(folder / "r.toml", colored(number), overwrite=True),
-        lambda folder: repr(read_rig(folder / "r.toml")),
     ),
     "snapshot": Kind(
         lambda folder, number: save_snapshot(folder / "s.png", number),
@@ -255,8 +236,8 @@ NUMBERS: Final = range(4)
 """The scenes that are saved."""
 
 
-def child(save: Callable[[], object], at: int = 1 << 30) -> int:
-    """The process of a child that saves, and kills itself before step number `at`."""
+def child(save: Callable[[], object], at: int = 1 << 30, most_bytes: int = -1) -> int:
+    """The process of a child that saves, and is killed before step number `at` or when a file is too long."""
     process = os.fork()
     if process:
         return process
@@ -264,6 +245,9 @@ def child(save: Callable[[], object], at: int = 1 << 30) -> int:
     try:
         # The child is a new program as to the folders that it swept.
         writing._SWEPT.clear()
+        signal.signal(signal.SIGXFSZ, signal.SIG_DFL)
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        resource.setrlimit(resource.RLIMIT_FSIZE, (most_bytes, most_bytes))
         with steps(at, lambda: os.kill(os.getpid(), signal.SIGKILL)) as seen:
             save()
         code = min(len(seen), 254)
@@ -281,122 +265,77 @@ def steps_of(process: int) -> int | None:
     return None if code < 0 else code
 
 
-class Prepared(NamedTuple):
-    """The folder with a saved scene, its checksum, the seconds of saving over another, and the steps."""
+class Killing(Trial):
+    """Saves of one kind, over an earlier save, that are killed."""
 
-    folder: Path
-    read: object
-    seconds: float
-    steps: int
+    def __init__(self, kind: Kind) -> None:
+        self.kind = kind
+        self.seconds, self.steps = [0.0] * len(NUMBERS), [0] * len(NUMBERS)
+        self.reads: list[object] = []
 
-
-def prepared(kind: Kind, number: int, folder: Path) -> Prepared:
-    """Save scene `number` over another, without a kill."""
-    folder.mkdir()
-    steps_of(child(lambda: kind.save(folder, len(NUMBERS))))
-    begun = time.monotonic()
-    count = steps_of(child(lambda: kind.save(folder, number)))
-    assert count is not None
-    return Prepared(folder, kind.read(folder), time.monotonic() - begun, count)
-
-
-def attacked(kind: Kind, count: int, dice: random.Random, place: Path) -> Counter[str]:
-    """Kill saving `count` times; the counts of what was there afterwards."""
-    ready = [prepared(kind, number, place / str(number)) for number in NUMBERS]
-    counts = Counter[str]()
-    number = 0
-    while counts["kills"] < count:
-        number += 1
-        old, new, last = dice.sample(NUMBERS, 3)
-        folder = place / "work"
-        shutil.copytree(ready[old].folder, folder, symlinks=True)
-        # SQLite makes its steps itself.
-        if number % 2 and ready[new].steps > 2:
-            process = child(partial(kind.save, folder, new), dice.randrange(ready[new].steps))
-        else:
-            process = child(partial(kind.save, folder, new))
-            time.sleep(dice.uniform(0, ready[new].seconds))
-            os.kill(process, signal.SIGKILL)
-        counts["kills" if steps_of(process) is None else "late"] += 1
-        counts[state(kind, folder, {"old": ready[old].read, "new": ready[new].read})] += 1
-        try:
-            steps_of(child(partial(kind.save, folder, last)))
-            if kind.read(folder) != ready[last].read:
-                counts["next save lost"] += 1
-        except (RuntimeError, AutocolorError):
-            counts["next save lost"] += 1
-        counts["left over"] += len(list(folder.rglob("*.part"))) + len(list(folder.rglob(COMMITTED)))
-        shutil.rmtree(folder)
-    return counts
-
-
-def state(kind: Kind, folder: Path, reads: Mapping[str, object]) -> str:
-    """Which of the saves is in a folder: a key of `reads`, or "neither"."""
-    try:
-        there = kind.read(folder)
-    except (AutocolorError, AssertionError, ValueError, OSError) as error:
-        print(f"{folder}: {type(error).__name__}: {error}", file=sys.stderr)
-        return "neither"
-    return next((name for name, read in reads.items() if read == there), "neither")
-
-
-def read_beside(kind: Kind, count: int, place: Path) -> Counter[str]:
-    """Read a folder while a child saves to it without end; the counts of what was read."""
-    ready = [prepared(kind, number, place / f"beside {number}") for number in NUMBERS]
-    folder = ready[0].folder
-
-    def save_without_end() -> None:
-        for number in cycle(NUMBERS):
-            kind.save(folder, number)
-
-    process = child(save_without_end)
-    counts = Counter[str]()
-    try:
-        for _ in range(count):
-            try:
-                there = mesh_sum(read_scene(folder / "t").mesh)
-            except InputError as error:
-                print(error, file=sys.stderr)
-                counts["refused" if "tables must stay" in str(error) else "neither"] += 1
-                continue
-            number = next((number for number in NUMBERS if ready[number].read == there), None)
-            counts["neither" if number is None else "new" if number else "old"] += 1
-    finally:
-        os.kill(process, signal.SIGKILL)
-        os.waitpid(process, 0)
-    return counts
-
-
-COLUMNS: Final = ("kills", "late", "old", "new", "neither", "refused", "next save lost", "left over")
-
-
-def main() -> int:
-    """Print the table; returns 1 if anything was lost."""
-    parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n")[0])
-    parser.add_argument("--count", type=int, default=500, help="kills, over all kinds")
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--kind", choices=KINDS, action="append", help="only this kind")
-    parser.add_argument("--reads", type=int, default=500, help="reads beside a program that saves")
-    options = parser.parse_args()
-    dice = random.Random(options.seed)
-    kinds = options.kind or list(KINDS)
-    print("| kind |", " | ".join((*COLUMNS, "seconds")), "|")
-    print("|---|" + "---|" * (len(COLUMNS) + 1))
-    is_lost = False
-    for number, name in enumerate(kinds):
-        share = options.count // len(kinds) + (number < options.count % len(kinds))
-        attacks = {name: partial(attacked, KINDS[name], share, dice)}
-        if name.endswith("tables"):
-            attacks[f"{name}, read beside"] = partial(read_beside, KINDS[name], options.reads)
-        for row, attack in attacks.items():
+    @contextmanager
+    def begun(self, folder: Path) -> Iterator[None]:
+        """Save each scene over another without a kill, and measure it."""
+        self.saved = folder
+        for number in NUMBERS:
+            place = folder / str(number)
+            place.mkdir()
+            steps_of(child(partial(self.kind.save, place, len(NUMBERS))))
             begun = time.monotonic()
-            with tempfile.TemporaryDirectory(prefix="kills-") as place:
-                counts = attack(Path(place))
-            cells = [f"{counts[column]:,}" for column in COLUMNS]
-            print(f"| {row} |", " | ".join(cells), f"| {time.monotonic() - begun:.0f} |", flush=True)
-            is_lost |= any(counts[column] for column in ("neither", "next save lost", "left over"))
-    return int(is_lost)
+            self.steps[number] = steps_of(child(partial(self.kind.save, place, number))) or 0
+            self.seconds[number] = time.monotonic() - begun
+            self.reads.append(self.kind.read(place))
+        yield
+
+    def attempt(self, chance: random.Random) -> str:
+        old, new, last = chance.sample(NUMBERS, 3)
+        here = Path.cwd()
+        shutil.copytree(self.saved / str(old), here, symlinks=True, dirs_exist_ok=True)
+        way = chance.randrange(3)
+        if way == 0:
+            # SQLite makes its steps itself, and has none here.
+            process = child(partial(self.kind.save, here, new), chance.randrange(self.steps[new] + 1))
+        elif way == 1:
+            sizes = [path.stat().st_size for path in (self.saved / str(new)).rglob("*") if path.is_file()]
+            process = child(partial(self.kind.save, here, new), most_bytes=chance.randrange(max(sizes)))
+        else:
+            process = child(partial(self.kind.save, here, new))
+            time.sleep(chance.uniform(0, self.seconds[new]))
+            os.kill(process, signal.SIGKILL)
+        steps_of(process)
+        try:
+            there = self.kind.read(here)
+        except (AutocolorError, AssertionError, ValueError, OSError) as error:
+            return f"neither the old nor the new: {type(error).__name__}: {error}"
+        if there not in (self.reads[old], self.reads[new]):
+            return f"neither the old nor the new: {there!r}"
+        steps_of(child(partial(self.kind.save, here, last)))
+        if self.kind.read(here) != self.reads[last]:
+            return "the next save is lost: another save is read"
+        left = [path.name for path in here.rglob("*") if path.suffix == ".part" or path.name == COMMITTED]
+        return f"files are left over: {left}" if left else ""
 
 
-if __name__ == "__main__":
-    sys.exit(main())
+class Beside(Killing):
+    """A folder of tables that is read while a child saves to it without end."""
+
+    @contextmanager
+    def begun(self, folder: Path) -> Iterator[None]:
+        with super().begun(folder):
+            process = child(lambda: [self.kind.save(folder / "0", number) for number in cycle(NUMBERS)])
+            yield
+            os.kill(process, signal.SIGKILL)
+            os.waitpid(process, 0)
+
+    def attempt(self, chance: random.Random) -> str:
+        try:
+            is_whole = self.kind.read(self.saved / "0") in self.reads
+        except InputError as error:
+            return "" if "tables must stay" in str(error) else f"a refusal beside a save: {error}"
+        return "" if is_whole else "tables of two saves are mixed"
+
+
+def trials() -> dict[str, Callable[[], Trial]]:
+    """The attacks by their names."""
+    killings = {name: partial(Killing, kind) for name, kind in KINDS.items()}
+    return {**killings, "beside a save": partial(Beside, KINDS["npy tables"])}

@@ -10,14 +10,16 @@ import struct
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 import numpy as np
 
-from autocolor import Mesh, scene_of
+from autocolor import Scene
 from autocolor.files.conversion import OutputFormat, outputs
 from autocolor.scene.scalar import MeshScalar
 from tests.autocolor.files.meshes.vtp_files import VtpWriter
+from tests.small import boxes
 
 NUMBERS = (
     b"4294967296", b"4294967295", b"2147483648", b"2147483647", b"-1", b"0", b"nan", b"inf", b"1e999",
@@ -103,19 +105,12 @@ def _replace_word(data: bytearray, chance: random.Random, at: int) -> None:
     data[start:end] = chance.choice(NUMBERS)
 
 
-def small_mesh() -> Mesh:
-    """A small mesh of two parts with quads, a triangle and scalars of both kinds."""
-    places = [[x, y, 0.25 * x * y] for y in range(3) for x in range(3)]
-    return Mesh(
-        np.array(places),
-        np.array([[0, 1, 4, 3], [1, 2, 5, 4], [3, 4, 7, 6], [4, 5, 8, 8]]),
-        np.array([0, 0, 1, 1]),
-        ("hood", "roof"),
-        scalars=(
-            MeshScalar("stress", np.array([0.5, 1, 2, 3, np.nan, 5, 6, 7, 8e10])),
-            MeshScalar("load", np.array([1.0, 2, 3, 4]), "polygon"),
-        ),
-    )
+@cache
+def scene() -> Scene:
+    """A cube of two parts with scalars of both kinds, under two lights."""
+    stress = MeshScalar("stress", np.array([1, 2, np.nan, 4, 5, 6, 7, 8e10]))
+    mesh = boxes().mesh.with_scalars(stress, MeshScalar("area", np.arange(6.0), "polygon"))
+    return boxes().replace(mesh=mesh)
 
 
 STL_TEXT = (
@@ -258,12 +253,11 @@ BY_HAND = (
 
 
 def written_seed(output: OutputFormat) -> Seed:
-    """A small mesh as a format writes it."""
+    """The small scene as a format writes it."""
     with tempfile.TemporaryDirectory() as name:
         suffix = output.suffixes[0] if output.suffixes else ""
         target = Path(name) / f"small{'' if output.in_folder else suffix}"
-        mesh = small_mesh()
-        output.write(target, scene_of(mesh), False)
+        output.write(target, scene(), False)
         if not output.in_folder:
             return Seed(f"{output.name} as written", {target.name: target.read_bytes()}, target.name)
         found = sorted(path for path in target.rglob("*") if path.is_file())

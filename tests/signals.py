@@ -1,15 +1,12 @@
-"""Signals at every moment: `python -m tests.signals [--rounds N] [--row TEXT]`.
+"""The attacks `signals`: commands that get a signal at any moment.
 
-A row is a command and a moment. For each signal that ends a program the command is started in a folder of its
-own, and it gets the signal at that moment. Then it must end with the row's exit code and without a traceback,
-its outputs must be whole, and nothing else may be left in the folder. The script prints the longest time from
-a signal to the end of each row, and leaves with 1 if a row failed. Windows are tried if there is a screen
-(`xvfb-run python -m tests.signals`).
+A row is a command and a moment. The command is started in a folder of its own, and gets a signal at that
+moment. Then it must end with the row's exit code and without a traceback, its outputs must be whole, and
+nothing else may be left in the folder. Windows are tried if there is a screen (`xvfb-run`).
 """
 
 from __future__ import annotations
 
-import argparse
 import os
 import random
 import select
@@ -18,7 +15,6 @@ import signal
 import socket
 import subprocess
 import sys
-import tempfile
 import time
 from array import array
 from collections.abc import Callable
@@ -32,6 +28,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ramtek_emu import NCAR_9460, Ramtek9300, instructions, read_snapshot
+from tests.attacks import Trial
 from tests.ramtek_emu.processes import environment, stream
 from tests.ramtek_emu.serving import serving_at
 
@@ -111,14 +108,10 @@ class Command:
             pipe.close()
 
 
-def starting(command: Command) -> None:
-    command.until(lambda: command.catches(signal.SIGTERM))
-
-
 def at_any_time(command: Command) -> None:
     """At any time after our first line."""
-    starting(command)
-    time.sleep(random.uniform(0, 0.5))
+    command.until(lambda: command.catches(signal.SIGTERM))
+    time.sleep(random.choice((0, random.uniform(0, 0.5))))
 
 
 def recording(command: Command) -> None:
@@ -168,6 +161,11 @@ class Row(NamedTuple):
     has_display: bool = False
     """Whether a display is served at `display`."""
 
+    @property
+    def moment_name(self) -> str:
+        """The name of the moment's function."""
+        return str(getattr(self.moment, "func", self.moment).__name__)
+
 
 OUTPUTS = "-o o.png --snapshot s.png --record r.ramtek --configuration NCAR_9460"
 WRITTEN = ("o.png", "s.png", "r.ramtek")
@@ -176,53 +174,34 @@ PIPED = (f"serve --stdio {OUTPUTS}", f"serve --stdio --joystick stick {OUTPUTS}"
 PLAYED = f"play - {OUTPUTS}"
 TTY = "tty --stream --link link display -- sh -c 'echo ready; exec sleep 60'"
 COUPE = Path(__file__).parents[1] / "scenes" / "coupe"
-AUTOCOLOR = (
-    (f"render {COUPE} -o o.png", ("o.png",)),
-    (f"render {COUPE} --save o.npz", ("o.npz",)),
-    (f"validate {COUPE} --show -o o.png", ("o.png",)),
-    *((f"convert {COUPE} {output}", (output,)) for output in ("o.sqlite", "o.csv", "o.tables", "o")),
-    (f"convert {COUPE / 'body.obj'} o.ply", ("o.ply",)),
-    *((f"{command} {COUPE}", ()) for command in ("info", "validate", "tables")),
-    (f"sql {COUPE} 'SELECT count(*) FROM nodes a, nodes b, nodes c'", ()),
-    ("view --sessions", ()),
-)
-"""Commands and their outputs."""
+AUTOCOLOR = {
+    f"render {COUPE} -o o.png": ("o.png",),
+    f"render {COUPE} --save o.npz": ("o.npz",),
+    **{f"convert {COUPE} {output}": (output,) for output in ("o.sqlite", "o.csv", "o.tables", "o")},
+    f"convert {COUPE / 'body.obj'} o.ply": ("o.ply",),
+    f"validate {COUPE}": (),
+    f"sql {COUPE} 'SELECT count(*) FROM nodes a, nodes b, nodes c'": (),
+}
+"""Commands with their outputs."""
 SHOWN = (f"show {COUPE} --to ./display --once", f"show {COUPE} --to ./display", "tutorial --to ./display")
+SERVED = (idle, filling, unread)
 
 ROWS = (
-    *(Row(command, moment, (0,), WRITTEN) for moment in (idle, filling, unread) for command in PIPED),
-    *(
-        Row(command, partial(moment, connect=True), (0,), WRITTEN)
-        for moment in (idle, filling, unread)
-        for command in SERVERS
-    ),
+    *(Row(command, moment, (0,), WRITTEN) for moment in SERVED for command in PIPED),
+    *(Row(each, partial(moment, connect=True), (0,), WRITTEN) for moment in SERVED for each in SERVERS),
     *(Row(PLAYED, moment, (-1,), WRITTEN) for moment in (recording, filling)),
-    *(
-        Row(command, moment, (0, -1), WRITTEN)
-        for moment in (starting, at_any_time)
-        for command in (*PIPED, *SERVERS, PLAYED)
-    ),
-    *(Row("list lines.ramtek", moment) for moment in (starting, printing)),
+    *(Row(command, at_any_time, (0, -1), WRITTEN) for command in (*PIPED, *SERVERS, PLAYED)),
+    Row("list lines.ramtek", printing),
     Row("list lines.ramtek", at_any_time, (0, -1)),
-    *(Row("assemble - -o a.ramtek", moment) for moment in (starting, at_any_time)),
-    *(Row(TTY, moment, has_display=True) for moment in (starting, at_any_time, program)),
+    Row("assemble - -o a.ramtek", at_any_time),
+    *(Row(TTY, moment, has_display=True) for moment in (at_any_time, program)),
     Row("-o o.png", at_any_time, (0, -1), ("o.png",)),
-    *(Row(command, at_any_time, (0, -1), written, "autocolor") for command, written in AUTOCOLOR),
+    *(Row(command, at_any_time, (0, -1), AUTOCOLOR[command], "autocolor") for command in AUTOCOLOR),
     *(Row(command, at_any_time, (0, -1), (), "autocolor", has_display=True) for command in SHOWN),
 )
 WINDOWS = (
-    *(
-        Row(f"{command} --window", moment, (0,), WRITTEN)
-        for command, moment in (
-            (PLAYED, recording),
-            (PLAYED, filling),
-            (PIPED[0], idle),
-            (PIPED[0], filling),
-            (PIPED[0], unread),
-            (SERVERS[1], partial(idle, connect=True)),
-            (SERVERS[1], partial(filling, connect=True)),
-        )
-    ),
+    *(Row(f"{PLAYED} --window", moment, (0,), WRITTEN) for moment in (recording, filling)),
+    *(Row(f"{PIPED[0]} --window", moment, (0,), WRITTEN) for moment in SERVED),
     *(Row(command, at_any_time, module="autocolor") for command in (f"view {COUPE}", "tutorial", "")),
 )
 
@@ -286,13 +265,13 @@ def ended(row: Row, number: signal.Signals, place: Path) -> tuple[float, int, st
 def check(row: Row, number: signal.Signals, place: Path, code: int, said: str) -> None:
     """Whether a command that ended has left its outputs, whole, and nothing else."""
     codes = {128 + number if expected == -1 else expected for expected in row.codes}
-    if row.moment in (starting, at_any_time):
+    if row.moment is at_any_time:
         # After our last line, the signal ends Python.
         codes.add(-number)
     assert code in codes, (code, said)
     assert "Traceback" not in said
     left = {path.name for path in place.iterdir()} - {"lines.ramtek", "stick", "state"}
-    if row.moment in (starting, at_any_time):
+    if row.moment is at_any_time:
         # Everything is written, or nothing.
         assert left in (set(), set(row.written)), (left, said)
     else:
@@ -303,31 +282,19 @@ def check(row: Row, number: signal.Signals, place: Path, code: int, said: str) -
         assert np.array_equal(read_snapshot(place / "s.png").words, twin.words), "the recording is cut"
 
 
-def main() -> None:
-    """Attack each row by each signal, and print what happened."""
-    parser = argparse.ArgumentParser(prog="python -m tests.signals", description=__doc__)
-    parser.add_argument("--rounds", type=int, default=1, help="how often each row gets each signal")
-    parser.add_argument("--row", default="", help="only the rows with this text in their command or moment")
-    options = parser.parse_args()
-    # Jobs in a shell's background ignore SIGINT, and nohup ignores SIGHUP. The commands would respect that.
-    signal.signal(signal.SIGINT, signal.default_int_handler)
-    signal.signal(signal.SIGHUP, signal.SIG_DFL)
-    failed = 0
-    for row in ROWS + (WINDOWS if "DISPLAY" in os.environ else ()):
-        moment = getattr(row.moment, "func", row.moment).__name__
-        if options.row not in f"{row.arguments} {moment}":
-            continue
-        longest, faults = 0.0, []
-        for number in ENDING * options.rounds:
-            with tempfile.TemporaryDirectory() as place:
-                try:
-                    longest = max(longest, attack(row, number, Path(place))[0])
-                except (AssertionError, subprocess.TimeoutExpired) as fault:
-                    faults.append(f"  {number.name}: {fault}")
-        print(f"{longest:6.3f} s  {moment:12} {row.module} {row.arguments}", *faults, sep="\n", flush=True)
-        failed += len(faults)
-    sys.exit(1 if failed else 0)
+class Signalled(Trial):
+    """A row that gets each signal."""
+
+    def __init__(self, row: Row) -> None:
+        self.row = row
+
+    def attempt(self, chance: random.Random) -> str:
+        random.seed(chance.random())
+        attack(self.row, chance.choice(ENDING), Path.cwd())
+        return ""
 
 
-if __name__ == "__main__":
-    main()
+def trials() -> dict[str, Callable[[], Trial]]:
+    """The attacks by their names."""
+    rows = ROWS + (WINDOWS if "DISPLAY" in os.environ else ())
+    return {f"{row.moment_name}, {row.module} {row.arguments}": partial(Signalled, row) for row in rows}
