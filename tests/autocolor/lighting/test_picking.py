@@ -714,3 +714,16 @@ def test_a_highlight_is_seen_where_much_of_it_is_and_not_at_a_brighter_edge(line
     assert specular_shares(changed, 100, 200)["key"] == 1
     assert specular_shares(changed, 0, 0) == {}
     assert seen_highlight(changed, "none") is None
+
+
+def test_any_number_of_half_spaces_have_rims_of_their_own() -> None:
+    planes = tuple(
+        HalfSpace(f"plane {number}", (0.1 * number - 0.9, 0, 0), (1, 0, 0.1)) for number in range(19)
+    )
+    light = Light("light", (0.2, -6.0, 0.1), half_spaces=planes, flaps=Flaps(z=Flap(-0.5, 0.5)))
+    found = rims(wall_sight(wall_scene(wall(half=2.0), view=FILLING, lights=[light])), "light")
+    assert len(found) == 21
+    for plane in planes:
+        alone = light.replace(half_spaces=(plane,), flaps=Flaps())
+        rim = rims(wall_sight(wall_scene(wall(half=2.0), view=FILLING, lights=[alone])), "light")
+        assert found[Plane(plane.name)].tolist() == rim[Plane(plane.name)].tolist() != []

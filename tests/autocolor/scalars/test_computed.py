@@ -198,6 +198,13 @@ def test_a_cylinder_bends_one_way() -> None:
         assert found(mesh, ANY, points).values == pytest.approx(number, abs=1e-3)
 
 
+@pytest.mark.parametrize("size", [1e4, 1e-4])
+def test_a_ball_of_any_size_is_bent(size: float) -> None:
+    mesh = sphere(40, 20, radius=size)
+    _, limits = mean_curvature(mesh, ANY, seen(mesh))
+    assert limits == pytest.approx((1 / size, 1 / size), rel=0.3)
+
+
 def test_the_range_leaves_a_few_sharp_bends_out() -> None:
     ball, needle = sphere(120, 60), sphere(12, 8, radius=0.01)
     moved = Mesh(needle.coordinates + np.array([3.0, 0.0, 0.0]), needle.node_numbers, part_names=("needle",))
@@ -412,3 +419,10 @@ def test_a_polygon_with_a_missing_corner_is_missing_and_no_other() -> None:
 def test_a_scalar_of_the_mesh_comes_before_a_computed_one() -> None:
     mesh = wall().with_scalars(MeshScalar("z", np.full(4, 7.0)))
     assert set(values_of(mesh, "z", seen(mesh)).values.tolist()) == {7.0}
+
+
+def test_nodes_that_no_polygon_uses_are_not_in_the_range() -> None:
+    one = wall()
+    mesh = Mesh(np.vstack([one.coordinates, [(9.0, 9.0, 9.0)]]), one.node_numbers, part_names=("wall",))
+    mesh = mesh.with_scalars(MeshScalar("stress", np.array([1.0, 2.0, 3.0, 4.0, 1000.0])))
+    assert values_of(mesh, "stress", seen(mesh)).limits == (1, 4)
