@@ -56,9 +56,7 @@ def test_the_percentage_is_how_much_of_the_light_color_is_reached(percentage: fl
 
 def test_the_floor_is_how_bright_the_lowest_level_is() -> None:
     entries = entries_of(Paint((200, 100, 40), (200, 100, 40)), 11, floor=0.5)
-    assert entries[0].tolist() == [100, 50, 20]
-    assert entries[5].tolist() == [150, 75, 30]
-    assert entries[-1].tolist() == [200, 100, 40]
+    assert entries[[0, 5, 10]].tolist() == [[100, 50, 20], [150, 75, 30], [200, 100, 40]]
 
 
 @given(ramps(), st.integers(1, 1_000_000))

@@ -64,12 +64,9 @@ def test_words_are_shared_by_the_square_root_of_the_covered_pixels(words: int, p
     assert all(shares[a] <= shares[b] + 1 for a, b in itertools.pairwise(by_size))
 
 
-def test_of_surfaces_that_cover_the_same_the_first_get_the_words_that_are_left() -> None:
+def test_words_that_are_left_go_to_the_first_and_the_unseen_have_the_fewest() -> None:
     assert shares_of_words(101, [50, 50, 50]) == [34, 34, 33]
     assert shares_of_words(100, [0, 0, 0]) == [34, 33, 33]
-
-
-def test_a_surface_in_use_that_is_not_seen_has_the_fewest_words() -> None:
     assert shares_of_words(1007, [90_000, 0]) == [991, 16]
     assert shares_of_words(30, [90_000, 0, 0]) == [10, 10, 10]
 
@@ -153,7 +150,7 @@ test_what_is_refused = refused(
         ),
         *(
             (
-                lambda count=count: borrowed_words(BODY_AND_GLASS, ["body", "glass"], count),  # type: ignore[misc]
+                lambda count=count: borrowed_words(BODY_AND_GLASS, ["body", "glass"], count),
                 f"the words to borrow must be 0 to 1005 beside the surfaces that stay, not {count};"
                 " borrow fewer",
             )
