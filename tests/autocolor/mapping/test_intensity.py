@@ -18,6 +18,7 @@ from autocolor.mapping.intensity import (
     dithered_levels,
     following_ranges,
     fraction_of,
+    fractions_by_surface,
     has_extent,
     held_exposure,
     levels_of,
@@ -309,3 +310,13 @@ def test_held_ranges_map_as_before_and_the_others_come_from_the_picture(scene: S
     now, then = display_image(scene, picture), display_image(scene.replace(exposure=exposure), picture)
     assert then.words.tolist() == now.words.tolist()
     assert then.entries.tolist() == now.entries.tolist()
+
+
+def test_the_function_of_one_surface_is_that_among_all_and_maps_its_range_to_0_and_1() -> None:
+    picture = picture_of([0.1, 0.4, 0.9], [0.2, 0.3, 1.5])
+    extents = mapped_ranges(picture, "surface", "auto")
+    of_all, of_one = (fractions_by_surface(picture, extents, "linear", only) for only in (None, 2))
+    values = np.array([0.2, 0.3, 1.5], np.float32)
+    for functions in (of_all, of_one):
+        assert functions[2](values).tolist() == pytest.approx([0, 0.1 / 1.3, 1])
+    assert (of_all.keys(), of_one.keys()) == ({1, 2}, {2})

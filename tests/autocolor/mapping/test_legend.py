@@ -99,6 +99,7 @@ def test_all_of_it_is_inside_its_frame_and_the_frame_inside_the_picture(bands: i
         name, Bands(-1234.5, 6789.1, bands, 1, True, True, True), 1, (480, 640), (1, 0), (True, True)
     )
     assert found is not None
+    assert [each.text for each in found.labels[-2:]] == ["< -1234", "no value"]
     frame = found.swatches[0]
     assert frame.left >= 0
     assert frame.top >= 0
