@@ -244,12 +244,13 @@ def test_no_normals_have_no_cells_and_a_zero_normal_has_one() -> None:
 
 
 def test_the_spread_of_normals_is_how_much_of_the_sphere_they_take() -> None:
-    half = spread_of(ball(400))
+    front = ball(400)
+    half = spread_of(front)
     # Half of the sphere is half of the disk in the square of all bins.
     assert half == pytest.approx(np.pi / 4 * BINS**2 / 2, rel=0.03)
-    front = ball(400)
-    # A cap of half the height has half the area of the half sphere.
+    # A cap of half the height has half the area of the half sphere, and the whole sphere twice the area.
     assert spread_of(front[:, front[2] < -0.5]) == pytest.approx(half / 2, rel=0.03)
+    assert spread_of(np.concatenate([front, -front], axis=1)) == pytest.approx(2 * half, rel=0.03)
 
 
 FAR = 1e4
