@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor import InputError, Light, Mesh, Picture, Scene, Surface, View, render, scene_of
+from autocolor import InputError, Light, Mesh, Scene, Surface, View, render, scene_of
 from autocolor.images import display_image
 from autocolor.mapping.bands import (
     DARKEST,
@@ -24,8 +24,16 @@ from autocolor.scene.color_scales import scale_colors
 from autocolor.scene.scalar import MeshScalar
 from autocolor.testing import scenes
 from tests.small import grid
+from tests.tables import refused
 
-values = st.floats(-20, 20, width=32) | st.just(math.nan) | st.sampled_from([1e30, -1e30, 0.0, 1.0, 4.0])
+values = (
+    st.floats(-20, 20, width=32)
+    | st.just(math.nan)
+    | st.sampled_from([1e30, -1e30])
+    # Limits, and what rounding puts just beyond them.
+    | st.builds(np.nextafter, st.integers(-8, 8).map(np.float32), st.sampled_from([-99, 99]).map(np.float32))
+    | st.integers(-8, 8).map(float)
+)
 
 
 def band_of(value: float, bands: Bands) -> int:
@@ -55,20 +63,6 @@ def test_each_value_is_in_its_band(
     bands = Bands(low, high, count, 1, has_below, has_above, True)
     found = band_numbers(np.array(values, np.float32), bands)
     assert found.tolist() == [band_of(value, bands) for value in np.array(values, np.float32).tolist()]
-
-
-def test_a_value_at_the_upper_limit_is_in_the_last_band_and_one_that_rounding_put_beyond_it_too() -> None:
-    bands = Bands(0.0, 250.0, 16, 8, has_above=True)
-    just_beyond = np.nextafter(np.float32(250), np.float32(300))
-    assert band_numbers(np.array([250, just_beyond, 251], np.float32), bands).tolist() == [15, 15, 16]
-
-
-def test_the_bands_beyond_the_limits_follow_the_others() -> None:
-    bands = Bands(0, 1, 10, 4, has_below=True, has_above=True, has_missing=True)
-    assert (bands.below, bands.above, bands.missing) == (10, 11, 12)
-    assert (bands.total, bands.levels) == (13, 52)
-    assert bands.brightest(0) == 3
-    assert bands.brightest(12) == bands.levels - 1
 
 
 @pytest.mark.parametrize("shades", [1, 2, 8])
@@ -125,54 +119,12 @@ def panes(count: int, *values: float, **scalar: Any) -> Scene:
 
 
 def bands_of(scene: Scene) -> Any:
-    return bands_by_surface(scene, render(scene, 48, 64))
-
-
-def test_without_a_scalar_there_are_no_bands() -> None:
-    scene = panes(2)
-    assert bands_of(scene.without_scalar()) == {}
-    assert (
-        bands_by_surface(
-            scene,
-            Picture.from_rasters(
-                np.ones((2, 2), np.float32), np.ones((2, 2), np.uint8), ("pane 0", "pane 1"), 1.0
-            ),
-        )
-        == {}
-    )
-
-
-def test_there_are_eight_shades_where_the_words_suffice_and_fewer_where_they_do_not() -> None:
-    assert {each.shades for each in bands_of(panes(2)).values()} == {8}
-    assert {each.shades for each in bands_of(panes(2, bands=100)).values()} == {5}
-    assert {each.shades for each in bands_of(panes(60)).values()} == {1}
-
-
-def test_as_many_shades_are_made_as_are_asked_for() -> None:
-    (bands, other) = bands_of(panes(2, bands=30, shades=16)).values()
-    assert bands == other
-    assert (bands.bands, bands.shades) == (30, 16)
-
-
-def test_too_many_bands_are_refused_with_the_words_left_and_a_remedy() -> None:
-    with pytest.raises(InputError) as refusal:
-        bands_of(panes(2, bands=64, shades=8))
-    assert str(refusal.value) == (
-        "surface 'pane 0' and 1 more: the bands of scalar 'stress' times their shades must be at most the"
-        " 1007 words that are left for them, not 128 x 8 = 1024; choose at most 7 shades, or fewer bands"
-    )
-    with pytest.raises(InputError) as refusal:
-        bands_of(panes(5, bands=256))
-    assert str(refusal.value) == (
-        "surface 'pane 0' and 4 more: the bands of scalar 'stress' times their shades must be at most the"
-        " 1007 words that are left for them, not 1280 x 1 = 1280; even one shade of each needs 1280;"
-        " choose fewer bands, or let it color fewer surfaces"
-    )
+    return bands_by_surface(scene, render(scene, 24, 32))
 
 
 def test_the_surfaces_that_are_not_colored_share_the_rest_as_ever() -> None:
     scene = panes(3, surfaces=["pane 1"], shades=4)
-    image = display_image(scene, render(scene, 48, 64))
+    image = display_image(scene, render(scene, 24, 32))
     assert list(image.bands) == ["pane 1"]
     assert image.ranges["pane 1"].levels == 64
     assert sum(each.levels for each in image.ranges.values()) == SURFACE_WORDS
@@ -216,7 +168,7 @@ def test_values_beyond_the_limits_have_bands_where_there_are_limits_and_colors()
 def test_the_own_limits_are_the_range_of_the_values_or_around_a_constant(
     values: tuple[float, ...], limits: tuple[float, float]
 ) -> None:
-    assert own_limits(render(panes(2, *values), 48, 64)) == limits
+    assert own_limits(render(panes(2, *values), 24, 32)) == limits
 
 
 @given(scenes())
@@ -228,3 +180,39 @@ def test_every_word_of_a_colored_surface_tells_band_and_shade(scene: Scene) -> N
         assert levels == bands.levels
         seen = image.words[picture.surface_number == picture.surfaces.index(name) + 1]
         assert ((seen >= first) & (seen < first + levels)).all()
+
+
+def test_without_a_scalar_or_its_values_there_are_no_bands() -> None:
+    scene = panes(2)
+    assert bands_of(scene.without_scalar()) == {}
+    assert bands_by_surface(scene, render(scene.without_scalar(), 9, 12)) == {}
+
+
+def test_as_many_shades_are_made_as_are_asked_for_or_at_most_eight_that_the_words_suffice_for() -> None:
+    for count, bands, asked, shades in (
+        (2, 16, None, 8),
+        (2, 100, None, 5),
+        (60, 16, None, 1),
+        (2, 30, 16, 16),
+    ):
+        of_surfaces = bands_of(panes(count, bands=bands, shades=asked)).values()
+        assert {(each.bands, each.shades) for each in of_surfaces} == {(bands, shades)}
+
+
+test_too_many_bands_are_refused_with_the_words_left_and_a_remedy = refused(
+    bands_of,
+    [
+        (
+            panes(2, bands=64, shades=8),
+            "surface 'pane 0' and 1 more: the bands of scalar 'stress' times their shades must be at most the"
+            " 1007 words that are left for them, not 128 x 8 = 1024; choose at most 7 shades, or fewer bands",
+        ),
+        (
+            panes(5, bands=256),
+            "surface 'pane 0' and 4 more: the bands of scalar 'stress' times their shades must be at most the"
+            " 1007 words that are left for them, not 1280 x 1 = 1280; even one shade of each needs 1280;"
+            " choose fewer bands, or let it color fewer surfaces",
+        ),
+    ],
+    InputError,
+)

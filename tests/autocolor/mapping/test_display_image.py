@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -9,18 +9,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor import InputError, Light, Mesh, Picture, Scene, Surface, UsageError, render, scene_of
-from autocolor.arrays import Numbers
+from autocolor import Light, Picture, Scene, Surface, UsageError, render
 from autocolor.images import display_image
 from autocolor.mapping.display_image import DisplayImage, words_by_line
-from autocolor.mapping.intensity import held_exposure
 from autocolor.mapping.ranges import BACKGROUND, SCREEN_COLORS, SCREENS, WORDS
 from autocolor.rendering import Rendering, rendering
 from autocolor.scene.columns import Tier
 from autocolor.scene.scene import costs_at_least
 from autocolor.testing import MAPPINGS, colors, exposures, limits, numbers, paints, scalars, scales, scenes
-from autocolor.visibility.projection import Projection
-from tests.autocolor.strategies import rasters, soups
+from tests.autocolor.strategies import rasters
 from tests.small import car, wall_scene
 
 LINES, ELEMENTS = 9, 12
@@ -106,37 +103,6 @@ def loaded(before: DisplayImage, after: DisplayImage) -> npt.NDArray[np.uint8]:
     return table
 
 
-@given(scenes(), st.lists(st.lists(edits, min_size=1, max_size=3), min_size=1, max_size=4))
-def test_the_loads_turn_one_table_into_the_other(scene: Scene, steps: list[list[Edit]]) -> None:
-    session = Session(scene)
-    for step in steps:
-        before = session.edit(*step)
-        assert (loaded(before, session.image) == session.image.entries).all()
-        assert (loaded(session.image, before) == before.entries).all()
-
-
-@given(scenes(), st.lists(edits, min_size=1, max_size=3))
-def test_an_image_is_the_same_whatever_it_was_made_after(scene: Scene, step: list[Edit]) -> None:
-    session = Session(scene)
-    session.edit(*step)
-    alone = display_image(session.image.scene, session.image.picture)
-    assert session.image.ranges == alone.ranges
-    assert (session.image.words == alone.words).all()
-    assert (session.image.entries == alone.entries).all()
-
-
-@given(scenes(), st.lists(edits, min_size=1, max_size=3))
-def test_the_words_are_shared_where_no_level_can_have_changed(scene: Scene, step: list[Edit]) -> None:
-    session = Session(scene)
-    before = session.edit(*step)
-    if not costs_at_least(before.scene, session.image.scene, Tier.LEVELS):
-        assert session.image.words is before.words
-        assert session.image.ranges is before.ranges
-    if session.image.words is before.words:
-        alone = display_image(session.image.scene, session.image.picture)
-        assert (alone.words == before.words).all()
-
-
 @given(scenes(), names, paints())
 def test_another_paint_loads_the_range_of_its_surface_alone(scene: Scene, name: str, paint: Any) -> None:
     session = Session(scene)
@@ -157,15 +123,6 @@ def test_another_color_scale_loads_the_ranges_of_colored_surfaces_alone(
     loads = [(first, len(entries)) for first, entries in session.image.loads_after(before)]
     ranges = [tuple(session.image.ranges[name]) for name in ("body", "glass") if name in session.image.bands]
     assert loads == ([] if scale == scalar.scale else ranges)
-
-
-@given(scenes(), edits)
-def test_nothing_is_loaded_for_an_image_of_the_same_colors(scene: Scene, edit: Edit) -> None:
-    session = Session(scene)
-    session.edit(edit)
-    image = session.image
-    assert list(image.loads_after(image)) == []
-    assert list(image.loads_after(display_image(image.scene.replace(name="new"), image.picture))) == []
 
 
 @given(scenes(), of_scene(background=colors()) | of_scene(contrast=st.sampled_from(["stretch", "floor"])))
@@ -193,34 +150,11 @@ def test_every_entry_is_the_backgrounds_a_surfaces_or_a_screens(scene: Scene) ->
     assert not image.entries[free].any()
     assert not image.entries.flags.writeable
     assert not image.words.flags.writeable
-
-
-@given(scenes())
-def test_no_pixel_has_a_word_of_the_screens_and_only_the_unseen_have_the_backgrounds(scene: Scene) -> None:
-    image = Session(scene).image
     assert image.words.max() < SCREENS.first
     assert ((image.words == BACKGROUND) == (image.picture.surface_number == 0)).all()
 
 
 SPARE = Surface("spare").replace(object_color=(1, 2, 3))
-
-
-@given(
-    scenes(), paints(), st.permutations([0, 1, 2]), st.lists(st.sampled_from([0, 1]), max_size=2, unique=True)
-)
-def test_surfaces_without_parts_come_and_go_and_change_places(
-    scene: Scene, paint: Any, order: list[int], paint_taken: list[int]
-) -> None:
-    session = Session(scene)
-
-    def add(scene: Scene) -> Scene:
-        rows = [*scene.surfaces, SPARE]
-        rows = [row.replace(paint=paint) if number in paint_taken else row for number, row in enumerate(rows)]
-        return scene.replace(surfaces=[rows[number] for number in order])
-
-    before = session.edit(add)
-    assert (loaded(before, session.image) == session.image.entries).all()
-    assert (loaded(session.image, before) == before.entries).all()
 
 
 def test_a_surface_that_takes_the_place_and_the_paint_of_another_is_still_loaded() -> None:
@@ -257,16 +191,6 @@ def test_the_lowest_entry_is_black_or_in_proportion_to_the_lowest_intensity(
     assert bright == [200] * 3
 
 
-def test_a_surface_that_is_dark_everywhere_or_seen_nowhere_has_a_floor_of_black() -> None:
-    scene = wall_scene(contrast="floor")
-    for picture in (two_tones(0.0, 0.0), Picture.from_rasters(*unseen(), ("wall",), 1.0)):
-        assert display_image(scene, picture).entries[1].tolist() == [0, 0, 0]
-
-
-def unseen() -> tuple[npt.NDArray[np.float32], npt.NDArray[np.uint8]]:
-    return np.zeros((1, 2), np.float32), np.zeros((1, 2), np.uint8)
-
-
 def test_a_floor_that_moves_with_the_picture_is_loaded() -> None:
     scene = wall_scene(contrast="floor")
     before = display_image(scene, two_tones(0.5, 2.0))
@@ -279,65 +203,46 @@ def test_a_floor_that_moves_with_the_picture_is_loaded() -> None:
     assert list(moved.loads_after(stretched)) == []
 
 
-def test_levels_that_surfaces_in_use_cannot_have_are_refused() -> None:
-    scene = wall_scene().with_surface("wall", levels=2000)
-    with pytest.raises(InputError, match="ask for fewer levels"):
-        display_image(scene, two_tones(0.0, 1.0))
+def test_a_surface_that_is_dark_everywhere_or_seen_nowhere_has_a_floor_of_black() -> None:
+    zero = np.zeros((1, 2), np.float32), np.zeros((1, 2), np.uint8)
+    for picture in (two_tones(0.0, 0.0), Picture.from_rasters(*zero, ("wall",), 1.0)):
+        assert display_image(wall_scene(contrast="floor"), picture).entries[1].tolist() == [0, 0, 0]
 
 
-def image_of(scene: Scene, lines: int, elements: int) -> DisplayImage:
-    return display_image(scene, render(scene, lines, elements))
-
-
-def all_lines(image: DisplayImage) -> list[list[int]]:
-    """The words of all lines together, after a look at each."""
-    found = list(words_by_line(image))
-    assert [line for line, _ in found] == list(range(image.picture.lines))
-    assert {(words.shape, words.dtype) for _, words in found} == {
-        ((1, image.picture.elements), np.dtype("u2"))
-    }
-    words: list[list[int]] = np.concatenate([words for _, words in found]).tolist()
-    return words
+@given(scenes(), st.lists(st.lists(edits, min_size=1, max_size=3), min_size=1, max_size=3))
+def test_an_edited_image_is_as_if_made_alone_and_its_loads_turn_one_table_into_the_other(
+    scene: Scene, steps: list[list[Edit]]
+) -> None:
+    session = Session(scene)
+    for step in steps:
+        before = session.edit(*step)
+        image = session.image
+        assert (loaded(before, image) == image.entries).all()
+        assert (loaded(image, before) == before.entries).all()
+        alone = display_image(image.scene, image.picture)
+        assert image.ranges == alone.ranges
+        assert (image.words == alone.words).all()
+        assert (image.entries == alone.entries).all()
+        # The words are shared where no level can have changed.
+        if not costs_at_least(before.scene, image.scene, Tier.LEVELS):
+            assert image.words is before.words
+            assert image.ranges is before.ranges
+        renamed = display_image(image.scene.replace(name="new"), image.picture)
+        assert list(image.loads_after(image)) == list(image.loads_after(renamed)) == []
 
 
 @given(scenes(), rasters)
 def test_all_lines_together_are_the_words_of_the_picture(scene: Scene, raster: tuple[int, int]) -> None:
-    image = image_of(scene, *raster)
-    assert all_lines(image) == image.words.tolist()
-
-
-@given(soups(), rasters)
-def test_all_lines_together_are_the_words_where_polygons_pass_through_each_other(
-    mesh: Mesh, raster: tuple[int, int]
-) -> None:
-    image = image_of(scene_of(mesh), *raster)
-    assert all_lines(image) == image.words.tolist()
-
-
-def test_the_lines_have_the_levels_of_a_held_exposure() -> None:
-    scene = car()
-    picture = render(scene, 24, 32)
-    held = scene.replace(exposure=held_exposure(picture, scene.scaling)).with_light("key", intensity=0.2)
-    image, free = image_of(held, 24, 32), image_of(held.replace(exposure="auto"), 24, 32)
-    assert all_lines(image) == image.words.tolist() != free.words.tolist()
-
-
-def test_the_lines_come_from_the_literal_algorithm(monkeypatch: pytest.MonkeyPatch) -> None:
-    def numbers_by_line(projected: Projection) -> Iterator[Numbers]:
-        for line in range(projected.lines):
-            yield np.full(projected.elements, line % 2, np.int64)
-
-    monkeypatch.setattr("autocolor.mapping.display_image.numbers_by_line", numbers_by_line)
-    image = image_of(car(), 24, 32)
-    lines = np.array(all_lines(image))
-    assert (lines[::2] == BACKGROUND).all()
-    assert lines[1::2].tolist() == image.words[1::2].tolist()
+    image = display_image(scene, render(scene, *raster))
+    found = list(words_by_line(image))
+    assert [line for line, _ in found] == list(range(raster[0]))
+    assert {(words.shape, words.dtype) for _, words in found} == {((1, raster[1]), np.dtype("u2"))}
+    assert np.concatenate([words for _, words in found]).tolist() == image.words.tolist()
 
 
 def test_a_coarse_image_has_no_lines() -> None:
-    image = display_image(car(), render(car(), 12, 16), block=2)
     with pytest.raises(UsageError) as caught:
-        words_by_line(image)
+        words_by_line(display_image(car(), render(car(), 12, 16), block=2))
     assert str(caught.value) == (
         "an image must have blocks of 1 pixel for its lines, not of 2; refine it first"
     )

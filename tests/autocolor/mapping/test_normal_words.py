@@ -4,7 +4,6 @@ import dataclasses
 import math
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
@@ -17,7 +16,6 @@ from autocolor.explanation.level import curved
 from autocolor.explanation.light import direction_to, specular_factor
 from autocolor.explanation.point import dot, minus
 from autocolor.images import display_image
-from autocolor.lighting.picture import Picture
 from autocolor.mapping.normal_words import (
     BINS,
     NormalImage,
@@ -145,26 +143,6 @@ def test_each_entry_is_the_closed_form_at_the_normal_of_its_word(scene: Scene, i
         assert np.abs(found - entry).max() <= 1, (word, found, entry)
 
 
-def test_where_words_are_in_use_they_are_those_of_the_pixels_and_each_surface_has_its_range() -> None:
-    scene = ball_scene(20)
-    image = image_of(scene, 48, 64)
-    seen = np.unique(image.words)
-    assert seen.tolist() == [0, *image.normals.words.tolist()]
-    first, levels = image.ranges["shell"]
-    assert first <= seen[1]
-    assert seen[-1] < first + levels
-    assert (image.words == 0).tolist() == (image.picture.surface_number == 0).tolist()
-
-
-def test_the_normal_of_a_word_is_near_the_normals_of_its_pixels() -> None:
-    image = image_of(ball_scene(20), 240, 320)
-    assert image.picture.normals is not None
-    normals = np.zeros((1024, 3), np.float32)
-    normals[image.normals.words] = image.normals.normals.T
-    cosines = (normals[image.words.ravel()[image.picture.pixels]].T * image.picture.normals).sum(axis=0)
-    assert np.degrees(np.arccos(np.clip(cosines, -1, 1))).max() < 8
-
-
 def test_the_words_of_a_picture_without_any_surface_are_the_background() -> None:
     scene = ball_scene(20).with_view(eye=(0, 9, 0), target=(0, 20, 0))
     image = image_of(scene)
@@ -183,28 +161,9 @@ def ball_scene(exponent: float, eye_distance: float = 200.0) -> Scene:
         Light("fill", (-600.0, -200.0, 100.0), 0.4),
     )
     view = View((0, -eye_distance, 0), target=(0, 0, 0), field_of_view=math.degrees(2.3 / eye_distance))
-    scene = scene_of(sphere(128, 64), surfaces=[Surface("shell")], surface_of_part={"sphere": "shell"})
+    scene = scene_of(sphere(96, 48), surfaces=[Surface("shell")], surface_of_part={"sphere": "shell"})
     scene = scene.replace(lights=lights, view=view, ambient=0.1)
     return scene.with_surface("shell", diffuse=0.75, specular=0.5, exponent=exponent, blend=0.6)
-
-
-def errors(scene: Scene) -> npt.NDArray[np.int64]:
-    """The difference of each component from the true picture, at the visible pixels of 640 x 480."""
-    scene = scene.replace(words="levels")
-    picture = render(scene, 480, 640)
-    true = display_image(scene, picture).colors.astype(np.int64)
-    found = image_of(scene, 480, 640).colors
-    differences: npt.NDArray[np.int64] = np.abs(found - true)[picture.surface_number > 0]
-    return differences
-
-
-@pytest.mark.parametrize(("exponent", "mean", "most"), [(5, 3, 35), (20, 3, 45), (50, 3, 60), (100, 3, 70)])
-def test_the_picture_of_a_ball_differs_little_from_the_true_one(
-    exponent: float, mean: float, most: int
-) -> None:
-    found = errors(ball_scene(exponent))
-    assert found.mean() < mean
-    assert found.max() < most
 
 
 @given(st.lists(st.floats(0, 1, width=32), min_size=1, max_size=30), st.integers(2, 40))
@@ -217,21 +176,6 @@ def test_each_level_is_shown_by_the_word_whose_fraction_is_nearest(
     for level, word in enumerate(words.tolist()):
         wanted = level / (levels - 1)
         assert abs(given[word - 5] - wanted) == pytest.approx(np.abs(given - wanted).min(), abs=1e-6)
-
-
-def test_the_levels_of_a_ball_rise_from_its_darkest_to_its_brightest_color() -> None:
-    image = image_of(ball_scene(20), 240, 320)
-    colors = image.entries[image.words_at_levels("shell")].astype(int).sum(axis=1)
-    assert (np.diff(colors) >= 0).all()
-    own = image.entries[image.normals.words]
-    assert colors[-1] == own.astype(int).sum(axis=1).max()
-
-
-def test_the_words_at_levels_are_the_levels_where_words_stand_for_them() -> None:
-    scene = ball_scene(20)
-    image = display_image(scene, render(scene, LINES, ELEMENTS))
-    first, levels = image.ranges["shell"]
-    assert image.words_at_levels("shell").tolist() == list(range(first, first + levels))
 
 
 def unit(vectors: object) -> Singles:
@@ -265,27 +209,6 @@ def test_every_cell_holds_a_normal_and_there_are_at_most_as_many_as_asked_for(
         assert normal == pytest.approx(mean / np.linalg.norm(mean), abs=1e-5)
 
 
-def test_a_ball_takes_all_cells_and_each_normal_is_in_one_of_the_nearest() -> None:
-    normals = ball(150)
-    cells = cells_of(normals, 1000)
-    assert cells.normals.shape[1] > 980
-    cosines = normals.T @ cells.normals
-    own = np.take_along_axis(cosines, cells.numbers[:, None], axis=1)[:, 0]
-    angles, nearest = np.arccos(np.clip([own, cosines.max(axis=1)], -1, 1))
-    # A pixel may be beyond the border of its cell by no more than its bin reaches.
-    assert (angles - nearest).max() < 2 * np.sqrt(2) * 2 / BINS
-    # So many cells of a hemisphere have a radius of 0.045 each.
-    assert angles.mean() < 0.04
-    assert angles.max() < 0.15
-
-
-def test_cells_are_spread_over_all_that_is_seen_and_denser_where_it_is_larger() -> None:
-    cells = cells_of(ball(150), 1000)
-    # In zones of equal area, from the silhouette to the middle, where one covers seven times the pixels.
-    counts, _ = np.histogram(-cells.normals[2], bins=np.linspace(0, 1, 5))
-    assert 60 < counts[0] < counts[-1] < 500
-
-
 def test_a_hood_that_is_nearly_flat_has_more_cells_than_bins() -> None:
     turns = np.linspace(0, 2 * np.pi, 200)
     tilts = np.radians(4) * np.sqrt(np.linspace(0, 1, 400))[:, None]
@@ -294,13 +217,6 @@ def test_a_hood_that_is_nearly_flat_has_more_cells_than_bins() -> None:
     cells = cells_of(normals, 600)
     bins = np.pi * (BINS / 2 * np.sqrt(2) * np.sin(np.radians(2))) ** 2
     assert np.count_nonzero(-cells.normals[2] > np.cos(np.radians(4))) > 2 * bins
-
-
-def test_as_few_normals_as_there_are_cells_have_a_cell_each() -> None:
-    normals = unit([[0, 0, 0.7, 0, 0.7], [0, 0.5, 0, 0, 0], [-1, -0.8, -0.7, -1, -0.7]])
-    cells = cells_of(normals, 3)
-    assert cells.normals[:, cells.numbers] == pytest.approx(normals, abs=1e-6)
-    assert cells.normals.shape[1] == 3
 
 
 def test_a_flat_surface_has_one_cell_whatever_the_rounding_of_its_normals() -> None:
@@ -318,12 +234,6 @@ def test_normals_that_differ_little_still_take_the_cells() -> None:
     assert cells_of(normals, 300).normals.shape[1] > 290
 
 
-def test_the_same_normals_give_the_same_cells() -> None:
-    one, other = cells_of(ball(40), 100), cells_of(ball(40), 100)
-    assert one.normals.tobytes() == other.normals.tobytes()
-    assert one.numbers.tobytes() == other.numbers.tobytes()
-
-
 def test_no_normals_have_no_cells_and_a_zero_normal_has_one() -> None:
     nothing = cells_of(np.empty((3, 0), np.float32), 10)
     assert nothing.normals.shape == (3, 0)
@@ -333,19 +243,14 @@ def test_no_normals_have_no_cells_and_a_zero_normal_has_one() -> None:
     assert zero.numbers.tolist() == [0, 0, 0, 0]
 
 
-def test_normals_that_face_away_from_the_eye_have_cells_too() -> None:
-    normals = unit([[0.1, 0.0, 1.0, -1.0], [0.0, 0.0, 0.2, 0.3], [0.99, -1.0, 0.9, 0.8]])
-    cells = cells_of(normals, 4)
-    assert cells.normals[:, cells.numbers] == pytest.approx(normals, abs=1e-6)
-
-
 def test_the_spread_of_normals_is_how_much_of_the_sphere_they_take() -> None:
-    half = spread_of(ball(400))
+    front = ball(400)
+    half = spread_of(front)
     # Half of the sphere is half of the disk in the square of all bins.
     assert half == pytest.approx(np.pi / 4 * BINS**2 / 2, rel=0.03)
-    front = ball(400)
-    # A cap of half the height has half the area of the half sphere.
+    # A cap of half the height has half the area of the half sphere, and the whole sphere twice the area.
     assert spread_of(front[:, front[2] < -0.5]) == pytest.approx(half / 2, rel=0.03)
+    assert spread_of(np.concatenate([front, -front], axis=1)) == pytest.approx(2 * half, rel=0.03)
 
 
 FAR = 1e4
@@ -367,17 +272,6 @@ def intensities(scene: Scene, *normals: Vector) -> list[float]:
     return (lit.relative * lit.scale).tolist()  # type: ignore[no-any-return]
 
 
-LEFT = (math.sqrt(0.5), -math.sqrt(0.5), 0.0)
-
-
-def test_a_light_gives_its_diffuse_and_specular_term_at_a_normal() -> None:
-    scene = far_ball(Light("key", (FAR, 0, 0), 2.0), diffuse=0.5, specular=0.25, exponent=8)
-    # At LEFT, half-way between light and eye, the light is reflected into the eye.
-    expected = [0.1 + 2 * (0.5 * math.sqrt(0.5) + 0.25), 0.1 + 2 * 0.5, 0.1, 0.1]
-    found = intensities(scene, LEFT, (1, 0, 0), (0, -1, 0), (-1, 0, 0))
-    assert found == pytest.approx(expected, rel=1e-5)
-
-
 def test_every_pixel_of_a_ball_has_the_light_of_its_normal_where_lights_and_eye_are_far() -> None:
     lights = Light("key", (FAR, -FAR, FAR)), Light("rim", (-FAR, 0, 0.3 * FAR), 0.6)
     scene = far_ball(*lights, diffuse=0.7, specular=0.6, exponent=20).replace(words="normals")
@@ -389,62 +283,105 @@ def test_every_pixel_of_a_ball_has_the_light_of_its_normal_where_lights_and_eye_
     assert lit.relative * lit.scale == pytest.approx(picture.relative * picture.scale, abs=1e-3)
 
 
-def test_a_light_at_infinity_shines_along_its_axis() -> None:
-    sun = Light("sun", (5, 5, 5), direction=(-1, 0, 0), at_infinity=True)
-    point = Light("point", (1, 0, 0))
-    assert intensities(far_ball(sun), LEFT, (0, 0, 1)) == intensities(far_ball(point), LEFT, (0, 0, 1))
+@pytest.mark.parametrize(("exponent", "mean", "most"), [(5, 3, 35), (100, 3, 70)])
+def test_the_picture_of_a_ball_differs_little_from_the_true_one(
+    exponent: float, mean: float, most: int
+) -> None:
+    scene = ball_scene(exponent)
+    picture = render(scene, 120, 160)
+    image = image_of(scene, 120, 160)
+    differences = np.abs(image.colors - display_image(scene, picture).colors.astype(np.int64))
+    on_ball = picture.surface_number > 0
+    assert differences[on_ball].mean() < mean
+    assert differences.max() < most
+
+    # The words in use are those of the pixels, and within the range of the surface.
+    low, levels = image.ranges["shell"]
+    seen = np.unique(image.words)
+    assert seen.tolist() == [0, *image.normals.words.tolist()]
+    assert low <= seen[1] <= seen[-1] < low + levels
+    assert ((image.words > 0) == on_ball).all()
+    # Levels rise from the darkest to the brightest color.
+    at_levels = image.words_at_levels("shell")
+    colors = image.entries[at_levels].astype(int).sum(axis=1)
+    assert (np.diff(colors) >= 0).all()
+    assert colors[-1] == image.entries[seen].astype(int).sum(axis=1).max()
+    plain = display_image(scene, picture)
+    assert plain.words_at_levels("shell").tolist() == list(range(1, 1 + plain.ranges["shell"].levels))
 
 
-def test_a_light_that_follows_the_eye_shines_from_there() -> None:
-    head_lamp = Light("head", (0, 0, 0), follows="eye")
-    assert intensities(far_ball(head_lamp), (0, -1, 0)) == intensities(
-        far_ball(Light("a", (0, -3, 0))), (0, -1, 0)
-    )
+def test_a_ball_takes_all_cells_and_each_normal_is_in_one_of_the_nearest() -> None:
+    normals = ball(150)
+    cells = cells_of(normals, 1000)
+    assert cells.normals.shape[1] > 980
+    cosines = normals.T @ cells.normals
+    own = np.take_along_axis(cosines, cells.numbers[:, None], axis=1)[:, 0]
+    angles, nearest = np.arccos(np.clip([own, cosines.max(axis=1)], -1, 1))
+    # A pixel may be beyond the border of its cell by no more than its bin reaches.
+    assert (angles - nearest).max() < 2 * np.sqrt(2) * 2 / BINS
+    # So many cells of a hemisphere have a radius of 0.045 each.
+    assert angles.mean() < 0.04
+    assert angles.max() < 0.15
+    # In zones of equal area, from the silhouette to the middle, where one covers seven times the pixels.
+    counts, _ = np.histogram(-cells.normals[2], bins=np.linspace(0, 1, 5))
+    assert 60 < counts[0] < counts[-1] < 500
 
 
-def test_controls_and_links_that_depend_on_places_are_left_out() -> None:
-    plain = Light("key", (4, -3, 2), 1.5)
-    shaped = plain.replace(
-        aim=(9, 9, 9), concentration=40, cone_angle=5, flaps=Flaps(x=Flap(8, 9)), reach=0.1, falloff="linear"
-    )
-    normals = LEFT, (0, 0, 1), (1, 0, 0)
-    assert intensities(far_ball(shaped), *normals) == intensities(far_ball(plain), *normals)
+@pytest.mark.parametrize(
+    ("normals", "count"),
+    [
+        ([[0, 0, 0.7, 0, 0.7], [0, 0.5, 0, 0, 0], [-1, -0.8, -0.7, -1, -0.7]], 3),
+        # Some face away from the eye.
+        ([[0.1, 0.0, 1.0, -1.0], [0.0, 0.0, 0.2, 0.3], [0.99, -1.0, 0.9, 0.8]], 4),
+    ],
+)
+def test_as_few_normals_as_there_are_cells_have_a_cell_each(normals: list[list[float]], count: int) -> None:
+    cells = cells_of(unit(normals), count)
+    assert cells.normals[:, cells.numbers] == pytest.approx(unit(normals), abs=1e-6)
+    assert cells.normals.shape[1] == count
 
 
-def test_a_far_light_keeps_every_column_but_those_of_its_place() -> None:
-    light = Light("sun", (4, -3, 2), aim=(9, 9, 9), at_infinity=True).replace(only_parts=("sphere",))
-    far = far_light(light, (0, 0, 0))
-    differing = {name for name in fields_of(Light) if vars(far)[name] != vars(light)[name]}
-    assert differing == {"position", "at_infinity", "links"}
+LEFT = (math.sqrt(0.5), -math.sqrt(0.5), 0.0)
+SIDES: list[Vector] = [LEFT, (1, 0, 0), (0, -1, 0), (-1, 0, 0), (0, 0, 1)]
+KEY = Light("key", (4, -3, 2), 1.5)
 
 
-def test_links_to_surfaces_stay_and_links_to_parts_are_left_out() -> None:
-    light = Light("key", (4, -3, 2), on=False).replace(only_parts=("sphere",), except_surfaces=("shell",))
-    far = far_light(light, (0, 0, 0))
-    assert far.links.except_surfaces == ("shell",)
-    assert far.links.only_parts is None
-    assert not far.on
-
-
-def test_a_light_in_the_middle_of_the_object_gives_nothing() -> None:
+def test_a_light_gives_its_diffuse_and_specular_term_at_a_normal() -> None:
+    scene = far_ball(Light("key", (FAR, 0, 0), 2.0), diffuse=0.5, specular=0.25, exponent=8)
+    # At LEFT, half-way between light and eye, the light is reflected into the eye.
+    expected = [0.1 + 2 * (0.5 * math.sqrt(0.5) + 0.25), 0.1 + 2 * 0.5, 0.1, 0.1, 0.1]
+    assert intensities(scene, *SIDES) == pytest.approx(expected, rel=1e-5)
+    # Without lights, and at a zero normal, there is the ambient light alone.
+    assert intensities(far_ball(), LEFT, (0, 0, 0)) == pytest.approx([0.1, 0.1])
     assert intensities(far_ball(Light("inside", (0, 0, 0))), LEFT, (0, -1, 0)) == pytest.approx([0.1, 0.1])
 
 
-def test_without_lights_there_is_the_ambient_light_alone() -> None:
-    assert intensities(far_ball(), LEFT, (0, 0, 0)) == pytest.approx([0.1, 0.1])
-
-
-def test_the_distance_of_lights_and_eye_does_not_matter() -> None:
-    near, far = (
-        far_ball(Light("a", (0, 0, 2)), eye=(0, -3, 0)),
-        far_ball(Light("a", (0, 0, 2e20)), eye=(0, -3e20, 0)),
+@pytest.mark.parametrize(
+    ("light", "like"),
+    [
+        # A light at infinity shines along its axis, and one that follows the eye from there.
+        (Light("sun", (5, 5, 5), direction=(-1, 0, 0), at_infinity=True), Light("point", (1, 0, 0))),
+        (Light("head", (0, 0, 0), follows="eye"), Light("point", (0, -3, 0))),
+        # The distance does not matter, nor do controls and links that depend on places.
+        (KEY.replace(position=(4e20, -3e20, 2e20)), KEY),
+        (
+            KEY.replace(aim=(9, 9, 9), concentration=40, cone_angle=5, flaps=Flaps(x=Flap(8, 9))).replace(
+                reach=0.1, falloff="linear", only_parts=()
+            ),
+            KEY,
+        ),
+    ],
+)
+def test_a_far_light_is_like_one_in_its_direction(light: Light, like: Light) -> None:
+    assert intensities(far_ball(light), *SIDES) == pytest.approx(
+        intensities(far_ball(like), *SIDES), rel=1e-6
     )
-    assert intensities(near, LEFT, (0, 0, 1)) == pytest.approx(intensities(far, LEFT, (0, 0, 1)))
 
 
-def test_the_picture_of_normals_has_one_line_with_an_element_for_each_number() -> None:
-    normals = np.array([[0.0], [0.0], [-1.0]], np.float32)
-    lit = light_at_normals(far_ball(), normals, (SurfaceSlice(1, 0, 1),), np.array([7]), 10)
-    assert isinstance(lit, Picture)
-    assert lit.intensity.shape == (1, 10)
-    assert np.flatnonzero(lit.surface_number).tolist() == [7]
+def test_a_far_light_keeps_every_column_but_those_of_its_place_and_its_links_to_parts() -> None:
+    light = Light("sun", (4, -3, 2), on=False, aim=(9, 9, 9), at_infinity=True)
+    light = light.replace(only_parts=("sphere",), except_surfaces=("shell",))
+    far = far_light(light, (0, 0, 0))
+    differing = {name for name in fields_of(Light) if vars(far)[name] != vars(light)[name]}
+    assert differing == {"position", "at_infinity", "links"}
+    assert far.links == dataclasses.replace(light.links, only_parts=None)

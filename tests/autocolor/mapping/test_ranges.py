@@ -2,14 +2,13 @@ from __future__ import annotations
 
 import itertools
 import math
-from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor import InputError, Surface, UsageError, testing
+from autocolor import InputError, Surface, testing
 from autocolor.mapping.ranges import (
     BACKGROUND,
     SCREENS,
@@ -22,6 +21,7 @@ from autocolor.mapping.ranges import (
     without_words,
 )
 from tests.autocolor.reference import divided
+from tests.tables import call, refused
 
 
 def rows(levels: list[int | None]) -> list[Surface]:
@@ -46,38 +46,6 @@ def test_the_surfaces_in_use_share_the_words_equally_as_the_slow_twin_says(
     assert [tuple(each) for each in ranges.values()] == divided([surface.levels for surface in used])
 
 
-@given(st.integers(1, 255))
-def test_ranges_follow_each_other_between_the_background_and_the_screens(count: int) -> None:
-    surfaces = rows([None] * count)
-    words = [
-        word
-        for first, levels in level_ranges(surfaces, {surface.name: 1 for surface in surfaces}).values()
-        for word in range(first, first + levels)
-    ]
-    assert words == list(range(1, 1 + len(words)))
-    assert BACKGROUND not in words
-    assert words[-1] < SCREENS.first
-    assert SCREENS == (1008, 16)
-
-
-def test_one_surface_has_all_the_words_but_those_of_background_and_screens() -> None:
-    only = level_ranges(rows([None]), {"surface 0": 1})["surface 0"]
-    assert only == LevelRange(1, 1007)
-    assert only.last == 1007
-
-
-def test_a_surface_that_asks_for_too_much_is_named() -> None:
-    with pytest.raises(InputError) as refusal:
-        level_ranges(rows([600, 500]), {"surface 0": 1, "surface 1": 1})
-    assert str(refusal.value).startswith(
-        "surface 'surface 0': the levels of all surfaces must be at most 1007, with 2"
-    )
-
-
-def test_a_surface_that_is_not_in_use_has_no_words() -> None:
-    assert list(level_ranges(rows([2000, None]), {"surface 1": 1})) == ["surface 1"]
-
-
 @given(st.integers(2, 1007), st.lists(st.integers(0, 300_000), min_size=1, max_size=60))
 def test_words_are_shared_by_the_square_root_of_the_covered_pixels(words: int, pixels: list[int]) -> None:
     words = max(words, 2 * len(pixels))
@@ -96,12 +64,9 @@ def test_words_are_shared_by_the_square_root_of_the_covered_pixels(words: int, p
     assert all(shares[a] <= shares[b] + 1 for a, b in itertools.pairwise(by_size))
 
 
-def test_of_surfaces_that_cover_the_same_the_first_get_the_words_that_are_left() -> None:
+def test_words_that_are_left_go_to_the_first_and_the_unseen_have_the_fewest() -> None:
     assert shares_of_words(101, [50, 50, 50]) == [34, 34, 33]
     assert shares_of_words(100, [0, 0, 0]) == [34, 33, 33]
-
-
-def test_a_surface_in_use_that_is_not_seen_has_the_fewest_words() -> None:
     assert shares_of_words(1007, [90_000, 0]) == [991, 16]
     assert shares_of_words(30, [90_000, 0, 0]) == [10, 10, 10]
 
@@ -115,6 +80,10 @@ def test_a_surface_that_asks_for_levels_has_them_whatever_it_covers() -> None:
 Ranges = dict[str, LevelRange]
 
 
+def words_in(each: LevelRange) -> range:
+    return range(each.first, each.last + 1)
+
+
 @st.composite
 def loans(draw: st.DrawFn) -> tuple[Ranges, list[str], int]:
     """Ranges, the surfaces that stay, and a number of words that can be borrowed."""
@@ -122,63 +91,6 @@ def loans(draw: st.DrawFn) -> tuple[Ranges, list[str], int]:
     kept = [name for name in ranges if draw(st.booleans())]
     most = SCREENS.first - 1 - len(kept)
     return ranges, kept, draw(st.integers(0, most) | st.sampled_from([min(128, most), most]))
-
-
-@given(loans())
-def test_as_many_words_are_borrowed_as_asked_for_each_once(loan: tuple[Ranges, list[str], int]) -> None:
-    borrowed = borrowed_words(*loan)
-    assert borrowed.shape == (loan[2],)
-    assert borrowed.dtype == np.uint16
-    assert (np.diff(borrowed.astype(int)) > 0).all()
-    assert BACKGROUND not in borrowed
-    assert (borrowed < SCREENS.first).all()
-
-
-@given(loans())
-def test_surfaces_that_stay_lend_only_what_the_others_lack(loan: tuple[Ranges, list[str], int]) -> None:
-    ranges, kept, count = loan
-    borrowed = set(borrowed_words(ranges, kept, count).tolist())
-    own = {word for name in kept for word in range(ranges[name].first, ranges[name].last + 1)}
-    free = SCREENS.first - 1 - len(own)
-    assert len(borrowed & own) == max(0, count - free)
-    for name in kept:
-        assert not set(range(ranges[name].first, ranges[name].last + 1)) <= borrowed
-
-
-@given(loans())
-def test_no_pixel_of_a_surface_that_stays_has_a_borrowed_word_or_another_surfaces(
-    loan: tuple[Ranges, list[str], int],
-) -> None:
-    ranges, kept, _ = loan
-    borrowed = borrowed_words(*loan)
-    every = np.arange(WORDS, dtype=np.uint16).reshape(32, 32)
-    after = without_words(every, borrowed, ranges)
-    assert after.shape == every.shape
-    assert after.dtype == np.uint16
-    assert not after.flags.writeable
-    told = dict(zip(every.ravel().tolist(), after.ravel().tolist(), strict=True))
-    for name in kept:
-        first, last = ranges[name].first, ranges[name].last
-        left = [word for word in range(first, last + 1) if word not in set(borrowed.tolist())]
-        for word in range(first, last + 1):
-            # The slow twin: the nearest of all that are left, the lower one of two.
-            assert told[word] == min(left, key=lambda other: (abs(other - word), other))
-    outside = set(range(WORDS)) - {w for each in ranges.values() for w in range(each.first, each.last + 1)}
-    assert all(told[word] == word for word in outside)
-
-
-@given(loans())
-def test_no_pixel_moves_by_more_than_a_level_unless_more_than_half_are_borrowed(
-    loan: tuple[Ranges, list[str], int],
-) -> None:
-    ranges, kept, count = loan
-    borrowed = borrowed_words(*loan)
-    own = sorted(word for name in kept for word in range(ranges[name].first, ranges[name].last + 1))
-    free = SCREENS.first - 1 - len(own)
-    if 2 * (count - free) <= len(own):
-        words = np.array(own, np.uint16)
-        moved = np.abs(without_words(words, borrowed, ranges).astype(int) - words)
-        assert moved.max(initial=0) <= 1
 
 
 @given(testing.level_ranges(), st.integers(1, 400))
@@ -192,28 +104,57 @@ def test_borrowed_words_are_spread_evenly(ranges: Ranges, count: int) -> None:
     assert np.ptp(gaps) <= 1 if len(gaps) else len(lent) <= 1
 
 
-def test_one_surface_with_all_words_lends_two_ramps_of_sixty_four() -> None:
-    ranges = {"body": LevelRange(1, 1007)}
-    borrowed = borrowed_words(ranges, ["body"], 128)
-    assert borrowed[:3].tolist() == [4, 12, 20]
-    assert without_words(np.array([[0, 3, 4, 12, 1023]], np.uint16), borrowed, ranges).tolist() == [
-        [0, 3, 3, 11, 1023]
-    ]
+@given(loans())
+def test_as_many_words_are_borrowed_as_asked_for_and_surfaces_that_stay_lend_what_the_others_lack(
+    loan: tuple[Ranges, list[str], int],
+) -> None:
+    ranges, kept, count = loan
+    borrowed = borrowed_words(*loan)
+    assert borrowed.shape == (count,)
+    assert borrowed.dtype == np.uint16
+    assert (np.diff(borrowed.astype(int)) > 0).all()
+    assert ((borrowed != BACKGROUND) & (borrowed < SCREENS.first)).all()
+    own = {word for name in kept for word in words_in(ranges[name])}
+    lent = own & set(borrowed.tolist())
+    free = SCREENS.first - 1 - len(own)
+    assert len(lent) == max(0, count - free)
+
+    every = np.arange(WORDS, dtype=np.uint16).reshape(32, 32)
+    after = without_words(every, borrowed, ranges)
+    assert after.shape == every.shape
+    assert after.dtype == np.uint16
+    assert not after.flags.writeable
+    shown = after.ravel().tolist()
+    for name in kept:
+        # The slow twin: the nearest of all that are left, the lower one of two.
+        left = [word for word in words_in(ranges[name]) if word not in lent]
+        for word in words_in(ranges[name]):
+            assert shown[word] == min(left, key=lambda other: (abs(other - word), other))
+            # No pixel moves by more than a level unless more than half are borrowed.
+            assert abs(shown[word] - word) <= 1 or 2 * len(lent) > len(own)
+    others = set(range(WORDS)) - {word for each in ranges.values() for word in words_in(each)}
+    all_lent = [each for each in ranges.values() if set(words_in(each)) <= set(borrowed.tolist())]
+    for word in [*others, *(word for each in all_lent for word in words_in(each))]:
+        assert shown[word] == word
 
 
-def test_surfaces_that_are_not_shown_lend_before_the_others_and_keep_their_pixels() -> None:
-    ranges = {"body": LevelRange(1, 500), "glass": LevelRange(501, 507)}
-    borrowed = borrowed_words(ranges, ["body"], 507)
-    assert borrowed.tolist() == list(range(501, 1008))
-    glass = np.arange(501, 1008, dtype=np.uint16)
-    assert without_words(glass, borrowed, ranges).tolist() == glass.tolist()
+BODY_AND_GLASS = {"body": LevelRange(1, 1000), "glass": LevelRange(1001, 7)}
 
-
-@pytest.mark.parametrize("count", [-1, 1006, 5000])
-def test_more_words_than_there_are_is_refused(count: Any) -> None:
-    ranges = {"body": LevelRange(1, 1000), "glass": LevelRange(1001, 7)}
-    with pytest.raises(UsageError) as refusal:
-        borrowed_words(ranges, ["body", "glass"], count)
-    assert str(refusal.value) == (
-        f"the words to borrow must be 0 to 1005 beside the surfaces that stay, not {count}; borrow fewer"
-    )
+test_what_is_refused = refused(
+    call,
+    [
+        (
+            lambda: level_ranges(rows([600, 500, None]), {f"surface {row}": 1 for row in range(3)}),
+            "surface 'surface 0': the levels of all surfaces must be at most 1007, with 2 for every surface"
+            " without a number, not 1100 and 1 such surfaces; ask for fewer levels",
+        ),
+        *(
+            (
+                lambda count=count: borrowed_words(BODY_AND_GLASS, ["body", "glass"], count),
+                f"the words to borrow must be 0 to 1005 beside the surfaces that stay, not {count};"
+                " borrow fewer",
+            )
+            for count in (-1, 1006)
+        ),
+    ],
+)

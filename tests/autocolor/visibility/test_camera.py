@@ -12,15 +12,14 @@ from autocolor import Mesh, View
 from autocolor.arrays import Floats
 from autocolor.checks import Vector
 from autocolor.explanation.point import dot, minus
-from autocolor.testing import meshes, outside_views, vectors, views
+from autocolor.testing import meshes, outside_views, views
 from autocolor.visibility import camera as camera_module
 from autocolor.visibility.camera import (
     CameraPolygons,
     camera_space,
     clipped_at_near_plane,
-    rotated,
 )
-from tests.small import cube, grid, sphere
+from tests.small import cube, grid
 
 
 @given(meshes(), views() | outside_views())
@@ -30,23 +29,6 @@ def test_positions_are_along_right_down_and_forward_from_the_eye(mesh: Mesh, vie
         from_eye = minus(coordinates, view.eye)
         expected = [dot(axis, from_eye) for axis in view.axes.tolist()]
         assert (camera.positions[:, node] * camera.unit).tolist() == pytest.approx(expected, abs=1e-12)
-
-
-@given(meshes(), views() | outside_views())
-def test_normals_are_turned_and_not_moved(mesh: Mesh, view: View) -> None:
-    camera = camera_space(mesh, view)
-    assert camera.normals.dtype == np.float32
-    for number, normal in enumerate(mesh.normals.vectors.tolist()):
-        expected = [dot(axis, normal) for axis in view.axes.tolist()]
-        assert camera.normals[:, number].tolist() == pytest.approx(expected, abs=1e-6)
-
-
-@given(meshes(), outside_views())
-def test_every_polygon_keeps_its_corners_and_its_number(mesh: Mesh, view: View) -> None:
-    camera = camera_space(mesh, view)
-    assert camera.corners.T.tolist() == mesh.node_numbers.tolist()
-    assert camera.corner_normals.T.tolist() == mesh.normals.numbers.tolist()
-    assert camera.polygon_numbers.tolist() == list(range(len(mesh.node_numbers)))
 
 
 @given(meshes(), views() | outside_views())
@@ -96,19 +78,6 @@ def test_the_near_plane_clips_nothing_of_an_object_before_the_eye(
 def test_the_near_plane_is_never_nearer_than_the_rounding_of_crossings_allows() -> None:
     camera = camera_space(cube(), View((0.5, -1e-12, 0.5), direction=(0, 1, 0)))
     assert camera.near == camera_module.LEAST_NEAR
-
-
-@given(vectors(), st.sampled_from([1, 7, 1000]))
-def test_points_are_rotated_alike_in_chunks_of_any_size(
-    origin: tuple[float, float, float], at_once: int
-) -> None:
-    axes = View((0, 0, 0), direction=(1, 2, 3), angle=20).axes
-    points = sphere().coordinates.T
-    whole = rotated(axes, points, origin)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(camera_module, "POINTS_AT_ONCE", at_once)
-        assert rotated(axes, points, origin).tobytes() == whole.tobytes()
-    assert whole == pytest.approx(axes @ (points - np.array(origin)[:, None]), abs=1e-12)
 
 
 def polygons_of(positions: Floats, corners: list[list[int]], near: float = 0.25) -> CameraPolygons:

@@ -12,16 +12,15 @@ from hypothesis import strategies as st
 
 from autocolor import Light, Mesh, Scene, UsageError, View
 from autocolor.checks import Vector
-from autocolor.explanation.point import dot, minus, plus, times, unit
+from autocolor.explanation.point import dot, minus, times, unit
 from autocolor.lighting.picking import highlight_placed
 from autocolor.rendering import rendering
-from autocolor.testing import meshes, numbers, outside_views, vectors
+from autocolor.testing import numbers, outside_views, vectors
 from autocolor.visibility.visible_points import (
     NORMAL,
     POINT,
     POINT_SQUARED,
     ROW_COUNT,
-    Seen,
     Sight,
     VisibleParts,
     fill_point_products,
@@ -30,10 +29,10 @@ from autocolor.visibility.visible_points import (
     surface_slices,
 )
 from autocolor.visibility.visible_surfaces import visible_surfaces
-from autocolor.visibility.watkins import watkins
 from tests.autocolor.reference import first_hit, ray
 from tests.autocolor.strategies import soups
-from tests.small import car, cube, grid, sphere, wall, wall_scene
+from tests.small import car, cube, grid, sphere, wall_scene
+from tests.tables import refused
 
 counts_of_surfaces = st.lists(st.integers(0, 40), max_size=6)
 
@@ -50,16 +49,6 @@ def test_chunks_have_every_pixel_of_every_surface_once(counts: list[int], at_onc
         for each in chunk.slices:
             here[each.pixels] += each.surface_number
     assert numbers.tolist() == [number + 1 for number, count in enumerate(counts) for _ in range(count)]
-
-
-@given(counts_of_surfaces)
-def test_each_surface_that_has_pixels_has_one_slice(counts: list[int]) -> None:
-    numbers = [number for number, count in enumerate(counts) for _ in range(count)]
-    slices = surface_slices(np.array([*counts, 0]))
-    assert [each.surface_number for each in slices] == sorted(set(numbers))
-    for each in slices:
-        assert set(numbers[each.pixels]) == {each.surface_number}
-    assert sum(each.stop - each.start for each in slices) == len(numbers)
 
 
 def test_a_chunk_ends_between_two_surfaces_where_that_fits() -> None:
@@ -100,15 +89,6 @@ def test_a_world_coordinate_is_a_product_with_the_point_and_1(view: View) -> Non
         factors = points.world_coordinate(axis)
         in_units = factors[:3] @ points.rows[POINT] + factors[3]
         assert in_units * points.unit == pytest.approx(points.world_points[:, axis], abs=1e-5)
-
-
-@given(meshes(), outside_views())
-def test_every_pixel_has_a_polygon_of_the_surface_of_its_slice(mesh: Mesh, view: View) -> None:
-    points = visible_surfaces(mesh, view, (2, 1), 9, 12)
-    assert len(points.polygon_numbers) == len(points.pixels)
-    for surface in points.slices:
-        parts = mesh.part_numbers[points.polygon_numbers[surface.pixels]]
-        assert {(2, 1)[part] for part in parts.tolist()} == {surface.surface_number}
 
 
 def test_the_radius_is_the_distance_of_the_farthest_point_from_the_middle() -> None:
@@ -176,25 +156,6 @@ def test_the_part_at_a_pixel_belongs_to_the_polygon_that_a_ray_meets_first(
             assert number == (0 if hit.polygon < 0 else mesh.part_numbers[hit.polygon] + 1)
 
 
-@given(meshes(), outside_views())
-def test_the_literal_watkins_sees_the_same_parts(mesh: Mesh, view: View) -> None:
-    one, other = (find(mesh, view, (1, 1), *RASTER) for find in (visible_surfaces, watkins))
-    assert one.parts.numbers.tolist() == other.parts.numbers.tolist()
-
-
-def test_part_numbers_are_worked_out_once_when_they_are_asked_for_and_read_only() -> None:
-    view = View((3, -4, 4), target=(0.5, 0.5, 0.5))
-    parts = visible_surfaces(in_parts(cube(), 6), view, (1,) * 6, *RASTER).parts
-    assert "numbers" not in vars(parts)
-    assert parts.numbers is parts.numbers
-    assert parts.numbers.dtype == np.int32
-    assert set(parts.numbers.tolist()) == {2, 3, 6}
-    for each in (parts, pickle.loads(pickle.dumps(parts))):
-        arrays = (each.numbers, each.part_of_polygon, each.span_polygons, each.span_lengths)
-        assert not any(array.flags.writeable for array in arrays)
-        assert each.numbers.tolist() == parts.numbers.tolist()
-
-
 def test_a_mesh_may_have_more_parts_than_16_bits_can_count() -> None:
     many = 70_000
     mesh = Mesh(cube().coordinates, cube().node_numbers, np.full(6, many - 1), tuple(map(str, range(many))))
@@ -210,89 +171,9 @@ def test_parts_of_points_keep_the_given_numbers(numbers: list[int]) -> None:
 
 LINES, ELEMENTS = 12, 16
 
-shares = st.floats(0, 1)
-
 
 def sight_of(scene: Scene, block: int = 1) -> Sight:
     return Sight(scene, rendering(scene, LINES, ELEMENTS).points, block)
-
-
-def seen_in(sight: Sight, share: float) -> tuple[tuple[int, int], Seen] | None:
-    """A pixel where something is visible, at a share of all, and what is seen there."""
-    pixels = sight.points.pixels
-    if not len(pixels):
-        return None
-    line, element = divmod(int(pixels[int(share * (len(pixels) - 1))]), ELEMENTS)
-    seen = seen_at(sight, line, element)
-    assert seen is not None
-    return (line, element), seen
-
-
-@given(outside_views(), shares, st.booleans())
-def test_on_a_wall_the_point_is_where_the_ray_meets_it_and_the_view_is_mirrored(
-    view: View, share: float, two_sided: bool
-) -> None:
-    found = seen_in(sight_of(wall_scene(wall(3, 2, half=2.0), view=view, two_sided=two_sided)), share)
-    if found is None:
-        return
-    pixel, seen = found
-    toward = ray(view, LINES, ELEMENTS, *pixel)
-    point = plus(view.eye, times(view.eye[1] / -toward[1], toward))
-    facing = 1.0 if two_sided and view.eye[1] > 0 else -1.0
-    assert seen.point == pytest.approx(point, abs=2e-5)
-    assert seen.normal == pytest.approx((0.0, facing, 0.0), abs=1e-6)
-    x, y, z = unit(minus(point, view.eye))
-    assert seen.reflected_view == pytest.approx((x, -y, z), abs=2e-5)
-
-
-@given(outside_views(), shares)
-def test_on_a_sphere_the_normal_is_the_direction_of_the_point(view: View, share: float) -> None:
-    found = seen_in(sight_of(wall_scene(sphere(96, 48, radius=1.5), view=view)), share)
-    if found is None:
-        return
-    _, seen = found
-    assert math.hypot(*seen.point) == pytest.approx(1.5, abs=0.01)
-    assert seen.normal == pytest.approx(unit(seen.point), abs=0.02)
-    assert math.hypot(*seen.normal) == pytest.approx(1.0, abs=1e-12)
-    # N halves the angle between R and the direction to the eye.
-    to_eye = unit(minus(view.eye, seen.point))
-    assert math.hypot(*seen.reflected_view) == pytest.approx(1.0, abs=1e-12)
-    assert dot(seen.reflected_view, seen.normal) == pytest.approx(dot(to_eye, seen.normal), abs=1e-6)
-    half = plus(to_eye, seen.reflected_view)
-    assert half == pytest.approx(times(2 * dot(to_eye, seen.normal), seen.normal), abs=1e-6)
-
-
-def test_every_pixel_has_its_visible_point_polygon_part_and_surface() -> None:
-    scene = car()
-    sight = sight_of(scene)
-    points = sight.points
-    tables = (points.polygon_numbers, points.world_points, points.world_normals)
-    at_pixel = dict(zip(points.pixels.tolist(), zip(*tables, strict=True), strict=True))
-    assert 0 < len(at_pixel) < LINES * ELEMENTS
-    numbers = rendering(scene, LINES, ELEMENTS).picture.surface_number
-    for line in range(LINES):
-        for element in range(ELEMENTS):
-            seen = seen_at(sight, line, element)
-            if seen is None:
-                assert line * ELEMENTS + element not in at_pixel
-                continue
-            polygon, point, normal = at_pixel[line * ELEMENTS + element]
-            part = scene.mesh.part_names[scene.mesh.part_numbers[polygon]]
-            surface = scene.surfaces[numbers[line, element] - 1].name
-            assert (seen.polygon, seen.part, seen.surface) == (polygon, part, surface)
-            assert seen.point == pytest.approx(point.tolist(), abs=1e-12)
-            assert seen.normal == pytest.approx(normal.tolist(), abs=1e-6)
-
-
-def test_the_part_is_named_also_where_parts_share_a_surface() -> None:
-    left, right = (
-        grid(1, 1, (x, 0.0, -1.0), (1.0, 0.0, 0.0), (0.0, 0.0, 2.0), name)
-        for x, name in ((-1.0, "left"), (0.0, "right"))
-    )
-    scene = wall_scene(Mesh.joined([left, right]))
-    scene = scene.with_part("right", surface="left")
-    seen = [seen_at(sight_of(scene), LINES // 2, element) for element in (4, 11)]
-    assert [each and (each.part, each.surface) for each in seen] == [("left", "left"), ("right", "left")]
 
 
 def test_where_the_normals_of_corners_cancel_there_is_a_point_but_no_highlight() -> None:
@@ -321,18 +202,50 @@ def test_all_pixels_of_a_block_see_the_same_and_are_found_in_its_middle() -> Non
     assert fine.pixels_of(np.array([0, ELEMENTS + 2])).tolist() == [[0, 0], [1, 2]]
 
 
-@pytest.mark.parametrize(
-    ("line", "element", "message"),
+def test_every_pixel_has_its_visible_point_polygon_part_and_surface() -> None:
+    # Two parts share a surface.
+    scene = car().with_part("cube", surface="body")
+    sight = sight_of(scene)
+    points = sight.points
+    tables = (points.polygon_numbers, points.world_points, points.world_normals)
+    at_pixel = dict(zip(points.pixels.tolist(), zip(*tables, strict=True), strict=True))
+    assert 0 < len(at_pixel) < LINES * ELEMENTS
+    surface_of_part = {part.name: part.surface for part in scene.parts}
+    for line, element in np.ndindex(LINES, ELEMENTS):
+        seen = seen_at(sight, line, element)
+        if seen is None:
+            assert line * ELEMENTS + element not in at_pixel
+            continue
+        polygon, point, normal = at_pixel[line * ELEMENTS + element]
+        part = scene.mesh.part_names[scene.mesh.part_numbers[polygon]]
+        assert (seen.polygon, seen.part, seen.surface) == (polygon, part, surface_of_part[part])
+        assert seen.point == pytest.approx(point.tolist(), abs=1e-12)
+        assert seen.normal == pytest.approx(normal.tolist(), abs=1e-6)
+        assert math.hypot(*seen.normal) == pytest.approx(1.0, abs=1e-12)
+        # R = 2 (N.V) N - V.
+        to_eye = unit(minus(scene.view.eye, seen.point))
+        expected = minus(times(2 * dot(to_eye, seen.normal), seen.normal), to_eye)
+        assert seen.reflected_view == pytest.approx(expected, abs=1e-6)
+
+
+test_a_pixel_outside_is_refused = refused(
+    lambda place: seen_at(sight_of(car(), block=2), *place),
     [
-        (-1, 0, "a line must be 0 to 23, not -1; choose another"),
-        (24, 0, "a line must be 0 to 23, not 24; choose another"),
-        (0, 32, "an element must be 0 to 31, not 32; choose another"),
-        (0, -1, "an element must be 0 to 31, not -1; choose another"),
-        (1.5, 0, "a line must be 0 to 23, not 1.5; choose another"),
-        (0, True, "an element must be 0 to 31, not true; choose another"),
+        ((-1, 0), "a line must be 0 to 23, not -1; choose another"),
+        ((24, 0), "a line must be 0 to 23, not 24; choose another"),
+        ((0, 32), "an element must be 0 to 31, not 32; choose another"),
+        ((0, True), "an element must be 0 to 31, not true; choose another"),
     ],
+    UsageError,
 )
-def test_a_pixel_outside_is_refused(line: int, element: int, message: str) -> None:
-    with pytest.raises(UsageError) as caught:
-        seen_at(sight_of(car(), block=2), line, element)
-    assert str(caught.value) == message
+
+
+def test_part_numbers_are_computed_when_they_are_asked_for_and_read_only_even_if_pickled() -> None:
+    view = View((3, -4, 4), target=(0.5, 0.5, 0.5))
+    parts = visible_surfaces(in_parts(cube(), 6), view, (1,) * 6, *RASTER).parts
+    assert "numbers" not in vars(parts)
+    assert set(parts.numbers.tolist()) == {2, 3, 6}
+    for each in (parts, pickle.loads(pickle.dumps(parts))):
+        arrays = (each.numbers, each.part_of_polygon, each.span_polygons, each.span_lengths)
+        assert not any(array.flags.writeable for array in arrays)
+        assert each.numbers.tolist() == parts.numbers.tolist()
