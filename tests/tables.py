@@ -43,7 +43,7 @@ def call(function: Callable[[], object]) -> object:
 
 
 def first(count: int, values: Iterable[Value]) -> Sequence[Any]:
-    """Values for `parametrize`: the first ones are always tried, and the others in a thorough run."""
+    """Values of one argument for `parametrize`: the first are always tried, the others in a thorough run."""
     return [
         value if number < count else pytest.param(value, marks=pytest.mark.thorough)
         for number, value in enumerate(values)
