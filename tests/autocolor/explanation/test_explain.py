@@ -94,8 +94,15 @@ def test_all_lights_and_the_ambient_light_add_up_to_the_intensity() -> None:
     contributions = [light.contribution for light in explanation.lights]
     assert contributions == sorted(contributions, reverse=True)
     assert {light.name for light in explanation.lights} == {light.name for light in studio.scene.lights}
+    assert explanation.point is not None
     for light in explanation.lights:
-        assert light.light == [row.name for row in studio.scene.lights].index(light.name) + 1
+        row = studio.scene.light(light.name)
+        assert light.light == studio.scene.lights.index(row) + 1
+        if row.axis is None:
+            assert light.cos_light is None
+        else:
+            ray = np.array(explanation.point.point) - row.position
+            assert light.cos_light == pytest.approx(ray @ row.axis / np.linalg.norm(ray))
 
 
 def test_rows_are_counted_from_1_and_lead_from_the_nodes_to_the_surface() -> None:
