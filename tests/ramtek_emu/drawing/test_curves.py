@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from ramtek_emu import Ramtek9300, instructions
+from ramtek_emu import Ramtek9300
 from ramtek_emu.drawing.curves import MOST_PIXELS, conic_pixels, traced
 from ramtek_emu.memory.scan_orders import Point, Window
 from tests.ramtek_emu import reference
@@ -28,7 +28,7 @@ def circle_places(center: tuple[int, int], radius: int) -> set[tuple[int, int]]:
 
 
 @given(
-    st.lists(st.tuples(far, far, st.integers(0, 60)), min_size=1, max_size=3),
+    st.lists(st.tuples(far, far, st.integers(0, 90)), min_size=1, max_size=12),
     st.sampled_from([0x00, 0x40, 0xC0]),
     masks,
     windows(),
@@ -90,22 +90,6 @@ def test_a_closed_conic_is_a_circle_once_around(radius: int, quarter: int) -> No
         for (x, y), (m, n) in zip(pixels, [*pixels[1:], pixels[0]], strict=True)
     )
     assert turned > 0
-
-
-@given(
-    st.integers(1, 9), st.integers(1, 9), st.integers(-4, 4), st.integers(-900, 900), st.integers(-900, 900)
-)
-def test_every_pixel_of_a_conic_lies_beside_the_curve(a: int, b: int, c: int, d: int, e: int) -> None:
-    if c * c >= 4 * a * b or (d, e) == (0, 0):
-        return
-    pixels = trace((a, b, c, d, e))
-    assert pixels[0] == (0, 0)
-    assert len(pixels) < 2 or is_connected(pixels)
-    for x, y in pixels:
-        slope = np.hypot(2 * a * x + c * y + d, 2 * b * y + c * x + e)
-        value = abs(a * x * x + b * y * y + c * x * y + d * x + e * y)
-        # The pixel is within about a pixel of the curve, or the whole ellipse is no wider than a pixel.
-        assert value <= 1.01 * slope + 4 * (a + b)
 
 
 @pytest.mark.parametrize("stop", [Point(100, 100), Point(200, 0), Point(100, -100), Point(30, -71)])
@@ -186,13 +170,3 @@ def test_only_circles_that_reach_into_the_memory_are_drawn(monkeypatch: pytest.M
     far_away, around_everything = [2000, 100, 500], [320, 240, 30000]
     display.send(sent_words([0x6D01, 65532, *(far_away + around_everything) * 5461]))
     assert sum(points) == 0
-
-
-@given(st.lists(st.tuples(far, far, st.integers(0, 90)), min_size=1, max_size=40))
-def test_circles_drawn_together_equal_circles_drawn_singly(circles: list[tuple[int, int, int]]) -> None:
-    together, apart = Ramtek9300(SMALL), Ramtek9300(SMALL)
-    together.send(instructions.write_circles(circles, 7))
-    for circle in circles:
-        apart.send(instructions.write_circles([circle], 7))
-    assert (together.words == apart.words).all()
-    assert together.frame_buffer.written == apart.frame_buffer.written

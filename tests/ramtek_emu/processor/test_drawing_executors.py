@@ -2,21 +2,16 @@ from __future__ import annotations
 
 import numpy as np
 
+from ramtek_emu import Ramtek9300
 from ramtek_emu.memory.character_rom import characters
 from ramtek_emu.processor.processor import Status
 from tests.ramtek_emu.displays import box, sent
+from tests.ramtek_emu.recorded_streams import OUTLINE, SQUARES
 
 
 def test_recorded_rrr_draws_its_figure_and_its_letters() -> None:
-    display = sent(
-        "0802 0002 0100", "0802 8000 0064 0064", "0E01 0004 00C8 00C8", "0E01 0004 015E 00C8",
-        "0E01 0004 015E 0032", "0E01 0004 00C8 0032", "0E01 0004 0064 0064", "0802 0102 0100 0007 0009",
-        "0C03 0040 005A 005A 0064 0064 0001 6100", "0C03 0040 00CD 00CD 00D7 00D7 0001 6200",
-        "0C03 0040 00CD 0028 00D7 0032 0001 6300", "0C03 0040 0163 0028 016D 0032 0001 6400",
-        "0C03 0040 0163 00CD 016D 00D7 0001 6500", "0802 8002 0080 0064 0064", "0E01 0004 00FA 0064",
-        "0E01 0004 015E 0032", "0802 8000 00FA 0064", "0E01 0004 015E 00C8", "0802 8002 0100 00C8 00C8",
-        "0E01 0004 00C8 0032", "0802 0002 0080", "0C03 0040 00F0 006E 00FA 0078 0001 6600",
-    )  # fmt: skip
+    display = Ramtek9300()
+    display.send(OUTLINE)
     words = display.words
     assert set(np.unique(words)) == {0, 128, 256}
     assert (words[200, 201:350] == 256).all()
@@ -30,12 +25,8 @@ def test_recorded_rrr_draws_its_figure_and_its_letters() -> None:
 
 
 def test_recorded_sqap_numbers_its_squares_in_the_background() -> None:
-    display = sent(
-        "0802 0040 0000 0000 001F 001F", "0902 0004 0004", "0802 0006 0004 0000",
-        "0C13 0040 0000 0000 0020 0020 0003 3030 3400",
-        "0802 0040 0020 0000 003F 001F", "0902 0004 0006", "0802 0006 0006 0000",
-        "0C13 0040 0020 0000 0040 0020 0003 3030 3600",
-    )  # fmt: skip
+    display = Ramtek9300()
+    display.send(SQUARES)
     words = display.words
     assert (words[9:32, :32] == 4).all()
     assert (words[9:32, 32:64] == 6).all()
