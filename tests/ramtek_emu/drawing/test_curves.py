@@ -52,16 +52,6 @@ def test_circles_are_the_nearest_pixels(
     assert display.processor.parameters.start == center
 
 
-def test_a_circle_that_was_drawn_is_filled_from_its_center() -> None:
-    display = Ramtek9300()
-    # The disabled code of the weather driver: circle, then fill until the foreground.
-    display.send(sent_words([0x6D0B, 0x0002, 9, 6, 300, 200, 50, 0x3A0D, 0x0001, 0xFF, 2, 0]))
-    lines, elements = np.ogrid[:480, :640]
-    away = np.sqrt((lines - 200) ** 2 + (elements - 300) ** 2)
-    assert (display.words[away < 49.5] == 9).all()
-    assert not display.words[away > 50.5].any()
-
-
 def trace(conic: tuple[int, ...], stop: Point | None = None) -> list[tuple[int, int]]:
     elements, lines = conic_pixels((*conic, 0) if len(conic) == 5 else conic, Point(0, 0), stop)
     return list(zip(elements.tolist(), lines.tolist(), strict=True))
@@ -107,20 +97,6 @@ def test_a_conic_stops_after_its_number_of_pixels() -> None:
     # A straight line has no end of its own.
     assert len(trace((0, 0, 0, 0, 1))) == MOST_PIXELS
     assert trace((0, 0, 0, 1, 1, 4)) == [(0, 0), (-1, 1), (-2, 2), (-3, 3)]
-
-
-def test_a_conic_comes_as_pairs_of_words_or_as_single_ones() -> None:
-    pairs, singles = Ramtek9300(), Ramtek9300()
-    pairs.send(sent_words([0x0F03, 0x9002, 7, 0, 1, 0, 1, 0, 0, 0, -80, 0, 0, 0, 0, 100, 100, 4, 140, 60]))
-    singles.send(sent_words([0x0F03, 0x9002, 7, 1, 1, 0, -80, 0, 0, 100, 100, 4, 140, 60]))
-    assert (pairs.words == singles.words).all()
-    assert pairs.processor.parameters.start == (140, 60)
-    assert np.count_nonzero(pairs.words) > 40
-    lines, elements = np.nonzero(pairs.words)
-    assert np.abs(np.hypot(elements - 140, lines - 100) - 40).max() < 0.75
-    # The coefficients stay: another quarter with a number of pixels, as extended pairs.
-    pairs.send(sent_words([0x0F02, 0x9000, 0, 1, 0, 1, 0, 0, -1, -80, 0, 0, 0, 5, 300, 300]))
-    assert np.count_nonzero(pairs.words[250:350, 250:350]) == 5
 
 
 whole = (

@@ -146,23 +146,6 @@ def test_text_in_every_scan_order_equals_the_twin(
     assert display.processor.parameters.start == after
 
 
-def test_a_loaded_character_takes_the_place_of_its_code() -> None:
-    display = Ramtek9300()
-    rows = [0x80, 0x40, 0x20, 0x10, 0x08, 0x04, 0x02, 0x01, 0xFF, 0x00, 0xAA, 0x55]
-    display.send(sent_words([0x1541] + [rows[row] << 8 | rows[row + 1] for row in range(0, 12, 2)]))
-    # Cells of 8 x 12, at (20, 30).
-    display.send(sent_words([0x0C03, 0x0142, 5, 20, 30, 99, 99, 8, 12, 1, 0x4100]))
-    dots = np.unpackbits(np.array(rows, np.uint8)[:, np.newaxis], axis=1)
-    assert (display.words[30:42, 20:28] == 5 * dots).all()
-    # The standard font is the ROM; the loaded font can be attached again, and survives RSET.
-    display.send(sent_words([0x4EFF, 0x0C03, 0x0140, 20, 30, 99, 99, 7, 9, 1, 0x4100]))
-    assert (display.words[30:39, 20:27] == 5 * characters()[0x41]).all()
-    display.send(sent_words([0x0500, 0x0C03, 0x0142, 5, 20, 30, 99, 99, 8, 12, 1, 0x4100]))
-    assert (display.words[30:42, 20:28] == 5 * dots).all()
-    display.send(sent_words([0x2142] + [rows[row + 1] << 8 | rows[row] for row in range(0, 12, 2)]))
-    assert (display.processor.loaded_characters[0x42] == dots).all()
-
-
 test_a_size_of_text_that_the_display_does_not_have = refused(
     lambda size: instructions.write_text("A", 0, 0, size=size),
     [(size, f"the size of text must be 1 to 16, not {size}; write it smaller") for size in (0, 17)],

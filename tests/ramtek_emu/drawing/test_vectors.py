@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ramtek_emu import NCAR_9460, Ramtek9300, instructions
+from ramtek_emu import Ramtek9300, instructions
 from ramtek_emu.drawing.vectors import numbered, points, slices
 from ramtek_emu.memory.scan_orders import Window
 from tests.ramtek_emu import reference
@@ -99,14 +99,6 @@ def test_random_pixels_and_points_land_where_they_say(pixels: list[tuple[int, in
         reference.write_pixel(twin, (element, line), 77, mask & 1023, everywhere)
     assert display.words.tolist() == twin
     assert display.processor.parameters.start == pixels[-1][:2]
-
-
-def test_the_recorded_polyline_of_the_weather_driver_has_gaps() -> None:
-    display = Ramtek9300(NCAR_9460)
-    display.send(sent_words([0x0E0F, 0x8002, 8, 7, 10, 532, 0xFF00, 0x1000, 8, 100, 532, 100, 602]))
-    assert display.words[532, 10:42].tolist() == ([7] * 8 + [0] * 8) * 2
-    # The pattern runs on around the corner: 90 pixels before it, 5 more eights and 10.
-    assert display.words[533:541, 100].tolist() == [0] * 5 + [7] * 3
 
 
 @pytest.mark.parametrize("count", [1, 4, 5, 3000])

@@ -48,9 +48,7 @@ def packed(data: bytes, low_first: bool) -> list[int]:
     return words
 
 
-@given(
-    rasters, scans, st.booleans(), addressings, points, st.binary(max_size=300), st.booleans(), st.booleans()
-)
+@given(rasters, scans, st.tuples(*[st.booleans()] * 3), addressings, points, st.binary(max_size=300))
 def test_images_of_every_kind_equal_the_twin(
     raster: Raster, scan: Scan, kinds: tuple[bool, bool, bool], addressing: int, base: Point, data: bytes
 ) -> None:
