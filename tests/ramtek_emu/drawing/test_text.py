@@ -31,18 +31,6 @@ def test_a_cell_has_1_to_16_dots_in_each_direction() -> None:
             assert style.cell == (2 * expected[0], 3 * expected[1])
 
 
-@pytest.mark.parametrize("size", [1, 3, (2, 5)])
-def test_size_repeats_the_dots(size: int | tuple[int, int]) -> None:
-    across, down = (size, size) if isinstance(size, int) else size
-    display = Ramtek9300()
-    display.send(instructions.write_text("Rg", 10, 20, 7, 1, size))
-    dots = np.concatenate([characters()[ord(letter)] for letter in "Rg"], axis=1)
-    large = np.repeat(np.repeat(dots, down, axis=0), across, axis=1)
-    lines, elements = large.shape
-    assert (display.words[20 : 20 + lines, 10 : 10 + elements] == np.where(large, 7, 1)).all()
-    assert np.count_nonzero(display.words) == lines * elements
-
-
 def letters(text: str) -> NDArray[np.bool_]:
     return np.concatenate([characters()[ord(letter)] for letter in text], axis=1)
 

@@ -16,13 +16,6 @@ from tests.ramtek_emu.strategies import SMALL, masks, sent_words, windows
 far = st.integers(-40, 60)
 
 
-def test_many_vectors_across_the_whole_range_take_little_time_and_memory() -> None:
-    display = Ramtek9300()
-    ends = np.tile([[-0x8000, -0x8000], [0x7FFF, 0x7FFF]], (4000, 1))
-    display.send(instructions.write_vectors(ends, 5))
-    assert (np.diagonal(display.words) == 5).all()
-
-
 addressings = st.sampled_from([0x00, 0x40, 0x80, 0xC0])
 textures = st.tuples(st.integers(0, 0xFFFF) | st.just(0xFFFF), st.integers(0, 15))
 

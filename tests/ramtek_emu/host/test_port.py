@@ -25,7 +25,7 @@ from ramtek_emu import (
     UnixPort,
     instructions,
 )
-from ramtek_emu.host.port import Sign, SocketPort, Wire, checked_timeout, host_and_port, packet_socket
+from ramtek_emu.host.port import SocketPort, checked_timeout, host_and_port, packet_socket
 from ramtek_emu.host.server import TcpServer
 from tests.ramtek_emu.recorded_streams import OUTLINE, words
 from tests.ramtek_emu.serving import READ_EVERYTHING, serving, serving_at, until
@@ -86,78 +86,16 @@ def test_timeouts_and_addresses_up_to_their_limits() -> None:
     assert [host_and_port(f"tcp://a:{port}") for port in (1, 65535)] == [("a", 1), ("a", 65535)]
 
 
-Pair = Callable[[], tuple[socket.socket, socket.socket]]
-
-
-def tcp_pair() -> tuple[socket.socket, socket.socket]:
-    """The two ends of a TCP connection."""
-    with socket.create_server(("127.0.0.1", 0)) as listener:
-        host = socket.create_connection(listener.getsockname())
-        display, _ = listener.accept()
-    return host, display
-
-
-def unix_pair() -> tuple[socket.socket, socket.socket]:
-    """The two ends of a Unix socket of packets."""
-    return socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-
-
 @contextmanager
 def paired(timeout: float = 5.0) -> Iterator[tuple[SocketPort, socket.socket]]:
     """A port, and the display's end of its connection."""
-    ours, theirs = tcp_pair()
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        ours = socket.create_connection(listener.getsockname())
+        theirs, _ = listener.accept()
     with ours, theirs:
         port = SocketPort("here", ours, timeout)
         port.at_once = 1 << 16
         yield port, theirs
-
-
-def signs_and_bytes(wire: Wire) -> list[bytes | Sign]:
-    """Everything that arrives on a wire until its end; parts of a stream are joined."""
-    given: list[bytes | Sign] = []
-    while Sign.END not in given:
-        data = wire.read(100)
-        if data is Sign.NOTHING:
-            select.select([wire.socket], [], [])
-        elif isinstance(data, bytes) and given and isinstance(given[-1], bytes) and not wire.keeps_writes:
-            given[-1] += data
-        else:
-            given.append(data)
-    return given
-
-
-@pytest.mark.parametrize("pair", [tcp_pair, unix_pair])
-def test_a_mark_stands_at_its_place_between_the_bytes(pair: Pair) -> None:
-    ends = pair()
-    host, display = map(Wire, ends)
-    with ends[0], ends[1]:
-        for word in (b"be", b"fore"):
-            host.send(word)
-        assert host.send_mark()
-        host.send(b"after")
-        host.socket.shutdown(socket.SHUT_WR)
-        given = signs_and_bytes(display)
-    before = [b"be", b"fore"] if host.keeps_writes else [b"before"]
-    assert given == [*before, Sign.MARK, b"after", Sign.END]
-
-
-@pytest.mark.parametrize("pair", [tcp_pair, unix_pair])
-def test_a_wire_never_waits(pair: Pair) -> None:
-    ends = pair()
-    host, display = map(Wire, ends)
-
-    def send_for_ever() -> None:
-        while True:
-            select.select([], [host.socket], [])
-            host.send(b"lost")
-
-    with ends[0], ends[1]:
-        assert display.read(100) is Sign.NOTHING
-        while host.send(bytes(1 << 14)) or host.send_mark():
-            pass
-        ends[1].close()
-        with pytest.raises(ConnectionError):
-            send_for_ever()
 
 
 def test_words_are_sent_in_pieces_low_byte_first() -> None:

@@ -5,7 +5,6 @@ import os
 import selectors
 import socket
 import stat
-import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -59,19 +58,6 @@ def test_a_host_that_takes_no_replies_is_read_no_further() -> None:
         # The replies to a piece may exceed the bound.
         assert server._client is not None
         assert server._client.waiting < REPLY_BYTES + (1 << 17)
-
-
-def test_words_come_whole_however_the_bytes_are_cut() -> None:
-    data = np.concatenate([OUTLINE, instructions.read_image(100, 100, 2, 1).__next__()[0]])
-    with serving() as server, connected(server) as host:
-        host.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        for byte in data.astype("<u2").tobytes():
-            host.sendall(bytes((byte,)))
-        host.settimeout(60)
-        reply = host.recv(4, socket.MSG_WAITALL)
-        twin = display_after(OUTLINE)
-        assert (server.display.words == twin.words).all()
-        assert reply == twin.words[100, 100:102].astype("<u2").tobytes()
 
 
 @pytest.mark.parametrize(
@@ -168,14 +154,6 @@ def test_a_silent_host_holds_up_the_line_no_longer_than_its_limit() -> None:
         assert server.display.words[9, 1] == 2
 
 
-def test_a_host_that_takes_no_replies_is_shown_out_after_a_while() -> None:
-    with serving(idle_seconds=0.4) as server, connected(server) as host:
-        with suppress(ConnectionError):
-            host.sendall(np.tile(READ_EVERYTHING, 1000).astype("<u2").tobytes())
-        until(lambda: server.served == 1)
-        assert server.display.processor.waiting == 0
-
-
 def test_a_host_that_ends_its_side_still_gets_its_replies() -> None:
     with serving() as server, connected(server) as host:
         host.sendall(READ_EVERYTHING.astype("<u2").tobytes())
@@ -187,43 +165,7 @@ def test_a_host_that_ends_its_side_still_gets_its_replies() -> None:
         assert received == 2 * 640 * 480
 
 
-def test_noise_with_urgent_bytes_leaves_a_display_that_works() -> None:
-    draw = np.random.default_rng(1978)
-
-    def read_all() -> None:
-        with suppress(ConnectionError):
-            while host.recv(1 << 16):
-                pass
-
-    with serving() as server:
-        with connected(server) as host:
-            reader = threading.Thread(target=read_all)
-            reader.start()
-            for _ in range(40):
-                host.sendall(draw.bytes(int(draw.integers(0, 4000))))
-                host.send(draw.bytes(1), socket.MSG_OOB)
-            host.shutdown(socket.SHUT_WR)
-            reader.join(60)
-        with TcpPort(server.address) as port:
-            port.reset()
-            port.send(OUTLINE)
-        assert (server.display.words == display_after(OUTLINE).words).all()
-
-
 # Sessions without a wire.
-
-
-def test_a_session_never_lets_more_replies_wait_than_the_display_holds() -> None:
-    session = HostSession(Ramtek9300())
-    asked = np.tile(np.array([0x0B01, 0xFFFE], np.uint16), 200).astype("<u2").tobytes()
-    waiting = [0]
-    count = 0
-    for reply in session.feed(asked):
-        count += len(reply)
-        waiting.append(session.display.processor.waiting)
-    assert count == 200 * 0xFFFE
-    assert max(waiting) <= 2 << 15
-    assert session.unexecuted == 0
 
 
 @given(streams(), st.binary(max_size=1), st.lists(st.integers(0, 200), max_size=4))
@@ -513,16 +455,6 @@ def test_a_port_accepts_the_address_of_a_server_on_ipv6() -> None:
         while not server.display.words.any():
             server.step(0.1)
         port.wire.socket.close()
-
-
-def test_hosts_in_line_are_turned_away_when_the_server_closes() -> None:
-    server = TcpServer(Ramtek9300())
-    ports = [TcpPort(server.address, timeout=60) for _ in range(3)]
-    server.step(1)
-    server.close()
-    for port in ports:
-        with pytest.raises(PortError, match="it left"):
-            port.close()
 
 
 def test_the_socket_is_its_owner_s_alone_and_goes_with_the_server(tmp_path: Path) -> None:

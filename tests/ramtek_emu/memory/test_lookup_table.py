@@ -1,7 +1,5 @@
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import pytest
 from hypothesis import given
@@ -108,13 +106,6 @@ def test_entries_are_read_only_and_written_only_grows() -> None:
         table.entries[0, 0] = 1
     with pytest.raises(ValueError, match="read-only"):
         table.packed[0] = 1
-
-
-@pytest.mark.parametrize("kind", [np.uint8, np.int8])
-def test_the_first_entry_may_be_a_number_of_numpy_s(kind: Any) -> None:
-    table = LookupTable()
-    table.write(kind(120), [[1, 2, 3]] * 10)
-    assert np.flatnonzero(table.packed).tolist() == list(range(120, 130))
 
 
 CHOOSE = "choose an entry of the table"

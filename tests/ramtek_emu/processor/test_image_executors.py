@@ -186,18 +186,6 @@ def test_an_image_without_operands_continues_the_last_image() -> None:
     assert display.words[1:3, 2:5].tolist() == [[1, 2, 3], [4, 5, 1023]]
 
 
-def test_a_whole_picture_survives_the_stream() -> None:
-    words = np.random.default_rng(7).integers(0, 1024, (480, 640))
-    display = Ramtek9300()
-    display.send(instructions.write_image(words))
-    assert (display.words == words).all()
-    received: list[Raster] = []
-    for stream, count in instructions.read_image(0, 0, 640, 480):
-        display.send(stream)
-        received.append(display.receive(count))
-    assert (np.concatenate(received).reshape(480, 640) == words).all()
-
-
 @given(st.integers(1, 70), st.integers(1, 1200), st.integers(-40, 40))
 def test_images_of_any_shape_arrive_whole(lines: int, elements: int, left: int) -> None:
     words = (np.arange(lines * elements) % 1023 + 1).reshape(lines, elements)
@@ -206,29 +194,6 @@ def test_images_of_any_shape_arrive_whole(lines: int, elements: int, left: int) 
     first = min(elements, max(0, -left))
     assert (display.words[3 : 3 + lines, max(0, left) : max(0, left + elements)] == words[:, first:]).all()
     assert np.count_nonzero(display.words) == lines * (elements - first)
-
-
-def test_recorded_byte_images_hold_two_pixels_a_word() -> None:
-    # A 4 x 4 image of the NCAR driver, reverse packed.
-    display = sent(
-        "0A0F 00C0 0020 0008 0010 000B 0013 0000 0001 0010 0201 0403 0605 0807 0A09 0C0B 0E0D 100F",
-        "0B0B 0040 0008 0010 000B 0013 0005",
-        "0B03 0040 0008 0010 000B 0013 0004",
-    )
-    assert display.words[16:20, 8:12].tolist() == np.arange(1, 17).reshape(4, 4).tolist()
-    assert display.receive(5).tolist() == [0x0201, 0x0403, 0x0005, 0x0102, 0x0304]
-
-
-def test_pairs_of_pixels_end_past_the_edge_of_an_odd_window_but_within_the_write_window() -> None:
-    # Three elements, two lines: each line takes two words, and its fourth pixel lies beside the window.
-    window = "000A 0014 000C 0015"
-    data = "0001 0008 0201 0403 0605 0807"
-    display = sent(f"0A0F 0040 0020 {window} {data}", f"0B0F 0040 0020 {window} 0001 0008")
-    assert display.words[20:22, 9:15].tolist() == [[0, 1, 2, 3, 4, 0], [0, 5, 6, 7, 8, 0]]
-    assert display.receive(4).tolist() == [0x0201, 0x0403, 0x0605, 0x0807]
-    assert display.processor.parameters.start == (10, 20)
-    display = sent(f"0A0F 0040 0022 {window} {window} {data}")
-    assert display.words[20:22, 10:14].tolist() == [[1, 2, 3, 0], [5, 6, 7, 0]]
 
 
 def test_a_run_of_bytes_goes_on_with_the_next_pair() -> None:

@@ -43,21 +43,6 @@ def test_the_field_is_each_word_s_entry(raster: NDArray[np.uint16], seed: int) -
     assert (pixels == (twin[..., 0] << 16 | twin[..., 1] << 8 | twin[..., 2])).all()
 
 
-def test_the_stamp_moves_with_every_word_and_every_entry_written() -> None:
-    display = Ramtek9300()
-    stamps = [display.scan_out.stamp]
-    for stream in (
-        instructions.write_image([[1]]),
-        instructions.load_entries(0, [[1, 2, 3]]),
-        instructions.erase(),
-    ):
-        display.send(stream)
-        stamps.append(display.scan_out.stamp)
-    assert len(set(stamps)) == 4
-    display.send(instructions.no_operation())
-    assert display.scan_out.stamp == stamps[-1]
-
-
 def test_recoloring_writes_no_word_and_changes_the_field() -> None:
     display = Ramtek9300()
     display.send(instructions.write_image(np.full((480, 640), 300)))
@@ -295,17 +280,6 @@ def test_a_cursor_is_dark_on_a_light_picture_and_clipped_at_the_edges() -> None:
         assert set(np.unique(field)) <= {0, 250}
     display.send(sent_words([0x1600, 0, 0x400]))
     assert np.count_nonzero(display.field()[..., 0] == 0) == 12
-
-
-def test_a_blinking_cursor_follows_the_monitor() -> None:
-    display = colored(Ramtek9300())
-    plain = display.field()
-    display.send(sent_words([0x1600, 300, 0xC00 | 200]))
-    assert (display.field() != plain).any()
-    stamp = display.scan_out.stamp
-    display.scan_out.blink_is_on = False
-    assert (display.field() == plain).all()
-    assert display.scan_out.stamp != stamp
 
 
 TIMED = replace(GMR_9300, timing=Timing())
