@@ -32,6 +32,7 @@ def test_a_paused_host_waits_and_is_not_disconnected(monkeypatch: pytest.MonkeyP
     with TcpServer(host.display, idle_seconds=5, record=host.record) as server:
         server.gate, host.step, host.is_connected = host.gate, server.step, lambda: server.busy
         session = InspectionSession(host.replay, host)
+        session.pause()
         port = TcpPort(server.address)
         port.send(np.tile(instructions.read_cursor(0), 3))
         while not server.busy:
@@ -39,7 +40,7 @@ def test_a_paused_host_waits_and_is_not_disconnected(monkeypatch: pytest.MonkeyP
         session.step(1)
         while session.state.wanted:
             session.tick()
-        number = session.state.number
+        assert session.state.number == 1
         offset = 0.0
         later = SimpleNamespace(monotonic=lambda: time.monotonic() + offset, perf_counter=time.perf_counter)
         monkeypatch.setattr(module_of_servers, "time", later)
@@ -47,7 +48,7 @@ def test_a_paused_host_waits_and_is_not_disconnected(monkeypatch: pytest.MonkeyP
             # The host is silent for minutes in all, but it is let execute nothing.
             offset += 4
             session.tick()
-        assert len(host.replay.stream) == number
+        assert len(host.replay.stream) == 1
         assert server.busy
         monkeypatch.undo()
         assert port.receive(2).tolist() == [0, 0]

@@ -24,6 +24,7 @@ def test_data_and_operands_are_taken_up_to_their_limits() -> None:
     for length in (0, 65534, 65535):
         assert normal("WI", {}, length=length).length == length
     assert normal("SET", {"start": (-32768, 65535)}).operands == {"start": (0x8000, 0xFFFF)}
+    assert encode(normal("SET", {"read_mask": 5, "mask": 7})).tolist() == [0x0806, 1, 1, 7, 5]
 
 
 WI_BYTES = "the data of WI must be 0 to 65535 bytes, not {}; send them in several instructions"
