@@ -200,6 +200,9 @@ def test_after_a_load_only_lines_that_may_show_its_entries_are_written() -> None
         last = display.scan_out.scan_out_changes_into(pixels, last)
         assert pixels[200:203].tolist() == [[blue] * 640] * 3
         assert last == display.scan_out.stamp
+    assert display.scan_out.lines_changed_since(last) == ()
+    display.send(instructions.load_entries(700, [[0, 0, 5]]))
+    assert display.scan_out.lines_changed_since(last) == ()
     pixels[...] = 7
     display.scan_out.scan_out_changes_into(pixels, last)
     assert (pixels[:100] == 7).all()
