@@ -7,10 +7,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from hypothesis.extra import numpy as arrays
 from numpy.typing import NDArray
 
-from ramtek_emu.drawing.areas import area, connected, links
+from ramtek_emu.drawing.areas import area
 
 Result = TypeVar("Result")
 
@@ -40,14 +39,16 @@ def reached(open_pixels: NDArray[np.bool_], line: int, element: int) -> set[tupl
     return filled
 
 
-@given(arrays.arrays(np.bool_, st.tuples(st.integers(1, 8), st.integers(1, 9))), st.data())
+@given(st.integers(1, 12), st.integers(1, 13), st.sampled_from([0.4, 0.6, 0.8]), st.integers(0, 2**32 - 1))
 def test_an_area_has_the_pixels_that_a_walk_reaches(
-    open_pixels: NDArray[np.bool_], data: st.DataObject
+    lines: int, elements: int, density: float, seed: int
 ) -> None:
-    line = data.draw(st.integers(0, open_pixels.shape[0] - 1))
-    element = data.draw(st.integers(0, open_pixels.shape[1] - 1))
-    filled = {(n, e) for n, e in np.argwhere(returned(area(open_pixels, line, element))).tolist()}
-    assert filled == reached(open_pixels, line, element)
+    random = np.random.default_rng(seed)
+    for _ in range(8):
+        open_pixels = random.random((lines, elements)) < density
+        line, element = int(random.integers(lines)), int(random.integers(elements))
+        filled = {(n, e) for n, e in np.argwhere(returned(area(open_pixels, line, element))).tolist()}
+        assert filled == reached(open_pixels, line, element)
 
 
 @pytest.mark.parametrize("side", [1, 2, 31, 200])
@@ -67,24 +68,3 @@ def test_a_spiral_is_one_area_from_its_end_to_its_middle(side: int) -> None:
         length -= 2
     assert (returned(area(open_pixels, 0, 0)) == open_pixels).all()
     assert (returned(area(open_pixels, line, element)) == open_pixels).all()
-
-
-def test_runs_touch_when_they_share_an_element_of_neighboring_lines() -> None:
-    # Lines of ten pixels with runs 1 to 3; then 2 to 5 and 7 to 8; then 5 to 6.
-    starts, ends = np.array([1, 12, 17, 25]), np.array([4, 16, 19, 27])
-    upper, lower = links(starts, ends, 10)
-    assert list(zip(upper.tolist(), lower.tolist(), strict=True)) == [(0, 1), (1, 3)]
-
-
-@given(st.integers(1, 12), st.lists(st.tuples(st.integers(0, 11), st.integers(0, 11)), max_size=15))
-def test_linked_runs_have_equal_labels(count: int, pairs: list[tuple[int, int]]) -> None:
-    pairs = [(one % count, other % count) for one, other in pairs]
-    one, other = (np.array([pair[side] for pair in pairs], np.intp) for side in (0, 1))
-    labels = returned(connected(one, other, count)).tolist()
-    groups = [{number} for number in range(count)]
-    for first, second in pairs:
-        merged = groups[first] | groups[second]
-        for number in merged:
-            groups[number] = merged
-    for number in range(count):
-        assert {other for other in range(count) if labels[other] == labels[number]} == groups[number]

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ramtek_emu import NCAR_9460, Ramtek9300, instructions
-from ramtek_emu.drawing.vectors import MOST_POINTS, numbered, points, slices
+from ramtek_emu import Ramtek9300, instructions
+from ramtek_emu.drawing.vectors import numbered, points, slices
 from ramtek_emu.memory.scan_orders import Window
 from tests.ramtek_emu import reference
 from tests.ramtek_emu.strategies import SMALL, masks, sent_words, windows
@@ -16,67 +16,29 @@ from tests.ramtek_emu.strategies import SMALL, masks, sent_words, windows
 far = st.integers(-40, 60)
 
 
-@given(st.lists(st.tuples(far, far), min_size=2, max_size=6))
-def test_vectors_are_the_nearest_pixels_with_both_ends(vertices: list[tuple[int, int]]) -> None:
-    display = Ramtek9300(SMALL)
-    display.send(instructions.write_vectors(vertices, 9))
-    twin = np.zeros((9, 13), int)
-    for start, end in itertools.pairwise(vertices):
-        for element, line in reference.line_places(start, end):
-            if 0 <= element < 13 and 0 <= line < 9:
-                twin[line, element] = 9
-    assert (display.words == twin).all()
-    assert display.processor.parameters.start == vertices[-1]
-
-
-def test_a_vector_to_the_operating_point_is_a_point() -> None:
-    display = Ramtek9300(SMALL)
-    display.send(instructions.write_vectors([(4, 5)], 3))
-    assert np.argwhere(display.words).tolist() == [[5, 4]]
-
-
-def test_relative_vertices_count_from_the_previous_vertex() -> None:
-    display = Ramtek9300(SMALL)
-    display.send(np.array([0x0EC3, 0x8002, 1, 2, 2, 8, 3, 0, 0xFFFF, 2], np.uint16))
-    assert np.argwhere(display.words).tolist() == [[2, 2], [2, 3], [2, 4], [2, 5], [3, 4], [4, 4]]
-    assert display.processor.parameters.start == (4, 4)
-
-
-def test_many_vectors_across_the_whole_range_take_little_time_and_memory() -> None:
-    display = Ramtek9300()
-    ends = np.tile([[-0x8000, -0x8000], [0x7FFF, 0x7FFF]], (4000, 1))
-    display.send(instructions.write_vectors(ends, 5))
-    assert (np.diagonal(display.words) == 5).all()
-
-
-vertex_lists = st.lists(st.tuples(far, far), min_size=1, max_size=12)
 addressings = st.sampled_from([0x00, 0x40, 0x80, 0xC0])
+textures = st.tuples(st.integers(0, 0xFFFF) | st.just(0xFFFF), st.integers(0, 15))
 
 
 @given(
-    vertex_lists,
+    st.lists(st.tuples(far, far), min_size=1, max_size=12),
     st.tuples(far, far),
     addressings,
-    st.integers(0, 0xFFFF) | st.just(0xFFFF),
-    st.integers(0, 15),
-    st.booleans(),
-    st.booleans(),
+    textures,
+    st.tuples(*[st.booleans()] * 3),
     masks,
     windows(),
-    st.booleans(),
 )
 def test_vectors_of_every_kind_equal_the_twin(
     vertices: list[tuple[int, int]],
     start: tuple[int, int],
     addressing: int,
-    pattern: int,
-    repeat: int,
-    swapped: bool,
-    additive: bool,
+    texture: tuple[int, int],
+    kinds: tuple[bool, bool, bool],
     mask: int,
     clip: Window,
-    linked: bool,
 ) -> None:
+    (pattern, repeat), (linked, swapped, additive) = texture, kinds
     bases = {0x00: (0, 0), 0x40: (3, -2), 0x80: (-5, 4), 0xC0: start}
     if not linked and len(vertices) % 2:
         vertices = [*vertices, (1, 2)]
@@ -132,14 +94,6 @@ def test_random_pixels_and_points_land_where_they_say(pixels: list[tuple[int, in
     assert display.processor.parameters.start == pixels[-1][:2]
 
 
-def test_the_recorded_polyline_of_the_weather_driver_has_gaps() -> None:
-    display = Ramtek9300(NCAR_9460)
-    display.send(sent_words([0x0E0F, 0x8002, 8, 7, 10, 532, 0xFF00, 0x1000, 8, 100, 532, 100, 602]))
-    assert display.words[532, 10:42].tolist() == ([7] * 8 + [0] * 8) * 2
-    # The pattern runs on around the corner: 90 pixels before it, 5 more eights and 10.
-    assert display.words[533:541, 100].tolist() == [0] * 5 + [7] * 3
-
-
 @pytest.mark.parametrize("count", [1, 4, 5, 3000])
 def test_few_and_many_lines_are_drawn_alike(count: int) -> None:
     ends = np.random.default_rng(count).integers(-300, 900, (count + 1, 2))
@@ -180,17 +134,20 @@ def test_a_vector_across_the_whole_range_takes_no_more_points_than_the_memory_sh
     assert np.bincount(part[3], minlength=4).tolist() == [480, 0, 640, 0]
 
 
-@given(st.lists(st.integers(0, 5) | st.integers(MOST_POINTS - 3, MOST_POINTS + 3), max_size=12))
+@given(st.lists(st.integers(0, 9), max_size=12))
 def test_every_row_is_numbered_from_0_in_order(counts: list[int]) -> None:
     rows, numbers = [], []
     end = 0
-    for part in slices(np.array(counts, np.int64)):
-        assert part.start == end
-        assert part.stop - part.start == 1 or sum(counts[part]) <= MOST_POINTS
-        end = part.stop
-        which, numbers_of_part = numbered(np.array(counts[part], np.int64))
-        rows += (which + part.start).tolist()
-        numbers += numbers_of_part.tolist()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("ramtek_emu.drawing.vectors.MOST_POINTS", 7)
+        for part in slices(np.array(counts, np.int64)):
+            assert part.start == end
+            assert part.stop - part.start == 1 or sum(counts[part]) <= 7
+            assert part.stop == len(counts) or sum(counts[part]) + counts[part.stop] > 7
+            end = part.stop
+            which, numbers_of_part = numbered(np.array(counts[part], np.int64))
+            rows += (which + part.start).tolist()
+            numbers += numbers_of_part.tolist()
     assert end == len(counts)
     assert rows == [row for row, count in enumerate(counts) for _ in range(count)]
     assert numbers == [number for count in counts for number in range(count)]

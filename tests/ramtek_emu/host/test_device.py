@@ -110,7 +110,7 @@ def test_a_program_that_reads_no_replies_is_stopped_and_fills_no_memory(tmp_path
     with on_a_display(tmp_path / "display") as (_, device):
         os.set_blocking(device.file, False)
         asked = np.tile(words("0B03 0040 0 0 27F 1F A000"), 100)
-        left = np.append(asked, np.full(1 << 20, 0x0700)).astype("<u2").tobytes()
+        left = memoryview(np.append(asked, np.full(1 << 20, 0x0700)).astype("<u2").tobytes())
 
         def is_stopped() -> bool:
             """Whether the relay has stopped reading in both directions; the program writes until then."""

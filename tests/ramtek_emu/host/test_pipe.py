@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import random
 from collections.abc import Callable, Iterable
 from itertools import pairwise
 
@@ -19,55 +18,23 @@ from ramtek_emu.host.pipe import (
     StreamFields,
     every,
     is_load,
-    serve_pipe,
 )
 from ramtek_emu.host.server import HostSession
 from ramtek_emu.instruction_set.decoder import Decoder
 from ramtek_emu.instruction_set.disassembler import items
 from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.monitor.window import Monitor
-from ramtek_emu.testing import check_words_within_planes, streams
-from tests.ramtek_emu.displays import shown
+from ramtek_emu.testing import streams
 from tests.ramtek_emu.film_reader import decoded
 from tests.ramtek_emu.processes import stream
 from tests.ramtek_emu.recorded_streams import OUTLINE, RECORDED
 from tests.ramtek_emu.serving import until
+from tests.ramtek_emu.strategies import SMALL
 
 
 def pop_of(pieces: list[bytes]) -> Callable[[int], bytes]:
     """A `read` that returns the last of the pieces, and ignores its argument."""
     return lambda _: pieces.pop()
-
-
-def test_a_thousand_mutated_streams_are_played_and_leave_a_display_that_works() -> None:
-    draw = random.Random(1983)
-    display = Ramtek9300()
-    real = [stream(recorded[:600]) for recorded in RECORDED] + [
-        stream(instructions.write_text("mutated", 9, 9))
-    ]
-    session = HostSession(display)
-    for _ in range(1000):
-        data = bytearray(draw.choice(real))
-        for _ in range(draw.randint(1, 12)):
-            place = draw.randrange(len(data))
-            change = draw.randrange(3)
-            if change == 0:
-                data[place] = draw.randrange(256)
-            elif change == 1:
-                del data[place : place + draw.randint(1, 4)]
-            else:
-                data[place:place] = draw.randbytes(draw.randint(1, 4))
-            data = data or bytearray(b"\0")
-        pieces = [b"", bytes(data[50:]), bytes(data[:50])]
-        serve_pipe(session, pop_of(pieces), None)
-        assert display.processor.waiting == 0
-    check_words_within_planes(display.words)
-    session.leave()
-    twin = Ramtek9300()
-    for one in (display, twin):
-        one.send(instructions.reset())
-        one.send(OUTLINE)
-    assert (display.words == twin.words).all()
 
 
 def test_words_that_wait_for_a_place_in_the_queue_are_counted_as_unexecuted() -> None:
@@ -98,32 +65,6 @@ def test_a_pipe_is_shown_in_slices_of_time_and_its_replies_come(on_screen: str) 
     until(has_ended)
     assert b"".join(replies) == display.words[100, 100:103].astype("<u2").tobytes()
     monitor.close()
-
-
-def test_a_window_shows_a_long_instruction_while_it_is_drawn(
-    on_screen: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("ramtek_emu.host.server.SLICE_SECONDS", 0.0)
-    display = Ramtek9300()
-    display.send(instructions.load_entries(5, [[255, 255, 255]]))
-    lines = [(0, line, 639, line) for line in range(480)]
-    pieces = [b"", stream(instructions.write_segments(lines, 5))]
-    pipe = PolledPipe(HostSession(display), pop_of(pieces))
-    monitor = Monitor(display, on_tick=lambda: pipe.serve_for(0.0))
-    monitor.open()
-    lit: list[int] = []
-
-    def has_ended() -> bool:
-        monitor.step()
-        lit.append(int(shown().any(axis=(1, 2)).sum()))
-        return pipe.ended
-
-    until(has_ended)
-    scale = len(shown()) // 480
-    monitor.close()
-    # A slice is 51 lines of 640 words.
-    assert sorted(set(lit)) == [scale * line for line in (*range(0, 480, 51), 480)]
-    assert lit == sorted(lit)
 
 
 class Clock:
@@ -208,14 +149,14 @@ def seen_load(number: int) -> bytes:
 
 def cut_read(data: bytes, cuts: list[int], is_cut: Callable[[Instruction], bool]) -> CutReader:
     """A cut reader of a stream that arrives in pieces."""
-    return CutReader(in_pieces(data, cuts), GMR_9300, is_cut)
+    return CutReader(in_pieces(data, cuts), SMALL, is_cut)
 
 
 def fields_by_instruction(data: bytes) -> tuple[list[Colors], list[str]]:
     """The fields before a stream and after each of its instructions, with the names of the instructions."""
-    display = Ramtek9300()
+    display = Ramtek9300(SMALL)
     fields, names = [display.field()], []
-    for item in items([data]):
+    for item in items([data], SMALL):
         if item.instruction is None and item.note == "the stream ends within this instruction":
             break
         display.send(item.words)
@@ -241,7 +182,7 @@ def test_a_film_of_a_stream_has_the_fields_after_its_instructions(
     if not expected or not np.array_equal(expected[-1], fields[-1]):
         expected.append(fields[-1])
     read = cut_read(data, cuts, every(count) if count else is_load)
-    film = StreamFields(HostSession(Ramtek9300()), read, 1000)
+    film = StreamFields(HostSession(Ramtek9300(SMALL)), read, 1000)
     path = tmp_path_factory.mktemp("films") / "film.apng"
     write_film(path, film, fields_per_second=24)
     assert film.count == len(expected)
@@ -259,13 +200,13 @@ def test_the_last_field_of_a_stream_has_a_place_in_every_film(
     most: int, numbers: Iterable[int], left_out: bool
 ) -> None:
     expected = fields_by_instruction(b"".join(LOADS))[0][1:]
-    film = StreamFields(HostSession(Ramtek9300()), cut_read(b"".join(LOADS), [], is_load), most)
+    film = StreamFields(HostSession(Ramtek9300(SMALL)), cut_read(b"".join(LOADS), [], is_load), most)
     assert np.array_equal(list(film), [expected[number] for number in numbers])
     assert film.left_out is left_out
 
 
 def test_a_film_that_is_ended_has_the_field_at_its_end_and_counts_the_words_that_wait() -> None:
-    session = HostSession(Ramtek9300())
+    session = HostSession(Ramtek9300(SMALL))
     read = cut_read(b"".join(LOADS), [], every(1))
     film = StreamFields(session, read, 100, lambda: film.count == 3)
     fields = list(film)

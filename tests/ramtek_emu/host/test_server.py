@@ -5,9 +5,8 @@ import os
 import selectors
 import socket
 import stat
-import threading
-from collections.abc import Iterator
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import numpy as np
@@ -15,57 +14,31 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ramtek_emu import HostPort, OutputError, OutputExistsError, PortError, Ramtek9300, TcpPort, instructions
+from ramtek_emu import OutputError, OutputExistsError, PortError, Ramtek9300, TcpPort, instructions
 from ramtek_emu.arrays import Words
-from ramtek_emu.host.port import UnixPort, Wire, packet_socket
+from ramtek_emu.host.port import Wire, packet_socket
 from ramtek_emu.host.server import REPLY_BYTES, Client, Gate, HostSession, TcpServer, UnixServer
 from ramtek_emu.testing import streams
 from tests.ramtek_emu.displays import smallest_slices
-from tests.ramtek_emu.recorded_streams import OUTLINE, RECORDED, words
+from tests.ramtek_emu.recorded_streams import OUTLINE, words
 from tests.ramtek_emu.serving import READ_EVERYTHING, serving, serving_at, until
 from tests.ramtek_emu.strategies import SMALL, sent_words, sliced_instructions
+from tests.tables import refused
 
 
 def connected(server: TcpServer) -> socket.socket:
     return socket.create_connection(("127.0.0.1", server.port), 60)
 
 
-def closed(connection: socket.socket) -> bool:
-    """Whether the other side closes the connection within a minute."""
-    connection.settimeout(60)
-    with suppress(ConnectionError):
-        return connection.recv(1) == b""
-    return True
+def packet(text: str) -> bytes:
+    return words(text).astype("<u2").tobytes()
 
 
-def test_a_host_draws_reads_words_back_and_draws_again() -> None:
-    here = Ramtek9300()
-    with serving() as server, TcpPort(server.address) as there:
-        ports: tuple[HostPort, ...] = (here, there)
-        for port in ports:
-            port.send(OUTLINE)
-            read = instructions.read_image(90, 40, 300, 200)
-            lines = []
-            for stream, count in read:
-                port.send(stream)
-                lines.append(port.receive(count))
-            image = np.concatenate(lines).reshape(200, 300)
-            assert image.any()
-            port.send(instructions.write_image(image[::-1], 90, 250))
-            port.send(instructions.read_entries(0, 4))
-            assert port.receive(4).tolist() == [0, 0, 0, 0]
-        there.send(instructions.read_image(0, 0, 1, 1).__next__()[0])
-        there.receive(1)
-        assert (server.display.words == here.words).all()
-
-
-def test_everything_can_be_asked_before_anything_is_read() -> None:
-    with serving() as server, TcpPort(server.address) as port:
-        port.send(instructions.write_image(np.arange(480 * 640).reshape(480, 640) % 1024))
-        for _ in range(8):
-            port.send(READ_EVERYTHING)
-        for _ in range(8):
-            assert (port.receive(480 * 640) == np.arange(480 * 640) % 1024).all()
+def display_after(*streams: Words) -> Ramtek9300:
+    display = Ramtek9300()
+    for stream in streams:
+        display.send(stream)
+    return display
 
 
 def test_a_host_that_takes_no_replies_is_read_no_further() -> None:
@@ -87,24 +60,9 @@ def test_a_host_that_takes_no_replies_is_read_no_further() -> None:
         assert server._client.waiting < REPLY_BYTES + (1 << 17)
 
 
-def test_words_come_whole_however_the_bytes_are_cut() -> None:
-    data = np.concatenate([OUTLINE, instructions.read_image(100, 100, 2, 1).__next__()[0]])
-    with serving() as server, connected(server) as host:
-        host.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        for byte in data.astype("<u2").tobytes():
-            host.sendall(bytes((byte,)))
-        host.settimeout(60)
-        reply = b""
-        while len(reply) < 4:
-            reply += host.recv(4)
-        twin = Ramtek9300()
-        twin.send(OUTLINE)
-        assert (server.display.words == twin.words).all()
-        assert reply == twin.words[100, 100:102].astype("<u2").tobytes()
-
-
-@pytest.mark.parametrize("partial", ["0A", "0A01", "0A03 0040 0000", "0A01 FFFE 0001 0002", "0E01 0008 0001"])
-@pytest.mark.parametrize("rudely", [False, True])
+@pytest.mark.parametrize(
+    ("partial", "rudely"), [("0A", False), ("0A03 0040 0000", True), ("0A01 FFFE 0001 0002", False)]
+)
 def test_a_host_that_vanishes_in_mid_instruction_leaves_the_display_to_the_next(
     partial: str, rudely: bool
 ) -> None:
@@ -113,16 +71,12 @@ def test_a_host_that_vanishes_in_mid_instruction_leaves_the_display_to_the_next(
             first.send(words("0802 0002 0007"))
             first.send(OUTLINE)
             first.send(READ_EVERYTHING)
-            data = words(partial).astype("<u2").tobytes() + b"\x01"
             until(server.display.words.any)
             with suppress(PortError):
                 first.wire.socket.setblocking(True)
-                first.wire.socket.sendall(data)
+                first.wire.socket.sendall(packet(partial) + b"\x01")
             if rudely:
-                # Close with a reset, not with an end of the stream.
-                first.wire.socket.setsockopt(
-                    socket.SOL_SOCKET, socket.SO_LINGER, b"\x01\x00\x00\x00\x00\x00\x00\x00"
-                )
+                first.wire.break_off()
             first.wire.socket.close()
         until(lambda: not server.busy)
         assert server.display.decoder.pending_words == 0
@@ -150,75 +104,48 @@ def test_a_second_host_waits_until_the_first_has_left() -> None:
     assert server.served == 2
 
 
-def mark(number: int) -> np.ndarray[tuple[int, ...], np.dtype[np.uint16]]:
+def mark(number: int) -> bytes:
     """A drawing of one pixel; its place is the number of the drawing."""
-    return words(f"0902 0044 {number % 1000 + 1:X} {number:X} 9 {number:X} 9")
+    return packet(f"0902 0044 {number + 1:X} {number:X} 9 {number:X} 9")
 
 
-def draw_from_a_socket(server: TcpServer, number: int, *, more: bytes = b"") -> None:
+def draw_from_a_socket(server: TcpServer, number: int) -> None:
     with connected(server) as host:
-        host.sendall(mark(number).astype("<u2").tobytes() + more)
+        host.sendall(mark(number))
 
 
-ALL_MARKS = [number + 1 for number in range(200)]
+def draw_and_ask(server: TcpServer, number: int) -> None:
+    with connected(server) as host:
+        host.sendall(packet("0B03 0040 0 0 27F 1 0A00") + mark(number))
 
 
-def test_two_hundred_hosts_in_a_row_all_draw() -> None:
+def draw_from_a_port(server: TcpServer, number: int) -> None:
+    with TcpPort(server.address) as port:
+        port.send(np.frombuffer(mark(number), "<u2").astype(np.uint16))
+
+
+@pytest.mark.parametrize("draw", [draw_from_a_socket, draw_and_ask, draw_from_a_port])
+def test_hosts_in_a_row_all_draw_also_if_they_leave_without_their_replies(
+    draw: Callable[[TcpServer, int], None],
+) -> None:
     with serving() as server:
-        for number in range(200):
-            with TcpPort(server.address) as port:
-                port.send(mark(number))
-        assert server.display.words[9, :200].tolist() == ALL_MARKS
-    assert server.served == 200
+        for number in range(60):
+            draw(server, number)
+        until(lambda: server.served == 60)
+        assert server.display.words[9, :60].tolist() == list(range(1, 61))
 
 
 def test_a_server_that_closes_before_all_is_drawn_is_lost_for_the_host() -> None:
     server = TcpServer(Ramtek9300())
     port = TcpPort(server.address, timeout=60)
+    until(server.step)
+    # A silent host gives nothing to do.
+    assert not server.step()
     port.send(np.tile(words("0902 0044 7 5 5 5 5"), 1000))
-    errors: list[str] = []
-
-    def close() -> None:
-        try:
-            port.close()
-        except PortError as error:
-            errors.append(str(error))
-
-    host = threading.Thread(target=close)
-    host.start()
     until(lambda: server.step(0.1) and server.display.words[5, 5] == 7)
     server.close()
-    host.join()
-    assert len(errors) == 1
-    assert "and it left (" in errors[0]
-
-
-def test_two_hundred_plain_sockets_in_a_row_all_draw() -> None:
-    with serving() as server:
-        for number in range(200):
-            draw_from_a_socket(server, number)
-        until(lambda: server.served == 200)
-        assert server.display.words[9, :200].tolist() == ALL_MARKS
-
-
-def test_plain_sockets_that_ask_for_replies_and_leave_without_them_all_draw() -> None:
-    with serving() as server:
-        for number in range(200):
-            asked = instructions.read_image(0, 0, 640, 2).__next__()[0].astype("<u2").tobytes()
-            draw_from_a_socket(server, number, more=asked + mark(number + 200).astype("<u2").tobytes())
-        until(lambda: server.served == 200)
-        assert np.count_nonzero(server.display.words[9]) == 400
-
-
-def test_a_hundred_hosts_at_the_same_time_all_draw() -> None:
-    with serving() as server:
-        hosts = [connected(server) for _ in range(100)]
-        for number, host in reversed(list(enumerate(hosts))):
-            host.sendall(mark(number).astype("<u2").tobytes())
-        for host in hosts:
-            host.close()
-        until(lambda: server.served == 100)
-        assert server.display.words[9, :100].tolist() == ALL_MARKS[:100]
+    with pytest.raises(PortError, match=r"and it left \("):
+        port.close()
 
 
 def test_a_silent_host_holds_up_the_line_no_longer_than_its_limit() -> None:
@@ -228,71 +155,6 @@ def test_a_silent_host_holds_up_the_line_no_longer_than_its_limit() -> None:
         draw_from_a_socket(server, 1)
         until(lambda: server.served == 3)
         assert server.display.words[9, 1] == 2
-
-
-def test_a_silent_host_and_an_unfinished_instruction_are_disconnected() -> None:
-    for sent, limits in ((b"", {"idle_seconds": 0.2}), (b"\x00", {"partial_seconds": 0.2})):
-        with serving(**limits) as server:
-            with connected(server) as host:
-                host.sendall(sent)
-                assert closed(host)
-            until(lambda server=server: server.served == 1)
-
-
-def test_only_an_unfinished_instruction_has_the_shorter_limit(monkeypatch: pytest.MonkeyPatch) -> None:
-    now = 1000.0
-    monkeypatch.setattr("ramtek_emu.host.server.time.monotonic", lambda: now)
-    host, there = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-    client = Client(Wire(there), HostSession(Ramtek9300()), idle_seconds=600, partial_seconds=60)
-    with host:
-        for seconds, sent, limit in (
-            (500.0, "0700", 600),
-            (100.0, "0A01", 60),
-            (50.0, "4", 10),
-            (5.0, "1", 5),
-        ):
-            now += seconds
-            host.send(packet(sent))
-            client.serve(client.wanted)
-            while client.has_work:
-                client.work()
-            assert client.deadline == now + limit
-        host.send(packet("2"))
-        client.serve(client.wanted)
-        while client.has_work:
-            client.work()
-        assert client.deadline == now + 600
-    client.leave()
-
-
-def test_a_host_that_takes_no_replies_is_shown_out_after_a_while() -> None:
-    with serving(idle_seconds=0.4) as server, connected(server) as host:
-        asked = np.tile(READ_EVERYTHING, 1000).astype("<u2").tobytes()
-        with suppress(ConnectionError):
-            host.sendall(asked)
-        until(lambda: server.served == 1)
-        assert server.display.processor.waiting == 0
-
-
-def test_random_bytes_over_tcp_leave_the_display_that_they_leave_here() -> None:
-    draw = np.random.default_rng(9400)
-    noise = draw.integers(0, 0x10000, 60_000).astype(np.uint16)
-    twin = Ramtek9300()
-    twin.send(noise)
-    twin.decoder.clear()
-    with serving() as server:
-        with connected(server) as host:
-            data = noise.astype("<u2").tobytes() + b"?"
-            reader = threading.Thread(target=lambda: [None for _ in iter(lambda: host.recv(1 << 16), b"")])
-            reader.start()
-            for place in range(0, len(data), 4999):
-                host.sendall(data[place : place + 4999])
-            host.shutdown(socket.SHUT_WR)
-            reader.join(60)
-        until(lambda: server.served == 1)
-        assert (server.display.words == twin.words).all()
-        assert (server.display.entries == twin.entries).all()
-        assert server.display.processor.parameters == twin.processor.parameters
 
 
 def test_a_host_that_ends_its_side_still_gets_its_replies() -> None:
@@ -306,50 +168,7 @@ def test_a_host_that_ends_its_side_still_gets_its_replies() -> None:
         assert received == 2 * 640 * 480
 
 
-@pytest.mark.parametrize("number", range(len(RECORDED)))
-def test_a_recorded_stream_over_tcp_gives_the_same_display(number: int) -> None:
-    twin = Ramtek9300()
-    twin.send(RECORDED[number])
-    with serving() as server, TcpPort(server.address) as port:
-        port.send(RECORDED[number])
-        port.send(words("0B03 0040 0 0 0 0 2"))
-        port.receive(1)
-        assert (server.display.words == twin.words).all()
-        assert (server.display.entries == twin.entries).all()
-
-
-def test_urgent_bytes_among_noise_leave_a_display_that_works() -> None:
-    draw = np.random.default_rng(1978)
-    with serving() as server:
-        for _ in range(5):
-            with connected(server) as host:
-                reader = threading.Thread(target=read_all, args=(host,))
-                reader.start()
-                for _ in range(40):
-                    host.sendall(draw.bytes(int(draw.integers(0, 4000))))
-                    host.send(draw.bytes(1), socket.MSG_OOB)
-                host.shutdown(socket.SHUT_WR)
-                reader.join(60)
-        with TcpPort(server.address) as port:
-            port.reset()
-            port.send(OUTLINE)
-        twin = Ramtek9300()
-        twin.send(OUTLINE)
-        assert (server.display.words == twin.words).all()
-
-
-def read_all(host: socket.socket) -> None:
-    with suppress(ConnectionError):
-        while host.recv(1 << 16):
-            pass
-
-
-def test_a_session_never_lets_more_replies_wait_than_the_display_holds() -> None:
-    session = HostSession(Ramtek9300())
-    asked = np.tile(np.array([0x0B01, 0xFFFE], np.uint16), 2000).astype("<u2").tobytes()
-    count = sum(len(reply) for reply in session.feed(asked))
-    assert count == 2000 * 0xFFFE
-    assert session.unexecuted == 0
+# Sessions without a wire.
 
 
 @given(streams(), st.binary(max_size=1), st.lists(st.integers(0, 200), max_size=4))
@@ -367,6 +186,9 @@ def test_a_display_gets_the_words_whatever_pieces_their_bytes_come_in(
     assert session.display.decoder.pending_words == twin.decoder.pending_words
     assert session.odd_byte == odd_byte
     assert session.unfinished == bool(odd_byte or twin.decoder.pending_words)
+    session.leave()
+    assert not session.unfinished
+    assert session.display.processor.waiting == 0
 
 
 @given(streams(), st.integers(0, 200))
@@ -382,66 +204,27 @@ def test_a_recording_ends_with_a_whole_instruction(stream: list[int], cut: int) 
     assert b"".join(recorded) == data[: len(data) - 2 * session.display.decoder.pending_words]
 
 
-def test_a_host_that_leaves_takes_its_unfinished_words_and_replies_with_it() -> None:
-    session = HostSession(Ramtek9300(SMALL))
-    feeding = session.feed(np.array([0x0B01, 8, 0x0A01, 0xFFFF, 1], "<u2").tobytes() + b"!")
-    assert next(feeding) == bytes(8)
-    session.display.processor.reply(np.zeros(4, np.uint16))
-    assert session.unfinished
-    session.leave()
-    assert not session.unfinished
-    assert session.display.processor.waiting == 0
-
-
-def packet(text: str) -> bytes:
-    return words(text).astype("<u2").tobytes()
-
-
-def test_a_host_that_takes_no_more_replies_is_still_drawn_for() -> None:
-    host, there = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-    display = Ramtek9300()
-    client = Client(Wire(there), HostSession(display), 10, 10)
-    host.send(packet("0B03 0040 0 0 0 0 2"))
-    host.send(packet("0902 0044 7 5 5 5 5"))
-    host.close()
-    for _ in range(20):
-        client.serve(client.wanted)
-        client.work()
-    assert client.ended
-    assert display.words[5, 5] == 7
-    client.leave()
-
-
-def test_the_words_that_arrived_and_were_not_executed_are_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.fixture
+def one_instruction_a_piece(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("ramtek_emu.host.server.SLICE_SECONDS", 0.0)
-    host, there = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-    client = Client(Wire(there), HostSession(Ramtek9300()), 10, 10)
-    host.send(packet("0902 0044 7 5 5 5 5 0700 0902 0044"))
-    host.send(packet("0700 0700"))
-    counts = [client.unexecuted]
-    client.serve(client.wanted)
-    while client.has_work:
-        counts.append(client.unexecuted)
-        client.work()
-    # The packet that was not read has two words. The last two words of the other begin an instruction.
-    assert counts == [12, 12, 5, 4, 2]
-    host.close()
-    client.leave()
-    assert client.session.unexecuted == 0
+
+
+def recorded_session() -> tuple[HostSession, list[bytes]]:
+    recorded: list[bytes] = []
+    return HostSession(Ramtek9300(SMALL), recorded.append), recorded
 
 
 LONG = packet("0E03 0002 9 18 0 0 C 0 C 1 0 1 0 2 C 2")
 """A WVL of six vertices in 16 words, which is drawn in slices of a line each."""
 NO_OPERATION = packet("0700")
+DOT = packet("0902 0044 7 5 5 5 5")
+RESET = packet("0500")
 
 
+@pytest.mark.usefixtures("one_instruction_a_piece")
 @pytest.mark.parametrize("cut", [0, 2, 9, 30])
-def test_a_half_drawn_instruction_is_not_executed_and_not_recorded(
-    cut: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("ramtek_emu.host.server.SLICE_SECONDS", 0.0)
-    recorded: list[bytes] = []
-    session = HostSession(Ramtek9300(SMALL), recorded.append)
+def test_a_half_drawn_instruction_is_not_executed_and_not_recorded(cut: int) -> None:
+    session, recorded = recorded_session()
     list(session.feed(NO_OPERATION + LONG[:cut]))
     drawn = []
     with smallest_slices():
@@ -455,38 +238,20 @@ def test_a_half_drawn_instruction_is_not_executed_and_not_recorded(
     assert b"".join(recorded) == NO_OPERATION + LONG + NO_OPERATION
 
 
-def test_a_reset_within_an_instruction_leaves_it_out_of_the_recording(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr("ramtek_emu.host.server.SLICE_SECONDS", 0.0)
-    recorded: list[bytes] = []
-    session = HostSession(Ramtek9300(SMALL), recorded.append)
-    after = packet("0902 0044 7 5 5 5 5")
+@pytest.mark.usefixtures("one_instruction_a_piece")
+def test_a_reset_within_an_instruction_leaves_it_out_of_the_recording() -> None:
+    session, recorded = recorded_session()
     list(session.feed(NO_OPERATION + LONG[:10]))
     with smallest_slices():
-        pauses = session.feed(LONG[10:] + after)
+        pauses = session.feed(LONG[10:] + DOT)
         next(pauses)
         assert session.display.words.any()
         session.reset()
         assert not session.display.words.any()
         list(pauses)
     assert np.argwhere(session.display.words).tolist() == [[5, 5]]
-    assert b"".join(recorded) == NO_OPERATION + packet("0500") + after
+    assert b"".join(recorded) == NO_OPERATION + RESET + DOT
     assert session.unexecuted == 0
-
-
-def test_a_reset_between_two_instructions_leaves_both_in_the_recording(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr("ramtek_emu.host.server.SLICE_SECONDS", 0.0)
-    recorded: list[bytes] = []
-    session = HostSession(Ramtek9300(SMALL), recorded.append)
-    drawn = packet("0902 0044 7 5 5 5 5")
-    pauses = session.feed(NO_OPERATION + drawn + LONG)
-    next(pauses)
-    session.reset()
-    list(pauses)
-    assert b"".join(recorded) == NO_OPERATION + packet("0500") + drawn + LONG
 
 
 @given(
@@ -497,8 +262,7 @@ def test_a_reset_between_two_instructions_leaves_both_in_the_recording(
 def test_a_recording_with_resets_at_any_pause_gives_the_same_display(
     parts: list[Words], cut: int, resets: set[int]
 ) -> None:
-    recorded: list[bytes] = []
-    session = HostSession(Ramtek9300(SMALL), recorded.append)
+    session, recorded = recorded_session()
     data = np.concatenate(parts).astype("<u2").tobytes()
     pause = 0
     with smallest_slices(), pytest.MonkeyPatch.context() as patch:
@@ -516,41 +280,123 @@ def test_a_recording_with_resets_at_any_pause_gives_the_same_display(
     assert again.processor.parameters == session.display.processor.parameters
 
 
-def test_the_time_that_the_display_takes_is_no_silence_of_the_host(monkeypatch: pytest.MonkeyPatch) -> None:
+@given(words=streams(), counts=st.lists(st.integers(0, 3), max_size=12))
+def test_a_gate_lets_so_many_instructions_through(words: list[int], counts: list[int]) -> None:
+    display, gate = Ramtek9300(SMALL), Gate()
+    recorded = bytearray()
+    session = HostSession(display, recorded.extend, gate)
+    # Illegal words in a row are executed at once.
+    # A pause within a long instruction repeats the number before.
+    steps = sorted({0, *Ramtek9300(SMALL).send_stepwise(np.array(words, np.uint16))})
+    waiting = session.feed(np.array(words, "<u2").tobytes())
+    done = 0
+    for count in counts:
+        gate.left = count
+        while next(waiting, None) is not None and not gate.is_closed:
+            pass
+        done = min(done + count, len(steps) - 1)
+        assert len(recorded) == 2 * steps[done]
+        assert session.is_stopped == (gate.left == 0)
+    gate.left = None
+    for _ in waiting:
+        pass
+    assert len(recorded) == 2 * steps[-1]
+    assert session.unexecuted == 0
+
+
+# A host on a wire of packets.
+
+
+@contextmanager
+def host_and_client(
+    record: Callable[[bytes], object] | None = None, idle_seconds: float = 10, partial_seconds: float = 10
+) -> Iterator[tuple[socket.socket, Client]]:
     host, there = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-    display = Ramtek9300()
-    client = Client(Wire(there), HostSession(display), 10, 10)
-    now = 1000.0
-    monkeypatch.setattr("ramtek_emu.host.server.time.monotonic", lambda: now)
-    monkeypatch.setattr("ramtek_emu.host.server.SLICE_SECONDS", 0.0)
-    draw = display.send_stepwise
-
-    def slow(sent: Words) -> Iterator[int]:
-        nonlocal now
-        for place in draw(sent):
-            now += 12
-            yield place
-
-    monkeypatch.setattr(display, "send_stepwise", slow)
-    host.send(packet("0902 0044 7 5 5 5 5 0B03 0040 0 0 0 0 2"))
-    client.serve(client.wanted)
-    while client.has_work:
-        client.work()
-        assert client.deadline > now
-    assert now > 1020
-    assert display.words[5, 5] == 7
-    now += 11
-    assert client.deadline < now
-    host.close()
+    client = Client(Wire(there), HostSession(Ramtek9300(), record), idle_seconds, partial_seconds)
+    with host:
+        yield host, client
     client.leave()
 
 
+def serve_all(client: Client) -> None:
+    """Read once and execute what was read."""
+    client.serve(client.wanted)
+    while client.has_work:
+        client.work()
+
+
+def test_a_host_that_takes_no_more_replies_is_still_drawn_for() -> None:
+    with host_and_client() as (host, client):
+        host.send(packet("0B03 0040 0 0 0 0 2"))
+        host.send(DOT)
+        host.close()
+        for _ in range(20):
+            client.serve(client.wanted)
+            client.work()
+        assert client.ended
+        assert client.session.display.words[5, 5] == 7
+
+
+@pytest.mark.usefixtures("one_instruction_a_piece")
+def test_the_words_that_arrived_and_were_not_executed_are_counted() -> None:
+    with host_and_client() as (host, client):
+        host.send(DOT + packet("0700 0902 0044"))
+        host.send(packet("0700 0700"))
+        counts = [client.unexecuted]
+        client.serve(client.wanted)
+        while client.has_work:
+            counts.append(client.unexecuted)
+            client.work()
+    # The packet that was not read has two words. The last two words of the other begin an instruction.
+    assert counts == [12, 12, 5, 4, 2]
+    assert client.session.unexecuted == 0
+
+
+def test_only_an_unfinished_instruction_has_the_shorter_limit(monkeypatch: pytest.MonkeyPatch) -> None:
+    now = 1000.0
+    monkeypatch.setattr("ramtek_emu.host.server.time.monotonic", lambda: now)
+    with host_and_client(idle_seconds=600, partial_seconds=60) as (host, client):
+        for seconds, sent, limit in (
+            (500.0, "0700", 600),
+            (100.0, "0A01", 60),
+            (50.0, "4", 10),
+            (5.0, "1", 5),
+            (0.0, "2", 600),
+        ):
+            now += seconds
+            host.send(packet(sent))
+            serve_all(client)
+            assert client.deadline == now + limit
+
+
+@pytest.mark.usefixtures("one_instruction_a_piece")
+def test_the_time_that_the_display_takes_is_no_silence_of_the_host(monkeypatch: pytest.MonkeyPatch) -> None:
+    now = 1000.0
+    monkeypatch.setattr("ramtek_emu.host.server.time.monotonic", lambda: now)
+    with host_and_client() as (host, client):
+        draw = client.session.display.send_stepwise
+
+        def slow(sent: Words) -> Iterator[int]:
+            nonlocal now
+            for place in draw(sent):
+                now += 12
+                yield place
+
+        monkeypatch.setattr(client.session.display, "send_stepwise", slow)
+        host.send(DOT + packet("0B03 0040 0 0 0 0 2"))
+        client.serve(client.wanted)
+        while client.has_work:
+            client.work()
+            assert client.deadline > now
+        assert now > 1020
+        now += 11
+        assert client.deadline < now
+
+
 def test_replies_to_different_writes_are_in_different_packets_and_an_odd_byte_is_no_word() -> None:
-    host, there = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-    client = Client(Wire(there), HostSession(Ramtek9300()), 10, 10)
-    with host:
+    with host_and_client() as (host, client):
         for odd in (b"!", b""):
-            host.send(packet("0902 0044 7 5 5 5 5 0B03 0040 5 5 5 5 2") + odd)
+            host.send(DOT + packet("0B03 0040 5 5 5 5 2") + odd)
             host.send(packet("0B03 0040 5 5 6 5 4"))
         while client.waiting < 12:
             client.serve(selectors.EVENT_READ)
@@ -559,15 +405,29 @@ def test_replies_to_different_writes_are_in_different_packets_and_an_odd_byte_is
         while client.has_to_send:
             client.serve(selectors.EVENT_WRITE)
         assert [host.recv(100) for _ in range(4)] == [packet("7"), packet("7 0")] * 2
-    client.leave()
+
+
+def test_a_mark_resets_the_display_and_drops_the_waiting_replies() -> None:
+    recorded: list[bytes] = []
+    drawn, after = DOT + packet("0B03 0040 5 5 5 5 2"), packet("0902 0044 9 6 6 6 6 0B03 0040 6 6 6 6 2")
+    with host_and_client(recorded.append) as (host, client):
+        for sent in (drawn + packet("0A01 0008"), b"", after):
+            host.send(sent)
+        for _ in range(20):
+            client.serve(client.wanted & selectors.EVENT_READ)
+            client.work()
+        assert client.session.display.words[[5, 6], [5, 6]].tolist() == [0, 9]
+        assert b"".join(recorded) == drawn + RESET + after
+        while client.has_to_send:
+            client.serve(selectors.EVENT_WRITE)
+        assert [host.recv(10), host.recv(10)] == [b"", packet("9")]
 
 
 def test_replies_to_a_write_come_in_packets_of_at_most_64_kib(tmp_path: Path) -> None:
-    ask = packet("0B03 0040 0 0 27F 2E EB00")
     with serving_at(tmp_path / "display") as server, packet_socket() as host:
         host.settimeout(60)
         host.connect(server.address)
-        host.send(3 * ask)
+        host.send(3 * packet("0B03 0040 0 0 27F 2E EB00"))
         lengths: list[int] = []
         while sum(lengths) < 3 * 0xEB00:
             lengths.append(len(host.recv(1 << 20)))
@@ -575,24 +435,7 @@ def test_replies_to_a_write_come_in_packets_of_at_most_64_kib(tmp_path: Path) ->
     assert max(lengths) <= 1 << 16
 
 
-def test_a_mark_resets_the_display_and_drops_the_waiting_replies() -> None:
-    host, there = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-    recorded: list[bytes] = []
-    display = Ramtek9300()
-    client = Client(Wire(there), HostSession(display, recorded.append), 10, 10)
-    drawn, drawn_after = "0902 0044 7 5 5 5 5 0B03 0040 5 5 5 5 2", "0902 0044 9 6 6 6 6 0B03 0040 6 6 6 6 2"
-    with host:
-        for sent in (packet(f"{drawn} 0A01 0008"), b"", packet(drawn_after)):
-            host.send(sent)
-        for _ in range(20):
-            client.serve(client.wanted & selectors.EVENT_READ)
-            client.work()
-        assert display.words[[5, 6], [5, 6]].tolist() == [0, 9]
-        assert b"".join(recorded) == packet(f"{drawn} 0500 {drawn_after}")
-        while client.has_to_send:
-            client.serve(selectors.EVENT_WRITE)
-        assert [host.recv(10), host.recv(10)] == [b"", packet("9")]
-    client.leave()
+# Addresses and files.
 
 
 def test_a_port_that_is_taken_is_refused_in_one_sentence() -> None:
@@ -617,23 +460,11 @@ def test_a_port_accepts_the_address_of_a_server_on_ipv6() -> None:
         port.wire.socket.close()
 
 
-def test_hosts_in_line_are_turned_away_when_the_server_closes() -> None:
-    server = TcpServer(Ramtek9300())
-    ports = [TcpPort(server.address, timeout=60) for _ in range(3)]
-    server.step(1)
-    server.close()
-    for port in ports:
-        with pytest.raises(PortError, match="it left"):
-            port.close()
-
-
-def dead_socket(path: Path) -> None:
-    with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as listener:
-        listener.bind(str(path))
-
-
 def test_the_socket_is_its_owner_s_alone_and_goes_with_the_server(tmp_path: Path) -> None:
     path = tmp_path / "display"
+    # The socket of a server that is gone is replaced.
+    with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as listener:
+        listener.bind(str(path))
     before = os.umask(0)
     try:
         with UnixServer(Ramtek9300(), path) as server:
@@ -642,15 +473,6 @@ def test_the_socket_is_its_owner_s_alone_and_goes_with_the_server(tmp_path: Path
     finally:
         os.umask(before)
     assert not path.exists()
-
-
-def test_the_socket_of_a_server_that_is_gone_is_replaced(tmp_path: Path) -> None:
-    path = tmp_path / "display"
-    dead_socket(path)
-    with serving_at(path) as server, UnixPort(path) as port:
-        port.send(OUTLINE)
-        port.close()
-        assert server.display.words.any()
 
 
 @pytest.mark.parametrize("kind", ["file", "folder", "link", "server"])
@@ -686,60 +508,12 @@ def test_a_server_leaves_a_file_that_took_the_place_of_its_socket(tmp_path: Path
     assert path.read_text() == "mine"
 
 
-@pytest.mark.parametrize("path", ["no folder/display", "x" * 200])
-def test_a_path_where_no_socket_can_be_made_is_refused(path: str, tmp_path: Path) -> None:
-    with pytest.raises(OutputError, match=r"a server's socket must be where a socket can be made, not at"):
-        UnixServer(Ramtek9300(), tmp_path / path)
-
-
-def test_a_system_without_packet_sockets_is_refused_in_one_sentence(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.delattr(socket, "SOCK_SEQPACKET")
-    with pytest.raises(PortError) as refusal:
-        UnixServer(Ramtek9300(), tmp_path / "display")
-    assert refusal.value.exit_code == 69
-    assert str(refusal.value) == (
-        "a system must have Unix sockets that keep the boundaries of writes, and this one does not "
-        "(no sock_seqpacket); use TCP or a pipe"
-    )
-
-
-def test_packets_of_random_bytes_act_as_their_whole_words(tmp_path: Path) -> None:
-    draw = np.random.default_rng(9400)
-    packets = [draw.bytes(int(draw.integers(1, 300))) for _ in range(400)]
-    twin = Ramtek9300()
-    for packet in packets:
-        twin.send(np.frombuffer(packet[: len(packet) & ~1], "<u2").astype(np.uint16))
-    with serving_at(tmp_path / "display") as server:
-        with UnixPort(tmp_path / "display") as port:
-            for packet in packets:
-                port.write(packet)
-        assert (server.display.words == twin.words).all()
-        assert (server.display.entries == twin.entries).all()
-        assert server.display.processor.waiting == 0
-
-
-@given(words=streams(), counts=st.lists(st.integers(0, 3), max_size=12))
-def test_a_gate_lets_so_many_instructions_through(words: list[int], counts: list[int]) -> None:
-    display, gate = Ramtek9300(SMALL), Gate()
-    recorded = bytearray()
-    session = HostSession(display, recorded.extend, gate)
-    data = np.array(words, "<u2").tobytes()
-    # Illegal words in a row are executed at once.
-    # A pause within a long instruction repeats the number before.
-    steps = sorted({0, *Ramtek9300(SMALL).send_stepwise(np.array(words, np.uint16))})
-    waiting = session.feed(data)
-    done = 0
-    for count in counts:
-        gate.left = count
-        while next(waiting, None) is not None and not gate.is_closed:
-            pass
-        done = min(done + count, len(steps) - 1)
-        assert len(recorded) == 2 * steps[done]
-        assert session.is_stopped == (gate.left == 0)
-    gate.left = None
-    for _ in waiting:
-        pass
-    assert len(recorded) == 2 * steps[-1]
-    assert session.unexecuted == 0
+NOWHERE = "a server's socket must be where a socket can be made, not at {!r} ({}); choose another path"
+test_a_path_where_no_socket_can_be_made = refused(
+    lambda path: UnixServer(Ramtek9300(), path),
+    [
+        ("/no folder/display", NOWHERE.format("/no folder/display", "no such file or directory")),
+        ("x" * 200, NOWHERE.format("x" * 200, "af_unix path too long")),
+    ],
+    OutputError,
+)

@@ -6,12 +6,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ramtek_emu import Ramtek9300
+from ramtek_emu import Configuration, Ramtek9300
 from ramtek_emu.host.server import HostSession
 from ramtek_emu.inspection.panels import Line
 from ramtek_emu.inspection.running_host import RunningHost
 from ramtek_emu.inspection.session import InspectionSession
 from tests.ramtek_emu.inspection.replays import replay_of
+from tests.ramtek_emu.strategies import SMALL
 
 
 def at_rest(session: InspectionSession) -> InspectionSession:
@@ -25,27 +26,44 @@ def text_of(line: Line) -> str:
     return "".join(span.text for span in line)
 
 
-def session_of(*streams: object) -> InspectionSession:
-    """A prepared session of instructions for the small display."""
+def session_of(*streams: object, configuration: Configuration = SMALL) -> InspectionSession:
+    """A prepared session of instructions, for the small display unless another is given."""
     words = np.concatenate([np.zeros(0, np.uint16), *(np.asarray(stream, np.uint16) for stream in streams)])
-    return at_rest(InspectionSession(replay_of(words.tolist())))
+    return at_rest(InspectionSession(replay_of(words.tolist(), configuration)))
 
 
 class Served:
-    """A host session that a stopped display executes, and the replies to its host."""
+    """A host session that a stopped display executes, its inspection, and the replies to its host."""
 
     def __init__(self, display: Ramtek9300) -> None:
         self.host = RunningHost(display)
-        self.session = HostSession(display, self.host.record, self.host.gate)
+        self.host_session = HostSession(display, self.host.record, self.host.gate)
         self.host.step = self.step
+        self.inspection = InspectionSession(self.host.replay, self.host)
         self.replies = b""
         self._waiting: Iterator[bytes] = iter(())
 
-    def send(self, words: np.ndarray[tuple[int], np.dtype[np.uint16]]) -> None:
+    def send(self, *streams: np.ndarray[tuple[int], np.dtype[np.uint16]]) -> None:
+        """Send words, which wait until the inspection lets them be executed."""
         assert next(self._waiting, None) is None
-        self._waiting = self.session.feed(words.astype("<u2").tobytes())
+        self._waiting = self.host_session.feed(np.concatenate(streams).astype("<u2").tobytes())
 
     def step(self, seconds: float) -> bool:
         reply = next(self._waiting, None)
         self.replies += reply or b""
         return reply is not None
+
+    def execute(self, *streams: np.ndarray[tuple[int], np.dtype[np.uint16]]) -> None:
+        """Send words, and let the running display execute them and all that waited before."""
+        if streams:
+            self.send(*streams)
+        while self.host_session.unexecuted:
+            self.inspection.tick()
+
+    def tick_until_still(self) -> None:
+        """Let the instructions through that the paused inspection waits for."""
+        session = self.inspection
+        while session.state.wanted or session.state.search or session.state.awaited:
+            session.tick()
+            if not self.host_session.unexecuted:
+                break

@@ -2,28 +2,17 @@
 
 from __future__ import annotations
 
-import threading
-
 import numpy as np
-import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+import pygame
 
-from ramtek_emu import Configuration, Ramtek9300, TcpPort, instructions
-from ramtek_emu.host.server import TcpServer
+from ramtek_emu import Configuration, Ramtek9300, instructions
 from ramtek_emu.inspection.inspector import BINDINGS, MOUSE, MOUSE_LIVE, Inspector
 from ramtek_emu.inspection.running_host import RunningHost
 from ramtek_emu.inspection.session import EntryRange, InspectionSession
-from ramtek_emu.memory.scan_orders import Point
 from ramtek_emu.monitor.input_queue import Key, Pointer
-from ramtek_emu.snapshot import snapshot_bytes
-from ramtek_emu.testing import streams
 from tests.ramtek_emu.displays import shown
-from tests.ramtek_emu.inspection.replays import moments, replay_of
+from tests.ramtek_emu.inspection.replays import replay_of
 from tests.ramtek_emu.recorded_streams import OUTLINE
-from tests.ramtek_emu.strategies import SMALL
-
-pygame = pytest.importorskip("pygame")
 
 LARGE = Configuration(name="LARGE", elements=640, lines=480, planes=10)
 
@@ -66,34 +55,6 @@ BOXES = np.concatenate(
         instructions.load_entries(5, [[40, 50, 60]]),
     )
 )
-
-KEYS = st.sampled_from([*"123goncwiers[]", "shift n"]) | st.sampled_from(
-    [key for binding in BINDINGS for key in binding.keys] + ["return", "backspace", "f12"]
-)
-POINTERS = st.builds(
-    Pointer,
-    st.integers(0, 1167),
-    st.integers(0, 640),
-    st.just(False),
-    st.sampled_from(["press", "press", "move", "release", "wheel up", "wheel down"]),
-    st.sampled_from([1, 1, 1, 2, 3]),
-)
-
-
-@given(words=streams(), actions=st.lists(KEYS | POINTERS, max_size=20))
-def test_no_keys_and_clicks_lead_away_from_the_stream(words: list[int], actions: list[str | Pointer]) -> None:
-    inspector = inspector_of(words, SMALL)
-    expected = moments(inspector.session.replay)
-    for action in actions:
-        if isinstance(action, Pointer):
-            inspector.point(action)
-        else:
-            shift, plain = action.startswith("shift "), action.removeprefix("shift ")
-            inspector.press(Key(plain, plain if len(plain) == 1 else "", shift=shift))
-        at_rest(inspector)
-        number = inspector.session.state.number
-        assert snapshot_bytes(inspector.session.display) == expected[number][0]
-    inspector.page.draw()
 
 
 def test_keys_step_forward_and_back() -> None:
@@ -176,14 +137,40 @@ def test_the_bar_is_dragged_over_the_whole_stream() -> None:
     assert numbers == [(last + 1) // 2, 0, last]
 
 
-def test_the_wheel_scrolls_the_listing_and_steps_on_the_bar() -> None:
-    inspector = inspector_of(np.tile(OUTLINE, 9))
-    for part, element, line in (("listing", 700, 60), ("bar", 60, inspector.page.layout.bar.top)):
-        assert inspector.page.panel_at(Point(element, line))[0] == part
-        inspector.point(Pointer(element, line, False, "wheel down", steps=2))
-    assert inspector.session.state.number == 2
-    inspector.point(Pointer(700, 60, False, "wheel down", steps=3))
-    assert inspector.session.state.first_listed == 9
+def test_the_wheel_scrolls_lists_by_three_rows_a_step_and_steps_on_the_bar() -> None:
+    inspector = inspector_of(np.tile(instructions.erase((0, 0, 9, 9), 5), 90))
+    session, layout = inspector.session, inspector.page.layout
+    click(press(inspector, "end", "left", "left"), 5, 5)
+    assert len(session.state.writes or ()) == 88
+
+    def wheel(panel: str, action: str, steps: int) -> tuple[int, int, int]:
+        box = layout.bar if panel == "bar" else layout.boxes[panel]
+        inspector.point(Pointer(box.left + 20, box.top + 4, False, action, steps=steps))
+        at_rest(inspector)
+        return session.state.number, session.state.first_listed, session.state.first_write
+
+    first = session.state.first_listed
+    assert wheel("history", "wheel down", 3) == (88, first, 9)
+    assert wheel("history", "wheel up", 2) == (88, first, 3)
+    assert wheel("listing", "wheel up", 4) == (88, first - 12, 3)
+    assert wheel("listing", "wheel down", 2) == (88, first - 6, 3)
+    assert wheel("bar", "wheel up", 5)[0] == 83
+    assert wheel("bar", "wheel down", 2)[0] == 85
+    assert wheel("status", "wheel down", 2)[0] == 85
+
+
+def test_the_pointer_is_noted_on_the_field_and_on_the_page_of_entries() -> None:
+    inspector = inspector_of(BOXES)
+    noted = []
+    for place in ((639, 479), (0, 0), (640, 479)):
+        noted.append(point(inspector, ("move", *place)).session.state.pointer)
+    assert noted == [(639, 479), (0, 0), None]
+    press(inspector, "f4")
+    entries = [
+        point(inspector, ("move", *place)).session.state.pointed_entry for place in ((639, 479), (0, 0))
+    ]
+    assert entries == [1023, 0]
+    assert point(inspector, ("move", 640, 479)).session.state.pointed_entry is None
 
 
 def test_the_help_page_has_every_key_and_fits() -> None:
@@ -215,14 +202,9 @@ def test_the_mouse_is_the_joystick_of_a_display_that_runs_and_inspects_a_paused_
     assert inspector.session.state.selection == (60, 70, 60, 70)
 
 
-@pytest.fixture
-def opened(on_screen: str) -> Inspector:
-    inspector = inspector_of(BOXES)
-    inspector.monitor.open()
-    return inspector
-
-
-def test_the_window_shows_the_page_after_keys_and_clicks(opened: Inspector) -> None:
+def test_the_window_shows_the_page_after_keys_and_clicks(on_screen: str) -> None:
+    opened = inspector_of(BOXES)
+    opened.monitor.open()
     monitor, page = opened.monitor, opened.page
     keys = (
         pygame.K_RIGHT,
@@ -249,41 +231,3 @@ def test_the_window_shows_the_page_after_keys_and_clicks(opened: Inspector) -> N
     pygame.event.post(event)
     opened.run()
     assert not monitor.is_open
-
-
-def test_a_host_draws_in_the_window_of_an_inspector_and_can_be_paused(on_screen: str) -> None:
-    host = RunningHost(Ramtek9300())
-    with TcpServer(host.display, record=host.record) as server:
-        server.gate, host.step, host.is_connected = host.gate, server.step, lambda: server.busy
-        inspector = Inspector(InspectionSession(host.replay, host))
-        replies: list[list[int]] = []
-
-        def draw() -> None:
-            with TcpPort(server.address) as port:
-                for word in (3, 4, 5):
-                    port.send(instructions.erase((0, 0, 9, 9), word))
-                    stream, count = next(instructions.read_image(0, 0, 1, 1))
-                    port.send(stream)
-                    replies.append(port.receive(count).tolist())
-
-        inspector.press(Key("space", " "))
-        program = threading.Thread(target=draw)
-        program.start()
-        inspector.monitor.open()
-        while not server.busy:
-            inspector.monitor.step()
-        for _ in range(2):
-            inspector.press(Key("right"))
-            while inspector.session.state.wanted:
-                inspector.monitor.step()
-        while not replies:
-            inspector.monitor.step()
-        assert (len(host.replay.stream), host.display.words[0, 0]) == (2, 3)
-        inspector.press(Key("space", " "))
-
-        def ends() -> bool:
-            return not program.is_alive()
-
-        inspector.run(ends)
-        assert replies == [[3], [4], [5]]
-        assert len(host.replay.stream) == 6

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 from collections.abc import Callable
 
@@ -10,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ramtek_emu import Configuration, Ramtek9300, instructions
+from ramtek_emu import Ramtek9300, instructions
 from ramtek_emu.configuration import CONFIGURATIONS
 from ramtek_emu.inspection import panels
 from ramtek_emu.inspection.page import InspectorPage, PageBox, PageLayout, layout_of
@@ -22,7 +23,7 @@ from ramtek_emu.memory.scan_orders import Point, Window
 from ramtek_emu.monitor.overlay import ADVANCE
 from ramtek_emu.monitor.pattern import pattern
 from ramtek_emu.testing import streams
-from tests.ramtek_emu.inspection.replays import prepare, replay_of
+from tests.ramtek_emu.inspection.sessions import at_rest, session_of, text_of
 from tests.ramtek_emu.strategies import SMALL
 
 BUTTONS = ("<", ">", "entries")
@@ -32,34 +33,25 @@ def page_of(session: InspectionSession) -> InspectorPage:
     return InspectorPage(session, BUTTONS, [("Esc", "back")], "a page")
 
 
-def session_of(words: list[int], configuration: Configuration = SMALL) -> InspectionSession:
-    session = InspectionSession(replay_of(words, configuration))
-    prepare(session.replay)
-    session.tick()
-    return session
-
-
 def boxes_of(layout: PageLayout) -> dict[str, PageBox]:
     buttons = {f"button {number}": box for number, box in enumerate(layout.buttons)}
     return {"stage": layout.stage, **layout.boxes, **buttons, "bar": layout.bar}
 
 
-def outside(inner: PageBox, outer: PageBox) -> bool:
-    return not (
-        outer.left <= inner.left
-        and inner.left + inner.width <= outer.left + outer.width
-        and outer.top <= inner.top
-        and inner.top + inner.height <= outer.top + outer.height
-    )
+def region(box: PageBox) -> Window:
+    return Window(box.left, box.top, box.left + box.width - 1, box.top + box.height - 1)
 
 
-def overlap(a: PageBox, b: PageBox) -> bool:
-    return (
-        a.left < b.left + b.width
-        and b.left < a.left + a.width
-        and a.top < b.top + b.height
-        and b.top < a.top + a.height
-    )
+def is_within(inner: PageBox, outer: PageBox) -> bool:
+    return region(inner).intersection(region(outer)) == region(inner)
+
+
+@functools.cache
+def patterned(name: str) -> InspectionSession:
+    """A session at the end of the test pattern, whose state tests put back."""
+    session = session_of(pattern(CONFIGURATIONS[name]), configuration=CONFIGURATIONS[name])
+    session.go(session.state.length)
+    return session
 
 
 @given(elements=st.integers(1, 4096), lines=st.integers(1, 4096), cursors=st.integers(0, 8))
@@ -67,10 +59,11 @@ def test_no_part_of_a_page_covers_another(elements: int, lines: int, cursors: in
     layout = layout_of(elements, lines, cursors, BUTTONS)
     boxes = boxes_of(layout)
     whole = PageBox(0, 0, layout.elements, layout.lines)
-    assert [name for name, box in boxes.items() if outside(box, whole)] == []
+    assert [name for name, box in boxes.items() if not is_within(box, whole)] == []
     pairs = itertools.combinations(boxes.items(), 2)
-    assert [(a, b) for (a, one), (b, other) in pairs if overlap(one, other)] == []
-    assert not outside(layout.field, layout.stage)
+    meet = [(a, b) for (a, one), (b, other) in pairs if not region(one).intersection(region(other)).is_empty]
+    assert meet == []
+    assert is_within(layout.field, layout.stage)
     assert layout.field[2:] == (elements * layout.zoom, lines * layout.zoom)
     assert boxes["listing"].rows >= 8
     assert boxes["history"].rows >= 4
@@ -113,8 +106,7 @@ def test_what_changes_is_drawn_as_the_whole_page_is(
     stamp = None
     for action in actions:
         action(session)
-        while session.is_busy:
-            session.tick()
+        at_rest(session)
         before, runs = shown.copy(), page.lines_changed_since(stamp)
         stamp = page.scan_out_changes_into(shown, stamp)
         assert stamp == page.stamp
@@ -132,7 +124,7 @@ def test_what_changes_is_drawn_as_the_whole_page_is(
 
 
 def test_a_message_changes_only_its_lines() -> None:
-    session = session_of(pattern().tolist(), CONFIGURATIONS["GMR_9300"])
+    session = session_of(pattern(), configuration=CONFIGURATIONS["GMR_9300"])
     page = page_of(session)
     stamp = page.scan_out_changes_into(np.zeros((page.lines, page.elements), np.uint32), None)
     session.tell("a message")
@@ -154,14 +146,14 @@ def test_the_button_that_pauses_reads_go_on_while_the_host_waits() -> None:
 
 @pytest.mark.parametrize("name", CONFIGURATIONS)
 def test_the_longest_texts_of_cursors_pixels_and_messages_are_not_cut(name: str) -> None:
-    session = session_of([], CONFIGURATIONS[name])
+    session = session_of(configuration=CONFIGURATIONS[name])
     sizes = session.display.configuration
     for cursor in session.display.cursors.all:
         cursor.element, cursor.line, cursor.enter = sizes.elements - 1, sizes.lines - 1, True
         cursor.state = VISIBLE | BLINK
     session.display.cursors.track = True
     boxes = page_of(session).layout.boxes
-    cursors = ["".join(span.text for span in line) for line in panels.cursors(session)]
+    cursors = [text_of(line) for line in panels.cursors(session)]
     assert max(map(len, cursors)) <= boxes["cursors"].width // ADVANCE
     assert len(cursors) == boxes["cursors"].rows
     parameters = session.display.processor.parameters
@@ -170,7 +162,7 @@ def test_the_longest_texts_of_cursors_pixels_and_messages_are_not_cut(name: str)
     session.point_at(Point(0, 0))
     last = Window(sizes.elements - 1, sizes.lines - 1, sizes.elements - 1, sizes.lines - 1)
     session.select(last)
-    pixels = ["".join(span.text for span in line) for line in panels.pixels(session)]
+    pixels = [text_of(line) for line in panels.pixels(session)]
     assert max(map(len, pixels)) <= boxes["pixels"].width // ADVANCE
     assert [pixel.split()[0] for pixel in pixels] == ["pointer", "selected", "screen"]
     assert len(pixels) == boxes["pixels"].rows
@@ -182,8 +174,7 @@ def test_the_longest_texts_of_cursors_pixels_and_messages_are_not_cut(name: str)
 
 @pytest.mark.parametrize("name", CONFIGURATIONS)
 def test_the_field_is_shown_at_a_whole_multiple(name: str) -> None:
-    session = session_of(pattern(CONFIGURATIONS[name]).tolist(), CONFIGURATIONS[name])
-    session.go(session.state.length)
+    session = patterned(name)
     page = page_of(session)
     left, top, width, height = page.layout.field
     field = session.display.field()
@@ -194,25 +185,46 @@ def test_the_field_is_shown_at_a_whole_multiple(name: str) -> None:
 
 
 def test_the_places_of_the_mouse_are_those_that_are_seen() -> None:
-    session = session_of(pattern().tolist(), CONFIGURATIONS["GMR_9300"])
+    session = session_of(pattern(), configuration=CONFIGURATIONS["GMR_9300"])
     page = page_of(session)
     for number, button in enumerate(page.layout.buttons):
-        assert page.panel_at(Point(button.left, button.top)) == ("button", number)
-    listing = page.layout.boxes["listing"]
-    assert page.panel_at(Point(listing.left, listing.top)) == ("listing", -1)
-    assert page.panel_at(Point(listing.left, listing.top + 11)) == ("listing", 0)
-    assert page.panel_at(Point(100, 100)) == ("stage", 0)
-    assert page.panel_at(Point(100, page.layout.bar.top)) == ("bar", 0)
-    assert page.panel_at(Point(page.elements - 1, page.lines - 1)) == ("", 0)
+        ends = Point(button.left, button.top), Point(button.left + button.width - 1, button.top + 14)
+        assert [page.panel_at(place) for place in ends] == [("button", number)] * 2
+        assert page.panel_at(Point(button.left + button.width, button.top)) == ("", 0)
+    for name in ("listing", "history"):
+        box = page.layout.boxes[name]
+        for element in (box.left, box.left + box.width - 1):
+            rows = [page.panel_at(Point(element, box.top + line))[1] for line in (0, 10, 11, 21, 22)]
+            assert rows == [-1, -1, 0, 0, 1]
+            assert page.panel_at(Point(element, box.top + box.height - 1)) == (name, box.rows - 2)
+        assert page.panel_at(Point(box.left + box.width, box.top)) == ("", 0)
+        assert page.panel_at(Point(box.left, box.top + box.height)) == ("", 0)
+    assert page.panel_at(Point(639, 479)) == ("stage", 0)
+    assert (
+        page.panel_at(Point(640, 479)) == page.panel_at(Point(page.elements - 1, page.lines - 1)) == ("", 0)
+    )
+    bar = page.layout.bar
+    assert [page.panel_at(Point(100, bar.top + line))[0] for line in (-4, -3, 9, 10)] == [
+        "",
+        "bar",
+        "bar",
+        "",
+    ]
+    # Outside the field, the nearest place of the screen.
     assert page.field_place(Point(-5, 700)) == (0, 479)
+    assert page.field_place(Point(639, 0)) == page.field_place(Point(640, -1)) == (639, 0)
+    small = page_of(session_of())
+    left, top, width, height = small.layout.field
+    last = Point(left + width - 1, top + height - 1)
+    assert small.field_place(last) == small.field_place(Point(last.element + 1, last.line + 1)) == (12, 8)
+    assert small.field_place(Point(left + width - small.layout.zoom - 1, top)) == (11, 0)
     for number in range(session.state.length + 1):
         assert page.number_at(page.layout.bar.left + page.bar_place(number)) == number
 
 
 @pytest.mark.parametrize("name", CONFIGURATIONS)
 def test_every_entry_has_its_cell(name: str) -> None:
-    session = session_of(pattern(CONFIGURATIONS[name]).tolist(), CONFIGURATIONS[name])
-    session.go(session.state.length)
+    session = patterned(name)
     page = page_of(session)
     colors = session.display.scan_out.table()
     session.turn_to("entries")
@@ -224,3 +236,4 @@ def test_every_entry_has_its_cell(name: str) -> None:
         for place in (Point(*box[:2]), Point(box.left + box.width - 1, box.top + box.height - 1)):
             assert page.entry_at(place) == entry
             assert shown[place.line, place.element] == colors[word]
+    session.turn_to("entries")

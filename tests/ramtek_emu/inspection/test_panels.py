@@ -5,7 +5,7 @@ import numpy as np
 from ramtek_emu import instructions
 from ramtek_emu.inspection import panels
 from ramtek_emu.inspection.panels import Span, wrapped
-from ramtek_emu.inspection.session import LONGEST_MEANING, EntryRange, InspectionSession, meaning_of
+from ramtek_emu.inspection.session import LONGEST_MEANING, EntryRange, meaning_of
 from ramtek_emu.instruction_set.table import FORMAT_OF_NAME
 from ramtek_emu.memory.scan_orders import Point, Window
 from ramtek_emu.monitor.overlay import ORANGE, WHITE
@@ -31,28 +31,12 @@ def test_long_lines_of_a_listing_are_wrapped_and_nothing_is_lost() -> None:
     assert parts == lines
 
 
-def test_parameters_differ_from_a_reset_and_from_the_position_before() -> None:
-    session = session_of(*BOXES_STREAM)
-    rows = {text_of(line[:1]).strip(): line for line in panels.parameters(session)}
-    assert {row[1].color for row in rows.values()} == {panels.GRAY}
-    session.go(1)
-    session.go(3)
-    rows = {text_of(line[:1]).strip(): line for line in panels.parameters(session)}
-    assert (rows["background"][1], rows["mask"][1]) == (
-        Span("*7", ORANGE),
-        Span(" 0xFFFF", panels.GRAY),
-    )
-    session.go(2)
-    session.go(1)
-    rows = {text_of(line[:1]).strip(): line for line in panels.parameters(session)}
-    assert rows["background"][1] == Span("*5", WHITE)
-
-
 def test_parameters_that_an_instruction_of_a_paused_host_changed_are_orange() -> None:
     served = Served(session_of().display)
-    session = InspectionSession(served.host.replay, served.host)
-    served.send(np.concatenate(BOXES_STREAM))
+    session = served.inspection
     session.pause()
+    assert {line[1].color for line in panels.parameters(session)} == {panels.GRAY}
+    served.send(*BOXES_STREAM)
     colors = []
     for number in range(1, 6):
         session.step(1)
@@ -64,15 +48,21 @@ def test_parameters_that_an_instruction_of_a_paused_host_changed_are_orange() ->
     # Instructions 2 and 5 load an entry, the others erase.
     gray = panels.GRAY
     assert colors == [(ORANGE, gray), (WHITE, ORANGE), (ORANGE, WHITE), (ORANGE, WHITE), (WHITE, WHITE)]
-    served.send(np.concatenate(BOXES_STREAM))
+    # Forward and back over what was executed, the position before counts.
+    session.go(1)
+    session.go(3)
+    rows = {text_of(line[:1]).strip(): line for line in panels.parameters(session)}
+    assert (rows["background"][1], rows["mask"][1]) == (Span("*7", ORANGE), Span(" 0xFFFF", panels.GRAY))
+    session.go(1)
+    session.go(5)
+    served.send(*BOXES_STREAM)
     session.next_opcode(FORMAT_OF_NAME["LAM"].opcode)
     while session.state.awaited:
         session.tick()
     rows = {text_of(line[:1]).strip(): line for line in panels.parameters(session)}
     assert (session.state.number, rows["window"][1].color) == (7, ORANGE)
     session.go_on()
-    while served.session.unexecuted:
-        session.tick()
+    served.execute()
     assert ORANGE not in {line[1].color for line in panels.parameters(session)}
 
 
@@ -111,7 +101,7 @@ def test_a_pixel_is_shown_with_its_word_its_entry_and_its_color() -> None:
 
 def test_the_title_says_whether_a_host_runs_and_what_is_incomplete() -> None:
     served = Served(session_of(BOXES_STREAM[0]).display)
-    session = InspectionSession(served.host.replay, served.host)
+    session = served.inspection
     assert text_of(panels.title(session)) == "instruction 0 of 0  running"
     session.pause()
     assert text_of(panels.title(session)) == "instruction 0 of 0  paused"
@@ -126,3 +116,22 @@ def test_cursors_and_the_reply_that_reads_them_are_shown() -> None:
     session.go(2)
     assert text_of(panels.cursors(session)[0]).split() == ["cursor", "0", "3,4", "visible"]
     assert text_of(panels.words_of_the_instruction(session, 9, 64)[-1]) == "reply  0003 0404"
+
+
+def test_what_does_not_fit_by_one_row_or_one_word_ends_in_periods() -> None:
+    image = instructions.write_image(np.arange(48).reshape(6, 8))
+    reply, _ = next(instructions.read_image(0, 0, 8, 6))
+    session = session_of(image, reply)
+    session.go(1)
+    texts = [text_of(line) for line in panels.words_of_the_instruction(session, 1000, 64)]
+    rows = len(texts)
+    assert [text_of(line) for line in panels.words_of_the_instruction(session, rows, 64)] == texts
+    cut = [text_of(line) for line in panels.words_of_the_instruction(session, rows - 1, 64)]
+    assert cut == [*texts[: rows - 2], "       ..."]
+    # All 48 words of a reply take 7 + 48 * 5 characters, and the last of them needs no gap.
+    session.go(2)
+    words = " ".join(f"{word:04X}" for word in range(48))
+    last = text_of(panels.words_of_the_instruction(session, 9, 7 + 48 * 5 + len(" .. 48 words"))[-1])
+    assert last == f"reply  {words}"
+    last = text_of(panels.words_of_the_instruction(session, 9, 6 + 48 * 5 + len(" .. 48 words"))[-1])
+    assert last == f"reply  {words[:-5]} .. 48 words"

@@ -11,17 +11,20 @@ from ramtek_emu.host import server as module_of_servers
 from ramtek_emu.host.server import TcpServer
 from ramtek_emu.inspection import panels
 from ramtek_emu.inspection import running_host as module
-from ramtek_emu.inspection.differences import _differences
-from ramtek_emu.inspection.histories import finished, writes_to_pixel
 from ramtek_emu.inspection.running_host import RunningHost
 from ramtek_emu.inspection.session import InspectionSession
-from ramtek_emu.instruction_set.instruction import NO_WORDS
-from ramtek_emu.snapshot import snapshot_bytes
-from tests.ramtek_emu.inspection.replays import moments, replay_of, states_every
 from tests.ramtek_emu.inspection.sessions import Served, text_of
 from tests.ramtek_emu.recorded_streams import OUTLINE
-from tests.ramtek_emu.strategies import SMALL
-from tests.small import BOXES_STREAM
+
+POINTS = np.random.default_rng(1).integers(0, (640, 480), (16000, 2))
+"""Vertices of an instruction that takes long."""
+
+
+@pytest.fixture
+def small_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A tick executes as little as it can."""
+    monkeypatch.setattr(module_of_servers, "SLICE_SECONDS", 0.0)
+    monkeypatch.setattr(module, "PIECE_SECONDS", 0.0)
 
 
 def test_a_paused_host_waits_and_is_not_disconnected(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -29,15 +32,15 @@ def test_a_paused_host_waits_and_is_not_disconnected(monkeypatch: pytest.MonkeyP
     with TcpServer(host.display, idle_seconds=5, record=host.record) as server:
         server.gate, host.step, host.is_connected = host.gate, server.step, lambda: server.busy
         session = InspectionSession(host.replay, host)
+        session.pause()
         port = TcpPort(server.address)
-        read = instructions.read_cursor(0)
-        port.send(np.concatenate((read, read, read)))
+        port.send(np.tile(instructions.read_cursor(0), 3))
         while not server.busy:
             session.tick()
         session.step(1)
         while session.state.wanted:
             session.tick()
-        number = session.state.number
+        assert session.state.number == 1
         offset = 0.0
         later = SimpleNamespace(monotonic=lambda: time.monotonic() + offset, perf_counter=time.perf_counter)
         monkeypatch.setattr(module_of_servers, "time", later)
@@ -45,7 +48,7 @@ def test_a_paused_host_waits_and_is_not_disconnected(monkeypatch: pytest.MonkeyP
             # The host is silent for minutes in all, but it is let execute nothing.
             offset += 4
             session.tick()
-        assert len(host.replay.stream) == number
+        assert len(host.replay.stream) == 1
         assert server.busy
         monkeypatch.undo()
         assert port.receive(2).tolist() == [0, 0]
@@ -53,67 +56,48 @@ def test_a_paused_host_waits_and_is_not_disconnected(monkeypatch: pytest.MonkeyP
         while len(host.replay.stream) < 3:
             session.tick()
         assert port.receive(4).tolist() == [0, 0, 0, 0]
-        port.close = lambda *_: None  # type: ignore[method-assign]
         port.wire.socket.close()
 
 
 def test_the_past_of_a_running_display_has_its_cursors_where_the_joystick_moved_them() -> None:
     served = Served(Ramtek9300())
-    session = InspectionSession(served.host.replay, served.host)
     served.host.display.joystick.move_to(200, 100)
-    served.send(OUTLINE)
-    while served.session.unexecuted:
-        session.tick()
+    served.execute(OUTLINE)
+    session = served.inspection
     session.go(len(session.replay.stream) - 1)
     assert "200,100" in text_of(panels.cursors(session)[0])
-
-
-def test_the_past_is_right_wherever_the_words_of_a_host_are_cut() -> None:
-    words = np.concatenate(BOXES_STREAM)
-    expected = moments(replay_of(words.tolist()))
-    for place in range(1, len(words)):
-        with states_every(0.0):
-            served = Served(Ramtek9300(SMALL))
-            session = InspectionSession(served.host.replay, served.host)
-            for piece in (words[:place], words[place:]):
-                served.send(piece)
-                while served.session.unexecuted:
-                    session.tick()
-        for number in range(len(expected)):
-            session.go(number)
-            display = session.replay.display
-            display.words_received = int(session.replay.stream.ends[number])
-            assert snapshot_bytes(display) == expected[number][0]
-        writes = finished(writes_to_pixel(session.replay, 4, 4, len(expected) - 1))
-        assert [write.number for write in writes] == [1, 3, 4]
 
 
 def test_a_running_display_forgets_its_past_before_memory_is_full(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "MOST_BYTES", 3 << 20)
     served = Served(Ramtek9300())
-    session = InspectionSession(served.host.replay, served.host)
-    first = served.host.replay
-    image = instructions.write_image(np.arange(480 * 640).reshape(480, 640) % 1024)
-    while served.host.replay is first:
-        served.send(image)
-        while served.session.unexecuted:
-            session.tick()
+    session, first = served.inspection, served.host.replay
+    picture = np.arange(480 * 640).reshape(480, 640) % 1024
+    while session.replay is first:
+        if not served.host_session.unexecuted:
+            served.send(instructions.write_image(picture))
+        session.tick()
+    state = session.state
+    assert (state.number, state.target, state.length, state.first_listed) == (0, 0, 0, 0)
+    assert state.message.endswith("MB of memory: they are counted from here on")
+    served.execute()
+    # The instructions are counted anew, and the past begins with the picture as it was.
+    begin = len(session.replay.stream)
+    served.execute(instructions.erase((0, 0, 9, 9), 5), instructions.erase((0, 0, 1, 1), 6))
     session.pause()
-    session.go(0)
-    assert session.replay is served.host.replay
-    assert (session.display.words == np.arange(480 * 640).reshape(480, 640) % 1024).any()
-    assert session.state.length == len(session.replay.stream) < len(first.stream)
+    assert session.state.number == session.state.length == begin + 2 < len(first.stream)
+    shown = []
+    for number in (0, begin + 1, begin + 2):
+        session.go(number)
+        shown.append((session.state.number, session.display.words[0, 5], session.display.words[0, 0]))
+    assert shown == [(0, 5, 0), (begin + 1, 5, 5), (begin + 2, 5, 6)]
 
 
-def test_a_host_can_be_paused_within_a_long_instruction(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(module_of_servers, "SLICE_SECONDS", 0.0)
-    points = np.random.default_rng(1).integers(0, (640, 480), (16000, 2))
-    words = np.concatenate([instructions.write_vectors(points + shift, 7 + shift) for shift in (0, 1)])
+@pytest.mark.usefixtures("small_pieces")
+def test_a_host_can_be_paused_within_a_long_instruction() -> None:
     served = Served(Ramtek9300())
-    served.send(words)
-    # Serve as little as a tick can, until some of the first instruction is drawn.
-    monkeypatch.setattr(module, "PIECE_SECONDS", 0.0)
-    session = InspectionSession(served.host.replay, served.host)
+    served.send(*(instructions.write_vectors(POINTS + shift, 7 + shift) for shift in (0, 1)))
+    session = served.inspection
     while not served.host.display.words.any():
         session.tick()
     session.pause()
@@ -133,25 +117,27 @@ def test_a_host_can_be_paused_within_a_long_instruction(monkeypatch: pytest.Monk
         assert np.array_equal(session.replay.display.words, expected.words)
 
 
+def is_alike(served: Served) -> bool:
+    """Whether the replay has come to the display as it is."""
+    replayed, display = served.inspection.replay.display, served.host.display
+    return (replayed.words == display.words).all() and str(replayed.cursors[0]) == str(display.cursors[0])
+
+
+@pytest.mark.usefixtures("small_pieces")
 @pytest.mark.parametrize("is_paused", [False, True])
 @pytest.mark.parametrize("has_more", [False, True])
-def test_a_reset_within_a_long_instruction_is_in_the_past(
-    is_paused: bool, has_more: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(module_of_servers, "SLICE_SECONDS", 0.0)
-    points = np.random.default_rng(1).integers(0, (640, 480), (16000, 2))
-    more = [instructions.write_vectors(points[::-1], 9), instructions.erase((9, 9, 90, 90), 3)]
-    first = [instructions.write_cursor(0, 100, 100), instructions.write_vectors(points, 7)]
+def test_a_reset_within_a_long_instruction_is_in_the_past(is_paused: bool, has_more: bool) -> None:
+    more = [instructions.write_vectors(POINTS[::-1], 9), instructions.erase((9, 9, 90, 90), 3)]
+    first = [instructions.write_cursor(0, 100, 100), instructions.write_vectors(POINTS, 7)]
     served = Served(Ramtek9300())
-    served.send(np.concatenate([*first, *(more if has_more else [])]))
-    monkeypatch.setattr(module, "PIECE_SECONDS", 0.0)
-    session = InspectionSession(served.host.replay, served.host)
+    served.send(*first, *(more if has_more else []))
+    session = served.inspection
     while not (served.host.display.words == 7).any():
         session.tick()
     assert served.host.gate.is_within
     if is_paused:
         session.pause()
-    served.session.reset()
+    served.host_session.reset()
     served.host.display.joystick.move_to(30, 40)
     if is_paused:
         for number in (2, *((3, 4) if has_more else ())):
@@ -160,64 +146,33 @@ def test_a_reset_within_a_long_instruction_is_in_the_past(
             while session.state.wanted:
                 session.tick()
             assert session.state.number == len(session.replay.stream) == number
-            assert not dict(_differences(session.replay.display, served.host.display, NO_WORDS, NO_WORDS))
+            assert is_alike(served)
     session.go_on()
-    if has_more and not is_paused:
-        while not (served.host.display.words == 9).any():
-            session.tick()
-        assert served.host.gate.is_within
-    while served.session.unexecuted:
-        session.tick()
-    served.send(instructions.erase((50, 50, 52, 52), 5))
-    while served.session.unexecuted:
-        session.tick()
+    served.execute()
+    served.execute(instructions.erase((50, 50, 52, 52), 5))
     session.pause()
     assert len(session.replay.stream) == (5 if has_more else 3)
     session.go(session.state.length - 1)
     session.go(session.state.length)
-    assert not dict(_differences(session.replay.display, served.host.display, NO_WORDS, NO_WORDS))
+    assert is_alike(served)
+    session.go(1)
+    assert session.display.cursors[0].is_visible
 
 
 def test_a_reset_that_the_host_asks_for_hides_the_cursors_of_the_past() -> None:
     served = Served(Ramtek9300())
-    session = InspectionSession(served.host.replay, served.host)
-    served.send(instructions.write_cursor(0, 5, 6))
-    while served.session.unexecuted:
-        session.tick()
-    step = served.host.step
+    session = served.inspection
+    served.execute(instructions.write_cursor(0, 5, 6))
 
     def reset(_: float) -> bool:
-        served.session.reset()
-        served.host.step = step
+        served.host_session.reset()
+        served.host.step = served.step
         return True
 
     served.host.step = reset
-    served.send(instructions.erase((0, 0, 20, 20), 4))
-    while served.session.unexecuted:
-        session.tick()
+    served.execute(instructions.erase((0, 0, 20, 20), 4))
     visible = []
     for number in (1, 2, 3):
         session.go(number)
         visible.append(session.replay.display.cursors[0].is_visible)
     assert visible == [True, False, False]
-
-
-def test_the_joystick_moves_within_a_long_instruction(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(module_of_servers, "SLICE_SECONDS", 0.0)
-    monkeypatch.setattr(module, "PIECE_SECONDS", 0.0)
-    with states_every(1000.0):
-        served = Served(Ramtek9300())
-    session = InspectionSession(served.host.replay, served.host)
-    served.host.display.joystick.move_to(1, 1)
-    points = np.random.default_rng(1).integers(0, (640, 480), (16000, 2))
-    served.send(instructions.write_vectors(points, 7))
-    while not served.host.display.words.any():
-        session.tick()
-    served.host.display.joystick.move_to(30, 40)
-    while served.session.unexecuted:
-        session.tick()
-    session.pause()
-    session.go(0)
-    session.go(1)
-    cursor = session.replay.display.cursors[0]
-    assert (cursor.element, cursor.line) == (30, 40)

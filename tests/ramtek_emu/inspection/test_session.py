@@ -111,7 +111,6 @@ def test_the_history_of_a_pixel_leads_through_the_stream() -> None:
     assert numbers == [4, 3, 1, 1, 3]
     session.click_history(0)
     assert session.state.number == 4
-    assert text_of(panels.history_title(session)) == "history of pixel 4,4: 3 writes"
 
 
 def test_the_history_of_an_entry_shows_its_colors() -> None:
@@ -123,10 +122,10 @@ def test_the_history_of_an_entry_shows_its_colors() -> None:
         ["2", "#000000", "to", "#0A141E"],
     ]
     session.go(2)
-    session.next_change()
-    assert at_rest(session).state.number == 5
-    session.next_change()
-    assert at_rest(session).state.message == "entry 5: no change after instruction 5"
+    for _ in range(2):
+        session.next_change()
+        assert at_rest(session).state.number == 5
+    assert session.state.message == "entry 5: no change after instruction 5"
 
 
 def test_the_next_change_of_a_rectangle_skips_writes_of_the_same_words() -> None:
@@ -140,28 +139,25 @@ def test_the_next_change_of_a_rectangle_skips_writes_of_the_same_words() -> None
     assert at_rest(session).state.number == 3
 
 
-def test_the_next_and_the_last_of_an_opcode_are_found_by_name() -> None:
-    session = session_of(*BOXES_STREAM)
-    for character in "ers":
-        session.ask("opcode", session.state.typed)
+def type_into(session: InspectionSession, prompt: str, text: str) -> None:
+    session.ask(prompt)
+    for character in text:
         session.type(character)
     session.enter()
+
+
+def test_the_next_and_the_last_of_an_opcode_are_found_by_name() -> None:
+    session = session_of(*BOXES_STREAM)
+    type_into(session, "opcode", "ers")
     numbers = [session.state.number]
     for back in (False, False, False, True, True, True):
         session.next_opcode(back=back)
         numbers.append(session.state.number)
     assert numbers == [1, 3, 4, 4, 3, 1, 1]
     assert session.state.message == "no ERS before instruction 1"
-
-
-def test_an_unknown_opcode_is_refused() -> None:
-    session = session_of(*BOXES_STREAM)
-    session.ask("opcode")
-    for character in "XYZ":
-        session.type(character)
-    session.enter()
+    type_into(session, "opcode", "xyz")
     message = "an opcode must be a name such as WI, or two digits, not XYZ"
-    assert (session.state.message, session.state.prompt, session.state.number) == (message, "", 0)
+    assert (session.state.message, session.state.prompt, session.state.number) == (message, "", 1)
 
 
 def test_every_opcode_is_known_by_its_name() -> None:
@@ -173,7 +169,6 @@ def test_every_opcode_is_known_by_its_name() -> None:
 def test_a_typed_number_is_gone_to_and_can_be_corrected() -> None:
     session = session_of(*BOXES_STREAM)
     session.ask("instruction", "3")
-    assert not session.takes("A")
     session.type("9")
     session.erase_typed()
     assert text_of(panels.status(session)) == "go to instruction: 3_"
@@ -193,41 +188,41 @@ def test_escape_leaves_what_was_begun_last() -> None:
     assert left == [("", "entries", False), ("", "", False), ("", "", True)]
 
 
-def test_a_far_instruction_is_gone_to_when_states_are_prepared(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.fixture
+def far(monkeypatch: pytest.MonkeyPatch) -> InspectionSession:
+    """A session that goes to instruction 100, and whose ticks do as little as they can."""
     monkeypatch.setattr(module, "PIECE_SECONDS", 0.0)
     session = InspectionSession(replay_of(np.tile(instructions.erase((0, 0, 3, 3), 5), 100).tolist()))
     session.go(100)
     assert (session.state.number, session.state.target) == (0, 100)
-    assert text_of(panels.status(session)).startswith("preparing")
+    return session
+
+
+def test_a_far_instruction_is_gone_to_when_states_are_prepared(far: InspectionSession) -> None:
+    assert text_of(panels.status(far)).startswith("preparing")
     ticks = 0
-    while session.is_busy:
-        session.tick()
+    while far.is_busy:
+        far.tick()
         ticks += 1
-    assert session.state.number == 100
+    assert far.state.number == 100
     assert ticks > 10
-    assert session.display.words[3, 3] == 5
+    assert far.display.words[3, 3] == 5
 
 
 def test_a_click_before_the_states_are_prepared_asks_about_the_instruction_to_come(
-    monkeypatch: pytest.MonkeyPatch,
+    far: InspectionSession,
 ) -> None:
-    monkeypatch.setattr(module, "PIECE_SECONDS", 0.0)
-    session = InspectionSession(replay_of(np.tile(instructions.erase((0, 0, 3, 3), 5), 100).tolist()))
-    session.go(100)
-    session.select(Window(1, 1, 1, 1))
-    assert (session.state.number, session.state.writes) == (0, None)
-    assert len(at_rest(session).state.writes or ()) == session.state.number == 100
+    far.select(Window(1, 1, 1, 1))
+    assert (far.state.number, far.state.writes) == (0, None)
+    assert len(at_rest(far).state.writes or ()) == far.state.number == 100
 
 
 def test_escape_before_the_states_are_prepared_lists_the_instruction_that_is_shown(
-    monkeypatch: pytest.MonkeyPatch,
+    far: InspectionSession,
 ) -> None:
-    monkeypatch.setattr(module, "PIECE_SECONDS", 0.0)
-    session = InspectionSession(replay_of(np.tile(instructions.erase((0, 0, 3, 3), 5), 100).tolist()))
-    session.go(100)
-    assert session.state.first_listed > 0
-    session.escape()
-    assert (session.state.number, session.state.target, session.state.first_listed) == (0, 0, 0)
+    assert far.state.first_listed > 0
+    far.escape()
+    assert (far.state.number, far.state.target, far.state.first_listed) == (0, 0, 0)
 
 
 def test_stepping_needs_no_prepared_states() -> None:
@@ -240,13 +235,37 @@ def test_a_rectangle_of_the_screen_is_one_of_the_memory() -> None:
     session = session_of(*BOXES_STREAM)
     places = Point(5, 4), Point(2, 1)
     assert session.memory_window(*places) == (2, 1, 5, 4)
-    zoom = np.array([FORMAT_OF_NAME["ZOOM"].opcode << 8, 0x0101], np.uint16)
-    session.display.send(np.concatenate((instructions.set_parameters(origin=(3, 2)), zoom)))
-    assert session.display.processor.parameters.zoom == (2, 2)
+    session.display.send(np.concatenate((instructions.set_parameters(origin=(3, 2)), instructions.zoom(2))))
     assert session.memory_window(*places) == (4, 2, 5, 4)
+    # Half a word at the right edge of the screen is a word.
+    assert session.memory_window(Point(12, 0), Point(3, 8)) == (4, 2, 9, 6)
     session.display.processor.parameters.origin_at_bottom = True
     # The screen has nine lines: lines 1 to 4 are 7 to 4 from the bottom.
     assert session.memory_window(*places) == (4, 4, 5, 5)
+
+
+def test_lists_show_what_is_left_when_one_row_more_than_fits_is_there() -> None:
+    session = session_of(np.tile(instructions.erase((0, 0, 3, 3), 5), 6))
+    session.set_rows(6, 5)
+    session.go(6)
+    session.select(Window(1, 1, 1, 1))
+    at_rest(session)
+    seen = []
+    for rows in (-9, 0, 1, 9):
+        session.scroll_listing(rows)
+        session.scroll_history(rows)
+        listed = [int(text_of(line)[1:].split()[0]) for line in panels.listing(session)]
+        history = [int(text_of(line)[1:].split()[0]) for line in panels.history(session)]
+        seen.append((listed, history))
+    first, second = ([*range(6)], [6, 5, 4, 3, 2]), ([*range(1, 7)], [5, 4, 3, 2, 1])
+    assert seen == [first, first, second, second]
+    # The rows that are clicked are those that are seen; a row below the last is none.
+    numbers = []
+    for click, row in ((session.click_history, 4), (session.click_listing, 6), (session.click_listing, 2)):
+        click(row)
+        session.scroll_listing(9)
+        numbers.append(session.state.number)
+    assert numbers == [1, 1, 3]
 
 
 # Running displays.
@@ -261,7 +280,7 @@ def test_a_stopped_display_executes_what_it_is_let_and_all_of_it_in_the_end(
     words: list[int], places: list[int], actions: list[str]
 ) -> None:
     served = Served(Ramtek9300(SMALL))
-    session = InspectionSession(served.host.replay, served.host)
+    session = served.inspection
     expected = moments(replay_of(words))
     for piece in cuts(words, places):
         session.pause()
@@ -288,8 +307,7 @@ def test_a_stopped_display_executes_what_it_is_let_and_all_of_it_in_the_end(
             if not session.state.is_following:
                 assert snapshot_of_whole(session) == expected[number][0]
         session.go_on()
-        while served.session.unexecuted:
-            session.tick()
+        served.execute()
     session.pause()
     assert len(session.replay.stream) == len(expected) - 1
     assert snapshot_of_whole(session) == expected[-1][0]
@@ -300,33 +318,26 @@ def snapshot_of_whole(session: InspectionSession) -> bytes:
     """The snapshot of the display, without the words of an incomplete instruction and their count."""
     display = copy.deepcopy(session.display)
     display.decoder.clear()
-    stream = session.replay.stream
-    display.words_received = int(stream.ends[session.state.number])
+    display.words_received = int(session.replay.stream.ends[session.state.number])
     return snapshot_bytes(display)
 
 
 def test_a_paused_host_runs_to_an_opcode_or_to_a_change() -> None:
     served = Served(Ramtek9300(SMALL))
-    session = InspectionSession(served.host.replay, served.host)
+    session = served.inspection
     session.select(Window(6, 6, 6, 6))
-    served.send(np.concatenate(BOXES_STREAM))
+    served.send(*BOXES_STREAM)
     numbers = []
-    for begin in (
-        session.next_change,
-        lambda: session.next_opcode(FORMAT_OF_NAME["LAM"].opcode),
-        session.next_change,
-        lambda: session.next_opcode(FORMAT_OF_NAME["WI"].opcode),
-    ):
-        begin()
-        while session.state.search or session.state.awaited:
-            session.tick()
-            if not served.session.unexecuted:
-                break
+    for opcode in (None, "LAM", None, "WI"):
+        if opcode is None:
+            session.next_change()
+        else:
+            session.next_opcode(FORMAT_OF_NAME[opcode].opcode)
+        served.tick_until_still()
         numbers.append((session.state.number, session.state.awaited))
     # Instructions 3 and 4 do not change the pixel, and no WI is sent.
     assert [number for number, _ in numbers[:2]] == [1, 2]
-    assert numbers[2][1] == "a change of pixel 6,6"
-    assert numbers[3][1] == "WI"
+    assert [awaited for _, awaited in numbers[2:]] == ["a change of pixel 6,6", "WI"]
     assert session.display.words[6, 6] == 5
     session.escape()
     assert (session.state.awaited, session.state.message) == ("", "paused: the host waits")
@@ -335,13 +346,11 @@ def test_a_paused_host_runs_to_an_opcode_or_to_a_change() -> None:
 
 def test_a_paused_host_runs_to_a_change_of_an_entry() -> None:
     served = Served(Ramtek9300(SMALL))
-    session = InspectionSession(served.host.replay, served.host)
-    session.select(EntryRange(5, 6))
-    served.send(np.concatenate(BOXES_STREAM))
+    served.inspection.select(EntryRange(5, 6))
+    served.send(*BOXES_STREAM)
     numbers = []
     for _ in range(2):
-        session.next_change()
-        while session.state.search or session.state.awaited:
-            session.tick()
-        numbers.append(session.state.number)
+        served.inspection.next_change()
+        served.tick_until_still()
+        numbers.append(served.inspection.state.number)
     assert numbers == [2, 5]

@@ -8,6 +8,7 @@ from ramtek_emu import InstructionError
 from ramtek_emu.instruction_set.decoder import Decoder
 from ramtek_emu.instruction_set.instruction import encode, normal
 from ramtek_emu.testing import streams
+from tests.tables import call, refused
 
 
 @given(streams())
@@ -19,12 +20,35 @@ def test_an_instruction_is_equal_to_its_own_words_read_again(stream: list[int]) 
         assert str(again) == str(instruction)
 
 
-def test_an_instruction_has_at_most_65535_bytes_of_data() -> None:
+def test_data_and_operands_are_taken_up_to_their_limits() -> None:
     for length in (0, 65534, 65535):
         assert normal("WI", {}, length=length).length == length
-    for length in (-1, 65536):
-        with pytest.raises(InstructionError, match=f"the data of WI must be 0 to 65535 bytes, not {length};"):
-            normal("WI", {}, length=length)
+    assert normal("SET", {"start": (-32768, 65535)}).operands == {"start": (0x8000, 0xFFFF)}
+    assert encode(normal("SET", {"read_mask": 5, "mask": 7})).tolist() == [0x0806, 1, 1, 7, 5]
+
+
+WI_BYTES = "the data of WI must be 0 to 65535 bytes, not {}; send them in several instructions"
+START_NUMBERS = "start must be whole numbers from -32768 to 65535, not {}; round or clip it"
+test_what_is_no_instruction = refused(
+    call,
+    [
+        (lambda: normal("WI", {}, length=-1), WI_BYTES.format(-1)),
+        (lambda: normal("WI", {}, length=65536), WI_BYTES.format(65536)),
+        (lambda: normal("SET", {"start": 5}), "start must be 2 numbers, not 1; give all of them"),
+        (lambda: normal("SET", {"start": (0, 65536)}), START_NUMBERS.format(65536)),
+        (lambda: normal("SET", {"start": (-32769, 0)}), START_NUMBERS.format(-32769)),
+        (lambda: normal("SET", {"start": (0.5, 0)}), START_NUMBERS.format(0.5)),  # type: ignore[dict-item]
+    ],
+)
+
+
+@pytest.mark.parametrize(
+    ("name", "advice"), [("foregrund", "did you mean foreground?"), ("zzz", "choose one of them")]
+)
+def test_an_unknown_operand_is_answered_with_the_nearest(name: str, advice: str) -> None:
+    with pytest.raises(InstructionError, match=f"an operand must be one of mask, .*, not '{name}'") as caught:
+        normal("SET", {name: 1})
+    assert str(caught.value).endswith(f"; {advice}")
 
 
 def test_a_listing_names_operands_and_flags() -> None:
@@ -32,8 +56,4 @@ def test_a_listing_names_operands_and_flags() -> None:
     (text,) = Decoder().feed(np.array([0x0C13, 0x0040, 0, 0, 32, 32, 3, 0x3030, 0x3400], np.uint16))
     assert str(text) == "WT   BK; window 0, 0, 32, 32; 3 bytes"
     assert text.data_bytes() == b"004"
-
-
-def test_an_instruction_is_shown_by_its_name_and_operands() -> None:
-    shown = repr(normal("WVL", {"foreground": 1, "start": (10, 20)}, np.array([30, 40], np.uint16)))
-    assert shown == "Instruction('WVL  foreground 1; start 10, 20; 4 bytes')"
+    assert repr(text) == f"Instruction({str(text)!r})"

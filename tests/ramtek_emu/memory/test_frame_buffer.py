@@ -10,12 +10,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from ramtek_emu import WordsError
 from ramtek_emu.memory.frame_buffer import FrameBuffer, WriteEnable
 from ramtek_emu.memory.scan_orders import SCAN_ORDERS, Point, Window
-from ramtek_emu.testing import rasters, words
+from ramtek_emu.testing import words
 from tests.ramtek_emu import reference
 from tests.ramtek_emu.strategies import SMALL, masks, points, scan_codes, windows
+from tests.tables import refused
+
+seeds = st.integers(0, 2**32 - 1)
+rasters = seeds.map(lambda seed: np.random.default_rng(seed).integers(0, 1024, (9, 13), np.uint16))
+"""Words of a small memory."""
 
 
 def filled(raster: NDArray[np.uint16]) -> FrameBuffer:
@@ -25,11 +29,12 @@ def filled(raster: NDArray[np.uint16]) -> FrameBuffer:
 
 
 @given(
-    rasters(),
+    rasters,
     windows(),
     scan_codes,
     points,
-    st.lists(words(16), max_size=300),
+    seeds,
+    st.integers(0, 300),
     masks,
     windows() | st.none(),
 )
@@ -38,20 +43,22 @@ def test_writing_a_run_equals_a_walk_word_by_word(
     window: Window,
     code: int,
     start: Point,
-    words: list[int],
+    seed: int,
+    count: int,
     mask: int,
     clip: Window | None,
 ) -> None:
+    words = np.random.default_rng(seed).integers(0, 1 << 16, count, np.uint16)
     buffer = filled(raster)
     twin = raster.tolist()
     enable = WriteEnable(mask) if clip is None else WriteEnable(mask, clip)
-    after = buffer.write_scan(window, SCAN_ORDERS[code], start, np.array(words, np.uint16), enable)
-    twin_after = reference.write_scan(twin, window, code, start, words, mask & 1023, enable.window)
+    after = buffer.write_scan(window, SCAN_ORDERS[code], start, words, enable)
+    twin_after = reference.write_scan(twin, window, code, start, words.tolist(), mask & 1023, enable.window)
     assert buffer.words.tolist() == twin
     assert after == twin_after
 
 
-@given(rasters(), windows(), scan_codes, st.integers(0, 12), st.integers(0, 14), masks)
+@given(rasters, windows(), scan_codes, st.integers(0, 12), st.integers(0, 14), masks)
 def test_whole_runs_of_a_window_are_written_as_a_walk_writes_them(
     raster: NDArray[np.uint16], window: Window, code: int, first: int, count: int, mask: int
 ) -> None:
@@ -65,7 +72,7 @@ def test_whole_runs_of_a_window_are_written_as_a_walk_writes_them(
     assert buffer.words.tolist() == twin
 
 
-@given(rasters(), windows(), scan_codes, points, st.integers(0, 300))
+@given(rasters, windows(), scan_codes, points, st.integers(0, 300))
 def test_reading_a_run_equals_a_walk_word_by_word(
     raster: NDArray[np.uint16], window: Window, code: int, start: Point, count: int
 ) -> None:
@@ -75,7 +82,7 @@ def test_reading_a_run_equals_a_walk_word_by_word(
     assert after == twin_after
 
 
-@given(rasters(), windows(), words(16), masks, st.none() | st.integers(0, 1 << 32))
+@given(rasters, windows(), words(16), masks, st.none() | st.integers(0, 1 << 32))
 def test_a_fill_equals_a_run_of_a_repeated_word(
     raster: NDArray[np.uint16], window: Window, word: int, mask: int, seed: int | None
 ) -> None:
@@ -107,7 +114,7 @@ def test_a_window_without_words_takes_none_and_leaves_the_point(window: Window) 
         assert after == Point(5, 3)
 
 
-@given(rasters(), masks, st.booleans())
+@given(rasters, masks, st.booleans())
 def test_written_counts_the_words_whose_dots_are_true(
     raster: NDArray[np.uint16], mask: int, has_dots: bool
 ) -> None:
@@ -120,12 +127,12 @@ def test_written_counts_the_words_whose_dots_are_true(
 
 def test_written_counts_the_words_that_reached_the_memory() -> None:
     buffer = FrameBuffer(SMALL)
-    buffer.fill(Window(-2, 0, 1, 0), 5)
-    assert buffer.written == 2
-    buffer.fill(Window(0, 0, 3, 3), 5, WriteEnable(mask=0))
-    assert buffer.written == 2
+    counts = []
+    for window, mask in ((Window(-2, 0, 1, 0), 0xFFFF), (Window(0, 0, 3, 3), 0), (Window(12, 7, 20, 20), 1)):
+        buffer.fill(window, 5, WriteEnable(mask))
+        counts.append(buffer.written)
     buffer.write_points(np.array([0, 50]), np.array([0, 0]), 9)
-    assert buffer.written == 3
+    assert [*counts, buffer.written] == [2, 2, 4, 5]
 
 
 def test_the_words_of_a_display_are_read_only_and_stay_current() -> None:
@@ -137,34 +144,27 @@ def test_the_words_of_a_display_are_read_only_and_stay_current() -> None:
         words[0, 0] = 1
 
 
-@pytest.mark.parametrize(
-    ("words", "place", "sentence"),
+test_words_that_do_not_fit_are_refused_by_name = refused(
+    lambda given: FrameBuffer(SMALL).write(*given),
     [
-        ([[0, 1024]], (0, 0), "a word must be 0 to 1023, not 1024 (line 0, element 1); use fewer levels"),
-        ([[0], [-1]], (0, 0), "a word must be 0 to 1023, not -1 (line 1, element 0); use fewer levels"),
-        ([[0.5]], (0, 0), "words must be whole numbers, not float64; convert them first, rounding half up"),
+        (([[0, 1024]], 0, 0), "a word must be 0 to 1023, not 1024 (line 0, element 1); use fewer levels"),
+        (([[0], [-1]], 0, 0), "a word must be 0 to 1023, not -1 (line 1, element 0); use fewer levels"),
         (
-            [1, 2],
-            (0, 0),
+            ([[0.5]], 0, 0),
+            "words must be whole numbers, not float64; convert them first, rounding half up",
+        ),
+        (
+            ([1, 2], 0, 0),
             "words must be a (lines, elements) array with at least one word, not of shape (2,); "
             "pass words[np.newaxis] for one line",
         ),
         (
-            [[1, 2]],
-            (12, 0),
+            ([[1, 2]], 12, 0),
             "the words' window must lie within elements 0 to 12 and lines 0 to 8, not 12 to 13 and 0 to 0; "
             "move it or cut it",
         ),
     ],
 )
-def test_words_that_do_not_fit_are_refused_by_name(
-    words: object, place: tuple[int, int], sentence: str
-) -> None:
-    buffer = FrameBuffer(SMALL)
-    with pytest.raises(WordsError) as refusal:
-        buffer.write(words, *place)
-    assert str(refusal.value) == sentence
-    assert buffer.written == 0
 
 
 @pytest.mark.parametrize("copied", [copy.deepcopy, lambda memory: pickle.loads(pickle.dumps(memory))])

@@ -3,7 +3,7 @@ from __future__ import annotations
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from ramtek_emu.memory.scan_orders import SCAN_ORDERS, Point, Window, blocks, paired_parts
+from ramtek_emu.memory.scan_orders import SCAN_ORDERS, Point, Window, paired_parts
 from tests.ramtek_emu import reference
 from tests.ramtek_emu.strategies import points, scan_codes, windows
 
@@ -38,19 +38,6 @@ def test_a_run_steps_along_the_scan(window: Window, code: int, start: Point, cou
     before = order.words_before(window, start)
     assert all(reference.inside(place, window) for place in places[before:] if count)
     assert not 0 < before <= count or not reference.inside(places[0], window)
-
-
-@given(windows(), scan_codes, points, st.integers(0, 400))
-def test_blocks_take_every_word_once_and_in_order(
-    window: Window, code: int, start: Point, count: int
-) -> None:
-    done = 0
-    for block in blocks(window, SCAN_ORDERS[code], start, count):
-        assert block.first == done
-        assert block.inner > 0
-        assert block.outer > 0
-        done += block.inner * block.outer
-    assert done == count
 
 
 @given(windows(), scan_codes, points, st.integers(1, 400))

@@ -13,20 +13,6 @@ from tests.ramtek_emu.strategies import sent_words
 TIMED = replace(GMR_9300, timing=Timing())
 
 
-def test_waiting_takes_time_and_only_with_a_beam() -> None:
-    beam = Beam(Timing(), 480)
-    beam.wait_for_line(480)
-    assert beam.line == 480
-    before = beam.nanoseconds
-    beam.wait_for_line(480)
-    assert beam.nanoseconds == before
-    beam.wait_for_line(3)
-    assert (beam.line, beam.field_number) == (3, 1)
-    display = Ramtek9300()
-    display.send(sent_words([0x2901, 0x2A00, 200, 0x2A00, 0xFFFF]))
-    assert display.beam is None
-
-
 def test_cursors_blink_with_the_fields() -> None:
     display = Ramtek9300(TIMED)
     display.send(sent_words([0x1600, 300, 0xC00 | 200]))

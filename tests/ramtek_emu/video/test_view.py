@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ramtek_emu import Ramtek9300, instructions
 from ramtek_emu.memory.parameters import Parameters
 from ramtek_emu.memory.scan_orders import Point
-from ramtek_emu.video.view import PLAIN_VIEW, copy_shown, pixel_at, screen_at, shown_at, view_of
+from ramtek_emu.video.view import PLAIN_VIEW, pixel_at, screen_at, shown_at, view_of
 from tests.ramtek_emu.strategies import SMALL, sent_words
 
 
@@ -62,20 +62,6 @@ def parameters_of(view: tuple[Point, tuple[int, int], bool]) -> Parameters:
     parameters = Parameters.at_reset(SMALL)
     parameters.origin, parameters.zoom, parameters.origin_at_bottom = view
     return parameters
-
-
-@given(views)
-def test_a_whole_screen_is_copied_as_pixel_after_pixel_is_found(
-    view: tuple[Point, tuple[int, int], bool],
-) -> None:
-    parameters = parameters_of(view)
-    words = np.arange(117, dtype=np.uint16).reshape(9, 13)
-    screen = np.full((9, 13), -1, np.intp)
-    copy_shown(screen, words, view_of(parameters))
-    for line in range(9):
-        for element in range(13):
-            across, down = pixel_at(parameters, SMALL, element, line)
-            assert screen[line, element] == words[down, across]
 
 
 @given(views)
