@@ -1,17 +1,27 @@
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ramtek_emu import Configuration, Ramtek9300, Timing, instructions
+from ramtek_emu import GMR_9300, PRINCETON_9300, Configuration, Ramtek9300, Timing, instructions
+from ramtek_emu.inspection import stream as module
+from ramtek_emu.inspection.differences import first_difference, first_different_instruction
 from ramtek_emu.inspection.replay import Replay
+from ramtek_emu.inspection.states import Packer, State, packed_dots, size_of, thinned
 from ramtek_emu.inspection.stream import Stream
+from ramtek_emu.inspection.watching import watched
+from ramtek_emu.instruction_set.disassembler import items
+from ramtek_emu.memory.cursors import ENTER
+from ramtek_emu.memory.frame_buffer import WriteEnable
+from ramtek_emu.memory.scan_orders import SCAN_ORDERS, Window
 from ramtek_emu.snapshot import snapshot_bytes
 from ramtek_emu.testing import streams
 from tests.ramtek_emu.inspection.replays import moments, prepare, replay_of, states_every
-from tests.ramtek_emu.strategies import SMALL
+from tests.ramtek_emu.strategies import SMALL, cuts, masks, scan_codes, windows
 
 TIMED = Configuration(name="TIMED", elements=13, lines=9, planes=10, timing=Timing())
 
@@ -105,3 +115,163 @@ def test_a_replay_goes_on_from_the_display_that_is_given_and_leaves_it_alone() -
         replay.display.frame_buffer.fill(replay.display.frame_buffer.window, 1)
     assert counts == [[4, 16, 4], [0, 16, 4], [0, 16, 0]]
     assert snapshot_bytes(start) == before
+
+
+@pytest.mark.parametrize("configuration", [GMR_9300, PRINCETON_9300])
+@given(words=streams(), places=st.lists(st.integers(0, 60), max_size=5), piece=st.integers(1, 70))
+def test_instructions_are_counted_as_the_listing_shows_them(
+    configuration: Configuration, words: list[int], places: list[int], piece: int
+) -> None:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(module, "PIECE", piece)
+        stream = Stream(configuration)
+        for part in cuts(words, places):
+            stream.append(part)
+    data = np.array(words, "<u2").tobytes()
+    listed = [item for item in items([data], configuration) if "the stream ends" not in item.note]
+    assert len(stream) == len(listed) == len(stream.opcodes)
+    for number, item in enumerate(listed, 1):
+        assert list(stream.item(number).lines()) == list(item.lines())
+        assert stream.place(number) == item.place
+        assert stream.opcodes[number - 1] == item.words[0] >> 8
+    assert stream.words.tolist() == words
+    assert stream.words_between(0, len(stream)).tolist() == words[: stream.ends[-1]]
+
+
+@given(st.lists(streams(), min_size=1, max_size=5))
+def test_every_state_gives_its_display_back(rounds: list[list[int]]) -> None:
+    display, packer = Ramtek9300(SMALL), Packer()
+    states: list[State] = []
+    expected: list[bytes] = []
+    for words in rounds:
+        display.send(np.array(words, np.uint16))
+        display.receive(display.processor.waiting)
+        states.append(packer.pack(display, len(states), None))
+        expected.append(snapshot_bytes(display))
+    for state, snapshot in zip(states, expected, strict=True):
+        restored = state.display()
+        assert snapshot_bytes(restored) == snapshot
+        # A display of a state can be drawn on, and the state stays as it was.
+        restored.send(instructions.reset())
+        assert snapshot_bytes(state.display()) == snapshot
+
+
+def test_states_share_what_stayed_the_same() -> None:
+    display, packer = Ramtek9300(), Packer()
+    display.send(instructions.write_image(np.random.default_rng(1).integers(0, 1024, (480, 640))))
+    first = packer.pack(display, 0, None)
+    same = packer.pack(display, 1, None)
+    assert all(one is other for one, other in zip(first.arrays, same.arrays, strict=True))
+    display.send(instructions.erase((0, 100, 9, 109), 3))
+    second = packer.pack(display, 1, None)
+    assert size_of([first]) > 300_000
+    assert size_of([first, second]) - size_of([first]) < 60_000
+
+
+@given(st.lists(st.none() | st.integers(0, 7), min_size=1, max_size=12))
+def test_fewer_states_know_what_was_touched_before_them(places: list[int | None]) -> None:
+    def dots(*touched: int) -> bytes:
+        return packed_dots(np.isin(np.arange(8), touched).reshape(2, 4))
+
+    states = [
+        State(number, b"", (), None, None if place is None else dots(place))
+        for number, place in enumerate(places)
+    ]
+    fewer = thinned(states)
+    assert fewer[0] is states[0]
+    assert [state.number for state in fewer[1:-1]] == list(range(2, len(states) - 1, 2))
+    assert fewer[-1].number == states[-1].number
+    for before, state in itertools.pairwise(fewer):
+        between = places[before.number + 1 : state.number + 1]
+        known = [place for place in between if place is not None]
+        assert state.touched == (dots(*known) if len(known) == len(between) else None)
+
+
+@given(st.data(), windows(), scan_codes, masks, windows())
+def test_a_scan_touches_the_words_that_it_writes(
+    data: st.DataObject, window: Window, code: int, mask: int, enabled: Window
+) -> None:
+    along = data.draw(st.integers(1, 40))
+    dots = data.draw(st.none() | st.lists(st.booleans(), min_size=along, max_size=along))
+    watch = data.draw(windows().map(lambda window: window.intersection(Window(0, 0, 12, 8))))
+    if watch.is_empty:
+        watch = Window(0, 0, 12, 8)
+    written = []
+    touched = np.zeros((9, 13), np.bool_)
+    # A word that becomes 0 whether it was 0 or all ones before is written.
+    for before in (0, 0x3FF):
+        frame_buffer = watched(Ramtek9300(SMALL))
+        frame_buffer.fill(frame_buffer.window, before)
+        touched = frame_buffer.watch(watch)
+        frame_buffer.write_scan(
+            window,
+            SCAN_ORDERS[code],
+            SCAN_ORDERS[code].corner(window),
+            np.zeros(along, np.uint16),
+            WriteEnable(mask, enabled),
+            None if dots is None else np.array(dots),
+        )
+        written.append(frame_buffer.words.copy())
+    differs_less = (written[0] ^ written[1]) != 0x3FF
+    assert (touched == differs_less[watch.top : watch.bottom + 1, watch.left : watch.right + 1]).all()
+
+
+@given(streams(), streams(), streams())
+def test_the_first_difference(begin: list[int], one: list[int], other: list[int]) -> None:
+    first, second = replay_of(begin + one), replay_of(begin + other)
+    found = first_difference(first.stream, second.stream)
+    pairs = [moments(first), moments(second)]
+    silence = np.zeros(0, np.uint16)
+    expected = None
+    for number in range(max(map(len, pairs))):
+        # A display whose stream has ended stays as it is, and replies nothing.
+        sides = [side[number] if number < len(side) else (side[-1][0], silence) for side in pairs]
+        if sides[0][0] != sides[1][0] or sides[0][1].tolist() != sides[1][1].tolist():
+            expected = number
+            break
+    assert (None if found is None else found.number) == expected
+    assert found is None or found.where
+
+
+@given(streams(), st.integers(0, 60))
+def test_the_first_different_instruction(words: list[int], number: int) -> None:
+    stream = Stream(SMALL, np.array(words, np.uint16))
+    number %= len(stream) + 1
+    shorter = Stream(SMALL, stream.words_between(0, number))
+    assert first_different_instruction(stream, shorter) == number + 1
+    assert first_different_instruction(stream, stream) == len(stream) + 1
+
+
+def test_a_cursor_that_only_one_stream_reads_differs_by_its_enter() -> None:
+    start = Ramtek9300(SMALL)
+    start.joystick.press_enter()
+    alike, read = instructions.no_operation(), instructions.read_cursor(0)
+    words = [np.concatenate((alike, last)) for last in (instructions.no_operation(), read)]
+    words[0][0] |= 1
+    found = first_difference(Stream(SMALL, words[0]), Stream(SMALL, words[1]), start)
+    assert found is not None
+    assert found.number == 2
+    states = [cursors[0]["state"] for cursors in found.where["cursors"]]
+    assert states == [ENTER, 0]
+
+
+def test_a_difference_says_where() -> None:
+    alike = instructions.erase((0, 0, 12, 8), 5)
+    first = Stream(SMALL, np.concatenate((alike, instructions.erase((2, 1, 4, 3), 6))))
+    second = Stream(SMALL, np.concatenate((alike, instructions.erase((2, 1, 4, 2), 6))))
+    start = Ramtek9300(SMALL)
+    before = snapshot_bytes(start)
+    found = first_difference(first, second, start)
+    assert found is not None
+    assert found.where["words"] == {
+        "count": 3,
+        "window": [2, 3, 4, 3],
+        "line": 3,
+        "element": 2,
+        "values": [6, 5],
+    }
+    assert snapshot_bytes(start) == before
+    table = [Stream(SMALL, instructions.load_entries(7, [(red, 0, 0)])) for red in (1, 2)]
+    found = first_difference(table[0], table[1])
+    assert found is not None
+    assert found.where == {"entries": {"count": 1, "first": 7, "values": ["#010000", "#020000"]}}

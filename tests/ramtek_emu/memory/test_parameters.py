@@ -1,17 +1,22 @@
 from __future__ import annotations
 
+from itertools import combinations
+
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
-from ramtek_emu import instructions
+from ramtek_emu import Ramtek9300, instructions
 from ramtek_emu.instruction_set.table import OPERANDS, Flags
+from ramtek_emu.memory.character_rom import characters
+from ramtek_emu.memory.cursors import BLINK, VISIBLE, Cursor
 from ramtek_emu.memory.parameters import Parameters, coefficients, signed
-from ramtek_emu.memory.scan_orders import Point, Window
+from ramtek_emu.memory.scan_orders import SCAN_ORDERS, Point, Window, paired_parts
+from ramtek_emu.processor.processor import Status
 from ramtek_emu.testing import words
 from tests.ramtek_emu import reference
-from tests.ramtek_emu.displays import box, sent
-from tests.ramtek_emu.strategies import SMALL, scan_codes, windows
+from tests.ramtek_emu.displays import box, read, sent
+from tests.ramtek_emu.strategies import SMALL, points, scan_codes, sent_words, windows
 
 
 def test_operands_stay_until_they_are_set_again() -> None:
@@ -73,3 +78,119 @@ def test_every_operand_is_read_as_the_words_that_set_it(name: str) -> None:
         words = tuple(half for number in range(1, 7) for half in (0, number))
     parameters.take({name: words}, 0)
     assert parameters.operand(name) == words
+
+
+def test_track_stays_on_and_enter_is_reported_once() -> None:
+    display = Ramtek9300()
+    display.joystick.move_to(320, 200)
+    display.joystick.track = True
+    display.joystick.press_enter()
+    assert display.status == Status.READY | Status.CURSOR
+    assert read(display, 0x1700) == [320, 200 | 0x3000]
+    assert read(display, 0x1700) == [320, 200 | 0x1000]
+    # The other cursor reports ENTER as well, independently.
+    assert read(display, 0x1701) == [0, 0x3000]
+    display.joystick.track = False
+    assert read(display, 0x1701) == [0, 0]
+    assert read(display, 0x2500) == [Status.CURSOR]
+    assert display.status == Status.READY
+
+
+def test_a_cursor_is_visible_and_blinks_by_its_bits() -> None:
+    for state, is_visible, blinks in [
+        (0, False, False), (VISIBLE, True, False), (BLINK, False, True), (VISIBLE | BLINK, True, True),
+        (0xFFFF & ~(VISIBLE | BLINK), False, False),
+    ]:  # fmt: skip
+        cursor = Cursor(state=state)
+        assert (cursor.is_visible, cursor.blinks) == (is_visible, blinks)
+
+
+def test_reset_clears_an_unread_enter_and_leaves_the_cursors() -> None:
+    display = Ramtek9300()
+    display.send(sent_words([0x1600, 5, 0x406]))
+    display.joystick.press_enter()
+    display.send(instructions.reset())
+    assert display.status == Status.READY
+    assert read(display, 0x1700) == [5, 0x406]
+
+
+def test_the_joystick_stays_on_the_screen_and_moves_its_cursors() -> None:
+    display = Ramtek9300()
+    display.joystick.move_to(10_000, -5)
+    assert display.joystick.position == (639, 0)
+    display.joystick.move_by(-9, 7)
+    assert read(display, 0x1700, 0x1701) == [630, 7, 0, 0]
+    display.send(sent_words([0x3300, 0x0002]))
+    display.joystick.move_to(5, 6)
+    assert read(display, 0x1700, 0x1701) == [630, 7, 5, 6]
+    display.send(sent_words([0x3300, 0x0000]))
+    display.joystick.move_to(50, 60)
+    assert display.joystick.position == (0, 0)
+    assert read(display, 0x1700, 0x1701) == [630, 7, 5, 6]
+
+
+def places(window: Window) -> set[tuple[int, int]]:
+    """Every pixel of a window."""
+    elements, lines = range(window.left, window.right + 1), range(window.top, window.bottom + 1)
+    return {(element, line) for element in elements for line in lines}
+
+
+small = st.integers(-3, 6)
+small_windows = st.builds(Window, small, small, small, small)
+
+
+@given(small_windows, small_windows, st.builds(Point, small, small))
+@example(Window(0, 0, 3, 3), Window(2, 2, 5, 5), Point(3, 3))
+def test_windows_meet_where_pixels_are_in_both(one: Window, other: Window, point: Point) -> None:
+    assert places(one.intersection(other)) == places(one) & places(other)
+    assert one.is_empty is (not places(one))
+    assert one.holds(point) is (point in places(one))
+    assert (one.width * one.height) == len(places(one))
+    assert places(one.moved(2, -1)) == {(element + 2, line - 1) for element, line in places(one)}
+
+
+@given(windows(), scan_codes, points, st.integers(0, 400))
+def test_a_run_steps_along_the_scan(window: Window, code: int, start: Point, count: int) -> None:
+    order = SCAN_ORDERS[code]
+    places = reference.walk(window, code, start, count)
+    assert [order.after(window, start, number) for number in range(1, count + 1)] == places[1:]
+    corner = order.corner(window)
+    assert [order.stepped(corner, *order.steps(window, Point(*place))) for place in places] == places
+    before = order.words_before(window, start)
+    assert all(reference.inside(place, window) for place in places[before:] if count)
+    assert not 0 < before <= count or not reference.inside(places[0], window)
+
+
+@given(windows(), scan_codes, points, st.integers(1, 400))
+def test_pixels_in_pairs_take_every_place_of_the_twin_in_order(
+    window: Window, code: int, start: Point, count: int
+) -> None:
+    order = SCAN_ORDERS[code]
+    parts = list(paired_parts(window, order, start, count))
+    assert 1 <= len(parts) <= 2
+    found = [
+        order.after(part, begin, number) if number else begin
+        for part, begin, size in parts
+        for number in range(size)
+    ]
+    assert found == reference.walk(window, code, start, count, pairs=True)[:-1]
+
+
+def test_every_printable_character_but_space_has_a_shape_of_its_own() -> None:
+    shapes = characters()
+    seen = {code: shapes[code].tobytes() for code in range(32, 127)}
+    assert all(a != b for a, b in combinations(seen.values(), 2))
+    assert [code for code in range(32, 127) if not shapes[code].any()] == [32]
+
+
+def test_cells_never_touch_their_neighbors() -> None:
+    shapes = characters()
+    assert shapes.shape == (256, 9, 7)
+    assert not shapes[:, 0].any()
+    assert not shapes[:, :, [0, 6]].any()
+
+
+def test_codes_without_a_shape_are_blank() -> None:
+    shapes = characters()
+    assert not shapes[:32].any()
+    assert not shapes[127].any()

@@ -1,13 +1,25 @@
 from __future__ import annotations
 
+from io import BytesIO
 from pathlib import Path
+from random import Random
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from autocolor import read_scene
+import autocolor
+from autocolor import Studio, read_scene
 from autocolor.scene.mesh import Mesh
+from autocolor.scene.scene import Scene
+from ramtek_emu import Ramtek9300, Recorder
+from ramtek_emu.inspection.histories import finished, next_change, writes_to_entry, writes_to_pixel
+from ramtek_emu.inspection.replay import Replay
+from ramtek_emu.inspection.stream import Stream
+from ramtek_emu.instruction_set.table import FORMAT_OF_NAME
+from ramtek_emu.snapshot import snapshot_bytes
+from scenes.modeling.bracket import make as bracket
+from scenes.modeling.bracket.skin import PARTS
 from scenes.modeling.coupe import make
 from scenes.modeling.pyramid import pyramid_obj
 
@@ -125,3 +137,84 @@ def test_the_pyramid_is_lit_by_one_light_half_as_high_as_itself() -> None:
     top = corners_of(scene.mesh, ("pyramid",))[..., 2].max()
     assert lamp.position[2] == pytest.approx(top / 2)
     assert scene.scaling == "object"
+
+
+FOLDER = Path(__file__).parents[2] / "scenes" / "bracket"
+
+
+@pytest.fixture(scope="module")
+def scene() -> Scene:
+    return read_scene(FOLDER)
+
+
+@pytest.mark.thorough
+def test_the_script_makes_the_committed_files(scene: Scene) -> None:
+    assert (FOLDER / "floor.obj").read_bytes() == bracket.floor_obj().encode("ascii")
+    made, kept = bracket.bracket_ply().splitlines(), (FOLDER / "bracket.ply").read_text("ascii").splitlines()
+    first = made.index("end_header") + 1
+    assert len(made) == len(kept)
+    nodes = slice(first, first + len(scene.mesh.scalars[0].values))
+    # Stresses are summed up in another order by another processor: the last digit may differ by one.
+    ours, theirs = (
+        np.array([float(line.split()[3]) for line in text[nodes][:10_000]]) for text in (made, kept)
+    )
+    assert np.abs(ours - theirs).max() < 0.0101
+    for text in (made, kept):
+        text[nodes] = [line.rpartition(" ")[0] for line in text[nodes]]
+    assert made == kept
+
+
+def test_the_scene_has_cast_and_machined_surfaces_on_a_stage(scene: Scene) -> None:
+    assert set(PARTS) | {"floor"} == set(scene.mesh.part_names)
+    assert {part.surface for part in scene.parts if part.name in PARTS} == {"cast", "machined"}
+    assert {part.name for part in scene.parts if part.stage} == {"floor"}
+    assert 5_000 < len(scene.mesh.node_numbers) < 15_000
+    assert scene.surface("machined").reflectance.exponent > 3 * scene.surface("cast").reflectance.exponent
+
+
+def test_the_stress_is_that_of_a_part_that_is_loaded_and_does_not_break(scene: Scene) -> None:
+    (stress,) = scene.mesh.scalars
+    assert (stress.name, stress.of) == ("stress", "node")
+    found = {}
+    for number, name in enumerate(scene.mesh.part_names):
+        nodes = np.unique(scene.mesh.node_numbers[scene.mesh.part_numbers == number])
+        found[name] = stress.values[nodes]
+    assert np.isnan(found["floor"]).all()
+    assert min(found[name].min() for name in PARTS) >= 0
+    assert 100 < found["rib"].max() < 250
+    # The rib carries, and the round top nothing.
+    assert np.median(found["rib"]) > 4 * np.median(found["upright"])
+
+
+LOAD = FORMAT_OF_NAME["LAM"].opcode
+
+
+def test_a_picture_is_sent_once_and_a_recoloring_loads_the_table_alone() -> None:
+    sent, display = BytesIO(), Ramtek9300()
+    studio = Studio(autocolor.read_scene(SCENES / "coupe"), Recorder(sent, display))
+    whole = len(sent.getvalue()) // 2
+    studio.recolor("body", object_color="#107040")
+    words = np.frombuffer(sent.getvalue(), "<u2").astype(np.uint16)
+    stream = Stream(words=words)
+    replay = Replay(stream)
+    while replay.prepare_for(1.0):
+        pass
+    for number in [*Random(1983).choices(range(len(stream) + 1), k=5), len(stream)]:
+        fresh = Ramtek9300()
+        fresh.send(stream.words_between(0, number))
+        replay.go_to(number)
+        assert snapshot_bytes(replay.display) == snapshot_bytes(fresh)
+    assert (replay.display.field() == display.field()).all()
+
+    # After the last write of the picture no instruction writes a pixel, and an entry of the body is loaded.
+    before = int(np.searchsorted(stream.ends, whole))
+    assert set(stream.opcodes[before:].tolist()) == {LOAD}
+    assert finished(next_change(replay, display.frame_buffer.window, before)) is None
+    body = studio.level_ranges["body"]
+    line, element = np.argwhere((display.words >= body.first) & (display.words <= body.last))[0].tolist()
+    writes = finished(writes_to_pixel(replay, line, element, len(stream)))
+    assert writes[-1].after == display.words[line, element]
+    assert writes[-1].number <= before
+    last = finished(writes_to_entry(replay, int(display.words[line, element]), len(stream)))[-1]
+    assert last.number > before
+    assert last.after == int(display.lookup_table.packed[display.words[line, element]])
