@@ -103,12 +103,6 @@ def test_a_bar_is_set_by_pick_drag_step_and_text() -> None:
     assert number.value == 0.75
 
 
-@given(st.sampled_from(STEPS), st.floats(-1e5, 1e5))
-def test_a_number_is_shown_to_a_twentieth_of_its_step(step: float, value: float) -> None:
-    assert abs(float(number_text(value, step)) - value) <= step / 20 + 1e-9
-    assert abs(rounded_to(value, step) - value) <= step / 2 + 1e-6
-
-
 def test_a_number_that_can_be_absent_has_a_box() -> None:
     flips: list[int] = []
     number = Number(0.0)
@@ -215,13 +209,6 @@ def test_a_pick_selects_the_level_that_is_shown_there_and_beyond_the_ends_the_la
     assert found[-1] == 0
     bar.drag(Place(0, 0), Place(0, 0), Place(1000, -5))
     assert found[-1] == 59
-
-
-@pytest.mark.parametrize(("level", "steps", "to"), [(5, 1, 6), (5, -1, 4), (0, -1, 0), (59, 3, 59)])
-def test_a_step_is_a_level(level: int, steps: float, to: int) -> None:
-    found: list[int] = []
-    level_bar(60, level, found=found).nudge(steps)
-    assert found == [to]
 
 
 def test_a_percentage_is_a_share_of_the_height() -> None:

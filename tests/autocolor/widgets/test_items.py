@@ -166,28 +166,6 @@ AREA = Area(10, 20, 40, 40)
 places = st.tuples(st.floats(-100, 100), st.floats(-100, 100))
 
 
-@pytest.mark.parametrize(
-    ("stroke", "left"),
-    [
-        ((10, 20, 40.0, 33.25), [10, 20, 40, 33.25]),
-        ((0, 30, 100, 30), [10, 30, 40, 30]),
-        ((15, 90, 15, -90), [15, 40, 15, 20]),
-        ((0, 20, 30, 50), [10, 30, 20, 40]),
-        ((0, 19, 100, 19), None),
-        ((41, 0, 41, 100), None),
-        # Between the borders of either axis at some time, but never of both.
-        ((0, 25, 15, 0), None),
-        ((12, 22, 12, 22), [12, 22, 12, 22]),
-        ((9, 22, 9, 22), None),
-    ],
-)
-def test_a_stroke_ends_at_the_borders_of_the_area(
-    stroke: tuple[float, ...], left: list[float] | None
-) -> None:
-    found = clipped(np.array([stroke], np.float64), AREA)
-    assert found.tolist() == ([] if left is None else [pytest.approx(left)])
-
-
 @given(places, places)
 def test_what_is_left_of_a_stroke_is_all_of_it_that_is_in_the_area(
     start: tuple[float, float], end: tuple[float, float]

@@ -219,15 +219,6 @@ def test_polygons_of_different_parts_are_divided_by_a_line_and_of_one_part_by_no
     assert lines(mesh_edges(two)) - lines(mesh_edges(mesh)) == {frozenset({(1, 0, 0), (1, 1, 0)})}
 
 
-def test_a_part_can_be_left_out() -> None:
-    left = grid(1, 1, (0, 0, 0), (1, 0, 0), (0, 1, 0), "left")
-    stage = grid(3, 1, (9, 9, 0), (9, 0, 0), (0, 9, 0), "stage")
-    both = Mesh.joined([left, stage])
-    assert lines(mesh_edges(both, [0])) == lines(mesh_edges(left))
-    assert lines(mesh_edges(both, [1])) == lines(mesh_edges(stage))
-    assert len(mesh_edges(both, []).features) == 0
-
-
 def test_a_sheet_whose_polygons_are_there_for_each_face_has_its_border_alone() -> None:
     sheet = grid(3, 2, (0, 0, 0), (3, 0, 0), (0, 2, 0))
     numbers = np.concatenate([sheet.node_numbers, sheet.node_numbers[:, ::-1]])

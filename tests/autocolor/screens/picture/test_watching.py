@@ -11,7 +11,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Scene
-from autocolor.files.scene_writing import write_scene
 from autocolor.mapping.ranges import BACKGROUND
 from autocolor.screens.picture.watching import MESSAGE, PICTURE_SECONDS, TICK_SECONDS
 from autocolor.screens.viewer import Viewer
@@ -103,19 +102,6 @@ def test_the_picture_is_blanked_and_comes_in_line_by_line(viewer: Viewer, clock:
     display = display_of(viewer)
     assert display.frame_buffer.written - written == viewer.studio.words.size
     assert display.lookup_table.written == entries
-
-
-def test_watching_changes_no_scene_no_step_and_no_level_range(viewer: Viewer, clock: Clock) -> None:
-    studio = viewer.studio
-    before = studio.scene, studio.words, studio.level_ranges, studio.picture
-    viewer.on_key("w", typed="w")
-    after(viewer, clock, 2)
-    assert (studio.scene, studio.level_ranges) == (before[0], before[2])
-    assert studio.words is before[1]
-    assert studio.picture is before[3]
-    assert not studio.is_changed
-    assert not studio.undo()
-    assert not studio.redo()
 
 
 def test_a_tick_begins_no_line_after_its_time(viewer: Viewer, clock: Clock) -> None:
@@ -233,16 +219,7 @@ def test_what_stands_over_the_picture_comes_back_after_watching(
     assert np.array_equal(display_of(viewer).words[9:], viewer.studio.words[9:])
 
 
-def test_a_scene_dropped_while_another_comes_in_is_shown_whole(
-    watching: Viewer, clock: Clock, tmp_path: Path
-) -> None:
-    write_scene(tmp_path / "other.toml", car().with_view(angle=40))
-    watching.on_drop(tmp_path / "other.toml")
-    assert watching.studio.scene.view.angle == 40
-    after(watching, clock, 0.2)
-    assert is_whole(watching)
-
-
+@pytest.mark.thorough
 @given(scenes(), st.lists(st.floats(0, 0.4), max_size=8))
 def test_at_any_time_the_lines_that_are_there_are_those_of_the_picture(
     scene: Scene, parts: list[float]
@@ -261,8 +238,7 @@ def test_at_any_time_the_lines_that_are_there_are_those_of_the_picture(
 
 def test_the_picture_is_watched_by_a_row_of_the_menu_and_any_pick_shows_it(tmp_path: Path) -> None:
     hand = Hand(Viewer(car(), Ramtek9300(), tmp_path))
-    viewer, display = hand.viewer, hand.viewer.display
-    assert isinstance(display, Ramtek9300)
+    viewer, display = hand.viewer, hand.display
     hand.open_menu()
     hand.pick("watch")
     assert not np.array_equal(display.words, viewer.studio.words)
