@@ -83,21 +83,11 @@ def test_characters_that_cannot_be_printed_are_drawn_as_question_marks() -> None
     assert text("a\x00\x1b\u202e\udcffb", 10, 5) == text("a????b", 10, 5)
 
 
-@pytest.mark.parametrize(
-    ("line", "size", "area"),
-    [
-        ("Hg", 2, (10, 5, 37, 22)),
-        ("H", 1, (10, 5, 16, 13)),
-        ("", 1, (10, 5, 16, 13)),
-        ("abc", 1, (10, 5, 30, 13)),
-    ],
-)
-def test_a_character_has_7_elements_and_9_lines(
-    line: str, size: int, area: tuple[int, int, int, int]
-) -> None:
-    item = text(line, 10, 5, size=size)
-    assert item.area == area
-    assert item.is_solid is bool(line)
+def test_a_character_has_7_elements_and_9_lines() -> None:
+    assert text("Hg", 10, 5, size=2).area == (10, 5, 37, 22)
+    assert text("abc", 10, 5).area == (10, 5, 30, 13)
+    nothing = text("", 10, 5)
+    assert (nothing.area, nothing.is_solid) == ((10, 5, 16, 13), False)
 
 
 def test_lines_that_leave_an_area_are_drawn_inside_it_and_come_back() -> None:

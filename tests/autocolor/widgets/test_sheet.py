@@ -107,6 +107,9 @@ def test_a_page_writes_what_differs_alone() -> None:
     lit = filled(ROWS[3].area, 9)
     for shown, written in (
         ((*ROWS[:3], lit, *ROWS[4:], cross), 140 * 16),
+        # Of the row below a text, what the text covered alone is drawn again when it goes.
+        ((*ROWS[:3], lit, *ROWS[4:], cross, text("go", 510, 62)), 14 * 9),
+        ((*ROWS[:3], lit, *ROWS[4:], cross), 14 * 9),
         # What the cross covered is drawn again when it goes.
         ((*ROWS[:3], lit, *ROWS[4:]), 21 * 21),
     ):
@@ -114,6 +117,7 @@ def test_a_page_writes_what_differs_alone() -> None:
         sheet.show(page(*shown, base=4))
         assert display.frame_buffer.written - before == written
     assert (display.words[:40, :40] == 4).all()
+    assert (display.words[60:76, 500:640] == 9).all()
     assert display.lookup_table.written == entries
     before = display.frame_buffer.written
     sheet.show(page(*shown, base=4)._replace(entries=TABLES[1]))

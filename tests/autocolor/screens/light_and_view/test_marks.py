@@ -19,7 +19,6 @@ from autocolor.screens.light_and_view.marks import (
     crosses_of,
     flap_marks,
     light_marks,
-    lines_across,
     numerals,
     picture_corners,
 )
@@ -31,18 +30,10 @@ from autocolor.screens.light_and_view.orthographic_views import (
 )
 from autocolor.testing import directions, lights, numbers, vectors, views
 from autocolor.visibility.projection import focal_length
-from autocolor.widgets.items import SLATE, Area
-from ramtek_emu import Ramtek9300
+from autocolor.widgets.items import Area
 from tests.autocolor.screens.light_and_view.pointing import VIEWS
-from tests.autocolor.widgets.drawing import draw_items
 
 places = st.tuples(st.floats(-300, 300), st.floats(-300, 300))
-
-
-def test_a_line_of_a_point_outside_of_a_view_is_left_out() -> None:
-    display = Ramtek9300()
-    draw_items(display, [lines_across(VIEWS, TOP, (1e6, 2.0, 3.0))])
-    assert (display.words == SLATE).sum() == TOP.area.width
 
 
 def test_an_arrow_that_points_at_the_viewer_has_no_head_and_a_short_one_a_head_of_half_its_length() -> None:

@@ -65,16 +65,6 @@ def test_the_features_of_a_stage_are_apart() -> None:
     assert np.ptp(strokes.stage[:, 0]) > 4 * np.ptp(strokes.features[:, 0])
 
 
-def test_lines_are_kept_until_the_views_the_mesh_or_a_stage_changes() -> None:
-    scene = on_a_floor()
-    lines, views = ObjectLines(), fitted_views(scene.object_coordinates)
-    before = lines.of_side(scene, views, TOP)
-    assert lines.of_side(scene.with_view(angle=5.0), views, TOP) is before
-    assert lines.of_side(scene, views.zoomed(2.0), TOP) is not before
-    without = lines.of_side(scene.with_part("floor", stage=False), views, TOP)
-    assert len(without.stage) == 0
-
-
 def test_what_is_hidden_is_left_out_one_view_at_a_time() -> None:
     # The ball within the cube is seen from no side.
     inner = sphere(16, 9)
@@ -157,12 +147,6 @@ def test_the_silhouette_of_a_fine_sphere_is_not_hidden() -> None:
         depths = depths_toward(mesh, side)
         assert depths is not None
         assert len(without_hidden(outline, edges.coordinates, depths)) == len(outline)
-
-
-def test_a_floor_is_a_line_when_it_is_seen_from_the_side() -> None:
-    floor = grid(1, 1, (-1, -1, 0), (2, 0, 0), (0, 2, 0))
-    assert len(shown(mesh_edges(floor), floor, FRONT)) == 4
-    assert len(shown(mesh_edges(floor), floor, TOP)) == 4
 
 
 def test_a_stage_hides_nothing() -> None:

@@ -19,7 +19,6 @@ from autocolor.screens.light_and_view.orthographic_views import (
     area_of_picture,
     fitted_views,
     shown_points,
-    side_at,
 )
 from autocolor.testing import vectors
 from autocolor.widgets.items import Area
@@ -51,12 +50,6 @@ def test_each_view_shows_two_axes_as_on_an_engineering_drawing() -> None:
     assert UNIT.position(FRONT, (1, 7, 3)) == (middle[0] + 10, middle[1] - 30)
     middle = SIDE.area.middle
     assert UNIT.position(SIDE, (7, 2, 3)) == (middle[0] + 20, middle[1] - 30)
-
-
-@pytest.mark.parametrize("side", SIDES, ids=[side.name for side in SIDES])
-def test_the_viewer_has_right_and_up_where_the_view_has_them(side: ViewSide) -> None:
-    right, up = np.eye(3)[side.right], np.eye(3)[side.up]
-    assert np.cross(right, up).tolist() == list(side.toward)
 
 
 @given(some_views(), sides, points, points | st.none())
@@ -140,12 +133,6 @@ def test_nearer_ends_where_coordinates_can_no_longer_tell_a_pixel_from_the_next(
     for _ in range(400):
         views = views.zoomed(0.5)
     assert views.scale == pytest.approx(1e-30)
-
-
-def test_a_place_is_in_the_view_whose_area_holds_it_or_in_none() -> None:
-    assert [side_at(*side.area.middle) for side in SIDES] == list(SIDES)
-    assert side_at(250, 100) is None
-    assert side_at(380, 100) is None
 
 
 def test_the_picture_has_its_shape_in_a_high_area_and_in_a_wide_one() -> None:

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import itertools
 from pathlib import Path
 from typing import Any
 
@@ -90,6 +91,19 @@ def test_a_dragged_highlight_follows_in_one_step(at_lights: Hand) -> None:
     undo(hand)
     assert hand.scene is before
     assert hand.handle("highlight of key") == start
+
+
+def test_a_highlight_stays_where_it_was_put_beside_the_chosen_surface(
+    hand: Hand,
+) -> None:
+    assert hand.viewer.session.surface_name == "paint"
+    hand.drag(hand.handle("highlight of key"), (300, 400), (320, 430))
+    assert hand.viewer.studio.seen_at(430, 320).surface == "floor"  # type: ignore[union-attr]
+    assert hand.handle("highlight of key") == (320, 430)
+    # Where the light was put otherwise, the highlight is searched.
+    hand.viewer.studio.light("key", position=(2.0, -5.0, 2.5))
+    hand.viewer.tell("")
+    assert hand.handle("highlight of key") != (320, 430)
 
 
 def test_a_highlight_is_refused_on_the_background_and_still_held(hand: Hand) -> None:
@@ -224,6 +238,23 @@ def test_while_something_is_dragged_the_rims_are_left_out(at_lights: Hand) -> No
     assert len(yellow(hand)) > 40
 
 
+def test_a_coarse_picture_has_no_marks_until_the_movement_ends(
+    at_lights: Hand, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    hand, before, times = at_lights, at_lights.scene, itertools.count()
+    monkeypatch.setattr("autocolor.studio.perf_counter", lambda: float(next(times)))
+    hand.grab(450, 420)
+    for element in (455, 460, 465):
+        hand.move(element, 420)
+    assert hand.viewer.studio.is_coarse
+    assert not yellow(hand)
+    assert not hand.viewer.board.screen.handles()
+    hand.drop()
+    assert not hand.viewer.studio.is_coarse
+    assert yellow(hand)
+    assert hand.viewer.studio.history.to_undo == (before,)
+
+
 def test_without_a_menu_the_message_line_names_a_highlight_under_the_pointer_and_nothing_else(
     hand: Hand,
 ) -> None:
@@ -240,10 +271,6 @@ def test_without_a_menu_the_message_line_names_a_highlight_under_the_pointer_and
     hand.move(*hand.handle("highlight of key"))
     assert hand.hint.startswith("highlight of key: drag it")
     assert (display.words[foot] != picture[foot]).any()
-    # It does not depend on the message before.
-    hand.viewer.tell("a long message " * 8)
-    hand.viewer.tell("")
-    assert hand.hint.startswith("highlight of key")
     hand.move(20, 20)
     assert (display.words[foot] == picture[foot]).all()
 
@@ -288,10 +315,12 @@ def test_beside_the_highlight_with_modifiers_or_the_middle_button_a_drag_moves_t
     before, button = hand.scene, held.pop("button", 1)
     element += held.pop("aside", 0)
     hand.viewer.on_pointer(element, line, "press", button, **held)
-    hand.viewer.on_pointer(element + 30, line + 30, "move", **held)
+    for far in (10, 20, 30):
+        hand.viewer.on_pointer(element + far, line + far, "move", **held)
     hand.viewer.on_pointer(element + 30, line + 30, "release", button, **held)
     assert hand.scene.lights == before.lights
     assert hand.scene.view != before.view
+    assert hand.viewer.studio.history.to_undo[-1].view == before.view
 
 
 def test_the_highlight_of_a_light_that_follows_or_is_at_infinity_goes_where_it_is_picked(

@@ -104,16 +104,6 @@ def test_other_surfaces_are_dim_and_the_lighter_color_never_has_the_darker_gray(
     assert (words[SCREENS.first :] == NIGHT).all()
 
 
-def test_recoloring_the_surface_leaves_the_grays_of_the_others_alone() -> None:
-    palette, entries = mixing_words(TWO_RANGES, "body", 200), random_entries(2)
-    before = palette.dimmed(entries)
-    recolored = entries.copy()
-    recolored[601:] = random_entries(3)[601:]
-    assert palette.dimmed(recolored) is before
-    recolored[:601] = 255
-    assert not np.array_equal(palette.dimmed(recolored), before)
-
-
 ROOM = Area(8, 224, 495, 463)
 SIZES = st.tuples(st.integers(40, 700), st.integers(40, 900))
 SHARES = st.floats(0, 1)

@@ -253,9 +253,8 @@ def test_colors_are_added_between_two_and_removed_down_to_two(hand: PaintingHand
     assert hand.message == "add color: a ramp has at most 1,024 colors; remove a color first"
 
 
-@pytest.mark.parametrize("ramp", [None, ["#000", "#f60"]])
-def test_the_bar_between_says_that_a_scalar_hides_the_paint(tmp_path: Path, ramp: list[str] | None) -> None:
-    scene = boxes_scene().with_surface("box 0", ramp=ramp)
+def test_the_bar_between_says_that_a_scalar_hides_the_paint(tmp_path: Path) -> None:
+    scene = boxes_scene().with_surface("box 0", ramp=["#000", "#f60"])
     hidden = "not shown: a scalar colors the surface"
     heading = text(hidden, BLEND.right + 1 - CHARACTER * len(hidden), BLEND.top - 12 + TEXT_DOWN)
     for is_hidden, shown in ((False, scene), (True, scene.with_scalar(name="z", surfaces=["box 0"]))):

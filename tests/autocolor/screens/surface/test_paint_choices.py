@@ -99,7 +99,7 @@ def test_the_new_colors_of_a_ramp_are_recent_colors(hand: PaintingHand) -> None:
         (["#100", "#300", "#400"], ()),
         (["#100", "#600", "#300", "#400"], ((102, 0, 0),)),
         # A ramp that is taken whole leaves its last colors.
-        (whole, tuple(reversed(whole[-MOST_RECENT:]))),
+        (whole, (*reversed(whole[-MOST_RECENT:]), (102, 0, 0))),
     ):
         choose_again(hand)
         paint(ramp=ramp)
