@@ -211,6 +211,16 @@ def test_a_pick_selects_the_level_that_is_shown_there_and_beyond_the_ends_the_la
     assert found[-1] == 59
 
 
+def test_the_number_of_an_upright_bar_is_a_part_of_its_handle() -> None:
+    for level in (0, 17, 59):
+        bar = level_bar(60, level, upright=True)
+        left, top, _, bottom = next(item.area for item in bar.items(False) if item.area.right < bar.area.left)
+        places = [(x, y) for y in range(top - 2, bottom + 3) for x in range(left - 2, bar.area.left)]
+        held = [(x, y) for x, y in places if bar.has(x, y)]
+        assert held == [(x, y) for x, y in places if left <= x and top <= y <= bottom]
+        assert bar.has(bar.area.left, bar.area.top)
+
+
 def test_a_percentage_is_a_share_of_the_height() -> None:
     found: list[float] = []
     bar = PercentBar("percent", area=Area(600, 0, 635, 200), value=25.0, put=found.append)

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import fields
 from pathlib import Path
 
 import numpy as np
@@ -121,6 +122,51 @@ def test_a_drag_turns_moves_or_comes_closer(hand: Hand, name: str) -> None:
     viewer.studio.undo()
     viewer.on_pointer(400, 100, "wheel up", steps=2)
     assert viewer.studio.scene.view == moved(before, wheel_ratio(2))
+
+
+KEYS: dict[str, tuple[str, Callable[[Scene], Scene]]] = {
+    "1": ("light key off", lambda scene: scene.with_light("key", on=False)),
+    "2": ("light fill off", lambda scene: scene.with_light("fill", on=False)),
+    "3": ("the scene has no light 3", lambda scene: scene),
+    "s": ("surface floor", lambda scene: scene),
+    "Shift+S": ("surface floor", lambda scene: scene),
+    "[": ("blend 0.55", lambda scene: scene.with_paint("paint", blend=0.55)),
+    "]": ("blend 0.65", lambda scene: scene.with_paint("paint", blend=0.65)),
+    ".": ("", lambda scene: scene.with_view(angle=5.0)),
+    "home": ("the view as opened", lambda scene: scene),
+}
+
+
+def fields_of(scene: Scene) -> list[object]:
+    return [getattr(scene, each.name) for each in fields(scene)]
+
+
+@pytest.mark.parametrize("key", KEYS)
+def test_a_key_edits_lights_paint_or_view_in_one_step(hand: Hand, key: str) -> None:
+    message, after = KEYS[key]
+    before = hand.scene
+    hand.press(key)
+    assert hand.message == message
+    assert fields_of(hand.scene) == fields_of(after(before))
+    hand.press("Ctrl+Z")
+    assert hand.scene is before
+
+
+def test_a_key_holds_the_exposure_and_releases_it(hand: Hand) -> None:
+    before = hand.scene
+    hand.press("e")
+    assert hand.message == "exposure held: less light is darker"
+    entries = hand.viewer.studio.entries
+    assert hand.scene.exposure != before.exposure
+    hand.press("e")
+    assert hand.message == "exposure released"
+    assert fields_of(hand.scene) == fields_of(before)
+    assert np.array_equal(hand.viewer.studio.entries, entries)
+    for light in ("1", "2"):
+        hand.press(light)
+    hand.viewer.session.edit(hand.scene.replace(ambient=0.0))
+    hand.press("e")
+    assert hand.message.startswith("to hold the exposure, a surface must have different intensities")
 
 
 def test_a_screen_draws_the_same_legend_as_a_studio() -> None:

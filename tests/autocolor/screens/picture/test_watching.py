@@ -105,9 +105,7 @@ def test_the_picture_is_blanked_and_comes_in_line_by_line(viewer: Viewer, clock:
 
 # What is computed between two looks at the clock takes a share of a tick.
 @pytest.mark.parametrize(("share", "most"), [(0.33, 3), (0.49, 2), (0.9, 1)])
-def test_a_tick_begins_no_line_after_its_time(
-    viewer: Viewer, clock: Clock, share: float, most: int
-) -> None:
+def test_a_tick_begins_no_line_after_its_time(viewer: Viewer, clock: Clock, share: float, most: int) -> None:
     viewer.on_key("w", typed="w")
     clock.now += 10 * PICTURE_SECONDS
     clock.step = TICK_SECONDS * share
