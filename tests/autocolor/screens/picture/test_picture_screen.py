@@ -69,6 +69,11 @@ def test_a_light_is_switched_by_its_box_and_chosen_beside_it(hand: Hand) -> None
     hand.pick("key", 0.95)
     assert [light.on for light in hand.scene.lights] == [False, True]
     assert chosen() == ["fill"]
+    for share, on in ((0.9, [True, True]), (0.2, [False, True]), (0.2, [True, True])):
+        hand.pick("alone", share)
+        assert [light.on for light in hand.scene.lights] == on
+    hand.pick("what was sent")
+    assert hand.viewer.page == "sent"
 
 
 def test_a_view_is_saved_taken_and_removed_as_a_camera(hand: Hand) -> None:
