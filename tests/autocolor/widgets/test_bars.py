@@ -103,12 +103,6 @@ def test_a_bar_is_set_by_pick_drag_step_and_text() -> None:
     assert number.value == 0.75
 
 
-@given(st.sampled_from(STEPS), st.floats(-1e5, 1e5))
-def test_a_number_is_shown_to_a_twentieth_of_its_step(step: float, value: float) -> None:
-    assert abs(float(number_text(value, step)) - value) <= step / 20 + 1e-9
-    assert abs(rounded_to(value, step) - value) <= step / 2 + 1e-6
-
-
 def test_a_number_that_can_be_absent_has_a_box() -> None:
     flips: list[int] = []
     number = Number(0.0)
@@ -217,11 +211,14 @@ def test_a_pick_selects_the_level_that_is_shown_there_and_beyond_the_ends_the_la
     assert found[-1] == 59
 
 
-@pytest.mark.parametrize(("level", "steps", "to"), [(5, 1, 6), (5, -1, 4), (0, -1, 0), (59, 3, 59)])
-def test_a_step_is_a_level(level: int, steps: float, to: int) -> None:
-    found: list[int] = []
-    level_bar(60, level, found=found).nudge(steps)
-    assert found == [to]
+def test_the_number_of_an_upright_bar_is_a_part_of_its_handle() -> None:
+    for level in (0, 17, 59):
+        bar = level_bar(60, level, upright=True)
+        left, top, _, bottom = next(item.area for item in bar.items(False) if item.area.right < bar.area.left)
+        places = [(x, y) for y in range(top - 2, bottom + 3) for x in range(left - 2, bar.area.left)]
+        held = [(x, y) for x, y in places if bar.has(x, y)]
+        assert held == [(x, y) for x, y in places if left <= x and top <= y <= bottom]
+        assert bar.has(bar.area.left, bar.area.top)
 
 
 def test_a_percentage_is_a_share_of_the_height() -> None:

@@ -26,10 +26,3 @@ def test_the_keys_stand_apart_on_their_panel_beside_the_menu() -> None:
             assert key.area.covers(item.area)
     assert not any(one.area.overlaps(other.area) for one, other in combinations(keys, 2))
     assert len({key.key for key in keys}) == len(keys)
-
-
-def test_a_pick_between_the_keys_presses_none() -> None:
-    pressed: list[str] = []
-    *_, panel = letter_panel(lambda name, _: pressed.append(name))
-    panel.pick(Place(PANEL.left, PANEL.top))
-    assert pressed == []

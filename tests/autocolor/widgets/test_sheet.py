@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from autocolor.arrays import Words
 from autocolor.widgets.items import WHITE, Area, Item, filled, lines, text
-from autocolor.widgets.sheet import Page, Sheet, differing_area, uncovered
+from autocolor.widgets.sheet import Page, Sheet, uncovered
 from ramtek_emu import GMR_9300, PRINCETON_9300, Configuration, EntryFormat, PortError, Ramtek9300, Recorder
 from tests.autocolor.widgets.drawing import TINY, items
 
@@ -107,6 +107,9 @@ def test_a_page_writes_what_differs_alone() -> None:
     lit = filled(ROWS[3].area, 9)
     for shown, written in (
         ((*ROWS[:3], lit, *ROWS[4:], cross), 140 * 16),
+        # Of the row below a text, what the text covered alone is drawn again when it goes.
+        ((*ROWS[:3], lit, *ROWS[4:], cross, text("go", 510, 62)), 14 * 9),
+        ((*ROWS[:3], lit, *ROWS[4:], cross), 14 * 9),
         # What the cross covered is drawn again when it goes.
         ((*ROWS[:3], lit, *ROWS[4:]), 21 * 21),
     ):
@@ -114,6 +117,7 @@ def test_a_page_writes_what_differs_alone() -> None:
         sheet.show(page(*shown, base=4))
         assert display.frame_buffer.written - before == written
     assert (display.words[:40, :40] == 4).all()
+    assert (display.words[60:76, 500:640] == 9).all()
     assert display.lookup_table.written == entries
     before = display.frame_buffer.written
     sheet.show(page(*shown, base=4)._replace(entries=TABLES[1]))
@@ -171,17 +175,6 @@ def test_where_a_picture_changed_that_area_is_sent_and_what_stands_beside_stays(
     written = display.frame_buffer.written
     sheet.show(Page(other.copy(), [menu, row, mark, far], TABLES[0]))
     assert display.frame_buffer.written == written
-
-
-def test_bases_differ_from_the_first_to_the_last_line_and_element_with_a_difference() -> None:
-    whole = Area(0, 0, 47, 39)
-    assert differing_area(PICTURE, OTHER, whole) == (10, 12, 29, 19)
-    assert differing_area(PICTURE, OTHER, Area(30, 5, 47, 30)).is_empty
-    assert differing_area(PICTURE, PICTURE.copy(), whole).is_empty
-    assert differing_area(3, 3, whole).is_empty
-    assert differing_area(3, 4, whole) == whole
-    assert differing_area(3, PICTURE, whole) == whole
-    assert differing_area(PICTURE[:30], PICTURE, whole) == whole
 
 
 def test_below_the_menu_no_word_of_the_base_is_sent() -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from autocolor import Light, Mesh, Scene, Surface, View, scene_of
-from autocolor.arrays import Words
 from autocolor.screens.light_and_view.handles import MovablePoint
 from autocolor.screens.light_and_view.light_and_view_screen import LightAndViewScreen
 from autocolor.screens.light_and_view.orthographic_views import OrthographicViews
@@ -36,27 +35,11 @@ def opened(scene: Scene) -> Hand:
     return Hand(viewer)
 
 
-def display_of(hand: Hand) -> Ramtek9300:
-    """The display."""
-    assert isinstance(hand.viewer.display, Ramtek9300)
-    return hand.viewer.display
-
-
-def words_of(hand: Hand) -> Words:
-    """The words of the display."""
-    return display_of(hand).words
-
-
 def screen_of(hand: Hand) -> LightAndViewScreen:
     """The light and view screen that is shown."""
     screen = hand.viewer.board.screen
     assert isinstance(screen, LightAndViewScreen)
     return screen
-
-
-def scene_of_hand(hand: Hand) -> Scene:
-    """The scene now."""
-    return hand.viewer.studio.scene
 
 
 def handle_of(hand: Hand, movable: MovablePoint) -> Handle:
@@ -68,21 +51,6 @@ def place_of(hand: Hand, movable: MovablePoint) -> tuple[int, int]:
     """Where something can be taken hold of."""
     handle = handle_of(hand, movable)
     return handle.element, handle.line
-
-
-def grab(hand: Hand, *places: tuple[int, int]) -> None:
-    """Hold TRACK at the first place, go over the others, and do not let go."""
-    hand.move(*places[0])
-    hand.joystick.track = True
-    hand.viewer.poll()
-    for place in places[1:]:
-        hand.move(*place)
-
-
-def let_go(hand: Hand) -> None:
-    """Let go of TRACK."""
-    hand.joystick.track = False
-    hand.viewer.poll()
 
 
 def is_undone_at_once(hand: Hand, before: Scene) -> bool:

@@ -65,16 +65,6 @@ def test_the_features_of_a_stage_are_apart() -> None:
     assert np.ptp(strokes.stage[:, 0]) > 4 * np.ptp(strokes.features[:, 0])
 
 
-def test_lines_are_kept_until_the_views_the_mesh_or_a_stage_changes() -> None:
-    scene = on_a_floor()
-    lines, views = ObjectLines(), fitted_views(scene.object_coordinates)
-    before = lines.of_side(scene, views, TOP)
-    assert lines.of_side(scene.with_view(angle=5.0), views, TOP) is before
-    assert lines.of_side(scene, views.zoomed(2.0), TOP) is not before
-    without = lines.of_side(scene.with_part("floor", stage=False), views, TOP)
-    assert len(without.stage) == 0
-
-
 def test_what_is_hidden_is_left_out_one_view_at_a_time() -> None:
     # The ball within the cube is seen from no side.
     inner = sphere(16, 9)
@@ -159,12 +149,6 @@ def test_the_silhouette_of_a_fine_sphere_is_not_hidden() -> None:
         assert len(without_hidden(outline, edges.coordinates, depths)) == len(outline)
 
 
-def test_a_floor_is_a_line_when_it_is_seen_from_the_side() -> None:
-    floor = grid(1, 1, (-1, -1, 0), (2, 0, 0), (0, 2, 0))
-    assert len(shown(mesh_edges(floor), floor, FRONT)) == 4
-    assert len(shown(mesh_edges(floor), floor, TOP)) == 4
-
-
 def test_a_stage_hides_nothing() -> None:
     lid = grid(1, 1, (-5, -5, 4), (10, 0, 0), (0, 10, 0), "lid")
     mesh = Mesh.joined([cube(), lid])
@@ -217,15 +201,6 @@ def test_polygons_of_different_parts_are_divided_by_a_line_and_of_one_part_by_no
     two = Mesh(mesh.coordinates, mesh.node_numbers, np.array([0, 1]), ("left", "right"))
     assert len(mesh_edges(mesh).features) == 6
     assert lines(mesh_edges(two)) - lines(mesh_edges(mesh)) == {frozenset({(1, 0, 0), (1, 1, 0)})}
-
-
-def test_a_part_can_be_left_out() -> None:
-    left = grid(1, 1, (0, 0, 0), (1, 0, 0), (0, 1, 0), "left")
-    stage = grid(3, 1, (9, 9, 0), (9, 0, 0), (0, 9, 0), "stage")
-    both = Mesh.joined([left, stage])
-    assert lines(mesh_edges(both, [0])) == lines(mesh_edges(left))
-    assert lines(mesh_edges(both, [1])) == lines(mesh_edges(stage))
-    assert len(mesh_edges(both, []).features) == 0
 
 
 def test_a_sheet_whose_polygons_are_there_for_each_face_has_its_border_alone() -> None:

@@ -5,27 +5,22 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor import Light, Mesh, Part, Scene, View, scene_of
+from autocolor import Light, Mesh, Part, View, scene_of
 from autocolor.checks import LARGEST_COORDINATE, Vector
 from autocolor.screens.light_and_view.orthographic_views import (
     EDGE,
     FILLED,
     FRONT,
-    FRONT_AREA,
-    PICTURE_AREA,
     SIDE,
-    SIDE_AREA,
     SIDES,
     TOP,
-    TOP_AREA,
     OrthographicViews,
     ViewSide,
     area_of_picture,
     fitted_views,
     shown_points,
-    side_at,
 )
-from autocolor.testing import scenes, vectors
+from autocolor.testing import vectors
 from autocolor.widgets.items import Area
 from tests.small import cube, grid
 
@@ -55,20 +50,6 @@ def test_each_view_shows_two_axes_as_on_an_engineering_drawing() -> None:
     assert UNIT.position(FRONT, (1, 7, 3)) == (middle[0] + 10, middle[1] - 30)
     middle = SIDE.area.middle
     assert UNIT.position(SIDE, (7, 2, 3)) == (middle[0] + 20, middle[1] - 30)
-
-
-@pytest.mark.parametrize("side", SIDES, ids=[side.name for side in SIDES])
-def test_the_viewer_has_right_and_up_where_the_view_has_them(side: ViewSide) -> None:
-    right, up = np.eye(3)[side.right], np.eye(3)[side.up]
-    assert np.cross(right, up).tolist() == list(side.toward)
-
-
-@given(some_views(), sides, st.lists(points, max_size=4))
-def test_many_points_are_where_each_of_them_is(
-    views: OrthographicViews, side: ViewSide, many: list[Vector]
-) -> None:
-    found = views.positions(side, np.array(many, np.float64).reshape(-1, 3))
-    assert [tuple(row) for row in found.tolist()] == [views.position(side, point) for point in many]
 
 
 @given(some_views(), sides, points, points | st.none())
@@ -154,19 +135,6 @@ def test_nearer_ends_where_coordinates_can_no_longer_tell_a_pixel_from_the_next(
     assert views.scale == pytest.approx(1e-30)
 
 
-def test_a_place_is_in_the_view_whose_area_holds_it_or_in_none() -> None:
-    assert [side_at(*side.area.middle) for side in SIDES] == list(SIDES)
-    assert side_at(250, 100) is None
-    assert side_at(380, 100) is None
-
-
-def test_the_quarters_do_not_touch_and_stand_as_on_an_engineering_drawing() -> None:
-    assert TOP_AREA == (0, 0, 247, 223)
-    assert PICTURE_AREA == (256, 0, 503, 223)
-    assert FRONT_AREA == (0, 232, 247, 455)
-    assert SIDE_AREA == (256, 232, 503, 455)
-
-
 def test_the_picture_has_its_shape_in_a_high_area_and_in_a_wide_one() -> None:
     assert area_of_picture(Area(0, 0, 63, 99)) == Area(0, 26, 63, 73)
     assert area_of_picture(Area(0, 0, 99, 47)) == Area(18, 0, 81, 47)
@@ -195,12 +163,3 @@ def test_a_stage_is_left_out_of_the_scale() -> None:
     assert shown_points(scene).min() == -50
     parts = [Part(part.name, part.surface, stage=part.name == "floor") for part in scene.parts]
     assert shown_points(scene.replace(parts=tuple(parts))).min() == -6
-
-
-@given(scenes())
-def test_all_that_can_be_grabbed_is_in_each_of_the_fitted_views(scene: Scene) -> None:
-    views = fitted_views(shown_points(scene))
-    for side in SIDES:
-        for light in scene.lights_in_world:
-            assert side.area.has(*views.position(side, light.position))
-        assert side.area.has(*views.position(side, scene.view.eye))

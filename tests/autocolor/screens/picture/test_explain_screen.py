@@ -4,11 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from autocolor.explanation.text import PAGE, rows_of_text
-from autocolor.screens.message_line import MESSAGE
-from autocolor.screens.picture.explain_screen import MAGNIFIER, SIDE, TOP, items_of_row, magnifier_items
-from autocolor.widgets.items import SCREEN
-from ramtek_emu import Ramtek9300
+from autocolor.explanation.text import rows_of_text
+from autocolor.screens.picture.explain_screen import MAGNIFIER, SIDE, items_of_row, magnifier_items
 from tests.autocolor.screens.ball import MIDDLE, ball_scene, hand_before
 from tests.autocolor.screens.hand import Hand
 
@@ -37,13 +34,13 @@ def expected(hand: Hand, line: int, element: int) -> object:
 
 
 def test_shift_and_a_click_explain_a_pixel(hand: Hand) -> None:
-    before = hand.viewer.studio.scene
+    before = hand.scene
     click_with_shift(hand, ELEMENT + 9, LINE - 5)
     assert hand.viewer.page == "explain"
     assert shown(hand) == expected(hand, LINE - 5, ELEMENT + 9)
-    hand.viewer.on_key("escape")
+    hand.press("escape")
     assert hand.viewer.page == "picture"
-    assert hand.viewer.studio.scene is before
+    assert hand.scene is before
 
 
 def test_shift_and_a_click_at_a_highlight_explain_it_and_do_not_pick_it(hand: Hand) -> None:
@@ -58,17 +55,17 @@ def test_the_unit_explains_by_a_row_of_the_menu_and_a_click(hand: Hand) -> None:
     element, line = hand.handle("highlight of key")
     hand.open_menu()
     hand.pick("explain a pixel")
-    assert hand.viewer.message == "click the pixel to explain"
+    assert hand.message == "click the pixel to explain"
     hand.click(element, line)
     assert (hand.viewer.page, hand.viewer.session.pixel) == ("explain", (line, element))
     # The next click in the picture is a plain one, and one after the row was taken back.
-    hand.viewer.on_key("escape")
+    hand.press("escape")
     hand.click(ELEMENT + 40, LINE + 40)
     assert hand.viewer.page == "picture"
     hand.open_menu()
     hand.pick("explain a pixel")
-    hand.viewer.on_key("escape")
-    hand.viewer.on_key("escape")
+    hand.press("escape")
+    hand.press("escape")
     hand.click(ELEMENT, LINE)
     assert hand.viewer.page == "picture"
 
@@ -82,7 +79,7 @@ def test_arrows_and_a_click_in_the_magnifier_explain_a_neighbor(hand: Hand) -> N
         ("left", (LINE + 1, ELEMENT)),
         ("up", (LINE, ELEMENT)),
     ):
-        hand.viewer.on_key(key)
+        hand.press(key)
         assert session.pixel == pixel
         assert shown(hand) == expected(hand, *pixel)
     hand.click(MAGNIFIER.right, MAGNIFIER.top)
@@ -91,7 +88,7 @@ def test_arrows_and_a_click_in_the_magnifier_explain_a_neighbor(hand: Hand) -> N
     assert session.pixel == (LINE - 2, ELEMENT + 4)
     # An edit is explained at once.
     before = shown(hand)
-    hand.viewer.on_key("2", typed="2")
+    hand.press("2")
     assert hand.viewer.page == "explain"
     assert shown(hand) == expected(hand, LINE - 2, ELEMENT + 4) != before
 
@@ -99,7 +96,7 @@ def test_arrows_and_a_click_in_the_magnifier_explain_a_neighbor(hand: Hand) -> N
 def test_a_neighbor_stays_in_the_picture(hand: Hand) -> None:
     click_with_shift(hand, 0, 0)
     for key in ("up", "left"):
-        hand.viewer.on_key(key)
+        hand.press(key)
     assert hand.viewer.session.pixel == (0, 0)
     # The pixels beside the picture are those at its edge.
     hand.click(MAGNIFIER.left + SIDE // 2, MAGNIFIER.top + SIDE // 2)
@@ -108,23 +105,9 @@ def test_a_neighbor_stays_in_the_picture(hand: Hand) -> None:
 
 def test_the_magnifier_shows_the_words_around_the_pixel(hand: Hand) -> None:
     click_with_shift(hand, ELEMENT, LINE)
-    display, words = hand.viewer.display, hand.viewer.studio.words
-    assert isinstance(display, Ramtek9300)
+    words = hand.viewer.studio.words
     for down in range(-2, 3):
         for across in range(-4, 5):
             top = MAGNIFIER.top + SIDE * (down + 2) + SIDE // 2
             left = MAGNIFIER.left + SIDE * (across + 4) + SIDE // 2
-            assert display.words[top, left] == words[LINE + down, ELEMENT + across]
-
-
-def test_the_rows_and_the_magnifier_are_drawn_as_they_were_above_the_message_line(hand: Hand) -> None:
-    rows = rows_of_text(hand.viewer.studio.explain(LINE, ELEMENT))
-    items = []
-    for number in range(PAGE):
-        row = rows[number % len(rows)]._replace(says="long " * 40)
-        items += items_of_row(row, number)
-    for item in items:
-        assert SCREEN.covers(item.area)
-        assert not MESSAGE.overlaps(item.area)
-        assert not MAGNIFIER.overlaps(item.area)
-        assert item.area.top >= TOP
+            assert hand.display.words[top, left] == words[LINE + down, ELEMENT + across]

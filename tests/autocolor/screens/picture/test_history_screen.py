@@ -28,10 +28,6 @@ def rows_of(hand: Hand) -> list[StepRow]:
     return [each for each in hand.viewer.board.widgets() if isinstance(each, StepRow)]
 
 
-def intensity(hand: Hand) -> float:
-    return hand.viewer.studio.scene.light("fill").intensity
-
-
 def test_every_step_has_a_row_with_its_difference(tmp_path: Path) -> None:
     hand = hand_after(3, tmp_path)
     assert [row.shown[5:] for row in rows_of(hand)] == [
@@ -47,20 +43,20 @@ def test_every_step_has_a_row_with_its_difference(tmp_path: Path) -> None:
 
 def test_a_click_goes_to_a_step_and_one_on_an_undone_step_goes_forward(tmp_path: Path) -> None:
     hand = hand_after(4, tmp_path)
-    scenes = (*hand.viewer.studio.history.to_undo, hand.viewer.studio.scene)
+    scenes = (*hand.viewer.studio.history.to_undo, hand.scene)
     hand.pick("step 1")
-    assert hand.viewer.studio.scene is scenes[1]
-    assert hand.viewer.message == "3 steps undone: fill: intensity 0.51 -> 0.54"
+    assert hand.scene is scenes[1]
+    assert hand.message == "3 steps undone: fill: intensity 0.51 -> 0.54"
     assert [row.ink for row in rows_of(hand)] == [WHITE, WHITE, GRAY, GRAY, GRAY]
     hand.pick("step 3")
-    assert hand.viewer.studio.scene is scenes[3]
-    assert hand.viewer.message == "2 steps redone: fill: intensity 0.51 -> 0.53"
+    assert hand.scene is scenes[3]
+    assert hand.message == "2 steps redone: fill: intensity 0.51 -> 0.53"
     hand.pick("step 3")
-    assert hand.viewer.studio.scene is scenes[3]
+    assert hand.scene is scenes[3]
     hand.pick("step 0")
-    assert hand.viewer.studio.scene is scenes[0]
+    assert hand.scene is scenes[0]
     assert hand.viewer.page == "history"
-    hand.viewer.on_key("y", control=True)
+    hand.press("Ctrl+Y")
     assert [row.is_chosen for row in rows_of(hand)] == [False, True, False, False, False]
     # Another edit forgets the undone steps.
     hand.viewer.session.edit(hand.viewer.session.scene.replace(ambient=0.4))
@@ -88,7 +84,7 @@ def test_older_and_newer_steps_are_reached(tmp_path: Path) -> None:
         seen |= {row.label for row in rows_of(hand)}
     assert seen == {f"step {number}" for number in range(steps + 1)}
     hand.pick("step 2")
-    assert intensity(hand) == 0.52
+    assert hand.scene.light("fill").intensity == 0.52
     # The list stays where the user clicked.
     assert rows_of(hand)[2].is_chosen
     for _ in range(5):

@@ -1,19 +1,19 @@
 from __future__ import annotations
 
+import itertools
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from autocolor import Light, Scene
+from autocolor import Light
 from autocolor.lighting.picking import cone_placed, highlight_placed, rims, specular_shares
 from autocolor.screens.message_line import MESSAGE
 from autocolor.screens.picture.light_handles import HandleKey
 from autocolor.widgets.bars import number_text
 from autocolor.widgets.items import WHITE, YELLOW
 from autocolor.widgets.menu import WORK
-from ramtek_emu import Ramtek9300
 from tests.autocolor.screens.ball import MIDDLE, ball_scene, hand_before
 from tests.autocolor.screens.hand import Hand
 
@@ -38,12 +38,8 @@ def at_lights(hand: Hand) -> Hand:
     return hand
 
 
-def scene_of(hand: Hand) -> Scene:
-    return hand.viewer.studio.scene
-
-
 def key(hand: Hand) -> Light:
-    return scene_of(hand).light("key")
+    return hand.scene.light("key")
 
 
 def undo(hand: Hand) -> None:
@@ -54,9 +50,7 @@ def undo(hand: Hand) -> None:
 
 def yellow(hand: Hand) -> set[tuple[int, int]]:
     """The lines and elements of the yellow pixels beside the menu and the light list."""
-    display = hand.viewer.display
-    assert isinstance(display, Ramtek9300)
-    found = np.argwhere(display.words[: WORK.bottom + 1, : WORK.right + 1] == YELLOW)
+    found = np.argwhere(hand.display.words[: WORK.bottom + 1, : WORK.right + 1] == YELLOW)
     listed = [widget.area for widget in hand.viewer.board.layout.beside]
     return {
         (line, element) for line, element in found.tolist() if not any(a.has(element, line) for a in listed)
@@ -67,10 +61,10 @@ def yellow(hand: Hand) -> set[tuple[int, int]]:
 
 
 def test_a_highlight_that_is_picked_goes_where_the_second_pick_is(hand: Hand) -> None:
-    before = scene_of(hand)
+    before = hand.scene
     hand.click(*hand.handle("highlight of key"))
-    assert hand.viewer.message == "highlight of key: pick its new place"
-    assert scene_of(hand) is before
+    assert hand.message == "highlight of key: pick its new place"
+    assert hand.scene is before
     hand.click(*PLACE)
     studio = hand.viewer.studio
     assert studio.highlight_of("key") == PLACE[::-1]
@@ -79,13 +73,13 @@ def test_a_highlight_that_is_picked_goes_where_the_second_pick_is(hand: Hand) ->
         f"{axis} {number_text(place, world.range_of(axis).step)}"
         for axis, place in zip("xyz", key(hand).position, strict=True)
     )
-    assert hand.viewer.message == f"key: {position}"
+    assert hand.message == f"key: {position}"
     undo(hand)
-    assert scene_of(hand) is before
+    assert hand.scene is before
 
 
 def test_a_dragged_highlight_follows_in_one_step(at_lights: Hand) -> None:
-    hand, before = at_lights, scene_of(at_lights)
+    hand, before = at_lights, at_lights.scene
     start = hand.handle("highlight of key")
     hand.drag(start, (330, 240), (300, 220), PLACE)
     studio = hand.viewer.studio
@@ -95,37 +89,48 @@ def test_a_dragged_highlight_follows_in_one_step(at_lights: Hand) -> None:
     seen = studio.seen_at(*PLACE[::-1])
     assert key(hand).aim == highlight_placed(before, seen, "key").light("key").aim
     undo(hand)
-    assert scene_of(hand) is before
+    assert hand.scene is before
     assert hand.handle("highlight of key") == start
 
 
+def test_a_highlight_stays_where_it_was_put_beside_the_chosen_surface(
+    hand: Hand,
+) -> None:
+    assert hand.viewer.session.surface_name == "paint"
+    hand.drag(hand.handle("highlight of key"), (300, 400), (320, 430))
+    assert hand.viewer.studio.seen_at(430, 320).surface == "floor"  # type: ignore[union-attr]
+    assert hand.handle("highlight of key") == (320, 430)
+    # Where the light was put otherwise, the highlight is searched.
+    hand.viewer.studio.light("key", position=(2.0, -5.0, 2.5))
+    hand.viewer.tell("")
+    assert hand.handle("highlight of key") != (320, 430)
+
+
 def test_a_highlight_is_refused_on_the_background_and_still_held(hand: Hand) -> None:
-    before = scene_of(hand)
+    before = hand.scene
     hand.click(*hand.handle("highlight of key"))
     hand.click(*BACKGROUND)
-    assert scene_of(hand) is before
+    assert hand.scene is before
     assert hand.viewer.session.news.is_warning
     hand.click(*PLACE)
     assert hand.viewer.studio.highlight_of("key") == PLACE[::-1]
     # A drag over the background keeps the last good place, and Escape takes a drag back.
-    placed = scene_of(hand)
+    placed = hand.scene
     hand.drag(hand.handle("highlight of key"), MIDDLE, BACKGROUND)
     assert hand.viewer.studio.highlight_of("key") == MIDDLE[::-1]
     assert hand.viewer.session.news.is_warning
     hand.viewer.session.undo()
-    hand.move(*hand.handle("highlight of key"))
-    hand.joystick.track = True
-    hand.viewer.poll()
+    hand.grab(*hand.handle("highlight of key"))
     hand.move(*MIDDLE)
-    assert scene_of(hand) is not placed
-    hand.viewer.on_key("escape")
-    assert scene_of(hand) is placed
+    assert hand.scene is not placed
+    hand.press("escape")
+    assert hand.scene is placed
     assert hand.viewer.studio.history.to_undo == (before,)
 
 
 def test_a_dragged_highlight_keeps_beside_the_menu_of_its_screen(at_lights: Hand) -> None:
     hand = at_lights
-    scene = scene_of(hand)
+    scene = hand.scene
     hand.viewer.session.edit(scene.replace(view=scene.view.replace(field_of_view=12.0)))
     hand.viewer.tell("")
     hand.drag(hand.handle("highlight of key"), MIDDLE, (WORK.right + 40, 240))
@@ -133,12 +138,12 @@ def test_a_dragged_highlight_keeps_beside_the_menu_of_its_screen(at_lights: Hand
 
 
 def test_a_highlight_is_not_dragged_under_the_menu(hand: Hand) -> None:
-    scene = scene_of(hand)
+    scene = hand.scene
     hand.viewer.session.edit(scene.replace(view=scene.view.replace(field_of_view=12.0)))
-    hand.viewer.on_key("tab")
+    hand.press("tab")
     hand.drag(hand.handle("highlight of key"), MIDDLE, (WORK.right + 40, 450))
     assert hand.handle("highlight of key") == MIDDLE
-    assert hand.viewer.message == (
+    assert hand.message == (
         "a highlight must be placed on the picture, not on what covers it; choose another pixel"
     )
 
@@ -147,19 +152,19 @@ def test_a_highlight_is_not_dragged_under_the_menu(hand: Hand) -> None:
 
 
 def test_a_cone_is_dragged_by_its_rim_to_where_it_is_to_end(at_lights: Hand) -> None:
-    hand, before = at_lights, scene_of(at_lights)
+    hand, before = at_lights, at_lights.scene
     hand.drag(hand.handle("end of the cone of key"), (300, 230), PLACE)
     seen = hand.viewer.studio.seen_at(*PLACE[::-1])
     assert key(hand) == cone_placed(before, seen, "key").light("key")
-    assert hand.viewer.message == f"key: cone angle {key(hand).cone_angle:.1f} degrees"
+    assert hand.message == f"key: cone angle {key(hand).cone_angle:.1f} degrees"
     assert near_rim(hand, "cone", PLACE)
     assert len(hand.viewer.studio.history.to_undo) == 1
     undo(hand)
-    assert scene_of(hand) is before
+    assert hand.scene is before
 
 
 def test_a_flap_is_put_by_two_picks_where_it_is_to_end(at_lights: Hand) -> None:
-    hand, before = at_lights, scene_of(at_lights)
+    hand, before = at_lights, at_lights.scene
     hand.click(*hand.handle("end of the flap z, minimum, of key"))
     hand.click(*PLACE)
     seen = hand.viewer.studio.seen_at(*PLACE[::-1])
@@ -167,10 +172,10 @@ def test_a_flap_is_put_by_two_picks_where_it_is_to_end(at_lights: Hand) -> None:
     assert seen is not None
     assert flap is not None
     assert flap.minimum == pytest.approx(seen.point[2])
-    assert hand.viewer.message == f"key: flap z, minimum {flap.minimum:.2f}"
+    assert hand.message == f"key: flap z, minimum {flap.minimum:.2f}"
     assert near_rim(hand, ("z", "minimum"), PLACE)
     undo(hand)
-    assert scene_of(hand) is before
+    assert hand.scene is before
 
 
 def near_rim(hand: Hand, rim: object, place: tuple[int, int]) -> bool:
@@ -220,23 +225,34 @@ def test_the_marks_are_at_the_handles_and_leave_the_picture_as_it_was(at_lights:
     assert not key(hand).on
     assert not yellow(hand)
     assert not hand.viewer.board.screen.handles()
-    display = hand.viewer.display
-    assert isinstance(display, Ramtek9300)
     beside = np.s_[hand.viewer.board.layout.beside[-1].area.bottom + 1 : WORK.bottom + 1, : WORK.right + 1]
-    assert np.array_equal(display.words[beside], studio.words[beside])
+    assert np.array_equal(hand.display.words[beside], studio.words[beside])
 
 
 def test_while_something_is_dragged_the_rims_are_left_out(at_lights: Hand) -> None:
     hand, marked = at_lights, len(yellow(at_lights))
-    hand.move(*hand.handle("end of the cone of key"))
-    hand.joystick.track = True
-    hand.viewer.poll()
+    hand.grab(*hand.handle("end of the cone of key"))
     hand.move(*PLACE)
     assert len(yellow(hand)) < 40 < marked
-    hand.joystick.track = False
-    hand.viewer.poll()
-    hand.viewer.on_tick()
+    hand.drop()
     assert len(yellow(hand)) > 40
+
+
+def test_a_coarse_picture_has_no_marks_until_the_movement_ends(
+    at_lights: Hand, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    hand, before, times = at_lights, at_lights.scene, itertools.count()
+    monkeypatch.setattr("autocolor.studio.perf_counter", lambda: float(next(times)))
+    hand.grab(450, 420)
+    for element in (455, 460, 465):
+        hand.move(element, 420)
+    assert hand.viewer.studio.is_coarse
+    assert not yellow(hand)
+    assert not hand.viewer.board.screen.handles()
+    hand.drop()
+    assert not hand.viewer.studio.is_coarse
+    assert yellow(hand)
+    assert hand.viewer.studio.history.to_undo == (before,)
 
 
 def test_without_a_menu_the_message_line_names_a_highlight_under_the_pointer_and_nothing_else(
@@ -250,31 +266,24 @@ def test_without_a_menu_the_message_line_names_a_highlight_under_the_pointer_and
         "highlight of fill",
         "highlight of key",
     ]
-    display, picture = hand.viewer.display, hand.viewer.studio.words
-    assert isinstance(display, Ramtek9300)
+    display, picture = hand.display, hand.viewer.studio.words
     assert (display.words[foot] == picture[foot]).all()
     hand.move(*hand.handle("highlight of key"))
-    assert hand.viewer.board.messages[-1].text.startswith("highlight of key: drag it")
+    assert hand.hint.startswith("highlight of key: drag it")
     assert (display.words[foot] != picture[foot]).any()
-    # It does not depend on the message before.
-    hand.viewer.tell("a long message " * 8)
-    hand.viewer.tell("")
-    assert hand.viewer.board.messages[-1].text.startswith("highlight of key")
     hand.move(20, 20)
     assert (display.words[foot] == picture[foot]).all()
 
 
 def test_the_lights_screen_marks_all_highlights_at_rest_and_the_chosen_one_is_yellow(at_lights: Hand) -> None:
     hand = at_lights
-    display = hand.viewer.display
-    assert isinstance(display, Ramtek9300)
     for name, word in (("key", YELLOW), ("fill", WHITE)):
         element, line = hand.handle(f"highlight of {name}")
-        assert display.words[line - 4, element - 4] == word
+        assert hand.display.words[line - 4, element - 4] == word
     hand.drag(hand.handle("highlight of fill"), (330, 240), PLACE)
     assert hand.viewer.session.light_name == "fill"
     assert hand.handle("highlight of fill") == PLACE
-    assert display.words[PLACE[1] - 4, PLACE[0] - 4] == YELLOW
+    assert hand.display.words[PLACE[1] - 4, PLACE[0] - 4] == YELLOW
 
 
 def test_of_two_highlights_the_press_takes_the_light_that_shines_there_most(hand: Hand) -> None:
@@ -303,24 +312,15 @@ def test_beside_the_highlight_with_modifiers_or_the_middle_button_a_drag_moves_t
     hand.viewer.studio.remove_light("fill")
     hand.viewer.tell("")
     element, line = hand.handle("highlight of key")
-    before, button = scene_of(hand), held.pop("button", 1)
+    before, button = hand.scene, held.pop("button", 1)
     element += held.pop("aside", 0)
     hand.viewer.on_pointer(element, line, "press", button, **held)
-    hand.viewer.on_pointer(element + 30, line + 30, "move", **held)
+    for far in (10, 20, 30):
+        hand.viewer.on_pointer(element + far, line + far, "move", **held)
     hand.viewer.on_pointer(element + 30, line + 30, "release", button, **held)
-    assert scene_of(hand).lights == before.lights
-    assert scene_of(hand).view != before.view
-
-
-def test_what_can_be_grabbed_is_marked_before(at_lights: Hand) -> None:
-    hand = at_lights
-    element, line = hand.handle("end of the cone of key")
-    hand.move(element + 2, line)
-    mark = hand.viewer.board.mark
-    assert mark is not None
-    assert max(abs(mark[0] - element - 2), abs(mark[1] - line)) <= REACH
-    assert mark[::-1] in {(a, b) for a, b in rims(hand.viewer.studio.sight, "key")["cone"].tolist()}
-    assert hand.viewer.board.messages[-1].text.startswith("end of the cone of key: drag it, or click")
+    assert hand.scene.lights == before.lights
+    assert hand.scene.view != before.view
+    assert hand.viewer.studio.history.to_undo[-1].view == before.view
 
 
 def test_the_highlight_of_a_light_that_follows_or_is_at_infinity_goes_where_it_is_picked(
@@ -335,8 +335,8 @@ def test_the_highlight_of_a_light_that_follows_or_is_at_infinity_goes_where_it_i
         assert studio.highlight_of("key") == place[::-1]
         assert hand.handle("highlight of key") == place
         assert (key(hand).follows, key(hand).at_infinity) == ("eye", True)
-    position = zip("xyz", scene_of(hand).light_in_world("key").position, strict=True)
-    assert hand.viewer.message == "key: " + "  ".join(f"{axis} {place:.2f}" for axis, place in position)
+    position = zip("xyz", hand.scene.light_in_world("key").position, strict=True)
+    assert hand.message == "key: " + "  ".join(f"{axis} {place:.2f}" for axis, place in position)
     # Its cross is where the highlight is seen after it was turned in place.
     hand.viewer.studio.light("key", direction=(0.1, 1.0, 0.0))
     assert hand.handle("highlight of key") == pytest.approx(

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import fields
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +16,6 @@ from autocolor.screens.session import Clipboard
 from autocolor.screens.viewer import Viewer
 from autocolor.sending import drawn_legend
 from autocolor.studio import Studio
-from autocolor.widgets.sheet import Sheet
 from ramtek_emu import Ramtek9300
 from tests.autocolor.screens.ball import MIDDLE, ball_scene, hand_before
 from tests.autocolor.screens.hand import Hand
@@ -42,36 +42,28 @@ def test_a_pick_names_and_chooses_part_and_surface(hand: Hand) -> None:
     session = hand.viewer.session
     hand.click(*FLOOR)
     # A name that is both is told once.
-    assert hand.viewer.message == f"floor, {level_at(hand, *FLOOR)}"
+    assert hand.message == f"floor, {level_at(hand, *FLOOR)}"
     assert (session.surface_name, session.part_name) == ("floor", "floor")
     hand.click(*MIDDLE)
-    assert hand.viewer.message == f"ball - paint, {level_at(hand, *MIDDLE)}"
+    assert hand.message == f"ball - paint, {level_at(hand, *MIDDLE)}"
     assert (session.surface_name, session.part_name) == ("paint", "ball")
-    assert hand.viewer.studio.scene is hand.viewer.studio.history.start
+    assert hand.scene is hand.viewer.studio.history.start
     hand.click(*BACKGROUND)
-    assert hand.viewer.message == "the background"
+    assert hand.message == "the background"
     assert (session.surface_name, session.part_name) == ("paint", "ball")
-    hand.viewer.on_key("tab")
+    hand.press("tab")
     hand.viewer.tell("")
     hand.move(*MIDDLE)
-    assert hand.viewer.board.messages[-1].text == f"ball - paint, {level_at(hand, *MIDDLE)}"
+    assert hand.hint == f"ball - paint, {level_at(hand, *MIDDLE)}"
     hand.move(*BACKGROUND)
-    assert hand.viewer.board.messages[-1].text == hand.viewer.board.screen.help
-
-
-def test_a_place_beyond_the_screen_is_the_background(hand: Hand, monkeypatch: pytest.MonkeyPatch) -> None:
-    word = hand.viewer.session.word_at(*FLOOR)
-    monkeypatch.setattr(hand.viewer.session, "word_at", lambda *_: word)
-    screen = hand.viewer.board.screen
-    assert screen.hint(320, 430).startswith("floor")
-    assert screen.hint(320, 882) == screen.hint(900, 430) == screen.help
+    assert hand.hint == hand.viewer.board.screen.help
 
 
 def test_the_legend_of_another_state_is_not_moved(tmp_path: Path) -> None:
     hand = hand_before(ball_scene().with_scalar(name="z"), tmp_path)
     session = hand.viewer.session
     hand.click(600, 100)
-    assert hand.viewer.message == "the legend: drag it"
+    assert hand.message == "the legend: drag it"
     session.edit(session.scene.replace(scalar=None))
     before = session.scene
     hand.viewer.compare()
@@ -92,17 +84,14 @@ def test_what_is_pointed_at_is_named_as_soon_as_the_picture_is_back(hand: Hand) 
     viewer.session.turn_to("reflectance")
     viewer.on_key("a key that does nothing")
     assert viewer.board.messages[-1].text == f"ball - paint, {level_at(hand, *MIDDLE)}"
-    whole = Ramtek9300()
-    Sheet(whole).show(viewer.board.page())
-    assert isinstance(viewer.display, Ramtek9300)
-    assert np.array_equal(viewer.display.words, whole.words)
+    assert hand.is_drawn_whole()
 
 
 def test_what_is_under_the_menu_or_a_message_is_not_the_picture(hand: Hand) -> None:
-    scene = hand.viewer.studio.scene
+    scene = hand.scene
     hand.viewer.session.edit(scene.replace(view=scene.view.replace(field_of_view=8.0)))
     hand.click(*MIDDLE)
-    hand.viewer.on_key("tab")
+    hand.press("tab")
     for place in ((630, 460), (320, 475)):
         seen = hand.viewer.studio.seen_at(place[1], place[0])
         assert seen is not None
@@ -110,7 +99,7 @@ def test_what_is_under_the_menu_or_a_message_is_not_the_picture(hand: Hand) -> N
         hand.viewer.tell("a message")
         hand.click(*place)
         assert hand.viewer.session.part_name == before
-        assert "level" not in hand.viewer.board.messages[-1].text
+        assert "level" not in hand.hint
 
 
 HELD: dict[str, tuple[dict[str, bool], int, Callable[[Scene], View]]] = {
@@ -124,7 +113,7 @@ HELD: dict[str, tuple[dict[str, bool], int, Callable[[Scene], View]]] = {
 @pytest.mark.parametrize("name", HELD)
 def test_a_drag_turns_moves_or_comes_closer(hand: Hand, name: str) -> None:
     held, button, view_of = HELD[name]
-    before, viewer = hand.viewer.studio.scene, hand.viewer
+    before, viewer = hand.scene, hand.viewer
     viewer.on_pointer(400, 100, "press", button, 1, **held)
     viewer.on_pointer(430, 110, "move", 0, 1, **held)
     viewer.on_pointer(430, 110, "release", button, 1, **held)
@@ -135,7 +124,52 @@ def test_a_drag_turns_moves_or_comes_closer(hand: Hand, name: str) -> None:
     assert viewer.studio.scene.view == moved(before, wheel_ratio(2))
 
 
-def test_a_screen_draws_the_same_legend_as_a_studio(tmp_path: Path) -> None:
+KEYS: dict[str, tuple[str, Callable[[Scene], Scene]]] = {
+    "1": ("light key off", lambda scene: scene.with_light("key", on=False)),
+    "2": ("light fill off", lambda scene: scene.with_light("fill", on=False)),
+    "3": ("the scene has no light 3", lambda scene: scene),
+    "s": ("surface floor", lambda scene: scene),
+    "Shift+S": ("surface floor", lambda scene: scene),
+    "[": ("blend 0.55", lambda scene: scene.with_paint("paint", blend=0.55)),
+    "]": ("blend 0.65", lambda scene: scene.with_paint("paint", blend=0.65)),
+    ".": ("", lambda scene: scene.with_view(angle=5.0)),
+    "home": ("the view as opened", lambda scene: scene),
+}
+
+
+def fields_of(scene: Scene) -> list[object]:
+    return [getattr(scene, each.name) for each in fields(scene)]
+
+
+@pytest.mark.parametrize("key", KEYS)
+def test_a_key_edits_lights_paint_or_view_in_one_step(hand: Hand, key: str) -> None:
+    message, after = KEYS[key]
+    before = hand.scene
+    hand.press(key)
+    assert hand.message == message
+    assert fields_of(hand.scene) == fields_of(after(before))
+    hand.press("Ctrl+Z")
+    assert hand.scene is before
+
+
+def test_a_key_holds_the_exposure_and_releases_it(hand: Hand) -> None:
+    before = hand.scene
+    hand.press("e")
+    assert hand.message == "exposure held: less light is darker"
+    entries = hand.viewer.studio.entries
+    assert hand.scene.exposure != before.exposure
+    hand.press("e")
+    assert hand.message == "exposure released"
+    assert fields_of(hand.scene) == fields_of(before)
+    assert np.array_equal(hand.viewer.studio.entries, entries)
+    for light in ("1", "2"):
+        hand.press(light)
+    hand.viewer.session.edit(hand.scene.replace(ambient=0.0))
+    hand.press("e")
+    assert hand.message.startswith("to hold the exposure, a surface must have different intensities")
+
+
+def test_a_screen_draws_the_same_legend_as_a_studio() -> None:
     scene = boxes().with_scalar(name="z")
     found = legend(Studio(scene, Ramtek9300()).display_image)
     assert found is not None
@@ -145,11 +179,6 @@ def test_a_screen_draws_the_same_legend_as_a_studio(tmp_path: Path) -> None:
         by_items.send(np.frombuffer(item.stream, np.uint16))
     assert (drawn.words == by_items.words).all()
     assert drawn.words.any()
-    viewer, display = Viewer(scene, Ramtek9300(), tmp_path), Ramtek9300()
-    viewer.clear()
-    Studio(scene, display)
-    assert isinstance(viewer.display, Ramtek9300)
-    assert (viewer.display.words == display.words).all()
 
 
 @pytest.mark.parametrize(
@@ -172,49 +201,45 @@ def color_seen(hand: Hand, element: int, line: int) -> tuple[int, ...]:
 
 
 def paint_of(hand: Hand, surface: str) -> Paint:
-    return hand.viewer.studio.scene.surface(surface).paint
+    return hand.scene.surface(surface).paint
 
 
 def test_a_key_takes_the_paint_under_the_pointer_for_the_chosen_surface(hand: Hand) -> None:
     hand.viewer.studio.recolor("paint", object_color="#123456", blend=0.25)
-    before, words = hand.viewer.studio.scene, hand.viewer.studio.words
+    before, words = hand.scene, hand.viewer.studio.words
     paint = paint_of(hand, "paint")
     assert paint_of(hand, "floor") != paint
     hand.click(*FLOOR)
     hand.move(*MIDDLE)
-    hand.viewer.on_key("p", typed="p")
-    assert hand.viewer.message == "floor: the paint of paint; undo goes back"
+    hand.press("p")
+    assert hand.message == "floor: the paint of paint; undo goes back"
     assert (paint_of(hand, "floor"), paint_of(hand, "paint")) == (paint, paint)
     assert np.array_equal(hand.viewer.studio.words, words)
-    hand.viewer.on_key("z", control=True)
-    assert hand.viewer.studio.scene is before
+    hand.press("Ctrl+Z")
+    assert hand.scene is before
+    # With Shift it takes the color that is seen.
+    color, own = color_seen(hand, *MIDDLE), paint_of(hand, "floor")
+    hand.press("Shift+P")
+    assert hand.message == "floor: object color #{:02x}{:02x}{:02x}".format(*color)
+    assert paint_of(hand, "floor") == own.replace(object_color=color)
 
 
-def test_with_shift_the_key_takes_the_color_that_is_seen(hand: Hand) -> None:
-    hand.click(*FLOOR)
-    hand.move(*MIDDLE)
-    color, before = color_seen(hand, *MIDDLE), paint_of(hand, "floor")
-    hand.viewer.on_key("p", typed="P", shift=True)
-    assert hand.viewer.message == "floor: object color #{:02x}{:02x}{:02x}".format(*color)
-    assert paint_of(hand, "floor") == before.replace(object_color=color)
-
-
-@pytest.mark.parametrize("shift", [False, True])
-def test_nothing_is_taken_from_the_background_the_menu_or_the_chosen_surface(hand: Hand, shift: bool) -> None:
-    scene = hand.viewer.studio.scene
+@pytest.mark.parametrize("key", ["p", "Shift+P"])
+def test_nothing_is_taken_from_the_background_the_menu_or_the_chosen_surface(hand: Hand, key: str) -> None:
+    scene = hand.scene
     hand.click(*FLOOR)
     hand.move(*BACKGROUND)
-    hand.viewer.on_key("p", typed="p", shift=shift)
+    hand.press(key)
     nowhere = "no surface is under the pointer; point at it in the picture"
-    assert hand.viewer.message == nowhere
+    assert hand.message == nowhere
     hand.open_menu()
     hand.move(570, 430)
-    hand.viewer.on_key("p", typed="p", shift=shift)
-    assert hand.viewer.message == nowhere
+    hand.press(key)
+    assert hand.message == nowhere
     hand.move(*FLOOR)
-    hand.viewer.on_key("p", typed="p")
-    assert hand.viewer.message == "floor is the chosen surface; point at another, whose paint it takes"
-    assert hand.viewer.studio.scene is scene
+    hand.press("p")
+    assert hand.message == "floor is the chosen surface; point at another, whose paint it takes"
+    assert hand.scene is scene
 
 
 def test_the_color_under_the_pointer_is_copied_and_pasted_as_the_object_color(hand: Hand) -> None:
@@ -227,11 +252,11 @@ def test_the_color_under_the_pointer_is_copied_and_pasted_as_the_object_color(ha
     hand.viewer.session.clipboard = Clipboard(copy, lambda: held[0])
     hand.click(*FLOOR)
     hand.move(*MIDDLE)
-    hand.viewer.on_key("c", control=True)
+    hand.press("Ctrl+C")
     color = color_seen(hand, *MIDDLE)
     assert held == ["#{:02x}{:02x}{:02x}".format(*color)]
-    hand.viewer.on_key("v", control=True)
+    hand.press("Ctrl+V")
     assert paint_of(hand, "floor").object_color == color
     hand.move(*BACKGROUND)
-    hand.viewer.on_key("c", control=True)
-    assert hand.viewer.message == "nothing is there to copy; point at a color"
+    hand.press("Ctrl+C")
+    assert hand.message == "nothing is there to copy; point at a color"

@@ -31,13 +31,6 @@ from autocolor.studio import Studio
 from ramtek_emu import Ramtek9300
 from tests.small import cube, grid, wall_scene
 
-
-@pytest.fixture
-def session(tmp_path: Path) -> Session:
-    display = Ramtek9300()
-    return Session(Studio(wall_scene(lights=[]), display), display, tmp_path)
-
-
 colors = st.sampled_from(OBJECT_COLORS) | st.just("#123456")
 
 
@@ -50,11 +43,8 @@ def test_steps_go_through_all_colors_and_the_own_one_and_back(own: str, step: in
         seen.append(present)
     assert present == own
     assert set(seen) == {own, *OBJECT_COLORS}
-
-
-def test_a_color_that_came_from_elsewhere_is_followed_by_the_first() -> None:
-    assert color_after("#654321", "#123456", 1) == "#123456"
-    assert color_after("#654321", OBJECT_COLORS[3], 1) == OBJECT_COLORS[0]
+    # A color that came from elsewhere is followed by the first.
+    assert color_after("#654321", own, 1) == ("#123456" if own == "#123456" else OBJECT_COLORS[0])
 
 
 def distance(view: View) -> float:
@@ -244,8 +234,9 @@ def test_sides_have_the_names_that_the_front_gives_them(front: Any) -> None:
         assert side_name(scene, (round(toward[0]), round(toward[1]), 0.0)) == side
 
 
-def test_of_equal_named_views_the_one_that_was_taken_is_shown_and_removed(session: Session) -> None:
-    scene = session.scene
+def test_of_equal_named_views_the_one_that_was_taken_is_shown_and_removed(tmp_path: Path) -> None:
+    scene, display = wall_scene(lights=[]), Ramtek9300()
+    session = Session(Studio(scene, display), display, tmp_path)
     for name in ("front", "door", "far"):
         scene = scene.with_saved_view(name)
     session.edit(scene)

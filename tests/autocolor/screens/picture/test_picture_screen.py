@@ -20,10 +20,6 @@ def hand(tmp_path: Path) -> Hand:
     return hand
 
 
-def scene_of(hand: Hand) -> Scene:
-    return hand.viewer.studio.scene
-
-
 ROWS: dict[str, tuple[float, Callable[[Scene], View]]] = {
     "turn": (0.9, lambda scene: turned(scene, TURN, 0)),
     "rise": (0.1, lambda scene: turned(scene, 0, -TURN)),
@@ -34,11 +30,11 @@ ROWS: dict[str, tuple[float, Callable[[Scene], View]]] = {
 
 
 def test_every_side_is_in_the_list_of_the_row_of_the_view(hand: Hand) -> None:
-    start = scene_of(hand)
+    start = hand.scene
     for side in sides_of(start):
         hand.open_menu()
         hand.choose("view", side)
-        assert scene_of(hand).view == seen_from(start, side)
+        assert hand.scene.view == seen_from(start, side)
         row = next(row for row in hand.viewer.board.layout.rows if row.label == "view")
         assert isinstance(row, Choice)
         assert row.present == side
@@ -52,24 +48,15 @@ def test_every_side_is_in_the_list_of_the_row_of_the_view(hand: Hand) -> None:
 @pytest.mark.parametrize("label", ROWS)
 def test_a_row_changes_the_view_by_a_step_that_is_undone(hand: Hand, label: str) -> None:
     share, view_of = ROWS[label]
-    before = scene_of(hand)
+    before = hand.scene
     hand.pick(label, share)
-    assert scene_of(hand).view == view_of(before) != before.view
+    assert hand.scene.view == view_of(before) != before.view
     hand.pick(" ", 0.1)
-    assert scene_of(hand) is before
-
-
-def test_the_surface_is_chosen_in_the_menu_as_in_the_picture(hand: Hand) -> None:
-    assert hand.viewer.session.surface_name == "paint"
-    hand.pick("surface", 0.9)
-    assert hand.viewer.session.surface_name == "floor"
-    hand.click(*MIDDLE)
-    hand.open_menu()
-    assert hand.viewer.session.surface_name == "paint"
+    assert hand.scene is before
 
 
 def test_a_light_is_switched_by_its_box_and_chosen_beside_it(hand: Hand) -> None:
-    before = scene_of(hand)
+    before = hand.scene
 
     def chosen() -> list[str]:
         rows = hand.viewer.board.layout.rows
@@ -78,14 +65,19 @@ def test_a_light_is_switched_by_its_box_and_chosen_beside_it(hand: Hand) -> None
     assert chosen() == ["key"]
     hand.pick("fill", 0.2)
     assert chosen() == ["fill"]
-    assert scene_of(hand) is before
+    assert hand.scene is before
     hand.pick("key", 0.95)
-    assert [light.on for light in scene_of(hand).lights] == [False, True]
+    assert [light.on for light in hand.scene.lights] == [False, True]
     assert chosen() == ["fill"]
+    for share, on in ((0.9, [True, True]), (0.2, [False, True]), (0.2, [True, True])):
+        hand.pick("alone", share)
+        assert [light.on for light in hand.scene.lights] == on
+    hand.pick("what was sent")
+    assert hand.viewer.page == "sent"
 
 
 def test_a_view_is_saved_taken_and_removed_as_a_camera(hand: Hand) -> None:
-    session, start = hand.viewer.session, scene_of(hand)
+    session, start = hand.viewer.session, hand.scene
 
     def cameras() -> tuple[list[str], str]:
         row = hand.widget("camera")
@@ -101,15 +93,15 @@ def test_a_view_is_saved_taken_and_removed_as_a_camera(hand: Hand) -> None:
     hand.pick("save view", 0.2)
     hand.pick("turn", 0.9)
     assert cameras() == (["view 1", "view 2"], "")
-    turned = scene_of(hand)
+    turned = hand.scene
     hand.pick("save view", 0.9)
     assert session.message == "only the camera that is shown can be removed; take one from the row camera"
     hand.pick("camera", 0.9)
     assert session.message == "camera: view 1"
     assert cameras()[1] == "view 1"
-    assert scene_of(hand).view == start.view
+    assert hand.scene.view == start.view
     hand.pick(" ", 0.1)
-    assert scene_of(hand) is turned
+    assert hand.scene is turned
     hand.pick("camera", 0.02)
     assert cameras()[1] == "view 2"
     hand.pick("save view", 0.9)
@@ -118,17 +110,17 @@ def test_a_view_is_saved_taken_and_removed_as_a_camera(hand: Hand) -> None:
 
 
 def test_object_surface_and_part_fill_the_picture(hand: Hand) -> None:
-    start = scene_of(hand)
+    start = hand.scene
     hand.open_menu()
     hand.pick("as opened", 0.9)
-    assert hand.viewer.message == "no part was clicked yet; click a part in the picture first"
-    assert scene_of(hand) is start
+    assert hand.message == "no part was clicked yet; click a part in the picture first"
+    assert hand.scene is start
     hand.click(*MIDDLE)
     views = []
     for label, share in (("rescale", 0.2), ("rescale", 0.9), ("as opened", 0.9)):
         hand.open_menu()
         hand.pick(label, share)
-        views.append(scene_of(hand).view)
+        views.append(hand.scene.view)
         hand.viewer.session.undo()
     # The ball is a surface of its own, and nearer than with the floor.
     assert views[1] == views[2] != views[0]

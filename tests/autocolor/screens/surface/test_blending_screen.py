@@ -11,7 +11,6 @@ from autocolor.screens.viewer import Viewer
 from autocolor.widgets.bars import LevelBar
 from autocolor.widgets.items import Area
 from autocolor.widgets.menu import MENU
-from autocolor.widgets.widget import Place
 from ramtek_emu import Ramtek9300
 from tests.autocolor.screens.painting_hand import PaintingHand, boxes_scene
 from tests.tables import first
@@ -48,14 +47,6 @@ def bar_is_right(hand: PaintingHand) -> bool:
     return np.array_equal(hand.words(strip), wanted) and np.array_equal(hand.colors(strip), entries[wanted])
 
 
-def test_the_whole_picture_stands_beside_the_bar(hand: PaintingHand) -> None:
-    left = Area(0, 0, 520, 479)
-    assert np.array_equal(hand.words(left), hand.viewer.studio.words[:, :521])
-    assert np.array_equal(hand.display.entries, hand.viewer.studio.entries)
-    assert bar_of(hand).strip.width == 24
-    assert bar_is_right(hand)
-
-
 def test_a_pick_on_the_bar_blends_from_its_level_on_at_once(hand: PaintingHand) -> None:
     levels = hand.viewer.studio.level_ranges["box 0"].levels
     strip = bar_of(hand).strip
@@ -68,28 +59,13 @@ def test_a_pick_on_the_bar_blends_from_its_level_on_at_once(hand: PaintingHand) 
     assert hand.paint.blend == 1
 
 
-def test_the_number_is_part_of_the_handle(hand: PaintingHand) -> None:
-    hand.click(bar_of(hand).strip.left, 200)
-    before, strip, scene = hand.paint.blend, bar_of(hand).strip, hand.viewer.studio.scene
-    label = bar_of(hand).area.left - 12
-    assert hand.viewer.board.layout.widget_at(label, 200) is not None
-    hand.drag((label, 200), (label, 150), (label, 120))
-    levels = hand.viewer.studio.level_ranges["box 0"].levels
-    assert hand.paint.blend > before
-    assert hand.viewer.studio.history.to_undo[-1] is scene
-    assert blend_level(hand.paint.blend, levels) == bar_of(hand).level_at(Place(strip.left, 120))
-    assert hand.viewer.board.layout.widget_at(label, 200) is None
-
-
 def test_only_entries_and_the_words_of_a_handle_are_sent(hand: PaintingHand) -> None:
     bar = bar_of(hand)
     picture = Area(0, 0, bar.area.left - 40, 479)
     hand.spoil(picture)
     hand.spoil(bar.strip)
     line = bar.strip.top + 100
-    hand.move(bar.strip.left + 5, line)
-    hand.joystick.track = True
-    hand.viewer.poll()
+    hand.grab(bar.strip.left + 5, line)
     for down in range(5, 100, 5):
         before = hand.display.frame_buffer.written
         entries = hand.display.lookup_table.written
@@ -106,7 +82,7 @@ def test_the_other_handle_is_the_percentage_of_the_light_color(hand: PaintingHan
     assert hand.paint.light_percentage == 0
     first, levels = hand.viewer.studio.level_ranges["box 0"]
     assert tuple(hand.display.entries[first + levels - 1]) == hand.paint.object_color
-    before = hand.viewer.studio.scene
+    before = hand.scene
     hand.drag((area.left + 10, area.bottom), (area.left + 10, 200), (area.left + 10, area.top))
     assert hand.viewer.studio.history.to_undo[-1] is before
     assert hand.paint.light_percentage == 100
@@ -114,15 +90,6 @@ def test_the_other_handle_is_the_percentage_of_the_light_color(hand: PaintingHan
     hand.click(area.left + 2, (area.top + area.bottom) // 2)
     assert hand.paint.light_percentage == 50
     assert hand.paint.blend == boxes_scene().surface("box 0").paint.blend
-
-
-def test_a_click_in_the_picture_chooses_the_surface_of_the_bar(hand: PaintingHand) -> None:
-    first, levels = hand.viewer.studio.level_ranges["box 1"]
-    words = hand.viewer.studio.words[:, :500]
-    line, element = np.argwhere((first <= words) & (words < first + levels))[0].tolist()
-    hand.click(element, line)
-    assert hand.viewer.session.surface_name == "box 1"
-    assert bar_is_right(hand)
 
 
 def test_the_bar_makes_room_for_the_menu(hand: PaintingHand) -> None:
@@ -143,16 +110,16 @@ def test_the_bar_makes_room_for_the_menu(hand: PaintingHand) -> None:
 @pytest.mark.parametrize("count", first(1, [2, 1, 60]))
 def test_leaving_restores_words_and_entries_byte_for_byte(tmp_path: Path, count: int) -> None:
     hand = blending(boxes_scene(count), tmp_path)
-    before = hand.viewer.studio.scene
+    before = hand.scene
     hand.leave()
     assert hand.is_as_sent(before)
     hand.turn_to("light blending")
     hand.move(20, 20)
     assert bar_is_right(hand)
     hand.click(bar_of(hand).strip.left + 3, 222)
-    assert hand.viewer.studio.scene is not before
+    assert hand.scene is not before
     hand.leave()
-    assert hand.is_as_sent(hand.viewer.studio.scene)
+    assert hand.is_as_sent(hand.scene)
 
 
 def test_hidden_panels_take_the_bar_away_and_bring_the_legend(tmp_path: Path) -> None:
@@ -174,7 +141,7 @@ def test_a_ramp_has_no_blend_level(tmp_path: Path) -> None:
     hand = blending(boxes_scene().with_surface("box 0", ramp=["#000", "#f60"]), tmp_path)
     hand.viewer.board.screen.enter()
     message = "box 0 has a ramp and no blend; change the ramp in color mixing"
-    assert hand.viewer.message == message
+    assert hand.message == message
     assert not hand.viewer.board.screen.widgets()
     # The message comes back if the surface is chosen again, in the picture or in the menu.
     session = hand.viewer.session
@@ -182,12 +149,12 @@ def test_a_ramp_has_no_blend_level(tmp_path: Path) -> None:
     lines, elements = np.nonzero((words >= first) & (words < first + levels))
     session.choose_surface("box 1")
     hand.click(elements[0], lines[0])
-    assert (session.surface_name, hand.viewer.message) == ("box 0", message)
+    assert (session.surface_name, hand.message) == ("box 0", message)
     hand.open_menu()
     hand.pick("surface")
     assert session.surface_name == "box 1"
-    assert hand.viewer.message != message
+    assert hand.message != message
     hand.pick("surface")
-    assert (session.surface_name, hand.viewer.message) == ("box 0", message)
+    assert (session.surface_name, hand.message) == ("box 0", message)
     hand.pick("ramp", 0.95)
     assert bar_of(hand)

@@ -104,16 +104,6 @@ def test_other_surfaces_are_dim_and_the_lighter_color_never_has_the_darker_gray(
     assert (words[SCREENS.first :] == NIGHT).all()
 
 
-def test_recoloring_the_surface_leaves_the_grays_of_the_others_alone() -> None:
-    palette, entries = mixing_words(TWO_RANGES, "body", 200), random_entries(2)
-    before = palette.dimmed(entries)
-    recolored = entries.copy()
-    recolored[601:] = random_entries(3)[601:]
-    assert palette.dimmed(recolored) is before
-    recolored[:601] = 255
-    assert not np.array_equal(palette.dimmed(recolored), before)
-
-
 ROOM = Area(8, 224, 495, 463)
 SIZES = st.tuples(st.integers(40, 700), st.integers(40, 900))
 SHARES = st.floats(0, 1)
@@ -146,24 +136,6 @@ def test_a_crop_shows_the_surface_as_large_as_the_room_allows(
         ]
         assert max(needed) > 1
         assert crop.area.height == ROOM.height or crop.area.width == ROOM.width
-
-
-def test_a_whole_picture_is_shown_at_half_its_size() -> None:
-    crop = crop_of(np.ones((480, 640), np.bool_), ROOM)
-    assert (crop.area.width, crop.area.height) == (320, 240)
-    assert np.diff(crop.lines).tolist() == [2] * 239
-    assert np.diff(crop.elements).tolist() == [2] * 319
-
-
-def test_a_small_surface_is_shown_at_its_full_size() -> None:
-    is_shown = np.zeros((480, 640), np.bool_)
-    is_shown[200:210, 300:420] = True
-    crop = crop_of(is_shown, ROOM)
-    assert crop.area == ROOM
-    assert np.diff(crop.lines).tolist() == [1] * 239
-    assert np.diff(crop.elements).tolist() == [1] * 487
-    # The surface is in the middle.
-    assert crop.pixel_at(8 + 244, 224 + 120) == (205, 360)
 
 
 def test_a_place_beside_a_crop_has_no_pixel() -> None:

