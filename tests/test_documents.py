@@ -1,4 +1,4 @@
-"""README, CONTRIBUTING, SECURITY and the guides: code, quotes, names of tests, links and pictures are right."""
+"""Code, quotes, names of tests, links and pictures of README, CONTRIBUTING and docs are right."""
 
 from __future__ import annotations
 
