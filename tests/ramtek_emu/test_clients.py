@@ -5,45 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ramtek_emu import JPL_9460, NCAR_9460, PRINCETON_9300, Ramtek9300
-from ramtek_emu.memory.character_rom import characters
-from ramtek_emu.processor.processor import Status
+from ramtek_emu import JPL_9460, NCAR_9460, Ramtek9300
 from tests.ramtek_emu.strategies import sent_words
-
-
-def plot_session(display: Ramtek9300) -> None:
-    """The stream of the plot library: table, erase, colors, lines, a box, text with reverse packing."""
-    table = [
-        sum(part for bit, part in enumerate((0xF00, 0x0F0, 0x00F)) if index >> bit & 1)
-        for index in range(512)
-    ]
-    for words in (
-        [0x0300, 0, 1024, *table],
-        [0x0300, 1023, 2, 0],
-        [0x0802, 0x8000, 0, 511],
-        [0x0500],
-        [0x0802, 0x0002, 1],
-        [0x0802, 0x8000, 10, 501],
-        [0x0E01, 4, 100, 451],
-        [0x0902, 0x0044, 2, 100, 331, 200, 411],
-        [0x0C0B, 0x0040, 100, 451, 619, 511, 6, *packed(b"HELLO ")],
-    ):
-        display.send(sent_words(words))
-
-
-def test_the_plot_library_draws_lines_boxes_and_text() -> None:
-    display = Ramtek9300(PRINCETON_9300)
-    plot_session(display)
-    words = display.words
-    assert words[501, 10] == 1
-    assert (words[331:412, 100:201] == 2).all()
-    cells = np.concatenate([characters()[ord(letter)] for letter in "HELLO "], axis=1)
-    # The box's color stayed the background.
-    assert (words[451:460, 100:142] == np.where(cells, 1, 2)).all()
-    assert display.field()[501, 10].tolist() == [255, 0, 0]
-    assert display.field()[340, 110].tolist() == [0, 255, 0]
-    # The box left a small window, which did not clip the vectors afterwards.
-    assert display.status == Status.READY
 
 
 def packed(data: bytes | NDArray[np.uint8]) -> list[int]:
