@@ -72,8 +72,8 @@ OUTPUTS = ("o.png", "s.png", "r.ramtek")
 def test_a_signal_ends_a_command_within_a_long_instruction(tmp_path: Path) -> None:
     drawn = np.concatenate((instructions.erase((0, 479, 639, 479), 7), words("0B03 0040 0 0 0 0 2")))
     # Lines to and fro, many times on each line of the picture, from its top to its bottom.
-    path = np.stack((np.tile([0, 639], 34 * 480), np.repeat(np.arange(480), 68)), axis=1)
-    long = instructions.write_vectors(path[:-68], 5)
+    path = np.stack((np.tile([0, 639], 16 * 480), np.repeat(np.arange(480), 32)), axis=1)
+    long = instructions.write_vectors(path[:-32], 5)
     names = [tmp_path / name for name in OUTPUTS]
     outputs = ("-o", names[0], "--snapshot", names[1], "--record", names[2])
     with started("serve", "--stdio", *outputs) as process:
