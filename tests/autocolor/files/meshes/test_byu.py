@@ -150,10 +150,13 @@ test_what_is_refused = refused(
                 )
                 for corner in (9, 0)
             ),
-            (
-                "8 -6",
-                "8 6",
-                ", line 6: the last corner of the last polygon must be negative, not '6'; correct it",
+            *(
+                (
+                    "8 -6",
+                    f"8 {last}",
+                    f", line 6: the last corner of the last polygon must be negative, not '{last}'; correct it",
+                )
+                for last in (6, 1)
             ),
             (
                 "3 4 -2",

@@ -183,90 +183,64 @@ def test_lines_end_in_any_way(path: Path, order: str, feed: str) -> None:
     assert report.repairs == ()
 
 
-NOT_A_LINE = (
-    "line 3: a line of the header must be a format, a comment, an element, one of its properties or"
-    " end_header, not {!r}; export it again"
-)
-NOT_A_FORMAT = (
-    "line 2: a format must be 'ascii', 'binary_little_endian' or 'binary_big_endian' and 1.0, not {!r};"
-    " export it again"
-)
-NOT_A_PROPERTY = (
-    "line 4: a property must be a type and a name, or list, two types and a name, not {!r}; export it again"
-)
-NEEDED = "leave out what is not needed"
-NOT_PLY = "a PLY file must begin with a line 'ply', not {!r}; export it again"
+LINE = "a line of the header must be a format, a comment, an element, one of its properties or end_header"
+FORMAT = "a format must be 'ascii', 'binary_little_endian' or 'binary_big_endian' and 1.0"
+ELEMENT = "an element must have a name and a count of at most 18 digits"
+PROPERTY = "a property must be a type and a name, or list, two types and a name"
+MOST = "a header must have at most {}, not more; leave out what is not needed"
+FACE = "element face 1"
 
 test_a_wrong_header_is_refused = refused(
     "a.ply",
     [
-        (data, f"a.ply: {sentence}")
-        for data, sentence in (
-            *((data, NOT_PLY.format(data.decode().strip())) for data in (b"", b"solid a\n", b"plyx\n")),
-            (b"ply\nend_header\n", "a header must have a line 'format', not none; export it again"),
-            (
-                header("element vertex 8")[:-11],
-                "a header must have a line 'end_header' before the file ends; export it again",
-            ),
-            (
-                header("comment ".ljust(65_537, "x")),
-                "a line of the header must have at most 65,536 bytes, not more; export it again",
-            ),
-            (
-                header("element vertex 0", order=""),
-                "an element must have a property, not none: 'vertex'; export it again",
-            ),
-        )
-    ]
-    + [
-        (f"ply\nformat {words}\n".encode(), f"a.ply, {NOT_A_FORMAT.format(words)}")
-        for words in ("binary 1.0", "ascii 2.0")
-    ]
-    + [
-        (header(*lines), f"a.ply, {sentence}")
-        for *lines, sentence in (
-            ("elements vertex 8", NOT_A_LINE.format("elements vertex 8")),
-            ("property float x", NOT_A_LINE.format("property float x")),
-            *(
+        *(
+            (data, f"a.ply: {sentence}; export it again")
+            for data, sentence in (
+                *(
+                    (data, f"a PLY file must begin with a line 'ply', not {data.decode().strip()!r}")
+                    for data in (b"", b"solid a\n", b"plyx\n")
+                ),
+                (b"ply\nend_header\n", "a header must have a line 'format', not none"),
+                (header(FACE)[:-11], "a header must have a line 'end_header' before the file ends"),
                 (
-                    f"element {words}",
-                    "line 3: an element must have a name and a count of at most 18 digits, not"
-                    f" {words!r}; export it again",
-                )
-                for words in ("vertex -1", "vertex", "vertex 1 2", "vertex " + "9" * 19)
-            ),
-            (
-                "element vertex 1",
-                "element vertex 2",
-                "line 4: the name of an element must be unique, not repeated: 'vertex'; rename one",
-            ),
-            ("element vertex 1", "property float", NOT_A_PROPERTY.format("float")),
-            ("element vertex 1", "property list int x", NOT_A_PROPERTY.format("list int x")),
-            (
-                "element vertex 1",
-                "property flaot x",
-                "line 4: a type must be one of PLY, not 'flaot'; did you mean 'float'?; export it again",
-            ),
-            (
-                "element face 1",
-                "property list float int x",
-                "line 4: the count of a list must have a whole type, not 'float'; export it again",
-            ),
-            (
-                "element vertex 1",
-                "property float x",
-                "property int x",
-                "line 5: the name of a property must be unique, not repeated: 'x'; rename one",
-            ),
-            (
-                *(f"element e{number} 1" for number in range(101)),
-                f"line 103: a header must have at most 100 elements, not more; {NEEDED}",
-            ),
-            (
-                *("element e 1", *(f"property int p{number}" for number in range(1001))),
-                f"line 1004: a header must have at most 1,000 properties, not more; {NEEDED}",
-            ),
-        )
+                    header("comment ".ljust(65_537, "x")),
+                    "a line of the header must have at most 65,536 bytes, not more",
+                ),
+                (header(FACE, order=""), "an element must have a property, not none: 'face'"),
+            )
+        ),
+        *(
+            (f"ply\nformat {words}\n".encode(), f"a.ply, line 2: {FORMAT}, not {words!r}; export it again")
+            for words in ("binary 1.0", "ascii 2.0")
+        ),
+        *(
+            (header(line), f"a.ply, line 3: {rule}, not {line.removeprefix('element ')!r}; export it again")
+            for rule, line in (
+                *((LINE, line) for line in ("elements vertex 8", "property float x")),
+                *((ELEMENT, f"element {words}") for words in ("a -1", "a", "a 1 2", f"a {10**18}")),
+            )
+        ),
+        *(
+            (header(FACE, f"property {words}"), f"a.ply, line 4: {rule}; export it again")
+            for words, rule in (
+                ("float", f"{PROPERTY}, not 'float'"),
+                ("list int x", f"{PROPERTY}, not 'list int x'"),
+                ("flaot x", "a type must be one of PLY, not 'flaot'; did you mean 'float'?"),
+                ("list float int x", "the count of a list must have a whole type, not 'float'"),
+            )
+        ),
+        *(
+            (header(FACE, *lines), f"a.ply, line {sentence}")
+            for *lines, sentence in (
+                (FACE, "4: the name of an element must be unique, not repeated: 'face'; rename one"),
+                (
+                    *("property float x", "property int x"),
+                    "5: the name of a property must be unique, not repeated: 'x'; rename one",
+                ),
+                (*(f"element e{at} 1" for at in range(100)), f"103: {MOST.format('100 elements')}"),
+                (*(f"property int p{at}" for at in range(1001)), f"1004: {MOST.format('1,000 properties')}"),
+            )
+        ),
     ],
 )
 

@@ -15,17 +15,8 @@ WITH_ALL_NODES = [[0, 1, 2, 3], [3, 4, 5, 5]]
 NAMES = st.text(st.characters(exclude_categories=("C", "Z")), min_size=1, max_size=12)
 WITH_MEANING = st.sampled_from(
     [
-        "x",
-        "X",
-        "red",
-        "part",
-        "value_0",
-        "von Mises",
-        "vertex_indices",
-        "node5",
-        "scalar",
-        "scalar x",
-        "nodes",
+        *("x", "X", "red", "part", "value_0", "von Mises", "vertex_indices"),
+        *("node5", "scalar", "scalar x", "nodes"),
     ]
 )
 """Names that columns or properties of a mesh have, or nearly so."""
