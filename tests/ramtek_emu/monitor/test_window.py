@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
-import subprocess
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -22,7 +20,6 @@ from ramtek_emu.monitor.pattern import pattern
 from ramtek_emu.monitor.window import Key, Monitor, Pointer
 from tests.ramtek_emu.displays import shown
 from tests.ramtek_emu.film_reader import decoded, durations_of
-from tests.ramtek_emu.serving import until
 
 QUIT = (pygame.K_q, "\x11", pygame.KMOD_LCTRL)
 
@@ -394,22 +391,6 @@ def test_another_display_takes_the_place_of_the_first_in_the_open_window(monitor
     monitor.run()
     assert ticks == [window] * 3
     assert not pygame.display.get_init()
-
-
-def test_a_real_key_of_a_real_screen_arrives(monitor: Monitor) -> None:
-    if shutil.which("xdotool") is None:
-        pytest.skip("xdotool is not installed; no key can be pressed for real")
-    keys: list[Key] = []
-    monitor.on_key = keys.append
-
-    def has_arrived() -> bool:
-        # Until the window has the keyboard, keys are lost.
-        subprocess.run(["xdotool", "key", "b"], check=True)
-        settle(monitor)
-        return bool(keys)
-
-    until(has_arrived)
-    assert keys[0] == Key("b", "b")
 
 
 class UnopenedMonitor(Monitor):

@@ -154,7 +154,8 @@ test_what_is_refused = refused(
                 (
                     "8 -6",
                     f"8 {last}",
-                    f", line 6: the last corner of the last polygon must be negative, not '{last}'; correct it",
+                    f", line 6: the last corner of the last polygon must be negative, not '{last}'; correct"
+                    " it",
                 )
                 for last in (6, 1)
             ),
