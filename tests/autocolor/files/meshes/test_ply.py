@@ -176,7 +176,10 @@ def test_elements_with_any_properties_are_read_and_refused_if_they_are_cut(
 @pytest.mark.parametrize("feed", ["\n", "\r\n", "\r"])
 def test_lines_end_in_any_way(path: Path, order: str, feed: str) -> None:
     # The numbers of a binary file may begin like the end of a line.
-    elements = {"vertex": {"uchar heat": [10, 13, 10, 13], **xyz()}, "face": {CORNERS: [(0, 1, 2, 3)]}}
+    elements: dict[str, Columns] = {
+        "vertex": {"uchar heat": [10, 13, 10, 13], **xyz()},
+        "face": {CORNERS: [(0, 1, 2, 3)]},
+    }
     report = read(path, ply_file(elements, order=order, feed=feed, breaks="\n \t\n"))
     assert scalars(report.mesh) == [("heat", "node", "[10.0, 13.0, 10.0, 13.0]")]
     assert report.mesh.coordinates.tolist() == [list(node) for node in SQUARE]
