@@ -82,9 +82,3 @@ def test_a_table_file_of_no_mesh_is_refused(
     assert sentence.startswith("mesh.tables: ")
     assert problem in sentence
     assert sentence.endswith("; write the scene again")
-
-
-def test_another_file_is_refused(tmp_path: Path) -> None:
-    assert refusal(read, tmp_path, b"v 0 0 0\n").startswith(
-        "mesh.tables: a table file must be whole and as autocolor wrote it"
-    )
