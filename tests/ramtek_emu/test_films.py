@@ -80,6 +80,8 @@ def test_the_loss_of_a_gif_is_told_as_it_is(tmp_path: Path) -> None:
         for one, other in zip(decoded(tmp_path / "film.gif"), fields, strict=True)
     ]
     assert differences[0] == 0
+    # The last byte of a GIF.
+    assert (tmp_path / "film.gif").read_bytes().endswith(b";")
     assert min(differences[1:]) > 0
     assert loss.sentence(4) == (
         f"3 of 4 frames lost colors, by at most {max(differences)} of 255; .webp and .apng lose none"
