@@ -452,6 +452,12 @@ test_what_does_not_fit_its_counts_is_refused = refused(
             for row, before in ((0, 0), (1, len(count)))
         ),
         (
+            sized(
+                3, "list char uchar a", "list char uchar of_it", name="face", data=b"\0\0\0\xff" + bytes(9)
+            ),
+            "a.ply, face 1: the count of a list must be 0 or more, not less; export it again",
+        ),
+        (
             sized(5, "list uchar uchar of_it", name="face", data=b"\0\0\0\0\4\0\1\2\3"),
             f"a.ply: 5 elements 'face' must have at least 10 bytes, not 9; {CUT}",
         ),
