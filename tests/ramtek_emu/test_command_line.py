@@ -235,6 +235,15 @@ def test_what_is_put_in_order_after_a_signal_is_not_interrupted(end: End) -> Non
     assert orders == ["done"]
 
 
+def test_a_process_that_runs_several_commands_still_shows_exceptions(
+    end: End, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for _ in range(2):
+        end(lambda: None)
+    sys.excepthook(ValueError, ValueError("x"), None)
+    assert capsys.readouterr().err == "ValueError: x\n"
+
+
 def test_a_reader_of_stdout_that_left_ends_a_command_in_silence(end: End) -> None:
     assert end(raising(BrokenPipeError(errno.EPIPE, "Broken pipe"))) == (141, "\n", "")
 

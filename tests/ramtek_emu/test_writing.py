@@ -188,6 +188,12 @@ def test_a_program_that_ends_without_closing_its_output_leaves_nothing(tmp_path:
     assert os.listdir(tmp_path) == []
 
 
+def test_what_is_left_of_a_temporary_folder_is_removed(tmp_path: Path) -> None:
+    with writing.temporary_folder(tmp_path / "tables") as (folder, _):
+        (folder / "nodes.npy").write_bytes(b"left")
+    assert os.listdir(tmp_path) == []
+
+
 def test_an_output_that_another_program_sweeps_as_it_is_made_is_made_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
