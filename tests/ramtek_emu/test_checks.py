@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -72,22 +74,21 @@ test_what_is_refused = refused(
     [
         (lambda: factor(0), "a factor must be 1 to 16, not 0; choose another"),
         (lambda: factor(np.int64(17)), "a factor must be 1 to 16, not 17; choose another"),
-        (lambda: factor(True), "a factor must be a whole number from 1 to 16, not True; choose another"),
-        (
-            lambda: factor(np.float32(2)),
-            "a factor must be a whole number from 1 to 16, not 2.0; choose another",
-        ),
         (lambda: factor("2"), "a factor must be a whole number from 1 to 16, not '2'; choose another"),
-        (lambda: factor(None), "a factor must be a whole number from 1 to 16, not None; choose another"),
-        (
-            lambda: checked_words(np.zeros(3, np.uint16)),
-            "words must be a (lines, elements) array with at least one word, not of shape (3,); "
-            "pass words[np.newaxis] for one line",
+        *(
+            (
+                partial(factor, value),
+                f"a factor must be a whole number from 1 to 16, not {value!s}; choose another",
+            )
+            for value in (True, 2.0, None)
         ),
-        (
-            lambda: checked_words(np.zeros((3, 0), np.uint16)),
-            "words must be a (lines, elements) array with at least one word, not of shape (3, 0); "
-            "pass words[np.newaxis] for one line",
+        *(
+            (
+                partial(checked_words, np.zeros(shape, np.uint16)),
+                f"words must be a (lines, elements) array with at least one word, not of shape {shape}; "
+                "pass words[np.newaxis] for one line",
+            )
+            for shape in ((3,), (3, 0))
         ),
         (
             lambda: checked_words([[1], [2, 3]]),
@@ -101,13 +102,12 @@ test_what_is_refused = refused(
             lambda: checked_colors(0, [[1, 2]]),
             "colors must be an (n, 3) array of red, green, blue, not of shape (1, 2); reshape it",
         ),
-        (
-            lambda: checked_colors(1024, []),
-            "the first entry must be 0 to 1023, not 1024; choose an entry of the table",
-        ),
-        (
-            lambda: checked_colors(-1, []),
-            "the first entry must be 0 to 1023, not -1; choose an entry of the table",
+        *(
+            (
+                partial(checked_colors, first, []),
+                f"the first entry must be 0 to 1023, not {first}; choose an entry of the table",
+            )
+            for first in (1024, -1)
         ),
         (
             lambda: checked_colors(1022, [[1, 2, 3]] * 3),

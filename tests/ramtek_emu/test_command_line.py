@@ -21,7 +21,7 @@ from click.testing import CliRunner
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ramtek_emu.command_line import CommandGroup, WholeWords, joined, prefix_in_bash, run_command, tell
+from ramtek_emu.command_line import CommandGroup, WholeWords, run_command, tell
 from ramtek_emu.errors import OutputExistsError, escaped
 
 
@@ -103,13 +103,11 @@ STRANGE = "\u202e\x00\x16\x1b[2J\x7f\x85\u2028\u2066\u061c\udcff\n"
     "does",
     [
         raising(OutputExistsError(STRANGE)),
-        raising(TwoProblemsError(STRANGE)),
         raising(ValueError(STRANGE)),
         raising(click.UsageError(STRANGE)),
-        raising(click.BadParameter(STRANGE)),
         lambda: tell(STRANGE, STRANGE),
     ],
-    ids=["refusal", "two problems", "fault", "usage", "parameter", "message"],
+    ids=["refusal", "fault", "usage", "message"],
 )
 def test_strange_characters_of_names_are_escaped_in_every_message(
     end: End, does: Callable[[], object]
@@ -237,6 +235,15 @@ def test_what_is_put_in_order_after_a_signal_is_not_interrupted(end: End) -> Non
     assert orders == ["done"]
 
 
+def test_a_process_that_runs_several_commands_still_shows_exceptions(
+    end: End, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for _ in range(2):
+        end(lambda: None)
+    sys.excepthook(ValueError, ValueError("x"), None)
+    assert capsys.readouterr().err == "ValueError: x\n"
+
+
 def test_a_reader_of_stdout_that_left_ends_a_command_in_silence(end: End) -> None:
     assert end(raising(BrokenPipeError(errno.EPIPE, "Broken pipe"))) == (141, "\n", "")
 
@@ -338,13 +345,6 @@ def test_the_last_of_the_words_that_bash_made_of_a_line_is_completed(
     monkeypatch.setenv("COMP_WORDS", "\n".join(["paint", *words]))
     monkeypatch.setenv("COMP_CWORD", str(len(words)))
     assert WholeWords(paint, {}, "paint", "_PAINT_COMPLETE").complete().splitlines() == candidates
-
-
-def test_words_are_joined_around_equals_signs_alone() -> None:
-    assert joined(["a", "=", "b", "c"]) == ["a=b", "c"]
-    assert joined(["a", "==", "b"]) == ["a==b"]
-    assert joined(["=", "b"]) == ["=b"]
-    assert (prefix_in_bash("a=b=c"), prefix_in_bash("--a=b=c"), prefix_in_bash("--a")) == ("a=b=", "b=", "")
 
 
 @pytest.mark.skipif(shutil.which("bash") is None, reason="there is no bash")

@@ -10,11 +10,9 @@ import pytest
 from hypothesis import Phase, find, given, settings
 from hypothesis import strategies as st
 
-from ramtek_emu import Ramtek9300
 from ramtek_emu.arrays import Colors, Raster
 from ramtek_emu.instruction_set.table import FORMATS, SUBSTANTIATED
 from ramtek_emu.testing import check_words_within_planes, entries, rasters, streams, words
-from tests.ramtek_emu.strategies import SMALL
 
 
 def begins(opcode: int, stream: list[int]) -> bool:
@@ -61,18 +59,6 @@ def test_rasters_and_entries_have_the_shapes_and_types_of_the_memories(
     check_words_within_planes(raster)
     assert len(stream) <= 7
     check_words_within_planes(stream, 16)
-
-
-def test_the_simplest_example_is_found_of_a_stream_that_writes_and_of_a_word() -> None:
-    def writes_a_word(stream: list[int]) -> bool:
-        display = Ramtek9300(SMALL)
-        display.send(np.array(stream, np.uint16))
-        return bool(display.words.any())
-
-    assert len(find(streams(), writes_a_word)) <= 6
-    assert find(words(), lambda word: word >= 700) == 700
-    assert find(rasters(2, 2), lambda raster: raster.any()).sum() == 1
-    assert find(entries(3), lambda table: table.any()).max() == 1
 
 
 @pytest.mark.parametrize(

@@ -178,6 +178,22 @@ def test_temporary_files_of_running_programs_stay(tmp_path: Path) -> None:
     assert sorted(os.listdir(tmp_path)) == ["new.png", "newer.png"]
 
 
+def test_a_program_that_ends_without_closing_its_output_leaves_nothing(tmp_path: Path) -> None:
+    code = (
+        "import sys\nfrom ramtek_emu.writing import Output\n"
+        "output = Output(sys.argv[1], overwrite=True)\nraise KeyboardInterrupt"
+    )
+    ended = subprocess.run([sys.executable, "-c", code, tmp_path / "a"], stderr=subprocess.PIPE, check=False)
+    assert b"KeyboardInterrupt" in ended.stderr
+    assert os.listdir(tmp_path) == []
+
+
+def test_what_is_left_of_a_temporary_folder_is_removed(tmp_path: Path) -> None:
+    with writing.temporary_folder(tmp_path / "tables") as (folder, _):
+        (folder / "nodes.npy").write_bytes(b"left")
+    assert os.listdir(tmp_path) == []
+
+
 def test_an_output_that_another_program_sweeps_as_it_is_made_is_made_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

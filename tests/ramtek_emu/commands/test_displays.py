@@ -2,10 +2,6 @@ from __future__ import annotations
 
 import re
 import signal
-import socket
-import subprocess
-import sys
-from contextlib import ExitStack
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +13,7 @@ from ramtek_emu.command_line import ENDING
 from ramtek_emu.commands.displays import running
 from ramtek_emu.commands.ramtek import ramtek
 from ramtek_emu.writing import Output
-from tests.ramtek_emu.processes import address_of, ended, environment, field_of, run, started, stream
+from tests.ramtek_emu.processes import PipedHost, address_of, ended, field_of, run, started, stream
 from tests.ramtek_emu.recorded_streams import COLOR_MAP, OUTLINE, words
 from tests.signals import Row, attack, filling, printing, recording, row_of, unread
 from tests.tables import first
@@ -73,79 +69,26 @@ def test_a_signal_ends_a_command_in_order_at_any_moment(
 OUTPUTS = ("o.png", "s.png", "r.ramtek")
 
 
-STOPPED_WITHIN = """
-import sys, time
-from ramtek_emu.__main__ import main
-from ramtek_emu.commands.displays import Run
-from ramtek_emu.host import server
-from ramtek_emu.memory.frame_buffer import FrameBuffer
-
-# Pause after every slice, however fast the machine is.
-server.SLICE_SECONDS = 0
-signals = []
-receive, write_points = Run.receive, FrameBuffer.write_points
-
-def receive_and_note(run, number, frame):
-    signals.append(number)
-    receive(run, number, frame)
-
-def write_points_and_wait(self, *arguments):
-    write_points(self, *arguments)
-    if self.written >= 100_000 and not signals:
-        print("within", file=sys.stderr, flush=True)
-        while not signals:
-            time.sleep(0.001)
-
-Run.receive, FrameBuffer.write_points = receive_and_note, write_points_and_wait
-main()
-"""
-"""A program that runs a command, and waits for a signal when 100,000 words are written."""
-
-
-@pytest.mark.parametrize(
-    ("command", "code"),
-    [("play -", 143), ("serve --port 0", 0), pytest.param("serve --stdio", 0, marks=pytest.mark.thorough)],
-)
-def test_a_signal_ends_a_command_within_a_long_instruction(command: str, code: int, tmp_path: Path) -> None:
-    drawn = instructions.erase((0, 479, 639, 479), 7)
-    # Lines to and fro, from the top of the picture to its bottom.
-    path = np.stack((np.tile([0, 639, 639, 0], 240), np.repeat(np.arange(480), 2)), axis=1)
-    long = instructions.write_vectors(path[:-2], 5)
-    outputs = ["-o", "o.png", "--snapshot", "s.png", "--record", "r"]
-    process = subprocess.Popen(
-        [sys.executable, "-c", STOPPED_WITHIN, *command.split(), *outputs],
-        cwd=tmp_path,
-        env=environment(),
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-    )
-    assert process.stdin is not None
-    assert process.stdout is not None
-    assert process.stderr is not None
-    data = stream(np.concatenate((drawn, long)))
-    with ExitStack() as stack:
-        stack.callback(process.kill)
-        if "--port" in command:
-            host = stack.enter_context(
-                socket.create_connection(("127.0.0.1", int(process.stdout.readline().rpartition(b":")[2])))
-            )
-            host.sendall(data)
-        else:
-            process.stdin.write(data)
-            process.stdin.flush()
-        assert process.stderr.readline() == b"within\n"
-        process.send_signal(signal.SIGTERM)
-        _, said = process.communicate(timeout=60)
-    assert process.returncode == code
-    assert f"{len(long):,} words of the host arrived and were not executed".encode() in said
-    assert (tmp_path / "r").read_bytes() == stream(drawn)
-    half_drawn = read_snapshot(tmp_path / "s.png")
-    assert (half_drawn.words[:150] == 5).all()
-    assert not half_drawn.words[-100:-1].any()
+def test_a_signal_ends_a_command_within_a_long_instruction(tmp_path: Path) -> None:
+    drawn = np.concatenate((instructions.erase((0, 479, 639, 479), 7), words("0B03 0040 0 0 0 0 2")))
+    # Lines to and fro, many times on each line of the picture, from its top to its bottom.
+    path = np.stack((np.tile([0, 639], 16 * 480), np.repeat(np.arange(480), 32)), axis=1)
+    long = instructions.write_vectors(path[:-32], 5)
+    names = [tmp_path / name for name in OUTPUTS]
+    outputs = ("-o", names[0], "--snapshot", names[1], "--record", names[2])
+    with started("serve", "--stdio", *outputs) as process:
+        host = PipedHost(process)
+        host.send(np.concatenate((drawn, long)))
+        assert host.receive(1) == 0
+        said = ended(process, signal.SIGTERM)
+    assert f"{len(long):,} words of the host arrived and were not executed" in said
+    assert names[2].read_bytes() == stream(drawn)
+    half_drawn = read_snapshot(names[1])
+    lines = (half_drawn.words == 5).all(axis=1).tolist()
+    assert lines == sorted(lines, reverse=True)
+    assert not half_drawn.words[lines.count(True) + 1 : -1].any()
     assert (half_drawn.words[479] == 7).all()
-    assert half_drawn.words[half_drawn.processor.parameters.start[::-1]] == 5
-    assert (field_of(tmp_path / "o.png") == half_drawn.field()).all()
+    assert (field_of(names[0]) == half_drawn.field()).all()
 
 
 def test_signals_lose_no_output_also_while_the_outputs_are_written(

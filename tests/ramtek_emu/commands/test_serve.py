@@ -7,15 +7,18 @@ import signal
 import socket
 import stat
 import threading
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
+import pygame
 import pytest
 
 from ramtek_emu import Ramtek9300, TcpPort, UnixPort, instructions, read_snapshot
 from ramtek_emu.commands.displays import running, show
 from ramtek_emu.host.server import TcpServer
 from ramtek_emu.monitor.window import Monitor
+from tests.ramtek_emu.displays import shown
 from tests.ramtek_emu.processes import PipedHost, address_of, ended, field_of, run, started, stream
 from tests.ramtek_emu.recorded_streams import OUTLINE, words
 from tests.ramtek_emu.serving import until
@@ -164,11 +167,56 @@ def test_lines_on_stdin_move_the_joystick_of_a_server() -> None:
         ended(process, signal.SIGTERM)
 
 
+def test_a_fifo_moves_the_joystick_of_a_display_on_a_pipe(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "stick")
+    with started("serve", "--stdio", "--joystick", tmp_path / "stick") as process:
+        host = PipedHost(process)
+        host.send(words("1600 0005 0406 1700"))
+        assert host.receive(2).tolist() == [5, 0x406]
+        for number in (1, 2):
+            # A writer closes the FIFO, which stays open for the next writer.
+            (tmp_path / "stick").write_text(f"cursor {number} 9 enter\n?\n")
+            assert process.stderr is not None
+            assert f"line {2 * number}:".encode() in process.stderr.readline()
+            host.send(words("1700"))
+            assert host.receive(2).tolist() == [number, 0x2409]
+        host.into.close()
+        assert process.wait(60) == 0
+
+
 def test_a_host_address_other_than_loopback_is_served_with_a_warning() -> None:
     with started("serve", "--port", 0, "--host", "0.0.0.0") as process:
         port = int(address_of(process).rpartition(":")[2])
         socket.create_connection(("127.0.0.1", port), 5).close()
         assert "whoever reaches tcp://0.0.0.0" in ended(process, signal.SIGINT)
+
+
+def test_the_window_shows_what_a_remote_host_draws_and_closes_while_it_is_sending(on_screen: str) -> None:
+    with TcpServer(Ramtek9300()) as server:
+        monitor = Monitor(server.display, on_tick=lambda: server.serve_for(0.01))
+        monitor.open()
+        host = socket.create_connection(("127.0.0.1", server.port))
+        for number, color in ((1, (9, 200, 30)), (2, (70, 8, 90))):
+            host.sendall(stream(load := instructions.load_entries(0, [color])))
+            until(lambda: monitor.step(2) and server.display.words_received >= number * len(load))  # noqa: B023
+            monitor.step()
+            assert (shown() == color).all()
+        images = stream(np.tile(instructions.write_image(np.full((480, 640), 5)), 50))
+        sending = threading.Thread(target=send_all, args=(host, images))
+        sending.start()
+        until(lambda: monitor.step(2) and server.display.words.any())
+        assert server.busy
+        pygame.event.post(pygame.event.Event(pygame.QUIT))
+        assert not monitor.step(5)
+        assert not monitor.is_open
+        assert server.display.words_received < len(images) // 2
+    sending.join(60)
+    assert not sending.is_alive()
+
+
+def send_all(host: socket.socket, data: bytes) -> None:
+    with host, suppress(OSError):
+        host.sendall(data)
 
 
 def test_a_host_that_polls_the_joystick_of_a_window_does_not_wait_for_its_ticks(

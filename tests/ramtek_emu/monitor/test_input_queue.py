@@ -84,11 +84,6 @@ def test_what_waits(added: list[Input], waiting: list[Input]) -> None:
     assert after(*added) == waiting
 
 
-def test_nothing_waits_in_a_new_queue() -> None:
-    with pytest.raises(IndexError):
-        InputQueue().take()
-
-
 def test_when_the_keyboard_goes_elsewhere_nothing_is_down() -> None:
     queue = InputQueue()
     for user_input in (LEFT, LEFT, Pointer(0, 0, False, "press", 3), Key("right"), Key("right")):

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
-import subprocess
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -22,7 +20,6 @@ from ramtek_emu.monitor.pattern import pattern
 from ramtek_emu.monitor.window import Key, Monitor, Pointer
 from tests.ramtek_emu.displays import shown
 from tests.ramtek_emu.film_reader import decoded, durations_of
-from tests.ramtek_emu.serving import until
 
 QUIT = (pygame.K_q, "\x11", pygame.KMOD_LCTRL)
 
@@ -396,22 +393,6 @@ def test_another_display_takes_the_place_of_the_first_in_the_open_window(monitor
     assert not pygame.display.get_init()
 
 
-def test_a_real_key_of_a_real_screen_arrives(monitor: Monitor) -> None:
-    if shutil.which("xdotool") is None:
-        pytest.skip("xdotool is not installed; no key can be pressed for real")
-    keys: list[Key] = []
-    monitor.on_key = keys.append
-
-    def has_arrived() -> bool:
-        # Until the window has the keyboard, keys are lost.
-        subprocess.run(["xdotool", "key", "b"], check=True)
-        settle(monitor)
-        return bool(keys)
-
-    until(has_arrived)
-    assert keys[0] == Key("b", "b")
-
-
 class UnopenedMonitor(Monitor):
     """A monitor without a window; `asked` lists the requests to its window."""
 
@@ -438,17 +419,9 @@ def unopened(tmp_path: Path) -> UnopenedMonitor:
 @pytest.mark.parametrize(
     ("key", "is_given"),
     [
-        (Key("a", "a"), True),
-        (Key("escape"), True),
-        (Key("f1"), True),
-        (Key("q", "q"), True),
-        (Key("return"), True),
-        (Key("left shift"), False),
-        (Key("right ctrl"), False),
-        (Key("left meta"), False),
-        (Key("f3", repeated=True), False),
-        (Key("f10", repeated=True), False),
-        (Key("f11", repeated=True), False),
+        *((key, True) for key in (Key("a", "a"), Key("escape"), Key("f1"), Key("q", "q"), Key("return"))),
+        *((Key(name), False) for name in ("left shift", "right ctrl", "left meta")),
+        *((Key(name, repeated=True), False) for name in ("f3", "f10", "f11")),
         (Key("return", alt=True, repeated=True), False),
         (Key("q", control=True, repeated=True), False),
     ],

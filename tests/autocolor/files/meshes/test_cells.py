@@ -101,14 +101,6 @@ def test_a_triangle_that_repeats_another_corner_is_the_same_face() -> None:
     assert len(cell_surface(CUBE, NO_FLATS, [volumes("tetra", two.tolist())]).flats.cells) == 0
 
 
-def test_without_volume_cells_polygons_and_nodes_stay_as_they_are() -> None:
-    flats = Flats.of(np.array([[0, 1, 2]]), np.array([0]))
-    surface = cell_surface(CUBE, flats, [])
-    assert surface.flats is flats
-    assert surface.nodes.tolist() == list(range(8))
-    assert surface.sentences == ()
-
-
 def test_polygons_of_several_lists_come_in_the_order_of_their_rows() -> None:
     joined = Flats.joined(
         [
@@ -120,15 +112,3 @@ def test_polygons_of_several_lists_come_in_the_order_of_their_rows() -> None:
     assert joined.corner_counts.tolist() == [4, 3, 3]
     assert joined.cells.tolist() == [0, 2, 4]
     assert len(Flats.joined([]).cells) == 0
-
-
-def test_thousands_of_cells_have_the_outer_faces_of_their_block() -> None:
-    sizes = (9, 8, 7)
-    x, y, z = np.meshgrid(*(np.arange(each) for each in sizes), indexing="ij")
-    row = np.arange(np.prod([each + 1 for each in sizes])).reshape([each + 1 for each in sizes])
-    corners = [row[x + a, y + b, z + c].ravel() for a, b, c in CUBE.astype(int)]
-    places = np.stack(np.meshgrid(*(np.arange(each + 1.0) for each in sizes), indexing="ij"), axis=-1)
-    table = np.stack(corners, axis=1)
-    surface = cell_surface(places.reshape(-1, 3), NO_FLATS, [volumes("hexahedron", table.tolist())])
-    assert len(surface.flats.cells) == 2 * (9 * 8 + 8 * 7 + 7 * 9)
-    assert volume_of(surface, places.reshape(-1, 3)) == pytest.approx(9 * 8 * 7)

@@ -11,17 +11,13 @@ from hypothesis import strategies as st
 from autocolor.errors import InputError
 from autocolor.files.formats import format_of_folder
 from autocolor.files.meshes.csv_tables import (
-    NOTHING,
     ROWS_AT_ONCE,
-    CellKind,
-    CsvRows,
     NumberCells,
     WholeCells,
     csv_tables_bytes,
     read_csv_tables,
     write_csv_tables,
 )
-from autocolor.files.meshes.number_text import Problems
 from autocolor.files.meshes.repair import MeshReport
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalar import MeshScalar
@@ -208,21 +204,17 @@ def test_cells_converted_at_once_are_those_converted_one_by_one(cells: list[str]
 
 def test_rows_of_many_blocks_keep_their_numbers_and_values(tmp_path: Path) -> None:
     count = 2 * ROWS_AT_ONCE + 5
-    path = tmp_path / "a.csv"
-    lines = [f"{row}.5,{row if row % 2 else ''}" for row in range(count)]
-    lines[ROWS_AT_ONCE + 3] = "\u00a07.5 ,8"
-    path.write_text("number, whole\n\n" + "\n".join(lines), "utf-8")
-    rows = CsvRows(path.name, path.read_bytes())
-    assert rows.header == ["number", "whole"]
-    problems = Problems("row")
-    kinds: list[CellKind] = [NumberCells("rule"), WholeCells("a whole", may_be_empty=True)]
-    (numbers, wholes), in_file = rows.converted(problems, kinds)
+    lines = [f"{row}.5,{row * row % 7},{row % 5},{row if row % 2 else ''}" for row in range(count)]
+    lines[ROWS_AT_ONCE + 3] = "\u00a07.5 ,0,0,8"
+    mesh = read(tmp_path, "x,y,z,odd\n\n" + "\n".join(lines)).mesh
     expected = [row + 0.5 for row in range(count)]
     expected[ROWS_AT_ONCE + 3] = 7.5
-    assert numbers.tolist() == expected
-    assert in_file.tolist() == list(range(3, count + 3))
-    assert wholes[:4].tolist() == [NOTHING, 1, NOTHING, 3]
-    problems.raise_any()
+    assert mesh.coordinates[:, 0].tolist() == expected
+    assert str(mesh.scalars[0].values[:4].tolist()) == "[nan, 1.0, nan, 3.0]"
+    lines[-1] = "1,x,1,"
+    assert refusal(tmp_path, "x,y,z,odd\n\n" + "\n".join(lines))[0].startswith(
+        f"nodes.csv, row {count + 2}: "
+    )
 
 
 SQUARE = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 1 / 3]])

@@ -238,15 +238,6 @@ def test_a_file_that_includes_one_outside_its_folder_does_not_reach_it(tmp_path:
 
 
 @needs_meshio
-@pytest.mark.usefixtures("shared")
-@pytest.mark.parametrize("data", [b"", b"nonsense", b"\0" * 100])
-@pytest.mark.parametrize("suffix", MESHIO)
-def test_what_is_no_mesh_is_refused(tmp_path: Path, suffix: str, data: bytes) -> None:
-    (tmp_path / f"a.{suffix}").write_bytes(data)
-    assert refusal(read_mesh, {"file": tmp_path / f"a.{suffix}"}).startswith(f"a.{suffix}: ")
-
-
-@needs_meshio
 @needs_trimesh
 @pytest.mark.usefixtures("shared")
 @pytest.mark.parametrize("start", first(1, range(0, 60, 10)))
@@ -260,7 +251,9 @@ def test_damaged_files_are_read_or_refused(tmp_path: Path, suffix: str, start: i
         try:
             read_mesh({"file": path})
         except InputError as error:
-            assert len(str(error)) < 4000  # noqa: PT017
+            told = str(error)
+            assert told.startswith(path.name)
+            assert len(told) < 4000
 
 
 @pytest.mark.parametrize(
@@ -391,12 +384,6 @@ def test_what_is_no_scene_is_refused(tmp_path: Path, name: str, data: bytes, sen
     assert refusal(read_mesh, {"file": write(tmp_path, name, data)}).startswith(sentence)
 
 
-def test_what_an_archive_holds_is_known_before_it_is_read(tmp_path: Path) -> None:
-    assert size_of_3mf(write(tmp_path, "a.3mf", archive(b"<model/>" * 1000))) == 8000
-    # An archive is never counted as smaller than it is on disk.
-    assert size_of_3mf(write(tmp_path, "a.3mf", archive(b""))) == len(archive(b""))
-
-
 @pytest.mark.parametrize("more", [-1, 0, 1])
 def test_archives_and_json_have_limited_sizes(
     tmp_path: Path, more: int, monkeypatch: pytest.MonkeyPatch
@@ -485,11 +472,6 @@ def test_a_mesh_comes_back_and_what_a_library_prints_goes_nowhere(
 )
 def test_a_library_may_fail_in_any_way(tmp_path: Path, body: str, sentence: str) -> None:
     assert refusal(read, tmp_path, body) == sentence
-
-
-def test_a_library_may_die(tmp_path: Path) -> None:
-    body = "import signal; signal.raise_signal(signal.SIGSEGV)"
-    assert refusal(read, tmp_path, body) == MUST.format("was ended by SIGSEGV")
 
 
 @pytest.mark.parametrize(

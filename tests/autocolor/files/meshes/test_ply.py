@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import struct
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -10,245 +11,332 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor.errors import InputError
-from autocolor.files.formats import format_of, read_mesh
-from autocolor.files.meshes import ply
-from autocolor.files.meshes.ply import (
-    Comments,
-    is_scalar,
-    named_in,
-    ply_bytes,
-    ply_polygons,
-    property_of,
-    read_ply,
-    triangles_of_strips,
-)
-from autocolor.files.meshes.ply_elements import Column, ElementRows, Lists
-from autocolor.files.meshes.repair import MeshReport, Placement, RawPolygons
+from autocolor.files.meshes import number_text, ply, ply_elements
+from autocolor.files.meshes.ply import ply_bytes, read_ply
+from autocolor.files.meshes.ply_elements import CUT_SHORT as CUT
+from autocolor.files.meshes.repair import MeshReport
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalar import MeshScalar
 from tests.autocolor.files.meshes.written import COORDINATES, assert_equal, writable_meshes
-from tests.autocolor.files.refusals import is_read_or_refused
-from tests.tables import refused
+from tests.autocolor.files.refusals import refusal, refused
+from tests.small import CUBE_NODES, CUBE_QUADS, cube
 
-NODES = [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
-QUADS = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-TYPES = {"char": "b", "uint8": "B", "short": "h", "uint16": "H", "int": "i", "uint": "I", "double": "d"}
+CODES = {
+    "char": "b", "uint8": "B", "short": "h", "uint16": "H", "int": "i", "uint32": "I", "int64": "q",
+    "uint64": "Q", "float": "f", "float64": "d", "int8": "b", "uchar": "B", "int16": "h", "ushort": "H",
+    "int32": "i", "uint": "I", "float32": "f", "double": "d",
+}  # fmt: skip
+WHOLES = [name for name, code in CODES.items() if code not in "fd"]
+FORMATS = {"": "ascii", "<": "binary_little_endian", ">": "binary_big_endian"}
 
+Columns = Mapping[str, Sequence[Any]]
+"""The values of properties by their declarations, as "list uchar int vertex_indices"."""
 
-def cube(order: str = "", number: str = "double", corner: str = "int", feed: str = "\n") -> bytes:
-    """A cube with the stress x + y at its nodes, and the quality of its quads before their corners."""
-    name = {"": "ascii", "<": "binary_little_endian", ">": "binary_big_endian"}[order]
-    lines = [
-        "ply", f"format {name} 1.0", "element vertex 8",
-        *(f"property {number} {axis}" for axis in "zyx"), "property short stress",
-        "element face 6", "property uchar quality",
-        f"property list uchar {corner} vertex_indices", "end_header",
-    ]  # fmt: skip
-    rows: list[tuple[str, tuple[int, ...]]] = [
-        (TYPES[number] * 3 + "h", (z, y, x, x + y)) for x, y, z in NODES
-    ]
-    rows += [("BB" + TYPES[corner] * 4, (at, 4, *quad)) for at, quad in enumerate(QUADS)]
-    header = "".join(line + feed for line in lines).encode()
-    if order:
-        return header + b"".join(struct.pack(order + code, *values) for code, values in rows)
-    return header + "".join(" ".join(map(str, values)) + feed for _, values in rows).encode()
+SQUARE = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]
+CORNERS = "list uchar int vertex_indices"
 
 
-CUBES = [cube(order) for order in ("", "<", ">")]
+def header(*lines: str, order: str = "<", feed: str = "\n") -> bytes:
+    lines = ("ply", f"format {FORMATS[order]} 1.0", *lines, "end_header")
+    return "".join(line + feed for line in lines).encode()
+
+
+def ply_file(
+    elements: Mapping[str, Columns], *comments: str, order: str = "<", feed: str = "\n", breaks: str = "\n"
+) -> bytes:
+    """A file of elements in text ("") or in binary; lines of text may be parted by several line breaks."""
+    lines = [f"comment {comment}" for comment in comments]
+    data = b""
+    for name, columns in elements.items():
+        rows = list(zip(*columns.values(), strict=True))
+        lines += [f"element {name} {len(rows)}", *(f"property {each}" for each in columns)]
+        for row in rows:
+            words = []
+            for declared, value in zip(columns, row, strict=True):
+                *_, count, kind, _ = ("", *declared.split())
+                if isinstance(value, (list, tuple)):
+                    words += [(count, len(value)), *((kind, each) for each in value)]
+                else:
+                    words.append((kind, value))
+            if order:
+                data += b"".join(struct.pack(order + CODES[kind], value) for kind, value in words)
+            else:
+                data += " ".join(str(value) for _, value in words).encode() + breaks.encode()
+    return header(*lines, order=order, feed=feed) + (data if order else data.replace(b"\n", feed.encode()))
+
+
+def xyz(nodes: Sequence[Sequence[float]] = SQUARE, kind: str = "double") -> Columns:
+    return {f"{kind} {axis}": [node[at] for node in nodes] for at, axis in enumerate("xyz")}
+
+
+def plate(
+    *comments: str,
+    corners: Sequence[Sequence[float]] = ((0, 1, 2, 3),),
+    vertex: Any = (),
+    face: Any = (),
+    **form: Any,
+) -> bytes:
+    """A square with polygons, and further columns of its nodes and of the polygons."""
+    elements = {"vertex": {**xyz(), **dict(vertex)}, "face": {CORNERS: corners, **dict(face)}}
+    return ply_file(elements, *comments, **form)
 
 
 @pytest.fixture
 def path(tmp_path: Path) -> Path:
-    return tmp_path / "cube.ply"
+    return tmp_path / "a.ply"
 
 
-def read(path: Path, data: bytes, up: str = "z") -> MeshReport:
+def read(path: Path, data: bytes) -> MeshReport:
     path.write_bytes(data)
-    return read_ply(path, Placement(up))
+    return read_ply(path)
 
 
-@pytest.mark.parametrize("order", ["", "<", ">"])
-@pytest.mark.parametrize("number", TYPES)
-def test_a_cube_is_read_in_any_types(path: Path, order: str, number: str) -> None:
-    for corner in (name for name in TYPES if name != "double"):
-        mesh = read(path, cube(order, number, corner)).mesh
-        assert [tuple(node) for node in mesh.coordinates.tolist()] == NODES, corner
-        assert [tuple(quad) for quad in mesh.node_numbers.tolist()] == QUADS
-        assert mesh.part_names == ("cube",)
-        assert [(scalar.name, scalar.of, scalar.values.tolist()) for scalar in mesh.scalars] == [
-            ("stress", "node", [x + y for x, y, _ in NODES]),
-            ("quality", "polygon", [0, 1, 2, 3, 4, 5]),
-        ]
+def scalars(mesh: Mesh) -> list[tuple[str, str, str]]:
+    return [(each.name, each.of, str(each.values.tolist())) for each in mesh.scalars]
 
 
-@pytest.mark.parametrize("order", ["", "<", ">"])
-@pytest.mark.parametrize("feed", ["\n", "\r\n", "\r"])
-def test_lines_end_in_any_way(path: Path, order: str, feed: str) -> None:
-    assert len(read(path, cube(order, feed=feed)).mesh.node_numbers) == 6
+@pytest.mark.parametrize("order", FORMATS)
+@pytest.mark.parametrize("kind", CODES)
+def test_a_cube_is_read_in_any_types(path: Path, order: str, kind: str) -> None:
+    at_nodes = {f"{kind} stress": [x + y for x, y, _ in CUBE_NODES]}
+    turned = dict(reversed({**xyz(CUBE_NODES, kind), **at_nodes}.items()))
+    faces = {
+        f"{kind} quality": range(6),
+        f"list {kind if kind in WHOLES else 'int'} {kind} vertex_index": CUBE_QUADS,
+    }
+    report = read(path, ply_file({"vertex": turned, "face": faces}, order=order))
+    mesh = report.mesh
+    assert [tuple(node) for node in mesh.coordinates.tolist()] == CUBE_NODES
+    assert [tuple(quad) for quad in mesh.node_numbers.tolist()] == CUBE_QUADS
+    assert (mesh.part_names, report.repairs) == (("a",), ())
+    assert scalars(mesh) == [
+        ("stress", "node", str([float(x + y) for x, y, _ in CUBE_NODES])),
+        ("quality", "polygon", "[0.0, 1.0, 2.0, 3.0, 4.0, 5.0]"),
+    ]
 
 
-def test_the_files_up_axis_becomes_z(path: Path) -> None:
-    assert read(path, CUBES[1], up="y").mesh.coordinates[1].tolist() == [0, -1, 0]
+Kinds = list[tuple[str, bool, str]]
 
 
-def test_a_file_of_another_name_is_known_by_how_it_begins(tmp_path: Path) -> None:
-    path = tmp_path / "cube.model"
-    path.write_bytes(CUBES[0])
-    found = format_of(path)
-    assert found is not None
-    assert found.name == "PLY"
-    assert len(read_mesh({"file": path}).mesh.node_numbers) == 6
-
-
-def test_what_is_skipped_and_repaired_stands_in_the_report(path: Path) -> None:
-    data = CUBES[0].replace(b"4 1 5 7 3", b"4 1 1 1 3")
-    assert read(path, data + b"1 2 3\n").repairs == (
-        "cube.ply: skipped lines after the last element: 1",
-        "cube.ply: 1 polygon with fewer than three different corners was dropped",
+@st.composite
+def columns(draw: st.DrawFn, count: int, prefix: str) -> Columns:
+    """Properties of any types, with a value or a list in each row."""
+    kinds = draw(
+        st.lists(st.tuples(st.sampled_from([*CODES]), st.booleans(), st.sampled_from(WHOLES)), max_size=3)
     )
+    found: dict[str, Sequence[Any]] = {}
+    for at, (kind, is_list, counts) in enumerate(kinds):
+        name = f"list {counts} {kind} {prefix}{at}" if is_list else f"{kind} {prefix}{at}"
+        value = st.lists(st.integers(0, 100), max_size=3) if is_list else st.integers(0, 100)
+        same = draw(st.booleans())
+        found[name] = [draw(value)] * count if same else [draw(value) for _ in range(count)]
+    return found
 
 
-@pytest.mark.parametrize("data", CUBES)
-def test_a_file_cut_short_anywhere_is_refused(path: Path, data: bytes) -> None:
-    text = data.startswith(b"ply\nformat ascii")
-    for length in range(0, len(data) - text, 7):
+@given(
+    before=columns(4, "a"),
+    after=columns(4, "b"),
+    other=columns(3, "o"),
+    faces=columns(4, "f"),
+    corners=st.lists(st.sampled_from([(0, 1, 2), (3, 1, 0), (3, 2, 1, 0)]), min_size=3, max_size=3),
+    order=st.sampled_from([*FORMATS]),
+    at_once=st.sampled_from([1, 2, 1 << 16]),
+    share=st.floats(0, 1, exclude_max=True),
+)
+def test_elements_with_any_properties_are_read_and_refused_if_they_are_cut(
+    before: Columns, after: Columns, other: Columns, faces: Columns, corners: list[tuple[int, ...]],
+    order: str, at_once: int, share: float, tmp_path_factory: pytest.TempPathFactory,
+) -> None:  # fmt: skip
+    path = tmp_path_factory.getbasetemp() / "any.ply"
+    table = {**faces, CORNERS: [(0, 1, 2, 3), *corners]}
+    elements = {"vertex": {**before, **xyz(), **after}, **({"other": other} if other else {}), "face": table}
+    data = ply_file(elements, order=order)
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(ply_elements, "ROWS_AT_ONCE", at_once)
+        patched.setattr(number_text, "BLOCK", at_once)
+        report = read(path, data + (b"end" if order else b"1\n"))
         # In text, the last number may lose a digit.
         with pytest.raises(InputError):
-            read(path, data[:length])
-
-
-@given(data=st.binary(max_size=60), order=st.sampled_from(["", "<", ">"]))
-def test_any_bytes_after_a_header_are_read_or_refused(
-    data: bytes, order: str, tmp_path_factory: pytest.TempPathFactory
-) -> None:
-    path = tmp_path_factory.getbasetemp() / "any.ply"
-    header = (
-        cube(order)
-        .partition(b"end_header\n")[0]
-        .replace(b"vertex 8", b"vertex 3")
-        .replace(b"face 6", b"face 1")
-    )
-    assert is_read_or_refused(path, header + b"end_header\n" + data)
-
-
-NONE = Comments({}, {})
-SQUARE = {"x": [0, 1, 1, 0], "y": [0, 0, 1, 1], "z": [0, 0, 0, 0]}
-
-
-def lists(*rows: list[float], dtype: str = "i4") -> Lists:
-    flat = np.array([number for row in rows for number in row], dtype)
-    return Lists(flat, np.array([len(row) for row in rows], np.intp))
-
-
-def rows(name: str, columns: dict[str, Any]) -> ElementRows:
-    found: dict[str, Column] = {
-        key: each if isinstance(each, Lists) else np.array(each) for key, each in columns.items()
-    }
-    first = next(iter(found.values()), np.empty(0))
-    count = len(first.counts) if isinstance(first, Lists) else len(first)
-    return ElementRows(count, found, lambda row: f"a.ply, {name} {row}")
-
-
-def polygons_of(
-    comments: Comments = NONE, vertex: dict[str, Any] = SQUARE, **elements: dict[str, Any]
-) -> tuple[RawPolygons, list[str]]:
-    tables = {name: rows(name, columns) for name, columns in {"vertex": vertex, **elements}.items()}
-    return ply_polygons(tables, comments, "a.ply", "a")
-
-
-def scalars(polygons: RawPolygons) -> list[tuple[str, str, list[float]]]:
-    def shown(scalar: MeshScalar) -> list[float]:
-        values: list[float] = np.where(np.isnan(scalar.values), -9, scalar.values).tolist()
-        return values
-
-    return [(each.name, each.of, shown(each)) for each in polygons.scalars]
-
-
-@pytest.mark.parametrize("name", ["vertex_indices", "vertex_index"])
-@pytest.mark.parametrize("dtype", ["u1", ">u4", "i8", "f8"])
-def test_faces_are_polygons(name: str, dtype: str) -> None:
-    edges: dict[str, Any] = {"edge": {"vertex1": [0, 1]}, "none": {}}
-    polygons, messages = polygons_of(face={name: lists([0, 1, 2, 3], [2, 1, 0], dtype=dtype)}, **edges)
-    assert polygons.coordinates.tolist() == [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
-    assert polygons.corners.tolist() == [0, 1, 2, 3, 2, 1, 0]
-    assert polygons.corner_counts.tolist() == [4, 3]
-    assert (polygons.part_names, polygons.part_numbers.tolist()) == (("a",), [0, 0])
-    assert messages == ["skipped elements 'edge': 2"]
-
-
-def test_strips_are_polygons_where_there_are_no_faces() -> None:
-    strips = {"vertex_indices": lists([0, 1, 3, 2, -1])}
-    polygons, messages = polygons_of(tristrips=strips)
-    assert polygons.corners.tolist() == [0, 1, 3, 3, 1, 2]
-    assert messages == []
-    polygons, messages = polygons_of(tristrips=strips, face={"vertex_indices": lists([0, 1, 2])})
-    assert polygons.corners.tolist() == [0, 1, 2]
-    assert messages == ["skipped elements 'tristrips': 1"]
-
-
-def test_other_numbers_are_scalars_and_those_too_large_are_missing() -> None:
-    vertex = {
-        **SQUARE,
-        "nx": [1, 1, 1, 1],
-        "red": [9, 9, 9, 9],
-        "stress": [1.5, np.inf, np.nan, 1e31],
-        "of": lists([], [], [], []),
-    }
-    face = {"vertex_indices": lists([0, 1, 2]), "quality": np.array([7], "u1"), "stress": [5]}
-    polygons, messages = polygons_of(vertex=vertex, face=face)
-    assert scalars(polygons) == [
-        ("stress", "node", [1.5, -9, -9, -9]),
-        ("quality", "polygon", [7]),
-        ("stress of polygons", "polygon", [5]),
+            read(path, data[: int(share * (len(data) - (0 if order else 5)))])
+    mesh = report.mesh
+    assert mesh.coordinates.tolist() == [list(node) for node in SQUARE]
+    assert mesh.node_numbers.tolist() == [[0, 1, 2, 3], *([*each, each[-1]][:4] for each in corners)]
+    assert [(each.name, each.values.tolist()) for each in mesh.scalars] == [
+        (declared.split()[-1], values)
+        for declared, values in {**before, **after, **faces}.items()
+        if not declared.startswith("list")
     ]
-    assert messages == ["scalar 'stress': 2 values above 1e30 in size were made missing"]
+    assert report.repairs == (
+        *(("any.ply: skipped elements 'other': 3",) if other else ()),
+        f"any.ply: skipped {'bytes' if order else 'lines'} after the last element: {3 if order else 1}",
+    )
 
 
-def test_comments_name_scalars() -> None:
-    face = {"vertex_indices": lists([0, 1, 2]), "value_0": [1.0], "red": [2.0]}
-    polygons, _ = polygons_of(Comments({}, {"value_0": "von Mises", "red": "red"}), face=face)
-    assert [name for name, _, _ in scalars(polygons)] == ["von Mises", "red"]
+@pytest.mark.parametrize("order", FORMATS)
+@pytest.mark.parametrize("feed", ["\n", "\r\n", "\r"])
+def test_lines_end_in_any_way(path: Path, order: str, feed: str) -> None:
+    # The numbers of a binary file may begin like the end of a line.
+    elements: dict[str, Columns] = {
+        "vertex": {"uchar heat": [10, 13, 10, 13], **xyz()},
+        "face": {CORNERS: [(0, 1, 2, 3)]},
+    }
+    report = read(path, ply_file(elements, order=order, feed=feed, breaks="\n \t\n"))
+    assert scalars(report.mesh) == [("heat", "node", "[10.0, 13.0, 10.0, 13.0]")]
+    assert report.mesh.coordinates.tolist() == [list(node) for node in SQUARE]
+    assert report.repairs == ()
 
 
-@pytest.mark.parametrize("name", ["part", "material_index", "group"])
-def test_a_number_of_faces_divides_them_into_parts(name: str) -> None:
-    face = {"vertex_indices": lists([0, 1, 2], [0, 2, 3], [1, 2, 3]), name: np.array([7, -1, 7], "i1")}
-    polygons, _ = polygons_of(face=face)
-    assert polygons.part_names == (f"{name} -1", f"{name} 7")
-    assert polygons.part_numbers.tolist() == [1, 0, 1]
-    assert polygons.scalars == ()
+LINE = "a line of the header must be a format, a comment, an element, one of its properties or end_header"
+FORMAT = "a format must be 'ascii', 'binary_little_endian' or 'binary_big_endian' and 1.0"
+ELEMENT = "an element must have a name and a count of at most 18 digits"
+PROPERTY = "a property must be a type and a name, or list, two types and a name"
+MOST = "a header must have at most {}, not more; leave out what is not needed"
+FACE = "element face 1"
+
+test_a_wrong_header_is_refused = refused(
+    "a.ply",
+    [
+        *(
+            (data, f"a.ply: {sentence}; export it again")
+            for data, sentence in (
+                *(
+                    (data, f"a PLY file must begin with a line 'ply', not {data.decode().strip()!r}")
+                    for data in (b"", b"solid a\n", b"plyx\n")
+                ),
+                (b"ply\nend_header\n", "a header must have a line 'format', not none"),
+                (header(FACE)[:-11], "a header must have a line 'end_header' before the file ends"),
+                (
+                    header("comment ".ljust(65_537, "x")),
+                    "a line of the header must have at most 65,536 bytes, not more",
+                ),
+                (header(FACE, order=""), "an element must have a property, not none: 'face'"),
+            )
+        ),
+        *(
+            (f"ply\nformat {words}\n".encode(), f"a.ply, line 2: {FORMAT}, not {words!r}; export it again")
+            for words in ("binary 1.0", "ascii 2.0")
+        ),
+        *(
+            (header(line), f"a.ply, line 3: {rule}, not {line.removeprefix('element ')!r}; export it again")
+            for rule, line in (
+                *((LINE, line) for line in ("elements vertex 8", "property float x")),
+                *((ELEMENT, f"element {words}") for words in ("a -1", "a", "a 1 2", f"a {10**18}")),
+            )
+        ),
+        *(
+            (header(FACE, f"property {words}"), f"a.ply, line 4: {rule}; export it again")
+            for words, rule in (
+                ("float", f"{PROPERTY}, not 'float'"),
+                ("list int x", f"{PROPERTY}, not 'list int x'"),
+                ("flaot x", "a type must be one of PLY, not 'flaot'; did you mean 'float'?"),
+                ("list float int x", "the count of a list must have a whole type, not 'float'"),
+            )
+        ),
+        *(
+            (header(FACE, *lines), f"a.ply, line {sentence}")
+            for *lines, sentence in (
+                (FACE, "4: the name of an element must be unique, not repeated: 'face'; rename one"),
+                (
+                    *("property float x", "property int x"),
+                    "5: the name of a property must be unique, not repeated: 'x'; rename one",
+                ),
+                (*(f"element e{at} 1" for at in range(100)), f"103: {MOST.format('100 elements')}"),
+                (*(f"property int p{at}" for at in range(1001)), f"1004: {MOST.format('1,000 properties')}"),
+            )
+        ),
+    ],
+)
+
+
+def test_a_header_may_be_as_long_as_it_may_be(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    # The rows of an element without properties take no bytes.
+    others = "".join(f"element e{number} {1 - number % 2}\n" for number in range(98))
+    others += "".join(f"property int p{number}\n" for number in range(996))
+    data = plate("x".ljust(65_535 - len("comment "), "x")).replace(
+        b"end_header", f"{others}end_header".encode()
+    )
+    report = read(path, data)
+    assert len(report.mesh.node_numbers) == 1
+    assert report.repairs == tuple(f"a.ply: skipped elements 'e{at}': 1" for at in range(96, -1, -2))
+    # Without its line feed, a header ends where the file ends.
+    assert "must have the properties x, y and z, not none" in refusal(read, path, header()[:-1])
+    # A header without an end is not searched to the end of the file.
+    monkeypatch.setattr(ply_elements, "LARGEST_HEADER", 100)
+    assert refusal(read, path, header(*["comment a"] * 100)) == (
+        "a.ply: a header must have a line 'end_header' within 100 bytes; export it again"
+    )
+
+
+FACES = [(0, 1, 2), (0, 2, 3), (0, 1, 2, 3)]
+PARTS = {name: {f"char {name}": [7, -1, 7]} for name in ("part", "material_index", "group")}
 
 
 @pytest.mark.parametrize(
-    ("names", "numbers", "part_names", "part_numbers"),
+    ("comments", "face", "names", "numbers"),
     [
-        ({0: "hood"}, {}, ("hood",), [0, 0]),
-        ({0: "hood", 2: "roof", 3: "roof"}, {"part": [2, 5]}, ("hood", "roof", "roof 2", "part 5"), [1, 3]),
-        ({}, {"group": [3, 4], "part": [4, 4]}, ("part 4",), [0, 0]),
-        ({3: "hood"}, {"group": [3, 3]}, ("group 3",), [0, 0]),
+        *(((), face, (f"{name} -1", f"{name} 7"), [1, 0, 1]) for name, face in PARTS.items()),
+        (("part 0 hood",), {}, ("hood",), [0, 0, 0]),
+        (("part 0 hood", "part 12 left door", "part x", "part 0 b"), {}, ("hood", "left door"), [0, 0, 0]),
+        (
+            ("part 0 hood", "part 2 roof", "part 3 roof"),
+            {"int part": [2, 5, 2]},
+            ("hood", "roof", "roof 2", "part 5"),
+            [1, 3, 1],
+        ),
+        ((), {"int group": [3, 4, 3], "double part": [4, 4, 4]}, ("part 4",), [0, 0, 0]),
+        (("part 3 hood",), {"int group": [3, 3, 3]}, ("group 3",), [0, 0, 0]),
+        (("scalar part thickness",), PARTS["part"], ("a",), [0, 0, 0]),
     ],
 )
-def test_the_first_number_of_faces_and_comments_make_the_parts(
-    names: dict[int, str], numbers: dict[str, Any], part_names: tuple[str, ...], part_numbers: list[int]
+def test_numbers_of_faces_and_comments_make_the_parts(
+    path: Path, comments: tuple[str, ...], face: Columns, names: tuple[str, ...], numbers: list[int]
 ) -> None:
-    face = {"vertex_indices": lists([0, 1, 2], [0, 2, 3]), **numbers}
-    polygons, _ = polygons_of(Comments(names, {}), face=face)
-    assert polygons.part_names == part_names
-    assert polygons.part_numbers.tolist() == part_numbers
-    assert len(polygons.scalars) == max(len(numbers) - 1, 0)
+    mesh = read(path, plate(*comments, corners=FACES, face=face)).mesh
+    assert (mesh.part_names, mesh.part_numbers.tolist()) == (names, numbers)
+    assert len(mesh.scalars) == max(len(face) - 1, 0) + (names == ("a",))
 
 
-def test_numbers_that_are_no_parts_are_scalars(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(ply, "MOST_UNNAMED_PARTS", 1)
-    corners = lists([0, 1, 2], [0, 2, 3])
-    for values in ([1, 2], [0.5, 0.5], [np.nan, 1], [1e300, 1e300]):
-        polygons, _ = polygons_of(face={"vertex_indices": corners, "part": values})
-        assert polygons.part_names == ("a",)
-        assert len(polygons.scalars) == 1
-    polygons, _ = polygons_of(
-        Comments({1: "one", 2: "two"}, {}), face={"vertex_indices": corners, "part": [1, 2]}
-    )
-    assert polygons.part_names == ("one", "two")
+def test_numbers_that_are_no_parts_are_scalars(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(ply, "MOST_UNNAMED_PARTS", 2)
+    for values in ([1, 2, 3], [0.5, 0.5, 1], [np.nan, 1, 1], [2.0**53] * 3):
+        mesh = read(path, plate(corners=FACES, face={"double part": values})).mesh
+        assert (mesh.part_names, len(mesh.scalars)) == (("a",), 1)
+    largest = plate(corners=FACES, face={"double part": [2.0**53 - 1] * 3})
+    assert read(path, largest).mesh.part_names == ("part 9007199254740991",)
+    named = plate("part 1 a", "part 2 b", "part 3 c", corners=FACES, face={"int part": [1, 2, 3]})
+    assert read(path, named).mesh.part_names == ("a", "b", "c")
+
+
+def test_other_numbers_are_scalars_which_comments_may_name(path: Path) -> None:
+    vertex = {
+        "float nx": [1] * 4,
+        "double stress": [1.5, np.inf, np.nan, 1e31],
+        "list uchar int of": [(), (1,), (), ()],
+    }
+    face = {"uchar quality": [7], "double stress": [5], "double value_0": [1], "double red": [2]}
+    comments = ("scalar value_0 von Mises", "scalar red red", "scalar a", "made by hand")
+    report = read(path, plate(*comments, vertex=vertex, face=face))
+    assert scalars(report.mesh) == [
+        ("stress", "node", "[1.5, nan, nan, nan]"),
+        ("quality", "polygon", "[7.0]"),
+        ("stress of polygons", "polygon", "[5.0]"),
+        ("von Mises", "polygon", "[1.0]"),
+        ("red", "polygon", "[2.0]"),
+    ]
+    assert report.repairs == ("a.ply: scalar 'stress': 2 values above 1e30 in size were made missing",)
+
+
+def test_normals_colors_and_texture_coordinates_are_scalars_only_if_a_comment_says_so(path: Path) -> None:
+    names = ["nx", "red", "diffuse_green", "alpha", "s", "texture_u", "texnumber", "specular_power"]
+    vertex = {f"float {name}": range(4) for name in names}
+    assert read(path, plate(vertex=vertex)).mesh.scalars == ()
+    comments = [f"scalar {name} of {name}" for name in names]
+    named = read(path, plate(*comments, vertex=vertex)).mesh.scalars
+    assert [each.name for each in named] == [f"of {name}" for name in names]
+    others = read(
+        path, plate(vertex={f"{name}_of_it": values for name, values in vertex.items()})
+    ).mesh.scalars
+    assert [each.name for each in others] == [f"{name}_of_it" for name in names]
 
 
 LACKS = "a.ply: an element {!r} must have {}, not {}; export it with {}"
@@ -256,65 +344,179 @@ AXES = "the properties x, y and z"
 LIST = "a list 'vertex_indices'"
 LARGE = "a coordinate must be a finite number of at most 1e30 in size"
 CORNER = "a corner must be a node number"
+NO_NODES = {"vertex": xyz([]), "face": {CORNERS: [(0, 1, 2)]}}
+FAR = [(0, 0, 0), (1, np.nan, 1), (1, 1, -np.inf), (0, np.nextafter(1e30, np.inf), 0)]
 
 test_what_is_refused = refused(
-    lambda elements: polygons_of(NONE, **elements),
+    "a.ply",
     [
-        ({"vertex": {"x": [1], "y": [2]}}, LACKS.format("vertex", AXES, "only x and y", "coordinates")),
-        ({"vertex": {}}, LACKS.format("vertex", AXES, "none", "coordinates")),
         (
-            {"vertex": {"x": lists([1]), "y": [2], "z": [3]}},
+            ply_file({"vertex": {"int x": [1], "int y": [2]}}),
+            LACKS.format("vertex", AXES, "only x and y", "coordinates"),
+        ),
+        (ply_file({"face": {CORNERS: [(0, 1, 2)]}}), LACKS.format("vertex", AXES, "none", "coordinates")),
+        (
+            ply_file({"vertex": {"list uchar int x": [(1,)], "int y": [2], "int z": [3]}}),
             LACKS.format("vertex", AXES, "only x, y and z", "coordinates"),
         ),
         (
-            {"vertex": {**SQUARE, "y": [0, np.nan, -np.inf, 1e31]}},
+            ply_file({"vertex": xyz(FAR)}),
             f"a.ply, vertex 1: {LARGE}, not nan; correct it\n"
             f"a.ply, vertex 2: {LARGE}, not -inf; correct it\n"
-            f"a.ply, vertex 3: {LARGE}, not 1e+31; correct it",
+            f"a.ply, vertex 3: {LARGE}, not 1e+30; correct it",
         ),
-        ({"face": {"quality": [1]}}, LACKS.format("face", LIST, "only quality", "polygons")),
-        ({"face": {"vertex_indices": [1]}}, LACKS.format("face", LIST, "only vertex_indices", "polygons")),
+        *(
+            (
+                ply_file({"vertex": xyz(), "face": {declared: [1]}}),
+                LACKS.format("face", LIST, f"only {declared.split()[1]}", "polygons"),
+            )
+            for declared in ("int quality", "int vertex_indices")
+        ),
         (
-            {"face": {"vertex_indices": lists([0, 1, 2], [0, 4, -1, 3], [2, 1, -3])}},
+            plate(corners=[(0, 1, 2), (0, 4, -1, 3), (2, 1, -3)]),
             f"a.ply, face 1: {CORNER} from 0 to 3, not 4; correct it\n"
             f"a.ply, face 2: {CORNER} from 0 to 3, not -3; correct it",
         ),
-        (
-            {"face": {"vertex_indices": lists([0, 1, 2**64 - 1], dtype="u8")}},
-            f"a.ply, face 0: {CORNER} from 0 to 3, not 1.84467440737096e+19; correct it",
+        *(
+            (
+                ply_file({"vertex": xyz(), "face": {f"list uchar {kind} vertex_indices": [corners]}}),
+                f"a.ply, face 0: {CORNER} from 0 to 3, not {told}; correct it",
+            )
+            for kind, corners, told in (
+                ("uint64", (0, 1, 2**64 - 1), "1.84467440737096e+19"),
+                ("float", (0, 1.5, np.nan), "1.5"),
+            )
         ),
         (
-            {"face": {"vertex_indices": lists([0, 1.5, np.nan], dtype="f4")}},
-            f"a.ply, face 0: {CORNER} from 0 to 3, not 1.5; correct it",
-        ),
-        (
-            {"vertex": {"x": [], "y": [], "z": []}, "face": {"vertex_indices": lists([0, 1, 2])}},
+            ply_file(NO_NODES),
             f"a.ply, face 0: {CORNER} of the file, which has no nodes, not 0; correct it",
         ),
         (
-            {"face": {"vertex_indices": lists([0] * 1000, [0] * 1001)}},
+            ply_file({"vertex": xyz(), "face": {"list short int vertex_index": [[0] * 1000, [0] * 1001]}}),
             "a.ply, face 1: a polygon must have at most 1,000 corners, not 1,001; split it",
         ),
         (
-            {"tristrips": {"vertex_indices": lists([0, 1, 2, -2])}},
+            ply_file({"vertex": xyz(), "tristrips": {CORNERS: [(0, 1, 2, -2)]}}),
             f"a.ply, tristrips 0: {CORNER} from -1 to 3, not -2; correct it",
+        ),
+        *(
+            (
+                plate(order="", breaks="\n\n", corners=[(0, 1, 9)], vertex={"double z2": [0, 0, value, 0]}),
+                f"a.ply, line {sentence}",
+            )
+            for value, sentence in (
+                (0, f"19: {CORNER} from 0 to 3, not 9; correct it"),
+                *(
+                    (word, f"15: a value must be a decimal number, nan or inf, not {word!r}; correct it")
+                    for word in ("0x1", "1_0", "1,5", "1-2", "--1")
+                ),
+            )
         ),
     ],
 )
 
 
-def triangles(lists: list[list[int]]) -> list[list[int]]:
-    numbers = np.array([number for each in lists for number in each], np.intp)
-    counts = np.array([len(each) for each in lists], np.intp)
-    corners, sides = triangles_of_strips(numbers, counts)
-    assert (sides == 3).all()
-    return corners.reshape(len(sides), 3).tolist()
+def sized(count: int | str, *properties: str, data: bytes, name: str = "vertex", order: str = "<") -> bytes:
+    """An element of a count of rows, whatever data follow."""
+    return header(f"element {name} {count}", *(f"property {each}" for each in properties), order=order) + data
 
 
-@given(lists=st.lists(st.lists(st.integers(-1, 5), max_size=12), max_size=4))
-def test_triangles_are_those_of_one_strip_after_the_other(lists: list[list[int]]) -> None:
-    expected = []
-    for each in lists:
+WIDTH = "a line of an element 'vertex' must have the values of x, of_it, and this has too {}; correct it"
+WIDE = ("float x", "list uchar int of_it")
+
+test_what_does_not_fit_its_counts_is_refused = refused(
+    "a.ply",
+    [
+        (
+            sized(10**17, *WIDE, data=bytes(20)),
+            "a.ply: 100,000,000,000,000,000 elements 'vertex' must have at least 500,000,000,000,000,000"
+            f" bytes, not 20; {CUT}",
+        ),
+        *(
+            (
+                sized(2, f"list {kind} uchar of_it", data=data),
+                f"a.ply: 2 elements 'vertex' must have all their lists before the end, not after it; {CUT}",
+            )
+            for kind, data in (
+                ("uchar", b"\1\0\xff\0"),
+                ("int", b"\1\0\0\0\0\xff\xff\xff\x7f"),
+                ("uint64", b"\0" * 8 + b"\xff" * 8),
+            )
+        ),
+        *(
+            (
+                sized(2, f"list {kind} uchar of_it", name="face", data=bytes(before) + count + bytes(20)),
+                f"a.ply, face {row}: the count of a list must be 0 or more, not less; export it again",
+            )
+            for kind, count in (("char", b"\xff"), ("int", b"\xfe\xff\xff\xff"))
+            for row, before in ((0, 0), (1, len(count)))
+        ),
+        (
+            sized(
+                3, "list char uchar a", "list char uchar of_it", name="face", data=b"\0\0\0\xff" + bytes(9)
+            ),
+            "a.ply, face 1: the count of a list must be 0 or more, not less; export it again",
+        ),
+        (
+            sized(5, "list uchar uchar of_it", name="face", data=b"\0\0\0\0\4\0\1\2\3"),
+            f"a.ply: 5 elements 'face' must have at least 10 bytes, not 9; {CUT}",
+        ),
+        (
+            sized(4, CORNERS, name="face", order="", data=b"0\n0\n0\n2 0 1"),
+            f"a.ply: 4 elements 'face' must have at least as many corners, not 2; {CUT}",
+        ),
+        *(
+            (
+                sized(count, *WIDE, order="", data=b"1 0\n"),
+                f"a.ply: there must be {count:,} elements 'vertex', not 1; {CUT}",
+            )
+            for count in (2, 999_999_999_999)
+        ),
+        *(
+            (sized(2, *WIDE, order="", data=data.encode()), f"a.ply, {sentence}")
+            for data, sentence in (
+                *(
+                    (
+                        f"1 {word} 5\n2 0\n",
+                        f"line 7: the count of a list must be a whole number from 0 on, not"
+                        f" {word!r}; correct it",
+                    )
+                    for word in ("-1", "0.5", "nan")
+                ),
+                ("1 0\n2 2 0\n", f"line 8: {WIDTH.format('few')}"),
+                ("1\n2 0 0 0 0\n", f"line 7: {WIDTH.format('few')}"),
+                ("1 0 5\n2 0\n", f"line 7: {WIDTH.format('many')}"),
+            )
+        ),
+    ],
+)
+
+
+def test_each_face_has_a_corner_on_the_average(path: Path) -> None:
+    for order in FORMATS:
+        mesh = read(path, plate(corners=[(), (), (), (0, 1, 2, 3)], order=order)).mesh
+        assert mesh.node_numbers.tolist() == [[0, 1, 2, 3]]
+
+
+def test_long_rows_are_walked_and_long_lines_refused(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(ply_elements, "LONGEST_ROW", 2)
+    assert read(path, plate(corners=FACES)).mesh.node_numbers[0].tolist() == [0, 1, 2, 2]
+    monkeypatch.setattr(ply_elements, "LONGEST_TEXT_LINE", 20)
+    assert refusal(read, path, sized(2, *WIDE, order="", data=b"1 0\n2 0" + b" " * 30 + b"\n")) == (
+        "a.ply: a line must have at most 20 bytes, not more; split it"
+    )
+
+
+@given(
+    strips=st.lists(st.lists(st.integers(-1, 5), max_size=12), max_size=4), order=st.sampled_from([*FORMATS])
+)
+def test_triangles_are_those_of_one_strip_after_the_other(
+    strips: list[list[int]], order: str, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    # No three of these nodes lie on a line.
+    nodes = [(at, at * at, at**3) for at in range(6)]
+    expected = [[nodes[0], nodes[1], nodes[2]]]
+    for each in strips:
         strip: list[int] = []
         for number in [*each, -1]:
             if number >= 0:
@@ -323,39 +525,28 @@ def test_triangles_are_those_of_one_strip_after_the_other(lists: list[list[int]]
             for at in range(len(strip) - 2):
                 a, b, c = strip[at : at + 3]
                 if len({a, b, c}) == 3:
-                    expected.append([b, a, c] if at % 2 else [a, b, c])
+                    expected.append([nodes[row] for row in ((b, a, c) if at % 2 else (a, b, c))])
             strip = []
-    assert triangles(lists) == expected
+    elements = {"vertex": xyz(nodes), "tristrips": {CORNERS: [(0, 1, 2), *strips]}}
+    path = tmp_path_factory.getbasetemp() / "strips.ply"
+    mesh = read(path, ply_file(elements, order=order)).mesh
+    found = mesh.coordinates[mesh.node_numbers[:, :3]]
+    assert [[tuple(node) for node in triangle] for triangle in found.tolist()] == expected
 
 
-def test_comments_name_parts_and_scalars() -> None:
-    comments = (
-        "part 0 hood",
-        "part 12 left door",
-        "scalar value_0 von Mises",
-        "part x",
-        "scalar a",
-        "part 0 b",
-    )
-    assert named_in(comments) == Comments({0: "hood", 12: "left door"}, {"value_0": "von Mises"})
+def test_strips_are_left_out_where_there_are_faces(path: Path) -> None:
+    elements = {"vertex": xyz(), "tristrips": {CORNERS: [(0, 1, 3)]}, "face": {CORNERS: [(0, 1, 2, 3)]}}
+    report = read(path, ply_file(elements))
+    assert report.mesh.node_numbers.tolist() == [[0, 1, 2, 3]]
+    assert report.repairs == ("a.ply: skipped elements 'tristrips': 1",)
 
 
-@pytest.mark.parametrize("name", ["x", "nx", "red", "diffuse_green", "alpha", "s", "texture_u", "texnumber"])
-def test_coordinates_normals_colors_and_texture_coordinates_are_no_scalars(name: str) -> None:
-    assert not is_scalar(name, NONE)
-    assert is_scalar(name, Comments({}, {name: "of it"}))
-    assert is_scalar(f"{name}_of_it", NONE)
-
-
-@pytest.mark.parametrize(
-    ("scalar", "name"),
-    [
-        ("stress", "stress"), ("von Mises", "value_3"), ("x", "value_3"), ("red", "value_3"),
-        ("part", "value_3"), ("value_0", "value_3"), ("größe", "value_3"), ("vertex_index", "value_3"),
-    ],
-)  # fmt: skip
-def test_a_scalar_is_written_under_its_name_where_that_is_free(scalar: str, name: str) -> None:
-    assert property_of(scalar, 3) == name
+def test_a_scalar_is_written_under_its_name_where_that_is_free() -> None:
+    names = ["stress", "von Mises", "x", "red", "part", "value_0", "größe", "vertex_index", "a.b-c_1"]
+    mesh = cube().with_scalars(*(MeshScalar(name, np.arange(8.0)) for name in names))
+    head = ply_bytes(mesh).partition(b"end_header")[0].decode()
+    written = [line.split()[-1] for line in head.splitlines() if line.startswith("property double")]
+    assert written[3:] == ["stress", *(f"value_{number}" for number in range(1, 8)), "a.b-c_1"]
 
 
 @given(mesh=writable_meshes(), at_once=st.sampled_from([1, 3, 1 << 16]))
@@ -368,10 +559,10 @@ def test_what_is_written_reads_back_equal(
     assert_equal(read(tmp_path_factory.getbasetemp() / "written.ply", data), mesh)
 
 
-def test_a_mesh_of_one_part_is_written_as_other_programs_do(tmp_path: Path) -> None:
+def test_a_mesh_of_one_part_is_written_as_other_programs_do() -> None:
     mesh = Mesh(COORDINATES[:3], np.array([[0, 1, 2]]), part_names=("hood\n",))
-    header, _, data = ply_bytes(mesh).partition(b"end_header\n")
-    assert header.decode().splitlines() == [
+    head, _, data = ply_bytes(mesh).partition(b"end_header\n")
+    assert head.decode().splitlines() == [
         "ply",
         "format binary_little_endian 1.0",
         "comment written by autocolor",

@@ -55,11 +55,6 @@ def test_a_table_file_without_scalars_is_still_read(tmp_path: Path) -> None:
     assert again.scalars == ()
 
 
-def test_the_up_axis_is_turned_as_in_other_formats(tmp_path: Path) -> None:
-    low, high = read(tmp_path, table_file_bytes(cube()), "y").bounds
-    assert (low.tolist(), high.tolist()) == ([0, -1, 0], [1, 0, 1])
-
-
 ARRAYS = {name: getattr(cube(), name) for name in TABLE_FILE.arrays}
 IS_NO_SCALAR = "mesh_scalars[1] must be a table of name and of"
 
@@ -87,9 +82,3 @@ def test_a_table_file_of_no_mesh_is_refused(
     assert sentence.startswith("mesh.tables: ")
     assert problem in sentence
     assert sentence.endswith("; write the scene again")
-
-
-def test_another_file_is_refused(tmp_path: Path) -> None:
-    assert refusal(read, tmp_path, b"v 0 0 0\n").startswith(
-        "mesh.tables: a table file must be whole and as autocolor wrote it"
-    )

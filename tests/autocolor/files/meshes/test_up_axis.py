@@ -104,9 +104,3 @@ def test_the_rest_of_a_box_is_the_root_of_its_faces() -> None:
     assert _rests(centered(bottle()))[2] == pytest.approx(
         (math.sqrt(0.36 / 0.6), 0.04 / math.sqrt(0.36 * 0.6))
     )
-
-
-def test_only_files_of_others_have_a_prior() -> None:
-    assert {each.name for each in MESH_FORMATS if each.prior_of_y is None} == {
-        "CSV", "npy", "tables", "glTF", "glTF text", "3MF",
-    }  # fmt: skip

@@ -18,17 +18,8 @@ NAMES = st.text(st.characters(exclude_categories=("C", "Z")), min_size=1, max_si
 )
 WITH_MEANING = st.sampled_from(
     [
-        "x",
-        "X",
-        "red",
-        "part",
-        "value_0",
-        "von Mises",
-        "vertex_indices",
-        "node5",
-        "scalar",
-        "scalar x",
-        "nodes",
+        *("x", "X", "red", "part", "value_0", "von Mises", "vertex_indices"),
+        *("node5", "scalar", "scalar x", "nodes"),
     ]
 )
 """Names that columns or properties of a mesh have, or nearly so."""
