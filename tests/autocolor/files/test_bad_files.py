@@ -11,8 +11,8 @@ import pytest
 
 from autocolor.errors import InputError
 from autocolor.files.formats import file_formats, suffixes_of
-from autocolor.files.scene_sources import SCENE_FORMATS, read_scene, read_scene_with_report
-from tests.mutations import BY_HAND, OBJ_TEXT, PLY_BITS, PLY_TEXT, STL_BITS, VTK_GRID, VTK_TEXT, Seed
+from autocolor.files.scene_sources import SCENE_FORMATS, read_scene_with_report
+from tests.mutations import BY_HAND, OBJ_TEXT, PLY_BITS, PLY_TEXT, STL_BITS, VTK_GRID, VTK_TEXT
 
 OURS = [each for each in file_formats() if not isinstance(each.read, partial)]
 """The mesh formats that no library reads in a process of its own; that has tests of its own."""
@@ -52,16 +52,6 @@ def test_an_endless_line_is_refused(tmp_path: Path, suffix: str) -> None:
     assert "car" in refusal(path)
 
 
-@pytest.mark.parametrize("seed", TEXTS, ids=lambda seed: seed.name)
-def test_lines_may_end_as_on_other_systems(tmp_path: Path, seed: Seed) -> None:
-    shapes = []
-    for folder, end in (("unix", b"\n"), ("windows", b"\r\n"), ("classic", b"\r")):
-        (tmp_path / folder).mkdir()
-        for name, data in seed.files.items():
-            (tmp_path / folder / name).write_bytes(data.replace(b"\n", end))
-        mesh = read_scene(tmp_path / folder / seed.read).mesh
-        shapes.append((mesh.coordinates.tolist(), mesh.node_numbers.tolist(), mesh.part_names))
-    assert shapes[0] == shapes[1] == shapes[2]
 
 
 NUMBERS = ["0x10", "1_0", "1,5", "\N{ARABIC-INDIC DIGIT THREE}", "nan", "inf", "1e31", "1e999"]
