@@ -91,12 +91,6 @@ def test_meshes_and_files_of_the_package_have_no_stamp(tmp_path: Path) -> None:
     assert Path(autocolor.__file__).parent == PACKAGE
 
 
-def test_two_openings_of_one_file_are_two_places(tmp_path: Path) -> None:
-    source = Source(str(tmp_path / "car.obj"))
-    assert place_of(source) != place_of(source)
-    assert len({place_of(source), place_of(source)}) == 2
-
-
 def test_a_path_that_cannot_be_read_has_no_stamp(tmp_path: Path) -> None:
     (tmp_path / "loop.toml").symlink_to(tmp_path / "loop.toml")
     for path in (str(tmp_path / "loop.toml"), "a\0.toml", "\ud800.toml", f"{'x' * 5000}.toml"):
