@@ -8,11 +8,13 @@ import shlex
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from autocolor.commands.autocolor import AutocolorGroup
 from tests.autocolor.commands.conftest import ROOT, SMALL, Refused, Run, is_same
+from tests.autocolor.commands.test_view import monitors as monitors
 from tests.tables import first
 
 SLOW = ("numpy", "pygame", "pydantic", "PIL")
@@ -78,6 +80,19 @@ def test_an_unknown_option_is_wrong_usage_and_says_how_to_get_help(
 def test_a_file_that_is_not_there_is_missing(refused: Refused, command: str) -> None:
     line = re.sub(r" scene\b(\.npz)?", " none.npz", LINES[command])
     assert refused(line, 66).endswith("none.npz: there is no such file or folder; check the name")
+
+
+@pytest.mark.parametrize(
+    "command", [each for each in LINES if each != "show" and re.search(r" scene\b(?!\.)", LINES[each])]
+)
+def test_a_repair_is_told_and_counts_under_strict(
+    folder: Path, run: Run, monitors: list[Any], command: str
+) -> None:
+    mesh = folder / "two.obj"
+    mesh.write_text(f"{mesh.read_text()}f 1 1 2\n")
+    ran = run(*shlex.split(re.sub(r" scene\b", " two.obj", LINES[command])), "--strict")
+    assert ran.code == 1
+    assert ran.err.startswith("autocolor: two.obj")
 
 
 @pytest.mark.parametrize("command", WRITING)

@@ -9,7 +9,7 @@ import pytest
 from autocolor import Scene, read_scene, render, write_picture
 from autocolor.images import display_image
 from autocolor.scene.scalar import MeshScalar
-from tests.autocolor.commands.conftest import SMALL, Refused, Run
+from tests.autocolor.commands.conftest import SMALL, Run
 from tests.small import LYING, wall_scene
 
 
@@ -45,14 +45,6 @@ def test_json_has_the_same_facts(folder: Path, run: Run) -> None:
     assert facts["surfaces"]["side"]["intensities"] == list(picture.ranges.surfaces["side"])
     assert facts["repairs"] == []
     assert facts["created"] == ["a view was created that frames the object"]
-
-
-def test_repairs_are_told_and_counted_under_strict(folder: Path, run: Run) -> None:
-    (folder / "two.obj").write_text((folder / "two.obj").read_text() + "f 1 1 2\n")
-    ran = run("info", "two.obj", "--json", "--strict")
-    assert ran.code == 1
-    assert [f"autocolor: {repair}" for repair in json.loads(ran.out)["repairs"]] == ran.err.splitlines()
-    assert run("info", "two.obj").code == 0
 
 
 def told(run: Run, scene: Scene, *options: str) -> str:
@@ -96,11 +88,6 @@ def test_the_scalars_of_the_mesh_are_told_with_their_ranges_and_what_is_missing(
         {"name": "none\nhere", "of": "node", "range": None, "missing": 4},
     ]
     assert "scalars:" not in run("info", "scene").out
-
-
-@pytest.mark.parametrize(("line", "code"), [("scene/none", 66), (". --json", 65)])
-def test_what_cannot_be_read_gives_no_facts(refused: Refused, line: str, code: int) -> None:
-    refused(f"info {line}", code)
 
 
 @pytest.mark.parametrize("command", ["info", "render"])

@@ -5,10 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from autocolor.commands.options import as_usage, with_normals
+from autocolor.commands.options import as_usage
 from autocolor.errors import InputError, MissingInputError, UsageError
 from tests.autocolor.commands.conftest import SMALL, Run
-from tests.small import car
 
 
 def test_every_problem_of_a_value_from_the_command_line_is_told_as_wrong_usage() -> None:
@@ -19,14 +18,6 @@ def test_every_problem_of_a_value_from_the_command_line_is_told_as_wrong_usage()
         raise ZeroDivisionError
     with pytest.raises(UsageError), as_usage():
         raise MissingInputError("none of your business")
-
-
-def test_words_stand_for_normals_where_that_is_asked_for() -> None:
-    scene = car()
-    assert with_normals(scene, normals=True).words == "normals"
-    assert with_normals(scene, normals=False) is scene
-    with pytest.raises(UsageError, match="--normals: words must be"):
-        with_normals(car().with_scalar(name="z"), normals=True)
 
 
 @pytest.mark.parametrize("arguments", [("-v", "render", "two.obj"), ("render", "two.obj", "--verbose")])

@@ -76,14 +76,11 @@ OF_A_SCENE = "--size and --smooth are for a scene, not for a picture file; leave
     ("line", "code", "sentence"),
     [
         ("--size 640x480", 2, OF_A_SCENE),
-        ("--smooth 1", 2, OF_A_SCENE),
         ("--vary surfaces.sde.blend=0,1", 2, "--vary surfaces.sde.blend: there is no surface 'sde'"),
         ("--table views.csv", 65, "views.csv: variant '3': "),
         ("-o side.png", 2, ""),
         ("--set view.angle=3", 2, ""),
-        ("--vary view.angle=1,2", 2, ""),
         ("--vary lights.key.on=true,false", 2, ""),
-        ("--table none.csv", 66, ""),
     ],
 )
 def test_what_cannot_be_a_page_is_refused(

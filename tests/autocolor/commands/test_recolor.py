@@ -7,6 +7,7 @@ import pytest
 from autocolor import Scene, read_palette, read_picture, render, write_palette, write_picture
 from tests.autocolor.commands.conftest import SMALL, Refused, Run, is_same
 from tests.small import wall_scene
+from tests.tables import first
 
 
 def settings(*texts: str) -> list[str]:
@@ -28,8 +29,6 @@ def test_nothing_changed_gives_the_rendered_picture_byte_for_byte(saved: Path, r
             ["object_color=#123456", "light_color=#ffe9c0", "blend=0.25", "light_percentage=50"],
         ),
         ("--ramp #200,#f60,#fff", ["ramp=#200,#f60,#fff"]),
-        ("--ramp #200,#f60", ['ramp=["#200", "#ff6600"]']),
-        ("--ramp #200,#f60", ["ramp=[#200, #f60]"]),
         ("--set mapping=gamma --object navy", ["object_color=navy", "blend=0.6"]),
     ],
 )
@@ -139,11 +138,9 @@ RENDERS = (
     ("line", "code", "sentence"),
     [
         ("scene.npz", 2, NO_SURFACE),
-        ("scene.npz --object navy", 2, NO_SURFACE),
         ("scene.npz --object navy --set mapping=gamma", 2, NO_SURFACE),
         ("scene.npz --palette one.csv --set mapping=gamma", 2, NO_SURFACE),
         ("scene.npz --set ambient=0.5", 2, RENDERS),
-        ("scene.npz --set view.angle=10", 2, RENDERS),
         ("scene.npz --set scalar.name=x", 2, RENDERS),
         (
             "scene.npz side --palette one.csv --blend 1",
@@ -162,13 +159,9 @@ RENDERS = (
         ),
         ("scene.npz side --palette no.gpl", 66, ""),
         ("scene.npz sid", 2, ""),
-        ("scene.npz side --object rde", 2, ""),
-        ("scene.npz side --blend nan", 2, ""),
         ("scene.npz side --blend much", 2, ""),
-        ("scene.npz side --ramp #200", 2, ""),
         ("scene.npz side --ramp #200,#f60 --blend 0", 2, ""),
         ("two.obj side", 65, ""),
-        ("scene side", 65, ""),
         ("scene.npz side -o new.gif", 2, ""),
     ],
 )
@@ -180,7 +173,7 @@ def test_what_is_refused_writes_nothing(
     assert refused(f"recolor {line}", code).startswith(sentence)
 
 
-@pytest.mark.parametrize("suffix", [".gpl", ".csv", ".act"])
+@pytest.mark.parametrize("suffix", first(1, [".gpl", ".csv", ".act"]))
 def test_the_entries_of_a_range_come_back_from_a_palette_file(saved: Path, run: Run, suffix: str) -> None:
     levels = settings("surfaces.side.levels=200")
     assert run("recolor", "scene.npz", *levels, "-o", "before.png", "--save", "few.npz").code == 0

@@ -106,8 +106,6 @@ def test_failed_variants_are_listed(
             "--made must be a file of its own, not ./t.csv, which is read; name another",
         ),
         ("--vary ambient=1 --made scene --force", 2, "--made must be a file of its own, not scene, which is"),
-        ("--vary ambient", 2, ""),
-        ("--table no.csv", 66, ""),
         (f"--vary {COLOR}=@no.gpl", 66, ""),
         ("--vary ambient=1,2 --set ambiet=1", 2, ""),
         ("--vary ambient=1,2 --sheet a.jpg", 2, ""),

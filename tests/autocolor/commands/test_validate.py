@@ -138,10 +138,6 @@ def test_json_has_at_most_10_000_rows_of_a_kind(count: int, told: int) -> None:
     assert values["polygons"] == values["rows"]
 
 
-def test_there_is_a_color_for_each_kind() -> None:
-    assert len(COLORS) == len(set(COLORS)) == len(KINDS)
-
-
 def test_the_faults_color_the_scene_whatever_surfaces_it_has() -> None:
     mesh = cube()
     turned = mesh.node_numbers.copy()

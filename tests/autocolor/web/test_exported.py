@@ -54,6 +54,7 @@ from tests.small import car, cube, wall_scene
 from tests.tables import first
 
 SIZE = (24, 32)
+COUPE = (240, 320)
 
 
 def values_through_json(scene: Scene, **options: Any) -> Any:
@@ -150,14 +151,6 @@ def test_the_legend_of_an_export_is_that_of_the_image(smooth: int) -> None:
     assert values["notes"] == ["The scalar “stress” colors cast and machined."]
 
 
-def test_words_for_normals_are_exported_but_fixed() -> None:
-    scene = car().replace(words="normals")
-    values = values_through_json(scene)
-    assert {each["fixed"] for each in values["surfaces"]} == {
-        "Words stand for normals here, so the colors cannot be edited."
-    }
-
-
 # Lights.
 
 
@@ -223,13 +216,13 @@ def test_the_plane_of_a_light_is_within_half_a_unit_of_its_contribution() -> Non
 @pytest.mark.parametrize("dither", first(1, ["ordered", "off"]))
 def test_few_pixels_of_the_coupe_are_a_level_off_and_none_two(dither: Any) -> None:
     scene = demo().replace(dither=dither)
-    picture = render(scene)
+    picture = render(scene, *COUPE)
     values, words = export_of(scene, picture, lights=True), display_image(scene, picture).words
     exposure = held_exposure_of(scene, picture)
     for each in ((0.9, 0.7, 0.6, 0.6), (0.3, 1.1, 0.0, 1.7)):
         strengths = {light.name: strength for light, strength in zip(scene.lights, each, strict=True)}
         other = relit(scene, exposure, strengths)
-        expected = display_image(other, render(other)).words.astype(int)
+        expected = display_image(other, render(other, *COUPE)).words.astype(int)
         off = np.abs(relit_words(values, strengths) - expected)
         assert off.max() <= 1
         for surface in values["surfaces"]:
