@@ -25,14 +25,6 @@ def test_lists_run_together_and_a_loop_comes_back(folder: Path, run: Run) -> Non
         assert np.array_equal(shown, image(frame, render(frame, 24, 32)))
 
 
-def test_a_table_with_times_and_a_turn_make_numbered_pictures(folder: Path, run: Run) -> None:
-    Path("looks.csv").write_text(f"time,{PAINT}\n0,red\n3,blue\n4,red\n")
-    made = ("--table", "looks.csv", "--turn", "360", "--frames", "4", "-o", "{number}.png")
-    assert run("animate", "scene", *made, *SMALL) == (0, "", "wrote {number}.png, 4 frames\n")
-    shown = [decoded(f"{number}.png")[0].tobytes() for number in range(1, 5)]
-    assert len(set(shown)) == 4
-
-
 def test_a_picture_file_cycles_its_colors_without_its_mesh(saved: Path, run: Run, refused: Refused) -> None:
     for name in ("scene.toml", "two.obj"):
         (saved.parent / "scene" / name).unlink()

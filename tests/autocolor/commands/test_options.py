@@ -42,16 +42,6 @@ def test_given_twice_more_is_told_and_nothing_twice(folder: Path, run: Run, line
     assert ran.err.count("autocolor: read two.obj") == 1
 
 
-def test_what_is_recolored_is_told(saved: Path, run: Run) -> None:
-    *told, last = run("recolor", "scene.npz", "side", "-v", "-o", "side.png").err.splitlines()
-    assert [line.partition("(")[0].split(":")[1] for line in told] == [
-        " read scene.npz",
-        " Picture",
-        " image written",
-    ]
-    assert last == "wrote side.png"
-
-
 def test_without_it_nothing_is_told_not_even_after_it_was_given(folder: Path, run: Run) -> None:
     assert run("render", "two.obj", "-v", *SMALL, "-o", "a.png").code == 0
     assert run("render", "two.obj", *SMALL, "-o", "b.png").err == "wrote b.png\n"

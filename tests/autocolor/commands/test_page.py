@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from autocolor import read_picture, render, save_page, write_picture
+from autocolor import read_picture, save_page
 from tests.autocolor.commands.conftest import SMALL, Refused, Run, is_same
 
 
@@ -88,9 +88,3 @@ def test_what_cannot_be_a_page_is_refused(
 ) -> None:
     Path("views.csv").write_text("view.angle\n3\n")
     assert refused(f"page scene.npz {line}", code).startswith(sentence)
-
-
-def test_lights_of_a_picture_that_its_scene_does_not_give_are_refused(saved: Path, refused: Refused) -> None:
-    _, scene = read_picture(saved)
-    write_picture("other.npz", scene.with_light("key", intensity=0.5), render(scene, 24, 32))
-    refused("page other.npz --lights", 65)

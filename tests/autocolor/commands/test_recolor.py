@@ -86,30 +86,6 @@ def test_every_command_with_settings_tells_once_what_a_ramp_unsets(saved: Path, 
     assert (ran.code, ran.err.count(RAMP)) == (0, 1)
 
 
-def test_variants_that_replace_a_ramp_are_told_once(saved: Path, run: Run) -> None:
-    """A variant that is wrong says nothing about its paints."""
-    varied = ("--set", "surfaces.side.ramp=red,blue", "--vary", "surfaces.side.object_color=no,red,navy")
-    for source, more in (("scene", SMALL), ("scene.npz", ())):
-        ran = run("sweep", source, *varied, "-o", f"{source}-{{name}}.png", *more)
-        assert ran.err.startswith(RAMP + COLORS)
-        assert ran.err.count("replace") == 2
-    nothing = ("--vary", "surfaces.side.object_color=red", "--vary", "ambient=0,1")
-    assert run("sweep", "scene", *nothing, "-o", "d-{name}.png", *SMALL).err == "made 2 pictures\n"
-
-
-def test_new_colors_are_kept_where_that_is_asked(saved: Path, run: Run) -> None:
-    ran = run("recolor", "scene.npz", "side", "--object", "#00ff80", "--save", "new.npz")
-    assert ran == (0, "", "wrote new.npz\n")
-    assert read_picture("new.npz").scene.surface("side").paint.object_color == (0, 255, 128)
-    assert run("recolor", "new.npz", "side", "-o", "one.png").code == 0
-    assert run("recolor", "scene.npz", "side", "--object", "#00ff80", "-o", "two.png").code == 0
-    assert is_same("one.png", "two.png")
-    over = ("recolor", "scene.npz", "side", "--blend", "1", "--save", "scene.npz")
-    assert run(*over).code == 73
-    assert run(*over, "--force").code == 0
-    assert read_picture(saved).scene.surface("side").paint.blend == 1
-
-
 def named(name: str) -> Scene:
     """A wall whose surface has a name."""
     scene = wall_scene(lights=[])

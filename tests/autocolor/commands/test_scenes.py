@@ -33,12 +33,6 @@ def test_each_repair_is_a_line_on_stderr(folder: Path, capsys: pytest.CaptureFix
     assert len(report.repairs) == 2
 
 
-def test_the_up_axis_and_the_scale_are_those_of_the_mesh_file(folder: Path) -> None:
-    place = read(SceneSource("two.obj")).scene.mesh.coordinates[2]
-    assert read(SceneSource("two.obj", "y")).scene.mesh.coordinates[2].tolist() == [1, -1, 0]
-    assert read(SceneSource("two.obj", scale=25.4)).scene.mesh.coordinates[2].tolist() == [*(place * 25.4)]
-
-
 @pytest.mark.parametrize(
     ("repairs", "strict", "code"),
     [((), False, 0), ((), True, 0), (("a repair",), False, 0), (("a repair",), True, 1)],

@@ -171,13 +171,6 @@ def sessions(folder: Path, state: Path) -> Path:
     return state / "sessions"
 
 
-def test_the_newest_that_can_be_read_is_chosen(sessions: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    folder, session = chosen_session(NEWEST)
-    assert folder == sessions / "2026-01-02-b"
-    assert session.history.scene.ambient == 1.3
-    assert capsys.readouterr().err.startswith(f"autocolor: {sessions / '2026-01-02-c'}: session.jsonl: ")
-
-
 def test_a_session_is_named_by_the_beginning_of_its_name(sessions: Path) -> None:
     assert chosen_session("2026-01-01")[1].history.scene.ambient == 0.3
     for name, count in (("2026-01", 3), ("2026-01-02", 2), ("x", 0), ("", 0)):

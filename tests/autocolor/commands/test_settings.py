@@ -10,7 +10,7 @@ import pytest
 from autocolor import Flap, Flaps, HalfSpace, Scene, Surface, read_scene
 from autocolor.commands.settings import keys_after, with_settings
 from autocolor.errors import UsageError
-from autocolor.files.settings import field_of, place_of, value_at, value_of
+from autocolor.files.settings import place_of, value_at, value_of
 from autocolor.scene.changes import HalfSpaceChanges
 from tests.small import scene_folder
 from tests.tables import refused
@@ -23,22 +23,6 @@ def scene() -> Scene:
         scene = read_scene(scene_folder(Path(folder) / "scene"))
     plane: HalfSpaceChanges = {"point": (0, 0, 0), "direction": (0, 0, 1)}
     return scene.with_light("key", half_spaces={"left": plane, "a.b": plane})
-
-
-@pytest.mark.parametrize(
-    ("text", "value"),
-    [
-        ("2", 2),
-        ("2.5", 2.5),
-        ("[1, 2]", [1, 2]),
-        ("true", True),
-        ('"#b01020"', "#b01020"),
-        ("{minimum = 0.5}", {"minimum": 0.5}),
-        ("[[0, 0], [1, 2], [2, 3], [3, 3], [4, 5]]", [[0, 0], [1, 2], [2, 3], [3, 3], [4, 5]]),
-    ],
-)
-def test_a_value_is_written_as_in_a_scene_file(text: str, value: object) -> None:
-    assert value_of(text) == value
 
 
 NO_TOML = ["#b01020", "gamma", "", "1\nother = 2", "{a=", "[", "9", "a.", "\udcff"]
@@ -212,16 +196,3 @@ def test_the_keys_after_a_start_are_those_of_its_table(start: str, some: str) ->
     assert {f"{start}{each}" for each in some.split()} <= set(found)
     assert all(each.startswith(start) for each in found)
     assert not {"lights.key.name=", "lights.key.half_spaces.a.b.name="} & set(found)
-
-
-def test_every_key_that_is_offered_can_be_set() -> None:
-    starts = [""]
-    keys: list[str] = []
-    while starts:
-        for each in keys_after(scene(), starts.pop()):
-            (keys if each.endswith("=") else starts).append(each)
-    assert len(keys) > 60
-    for each in keys:
-        assert field_of(place_of(scene(), each[:-1])) is not None
-    assert "scalar.name=mean curvature" in keys_after(scene(), "scalar.name=")
-    assert keys_after(scene(), "lights.key.nothing=") == []

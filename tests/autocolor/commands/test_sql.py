@@ -82,16 +82,6 @@ def test_a_change_is_saved_to_the_scene_file_and_its_comments_stay(folder: Path)
     assert (folder / "scene.toml").read_text().startswith("# mine\n")
 
 
-def test_a_change_that_would_be_wrong_is_refused_as_a_whole(tmp_path: Path, folder: Path) -> None:
-    path = small_store(tmp_path)
-    before, text = tables_of(path), (folder / "scene.toml").read_bytes()
-    for place in (path, folder):
-        first, *problems = refusal(place, "UPDATE polygons SET node1 = 9", "--write").problems
-        assert (first, len(problems)) == ("nothing was changed", 2)
-    assert tables_of(path) == before
-    assert (folder / "scene.toml").read_bytes() == text
-
-
 DELETE = "DELETE FROM lights"
 NOT_TO = "--write must save to a store or to a scene's folder, not to"
 MAKE = "make a scene of it with `autocolor tables --write`, or a store with `autocolor convert`"

@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 import pytest
@@ -26,13 +25,6 @@ def test_the_panel_stands_over_the_first_screen() -> None:
     # The first message of the viewer was at the bottom.
     assert not changed[: panel.top].any()
     assert not changed[panel.bottom + 1 : 464].any()
-
-
-@pytest.mark.skipif(os.name == "nt", reason="Windows always has a screen")
-def test_without_a_screen_render_is_named(refused: Refused, monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER"):
-        monkeypatch.delenv(name, raising=False)
-    assert "; `autocolor render` writes the demo to coupe.png" in refused("tutorial", 69)
 
 
 def test_it_is_taught_on_a_display_elsewhere(

@@ -184,11 +184,6 @@ def test_the_mouse_and_released_keys_reach_the_viewer(folder: Path, run: Run, mo
     assert len(set(fields)) == 3
 
 
-def test_a_bare_command_shows_the_demo(folder: Path, run: Run, monitors: list[Any]) -> None:
-    assert run() == (0, "", "")
-    assert monitors[1].caption.startswith("autocolor - coupe - ")
-
-
 def test_the_demo_is_saved_to_new_files_and_a_scene_that_was_named_to_its_own(
     folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -212,12 +207,6 @@ def test_without_a_screen_render_is_named(
         "; `autocolor render` writes the demo to coupe.png, and `autocolor render SCENE -o PNG` renders any"
         " scene"
     )
-
-
-@pytest.mark.skipif(os.name != "posix", reason="needs an X display that can be missing")
-def test_a_screen_that_does_not_answer_is_no_screen(process: Run, folder: Path) -> None:
-    ran = process("view", "scene", environment={"DISPLAY": ":4711", "XDG_RUNTIME_DIR": str(folder)})
-    assert (ran.code, ran.out, ran.err.count("\n")) == (69, "", 1)
 
 
 # The window in which the user waits.
