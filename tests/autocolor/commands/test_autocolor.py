@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import re
 import shlex
-import subprocess
 import sys
 from pathlib import Path
 from typing import Any
@@ -13,7 +12,7 @@ from typing import Any
 import pytest
 
 from autocolor.commands.autocolor import AutocolorGroup
-from tests.autocolor.commands.conftest import ROOT, SMALL, Refused, Run, is_same
+from tests.autocolor.commands.conftest import SMALL, Refused, Run, is_same
 from tests.autocolor.commands.test_view import monitors as monitors
 from tests.tables import first
 
@@ -272,21 +271,13 @@ def test_without_a_utf_8_locale_and_a_home_foreign_names_work(process: Run, fold
     assert (folder / os.fsdecode(b"\xff\xfe.png")).is_file()
 
 
-def test_the_command_multiplies_in_one_thread_unless_it_is_asked_for_more() -> None:
+def test_the_command_multiplies_in_one_thread_unless_it_is_asked_for_more(process: Run) -> None:
     program = (
         "import os, sys; sys.argv[1:] = ['--version']\n"
         "from autocolor.__main__ import main\n"
         "try: main()\n"
         "except SystemExit: print(os.environ['OPENBLAS_NUM_THREADS'], 'numpy' in sys.modules)"
     )
-    for asked in ("", "3"):
-        environment = {key: value for key, value in os.environ.items() if key != "OPENBLAS_NUM_THREADS"}
-        environment |= {"OPENBLAS_NUM_THREADS": asked} if asked else {}
-        ran = subprocess.run(
-            [sys.executable, "-c", program],
-            env={**environment, "PYTHONPATH": str(ROOT)},
-            capture_output=True,
-            text=True,
-            check=True,
-        )
-        assert ran.stdout.splitlines()[-1] == f"{asked or '1'} False"
+    for count, environment in (("1", {}), ("3", {"OPENBLAS_NUM_THREADS": "3"})):
+        ran = process(command=[sys.executable, "-c", program], environment=environment)
+        assert ran.out.splitlines()[-1] == f"{count} False"

@@ -217,24 +217,17 @@ def test_it_is_left_by_the_menu_once_changes_were_told_and_the_picture_stays(
     assert left_sessions() == []
 
 
-@pytest.mark.parametrize("was_left", [False, True])
-def test_the_first_message_names_the_buttons_also_beside_a_session_that_was_left(
-    server: Served, tmp_path: Path, state: Path, was_left: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_first_message_names_the_buttons(server: Served, tmp_path: Path, state: Path) -> None:
     seen: list[Viewer] = []
     first: list[MessagePart] = []
 
     def note(_: Ramtek9300) -> None:
         first.extend(seen[-1].board.messages)
 
-    if was_left:
-        monkeypatch.setattr("autocolor.commands.sessions.left_sessions", lambda: [tmp_path])
-        monkeypatch.setattr("autocolor.commands.sessions.written_at", lambda _: 0.0)
     prepare = acting(server, seen, note, menu, on(seen, "leave"))
     session_elsewhere(History(car()), server.address, tmp_path, None, prepare)
     (part,) = first
     assert part.text.endswith(BUTTONS)
-    assert ("a session was not closed" in part.text) == was_left
     # The message is shown whole.
     assert lines_of_message(part, 89)[-1].text.endswith("TRACK (right button) drags")
 

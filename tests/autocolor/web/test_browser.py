@@ -300,9 +300,11 @@ def test_the_keyboard_alone_recolors(opened: Open, coupe: autocolor.Scene, small
     page.keyboard.press("ArrowRight")
     assert page.get_by_role("radio", name="glass").is_checked()
     focus_on("#rrggbb")
-    page.keyboard.press("Control+a")
-    page.keyboard.type("navy")
-    page.keyboard.press("Enter")
+    for color in ("sparkly", "rgb(0 0 0 / 50%)", "navy"):
+        page.keyboard.press("Control+a")
+        page.keyboard.type(color)
+        page.keyboard.press("Enter")
+        assert (f"not “{color}”" in page.get_by_role("status").inner_text()) == (color != "navy")
     focus_on("Blend of glass")
     # A key that is held is one step.
     for _ in range(3):

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import base64
+import copy
 import dataclasses
 import itertools
+import pickle
 import re
 import sys
 from collections.abc import Callable, Iterator
@@ -361,6 +363,12 @@ def test_a_saved_notebook_has_the_picture() -> None:
     data, _ = widget._repr_mimebundle_()
     assert base64.b64decode(data["image/png"]) == studio._repr_png_()
     assert data["application/vnd.jupyter.widget-view+json"]["model_id"] == widget.model_id
+
+
+def test_a_studio_is_not_copied() -> None:
+    for copied in (pickle.dumps, copy.copy, copy.deepcopy):
+        with pytest.raises(TypeError, match="a studio cannot be pickled or copied"):
+            copied(opened()[0])
 
 
 def test_a_widget_without_anywidget_is_refused_with_its_command(monkeypatch: pytest.MonkeyPatch) -> None:
