@@ -49,12 +49,6 @@ def test_with_a_held_exposure_less_light_is_darker(saved: Path, run: Run, source
     assert dark.mean() < 0.9 * same.mean() if source == "scene" else np.array_equal(dark, same)
 
 
-def test_words_can_stand_for_normals_in_a_stream(folder: Path, run: Run, refused: Refused) -> None:
-    line = "animate scene --vary lights.key.intensity=1,0.2 --frames 3 -o cycle.ramtek"
-    assert "--normals" in refused(line, 65)
-    assert run(*line.split(), "--normals").code == 0
-
-
 def test_the_loss_of_a_gif_is_printed(folder: Path, run: Run) -> None:
     turn = ("--turn", "20", "--frames", "2", "--size", "320x240", "-o", "a.gif", "--once")
     ran = run("animate", "scene", *turn)

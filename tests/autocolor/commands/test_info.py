@@ -61,12 +61,6 @@ def test_a_surface_that_is_not_seen_or_has_no_part_says_so(folder: Path, run: Ru
     assert {"lights: none", "  wall: words 1 to 1007, not seen", "  more: no words, not seen"} <= {*lines}
 
 
-def test_names_that_are_no_text_are_shown_with_backslashes(folder: Path, run: Run) -> None:
-    scene = wall_scene(lights=[], name="\udcff")
-    assert json.loads(told(run, scene, "--json"))["name"] == "\udcff"
-    assert told(run, scene).startswith("\\udcff: nodes")
-
-
 def test_the_scalars_of_the_mesh_are_told_with_their_ranges_and_what_is_missing(
     folder: Path, run: Run
 ) -> None:

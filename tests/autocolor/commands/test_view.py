@@ -49,11 +49,19 @@ def test_a_scene_is_shown_until_the_window_is_closed(folder: Path, run: Run, mon
 
 
 def test_what_is_set_and_options_of_the_window_reach_it(folder: Path, run: Run, monitors: list[Any]) -> None:
+    def script(monitor: Any) -> None:
+        assert monitor.display.entries[0].tolist() == [16, 32, 48]
+        monitor.on_drop(folder / "two.obj")
+
+    monitors[0].script = staticmethod(script)
     settings = ("--set", "background=#102030", "--set", "parts.side.stage=true")
     assert run("view", "two.obj", "--up", "y", "--full-screen", "--fit", *settings).code == 0
     assert (monitors[1].full_screen, monitors[1].fit) == (True, True)
-    assert monitors[1].display.entries[0].tolist() == [16, 32, 48]
+    # The mesh that was dropped stands as the first one.
+    scene = monitors[1].on_drop.__self__.studio.scene
+    assert scene.mesh.coordinates[2].tolist() == [1, -1, 0]
     # What is viewed is among the recent files, the last first.
+    monitors[0].script = staticmethod(lambda monitor: None)
     assert run("view", "scene").code == 0
     assert recent_files()[:2] == (folder / "scene", folder / "two.obj")
 
@@ -267,7 +275,7 @@ def test_while_a_scene_is_read_and_rendered_the_window_says_so(
 ) -> None:
     waited = Waited(monkeypatch)
     waited.on_step = lambda monitor: slow.set()
-    assert run("view", "scene") == (0, "", "")
+    assert run("view", "./scene") == (0, "", "")
     assert waited.captions[0] == "autocolor - reading scene ..."
     assert waited.captions[-1].startswith("run: autocolor - scene - [front.low] - ")
     assert waited.captions[-1].endswith(", open: True")

@@ -14,14 +14,6 @@ CAR = car()
 SCENES = [CAR, *(CAR.replace(ambient=number / 8) for number in range(4))]
 
 
-def test_a_drag_is_one_step_from_its_beginning_to_its_end() -> None:
-    history = History(SCENES[0])
-    for scene in SCENES[1:]:
-        history.take(scene, same_step=True)
-    assert history.steps == [Edit(SCENES[0], SCENES[-1])]
-    assert history.to_undo == (SCENES[0],)
-
-
 def test_a_drag_that_came_back_is_still_a_step_to_undo() -> None:
     history = History(SCENES[0])
     for scene in (SCENES[1], SCENES[2], SCENES[0]):
@@ -68,14 +60,6 @@ def test_what_is_nothing_to_undo_leaves_a_drag_one_step() -> None:
     assert history.scene is SCENES[1]
     history.undo()
     assert history.scene is SCENES[2]
-
-
-def test_there_is_nothing_to_undo_at_the_beginning() -> None:
-    history = History(SCENES[0])
-    for move in (history.undo, history.redo):
-        with pytest.raises(IndexError):
-            move()
-    assert (history.to_undo, history.to_redo, history.steps) == ((), (), [])
 
 
 ONE = Opened(car(), ScenePlace())

@@ -9,7 +9,7 @@ import pytest
 import autocolor
 from autocolor import InputError, Mesh, read_scene
 from autocolor.files.stamps import stamp_of
-from autocolor.journal.places import NO_STAMP, PACKAGE, Source, checksum_of, file_of, opened, place_of
+from autocolor.journal.places import NO_STAMP, PACKAGE, Source, checksum_of, opened, place_of
 from autocolor.scene.columns import to_plain
 from autocolor.scene.scalar import MeshScalar
 from tests.small import car
@@ -72,15 +72,6 @@ def test_a_scene_that_is_opened_again_shares_the_mesh_if_it_is_the_same(source: 
         Mesh(mesh.coordinates, mesh.node_numbers, mesh.part_numbers, mesh.part_names, crease_angle=1.0),
     ):
         assert opened(source, known=[present.replace(mesh=other)]).scene.mesh is not other
-
-
-def test_the_file_of_a_scene_folder_is_its_scene_file(tmp_path: Path) -> None:
-    autocolor.write_scene(tmp_path / "car", car())
-    path = tmp_path / "car" / "scene.toml"
-    assert file_of(Source(str(tmp_path / "car"))) == path
-    assert file_of(Source(str(path))) == path
-    assert file_of(Source(str(tmp_path / "car.npz"))) == tmp_path / "car.npz"
-    assert file_of(Source(str(tmp_path / "car.obj"))) is None
 
 
 def test_meshes_and_files_of_the_package_have_no_stamp(tmp_path: Path) -> None:

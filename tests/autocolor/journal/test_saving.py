@@ -218,17 +218,6 @@ def test_the_demo_is_never_saved_to(work: Path, monkeypatch: pytest.MonkeyPatch,
     assert PACKAGE.name == "autocolor"
 
 
-def test_each_opened_scene_has_its_own_names(scene_file: Path, work: Path) -> None:
-    studio = Studio(car().replace(name="first"), Ramtek9300(SMALL))
-    first = studio.save_session(work)
-    studio.open(scene_file)
-    assert studio.save_session(work).scene == scene_file
-    studio.undo()
-    assert studio.save_session(work) == first
-    studio.redo()
-    assert studio.save_session(work).scene == scene_file
-
-
 def test_a_place_without_a_stamp_is_not_saved_to(scene_file: Path, work: Path) -> None:
     history = History(read_scene(scene_file), ScenePlace(Source(str(scene_file))))
     saved = Studio(history, Ramtek9300(SMALL)).save_session(work)

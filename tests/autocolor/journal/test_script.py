@@ -18,9 +18,8 @@ from autocolor.journal.places import Source, checksum_of, opened
 from autocolor.journal.script import literal, script_of, step_statement
 from autocolor.scene.changes import HalfSpaceChanges, LightChanges
 from ramtek_emu import Ramtek9300
-from tests.autocolor.journal.random_steps import CAR, LARGER, moves, take_move, written_scenes
+from tests.autocolor.journal.random_steps import CAR, moves, take_move, written_scenes
 from tests.small import SMALL, held
-from tests.tables import refused
 
 
 @pytest.fixture(scope="module")
@@ -154,11 +153,6 @@ def test_steps_of_the_scalar_have_lines_of_their_own() -> None:
         assert line == f"studio.edit(studio.scene.{call}, same_step=True)"
 
 
-def test_lights_in_another_order_are_told_in_full() -> None:
-    (line,) = statements_of(CAR, CAR.replace(lights=CAR.lights[::-1]))
-    assert line.startswith("studio.edit(studio.scene.replace(lights=[{'name': 'fill', 'position': [-3.0")
-
-
 def test_steps_of_files_and_variants_have_lines_of_their_own(tmp_path: Path) -> None:
     step = Open(CAR, Source(str(tmp_path / "car.obj"), "y", "parts"))
     beside = MeshesBeside(tmp_path)
@@ -187,32 +181,6 @@ def test_a_scale_is_in_the_script(tmp_path: Path) -> None:
     again = run_script(text)[0].scene
     assert checksum_of(again) == checksum_of(scene)
     assert again.mesh.coordinates.tolist() == [[0, 0, 0], [0.5, 0, 0], [0.5, 0, 0.5]]
-    line = step_statement(Open(scene, source), scene, MeshesBeside())
-    assert ", up='y', surfaces='parts', scale=0.5, tables=" in line
-
-
-def test_another_mesh_is_named_with_what_else_was_changed(tmp_path: Path) -> None:
-    beside = MeshesBeside(tmp_path)
-    line = step_statement(Edit(CAR, LARGER.replace(ambient=0.75)), CAR, beside)
-    path = tmp_path / "scene-2"
-    assert line == (
-        f"studio.edit(studio.scene.replace(mesh=autocolor.read_scene('{path}').mesh, ambient=0.75))"
-    )
-    assert step_statement(Edit(LARGER, CAR, joins=True), CAR, beside) == (
-        "studio.edit(studio.scene.replace(mesh=scene.mesh), same_step=True)"
-    )
-
-
-test_what_no_script_can_hold = refused(
-    lambda step: step_statement(step, CAR, MeshesBeside()),
-    [
-        (
-            Edit(CAR, LARGER),
-            "a mesh that a session changed must be saved beside its journal, and no folder is named for it;"
-            " name one with beside=",
-        )
-    ],
-)
 
 
 def test_literals_are_read_as_they_were() -> None:
