@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from autocolor import Scene, read_palette, read_picture, render, write_palette, write_picture
+from autocolor import Scene, read_palette, render, write_palette, write_picture
 from tests.autocolor.commands.conftest import SMALL, Refused, Run, is_same
 from tests.small import wall_scene
 from tests.tables import first
@@ -163,11 +163,3 @@ def test_the_entries_of_a_range_come_back_from_a_palette_file(saved: Path, run: 
     one, two = (read_palette(f"{name}{suffix}") for name in ("side", "again"))
     assert one == two
     assert len(one) == 200
-
-
-@pytest.mark.parametrize("count", [2, 3, 1024])
-def test_the_colors_of_a_palette_are_a_ramp_over_the_levels(saved: Path, run: Run, count: int) -> None:
-    colors = [(number % 256, number // 256, 7) for number in range(count)]
-    write_palette("hot.gpl", colors)
-    assert run("recolor", "scene.npz", "side", "--palette", "hot.gpl", "--save", "hot.npz").code == 0
-    assert read_picture("hot.npz").scene.surface("side").paint.ramp == tuple(colors)

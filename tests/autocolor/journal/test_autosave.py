@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import subprocess
 import sys
 import time
@@ -219,17 +220,21 @@ def test_a_folder_that_is_removed_before_it_is_locked_is_made_anew(
 ) -> None:
     tries: list[Path] = []
 
-    def swept_once(path: Path) -> int | None:
+    def swept(path: Path) -> int | None:
+        """Another program removes the first folder when it has its lock, and the second before."""
         tries.append(path)
-        if len(tries) == 1:
+        if len(tries) == 2:
             path.parent.rmdir()
-        return lock_file(path)
+        lock = lock_file(path)
+        if len(tries) == 1:
+            shutil.rmtree(path.parent)
+        return lock
 
-    monkeypatch.setattr(autosave_module, "lock_file", swept_once)
+    monkeypatch.setattr(autosave_module, "lock_file", swept)
     autosave = Autosave()
     edit(history, 0.5)
     autosave.update(history)
-    assert [path.parent for path in journals(state)] == [tries[1].parent]
+    assert [path.parent for path in journals(state)] == [tries[2].parent]
     autosave.end()
 
 

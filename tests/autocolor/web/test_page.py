@@ -164,7 +164,8 @@ def test_a_page_of_another_scene_is_refused(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="the scene must come before the picture"):
         save_page(tmp_path / "new.html", picture, car())  # type: ignore[arg-type]
     with pytest.raises(InputError):
-        save_page(tmp_path / "new.html", demo(), picture)
+        # Whatever the name is.
+        save_page(tmp_path / "car.png", demo(), picture)
     with pytest.raises(UsageError):
         save_page(tmp_path / "car.png", car(), picture)
     assert list(tmp_path.iterdir()) == []
