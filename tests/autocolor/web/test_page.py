@@ -164,7 +164,6 @@ def test_a_page_of_another_scene_is_refused(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="the scene must come before the picture"):
         save_page(tmp_path / "new.html", picture, car())  # type: ignore[arg-type]
     with pytest.raises(InputError):
-        # Whatever the name is.
         save_page(tmp_path / "car.png", demo(), picture)
     with pytest.raises(UsageError):
         save_page(tmp_path / "car.png", car(), picture)
