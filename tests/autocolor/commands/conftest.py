@@ -94,7 +94,7 @@ def process(folder: Path) -> Run:
     """Run `autocolor` with the arguments in a process of its own, without a screen."""
 
     def run_process(*arguments: str, **options: Any) -> Ran:
-        hidden = ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER")
+        hidden = ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER", "OPENBLAS_NUM_THREADS")
         environment = {key: value for key, value in os.environ.items() if key not in hidden}
         environment |= {"PYTHONPATH": str(ROOT), **options.pop("environment", {})}
         command = options.pop("command", [sys.executable, "-m", "autocolor", *arguments])

@@ -25,14 +25,6 @@ def test_lists_run_together_and_a_loop_comes_back(folder: Path, run: Run) -> Non
         assert np.array_equal(shown, image(frame, render(frame, 24, 32)))
 
 
-def test_a_table_with_times_and_a_turn_make_numbered_pictures(folder: Path, run: Run) -> None:
-    Path("looks.csv").write_text(f"time,{PAINT}\n0,red\n3,blue\n4,red\n")
-    made = ("--table", "looks.csv", "--turn", "360", "--frames", "4", "-o", "{number}.png")
-    assert run("animate", "scene", *made, *SMALL) == (0, "", "wrote {number}.png, 4 frames\n")
-    shown = [decoded(f"{number}.png")[0].tobytes() for number in range(1, 5)]
-    assert len(set(shown)) == 4
-
-
 def test_a_picture_file_cycles_its_colors_without_its_mesh(saved: Path, run: Run, refused: Refused) -> None:
     for name in ("scene.toml", "two.obj"):
         (saved.parent / "scene" / name).unlink()
@@ -57,12 +49,6 @@ def test_with_a_held_exposure_less_light_is_darker(saved: Path, run: Run, source
     assert dark.mean() < 0.9 * same.mean() if source == "scene" else np.array_equal(dark, same)
 
 
-def test_words_can_stand_for_normals_in_a_stream(folder: Path, run: Run, refused: Refused) -> None:
-    line = "animate scene --vary lights.key.intensity=1,0.2 --frames 3 -o cycle.ramtek"
-    assert "--normals" in refused(line, 65)
-    assert run(*line.split(), "--normals").code == 0
-
-
 def test_the_loss_of_a_gif_is_printed(folder: Path, run: Run) -> None:
     turn = ("--turn", "20", "--frames", "2", "--size", "320x240", "-o", "a.gif", "--once")
     ran = run("animate", "scene", *turn)
@@ -78,8 +64,6 @@ def test_the_loss_of_a_gif_is_printed(folder: Path, run: Run) -> None:
         ("-o a.webp", 2, "animate must have --vary, --table or --turn; write it as in --turn 360"),
         ("--vary ambiend=0,1 -o a.gif", 2, "--vary ambiend: there is no field 'ambiend'; did you mean"),
         ("--turn 9 --fps 60 -o a.gif", 2, ""),
-        ("--vary ambient=1 -o a.gif", 2, ""),
-        ("--vary ambient=0,-1 -o a.gif", 2, ""),
         ("--table bad.csv -o a.gif", 65, "bad.csv: "),
     ],
 )

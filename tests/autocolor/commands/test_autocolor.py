@@ -5,14 +5,15 @@ from __future__ import annotations
 import os
 import re
 import shlex
-import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from autocolor.commands.autocolor import AutocolorGroup
-from tests.autocolor.commands.conftest import ROOT, SMALL, Refused, Run, is_same
+from tests.autocolor.commands.conftest import SMALL, Refused, Run, is_same
+from tests.autocolor.commands.test_view import monitors as monitors
 from tests.tables import first
 
 SLOW = ("numpy", "pygame", "pydantic", "PIL")
@@ -80,6 +81,19 @@ def test_a_file_that_is_not_there_is_missing(refused: Refused, command: str) -> 
     assert refused(line, 66).endswith("none.npz: there is no such file or folder; check the name")
 
 
+@pytest.mark.parametrize(
+    "command", [each for each in LINES if each != "show" and re.search(r" scene\b(?!\.)", LINES[each])]
+)
+def test_a_repair_is_told_and_counts_under_strict(
+    folder: Path, run: Run, monitors: list[Any], command: str
+) -> None:
+    mesh = folder / "two.obj"
+    mesh.write_text(f"{mesh.read_text()}f 1 1 2\n")
+    ran = run(*shlex.split(re.sub(r" scene\b", " two.obj", LINES[command])), "--strict")
+    assert ran.code == 1
+    assert ran.err.startswith("autocolor: two.obj")
+
+
 @pytest.mark.parametrize("command", WRITING)
 def test_a_file_of_that_name_is_kept_without_force(
     saved: Path, run: Run, refused: Refused, command: str
@@ -92,24 +106,6 @@ def test_a_file_of_that_name_is_kept_without_force(
     assert ran.code == 0
     assert Path(name).read_bytes() != b"mine"
     assert command == "sweep" or f"wrote {name}" in ran.err
-
-
-@POSIX
-@pytest.mark.parametrize("command", first(1, PRINTING))
-def test_a_reader_that_goes_away_ends_the_command_in_silence(process: Run, command: str) -> None:
-    read_end, write_end = os.pipe()
-    os.close(read_end)
-    ran = process(*shlex.split(PRINTING[command]), stdout=write_end)
-    os.close(write_end)
-    assert (ran.code, ran.err) == (141, "")
-
-
-@POSIX
-@pytest.mark.parametrize("line", first(1, ["--help", "info --help", *PRINTING.values()]))
-def test_a_closed_stdout_is_told(process: Run, line: str) -> None:
-    ran = process(command=["sh", "-c", f'exec "$0" -m autocolor {line} >&-', sys.executable])
-    assert ran.code == 74
-    assert ran.err == "autocolor: stdout must stay open until all is written, not be closed; read it all\n"
 
 
 # The group.
@@ -140,14 +136,6 @@ for command in {["", *AutocolorGroup.table]!r}:
     assert [line for line in ran.err.splitlines() if not line.endswith(" []")] == []
 
 
-@POSIX
-def test_a_shell_can_complete_commands(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("_AUTOCOLOR_COMPLETE", "bash_complete")
-    monkeypatch.setenv("COMP_WORDS", "autocolor re")
-    monkeypatch.setenv("COMP_CWORD", "1")
-    assert run().out.split() == ["plain,render", "plain,recolor"]
-
-
 def test_the_version_is_told_even_where_nothing_is_installed(run: Run) -> None:
     ran = run("--version")
     assert (ran.code, ran.err) == (0, "")
@@ -164,14 +152,6 @@ def test_the_version_is_told_even_where_nothing_is_installed(run: Run) -> None:
 )
 def test_a_wrong_command_line_is_refused(refused: Refused, line: str, sentence: str) -> None:
     assert refused(line, 2) == f"Error: {sentence}"
-
-
-@pytest.mark.parametrize("line", ["--debug info no.obj", "info --debug no.obj", "info no.obj --debug"])
-def test_debug_anywhere_gives_the_traceback_and_the_same_exit_code(folder: Path, run: Run, line: str) -> None:
-    ran = run(*line.split())
-    assert ran.code == 66
-    assert "Traceback" in ran.err
-    assert ran.err.splitlines()[-1].startswith("autocolor: no.obj: ")
 
 
 def raising(error: BaseException) -> object:
@@ -228,29 +208,6 @@ def test_an_interrupt_while_the_command_starts_shows_no_traceback(
     assert ran.err == ("autocolor: interrupted\n" if code == 130 else "")
 
 
-AT_A_SAVE = """
-import os, signal, sys, autocolor.files.writing, autocolor.__main__ as m
-os.fsync = lambda number: os.kill(os.getpid(), signal.{name})
-sys.argv[1:] = ['render', 'two.obj', '--force', '--size', '32x24']
-m.main()
-"""
-
-
-@POSIX
-@pytest.mark.parametrize(
-    ("name", "code", "told"), [("SIGINT", 130, "autocolor: interrupted\n"), ("SIGKILL", -9, "")]
-)
-def test_a_command_that_is_ended_while_it_saves_leaves_the_old_file_whole(
-    process: Run, folder: Path, name: str, code: int, told: str
-) -> None:
-    (folder / "two.png").write_bytes(b"mine")
-    before = sorted(os.listdir(folder))
-    ran = process(command=[sys.executable, "-c", AT_A_SAVE.format(name=name)])
-    assert (ran.code, ran.err) == (code, told)
-    assert (folder / "two.png").read_bytes() == b"mine"
-    assert name == "SIGKILL" or sorted(os.listdir(folder)) == before
-
-
 @POSIX
 @pytest.mark.parametrize("closed", first(1, ["<&- >&- 2>&-", ">&-", "2>&-"]))
 def test_a_closed_stdout_or_stderr_keeps_no_picture_from_being_written(
@@ -291,49 +248,36 @@ def codes(process: Run, *lines: tuple[str, ...], **environment: str) -> list[int
     return [int(line.removeprefix("code ")) for line in ran.err.splitlines() if line.startswith("code ")]
 
 
+@POSIX
 def test_without_a_utf_8_locale_and_a_home_foreign_names_work(process: Run, folder: Path) -> None:
     bare = {"LC_ALL": "C", "LANG": "C", "PYTHONIOENCODING": "ascii"}
     bare |= {"PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
     bare |= dict.fromkeys(("HOME", "XDG_CACHE_HOME", "XDG_CONFIG_HOME"), "/nonexistent")
-    (folder / "é ж.obj").write_bytes((folder / "two.obj").read_bytes())
+    no_text = os.fsdecode(b"\xff\xfe.obj")
+    for name in ("é ж.obj", no_text):
+        (folder / name).write_bytes((folder / "two.obj").read_bytes())
     lines = (
         ("info", "é ж.obj"),
         ("info", "é ж.obj", "--json"),
         ("render", "é ж.obj", *SMALL),
         ("info", "ж.obj"),
         ("render", "two.obj", "--set", "ж=1"),
+        ("info", no_text),
+        ("render", no_text, *SMALL, "--save", "x.npz"),
+        ("render", no_text, *SMALL),
     )
-    assert codes(process, *lines, **bare) == [0, 0, 0, 66, 2]
+    assert codes(process, *lines, **bare) == [0, 0, 0, 66, 2, 0, 0, 0]
     assert (folder / "é ж.png").is_file()
-
-
-@POSIX
-def test_a_file_name_that_is_no_text_works(process: Run, folder: Path) -> None:
-    name = os.fsdecode(b"\xff\xfe.obj")
-    try:
-        (folder / name).write_bytes((folder / "two.obj").read_bytes())
-    except OSError:
-        pytest.skip("this file system takes text alone")
-    lines = (("info", name), ("render", name, *SMALL, "--save", "x.npz"), ("render", name, *SMALL))
-    assert codes(process, *lines) == [0, 0, 0]
     assert (folder / os.fsdecode(b"\xff\xfe.png")).is_file()
 
 
-def test_the_command_multiplies_in_one_thread_unless_it_is_asked_for_more() -> None:
+def test_the_command_multiplies_in_one_thread_unless_it_is_asked_for_more(process: Run) -> None:
     program = (
         "import os, sys; sys.argv[1:] = ['--version']\n"
         "from autocolor.__main__ import main\n"
         "try: main()\n"
         "except SystemExit: print(os.environ['OPENBLAS_NUM_THREADS'], 'numpy' in sys.modules)"
     )
-    for asked in ("", "3"):
-        environment = {key: value for key, value in os.environ.items() if key != "OPENBLAS_NUM_THREADS"}
-        environment |= {"OPENBLAS_NUM_THREADS": asked} if asked else {}
-        ran = subprocess.run(
-            [sys.executable, "-c", program],
-            env={**environment, "PYTHONPATH": str(ROOT)},
-            capture_output=True,
-            text=True,
-            check=True,
-        )
-        assert ran.stdout.splitlines()[-1] == f"{asked or '1'} False"
+    for count, environment in (("1", {}), ("3", {"OPENBLAS_NUM_THREADS": "3"})):
+        ran = process(command=[sys.executable, "-c", program], environment=environment)
+        assert ran.out.splitlines()[-1] == f"{count} False"

@@ -29,12 +29,6 @@ def test_json_has_the_intensity_of_the_picture_with_its_settings_and_size(folder
     assert sorted(light["name"] for light in facts["lights"]) == ["key", "key.2"]
 
 
-def test_on_the_background_nothing_is_seen(folder: Path, run: Run) -> None:
-    ran = run("explain", "scene", "0", "0", "--size", "32x24")
-    assert (ran.code, ran.err) == (0, "")
-    assert "nothing: the background" in ran.out
-
-
 @pytest.mark.parametrize("pixel", ["24 0", "0 32"])
 def test_a_pixel_outside_of_the_picture_is_refused(pixel: str, refused: Refused) -> None:
     refused(f"explain scene {pixel} --size 32x24", 2)

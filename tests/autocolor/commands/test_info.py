@@ -9,7 +9,7 @@ import pytest
 from autocolor import Scene, read_scene, render, write_picture
 from autocolor.images import display_image
 from autocolor.scene.scalar import MeshScalar
-from tests.autocolor.commands.conftest import SMALL, Refused, Run
+from tests.autocolor.commands.conftest import SMALL, Run
 from tests.small import LYING, wall_scene
 
 
@@ -47,14 +47,6 @@ def test_json_has_the_same_facts(folder: Path, run: Run) -> None:
     assert facts["created"] == ["a view was created that frames the object"]
 
 
-def test_repairs_are_told_and_counted_under_strict(folder: Path, run: Run) -> None:
-    (folder / "two.obj").write_text((folder / "two.obj").read_text() + "f 1 1 2\n")
-    ran = run("info", "two.obj", "--json", "--strict")
-    assert ran.code == 1
-    assert [f"autocolor: {repair}" for repair in json.loads(ran.out)["repairs"]] == ran.err.splitlines()
-    assert run("info", "two.obj").code == 0
-
-
 def told(run: Run, scene: Scene, *options: str) -> str:
     """What is printed about a picture file of a scene."""
     write_picture("wall.npz", scene, render(scene, 24, 32), overwrite=True)
@@ -67,12 +59,6 @@ def test_a_surface_that_is_not_seen_or_has_no_part_says_so(folder: Path, run: Ru
     lines = told(run, scene).splitlines()
     assert "pixels 0," in lines[2]
     assert {"lights: none", "  wall: words 1 to 1007, not seen", "  more: no words, not seen"} <= {*lines}
-
-
-def test_names_that_are_no_text_are_shown_with_backslashes(folder: Path, run: Run) -> None:
-    scene = wall_scene(lights=[], name="\udcff")
-    assert json.loads(told(run, scene, "--json"))["name"] == "\udcff"
-    assert told(run, scene).startswith("\\udcff: nodes")
 
 
 def test_the_scalars_of_the_mesh_are_told_with_their_ranges_and_what_is_missing(
@@ -96,11 +82,6 @@ def test_the_scalars_of_the_mesh_are_told_with_their_ranges_and_what_is_missing(
         {"name": "none\nhere", "of": "node", "range": None, "missing": 4},
     ]
     assert "scalars:" not in run("info", "scene").out
-
-
-@pytest.mark.parametrize(("line", "code"), [("scene/none", 66), (". --json", 65)])
-def test_what_cannot_be_read_gives_no_facts(refused: Refused, line: str, code: int) -> None:
-    refused(f"info {line}", code)
 
 
 @pytest.mark.parametrize("command", ["info", "render"])

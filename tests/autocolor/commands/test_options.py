@@ -5,10 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from autocolor.commands.options import as_usage, with_normals
+from autocolor.commands.options import as_usage
 from autocolor.errors import InputError, MissingInputError, UsageError
 from tests.autocolor.commands.conftest import SMALL, Run
-from tests.small import car
 
 
 def test_every_problem_of_a_value_from_the_command_line_is_told_as_wrong_usage() -> None:
@@ -19,14 +18,6 @@ def test_every_problem_of_a_value_from_the_command_line_is_told_as_wrong_usage()
         raise ZeroDivisionError
     with pytest.raises(UsageError), as_usage():
         raise MissingInputError("none of your business")
-
-
-def test_words_stand_for_normals_where_that_is_asked_for() -> None:
-    scene = car()
-    assert with_normals(scene, normals=True).words == "normals"
-    assert with_normals(scene, normals=False) is scene
-    with pytest.raises(UsageError, match="--normals: words must be"):
-        with_normals(car().with_scalar(name="z"), normals=True)
 
 
 @pytest.mark.parametrize("arguments", [("-v", "render", "two.obj"), ("render", "two.obj", "--verbose")])
@@ -49,16 +40,6 @@ def test_given_twice_more_is_told_and_nothing_twice(folder: Path, run: Run, line
     assert ran.code == 0
     assert ran.err.count("autocolor: Picture(480 x 640") == 1
     assert ran.err.count("autocolor: read two.obj") == 1
-
-
-def test_what_is_recolored_is_told(saved: Path, run: Run) -> None:
-    *told, last = run("recolor", "scene.npz", "side", "-v", "-o", "side.png").err.splitlines()
-    assert [line.partition("(")[0].split(":")[1] for line in told] == [
-        " read scene.npz",
-        " Picture",
-        " image written",
-    ]
-    assert last == "wrote side.png"
 
 
 def test_without_it_nothing_is_told_not_even_after_it_was_given(folder: Path, run: Run) -> None:

@@ -29,13 +29,11 @@ test_what_is_refused_even_with_force = refused(
         (("-", None, {}), "an output must be a file, not stdout; name a file"),
         (("a.jpg", None, {}), "-o must be the name of a PNG, not 'a.jpg'; end it in .png"),
         ((None, "a", {}), "--save must be the name of a picture file, not 'a'; end it in .npz"),
-        ((None, "a.png", {}), "--save must be the name of a picture file, not 'a.png'; end it in .npz"),
         (
             (None, None, {"--layers": "a.jpg"}),
             "--layers must be the name of an OpenEXR file, not 'a.jpg'; end it in .exr",
         ),
         ((None, None, {"--words": "a"}), "--words must be the name of a PNG, not 'a'; end it in .png"),
-        ((None, None, {"--indexed": "a"}), "--indexed must be the name of a PNG, not 'a'; end it in .png"),
         (
             ("no/a.png", None, {}),
             "an output must be in an existing folder, not no; create it or choose another",

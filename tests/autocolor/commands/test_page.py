@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from autocolor import read_picture, render, save_page, write_picture
+from autocolor import read_picture, save_page
 from tests.autocolor.commands.conftest import SMALL, Refused, Run, is_same
 
 
@@ -76,14 +76,11 @@ OF_A_SCENE = "--size and --smooth are for a scene, not for a picture file; leave
     ("line", "code", "sentence"),
     [
         ("--size 640x480", 2, OF_A_SCENE),
-        ("--smooth 1", 2, OF_A_SCENE),
         ("--vary surfaces.sde.blend=0,1", 2, "--vary surfaces.sde.blend: there is no surface 'sde'"),
         ("--table views.csv", 65, "views.csv: variant '3': "),
         ("-o side.png", 2, ""),
         ("--set view.angle=3", 2, ""),
-        ("--vary view.angle=1,2", 2, ""),
         ("--vary lights.key.on=true,false", 2, ""),
-        ("--table none.csv", 66, ""),
     ],
 )
 def test_what_cannot_be_a_page_is_refused(
@@ -91,9 +88,3 @@ def test_what_cannot_be_a_page_is_refused(
 ) -> None:
     Path("views.csv").write_text("view.angle\n3\n")
     assert refused(f"page scene.npz {line}", code).startswith(sentence)
-
-
-def test_lights_of_a_picture_that_its_scene_does_not_give_are_refused(saved: Path, refused: Refused) -> None:
-    _, scene = read_picture(saved)
-    write_picture("other.npz", scene.with_light("key", intensity=0.5), render(scene, 24, 32))
-    refused("page other.npz --lights", 65)

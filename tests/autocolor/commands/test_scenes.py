@@ -2,45 +2,15 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import click
 import pytest
-from click.testing import CliRunner
 
-from autocolor.commands.scenes import SceneSource, created_again, ended, read, reframed, scene_options
+from autocolor.commands.scenes import SceneSource, created_again, ended, read, reframed
 from autocolor.commands.settings import with_settings
-from autocolor.errors import InputError, MissingInputError
 from autocolor.files.scene_report import SceneReport
 from autocolor.files.scene_sources import read_scene_with_report
 from autocolor.scene.defaults import default_lights, framed
 from tests.autocolor.commands.conftest import Refused
 from tests.small import wall_scene
-
-
-@click.command
-@scene_options
-def echo(source: SceneSource) -> None:
-    """Say what the options of a command are."""
-    click.echo(" ".join(map(str, source)))
-
-
-@pytest.mark.parametrize(
-    ("line", "source"),
-    [
-        ("car.obj", "car.obj z materials False 1.0\n"),
-        ("--up y car.obj --strict", "car.obj y materials True 1.0\n"),
-        ("--surfaces parts car.obj", "car.obj z parts False 1.0\n"),
-        ("--scale 0.001 car.obj", "car.obj z materials False 0.001\n"),
-    ],
-)
-def test_a_command_takes_a_scene_and_how_to_read_it(line: str, source: str) -> None:
-    assert CliRunner().invoke(echo, line.split()).output == source
-
-
-@pytest.mark.parametrize(
-    "line", ["", "a.obj b.obj", "a.obj --up Z", "a.obj --up", "a.obj --scale x", "a.obj --surfaces Parts"]
-)
-def test_other_arguments_are_wrong_usage(line: str) -> None:
-    assert CliRunner().invoke(echo, line.split()).exit_code == 2
 
 
 @pytest.mark.parametrize("command", ["render", "show --recover --to tcp://127.0.0.1:1"])
@@ -61,22 +31,6 @@ def test_each_repair_is_a_line_on_stderr(folder: Path, capsys: pytest.CaptureFix
     assert out == ""
     assert err.splitlines() == [f"autocolor: {repair}" for repair in report.repairs]
     assert len(report.repairs) == 2
-
-
-def test_the_up_axis_and_the_scale_are_those_of_the_mesh_file(folder: Path) -> None:
-    place = read(SceneSource("two.obj")).scene.mesh.coordinates[2]
-    assert read(SceneSource("two.obj", "y")).scene.mesh.coordinates[2].tolist() == [1, -1, 0]
-    assert read(SceneSource("two.obj", scale=25.4)).scene.mesh.coordinates[2].tolist() == [*(place * 25.4)]
-
-
-def test_what_cannot_be_read_is_refused_and_not_told(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    (folder / "bad.obj").write_text("v 0\n")
-    for name, error in (("bad.obj", InputError), ("none.obj", MissingInputError)):
-        with pytest.raises(error):
-            read(SceneSource(name))
-    assert tuple(capsys.readouterr()) == ("", "")
 
 
 @pytest.mark.parametrize(

@@ -15,7 +15,6 @@ from autocolor.commands import sql as module
 from autocolor.commands.sql import lines_of, prompt, split, sql, statements_in
 from autocolor.errors import AutocolorError, UsageError
 from autocolor.files.store.tables import Answer, Value, open_tables
-from autocolor.scene.lights import HalfSpace, Links
 from tests.autocolor.commands.conftest import Run
 from tests.autocolor.files.store.stores import run as run_on_store
 from tests.autocolor.files.store.stores import small_scene, small_store, tables_of
@@ -83,33 +82,6 @@ def test_a_change_is_saved_to_the_scene_file_and_its_comments_stay(folder: Path)
     assert (folder / "scene.toml").read_text().startswith("# mine\n")
 
 
-def test_a_change_that_would_be_wrong_is_refused_as_a_whole(tmp_path: Path, folder: Path) -> None:
-    path = small_store(tmp_path)
-    before, text = tables_of(path), (folder / "scene.toml").read_bytes()
-    for place in (path, folder):
-        first, *problems = refusal(place, "UPDATE polygons SET node1 = 9", "--write").problems
-        assert (first, len(problems)) == ("nothing was changed", 2)
-    assert tables_of(path) == before
-    assert (folder / "scene.toml").read_bytes() == text
-
-
-HALF_SPACE = '{"left": {"point": [0, 0, 0], "direction": [0, 0, 1], "edge_width": %s}}'
-
-
-def test_half_spaces_and_links_are_changed_as_json(tmp_path: Path, folder: Path) -> None:
-    for path in (small_store(tmp_path), folder):
-        values = f"half_spaces = '{HALF_SPACE % 0.5}', only_parts = '[\"hood\"]', follows = 'eye'"
-        result = asked(path, f"UPDATE lights SET {values} WHERE name = 'rim'", "--write")
-        assert result.exit_code == 0, result.output
-        light = read_scene(path).light("rim")
-        assert light.half_spaces == (HalfSpace("left", (0, 0, 0), (0, 0, 1), 0.5),)
-        assert (light.links, light.follows) == (Links(only_parts=("hood",)), "eye")
-        query = (
-            "SELECT json_extract(half_spaces, '$.left.edge_width') AS width FROM lights WHERE name = 'rim'"
-        )
-        assert json.loads(asked(path, query, "--json").stdout) == [{"width": 0.5}]
-
-
 DELETE = "DELETE FROM lights"
 NOT_TO = "--write must save to a store or to a scene's folder, not to"
 MAKE = "make a scene of it with `autocolor tables --write`, or a store with `autocolor convert`"
@@ -128,9 +100,7 @@ MAKE = "make a scene of it with `autocolor tables --write`, or a store with `aut
         ("a.obj", DELETE, "--write", f"{NOT_TO} a.obj; {MAKE}"),
         ("small.sqlite", DELETE, "", ""),
         ("small.sqlite", "SELECT * FROM lihgts", "", ""),
-        ("small.sqlite", f"UPDATE lights SET half_spaces = '{HALF_SPACE % -1}'", "--write", "nothing was"),
         ("small.sqlite", "UPDATE lights SET follows = name", "--write", "nothing was changed"),
-        ("small.sqlite", "UPDATE lights SET except_parts = '[\"hod\"]'", "--write", "nothing was changed"),
     ],
 )
 def test_what_is_refused_changes_nothing(
@@ -150,14 +120,6 @@ def test_statements_come_from_stdin_one_after_the_other(tmp_path: Path) -> None:
     result = asked(path, "--write", "--csv", stdin=text)
     assert result.stdout == "m\n3.0\ns\n;\n"
     assert refusal(path, stdin="SELECT 1;\nSELECT * FROM lihgts;\n").exit_code == 2
-
-
-def test_repairs_of_a_mesh_are_told_and_strict(tmp_path: Path) -> None:
-    path = tmp_path / "torn.obj"
-    path.write_text("v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\nf 1 1 2\n")
-    result = asked(path, "SELECT count(*) AS n FROM polygons", "--csv", "--strict")
-    assert (result.exit_code, result.stdout) == (1, "n\n1\n")
-    assert result.stderr
 
 
 def lines(form: str, columns: tuple[str, ...], *rows: tuple[Value, ...]) -> list[str]:

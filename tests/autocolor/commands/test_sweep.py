@@ -106,8 +106,6 @@ def test_failed_variants_are_listed(
             "--made must be a file of its own, not ./t.csv, which is read; name another",
         ),
         ("--vary ambient=1 --made scene --force", 2, "--made must be a file of its own, not scene, which is"),
-        ("--vary ambient", 2, ""),
-        ("--table no.csv", 66, ""),
         (f"--vary {COLOR}=@no.gpl", 66, ""),
         ("--vary ambient=1,2 --set ambiet=1", 2, ""),
         ("--vary ambient=1,2 --sheet a.jpg", 2, ""),
@@ -123,7 +121,7 @@ def test_a_wrong_command_line_is_refused_before_anything_is_made(
 @pytest.mark.skipif(sys.platform == "win32", reason="needs SIGINT")
 def test_an_interrupted_sweep_ends_its_processes_and_leaves_whole_files(folder: Path) -> None:
     command = [
-        sys.executable, "-m", "autocolor", "sweep", "scene", "--vary", "ambient=0:1:5000", "-o",
+        sys.executable, "-m", "autocolor", "sweep", "scene", "--vary", "ambient=0:1:2000", "-o",
         "out/{number}.png", "--jobs", "2", *SMALL,
     ]  # fmt: skip
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
@@ -138,7 +136,7 @@ def test_an_interrupted_sweep_ends_its_processes_and_leaves_whole_files(folder: 
         assert process.stderr.read() == "autocolor: interrupted\n"
     assert process.returncode == 130
     names = os.listdir("out")
-    assert 0 < len(names) < 5000
+    assert 0 < len(names) < 2000
     for name in names:
         with Image.open(Path("out") / name) as picture:
             picture.load()

@@ -49,13 +49,6 @@ def test_a_scene_file_is_not_overwritten_without_force(box: Path, run: Run, refu
     assert 'surface = "surface"' in (box / "scene.toml").read_text()
 
 
-def test_tables_as_json_hold_every_table(run: Run) -> None:
-    values = json.loads(run("tables", MESH, "--json").out)
-    assert values["parts"] == [{"name": "lid", "surface": "surface", "stage": False}]
-    assert len(values["lights"]) == 4
-    assert {"surfaces", "view", "ambient", "mesh"} <= set(values)
-
-
 def test_the_tables_of_a_picture_file_are_written_with_its_mesh_beside(
     folder: Path, run: Run, refused: Refused
 ) -> None:
@@ -77,16 +70,3 @@ def test_the_tables_of_a_picture_file_are_written_with_its_mesh_beside(
     assert again.replace(mesh=scene.mesh, name=scene.name).equals(scene)
     assert (again.mesh.coordinates == scene.mesh.coordinates).all()
     refused("tables pictures/square.npz --write", 73)
-
-
-def test_tables_written_over_a_scene_file_keep_its_comments(box: Path, run: Run) -> None:
-    text = '# By hand.\nambient = 0.50 # dim\n\n[[mesh]]\nfile = "square.obj"\n'
-    (box / "scene.toml").write_text(text)
-    scene = autocolor.read_scene(box)
-    assert run("tables", "box", "--write", "--force").code == 0
-    after = (box / "scene.toml").read_text()
-    assert after.startswith("# By hand.\nambient = 0.50 # dim\n")
-    assert after.count("[[lights]]") == 4
-    assert "two_sided = true" in after
-    assert "crease_angle = 40.0" in after
-    assert autocolor.read_scene(box).replace(mesh=scene.mesh).equals(scene)

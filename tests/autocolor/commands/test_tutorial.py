@@ -1,38 +1,12 @@
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 import pytest
 
 from autocolor.commands.tutorial import teach
 from autocolor.journal.history import History
-from autocolor.screens.viewer import Viewer
-from ramtek_emu import Ramtek9300
 from tests.autocolor.commands.conftest import Refused, Run
-from tests.small import car
-
-
-def test_the_panel_stands_over_the_first_screen() -> None:
-    display = Ramtek9300()
-    viewer = Viewer(car(), display)
-    before = display.field()
-    teach(viewer)
-    labels = [each.label for each in viewer.board.widgets()]
-    assert labels == ["skip", "end", "up", "tutorial"]
-    panel = viewer.board.widgets()[-1].area
-    changed = before != display.field()
-    assert changed[panel.top : panel.bottom + 1, panel.left : panel.right + 1].any()
-    # The first message of the viewer was at the bottom.
-    assert not changed[: panel.top].any()
-    assert not changed[panel.bottom + 1 : 464].any()
-
-
-@pytest.mark.skipif(os.name == "nt", reason="Windows always has a screen")
-def test_without_a_screen_render_is_named(refused: Refused, monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER"):
-        monkeypatch.delenv(name, raising=False)
-    assert "; `autocolor render` writes the demo to coupe.png" in refused("tutorial", 69)
 
 
 def test_it_is_taught_on_a_display_elsewhere(

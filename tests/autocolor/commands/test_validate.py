@@ -8,9 +8,7 @@ import pytest
 
 from autocolor import Mesh, image, render, scene_of, write_scene
 from autocolor.commands.validate import COLORS, fault_lines, fault_scene, fault_values
-from autocolor.images import display_image
 from autocolor.journal.history import History
-from autocolor.mapping.legend import legend
 from autocolor.scene.mesh_faults import KINDS, Fault, mesh_faults
 from autocolor.scene.scalar import POLYGON, MeshScalar
 from tests.autocolor.commands.conftest import Refused, Run, pixels
@@ -69,13 +67,6 @@ def test_repairs_are_no_problems_but_count_under_strict(folder: Path, run: Run) 
     ran = run("validate", "whole", "--strict", "--json")
     assert ran.code == 1
     assert len(json.loads(ran.out)["repairs"]) == 1
-
-
-def test_a_mesh_that_is_not_there_is_missing_too(folder: Path, run: Run) -> None:
-    (folder / "scene" / "two.obj").unlink()
-    ran = run("validate", "scene", "--json")
-    assert ran.code == 66
-    assert len(json.loads(ran.out)["problems"]) == ran.err.count("\n") == 1
 
 
 SHEET = Mesh(np.array([[0, 0, 0], [2, 0, 0], [2, 2, 0], [0, 2, 1], [9, 9, 9.0]]), np.array([[0, 1, 2, 3]]))
@@ -138,10 +129,6 @@ def test_json_has_at_most_10_000_rows_of_a_kind(count: int, told: int) -> None:
     assert values["polygons"] == values["rows"]
 
 
-def test_there_is_a_color_for_each_kind() -> None:
-    assert len(COLORS) == len(set(COLORS)) == len(KINDS)
-
-
 def test_the_faults_color_the_scene_whatever_surfaces_it_has() -> None:
     mesh = cube()
     turned = mesh.node_numbers.copy()
@@ -160,10 +147,3 @@ def test_the_faults_color_the_scene_whatever_surfaces_it_has() -> None:
     red, green, blue = COLORS[list(KINDS).index("turned")]
     # A shade of the kind's color: its components keep their order.
     assert any(g > b > r for r, g, b in colors), (red, green, blue)
-
-
-def test_the_legend_has_the_numbers_of_the_kinds_and_0_for_none() -> None:
-    scene = fault_scene(scene_of(cube()), ())
-    found = legend(display_image(scene, render(scene)))
-    assert found is not None
-    assert [each.text for each in found.labels] == ["fault", *map(str, range(len(KINDS) + 1))]

@@ -3,60 +3,15 @@
 from __future__ import annotations
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from autocolor import UsageError
-from autocolor.journal import history as history_module
 from autocolor.journal.history import Edit, History, Variants
 from autocolor.journal.places import Opened, ScenePlace, Source
 from tests.small import car
+from tests.tables import call, refused
 
 CAR = car()
 SCENES = [CAR, *(CAR.replace(ambient=number / 8) for number in range(4))]
-
-moves = st.lists(
-    st.tuples(st.just("edit"), st.sampled_from(SCENES), st.booleans())
-    | st.tuples(st.sampled_from(["undo", "redo"]), st.none(), st.none()),
-    max_size=30,
-)
-
-
-def state(history: History) -> tuple[object, ...]:
-    return history.scene, history.to_undo, history.to_redo
-
-
-@given(moves)
-def test_the_steps_of_any_session_give_the_same_history_when_taken_again(
-    made: list[tuple[object, ...]],
-) -> None:
-    history = History(CAR)
-    for kind, scene, joins in made:
-        if kind == "undo" and history.to_undo:
-            history.undo()
-        elif kind == "redo" and history.to_redo:
-            history.redo()
-        elif kind == "edit" and scene is not history.scene:
-            history.take(scene, bool(joins))  # type: ignore[arg-type]
-    again = History(CAR)
-    for step in history.steps:
-        if step == "undo":
-            again.undo()
-        elif step == "redo":
-            again.redo()
-        else:
-            assert isinstance(step, Edit)
-            assert step.before is again.scene
-            again.take(step.after, step.joins)
-    assert state(again) == state(history)
-
-
-def test_a_drag_is_one_step_from_its_beginning_to_its_end() -> None:
-    history = History(SCENES[0])
-    for scene in SCENES[1:]:
-        history.take(scene, same_step=True)
-    assert history.steps == [Edit(SCENES[0], SCENES[-1])]
-    assert history.to_undo == (SCENES[0],)
 
 
 def test_a_drag_that_came_back_is_still_a_step_to_undo() -> None:
@@ -107,15 +62,11 @@ def test_what_is_nothing_to_undo_leaves_a_drag_one_step() -> None:
     assert history.scene is SCENES[2]
 
 
-def test_there_is_nothing_to_undo_at_the_beginning() -> None:
-    history = History(SCENES[0])
-    for move in (history.undo, history.redo):
-        with pytest.raises(IndexError):
-            move()
-    assert (history.to_undo, history.to_redo, history.steps) == ((), (), [])
-
-
 ONE = Opened(car(), ScenePlace())
+
+
+FULL = Variants({f"{number}": ONE for number in range(999)}).with_variant("x" * 100, ONE)
+"""1000 variants; one has the longest name."""
 
 
 def test_variants_keep_their_order_and_are_values() -> None:
@@ -124,41 +75,29 @@ def test_variants_keep_their_order_and_are_values() -> None:
     assert list(both) == ["B", "A"]
     assert both["A"] is ONE
     assert len(none) == 0
-    assert list(Variants({"A": ONE, "B": Opened(car(), ScenePlace())}).without("A")) == ["B"]
+    assert list(both.without("A")) == ["B"]
 
 
-def test_dropping_one_of_two_equal_variants_leaves_the_other() -> None:
-    assert list(Variants().with_variant("A", ONE).with_variant("B", ONE).without("A")) == ["B"]
-
-
-def test_a_name_in_use_is_never_given_to_another_scene() -> None:
-    variants = Variants().with_variant("A", ONE)
-    with pytest.raises(UsageError) as refusal:
-        variants.with_variant("A", Opened(car(), ScenePlace()))
-    assert str(refusal.value) == (
-        "a variant must have a name of its own, and 'A' is in use; choose another, or drop that one"
-    )
+test_what_is_refused_of_variants = refused(
+    call,
+    [
+        (
+            lambda: Variants().with_variant("A", ONE).with_variant("A", Opened(CAR, ScenePlace())),
+            "a variant must have a name of its own, and 'A' is in use; choose another, or drop that one",
+        ),
+        (lambda: FULL.with_variant("more", ONE), "there must be at most 1000 variants; drop one"),
+        (
+            lambda: Variants().with_variant("evening", ONE)["evenin"],
+            "there is no variant 'evenin'; did you mean 'evening'?",
+        ),
+    ],
+)
 
 
 @pytest.mark.parametrize("name", ["", "x" * 101, 5])
 def test_a_name_is_a_short_text(name: str) -> None:
     with pytest.raises(UsageError, match="a variant must have a name of 1 to 100 characters, not "):
         Variants().with_variant(name, ONE)
-
-
-def test_a_name_may_have_1_to_100_characters_and_there_may_be_1000_variants() -> None:
-    variants = Variants().with_variant("x", ONE).with_variant("x" * 99, ONE).with_variant("x" * 100, ONE)
-    assert [len(name) for name in variants] == [1, 99, 100]
-    full = Variants({f"{number}": ONE for number in range(999)}).with_variant("last", ONE)
-    assert len(full) == 1000
-    with pytest.raises(UsageError, match="there must be at most 1000 variants; drop one"):
-        full.with_variant("more", ONE)
-
-
-def test_an_unknown_name_is_told_with_the_closest() -> None:
-    with pytest.raises(UsageError) as refusal:
-        Variants().with_variant("evening", ONE)["evenin"]
-    assert str(refusal.value) == "there is no variant 'evenin'; did you mean 'evening'?"
 
 
 def test_free_names_are_letters_and_then_letters_with_numbers() -> None:
@@ -171,9 +110,3 @@ def test_free_names_are_letters_and_then_letters_with_numbers() -> None:
     assert names[25:28] == ["Z", "A2", "B2"]
     assert names[52:] == ["A3", "B3"]
     assert variants.without("C").free_name() == "C"
-
-
-def test_there_are_not_too_many(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(history_module, "MOST_VARIANTS", 1)
-    with pytest.raises(UsageError, match="there must be at most 1 variants; drop one"):
-        Variants().with_variant("A", ONE).with_variant("B", ONE)

@@ -9,7 +9,7 @@ import pytest
 import autocolor
 from autocolor import InputError, Mesh, read_scene
 from autocolor.files.stamps import stamp_of
-from autocolor.journal.places import NO_STAMP, PACKAGE, Source, checksum_of, file_of, opened, place_of
+from autocolor.journal.places import NO_STAMP, PACKAGE, Source, checksum_of, opened, place_of
 from autocolor.scene.columns import to_plain
 from autocolor.scene.scalar import MeshScalar
 from tests.small import car
@@ -74,27 +74,12 @@ def test_a_scene_that_is_opened_again_shares_the_mesh_if_it_is_the_same(source: 
         assert opened(source, known=[present.replace(mesh=other)]).scene.mesh is not other
 
 
-def test_the_file_of_a_scene_folder_is_its_scene_file(tmp_path: Path) -> None:
-    autocolor.write_scene(tmp_path / "car", car())
-    path = tmp_path / "car" / "scene.toml"
-    assert file_of(Source(str(tmp_path / "car"))) == path
-    assert file_of(Source(str(path))) == path
-    assert file_of(Source(str(tmp_path / "car.npz"))) == tmp_path / "car.npz"
-    assert file_of(Source(str(tmp_path / "car.obj"))) is None
-
-
 def test_meshes_and_files_of_the_package_have_no_stamp(tmp_path: Path) -> None:
     (tmp_path / "car.obj").write_text("v 0 0 0\n")
     assert place_of(Source(str(tmp_path / "car.obj"))).stamp is None
     inside = PACKAGE / "demo_scene" / "scene.toml"
     assert place_of(Source(str(inside))).stamp is None
     assert Path(autocolor.__file__).parent == PACKAGE
-
-
-def test_two_openings_of_one_file_are_two_places(tmp_path: Path) -> None:
-    source = Source(str(tmp_path / "car.obj"))
-    assert place_of(source) != place_of(source)
-    assert len({place_of(source), place_of(source)}) == 2
 
 
 def test_a_path_that_cannot_be_read_has_no_stamp(tmp_path: Path) -> None:

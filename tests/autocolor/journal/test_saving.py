@@ -104,7 +104,7 @@ def test_a_name_that_a_file_has_is_refused_and_nothing_is_written(
     assert studio.file == scene_file
 
 
-@pytest.mark.parametrize("name", ["", "..", "a/b", ".a", "a\nb", "x" * 101])
+@pytest.mark.parametrize("name", ["", "a/b"])
 def test_an_invalid_name_is_refused_and_nothing_is_written(work: Path, name: str) -> None:
     studio = Studio(car(), Ramtek9300(SMALL))
     with pytest.raises(UsageError, match="a file name must be"):
@@ -130,14 +130,6 @@ def test_a_scene_that_could_not_be_saved_under_a_name_keeps_its_own(
         assert studio.scene is before
         assert len(studio.history.to_undo) == steps
         assert (studio.file, studio.is_changed) == (scene_file, True)
-
-
-def test_undo_after_saving_under_a_name_brings_the_old_name_back(work: Path) -> None:
-    studio = Studio(car().replace(name="car"), Ramtek9300(SMALL))
-    studio.save_session(work, "red")
-    studio.undo()
-    assert (studio.scene.name, studio.is_changed) == ("car", True)
-    assert studio.save_session(work) == SavedFiles(work / "red" / "scene.toml", work / "red.npz")
 
 
 def test_a_scene_file_keeps_its_comments_and_has_one_backup(scene_file: Path, work: Path) -> None:
@@ -224,27 +216,6 @@ def test_the_demo_is_never_saved_to(work: Path, monkeypatch: pytest.MonkeyPatch,
     assert studio.save_session(work).scene == work / "car" / "scene.toml"
     assert contents(scene_file.parent) == before
     assert PACKAGE.name == "autocolor"
-
-
-def test_each_opened_scene_has_its_own_names(scene_file: Path, work: Path) -> None:
-    studio = Studio(car().replace(name="first"), Ramtek9300(SMALL))
-    first = studio.save_session(work)
-    studio.open(scene_file)
-    assert studio.save_session(work).scene == scene_file
-    studio.undo()
-    assert studio.save_session(work) == first
-    studio.redo()
-    assert studio.save_session(work).scene == scene_file
-
-
-def test_a_save_that_fails_changes_no_file(scene_file: Path, tmp_path: Path) -> None:
-    studio = studio_of(scene_file)
-    studio.recolor("body", blend=0.25)
-    before = contents(scene_file.parent)
-    with pytest.raises(OutputError):
-        studio.save_session(tmp_path / "none")
-    assert contents(scene_file.parent) == before
-    assert studio.is_changed
 
 
 def test_a_place_without_a_stamp_is_not_saved_to(scene_file: Path, work: Path) -> None:
