@@ -32,16 +32,15 @@ from autocolor import (
     send_picture,
     write_picture,
 )
-from autocolor.images import averaged, display_image, size_of, smoothed
+from autocolor.images import averaged, display_image, size_of
 from autocolor.layers import save_layers
 from autocolor.mapping.legend import legend
-from autocolor.mapping.ranges import SCREENS
 from autocolor.sending import shown_colors
 from autocolor.testing import scenes
 from ramtek_emu import Ramtek9300
 from ramtek_emu.arrays import Colors
 from ramtek_emu.testing import entries, rasters
-from tests.small import SMALL, STRETCHED, car, cube, held, opened, sphere, wall_scene
+from tests.small import SMALL, car, cube, held, opened, sphere, wall_scene
 from tests.tables import call, first, refused
 
 WALL = wall_scene()
@@ -79,16 +78,6 @@ def test_an_image_has_the_same_pixels_at_every_level_of_compression(tmp_path: Pa
     assert data[data.index(b"IDAT") + 5] >> 6 == (0, 0, 1, 1, 1, 1, 2, 3, 3, 3)[level]
 
 
-def test_a_picture_is_colored_by_any_scene_that_has_its_surfaces() -> None:
-    scene = scene_of(cube(), surfaces="parts", **STRETCHED)
-    picture = render(scene, 48, 64)
-    blue = scene.with_surface("cube", object_color="#0000ff", light_color="#0000ff")
-    colors = image(blue, picture)
-    assert not colors[..., :2].any()
-    assert colors[..., 2].max() == 255
-    assert (colors[picture.surface_number == 0] == scene.background).all()
-
-
 @pytest.mark.parametrize("save", [save_image, save_words])
 def test_a_file_is_never_written_over_unasked(tmp_path: Path, save: Any) -> None:
     path = tmp_path / "wall.PNG"
@@ -117,7 +106,7 @@ test_what_is_refused = refused(
     [
         *(
             (
-                lambda text=text: size_of(text),  # type: ignore[misc]
+                lambda text=text: size_of(text),
                 f"a size must be ELEMENTSxLINES, each from 1 to 4096, not {text!r}; write it as in 1280x960",
             )
             for text in (
@@ -136,7 +125,7 @@ test_what_is_refused = refused(
         ),
         *(
             (
-                lambda level=level: save_image(NOWHERE / "wall.png", WALL, WALL_PICTURE, level=level),  # type: ignore[misc]
+                lambda level=level: save_image(NOWHERE / "wall.png", WALL, WALL_PICTURE, level=level),
                 f"level must be a whole number from 0 to 9, not {text}; leave it out for the default",
             )
             for level, text in ((-1, "-1"), (10, "10"), (4.0, "4.0"), (True, "true"), ("best", "'best'"))
@@ -180,7 +169,7 @@ test_what_is_refused = refused(
         ),
         *(
             (
-                lambda size=size: send_picture(WALL, render(WALL, *size), Ramtek9300(SMALL)),  # type: ignore[misc]
+                lambda size=size: send_picture(WALL, render(WALL, *size), Ramtek9300(SMALL)),
                 f"a picture must be at most 32 x 24, as large as the display, not {size[1]} x {size[0]};"
                 " render it smaller, or take a larger configuration",
             )
@@ -267,15 +256,6 @@ def test_a_smooth_image_has_the_mean_light_of_the_squares_of_a_larger_image(
     colors = saved(tmp_path / "cube.png", scene, 12, 16, smooth)
     assert colors.tolist() == expected.tolist()
     assert (colors[0, 0] == scene.background).all()
-
-
-def test_the_mean_of_black_and_white_is_half_of_the_light() -> None:
-    scene = WALL.replace(background="white")
-    shown_image = display_image(scene, render(scene, 2, 2))
-    black = SCREENS.first
-    words = np.array([[0, black], [black, 0]], np.uint16)
-    # Half of the light of white; the mean of the components would be 128.
-    assert (smoothed(dataclasses.replace(shown_image, words=words), 2) == 188).all()
 
 
 def test_the_legend_of_a_smooth_image_is_as_sharp_as_on_a_display_of_its_size(tmp_path: Path) -> None:
@@ -368,19 +348,6 @@ def test_words_and_their_entries_are_read_back_from_a_png(tmp_path: Path, change
     rows = np.frombuffer(palette[1:], np.uint8).reshape(-1, 6)
     assert (rows[:, :3] == shown.entries).all()
     assert (rows[:, 3:] == (255, 0, 0)).all()
-
-
-@pytest.mark.needs("OpenImageIO")
-def test_another_reader_reads_the_same_words(tmp_path: Path) -> None:
-    import OpenImageIO
-
-    scene = car()
-    picture = render(scene, 24, 32)
-    save_words(tmp_path / "words.png", scene, picture)
-    file = OpenImageIO.ImageInput.open(str(tmp_path / "words.png"))
-    assert (file.spec().nchannels, str(file.spec().format)) == (1, "uint16")
-    assert (file.read_image("uint16")[..., 0] == display_image(scene, picture).words).all()
-    file.close()
 
 
 @pytest.mark.parametrize("changes", first(3, KINDS))

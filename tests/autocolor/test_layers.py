@@ -245,29 +245,6 @@ def test_the_file_has_all_channels_and_attributes_bit_for_bit(tmp_path: Path) ->
     assert json.loads(attributes["autocolor/lights"]) == {"rim_left": "rim.left", "depth_2": "depth"}
 
 
-@pytest.mark.needs("OpenEXR", "OpenImageIO")
-def test_another_reader_reads_the_same(tmp_path: Path) -> None:
-    import OpenImageIO
-
-    scene = car_with_named_lights()
-    picture = render(scene, *SIZE)
-    save_layers(tmp_path / "car.exr", scene, picture)
-    file = OpenImageIO.ImageInput.open(str(tmp_path / "car.exr"))
-    spec, pixels = file.spec(), file.read_image("float")
-    file.close()
-    read = dict(zip(spec.channelnames, np.moveaxis(pixels, 2, 0), strict=True))
-    channels, attributes = layers_of(scene, picture)
-    assert read.keys() == channels.keys()
-    for name, values in channels.items():
-        assert (read[name] == values).all()
-    found = {each.name: each.value for each in spec.extra_attribs}
-    assert attributes.items() <= found.items()
-    manifest = json.loads(found["cryptomatte/5a1484c/manifest"])
-    for number, part in enumerate(picture.parts, start=1):
-        matte = read["crypto_part00.R"] == np.uint32(int(manifest[part], 16)).view(np.float32)
-        assert (matte == (picture.part_number == number)).all()
-
-
 @pytest.mark.needs("OpenEXR")
 @pytest.mark.parametrize("smooth", first(1, [2, 1]))
 def test_a_picture_from_a_file_has_the_same_layers(tmp_path: Path, smooth: int) -> None:

@@ -15,10 +15,8 @@ from hypothesis import strategies as st
 
 from autocolor import Mesh, Picture, Scene, Surface, render, scene_of
 from autocolor import rendering as rendering_module
-from autocolor.lighting.shading import shade
 from autocolor.rendering import BLOCKS, PICTURE_SECONDS, Rendering, block_for, blocks_of, rendering
 from autocolor.testing import scenes
-from autocolor.visibility.visible_points import PointChunk
 from tests.small import cube, grid, sphere, wall_scene
 from tests.tables import refused
 
@@ -186,25 +184,6 @@ def test_a_light_off_and_on_again_is_neither_computed_nor_mixed_again() -> None:
     assert kept.mixed is not None
     assert dark.picture.light_planes["key"] is lit.picture.light_planes["key"] is kept
     assert list(lit.picture.light_planes) == [light.name for light in start.lights]
-
-
-def test_an_exponent_computes_only_the_chunks_that_its_surface_is_in(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("autocolor.visibility.visible_points.PIXELS_AT_ONCE", 37)
-    before = rendering(two_surfaces(), 24, 32)
-    shaded = []
-
-    def noting(planes: Any, light: Any, points: Any, chunk: PointChunk, models: Any) -> None:
-        shaded.append(chunk.pixels)
-        shade(planes, light, points, chunk, models)
-
-    monkeypatch.setattr("autocolor.lighting.illumination.shade", noting)
-    rendering(before.scene.with_surface("cube", exponent=3), 24, 32, before)
-    having = [
-        chunk.pixels for chunk in before.points.chunks if 2 in [each.surface_number for each in chunk.slices]
-    ]
-    assert 0 < len(having) < len(before.points.chunks)
-    lights = sum(light.shines for light in before.scene.lights)
-    assert shaded == [pixels for pixels in having for _ in range(lights)]
 
 
 def test_an_exponent_computes_its_own_surface_again_and_no_other() -> None:

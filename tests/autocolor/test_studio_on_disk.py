@@ -328,24 +328,6 @@ def test_a_picture_that_changes_while_it_is_made_is_not_overwritten(
     assert path.read_bytes() == b"theirs"
 
 
-def test_a_picture_is_known_as_ours_if_its_scene_could_not_be_written(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    studio, _ = opened()
-    saved = studio.save_session(tmp_path)
-    studio.light("key", on=False)
-
-    def fail(*_: object, **__: object) -> None:
-        raise autocolor.WriteError("the disk is full")
-
-    with monkeypatch.context() as patch:
-        patch.setattr("autocolor.journal.saving.write_scene_with_tables", fail)
-        with pytest.raises(autocolor.WriteError):
-            studio.save_session(tmp_path)
-    again = studio.save_session(tmp_path)
-    assert (again.scene, again.picture, again.changed) == (saved.scene, saved.picture, ())
-
-
 def test_a_mesh_is_named_by_the_file_that_it_was_read_from(tmp_path: Path) -> None:
     for name in ("a", "b"):
         autocolor.write_scene(tmp_path / name, car())

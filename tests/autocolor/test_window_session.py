@@ -262,28 +262,3 @@ def test_a_drag_turns_the_object_and_is_undone_at_once(session: Session) -> None
     session.press("ctrl+z")
     session.wait_for_the_field()
     assert session.caption().startswith("autocolor - box - [front] - undone: view: ")
-
-
-@pytest.mark.thorough
-def test_in_full_screen_a_message_stands_on_the_display_and_escape_leaves(session: Session) -> None:
-    def has_the_field() -> bool:
-        left, top, *_ = session.place()
-        session.follow(left + 60, top + 70)
-        return np.array_equal(session.shown()[70:1030, 60:1340], session.field())
-
-    session.press("F11")
-    # Without a window manager the window keeps its place, and reaches beyond the screen.
-    session.wait_for(lambda: session.place()[2:] == (1400, 1100))
-
-    def has_told() -> bool:
-        # Until the new window has the keyboard, keys are lost.
-        session.press("9", "9")
-        return session.caption().endswith(session.viewer.message)
-
-    session.wait_for(has_told)
-    session.viewer.on_tick()
-    assert session.viewer.message == "the scene has no light 9"
-    session.wait_for(has_the_field)
-    session.press("Escape")
-    session.viewer.on_tick()
-    session.wait_for_the_field()
