@@ -24,6 +24,7 @@ from autocolor import (
     image,
     read_picture,
     read_scene,
+    scene_of,
     testing,
 )
 from autocolor.mapping.ranges import SCREENS
@@ -40,7 +41,7 @@ from autocolor.testing import (
     vectors,
 )
 from ramtek_emu import Ramtek9300
-from tests.small import SMALL, car, fresh, held, opened
+from tests.small import SMALL, car, cube, fresh, held, opened
 from tests.tables import refused
 
 Edit = tuple[str, str, dict[str, Any]]
@@ -844,6 +845,17 @@ def test_a_session_that_is_saved_under_a_name_takes_it_by_one_step(tmp_path: Pat
         studio.save_session(tmp_path, "night")
     assert studio.scene.name == "scene"
     assert not studio.undo()
+
+
+def test_a_script_needs_a_folder_for_a_mesh_that_was_changed(tmp_path: Path) -> None:
+    studio, _ = opened()
+    studio.edit(studio.scene.replace(ambient=0.5))
+    assert "ambient=0.5" in studio.journal("car.toml")
+    studio.edit(scene_of(cube()))
+    with pytest.raises(InputError):
+        studio.journal("car.toml")
+    studio.journal("car.toml", beside=tmp_path / "beside")
+    assert list((tmp_path / "beside").iterdir())
 
 
 def test_a_variant_is_shown_by_one_step() -> None:
