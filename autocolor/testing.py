@@ -383,8 +383,8 @@ def scenes(draw: st.DrawFn, /, **given: Any) -> Scene:
     """Scenes with a value in every column, small enough to be rendered hundreds of times.
 
     Their surfaces are "body" and "glass", their parts "part 0" and "part 1", and their lights none, "key", or
-    "key", "fill" and "rim". `given` are fields of a Scene that are not drawn, as in `scenes(lights=())`: with
-    fewer random fields, hypothesis makes a failing scene simple sooner.
+    "key", "fill" and "rim". Hypothesis needs minutes to simplify a failing scene, which has hundreds of
+    numbers. `given` are fields of a Scene that are not drawn, as in `scenes(lights=(), scalar=None)`.
     """
     if "mesh" not in given:
         bare = draw(meshes())

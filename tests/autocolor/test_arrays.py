@@ -1,7 +1,6 @@
 from __future__ import annotations
 
 import math
-from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -23,7 +22,6 @@ from autocolor.arrays import (
     lengths,
     light_of,
     most_of_four,
-    normalized,
     power,
     runs,
     unit_vector,
@@ -42,12 +40,7 @@ def test_runs_follow_each_other_even_where_the_sum_leaves_64_bits(rows: list[tup
     expected = [start + k * by for start, many, by in rows for k in range(many)]
     wrapped = [(number + 2**63) % 2**64 - 2**63 for number in expected]
     assert runs(first, count, step).tolist() == wrapped
-
-
-@given(st.lists(st.tuples(st.integers(-1000, 1000), st.integers(1, 9))))
-def test_without_a_step_each_number_is_one_more(rows: list[tuple[int, int]]) -> None:
-    first, count = np.array(rows, np.int64).reshape(-1, 2).T
-    assert runs(first, count).tolist() == [start + k for start, many in rows for k in range(many)]
+    assert runs(first, count).tolist() == runs(first, count, np.ones_like(step)).tolist()
 
 
 @given(st.lists(st.integers(1, 9)), st.integers(1, 20))
@@ -74,11 +67,8 @@ def test_products_and_lengths_are_those_that_numpy_has_for_columns(shape: tuple[
     one, other = np.random.default_rng(3).normal(size=(2, *shape))
     assert cross(one, other).tolist() == np.cross(one, other, axis=0).tolist()
     assert lengths(one) == pytest.approx(np.linalg.norm(one, axis=0))
-
-
-def test_the_dot_product_is_that_of_each_pair_of_columns() -> None:
-    one, other = np.random.default_rng(4).normal(size=(2, 3, 7))
-    assert dot(one, other) == pytest.approx((one * other).sum(axis=0))
+    if len(shape) == 2:
+        assert dot(one, other) == pytest.approx((one * other).sum(axis=0))
 
 
 exponents = st.one_of(
@@ -90,12 +80,19 @@ exponents = st.one_of(
 
 @given(st.lists(st.floats(-1.0, 1.0, width=32), min_size=1), exponents)
 def test_every_cosine_is_raised_and_a_negative_one_counts_as_0(cosines: list[float], exponent: float) -> None:
-    powers = power(np.array(cosines, np.float32), exponent)
+    given_as = np.array(cosines, np.float32)
+    powers = power(given_as, exponent)
+    assert given_as.tolist() == np.array(cosines, np.float32).tolist()
     # Float32 takes the smallest exponents for 0, and anything to the power 0 is 1.
     single = float(np.float32(min(exponent, 3e38)))
     expected = [max(cosine, 0.0) ** single for cosine in cosines]
     assert ((powers >= 0) & (powers <= 1)).all()
     assert powers.tolist() == pytest.approx(expected, abs=2e-5)
+    # The powers may be written over the cosines.
+    assert power(given_as, exponent, out=given_as) is given_as
+    assert given_as.tolist() == powers.tolist()
+    # Rounding may leave a cosine above 1.
+    assert power(np.array([1.0000002], np.float32), exponent).tolist() == [1.0]
 
 
 @pytest.mark.parametrize("share", [0.01, 0.5])
@@ -121,22 +118,6 @@ def test_given_exact_logarithms_a_steep_power_is_exact(
     assert np.abs(rounded - expected).max() <= 1.1 * POWER_ERROR
 
 
-@given(st.lists(st.floats(-1.0, 1.0, width=32), min_size=1), exponents)
-def test_powers_are_written_to_out_which_may_be_the_cosines_themselves(
-    cosines: list[float], exponent: float
-) -> None:
-    given_as = np.array(cosines, np.float32)
-    fresh = power(given_as, exponent)
-    assert given_as.tolist() == np.array(cosines, np.float32).tolist()
-    assert power(given_as, exponent, out=given_as) is given_as
-    assert given_as.tolist() == fresh.tolist()
-
-
-@given(exponents)
-def test_a_cosine_that_rounding_left_above_1_stays_1(exponent: float) -> None:
-    assert power(np.array([1.0000002], np.float32), exponent).tolist() == [1.0]
-
-
 @given(st.lists(st.tuples(*[st.integers(-9, 9)] * 4), min_size=1))
 def test_the_least_and_the_most_of_four_rows_are_those_of_each_column(
     columns: list[tuple[int, int, int, int]],
@@ -153,12 +134,6 @@ def test_halves_go_up(value: float, whole: int) -> None:
     assert half_up(value) == whole
     assert halves_up(np.array([value])).tolist() == [whole]
     assert halves_up(np.array([value], np.float32)).dtype == np.float32
-
-
-@given(st.integers(-4096, 4096).map(lambda sixteenths: sixteenths / 16))
-def test_the_nearest_whole_number_is_at_most_a_half_away(value: float) -> None:
-    assert -Fraction(1, 2) < Fraction(half_up(value)) - Fraction(value) <= Fraction(1, 2)
-    assert halves_up(np.array([value]))[0] == half_up(value)
 
 
 @given(st.lists(st.tuples(*[st.integers(0, 9)] * 4), max_size=9), st.sampled_from([1, 2, 100]))
@@ -188,13 +163,6 @@ def test_a_unit_vector_has_the_direction_of_a_vector_of_any_length(direction: Ve
 @pytest.mark.parametrize("size", [5e-324, 1e-300, 1e300])
 def test_a_unit_vector_of_very_small_or_large_components_is_exact(size: float) -> None:
     assert unit_vector((size, 0.0, -size)) == pytest.approx((math.sqrt(0.5), 0, -math.sqrt(0.5)))
-
-
-def test_vectors_are_divided_by_their_lengths_and_zero_stays_zero() -> None:
-    assert normalized(np.array([[3.0, 0.0], [0.0, 0.0], [4.0, 0.0]])).T.tolist() == [
-        [0.6, 0.0, 0.8],
-        [0, 0, 0],
-    ]
 
 
 def test_the_component_of_the_light_of_a_component_is_the_component() -> None:

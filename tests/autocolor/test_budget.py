@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import logging
-import math
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager
 from pathlib import Path
-from typing import Any
 from unittest.mock import patch
 
 import numpy as np
@@ -18,13 +16,15 @@ from click.testing import CliRunner
 import autocolor
 from autocolor import InputError, Scene, Studio, UsageError, read_scene, render, scene_of, write_scene
 from autocolor import budget as module
-from autocolor.budget import MEMORY, allowed_memory, allowing, require_memory
+from autocolor.budget import MEMORY, allowed_memory, allowing, require_memory, validated_limit
 from autocolor.commands.info import info
 from autocolor.files.conversion import output_named
 from autocolor.files.meshes import npy_tables
 from autocolor.lighting.illumination import BYTES_OF_LIGHT, SHARE
 from autocolor.rendering import rendering
 from ramtek_emu import Ramtek9300
+from tests.small import grid
+from tests.tables import refused
 
 
 @pytest.fixture
@@ -55,11 +55,6 @@ def test_the_budget_allows_as_much_as_it_has_and_names_the_limit_that_allows_mor
         "a.ply: to read it must take at most 4,000.0 MB of memory, not 4,000.1 MB; split it, or allow it with"
         " --limit 1.1 (limit=1.1 in Python)"
     )
-    with allowing(1.1):
-        require_memory(MEMORY + 1, "a.ply: to read it", "split it")
-
-
-def test_the_limit_that_a_message_names_allows_what_was_refused() -> None:
     for tenths in range(11, 3000):
         with allowing(tenths / 10):
             require_memory(MEMORY // 10 * tenths, "it", "split it")
@@ -71,33 +66,43 @@ def test_a_limit_holds_inside_of_its_block_and_none_leaves_it() -> None:
         with allowing(0.5):
             assert allowed_memory() == MEMORY // 2
         assert allowed_memory() == 2 * MEMORY
+        budgets: list[int] = []
+        thread = threading.Thread(target=lambda: budgets.append(allowed_memory()))
+        thread.start()
+        thread.join()
+        # A new thread begins with the usual budget.
+        assert budgets == [MEMORY]
     assert allowed_memory() == MEMORY
     with allowing(1e300):
         require_memory(1e18, "it", "split it")
 
 
-@pytest.mark.parametrize("limit", [0, -1, math.nan, math.inf, 10**400, True, "2"])
-def test_a_limit_must_be_a_finite_number_above_zero(limit: Any) -> None:
-    with pytest.raises(UsageError, match="limit must be a finite number above 0"), allowing(limit):
-        pass
-    with pytest.raises(UsageError, match="limit must be"):
-        read_scene("scenes/pyramid", limit=limit)
-
-
-def test_threads_have_the_usual_budget() -> None:
-    budgets: list[int] = []
-    with allowing(2.0):
-        thread = threading.Thread(target=lambda: budgets.append(allowed_memory()))
-        thread.start()
-        thread.join()
-    assert budgets == [MEMORY]
+test_what_is_refused = refused(
+    validated_limit,
+    [
+        (
+            limit,
+            "limit must be a finite number above 0, a factor for the memory that is allowed, not"
+            f" {text}; give one such as 2",
+        )
+        for limit, text in (
+            (0, "0"),
+            (-1, "-1"),
+            (float("nan"), "nan"),
+            (float("inf"), "inf"),
+            (10**400, repr(10**400)[:60] + "..."),
+            (True, "true"),
+            ("2", "'2'"),
+        )
+    ],
+)
 
 
 def hills() -> Scene:
     """Nine warped quads."""
-    x, y = np.meshgrid(np.arange(4.0), np.arange(4.0))
-    quads = (np.arange(3) + 4 * np.arange(3)[:, None]).reshape(-1, 1) + np.array([0, 1, 5, 4])
-    return scene_of(autocolor.Mesh(np.column_stack([x.ravel(), y.ravel(), (x * y * y).ravel()]), quads))
+    flat = grid(3, 3, (0, 0, 0), (3, 0, 0), (0, 3, 0))
+    x, y, _ = flat.coordinates.T
+    return scene_of(autocolor.Mesh(np.column_stack([x, y, x * y * y]), flat.node_numbers))
 
 
 def plain_text(form: str) -> Callable[[Path], Path]:
@@ -126,19 +131,11 @@ def converted(name: str) -> Callable[[Path], Path]:
     return write
 
 
-OFF = "OFF\n16 9 0\n{nodes}\n{polygons}\n"
-VTK = (
-    "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 16 float\n{nodes}\n"
-    "POLYGONS 9 45\n{polygons}\n"
-)
-GRID = (
-    "# vtk DataFile Version 3.0\nx\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 4 4 1\nORIGIN 0 0 0\n"
-    "SPACING 1 1 1\n"
-)
+VTK = "# vtk DataFile Version 3.0\nx\nASCII\nDATASET "
 FORMATS = {
-    "grid": plain_text(GRID),
-    "OFF": plain_text(OFF),
-    "VTK": plain_text(VTK),
+    "grid": plain_text(f"{VTK}STRUCTURED_POINTS\nDIMENSIONS 4 4 1\nORIGIN 0 0 0\nSPACING 1 1 1\n"),
+    "OFF": plain_text("OFF\n16 9 0\n{nodes}\n{polygons}\n"),
+    "VTK": plain_text(f"{VTK}POLYDATA\nPOINTS 16 float\n{{nodes}}\nPOLYGONS 9 45\n{{polygons}}\n"),
     **{name: converted(name) for name in ("CSV", "OBJ", "PLY", "tables", "store")},
 }
 
@@ -181,21 +178,16 @@ def test_normals_of_many_mapped_polygons_are_refused_before_they_are_computed(tm
 
 
 def test_a_studio_remembers_its_limit(tmp_path: Path) -> None:
-    write_scene(tmp_path / "hills", hills())
-    scene = hills()
-    small = Studio(scene, Ramtek9300(), limit=factor(96 * 640 * 480))
+    scene, needed = hills(), 96 * 640 * 480
+    write_scene(tmp_path / "hills", scene)
+    (tmp_path / "large.ply").write_bytes(bytes(5_000_000))
+    small = Studio(scene, Ramtek9300(), limit=factor(needed))
     small.view(eye=(9.0, 9.0, 9.0))
-    with pytest.raises(InputError, match="to read"):
-        Studio(scene, Ramtek9300(), limit=factor(96 * 640 * 480)).open(_large(tmp_path))
-    with pytest.raises(InputError, match="a picture of 640 x 480 pixels"):
-        Studio(scene, Ramtek9300(), limit=factor(96 * 640 * 480 - 1))
     small.open(tmp_path / "hills")
-
-
-def _large(folder: Path) -> Path:
-    path = folder / "large.ply"
-    path.write_bytes(bytes(5_000_000))
-    return path
+    with pytest.raises(InputError, match="to read"):
+        small.open(tmp_path / "large.ply")
+    with pytest.raises(InputError, match="a picture of 640 x 480 pixels"):
+        Studio(scene, Ramtek9300(), limit=factor(needed - 1))
 
 
 @pytest.fixture
@@ -207,9 +199,7 @@ def runner() -> Iterator[CliRunner]:
 
 def test_a_command_allows_the_limit_of_its_option_until_it_ends(tmp_path: Path, runner: CliRunner) -> None:
     path = converted("OBJ")(tmp_path)
-    refused = runner.invoke(info, [str(path), "--limit", "1e-9"])
-    assert isinstance(refused.exception, InputError)
-    assert "hills.obj: to read " in str(refused.exception)
+    assert isinstance(runner.invoke(info, [str(path), "--limit", "1e-9"]).exception, InputError)
     assert runner.invoke(info, [str(path), "--limit", "0.1"]).exit_code == 0
     assert isinstance(runner.invoke(info, [str(path), "--limit", "nan"]).exception, UsageError)
 
@@ -243,17 +233,18 @@ def unasked() -> AbstractContextManager[object]:
     return patch.object(module, "memory_problem", lambda *_: None)
 
 
-def planes_for(scene: Scene, count: int) -> float:
+def planes_for(scene: Scene, count: float) -> float:
     """The limit that allows the planes of this number of lights, and no more."""
-    return count * BYTES_OF_LIGHT * len(render(scene, 30, 40).pixels) / SHARE / MEMORY * (1 + 1e-9)
+    return factor(count * BYTES_OF_LIGHT * len(render(scene, 30, 40).pixels) / SHARE * (1 + 1e-9))
 
 
-def test_planes_that_do_not_fit_are_computed_in_turns_and_give_the_same_bits() -> None:
-    scene = lit_by(5)
+@pytest.mark.parametrize("lights", [2, 5])
+def test_planes_that_do_not_fit_are_computed_in_turns_and_give_the_same_bits(lights: int) -> None:
+    scene = lit_by(lights)
     whole = render(scene, 30, 40)
-    assert len(whole.light_planes) == 5
-    for fitting in (0.5, 1, 4, 4.99, 5, 6):
-        with allowing(planes_for(scene, 1) * fitting), unasked():
+    assert len(whole.light_planes) == lights
+    for fitting in (0.5, 1, 1.99, 2, lights - 0.01, lights, lights + 1):
+        with allowing(planes_for(scene, fitting)), unasked():
             picture = render(scene, 30, 40)
         assert list(picture.light_planes) == [light.name for light in scene.lights][: int(fitting)]
         assert picture.relative.tobytes() == whole.relative.tobytes()
@@ -283,10 +274,12 @@ def test_an_edit_of_lights_computed_in_turns_is_as_a_fresh_picture(edit: Callabl
     assert again.picture.relative.tobytes() == before.picture.relative.tobytes()
 
 
-def test_rasters_of_planes_ask_the_budget() -> None:
-    picture = render(lit_by(3), 30, 40)
-    needed = 3 * 8 * 30 * 40
+@pytest.mark.parametrize("lights", [2, 3])
+def test_rasters_of_planes_ask_the_budget(lights: int) -> None:
+    picture = render(lit_by(lights), 30, 40)
+    needed = lights * 8 * 30 * 40
     with allowing(factor(needed)):
-        assert len(picture.planes) == 3
-    with pytest.raises(InputError, match="the planes of 3 lights must take"), allowing(factor(needed - 1)):
+        assert len(picture.planes) == lights
+    refused = pytest.raises(InputError, match=f"the planes of {lights} lights must take")
+    with refused, allowing(factor(needed - 1)):
         _ = picture.planes

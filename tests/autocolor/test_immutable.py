@@ -2,32 +2,15 @@ from __future__ import annotations
 
 import copy
 import pickle
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from functools import cache
 from typing import Any
 
 import numpy as np
 import pytest
 
-from autocolor import Light, Picture, Scene, Surface, View, render, scene_of
-from autocolor.arrays import Floats
-from autocolor.immutable import Immutable, read_only
+from autocolor import Light, Paint, Picture, Scene, Surface, View, render, scene_of
 from tests.small import cube
-
-Copy = Callable[[Any], Any]
-
-COPIES = {
-    "pickle": lambda value: pickle.loads(pickle.dumps(value)),
-    "deepcopy": copy.deepcopy,
-    "copy": copy.copy,
-}
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Box(Immutable):
-    numbers: Floats
-    pair: tuple[Floats, str]
-    name: str = "box"
 
 
 def arrays_in(value: object, path: str = "") -> Iterator[tuple[str, np.ndarray[Any, Any]]]:
@@ -45,6 +28,7 @@ def arrays_in(value: object, path: str = "") -> Iterator[tuple[str, np.ndarray[A
             yield from arrays_in(each, f"{path}.{name}")
 
 
+@cache
 def scene_and_picture() -> tuple[Scene, Picture]:
     """A scene and a picture of it, with everything computed that they keep."""
     scene = scene_of(cube())
@@ -54,18 +38,15 @@ def scene_and_picture() -> tuple[Scene, Picture]:
     return scene, picture
 
 
-@pytest.mark.parametrize("way", COPIES)
 @pytest.mark.parametrize("which", [0, 1])
-def test_the_arrays_of_a_scene_and_a_picture_are_read_only_in_copies_too(way: str, which: int) -> None:
+def test_the_arrays_of_a_scene_and_a_picture_are_read_only_in_pickles_too(which: int) -> None:
     value = scene_and_picture()[which]
-    copied = COPIES[way](value)
-    originals, copies = dict(arrays_in(value)), dict(arrays_in(copied))
+    originals, copies = dict(arrays_in(value)), dict(arrays_in(pickle.loads(pickle.dumps(value))))
     assert len(copies) >= 6
     assert originals.keys() == copies.keys()
     for path, array in copies.items():
         assert (array == originals[path]).all()
-        assert not array.flags.writeable, path
-    assert [path for path, array in originals.items() if array.flags.writeable] == []
+    assert [path for each in (originals, copies) for path in each if each[path].flags.writeable] == []
 
 
 def test_a_copy_within_a_process_is_the_value_itself() -> None:
@@ -73,29 +54,14 @@ def test_a_copy_within_a_process_is_the_value_itself() -> None:
     for value in (scene, picture, scene.mesh, scene.view, scene.lights[0], scene.surfaces[0]):
         assert copy.deepcopy(value) is value
         assert copy.copy(value) is value
-    assert copy.deepcopy([scene, picture])[0] is scene
 
 
-def test_a_scene_from_a_pickle_renders_to_the_same_picture() -> None:
+def test_a_scene_from_a_pickle_renders_to_the_same_picture_and_is_edited() -> None:
     scene, picture = scene_and_picture()
     again = pickle.loads(pickle.dumps(scene))
-    assert again is not scene
     assert again.lights == scene.lights
     assert (render(again, 12, 16).intensity == picture.intensity).all()
-    assert again.with_surface("surface", object_color="red").surface("surface").paint.object_color == (
-        255,
-        0,
-        0,
-    )
-
-
-def test_an_array_is_shown_as_its_shape_and_type() -> None:
-    box = Box(read_only(np.zeros((2, 3))), (np.ones(2), "b"))
-    assert repr(box).startswith("Box(numbers=(2, 3) float64, pair=(array([1., 1.]), 'b'), name='box')")
-    unpickled = Box.__new__(Box)
-    unpickled.__setstate__({"numbers": np.zeros(2), "pair": (np.ones(2), "b"), "name": "other"})
-    assert not unpickled.numbers.flags.writeable
-    assert not unpickled.pair[0].flags.writeable
+    assert again.with_surface("surface", blend=0.25).surface("surface").paint.blend == 0.25
 
 
 @pytest.mark.parametrize(
@@ -110,14 +76,14 @@ def test_an_array_is_shown_as_its_shape_and_type() -> None:
     ],
 )
 def test_a_row_shows_what_is_not_its_default_and_can_be_made_of_that(value: object, shown: str) -> None:
-    from autocolor import Paint
-
     assert repr(value) == shown
     assert eval(shown, {"View": View, "Light": Light, "Surface": Surface, "Paint": Paint}) == value
 
 
-def test_no_value_shows_more_than_a_line() -> None:
+def test_no_value_shows_more_than_a_line_and_arrays_show_their_shape_and_type() -> None:
     scene, picture = scene_and_picture()
     for value in (scene, picture, scene.mesh, scene.mesh.normals, *picture.planes.values(), *scene.lights):
         assert len(repr(value)) < 200
         assert "\n" not in repr(value)
+    planes = picture.planes["key"]
+    assert repr(planes) == "LightPlane(diffuse=(12, 16) float32, specular=(12, 16) float32)"

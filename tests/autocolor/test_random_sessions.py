@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import settings
 
 from autocolor import Light, Mesh, Scene, Studio, Surface, read_journal, read_scene, scene_of, write_scene
 from autocolor.journal.autosave import JOURNAL, Autosave
@@ -22,8 +23,11 @@ from tests.autocolor.journal.random_steps import summary
 from tests.autocolor.random_hand import RandomHand
 from tests.ramtek_emu.serving import in_a_thread
 from tests.small import car, grid, held, is_true_to_its_file, wall_scene
+from tests.tables import first
 
-GESTURES = 120
+GESTURES = 40 if settings().max_examples <= 10 else 120
+"""More of them in a thorough run."""
+
 MANY = 60
 
 
@@ -87,7 +91,7 @@ def held_by_a_fresh_display(history: History | Scene) -> tuple[bytes, bytes]:
     return held(display)
 
 
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("name", first(2, SCENES))
 def test_a_random_session_is_shown_recovered_run_as_a_script_undone_and_redone(
     name: str, tmp_path: Path, state: Path
 ) -> None:

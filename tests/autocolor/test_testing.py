@@ -6,14 +6,15 @@ import re
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 import pytest
-from hypothesis import find, given
+from hypothesis import Phase, find, given, settings
+from hypothesis import strategies as st
 
 import ramtek_emu.testing
-from autocolor import InputError, Scene, Studio, UsageError, render, scene_of, testing
+from autocolor import Scene, Studio, render, scene_of, testing
 from autocolor.mapping.ranges import LevelRange
 from autocolor.testing import (
     Recoloring,
@@ -26,15 +27,58 @@ from autocolor.testing import (
 )
 from ramtek_emu import Ramtek9300
 from tests.small import SMALL, car, cube, opened
+from tests.tables import call, refused
+
+Value = TypeVar("Value")
 
 PAGE = Path(__file__).parents[2] / "docs" / "TESTING.md"
 
 
+def simplest(strategy: st.SearchStrategy[Value], is_it: Callable[[Value], bool]) -> Value:
+    """The simplest value that hypothesis finds."""
+    phases = [Phase.generate, Phase.shrink]
+    return find(
+        strategy, is_it, settings=settings(max_examples=200, phases=phases, database=None, derandomize=True)
+    )
+
+
 def test_failing_values_shrink_to_simple_values() -> None:
-    assert find(paints(), lambda paint: paint.object_color[1] > 7).object_color == (0, 8, 0)
-    assert find(recolorings(["hood"]), lambda each: "blend" in each.changes).changes == {"blend": 0.0}
-    ranges = find(level_ranges(), lambda ranges: len(ranges) > 1)
+    assert simplest(paints(), lambda paint: paint.object_color[1] > 7).object_color == (0, 8, 0)
+    recoloring = simplest(recolorings(["hood"]), lambda each: "blend" in each.changes)
+    assert recoloring.changes == {"blend": 0.0}
+    ranges = simplest(level_ranges(), lambda ranges: len(ranges) > 1)
     assert ranges == {"surface 0": LevelRange(1, 2), "surface 1": LevelRange(3, 2)}
+
+
+EDGES: list[tuple[st.SearchStrategy[Any], Callable[[Any], float], tuple[float, ...]]] = [
+    (testing.numbers(0, 1), float, (0, 1)),
+    (testing.numbers(-3, 2), float, (-3, 2)),
+    (testing.coordinates(), float, (-2, 0, 2)),
+    (testing.colors(), min, (0, 255)),
+    (testing.blended_paints(), lambda paint: paint.blend, (0, 1)),
+    (testing.blended_paints(), lambda paint: paint.light_percentage, (0, 100)),
+    (testing.lights(), lambda light: light.intensity, (0,)),
+    (testing.lights(), lambda light: light.cone_angle or 0.0, (0, 1)),
+    (testing.edge_widths(), float, (0, 0.01, 2)),
+    (testing.reflectances(), lambda each: each.diffuse, (0, 2)),
+    (testing.reflectances(), lambda each: each.specular, (0, 2)),
+    (testing.scene_columns()["ambient"], float, (0, 1)),
+    (testing.scalars(), lambda row: row.bands, (2, 20)),
+    (testing.scalars(), lambda row: row.shades or 0, (0, 1)),
+    (testing.scalars(), lambda row: (row.limits or (9, 9))[0], (-8, 0, 9)),
+    (testing.meshes(), lambda mesh: len(mesh.node_numbers), (1, 8)),
+    (testing.meshes(), lambda mesh: len(mesh.coordinates), (3, 18)),
+    (testing.surfaces("body"), lambda surface: surface.levels or 0, (0, 2)),
+    (testing.ramps(), len, (2, 9)),
+]
+
+
+@pytest.mark.parametrize(("strategy", "number", "edge"), [(*row[:2], e) for row in EDGES for e in row[2]])
+def test_a_strategy_reaches_its_edges(
+    strategy: st.SearchStrategy[Any], number: Callable[[Any], float], edge: float
+) -> None:
+    unhurried = settings(max_examples=5000, phases=[Phase.generate], database=None, derandomize=True)
+    find(strategy, lambda value: number(value) == edge, settings=unhurried)
 
 
 CAR = car()
@@ -60,11 +104,9 @@ def test_a_recoloring_of_a_scene_and_of_a_studio_are_the_same(recoloring: Recolo
 def test_a_recoloring_moves_no_word_and_no_entry_of_another_surface(
     scene: Scene, recoloring: Recoloring
 ) -> None:
-    check_recoloring_moves_no_word(scene, recoloring)
-    check_entries_outside_range_stay(scene, recoloring, recoloring.surface)
-    picture = render(scene, 9, 12)
-    check_recoloring_moves_no_word(scene, recoloring, picture=picture)
-    check_entries_outside_range_stay(scene, recoloring, recoloring.surface, picture=picture)
+    for picture in (None, render(scene, 9, 12)):
+        check_recoloring_moves_no_word(scene, recoloring, picture=picture)
+        check_entries_outside_range_stay(scene, recoloring, recoloring.surface, picture=picture)
 
 
 def darker(subject: Any) -> Any:
@@ -102,20 +144,15 @@ def test_words_that_are_written_again_without_a_change_are_counted() -> None:
     assert re.match(r"a recoloring must move no word, but \d+ words were written again$", text), text
 
 
-def test_an_edit_that_needs_another_picture_is_no_recoloring_of_a_picture() -> None:
-    picture = render(car(), 12, 16)
-    text = message_of(lambda: check_recoloring_moves_no_word(car(), darker, picture=picture))
-    assert text == "a recoloring must need no other picture, but the edited scene does"
-
-
 def test_words_of_a_picture_that_move_are_told_of_its_own_size() -> None:
     def few_levels(scene: Scene) -> Scene:
         return scene.with_surface("body", levels=2)
 
-    text = message_of(
-        lambda: check_recoloring_moves_no_word(car(), few_levels, picture=render(car(), 12, 16))
-    )
+    picture = render(car(), 12, 16)
+    text = message_of(lambda: check_recoloring_moves_no_word(car(), few_levels, picture=picture))
     assert " of 192 words moved" in text
+    text = message_of(lambda: check_recoloring_moves_no_word(car(), darker, picture=picture))
+    assert text == "a recoloring must need no other picture, but the edited scene does"
 
 
 @pytest.mark.parametrize(
@@ -183,38 +220,28 @@ def test_of_a_display_elsewhere_the_words_that_the_studio_has_are_compared() -> 
     assert " of 768 words moved" in message_of(lambda: check_recoloring_moves_no_word(studio, darker))
 
 
-@pytest.mark.parametrize(
-    ("check", "error", "message"),
+test_wrong_calls_of_the_checks_are_refused = refused(
+    call,
     [
         (
             lambda: check_recoloring_moves_no_word(car(), lambda scene: None),
-            UsageError,
             "an edit of a scene must return the edited Scene, not None",
         ),
         (
             lambda: check_recoloring_moves_no_word(opened()[0], darker, picture=render(car(), 2, 2)),
-            UsageError,
             "a picture must come with its scene; leave it out, a studio has its own picture",
         ),
         (
             lambda: check_entries_outside_range_stay(car(), Recoloring("body", {}), "bodi"),
-            UsageError,
             "there is no surface 'bodi'; did you mean 'body'?",
         ),
         (
             lambda: check_recoloring_moves_no_word(car(), darker, picture=render(scene_of(cube()), 2, 2)),
-            InputError,
             "the surfaces of a picture must be those of the scene, ['body', 'glass', 'wheels'], not"
             " ['surface']; render this scene, or use the scene that was rendered",
         ),
     ],
 )
-def test_wrong_calls_of_the_checks_are_refused(
-    check: Callable[[], None], error: type[Exception], message: str
-) -> None:
-    with pytest.raises(error) as refusal:
-        check()
-    assert str(refusal.value) == message
 
 
 @pytest.mark.parametrize("module", ["autocolor.testing", "ramtek_emu.testing"])
@@ -229,10 +256,6 @@ def test_without_hypothesis_it_is_named_with_its_command(
 
 
 EXAMPLES = re.findall(r"^```python\n(.*?)^```$", PAGE.read_text("utf-8"), re.DOTALL | re.MULTILINE)
-
-
-def test_the_page_has_three_examples() -> None:
-    assert len(EXAMPLES) == 3
 
 
 @pytest.mark.parametrize("example", EXAMPLES)

@@ -23,8 +23,6 @@ from autocolor.screens.viewer import Viewer
 from ramtek_emu import Ramtek9300
 from tests.virtual_screen import VirtualScreen, virtual_screen
 
-pytest.importorskip("pygame")
-
 ROOT = Path(__file__).parents[2]
 PATIENCE = 60.0
 MESH = "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nv 0 1 0\nv 0 1 1\ng front\nf 1 2 3 4\ng side\nf 1 4 6 5\n"
@@ -84,10 +82,7 @@ class Session:
         return self.tool("getwindowname", self.window()).strip()
 
     def shown(self) -> np.ndarray[tuple[int, ...], np.dtype[np.uint8]]:
-        """The pixels of the window, (height, width, 3).
-
-        There are none if the window is gone: while a window opens, others come and go below it.
-        """
+        """The pixels of the window, (height, width, 3); none while another window comes and goes."""
         left, top, width, height = self.place()
         return self.screen.pixels()[top : top + height, left : left + width]
 
@@ -98,12 +93,15 @@ class Session:
         return tuple(int(values.get(key, 0)) for key in ("X", "Y", "WIDTH", "HEIGHT"))
 
     def shows_the_field(self) -> bool:
-        left, top, width, height = self.place()
+        left, top, width, _ = self.place()
         if not width:
             return False
         self.follow(left, top)
-        blocks = self.display.field().repeat(2, axis=0).repeat(2, axis=1)
-        return np.array_equal(self.screen.pixels()[top : top + height, left : left + width], blocks)
+        return np.array_equal(self.shown(), self.field())
+
+    def field(self) -> np.ndarray[tuple[int, ...], np.dtype[np.uint8]]:
+        """The field of the viewer's display, each pixel a block of 2 x 2."""
+        return self.display.field().repeat(2, axis=0).repeat(2, axis=1)
 
     def follow(self, left: int, top: int) -> None:
         """Move the viewer's pointer to the mouse, and let a message go when its time has passed.
@@ -126,6 +124,9 @@ class Session:
 
     def wait_for_the_field(self) -> None:
         self.wait_for(self.shows_the_field)
+
+    def wait_for_caption(self, part: str) -> None:
+        self.wait_for(lambda: part in self.caption())
 
     def screenshot(self) -> bytes:
         """A screenshot of the viewer of the test; it shows no message then."""
@@ -176,21 +177,23 @@ def test_the_window_shows_the_field_after_every_key(session: Session, tmp_path: 
     assert session.caption() == "autocolor - box* - [front] - redone: front: object color #9ebeef"
 
     session.press("F12")
-    session.wait_for(lambda: "saved" in session.caption())
+    session.wait_for_caption("saved")
     screenshot = tmp_path / "autocolor-0001.png"
     assert session.caption() == f"autocolor - box* - [front] - saved {screenshot}"
-    # The screenshot itself is without message and cursors.
     assert session.screenshot() == screenshot.read_bytes()
 
     session.press("ctrl+s")
-    session.wait_for(lambda: "box.npz" in session.caption())
+    session.wait_for_caption("box.npz")
     assert session.caption() == "autocolor - box - [front] - saved box/scene.toml and box.npz"
     assert read_picture(tmp_path / "box.npz").scene.view == session.viewer.studio.scene.view
     session.press("ctrl+q")
     assert session.end() == (0, "", "")
 
 
-def test_the_state_before_is_shown_while_its_key_is_held(session: Session) -> None:
+@pytest.mark.thorough
+def test_the_state_before_is_shown_while_its_key_is_held_and_unsaved_work_is_left_by_asking_twice(
+    session: Session,
+) -> None:
     session.press("c", "c")
     session.wait_for_the_field()
     session.tool("keydown", "b")
@@ -205,32 +208,19 @@ def test_the_state_before_is_shown_while_its_key_is_held(session: Session) -> No
     session.viewer.on_release("b")
     session.wait_for_the_field()
     assert session.caption().endswith("shown: the present state")
+    session.press("ctrl+q")
+    session.wait_for_caption("close again")
+    assert session.process.poll() is None
+    session.press("ctrl+q")
+    assert session.end() == (0, "", "")
 
 
-def test_a_key_held_down_is_undone_at_once(session: Session) -> None:
+@pytest.mark.thorough
+def test_a_key_held_down_is_undone_at_once_and_after_it_is_released_nothing_goes_on(session: Session) -> None:
     session.hold_right()
     session.press("ctrl+z")
     session.wait_for_the_field()
     assert session.caption().startswith("autocolor - box - [front] - undone: view: ")
-    session.press("ctrl+q")
-    assert session.end() == (0, "", "")
-
-
-def test_a_picture_that_comes_in_line_by_line_is_whole_after_a_key_or_a_while(session: Session) -> None:
-    session.press("w")
-    session.wait_for(lambda: "line by line" in session.caption() and not session.shows_the_field())
-    session.press("Escape")
-    session.wait_for_the_field()
-    session.press("w")
-    session.wait_for(lambda: "line by line" in session.caption() and not session.shows_the_field())
-    # The caption tells the end: the last lines of this picture show nothing that could be missed.
-    session.wait_for(lambda: "line by line" not in session.caption())
-    session.wait_for_the_field()
-    session.press("ctrl+q")
-    assert session.end() == (0, "", "")
-
-
-def test_after_a_key_is_released_nothing_goes_on(session: Session) -> None:
     session.hold_right()
 
     def rests() -> bool:
@@ -241,11 +231,25 @@ def test_after_a_key_is_released_nothing_goes_on(session: Session) -> None:
     session.wait_for(rests)
     # The picture is fine: it is that of the same view in another window.
     session.press("ctrl+s")
-    session.wait_for(lambda: "box.npz" in session.caption())
+    session.wait_for_caption("box.npz")
     view = read_picture(session.folder / "box.npz").scene.view
     session.viewer.studio.edit(session.viewer.studio.scene.replace(view=view))
     session.viewer.tell("")
     session.wait_for_the_field()
+
+
+@pytest.mark.thorough
+def test_a_picture_that_comes_in_line_by_line_is_whole_after_a_key_or_a_while(session: Session) -> None:
+    for key in ("Escape", ""):
+        session.press("w")
+        session.wait_for(lambda: "line by line" in session.caption() and not session.shows_the_field())
+        if key:
+            session.press(key)
+        # The caption tells the end: the last lines of this picture show nothing that could be missed.
+        session.wait_for(lambda: "line by line" not in session.caption())
+        session.wait_for_the_field()
+    session.process.send_signal(signal.SIGINT)
+    assert session.end() == (130, "", "autocolor: interrupted\n")
 
 
 def test_a_drag_turns_the_object_and_is_undone_at_once(session: Session) -> None:
@@ -254,54 +258,7 @@ def test_a_drag_turns_the_object_and_is_undone_at_once(session: Session) -> None
     )
     session.wait_for(lambda: not session.shows_the_field())
     session.tool("mouseup", "1")
-    session.wait_for(lambda: session.caption().startswith("autocolor - box*"))
+    session.wait_for_caption("autocolor - box*")
     session.press("ctrl+z")
     session.wait_for_the_field()
     assert session.caption().startswith("autocolor - box - [front] - undone: view: ")
-
-
-def test_in_full_screen_a_message_stands_on_the_display_and_escape_leaves(session: Session) -> None:
-    def has_the_field() -> bool:
-        left, top, *_ = session.place()
-        session.follow(left + 60, top + 70)
-        blocks = session.display.field().repeat(2, axis=0).repeat(2, axis=1)
-        return np.array_equal(session.shown()[70:1030, 60:1340], blocks)
-
-    session.press("F11")
-    # Without a window manager the window keeps its place, and reaches beyond the screen.
-    session.wait_for(lambda: session.place()[2:] == (1400, 1100))
-
-    def has_told() -> bool:
-        # Until the new window has the keyboard, keys are lost.
-        session.press("9", "9")
-        return session.caption().endswith(session.viewer.message)
-
-    session.wait_for(has_told)
-    session.viewer.on_tick()
-    assert session.viewer.message == "the scene has no light 9"
-    session.wait_for(has_the_field)
-    session.press("F12")
-    screenshot = session.folder / "autocolor-0001.png"
-    session.viewer.tell(f"saved {screenshot}")
-    session.viewer.on_tick()
-    session.wait_for(has_the_field)
-    # The screenshot itself is without message and cursors.
-    assert session.screenshot() == screenshot.read_bytes()
-    session.press("Escape")
-    session.viewer.on_tick()
-    session.wait_for_the_field()
-
-
-def test_unsaved_work_is_left_only_by_asking_twice(session: Session) -> None:
-    session.press("c", "c")
-    session.wait_for_the_field()
-    session.press("ctrl+q")
-    session.wait_for(lambda: "close again" in session.caption())
-    assert session.process.poll() is None
-    session.press("ctrl+q")
-    assert session.end() == (0, "", "")
-
-
-def test_an_interrupt_closes_the_window(session: Session) -> None:
-    session.process.send_signal(signal.SIGINT)
-    assert session.end() == (130, "", "autocolor: interrupted\n")
