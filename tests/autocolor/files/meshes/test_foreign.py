@@ -292,6 +292,7 @@ def archive(*members: bytes) -> bytes:
     return packed.getvalue()
 
 
+@needs_trimesh
 def test_buffers_in_the_folder_are_counted_and_data_in_the_file_are_not(tmp_path: Path) -> None:
     (tmp_path / "sub").mkdir()
     (tmp_path / "sub" / "a b.bin").write_bytes(bytes(1000))
