@@ -52,8 +52,6 @@ def test_an_endless_line_is_refused(tmp_path: Path, suffix: str) -> None:
     assert "car" in refusal(path)
 
 
-
-
 NUMBERS = ["0x10", "1_0", "1,5", "\N{ARABIC-INDIC DIGIT THREE}", "nan", "inf", "1e31", "1e999"]
 COUNTS = [2**31 - 1, -1, 2**31, 2**32 - 1, 2**63]
 CORNERS = [b"0", b"-9", b"99", b"4294967297", b"1.5", b"9" * 25]
