@@ -13,7 +13,6 @@ from hypothesis import strategies as st
 from autocolor import Flap, Light, Scene, Surface, View
 from autocolor.files.scene_toml.scene_meshes import MeshEntry
 from autocolor.scene.columns import (
-    REFUSED,
     WORLD_UNITS,
     BarRange,
     Column,
@@ -29,10 +28,9 @@ from autocolor.scene.columns import (
     from_plain,
     keys_of,
     replaced,
-    to_plain,
 )
 from autocolor.scene.kinds import Number, Text, Whole
-from autocolor.testing import lights, scenes, surfaces, views
+from autocolor.testing import scenes
 from tests.autocolor.strategies import of_mesh
 from tests.small import wall_scene
 from tests.tables import call, refused
@@ -122,10 +120,10 @@ def test_a_bar_has_round_steps_of_at_most_a_hundredth(low: float, high: float, s
     assert bar_within(low, high) == BarRange(low, high, step)
 
 
-def test_a_refused_value_breaks_no_rule_again() -> None:
-    assert REFUSED != REFUSED
-    assert [REFUSED > 0, REFUSED < 0, REFUSED >= 0, REFUSED <= 0] == [False] * 4
-    assert REFUSED is not None
+def test_each_of_64_unknown_keys_is_a_problem() -> None:
+    with pytest.raises(RowError) as caught:
+        from_plain(Span, {"name": "a", **{f"key{number}": 0 for number in range(63)}})
+    assert len(caught.value.row_problems) == 63
 
 
 def test_problems_say_where_they_are() -> None:
@@ -160,11 +158,6 @@ def test_a_change_keeps_nothing_that_was_computed_of_the_row() -> None:
     assert turned.axes[2].tolist() == [1, 0, 0]
 
 
-@given(lights() | surfaces("body") | views())
-def test_a_row_comes_back_from_its_plain_values(row: Row) -> None:
-    assert from_plain(type(row), to_plain(row)) == row
-
-
 def test_an_edit_costs_the_most_of_what_it_changes() -> None:
     span = Span("a", 1)
     assert cost(span, Span("a", 1)) is None
@@ -179,6 +172,9 @@ def test_an_edit_costs_the_most_of_what_it_changes() -> None:
     [
         ({"name": "hood"}, Tier.MIX),
         ({"exponent": 3}, Tier.LIGHT),
+        ({"base_reflectance": 0.04}, Tier.LIGHT),
+        ({"refractive_index": 1.5}, Tier.LIGHT),
+        ({"fresnel_curve": [[0, 0.04], [90, 1]]}, Tier.LIGHT),
         ({"diffuse": 0.1}, Tier.MIX),
         ({"blend": 0.1}, Tier.ENTRIES),
         ({"object_color": "#102030"}, Tier.ENTRIES),
@@ -296,18 +292,6 @@ test_rows_that_break_a_rule_are_refused_with_every_problem_and_their_noun_and_na
         (
             lambda: from_plain(Span, {f"key{number}": 0 for number in range(65)}),
             "span: it must be a table of at most 64 keys, not 65",
-        ),
-        (
-            lambda: from_plain(Span, {f"key{number}": 0 for number in range(64)}),
-            "\n".join(
-                [
-                    *(
-                        f"span: {NO_FIELD} 'key{number}'; choose 'name', 'begin', 'end' or 'length'"
-                        for number in range(64)
-                    ),
-                    f"span: name {MISSING} missing; add it",
-                ]
-            ),
         ),
     ],
 )

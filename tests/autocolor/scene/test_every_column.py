@@ -13,7 +13,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
 
 from autocolor import (
     Light,
@@ -35,7 +34,6 @@ from autocolor import (
     write_scene,
 )
 from autocolor.commands.settings import with_settings
-from autocolor.files.picture_file import plain_scene
 from autocolor.files.settings import scene_with
 from autocolor.journal.history import History
 from autocolor.journal.journal import MeshesBeside, first_line, step_line
@@ -58,7 +56,6 @@ from autocolor.scene.scalar import Scalar
 from autocolor.scene.scene import costs_at_least
 from autocolor.scene.surfaces import Part, Surface
 from autocolor.scene.view import View
-from tests.autocolor.linked_scenes import linked_scenes
 from tests.small import cube, grid
 
 Values = Mapping[str, Any]
@@ -322,12 +319,6 @@ def by_picture_file(scene: Scene, folder: Path, session: Session) -> Scene:
     return read_picture(folder / "scene.npz").scene
 
 
-def by_plain_values(scene: Scene, folder: Path, session: Session) -> Scene:
-    plain = json.loads(json.dumps(plain_scene(scene)))
-    fields = {name: plain[name] for name in fields_of(Scene) if name in plain}
-    return from_plain(Scene, {**fields, "mesh": scene.mesh})
-
-
 def replayed(history: History, folder: Path, session: Session) -> History:
     """The history that the journal of a history gives."""
     meshes = MeshesBeside()
@@ -363,7 +354,6 @@ WAYS = (
     by_scene_file,
     by_table_store,
     by_picture_file,
-    by_plain_values,
     by_journal,
     by_start_of_journal,
     by_script,
@@ -484,41 +474,6 @@ def test_a_far_light_keeps_all_columns_but_its_place_and_its_links_to_parts(tabl
     assert {name for name in plain if far.get(name) != plain[name]} <= NOT_FAR_AWAY
     assert "only_parts" not in far
     assert "except_parts" not in far
-
-
-NOT_DRAWN = {("", "words")}
-"""Words for normals have tests of their own, as no scalar goes with them."""
-
-
-@pytest.mark.thorough
-def test_the_random_scenes_have_other_values_in_every_column() -> None:
-    seen: set[tuple[str, str]] = set()
-
-    @settings(max_examples=100, derandomize=True, database=None)
-    @given(linked_scenes())
-    def draw(scene: Scene) -> None:
-        tables: dict[str, list[Row]] = {
-            "": [scene],
-            "view": [scene.view],
-            "views": list(scene.views),
-            "scalar": [] if scene.scalar is None else [scene.scalar],
-            "parts": list(scene.parts),
-            "surfaces": list(scene.surfaces),
-            "lights": list(scene.lights),
-            "flaps": [flap for each in scene.lights for flap in vars(each.flaps).values() if flap],
-            "half_spaces": [row for each in scene.lights for row in each.half_spaces],
-        }
-        for table, rows in tables.items():
-            for row in rows:
-                plain = to_plain(row)
-                seen.update(
-                    (table, key)
-                    for key in EDITS[table]
-                    if key in plain and plain[key] != default_of(CLASSES[table], key)
-                )
-
-    draw()
-    assert {(table, key) for table in EDITS for key in EDITS[table]} - seen == NOT_DRAWN
 
 
 def numbers_in(value: object) -> list[float]:

@@ -9,31 +9,33 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import (
+    Flap,
+    Flaps,
     HalfSpace,
     InputError,
     Light,
+    Rig,
     Scene,
     View,
     render,
+    scene_of,
 )
 from autocolor.checks import Vector
 from autocolor.explanation.point import unit
+from autocolor.scene.columns import from_plain, to_plain
 from autocolor.scene.following import (
-    DOWN_TO_UP,
     attached,
-    changes_in_frame,
     detached,
-    eye_frame,
     followers_of,
     frame_of,
-    in_world,
-    light_frame,
     lights_in_world,
     names_to_follow,
 )
-from autocolor.testing import directions, lights, vectors, views
-from tests.small import car, wall_scene
-from tests.tables import refused
+from autocolor.scene.lights import AXES
+from autocolor.scene.rigs import mirrored
+from autocolor.testing import coordinates, directions, lights, scenes, vectors
+from tests.small import car, cube, wall_scene
+from tests.tables import call, refused
 
 VIEW = View((0.0, -4.0, 0.0), target=(0.0, 0.0, 0.0))
 
@@ -47,47 +49,18 @@ def followed_car() -> Scene:
     )
 
 
-@given(views())
-def test_the_frame_of_the_eye_is_that_of_the_picture(view: View) -> None:
-    frame = eye_frame(view)
-    right, forward, up = frame.axes
-    assert frame.point_to_world((0.0, 0.0, 0.0)) == view.eye
-    assert np.array_equal([right, -up, forward], view.axes)
-    assert np.cross(right, forward) == pytest.approx(up, abs=1e-12)
-    assert np.array_equal(DOWN_TO_UP @ DOWN_TO_UP.T, np.eye(3))
-
-
-@given(views(), vectors(), vectors(), directions())
-def test_a_frame_converts_to_the_world_and_back(
-    view: View, position: Vector, point: Vector, direction: Vector
-) -> None:
-    for frame in (eye_frame(view), light_frame(Light("light", position, direction=direction))):
-        assert frame.point_from_world(frame.point_to_world(point)) == pytest.approx(point, abs=1e-12)
-        turned = frame.direction_to_world(direction)
-        assert frame.direction_from_world(turned) == pytest.approx(direction, abs=1e-12)
-        assert math.hypot(*turned) == pytest.approx(math.hypot(*direction))
-        assert math.dist(frame.point_to_world(point), frame.origin) == pytest.approx(math.hypot(*point))
-
-
 @pytest.mark.parametrize("angle", [0.0, 30.0, 90.0, -135.0])
 def test_a_light_to_the_right_of_the_eye_stays_there_when_the_picture_is_turned(angle: float) -> None:
     view = VIEW.replace(angle=angle)
-    row = Light("lamp", (1.0, 0.0, 0.0), direction=(-1.0, 4.0, 0.0), follows="eye")
+    row = Light("lamp", (1.0, 2.0, 3.0), direction=(-1.0, 4.0, 2.0), follows="eye")
     (light,) = lights_in_world((row,), view)
     camera = view.axes @ (np.array(light.position) - np.array(view.eye))
-    assert camera == pytest.approx([1.0, 0.0, 0.0], abs=1e-12)
+    # Right, down and forward.
+    assert camera == pytest.approx([1.0, -3.0, 2.0], abs=1e-12)
     assert light.axis is not None
-    assert view.axes @ np.array(light.axis) == pytest.approx(unit((-1.0, 0.0, 4.0)), abs=1e-12)
+    assert view.axes @ np.array(light.axis) == pytest.approx(unit((-1.0, -2.0, 4.0)), abs=1e-12)
     (aimed,) = lights_in_world((row.replace(aim=(0.0, 4.0, 0.0)),), view)
     assert aimed.aim == pytest.approx((0.0, 0.0, 0.0), abs=1e-12)
-
-
-def test_lights_that_follow_nothing_are_the_same_rows() -> None:
-    scene = car()
-    assert scene.lights_in_world is scene.lights
-    assert scene.light_in_world("key") is scene.light("key")
-    assert in_world(scene.light("key"), None) is scene.light("key")
-    assert changes_in_frame({"position": (1, 2, 3)}, None) == {"position": (1, 2, 3)}
 
 
 def test_a_light_that_follows_an_aim_moves_with_it() -> None:
@@ -114,6 +87,7 @@ def test_lights_follow_each_other_in_a_chain_in_any_order() -> None:
     assert first.position == VIEW.eye
 
 
+@pytest.mark.thorough
 def test_a_chain_of_thousands_is_followed() -> None:
     count = 3000
     rows = [Light("0", (0, 0, 0), aim=(1, 0, 0))]
@@ -286,6 +260,122 @@ test_a_followed_light_keeps_its_aim_its_name_and_its_place_in_the_scene = refuse
         (
             lambda scene: scene.without_light("key"),
             "light 'key' must stay while 'fill' follows it; let 'fill' follow something else",
+        ),
+    ],
+)
+
+
+@given(scenes())
+def test_a_rig_on_its_own_scene_gives_the_same_lights_exactly(scene: Scene) -> None:
+    assert scene.replace(lights=()).with_rig(scene.rig).lights == scene.lights
+    assert from_plain(Rig, to_plain(scene.rig)) == scene.rig
+
+
+def test_a_rig_is_fitted_to_the_middle_and_the_size_of_the_object() -> None:
+    rig = Rig(
+        (0, 0, 0),
+        (1, 1, 1),
+        (
+            Light(
+                "key",
+                (0.5, -3.5, 2.5),
+                aim=(0.5, 0.5, 0.0),
+                flaps=Flaps(y=Flap(0, 1, False), z=Flap(0.25)),
+            ),
+            Light("sun", (0.5, 0.5, 9.5), direction=(0, 1, -1)),
+        ),
+    )
+    key, sun = rig.fitted((-1, -1, -1), (1, 1, 1))
+    assert key == Light("key", (0, -8, 4), aim=(0, 0, -1), flaps=Flaps(z=Flap(-0.5), y=Flap(-1, 1, on=False)))
+    assert sun == Light("sun", (0, 0, 18), direction=(0, 1, -1))
+
+
+def test_an_object_twice_as_large_looks_the_same_with_a_fitted_rig() -> None:
+    planes = (
+        HalfSpace("across", (0.2, 0, 0.3), (1, 0, 1), edge_width=0.3),
+        HalfSpace("door", (-0.1, 0, 0), (1, 0, 0), edge_width=0.2, carried=True),
+    )
+    flaps = Flaps(x=Flap(0.1, edge_width=0.4), z=Flap(0.3))
+    key = Light("key", (-2, -3, 4), aim=(0.5, 0.2, 0.9), concentration=6, flaps=flaps, half_spaces=planes)
+    small = scene_of(cube(), lights=[key, key.replace(name="bare", half_spaces=(), flaps=Flaps())])
+    large = scene_of(cube(2.0), lights=()).with_rig(small.rig)
+    for is_on in (True, False):
+        each_alone = (each.with_light("bare", on=is_on) for each in (small, large))
+        one, other = (render(each, 24, 32).intensity for each in each_alone)
+        assert np.ptp(one) > 0.01
+        assert np.allclose(one, other, atol=1e-5)
+
+
+def test_an_object_without_size_moves_the_lights_and_keeps_distances() -> None:
+    rig = Rig((1, 1, 1), (1, 1, 1), (Light("key", (1, 1, 3)),))
+    assert rig.fitted((0, 0, 0), (2, 2, 4))[0].position == (1, 1, 4)
+    assert Rig((0, 0, 0), (2, 2, 4), rig.lights).fitted((1, 1, 1), (1, 1, 1))[0].position == (1, 1, 2)
+
+
+def test_lights_that_follow_keep_their_place_in_sizes_of_the_object() -> None:
+    rig = Rig(
+        (0, 0, 0),
+        (1, 1, 1),
+        (
+            Light("key", (0.5, -3.5, 2.5), aim=(0.5, 0.5, 0.0)),
+            Light("beside", (0, 0, 2), aim=(1, 0, 0), follows="key"),
+            Light("lamp", (0, 0, 0), follows="eye"),
+            Light("left", (-1, 0, 0), direction=(1, 3, 0), follows="eye"),
+        ),
+    )
+    _, beside, lamp, left = rig.fitted((-1, -1, -1), (1, 1, 1))
+    assert beside == Light("beside", (0, 0, 4), aim=(2, 0, 0), follows="key")
+    assert lamp == rig.lights[2]
+    assert left == Light("left", (-2, 0, 0), direction=(1, 3, 0), follows="eye")
+    small = scene_of(cube(), lights=rig.lights)
+    large = scene_of(cube(2.0), lights=()).with_rig(small.rig)
+    one, other = (render(each, 24, 32).intensity for each in (small, large))
+    assert np.allclose(one, other, atol=1e-5)
+
+
+@given(lights(), st.sampled_from(AXES), coordinates())
+def test_the_half_spaces_of_a_mirrored_light_are_mirrored_in_the_world(
+    light: Light, axis: str, about: float
+) -> None:
+    there = mirrored(light, "there", axis, about)
+    number = AXES.index(axis)
+    for plane, copy in zip(light.half_spaces, there.half_spaces, strict=True):
+        assert copy.carried == plane.carried
+        one, other = detached(plane, light), detached(copy, there)
+        point, direction = list(one.point), list(one.direction)
+        point[number], direction[number] = 2 * about - point[number], -direction[number]
+        assert other.point == pytest.approx(point, abs=1e-9)
+        assert other.direction == pytest.approx(direction, abs=1e-9)
+
+
+def test_position_aim_and_one_flap_are_mirrored_and_nothing_else() -> None:
+    light = Light(
+        "key", (1, 2, 3), aim=(0, 1, 0), concentration=4, flaps=Flaps(Flap(0, 1), Flap(minimum=0.5))
+    )
+    assert mirrored(light, "other", "y", 1.0) == Light(
+        "other", (1, 0, 3), aim=(0, 1, 0), concentration=4, flaps=Flaps(Flap(0, 1), Flap(maximum=1.5))
+    )
+    directed = Light("key", (1, 2, 3), direction=(0, 1, -1))
+    assert repr(mirrored(directed, "key", "x", 0.0).direction) == "(0.0, 1.0, -1.0)"
+    assert mirrored(directed, "key", "z", 0.0).direction == (0, 1, 1)
+
+
+test_a_rig_or_a_mirror_that_breaks_a_rule_is_refused = refused(
+    call,
+    [
+        (
+            lambda: Rig((0, 2, 0), (1, 1, 1)),
+            "rig: the minimum of y must be at most the maximum, not 2 to 1; exchange them",
+        ),
+        (
+            lambda: mirrored(Light("key", (0, 0, 0)), "other", "X", math.pi),
+            "an axis must be 'x', 'y' or 'z', not 'X'",
+        ),
+        (
+            lambda: Rig((0, 0, 0), (1e-300, 0, 0), (Light("key", (0, 0, 1)),)).fitted(
+                (0, 0, 0), (1e30, 0, 0)
+            ),
+            "light 'key': position must be three finite numbers of at most 1e36, not (-inf, nan, inf)",
         ),
     ],
 )

@@ -20,7 +20,6 @@ from autocolor.scene.mesh_faults import (
     polygon_shapes,
     quad_shapes,
     repeated_polygons,
-    repeated_rows,
 )
 from tests.small import cube
 
@@ -155,15 +154,6 @@ def test_polygons_without_area_are_no_quads_of_another_shape() -> None:
     found = polygon_shapes(places, np.array([[0, 1, 2, 3], [0, 1, 2, 2], [0, 0, 0, 0], [0, 1, 4, 4]]))
     assert found.without_area.tolist() == [0, 1, 2]
     assert len(found.warped) == len(found.concave) == len(found.crossed) == 0
-
-
-rows = st.lists(st.tuples(*[st.integers(-2, 2)] * 3), max_size=30)
-
-
-@given(rows)
-def test_repeated_rows_agree_with_a_count(table: list[tuple[int, int, int]]) -> None:
-    expected = [row for row, values in enumerate(table) if table.count(values) > 1]
-    assert repeated_rows(np.array(table, np.int64).reshape(-1, 3)).tolist() == expected
 
 
 def test_polygons_are_the_same_in_any_order_of_their_nodes() -> None:

@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import itertools
 import math
 from functools import partial
 from itertools import pairwise
@@ -15,7 +14,7 @@ from autocolor import Surface
 from autocolor.arrays import Singles, power
 from autocolor.explanation.light import specular_factor, specular_growth
 from autocolor.explanation.point import dot, plus
-from autocolor.scene.columns import Field, Tier, cost, difference, fields_of
+from autocolor.scene.columns import Field, difference, fields_of
 from autocolor.scene.kinds import AngleCurve
 from autocolor.scene.reflection_models import (
     MODELS,
@@ -87,18 +86,6 @@ def test_the_factor_is_that_of_the_slow_twin(
         assert factor_at(model, light, eye) == pytest.approx(expected, rel=2e-3, abs=error)
 
 
-@pytest.mark.parametrize("roughness", [0.15, 0.3, 0.6, 1.0])
-@pytest.mark.parametrize("normal_reflectance", [0.02, 0.3, 1.0])
-def test_cook_torrance_is_the_slow_twin_all_around(roughness: float, normal_reflectance: float) -> None:
-    model = CookTorrance(roughness, normal_reflectance)
-    for polar, eye_polar, turn in itertools.product(
-        (0.1, 0.5, 0.9, 1.3), (0.0, 0.3, 0.7, 1.1, 1.5), (0, 1, 2, 3)
-    ):
-        light, eye = directions(polar, turn), directions(eye_polar, 0.0)
-        expected = specular_factor(model, light, [0.0, 0.0, 1.0], eye)
-        assert factor_at(model, light, eye) == pytest.approx(expected, rel=1e-3, abs=1e-6)
-
-
 @pytest.mark.parametrize(
     ("model", "polar", "eye_polar", "turn", "expected"),
     [
@@ -149,12 +136,6 @@ def test_exact_vectors_make_a_narrow_highlight_exact(model: ReflectionModel, pol
     assert found == pytest.approx(expected, abs=1e-4 * max(expected))
 
 
-@given(models)
-def test_the_factor_is_1_at_normal_incidence_and_view(model: ReflectionModel) -> None:
-    up = [0.0, 0.0, 1.0]
-    assert factor_at(model, up, up) == pytest.approx(1, rel=1e-5)
-
-
 @given(models, st.lists(st.tuples(cosines, cosines, cosines), min_size=1))
 def test_no_cosines_give_anything_but_a_number_from_0_to_the_largest(
     model: ReflectionModel, some: list[tuple[float, float, float]]
@@ -173,19 +154,6 @@ def test_phong_is_the_power_of_one_cosine_and_asks_for_no_other(
     eye = np.array(cosines, np.float32)
     got = Phong(exponent).specular(Cosines(np.ones_like(eye), eye, unused), out=np.empty_like(eye))
     assert got.tobytes() == power(eye, exponent).tobytes()
-
-
-@given(st.lists(st.tuples(cosines, cosines, cosines), min_size=1), exponents, growths())
-def test_a_growth_multiplies_the_factor_without_it_by_a_function_of_incidence_alone(
-    some: list[tuple[float, float, float]], exponent: float, growth: SpecularGrowth
-) -> None:
-    rows = [list(column) for column in zip(*some, strict=True)]
-    times = growth.factor(np.array(rows[0], np.float32))
-    for model in (Phong, BlinnPhong):
-        to_plain = np.array(specular(model(exponent), *rows), np.float32)
-        grown = specular(model(exponent, growth), *rows)
-        with np.errstate(under="ignore"):
-            assert grown == (to_plain if times is None else to_plain * times).tolist()
 
 
 @given(st.lists(st.tuples(cosines, cosines, cosines), min_size=1), exponents, growths())
@@ -276,20 +244,6 @@ def test_a_curve_is_met_at_its_points_and_is_linear_in_the_angle_between_them(cu
         assert factor(growth, np.array([middle]))[0] == pytest.approx(share / curve[0][1], rel=1e-5)
 
 
-def test_a_curve_through_points_of_schlicks_is_close_to_it() -> None:
-    shares = 0.04 * schlick(0.04, np.cos(np.radians(np.arange(91.0))))
-    curve = tuple(zip(range(91), np.clip(shares, 0, 1).tolist(), strict=True))
-    assert all_close(factor(SpecularGrowth(fresnel_curve=curve)), schlick(0.04), rel=2e-3)
-
-
-@given(growths(), numbers(0, 1))
-def test_the_growth_is_that_of_the_slow_twin(growth: SpecularGrowth, cosine: float) -> None:
-    single = np.array([cosine], np.float32)
-    found = growth.factor(single)
-    expected = specular_growth(growth, float(single[0]))
-    assert (1.0 if found is None else float(found[0])) == pytest.approx(expected, rel=1e-5, abs=1e-6)
-
-
 @given(growths(), st.lists(numbers(-2, 2), min_size=1))
 def test_cosines_out_of_their_range_count_as_its_ends(growth: SpecularGrowth, cosines: list[float]) -> None:
     given_as = np.array(cosines, np.float32)
@@ -321,11 +275,6 @@ def test_the_factor_is_1_at_normal_incidence_and_its_largest_is_reached(growth: 
         assert growth.largest == pytest.approx(max(shares) / shares[0])
 
 
-def test_without_a_material_there_is_nothing_to_multiply_by() -> None:
-    assert SpecularGrowth().factor(COSINES) is None
-    assert (SpecularGrowth().largest, SpecularGrowth().normal_reflectance) == (1, None)
-
-
 def test_another_column_of_the_growth_removes_the_first() -> None:
     surface = Surface("body")
     for way in WAYS:
@@ -333,14 +282,6 @@ def test_another_column_of_the_growth_removes_the_first() -> None:
         assert surface.reflectance.model == Phong(growth=SpecularGrowth(**way))
         assert before.replace(**difference(before, surface)) == surface  # type: ignore[arg-type]
     assert surface.replace(fresnel_curve=None) == Surface("body")
-
-
-def test_an_edit_of_the_growth_costs_the_lights_on_its_surface_and_an_edit_of_s_a_sum() -> None:
-    surface = Surface("body")
-    for way in WAYS:
-        assert cost(surface, surface.replace(**way)) == Tier.LIGHT
-    grown = surface.replace(refractive_index=1.5)
-    assert cost(grown, grown.replace(specular=0.9)) == Tier.MIX
 
 
 GO_WITH = (

@@ -42,12 +42,9 @@ def meshio(point_data: Any = None, cell_data: Any = None, **cells: Any) -> Any:
     ("source", "polygons"),
     [
         ((np.array(POINTS), np.array(TRIANGLES)), [[0, 1, 4, 4], [1, 2, 4, 4]]),
-        ((POINTS, [QUAD]), [QUAD]),
         ((POINTS, [QUAD, *TRIANGLES]), [QUAD, [0, 1, 4, 4], [1, 2, 4, 4]]),
         ((POINTS, (np.array(QUAD), np.array(TRIANGLES[0], np.uint8))), [QUAD, [0, 1, 4, 4]]),
         ((trimesh(TRIANGLES),), [[0, 1, 4, 4], [1, 2, 4, 4]]),
-        ((polydata(*TRIANGLES),), [[0, 1, 4, 4], [1, 2, 4, 4]]),
-        ((polydata(QUAD),), [QUAD]),
         ((polydata(TRIANGLES[0], QUAD, TRIANGLES[1]),), [[0, 1, 4, 4], QUAD, [1, 2, 4, 4]]),
         ((meshio(triangle=np.array(TRIANGLES)),), [[0, 1, 4, 4], [1, 2, 4, 4]]),
         ((meshio(quad=np.array([QUAD]), triangle=np.array(TRIANGLES)),), [QUAD, [0, 1, 4, 4], [1, 2, 4, 4]]),

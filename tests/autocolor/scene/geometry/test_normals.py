@@ -3,21 +3,24 @@ from __future__ import annotations
 import itertools
 import math
 import tracemalloc
+from collections.abc import Callable
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Mesh
 from autocolor.arrays import Singles
+from autocolor.scene.geometry import curvature
 from autocolor.scene.geometry import normals as normals_module
 from autocolor.scene.geometry.normals import (
     node_normals,
     polygon_normals,
 )
 from autocolor.testing import meshes
-from tests.small import cube, grid, sphere
+from tests.small import cube, grid, sphere, wall
 from tests.tables import first
 
 EPSILON = float(np.finfo(np.float32).eps)
@@ -80,25 +83,6 @@ def test_an_edge_is_sharp_beyond_the_crease_angle(fold: float, smooth: bool) -> 
     assert at_ridge == pytest.approx(expected, abs=EPSILON)
 
 
-def test_normals_are_not_shared_across_parts() -> None:
-    whole = sphere(24, 12)
-    halves = Mesh(
-        whole.coordinates, whole.node_numbers, np.arange(len(whole.node_numbers)) // 24 % 2, ("a", "b")
-    )
-    assert len(halves.normals.vectors) > len(whole.normals.vectors)
-
-
-def test_nodes_at_the_same_place_count_as_one() -> None:
-    whole = sphere(24, 12)
-    nodes = whole.node_numbers
-    torn = Mesh(
-        whole.coordinates[nodes.ravel()], np.arange(nodes.size).reshape(-1, 4), whole.part_numbers, ("all",)
-    )
-    # The triangles of the poles have two nodes in one place here.
-    assert corner_normals(torn)[24:-24] == pytest.approx(corner_normals(whole)[24:-24], abs=EPSILON)
-    assert np.abs(corner_normals(torn)[:, :3] - corner_normals(whole)[:, :3]).max() <= EPSILON
-
-
 def test_normals_that_cancel_leave_each_polygon_its_own() -> None:
     # Three panels around one edge, 120 degrees apart: their sum is nothing.
     panels = Mesh(
@@ -126,15 +110,6 @@ def test_every_normal_is_a_unit_vector_whatever_the_mesh(mesh: Mesh, size: float
     assert normals.numbers.shape == (len(mesh.node_numbers), 4)
     assert normals.numbers.max(initial=-1) < len(normals.vectors)
     assert np.linalg.norm(normals.vectors, axis=1) == pytest.approx(np.ones(len(normals.vectors)))
-
-
-@given(meshes())
-def test_a_flat_polygon_alone_has_its_own_normal(mesh: Mesh) -> None:
-    alone = mesh.coordinates[mesh.node_numbers[:1]]
-    own = polygon_normals(alone.transpose(2, 1, 0))[:, 0]
-    normals = node_normals(mesh.coordinates, mesh.node_numbers[:1], mesh.part_numbers[:1])
-    if own.any() and len({tuple(corner) for corner in alone[0].tolist()}) == 4:
-        assert normals.vectors[normals.numbers[0]] == pytest.approx(np.tile(own, (4, 1)), abs=EPSILON)
 
 
 def test_a_polygon_without_area_adds_nothing() -> None:
@@ -222,3 +197,131 @@ def test_making_the_normals_needs_few_bytes_a_polygon() -> None:
     finally:
         tracemalloc.stop()
     assert peak < 250 * len(mesh.node_numbers)
+
+
+Array = npt.NDArray[np.float64]
+
+
+def nodes_of_normals(mesh: Mesh) -> npt.NDArray[np.intp]:
+    """A node at each normal."""
+    nodes = np.zeros(len(mesh.normals.vectors), np.intp)
+    nodes[mesh.normals.numbers.ravel()] = mesh.node_numbers.ravel()
+    return nodes
+
+
+def places(mesh: Mesh) -> Array:
+    """The coordinates at each normal, (normals, 3)."""
+    found: Array = mesh.coordinates[nodes_of_normals(mesh)]
+    return found
+
+
+def torus(around: int, across: int, ring: float = 1.0, tube: float = 0.4) -> Mesh:
+    """A ring about z of `around` x `across` quads, facing outward."""
+    turn, bend = np.meshgrid(np.arange(around) * 2 * np.pi / around, np.arange(across) * 2 * np.pi / across)
+    off_axis = ring + tube * np.cos(bend)
+    coordinates = np.stack([off_axis * np.cos(turn), off_axis * np.sin(turn), tube * np.sin(bend)], axis=-1)
+    row, column = np.arange(across)[:, None], np.arange(around)
+
+    def node(row: npt.NDArray[np.intp], column: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]:
+        return row % across * around + column % around
+
+    corners = (node(row, column), node(row, column + 1), node(row + 1, column + 1), node(row + 1, column))
+    quads = np.stack(corners, axis=-1).reshape(-1, 4)
+    return Mesh(coordinates.reshape(-1, 3), quads, part_names=("torus",))
+
+
+def heights(columns: int, rows: int, height: Callable[[Array, Array], Array], size: float = 1.0) -> Mesh:
+    """A patch around the origin over [-size, size] in x and y, facing up."""
+    flat = grid(columns, rows, (-size, -size, 0.0), (2 * size, 0.0, 0.0), (0.0, 2 * size, 0.0))
+    x, y, _ = flat.coordinates.T
+    return Mesh(np.stack([x, y, height(x, y)], axis=1), flat.node_numbers, part_names=("patch",))
+
+
+def test_the_mean_curvature_of_a_sphere_is_the_inverse_of_its_radius() -> None:
+    for columns, rows, radius in ((60, 120, 0.5), (120, 60, 20.0)):
+        mesh = sphere(columns, rows, radius)
+        assert mesh.curvatures.mean * radius == pytest.approx(1, abs=0.01)
+        assert mesh.curvatures.gaussian * radius**2 == pytest.approx(1, abs=0.01)
+        inward = Mesh(mesh.coordinates, mesh.node_numbers[:, ::-1], part_names=("sphere",))
+        assert inward.curvatures.mean * radius == pytest.approx(-1, abs=0.03)
+
+
+@pytest.mark.parametrize("tube", first(2, [0.7, 0.25, 0.4]))
+@pytest.mark.parametrize("sides", first(1, [(80, 160), (160, 80)]))
+def test_both_curvatures_of_a_torus_are_those_of_the_formula(tube: float, sides: tuple[int, int]) -> None:
+    mesh = torus(*sides, tube=tube)
+    x, y, _ = places(mesh).T
+    cosine = (np.hypot(x, y) - 1) / tube
+    of_ring = cosine / (1 + tube * cosine)
+    mean, gaussian = (1 / tube + of_ring) / 2, of_ring / tube
+    assert mesh.curvatures.mean == pytest.approx(mean, abs=0.005 * np.abs(mean).max())
+    assert mesh.curvatures.gaussian == pytest.approx(gaussian, abs=0.005 * np.abs(gaussian).max())
+
+
+def test_a_flat_surface_has_no_curvature() -> None:
+    for mesh in (cube(), wall(5, 3), grid(4, 4, (1.0, 2.0, 3.0), (1.0, 5.0, 2.0), (-3.0, 0.0, 1.0))):
+        assert mesh.curvatures.mean == pytest.approx(0, abs=1e-6)
+        assert mesh.curvatures.gaussian == pytest.approx(0, abs=1e-9)
+
+
+@pytest.mark.parametrize("bands", [1, 5])
+def test_a_cylinder_bends_one_way_up_to_its_rims(bands: int) -> None:
+    count, radius = 48, 3.0
+    turns = np.arange(count) * 2 * np.pi / count
+    rings = [
+        np.stack([radius * np.cos(turns), radius * np.sin(turns), np.full(count, height)], axis=1)
+        for height in np.linspace(0, 2, bands + 1)
+    ]
+    first = (np.arange(bands)[:, None] * count + np.arange(count)).ravel()
+    after = first - first % count + (first + 1) % count
+    quads = np.stack([first, after, after + count, first + count], axis=1)
+    mesh = Mesh(np.concatenate(rings), quads, part_names=("cylinder",))
+    assert mesh.curvatures.mean == pytest.approx(1 / (2 * radius), rel=0.01)
+    assert mesh.curvatures.gaussian == pytest.approx(0, abs=1e-5)
+
+
+@pytest.mark.parametrize("scale", [1e-20, 1e20])
+def test_curvature_scales_with_the_object(scale: float) -> None:
+    mesh = torus(24, 16)
+    scaled = Mesh(mesh.coordinates * scale, mesh.node_numbers, part_names=("torus",))
+    assert scaled.curvatures.mean * scale == pytest.approx(mesh.curvatures.mean, rel=1e-4, abs=1e-5)
+    assert scaled.curvatures.gaussian * scale**2 == pytest.approx(
+        mesh.curvatures.gaussian, rel=1e-4, abs=1e-5
+    )
+
+
+def test_a_crease_has_no_curvature_across_it() -> None:
+    # Two cylinders that meet in a ridge.
+    def shape(x: Array, y: Array) -> Array:
+        return np.sqrt(4 - (np.abs(x) + 1) ** 2 + 0 * y)
+
+    mesh = heights(20, 6, shape, 0.8)
+    assert len(mesh.normals.vectors) > len(mesh.coordinates)
+    assert mesh.curvatures.mean == pytest.approx(0.25, rel=0.05)
+
+
+def test_nodes_that_are_repeated_are_as_those_that_are_shared() -> None:
+    shared = sphere(30, 16)
+    repeated = Mesh(
+        shared.coordinates[shared.node_numbers].reshape(-1, 3),
+        np.arange(4 * len(shared.node_numbers)).reshape(-1, 4),
+        part_names=("sphere",),
+    )
+    of_corners = [mesh.curvatures.mean[mesh.normals.numbers] for mesh in (shared, repeated)]
+    assert of_corners[0] == pytest.approx(of_corners[1], rel=1e-6)
+
+
+def test_curvatures_do_not_depend_on_the_chunks(monkeypatch: pytest.MonkeyPatch) -> None:
+    in_one = torus(12, 8).curvatures
+    monkeypatch.setattr(curvature, "CORNERS_AT_ONCE", 7)
+    in_many = torus(12, 8).curvatures
+    assert in_one.mean == pytest.approx(in_many.mean, rel=1e-12)
+    assert in_one.gaussian == pytest.approx(in_many.gaussian, rel=1e-12, abs=1e-12)
+
+
+@given(meshes())
+def test_any_mesh_has_finite_curvatures(mesh: Mesh) -> None:
+    for values in (mesh.curvatures.mean, mesh.curvatures.gaussian):
+        assert values.shape == (len(mesh.normals.vectors),)
+        assert np.isfinite(values).all()
+        assert not values.flags.writeable

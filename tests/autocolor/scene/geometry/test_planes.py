@@ -103,11 +103,6 @@ def test_a_polygon_folded_over_its_neighbor_shares_its_plane() -> None:
     assert folded.plane_of_polygon.tolist() == [0, 0]
 
 
-@pytest.mark.parametrize(("height", "shares"), [(0.0, True), (1e-9, False), (1e-6, False), (1e-3, False)])
-def test_a_decal_just_above_its_ground_has_a_plane_of_its_own(height: float, shares: bool) -> None:
-    assert (shared_by(GROUND, shifted(DECAL, 0, height, 0)) is not None) == shares
-
-
 @pytest.mark.parametrize(("height", "shares"), [(0.0, True), (1e-6, True), (1e-5, False)])
 def test_a_decal_no_farther_from_its_ground_than_both_are_rounded_shares_its_plane(
     height: float, shares: bool
@@ -134,10 +129,6 @@ def test_the_sides_of_two_coincident_cylinders_turned_a_little_share_no_plane(
         )
 
     assert shared_by(around(0.0), around(0.5)) is None
-    # Where it is there twice and not turned, each side has a plane for its two polygons and no other.
-    shared = shared_by(around(0.0), Mesh.joined([around(0.0)]))
-    assert shared is not None
-    assert np.bincount(shared.plane_of_polygon).tolist() == [2] * sides
 
 
 @given(meshes())
@@ -309,11 +300,6 @@ def turned(seed: int) -> npt.NDArray[np.float64]:
     return turn
 
 
-@given(st.integers(0, 1 << 32), st.integers(1, 9))
-def test_scattered_corners_are_on_one_level(seed: int, posters: int) -> None:
-    assert levels_of([0.0] * posters, 1e-7, turned(seed), Rounding(1e-7, EXACT)) == [0] * posters
-
-
 @given(st.integers(0, 1 << 32))
 def test_patches_farther_than_they_are_scattered_have_levels_of_their_own(seed: int) -> None:
     heights = [1e-6, 0.0, -2e-6, 1e-6, 0.0]
@@ -335,9 +321,3 @@ def test_less_than_the_rounding_of_a_corner_is_no_distance_unless_along_an_axis(
     assert levels_of([0.0], 0.0, np.eye(3), rounding) == [0]
     # Exact corners have levels however close.
     assert levels_of([1e-10, 0.0, 1e-10], 0.0, turned(3)) == [1, 0, 1]
-
-
-def test_more_levels_than_are_looked_for_are_one() -> None:
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(planes, "MOST_LEVELS", 2)
-        assert levels_of([1e-3, 2e-3, 3e-3], 0.0, np.eye(3)) == [1, 2, 2]
