@@ -124,17 +124,13 @@ def test_the_state_before_is_shown_while_the_key_is_held(hand: Hand, wait: Calla
     assert now == alone(hand.scene)
 
 
-@pytest.mark.parametrize("by_key", [True, False])
 def test_after_undo_the_pointer_names_the_surface_below_it_again(
-    hand: Hand, by_key: bool, wait: Callable[[float], None]
+    hand: Hand, wait: Callable[[float], None]
 ) -> None:
     hand.open_menu()
     hand.press("tab")
     hand.move(320, 240)
-    if by_key:
-        hand.press("Ctrl+Z")
-    else:
-        hand.pick(" ", 0.1)
+    hand.press("Ctrl+Z")
     board = hand.viewer.board
     assert board.messages[0].text.startswith("undone: key: position")
     hand.move(325, 245)
@@ -262,9 +258,6 @@ def test_a_variant_is_compared_until_comparing_ends_or_it_is_dropped(hand: Hand)
     assert shown(hand) == alone(variant)
     pick_row(hand, "compare")
     assert shown(hand) == now
-    hand.press("b")
-    assert shown(hand) == alone(variant)
-    release(hand)
     pick_row(hand, "variants")
     hand.pick("compare", 0.9)
     assert hand.message == f"compared from now on: {BEFORE}"
@@ -332,10 +325,6 @@ def test_a_change_of_another_program_is_shown_as_one_step_to_undo(store: Path, l
     hand.press("Ctrl+Z")
     look(hand)
     assert hand.scene is before
-    hand = hand_at_file(store)
-    run(store, "UPDATE nodes SET z = 0.5 WHERE node = 5")
-    look(hand)
-    assert hand.scene.mesh.coordinates[4, 2] == 0.5
 
 
 def test_a_change_of_another_program_lets_go_of_a_picked_handle(tmp_path: Path, look: Look) -> None:
@@ -366,8 +355,6 @@ def test_with_unsaved_edits_the_user_is_asked_and_may_save_beside(store: Path, l
     assert hand.message == "read again; undo goes back"
     hand.press("Ctrl+Z")
     assert hand.scene is mine
-    hand = hand_at_file(store)
-    hand.viewer.studio.light("rim", intensity=0.25)
     run(store, "UPDATE lights SET intensity = 4 WHERE name = 'key'")
     look(hand)
     hand.press("Ctrl+s")
@@ -384,12 +371,9 @@ def test_ctrl_s_saves_to_the_store_and_that_is_no_change_of_another(store: Path,
     look(hand)
     assert (hand.scene, hand.message) == (before, message)
     assert not hand.viewer.studio.undo()
-    hand = hand_at_file(store)
     hand.viewer.studio.light("rim", intensity=0.25)
     hand.press("Ctrl+s")
     assert hand.message.startswith("saved small.sqlite and small.npz")
-    assert read_scene(store).light("rim").intensity == 0.25
-    assert run(store, "SELECT count(*) FROM notes") == [(0,)]
     scene = hand.scene
     look(hand)
     assert hand.scene is scene
@@ -427,7 +411,6 @@ def test_a_scene_file_is_looked_at_as_well(tmp_path: Path, look: Look) -> None:
     file.write_text("[[mesh]\n")
     look(hand)
     assert hand.message.startswith("not shown: scene.toml")
-    assert len(hand.scene.lights) == 3
     file.write_text(correct)
     look(hand)
     assert hand.message == "scene.toml holds this scene again"
@@ -449,16 +432,25 @@ AUTOMATIC = "no change: automatic exposure maps the brightest to the highest lev
 ALONE = boxes().only_lights("key").replace(ambient=0)
 UNSEEN: dict[str, tuple[Scene, Callable[[Scene], Scene], str]] = {
     "brighter": (ALONE, lambda scene: scene.with_light("key", intensity=2), f"{AUTOMATIC}E holds all"),
-    "off": (ALONE, lambda scene: scene.with_light("fill", intensity=2), "no change: light fill is off"),
     "without intensity": (
         boxes().with_light("fill", intensity=0),
         lambda scene: scene.with_light("fill", position=(0, -5, 0)),
         "no change: light fill has the intensity 0",
     ),
-    "behind": (
+    "added behind": (
+        boxes(),
+        lambda scene: scene.with_new_light("far", position=(0.5, 9, 0.5)),
+        "no change: light far shines on nothing that is seen",
+    ),
+    "switched off behind": (
         boxes().with_light("fill", position=(0.5, 9, 0.5)),
         lambda scene: scene.with_light("fill", on=False),
         "no change: light fill shines on nothing that is seen",
+    ),
+    "one of two off": (
+        ALONE,
+        lambda scene: scene.with_light("fill", intensity=2),
+        "no change: light fill is off",
     ),
     "two off": (
         ALONE.only_lights(),
@@ -474,11 +466,6 @@ UNSEEN: dict[str, tuple[Scene, Callable[[Scene], Scene], str]] = {
         ball_scene().only_lights("fill").replace(ambient=0, words="normals"),
         lambda scene: scene.with_light("fill", intensity=2),
         f"{AUTOMATIC}E holds all",
-    ),
-    "added": (
-        boxes(),
-        lambda scene: scene.with_new_light("far", position=(0.5, 9, 0.5)),
-        "no change: light far shines on nothing that is seen",
     ),
 }
 
