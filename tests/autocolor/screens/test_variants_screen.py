@@ -16,6 +16,7 @@ from ramtek_emu import Ramtek9300
 from tests.autocolor.screens.boxes import hand_at, told, undo
 from tests.autocolor.screens.hand import Hand
 from tests.small import grid
+from tests.tables import first
 
 
 @pytest.fixture
@@ -83,20 +84,14 @@ def test_a_variant_is_chosen_by_a_click_and_dropped(hand: Hand) -> None:
 
 def test_a_variant_has_a_name_of_its_own_where_there_is_a_keyboard(hand: Hand) -> None:
     hand.viewer.session.has_keyboard = True
-    hand.pick("keep as")
-    for letter in "red":
-        hand.viewer.on_key(letter, typed=letter)
-    hand.viewer.on_key("return")
-    assert list(hand.viewer.studio.variants) == ["red"]
-    hand.pick("keep as")
-    for letter in "red":
-        hand.viewer.on_key(letter, typed=letter)
-    hand.viewer.on_key("return")
-    assert told(hand)[1]
-    assert "in use" in told(hand)[0]
+    for is_in_use in (False, True):
+        hand.pick("keep as")
+        hand.type("red")
+        hand.press("return")
+        assert (list(hand.viewer.studio.variants), told(hand)[1]) == (["red"], is_in_use)
 
 
-@pytest.mark.parametrize("number", [1, 4, ON_PAGE])
+@pytest.mark.parametrize("number", first(1, [4, 1, ON_PAGE]))
 def test_small_pictures_have_true_colors_all_at_once(hand: Hand, number: int) -> None:
     keep(hand, number)
     rest(hand)
@@ -117,8 +112,17 @@ def test_small_pictures_come_in_turn_while_nothing_moves(hand: Hand) -> None:
         hand.viewer.on_tick()
         assert len(hand.viewer.board.screen.items()) == number
     assert not hand.viewer.board.screen.idle()
+    hand.pick("drop")
     hand.pick("< picture")
     assert np.array_equal(hand.display.entries, hand.viewer.studio.entries)
+    # When the screen is back, those of kept variants still stand, and that of the dropped one is gone.
+    hand.open_menu()
+    hand.pick("variants")
+    assert len(hand.viewer.board.screen.items()) == 2
+    hand.pick("keep")
+    assert len(hand.viewer.board.screen.items()) == 2
+    assert hand.viewer.board.screen.idle()
+    assert not hand.viewer.board.screen.idle()
 
 
 def test_the_words_of_the_menu_keep_their_entries(hand: Hand) -> None:
