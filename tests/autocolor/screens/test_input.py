@@ -172,6 +172,7 @@ def test_a_mark_beyond_the_screen_is_at_its_edge(unit: Unit, display: Ramtek9300
     assert display.cursors[MARK].line == 0x3FF
 
 
+@pytest.mark.thorough
 def test_the_same_gestures_in_process_and_over_tcp_give_the_same_words(tmp_path: Path) -> None:
     here, there = Ramtek9300(), Ramtek9300()
     moves = [("move", 300, 200), ("move", 330, 210), ("move", 639, 100), ("enter", 0, 0), ("move", 560, 40)]

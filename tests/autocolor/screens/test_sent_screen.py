@@ -123,25 +123,13 @@ def test_a_color_sends_entries_and_no_word_of_the_picture(recorded: Recorded) ->
     assert rows[0] == "high: object color #2244cc"
     assert re.fullmatch(r"\d+ words: \d+ entries of the lookup table, and no word of the picture", rows[1])
     assert "100.0%" in rows[4]
-
-
-def test_an_edit_of_what_is_not_shown_sends_nothing(recorded: Recorded) -> None:
-    recorded.edit(EDITS["name"](SCENE))
+    # What is not shown sends nothing.
+    recorded.edit(EDITS["name"](recorded.viewer.studio.scene))
     last = last_edit(recorded.viewer)
     assert len(last.words) == 0
     assert rows_of_edit(last, GMR_9300)[1].text == (
         "no word: no entry of the lookup table, and no word of the picture"
     )
-
-
-def test_words_of_a_screen_that_covers_the_picture_are_counted_but_not_listed(recorded: Recorded) -> None:
-    viewer = recorded.viewer
-    viewer.session.turn_to("light and view")
-    viewer.tell("")
-    recorded.edit(EDITS["light"](SCENE))
-    last = last_edit(viewer)
-    assert len(last.words) == 0
-    assert last.other_words > 0
 
 
 def test_a_color_that_is_undone_from_another_screen_needs_no_word_of_the_picture(recorded: Recorded) -> None:

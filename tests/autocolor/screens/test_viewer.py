@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from autocolor import InputError, Light, Mesh, Scene, Surface, View, scene_of
+from autocolor import InputError, Mesh, Scene, Surface, View
 from autocolor.arrays import Words
 from autocolor.scene.defaults import framed
 from autocolor.screens.screen import Screen
@@ -20,27 +20,16 @@ from autocolor.widgets.widget import Button
 from ramtek_emu import GMR_9300, Ramtek9300
 from tests.autocolor.screens.boxes import told
 from tests.autocolor.screens.hand import Hand
-from tests.small import cube, wall_scene
+from tests.small import boxes, cube, wall_scene
 from tests.tables import first
-
-KEY = Light("key", (2, -3, 4), aim=(0, 0, 0))
 
 MIDDLE = np.array([0.5, 0.5, 0.5])
 """The middle of the box."""
 
 
 def box_scene() -> Scene:
-    """A cube of two surfaces under two lights, and a surface that no part has."""
-    mesh = Mesh(cube().coordinates, cube().node_numbers, np.array([0, 0, 0, 1, 1, 1]), ("low", "high"))
-    lights = [KEY, Light("fill", (-3, -3, 1), intensity=0.5)]
-    view = View((-2, -3, 2), target=(0.5, 0.5, 0.5))
-    return scene_of(
-        mesh,
-        surfaces=[Surface(name) for name in ("unused", "low", "high")],
-        lights=lights,
-        view=view,
-        name="box",
-    )
+    """The boxes, and a surface that no part has."""
+    return boxes().replace(name="box", surfaces=[Surface("unused"), *boxes().surfaces])
 
 
 @pytest.fixture
@@ -296,22 +285,6 @@ def test_every_screen_is_reached_drawn_and_hovered_undoes_redoes_and_is_left_wit
     assert hand.viewer.page == "picture"
     hand.move(20, 20)
     assert hand.shows(scene)
-
-
-def test_recoloring_writes_no_word_but_the_message_on_any_page(hand: Hand) -> None:
-    line = 16 * 640
-    for page in (None, "f1", "f4"):
-        if page:
-            hand.press(page)
-        hand.viewer.tell("")
-        written, entries = hand.display.frame_buffer.written, hand.display.entries.copy()
-        words = hand.display.words.copy()
-        hand.press("c", "[")
-        assert np.array_equal(hand.display.words[:464], words[:464])
-        assert hand.display.frame_buffer.written < written + 4 * line
-        assert not np.array_equal(hand.display.entries, entries)
-    hand.press("escape")
-    assert hand.shows(hand.scene)
 
 
 @pytest.mark.parametrize("key", first(2, ["left", "Ctrl+Z", "1", "e"]))
