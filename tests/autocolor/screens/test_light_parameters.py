@@ -69,15 +69,13 @@ def test_a_point_source_has_no_concentration_and_no_cone() -> None:
     assert not any(row.why_not for row in parameter_rows(session, AIMED, columns))
 
 
-def test_a_directed_light_is_aimed_ahead() -> None:
+def test_a_directed_light_is_aimed_ahead_and_others_at_the_object() -> None:
     ahead = aim_of(Light("a", (0, 0, 4), direction=(0, 0, -2)), (-1, -1, -1), (1, 1, 1))
     assert ahead == pytest.approx((0, 0, 0))
     aside = aim_of(Light("a", (0, 0, 4), direction=(1, 0, 0)), (-1, -1, -1), (1, 1, 1))
     assert aside == pytest.approx((4, 0, 4))
     assert aim_of(Light("a", (0, 0, 4)), (-1, -1, -1), (3, 1, 1)) == (1, 0, 0)
-
-
-def test_a_light_in_the_middle_of_the_object_is_aimed_down() -> None:
+    # From the middle of the object a light is aimed down.
     assert aim_of(Light("a", (0, 0, 0)), (-1, -1, -1), (1, 1, 1)) == (0, 0, -1)
 
 

@@ -209,13 +209,6 @@ def test_a_key_pressed_again_or_after_another_is_a_step_of_its_own(hand: Hand) -
         assert hand.scene is scene
 
 
-def test_an_edit_that_changes_nothing_is_no_step(hand: Hand) -> None:
-    hand.press(*["]", "up"] * 30, "r")
-    scene = hand.scene
-    hand.press("]", "up", "r")
-    assert hand.scene is scene
-
-
 def test_the_chosen_surface_is_recolored(hand: Hand) -> None:
     seen = []
     for _ in range(2):
@@ -360,9 +353,6 @@ def test_a_refused_save_shows_a_message_and_stays_unsaved(hand: Hand, tmp_path: 
     assert os.listdir(tmp_path) == []
 
 
-TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 0 1\ng roof\nf 1 2 3\n"
-
-
 def test_closing_with_unsaved_work_takes_two_times_in_a_row(hand: Hand) -> None:
     assert hand.viewer.on_close()
     hand.press("c")
@@ -373,21 +363,6 @@ def test_closing_with_unsaved_work_takes_two_times_in_a_row(hand: Hand) -> None:
     assert hand.viewer.on_close()
     hand.press("Ctrl+Z")
     assert hand.viewer.on_close()
-
-
-def test_a_dropped_mesh_is_opened_and_saved_under_its_own_name(hand: Hand, tmp_path: Path) -> None:
-    (tmp_path / "roof.obj").write_text(TRIANGLE)
-    hand.press("s", "c", "f1")
-    before = hand.scene
-    hand.viewer.on_drop(tmp_path / "roof.obj")
-    assert hand.message == "opened roof.obj; undo goes back"
-    assert hand.viewer.caption.startswith("autocolor - roof - [surface] - ")
-    assert hand.viewer.page == "picture"
-    assert hand.shows(hand.scene)
-    hand.press("Ctrl+Z")
-    assert hand.scene is before
-    hand.press("Ctrl+s", "Ctrl+Y", "Ctrl+s")
-    assert {"box.npz", "roof.npz"} <= set(os.listdir(tmp_path))
 
 
 @pytest.mark.parametrize(
@@ -466,26 +441,19 @@ def test_a_movement_whose_fine_picture_is_refused_is_taken_back(
     assert hand.shows(before)
 
 
-def drag(hand: Hand, *places: tuple[int, int], released: bool = True) -> None:
-    """Drag the mouse with its left button."""
-    hand.viewer.on_pointer(*places[0], "press", 1)
-    for place in places[1:]:
-        hand.viewer.on_pointer(*place, "move")
-    if released:
-        hand.viewer.on_pointer(*places[-1], "release", 1)
-
-
 def test_escape_takes_a_drag_back(hand: Hand) -> None:
     hand.press("left")
     before = hand.scene
-    drag(hand, (300, 200), (320, 220), released=False)
+    hand.grab(300, 200)
+    hand.move(320, 220)
     assert hand.scene is not before
     assert hand.press("escape")
     assert (hand.scene, hand.message) == (before, "taken back")
-    hand.viewer.on_pointer(400, 300, "move")
+    hand.move(400, 300)
+    hand.drop()
     assert hand.scene is before
     # A drag that changed nothing takes nothing back.
-    drag(hand, (300, 200), released=False)
+    hand.grab(300, 200)
     hand.press("escape")
     assert hand.scene is before
 
