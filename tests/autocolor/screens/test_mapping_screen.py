@@ -289,6 +289,11 @@ def test_a_minimum_is_below_its_maximum_however_far_it_is_dragged(tmp_path: Path
     hand.pull("minimum", 0.1, 0.2)
     assert limits_of(hand, "object")[0] > 0
     assert limits_of(hand, "low") == (low, high)
+    # Below a maximum of almost nothing it is 0.
+    hand.viewer.session.edit(hand.scene.replace(exposure={"object": (4e-7, 1e-6)}))
+    hand.viewer.tell("")
+    hand.pull("minimum", 0.2, 0.4)
+    assert limits_of(hand, "object") == (0, 1e-6)
 
 
 def test_hidden_panels_leave_the_picture_below_the_curve_free(hand: Hand) -> None:
