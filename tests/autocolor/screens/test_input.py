@@ -1,7 +1,6 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -18,13 +17,8 @@ from autocolor.screens.input import (
     Mouse,
     Unit,
     turn_between,
-    wheel_ratio,
 )
-from autocolor.screens.viewer import Viewer
-from ramtek_emu import Ramtek9300, TcpPort
-from ramtek_emu.host.server import TcpServer
-from tests.ramtek_emu.serving import in_a_thread
-from tests.small import held, wall_scene
+from ramtek_emu import Ramtek9300
 
 
 def kinds(gestures: list[Gesture]) -> list[str]:
@@ -37,12 +31,6 @@ def test_the_degrees_of_a_drag_do_not_depend_on_its_steps() -> None:
         right, up = turn_between(*before, *after)
         total = [total[0] + right, total[1] + up]
     assert total == pytest.approx(turn_between(*places[0], *places[-1]))
-
-
-def test_the_wheel_moves_closer_and_back_by_its_steps() -> None:
-    assert wheel_ratio(1) < 1
-    assert wheel_ratio(3) == pytest.approx(wheel_ratio(1) ** 3)
-    assert wheel_ratio(2) * wheel_ratio(-2) == pytest.approx(1)
 
 
 def test_a_click_is_a_pick_even_if_the_hand_is_not_quite_still() -> None:
@@ -170,30 +158,3 @@ def test_a_mark_beyond_the_screen_is_at_its_edge(unit: Unit, display: Ramtek9300
     assert (display.cursors[MARK].element, display.cursors[MARK].line) == (0, 90)
     unit.mark((10**6, 10**6))
     assert display.cursors[MARK].line == 0x3FF
-
-
-def test_the_same_gestures_in_process_and_over_tcp_give_the_same_words(tmp_path: Path) -> None:
-    here, there = Ramtek9300(), Ramtek9300()
-    moves = [("move", 300, 200), ("move", 330, 210), ("move", 639, 100), ("enter", 0, 0), ("move", 560, 40)]
-    session = [("track", 0, 0), *moves[:2], ("release", 0, 0), *moves[2:], ("enter", 0, 0), ("move", 20, 20)]
-    with in_a_thread(TcpServer(there, idle_seconds=20.0)) as server, TcpPort(server.address) as port:
-        for display, viewer in (
-            (here, Viewer(wall_scene(), here, tmp_path)),
-            (there, Viewer(wall_scene(), port, tmp_path)),
-        ):
-            # What was sent is drawn when something is read back.
-            viewer.session.word_at(0, 0)
-            for kind, element, line in session:
-                if kind == "enter":
-                    display.joystick.press_enter()
-                elif kind == "move":
-                    display.joystick.move_to(element, line)
-                else:
-                    display.joystick.track = kind == "track"
-                viewer.poll()
-            assert viewer.studio.scene.view != wall_scene().view
-            assert viewer.page != "picture"
-            viewer.session.word_at(0, 0)
-        assert held(here) == held(there)
-        for one, other in zip(here.cursors.all, there.cursors.all, strict=True):
-            assert (one.element, one.line, one.state) == (other.element, other.line, other.state)

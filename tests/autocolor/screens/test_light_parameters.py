@@ -41,12 +41,6 @@ def row_of(session: Session, label: str, name: str = "key") -> Choice:
     return row
 
 
-def test_the_rows_are_in_the_order_of_the_columns_with_the_kind_among_them() -> None:
-    session = session_of(AIMED)
-    labels = [row.label for row in parameter_rows(session, AIMED, ["on", "kind", "aim", "intensity"])]
-    assert labels == ["on", "kind", "aim x", "aim y", "aim z", "intensity"]
-
-
 def test_every_kind_can_be_chosen_from_every_other() -> None:
     for kind in (POINT, AIM, DIRECTION):
         for light in (AIMED, AIMED.replace(direction=(1, 0, -1)), Light("key", (2.0, -3.0, 4.0))):
@@ -75,15 +69,13 @@ def test_a_point_source_has_no_concentration_and_no_cone() -> None:
     assert not any(row.why_not for row in parameter_rows(session, AIMED, columns))
 
 
-def test_a_directed_light_is_aimed_ahead() -> None:
+def test_a_directed_light_is_aimed_ahead_and_others_at_the_object() -> None:
     ahead = aim_of(Light("a", (0, 0, 4), direction=(0, 0, -2)), (-1, -1, -1), (1, 1, 1))
     assert ahead == pytest.approx((0, 0, 0))
     aside = aim_of(Light("a", (0, 0, 4), direction=(1, 0, 0)), (-1, -1, -1), (1, 1, 1))
     assert aside == pytest.approx((4, 0, 4))
     assert aim_of(Light("a", (0, 0, 4)), (-1, -1, -1), (3, 1, 1)) == (1, 0, 0)
-
-
-def test_a_light_in_the_middle_of_the_object_is_aimed_down() -> None:
+    # From the middle of the object a light is aimed down.
     assert aim_of(Light("a", (0, 0, 0)), (-1, -1, -1), (1, 1, 1)) == (0, 0, -1)
 
 
@@ -109,10 +101,7 @@ def test_a_light_can_follow_the_eye_and_each_light_with_an_aim_and_stays_where_i
         assert row_of(session, "follows", "fill").present == follows
         assert all_close(session.studio.picture.intensity, picture, abs=1e-5)
     assert session.scene.light("fill").position == pytest.approx(before.position)
-
-
-def test_no_light_is_offered_that_follows_this_one() -> None:
-    session = followed()
+    # No light is offered that follows this one.
     row_of(session, "follows", "fill").choose("key")
     choose_kind(session, session.scene.light("fill"), AIM)
     assert row_of(session, "follows").names == ("world", "eye")

@@ -37,13 +37,6 @@ def labels_of(hand: Hand) -> set[str]:
     return {row.label for row in hand.viewer.board.screen.rows()}
 
 
-def test_every_scalar_of_the_mesh_and_every_computed_one_is_reached_by_clicks(hand: Hand) -> None:
-    names = hand.viewer.studio.scene.scalar_names
-    for name in names:
-        hand.choose("scalar", name)
-        assert scalar_of(hand).name == name
-
-
 def test_every_column_of_the_scalar_has_a_row(hand: Hand) -> None:
     hand.viewer.session.edit(hand.viewer.studio.scene.with_scalar(name="zebra"))
     rows = {"name": "scalar", "limits": "own range", "surfaces": "colored", "direction": "direction x"}
@@ -94,17 +87,6 @@ def test_a_list_of_colors_has_no_name_to_reverse(hand: Hand) -> None:
     assert scalar_of(hand).scale == ((255, 0, 0), (0, 0, 255))
     hand.choose("scale", "turbo")
     assert scalar_of(hand).scale in COLOR_SCALES
-
-
-@pytest.mark.parametrize("label", ["bands", "shades"])
-def test_bands_and_shades_are_set_along_their_bars(hand: Hand, label: str) -> None:
-    if label == "shades":
-        hand.pick(label, 0.95)
-        assert scalar_of(hand).shades == 8
-    before = vars(scalar_of(hand))[label]
-    hand.pull(label, 0.2, 0.4)
-    assert vars(scalar_of(hand))[label] != before
-    assert words_are_those_of_the_scene(hand)
 
 
 @pytest.mark.parametrize(
@@ -179,6 +161,8 @@ def test_a_limit_is_set_along_the_own_range_in_one_step_without_rendering(colore
 
 
 def test_the_limits_do_not_cross(colored_hand: Hand) -> None:
+    colored_hand.pick("own range")
+    assert scalar_of(colored_hand).limits == (0.0, 1.0)
     colored_hand.pull("high limit", 0.9, 0.3)
     colored_hand.pull("low limit", 0.1, 0.9)
     low, high = scalar_of(colored_hand).limits or (0, 0)
@@ -186,6 +170,9 @@ def test_the_limits_do_not_cross(colored_hand: Hand) -> None:
     colored_hand.pull("high limit", 0.5, 0.0)
     low, high = scalar_of(colored_hand).limits or (0, 0)
     assert low < high
+    # The own range is followed again.
+    colored_hand.pick("own range")
+    assert scalar_of(colored_hand).limits is None
 
 
 @pytest.mark.parametrize("limits", [(0.0, 5e-324), (-5e-324, 0.0)])
@@ -193,14 +180,6 @@ def test_limits_may_be_as_close_as_numbers_are(tmp_path: Path, limits: tuple[flo
     hand = hand_at(tmp_path, "scalar", boxes().with_scalar(name="z", limits=limits, legend=True))
     hand.pull("high limit", 0.9, 0.5)
     assert scalar_of(hand).limits != limits
-
-
-def test_the_own_range_is_held_and_followed_again(colored_hand: Hand) -> None:
-    colored_hand.pick("own range")
-    assert scalar_of(colored_hand).limits == (0.0, 1.0)
-    colored_hand.pull("low limit", 0.1, 0.5)
-    colored_hand.pick("own range")
-    assert scalar_of(colored_hand).limits is None
 
 
 def test_a_held_range_has_the_fewest_digits(tmp_path: Path) -> None:

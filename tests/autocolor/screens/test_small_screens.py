@@ -1,0 +1,314 @@
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from autocolor.errors import UsageError
+from autocolor.mapping.ranges import BACKGROUND, SCREENS, LevelRange
+from autocolor.screens.board import rows_of_menu
+from autocolor.screens.entries_screen import (
+    CELL_HEIGHT,
+    CELL_WIDTH,
+    SIDE,
+    cell_words,
+    named_cells,
+)
+from autocolor.screens.help_screen import LEFT, MIDDLE, ROWS_A_PAGE, STEP, TITLE, TOP, help_items
+from autocolor.screens.message_line import (
+    MESSAGE,
+    MessagePart,
+    lines_of_message,
+    message_items,
+)
+from autocolor.screens.screen import Cached, Screen
+from autocolor.screens.session import LastEdit
+from autocolor.screens.tutorial import Tutorial
+from autocolor.screens.viewer import Viewer, rows_of_help
+from autocolor.widgets.bars import Bar
+from autocolor.widgets.items import BLACK, CHARACTER, ORANGE, SCREEN, WHITE, WIDTH, YELLOW, Area, filled, text
+from autocolor.widgets.menu import MENU, MESSAGE_CHARACTERS, WIDE_BAR, laid_out
+from ramtek_emu import Ramtek9300, instructions
+from tests.autocolor.screens.boards import desk_hand
+from tests.autocolor.screens.hand import Hand
+from tests.autocolor.widgets.drawing import checksum
+from tests.small import boxes, wall_scene
+
+ROWS = rows_of_help()
+
+
+@pytest.mark.parametrize("count", [0, 1, ROWS_A_PAGE, ROWS_A_PAGE + 1, len(ROWS), 100])
+def test_every_row_is_on_a_page_and_nothing_overlaps(count: int) -> None:
+    rows = [ROWS[number % len(ROWS)] for number in range(count)]
+    for page in range(max(1, -(-count // ROWS_A_PAGE))):
+        items = help_items(TITLE, rows, page)
+        for number, item in enumerate(items):
+            assert SCREEN.covers(item.area)
+            assert not MESSAGE.overlaps(item.area)
+            assert not any(item.area.overlaps(other.area) for other in items[:number])
+        for number, (keys, does) in enumerate(rows[page * ROWS_A_PAGE :][:ROWS_A_PAGE]):
+            top = TOP + STEP * number
+            assert text(keys, LEFT, top, ORANGE) in items
+            assert text(does, MIDDLE, top, WHITE) in items
+
+
+def test_the_rows_are_plain_text() -> None:
+    assert all(keys.isascii() and does.isascii() for keys, does in ROWS)
+
+
+def test_pages_are_turned_by_the_unit_the_wheel_and_keys(tmp_path: Path) -> None:
+    viewer = Viewer(wall_scene(), Ramtek9300(), tmp_path)
+    hand = Hand(viewer)
+    viewer.session.keys = ROWS * 3
+    pages = -(-len(viewer.session.keys) // ROWS_A_PAGE)
+    viewer.on_key("f1")
+    shown = []
+    for turn in (
+        lambda: hand.click(300, 200),
+        lambda: viewer.on_pointer(300, 200, "wheel down"),
+        lambda: viewer.on_key("space", typed=" "),
+    ):
+        shown.append(viewer.board.screen.items())
+        turn()
+    assert len({str(items) for items in shown}) == 3
+    for _ in range(pages - 3):
+        hand.click(300, 200)
+    assert viewer.board.screen.items() == shown[0]
+
+
+RANGES = {"body": LevelRange(1, 500), "glass": LevelRange(501, 40)}
+
+
+def owner(word: int) -> str:
+    if word == BACKGROUND:
+        return "background"
+    if word >= SCREENS.first:
+        return "screens"
+    return next(
+        (name for name, (first, levels) in RANGES.items() if first <= word < first + levels), "nobody"
+    )
+
+
+def cell(word: int) -> tuple[slice, slice]:
+    line, element = divmod(word, SIDE)
+    return slice(line * CELL_HEIGHT, (line + 1) * CELL_HEIGHT), slice(
+        element * CELL_WIDTH, (element + 1) * CELL_WIDTH
+    )
+
+
+def test_every_cell_shows_its_own_word() -> None:
+    page = cell_words(tuple(RANGES.values()))
+    assert page.shape == (480, 640)
+    for word in range(1024):
+        inner = page[cell(word)][1:-1, 1:-1]
+        assert (inner == word).all()
+
+
+@pytest.mark.parametrize("word", [0, 1, 31, 32, 33, 500, 501, 532, 540, 541, 1007, 1008, 1023])
+def test_a_line_runs_between_cells_of_different_owners(word: int) -> None:
+    page = cell_words(tuple(RANGES.values()))[cell(word)]
+    line, element = divmod(word, SIDE)
+    edges = (
+        (line > 0, -SIDE, page[0, 1:-1]),
+        (line < SIDE - 1, SIDE, page[-1, 1:-1]),
+        (element > 0, -1, page[1:-1, 0]),
+        (element < SIDE - 1, 1, page[1:-1, -1]),
+    )
+    for has_neighbor, step, edge in edges:
+        apart = has_neighbor and owner(word) != owner(word + step)
+        assert (edge == (YELLOW if apart else word)).all()
+
+
+@given(st.lists(st.tuples(st.text("abc", min_size=1, max_size=30), st.integers(2, 300)), max_size=6))
+def test_a_name_stands_within_the_cells_of_its_range(rows: list[tuple[str, int]]) -> None:
+    ranges, first = {}, 1
+    for name, levels in rows:
+        if first + levels <= SCREENS.first and name not in ranges:
+            ranges[name] = LevelRange(first, levels)
+            first += levels
+    named = list(named_cells(ranges))
+    assert len(named) == len(ranges) + 1
+    for (name, line, element), (whole, (start, levels)) in zip(
+        named, [*ranges.items(), ("screens", SCREENS)], strict=True
+    ):
+        width = len(name) * CHARACTER + 3
+        cells = range(line * SIDE + element, line * SIDE + element - (-width // CELL_WIDTH))
+        assert set(cells) <= set(range(start, start + levels))
+        assert element * CELL_WIDTH + width <= 640
+        assert whole == name or name.rstrip(".") == whole[: len(name.rstrip("."))]
+
+
+def test_a_message_that_fits_fills_its_line_and_nothing_else() -> None:
+    display = Ramtek9300()
+    for item in message_items([MessagePart("x" * MESSAGE_CHARACTERS, WHITE)], MENU.left):
+        assert MESSAGE.covers(item.area)
+        display.send(np.frombuffer(item.stream, np.uint16))
+    assert not display.words[: MESSAGE.top].any()
+    assert set(np.unique(display.words[MESSAGE.top :])) == {BLACK, WHITE}
+
+
+@pytest.mark.parametrize("end", [WIDTH, MENU.left])
+def test_a_longer_message_takes_a_second_line_that_ends_at_the_menu(end: int) -> None:
+    _, ground, *lines = message_items([MessagePart("word " * 24, WHITE)], end)
+    assert len(lines) == 2
+    assert ground.area == Area(0, MESSAGE.top - 12, end - 1, MESSAGE.top - 1)
+    assert all(item.area.right < end for item in lines)
+    assert len(message_items([MessagePart("word " * 200, WHITE)], end)) == 4
+
+
+@given(st.text("ab ", max_size=300), st.integers(0, 40), st.integers(10, 80))
+def test_a_typed_text_is_shown_whole_or_to_its_end_with_its_selection(
+    text: str, label: int, most: int
+) -> None:
+    line = "n" * label + ": " + text
+    rows = lines_of_message(MessagePart(line, YELLOW, label + 2), most)
+    shown = "".join(row.text for row in rows)
+    assert all(len(row.text) <= most for row in rows)
+    assert len(rows) <= 2
+    if len(line) <= 2 * most:
+        assert shown == line
+        assert "".join(row.text[row.selected :] for row in rows) == text
+    else:
+        assert shown == ".." + line[2 - 2 * most :]
+
+
+def test_an_empty_message_is_an_empty_line() -> None:
+    assert message_items([MessagePart("", WHITE)]) == [filled(MESSAGE, BLACK)]
+    assert text("a", 8, MESSAGE.top + 3, WHITE, BLACK) in message_items([MessagePart("a", WHITE)])
+
+
+@pytest.mark.parametrize(
+    ("keys", "name"),
+    [
+        (["return"], "scene"),
+        (["a", "b", "backspace", "return"], "a"),
+        (["end", "a", "return"], "scenea"),
+        (["right", "backspace", "return"], "scen"),
+        (["backspace", "x", "enter"], "x"),
+        (["x", "tab"], "x"),
+        (["x", "escape"], "scene"),
+    ],
+)
+def test_the_first_character_replaces_the_text_unless_an_arrow_goes_to_its_end(
+    tmp_path: Path, keys: list[str], name: str
+) -> None:
+    hand = desk_hand(tmp_path)
+    hand.viewer.session.has_keyboard = True
+    hand.pick("name")
+    assert hand.hint == "name: scene"
+    hand.press(*keys)
+    assert hand.scene.name == name
+    assert hand.hint != f"name: {name}"
+    assert bool(hand.viewer.studio.history.to_undo) == (name != "scene")
+
+
+def test_numbers_begin_over_bars_alone(tmp_path: Path) -> None:
+    hand = desk_hand(tmp_path)
+    for row, key in (("ambient", "7"), ("ambient", "-"), ("ambient", "."), ("ambient", "x"), ("name", "7")):
+        hand.move(*hand.middle(row))
+        hand.press(key)
+        assert (hand.hint == f"{row}: {key}_") == (row == "ambient" and key != "x")
+        hand.press("escape")
+        hand.go_to("desk")
+
+
+def test_a_plain_screen_has_no_point_and_no_color(tmp_path: Path) -> None:
+    screen = Screen(desk_hand(tmp_path).viewer.session)
+    assert not screen.idle()
+    assert screen.sample(1, 1) is None
+    assert screen.color_at(1, 1) is None
+    with pytest.raises(UsageError, match=r"^this screen takes no color; turn to color mixing$"):
+        screen.take_color("red", 1, 1)
+
+
+def test_a_cached_value_is_computed_once_for_the_same_sources() -> None:
+    cached: Cached[list[int]] = Cached()
+    source = [1]
+    first = cached.of(lambda: [2], source, "a")
+    assert first == [2]
+    assert cached.of(lambda: [3], source, "a") is first
+    # An equal source is another one.
+    assert cached.of(lambda: [3], [1], "a") == [3]
+    assert cached.of(lambda: [4], [1], source) == [4]
+    assert cached.of(lambda: [5]) == [5]
+
+
+def test_a_failed_computation_is_not_cached() -> None:
+    cached: Cached[float] = Cached()
+    for _ in range(2):
+        try:
+            cached.of(lambda: 1 / 0, "a")
+        except ZeroDivisionError:
+            continue
+        raise AssertionError
+    assert cached.of(lambda: 1.0, "a") == 1.0
+
+
+# What every screen draws over its base, as checksums: a golden of places, inks, labels and numerals.
+# If a screen changes on purpose, look at it, and copy the new number from the failure.
+
+PAGES = {
+    "picture": 473489948,
+    "light and view": 3442920221,
+    "lights": 2635481227,
+    "reflectance": 571573069,
+    "mixing": 1_328_086_564,
+    "blending": 4232246749,
+    "mapping": 2296462326,
+    "scalar": 648425415,
+    "variants": 378967624,
+    "history": 158829111,
+    "file": 2987804811,
+    "explain": 4211328274,
+    "split": 1133462600,
+    "entries": 3253356514,
+    "sent": 2886095108,
+    "help": 111038151,
+    "tutorial": 3473960918,
+}
+
+
+def test_every_screen_is_drawn_as_it_was(tmp_path: Path) -> None:
+    folder = tmp_path / "scenes"
+    (folder / "more").mkdir(parents=True)
+    (folder / "car.obj").touch()
+    # A row shows the year of an old file.
+    os.utime(folder / "car.obj", (1e9, 1e9))
+    viewer = Viewer(boxes().with_scalar(name="z"), Ramtek9300(), folder)
+    viewer.studio.keep_variant("first")
+    viewer.studio.keep_variant()
+    # Words of the picture would depend on the rounding of the light.
+    after = viewer.studio.scene.with_paint("low", object_color="#24c")
+    entries = instructions.load_entries(1, [(number, 0, 7) for number in range(60)])
+    edit = LastEdit(viewer.studio.scene, after, entries, 1234)
+    board = viewer.board
+    board.is_pinned = True
+    pages = {}
+    for name, screen in viewer.screens.items():
+        viewer.session.turn_to(name)
+        viewer.tell("")
+        viewer.session.last_edit = edit
+        items = list(board.page().items)
+        for widget in board.widgets():
+            items += widget.items(lit=True)
+        # The rows of all pages of the menu, and their wide bars.
+        for row in rows_of_menu(viewer.session, screen, viewer.screens.values()):
+            for widget in laid_out([row]):
+                items += widget.items(lit=False)
+            if isinstance(row, Bar):
+                items += row.at(WIDE_BAR).items(lit=False)
+        pages[name] = checksum(items, skips_images=True)
+    viewer.session.turn_to("picture")
+    tutorial = Tutorial(viewer.session)
+    board.over = tutorial.widgets
+    viewer.tell("")
+    items = list(board.page().items)
+    for widget in tutorial.widgets():
+        items += widget.items(lit=True)
+    pages["tutorial"] = checksum(items)
+    changed = {name: number for name, number in pages.items() if PAGES.get(name) != number}
+    assert not changed, changed
