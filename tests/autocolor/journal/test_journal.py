@@ -258,6 +258,15 @@ def test_a_line_of_no_journal_is_refused(tmp_path: Path, begin: dict[str, object
     assert len(problem) < 500
 
 
+@given(st.binary(max_size=60) | st.text('{}[]":, step undo\\n0123\0\ud800', max_size=60).map(repr))
+def test_any_bytes_are_read_or_refused(
+    tmp_path_factory: pytest.TempPathFactory, begin: dict[str, object], data: bytes | str
+) -> None:
+    line = data if isinstance(data, bytes) else data.encode()
+    problem = refusal(tmp_path_factory.getbasetemp(), begin, line.replace(b"\n", b" "))
+    assert problem.startswith(f"{JOURNAL}, line 2: ")
+
+
 @pytest.mark.parametrize(
     ("line", "problem"),
     [

@@ -157,14 +157,24 @@ def test_each_pick_of_the_row_shows_the_other_state_and_a_pick_in_the_picture_th
     assert chosen not in hand.viewer.caption
 
 
+def undo_and_redo(hand: Hand) -> None:
+    for share in (0.1, 0.9):
+        pick_row(hand, " ", share)
+
+
+def leave_and_come_back(hand: Hand) -> None:
+    pick_row(hand, "mapping")
+    hand.pick("< picture")
+
+
 ENDINGS: dict[str, Callable[[Hand], object]] = {
     "a drag over the picture": lambda hand: hand.drag((60, 60), (90, 60)),
     "an undo": lambda hand: pick_row(hand, " ", 0.1),
     "a drag where the highlight is": lambda hand: hand.drag(PLACE, (300, 200)),
     "a switch": lambda hand: pick_row(hand, "fill", 0.95),
-    "an undo with a redo": lambda hand: [pick_row(hand, " ", share) for share in (0.1, 0.9)],
+    "an undo with a redo": undo_and_redo,
     "a key": lambda hand: hand.press("c"),
-    "another screen": lambda hand: [pick_row(hand, "mapping"), hand.pick("< picture")],
+    "another screen": leave_and_come_back,
     "watching": lambda hand: hand.press("w", "escape"),
 }
 
