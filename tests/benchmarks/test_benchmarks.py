@@ -11,13 +11,15 @@ import pytest
 from benchmarks import __main__ as benchmarks
 
 SLOW = {
-    "targets", "scaling", "start", "steps", "movement", "events", "reading", "mapped_tables", "form", "page",
+    "targets", "scaling", "start", "steps", "movement", "events", "reading", "mapped_tables", "form",
     "inspection", "display", "ports", "scalars",
 }  # fmt: skip
 SMALLER = {"benchmarks.mapped_tables.FEW": (400, 4000), "benchmarks.reading.QUICK_POLYGONS": 500}
 ROWS = [
     pytest.param(name, marks=pytest.mark.thorough if name in SLOW else ())
     for name in (*benchmarks.PARTS, *benchmarks.PROGRAMS)
+    # It measures in a browser.
+    if name != "page"
 ]
 
 

@@ -514,7 +514,7 @@ class SlowDisplay:
         return self.display.receive(count)
 
 
-@pytest.mark.parametrize("screen", first(1, ["picture", "light and view", "split"]))
+@pytest.mark.parametrize("screen", first(1, ["picture", "split"]))
 def test_a_moving_pointer_is_at_most_one_page_ahead_of_a_slow_display(screen: str) -> None:
     port = SlowDisplay()
     viewer = Viewer(box_scene(), port)
