@@ -12,16 +12,18 @@ from pathlib import Path
 import pytest
 
 import autocolor
-from autocolor import AutocolorError, read_journal, read_scene
+from autocolor import AutocolorError, InputError, read_journal, read_scene
 from autocolor.files.state import lock_file
 from autocolor.journal import autosave as autosave_module
 from autocolor.journal.autosave import (
     JOURNAL,
+    LOCK,
     OLD_SCRIPT,
     Autosave,
     forget,
     journal_in,
     left_sessions,
+    refuse_links,
 )
 from autocolor.journal.history import History
 from autocolor.journal.places import ScenePlace, Source
@@ -269,3 +271,16 @@ def test_a_program_that_is_killed_leaves_every_step_that_was_written(
     steps = len(read_journal(path).history.steps)
     written = [int(line) for line in lines if line.endswith("\n")]
     assert written[-1] <= steps <= written[-1] + 1
+
+
+@pytest.mark.parametrize("name", ["", JOURNAL, LOCK])
+def test_a_session_that_is_a_link_or_holds_one_is_refused(tmp_path: Path, name: str) -> None:
+    folder, elsewhere = tmp_path / "session", tmp_path / "elsewhere"
+    if name:
+        folder.mkdir()
+    refuse_links(folder)
+    (folder / name).symlink_to(elsewhere)
+    with pytest.raises(
+        InputError, match="it must not be a link; `autocolor view"
+    ):
+        refuse_links(folder)

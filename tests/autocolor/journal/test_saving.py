@@ -173,6 +173,25 @@ def test_a_picture_file_that_was_opened_is_saved_to_and_has_a_backup(work: Path)
     assert read_picture(work / "old.npz").scene.surface("body").paint.blend == 0.25
 
 
+def test_a_picture_of_ours_needs_no_backup_even_if_its_scene_could_not_be_written(
+    work: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    studio = Studio(car(), Ramtek9300(SMALL))
+    saved = studio.save_session(work)
+
+    def full(*_: object, **__: object) -> None:
+        raise WriteError("no space")
+
+    with monkeypatch.context() as patched:
+        patched.setattr("autocolor.journal.saving.write_scene_with_tables", full)
+        studio.recolor("body", blend=0.25)
+        with pytest.raises(WriteError, match="no space"):
+            studio.save_session(work)
+    studio.recolor("body", blend=0.5)
+    assert studio.save_session(work) == saved
+    assert read_picture(saved.picture).scene.surface("body").paint.blend == 0.5
+
+
 def test_a_file_that_was_changed_since_is_left_alone_and_told(scene_file: Path, work: Path) -> None:
     studio = studio_of(scene_file.parent)
     scene_file.write_text(scene_file.read_text() + "# mine\n")

@@ -17,6 +17,7 @@ from autocolor.widgets.items import (
     WHITE,
     Area,
     Item,
+    SmallPicture,
     area_of,
     between,
     clipped,
@@ -217,3 +218,21 @@ def test_the_tip_of_a_pointer_is_at_its_place(towards: int) -> None:
     assert display.words[50, 100] == WHITE
     assert elements.mean() == pytest.approx(100 + across * 2.8)
     assert lines.mean() == pytest.approx(50 + down * 2.8)
+
+
+@given(st.lists(st.tuples(*[st.integers(0, 2)] * 4), min_size=1, max_size=60))
+def test_no_stroke_is_drawn_twice_in_whichever_direction_it_comes(strokes: list[tuple[int, ...]]) -> None:
+    both_ways = {(stroke, (*stroke[2:], *stroke[:2])) for stroke in strokes if stroke[:2] != stroke[2:]}
+    expected = {min(ways, key=lambda way: (way[1], way[0])) for ways in both_ways}
+    found = drawn(np.array(strokes, np.float64)).tolist()
+    assert found == sorted(map(list, expected)) or not expected
+
+
+def test_a_small_picture_is_its_colors_in_borrowed_words() -> None:
+    full = np.arange(36, dtype=np.uint8).reshape(3, 4, 3)
+    small = SmallPicture(full, 12)
+    display = Ramtek9300(TINY)
+    for first, left, top in ((900, 3, 5), (900, 3, 5), (800, 20, 9)):
+        draw_items(display, [small.item(first, left, top)])
+        words = display.words[top : top + 3, left : left + 4]
+        assert (small.colors[words - first] == full).all()

@@ -137,6 +137,18 @@ def test_a_star_shaped_polygon_is_covered_once_in_any_plane(
     assert sum(areas) == pytest.approx(area(points, range(len(radii))))
 
 
+@pytest.mark.parametrize("axes", [(0, 1, 2), (1, 2, 0), (1, 0, 2)])
+def test_a_comb_of_many_short_teeth_is_covered_once(axes: tuple[int, int, int]) -> None:
+    # Many points are within the width of an ear, and the ears have small areas.
+    teeth = [(number / 10, 0.5 if number % 2 else 0.1) for number in range(101)]
+    outline = np.array([(0.0, 0.0), (10.0, 0.0), *reversed(teeth)])
+    points = np.column_stack([outline, np.zeros(len(outline))])
+    pieces, _ = split_polygons(points[:, axes], np.arange(len(points)), np.array([len(points)]))
+    areas = [area(points, piece) for piece in pieces]
+    assert min(areas) >= -1e-9
+    assert sum(areas) == pytest.approx(area(points, range(len(points))))
+
+
 @given(st.lists(st.tuples(st.integers(-3, 3), st.integers(-3, 3)), min_size=5, max_size=30))
 def test_clipping_ends_whatever_crosses(points: list[tuple[float, float]]) -> None:
     pieces = clipped_ears(points)
