@@ -105,6 +105,7 @@ def test_tables_are_multiplied_with_their_names_and_times() -> None:
         ("a=3:-1:3", [3.0, 1.0, -1.0]),
         ("a=0:0.3:4", [0.0, 0.1, 0.2, 0.3]),
         ("a=none", ["none"]),
+        pytest.param("a=" + "x" * (1 << 20), ["x" * (1 << 20)], id="the longest list"),
         ("a=b=c,d", ["b=c", "d"]),
     ],
 )
@@ -233,6 +234,7 @@ def test_a_table_of_another_kind_and_a_large_file_are_refused(tmp_path: Path) ->
         (lambda: products([varied("a=1,2"), varied("a=3")]), "a key must be in one table or list, not 'a'"),
         (lambda: varied("a"), "--vary must be KEY=A,B,C or KEY=START:STOP:COUNT, not 'a'; write it as in"),
         (lambda: varied("=1"), "--vary must be KEY=A,B,C"),
+        (lambda: varied("a=" + "x" * ((1 << 20) + 1)), "--vary must be KEY=A,B,C"),
         (lambda: varied("name=a,b"), "--vary must be KEY=A,B,C"),
         (lambda: varied("a=1,,2"), "--vary a: there must be a value before and after each comma"),
         (lambda: varied("a=0:1:1"), "--vary a: START and STOP must be finite, and COUNT 2 to 100,000, not"),

@@ -280,7 +280,5 @@ def test_a_session_that_is_a_link_or_holds_one_is_refused(tmp_path: Path, name: 
         folder.mkdir()
     refuse_links(folder)
     (folder / name).symlink_to(elsewhere)
-    with pytest.raises(
-        InputError, match="it must not be a link; `autocolor view"
-    ):
+    with pytest.raises(InputError, match="it must not be a link; `autocolor view"):
         refuse_links(folder)
