@@ -314,6 +314,20 @@ def test_a_stopped_display_executes_what_it_is_let_and_all_of_it_in_the_end(
     assert served.replies == b"".join(reply.astype("<u2").tobytes() for _, reply in expected)
 
 
+def test_steps_beyond_the_end_wait_for_as_many_instructions_of_a_paused_host() -> None:
+    served = Served(Ramtek9300(SMALL))
+    session = served.inspection
+    served.send(*BOXES_STREAM[:3])
+    served.execute()
+    session.pause()
+    session.go(2)
+    session.step(3)
+    assert (session.state.number, session.state.wanted) == (3, 2)
+    served.send(*BOXES_STREAM)
+    served.tick_until_still()
+    assert (session.state.number, session.state.wanted, len(session.replay.stream)) == (5, 0, 5)
+
+
 def snapshot_of_whole(session: InspectionSession) -> bytes:
     """The snapshot of the display, without the words of an incomplete instruction and their count."""
     display = copy.deepcopy(session.display)

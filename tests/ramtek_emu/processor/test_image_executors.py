@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ramtek_emu import Configuration, Ramtek9300, instructions
 from ramtek_emu.memory.scan_orders import Point, Window
 from tests.ramtek_emu import reference
-from tests.ramtek_emu.displays import box, sent
+from tests.ramtek_emu.displays import box, read, sent
 from tests.ramtek_emu.strategies import SMALL, masks, points, scan_codes, sent_words, windows
 
 Raster = NDArray[np.uint16]
@@ -48,7 +48,13 @@ def packed(data: bytes, low_first: bool) -> list[int]:
     return words
 
 
-@given(rasters, scans, st.tuples(*[st.booleans()] * 3), addressings, points, st.binary(max_size=300))
+images = st.builds(
+    lambda seed, count: np.random.default_rng(seed).bytes(count), st.integers(0, 99), st.integers(0, 300)
+)
+"""Bytes that often go over a window several times."""
+
+
+@given(rasters, scans, st.tuples(*[st.booleans()] * 3), addressings, points, images)
 def test_images_of_every_kind_equal_the_twin(
     raster: Raster, scan: Scan, kinds: tuple[bool, bool, bool], addressing: int, base: Point, data: bytes
 ) -> None:
@@ -210,3 +216,11 @@ def test_tables_that_are_not_there_take_and_give_nothing() -> None:
     display = sent("0301 0000 0004 FFFF FFFF", "0401 0000 0004")
     assert not display.entries.any()
     assert display.receive(2).tolist() == [0, 0]
+
+
+def test_a_table_is_read_as_it_was_loaded_and_one_that_does_not_exist_reads_as_zeros() -> None:
+    display = Ramtek9300(SMALL)
+    display.send(instructions.load_entries(5, [[1, 2, 3], [200, 201, 202]]))
+    (opcode, *rest) = instructions.read_entries(10, 4).tolist()
+    assert read(display, opcode, *rest) == [0x0203, 0x0001, 0xC9CA, 0x00C8]
+    assert read(display, opcode | 1, *rest) == [0] * 4
