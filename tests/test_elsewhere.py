@@ -10,6 +10,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).resolve().parents[1]
 
 HIDE = """
@@ -97,6 +99,7 @@ print("done")
 """
 
 
+@pytest.mark.thorough
 def test_nothing_that_linux_alone_has_is_needed(tmp_path: Path) -> None:
     state = tmp_path / "state"
     ran = subprocess.run(

@@ -38,7 +38,10 @@ DOCUMENTS = {
 
 @pytest.mark.parametrize(
     ("path", "document"),
-    [pytest.param(*row, marks=LINUX) if "COMMANDS" in row[0] else row for row in DOCUMENTS.items()],
+    [
+        pytest.param(*row, marks=[LINUX, pytest.mark.thorough]) if "COMMANDS" in row[0] else row
+        for row in DOCUMENTS.items()
+    ],
 )
 def test_a_document_is_up_to_date(path: str, document: Callable[[], str]) -> None:
     module = document.__module__

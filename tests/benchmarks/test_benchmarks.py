@@ -12,7 +12,7 @@ from benchmarks import __main__ as benchmarks
 
 SLOW = {
     "targets", "scaling", "start", "steps", "movement", "events", "reading", "mapped_tables", "form",
-    "inspection", "display", "ports", "scalars",
+    "inspection", "normals", "display", "ports", "scalars",
 }  # fmt: skip
 SMALLER = {"benchmarks.mapped_tables.FEW": (400, 4000), "benchmarks.reading.QUICK_POLYGONS": 500}
 ROWS = [

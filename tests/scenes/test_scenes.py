@@ -57,6 +57,7 @@ def area_vectors(corners: NDArray[np.float64]) -> NDArray[np.float64]:
     return vectors
 
 
+@pytest.mark.thorough
 def test_the_modeling_script_makes_the_committed_files_byte_for_byte(texts: dict[str, str]) -> None:
     for name, text in texts.items():
         assert (SCENES / "coupe" / name).read_bytes() == text.encode("ascii"), name

@@ -119,6 +119,7 @@ def test_a_wrong_command_line_is_refused_before_anything_is_made(
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="needs SIGINT")
+@pytest.mark.thorough
 def test_an_interrupted_sweep_ends_its_processes_and_leaves_whole_files(folder: Path) -> None:
     command = [
         sys.executable, "-m", "autocolor", "sweep", "scene", "--vary", "ambient=0:1:2000", "-o",

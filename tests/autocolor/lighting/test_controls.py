@@ -322,6 +322,7 @@ def test_a_soft_flap_goes_from_nothing_at_its_ends_to_all_of_it_inside(
     assert left == pytest.approx(expected, abs=1e-4)
 
 
+@pytest.mark.thorough
 def test_a_soft_edge_is_smooth_at_both_ends_and_grows_between_them() -> None:
     width, step = 0.5, 1e-3
     light = Light("light", (0, -1, 0), half_spaces=(HalfSpace("left", (0, 0, 0), (1, 0, 0), width),))

@@ -116,7 +116,11 @@ def test_text_must_be_utf_8(tmp_path: Path, seed: Seed) -> None:
     )
 
 
-@pytest.mark.parametrize("seed", SEEDS, ids=lambda each: each.name)
+@pytest.mark.parametrize(
+    "seed",
+    [pytest.param(each, marks=[pytest.mark.thorough] * each.name.startswith("VTP")) for each in SEEDS],
+    ids=lambda each: each.name,
+)
 def test_a_file_cut_anywhere_is_refused_or_told(tmp_path: Path, seed: Seed) -> None:
     files = written(tmp_path, seed)
     data = seed.files[seed.read]

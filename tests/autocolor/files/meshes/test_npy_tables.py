@@ -501,6 +501,7 @@ def test_files_that_are_missing_or_no_files_are_refused(tmp_path: Path) -> None:
 
 
 @given(st.integers(0, 255))
+@pytest.mark.thorough
 def test_any_other_byte_in_the_header_is_refused_or_gives_a_table_of_the_same_size(
     tmp_path_factory: pytest.TempPathFactory, byte: int
 ) -> None:
