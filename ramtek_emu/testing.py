@@ -27,7 +27,7 @@ def words(planes: int = 10) -> st.SearchStrategy[int]:
 
 
 def rasters(lines: int = 9, elements: int = 13, planes: int = 10) -> st.SearchStrategy[Raster[np.uint16]]:
-    """Words of pixels, (lines, elements) uint16."""
+    """Words of pixels, (lines, elements) uint16. Failing examples above 200 pixels shrink for minutes."""
     return arrays.arrays(np.uint16, (lines, elements), elements=words(planes), fill=st.nothing())
 
 
