@@ -116,9 +116,7 @@ def ended(line: str, folder: Path) -> tuple[int, str, str]:
         return started.returncode, out, err
 
 
-@pytest.mark.parametrize(
-    "document", first(2, sorted(DOCUMENTS, key=("start.md", "README.md").__contains__, reverse=True))
-)
+@pytest.mark.parametrize("document", first(2, IN_ORDER))
 def test_every_code_block_of_a_document_ends_well(document: str, tmp_path: Path) -> None:
     make_inputs(tmp_path)
     names: dict[str, object] = {}

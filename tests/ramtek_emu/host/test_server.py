@@ -34,13 +34,6 @@ def packet(text: str) -> bytes:
     return words(text).astype("<u2").tobytes()
 
 
-def display_after(*streams: Words) -> Ramtek9300:
-    display = Ramtek9300()
-    for stream in streams:
-        display.send(stream)
-    return display
-
-
 def test_a_host_that_takes_no_replies_is_read_no_further() -> None:
     with serving() as server, connected(server) as host:
         left = memoryview(np.tile(READ_EVERYTHING, 300_000).astype("<u2").tobytes())

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import numpy as np
-
-from autocolor import Light, Mesh, Scene, Surface, View, scene_of
+from autocolor import Light, Scene, Surface, View, scene_of
 from autocolor.screens.light_and_view.handles import MovablePoint
 from autocolor.screens.light_and_view.light_and_view_screen import LightAndViewScreen
 from autocolor.screens.light_and_view.orthographic_views import OrthographicViews
@@ -12,7 +10,7 @@ from autocolor.screens.screen import Handle
 from autocolor.screens.viewer import Viewer
 from ramtek_emu import Ramtek9300
 from tests.autocolor.screens.hand import Hand
-from tests.small import cube
+from tests.small import boxes
 
 KEY = Light("key", (2.0, -3.0, 4.0), aim=(0.5, 0.5, 0.5), concentration=2.0)
 FILL = Light("fill", (-3.0, -3.0, 1.0), intensity=0.5)
@@ -21,10 +19,9 @@ VIEWS = OrthographicViews((0.0, 0.0, 0.0), 10.0)
 
 def boxed(*lights: Light) -> Scene:
     """A cube of two surfaces under some lights."""
-    mesh = Mesh(cube().coordinates, cube().node_numbers, np.array([0, 0, 0, 1, 1, 1]), ("low", "high"))
     surfaces = [Surface("low"), Surface("high")]
     view = View((-2.0, -3.0, 2.0), target=(0.5, 0.5, 0.5))
-    return scene_of(mesh, surfaces=surfaces, lights=list(lights), view=view, name="box")
+    return scene_of(boxes().mesh, surfaces=surfaces, lights=list(lights), view=view, name="box")
 
 
 def opened(scene: Scene) -> Hand:
