@@ -70,6 +70,10 @@ class RawPolygons:
     after polygon; they must be valid. `corner_counts` and `part_numbers`, indices of `part_names`, have one
     element for each polygon. `scalars` belong to nodes or polygons. `place_of` tells where in the file a
     polygon is, such as "line 7".
+
+    `normals`, (normals, 3) float64, are the file's own, of any length, in the axes of the file; `corner_normals`
+    has a row of `normals` for each of `corners`, or -1 where the file has none. Both are None for a file
+    without normals.
     """
 
     coordinates: Floats
@@ -79,6 +83,8 @@ class RawPolygons:
     part_names: tuple[str, ...]
     scalars: tuple[MeshScalar, ...] = ()
     place_of: Callable[[int], str] = lambda row: f"polygon {row + 1}"
+    normals: Floats | None = None
+    corner_normals: Indices | None = None
 
 
 @dataclass(frozen=True)
