@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from autocolor.errors import UnavailableError as UnavailableError
     from autocolor.errors import UsageError as UsageError
     from autocolor.errors import WriteError as WriteError
+    from autocolor.files.opening import read_scene as read_scene
     from autocolor.files.palette_file import Palette as Palette
     from autocolor.files.palette_file import read_palette as read_palette
     from autocolor.files.palette_file import write_palette as write_palette
@@ -38,7 +39,6 @@ if TYPE_CHECKING:
     from autocolor.files.picture_file import write_picture as write_picture
     from autocolor.files.rig_file import read_rig as read_rig
     from autocolor.files.rig_file import write_rig as write_rig
-    from autocolor.files.scene_sources import read_scene as read_scene
     from autocolor.files.scene_writing import write_scene as write_scene
     from autocolor.files.store.tables import open_tables as open_tables
     from autocolor.images import image as image
@@ -117,7 +117,7 @@ _HOME: Final = {
     "read_palette": "files.palette_file",
     "read_picture": "files.picture_file",
     "read_rig": "files.rig_file",
-    "read_scene": "files.scene_sources",
+    "read_scene": "files.opening",
     "read_variants": "batches.table",
     "render": "rendering",
     "save_image": "images",

@@ -29,10 +29,10 @@ import numpy as np
 
 from autocolor import Scene, read_journal, read_scene, render, write_scene
 from autocolor.errors import AutocolorError, InputError
-from autocolor.files.conversion import write_obj
 from autocolor.files.formats import read_mesh
 from autocolor.files.meshes.csv_tables import write_csv_tables
 from autocolor.files.meshes.npy_tables import write_npy_tables
+from autocolor.files.meshes.obj_writing import write_obj
 from autocolor.files.picture_file import read_picture, write_picture
 from autocolor.files.reading import COMMITTED
 from autocolor.journal.autosave import Autosave, journal_in, left_sessions

@@ -16,7 +16,8 @@ from pathlib import Path
 import numpy as np
 
 from autocolor import Scene
-from autocolor.files.conversion import OutputFormat, outputs
+from autocolor.files.conversion import OUTPUTS
+from autocolor.files.formats import Format
 from autocolor.scene.scalar import MeshScalar
 from tests.autocolor.files.meshes.vtp_files import VtpWriter
 from tests.small import boxes
@@ -252,7 +253,7 @@ BY_HAND = (
 """Samples of what is only read, and of kinds of files that are read and not written."""
 
 
-def written_seed(output: OutputFormat) -> Seed:
+def written_seed(output: Format) -> Seed:
     """The small scene as a format writes it."""
     with tempfile.TemporaryDirectory() as name:
         suffix = output.suffixes[0] if output.suffixes else ""
@@ -268,5 +269,5 @@ def written_seed(output: OutputFormat) -> Seed:
 def seeds() -> Iterator[Seed]:
     """Samples of all formats: those by hand, and one for each format that is written."""
     yield from BY_HAND
-    for output in outputs():
+    for output in OUTPUTS:
         yield written_seed(output)

@@ -304,7 +304,7 @@ def test_the_public_names_are_these_and_can_be_imported(package: str) -> None:
 
 def test_the_renderer_names_what_is_public_and_nothing_else_whatever_was_imported() -> None:
     code = """
-import autocolor, autocolor.files.scene_sources, autocolor.commands.demo
+import autocolor, autocolor.files.opening, autocolor.commands.demo
 from autocolor import *
 print([name for name in dir(autocolor) if not name.startswith("__")])
 print([name for name in autocolor.__all__ if name not in globals()])

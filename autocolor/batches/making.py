@@ -24,8 +24,8 @@ from autocolor.batches.table import TABLE_BEGINS, Result, Rows, Variant, results
 from autocolor.budget import allowed_memory, allowing, validated_limit
 from autocolor.checks import is_whole, shown
 from autocolor.errors import InputError, OutputError, UnavailableError, UsageError, reason_of
+from autocolor.files.opening import is_picture, read_scene
 from autocolor.files.picture_file import SavedPicture, read_picture
-from autocolor.files.scene_sources import is_picture, read_scene
 from autocolor.files.writing import check_suffix, refuse_output, write_atomically
 from autocolor.images import check_png_level
 from autocolor.lighting.picture import Picture, check_smooth, check_surfaces

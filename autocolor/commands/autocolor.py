@@ -23,6 +23,7 @@ class AutocolorGroup(CommandGroup):
     """The group of all commands, with a line of help for each of them."""
 
     package = "autocolor.commands"
+
     table: ClassVar[dict[str, str]] = {
         "render": "render a scene to a PNG or picture file, without a window",
         "recolor": "change the colors of a saved picture, without rendering it again",
@@ -40,6 +41,17 @@ class AutocolorGroup(CommandGroup):
         "tables": "print or write a complete scene file for a mesh or a scene",
         "sql": "query and change the tables of a scene with SQL",
     }
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """The command that the arguments name. Two tables in the place of a scene are refused with advice."""
+        name, command, others = super().resolve_command(ctx, args)
+        if len(others) > 1 and all(other.lower().endswith((".csv", ".npy")) for other in others[:2]):
+            from autocolor.files.opening import TWO_TABLES
+
+            ctx.fail(f"{' '.join(others[:2])}: two tables must be one argument, not two; {TWO_TABLES}")
+        return name, command, others
 
 
 @click.group(

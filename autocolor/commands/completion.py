@@ -45,13 +45,13 @@ def _silent(complete: Complete) -> Complete:
 @_silent
 def complete_scenes(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[str]:
     """Folders with a scene, scene files, mesh files and picture files."""
-    from autocolor.files.scene_files import FOLDER, kind_of
-    from autocolor.files.scene_sources import scene_and_mesh_suffixes
+    from autocolor.files.formats import suffixes_of
+    from autocolor.files.opening import FILES, FOLDER, kind_of
 
     def is_scene(folder: str) -> bool:
         return kind_of(Path(folder)) != FOLDER
 
-    suffixes = scene_and_mesh_suffixes()
+    suffixes = suffixes_of(FILES)
     return narrowed(incomplete, _folder_of(incomplete), lambda start: _entries(start, suffixes, is_scene))
 
 
@@ -151,7 +151,7 @@ def _entries(start: str, suffixes: tuple[str, ...], is_scene: Callable[[str], bo
 
 def _scene(context: click.Context) -> Scene:
     """The scene on the command line. Raises an exception if it is missing or its files are too large."""
-    from autocolor.files.scene_sources import read_scene_with_report
+    from autocolor.files.opening import read_scene_with_report
 
     given = context.params
     # While the value of an option is incomplete, click has not assigned the arguments.

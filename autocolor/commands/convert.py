@@ -58,7 +58,7 @@ def convert(context: click.Context, source: SceneSource, out: str, to: str | Non
         raise UsageError(f"OUT must be a file or a folder, not {out!r}; give it a name")
     from autocolor.files.conversion import left_out, output_named, output_of
     from autocolor.files.formats import MeshFormat
-    from autocolor.files.scene_sources import source_format
+    from autocolor.files.opening import source_format
     from autocolor.files.writing import refuse_output
 
     path = Path(out)
@@ -68,6 +68,7 @@ def convert(context: click.Context, source: SceneSource, out: str, to: str | Non
         refuse_output(path, overwrite=force)
     report = read(source)
     is_bare = isinstance(source_format(Path(source.path))[1], MeshFormat)
+    assert output.write is not None
     written = output.write(path, report.scene, force)
     lost = left_out(report.scene, output, is_bare=is_bare)
     for phrase in lost:
@@ -78,19 +79,12 @@ def convert(context: click.Context, source: SceneSource, out: str, to: str | Non
 
 def format_lines() -> list[str]:
     """A line for each format: its name, the endings of its files, and whether it is read and written."""
-    from autocolor.files.conversion import outputs
-    from autocolor.files.formats import MESH_FORMATS
-    from autocolor.files.scene_sources import SCENE_FORMATS
+    from autocolor.files.opening import FORMATS
 
-    rows: dict[str, tuple[str, str]] = {}
-    for source in (*SCENE_FORMATS, *MESH_FORMATS):
-        folder = [f"a folder of {', '.join(source.in_folder)}"] if source.in_folder else []
-        rows[source.name.removesuffix(" file")] = (" ".join([*source.suffixes, *folder]), "read")
-    for output in outputs():
-        endings, _ = rows.get(output.name, (" ".join(output.suffixes), ""))
-        rows[output.name] = (endings, "read, written")
-    name_width, ending_width = (max(map(len, column)) for column in (rows, [row[0] for row in rows.values()]))
-    return [
-        f"{name:{name_width}}  {endings:{ending_width}}  {uses}"
-        for name, (endings, uses) in sorted(rows.items(), key=lambda row: row[0].casefold())
-    ]
+    rows = []
+    for each in sorted(FORMATS, key=lambda each: each.name.casefold()):
+        folder = [f"a folder of {', '.join(each.in_folder)}"] if each.in_folder else []
+        endings = " ".join([*each.suffixes, *folder])
+        rows.append((each.name, endings, "read, written" if each.write else "read"))
+    name_width, ending_width = (max(len(row[column]) for row in rows) for column in (0, 1))
+    return [f"{name:{name_width}}  {endings:{ending_width}}  {uses}" for name, endings, uses in rows]

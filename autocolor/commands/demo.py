@@ -34,7 +34,7 @@ def demo() -> Scene:
 
 def demo_report() -> SceneReport:
     """The scene of `demo`, with its report. Raises MissingInputError if it is not installed."""
-    from autocolor.files.scene_sources import read_scene_with_report
+    from autocolor.files.opening import read_scene_with_report
 
     report = read_scene_with_report(demo_folder())
     return dataclasses.replace(report, scene=report.scene.replace(name="coupe"))

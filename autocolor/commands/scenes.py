@@ -110,7 +110,7 @@ def read(source: SceneSource | None) -> SceneReport:
         from autocolor.commands.demo import demo_report
 
         return demo_report()
-    from autocolor.files.scene_sources import read_scene_with_report
+    from autocolor.files.opening import read_scene_with_report
 
     report = read_scene_with_report(source.path, up=source.up, scale=source.scale, surfaces=source.surfaces)
     tell(*(f"autocolor: {repair}" for repair in report.repairs))
@@ -119,7 +119,7 @@ def read(source: SceneSource | None) -> SceneReport:
 
 def tell_up(report: SceneReport, source: SceneSource) -> None:
     """Print a line on stderr if the mesh seems to lie on its side, unless the user gave `--up`."""
-    from autocolor.files.scene_sources import hinted_up
+    from autocolor.files.opening import hinted_up
 
     context = click.get_current_context(silent=True)
     is_given = context is not None and context.get_parameter_source("up") is ParameterSource.COMMANDLINE

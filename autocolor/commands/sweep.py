@@ -161,8 +161,8 @@ def start_of(
     from pathlib import Path
 
     from autocolor.commands.recolor import recolored
+    from autocolor.files.opening import is_picture
     from autocolor.files.picture_file import read_picture
-    from autocolor.files.scene_sources import is_picture
 
     if is_picture(Path(source.path)):
         print_log(click.get_current_context())

@@ -1,8 +1,8 @@
-"""The mesh formats, and how the format of a file or a folder is recognized.
+"""The formats of files: how each is recognized, read and written. The table MESH_FORMATS has those of a mesh.
 
 A file's format is recognized by its suffix, or by its first bytes where only another format begins so. To add
-a mesh format, write its reader beside the others in `meshes`, and a row of MESH_FORMATS below. The formats of
-whole scenes are in `scene_sources`.
+a mesh format, write its reader beside the others in `meshes`, and a row of MESH_FORMATS below. `opening` adds
+the formats of whole scenes, which name meshes.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from __future__ import annotations
 import dataclasses
 import difflib
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import KW_ONLY, dataclass
 from functools import partial
 from pathlib import Path
 from typing import Final, TypeVar
@@ -20,7 +20,8 @@ from autocolor.files.meshes.byu import read_byu
 from autocolor.files.meshes.csv_tables import CSV_FILES, read_csv_tables, write_csv_tables
 from autocolor.files.meshes.foreign import FOREIGN, read_foreign
 from autocolor.files.meshes.npy_tables import MAGIC, NODES, POLYGONS, read_npy_tables, write_npy_tables
-from autocolor.files.meshes.obj import begins_as_obj, obj_text, read_obj
+from autocolor.files.meshes.obj import begins_as_obj, read_obj
+from autocolor.files.meshes.obj_writing import write_obj
 from autocolor.files.meshes.off import begins_as_off, read_off
 from autocolor.files.meshes.ply import ply_bytes, read_ply
 from autocolor.files.meshes.ply_elements import begins_as_ply
@@ -30,10 +31,31 @@ from autocolor.files.meshes.table_file import SUFFIX, read_table_file, table_fil
 from autocolor.files.meshes.vtk import begins_as_vtk, read_vtk
 from autocolor.files.meshes.vtp import begins_as_vtp, read_vtp
 from autocolor.files.reading import read_head, refuse_irregular, status_of, table_exists
+from autocolor.files.writing import write_atomically
 from autocolor.logs import logger_of, timed
 from autocolor.scene.mesh import Mesh
+from autocolor.scene.scene import Scene
 
 LOG: Final = logger_of(__name__)
+
+PARTS: Final = "parts"
+NODE_SCALARS: Final = "node scalars"
+POLYGON_SCALARS: Final = "polygon scalars"
+QUADS: Final = "quads"
+MESH_EXTRAS: Final = frozenset((PARTS, NODE_SCALARS, POLYGON_SCALARS, QUADS))
+"""Contents of a mesh, beside nodes and triangles, that some formats cannot hold."""
+
+SURFACES: Final = "surfaces"
+LIGHTS: Final = "lights"
+VIEW: Final = "view"
+SETTINGS: Final = "settings"
+WHOLE_SCENE: Final = MESH_EXTRAS | {SURFACES, LIGHTS, VIEW, SETTINGS}
+"""The parts of a scene, beside nodes and triangles, that some formats cannot hold."""
+
+SceneWriter = Callable[[Path, Scene, bool], list[Path]]
+"""A function that writes a scene to a path, and overwrites existing files if that is allowed.
+
+It returns the files that it wrote. It raises OutputError or WriteError, and leaves no file half written."""
 
 
 @dataclass(frozen=True)
@@ -41,13 +63,17 @@ class Format:
     """A file format: its name in messages, and the suffixes of its files, in lower case.
 
     `begins` is whether a file with these first bytes may have this format; None if first bytes tell nothing.
-    A folder that has all the files `in_folder` has this format.
+    A folder that has all the files `in_folder` has this format. `write` writes a file, or a folder, and is
+    None for a format that is only read; `holds` are the parts of WHOLE_SCENE that can then be read back.
     """
 
     name: str
     suffixes: tuple[str, ...]
-    begins: Callable[[bytes], bool] | None = field(default=None, kw_only=True)
-    in_folder: tuple[str, ...] = field(default=(), kw_only=True)
+    _: KW_ONLY
+    begins: Callable[[bytes], bool] | None = None
+    in_folder: tuple[str, ...] = ()
+    write: SceneWriter | None = None
+    holds: frozenset[str] = WHOLE_SCENE
 
 
 SomeFormat = TypeVar("SomeFormat", bound=Format)
@@ -97,24 +123,12 @@ FILE: Final = ("file",)
 NODES_AND_POLYGONS: Final = ("nodes", "polygons")
 """The keys of a mesh in a node table and a polygon table."""
 
-PARTS: Final = "parts"
-NODE_SCALARS: Final = "node scalars"
-POLYGON_SCALARS: Final = "polygon scalars"
-QUADS: Final = "quads"
-DOUBLES: Final = "double precision"
-MESH_EXTRAS: Final = (PARTS, NODE_SCALARS, POLYGON_SCALARS, QUADS, DOUBLES)
-"""Contents of a mesh, beside nodes and triangles in single precision, that some formats cannot hold."""
-
 MeshReader = Callable[..., MeshReport]
 """A function that reads a mesh. Its positional arguments are the paths of the files, in the order of the
 format's keys, and a Placement. It raises InputError."""
 
-MeshWriter = Callable[..., list[Path]]
-"""A function that writes the files of a mesh to a folder, and returns them. Its arguments are the folder, the
-mesh, and the keyword `overwrite`. It raises OutputError and WriteError."""
 
-
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class MeshFormat(Format):
     """A mesh file format.
 
@@ -122,19 +136,36 @@ class MeshFormat(Format):
     first file. In a folder of this format, the first files `in_folder` are the files of the keys. If the only
     key is "file", the folder itself is the file.
 
-    `written` returns the content of a single file; `write` writes several files into a folder, and returns
-    them. `holds` are the MESH_EXTRAS that a written mesh keeps. Files that are `mapped` into memory are read
-    page by page, so their size has no limit. `prior_of_y` is how often y is up in the files of others, from
-    -1 to 1 (see `meshes.up_axis`); None if the format says which axis is up.
+    Files that are `mapped` into memory are read page by page, so their size has no limit. `prior_of_y` is how
+    often y is up in the files of others, from -1 to 1 (see `meshes.up_axis`); None if the format says which
+    axis is up.
     """
 
     read: MeshReader
     keys: tuple[str, ...] = FILE
-    written: Callable[[Mesh], bytes] | None = None
-    write: MeshWriter | None = None
-    holds: frozenset[str] = frozenset(MESH_EXTRAS)
     mapped: bool = False
     prior_of_y: float | None = None
+    holds: frozenset[str] = MESH_EXTRAS
+
+
+def _file(content: Callable[[Mesh], bytes]) -> SceneWriter:
+    """The writer of the mesh of a scene to a file with this content."""
+
+    def write(path: Path, scene: Scene, overwrite: bool) -> list[Path]:
+        write_atomically(path, content(scene.mesh), overwrite=overwrite)
+        return [path]
+
+    return write
+
+
+def _tables(write_tables: Callable[..., list[Path]], names: tuple[str, ...]) -> SceneWriter:
+    """The writer of the mesh of a scene to tables in a folder; a path may also be that of a table."""
+
+    def write(path: Path, scene: Scene, overwrite: bool) -> list[Path]:
+        folder = path.parent if path.name in names else path
+        return write_tables(folder, scene.mesh, overwrite=overwrite)
+
+    return write
 
 
 SIMULATION: Final = 0.0
@@ -146,47 +177,59 @@ scanners; printers build along z."""
 
 MESH_FORMATS: Final = (
     MeshFormat(
-        "CSV", (".csv",), read_csv_tables, NODES_AND_POLYGONS, in_folder=CSV_FILES, write=write_csv_tables
+        name="CSV",
+        suffixes=(".csv",),
+        read=read_csv_tables,
+        keys=NODES_AND_POLYGONS,
+        in_folder=CSV_FILES,
+        write=_tables(write_csv_tables, CSV_FILES),
     ),
-    MeshFormat("Movie.BYU", (".g", ".byu"), read_byu, prior_of_y=SIMULATION),
+    MeshFormat(name="Movie.BYU", suffixes=(".g", ".byu"), read=read_byu, prior_of_y=SIMULATION),
     MeshFormat(
-        "npy",
-        (".npy",),
-        read_npy_tables,
-        NODES_AND_POLYGONS,
+        name="npy",
+        suffixes=(".npy",),
         begins=lambda head: head.startswith(MAGIC),
+        read=read_npy_tables,
+        keys=NODES_AND_POLYGONS,
         in_folder=(NODES, POLYGONS),
-        write=write_npy_tables,
         mapped=True,
+        write=_tables(write_npy_tables, (NODES, POLYGONS)),
     ),
     MeshFormat(
-        "OBJ",
-        (".obj",),
-        read_obj,
+        name="OBJ",
+        suffixes=(".obj",),
         begins=begins_as_obj,
-        written=obj_text,
-        holds=frozenset((PARTS, QUADS, DOUBLES)),
+        read=read_obj,
         prior_of_y=MODELED,
+        write=write_obj,
+        holds=frozenset((PARTS, QUADS, SURFACES)),
     ),
-    MeshFormat("OFF", (".off",), read_off, begins=begins_as_off, prior_of_y=SCANNED),
-    MeshFormat("PLY", (".ply",), read_ply, begins=begins_as_ply, written=ply_bytes, prior_of_y=SCANNED),
+    MeshFormat(name="OFF", suffixes=(".off",), begins=begins_as_off, read=read_off, prior_of_y=SCANNED),
     MeshFormat(
-        "STL",
-        (".stl",),
-        read_stl,
-        begins=begins_as_stl,
-        written=stl_bytes,
-        holds=frozenset(),
-        prior_of_y=PRINTED,
+        name="PLY",
+        suffixes=(".ply",),
+        begins=begins_as_ply,
+        read=read_ply,
+        prior_of_y=SCANNED,
+        write=_file(ply_bytes),
     ),
-    MeshFormat("tables", (SUFFIX,), read_table_file, written=table_file_bytes),
-    MeshFormat("VTK", (".vtk",), read_vtk, begins=begins_as_vtk, prior_of_y=SIMULATION),
-    MeshFormat("VTP", (".vtp",), read_vtp, begins=begins_as_vtp, prior_of_y=SIMULATION),
+    MeshFormat(
+        name="STL",
+        suffixes=(".stl",),
+        begins=begins_as_stl,
+        read=read_stl,
+        prior_of_y=PRINTED,
+        write=_file(stl_bytes),
+        holds=frozenset(),
+    ),
+    MeshFormat(name="tables", suffixes=(SUFFIX,), read=read_table_file, write=_file(table_file_bytes)),
+    MeshFormat(name="VTK", suffixes=(".vtk",), begins=begins_as_vtk, read=read_vtk, prior_of_y=SIMULATION),
+    MeshFormat(name="VTP", suffixes=(".vtp",), begins=begins_as_vtp, read=read_vtp, prior_of_y=SIMULATION),
     *(
         MeshFormat(
-            each.name,
-            each.suffixes,
-            partial(read_foreign, each),
+            name=each.name,
+            suffixes=each.suffixes,
+            read=partial(read_foreign, each),
             prior_of_y=None if each.library == "trimesh" else SIMULATION,
         )
         for each in FOREIGN
@@ -195,19 +238,13 @@ MESH_FORMATS: Final = (
 """All mesh formats. If several formats accept the first bytes of a file, the first format is used."""
 
 
-def file_formats() -> tuple[MeshFormat, ...]:
-    """The mesh formats that consist of a single file."""
-    return tuple(each for each in MESH_FORMATS if each.keys == FILE and each.suffixes)
-
-
-def mesh_suffixes() -> tuple[str, ...]:
-    """The suffixes of all mesh formats that consist of a single file."""
-    return suffixes_of(file_formats())
+FILE_FORMATS: Final = tuple(each for each in MESH_FORMATS if each.keys == FILE)
+"""The mesh formats that consist of a single file."""
 
 
 def format_of(path: Path) -> MeshFormat | None:
     """The format of a single file, by its suffix or its first bytes, or of a folder; None if unknown."""
-    return (format_of_folder(path) if path.is_dir() else None) or recognized(path, file_formats())
+    return (format_of_folder(path) if path.is_dir() else None) or recognized(path, FILE_FORMATS)
 
 
 def format_of_folder(folder: Path) -> MeshFormat | None:
@@ -245,7 +282,8 @@ def read_mesh(files: Mapping[str, Path], placement: Placement = PLAIN) -> MeshRe
     mesh_format = format_of_files(files)
     if mesh_format is None:
         raise InputError(
-            f"{path.name}: a mesh file must {suffix_rule(path, mesh_suffixes())}; export it as one of these"
+            f"{path.name}: a mesh file must {suffix_rule(path, suffixes_of(FILE_FORMATS))};"
+            " export it as one of these"
         )
     with timed(LOG, f"read {', '.join(path.name for path in files.values())}"):
         # A folder of tables is no file.

@@ -14,10 +14,9 @@ from pathlib import Path
 from typing import Final
 
 from autocolor.errors import InputError, OutputError, UsageError
-from autocolor.files.formats import mesh_suffixes, suffixes_of
-from autocolor.files.paths import SCENE_FILE, STORE_SUFFIXES
+from autocolor.files.formats import MESH_FORMATS, suffixes_of
+from autocolor.files.paths import PICTURE_SUFFIX, SCENE_FILE, STORE_SUFFIXES
 from autocolor.files.reading import read_bytes
-from autocolor.files.scene_sources import SCENE_FORMATS
 from autocolor.files.scene_toml.scene_file import report_of_text
 from autocolor.files.scene_toml.scene_meshes import (
     Meshes,
@@ -111,7 +110,7 @@ def _target(path: str | os.PathLike[str]) -> Path:
         is_other = target.exists() and suffix != ".toml"
     except (OSError, ValueError):
         is_other = False
-    if is_other or suffix in {*suffixes_of(SCENE_FORMATS), *mesh_suffixes()} - {".toml"}:
+    if is_other or suffix in {PICTURE_SUFFIX, *STORE_SUFFIXES, *suffixes_of(MESH_FORMATS)}:
         raise UsageError(
             f"a scene must be written to a folder or to a file that ends in .toml,"
             f" {' or '.join(STORE_SUFFIXES)}, not to {target}; choose another name"

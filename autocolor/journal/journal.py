@@ -31,9 +31,9 @@ from typing import Any, Final, NamedTuple
 from autocolor.budget import allowing
 from autocolor.checks import shown
 from autocolor.errors import AutocolorError, InputError, MissingInputError
+from autocolor.files.opening import read_scene
 from autocolor.files.paths import SCENE_FILE
 from autocolor.files.reading import read_bytes
-from autocolor.files.scene_sources import read_scene
 from autocolor.files.scene_toml.scene_meshes import source_of
 from autocolor.files.scene_writing import write_scene
 from autocolor.journal.history import Drop, Edit, History, Keep, Open, Saved, Show, Step

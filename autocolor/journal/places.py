@@ -19,9 +19,9 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from autocolor.errors import InputError, OutputError
+from autocolor.files.opening import read_scene
 from autocolor.files.paths import PICTURE_SUFFIX, SCENE_FILE, STORE_SUFFIXES
 from autocolor.files.picture_file import plain_scene
-from autocolor.files.scene_sources import read_scene
 from autocolor.files.stamps import numbers_of, stamp_of
 from autocolor.scene.creation import SurfaceSource
 from autocolor.scene.mesh import has_same_tables

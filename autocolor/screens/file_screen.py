@@ -19,10 +19,10 @@ from typing import Final
 from autocolor.arrays import Bytes
 from autocolor.errors import AutocolorError, InputError
 from autocolor.files.meshes.repair import UPS
+from autocolor.files.opening import FOLDER, Openable, kind_of, openables_of
 from autocolor.files.paths import SCENE_FILE
 from autocolor.files.picture_file import read_picture
 from autocolor.files.rig_file import RIG_SUFFIX, is_rig
-from autocolor.files.scene_files import FOLDER, Openable, kind_of, openables_of
 from autocolor.files.state import recent_files
 from autocolor.images import LARGEST, SMOOTHNESS, SMOOTHNESSES, display_image, size_of
 from autocolor.journal.saving import free_name

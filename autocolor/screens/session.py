@@ -15,11 +15,10 @@ import numpy as np
 
 from autocolor.arrays import Bytes, Words
 from autocolor.errors import InputError, UsageError
+from autocolor.files.opening import MESH, hinted_up, kind_of, stays_within
 from autocolor.files.palette_file import Palette, is_palette, read_palette
 from autocolor.files.paths import SCENE_FILE, file_stem, free_path
 from autocolor.files.rig_file import RIG_SUFFIX, is_rig, read_rig, write_rig
-from autocolor.files.scene_files import MESH, kind_of, stays_within
-from autocolor.files.scene_sources import hinted_up
 from autocolor.files.stamps import look_at
 from autocolor.files.state import note_file
 from autocolor.images import save_image

@@ -16,7 +16,7 @@ import numpy as np
 import autocolor
 from autocolor import Mesh, Scene, View
 from autocolor.arrays import Bytes
-from autocolor.files.formats import mesh_suffixes
+from autocolor.files.formats import FILE_FORMATS, suffixes_of
 from autocolor.files.meshes.repair import UPS
 from autocolor.images import display_image
 from autocolor.rendering import Rendering, rendering
@@ -92,7 +92,7 @@ def subjects(paths: Sequence[Path] = ()) -> Iterator[Subject]:
     for path, up in map(path_and_up, paths):
         files = sorted(path.iterdir()) if path.is_dir() else [path]
         for file in files:
-            if file.suffix.lower() in mesh_suffixes():
+            if file.suffix.lower() in suffixes_of(FILE_FORMATS):
                 scene = autocolor.read_scene(file, up=up)
                 yield Subject(file.stem, scene, is_curved(scene.mesh))
 

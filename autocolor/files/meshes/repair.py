@@ -71,9 +71,9 @@ class RawPolygons:
     element for each polygon. `scalars` belong to nodes or polygons. `place_of` tells where in the file a
     polygon is, such as "line 7".
 
-    `normals`, (normals, 3) float64, are the file's own, of any length, in the axes of the file; `corner_normals`
-    has a row of `normals` for each of `corners`, or -1 where the file has none. Both are None for a file
-    without normals.
+    `normals`, (normals, 3) float64, are the file's own, of any length, in the axes of the file;
+    `corner_normals` has a row of `normals` for each of `corners`, or -1 where the file has none. Both are
+    None for a file without normals.
     """
 
     coordinates: Floats

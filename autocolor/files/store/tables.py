@@ -14,7 +14,7 @@ from autocolor.checks import nearest, printable, shown
 from autocolor.errors import InputError, UsageError, WriteError
 from autocolor.files.formats import recognized
 from autocolor.files.meshes.repair import different
-from autocolor.files.scene_sources import SCENE_FORMATS, PathLike, read_scene_with_report
+from autocolor.files.opening import FILES, STORE, PathLike, read_scene_with_report
 from autocolor.files.store.connections import (
     BUSY_ERRORS,
     CHANGES,
@@ -71,10 +71,7 @@ def open_tables(path: PathLike, *, up: str = "z", scale: float = 1.0, limit: flo
 
 def is_store(path: Path) -> bool:
     """Whether a file is a store, by its name or its first bytes."""
-    if os.path.isdir(path):
-        return False
-    scene_format = recognized(path, SCENE_FORMATS)
-    return scene_format is not None and scene_format.name == "store"
+    return not os.path.isdir(path) and recognized(path, FILES) is STORE
 
 
 def tables_of(scene: Scene) -> Tables:

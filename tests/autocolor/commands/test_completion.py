@@ -10,8 +10,8 @@ from autocolor import read_scene, render, write_picture, write_scene
 from autocolor.commands import completion
 from autocolor.commands.autocolor import autocolor
 from autocolor.commands.completion import narrowed
-from autocolor.files.formats import MESH_FORMATS
-from autocolor.files.scene_sources import scene_and_mesh_suffixes
+from autocolor.files.formats import MESH_FORMATS, suffixes_of
+from autocolor.files.opening import FILES
 from tests.autocolor.commands.conftest import Run
 
 
@@ -37,7 +37,7 @@ def crowded(folder: Path) -> Path:
 
 def test_the_files_and_folders_of_all_formats_are_completed(folder: Path) -> None:
     (folder / "all").mkdir()
-    expected = {f"all/a{suffix}" for suffix in scene_and_mesh_suffixes()}
+    expected = {f"all/a{suffix}" for suffix in suffixes_of(FILES)}
     for name in expected:
         (folder / name).touch()
     for each in MESH_FORMATS:

@@ -6,8 +6,8 @@ import pytest
 
 from autocolor.commands.scenes import SceneSource, created_again, ended, read, reframed
 from autocolor.commands.settings import with_settings
+from autocolor.files.opening import read_scene_with_report
 from autocolor.files.scene_report import SceneReport
-from autocolor.files.scene_sources import read_scene_with_report
 from autocolor.scene.defaults import default_lights, framed
 from tests.autocolor.commands.conftest import Refused
 from tests.small import wall_scene

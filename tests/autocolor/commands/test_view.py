@@ -11,7 +11,7 @@ import pytest
 
 from autocolor.commands import view
 from autocolor.commands.view import connected
-from autocolor.files import scene_sources
+from autocolor.files import opening
 from autocolor.files.state import recent_files
 from autocolor.screens.viewer import Viewer
 from ramtek_emu import NoScreenError, Ramtek9300
@@ -260,13 +260,13 @@ class Waited:
 @pytest.fixture
 def slow(monkeypatch: pytest.MonkeyPatch) -> threading.Event:
     """Reading a scene waits for this event."""
-    event, read = threading.Event(), scene_sources.read_scene_with_report
+    event, read = threading.Event(), opening.read_scene_with_report
 
     def slowly(*arguments: Any, **options: Any) -> Any:
         assert event.wait(60)
         return read(*arguments, **options)
 
-    monkeypatch.setattr(scene_sources, "read_scene_with_report", slowly)
+    monkeypatch.setattr(opening, "read_scene_with_report", slowly)
     return event
 
 

@@ -10,14 +10,14 @@ from pathlib import Path
 import pytest
 
 from autocolor.errors import InputError
-from autocolor.files.formats import file_formats, suffixes_of
-from autocolor.files.scene_sources import SCENE_FORMATS, read_scene_with_report
+from autocolor.files.formats import FILE_FORMATS, suffixes_of
+from autocolor.files.opening import PICTURE, SCENE, STORE, read_scene_with_report
 from tests.mutations import BY_HAND, OBJ_TEXT, PLY_BITS, PLY_TEXT, STL_BITS, VTK_GRID, VTK_TEXT
 
-OURS = [each for each in file_formats() if not isinstance(each.read, partial)]
+OURS = [each for each in FILE_FORMATS if not isinstance(each.read, partial)]
 """The mesh formats that no library reads in a process of its own; that has tests of its own."""
 
-SUFFIXES = sorted({*suffixes_of(SCENE_FORMATS), *suffixes_of(OURS)})
+SUFFIXES = suffixes_of((PICTURE, SCENE, STORE, *OURS))
 TEXTS = [seed for seed in BY_HAND if seed.read and seed.files[seed.read].isascii()]
 
 

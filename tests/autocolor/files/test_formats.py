@@ -8,14 +8,13 @@ import pytest
 
 from autocolor.errors import InputError
 from autocolor.files.formats import (
-    MESH_FORMATS,
+    FILE_FORMATS,
     Format,
     files_of_folder,
     format_named,
     format_of,
     format_of_files,
     format_of_folder,
-    mesh_suffixes,
     read_mesh,
     recognized,
     suffix_rule,
@@ -23,7 +22,7 @@ from autocolor.files.formats import (
 )
 from autocolor.files.meshes.csv_tables import CSV_FILES
 from autocolor.files.meshes.npy_tables import MAGIC, write_npy_tables
-from autocolor.files.scene_sources import SCENE_FORMATS
+from autocolor.files.opening import FORMATS
 from tests.small import cube
 
 SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n"
@@ -35,15 +34,14 @@ ALL = (ANYTHING, PLAIN, SOLID)
 
 
 def test_no_two_formats_have_a_suffix_or_a_name_in_common() -> None:
-    every: tuple[Format, ...] = (*MESH_FORMATS, *SCENE_FORMATS)
-    suffixes = [suffix for each in every for suffix in each.suffixes]
+    suffixes = [suffix for each in FORMATS for suffix in each.suffixes]
     assert sorted(suffixes) == sorted(set(suffixes))
-    assert len({each.name for each in every}) == len(every)
+    assert len({each.name for each in FORMATS}) == len(FORMATS)
     assert all(suffix.startswith(".") and suffix == suffix.lower() for suffix in suffixes)
-    assert all(each.suffixes for each in every)
+    assert all(each.suffixes for each in FORMATS)
     own = {".g", ".byu", ".csv", ".npy", ".obj", ".off", ".ply", ".stl", ".tables", ".vtk", ".vtp"}
     assert own < {*suffixes}
-    assert own - {".csv", ".npy"} < {*mesh_suffixes()}
+    assert own - {".csv", ".npy"} < {*suffixes_of(FILE_FORMATS)}
     assert suffixes_of((*ALL, Format("another", (".any",)))) == (".any", ".plain", ".sld", ".solid")
 
 
@@ -110,7 +108,7 @@ def test_files_of_no_format_are_refused(tmp_path: Path) -> None:
     (tmp_path / "car.shape").write_text("car")
     with pytest.raises(InputError) as refusal:
         read_mesh({"file": tmp_path / "car.shape"})
-    rule = suffix_rule(Path("car.shape"), mesh_suffixes())
+    rule = suffix_rule(Path("car.shape"), suffixes_of(FILE_FORMATS))
     assert str(refusal.value) == f"car.shape: a mesh file must {rule}; export it as one of these"
     write_npy_tables(tmp_path / "tables", cube())
     with pytest.raises(InputError, match="must be a regular file, not a folder"):

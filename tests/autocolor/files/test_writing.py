@@ -18,8 +18,8 @@ from autocolor.commands.autocolor import autocolor
 from autocolor.errors import AutocolorError, InputError, OutputError, WriteError
 from autocolor.files import reading
 from autocolor.files.formats import read_mesh
+from autocolor.files.opening import kind_of
 from autocolor.files.reading import COMMITTED, NAMES, TableFiles, read_together
-from autocolor.files.scene_files import kind_of
 from autocolor.files.writing import refuse_output, write_atomically, write_together
 from ramtek_emu import writing
 from tests.kills import KINDS, Killed, killed, mesh_sum, steps

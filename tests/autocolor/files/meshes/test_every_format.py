@@ -13,8 +13,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor.errors import InputError
-from autocolor.files.conversion import outputs
-from autocolor.files.formats import MESH_FORMATS, MeshFormat, file_formats, format_of, read_mesh
+from autocolor.files.conversion import OUTPUTS
+from autocolor.files.formats import FILE_FORMATS, MESH_FORMATS, MeshFormat, format_of, read_mesh
 from autocolor.files.meshes.repair import Placement
 from autocolor.scene.mesh import Mesh
 from tests.autocolor.files.refusals import is_read_or_refused, refusal
@@ -25,7 +25,7 @@ OURS = [each for each in MESH_FORMATS if not isinstance(each.read, partial)]
 
 SEEDS = [each for each in BY_HAND if each.read]
 TEXTS = [each for each in SEEDS if each.files[each.read].isascii()]
-BEGINNING = [each for each in file_formats() if each.begins is not None]
+BEGINNING = [each for each in FILE_FORMATS if each.begins is not None]
 
 
 @functools.cache
@@ -33,7 +33,7 @@ def sample_of(mesh_format: MeshFormat) -> Seed:
     """A sample of a format, by hand or as the program writes it."""
     by_hand = (each for each in SEEDS if each.read.endswith(mesh_format.suffixes))
     return next(by_hand, None) or next(
-        written_seed(each) for each in outputs() if each.name == mesh_format.name
+        written_seed(each) for each in OUTPUTS if each.name == mesh_format.name
     )
 
 
@@ -61,7 +61,7 @@ def test_the_up_axis_becomes_z_and_the_scale_is_multiplied(tmp_path: Path, mesh_
         assert placed.tolist() == (np.stack(axes, axis=1) * 0.5).tolist()
 
 
-@pytest.mark.parametrize("mesh_format", file_formats(), ids=lambda each: each.name)
+@pytest.mark.parametrize("mesh_format", FILE_FORMATS, ids=lambda each: each.name)
 def test_a_folder_or_a_missing_file_is_refused(tmp_path: Path, mesh_format: MeshFormat) -> None:
     path = tmp_path / f"car{mesh_format.suffixes[0]}"
     assert refusal(read_mesh, {"file": path}) == f"{path}: there is no such file or folder; check the name"

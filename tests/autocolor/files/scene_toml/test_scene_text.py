@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from autocolor import Flap, Flaps, InputError, Scene
 from autocolor.files.formats import read_mesh
 from autocolor.files.meshes.repair import MeshReport
-from autocolor.files.scene_sources import read_scene_with_report
+from autocolor.files.opening import read_scene_with_report
 from autocolor.files.scene_toml.scene_file import report_of_text
 from autocolor.files.scene_toml.scene_text import (
     completed,

@@ -13,7 +13,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 
 from autocolor import InputError, Mesh, MissingInputError, OutputError, Scene, UsageError, WriteError
-from autocolor.files.scene_sources import read_scene
+from autocolor.files.opening import read_scene
 from autocolor.files.scene_writing import write_scene
 from autocolor.files.store.schema import DEFINITIONS, INDEXES
 from autocolor.files.store.store_file import (

@@ -9,7 +9,7 @@ import pytest
 
 import autocolor
 from autocolor import InputError, UsageError, WriteError, open_tables
-from autocolor.files.scene_sources import read_scene
+from autocolor.files.opening import read_scene
 from autocolor.files.scene_writing import write_scene
 from autocolor.files.store.store_file import store_of
 from autocolor.files.store.tables import LONGEST_COMPUTED, answer_of, change, changes_of

@@ -1,25 +1,29 @@
-"""Reading a scene from a folder, a scene file, a store, a mesh file or a picture file.
+"""Opening a path: what it is, the scene that it gives, and which files of a folder can be opened.
 
-To add a format of scenes, write its reader and a row of SCENE_FORMATS below.
+A path is a folder, a scene file, a store, a mesh file or a picture file; FORMATS has all of their formats. To
+add a format of scenes, write its reader and a row of FORMATS below.
 """
 
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
-from typing import Final
+from typing import Final, NamedTuple
 
 from autocolor.budget import allowing
 from autocolor.checks import shown
-from autocolor.errors import InputError, UsageError
+from autocolor.errors import InputError, UsageError, reason_of
 from autocolor.files.formats import (
+    FILE_FORMATS,
     MESH_FORMATS,
     Format,
     MeshFormat,
-    file_formats,
     files_of_folder,
+    format_named,
     format_of_folder,
     read_mesh,
     recognized,
@@ -28,12 +32,14 @@ from autocolor.files.formats import (
 )
 from autocolor.files.meshes.repair import SCALES, UPS, Placement
 from autocolor.files.meshes.up_axis import seems_to_lie
+from autocolor.files.palette_file import GPL
 from autocolor.files.paths import PICTURE_SUFFIX, SCENE_FILE, STORE_SUFFIXES
 from autocolor.files.picture_file import read_picture
-from autocolor.files.reading import TableFiles, status_of
+from autocolor.files.reading import status_of
 from autocolor.files.scene_report import SceneReport, scene_report
 from autocolor.files.scene_toml.scene_file import read_scene_file
 from autocolor.files.scene_toml.scene_meshes import MeshSource, keep_source
+from autocolor.files.scene_writing import write_scene_with_tables
 from autocolor.scene.creation import MATERIALS, PARTS, SurfaceSource
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import Scene
@@ -48,7 +54,7 @@ materials or their own surfaces, as `surfaces` says.
 """
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class SceneFormat(Format):
     """A file format that holds a whole scene."""
 
@@ -60,29 +66,53 @@ def _read_picture_scene(path: Path, **_: object) -> SceneReport:
     return SceneReport(read_picture(path).scene)
 
 
+def _write_scene_folder(path: Path, scene: Scene, overwrite: bool) -> list[Path]:
+    return write_scene_with_tables(path, scene, overwrite=overwrite, complete=False)
+
+
 def _read_store(path: Path, *, outside: bool, surfaces: SurfaceSource) -> SceneReport:
     """The scene of a store, which names no other files: `outside` has no effect. Raises InputError."""
-    # SQLite is loaded for stores alone.
+    # SQLite is loaded for stores only.
     from autocolor.files.store.store_file import read_store
 
     return read_store(path, surfaces=surfaces)
 
 
-SCENE_FILE_FORMAT: Final = SceneFormat("scene file", (".toml",), read_scene_file, in_folder=(SCENE_FILE,))
+def _write_store(path: Path, scene: Scene, overwrite: bool) -> list[Path]:
+    from autocolor.files.store.store_file import write_store
 
-STORE: Final = SceneFormat(
-    "store", STORE_SUFFIXES, _read_store, begins=lambda head: head.startswith(b"SQLite format 3\0")
-)
+    write_store(path, scene, overwrite=overwrite)
+    return [path]
+
 
 PICTURE: Final = SceneFormat(
-    "picture file",
-    (PICTURE_SUFFIX,),
-    _read_picture_scene,
+    name="picture",
+    suffixes=(PICTURE_SUFFIX,),
     begins=lambda head: head.startswith(b"PK\x03\x04"),
+    read=_read_picture_scene,
 )
 
-SCENE_FORMATS: Final = (PICTURE, SCENE_FILE_FORMAT, STORE)
-"""All formats of whole scenes."""
+SCENE: Final = SceneFormat(
+    name="scene",
+    suffixes=(".toml",),
+    in_folder=(SCENE_FILE,),
+    read=read_scene_file,
+    write=_write_scene_folder,
+)
+
+STORE: Final = SceneFormat(
+    name="store",
+    suffixes=STORE_SUFFIXES,
+    begins=lambda head: head.startswith(b"SQLite format 3\0"),
+    read=_read_store,
+    write=_write_store,
+)
+
+FORMATS: Final = (PICTURE, SCENE, STORE, *MESH_FORMATS)
+"""All formats of scenes and meshes. If several accept the first bytes of a file, the first format is used."""
+
+FILES: Final[tuple[SceneFormat | MeshFormat, ...]] = (PICTURE, SCENE, STORE, *FILE_FORMATS)
+"""The formats of scenes and meshes that consist of a single file, or whose first file names the others."""
 
 
 def read_scene(
@@ -133,7 +163,7 @@ def read_scene_with_report(
     if surfaces not in (MATERIALS, PARTS):
         raise UsageError(f"surfaces must be {MATERIALS!r} or {PARTS!r}, not {shown(surfaces)}")
     path = Path(path)
-    status_of(TableFiles().path(path.parent, path.name))
+    status_of(path)
 
     path, source = source_format(path)
     if isinstance(source, SceneFormat):
@@ -144,11 +174,11 @@ def read_scene_with_report(
                 )
         report = source.read(path, outside=outside, surfaces=surfaces)
         return _with_source(report, path.parent, path)
+    files, name = {"file": path}, path.stem
     if path.is_dir():
         files, name = files_of_folder(path, source), path.resolve().name
-        folder = next(iter(files.values())).parent
-        return _with_source(_bare_mesh(files, name, placement, surfaces), folder)
-    return _with_source(_bare_mesh({"file": path}, path.stem, placement, surfaces), path.parent)
+    report = _bare_mesh(files, name or "scene", placement, surfaces)
+    return _with_source(report, next(iter(files.values())).parent)
 
 
 def _with_source(report: SceneReport, folder: Path, scene_file: Path | None = None) -> SceneReport:
@@ -168,32 +198,41 @@ def is_picture(path: Path) -> bool:
 def source_format(path: Path) -> tuple[Path, SceneFormat | MeshFormat]:
     """The path to read for a source, and its format.
 
-    For a folder with a scene file, the path of the scene file is returned; for a file of a mesh that is a
-    folder, the path of the folder. Raises InputError if the format is unknown.
+    For a folder with a scene file, the path of the scene file is returned; for a table in the folder of a
+    mesh, the path of the folder. Raises InputError if the format is unknown.
     """
     if path.is_dir():
         if (path / SCENE_FILE).exists():
-            return path / SCENE_FILE, SCENE_FILE_FORMAT
+            return path / SCENE_FILE, SCENE
         mesh_format = format_of_folder(path)
         if mesh_format is None:
-            folder_formats: list[Format] = [SCENE_FILE_FORMAT, *MESH_FORMATS]
-            contents = [" and ".join(each.in_folder) for each in folder_formats if each.in_folder]
+            contents = [" and ".join(each.in_folder) for each in FORMATS if each.in_folder]
             raise InputError(
                 f"{path}: a scene's folder must contain a {' or '.join(contents)}, and this one does not;"
                 " name a mesh file to read it alone"
             )
         return path, mesh_format
-    formats: tuple[SceneFormat | MeshFormat, ...] = (*SCENE_FORMATS, *file_formats())
-    file_format = recognized(path, formats)
+    file_format = recognized(path, FILES)
     if file_format is not None:
         return path, file_format
     mesh_format = format_of_folder(path.parent)
     if mesh_format is not None and path.name in mesh_format.in_folder:
         return path.parent, mesh_format
+    if format_named(path, MESH_FORMATS) is not None:
+        raise InputError(
+            f"{path}: a mesh must have a table of nodes and a table of polygons, not one of the two;"
+            f" {TWO_TABLES}"
+        )
     raise InputError(
-        f"{path}: a scene must be a folder, or {suffix_rule(path, scene_and_mesh_suffixes())};"
-        " name one of these"
+        f"{path}: a scene must be a folder, or {suffix_rule(path, suffixes_of(FILES))}; name one of these"
     )
+
+
+TWO_TABLES: Final = (
+    "name the folder of nodes.csv and polygons.csv, or a scene.toml that names the two tables by nodes and"
+    " polygons in [[mesh]]"
+)
+"""How the two tables of a mesh are given, as the end of a message."""
 
 
 def hinted_up(path: PathLike, mesh: Mesh) -> str:
@@ -210,11 +249,6 @@ def hinted_up(path: PathLike, mesh: Mesh) -> str:
     return "y" if prior is not None and seems_to_lie(mesh, prior) else ""
 
 
-def scene_and_mesh_suffixes() -> tuple[str, ...]:
-    """The suffixes of all files that are scenes or meshes, sorted."""
-    return suffixes_of((*SCENE_FORMATS, *file_formats()))
-
-
 def _bare_mesh(
     files: Mapping[str, Path], name: str, placement: Placement, surfaces: SurfaceSource
 ) -> SceneReport:
@@ -222,4 +256,76 @@ def _bare_mesh(
     read = read_mesh(files, placement)
     scale = {} if placement.scale == 1 else {"scale": placement.scale}
     entry = {**{key: file.name for key, file in files.items()}, "up": placement.up, **scale}
-    return scene_report([read], mesh_files=(entry,), name=name or "scene", surfaces=surfaces)
+    return scene_report([read], mesh_files=(entry,), name=name, surfaces=surfaces)
+
+
+# The files of a folder that can be opened. Kinds are recognized by names only, which is quick: no file is
+# opened. So CSV files are not listed, neither as tables of a mesh nor as paints.
+
+FOLDER: Final = "folder"
+MESH: Final = "mesh"
+PAINTS: Final = "paints"
+
+MOST_LISTED: Final = 1000
+"""Limit: the names that are listed of a folder; nobody finds a file in a longer list."""
+
+
+class Openable(NamedTuple):
+    """A path, and its kind: "scene", "store", "picture", "mesh", "paints" or "folder"."""
+
+    path: Path
+    kind: str
+
+
+def openables_of(folder: Path) -> list[Openable]:
+    """The files of a folder that can be opened, then its folders, by name; hidden names are left out.
+
+    At most MOST_LISTED names of a folder are read. Raises InputError if the folder cannot be read.
+    """
+    try:
+        with os.scandir(folder) as listed:
+            names = [entry.name for entry in islice(listed, MOST_LISTED)]
+    except OSError as error:
+        raise InputError(
+            f"{folder.name or folder}: a folder must be readable, and is not ({reason_of(error)});"
+            " choose another"
+        ) from None
+    paths = [folder / name for name in sorted(names, key=_in_order) if not name.startswith(".")]
+    openables = [Openable(path, kind) for path in paths if (kind := kind_of(path))]
+    return sorted(openables, key=lambda openable: openable.kind == FOLDER)
+
+
+def kind_of(path: Path) -> str:
+    """The kind of a path, as in `Openable`; empty if it cannot be opened, or does not exist."""
+    try:
+        if path.is_dir():
+            if (path / SCENE_FILE).is_file():
+                return "scene"
+            return FOLDER if format_of_folder(path) is None else MESH
+        if not path.is_file():
+            return ""
+    except OSError:
+        return ""
+    if path.suffix.lower() == GPL:
+        return PAINTS
+    file_format = format_named(path, FILES)
+    if file_format is None:
+        return ""
+    return file_format.name if isinstance(file_format, SceneFormat) else MESH
+
+
+def stays_within(path: Path, folder: Path) -> bool:
+    """Whether a path, and the files to read first when it is opened, are in a folder, links resolved."""
+    real = os.path.realpath(folder)
+    read = [path]
+    if path.is_dir():
+        mesh_format = format_of_folder(path)
+        names = () if mesh_format is None else mesh_format.in_folder
+        read += [path / name for name in (SCENE_FILE, *names)]
+    return all(Path(os.path.realpath(file)).is_relative_to(real) for file in read)
+
+
+def _in_order(name: str) -> list[tuple[int, str]]:
+    """The sort key of a name: car2 comes before car10."""
+    parts = re.split(r"(\d+)", name.casefold())
+    return [(int(part), "") if part.isdecimal() and part.isascii() else (0, part) for part in parts]
