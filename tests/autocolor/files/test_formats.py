@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import dataclasses
 import os
 from pathlib import Path
 
@@ -8,7 +7,6 @@ import pytest
 
 from autocolor.errors import InputError
 from autocolor.files.formats import (
-    FILE_FORMATS,
     Format,
     files_of_folder,
     format_named,
@@ -35,14 +33,10 @@ ALL = (ANYTHING, PLAIN, SOLID)
 
 def test_no_two_formats_have_a_suffix_or_a_name_in_common() -> None:
     suffixes = [suffix for each in FORMATS for suffix in each.suffixes]
-    assert sorted(suffixes) == sorted(set(suffixes))
+    assert len(suffixes) == len({*suffixes})
     assert len({each.name for each in FORMATS}) == len(FORMATS)
     assert all(suffix.startswith(".") and suffix == suffix.lower() for suffix in suffixes)
-    assert all(each.suffixes for each in FORMATS)
-    own = {".g", ".byu", ".csv", ".npy", ".obj", ".off", ".ply", ".stl", ".tables", ".vtk", ".vtp"}
-    assert own < {*suffixes}
-    assert own - {".csv", ".npy"} < {*suffixes_of(FILE_FORMATS)}
-    assert suffixes_of((*ALL, Format("another", (".any",)))) == (".any", ".plain", ".sld", ".solid")
+    assert suffixes_of(ALL) == (".any", ".plain", ".sld", ".solid")
 
 
 @pytest.mark.parametrize(
@@ -56,7 +50,6 @@ def test_a_format_is_named_by_the_suffix_in_capitals_too(name: str, named: Forma
 @pytest.mark.parametrize(
     ("name", "content", "found"),
     [
-        ("a.solid", b"solid", SOLID),
         ("a.solid", b"", SOLID),
         ("a.solid", b"neither", SOLID),
         ("a.solid", b"plain", PLAIN),
@@ -73,7 +66,7 @@ def test_a_file_has_the_format_of_its_suffix_unless_only_another_one_begins_like
     assert recognized(tmp_path / name, ALL) is found
 
 
-def test_what_is_no_file_begins_as_nothing_and_is_never_waited_for(tmp_path: Path) -> None:
+def test_a_pipe_or_a_missing_file_begins_as_nothing(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe")
     for name in ("pipe", "none", ".", "a\0b"):
         assert recognized(tmp_path / name, ALL) is None
@@ -93,23 +86,19 @@ def test_the_rule_for_a_suffix_lists_all_and_the_nearest(
     assert suffix_rule(Path(name), suffixes) == rule
 
 
-def test_a_mesh_file_of_another_name_is_known_by_how_it_begins(tmp_path: Path) -> None:
+def test_a_mesh_file_with_the_suffix_of_another_format_is_read_and_reported(tmp_path: Path) -> None:
     (tmp_path / "car.model").write_text("# exported\no car\n" + SQUARE)
     assert read_mesh({"file": tmp_path / "car.model"}).repairs == ()
     (tmp_path / "car.off").write_text(SQUARE)
     assert read_mesh({"file": tmp_path / "car.off"}).repairs == (
         "car.off: it begins as OBJ and was read as that, not as OFF; rename it",
     )
-    (tmp_path / "notes").write_text("various things\nv\n")
-    assert format_of(tmp_path / "notes") is None
 
 
 def test_files_of_no_format_are_refused(tmp_path: Path) -> None:
     (tmp_path / "car.shape").write_text("car")
-    with pytest.raises(InputError) as refusal:
+    with pytest.raises(InputError, match=r"^car\.shape: a mesh file must end in \.3mf, .*; export it as one"):
         read_mesh({"file": tmp_path / "car.shape"})
-    rule = suffix_rule(Path("car.shape"), suffixes_of(FILE_FORMATS))
-    assert str(refusal.value) == f"car.shape: a mesh file must {rule}; export it as one of these"
     write_npy_tables(tmp_path / "tables", cube())
     with pytest.raises(InputError, match="must be a regular file, not a folder"):
         read_mesh({"file": tmp_path / "tables"})
@@ -124,7 +113,7 @@ def test_files_of_no_format_are_refused(tmp_path: Path) -> None:
         ("nodes.txt", b"x,y,z", "CSV"),
     ],
 )
-def test_pairs_of_files_are_told_apart_by_their_suffix_and_their_first_bytes(
+def test_two_tables_are_recognized_by_the_suffix_and_the_first_bytes_of_the_first(
     tmp_path: Path, name: str, content: bytes, found: str
 ) -> None:
     (tmp_path / name).write_bytes(content)
@@ -147,6 +136,3 @@ def test_a_folder_of_all_its_files_gives_the_files_of_its_keys(
     assert found.name == name
     files = {"nodes": tmp_path / keys[0], "polygons": tmp_path / keys[1]}
     assert files_of_folder(tmp_path, found) == files
-    # A folder that is a file has one key.
-    alone = dataclasses.replace(found, keys=("file",))
-    assert files_of_folder(tmp_path, alone) == {"file": tmp_path}
