@@ -7,7 +7,7 @@ tables, and they never change afterwards.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from types import EllipsisType
@@ -40,6 +40,9 @@ PART: Final = "mesh"
 
 POLYGONS_AT_ONCE: Final = 1 << 16
 
+UNIT: Final = 1e-5
+"""Assumed: how far the square of the length of an own normal may be from 1."""
+
 BYTES_OF_NORMALS: Final = 160
 """Measured: bytes a polygon while its normals are computed."""
 
@@ -53,8 +56,8 @@ class Mesh(Immutable):
     `part_numbers` is (polygons,) intp, rows of `part_names` counted from 0; without part numbers all
     polygons belong to the first part. Polygons that meet at more than `crease_angle` degrees keep a sharp
     edge. The tables are copied and stored by columns (Fortran order), so that `.T` is the contiguous array
-    that the renderer works on. `scalars` are numbers at the nodes or polygons. `Mesh.of` converts meshes of
-    other programs.
+    that the renderer works on. `scalars` are numbers at the nodes or polygons. `own_normals` are the normals
+    of a file, which are used instead of computed ones. `Mesh.of` converts meshes of other programs.
     """
 
     coordinates: Floats
@@ -63,6 +66,7 @@ class Mesh(Immutable):
     part_names: tuple[str, ...] = (PART,)
     crease_angle: float = CREASE_ANGLE
     scalars: tuple[MeshScalar, ...] = ()
+    own_normals: NodeNormals | None = None
 
     def __post_init__(self) -> None:
         problems: list[str] = []
@@ -104,6 +108,8 @@ class Mesh(Immutable):
             problems.append("part table: part names must differ, not repeat")
         scalars = tuple(self.scalars)
         problems.extend(scalar_problems(scalars, node_count, polygon_count))
+        if self.own_normals is not None:
+            problems.extend(_problems_of_normals(self.own_normals, polygon_count))
         if problems:
             raise InputError(problems)
         for table in (coordinate_rows, node_rows, part_numbers):
@@ -120,17 +126,21 @@ class Mesh(Immutable):
 
     @cached_property
     def normals(self) -> NodeNormals:
-        """Unit normals at the corners of the polygons, computed from the adjoining polygons.
+        """Unit normals at the corners of the polygons: the file's, or computed from the adjoining polygons.
 
         Raises InputError if that takes more memory than the budget allows, such as for a sparse mapped file.
         """
+        own = self.own_normals
+        if own is not None and own.are_complete:
+            return own
         require_memory(
             BYTES_OF_NORMALS * len(self.node_numbers),
             f"the normals of {len(self.node_numbers):,} polygons",
             "write the mesh with its normals by `autocolor convert MESH OUT --to npy`",
         )
         with timed(LOG, "node normals"):
-            return node_normals(self.coordinates, self.node_numbers, self.part_numbers, self.crease_angle)
+            computed = node_normals(self.coordinates, self.node_numbers, self.part_numbers, self.crease_angle)
+        return computed if own is None else own.completed(computed)
 
     @cached_property
     def curvatures(self) -> Curvatures:
@@ -280,6 +290,9 @@ class Mesh(Immutable):
                 [len(mesh.coordinates) for mesh in meshes],
                 [len(mesh.node_numbers) for mesh in meshes],
             ),
+            NodeNormals.joined(
+                [mesh.own_normals for mesh in meshes], [len(mesh.node_numbers) for mesh in meshes]
+            ),
         )
 
     def __repr__(self) -> str:
@@ -313,6 +326,17 @@ def _rows(problems: list[str], what: str, value: object, dtype: type, widths: tu
     return np.array(array.T, order="C")
 
 
+def _problems_of_normals(normals: NodeNormals, polygons: int) -> Iterator[str]:
+    """A sentence for each fault of the normals of a file."""
+    vectors, numbers = normals.vectors, normals.numbers
+    if numbers.shape != (polygons, 4) or numbers.dtype != np.intp:
+        yield f"own normals: their numbers must be intp of shape {(polygons, 4)}, not {numbers.shape}"
+    elif numbers.min(initial=0) < -1 or numbers.max(initial=-1) >= len(vectors):
+        yield f"own normals: a number must be from -1 to {len(vectors) - 1}; correct it"
+    if vectors.dtype != np.float32 or not (np.abs((vectors**2).sum(axis=1) - 1) < UNIT).all():
+        yield "own normals: they must be unit vectors of float32; normalize them"
+
+
 def _check_rows(problems: list[str], what: str, numbers: Indices, count: int, table: str) -> None:
     """Note the first number, or the first column of numbers, that is no row of a table."""
     if not numbers.size or (numbers.min() >= 0 and numbers.max() < count):
@@ -324,11 +348,12 @@ def _check_rows(problems: list[str], what: str, numbers: Indices, count: int, ta
 
 
 def has_same_tables(one: Mesh, other: Mesh) -> bool:
-    """Whether all tables and scalars of two meshes are equal, whatever their crease angles."""
+    """Whether all tables, scalars and own normals of two meshes are equal, whatever their crease angles."""
     if one is other:
         return True
     return (
-        one.part_names == other.part_names
+        _have_same_own_normals(one, other)
+        and one.part_names == other.part_names
         and [(scalar.name, scalar.of) for scalar in one.scalars]
         == [(scalar.name, scalar.of) for scalar in other.scalars]
         and np.array_equal(one.coordinates, other.coordinates)
@@ -338,4 +363,16 @@ def has_same_tables(one: Mesh, other: Mesh) -> bool:
             np.array_equal(scalar.values, same.values, equal_nan=True)
             for scalar, same in zip(one.scalars, other.scalars, strict=True)
         )
+    )
+
+
+def _have_same_own_normals(one: Mesh, other: Mesh) -> bool:
+    mine, others = one.own_normals, other.own_normals
+    if mine is None or others is None:
+        return mine is others
+    return mine.numbers.shape == others.numbers.shape and all(
+        np.array_equal(mine.vectors[rows][is_own], others.vectors[other_rows][is_own])
+        and np.array_equal(is_own, other_rows >= 0)
+        for rows, other_rows in zip(mine.numbers.T, others.numbers.T, strict=True)
+        for is_own in [rows >= 0]
     )

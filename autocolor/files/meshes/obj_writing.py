@@ -8,7 +8,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Final
 
-from autocolor.files.meshes.obj import materials_of, mtl_text, obj_text
+from autocolor.files.meshes.mtl import materials_of, mtl_text
+from autocolor.files.meshes.obj import obj_text
 from autocolor.files.meshes.repair import name_of
 from autocolor.files.paths import free_path
 from autocolor.files.writing import refuse_output, write_atomically

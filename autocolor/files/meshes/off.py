@@ -2,19 +2,19 @@
 
     OFF
     nodes polygons edges
-    x y z ...               each node on a line; its normal and color are skipped
-    4 0 1 2 3 ...           each polygon: its number of corners, its nodes from 0; colors are skipped
+    x y z ...               each node on a line, with its normal (NOFF) and color (COFF)
+    4 0 1 2 3 ...           each polygon: its number of corners, its nodes from 0, and its color
 
-The first word may be OFF, COFF, NOFF, CNOFF or one of these with ST before it, or be left out. Comments begin
-with `#`. Files of four coordinates or in binary are refused. trimesh is not used: it
-splits all quads.
+The first word may be OFF, COFF, NOFF, CNOFF or one of these with ST before it, or be left out; the counts may
+follow it on its line, even without a space. Comments begin with `#`. Colors are left out. Files of four
+coordinates or in binary are refused. trimesh is not used: it splits all quads.
 """
 
 from __future__ import annotations
 
 import re
 from pathlib import Path
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -24,11 +24,12 @@ from autocolor.errors import InputError
 from autocolor.files.meshes.number_text import GROWTH, NumberText
 from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, RawPolygons, repaired
 from autocolor.files.reading import read_whole, shown, text_lines
-from autocolor.scene.geometry.polygon_split import MOST_CORNERS
 
-KEYWORD: Final = re.compile(rb"\s*([A-Za-z0-9]*OFF)\b")
-KNOWN: Final = re.compile(rb"(ST)?C?N?OFF")
+KEYWORD: Final = re.compile(rb"\s*+([A-Za-z0-9]*?OFF)(?![A-Za-z_])")
+KNOWN: Final = re.compile(rb"(ST)?(C)?(N)?OFF")
 COMMENT: Final = re.compile(rb"#[^\n]*")
+
+POLYGONS_AT_ONCE: Final = 1 << 16
 
 
 def read_off(path: Path, placement: Placement = PLAIN) -> MeshReport:
@@ -37,12 +38,14 @@ def read_off(path: Path, placement: Placement = PLAIN) -> MeshReport:
     if b"#" in data:
         data = COMMENT.sub(b"", data)
     keyword = KEYWORD.match(data)
+    word = b"OFF" if keyword is None else keyword[1]
+    known = KNOWN.fullmatch(word)
+    if known is None:
+        raise InputError(
+            f"{path.name}: an OFF file must begin OFF, COFF, NOFF or STOFF, not {shown(word)}; write it with"
+            " three coordinates, as text"
+        )
     if keyword is not None:
-        if not KNOWN.fullmatch(keyword[1]):
-            raise InputError(
-                f"{path.name}: an OFF file must begin OFF, COFF, NOFF or STOFF, not {shown(keyword[1])};"
-                " write it with three coordinates, as text"
-            )
         # Spaces keep the places of the other words.
         data = b" " * keyword.end(1) + data[keyword.end(1) :]
     text = NumberText(data, path.name)
@@ -51,48 +54,79 @@ def read_off(path: Path, placement: Placement = PLAIN) -> MeshReport:
     for at, count in enumerate((nodes, polygons)):
         if not 1 <= count <= len(text):
             raise text.wrong(at, f"a count must be from 1 to {len(text):,}, the count of words in the file")
-    lines, _ = text.lines()
-    coordinates, first = _coordinates(text, lines, nodes)
-    corners, counts, begins, end = _polygons(text, lines, first, polygons, nodes)
-    left = len(text) - end
-    table = RawPolygons(
-        coordinates,
+    lines = text.lines()
+    lines = lines[lines > 2]
+    has_normals = known[3] is not None
+    # What a node has beside its color.
+    width = 3 + 3 * has_normals + 2 * (known[1] is not None)
+    table = _nodes(text, lines, nodes, polygons, width, has_normals=has_normals)
+    corners, counts, begins, end, are_colored = _polygons(text, lines, table.end, polygons, nodes)
+    skipped = [
+        f"left out the colors of {what}"
+        for what, are_there in (("nodes", table.are_colored), ("polygons", are_colored))
+        if are_there
+    ]
+    if left := len(text) - end:
+        skipped.append(f"skipped words that are neither nodes nor polygons: {left:,}")
+    raw = RawPolygons(
+        table.coordinates,
         corners,
         counts,
         np.zeros(polygons, np.intp),
         (path.stem,),
         place_of=lambda row: f"line {text.line(begins[row])}",
+        normals=table.normals,
+        corner_normals=None if table.normals is None else corners,
     )
-    skipped = (f"skipped words that are neither nodes nor polygons: {left:,}",) if left else ()
-    return repaired(table, path.name, placement, skipped=skipped)
+    return repaired(raw, path.name, placement, skipped=tuple(skipped))
 
 
-def _coordinates(text: NumberText, lines: Indices, nodes: int) -> tuple[Floats, int]:
-    """The coordinates, (nodes, 3), and the first word after them. Raises InputError."""
-    first = int(lines[lines > 2][0]) if (lines > 2).any() else len(text)
+class Nodes(NamedTuple):
+    """The coordinates, (nodes, 3), and normals, if any; the word after them, and whether there are colors."""
+
+    coordinates: Floats
+    normals: Floats | None
+    end: int
+    are_colored: bool
+
+
+def _nodes(
+    text: NumberText, lines: Indices, nodes: int, polygons: int, width: int, *, has_normals: bool
+) -> Nodes:
+    """The nodes, whose lines begin at the first of some words. Raises InputError.
+
+    `width` is the number of words of a node without a color. If the file has too few lines for each node to
+    have its own, the nodes follow each other, wherever lines end.
+    """
+    first = int(lines[0]) if len(lines) else len(text)
     text.require(first + 3 * nodes, "nodes")
-    rows = np.append(lines[lines >= first], len(text))[: nodes + 1]
-    width = int(rows[1] - rows[0])
-    if width <= 3 or not np.array_equal(rows, first + width * np.arange(nodes + 1)):
-        return text.coordinates(first, 3 * nodes).reshape(-1, 3), first + 3 * nodes
-    end = first + nodes * width
-    # Each node has equally many further words: convert whole lines.
-    table = text.values(first, nodes * width).reshape(nodes, width)
-    for at in range(3):
-        wrong = np.flatnonzero(~(np.abs(table[:, at]) <= LARGEST_COORDINATE))
-        if len(wrong):
-            text.coordinates(first + int(wrong[0]) * width + at, 1)
-    return np.ascontiguousarray(table[:, :3]), end
+    rows = np.append(lines, len(text))[: nodes + 1]
+    begins, widths = rows[:-1], np.diff(rows)
+    if len(lines) < nodes + polygons or widths.min() < 3:
+        text.require(first + width * nodes, "nodes")
+        begins, widths = first + width * np.arange(nodes), np.full(nodes, width)
+    end = int(begins[-1] + widths[-1])
+    values = text.values(first, end - first)
+    at = (begins - first)[:, None] + np.arange(3)
+    coordinates = values[at]
+    wrong = np.flatnonzero(~(np.abs(coordinates.ravel()) <= LARGEST_COORDINATE))
+    if len(wrong):
+        text.coordinates(first + int(at.flat[wrong[0]]), 1)
+    normals = None
+    if has_normals:
+        normals = np.full((nodes, 3), np.nan)
+        has_normal = widths >= 6
+        normals[has_normal] = values[at[has_normal] + 3]
+    return Nodes(coordinates, normals, end, bool((widths > width).any()))
 
 
 def _polygons(
     text: NumberText, lines: Indices, first: int, polygons: int, nodes: int
-) -> tuple[Indices, Indices, Indices, int]:
-    """The corners, their number in each polygon, its first word, and the word after the last polygon.
+) -> tuple[Indices, Indices, Indices, int, bool]:
+    """The corners, their number in each polygon, its first word, the word after the last polygon.
 
-    Raises InputError.
+    The last value is whether words follow the corners of a polygon. Raises InputError.
     """
-    # Each polygon begins a line, so words after its corners may be anything.
     lines = np.concatenate([[first], lines[lines > first]])
     if first >= len(text) or len(lines) < polygons:
         raise InputError(
@@ -100,39 +134,31 @@ def _polygons(
             f" {len(lines) if first < len(text) else 0:,}; correct the header or the polygons"
         )
     begins = lines[:polygons]
-    limits = np.append(lines, len(text))[1 : polygons + 1]
+    widths = np.diff(np.append(lines, len(text))[: polygons + 1])
     counts = np.empty(polygons, np.intp)
     corners = []
-    for begin in range(0, polygons, 1 << 16):
-        rows = slice(begin, min(begin + (1 << 16), polygons))
-        at, end = int(begins[rows][0]), int(limits[rows][-1])
+    for row in range(0, polygons, POLYGONS_AT_ONCE):
+        rows = slice(row, row + POLYGONS_AT_ONCE)
+        at, end = int(begins[rows][0]), int(begins[rows][-1] + widths[rows][-1])
         numbers = text.values(at, end - at)
         starts = begins[rows] - at
         sizes = numbers[starts]
-        wrong = np.flatnonzero(
-            ~((sizes >= 0) & (sizes <= limits[rows] - begins[rows] - 1) & (np.floor(sizes) == sizes))
-        )
+        wrong = np.flatnonzero(~((sizes >= 0) & (sizes < widths[rows]) & (np.floor(sizes) == sizes)))
         if len(wrong):
-            raise text.wrong(
-                at + int(starts[wrong[0]]), "a polygon must begin with the number of the corners on its line"
-            )
-        if sizes.max() > MOST_CORNERS:
-            raise text.wrong(
-                at + int(starts[sizes.argmax()]), f"a polygon must have at most {MOST_CORNERS:,} corners"
-            )
+            rule = "a polygon must begin with the number of the corners on its line"
+            raise text.wrong(at + int(starts[wrong[0]]), rule)
         counts[rows] = sizes
-        owner = np.repeat(np.arange(len(sizes)), limits[rows] - begins[rows])
-        place = np.arange(end - at) - starts[owner]
-        chosen = np.flatnonzero((place >= 1) & (place <= sizes[owner]))
+        place = np.arange(end - at) - np.repeat(starts, widths[rows])
+        chosen = np.flatnonzero((place >= 1) & (place <= np.repeat(sizes, widths[rows])))
         of_corners = numbers[chosen]
         is_node = (of_corners >= 0) & (of_corners < nodes) & (np.floor(of_corners) == of_corners)
         wrong = np.flatnonzero(~is_node)
         if len(wrong):
-            raise text.wrong(
-                at + int(chosen[wrong[0]]), f"a corner must be a node number from 0 to {nodes - 1:,}"
-            )
+            rule = f"a corner must be a node number from 0 to {nodes - 1:,}"
+            raise text.wrong(at + int(chosen[wrong[0]]), rule)
         corners.append(of_corners.astype(np.intp))
-    return np.concatenate(corners), counts, begins, int(limits[-1])
+    end = int(begins[-1] + widths[-1])
+    return np.concatenate(corners), counts, begins, end, bool((widths > counts + 1).any())
 
 
 def begins_as_off(head: bytes) -> bool:

@@ -6,7 +6,8 @@ whose properties may have any type and any order.
 
 A property `part`, `material_index` or `group` of faces is a part number. A comment such as `part 0 hood`
 names a part; without comments, parts are named after the property. All other numbers of vertices and faces
-are scalars, but for normals, colors and texture coordinates, which are ignored. NaN is a missing value.
+are scalars, but for the normals of vertices, colors, which are left out, and texture coordinates, which are
+ignored. NaN is a missing value.
 
 A mesh is written in binary, little endian.
 """
@@ -16,7 +17,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Final, NamedTuple
+from typing import Final, NamedTuple, NoReturn
 
 import numpy as np
 
@@ -45,7 +46,6 @@ from autocolor.files.meshes.repair import (
     repaired,
 )
 from autocolor.files.reading import read_whole
-from autocolor.scene.geometry.polygon_split import MOST_CORNERS
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalar import NODE, POLYGON, MeshScalar
 
@@ -63,16 +63,28 @@ PARTS: Final = (PART, "material_index", "group")
 MOST_UNNAMED_PARTS: Final = 10_000
 """Limit: a property with more different values is a scalar."""
 
-NOT_SCALARS: Final = frozenset(
+NORMALS: Final = (("nx", "ny", "nz"), ("normal_x", "normal_y", "normal_z"))
+
+COLORS: Final = frozenset(
     (
-        *("nx", "ny", "nz", "normal_x", "normal_y", "normal_z"),
-        *("s", "t", "u", "v", "s0", "t0", "u0", "v0", "texture_s", "texture_t", "texture_u", "texture_v"),
-        *("texcoord", "texnumber", "flags"),
         *("r", "g", "b", "a", "red", "green", "blue", "alpha"),
         *(
             f"{kind}_{part}"
             for kind in ("ambient", "diffuse", "specular")
-            for part in ("red", "green", "blue", "alpha", "coeff", "power")
+            for part in ("red", "green", "blue")
+        ),
+    )
+)
+
+NOT_SCALARS: Final = COLORS | frozenset(
+    (
+        *(name for names in NORMALS for name in names),
+        *("s", "t", "u", "v", "s0", "t0", "u0", "v0", "texture_s", "texture_t", "texture_u", "texture_v"),
+        *("texcoord", "texnumber", "flags"),
+        *(
+            f"{kind}_{part}"
+            for kind in ("ambient", "diffuse", "specular")
+            for part in ("alpha", "coeff", "power")
         ),
     )
 )
@@ -164,10 +176,14 @@ def ply_polygons(
     part_numbers, names = _parts(faces, part, comments, stem, len(counts))
     scalars = FileScalars()
     for rows, of in ((vertices, NODE), (faces, POLYGON)):
-        for name, column in rows.columns.items() if rows is not None else ():
+        columns = {} if rows is None else rows.columns
+        for name, column in columns.items():
             is_part = of == POLYGON and name == part
             if not isinstance(column, Lists) and not is_part and is_scalar(name, comments):
                 scalars.add(comments.scalars.get(name, name), column, of)
+        if columns.keys() & COLORS - comments.scalars.keys():
+            messages.append(f"left out the colors of {of}s")
+    normals = None if vertices is None else _normals(vertices, comments)
     polygons = RawPolygons(
         coordinates,
         corners,
@@ -177,6 +193,8 @@ def ply_polygons(
         scalars.scalars,
         # Lines would keep the text of the file in memory.
         lambda row: f"triangle {row} of {STRIPS}" if has_strips else f"{FACE} {row}",
+        normals,
+        None if normals is None else corners,
     )
     return polygons, [*messages, *scalars.messages]
 
@@ -209,6 +227,16 @@ def _coordinates(vertices: ElementRows | None, place: str) -> Floats:
     return coordinates
 
 
+def _normals(vertices: ElementRows, comments: Comments) -> Floats | None:
+    """The normals of the nodes, (nodes, 3); None if there are none."""
+    for names in NORMALS:
+        columns = [vertices.columns.get(name) for name in names if name not in comments.scalars]
+        numbers = [column for column in columns if column is not None and not isinstance(column, Lists)]
+        if len(numbers) == 3:
+            return np.stack(numbers, axis=1).astype(np.float64)
+    return None
+
+
 def _corners(rows: ElementRows | None, nodes: int, place: str, name: str) -> tuple[Indices, Indices]:
     """The rows in the node table of all corners, and how many corners each row of an element has."""
     if rows is None or not rows.count:
@@ -220,12 +248,6 @@ def _corners(rows: ElementRows | None, nodes: int, place: str, name: str) -> tup
             f" only {listed(list(rows.columns)[:8]) or 'none'}; export it with polygons"
         )
     values, counts = lists
-    if name == FACE and int(counts.max()) > MOST_CORNERS:
-        row = int(np.flatnonzero(counts > MOST_CORNERS)[0])
-        raise InputError(
-            f"{rows.place_of(row)}: a polygon must have at most {MOST_CORNERS:,} corners, not"
-            f" {int(counts[row]):,}; split it"
-        )
     least = 0 if name == FACE else -1
     if len(values) and not (values.min() >= least and values.max() < nodes and _are_whole(values)):
         _refuse_corners(rows, values, counts, nodes, least)
@@ -236,7 +258,7 @@ def _are_whole(values: AnyArray) -> bool:
     return values.dtype.kind != "f" or bool((values == np.floor(values)).all())
 
 
-def _refuse_corners(rows: ElementRows, values: AnyArray, counts: Indices, nodes: int, least: int) -> None:
+def _refuse_corners(rows: ElementRows, values: AnyArray, counts: Indices, nodes: int, least: int) -> NoReturn:
     """Raise InputError about the first polygons with corners that are no nodes."""
     is_node = (values >= least) & (values < nodes)
     if values.dtype.kind == "f":

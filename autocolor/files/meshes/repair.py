@@ -7,6 +7,7 @@
   `scene.geometry.faults` finds them.
 - A node that no polygon uses is dropped, with its scalars. Tables of nodes (CSV, npy, tables) keep theirs,
   because their rows have the user's own numbers.
+- With `Placement.normals` FILE, each corner that is left keeps the file's normal (see `file_normals`).
 """
 
 from __future__ import annotations
@@ -21,9 +22,10 @@ import numpy as np
 from autocolor.arrays import Booleans, Floats, Indices, cross, dot, lengths, underflowing, used_rows
 from autocolor.checks import printable
 from autocolor.errors import InputError
+from autocolor.files.meshes.file_normals import file_normals
 from autocolor.immutable import read_only
 from autocolor.scene.geometry.normals import CREASE_ANGLE
-from autocolor.scene.geometry.polygon_split import split_polygons
+from autocolor.scene.geometry.polygon_split import MOST_CORNERS, split_polygons
 from autocolor.scene.kinds import Number
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalar import NODE, POLYGON, MeshScalar
@@ -31,17 +33,26 @@ from autocolor.scene.surfaces import Surface
 
 UPS: Final = ("x", "y", "z")
 
+COMPUTED: Final = "computed"
+FILE: Final = "file"
+NORMALS: Final = (COMPUTED, FILE)
+"""The choices of normals: computed from the polygons, or the file's own."""
+
 SCALES: Final = Number(at_least=0, at_most=1e30, above=True)
 """The factors that a mesh may be scaled by."""
 
 
 @dataclass(frozen=True)
 class Placement:
-    """The axis of the file that is up, a factor for its coordinates, and a crease angle or None."""
+    """The axis of the file that is up, a factor for its coordinates, a crease angle or None, and the normals.
+
+    `normals` is one of NORMALS. Where a file has no normals of its own, they are computed.
+    """
 
     up: str = "z"
     scale: float = 1.0
     crease_angle: float | None = None
+    normals: str = COMPUTED
 
 
 PLAIN: Final = Placement()
@@ -51,15 +62,24 @@ PLAIN: Final = Placement()
 def placed(coordinates: Floats, placement: Placement) -> Floats:
     """The coordinates, (nodes, 3), in the world: the file's up axis turned to z, and scaled.
 
-    Polygons keep their winding: with y up, (x, y, z) becomes (x, -z, y), a rotation about x; with x up it
-    becomes (y, z, x). The scaled coordinates may be too large for a mesh, which refuses them.
+    The scaled coordinates may be too large for a mesh, which refuses them.
     """
-    if placement.up == "y":
-        coordinates = coordinates[:, [0, 2, 1]]
-        coordinates[:, 1] = 0.0 - coordinates[:, 1]
-    elif placement.up == "x":
-        coordinates = coordinates[:, [1, 2, 0]]
+    coordinates = turned_up(coordinates, placement.up)
     return coordinates if placement.scale == 1 else coordinates * placement.scale
+
+
+def turned_up(vectors: Floats, up: str) -> Floats:
+    """Points or directions, (n, 3), whose axis `up` is turned to z.
+
+    Polygons keep their winding: with y up, (x, y, z) becomes (x, -z, y), a rotation about x; with x up it
+    becomes (y, z, x).
+    """
+    if up == "y":
+        vectors = vectors[:, [0, 2, 1]]
+        vectors[:, 1] = 0.0 - vectors[:, 1]
+    elif up == "x":
+        vectors = vectors[:, [1, 2, 0]]
+    return vectors
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,10 +151,27 @@ def repaired(
     """
     coordinates = placed(polygons.coordinates, placement)
     repairs = list(skipped)
-    corners, counts, shortened = _without_repeats(polygons.corners, polygons.corner_counts)
+    corners, normals = polygons.corners, None
+    if placement.normals == FILE and polygons.normals is not None:
+        normals = polygons.corner_normals
+    differs, counts, shortened = _without_repeats(corners, polygons.corner_counts)
+    if differs is not None:
+        corners, normals = corners[differs], None if normals is None else normals[differs]
     too_few = counts < 3
+    large = np.flatnonzero(counts > MOST_CORNERS)
+    if len(large):
+        row = int(large[0])
+        raise InputError(
+            f"{place}, {polygons.place_of(row)}: a polygon must have at most {MOST_CORNERS:,} corners, not"
+            f" {int(counts[row]):,}; split it"
+        )
     try:
-        node_numbers, owners = split_polygons(coordinates, corners, counts)
+        if normals is None:
+            node_numbers, owners = split_polygons(coordinates, corners, counts)
+        else:
+            # Split the corners themselves, so that each piece knows the normals at its corners.
+            pieces, owners = split_polygons(coordinates[corners], np.arange(len(corners)), counts)
+            node_numbers, normals = corners[pieces], normals[pieces]
     except InputError as error:
         raise InputError(f"{place}: {error}") from None
 
@@ -147,6 +184,7 @@ def repaired(
     )
     if not has_area.all():
         node_numbers, owners = node_numbers[has_area], owners[has_area]
+        normals = None if normals is None else normals[has_area]
     is_kept = np.zeros(len(counts), np.bool_)
     is_kept[owners] = True
     kinds = (
@@ -176,6 +214,11 @@ def repaired(
         )
         coordinates = coordinates[rows_of[NODE]]
         node_numbers = (np.cumsum(is_used) - 1)[node_numbers]
+    own_normals = None
+    if normals is not None and polygons.normals is not None:
+        vectors = turned_up(polygons.normals, placement.up)
+        own_normals, sentences = file_normals(coordinates, node_numbers, vectors, normals)
+        repairs.extend(sentences)
     # A piece of a polygon has the scalars of the whole.
     scalars = tuple(
         MeshScalar(each.name, read_only(each.values[rows_of[each.of]]), each.of) for each in polygons.scalars
@@ -187,28 +230,32 @@ def repaired(
         polygons.part_names,
         CREASE_ANGLE if placement.crease_angle is None else placement.crease_angle,
         scalars,
+        own_normals,
     )
     return MeshReport(mesh, tuple(f"{place}: {repair}" for repair in repairs))
 
 
-def _without_repeats(corners: Indices, counts: Indices) -> tuple[Indices, Indices, Booleans]:
-    """The corners and counts without corners that equal the next one, and which polygons had such corners."""
+def _without_repeats(corners: Indices, counts: Indices) -> tuple[Booleans | None, Indices, Booleans]:
+    """Which corners differ from the next one, the counts of these, and which polygons had other corners.
+
+    The first is None if all corners differ.
+    """
     sides = int(counts[0]) if len(counts) else 0
     if sides > 0 and (counts == sides).all():
         # Measured: polygons with equally many sides take a fifth of the time of the general case below.
         table = corners.reshape(-1, sides).T
         if not any((table[at] == table[at - 1]).any() for at in range(sides)):
-            return corners, counts, np.zeros(len(counts), np.bool_)
+            return None, counts, np.zeros(len(counts), np.bool_)
     following = np.arange(1, len(corners) + 1)
     ends = np.cumsum(counts)
     filled = counts > 0
     following[ends[filled] - 1] = (ends - counts)[filled]
     differs = corners != corners[following]
     if differs.all():
-        return corners, counts, np.zeros(len(counts), np.bool_)
+        return None, counts, np.zeros(len(counts), np.bool_)
     owners = np.repeat(np.arange(len(counts)), counts)
     kept_counts = np.bincount(owners[differs], minlength=len(counts))
-    return corners[differs], kept_counts, kept_counts != counts
+    return differs, kept_counts, kept_counts != counts
 
 
 def _have_area(coordinates: Floats, node_numbers: Indices) -> Booleans:

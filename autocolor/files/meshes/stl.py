@@ -2,8 +2,8 @@
 
 A binary file may begin with `solid`, as text does. A file is binary if its count of triangles gives its size.
 Each solid of a text is a part with its name; a binary file is one part, named after the file.
-Normals, attributes and the text before binary triangles are ignored. Corners at the same place become one
-node; then triangles without area are dropped and counted.
+Normals, attributes, colors and the text before binary triangles are ignored: the normals are those of flat
+triangles. Corners at the same place become one node; then triangles without area are dropped and counted.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ import numpy as np
 from autocolor.arrays import AnyArray, Floats, Indices, Singles, chunks, cross, normalized, underflowing
 from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError
-from autocolor.files.meshes.number_text import MOST_PROBLEMS, NUMBER
+from autocolor.files.meshes.number_text import COORDINATE, D_TO_E, MOST_PROBLEMS, decimal
 from autocolor.files.meshes.repair import (
     PLAIN,
     MeshReport,
@@ -29,19 +29,20 @@ from autocolor.files.meshes.repair import (
     name_of,
     repaired,
 )
-from autocolor.files.reading import (
-    UTF_8_MARK,
-    read_whole,
-    shown,
-    text_lines,
-)
+from autocolor.files.meshes.welding import welded
+from autocolor.files.reading import UTF_8_MARK, read_whole, shown, text_lines
 from autocolor.scene.mesh import Mesh
 
 GROWTH: Final = 6
 """Measured: how many times its size a binary file takes. A text takes half of that, in ten times the time."""
 
-BEGINNING: Final = re.compile(rb"\s*solid\b", re.IGNORECASE)
-FIRST_FACET: Final = re.compile(rb"\s*solid\b[^\r\n]*[\r\n]\s*facet\s+normal\s", re.IGNORECASE)
+BEGINNING: Final = re.compile(rb"\s*+(?:(?:[#;!]|//)[^\r\n]*+\s*+)*+solid\b", re.IGNORECASE)
+"""A solid in text, after empty lines and comments."""
+
+FIRST_FACET: Final = re.compile(
+    BEGINNING.pattern + rb"[^\r\n]*+[\r\n]\s*+(?:colou?r\b[^\r\n]*+\s*+)?facet\s+(?:normal|outer)\s",
+    re.IGNORECASE,
+)
 IN_UTF_16: Final = (b"\xff\xfe", b"\xfe\xff")
 
 
@@ -71,8 +72,7 @@ def _triangles(path: Path) -> tuple[AnyArray, Indices, tuple[str, ...], tuple[st
     if has_binary_size(data) or not _is_text(data):
         corners, skipped = read_binary(data, path.name)
         return corners, np.zeros(len(corners) // 3, np.intp), (path.stem,), skipped
-    text = text_lines(data, path.name, "an ascii STL file")
-    triangles = read_text(text, path.name)
+    triangles = read_text(text_lines(data, path.name, "an ascii STL file"), path.name)
     names = different([name_of(name) or path.stem for name in triangles.names])
     return triangles.corners, triangles.part_numbers, names, triangles.messages
 
@@ -101,8 +101,8 @@ def has_binary_size(data: bytes) -> bool:
 def read_binary(data: bytes, place: str) -> tuple[Singles, tuple[str, ...]]:
     """The corners of the triangles, (corners, 3), and messages about what was skipped.
 
-    `place` is the file's name in messages. Normals and attributes are ignored. Raises InputError if the file
-    is cut short, or about triangles with coordinates that are no finite numbers of at most 1e30 in size.
+    `place` is the file's name in messages. Raises InputError if the file is cut short, or about triangles
+    with coordinates that are no finite numbers of at most 1e30 in size.
     """
     if len(data) < BEFORE_TRIANGLES:
         raise InputError(
@@ -121,13 +121,10 @@ def read_binary(data: bytes, place: str) -> tuple[Singles, tuple[str, ...]]:
     most = np.float32(LARGEST_COORDINATE)
     if count and not (corners.min() >= -most and corners.max() <= most):
         is_wrong = ~(np.abs(corners) <= most)
-        rows = np.flatnonzero(is_wrong.any(axis=(1, 2)))[:MOST_PROBLEMS]
         rule = "a coordinate must be a finite number of at most 1e30 in size"
         raise InputError(
-            [
-                f"{place}, facet {row + 1}: {rule}, not {corners[row][is_wrong[row]][0]:g}; correct it"
-                for row in rows.tolist()
-            ]
+            f"{place}, facet {row + 1}: {rule}, not {corners[row][is_wrong[row]][0]:g}; correct it"
+            for row in np.flatnonzero(is_wrong.any(axis=(1, 2)))[:MOST_PROBLEMS].tolist()
         )
     left = len(data) - size
     return corners.reshape(-1, 3), (f"skipped bytes after the last triangle: {left:,}",) if left else ()
@@ -193,15 +190,22 @@ def _records(corners: Floats) -> AnyArray:
 #       endfacet
 #     endsolid hood
 #
-# Words may be in capitals, and lines broken anywhere but in the names of solids. Normals are ignored.
+# Words may be in capitals, and lines broken anywhere but in the names of solids. Other programs write `end
+# loop`, a `facet` without its normal, lines of colors and comments, numbers with the exponent D, or no
+# `endsolid`. Such a file is brought to the form above, and its lines keep their numbers.
 
 BLOCK: Final = 1 << 21
 """Bytes converted at a time."""
 
-LONGEST_FACET: Final = 1 << 16
-"""Limit: in bytes; a facet seldom has more than three hundred."""
+SOLID: Final = re.compile(rb"^[ \t]*(end[ \t]*)?solid\b([^\n]*)$", re.MULTILINE | re.IGNORECASE)
+ENDFACET: Final = re.compile(rb"end[ \t]*facet\s", re.IGNORECASE)
 
-SOLID: Final = re.compile(rb"^[ \t]*(end)?solid\b([^\n]*)$", re.MULTILINE | re.IGNORECASE)
+HABITS: Final = re.compile(
+    rb"\bend[ \t]+(?P<end>loop|facet)\b"
+    rb"|\bfacet(?P<normal>\s+(?:normal\s+)?)(?=outer\b)"
+    rb"|(?:#|;|!|//|^[ \t]*colou?r\b)[^\n]*",
+    re.MULTILINE | re.IGNORECASE,
+)
 
 FACET: Final = "facet normal . . . outer loop vertex . . . vertex . . . vertex . . . endloop endfacet"
 WORDS: Final = tuple(word.encode() for word in FACET.split())
@@ -209,7 +213,8 @@ KEYWORDS: Final = tuple((at, word) for at, word in enumerate(WORDS) if word != b
 COORDINATES: Final = (8, 9, 10, 12, 13, 14, 16, 17, 18)
 """The words of a facet that are coordinates."""
 
-NUMERIC: Final = b"0123456789+-.e "
+NUMERIC: Final = b"0123456789+-.ed "
+"""The letters of coordinates in small letters."""
 
 
 class TextTriangles(NamedTuple):
@@ -230,19 +235,18 @@ def read_text(data: bytes, place: str) -> TextTriangles:
     begin = 0
     for match in chain(SOLID.finditer(data), (None,)):
         end = len(data) if match is None else match.start()
-        corners_of_solid = [_corners(data, *block, place) for block in _blocks(data, begin, end, place)]
-        if name is None and corners_of_solid:
+        of_solid = [_corners(data, *block, place) for block in _blocks(data, begin, end)]
+        count = sum(map(len, of_solid)) // 3
+        if name is None and count:
             _refuse(data, begin, place, "a facet must stand in a solid, not outside; add a line 'solid'")
-        if name is not None and corners_of_solid:
-            corners += corners_of_solid
-            counts.append(sum(map(len, corners_of_solid)) // 3)
+        if name is not None and of_solid:
+            corners += of_solid
+            counts.append(count)
             names.append(name)
         if match is None:
             break
         if name is None and match[1]:
             _refuse(data, match.start(), place, "a solid must begin before it ends; remove the line")
-        if name is not None and not match[1]:
-            _refuse(data, match.start(), place, "a solid must end before the next; add a line 'endsolid'")
         name = None if match[1] else match[2]
         begin = match.end()
     return TextTriangles(
@@ -253,144 +257,82 @@ def read_text(data: bytes, place: str) -> TextTriangles:
     )
 
 
-def _blocks(data: bytes, begin: int, end: int, place: str) -> Iterator[tuple[int, int]]:
+def _blocks(data: bytes, begin: int, end: int) -> Iterator[tuple[int, int]]:
     """The beginnings and ends of blocks of whole facets, of about BLOCK bytes, between two places."""
     while begin < end:
-        most = min(begin + BLOCK, end)
-        end_of_facet = ENDFACET.search(data, most, min(most + LONGEST_FACET, end))
-        if end_of_facet is None and most + LONGEST_FACET < end:
-            _refuse(
-                data, most, place, f"a facet must have at most {LONGEST_FACET:,} bytes, not more; correct it"
-            )
+        end_of_facet = ENDFACET.search(data, min(begin + BLOCK, end), end)
         stop = end if end_of_facet is None else end_of_facet.end()
         if data[begin:stop].strip():
             yield begin, stop
         begin = stop
 
 
-ENDFACET: Final = re.compile(rb"endfacet\s", re.IGNORECASE)
-
-
 def _corners(data: bytes, begin: int, end: int, place: str) -> Floats:
     """The corners of whole facets, (corners, 3)."""
-    words = data[begin:end].lower().split()
+    text = data[begin:end]
+    corners = _corners_of_facets(text)
+    if corners is None:
+        text = HABITS.sub(_as_others_write, text)
+        corners = _corners_of_facets(text)
+    if corners is None:
+        _refuse_words(text, data.count(b"\n", 0, begin) + 1, place)
+    return corners
+
+
+def _as_others_write(habit: re.Match[bytes]) -> bytes:
+    """The words for a habit of other programs, on as many lines."""
+    if habit["end"]:
+        return b"end" + habit["end"]
+    return b"facet normal 0 0 0 " + b"\n" * habit["normal"].count(b"\n") if habit["normal"] else b""
+
+
+def _corners_of_facets(text: bytes) -> Floats | None:
+    """The corners of whole facets, (corners, 3); None if a word is wrong."""
+    words = text.lower().split()
     facets = len(words) // len(WORDS)
     if len(words) != facets * len(WORDS) or any(
         words[at :: len(WORDS)].count(word) != facets for at, word in KEYWORDS
     ):
-        _refuse_words(data, begin, end, place)
+        return None
     corners = np.empty((len(COORDINATES), facets))
     for row, at in enumerate(COORDINATES):
         column = words[at :: len(WORDS)]
+        text = b" ".join(column)
+        if text.translate(None, NUMERIC):
+            return None
+        if b"d" in text:
+            column = text.translate(D_TO_E).split()
         try:
-            if b" ".join(column).translate(None, NUMERIC):
-                raise ValueError
             corners[row] = np.fromiter(map(float, column), np.float64, facets)
         except ValueError:
-            _refuse_words(data, begin, end, place)
-    if not (np.abs(corners) <= LARGEST_COORDINATE).all():
-        _refuse_words(data, begin, end, place)
-    return corners.T.reshape(-1, 3)
+            return None
+    return corners.T.reshape(-1, 3) if (np.abs(corners) <= LARGEST_COORDINATE).all() else None
 
 
-def _refuse_words(data: bytes, begin: int, end: int, place: str) -> NoReturn:
-    """Raise InputError about the first word that is wrong."""
+def _refuse_words(text: bytes, line: int, place: str) -> NoReturn:
+    """Raise InputError about the first word of facets, from a line on, that is wrong."""
     at = 0
-    for at, match in enumerate(re.finditer(rb"\S+", data[begin:end])):
+    for at, match in enumerate(re.finditer(rb"\S+", text)):
         wanted = WORDS[at % len(WORDS)]
         word = match[0]
         if wanted != b"." and word.lower() != wanted:
-            _refuse(
-                data,
-                begin + match.start(),
-                place,
+            rule = (
                 f"a facet must be {FACET!r}, with numbers for the points, and {wanted.decode()!r} must stand"
-                f" here, not {shown(word)}; correct it",
+                " here"
             )
-        if at % len(WORDS) in COORDINATES and not (
-            NUMBER.fullmatch(word) and abs(float(word)) <= LARGEST_COORDINATE
-        ):
-            rule = "a coordinate must be a decimal number of at most 1e30 in size"
-            _refuse(data, begin + match.start(), place, f"{rule}, not {shown(word)}; correct it")
+        elif at % len(WORDS) in COORDINATES and not abs(decimal(word)) <= LARGEST_COORDINATE:
+            rule = COORDINATE
+        else:
+            continue
+        _refuse(text, match.start(), place, f"{rule}, not {shown(word)}; correct it", line)
     wanted = WORDS[(at + 1) % len(WORDS)]
-    _refuse(
-        data, end, place, f"a facet must be {FACET!r}, and not end before its {wanted.decode()!r}; correct it"
-    )
+    rule = f"a facet must be {FACET!r}, and not end before its {wanted.decode()!r}; correct it"
+    _refuse(text, len(text), place, rule, line)
 
 
-def _refuse(data: bytes, at: int, place: str, sentence: str) -> NoReturn:
-    """Raise InputError about the word at a byte."""
-    # Spaces before it may be lines of their own.
-    at += len(data[at : at + LONGEST_FACET]) - len(data[at : at + LONGEST_FACET].lstrip())
-    line = data.count(b"\n", 0, min(at, max(len(data) - 1, 0))) + 1
+def _refuse(data: bytes, at: int, place: str, sentence: str, first_line: int = 1) -> NoReturn:
+    """Raise InputError about the first word from a byte on."""
+    # Lines before it may be empty.
+    at = min(at + len(data[at:]) - len(data[at:].lstrip()), len(data.rstrip()))
+    line = data.count(b"\n", 0, at) + first_line
     raise InputError(f"{place}, line {line}: {sentence}")
-
-
-# Welding: corners at exactly the same place become one node.
-#
-# Assumed: corners are at the same place if their coordinates are equal as numbers, so -0 is 0. Nothing is
-# moved: only the user knows how near is near enough, and a program that writes a closed surface writes a node
-# with the same digits every time.
-
-FACTORS: Final = (
-    (0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9),
-    (0xFF51AFD7ED558CCD, 0xC4CEB9FE1A85EC53, 0x9FB21C651E98DF25),
-    (0xD6E8FEB86659FD93, 0xA0761D6478BD642F, 0xE7037ED1A0B428DB),
-    (0x8EBC6AF09C88C6E3, 0x589965CC75374CC3, 0x1D8E4E27C47D124F),
-)
-"""Odd numbers, three for each round, that spread coordinates over the slots of a table."""
-
-
-def welded(corners: AnyArray) -> tuple[AnyArray, Indices]:
-    """The different points of (n, 3) float32 or float64, in the order of their first corner, and their rows.
-
-    The rows, (n,), give the point of each corner. No coordinate may be NaN; -0 becomes 0.
-
-    >>> points, rows = welded(np.array([[1.0, 0, 0], [2, 0, 0], [1, -0.0, 0]]))
-    >>> len(points), rows.tolist()
-    (2, [0, 1, 0])
-
-    The coordinates of a corner choose its slot of a table. All corners in a slot that equal the first become
-    one point; the other corners go to another table. Measured: three million corners take a quarter of a
-    second, with `np.unique` almost twenty times as long.
-    """
-    points = corners + corners.dtype.type(0)
-    # Measured: to compare a coordinate at a time takes half the time of comparing points.
-    columns = np.ascontiguousarray(points.T)
-    first = np.arange(len(points))
-    left = first.copy()
-    for factors in FACTORS:
-        others = columns if len(left) == len(points) else columns[:, left]
-        slots = _slots(others, factors)
-        table = np.empty(int(slots.max(initial=0)) + 1, np.intp)
-        # The last corner that is written to a slot stays there.
-        table[slots[::-1]] = left[::-1]
-        leaders = table.take(slots)
-        same = np.ones(len(left), np.bool_)
-        for column, values in zip(columns, others, strict=True):
-            same &= column.take(leaders) == values
-        first[left[same]] = leaders[same]
-        left = left[~same]
-        if not len(left):
-            break
-    if len(left):
-        # Only points that someone chose to share slots in every table remain.
-        _, leaders, rows = np.unique(points[left], axis=0, return_index=True, return_inverse=True)
-        first[left] = left[leaders[rows.ravel()]]
-    is_first = first == np.arange(len(points))
-    number = np.cumsum(is_first) - 1
-    return points[is_first], number.take(first)
-
-
-def _slots(columns: AnyArray, factors: tuple[int, int, int]) -> Indices:
-    """A slot for each point of (3, n), the same for equal points, of n to 2 n slots."""
-    # The upper bits of a product of 64 bits depend on all bits of the coordinate.
-    mixed = np.zeros(columns.shape[1], np.uint64)
-    for axis, factor in zip(
-        columns.view(np.uint32 if columns.dtype == np.float32 else np.uint64), factors, strict=True
-    ):
-        mixed += axis
-        mixed ^= mixed >> np.uint64(32)
-        mixed *= np.uint64(factor)
-    size = max(columns.shape[1], 2).bit_length()
-    return (mixed >> np.uint64(64 - size)).astype(np.intp)

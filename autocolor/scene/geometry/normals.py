@@ -9,8 +9,9 @@ same place count as one node, so that it does not matter whether a file repeats 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Final
 
 import numpy as np
@@ -44,11 +45,43 @@ class NodeNormals(Immutable):
     """Unit normals, and the number of the normal at each corner of each polygon.
 
     `vectors` is (normals, 3) float32, `numbers` (polygons, 4) intp: rows of `vectors`. Both are stored by
-    columns, so that `.T` is the contiguous array that the renderer works on.
+    columns, so that `.T` is the contiguous array that the renderer works on. The normals of a file may lack
+    some: their numbers are -1.
     """
 
     vectors: Singles
     numbers: Indices
+
+    @cached_property
+    def are_complete(self) -> bool:
+        """Whether there is a normal at every corner."""
+        return bool(self.numbers.min(initial=0) >= 0)
+
+    def completed(self, computed: NodeNormals) -> NodeNormals:
+        """These normals, with computed normals of the same mesh at the corners that lack one."""
+        own, others = self.numbers.T, computed.numbers.T
+        used, rows = np.unique(others[own < 0], return_inverse=True)
+        numbers = own.copy()
+        numbers[own < 0] = rows.ravel() + len(self.vectors)
+        vectors = np.concatenate([self.vectors.T, computed.vectors.T[:, used]], axis=1)
+        return NodeNormals(read_only(vectors.T), read_only(numbers.T))
+
+    @staticmethod
+    def joined(normals: Sequence[NodeNormals | None], polygons: Sequence[int]) -> NodeNormals | None:
+        """The normals of several meshes as one, which have so many polygons; None if no mesh has any."""
+        if all(each is None for each in normals):
+            return None
+        vectors, numbers, first = [np.empty((3, 0), np.float32)], [], 0
+        for each, count in zip(normals, polygons, strict=True):
+            if each is None:
+                numbers.append(np.full((4, count), -1))
+            else:
+                vectors.append(each.vectors.T)
+                numbers.append(np.where(each.numbers.T < 0, -1, each.numbers.T + first))
+                first += len(each.vectors)
+        return NodeNormals(
+            read_only(np.concatenate(vectors, axis=1).T), read_only(np.concatenate(numbers, axis=1).T)
+        )
 
 
 @underflowing

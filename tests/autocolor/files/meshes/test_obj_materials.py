@@ -9,7 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Surface
-from autocolor.files.meshes.obj import MOST_LIBRARIES, MOST_LIBRARY_PROBLEMS, read_obj
+from autocolor.files.meshes.mtl import MOST_LIBRARIES, MOST_LIBRARY_PROBLEMS
+from autocolor.files.meshes.obj import read_obj
 from autocolor.files.meshes.repair import MeshReport
 from autocolor.scene.defaults import COLORED_PAINT, created_surface
 

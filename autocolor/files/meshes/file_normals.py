@@ -1,0 +1,101 @@
+"""The normals of a file at the corners of a mesh, made fit for rendering.
+
+- A normal of any length becomes a unit vector. Where the file has none, or one that is zero or not finite, it
+  is computed.
+- The renderer takes the side of a polygon that its corners run around counterclockwise for its front, and a
+  normal for the front's. Files mix windings, and their normals point outward all the same. So the normals of
+  a polygon that together point to its back are turned over: a surface with two sides then looks as its author
+  saw it. A single normal that points to the back stays, as at the rim of a thin sheet that is smooth.
+- Equal normals at one place are one normal, so that the mesh is as smooth there as it looks.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from autocolor.arrays import Booleans, Floats, Indices, Singles, chunks, underflowing
+from autocolor.files.meshes.welding import welded
+from autocolor.immutable import read_only
+from autocolor.scene.geometry.normals import NodeNormals, places_of_corners, polygon_normals
+
+NEARLY_UNIT: Final = 1e-6
+"""Assumed: a length so near to 1 is rounding; such a normal stays as it is, to be read back equal."""
+
+POLYGONS_AT_ONCE: Final = 1 << 13
+
+
+@underflowing
+def file_normals(
+    coordinates: Floats, node_numbers: Indices, vectors: Floats, rows: Indices
+) -> tuple[NodeNormals | None, list[str]]:
+    """The normals of a mesh, and messages about what is computed or turned over; None if all are computed.
+
+    `vectors`, (normals, 3), are the file's, in the axes of the mesh; `rows`, (polygons, 4), has the row of
+    the normal at each corner, or any other number if it is missing. Where normals are missing, the numbers of
+    the result are -1.
+    """
+    unit, is_sound = _units(vectors)
+    rows = np.ascontiguousarray(rows.T)
+    rows[(rows < 0) | (rows >= len(unit))] = -1
+    # The last row stands for a missing normal.
+    rows[~np.append(is_sound, False)[rows]] = -1
+    sentences = []
+    if missing := int(
+        (rows[:3] < 0).sum() + ((rows[3] < 0) & (node_numbers[:, 2] != node_numbers[:, 3])).sum()
+    ):
+        sentences.append(
+            f"{missing:,} corners have no normals of their own; they were computed"
+            if missing > 1
+            else "1 corner has no normal of its own; it was computed"
+        )
+    if (rows < 0).all():
+        return None, sentences
+    is_turned = _point_back(coordinates, node_numbers, unit, rows)
+    if count := int(is_turned.sum()):
+        sentences.append(
+            f"the normals of {count:,} {'polygon' if count == 1 else 'polygons'} point against the winding"
+            f" of {'its' if count == 1 else 'their'} corners and were turned over"
+        )
+        rows = np.where(is_turned & (rows >= 0), rows + len(unit), rows)
+        unit = np.concatenate([unit, 0 - unit])
+    return _without_copies(coordinates, node_numbers, unit, rows), sentences
+
+
+def _units(vectors: Floats) -> tuple[Singles, Booleans]:
+    """The vectors, (n, 3), as unit vectors of float32, and which of them are finite and not zero."""
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+        sizes = np.abs(vectors).max(axis=1, initial=0)
+        is_sound = np.isfinite(sizes) & (sizes > 0)
+        lengths = np.sqrt((vectors**2).sum(axis=1))
+        is_unit = np.abs(lengths - 1) < NEARLY_UNIT
+        scaled = vectors / sizes[:, None]
+        scaled /= np.sqrt((scaled**2).sum(axis=1))[:, None]
+        unit = np.where(is_unit[:, None], vectors, scaled)
+    unit[~is_sound] = 0.0
+    # Adding 0 turns -0 into 0.
+    return unit.astype(np.float32) + np.float32(0), is_sound
+
+
+def _point_back(coordinates: Floats, node_numbers: Indices, unit: Singles, rows: Indices) -> Booleans:
+    """Whether the normals of each polygon together point to its back."""
+    is_turned = np.empty(len(node_numbers), np.bool_)
+    vectors = np.append(unit, np.zeros((1, 3), np.float32), axis=0).T
+    for chunk in chunks(len(node_numbers), POLYGONS_AT_ONCE):
+        planes = polygon_normals(np.take(coordinates.T, node_numbers[chunk].T, axis=1))
+        sums = np.take(vectors, rows[:, chunk], axis=1).sum(axis=1)
+        is_turned[chunk] = (planes * sums).sum(axis=0) < 0
+    return is_turned
+
+
+def _without_copies(coordinates: Floats, node_numbers: Indices, unit: Singles, rows: Indices) -> NodeNormals:
+    """The normals in which equal vectors at one place are one row, and rows of different places differ."""
+    different, row_of = welded(unit)
+    places = places_of_corners(np.ascontiguousarray(coordinates.T), np.ascontiguousarray(node_numbers.T))
+    is_own = rows >= 0
+    keys, numbers = np.unique(places[is_own] * len(different) + row_of[rows[is_own]], return_inverse=True)
+    own = np.full(rows.shape, -1)
+    own[is_own] = numbers.ravel()
+    vectors = np.ascontiguousarray(different[keys % len(different)].T)
+    return NodeNormals(read_only(vectors.T), read_only(own.T))
