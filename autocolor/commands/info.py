@@ -14,6 +14,7 @@ from ramtek_emu.command_line import tell
 
 if TYPE_CHECKING:
     from autocolor.files.scene_report import SceneReport
+    from autocolor.scene.mesh import Mesh
     from autocolor.scene.scalar import MeshScalar
 
 EXAMPLES: Final = """\b
@@ -57,6 +58,7 @@ def facts_of(report: SceneReport) -> dict[str, Any]:
         "triangles": mesh.triangle_count,
         "edges": mesh.edge_count,
         "quads": dataclasses.asdict(quad_shapes(mesh)),
+        "normals": normals_fact(mesh),
         "bounds": [low.tolist(), high.tolist()],
         "scalars": [scalar_facts(scalar) for scalar in mesh.scalars],
         "parts": {part.name: part.surface for part in scene.parts},
@@ -77,6 +79,13 @@ def facts_of(report: SceneReport) -> dict[str, Any]:
         "repairs": list(report.repairs),
         "created": list(report.created),
     }
+
+
+def normals_fact(mesh: Mesh) -> str:
+    """Which normals of a mesh are used."""
+    if mesh.own_normals is None:
+        return "computed"
+    return "the file's" if mesh.own_normals.are_complete else "the file's, computed where it has none"
 
 
 def scalar_facts(scalar: MeshScalar) -> dict[str, Any]:
@@ -103,6 +112,7 @@ def lines_of(facts: dict[str, Any]) -> list[str]:
         + ", ".join(f"{shape} {facts['quads'][shape]:,}" for shape in ("warped", "concave", "crossed")),
         f"size {size}, pixels {facts['pixels']:,},"
         f" intensities {facts['intensities'].minimum:.4g} to {facts['intensities'].maximum:.4g}",
+        f"normals: {facts['normals']}",
         f"parts: {', '.join(f'{part} ({surface})' for part, surface in facts['parts'].items())}",
         f"view: from {_point(facts['view']['eye'])} toward {_point(facts['view']['forward'])}",
         *([f"named views: {', '.join(facts['views'])}"] if facts["views"] else []),

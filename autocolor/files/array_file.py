@@ -25,6 +25,8 @@ from autocolor.arrays import AnyArray
 from autocolor.checks import printable, shown
 from autocolor.errors import InputError
 from autocolor.files.reading import bounded_json, opened, require_size
+from autocolor.immutable import read_only
+from autocolor.scene.geometry.normals import NodeNormals
 from autocolor.scene.scalar import MOST_SCALARS, MeshScalar
 
 GROWTH: Final = 3
@@ -195,15 +197,50 @@ def _header(kind: ArrayFileKind, source: Path, data: AnyArray) -> dict[str, Any]
     if not isinstance(header, dict) or header.get("format") not in formats:
         raise InputError(f"{place}: its format must be {kind.formats[0]!r}; {kind.advice}")
     series = {} if header["format"] in kind.plain else kind.series
-    if set(header) - kind.optional != {"format", *kind.keys, *series}:
+    if set(header) - kind.optional != {"format", *kind.keys, *series} - kind.optional:
         raise InputError(f"{place}: it must have exactly the keys of its format; {kind.advice}")
     for key, rows in series.items():
-        if not isinstance(header[key], list) or len(header[key]) > rows.most:
+        given = header.get(key, [])
+        if not isinstance(given, list) or len(given) > rows.most:
             raise InputError(
                 f"{place}: {key} must be a list of at most {rows.most:,} rows, not"
-                f" {shown(header[key])}; {kind.advice}"
+                f" {shown(given)}; {kind.advice}"
             )
     return header
+
+
+# The normals of a file that a mesh has: two series of at most one member. Files without them lack their keys.
+
+NORMALS: Final = {
+    "own_normals": Series("own_normal", ("<f4", 2), most=1),
+    "own_normal_numbers": Series("own_normal_number", ("<i4", 2), most=1),
+}
+
+
+def normal_rows(normals: NodeNormals | None) -> dict[str, list[int]]:
+    """The keys of the header for the normals of a mesh."""
+    return {} if normals is None else {key: [0] for key in NORMALS}
+
+
+def normal_members(normals: NodeNormals | None) -> dict[str, AnyArray]:
+    """The arrays of the normals by the names of their members."""
+    if normals is None:
+        return {}
+    return {"own_normal_0": normals.vectors, "own_normal_number_0": normals.numbers}
+
+
+def normals_of(arrays: Mapping[str, AnyArray]) -> NodeNormals | None:
+    """The normals of the arrays of a file, if it has any; a mesh checks them. Raises InputError."""
+    tables = [arrays.get(f"{series.member}_0") for series in NORMALS.values()]
+    vectors, numbers = tables
+    if vectors is None or numbers is None:
+        if vectors is not numbers:
+            raise InputError("own normals must have vectors and numbers, not one alone")
+        return None
+    vectors, numbers = (
+        np.asfortranarray(table.astype(kind)) for table, kind in ((vectors, np.float32), (numbers, np.intp))
+    )
+    return NodeNormals(read_only(vectors), read_only(numbers))
 
 
 # The scalars of a mesh: rows of the header, and members.

@@ -16,6 +16,7 @@ from autocolor.errors import UsageError
 from autocolor.files.formats import (
     LIGHTS,
     NODE_SCALARS,
+    NORMALS,
     PARTS,
     POLYGON_SCALARS,
     QUADS,
@@ -109,6 +110,8 @@ def _of_mesh(scene: Scene, output: Format) -> Iterator[str]:
     quads = len(mesh.node_numbers) - mesh.triangle_count
     if QUADS not in output.holds and quads:
         yield f"{quads:,} quad{'s' if quads > 1 else ''} (each is written as two triangles)"
+    if NORMALS not in output.holds and mesh.own_normals is not None:
+        yield "the file's own normals (they will be computed)"
     if SETTINGS not in output.holds and mesh.crease_angle != CREASE_ANGLE:
         yield f"the crease angle of {mesh.crease_angle:g} degrees"
 

@@ -42,7 +42,8 @@ PARTS: Final = "parts"
 NODE_SCALARS: Final = "node scalars"
 POLYGON_SCALARS: Final = "polygon scalars"
 QUADS: Final = "quads"
-MESH_EXTRAS: Final = frozenset((PARTS, NODE_SCALARS, POLYGON_SCALARS, QUADS))
+NORMALS: Final = "own normals"
+MESH_EXTRAS: Final = frozenset((PARTS, NODE_SCALARS, POLYGON_SCALARS, QUADS, NORMALS))
 """Contents of a mesh, beside nodes and triangles, that some formats cannot hold."""
 
 SURFACES: Final = "surfaces"
@@ -145,7 +146,7 @@ class MeshFormat(Format):
     keys: tuple[str, ...] = FILE
     mapped: bool = False
     prior_of_y: float | None = None
-    holds: frozenset[str] = MESH_EXTRAS
+    holds: frozenset[str] = MESH_EXTRAS - {NORMALS}
 
 
 def _file(content: Callable[[Mesh], bytes]) -> SceneWriter:
@@ -194,6 +195,7 @@ MESH_FORMATS: Final = (
         in_folder=(NODES, POLYGONS),
         mapped=True,
         write=_tables(write_npy_tables, (NODES, POLYGONS)),
+        holds=MESH_EXTRAS,
     ),
     MeshFormat(
         name="OBJ",
@@ -202,7 +204,7 @@ MESH_FORMATS: Final = (
         read=read_obj,
         prior_of_y=MODELED,
         write=write_obj,
-        holds=frozenset((PARTS, QUADS, SURFACES)),
+        holds=frozenset((PARTS, QUADS, NORMALS, SURFACES)),
     ),
     MeshFormat(name="OFF", suffixes=(".off",), begins=begins_as_off, read=read_off, prior_of_y=SCANNED),
     MeshFormat(
@@ -222,7 +224,13 @@ MESH_FORMATS: Final = (
         write=_file(stl_bytes),
         holds=frozenset(),
     ),
-    MeshFormat(name="tables", suffixes=(SUFFIX,), read=read_table_file, write=_file(table_file_bytes)),
+    MeshFormat(
+        name="tables",
+        suffixes=(SUFFIX,),
+        read=read_table_file,
+        write=_file(table_file_bytes),
+        holds=MESH_EXTRAS,
+    ),
     MeshFormat(name="VTK", suffixes=(".vtk",), begins=begins_as_vtk, read=read_vtk, prior_of_y=SIMULATION),
     MeshFormat(name="VTP", suffixes=(".vtp",), begins=begins_as_vtp, read=read_vtp, prior_of_y=SIMULATION),
     *(

@@ -20,6 +20,8 @@ from autocolor.errors import InputError, UsageError, reason_of
 from autocolor.files.formats import (
     FILE_FORMATS,
     MESH_FORMATS,
+    NORMALS,
+    WHOLE_SCENE,
     Format,
     MeshFormat,
     files_of_folder,
@@ -30,7 +32,7 @@ from autocolor.files.formats import (
     suffix_rule,
     suffixes_of,
 )
-from autocolor.files.meshes.repair import SCALES, UPS, Placement
+from autocolor.files.meshes.repair import FILE, SCALES, UPS, Placement
 from autocolor.files.meshes.up_axis import seems_to_lie
 from autocolor.files.palette_file import GPL
 from autocolor.files.paths import PICTURE_SUFFIX, SCENE_FILE, STORE_SUFFIXES
@@ -106,6 +108,7 @@ STORE: Final = SceneFormat(
     begins=lambda head: head.startswith(b"SQLite format 3\0"),
     read=_read_store,
     write=_write_store,
+    holds=WHOLE_SCENE - {NORMALS},
 )
 
 FORMATS: Final = (PICTURE, SCENE, STORE, *MESH_FORMATS)
@@ -130,11 +133,11 @@ def read_scene(
     A folder must contain a `scene.toml`, or the tables of a mesh such as `nodes.csv` and `polygons.csv`;
     `autocolor convert --formats` lists all that can be read. Whatever the source does not define is created
     with defaults. `up` and `scale` are the up axis of a mesh that is read without a scene file, and a factor
-    for its coordinates. With `outside`, a scene file may name files outside its folder. With `strict`, a mesh
-    that needs repair is refused. A part without a surface has the surface of its material; with
-    `surfaces="parts"`, each such part has its own surface. `limit` is a factor for the memory budget: a file
-    that needs more is refused before it is read. Raises InputError with every problem, MissingInputError if a
-    file does not exist.
+    for its coordinates; the normals of its file are used. With `outside`, a scene file may name files outside
+    its folder. With `strict`, a mesh that needs repair is refused. A part without a surface has the surface
+    of its material; with `surfaces="parts"`, each such part has its own surface. `limit` is a factor for the
+    memory budget: a file that needs more is refused before it is read. Raises InputError with every problem,
+    MissingInputError if a file does not exist.
     """
     with allowing(limit):
         report = read_scene_with_report(path, up=up, scale=scale, outside=outside, surfaces=surfaces)
@@ -157,7 +160,7 @@ def read_scene_with_report(
     if up not in UPS:
         raise UsageError(f"up must be 'x', 'y' or 'z', not {up!r}")
     try:
-        placement = Placement(up, SCALES.accepted(scale))
+        placement = Placement(up, SCALES.accepted(scale), normals=FILE)
     except (TypeError, ValueError, OverflowError):
         raise UsageError(f"scale {SCALES.rule()}, not {shown(scale)}; give a factor such as 0.001") from None
     if surfaces not in (MATERIALS, PARTS):
@@ -255,7 +258,8 @@ def _bare_mesh(
     """The scene of a mesh, with everything else created from defaults."""
     read = read_mesh(files, placement)
     scale = {} if placement.scale == 1 else {"scale": placement.scale}
-    entry = {**{key: file.name for key, file in files.items()}, "up": placement.up, **scale}
+    normals = {} if read.mesh.own_normals is None else {"normals": FILE}
+    entry = {**{key: file.name for key, file in files.items()}, "up": placement.up, **scale, **normals}
     return scene_report([read], mesh_files=(entry,), name=name, surfaces=surfaces)
 
 

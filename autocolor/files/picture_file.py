@@ -29,9 +29,13 @@ from autocolor.errors import InputError, UsageError
 from autocolor.files.array_file import (
     KEY,
     MESH_SCALARS,
+    NORMALS,
     ArrayFileKind,
     Series,
     array_file_bytes,
+    normal_members,
+    normal_rows,
+    normals_of,
     read_array_file,
     scalar_members,
     scalar_rows,
@@ -41,6 +45,7 @@ from autocolor.files.paths import PICTURE_SUFFIX
 from autocolor.files.writing import Guard, check_suffix, no_guard, write_atomically
 from autocolor.lighting.picture import Picture, check_surfaces
 from autocolor.scene.columns import Problem, RowError, from_plain, to_plain
+from autocolor.scene.geometry.normals import NodeNormals
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalar import LimitsKind, MeshScalar
 from autocolor.scene.scene import Scene
@@ -68,9 +73,9 @@ PICTURE_FILE: Final = ArrayFileKind(
         "node_numbers": ("<i4", 2),
         "part_numbers": ("<i4", 1),
     },
-    series={KEY: MESH_SCALARS, SHOWN: Series("scalar", ("<f4", 2), most=1)},
+    series={KEY: MESH_SCALARS, **NORMALS, SHOWN: Series("scalar", ("<f4", 2), most=1)},
     added=frozenset(("part_number",)),
-    optional=frozenset(("smooth",)),
+    optional=frozenset(("smooth", *NORMALS)),
 )
 
 
@@ -109,6 +114,7 @@ def write_picture(
         KEY: scalar_rows(scene.mesh.scalars),
         SHOWN: [] if picture.scalar is None else [{"limits": picture.scalar_limits}],
         **({"smooth": picture.smooth} if picture.smooth > 1 else {}),
+        **normal_rows(scene.mesh.own_normals),
     }
     relative = np.zeros(picture.lines * picture.elements, np.float32)
     relative[picture.pixels] = picture.relative
@@ -120,6 +126,7 @@ def write_picture(
         "node_numbers": scene.mesh.node_numbers,
         "part_numbers": scene.mesh.part_numbers,
         **scalar_members(scene.mesh.scalars),
+        **normal_members(scene.mesh.own_normals),
         **({} if picture.scalar is None else {"scalar_0": picture.scalar}),
     }
     data = array_file_bytes(PICTURE_FILE, header, arrays)
@@ -137,7 +144,7 @@ def read_picture(path: str | PathLike[str], *, limit: float | None = None) -> Sa
         header, arrays = read_array_file(PICTURE_FILE, source)
     try:
         mesh = (arrays["coordinates"], arrays["node_numbers"], arrays["part_numbers"])
-        scene = scene_of_plain(header["scene"], *mesh, scalars_of(header, arrays))
+        scene = scene_of_plain(header["scene"], *mesh, scalars_of(header, arrays), normals_of(arrays))
         picture = _picture(header, scene, arrays)
     except InputError as error:
         raise InputError(
@@ -259,8 +266,12 @@ def scene_of_plain(
     node_numbers: AnyArray,
     part_numbers: AnyArray,
     scalars: tuple[MeshScalar, ...] = (),
+    own_normals: NodeNormals | None = None,
 ) -> Scene:
-    """The scene of values as from `plain_scene` and of the mesh's arrays and scalars. Raises InputError."""
+    """The scene of values as from `plain_scene`, of the mesh's arrays, scalars and normals.
+
+    Raises InputError.
+    """
     if not isinstance(values, Mapping) or not isinstance(values.get("mesh"), Mapping):
         raise InputError(f"scene: it must be tables, its mesh among them, not {shown(values)}")
     described = values["mesh"]
@@ -271,5 +282,6 @@ def scene_of_plain(
         described.get("part_names", ()),
         described.get("crease_angle", math.nan),
         scalars,
+        own_normals,
     )
     return from_plain(Scene, {**values, "mesh": mesh})

@@ -76,6 +76,8 @@ def write_scene_with_tables(
     file or store before it is overwritten.
     """
     if Path(path).suffix.lower() in STORE_SUFFIXES and not os.path.isdir(path):
+        if scene.mesh.own_normals is not None:
+            LOG.warning("%s: a store has no normals: those of the mesh file will be computed", path)
         write_store(path, scene, overwrite=overwrite, guard=guard)
         return [Path(path)]
     target = _target(path)

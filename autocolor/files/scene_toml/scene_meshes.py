@@ -18,7 +18,7 @@ from autocolor.budget import memory_problem
 from autocolor.errors import InputError, OutputError
 from autocolor.files.formats import format_of_files, read_mesh
 from autocolor.files.meshes.obj import obj_text
-from autocolor.files.meshes.repair import SCALES, UPS, MeshReport, Placement
+from autocolor.files.meshes.repair import COMPUTED, FILE, NORMALS, SCALES, UPS, MeshReport, Placement
 from autocolor.files.meshes.table_file import SUFFIX, table_file_bytes
 from autocolor.files.paths import free_path, path_within
 from autocolor.files.reading import TableFiles
@@ -43,7 +43,7 @@ MESH_FILE_KEYS: Final = frozenset(key for keys in FILE_KEYS for key in keys)
 
 @dataclass(frozen=True)
 class MeshEntry(Row):
-    """One `[[mesh]]` table of a scene file: its files, their up axis and scale, and the crease angle."""
+    """One `[[mesh]]` table of a scene file: its files, their up axis, scale and normals, the crease angle."""
 
     noun: ClassVar[str] = "mesh"
 
@@ -54,6 +54,9 @@ class MeshEntry(Row):
     scale: Annotated[
         float, Column(SCALES, Tier.FRAME, "A factor for the coordinates of the file.", bar=SCALE_BAR)
     ] = 1.0
+    normals: Annotated[
+        str, Column(OneOf(NORMALS), Tier.FRAME, "Whose normals are used: computed, or the file's own.")
+    ] = COMPUTED
     crease_angle: Annotated[
         float | None,
         Column(
@@ -66,7 +69,7 @@ class MeshEntry(Row):
 
     def placement(self, crease_angle: float | None) -> Placement:
         """The placement of the mesh; all meshes of a scene have the same crease angle."""
-        return Placement(self.up, self.scale, crease_angle)
+        return Placement(self.up, self.scale, crease_angle, self.normals)
 
     def rules(self) -> Iterator[Problem]:
         """The keys must name either one file or two tables."""
@@ -181,7 +184,9 @@ def _size(path: Path) -> int:
 
 def mesh_file(table: Mapping[str, Any]) -> dict[str, str]:
     """The keys of a `[[mesh]]` table that are needed to read the mesh again."""
-    return {key: table[key] for key in ("file", "nodes", "polygons", "up", "scale") if key in table}
+    return {
+        key: table[key] for key in ("file", "nodes", "polygons", "up", "scale", "normals") if key in table
+    }
 
 
 @dataclass(frozen=True)
@@ -264,15 +269,16 @@ def written_mesh(folder: Path, mesh: Mesh, written: list[Path]) -> Meshes:
 
     The file is added to `written`. Raises OutputError or WriteError.
     """
+    normals = {} if mesh.own_normals is None else {"normals": FILE}
     as_obj = () if mesh.scalars else ((".obj", obj_text),)
     for suffix, content in (*as_obj, (SUFFIX, table_file_bytes)):
         path = free_path(folder / f"{MESH_STEM}{suffix}")
         write_atomically(path, content(mesh), overwrite=False)
         written.append(path)
         try:
-            report = read_mesh({"file": path})
+            report = read_mesh({"file": path}, Placement(**normals))
             if has_same_tables(report.mesh, mesh) and not report.repairs:
-                return Meshes(({"file": path.name},), [report])
+                return Meshes(({"file": path.name, **normals},), [report])
         except InputError:
             pass
         os.unlink(written.pop())

@@ -12,6 +12,7 @@ from itertools import count, takewhile
 from typing import Any, Final
 
 from autocolor.errors import InputError
+from autocolor.files.meshes.repair import COMPUTED
 from autocolor.files.scene_toml.toml_edit import TomlText
 from autocolor.files.scene_toml.toml_text import KeyPath, parsed_toml, table_text, toml_key
 from autocolor.scene.columns import Row, fields_of, from_plain, to_plain, with_values
@@ -92,7 +93,7 @@ def sparse_tables(scene: Scene) -> dict[str, Any]:
 
 def sparse_entry(entry: Mapping[str, Any]) -> dict[str, Any]:
     """A `[[mesh]]` table without keys whose values are their defaults."""
-    defaults = {"up": "z", "scale": 1.0, "crease_angle": CREASE_ANGLE}
+    defaults = {"up": "z", "scale": 1.0, "normals": COMPUTED, "crease_angle": CREASE_ANGLE}
     return {key: value for key, value in entry.items() if value != defaults.get(key)}
 
 
