@@ -325,18 +325,26 @@ def _walk(data: bytes, at: int, element: Element, order: str, place: str) -> tup
             unpack = struct.Struct(order + CODES[each.count_type]).unpack_from
             lists.append((tail, unpack, tail + each.size, np.dtype(each.type).itemsize))
         tail = 0 if each.count_type else tail + each.size
+    count_types = [each.count_type for each in element.properties if each.count_type]
     counts = np.empty((element.count, len(lists)), np.intp)
     for first in range(0, element.count, ROWS_AT_ONCE):
         some: list[int] = []
         rows = min(ROWS_AT_ONCE, element.count - first)
         try:
-            for _ in range(rows):
-                for before, unpack, width, size in lists:
-                    (count,) = unpack(data, at + before)
+            if count_types == ["u1"]:
+                before, _, width, size = lists[0]
+                for _ in range(rows):
+                    count = data[at + before]
                     some.append(count)
-                    at += width + count * size
-                at += tail
-        except (OverflowError, struct.error):
+                    at += width + count * size + tail
+            else:
+                for _ in range(rows):
+                    for before, unpack, width, size in lists:
+                        (count,) = unpack(data, at + before)
+                        some.append(count)
+                        at += width + count * size
+                    at += tail
+        except (IndexError, OverflowError, struct.error):
             at = len(data) + 1
         if some and min(some) < 0:
             row = first + next(place for place, count in enumerate(some) if count < 0) // len(lists)

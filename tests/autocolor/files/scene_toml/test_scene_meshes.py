@@ -97,7 +97,7 @@ def test_a_wrong_key_does_not_keep_the_file_from_being_read(folder: Path) -> Non
         "car.obj, line 1: a node must have three coordinates x y z, not 2; add what is missing",
         "scene.toml, line 3, mesh[1]: up must be 'x', 'y' or 'z', not 'w'",
         "scene.toml, line 4, mesh[1]: there is no field 'color'; choose 'file', 'nodes', 'polygons', 'up',"
-        " 'scale' or 'crease_angle'",
+        " 'scale', 'normals' or 'crease_angle'",
     ]
 
 
@@ -105,7 +105,7 @@ def test_a_wrong_key_does_not_keep_the_file_from_being_read(folder: Path) -> Non
 def test_a_mesh_that_is_no_table_is_refused(folder: Path, rows: str) -> None:
     (sentence,) = refusal(folder, rows)
     assert sentence.startswith(
-        "scene.toml, line 1, mesh[1]: must be a table of file, nodes, polygons, up, scale and"
+        "scene.toml, line 1, mesh[1]: must be a table of file, nodes, polygons, up, scale, normals"
     )
 
 
