@@ -14,7 +14,6 @@ and the report mentions them.
 from __future__ import annotations
 
 import io
-import math
 import os
 import re
 from collections.abc import Iterable, Mapping, Sequence
@@ -35,8 +34,8 @@ LARGEST_LIBRARIES: Final = 4 * 1024 * 1024
 """Limit: bytes of all libraries of a file, enough for ten thousand materials."""
 
 MOST_LIBRARIES: Final = 100
-MOST_LIBRARY_PROBLEMS: Final = 5
-"""Limit: problems that are reported of one library; the others are counted."""
+MOST_NAMED: Final = 5
+"""Limit: libraries that are looked for, and missing ones that are named."""
 
 LARGEST: Final = 1e6
 """Limit: above every coefficient and exponent of a material."""
@@ -85,7 +84,7 @@ def read_materials(
     sentences.extend(
         f"the materials have default colors: there is no library {shown(name)} in the folder of {obj.name};"
         " copy it there"
-        for name in missing[:MOST_LIBRARY_PROBLEMS]
+        for name in missing[:MOST_NAMED]
     )
     undefined = [name for name in wanted if name not in surface_of]
     if surface_of and undefined:
@@ -131,7 +130,6 @@ def _path(folder: Path, name: bytes) -> Path | None:
 def materials_of(data: bytes, place: str, wanted: set[str]) -> tuple[Mapping[str, Surface], list[str]]:
     """The surfaces of the materials in `wanted` that a library defines, and what was left out or wrong."""
     problems: list[str] = []
-    more_problems = 0
     textured: set[str] = set()
     transparent: set[str] = set()
     tables: dict[str, dict[bytes, list[float]]] = {}
@@ -145,14 +143,12 @@ def materials_of(data: bytes, place: str, wanted: set[str]) -> tuple[Mapping[str
             name = name_of(line.split(None, 1)[1]) if len(words) > 1 else ""
             table = tables.setdefault(name, {}) if name in wanted and name not in tables else {}
         elif keyword in USED or keyword in TRANSPARENCY:
-            values = _numbers(words[1:], math.inf if keyword == b"Kd" else LARGEST)
-            if values is None and len(problems) < MOST_LIBRARY_PROBLEMS:
+            values = _numbers(words[1:])
+            if values is None:
                 problems.append(
                     f"{place}, line {number}: {keyword.decode()} must have one number or three, from 0 to"
                     f" {LARGEST:g}, not {shown(b' '.join(words[1:]))}; the default is used"
                 )
-            elif values is None:
-                more_problems += 1
             elif keyword in USED:
                 table[keyword] = values
             elif values[0] != TRANSPARENCY[keyword]:
@@ -165,17 +161,17 @@ def materials_of(data: bytes, place: str, wanted: set[str]) -> tuple[Mapping[str
         for what, names in left_out
         if names
     ]
-    sentences.extend(problems)
-    if more_problems:
-        sentences.append(f"{place}: {more_problems:,} more such lines")
+    sentences.extend(problems[:1])
+    if len(problems) > 1:
+        sentences.append(f"{place}: {len(problems) - 1:,} more such lines")
     return {name: _surface(name, values) for name, values in tables.items()}, sentences
 
 
-def _numbers(words: list[bytes], most: float) -> list[float] | None:
-    """The numbers of a statement, one or three; None if one is below 0 or not below `most`."""
+def _numbers(words: list[bytes]) -> list[float] | None:
+    """The numbers of a statement, one or three; None if one is below 0 or not below LARGEST."""
     numbers = [decimal(word) for word in words[:3]]
     # A comparison with NaN is false.
-    return numbers if len(numbers) in (1, 3) and all(0 <= number < most for number in numbers) else None
+    return numbers if len(numbers) in (1, 3) and all(0 <= number < LARGEST for number in numbers) else None
 
 
 def _surface(name: str, values: Mapping[bytes, list[float]]) -> Surface:

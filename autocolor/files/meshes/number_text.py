@@ -157,6 +157,23 @@ class NumberText:
             raise self.wrong(first + int(large[0]), COORDINATE)
         return values
 
+    def coordinates_at(self, begins: Indices, end: int) -> Floats:
+        """The three coordinates, (n, 3), that begin at each of some ascending words. Raises InputError.
+
+        The other words between them and up to the word `end` may also be nan or inf.
+        """
+        vectors = self.vectors_at(begins, end)
+        wrong = np.argwhere(~(np.abs(vectors) <= LARGEST_COORDINATE))
+        if len(wrong):
+            raise self.wrong(int(begins[wrong[0, 0]] + wrong[0, 1]), COORDINATE)
+        return vectors
+
+    def vectors_at(self, begins: Indices, end: int) -> Floats:
+        """The same, for vectors of which any number may be nan or inf."""
+        first = int(begins[0])
+        values = self._converted(first, end - first, IN_VALUES, COORDINATE, float)
+        return values[(begins - first)[:, None] + np.arange(3)]
+
     def values(self, first: int, count: int, letters: bytes = IN_VALUES) -> Floats:
         """The values of some words, which may be nan or inf. Raises InputError for other letters."""
         return self._converted(first, count, letters, "a value must be a decimal number, nan or inf", float)

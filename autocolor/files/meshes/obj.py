@@ -14,19 +14,27 @@ from __future__ import annotations
 import dataclasses
 import re
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import partial
+from itertools import compress
 from pathlib import Path
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
 from autocolor.arrays import Booleans, Bytes, Floats, Indices, Numbers, chunks
-from autocolor.checks import LARGEST_COORDINATE
+from autocolor.errors import InputError
 from autocolor.files.meshes.mtl import read_materials, statement
-from autocolor.files.meshes.number_text import COORDINATE, D_TO_E, MOST_PROBLEMS, Problems, decimal
-from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, RawPolygons, name_of, repaired
+from autocolor.files.meshes.number_text import NumberText, decimal
+from autocolor.files.meshes.repair import (
+    PLAIN,
+    MeshReport,
+    Placement,
+    RawPolygons,
+    different,
+    name_of,
+    repaired,
+)
 from autocolor.files.reading import read_whole, shown, text_lines
 from autocolor.scene.mesh import Mesh
 
@@ -40,7 +48,7 @@ GROWTH: Final = 6
 def read_obj(path: Path, placement: Placement = PLAIN) -> MeshReport:
     """The mesh of an OBJ file, and what was repaired or skipped.
 
-    Raises InputError with every problem, each with its line, MissingInputError if the file does not exist.
+    Raises InputError with a line that is wrong, MissingInputError if the file does not exist.
     """
     data = text_lines(read_whole(path, GROWTH), path.name, "an OBJ file")
     statements = Statements(path.stem)
@@ -113,72 +121,59 @@ class ObjTables:
         return rows.astype(np.intp, copy=False)
 
 
-# Large blocks of lines become arrays at once. In a block with lines that are not plain, lines of its kind are
-# read one by one, and every problem gets its line.
+# Large blocks of lines become arrays at once. The numbers of the lines of one kind in a block, such as nodes,
+# are converted together: all other lines become empty, so that a wrong word gets its line.
 
 BLOCK: Final = 1 << 21
 """Bytes converted at a time: enough for numpy to be efficient, and few enough to save memory."""
 
-IN_VECTORS: Final = b"0123456789+-.eEdD \t\n"
-IN_POLYGONS: Final = b"0123456789+-/f \t\n"
 COMMENT: Final = re.compile(rb"#[^\n]*")
 INDENT: Final = re.compile(rb"^[ \t]+", re.MULTILINE)
-CONTINUED: Final = re.compile(rb"(?:[^\n]*\\\n)++[^\n]*+\n?")
-CORNER: Final = re.compile(rb"([+-]?[0-9]{1,18})(?:/[+-]?[0-9]*(?:/([+-]?[0-9]{0,18})[0-9]*)?)?")
-MOST_DIGITS: Final = 18
-"""Limit: any whole number with this many digits fits in 64 bits."""
+CONTINUED: Final = re.compile(rb"(?:[^\n]*\\\n)++[^\n]*+")
 
-Note = Callable[[int, str], None]
-"""Notes a problem of a line."""
+WITH_COLOR: Final = 6
+"""The least numbers of a node with a color."""
+
+LONGEST_WORD: Final = 1000
+
+SPACE, FEED, SLASH = b" \n/"
+NONE: Final = np.empty(0, np.int64)
 
 
 def read_tables(data: bytes, place: str, statements: Statements) -> ObjTables:
     """The tables of an OBJ file whose lines end with line feeds; `place` is its name in messages.
 
-    Raises InputError with every problem, up to MOST_PROBLEMS.
+    Raises InputError with the first problem of a block.
     """
     if b"\\\n" in data:
-        data = CONTINUED.sub(_on_one_line, data)
+        # Empty lines after a continued line keep the numbers of all others.
+        data = CONTINUED.sub(
+            lambda lines: lines[0].replace(b"\\\n", b" ") + b"\n" * lines[0].count(b"\\\n"), data
+        )
     if data[:1] in (b" ", b"\t") or b"\n " in data or b"\n\t" in data:
         data = INDENT.sub(b"", data)
-    problems = Problems("line")
-    note = partial(problems.note, place)
-    nodes, normals, polygons = [np.empty((0, 3))], [np.empty((0, 3))], [[np.empty(0, np.int64)] * 7]
+    nodes, normals, polygons = [np.empty((0, 3))], [np.empty((0, 3))], [[NONE] * 7]
     node_count = normal_count = 0
     first_line = 1
     for block in _blocks(data):
-        text = np.frombuffer(block, np.uint8)
-        ends = np.flatnonzero(text == ord("\n"))
+        letters = np.frombuffer(block, np.uint8)
+        ends = np.flatnonzero(letters == FEED)
         starts = np.concatenate([[0], ends[:-1] + 1])
 
         # Classify the lines by their first bytes.
-        first, second = text[starts], text[np.minimum(starts + 1, ends)]
-        spaced, third_spaced = second <= ord(" "), text[np.minimum(starts + 2, ends)] <= ord(" ")
+        first, second, third = (letters[np.minimum(starts + at, ends)] for at in range(3))
         is_v = first == ord("v")
-        is_node, is_polygon = is_v & spaced, (first == ord("f")) & spaced
-        is_normal = is_v & (second == ord("n")) & third_spaced
-        unused = is_normal | (is_v & (second == ord("t")) & third_spaced)
-        unused |= (first == ord("#")) | (first == ord("\n"))
+        is_node, is_polygon = is_v & (second <= SPACE), (first == ord("f")) & (second <= SPACE)
+        is_normal = is_v & (second == ord("n")) & (third <= SPACE)
+        unused = is_normal | (is_v & (second == ord("t")) & (third <= SPACE))
+        unused |= (first == ord("#")) | (first == FEED)
 
-        def of(chosen: Booleans, text: Bytes = text, lengths: Numbers = ends + 1 - starts) -> bytes:
-            """The chosen lines."""
-            return text[np.repeat(chosen, lengths)].tobytes()
-
-        def numbered(chosen: Booleans, first_line: int = first_line) -> list[int]:
-            """The numbers of the chosen lines."""
-            return (np.flatnonzero(chosen) + first_line).tolist()
-
-        plain = _vectors(of(is_node), b"v")
-        if plain is None or not (np.abs(plain[0]) <= LARGEST_COORDINATE).all():
-            plain = _nodes(of(is_node), numbered(is_node), note)
-        statements.has_colors |= bool(plain[1].max(initial=0) >= WORDS_WITH_COLOR)
-        nodes.append(plain[0])
-        of_normals = _vectors(of(is_normal), b"vn")
-        normals.append(_normals(of(is_normal)) if of_normals is None else of_normals[0])
-
-        corners = _corners(of(is_polygon))
-        if corners is None:
-            corners = _patient_corners(of(is_polygon), numbered(is_polygon), note)
+        lines = Lines(letters, starts, ends, place, first_line)
+        vectors, sizes = lines.vectors(is_node)
+        statements.has_colors |= bool(sizes.max(initial=0) >= WITH_COLOR)
+        nodes.append(vectors)
+        normals.append(lines.normals(is_normal))
+        corners = lines.corners(is_polygon)
         others = np.flatnonzero(~(is_node | is_polygon | unused))
         rows = np.flatnonzero(is_polygon)
         parts = _part_numbers(block, others, starts, ends, rows, statements)
@@ -190,16 +185,18 @@ def read_tables(data: bytes, place: str, statements: Statements) -> ObjTables:
         first_line += len(ends)
     columns = (np.concatenate(column) for column in zip(*polygons, strict=True))
     tables = ObjTables(np.concatenate(nodes), np.concatenate(normals), *columns)
-    _note_missing_nodes(tables, note)
-    problems.raise_any()
+    missing = np.flatnonzero(tables.node_rows < 0)
+    if len(missing):
+        corner = int(missing[0])
+        polygon = int(np.searchsorted(np.cumsum(tables.corner_counts), corner, side="right"))
+        rule = f"from 1 to {node_count}" if node_count else "of the file, which has no nodes"
+        if before := tables.nodes_before[polygon]:
+            rule += f" or from -{before} to -1"
+        raise InputError(
+            f"{place}, line {tables.lines[polygon]}: a corner must be a node number {rule}, not"
+            f" {tables.node_numbers[corner]}; correct it"
+        )
     return tables
-
-
-def _on_one_line(lines: re.Match[bytes]) -> bytes:
-    """Continued lines as one, and empty lines after it, so that all others keep their numbers."""
-    end = b"\n" if lines[0].endswith(b"\n") else b""
-    joined = lines[0].removesuffix(b"\n").removesuffix(b"\\") if lines[0].endswith(b"\\\n") else lines[0]
-    return joined.removesuffix(b"\n").replace(b"\\\n", b" ") + b"\n" * lines[0].count(b"\\\n") + end
 
 
 def _blocks(data: bytes) -> Iterator[bytes]:
@@ -212,140 +209,84 @@ def _blocks(data: bytes) -> Iterator[bytes]:
         start += len(block)
 
 
-WORDS_WITH_COLOR: Final = 7
-"""The least words of a node with a color, its keyword among them."""
+class Lines(NamedTuple):
+    """A block of lines: its letters, where lines start and end, the file's name, the first line's number."""
 
+    letters: Bytes
+    starts: Numbers
+    ends: Numbers
+    place: str
+    first_line: int
 
-def _vectors(plain: bytes, keyword: bytes) -> tuple[Floats, Numbers] | None:
-    """The first three numbers of lines with a keyword, (n, 3), and how many words each line has.
+    def vectors(self, chosen: Booleans) -> tuple[Floats, Numbers]:
+        """The coordinates of the chosen nodes, (n, 3), and how many numbers each has. Raises InputError."""
+        if not chosen.any():
+            return np.empty((0, 3)), NONE
+        text, upto = self._numbers(self._only(chosen, 1), chosen)
+        sizes = np.diff(upto, prepend=0)
+        if sizes.min() < 3:
+            rule = "a node must have three coordinates x y z"
+            line = self.first_line + int(np.flatnonzero(chosen)[sizes.argmin()])
+            raise InputError(f"{self.place}, line {line}: {rule}, not {sizes.min()}; add what is missing")
+        return text.coordinates_at(upto - sizes, len(text)), sizes
 
-    None if a line has other words than numbers, or too few.
-    """
-    if not plain:
-        return np.empty((0, 3)), np.empty(0, np.int64)
-    if b"#" in plain:
-        plain = COMMENT.sub(b"", plain)
-    counts = _words_a_line(np.frombuffer(plain, np.uint8))
-    others = plain.translate(None, IN_VECTORS)
-    if others != keyword * len(counts) or plain.count(keyword) != len(counts) or counts.min() < 4:
-        return None
-    if b"d" in plain or b"D" in plain:
-        plain = plain.translate(D_TO_E)
-    words = plain.replace(keyword, b" ").decode("ascii").split()
-    try:
-        numbers = np.fromiter(map(float, words), np.float64, len(words))
-    except ValueError:
-        return None
-    if (counts == counts[0]).all():
-        return np.ascontiguousarray(numbers.reshape(len(counts), -1)[:, :3]), counts
-    # Some lines have a color or a weight.
-    begins = np.cumsum(counts - 1) - (counts - 1)
-    return numbers[begins[:, None] + np.arange(3)], counts
-
-
-def _words_a_line(lines: Bytes) -> Numbers:
-    """The number of words in each line."""
-    spaces = lines <= ord(" ")
-    starts = ~spaces
-    starts[1:] &= spaces[:-1]
-    ends = np.flatnonzero(lines == ord("\n"))
-    return np.add.reduceat(starts, np.concatenate([[0], ends[:-1] + 1]), dtype=np.int64)
-
-
-def _words_of_lines(plain: bytes) -> Iterator[list[bytes]]:
-    """The words of each line after its keyword, without a comment."""
-    return (line.split(b"#", 1)[0].split()[1:] for line in plain.split(b"\n")[:-1])
-
-
-def _nodes(plain: bytes, lines: list[int], note: Note) -> tuple[Floats, Numbers]:
-    """The nodes of lines, and how many words each has. After x y z only a single word must be a number."""
-    nodes, counts = np.full((len(lines), 3), np.nan), np.zeros(len(lines), np.int64)
-    for row, (line, words) in enumerate(zip(lines, _words_of_lines(plain), strict=True)):
-        counts[row] = len(words) + 1
-        if len(words) < 3:
-            note(line, f"a node must have three coordinates x y z, not {len(words)}; add what is missing")
-        for at, word in enumerate(words[:3]):
-            nodes[row, at] = decimal(word)
-            if not abs(nodes[row, at]) <= LARGEST_COORDINATE:
-                note(line, f"{COORDINATE}, not {shown(word)}; correct it")
-        if len(words) == 4 and np.isnan(decimal(words[3])):
-            rule = "the weight of a node must be a decimal number"
-            note(line, f"{rule}, not {shown(words[3])}; correct it")
-    return nodes, counts
-
-
-def _normals(plain: bytes) -> Floats:
-    """The normals of lines; one that is no three numbers is NaN, which is a missing normal."""
-    rows = [[decimal(word) for word in words[:3]] for words in _words_of_lines(plain)]
-    return np.array([row if len(row) == 3 else [np.nan] * 3 for row in rows])
-
-
-def _corners(plain: bytes) -> tuple[Numbers, Numbers, Numbers] | None:
-    """The node and normal numbers of the corners of lines, and the count of corners in each line.
-
-    None if a line has something else than corners such as 7, 7/1, 7//3 or 7/1/3.
-    """
-    none = np.empty(0, np.int64)
-    if not plain:
-        return none, none, none
-    if b"#" in plain:
-        plain = COMMENT.sub(b"", plain)
-    counts = _words_a_line(np.frombuffer(plain, np.uint8)) - 1
-    if plain.translate(None, IN_POLYGONS) or plain.count(b"f") != len(counts):
-        return None
-    plain = plain.replace(b"f", b" ")
-    has_normals = b"/" in plain
-    if has_normals:
-        # A texture number that is left out becomes 0.
-        plain = plain.replace(b"//", b"/0/")
-    text = np.frombuffer(plain, np.uint8)
-    is_space, is_slash = text <= ord(" "), text == ord("/")
-    begins = ~(is_space | is_slash)
-    begins[1:] &= (is_space | is_slash)[:-1]
-    begins = np.flatnonzero(begins)
-    if np.diff(begins, append=len(plain)).max(initial=0) > MOST_DIGITS:
-        return None
-    if has_normals:
-        # Slashes must be between numbers.
-        slashes = np.flatnonzero(is_slash)
-        if (is_space | is_slash)[slashes - 1].any() or (is_space | is_slash)[slashes + 1].any():
-            return None
-        plain = plain.replace(b"/", b" ")
-    if b"-" in plain or b"+" in plain:
+    def normals(self, chosen: Booleans) -> Floats:
+        """The chosen normals, (n, 3); one that is no three numbers is NaN, which is a missing normal."""
+        lines = self._only(chosen, 2)
         try:
-            numbers = np.fromiter(map(int, plain.decode("ascii").split()), np.int64, len(begins))
-        except ValueError:
-            return None
-    else:
-        # Measured: a seventh of the time of converting word by word. With digits alone, parsing cannot stop.
-        numbers = np.fromstring(plain, np.int64, sep=" ")[: len(begins)]
-    if not has_normals:
-        return numbers, np.zeros(len(numbers), np.int64), counts
-    heads = np.flatnonzero(is_space[begins - 1])
-    sizes = np.diff(heads, append=len(begins))
-    if sizes.max(initial=0) > 3:
-        return None
-    normals = np.zeros(len(heads), np.int64)
-    with_normal = np.flatnonzero(sizes == 3)
-    normals[with_normal] = numbers[heads[with_normal] + 2]
-    return numbers[heads], normals, counts
+            text, upto = self._numbers(lines, chosen)
+            if (np.diff(upto, prepend=0) == 3).all():
+                return text.values(0, len(text)).reshape(-1, 3)
+        except InputError:
+            pass
+        words = [line.split() for line in compress(lines.split(b"\n"), chosen)]
+        return np.array([[decimal(word) for word in row] if len(row) == 3 else [np.nan] * 3 for row in words])
 
+    def corners(self, chosen: Booleans) -> tuple[Numbers, Numbers, Numbers]:
+        """The node and normal numbers of all corners of the chosen polygons, and how many corners each has.
 
-def _patient_corners(plain: bytes, lines: list[int], note: Note) -> tuple[Numbers, Numbers, Numbers]:
-    """The same as `_corners`, line by line. A line with a problem has no corners."""
-    nodes: list[int] = []
-    normals: list[int] = []
-    counts: list[int] = []
-    for line, words in zip(lines, _words_of_lines(plain), strict=True):
-        corners = [CORNER.fullmatch(word) for word in words]
-        if None in corners:
+        Corners are such as 7, 7/1, 7//3 or 7/1/3; a normal number of 0 is none. Raises InputError.
+        """
+        if not chosen.any():
+            return NONE, NONE, NONE
+        # A texture number that is left out becomes 0.
+        lines = self._only(chosen, 1).replace(b"//", b"/0/")
+        text, upto = self._numbers(lines.replace(b"/", b" "), chosen)
+        numbers = text.wholes(0, len(text), "a corner")
+        if b"/" not in lines:
+            return numbers, np.zeros(len(numbers), np.int64), np.diff(upto, prepend=0)
+        letters = np.frombuffer(lines, np.uint8)
+        slashes = np.flatnonzero(letters == SLASH)
+        is_head = letters[text.starts - 1] != SLASH
+        heads = np.flatnonzero(is_head)
+        sizes = np.diff(heads, append=len(text))
+        before = letters[slashes - 1]
+        wrong = np.append(slashes[(before <= SPACE) | (before == SLASH)], text.starts[heads[sizes > 3]])
+        if len(wrong):
+            at = int(wrong[0])
+            line = self.first_line + lines.count(b"\n", 0, at)
+            word = shown(lines[at : at + LONGEST_WORD].split(None, 1)[0])
             rule = "a corner must be a node number, alone or with texture and normal numbers as in 7/1/3"
-            note(line, f"{rule}, not {shown(words[corners.index(None)])}; correct it")
-        sound = [] if None in corners else [corner for corner in corners if corner is not None]
-        nodes += [int(corner[1]) for corner in sound]
-        normals += [int(corner[2]) if corner[2] and corner[2].strip(b"+-") else 0 for corner in sound]
-        counts.append(len(sound))
-    return np.array(nodes, np.int64), np.array(normals, np.int64), np.array(counts, np.int64)
+            raise InputError(f"{self.place}, line {line}: {rule}, not {word}; correct it")
+        normals = np.zeros(len(heads), np.int64)
+        with_normal = np.flatnonzero(sizes == 3)
+        normals[with_normal] = numbers[heads[with_normal] + 2]
+        return numbers[heads], normals, np.diff(np.append(0, np.cumsum(is_head))[upto], prepend=0)
+
+    def _only(self, chosen: Booleans, keyword: int) -> bytes:
+        """The block with all lines but the chosen ones empty, without a keyword of so many letters."""
+        text = self.letters[np.repeat(chosen, self.ends + 1 - self.starts) | (self.letters == FEED)]
+        starts = np.append(0, np.flatnonzero(text == FEED) + 1)[:-1][chosen]
+        for at in range(keyword):
+            text[starts + at] = SPACE
+        lines = text.tobytes()
+        return COMMENT.sub(b"", lines) if b"#" in lines else lines
+
+    def _numbers(self, lines: bytes, chosen: Booleans) -> tuple[NumberText, Numbers]:
+        """The numbers of the lines, and how many there are up to the end of each chosen line."""
+        text = NumberText(lines, self.place, self.first_line)
+        ends = np.flatnonzero(np.frombuffer(lines, np.uint8) == FEED)
+        return text, np.searchsorted(text.starts, ends[chosen])
 
 
 def _part_numbers(
@@ -363,20 +304,6 @@ def _part_numbers(
     if len(polygons) > done:
         numbers[done:] = statements.part_number
     return numbers
-
-
-def _note_missing_nodes(tables: ObjTables, note: Note) -> None:
-    """Note the first corner of each polygon that names no node."""
-    missing = np.flatnonzero(tables.node_rows < 0)
-    polygons = np.searchsorted(np.cumsum(tables.corner_counts), missing, side="right")
-    polygons, first = np.unique(polygons, return_index=True)
-    count = len(tables.coordinates)
-    for corner, polygon in list(zip(missing[first].tolist(), polygons.tolist(), strict=True))[:MOST_PROBLEMS]:
-        rule = f"from 1 to {count}" if count else "of the file, which has no nodes"
-        if before := tables.nodes_before[polygon]:
-            rule += f" or from -{before} to -1"
-        number = tables.node_numbers[corner]
-        note(int(tables.lines[polygon]), f"a corner must be a node number {rule}, not {number}; correct it")
 
 
 # Statements other than nodes and polygons: names of parts, materials, and statements that are skipped.
@@ -422,25 +349,23 @@ class Statements:
     def parts(self) -> dict[str, str | None]:
         """The names of the parts in the order of their numbers, and the material of each, if any."""
         # First give out the names in the file, so that no extended name takes them.
-        names: dict[tuple[str | None, str | None], str] = {}
-        taken: set[str] = set()
-        added = []
+        named: set[str] = set()
+        extended: dict[tuple[str | None, str | None], bool] = {}
         for group, material in self.numbers:
             name = group or material or self.file_stem
-            if name in taken:
-                added.append((group, material))
-            else:
-                names[group, material] = name
-                taken.add(name)
-        for group, material in added:
-            name = stem = f"{group} {material}" if group and material else group or material or self.file_stem
-            number = 1
-            while name in taken:
-                number += 1
-                name = f"{stem} {number}"
-            names[group, material] = name
-            taken.add(name)
-        return {names[key]: key[1] for key in self.numbers}
+            extended[group, material] = name in named
+            named.add(name)
+        keys = sorted(self.numbers, key=extended.__getitem__)
+        names = different(
+            [
+                f"{group} {material}"
+                if extended[group, material] and group and material
+                else group or material or self.file_stem
+                for group, material in keys
+            ]
+        )
+        name_of_key = dict(zip(keys, names, strict=True))
+        return {name_of_key[key]: key[1] for key in self.numbers}
 
     def read(self, line: bytes) -> None:
         """Process a line that is no node, normal or polygon."""

@@ -19,7 +19,6 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from autocolor.arrays import Floats, Indices
-from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError
 from autocolor.files.meshes.number_text import GROWTH, NumberText
 from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, RawPolygons, repaired
@@ -106,18 +105,13 @@ def _nodes(
         text.require(first + width * nodes, "nodes")
         begins, widths = first + width * np.arange(nodes), np.full(nodes, width)
     end = int(begins[-1] + widths[-1])
-    values = text.values(first, end - first)
-    at = (begins - first)[:, None] + np.arange(3)
-    coordinates = values[at]
-    wrong = np.flatnonzero(~(np.abs(coordinates.ravel()) <= LARGEST_COORDINATE))
-    if len(wrong):
-        text.coordinates(first + int(at.flat[wrong[0]]), 1)
     normals = None
     if has_normals:
         normals = np.full((nodes, 3), np.nan)
         has_normal = widths >= 6
-        normals[has_normal] = values[at[has_normal] + 3]
-    return Nodes(coordinates, normals, end, bool((widths > width).any()))
+        if has_normal.any():
+            normals[has_normal] = text.vectors_at(begins[has_normal] + 3, end)
+    return Nodes(text.coordinates_at(begins, end), normals, end, bool((widths > width).any()))
 
 
 def _polygons(

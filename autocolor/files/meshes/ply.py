@@ -17,7 +17,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Final, NamedTuple, NoReturn
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -25,7 +25,6 @@ from autocolor.arrays import AnyArray, Floats, Indices, chunks
 from autocolor.checks import LARGEST_COORDINATE, listed, printable
 from autocolor.errors import InputError
 from autocolor.files.meshes.file_scalars import FileScalars
-from autocolor.files.meshes.number_text import MOST_PROBLEMS
 from autocolor.files.meshes.ply_elements import (
     FACE,
     STRIPS,
@@ -65,30 +64,12 @@ MOST_UNNAMED_PARTS: Final = 10_000
 
 NORMALS: Final = (("nx", "ny", "nz"), ("normal_x", "normal_y", "normal_z"))
 
-COLORS: Final = frozenset(
-    (
-        *("r", "g", "b", "a", "red", "green", "blue", "alpha"),
-        *(
-            f"{kind}_{part}"
-            for kind in ("ambient", "diffuse", "specular")
-            for part in ("red", "green", "blue")
-        ),
-    )
+COLOR: Final = re.compile(r"[rgba]|((ambient|diffuse|specular)_)?(red|green|blue|alpha)")
+NOT_SCALAR: Final = re.compile(
+    rf"{COLOR.pattern}|(ambient|diffuse|specular)_(coeff|power)|n[xyz]|normal_[xyz]|[stuv]0?|texture_[stuv]"
+    "|texcoord|texnumber|flags|[xyz]"
 )
-
-NOT_SCALARS: Final = COLORS | frozenset(
-    (
-        *(name for names in NORMALS for name in names),
-        *("s", "t", "u", "v", "s0", "t0", "u0", "v0", "texture_s", "texture_t", "texture_u", "texture_v"),
-        *("texcoord", "texnumber", "flags"),
-        *(
-            f"{kind}_{part}"
-            for kind in ("ambient", "diffuse", "specular")
-            for part in ("alpha", "coeff", "power")
-        ),
-    )
-)
-"""Properties that are not scalars: normals, colors, texture coordinates, and flags of other programs."""
+"""Properties that are not scalars: coordinates, normals, colors, texture coordinates and flags."""
 
 NAMED_PART: Final = re.compile(r"part (\d{1,9}) (.+)")
 NAMED_SCALAR: Final = re.compile(r"scalar (\S+) (.+)")
@@ -116,14 +97,13 @@ def named_in(comments: Sequence[str]) -> Comments:
 
 def is_scalar(name: str, comments: Comments) -> bool:
     """Whether a number of vertices or faces is a scalar of the mesh."""
-    return name in comments.scalars or (name not in NOT_SCALARS and name not in AXES)
+    return name in comments.scalars or NOT_SCALAR.fullmatch(name) is None
 
 
 def property_of(scalar: str, number: int) -> str:
     """The property for a scalar: its name, or `value_N` if that is no plain word or has another meaning."""
-    is_free = scalar not in NOT_SCALARS and scalar not in (*AXES, *PARTS, *CORNERS)
-    is_free = is_free and not scalar.startswith("value_")
-    return scalar if is_free and PLAIN_NAME.fullmatch(scalar) else f"value_{number}"
+    is_taken = NOT_SCALAR.fullmatch(scalar) or scalar in (*PARTS, *CORNERS) or scalar.startswith("value_")
+    return scalar if PLAIN_NAME.fullmatch(scalar) and not is_taken else f"value_{number}"
 
 
 def read_ply(path: Path, placement: Placement = PLAIN) -> MeshReport:
@@ -181,7 +161,7 @@ def ply_polygons(
             is_part = of == POLYGON and name == part
             if not isinstance(column, Lists) and not is_part and is_scalar(name, comments):
                 scalars.add(comments.scalars.get(name, name), column, of)
-        if columns.keys() & COLORS - comments.scalars.keys():
+        if any(COLOR.fullmatch(name) for name in columns.keys() - comments.scalars.keys()):
             messages.append(f"left out the colors of {of}s")
     normals = None if vertices is None else _normals(vertices, comments)
     polygons = RawPolygons(
@@ -213,17 +193,13 @@ def _coordinates(vertices: ElementRows | None, place: str) -> Floats:
             )
         with np.errstate(invalid="ignore"):
             coordinates[:, row] = axis
-    if vertices is not None and len(coordinates):
-        # A comparison with NaN is false.
-        low, high = coordinates.min(), coordinates.max()
-        if not (low >= -LARGEST_COORDINATE and high <= LARGEST_COORDINATE):
-            is_wrong = ~(np.abs(coordinates) <= LARGEST_COORDINATE)
-            rows = np.flatnonzero(is_wrong.any(axis=1))[:MOST_PROBLEMS]
-            rule = "a coordinate must be a finite number of at most 1e30 in size"
-            raise InputError(
-                f"{vertices.place_of(row)}: {rule}, not {coordinates[row][is_wrong[row]][0]:g}; correct it"
-                for row in rows.tolist()
-            )
+    # A comparison with NaN is false.
+    if vertices is not None and not (np.abs(coordinates) <= LARGEST_COORDINATE).all():
+        row, axis = np.argwhere(~(np.abs(coordinates) <= LARGEST_COORDINATE))[0].tolist()
+        raise InputError(
+            f"{vertices.place_of(row)}: a coordinate must be a finite number of at most 1e30 in size, not"
+            f" {coordinates[row, axis]:g}; correct it"
+        )
     return coordinates
 
 
@@ -250,26 +226,19 @@ def _corners(rows: ElementRows | None, nodes: int, place: str, name: str) -> tup
     values, counts = lists
     least = 0 if name == FACE else -1
     if len(values) and not (values.min() >= least and values.max() < nodes and _are_whole(values)):
-        _refuse_corners(rows, values, counts, nodes, least)
+        is_node = (values >= least) & (values < nodes) & (np.floor(values) == values)
+        corner = int(np.flatnonzero(~is_node)[0])
+        row = int(np.searchsorted(np.cumsum(counts), corner, side="right"))
+        rule = f"from {least} to {nodes - 1:,}" if nodes else "of the file, which has no nodes"
+        raise InputError(
+            f"{rows.place_of(row)}: a corner must be a node number {rule}, not {values[corner]:.15g};"
+            " correct it"
+        )
     return values.astype(np.intp, copy=False), counts
 
 
 def _are_whole(values: AnyArray) -> bool:
     return values.dtype.kind != "f" or bool((values == np.floor(values)).all())
-
-
-def _refuse_corners(rows: ElementRows, values: AnyArray, counts: Indices, nodes: int, least: int) -> NoReturn:
-    """Raise InputError about the first polygons with corners that are no nodes."""
-    is_node = (values >= least) & (values < nodes)
-    if values.dtype.kind == "f":
-        is_node &= values == np.floor(values)
-    wrong = np.flatnonzero(~is_node)
-    owners, first = np.unique(np.searchsorted(np.cumsum(counts), wrong, side="right"), return_index=True)
-    rule = f"from {least} to {nodes - 1:,}" if nodes else "of the file, which has no nodes"
-    raise InputError(
-        f"{rows.place_of(row)}: a corner must be a node number {rule}, not {values[corner]:.15g}; correct it"
-        for row, corner in list(zip(owners.tolist(), wrong[first].tolist(), strict=True))[:MOST_PROBLEMS]
-    )
 
 
 def _part_property(faces: ElementRows | None, comments: Comments) -> str | None:

@@ -152,6 +152,8 @@ def _lines(data: bytes, place: str) -> Iterator[tuple[bytes, int]]:
     at, most = 0, min(len(data), LARGEST_HEADER)
     while at < most:
         end = data.find(feed, at, most)
+        if end < 0 and most < len(data):
+            break
         end = most if end < 0 else end
         yield data[at:end], min(end + 1, most)
         at = end + 1

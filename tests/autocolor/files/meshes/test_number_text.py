@@ -18,7 +18,7 @@ def test_numbers_are_found_between_any_white_space() -> None:
     assert (text.word(3), text.line(3)) == (b"4e1", 3)
 
 
-@pytest.mark.parametrize("word", ["1_0", "0x1", "\u0661", "nan", "inf", "1d2", "1,5", "1e31", "e", "--1"])
+@pytest.mark.parametrize("word", ["1_0", "0x1", "\u0661", "nan", "inf", "1d", "1,5", "1e31", "e", "--1"])
 def test_coordinates_are_strict_and_a_wrong_one_is_told_with_its_line(word: str) -> None:
     assert refusal(NumberText(f"1 2\n3 {word} 4".encode(), "a.txt").coordinates, 0, 5) == (
         "a.txt, line 2: a coordinate must be a decimal number of at most 1e30 in size, not"
@@ -76,14 +76,15 @@ def test_there_are_at_most_twenty_problems() -> None:
 
 
 @pytest.mark.parametrize(
-    ("data", "firsts", "longest"),
-    [
-        (b"\n 1 -2\t+3\n4e1\n", [0, 3], 9),
-        (b"1 2\n\n3\n", [0, 2], 4),
-        (b"  1\n 2 3", [0, 1], 5),
-        (b"", [], 1),
-    ],
+    ("data", "firsts"),
+    [(b"\n 1 -2\t+3\n4e1\n", [0, 3]), (b"1 2\n\n3\n", [0, 2]), (b"  1\n 2 3", [0, 1]), (b"", [])],
 )
-def test_lines_begin_with_their_first_word(data: bytes, firsts: list[int], longest: int) -> None:
-    found, size = NumberText(data, "").lines()
-    assert (found.tolist(), size) == (firsts, longest)
+def test_lines_begin_with_their_first_word(data: bytes, firsts: list[int]) -> None:
+    assert NumberText(data, "").lines().tolist() == firsts
+
+
+def test_vectors_begin_at_some_words_and_what_is_between_may_be_missing() -> None:
+    text = NumberText(b"0 1.0D+00 2 nan\n3 4d-1 5 6", "a.txt")
+    assert text.coordinates_at(np.array([0, 4]), 7).tolist() == [[0, 1, 2], [3, 0.4, 5]]
+    assert refusal(text.coordinates_at, np.array([1, 4]), 7).startswith("a.txt, line 1: a coordinate must be")
+    assert str(text.vectors_at(np.array([1]), 4).tolist()) == "[[1.0, 2.0, nan]]"

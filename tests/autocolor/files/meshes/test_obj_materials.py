@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Surface
-from autocolor.files.meshes.mtl import MOST_LIBRARIES, MOST_LIBRARY_PROBLEMS
+from autocolor.files.meshes.mtl import MOST_LIBRARIES, MOST_NAMED
 from autocolor.files.meshes.obj import read_obj
 from autocolor.files.meshes.repair import MeshReport
 from autocolor.scene.defaults import COLORED_PAINT, created_surface
@@ -72,7 +72,7 @@ def names_of(report: MeshReport) -> list[str]:
     [
         ("Kd 1 0.5 0", {"object_color": (255, 128, 0)}),
         ("Kd 0.2", {"object_color": (51, 51, 51)}),
-        ("Kd 2 1.0001 1e300", {"object_color": (255, 255, 255)}),
+        ("Kd 2 1.0001 1e5", {"object_color": (255, 255, 255)}),
         ("Kd .5 1. +0.25", {"object_color": (128, 255, 64)}),
         ("Kd 5e-1 5E-1 0.5 # gray", {"object_color": (128, 128, 128)}),
         ("\tKd  1\t0 0 ", {"object_color": (255, 0, 0)}),
@@ -135,6 +135,12 @@ def test_a_bad_number_is_told_with_its_line_and_the_default_is_used(folder: Path
         " the default is used",
     )
     assert report.materials == (surface(),)
+
+
+def test_of_several_bad_numbers_the_first_is_told(folder: Path) -> None:
+    text = "newmtl red\nKd x\nKs 1 2\nNs -1\n"
+    rule = "Kd must have one number or three, from 0 to 1e+06, not 'x'; the default is used"
+    assert described(folder, text).repairs == (f"car.mtl, line 2: {rule}", "car.mtl: 2 more such lines")
 
 
 @pytest.mark.parametrize("ending", [b"\n", b"\r\n", b"\r"])
@@ -306,7 +312,7 @@ def test_a_library_is_looked_for_among_the_first_alone(folder: Path, separator: 
         names = [*(b"none%d.mtl" % number for number in range(before)), b"red.mtl"]
         report = read(folder, separator.join(names), wanted=(b"red",))
         assert names_of(report) == (["red"] if before < MOST_LIBRARIES else [])
-    assert len(report.repairs) == (1 if separator == b" " else MOST_LIBRARY_PROBLEMS)
+    assert len(report.repairs) == (1 if separator == b" " else MOST_NAMED)
 
 
 WORDS = st.sampled_from(

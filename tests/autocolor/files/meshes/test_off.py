@@ -2,11 +2,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from autocolor.errors import InputError
 from autocolor.files.meshes.off import read_off
-from autocolor.files.meshes.repair import MeshReport
+from autocolor.files.meshes.repair import FILE, MeshReport, Placement
 from tests.autocolor.files.refusals import refused, swapped
 
 CUBE = """OFF
@@ -29,10 +30,10 @@ CUBE = """OFF
 """
 
 
-def read(folder: Path, text: str | bytes) -> MeshReport:
+def read(folder: Path, text: str | bytes, placement: Placement | None = None) -> MeshReport:
     path = folder / "cube.off"
     path.write_bytes(text if isinstance(text, bytes) else text.encode())
-    return read_off(path)
+    return read_off(path, placement or Placement())
 
 
 def test_a_cube_keeps_its_quads_and_nodes(tmp_path: Path) -> None:
@@ -46,21 +47,48 @@ def test_a_cube_keeps_its_quads_and_nodes(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "first", ["OFF 8 6 12", "8 6 12", "  OFF\n\n8 6\t0", "STOFF\n8 6 12", "OFF # 1\n8 6 12 # 2"]
+    "first",
+    [
+        *("OFF 8 6 12", "8 6 12", "  OFF\n\n8 6\t0", "OFF # 1\n8 6 12 # 2", "OFF8 6 12", "COFF8 6\n12"),
+        *("# a\n\nNOFF8 6 12", "CNOFF 8 6 12", "STCNOFF\n8 6 12"),
+    ],
 )
 def test_the_header_has_many_forms(tmp_path: Path, first: str) -> None:
     text = CUBE.replace("OFF\n# a cube\n8 6 12", first)
+    if "NOFF" in first:
+        text = text.replace("0\n1 0 0\n", "0 7 7\n1 0 0\n")
     assert read(tmp_path, text).mesh.node_numbers.tolist() == read(tmp_path, CUBE).mesh.node_numbers.tolist()
 
 
-def test_colors_and_normals_are_skipped(tmp_path: Path) -> None:
-    lines = CUBE.replace("OFF", "CNOFF").splitlines()
-    lines[3:11] = [f"{line} 0.5 0.5 1 255 0 0 255" for line in lines[3:11]]
-    lines[11:] = [f"{line} {'0.2 0.3 0.4' if row % 2 else ''}" for row, line in enumerate(lines[11:])]
-    report = read(tmp_path, "\n".join(lines))
-    assert report.mesh.coordinates.tolist() == read(tmp_path, CUBE).mesh.coordinates.tolist()
-    assert report.mesh.node_numbers.tolist() == read(tmp_path, CUBE).mesh.node_numbers.tolist()
-    assert report.repairs == ()
+COLORS = ("cube.off: left out the colors of nodes", "cube.off: left out the colors of polygons")
+
+
+@pytest.mark.parametrize("free", [False, True])
+@pytest.mark.parametrize("normal", ["", " 0 0 3", " 1 0 -1"])
+@pytest.mark.parametrize("texture", ["", " 0.5 0.25"])
+@pytest.mark.parametrize("color", ["", " 255 0 0", " 0.5 1 0 nan"])
+def test_normals_are_used_and_colors_are_left_out(
+    tmp_path: Path, normal: str, texture: str, color: str, free: bool
+) -> None:
+    keyword = f"{'ST' * bool(texture)}{'C' * bool(color)}{'N' * bool(normal)}OFF"
+    lines = CUBE.replace("OFF", keyword).splitlines()
+    # Some nodes have no color.
+    lines[3:11] = [f"{line}{normal}{color * (row != 2)}{texture}" for row, line in enumerate(lines[3:11])]
+    lines[11:] = [f"{line}{' 7' * bool(color) * (row % 2)}" for row, line in enumerate(lines[11:])]
+    if free and not color:
+        lines[3:11] = [" ".join(lines[3:7]), " ".join(lines[7:11])]
+    report = read(tmp_path, "\n".join(lines), Placement(normals=FILE))
+    plain = read(tmp_path, CUBE).mesh
+    assert report.mesh.coordinates.tolist() == plain.coordinates.tolist()
+    assert report.mesh.node_numbers.tolist() == plain.node_numbers.tolist()
+    assert report.repairs[: 2 * bool(color)] == COLORS * bool(color)
+    own = report.mesh.own_normals
+    if normal:
+        assert own is not None
+        unit = np.array(list(map(float, normal.split())))
+        assert np.abs(own.vectors[own.numbers] @ (unit / np.linalg.norm(unit))) == pytest.approx(1)
+    else:
+        assert own is None
 
 
 def test_a_polygon_may_have_1000_corners(tmp_path: Path) -> None:

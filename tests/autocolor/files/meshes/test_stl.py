@@ -8,11 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor.arrays import Floats, Singles
-from autocolor.files.meshes import stl
+from autocolor.files.meshes import stl, welding
 from autocolor.files.meshes.repair import MeshReport, Placement
 from autocolor.files.meshes.stl import (
     FACET,
-    FACTORS,
     TRIANGLE,
     begins_as_stl,
     has_binary_size,
@@ -20,8 +19,8 @@ from autocolor.files.meshes.stl import (
     read_stl,
     read_text,
     stl_bytes,
-    welded,
 )
+from autocolor.files.meshes.welding import FACTORS, welded
 from autocolor.scene.mesh import Mesh
 from tests.autocolor.files.refusals import refusal, refused
 
@@ -142,7 +141,9 @@ def test_what_is_skipped_stands_in_the_report(path: Path) -> None:
 
 def test_other_texts_may_begin_with_solid() -> None:
     assert begins_as_stl(text())
+    assert begins_as_stl(b"\n# made by hand\r\n; for a mill\nsolid a\ncolor 1 0 0\nfacet\n outer loop\n")
     assert not begins_as_stl(b"solid ground\n")
+    assert not begins_as_stl(b"# a\n" * 1000)
 
 
 LARGE = "a coordinate must be a finite number of at most 1e30 in size"
@@ -224,6 +225,44 @@ def test_solids_of_a_text_are_parts(path: Path, block: int, monkeypatch: pytest.
     assert report.repairs == ()
 
 
+HABITS = {
+    "spaced ends": A.replace("endloop", "end loop").replace("endfacet", " end \tfacet"),
+    "spaced ends on one line": A.replace("endloop\nendfacet", "end loop end facet"),
+    "in capitals": A.upper().replace("ENDLOOP", "End Loop"),
+    "no normal": A.replace(" normal nan 0 x", ""),
+    "no normal and no line": A.replace(" normal nan 0 x\n", " "),
+    "an empty normal": A.replace(" nan 0 x", ""),
+    "exponents of Fortran": A.replace("1e0", "1.0D+00").replace("1 0 0", "0.1d1 0 0.D0"),
+    "colors": "color 0.5 0.5 0.5\n" + A.replace("endfacet", "  COLOUR 1 2 3 \nendfacet"),
+    "comments": "# facet\n; a\n! b\n// c\n" + A.replace("outer", "# solid \nouter"),
+}
+
+
+@pytest.mark.parametrize("block", [1, 1 << 21])
+@pytest.mark.parametrize("habit", HABITS)
+@pytest.mark.parametrize(
+    ("first", "last"), [("solid end loop", "end solid end loop"), ("# 1\n\nSOLID a\tb", "")]
+)
+def test_the_habits_of_other_programs_are_read(
+    path: Path, block: int, habit: str, first: str, last: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(stl, "BLOCK", block)
+    facets = f"{B}{HABITS[habit]}{B}"
+    report = read(path, f"{first}\n{facets}{last}\nsolid c\n{B}{last}\n".encode())
+    name = first.partition("olid ")[2] or first.partition("OLID ")[2].replace("\t", "?")
+    assert report.mesh.part_names == (name, "c")
+    assert report.mesh.part_numbers.tolist() == [0, 0, 0, 1]
+    assert report.mesh.coordinates[report.mesh.node_numbers[1, :3]].tolist() == [
+        [0, 0, 0],
+        [1, 0, 0],
+        [0, 1, 0],
+    ]
+    assert len(report.repairs) == (0 if last else 1)
+    wrong = f"{first}\n{HABITS[habit]}{B.replace('-5', 'x')}"
+    line = wrong.count("\n", 0, wrong.index("vertex x")) + 1
+    assert refusal(read, path, wrong.encode()).startswith(f"cube.stl, line {line}: a coordinate must be ")
+
+
 WRONG_FACET = f"a facet must be '{FACET}', "
 MUST = WRONG_FACET + "with numbers for the points, and {!r} must stand here, not {!r}; correct it"
 NO_END = WRONG_FACET + "and not end before its {!r}; correct it"
@@ -240,7 +279,6 @@ NO_END = WRONG_FACET + "and not end before its {!r}; correct it"
             "a facet must stand in a solid, not outside; add a line 'solid'",
         ),
         ("\nsolid\nendsolid\nendsolid\n", 4, "a solid must begin before it ends; remove the line"),
-        (f"solid a\n{A}solid b\n", 9, "a solid must end before the next; add a line 'endsolid'"),
         (f"solid\n{A}{A.replace('outer', 'inner')}endsolid\n", 10, MUST.format("outer", "inner")),
         (
             f"solid\n{A}{A.replace('endloop', 'vertex 1 1 1 endloop')}endsolid\n",
@@ -266,14 +304,6 @@ def test_a_wrong_text_is_refused(
     assert refusal(read_text, text.encode(), "a.stl") == f"a.stl, line {line}: {sentence}"
 
 
-def test_an_endless_facet_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(stl, "BLOCK", 1)
-    monkeypatch.setattr(stl, "LONGEST_FACET", 200)
-    assert refusal(read_text, (f"solid a\n{A}" + "vertex " * 100).encode(), "a.stl") == (
-        "a.stl, line 9: a facet must have at most 200 bytes, not more; correct it"
-    )
-
-
 points = st.lists(st.tuples(*[st.sampled_from([0.0, -0.0, 1.0, 1e-45, -2.5, 1e30])] * 3), max_size=40)
 
 
@@ -285,7 +315,7 @@ def test_equal_points_become_one_in_the_order_of_their_first_corners(
 ) -> None:
     given_corners: Floats | Singles = np.array(corners, dtype).reshape(-1, 3)
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(stl, "FACTORS", factors)
+        patched.setattr(welding, "FACTORS", factors)
         found, rows = welded(given_corners)
     # The patient way: -0 equals 0 as a key of a dictionary, too.
     numbers: dict[tuple[float, ...], int] = {}

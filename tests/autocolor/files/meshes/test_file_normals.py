@@ -1,0 +1,253 @@
+from __future__ import annotations
+
+import pickle
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from autocolor import (
+    Light,
+    Mesh,
+    Reflectance,
+    View,
+    read_scene,
+    render,
+    write_picture,
+    write_scene,
+)
+from autocolor.errors import InputError
+from autocolor.files.conversion import output_of
+from autocolor.files.meshes.obj import obj_text
+from autocolor.files.meshes.repair import FILE, MeshReport, Placement, RawPolygons, repaired
+from autocolor.scene.geometry.normals import NodeNormals
+from autocolor.scene.mesh import has_same_tables
+from autocolor.scene.scalar import MeshScalar
+from tests.small import sphere, wall_scene
+
+SQUARE = [[0, 0, 0], [2, 0, 0], [2, 2, 0], [0, 2, 0], [1, 3, 0], [3, 3, 1]]
+UP = [0.0, 0.0, 1.0]
+RIGHT = [1.0, 0.0, 0.0]
+
+
+def mesh_of(
+    polygons: list[list[int]], normals: Any, rows: list[list[int]], up: str = "z", scale: float = 1.0
+) -> MeshReport:
+    raw = RawPolygons(
+        np.array(SQUARE, np.float64),
+        np.concatenate([np.array(each, np.intp) for each in polygons]),
+        np.array([len(each) for each in polygons]),
+        np.zeros(len(polygons), np.intp),
+        ("all",),
+        normals=np.array(normals, np.float64).reshape(-1, 3),
+        corner_normals=np.concatenate([np.array(each, np.intp) for each in rows]),
+    )
+    return repaired(raw, "a.obj", Placement(up, scale, normals=FILE), unused_nodes=True)
+
+
+def vectors_of(mesh: Mesh) -> Any:
+    """The own normal at each corner of each polygon; None where there is none."""
+    own = mesh.own_normals
+    if own is None:
+        return None
+    return [
+        [own.vectors[row].tolist() if row >= 0 else None for row in rows] for rows in own.numbers.tolist()
+    ]
+
+
+def with_normals(mesh: Mesh, path: Path) -> Mesh:
+    """A mesh around the origin whose own normals point away from it."""
+    unit = (mesh.coordinates / np.linalg.norm(mesh.coordinates, axis=1)[:, None]).astype(np.float32)
+    own = NodeNormals(np.asfortranarray(unit), mesh.node_numbers)
+    path.write_bytes(obj_text(Mesh(mesh.coordinates, mesh.node_numbers, own_normals=own)))
+    return read_scene(path).mesh
+
+
+def test_a_coarse_sphere_with_its_own_normals_is_lit_as_a_fine_one(tmp_path: Path) -> None:
+    fields = {
+        "reflectance": Reflectance(1.0, 0.0),
+        "view": View((0.0, -40.0, 0.0), target=(0.0, 0.0, 0.0), field_of_view=3.0),
+        "lights": (Light("far", (0.6, -0.8, 0.0), aim=(0.0, 0.0, 0.0), at_infinity=True),),
+    }
+    coarse = with_normals(sphere(10, 6), tmp_path / "sphere.obj")
+    assert coarse.own_normals is not None
+    intensities = [
+        render(wall_scene(mesh, **fields), 60, 60)  # type: ignore[arg-type]
+        for mesh in (sphere(128, 64), coarse, Mesh(coarse.coordinates, coarse.node_numbers))
+    ]
+    fine, own, computed = (
+        np.where(each.surface_number > 0, each.intensity, np.nan)[12:48, 12:48] for each in intensities
+    )
+    assert np.nanmax(np.abs(own - fine)) < 0.12
+    assert np.nanmean(np.abs(own - fine)) < np.nanmean(np.abs(computed - fine)) / 4
+
+
+@given(
+    polygons=st.lists(
+        st.lists(st.tuples(st.integers(0, 5), st.integers(-2, 4)), min_size=3, max_size=6),
+        min_size=1,
+        max_size=4,
+    )
+)
+def test_each_corner_that_is_left_has_the_normal_of_the_file(polygons: list[list[tuple[int, int]]]) -> None:
+    # All normals point to the front or lie in the plane, as far as polygons are in the plane and not turned.
+    normals = [[0, 0, 3], [1, 0, 1], [0, -1e200, 1e200], [np.nan, 0, 1]]
+    unit = [[0, 0, 1], [0.5**0.5, 0, 0.5**0.5], [0, -(0.5**0.5), 0.5**0.5]]
+    try:
+        mesh = mesh_of(
+            [[node for node, _ in each] for each in polygons],
+            normals,
+            [[row for _, row in each] for each in polygons],
+        ).mesh
+    except InputError:
+        return
+    allowed = {node: [None] for node in range(6)}
+    for polygon in polygons:
+        for node, row in polygon:
+            allowed[node].append(unit[row] if 0 <= row < 3 else None)  # type: ignore[arg-type]
+    for nodes, vectors in zip(mesh.node_numbers.tolist(), vectors_of(mesh) or [], strict=False):
+        for node, vector in zip(nodes, vectors, strict=True):
+            assert any(
+                vector is each or (vector and each and np.allclose(np.abs(vector), np.abs(each)))
+                for each in allowed[node]
+            )
+    assert np.isfinite(mesh.normals.vectors).all()
+    assert (mesh.normals.numbers >= 0).all()
+
+
+def test_pieces_and_repaired_polygons_keep_their_normals() -> None:
+    normals = [UP, [1, 0, 1], [0, 1, 1], [-1, 0, 1], [0, -1, 1]]
+    mesh = mesh_of([[0, 1, 2, 4, 3], [0, 0, 1, 2]], normals, [[0, 1, 2, 3, 4], [9, 0, 1, 2]]).mesh
+    own = {0: [0, 1, 1], 1: [1, 0, 1], 2: [0, 1, 1], 4: [-1, 0, 1], 3: [0, -1, 1]}
+    for nodes, vectors in zip(mesh.node_numbers.tolist(), vectors_of(mesh)[:-1], strict=False):
+        for node, vector in zip(nodes, vectors, strict=True):
+            expected = UP if node == 0 else own[node]
+            assert vector == pytest.approx(np.array(expected) / np.linalg.norm(expected))
+    assert vectors_of(mesh)[-1][0] == pytest.approx(UP)
+
+
+@pytest.mark.parametrize("up", ["x", "y", "z"])
+def test_normals_turn_with_the_coordinates_and_are_not_scaled(up: str) -> None:
+    mesh = mesh_of([[0, 1, 2, 3]], [UP], [[0, 0, 0, 0]], up, 1000.0).mesh
+    side = np.cross(mesh.coordinates[1] - mesh.coordinates[0], mesh.coordinates[3] - mesh.coordinates[0])
+    assert vectors_of(mesh) == [[(side / np.linalg.norm(side)).tolist()] * 4]
+
+
+@pytest.mark.parametrize(
+    ("rows", "missing", "sentence"),
+    [
+        ([0, 0, 0, 0], [], ()),
+        ([0, -1, 0, 0], [1], ("1 corner has no normal of its own; it was computed",)),
+        ([0, 9, -9, 1], [1, 2, 3], ("3 corners have no normals of their own; they were computed",)),
+        ([2, 2, 0, 2], [0, 1, 3], ("3 corners have no normals of their own; they were computed",)),
+        ([2, 1, 1, 9], None, ("4 corners have no normals of their own; they were computed",)),
+    ],
+)
+def test_missing_and_broken_normals_are_computed_and_counted(
+    rows: list[int], missing: list[int] | None, sentence: tuple[str, ...]
+) -> None:
+    report = mesh_of([[0, 1, 2, 3]], [[0, 0, 1e-200], [0, 0, 0], [np.inf, 0, 1]], [rows])
+    assert report.repairs == tuple(f"a.obj: {each}" for each in sentence)
+    vectors = vectors_of(report.mesh)
+    assert vectors == (None if missing is None else [[None if at in missing else UP for at in range(4)]])
+    assert report.mesh.normals.vectors[report.mesh.normals.numbers].tolist() == [[UP] * 4]
+
+
+def test_the_normals_of_a_polygon_that_winds_the_other_way_are_turned_over() -> None:
+    report = mesh_of(
+        [[0, 1, 2, 3], [3, 2, 1, 0], [0, 2, 1]], [UP, [4, 0, -3]], [[0] * 4, [0, 0, 0, 1], [0] * 3]
+    )
+    assert report.repairs == (
+        "a.obj: the normals of 2 polygons point against the winding of their corners and were turned over",
+    )
+    first, second, third = vectors_of(report.mesh)
+    assert first == [UP] * 4
+    assert second[:3] == third[:3] == [[0, 0, -1]] * 3
+    # Only together do they point to the back.
+    assert second[3] == pytest.approx([-0.8, 0, 0.6])
+
+
+def test_equal_normals_at_one_place_are_one_normal() -> None:
+    numbers = mesh_of(
+        [[0, 1, 2, 3], [0, 1, 2, 4]], [UP, [0, 0, 2], RIGHT], [[0] * 4, [1, 1, 1, 2]]
+    ).mesh.own_normals
+    assert numbers is not None
+    assert len(numbers.vectors) == 5
+    assert numbers.numbers[0, :3].tolist() == numbers.numbers[1, :3].tolist()
+
+
+def test_joined_meshes_keep_their_own_normals_and_the_others_are_computed(tmp_path: Path) -> None:
+    own = with_normals(sphere(6, 4), tmp_path / "a.obj")
+    other = Mesh(own.coordinates, own.node_numbers, part_names=("other",))
+    for meshes in ([own, other], [other, own]):
+        joined = Mesh.joined(meshes)
+        at = [
+            joined.normals.vectors[joined.normals.numbers[rows]] for rows in (slice(0, 24), slice(24, None))
+        ]
+        for mesh, vectors in zip(meshes, at, strict=True):
+            assert np.array_equal(vectors, mesh.normals.vectors[mesh.normals.numbers])
+    assert Mesh.joined([other, other]).own_normals is None
+    for same in (pickle.loads(pickle.dumps(own)), own.with_scalars(MeshScalar("a", np.arange(20.0)))):
+        assert same.own_normals is not None
+        assert has_same_tables(own, same.with_scalars())
+    assert not has_same_tables(own, Mesh(own.coordinates, own.node_numbers, part_names=own.part_names))
+
+
+@pytest.mark.parametrize("name", ["a.obj", "a.tables", "a.npz", "scene", "npy/nodes.npy"])
+def test_what_is_written_is_read_with_the_same_normals(tmp_path: Path, name: str) -> None:
+    mesh = with_normals(sphere(6, 4), tmp_path / "from.obj")
+    if name in ("scene", "a.tables"):
+        mesh = mesh.with_scalars(MeshScalar("a", np.arange(20.0)))
+    scene = read_scene(tmp_path / "from.obj").replace(mesh=mesh)
+    path = tmp_path / name
+    if name == "scene":
+        write_scene(path, scene)
+        assert 'normals = "file"' in (path / "scene.toml").read_text()
+    elif name == "a.npz":
+        write_picture(path, scene, render(scene, 8, 8))
+    else:
+        path.parent.mkdir(exist_ok=True)
+        write = output_of(path).write
+        assert write is not None
+        write(path, scene, False)
+    again = read_scene(path.parent if "/" in name else path).mesh
+    assert np.array_equal(
+        again.normals.vectors[again.normals.numbers], mesh.normals.vectors[mesh.normals.numbers]
+    )
+
+
+def test_a_scene_asks_for_the_normals_of_its_file(tmp_path: Path) -> None:
+    mesh = with_normals(sphere(6, 4), tmp_path / "a.obj")
+    scene = tmp_path / "scene.toml"
+    for keys, is_own in (("", False), ('normals = "file"', True), ('normals = "computed"', False)):
+        scene.write_text(f'[[mesh]]\nfile = "a.obj"\n{keys}\n')
+        assert (read_scene(scene).mesh.own_normals is not None) is is_own
+    scene.write_text('[[mesh]]\nfile = "a.obj"\nnormals = "fiel"\n')
+    with pytest.raises(
+        InputError, match="normals must be 'computed' or 'file', not 'fiel'; did you mean 'file'"
+    ):
+        read_scene(scene)
+    # A scene that is written beside the file looks the same.
+    scene.unlink()
+    write_scene(tmp_path, read_scene(tmp_path / "a.obj"))
+    assert has_same_tables(read_scene(tmp_path).mesh, mesh)
+    assert 'file = "a.obj"' in scene.read_text()
+
+
+@pytest.mark.parametrize(
+    ("vectors", "numbers", "sentence"),
+    [
+        ([[0, 0, 1]], [[0, 0, 0, 1]], "own normals: a number must be from -1 to 0; correct it"),
+        ([[0, 0, 1]], [[0, 0, 0]], "own normals: their numbers must be intp of shape (1, 4), not (1, 3)"),
+        ([[0, 0, 2]], [[0] * 4], "own normals: they must be unit vectors of float32; normalize them"),
+        ([[0, 0, np.nan]], [[0] * 4], "own normals: they must be unit vectors of float32; normalize them"),
+    ],
+)
+def test_a_mesh_refuses_normals_that_do_not_fit(vectors: Any, numbers: Any, sentence: str) -> None:
+    own = NodeNormals(np.array(vectors, np.float32), np.array(numbers))
+    with pytest.raises(InputError) as caught:
+        Mesh(np.array(SQUARE[:3], float), np.array([[0, 1, 2]]), own_normals=own)
+    assert str(caught.value) == sentence
