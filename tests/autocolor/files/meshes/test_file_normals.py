@@ -72,17 +72,19 @@ def test_a_coarse_sphere_with_its_own_normals_is_lit_as_a_fine_one(tmp_path: Pat
         "view": View((0.0, -40.0, 0.0), target=(0.0, 0.0, 0.0), field_of_view=3.0),
         "lights": (Light("far", (0.6, -0.8, 0.0), aim=(0.0, 0.0, 0.0), at_infinity=True),),
     }
-    coarse = with_normals(sphere(10, 6), tmp_path / "sphere.obj")
-    assert coarse.own_normals is not None
-    intensities = [
-        render(wall_scene(mesh, **fields), 60, 60)  # type: ignore[arg-type]
-        for mesh in (sphere(128, 64), coarse, Mesh(coarse.coordinates, coarse.node_numbers))
-    ]
+    # Its polygons meet at 45 degrees, which is a crease where normals are computed.
+    coarse = with_normals(sphere(8, 4), tmp_path / "sphere.obj")
     fine, own, computed = (
-        np.where(each.surface_number > 0, each.intensity, np.nan)[12:48, 12:48] for each in intensities
+        np.where(picture.surface_number > 0, picture.intensity, np.nan)
+        for picture in (
+            render(wall_scene(mesh, **fields), 60, 60)  # type: ignore[arg-type]
+            for mesh in (sphere(128, 64), coarse, Mesh(coarse.coordinates, coarse.node_numbers))
+        )
     )
-    assert np.nanmax(np.abs(own - fine)) < 0.12
-    assert np.nanmean(np.abs(own - fine)) < np.nanmean(np.abs(computed - fine)) / 4
+    off, computed_off = np.abs(own - fine), np.abs(computed - fine)
+    assert np.nanmax(off) < 0.2
+    assert np.nanmax(off) < np.nanmax(computed_off) / 3
+    assert np.nanmean(off) < np.nanmean(computed_off) / 2
 
 
 @given(
