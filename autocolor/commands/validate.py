@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 from autocolor.checks import Color
-from autocolor.commands.outputs import refuse_outputs, tell_written, write_image
 from autocolor.commands.scenes import REPAIRED, SceneSource, ended, read, scene_options
-from autocolor.errors import InputError, UsageError
+from autocolor.errors import InputError
 from ramtek_emu.command_line import tell
 
 if TYPE_CHECKING:
@@ -22,8 +21,7 @@ EXAMPLES: Final = """\b
 Examples:
   autocolor validate scenes/coupe
   autocolor validate car.obj --strict --json
-  autocolor validate car.obj --show                  color the faults in a window
-  autocolor validate car.obj --show -o faults.png    or in a PNG file
+  autocolor validate car.obj --show     color the faults in a window
 """
 
 
@@ -31,25 +29,13 @@ Examples:
 @scene_options
 @click.option("--json", "as_json", is_flag=True, help="Print JSON, with all rows.")
 @click.option("--show", "shows", is_flag=True, help="Show the faults of the mesh in color, in a window.")
-@click.option("-o", "--output", type=click.Path(), metavar="PNG", help="With --show, write a PNG instead.")
-@click.option("--force", is_flag=True, help="Overwrite an existing PNG.")
 @click.pass_context
-def validate(
-    context: click.Context,
-    source: SceneSource,
-    as_json: bool,
-    shows: bool,
-    output: str | None,
-    force: bool,
-) -> None:
+def validate(context: click.Context, source: SceneSource, as_json: bool, shows: bool) -> None:
     """List every problem and every repair of SCENE, and every fault of its mesh.
 
     A scene with a problem cannot be rendered: the exit code is 65. A scene with faults or repairs can; with
     --strict the exit code is then 1. Rows are counted from 1.
     """
-    if output is not None and not shows:
-        raise UsageError("-o must come with --show, not alone; add --show")
-    refuse_outputs(output, None, force)
     try:
         report = read(source)
     except InputError as error:
@@ -67,23 +53,12 @@ def validate(
         verdict = f"it can be rendered, with {kinds}" if faults else "no problem"
         tell(f"{source.path}: {verdict}", *fault_lines(faults), err=False)
     if shows:
-        show_scene(fault_scene(report.scene, faults), output, force)
-    context.exit(REPAIRED if source.strict and faults else ended(report, source))
-
-
-def show_scene(scene: Scene, output: str | None, force: bool) -> None:
-    """Show a scene in a window, or write its picture to a PNG file. The scene has no file to save to."""
-    if output is None:
         from autocolor.commands.view import show
         from autocolor.journal.history import History
 
-        show(History(scene))
-        return
-    from autocolor.images import SMOOTHNESS
-    from autocolor.rendering import render
-
-    write_image(output, scene, render(scene, smooth=SMOOTHNESS), force)
-    tell_written(output)
+        # The colored scene has no file to save to.
+        show(History(fault_scene(report.scene, faults)))
+    context.exit(REPAIRED if source.strict and faults else ended(report, source))
 
 
 FIRST_ROWS: Final = 5

@@ -18,7 +18,7 @@ from typing import Final
 import numpy as np
 from PIL import Image
 
-from autocolor import Mesh, Scene, image, render, scene_of, write_scene
+from autocolor import Mesh, Scene, image, render, scene_of
 from docs.generate.commands import ROOT, here
 from scenes.figures import Field, captioned
 
@@ -116,17 +116,6 @@ def mesh_creases(place: Path, path: Path) -> None:
     save(path, np.hstack(panels))
 
 
-def mesh_faults(place: Path, path: Path) -> None:
-    """The faults of a vase with a hole, turned polygons and a polygon twice."""
-    nodes, polygons = vase()
-    for turned in (30, 46):
-        polygons[turned] = polygons[turned][::-1]
-    polygons = [*polygons[:61], *polygons[63:], polygons[72]]
-    write_scene(place / "vase", scene_of(nodes, polygons))
-    ran(place, "validate vase --show -o faults.png")
-    save(path, field_of(place / "faults.png")[:, 120:])
-
-
 def scalar_stress(place: Path, path: Path) -> None:
     """A machined part in metal, and its stress in two color scales."""
     stress = "--set scalar.name=stress --set scalar.limits=[0,150] --set scalar.bands=15"
@@ -176,7 +165,6 @@ PICTURES: Final[tuple[Callable[[Path, Path], None], ...]] = (
     paint_page,
     mesh_parts,
     mesh_creases,
-    mesh_faults,
     scalar_stress,
     scalar_scales,
     scalar_form,

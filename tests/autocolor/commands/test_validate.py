@@ -11,7 +11,7 @@ from autocolor.commands.validate import COLORS, fault_lines, fault_scene, fault_
 from autocolor.journal.history import History
 from autocolor.scene.mesh_faults import KINDS, Fault, mesh_faults
 from autocolor.scene.scalar import POLYGON, MeshScalar
-from tests.autocolor.commands.conftest import Refused, Run, pixels
+from tests.autocolor.commands.conftest import Run
 from tests.small import cube
 
 
@@ -29,13 +29,6 @@ def test_faults_of_the_mesh_are_listed_and_count_under_strict(folder: Path, run:
     assert border.startswith(" 1 border ")
     ran = run("validate", "scene", "--json", "--strict")
     assert (ran.code, json.loads(ran.out)["faults"][0]["kind"]) == (1, "border")
-
-
-def test_faults_are_shown_in_a_picture(folder: Path, run: Run, refused: Refused) -> None:
-    assert refused("validate two.obj -o a.png", 2) == "-o must come with --show, not alone; add --show"
-    ran = run("validate", "two.obj", "--show", "-o", "a.png")
-    assert (ran.code, ran.err) == (0, "wrote a.png\n")
-    assert pixels("a.png").shape == (480, 640, 3)
 
 
 def test_faults_are_shown_in_a_window(folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
