@@ -172,7 +172,8 @@ class NumberText:
         """The same, for vectors of which any number may be nan or inf."""
         first = int(begins[0])
         values = self._converted(first, end - first, IN_VALUES, COORDINATE, float)
-        return values[(begins - first)[:, None] + np.arange(3)]
+        vectors: Floats = values[(begins - first)[:, None] + np.arange(3)]
+        return vectors
 
     def values(self, first: int, count: int, letters: bytes = IN_VALUES) -> Floats:
         """The values of some words, which may be nan or inf. Raises InputError for other letters."""

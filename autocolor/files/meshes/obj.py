@@ -349,22 +349,15 @@ class Statements:
     def parts(self) -> dict[str, str | None]:
         """The names of the parts in the order of their numbers, and the material of each, if any."""
         # First give out the names in the file, so that no extended name takes them.
-        named: set[str] = set()
-        extended: dict[tuple[str | None, str | None], bool] = {}
-        for group, material in self.numbers:
-            name = group or material or self.file_stem
-            extended[group, material] = name in named
-            named.add(name)
-        keys = sorted(self.numbers, key=extended.__getitem__)
-        names = different(
-            [
-                f"{group} {material}"
-                if extended[group, material] and group and material
-                else group or material or self.file_stem
-                for group, material in keys
-            ]
-        )
-        name_of_key = dict(zip(keys, names, strict=True))
+        firsts = {
+            group or material or self.file_stem: (group, material)
+            for group, material in reversed(self.numbers)
+        }
+        given = set(firsts.values())
+        others = [key for key in self.numbers if key not in given]
+        extended = [" ".join(filter(None, key)) or self.file_stem for key in others]
+        names = different([*firsts, *extended])
+        name_of_key = dict(zip([*firsts.values(), *others], names, strict=True))
         return {name_of_key[key]: key[1] for key in self.numbers}
 
     def read(self, line: bytes) -> None:

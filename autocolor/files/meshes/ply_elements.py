@@ -170,20 +170,19 @@ def _refuse_repeated(
 
 def _property(match: re.Match[bytes], where: str) -> Property:
     """The property of a line `property TYPE NAME` or `property list TYPE TYPE NAME`."""
-    count_type, value_type = (each and each.decode("latin-1") for each in match.group("count_type", "type"))
-    for each in (count_type, value_type):
-        if each is not None and each not in TYPES:
+    types = [word.decode("latin-1") for word in match.group("type", "count_type") if word]
+    for each in types:
+        if each not in TYPES:
             raise InputError(
                 f"{where}: a type must be one of PLY, not {shown(each)}{nearest(each, TYPES)}; export it"
                 " again"
             )
-    if count_type is not None and TYPES[count_type].startswith("f"):
+    kinds = [TYPES[each] for each in types]
+    if kinds[1:] and kinds[1].startswith("f"):
         raise InputError(
-            f"{where}: the count of a list must have a whole type, not {shown(count_type)}; export it again"
+            f"{where}: the count of a list must have a whole type, not {shown(types[1])}; export it again"
         )
-    return Property(
-        name_of(match["property"]), TYPES[value_type], None if count_type is None else TYPES[count_type]
-    )
+    return Property(name_of(match["property"]), *kinds)
 
 
 class Lists(NamedTuple):

@@ -63,8 +63,8 @@ def read_table_file(path: Path, placement: Placement = PLAIN) -> MeshReport:
     try:
         own_normals = normals_of(arrays) if placement.normals == FILE else None
         if own_normals is not None:
-            vectors = np.asfortranarray(turned_up(own_normals.vectors, placement.up))
-            own_normals = NodeNormals(read_only(vectors), own_normals.numbers)
+            vectors = turned_up(own_normals.vectors.astype(np.float64), placement.up).astype(np.float32)
+            own_normals = NodeNormals(read_only(np.asfortranarray(vectors)), own_normals.numbers)
         mesh = Mesh(
             placed(arrays["coordinates"], placement)
             if arrays["coordinates"].shape[1] == 3

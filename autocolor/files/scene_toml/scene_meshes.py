@@ -269,16 +269,17 @@ def written_mesh(folder: Path, mesh: Mesh, written: list[Path]) -> Meshes:
 
     The file is added to `written`. Raises OutputError or WriteError.
     """
-    normals = {} if mesh.own_normals is None else {"normals": FILE}
+    normals = COMPUTED if mesh.own_normals is None else FILE
     as_obj = () if mesh.scalars else ((".obj", obj_text),)
     for suffix, content in (*as_obj, (SUFFIX, table_file_bytes)):
         path = free_path(folder / f"{MESH_STEM}{suffix}")
         write_atomically(path, content(mesh), overwrite=False)
         written.append(path)
         try:
-            report = read_mesh({"file": path}, Placement(**normals))
+            report = read_mesh({"file": path}, Placement(normals=normals))
             if has_same_tables(report.mesh, mesh) and not report.repairs:
-                return Meshes(({"file": path.name, **normals},), [report])
+                entry = {"file": path.name, **({} if normals == COMPUTED else {"normals": normals})}
+                return Meshes((entry,), [report])
         except InputError:
             pass
         os.unlink(written.pop())

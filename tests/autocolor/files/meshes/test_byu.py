@@ -121,7 +121,7 @@ test_what_is_refused = refused(
             (
                 "2 8 6",
                 "2 57 6",
-                ", line 1: a count must be at most 56, the count of words in the file, not '57'; correct it",
+                f": there must be 179 numbers up to the end of the coordinates, not 56; {CUT}",
             ),
             (
                 "6 24",
