@@ -30,7 +30,7 @@ LARGEST_HEADER: Final = 16 << 20
 """Limit: in bytes; a comment for each of a hundred thousand parts."""
 
 MOST_PROPERTIES: Final = 1000
-"""Limit: of all elements together."""
+"""Limit: elements and properties of all elements together."""
 
 ORDERS: Final = {b"ascii": "", b"binary_little_endian": "<", b"binary_big_endian": ">"}
 """The byte order of numbers in each format; none in text."""
@@ -128,13 +128,14 @@ def parsed_header(data: bytes, place: str) -> PlyHeader:
             each = _property(match, where)
             _refuse_repeated(each.name, properties[-1], "a property", where)
             properties[-1][each.name] = each
-            if sum(map(len, properties)) > MOST_PROPERTIES:
-                raise InputError(
-                    f"{where}: a header must have at most {MOST_PROPERTIES:,} properties, not more; leave out"
-                    " what is not needed"
-                )
         elif match["end"]:
             break
+        is_counted = match["element"] or match["property"]
+        if is_counted and len(properties) + sum(map(len, properties)) > MOST_PROPERTIES:
+            raise InputError(
+                f"{where}: a header must have at most {MOST_PROPERTIES:,} elements and properties, not more;"
+                " leave out what is not needed"
+            )
     if order is None:
         raise InputError(f"{place}: a header must have a line 'format', not none; export it again")
     with_properties = tuple(

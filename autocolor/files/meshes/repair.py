@@ -149,6 +149,13 @@ def repaired(
     `place` is the file's name in messages; `skipped` are messages to put before those of the repairs. With
     `unused_nodes`, nodes that no polygon uses are kept. Raises InputError if no polygon is left.
     """
+    large = np.flatnonzero(polygons.corner_counts > MOST_CORNERS)
+    if len(large):
+        row = int(large[0])
+        raise InputError(
+            f"{place}, {polygons.place_of(row)}: a polygon must have at most {MOST_CORNERS:,} corners, not"
+            f" {int(polygons.corner_counts[row]):,}; split it"
+        )
     coordinates = placed(polygons.coordinates, placement)
     repairs = list(skipped)
     corners, normals = polygons.corners, None
@@ -158,13 +165,6 @@ def repaired(
     if differs is not None:
         corners, normals = corners[differs], None if normals is None else normals[differs]
     too_few = counts < 3
-    large = np.flatnonzero(counts > MOST_CORNERS)
-    if len(large):
-        row = int(large[0])
-        raise InputError(
-            f"{place}, {polygons.place_of(row)}: a polygon must have at most {MOST_CORNERS:,} corners, not"
-            f" {int(counts[row]):,}; split it"
-        )
     try:
         if normals is None:
             node_numbers, owners = split_polygons(coordinates, corners, counts)

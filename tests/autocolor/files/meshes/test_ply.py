@@ -240,9 +240,10 @@ test_a_wrong_header_is_refused = refused(
                     "5: the name of a property must be unique, not repeated: 'x'; rename one",
                 ),
                 (
-                    *(f"property int p{at}" for at in range(1001)),
-                    "1004: a header must have at most 1,000 properties, not more; leave out what is not"
-                    " needed",
+                    *(f"property int p{at}" for at in range(500)),
+                    *(f"element a{at} 0" for at in range(500)),
+                    "1003: a header must have at most 1,000 elements and properties, not more; leave out what"
+                    " is not needed",
                 ),
             )
         ),
@@ -253,7 +254,7 @@ test_a_wrong_header_is_refused = refused(
 def test_a_header_may_be_long_but_not_endless(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     # The rows of an element without properties take no bytes.
     others = "".join(f"element e{number} {1 - number % 2}\n" for number in range(98))
-    others += "".join(f"property int p{number}\n" for number in range(996))
+    others += "".join(f"property int p{number}\n" for number in range(896))
     data = plate("x" * 100_000).replace(b"end_header", f"{others}end_header".encode())
     report = read(path, data)
     assert len(report.mesh.node_numbers) == 1
