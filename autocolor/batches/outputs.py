@@ -223,6 +223,8 @@ def base_mark(scene: Scene, picture: Picture | None, drawn: tuple[object, ...]) 
             plain.pop(name, None)
     mesh = scene.mesh
     arrays: list[Any] = [mesh.coordinates, mesh.node_numbers, mesh.part_numbers]
+    if mesh.own_normals is not None:
+        arrays += [mesh.own_normals.vectors, mesh.own_normals.numbers]
     for scalar in mesh.scalars:
         plain.setdefault("scalars", []).append(scalar.name)
         arrays.append(scalar.values)

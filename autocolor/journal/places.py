@@ -190,6 +190,9 @@ def checksum_of(scene: Scene) -> str:
     mesh = scene.mesh
     for array, kind in ((mesh.coordinates, "<f8"), (mesh.node_numbers, "<i8"), (mesh.part_numbers, "<i8")):
         digest.update(np.ascontiguousarray(array, kind).tobytes())
+    if mesh.own_normals is not None:
+        digest.update(np.ascontiguousarray(mesh.own_normals.vectors, "<f4").tobytes())
+        digest.update(np.ascontiguousarray(mesh.own_normals.numbers, "<i8").tobytes())
     for scalar in mesh.scalars:
         digest.update(json.dumps([scalar.name, scalar.of]).encode())
         digest.update(np.ascontiguousarray(scalar.values, "<f8").tobytes())

@@ -19,10 +19,12 @@ from autocolor import (
     write_picture,
     write_scene,
 )
+from autocolor.batches.outputs import base_mark
 from autocolor.errors import InputError
 from autocolor.files.conversion import output_of
 from autocolor.files.meshes.obj import obj_text
 from autocolor.files.meshes.repair import FILE, MeshReport, Placement, RawPolygons, repaired
+from autocolor.journal.places import checksum_of
 from autocolor.scene.geometry.normals import NodeNormals
 from autocolor.scene.mesh import has_same_tables
 from autocolor.scene.scalar import MeshScalar
@@ -219,6 +221,14 @@ def test_what_is_written_is_read_with_the_same_normals(tmp_path: Path, name: str
     assert np.array_equal(
         again.normals.vectors[again.normals.numbers], mesh.normals.vectors[mesh.normals.numbers]
     )
+
+
+def test_a_scene_with_other_normals_is_another_scene(tmp_path: Path) -> None:
+    mesh = with_normals(sphere(6, 4), tmp_path / "a.obj")
+    scene = read_scene(tmp_path / "a.obj")
+    bare = scene.replace(mesh=Mesh(mesh.coordinates, mesh.node_numbers, part_names=mesh.part_names))
+    assert checksum_of(scene) != checksum_of(bare)
+    assert base_mark(scene, None, ()) != base_mark(bare, None, ())
 
 
 def test_a_scene_asks_for_the_normals_of_its_file(tmp_path: Path) -> None:
