@@ -16,7 +16,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from autocolor.arrays import AnyArray, Booleans, Floats, Indices, runs
-from autocolor.checks import nearest
+from autocolor.checks import listed, nearest
 from autocolor.errors import InputError
 from autocolor.files.meshes.number_text import IN_PLY, NumberText
 from autocolor.files.meshes.repair import name_of
@@ -412,11 +412,11 @@ def _text_columns(
     def refuse_width(is_wrong: Booleans, fault: str) -> None:
         if not is_wrong.any():
             return
-        names = ", ".join(each.name for each in element.properties[:8])
-        more = ", ..." if len(element.properties) > 8 else ""
+        line = text.line(int(begins[is_wrong.argmax()]))
+        names = listed([each.name for each in element.properties[:8]])
         raise InputError(
-            f"{text.place}, line {text.line(int(begins[is_wrong.argmax()]))}: a line of an element"
-            f" {element.name!r} must have the values of {names}{more}, and this {fault}; correct it"
+            f"{text.place}, line {line}: a line of an element {element.name!r} must have the values of"
+            f" {names}, and this {fault}; correct it"
         )
 
     for each in element.properties:

@@ -273,37 +273,12 @@ def test_without_materials_no_library_is_read(folder: Path) -> None:
     assert read_obj(folder / "car.obj").repairs == ()
 
 
-@pytest.mark.parametrize(
-    ("data", "sentence"),
-    [
-        (RED.decode().encode("utf-16"), "must be text in UTF-8, not UTF-16; save it as UTF-8"),
-        (RED + b"\0", "must be text, not hold a NUL byte (line 3); save it as UTF-8 text"),
-    ],
-)
-def test_a_library_that_is_no_text_is_told_and_the_others_are_read(
-    folder: Path, data: bytes, sentence: str
-) -> None:
-    (folder / "red.mtl").write_bytes(data)
-    report = read(folder, b"red.mtl", b"my blue.mtl", wanted=(b"blue",))
-    assert report.repairs == (f"the materials have default colors: red.mtl: a material library {sentence}",)
-    assert names_of(report) == ["blue"]
-
-
 @pytest.mark.parametrize("more", [-1, 0, 1])
 def test_libraries_have_a_limited_size_together(folder: Path, more: int) -> None:
     (folder / "red.mtl").write_bytes(RED.ljust((4 << 20) - len(BLUE) + more))
     report = read(folder, b"red.mtl", b"my blue.mtl", wanted=(b"red", b"blue"))
     assert names_of(report) == (["red", "blue"] if more <= 0 else ["red"])
     assert len(report.repairs) == (0 if more <= 0 else 2)
-
-
-def test_a_library_that_is_named_twice_is_read_once(folder: Path) -> None:
-    (folder / "red.mtl").write_bytes(RED + b"d 0.5\n")
-    libraries = (b"red.mtl ./red.mtl red.mtl", b"red.mtl", b"inside.mtl red.mtl")
-    assert read(folder, *libraries, wanted=(b"red", b"blue")).repairs == (
-        "red.mtl: left out the transparency of 1 material",
-        "no library defines material 'blue'; default colors are used",
-    )
 
 
 @pytest.mark.parametrize("separator", [b" ", b"\nmtllib "], ids=["one line", "many lines"])

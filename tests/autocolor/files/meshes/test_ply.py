@@ -19,7 +19,7 @@ from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalar import MeshScalar
 from tests.autocolor.files.meshes.written import COORDINATES, assert_equal, writable_meshes
 from tests.autocolor.files.refusals import refusal, refused
-from tests.small import CUBE_NODES, CUBE_QUADS, cube
+from tests.small import cube
 
 CODES = {
     "char": "b", "uint8": "B", "short": "h", "uint16": "H", "int": "i", "uint32": "I", "int64": "q",
@@ -95,26 +95,6 @@ def scalars(mesh: Mesh) -> list[tuple[str, str, str]]:
     return [(each.name, each.of, str(each.values.tolist())) for each in mesh.scalars]
 
 
-@pytest.mark.parametrize("order", FORMATS)
-@pytest.mark.parametrize("kind", CODES)
-def test_a_cube_is_read_in_any_types(path: Path, order: str, kind: str) -> None:
-    at_nodes = {f"{kind} stress": [x + y for x, y, _ in CUBE_NODES]}
-    turned = dict(reversed({**xyz(CUBE_NODES, kind), **at_nodes}.items()))
-    faces = {
-        f"{kind} quality": range(6),
-        f"list {kind if kind in WHOLES else 'int'} {kind} vertex_index": CUBE_QUADS,
-    }
-    report = read(path, ply_file({"vertex": turned, "face": faces}, order=order))
-    mesh = report.mesh
-    assert [tuple(node) for node in mesh.coordinates.tolist()] == CUBE_NODES
-    assert [tuple(quad) for quad in mesh.node_numbers.tolist()] == CUBE_QUADS
-    assert (mesh.part_names, report.repairs) == (("a",), ())
-    assert scalars(mesh) == [
-        ("stress", "node", str([float(x + y) for x, y, _ in CUBE_NODES])),
-        ("quality", "polygon", "[0.0, 1.0, 2.0, 3.0, 4.0, 5.0]"),
-    ]
-
-
 Kinds = list[tuple[str, bool, str]]
 
 
@@ -142,14 +122,19 @@ def columns(draw: st.DrawFn, count: int, prefix: str) -> Columns:
     order=st.sampled_from([*FORMATS]),
     at_once=st.sampled_from([1, 2, 1 << 16]),
     share=st.floats(0, 1, exclude_max=True),
+    kind=st.sampled_from([*CODES]),
 )
 def test_elements_with_any_properties_are_read_and_refused_if_they_are_cut(
     before: Columns, after: Columns, other: Columns, faces: Columns, corners: list[tuple[int, ...]],
-    order: str, at_once: int, share: float, tmp_path_factory: pytest.TempPathFactory,
+    order: str, at_once: int, share: float, kind: str, tmp_path_factory: pytest.TempPathFactory,
 ) -> None:  # fmt: skip
     path = tmp_path_factory.getbasetemp() / "any.ply"
     table = {**faces, CORNERS: [(0, 1, 2, 3), *corners]}
-    elements = {"vertex": {**before, **xyz(), **after}, **({"other": other} if other else {}), "face": table}
+    elements = {
+        "vertex": {**before, **xyz(kind=kind), **after},
+        **({"other": other} if other else {}),
+        "face": table,
+    }
     data = ply_file(elements, order=order)
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(ply_elements, "ROWS_AT_ONCE", at_once)
@@ -452,7 +437,7 @@ def sized(count: int | str, *properties: str, data: bytes, name: str = "vertex",
     return header(f"element {name} {count}", *(f"property {each}" for each in properties), order=order) + data
 
 
-WIDTH = "a line of an element 'vertex' must have the values of x, of_it, and this has too {}; correct it"
+WIDTH = "a line of an element 'vertex' must have the values of x and of_it, and this has too {}; correct it"
 WIDE = ("float x", "list uchar int of_it")
 
 test_what_does_not_fit_its_counts_is_refused = refused(
