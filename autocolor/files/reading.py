@@ -102,8 +102,8 @@ def read_head(path: Path) -> bytes:
 
 
 # Tables in a folder that are saved together (see `writing.write_together`). One of them, the deciding file,
-# is replaced last. The others are written to hidden files, whose names have the checksum of the deciding file,
-# and are renamed after it was replaced. So readers know which hidden files to read.
+# is replaced last. The others are written to hidden files, whose names have the checksum of that file, and
+# are renamed after it was replaced. So readers know which hidden files to read.
 
 DECIDING: Final = {".npy": "tables.json", ".csv": "polygons.csv"}
 """The deciding file of a set of tables, by the suffix of the others."""
