@@ -1,8 +1,8 @@
-"""The budget of memory: what a file or a picture needs is estimated, and refused before it is allocated.
+"""The budget of memory: one estimate at the door of a file or a picture, which may be refused.
 
-A small file can ask for much memory: a text file of short numbers, a sparse file, a compressed file, a
-large raster, many lights. The estimates are bytes for each byte of a file, row or pixel, as measured. Users
-allow more with `--limit` of the commands and `limit=` of the functions, a factor for the budget.
+The estimates are bytes for each byte of a file, row or pixel, as measured. Users allow more with `--limit` of
+the commands and `limit=` of the functions, a factor for the budget. If memory ends all the same, functions
+raise MemoryError, and commands exit with 71.
 """
 
 from __future__ import annotations
@@ -68,16 +68,7 @@ def memory_problem(needed: float, remedy: str) -> str | None:
         return None
     limit = math.ceil(10 * needed / MEMORY) / 10
     return (
-        f"must take at most {_megabytes(math.floor(allowed / 1e5))} of memory, not"
-        f" {_megabytes(math.ceil(needed / 1e5))}; {remedy}, or allow it with --limit {limit:.16g}"
+        f"must take at most {math.floor(allowed / 1e5) / 10:,.1f} MB of memory, not"
+        f" {math.ceil(needed / 1e5) / 10:,.1f} MB; {remedy}, or allow it with --limit {limit:.16g}"
         f" (limit={limit:.16g} in Python)"
     )
-
-
-def _megabytes(tenths: int) -> str:
-    """Tenths of a megabyte as text.
-
-    >>> _megabytes(34), _megabytes(29123)
-    ('3.4 MB', '2,912.3 MB')
-    """
-    return f"{tenths / 10:,.1f} MB"

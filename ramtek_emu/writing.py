@@ -3,8 +3,9 @@
 The bytes go into a temporary file in the same folder, which is synced, unless the caller declines, and then
 renamed. Both packages write their files with this module.
 
-At its exit, Python removes the temporary files of the process. If it is killed, they stay. They are locked
-while their program lives, so the next program that writes to the folder knows, and removes them.
+At its exit, Python removes the temporary files of the process. If the process is killed, they stay. They are
+locked while their program lives, so the next program that writes a file of the same name knows, and removes
+them. Nothing else in the folder is touched.
 """
 
 from __future__ import annotations
@@ -12,16 +13,13 @@ from __future__ import annotations
 import atexit
 import errno
 import os
-import re
-import secrets
-import shutil
 import stat
 import sys
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Iterable
+from contextlib import suppress
 from itertools import combinations
 from pathlib import Path
-from typing import BinaryIO, Final
+from typing import Final
 
 from ramtek_emu.errors import OutputError, OutputExistsError, WriteError, reason_of
 
@@ -39,17 +37,8 @@ NO_PLACE: Final = (
 NO_LINKS: Final = (errno.EPERM, errno.ENOSYS, errno.EOPNOTSUPP, errno.ENOTSUP, errno.EMLINK)
 """The errors of file systems without hard links."""
 
-PART: Final = re.compile(r"\..{1,100}\.[0-9a-f]{12}\.part", re.DOTALL)
-"""The names of temporary files and folders."""
-
-PART_LOCK: Final = "names.json"
-"""The file in a temporary folder that is locked while its program lives."""
-
 _PARTS: Final[set[Path]] = set()
-"""The temporary files and folders of this process, noted before they are created."""
-
-_SWEPT: Final[set[Path]] = set()
-"""The folders in which this process removed the temporary files of killed programs."""
+"""The temporary files of this process."""
 
 
 class Output:
@@ -63,7 +52,7 @@ class Output:
         # Follow links: the file that a link names is replaced, and the link is kept.
         self.path = Path(os.path.realpath(path))
         try:
-            self._beside, descriptor = _new_part(self.path, is_folder=False)
+            self._beside, descriptor = _new_part(self.path)
             # The end of the with statement closes it.
             self._file = open(descriptor, "wb")  # noqa: SIM115
         except OSError as error:
@@ -113,20 +102,6 @@ class Output:
         with suppress(OSError):
             self._file.close()
         _remove(self._beside)
-
-
-@contextmanager
-def temporary_folder(path: Path) -> Iterator[tuple[Path, BinaryIO]]:
-    """A temporary folder beside a path, and its locked file PART_LOCK, for writing.
-
-    What is left of the folder is removed at the end. Raises OSError.
-    """
-    folder, descriptor = _new_part(path, is_folder=True)
-    try:
-        with open(descriptor, "wb") as file:
-            yield folder, file
-    finally:
-        _remove(folder)
 
 
 def write_atomically(
@@ -249,85 +224,83 @@ def sync_folder(folder: Path) -> None:
             os.close(number)
 
 
-# Temporary files and folders. `.part` names that others left are removed before a process makes its first one
-# in a folder: if nobody has the lock, the program that wrote the file has ended.
+# Temporary files. A `.part` file that nobody has locked was left by a program that was killed.
 
 
-def _new_part(path: Path, *, is_folder: bool) -> tuple[Path, int]:
-    """A new temporary file or folder beside a path, and the descriptor of its locked file."""
-    _sweep(path.parent)
+def _new_part(path: Path) -> tuple[Path, int]:
+    """A new temporary file beside a path, and its locked descriptor. A file that was left is removed first.
+
+    Each of several programs that write the same path at once has a file with another number.
+    """
+    number = 0
     while True:
-        part = path.with_name(f".{path.name[:100]}.{secrets.token_hex(6)}.part")
-        _PARTS.add(part)
-        if is_folder:
-            os.mkdir(part)
-        locked = part / PART_LOCK if is_folder else part
+        number += 1
+        part = path.with_name(f".{path.name[:100]}.{number}.part")
+        _remove_left(part)
         try:
-            descriptor = os.open(
-                locked, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o666
-            )
-        except (FileExistsError, FileNotFoundError):
-            # Another program swept the folder as it was made, unless the place itself is gone.
-            if not is_folder:
-                raise
+            flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
+            descriptor = os.open(part, flags, 0o666)
+        except FileExistsError:
             continue
-        with suppress(OSError):
-            # Without locks, as on some network drives, nothing is swept either.
-            lock(descriptor, wait=True)
-        if os.path.lexists(locked):
+        try:
+            lock(descriptor)
+            is_ours = _is_named(part, descriptor)
+        except BlockingIOError:
+            # Another program took the file for one that was left, and removes it.
+            is_ours = False
+        except OSError:
+            # Without locks, as on some network drives, no program removes files of others.
+            is_ours = True
+        if is_ours:
+            _PARTS.add(part)
             return part, descriptor
-        # Another program swept it before it was locked.
         os.close(descriptor)
 
 
-def lock(descriptor: int, *, wait: bool) -> None:
-    """Lock an open file or folder until it is closed. Raises OSError if others have the lock, unless `wait`.
-
-    On Windows there is no such lock, but open files cannot be removed there.
-    """
-    with suppress(ImportError):
-        import fcntl
-
-        if sys.platform != "win32":
-            fcntl.flock(descriptor, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
-
-
-def _sweep(folder: Path) -> None:
-    """Remove the temporary files and folders that killed programs left in a folder, once a process."""
-    if folder in _SWEPT:
-        return
-    _SWEPT.add(folder)
-    with suppress(OSError), os.scandir(folder) as entries:
-        for part in [Path(entry.path) for entry in entries if PART.fullmatch(entry.name)]:
-            with suppress(OSError):
-                _remove_left(part)
-
-
 def _remove_left(part: Path) -> None:
-    """Remove a temporary file or folder, unless its program still has the lock. Raises OSError."""
-    kind = os.lstat(part).st_mode
-    if stat.S_ISDIR(kind):
-        # A folder that is just being made has no locked file yet: then its program makes another folder.
-        locked, flags = part / PART_LOCK, os.O_RDWR | os.O_CREAT
-    elif stat.S_ISREG(kind):
-        locked, flags = part, os.O_RDONLY
-    else:
-        return
-    flags |= getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0)
-    with open(os.open(locked, flags, 0o666), "rb") as file:
-        lock(file.fileno(), wait=False)
+    """Remove a temporary file that a killed program left; no link and no other kind of file is removed."""
+    with suppress(OSError):
+        if not stat.S_ISREG(os.lstat(part).st_mode):
+            return
         if sys.platform == "win32":
-            file.close()
-            os.unlink(locked)
-        _remove(part)
+            # A file that a program has open cannot be removed there.
+            os.unlink(part)
+            return
+        with open(os.open(part, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK), "rb") as file:
+            lock(file.fileno())
+            if _is_named(part, file.fileno()):
+                os.unlink(part)
+
+
+def _is_named(part: Path, descriptor: int) -> bool:
+    """Whether the file of a descriptor still has its name."""
+    try:
+        return os.path.samestat(os.fstat(descriptor), os.lstat(part))
+    except FileNotFoundError:
+        return False
+
+
+if sys.platform == "win32":
+    import msvcrt
+
+    def lock(descriptor: int) -> None:
+        """Lock an open file until it is closed or its program ends. Raises OSError if it is locked."""
+        msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
+else:
+    import fcntl
+
+    def lock(descriptor: int) -> None:
+        """Lock an open file or folder until it is closed or its program ends.
+
+        Raises BlockingIOError if others have the lock, and OSError if the file system has no locks.
+        """
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
 
 def _remove(part: Path) -> None:
-    """Remove a temporary file or folder, if it is still there."""
+    """Remove a temporary file, if it is still there."""
     with suppress(OSError):
         os.unlink(part)
-    # This follows no links. It does nothing if the file is gone.
-    shutil.rmtree(part, ignore_errors=True)
     _PARTS.discard(part)
 
 

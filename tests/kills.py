@@ -34,7 +34,6 @@ from autocolor.files.meshes.csv_tables import write_csv_tables
 from autocolor.files.meshes.npy_tables import write_npy_tables
 from autocolor.files.meshes.obj_writing import write_obj
 from autocolor.files.picture_file import read_picture, write_picture
-from autocolor.files.reading import COMMITTED
 from autocolor.journal.autosave import Autosave, journal_in, left_sessions
 from autocolor.journal.history import History
 from autocolor.journal.places import ScenePlace, Source, checksum_of, place_of
@@ -243,8 +242,6 @@ def child(save: Callable[[], object], at: int = 1 << 30, most_bytes: int = -1) -
         return process
     code = 255
     try:
-        # The child is a new program as to the folders that it swept.
-        writing._SWEPT.clear()
         signal.signal(signal.SIGXFSZ, signal.SIG_DFL)
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         resource.setrlimit(resource.RLIMIT_FSIZE, (most_bytes, most_bytes))
@@ -312,7 +309,9 @@ class Killing(Trial):
         steps_of(child(partial(self.kind.save, here, last)))
         if self.kind.read(here) != self.reads[last]:
             return "the next save is lost: another save is read"
-        left = [path.name for path in here.rglob("*") if path.suffix == ".part" or path.name == COMMITTED]
+        # An output whose name no later save writes stays unfinished, or has two names.
+        parts = {path: path.with_name(path.name[1:].rsplit(".", 2)[0]) for path in here.rglob(".*.part")}
+        left = [part.name for part, path in parts.items() if path.exists() and not path.samefile(part)]
         return f"files are left over: {left}" if left else ""
 
 
@@ -329,7 +328,7 @@ class Beside(Killing):
 
     def attempt(self, chance: random.Random) -> str:
         try:
-            is_whole = self.kind.read(self.saved / "0") in self.reads
+            is_whole = mesh_sum(read_scene(self.saved / "0" / "t").mesh) in self.reads
         except InputError as error:
             return "" if "tables must stay" in str(error) else f"a refusal beside a save: {error}"
         return "" if is_whole else "tables of two saves are mixed"

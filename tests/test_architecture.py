@@ -63,7 +63,7 @@ DOORS_OF_THE_DISPLAY = {
     "ramtek_emu.instruction_set.disassembler", "ramtek_emu.instructions",
     "ramtek_emu.monitor.window", "ramtek_emu.png", "ramtek_emu.writing",
 }  # fmt: skip
-OUTSIDE = {"numpy", "click", "PIL", "pygame"}
+OUTSIDE = {"numpy", "click", "PIL", "platformdirs", "pygame"}
 
 PLACES = {
     ("pygame",): {("ramtek_emu.monitor.glass", True)},
@@ -72,6 +72,7 @@ PLACES = {
         ("ramtek_emu.png", True), ("ramtek_emu.films", True), ("autocolor.batches.outputs", False),
         ("autocolor.batches.sheet", False), ("autocolor.scene.kinds", False),
     },
+    ("platformdirs",): {("autocolor.files.state", True)},
     ("meshio", "trimesh"): {("autocolor.files.meshes.foreign_worker", False)},
     ("OpenEXR",): {("autocolor.layers", False)},
     # The studio names the class of its widgets for type checkers.

@@ -37,7 +37,7 @@ from autocolor.files.meshes.up_axis import seems_to_lie
 from autocolor.files.palette_file import GPL
 from autocolor.files.paths import PICTURE_SUFFIX, SCENE_FILE, STORE_SUFFIXES
 from autocolor.files.picture_file import read_picture
-from autocolor.files.reading import status_of
+from autocolor.files.reading import status_of, table_exists
 from autocolor.files.scene_report import SceneReport, scene_report
 from autocolor.files.scene_toml.scene_file import read_scene_file
 from autocolor.files.scene_toml.scene_meshes import MeshSource, keep_source
@@ -166,7 +166,8 @@ def read_scene_with_report(
     if surfaces not in (MATERIALS, PARTS):
         raise UsageError(f"surfaces must be {MATERIALS!r} or {PARTS!r}, not {shown(surfaces)}")
     path = Path(path)
-    status_of(path)
+    if not table_exists(path.parent, path.name):
+        status_of(path)
 
     path, source = source_format(path)
     if isinstance(source, SceneFormat):

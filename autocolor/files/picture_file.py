@@ -9,7 +9,8 @@ at the pixels are `scalar_0`, (lines, elements) float32; NaN is a missing value.
 header has the number `smooth`: each pixel of an image is the mean of a square of so many pixels a side.
 
 Before version 4 there were no part numbers: the picture of such a file does not know its parts. Written
-again, its part numbers are all 0. `array_file` reads and writes the members.
+again, its part numbers are all 0. Versions 1 and 2 have no scalars, and in version 1 the reflectance and the
+paint of a surface were nested tables. `array_file` reads and writes the members.
 """
 
 from __future__ import annotations
@@ -50,9 +51,6 @@ from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalar import LimitsKind, MeshScalar
 from autocolor.scene.scene import Scene
 
-PLAIN_FORMATS: Final = ("autocolor picture 2", "autocolor picture 1")
-"""Versions without scalars. In version 1 the reflectance and the paint of a surface were nested tables."""
-
 SHOWN: Final = "shown_scalars"
 """The key of a list in the header. Its row, if any, is a table with the `limits` of the shown scalar."""
 
@@ -62,8 +60,7 @@ LONGEST_PROBLEM: Final = 400
 PICTURE_FILE: Final = ArrayFileKind(
     noun="picture file",
     advice="save the picture again",
-    formats=("autocolor picture 4", "autocolor picture 3"),
-    plain=PLAIN_FORMATS,
+    formats=tuple(f"autocolor picture {version}" for version in (4, 3, 2, 1)),
     keys=frozenset(("scale", "surfaces", "scene")),
     arrays={
         "relative_intensity": ("<f4", 2),
@@ -74,8 +71,7 @@ PICTURE_FILE: Final = ArrayFileKind(
         "part_numbers": ("<i4", 1),
     },
     series={KEY: MESH_SCALARS, **NORMALS, SHOWN: Series("scalar", ("<f4", 2), most=1)},
-    added=frozenset(("part_number",)),
-    optional=frozenset(("smooth", *NORMALS)),
+    optional=frozenset(("smooth", "part_number")),
 )
 
 
@@ -154,97 +150,93 @@ def read_picture(path: str | PathLike[str], *, limit: float | None = None) -> Sa
     return SavedPicture(picture, scene)
 
 
+def _require(condition: object, sentence: str) -> None:
+    if not condition:
+        raise InputError(sentence)
+
+
 def _picture(header: Mapping[str, Any], scene: Scene, arrays: Mapping[str, AnyArray]) -> Picture:
     """The picture of the rasters and the header. Raises InputError if they or the scene do not match."""
-    scale, relative, numbers = header["scale"], arrays["relative_intensity"], arrays["surface_number"]
+    scale, smooth = header["scale"], header.get("smooth", 1)
+    relative, numbers = arrays["relative_intensity"], arrays["surface_number"]
+    parts = arrays.get("part_number")
+    is_number = isinstance(scale, (int, float)) and not isinstance(scale, bool)
+    _require(
+        is_number and 0 < scale < LARGEST_SINGLE, f"its scale must be a number above 0, not {shown(scale)}"
+    )
     names = [surface.name for surface in scene.surfaces]
-    if isinstance(scale, bool) or not isinstance(scale, (int, float)) or not 0 < scale < LARGEST_SINGLE:
-        raise InputError(f"its scale must be a number above 0, not {scale!r}")
-    if header["surfaces"] != names:
-        raise InputError(f"its surfaces must be the scene's, {names}, not {header['surfaces']!r}")
-    if relative.shape != numbers.shape or not relative.size:
-        raise InputError(f"its arrays must be of one shape, not {relative.shape} and {numbers.shape}")
-    if not (np.isfinite(relative).all() and relative.min() >= 0):
-        raise InputError("every intensity must be a finite number of at least 0")
-    if float(relative.max()) * scale > LARGEST_SINGLE:
-        raise InputError(
-            f"intensities must stay below {LARGEST_SINGLE:.3g}, not reach {scale:g} times their own"
-        )
-    smooth = header.get("smooth", 1)
-    if type(smooth) is not int or smooth < 1 or any(size % smooth for size in numbers.shape):
-        raise InputError(
-            f"smooth must be a whole number that divides its lines and elements, {numbers.shape}, not"
-            f" {shown(smooth)}"
-        )
-    in_use = set(scene.mesh.parts_in_use)
-    owned = {number for part, number in enumerate(scene.surface_number_of_part) if part in in_use}
-    invalid = set(np.flatnonzero(np.bincount(numbers.ravel())).tolist()) - owned - {0}
-    if invalid:
-        raise InputError(f"a surface number must be that of a surface with polygons, not {min(invalid)}")
-    parts = _parts(arrays, scene)
+    _require(
+        header["surfaces"] == names, f"its surfaces must be the scene's, {names}, not {header['surfaces']!r}"
+    )
+    shapes = {array.shape for array in (relative, numbers, parts) if array is not None}
+    _require(len(shapes) == 1 and relative.size, f"its arrays must be of one shape, not {sorted(shapes)}")
+    _require(
+        np.isfinite(relative).all() and relative.min() >= 0,
+        "every intensity must be a finite number of at least 0",
+    )
+    _require(
+        float(relative.max()) * scale <= LARGEST_SINGLE,
+        f"intensities must stay below {LARGEST_SINGLE:.3g}, not reach {scale:g} times their own",
+    )
+    _require(
+        type(smooth) is int and smooth >= 1 and not any(size % smooth for size in numbers.shape),
+        f"smooth must be a whole number that divides its lines and elements, {numbers.shape}, not"
+        f" {shown(smooth)}",
+    )
+    if parts is not None and numbers.any() and not parts.any():
+        parts = None
+    _check_numbers(scene, numbers, parts)
     scalar, limits = _shown_scalar(header.get(SHOWN, ()), scene, arrays)
     return Picture.from_rasters(
-        relative,
-        numbers,
-        tuple(names),
-        float(scale),
-        scalar,
-        limits,
-        parts,
-        scene.mesh.part_names,
-        smooth,
+        relative, numbers, tuple(names), float(scale), scalar, limits, parts, scene.mesh.part_names, smooth
     )
 
 
-def _parts(arrays: Mapping[str, AnyArray], scene: Scene) -> AnyArray | None:
-    """The part numbers, (lines, elements); None if the file has none.
+def _check_numbers(scene: Scene, surfaces: AnyArray, parts: AnyArray | None) -> None:
+    """Raise InputError for a pixel with a part or a surface without polygons, or of two different surfaces.
 
-    Raises InputError if a pixel names a part that does not exist, has no polygons, or belongs to another
-    surface than the pixel's.
+    Without part numbers (`parts` is None), only the surface numbers are checked.
     """
-    parts, surfaces = arrays.get("part_number"), arrays["surface_number"]
-    if parts is None:
-        return None
-    if parts.shape != surfaces.shape:
-        raise InputError(f"its arrays must be of one shape, not {surfaces.shape} and {parts.shape}")
-    if surfaces.any() and not parts.any():
-        return None
-    if parts.min() < 0 or parts.max() > len(scene.parts):
-        extreme = parts.min() if parts.min() < 0 else parts.max()
-        raise InputError(f"a part number must be 0 to {len(scene.parts)}, not {extreme}")
-    surface_of_part = np.zeros(1 + len(scene.parts), np.uint8)
+    in_use = np.zeros(1 + len(scene.parts), np.uint8)
     for part in scene.mesh.parts_in_use:
-        surface_of_part[1 + part] = scene.surface_number_of_part[part]
-    wrong = (surface_of_part.take(parts) != surfaces) | ((parts > 0) & (surfaces == 0))
+        in_use[1 + part] = scene.surface_number_of_part[part]
+    invalid = set(np.flatnonzero(np.bincount(surfaces.ravel())).tolist()) - {*in_use.tolist()}
+    _require(
+        not invalid,
+        f"a surface number must be that of a surface with polygons, not {min(invalid, default=0)}",
+    )
+    if parts is None:
+        return
+    outside = sorted({int(parts.min()), int(parts.max())} - {*range(len(in_use))})
+    _require(not outside, f"a part number must be 0 to {len(scene.parts)}, not {[*outside, 0][0]}")
+    wrong = (in_use.take(parts) != surfaces) | ((parts > 0) & (surfaces == 0))
     if wrong.any():
         line, element = np.argwhere(wrong)[0].tolist()
         raise InputError(
             f"a part number must be that of a part of the surface there, not {parts[line, element]} (line"
             f" {line}, element {element})"
         )
-    return parts
 
 
 def _shown_scalar(
     rows: Sequence[object], scene: Scene, arrays: Mapping[str, AnyArray]
 ) -> tuple[AnyArray, tuple[float, float]] | tuple[None, None]:
     """The raster of the scalar that a picture shows, and the scalar's own range. Raises InputError."""
-    if len(rows) != (scene.scalar is not None):
-        rule = "there must be a scalar at the pixels if the scene shows one, and none if it does not"
-        raise InputError(f"{rule}, not {len(rows)}")
+    rule = "there must be a scalar at the pixels if the scene shows one, and none if it does not"
+    _require(len(rows) == (scene.scalar is not None), f"{rule}, not {len(rows)}")
     if not rows:
         return None, None
-    row, values = rows[0], arrays["scalar_0"]
+    row, values, shape = rows[0], arrays["scalar_0"], arrays["surface_number"].shape
     problems: list[Problem] = []
     given = row["limits"] if isinstance(row, Mapping) and row.keys() == {"limits"} else row
     limits: Any = LimitsKind().validated(given, (SHOWN, 0, "limits"), problems)
     if problems:
         raise RowError(problems)
-    if values.shape != arrays["surface_number"].shape or np.isinf(values).any():
-        raise InputError(
-            f"a scalar must have a finite number or NaN at each of {arrays['surface_number'].shape} pixels,"
-            f" not {values.shape} with others"
-        )
+    _require(
+        values.shape == shape and not np.isinf(values).any(),
+        f"a scalar must have a finite number or NaN at each of {shape} pixels, not {values.shape} with"
+        " others",
+    )
     return values, limits
 
 

@@ -1,21 +1,17 @@
-"""Reading input files safely: regular files only, and never more than a given number of bytes.
-
-A mesh of several tables in a folder is saved by one rename (see `writing.write_together`): the new tables
-are in the hidden folder COMMITTED until each has its own name. `TableFiles` finds them there.
-"""
+"""Reading input files safely: regular files only, and never more than a given number of bytes."""
 
 from __future__ import annotations
 
 import errno
+import hashlib
 import json
 import os
-import re
 import stat
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any, BinaryIO, Final, NamedTuple, NoReturn, TypeVar
+from typing import Any, BinaryIO, Final, NoReturn, TypeVar
 
 from autocolor import checks
 from autocolor.budget import allowed_memory, require_memory
@@ -52,10 +48,15 @@ def read_whole(path: Path, growth: float) -> bytes:
     """The content of a regular file like `read_bytes`, as large as the memory budget allows.
 
     To read the file takes `growth` times its size in memory, as measured. Raises InputError if this is more
-    than the budget allows, before anything is read.
+    than the budget allows, before anything is read, and for a file that begins with a page of zeros.
     """
-    with opened(path) as (_, status):
+    with opened(path) as (file, status):
         require_size(path.name, status.st_size, growth)
+        # Such a file was made, and never filled.
+        if status.st_size > HEAD and not file.read(HEAD).strip(b"\0"):
+            raise InputError(
+                f"{path.name}: a file must not begin with {HEAD:,} zero bytes; copy or export it again"
+            )
     return read_bytes(path, int(allowed_memory() / growth))
 
 
@@ -90,35 +91,25 @@ def status_of(path: Path) -> os.stat_result:
     except OSError as error:
         raise unreadable(path, error) from None
     except ValueError:
-        raise unnameable(path) from None
+        raise InputError(f"a file name must be valid on this system, not {str(path)!r}; correct it") from None
 
 
 def read_head(path: Path) -> bytes:
     """The first HEAD bytes of a regular file; empty if it cannot be read."""
-    try:
-        refuse_irregular(path, os.stat(path))
-        with open(path, "rb") as file:
-            return file.read(HEAD)
-    except (OSError, ValueError, InputError):
-        return b""
+    with suppress(InputError), opened(path) as (file, _):
+        return file.read(HEAD)
+    return b""
 
 
-# Tables in a folder. The folder COMMITTED has the tables of the last save that have no name of their own yet,
-# and NAMES, the names of all tables of that save. It exists for a moment, or after a program was killed.
+# Tables in a folder that are saved together (see `writing.write_together`). One of them, the deciding file,
+# is replaced last. The others are written to hidden files, whose names have the checksum of that file, and
+# are renamed after it was replaced. So readers know which hidden files to read.
 
-COMMITTED: Final = ".autocolor-tables"
+DECIDING: Final = {".npy": "tables.json", ".csv": "polygons.csv"}
+"""The deciding file of a set of tables, by the suffix of the others."""
 
-NAMES: Final = "names.json"
-"""It is the locked file of the temporary folder that the folder COMMITTED was (see `ramtek_emu.writing`)."""
-
-SET_KEYS: Final = frozenset(("files", "absent"))
-
-LARGEST_SET: Final = 1 << 17
-MOST_NAMES: Final = 4000
-"""Limit: more than the names of 1000 scalars, twice."""
-
-TABLE_NAME: Final = re.compile(r"(?:scalars/)?[a-z0-9_]{1,40}\.(?:csv|npy)|tables\.json")
-"""The names that a set may have, so that a set of a stranger moves and removes nothing else."""
+SCALARS: Final = "scalars"
+"""The folder of scalars in a folder of tables."""
 
 MOST_TRIES: Final = 20
 """Limit: how often tables are opened while others save them; the pauses between take two seconds together."""
@@ -126,92 +117,62 @@ MOST_TRIES: Final = 20
 SECONDS_BETWEEN_TRIES: Final = 0.01
 
 
-class TableSet(NamedTuple):
-    """The names of a committed save of tables, and the names that it removes from the folder."""
-
-    files: tuple[str, ...]
-    absent: tuple[str, ...]
+def save_of(data: bytes) -> str:
+    """The checksum of the content of a deciding file, 12 hexadecimal digits."""
+    return hashlib.sha256(data).hexdigest()[:12]
 
 
-def committed_set(folder: Path) -> TableSet | None:
-    """The last save of tables to a folder, if some of its tables have no name of their own yet; else None.
+def save_in(deciding: Path) -> str:
+    """The checksum of a deciding file; of no bytes if it cannot be read."""
+    digest = hashlib.sha256()
+    with suppress(InputError), opened(deciding) as (file, _):
+        while data := file.read(LEAST_READ):
+            digest.update(data)
+    return digest.hexdigest()[:12]
 
-    Raises InputError if another program wrote it.
+
+def hidden_path(path: Path, save: str) -> Path:
+    """The hidden name of a table of a save."""
+    return path.with_name(f".{path.name}.{save}.part")
+
+
+def read_table(path: Path, save: str, read: Callable[[Path], Result]) -> Result:
+    """The result of `read` for the hidden path of a table of a save, or for its own if the table has it."""
+    try:
+        return read(hidden_path(path, save))
+    except MissingInputError:
+        return read(path)
+
+
+def table_exists(folder: Path, name: str) -> bool:
+    """Whether a folder has a table."""
+    path = folder / name
+    if os.path.exists(path) or path.suffix not in DECIDING:
+        return os.path.exists(path)
+    return os.path.exists(hidden_path(path, save_in(folder / DECIDING[path.suffix])))
+
+
+def read_together(deciding: Path, read: Callable[[], Result]) -> Result:
+    """The result of `read`, which opens a deciding file and other tables, all of the same save.
+
+    If a save replaced the deciding file meanwhile, `read` is called again. Raises InputError if saves come
+    all the time, and the errors of `read`.
     """
-    path = folder / COMMITTED / NAMES
-    try:
-        kind = os.lstat(path.parent).st_mode
-    except (OSError, ValueError):
-        return None
-    try:
-        if stat.S_ISLNK(kind) or stat.S_ISLNK(os.lstat(path).st_mode):
-            raise ValueError("it is a link")
-        content = bounded_json(read_bytes(path, LARGEST_SET), MOST_NAMES)
-        if not isinstance(content, dict) or set(content) != SET_KEYS:
-            raise ValueError("it has other keys")
-        names = [content["files"], content["absent"]]
-        if not all(isinstance(listed, list) and all(map(_is_table_name, listed)) for listed in names):
-            raise ValueError("it names other files")
-    except (FileNotFoundError, NotADirectoryError, MissingInputError):
-        return None
-    except (OSError, ValueError) as error:
-        raise InputError(
-            f"{path}: it must be a file that autocolor wrote, and is not ({str(error)[:100]}); delete it"
-        ) from None
-    return TableSet(*map(tuple, names))
-
-
-def _is_table_name(name: object) -> bool:
-    return isinstance(name, str) and TABLE_NAME.fullmatch(name) is not None
-
-
-def name_in_set(name: str) -> str:
-    """The name of a table in the folder COMMITTED, which has no folders."""
-    return name.replace("/", "_")
-
-
-class TableFiles:
-    """Finds the tables of folders, and remembers its answers, to compare them when all tables are open."""
-
-    def __init__(self) -> None:
-        self._sets: dict[Path, TableSet | None] = {}
-        self._seen: dict[tuple[Path, str], tuple[Path, tuple[int, ...] | None]] = {}
-
-    def path(self, folder: Path, name: str) -> Path:
-        """The path of a table of a folder; no file has it if the folder has no such table.
-
-        Raises InputError as `committed_set`.
-        """
-        committed = None
-        if _is_table_name(name):
-            if folder not in self._sets:
-                self._sets[folder] = committed_set(folder)
-            committed = self._sets[folder]
-        path = folder / name
-        if committed is not None and name in (*committed.files, *committed.absent):
-            moved = folder / COMMITTED / name_in_set(name)
-            path = moved if name in committed.absent or _is_regular(moved) else path
-        self._seen[folder, name] = path, _stamp(path)
-        return path
-
-    def has(self, folder: Path, name: str) -> bool:
-        """Whether a folder has a table. Raises InputError as `committed_set`."""
-        self.path(folder, name)
-        return self._seen[folder, name][1] is not None
-
-    def are_unchanged(self) -> bool:
-        """Whether all answers would be the same now. Raises InputError as `committed_set`."""
-        now = TableFiles()
-        for folder, name in self._seen:
-            now.path(folder, name)
-        return now._seen == self._seen
-
-
-def _is_regular(path: Path) -> bool:
-    try:
-        return stat.S_ISREG(os.lstat(path).st_mode)
-    except OSError:
-        return False
+    for number in range(MOST_TRIES):
+        before = _stamp(deciding)
+        try:
+            result = read()
+        except InputError:
+            if _stamp(deciding) == before:
+                raise
+        else:
+            if _stamp(deciding) == before:
+                return result
+        time.sleep(SECONDS_BETWEEN_TRIES * number)
+    raise InputError(
+        f"tables must stay as they are while they are opened, but another program saved them {MOST_TRIES}"
+        " times; try again when it has ended"
+    )
 
 
 def _stamp(path: Path) -> tuple[int, ...] | None:
@@ -223,37 +184,6 @@ def _stamp(path: Path) -> tuple[int, ...] | None:
     return status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns
 
 
-def read_together(open_files: Callable[[TableFiles], Result]) -> Result:
-    """The result of `open_files`, which opens tables; all tables of a folder are of the same save.
-
-    If a save came while it opened them, it is called again. Raises InputError if saves come all the time, and
-    the errors of `open_files`.
-    """
-    for number in range(MOST_TRIES):
-        files = TableFiles()
-        try:
-            result = open_files(files)
-        except InputError:
-            if files.are_unchanged():
-                raise
-        else:
-            if files.are_unchanged():
-                return result
-        time.sleep(SECONDS_BETWEEN_TRIES * number)
-    raise InputError(
-        "tables must stay as they are while they are opened, and these were saved again each of"
-        f" {MOST_TRIES} times; try again when the other program has ended"
-    )
-
-
-def table_exists(folder: Path, name: str) -> bool:
-    """Whether a folder has a table, by the names alone."""
-    try:
-        return TableFiles().has(folder, name)
-    except InputError:
-        return (folder / name).exists()
-
-
 def refuse_irregular(path: Path, status: os.stat_result) -> None:
     """Raise InputError unless the status is of a regular file."""
     if stat.S_ISREG(status.st_mode):
@@ -261,11 +191,6 @@ def refuse_irregular(path: Path, status: os.stat_result) -> None:
     kinds = ((stat.S_ISDIR, "a folder"), (stat.S_ISFIFO, "a pipe"), (stat.S_ISSOCK, "a socket"))
     kind = next((name for is_kind, name in kinds if is_kind(status.st_mode)), "a device")
     raise InputError(f"{path}: it must be a regular file, not {kind}; name a file")
-
-
-def unnameable(path: Path) -> InputError:
-    """The error for a path that the system cannot represent, such as one with a NUL byte."""
-    return InputError(f"a file name must be valid on this system, not {str(path)!r}; correct it")
 
 
 def unreadable(path: Path, error: OSError) -> InputError:
@@ -278,8 +203,7 @@ def unreadable(path: Path, error: OSError) -> InputError:
 MOST_NESTED: Final = 100
 """Limit: lists and tables around a value in JSON; files of ours need eight."""
 
-NESTING: Final = re.compile(rb'"[^"\\]*+(?:\\.[^"\\]*+)*+"?|[\[\]{}]', re.DOTALL)
-"""A text, which may lack its end, or a bracket."""
+TOO_DEEP: Final = f"values in more than {MOST_NESTED} lists and tables"
 
 
 def bounded_json(data: bytes, most_values: int) -> Any:
@@ -290,30 +214,20 @@ def bounded_json(data: bytes, most_values: int) -> Any:
 
     if sum(map(data.count, (b",", b"[", b"{"))) > most_values:
         raise ValueError(f"more than {most_values:,} values")
-    if nesting(data) > MOST_NESTED:
-        raise ValueError(f"values in more than {MOST_NESTED} lists and tables")
     try:
-        return json.loads(data.decode("utf-8"), parse_constant=refuse)
+        value = json.loads(data.decode("utf-8"), parse_constant=refuse)
     except json.JSONDecodeError as error:
         reason = error.msg.removesuffix(" at")
         raise ValueError(f"{reason} at line {error.lineno}, column {error.colno}") from None
-
-
-def nesting(data: bytes) -> int:
-    """The most lists and tables around a value of JSON text, counted before it is parsed.
-
-    >>> nesting(b'{"a": [1, [2]], "b": "[[[[["}')
-    3
-    """
-    depth = most = 0
-    # A text is skipped whole: what is in it opens nothing.
-    for mark in NESTING.finditer(data):
-        if mark[0] in b"[{":
-            depth += 1
-            most = max(most, depth)
-        elif mark[0] in b"]}":
-            depth -= 1
-    return most
+    except RecursionError:
+        raise ValueError(TOO_DEEP) from None
+    depth, level = 0, [value]
+    while level := [each for each in level if isinstance(each, (list, dict))]:
+        depth += 1
+        if depth > MOST_NESTED:
+            raise ValueError(TOO_DEEP)
+        level = [inner for each in level for inner in (each.values() if isinstance(each, dict) else each)]
+    return value
 
 
 def text_problem(data: bytes) -> str | None:

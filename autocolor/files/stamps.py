@@ -11,16 +11,12 @@ import os
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from pathlib import Path
-from typing import Final
 
 from autocolor.errors import InputError, MissingInputError
 from autocolor.files.paths import STORE_SUFFIXES, path_within
 from autocolor.files.reading import opened, read_bytes, read_head
 from autocolor.files.scene_toml.scene_meshes import MESH_FILE_KEYS, entries_of
 from autocolor.files.scene_toml.toml_text import LARGEST_TEXT
-
-CHANGE_COUNTER: Final = slice(24, 28)
-"""The place of the count of changes in the header of a store; in WAL mode it counts checkpoints only."""
 
 
 def stamp_of(path: Path) -> str | None:
@@ -35,7 +31,7 @@ def stamp_of(path: Path) -> str | None:
             digest.update(data)
         if suffix in STORE_SUFFIXES:
             with suppress(MissingInputError):
-                for data in _bytes_of(_log_of(path)):
+                for data in _bytes_of(_beside(path, "-wal")):
                     digest.update(data)
         elif suffix == ".toml":
             for numbers in _mesh_numbers(path):
@@ -45,37 +41,30 @@ def stamp_of(path: Path) -> str | None:
     return digest.hexdigest()
 
 
-def numbers_of(path: Path) -> tuple[int | bytes, ...] | None:
+def numbers_of(path: Path) -> tuple[int, ...] | None:
     """Numbers that differ after a file was changed; None if it is missing. The file is not opened."""
     try:
-        status = os.stat(path)
-        log = os.stat(_log_of(path)) if os.path.exists(_log_of(path)) else None
+        status, log = os.stat(path), _beside(path, "-wal")
+        # SQLite creates an empty log even to read.
+        logs = [os.stat(log)] if log.exists() and os.stat(log).st_size else []
     except (OSError, ValueError):
         return None
-    numbers = status.st_dev, status.st_ino, status.st_mtime_ns, status.st_size
-    # SQLite creates an empty log even to read.
-    return (*numbers, log.st_mtime_ns, log.st_size) if log is not None and log.st_size else numbers
+    # A program may set the time of a change, but not the time when the status changed.
+    numbers = status.st_dev, status.st_ino, status.st_mtime_ns, status.st_ctime_ns, status.st_size
+    return (*numbers, *(number for each in logs for number in (each.st_mtime_ns, each.st_size)))
 
 
-def look_at(path: Path) -> tuple[int | bytes, ...] | None:
-    """`numbers_of` a file, and the count of changes of a store; None also while a store is being written."""
-    numbers = numbers_of(path)
-    if numbers is None or path.suffix.lower() not in STORE_SUFFIXES:
-        return numbers
-    # SQLite is loaded for stores alone.
-    from autocolor.files.store.connections import refuse_journal
-
-    try:
-        # While a commit writes to the store, there is a journal to roll back.
-        refuse_journal(path)
-    except InputError:
-        return None
-    return *numbers, read_head(path)[CHANGE_COUNTER]
+def look_at(path: Path) -> tuple[int, ...] | None:
+    """`numbers_of` a file; None also while a program writes to a store, and has a journal to go back."""
+    is_store = path.suffix.lower() in STORE_SUFFIXES
+    # A journal that is not needed begins with zeros.
+    has_journal = is_store and read_head(_beside(path, "-journal"))[:1].strip(b"\0")
+    return None if has_journal else numbers_of(path)
 
 
-def _log_of(store: Path) -> Path:
-    """The write-ahead log of a store."""
-    return Path(f"{os.path.realpath(store)}-wal")
+def _beside(store: Path, ending: str) -> Path:
+    """The write-ahead log or the journal of a store."""
+    return Path(f"{os.path.realpath(store)}{ending}")
 
 
 def _bytes_of(path: Path) -> Iterator[bytes]:

@@ -1,24 +1,25 @@
 """The state folder of the program, the locks in it, and the lists of recent colors and files.
 
 Each list is a JSON file, the newest entry first. The lists are a convenience: a list that is damaged, or that
-cannot be read or written, is empty and no error. Programs that run at the same time share the lists.
+cannot be read or written, is empty and no error. Programs that run at the same time share the lists; of two
+entries at the same moment, one may be lost.
 """
 
 from __future__ import annotations
 
 import json
 import os
-import sys
-import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Final
+
+import platformdirs
 
 from autocolor.checks import Color
 from autocolor.errors import AutocolorError, OutputError
 from autocolor.files.reading import read_bytes
-from autocolor.files.writing import write_atomically
+from autocolor.files.writing import lock, write_atomically
 from autocolor.scene.kinds import SIX_DIGITS, ColorKind, in_digits
 
 MOST_COLORS: Final = 12
@@ -26,16 +27,12 @@ MOST_FILES: Final = 10
 
 COLORS: Final = "recent-colors.json"
 FILES: Final = "recent-files.json"
-LOCK: Final = "recent.lock"
 
 LONGEST_PATH: Final = 4096
 """Letters; no system has longer paths."""
 
 LARGEST: Final = 1 << 18
 """Bytes: more than MOST_FILES paths of LONGEST_PATH letters, each letter written in six bytes."""
-
-LONGEST_WAIT: Final = 0.2
-"""Limit: seconds to wait for another program, which holds the lock for a few milliseconds."""
 
 
 def state_folder() -> Path:
@@ -44,20 +41,12 @@ def state_folder() -> Path:
     It is in `XDG_STATE_HOME`, or `~/.local/state` without it; on Windows in `LOCALAPPDATA`, and on macOS in
     `~/Library/Application Support`.
     """
-    if sys.platform == "win32":
-        named, usual = os.environ.get("LOCALAPPDATA", ""), ("AppData", "Local")
-    else:
-        # The standard says to ignore a path that is not absolute.
-        named = os.environ.get("XDG_STATE_HOME", "")
-        usual = ("Library", "Application Support") if sys.platform == "darwin" else (".local", "state")
-    if os.path.isabs(named):
-        return Path(named, "autocolor")
-    try:
-        return Path.home().joinpath(*usual, "autocolor")
-    except RuntimeError:
-        raise OutputError(
-            "the state folder must be in a home folder, and there is none; set XDG_STATE_HOME"
-        ) from None
+    with suppress(RuntimeError):
+        folder = Path(platformdirs.user_state_dir("autocolor", appauthor=False))
+        # Some versions return a relative path if there is no home.
+        if folder.is_absolute():
+            return folder
+    raise OutputError("the state folder must be in a home folder, and there is none; set XDG_STATE_HOME")
 
 
 def lock_file(path: Path) -> int | None:
@@ -68,23 +57,11 @@ def lock_file(path: Path) -> int | None:
     """
     descriptor = os.open(path, os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0), 0o600)
     try:
-        _lock(descriptor)
+        lock(descriptor)
     except OSError:
         os.close(descriptor)
         return None
     return descriptor
-
-
-if sys.platform == "win32":
-    import msvcrt
-
-    def _lock(descriptor: int) -> None:
-        msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
-else:
-    import fcntl
-
-    def _lock(descriptor: int) -> None:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
 
 def recent_colors() -> tuple[Color, ...]:
@@ -134,22 +111,6 @@ def _note(name: str, entry: str, most: int, is_valid: Callable[[str], bool]) -> 
     with suppress(AutocolorError, OSError):
         folder = state_folder()
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        with _lists_locked(folder):
-            others = [other for other in _entries(name, most, is_valid) if other != entry]
-            data = json.dumps([entry, *others][:most], indent=1).encode()
-            write_atomically(folder / name, data, overwrite=True)
-
-
-@contextmanager
-def _lists_locked(folder: Path) -> Iterator[None]:
-    """Hold the lock of the lists; go on without it if another program does not release it in time."""
-    give_up = time.monotonic() + LONGEST_WAIT
-    descriptor = lock_file(folder / LOCK)
-    while descriptor is None and time.monotonic() < give_up:
-        time.sleep(0.005)
-        descriptor = lock_file(folder / LOCK)
-    try:
-        yield
-    finally:
-        if descriptor is not None:
-            os.close(descriptor)
+        others = [other for other in _entries(name, most, is_valid) if other != entry]
+        data = json.dumps([entry, *others][:most], indent=1).encode()
+        write_atomically(folder / name, data, overwrite=True)

@@ -5,10 +5,8 @@
 
 from __future__ import annotations
 
-import json
 import os
-import sys
-import time
+import re
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -16,12 +14,10 @@ from typing import Final
 
 import ramtek_emu
 from autocolor.errors import OutputError, UsageError, WriteError, reason_of
-from autocolor.files.reading import COMMITTED, NAMES, committed_set, name_in_set
+from autocolor.files.reading import DECIDING, SCALARS, hidden_path, save_in, save_of
 from ramtek_emu import writing
 
-SECONDS_OF_WAITING: Final = 10.0
-"""Limit: how long to wait for another program that moves tables, which takes milliseconds."""
-
+lock = writing.lock
 
 Guard = Callable[[Path], Callable[[], None]]
 """A check before a file is overwritten, which returns a second check for the moment of overwriting.
@@ -53,10 +49,11 @@ def write_together(
 ) -> list[Path]:
     """Write tables to a folder, which is created if it does not exist; returns their paths, sorted.
 
-    The tables are written to a hidden folder in it. One rename commits them, and from then on our readers
-    read the new tables; then each is moved to its name. If a program is killed before the rename, the old
-    tables are whole. If it is killed later, the next call moves the tables that are left. A table
-    that `others` names is removed if it is not written now. Other files in the folder stay.
+    One of the files decides (see `reading.DECIDING`). Its content must differ from save to save, unless there
+    is only one other file. The others are written under hidden names. When the deciding file is replaced, our
+    readers read the new tables, and then the tables get their own names. If a program is killed before, the
+    old tables are whole. If it is killed later, the next call gives the tables their names. Tables in
+    `others` that are not written now are removed. All other files in the folder stay.
 
     Raises OutputError if a table exists and `overwrite` is false, or if the folder cannot be created, and
     WriteError if writing fails. The old or the new tables are whole then.
@@ -70,68 +67,69 @@ def write_together(
         new_folder(folder, "a mesh"),
         refusals_of_this_package(),
         _refusals_at(folder),
-        writing.temporary_folder(folder.resolve() / "tables") as (part, names_file),
+        _saving_alone(folder),
     ):
-        names = []
-        for name, pieces in files:
-            if "/" not in name:
-                writing.refuse_output(folder / name, overwrite)
-            names.append(name)
-            with open(part / name_in_set(name), "xb") as file:
-                file.writelines(pieces)
-                file.flush()
-                os.fsync(file.fileno())
-        with _saving_alone(folder):
-            _move_tables(folder)
-            for name in names:
-                _make_folder(folder, name)
-                writing.refuse_output(folder / name, overwrite)
-            absent = sorted(name for name in {*others} - {*names} if os.path.isfile(folder / name))
-            content = {"files": names, "absent": absent}
-            names_file.write(json.dumps(content, indent=1).encode())
-            names_file.flush()
-            os.fsync(names_file.fileno())
-            if sys.platform == "win32":
-                # A folder of open files cannot be renamed there.
-                names_file.close()
-            writing.sync_folder(part)
-            os.rename(part, folder / COMMITTED)
-            writing.sync_folder(folder)
-            _move_tables(folder)
-    return sorted(folder / name for name in names)
+        _name_hidden_tables(folder)
+        try:
+            return _written(folder, files, others, overwrite)
+        finally:
+            _name_hidden_tables(folder)
 
 
-def _move_tables(folder: Path) -> None:
-    """Move the tables of a committed save to their names, if there is one. Raises OSError, InputError."""
-    committed = committed_set(folder)
-    source = folder / COMMITTED
-    if committed is not None:
-        for name in committed.absent:
-            (folder / name).unlink(missing_ok=True)
-        for name in committed.files:
-            _make_folder(folder, name)
-            if os.path.lexists(source / name_in_set(name)):
+UNFINISHED: Final = "0" * 12
+"""Stands for the checksum in the hidden name of a table that is not whole yet."""
+
+HIDDEN: Final = re.compile(r"\.([a-z0-9_]+(\.npy|\.csv))\.([0-9a-f]{12})\.part")
+"""The hidden name of a table: its own name, its suffix, and the checksum of the deciding file."""
+
+
+def _written(
+    folder: Path, files: Iterable[tuple[str, Iterable[bytes]]], others: Iterable[str], overwrite: bool
+) -> list[Path]:
+    """Write tables under hidden names, and replace the deciding file. Raises OSError and OutputError."""
+    paths: list[Path] = []
+    deciding, data = folder, b""
+    for name, content in files:
+        path = folder / name
+        path.parent.mkdir(exist_ok=True)
+        writing.refuse_output(path, overwrite)
+        if name in DECIDING.values():
+            deciding, data = path, b"".join(content)
+            continue
+        with open(hidden_path(path, UNFINISHED), "wb") as file:
+            file.writelines(content)
+            file.flush()
+            os.fsync(file.fileno())
+        paths.append(path)
+    save = save_of(data)
+    for path in paths:
+        writing.refuse_output(path, overwrite)
+        os.replace(hidden_path(path, UNFINISHED), hidden_path(path, save))
+    for place in {path.parent for path in paths}:
+        writing.sync_folder(place)
+    writing.write_atomically(deciding, data, overwrite=overwrite)
+    for path in {folder / name for name in others} - {*paths}:
+        if path.is_file():
+            path.unlink()
+    return sorted([*paths, deciding])
+
+
+def _name_hidden_tables(folder: Path) -> None:
+    """Give the tables of the present save their names; remove hidden ones of other saves. Raises OSError."""
+    for place in (folder, folder / SCALARS):
+        for hidden in list(place.iterdir()) if place.is_dir() else ():
+            name = HIDDEN.fullmatch(hidden.name)
+            if name is None or hidden.is_symlink() or not hidden.is_file():
+                continue
+            if name[3] == save_in(folder / DECIDING[name[2]]):
                 with suppress(OSError):
-                    os.chmod(source / name_in_set(name), os.stat(folder / name).st_mode & 0o777)
-                os.replace(source / name_in_set(name), folder / name)
-        for place in {(folder / name).parent for name in committed.files}:
-            writing.sync_folder(place)
-        os.unlink(source / NAMES)
-    with _refusals_at(source), suppress(FileNotFoundError):
-        os.rmdir(source)
-
-
-def _make_folder(folder: Path, name: str) -> None:
-    """Make the folder in a folder of tables that a table is in, such as `scalars`. Raises OutputError."""
-    if "/" not in name:
-        return
-    place = (folder / name).parent
-    if place.is_symlink():
-        raise OutputError(f"{place}: it must be a folder, not a link; choose another place")
-    try:
-        place.mkdir(exist_ok=True)
-    except OSError as error:
-        raise OutputError(f"{place}: it cannot be made ({reason_of(error)}); choose another place") from None
+                    os.chmod(hidden, os.stat(place / name[1]).st_mode & 0o777)
+                os.replace(hidden, place / name[1])
+            else:
+                hidden.unlink()
+        writing.sync_folder(place)
+    with suppress(OSError):
+        os.rmdir(folder / SCALARS)
 
 
 @contextmanager
@@ -157,7 +155,7 @@ def new_folder(folder: Path, thing: str) -> Iterator[None]:
 
 @contextmanager
 def _saving_alone(folder: Path) -> Iterator[None]:
-    """Wait until no other program commits or moves tables in a folder. Raises WriteError."""
+    """Refuse to save tables to a folder while another program does. Raises WriteError."""
     try:
         descriptor = os.open(folder, os.O_RDONLY)
     except OSError:
@@ -165,21 +163,15 @@ def _saving_alone(folder: Path) -> Iterator[None]:
         yield
         return
     try:
-        until = time.monotonic() + SECONDS_OF_WAITING
-        while True:
-            try:
-                writing.lock(descriptor, wait=False)
-                break
-            except BlockingIOError:
-                if time.monotonic() > until:
-                    raise WriteError(
-                        f"tables must be saved by one program at a time, and another one saves to {folder};"
-                        " try again"
-                    ) from None
-                time.sleep(0.01)
-            except OSError:
-                # The file system has no locks.
-                break
+        try:
+            lock(descriptor)
+        except BlockingIOError:
+            raise WriteError(
+                f"tables must be saved by one program at a time, and another one saves to {folder}; try again"
+            ) from None
+        except OSError:
+            # The file system has no locks.
+            pass
         yield
     finally:
         os.close(descriptor)

@@ -15,7 +15,6 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from autocolor.arrays import AnyArray, Bytes, Indices, PartNumbers, Singles, underflowing
-from autocolor.budget import require_memory
 from autocolor.checks import is_whole, shown
 from autocolor.errors import InputError, UsageError
 from autocolor.immutable import Immutable, read_only
@@ -189,15 +188,7 @@ class Picture(Immutable):
 
     @property
     def planes(self) -> Mapping[str, LightPlane]:
-        """The two planes of the lights as rasters, by the name of the light.
-
-        Raises InputError if the rasters take more memory than the budget allows.
-        """
-        require_memory(
-            8 * self.lines * self.elements * len(self.light_planes),
-            f"the planes of {len(self.light_planes):,} lights",
-            "render fewer lights or pixels",
-        )
+        """The two planes of the lights as rasters, by the name of the light."""
         return {
             name: LightPlane(self._raster(planes.values[DIFFUSE]), self._raster(planes.values[SPECULAR]))
             for name, planes in self.light_planes.items()

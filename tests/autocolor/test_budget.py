@@ -19,7 +19,6 @@ from autocolor import budget as module
 from autocolor.budget import MEMORY, allowed_memory, allowing, require_memory, validated_limit
 from autocolor.commands.info import info
 from autocolor.files.conversion import output_named
-from autocolor.files.meshes import npy_tables
 from autocolor.lighting.illumination import BYTES_OF_LIGHT, SHARE
 from autocolor.rendering import rendering
 from ramtek_emu import Ramtek9300
@@ -105,20 +104,6 @@ def hills() -> Scene:
     return scene_of(autocolor.Mesh(np.column_stack([x, y, x * y * y]), flat.node_numbers))
 
 
-def plain_text(form: str) -> Callable[[Path], Path]:
-    """A function that writes the hills as a text in this form, with {nodes} and {polygons}."""
-
-    def write(folder: Path) -> Path:
-        mesh = hills().mesh
-        nodes = "\n".join(f"{x:g} {y:g} {z:g}" for x, y, z in mesh.coordinates.tolist())
-        quads = "\n".join(f"4 {a} {b} {c} {d}" for a, b, c, d in mesh.node_numbers.tolist())
-        path = folder / "hills"
-        path.write_text(form.format(nodes=nodes, polygons=quads))
-        return path
-
-    return write
-
-
 def converted(name: str) -> Callable[[Path], Path]:
     """A function that writes the hills in a format that we write."""
 
@@ -131,13 +116,7 @@ def converted(name: str) -> Callable[[Path], Path]:
     return write
 
 
-VTK = "# vtk DataFile Version 3.0\nx\nASCII\nDATASET "
-FORMATS = {
-    "grid": plain_text(f"{VTK}STRUCTURED_POINTS\nDIMENSIONS 4 4 1\nORIGIN 0 0 0\nSPACING 1 1 1\n"),
-    "OFF": plain_text("OFF\n16 9 0\n{nodes}\n{polygons}\n"),
-    "VTK": plain_text(f"{VTK}POLYDATA\nPOINTS 16 float\n{{nodes}}\nPOLYGONS 9 45\n{{polygons}}\n"),
-    **{name: converted(name) for name in ("CSV", "OBJ", "PLY", "tables", "store")},
-}
+FORMATS = {name: converted(name) for name in ("CSV", "OBJ", "PLY", "tables", "store")}
 
 
 @pytest.mark.parametrize("write", FORMATS.values(), ids=FORMATS)
@@ -171,8 +150,8 @@ def test_normals_of_many_mapped_polygons_are_refused_before_they_are_computed(tm
     mesh = hills().mesh
     np.save(tmp_path / "nodes.npy", np.asfortranarray(mesh.coordinates))
     np.save(tmp_path / "polygons.npy", np.asfortranarray(mesh.node_numbers))
-    scene = read_scene(tmp_path, limit=1e-9)
-    with pytest.raises(InputError, match=r"the normals of 9 polygons must take .*--to npy"), allowing(1e-9):
+    scene = read_scene(tmp_path, limit=1e-7)
+    with pytest.raises(InputError, match=r"the normals of 9 polygons must take .*--to npy"), allowing(1e-7):
         _ = scene.mesh.normals
     assert len(scene.mesh.normals.vectors)
 
@@ -202,24 +181,6 @@ def test_a_command_allows_the_limit_of_its_option_until_it_ends(tmp_path: Path, 
     assert isinstance(runner.invoke(info, [str(path), "--limit", "1e-9"]).exception, InputError)
     assert runner.invoke(info, [str(path), "--limit", "0.1"]).exit_code == 0
     assert isinstance(runner.invoke(info, [str(path), "--limit", "nan"]).exception, UsageError)
-
-
-def test_a_large_copy_of_mapped_tables_is_reported_without_verbose(
-    tmp_path: Path, runner: CliRunner, monkeypatch: pytest.MonkeyPatch, asked: list[float]
-) -> None:
-    mesh = hills().mesh
-    np.save(tmp_path / "nodes.npy", np.ascontiguousarray(mesh.coordinates))
-    np.save(tmp_path / "polygons.npy", np.asfortranarray(mesh.node_numbers))
-    size = mesh.coordinates.nbytes
-    monkeypatch.setattr(npy_tables, "LARGE_COPY", size)
-    assert "copied" not in runner.invoke(info, [str(tmp_path)]).output
-    assert size in asked
-    with pytest.raises(InputError, match=r"nodes.npy: its copy, for it is not float64 stored by columns"):
-        read_scene(tmp_path, limit=factor(size - 1))
-    monkeypatch.setattr(npy_tables, "LARGE_COPY", size - 1)
-    output = runner.invoke(info, [str(tmp_path)]).output
-    assert "autocolor: nodes.npy: copied into 0 MB of memory, for it is not float64 stored by col" in output
-    assert "--to npy" in output
 
 
 def lit_by(count: int) -> Scene:
@@ -272,14 +233,3 @@ def test_an_edit_of_lights_computed_in_turns_is_as_a_fresh_picture(edit: Callabl
     assert len(edited.picture.light_planes) <= 2
     assert edited.picture.relative.tobytes() == render(edit(scene), 30, 40).relative.tobytes()
     assert again.picture.relative.tobytes() == before.picture.relative.tobytes()
-
-
-@pytest.mark.parametrize("lights", [2, 3])
-def test_rasters_of_planes_ask_the_budget(lights: int) -> None:
-    picture = render(lit_by(lights), 30, 40)
-    needed = lights * 8 * 30 * 40
-    with allowing(factor(needed)):
-        assert len(picture.planes) == lights
-    refused = pytest.raises(InputError, match=f"the planes of {lights} lights must take")
-    with refused, allowing(factor(needed - 1)):
-        _ = picture.planes

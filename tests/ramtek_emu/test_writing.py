@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import errno
 import os
 import subprocess
 import sys
@@ -135,47 +136,42 @@ def test_impossible_outputs_are_refused_before_anything_is_done(tmp_path: Path) 
     assert os.listdir(tmp_path) == []
 
 
-def part(folder: Path, name: str = "a.png") -> Path:
-    return folder / f".{name}.0123456789ab.part"
+def part(folder: Path, name: str, number: int = 1) -> Path:
+    return folder / f".{name}.{number}.part"
 
 
-def test_temporary_files_of_killed_programs_are_swept_and_nothing_else(tmp_path: Path) -> None:
-    others = [".a.png.0123456789aB.part", ".a.png.part", "a.0123456789ab.part", ".b.0123456789ab.parts"]
-    for name in others:
-        (tmp_path / name).write_bytes(b"mine")
-    part(tmp_path).write_bytes(b"left")
-    part(tmp_path, "tables").mkdir()
-    (part(tmp_path, "tables") / "nodes.npy").write_bytes(b"left")
-    (tmp_path / "linked").mkdir()
-    part(tmp_path, "link").symlink_to(tmp_path / "linked")
-    (part(tmp_path, "tables") / "link").symlink_to(tmp_path / "linked")
-    others += [part(tmp_path, "link").name, "linked"]
-    write_atomically(tmp_path / "new.png", b"new", overwrite=False)
-    assert sorted(os.listdir(tmp_path)) == sorted([*others, "new.png"])
+def test_the_temporary_file_that_a_killed_program_left_is_removed_and_nothing_else(tmp_path: Path) -> None:
+    for left in (part(tmp_path, "new.png"), part(tmp_path, "other.png"), tmp_path / ".new.png.part"):
+        left.write_bytes(b"left")
+    (tmp_path / "linked").write_bytes(b"mine")
+    part(tmp_path, "linked.png").symlink_to("linked")
+    part(tmp_path, "linked.png", 2).mkdir()
+    for name in ("new.png", "linked.png"):
+        write_atomically(tmp_path / name, b"new", overwrite=False)
+        assert (tmp_path / name).read_bytes() == b"new"
+    others = [".linked.png.1.part", ".linked.png.2.part", ".new.png.part", ".other.png.1.part"]
+    assert sorted(os.listdir(tmp_path)) == [*others, "linked", "linked.png", "new.png"]
+    assert (tmp_path / "linked").read_bytes() == b"mine"
 
 
-def test_temporary_files_of_running_programs_stay(tmp_path: Path) -> None:
+def test_the_temporary_file_of_a_running_program_stays(tmp_path: Path) -> None:
     code = (
         "import sys\n"
-        "from pathlib import Path\n"
-        "from ramtek_emu.writing import Output, temporary_folder\n"
-        "with Output(sys.argv[1] + '/a', overwrite=True), temporary_folder(Path(sys.argv[1], 'b')):\n"
+        "from ramtek_emu.writing import Output\n"
+        "with Output(sys.argv[1], overwrite=True):\n"
         "    print('ready', flush=True)\n"
         "    sys.stdin.read()\n"
     )
-    command = [sys.executable, "-c", code, str(tmp_path)]
+    path = tmp_path / "a"
+    command = [sys.executable, "-c", code, str(path)]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as program:
         assert program.stdout is not None
         assert program.stdout.readline() == b"ready\n"
-        running = {path.name for path in tmp_path.iterdir()}
-        assert len(running) == 2
-        write_atomically(tmp_path / "new.png", b"new", overwrite=False)
-        assert set(os.listdir(tmp_path)) == {*running, "new.png"}
+        write_atomically(path, b"new", overwrite=True)
+        assert sorted(os.listdir(tmp_path)) == [".a.1.part", "a"]
         program.kill()
-    # Each process sweeps a folder once.
-    writing._SWEPT.clear()
-    write_atomically(tmp_path / "newer.png", b"new", overwrite=False)
-    assert sorted(os.listdir(tmp_path)) == ["new.png", "newer.png"]
+    write_atomically(path, b"newer", overwrite=True)
+    assert os.listdir(tmp_path) == ["a"]
 
 
 def test_a_program_that_ends_without_closing_its_output_leaves_nothing(tmp_path: Path) -> None:
@@ -188,28 +184,34 @@ def test_a_program_that_ends_without_closing_its_output_leaves_nothing(tmp_path:
     assert os.listdir(tmp_path) == []
 
 
-def test_what_is_left_of_a_temporary_folder_is_removed(tmp_path: Path) -> None:
-    with writing.temporary_folder(tmp_path / "tables") as (folder, _):
-        (folder / "nodes.npy").write_bytes(b"left")
-    assert os.listdir(tmp_path) == []
-
-
-def test_an_output_that_another_program_sweeps_as_it_is_made_is_made_again(
+def test_an_output_that_another_program_removes_as_it_is_made_is_made_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    lock = writing.lock
-    swept: list[Path] = []
+    lock, seen = writing.lock, []
 
-    def sweep_first(descriptor: int, *, wait: bool) -> None:
-        if not swept:
-            swept.extend(tmp_path.iterdir())
-            swept[0].unlink()
-        lock(descriptor, wait=wait)
+    def interfering(descriptor: int) -> None:
+        seen.append(list(tmp_path.iterdir()))
+        if len(seen) == 1:
+            seen[0][0].unlink()
+        if len(seen) == 2:
+            raise BlockingIOError
+        lock(descriptor)
 
-    monkeypatch.setattr(writing, "lock", sweep_first)
+    monkeypatch.setattr(writing, "lock", interfering)
     write_atomically(tmp_path / "a", b"new", overwrite=False)
-    assert len(swept) == 1
-    assert os.listdir(tmp_path) == ["a"]
+    assert (tmp_path / "a").read_bytes() == b"new"
+
+
+def test_without_locks_files_are_written_and_none_is_removed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def no_locks(_: int) -> None:
+        raise OSError(errno.ENOLCK, "No locks available")
+
+    monkeypatch.setattr(writing, "lock", no_locks)
+    part(tmp_path, "a").write_bytes(b"of another program")
+    write_atomically(tmp_path / "a", b"new", overwrite=False)
+    assert sorted(os.listdir(tmp_path)) == [".a.1.part", "a"]
 
 
 def test_paths_of_the_same_file_are_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -37,7 +37,7 @@ from autocolor.errors import InputError
 from autocolor.files.meshes.file_scalars import FileScalars
 from autocolor.files.meshes.number_text import MOST_PROBLEMS, NUMBER, Problems
 from autocolor.files.meshes.repair import LONGEST_NAME, PLAIN, MeshReport, Placement, RawPolygons, repaired
-from autocolor.files.reading import read_together, read_whole, shown, text_lines
+from autocolor.files.reading import read_table, read_together, read_whole, save_of, shown, text_lines
 from autocolor.files.writing import write_together
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalar import MOST_SCALARS, NODE, POLYGON
@@ -287,10 +287,13 @@ def read_csv_tables(nodes: Path, polygons: Path, placement: Placement = PLAIN) -
 
     Raises InputError with every problem of both tables, each with its file and row.
     """
-    paths = (nodes, polygons)
-    node_data, polygon_data = read_together(
-        lambda files: [read_whole(files.path(path.parent, path.name), GROWTH) for path in paths]
-    )
+
+    def tables() -> tuple[bytes, bytes]:
+        polygon_data = read_whole(polygons, GROWTH)
+        save = save_of(polygon_data)
+        return read_table(nodes, save, lambda path: read_whole(path, GROWTH)), polygon_data
+
+    node_data, polygon_data = read_together(polygons, tables)
     problems = Problems("row")
     node_table = Table(
         problems,

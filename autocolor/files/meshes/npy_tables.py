@@ -11,22 +11,24 @@
 | `plane_numbers.npy` | (polygons,) | int64 | the row of `planes.npy` of each polygon, -1 for none |
 | `plane_sides.npy` | (polygons,) | uint8 | 1 where a polygon's normal is against that of its plane |
 | `scalars/1.npy`, ... | (nodes,) or (polygons,) | float64 | a scalar; NaN is missing |
-| `tables.json` | | | names of parts and scalars, crease angle |
+| `tables.json` | | | names of parts and scalars, crease angle, files |
 
 All are stored by columns (Fortran order), so that `.T` is contiguous, in the byte order of the machine. Only
-the first two are needed. Tables of other types, orders and shapes that numpy saves are read by copying them,
-and the log says so: triangles alone as (polygons, 3), float32, int32, tables by rows. If the nodes are turned
-(`up`) or scaled, they are copied. Normals and planes are used if the nodes stay as in the file and the crease
-angle is the file's; otherwise they are computed. If you change nodes or polygons, delete the files of normals
-and planes, or convert the folder again. Nothing is ever repaired.
+the first two are needed. Tables of other types, orders and shapes that numpy saves are copied, and the log
+says so: triangles alone as (polygons, 3), float32, int32, tables by rows. If the nodes are turned (`up`) or
+scaled, they are copied. Normals and planes are used if the nodes stay as in the file and the crease angle is
+the file's; otherwise they are computed. If you change nodes or polygons, delete the normals and
+`tables.json`, or convert the folder again. Nothing is ever repaired. All numbers are checked once, when the
+tables are opened.
 
-`tables.json` is as `write_npy_tables` writes it. `planes` is true if the three files of planes exist, false
-if polygons share no planes, and null if planes are to be computed when the mesh is opened:
+A save replaces `tables.json` last (see `writing.write_together`). Its `files` are the tables of the save;
+without them, all tables in the folder belong to the mesh. `replaces` is the checksum of the older
+`tables.json`: so the content differs from save to save. `planes` is true if the three files of planes exist,
+false if polygons share no planes, and null if planes are to be computed when the mesh is opened:
 
-    {"format": "autocolor npy tables 1", "part_names": ["hood", "roof"], "crease_angle": 40.0,
-     "scalars": [{"name": "stress", "of": "node"}], "planes": null}
-
-All numbers are checked once when the tables are opened, a few pages at a time.
+    {"format": "autocolor npy tables 2", "part_names": ["hood", "roof"], "crease_angle": 40.0,
+     "scalars": [{"name": "stress", "of": "node"}], "planes": null,
+     "files": ["nodes.npy", "polygons.npy", "scalars/1.npy"], "replaces": "e3b0c44298fc"}
 
 Measured with `python -m benchmarks mapped_tables`: from opening ten million quads to the first picture 1.24 s
 and 168 MB besides the tables; without normals in the folder, opening takes 18 s and 1.4 GB. Conversion takes
@@ -35,299 +37,46 @@ and 168 MB besides the tables; without normals in the folder, opening takes 18 s
 
 from __future__ import annotations
 
+import io
 import json
 import math
 import mmap
 import os
-import re
 import tempfile
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from contextlib import suppress
+from functools import partial
 from pathlib import Path
-from typing import Any, Final, NamedTuple, NoReturn
+from typing import Any, Final
 
 import numpy as np
 
-from autocolor.arrays import AnyArray, Booleans, Indices, chunks
+from autocolor.arrays import AnyArray, Indices, chunks
 from autocolor.budget import require_memory
-from autocolor.checks import LARGEST_COORDINATE
-from autocolor.errors import InputError, WriteError, reason_of
+from autocolor.checks import LARGEST_COORDINATE, printable
+from autocolor.errors import InputError, MissingInputError, WriteError, reason_of
 from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, placed
-from autocolor.files.reading import TableFiles, bounded_json, opened, read_bytes, read_together, shown
+from autocolor.files.reading import (
+    SCALARS,
+    bounded_json,
+    opened,
+    read_bytes,
+    read_table,
+    read_together,
+    save_in,
+    save_of,
+    shown,
+    unreadable,
+)
 from autocolor.files.writing import write_together
 from autocolor.immutable import read_only
 from autocolor.logs import logger_of, timed
-from autocolor.scene.columns import Problem
 from autocolor.scene.geometry.normals import CREASE_ANGLE, NodeNormals, node_normals
 from autocolor.scene.geometry.planes import SharedPlanes
-from autocolor.scene.mesh import CREASE_ANGLES, PART, Mesh
-from autocolor.scene.scalar import LARGEST_SCALAR, MOST_SCALARS, NODE, POLYGON, MeshScalar
-
-# Tables are checked in chunks, and copied in chunks if rendering needs another type or order. Messages count
-# rows from 0, as numpy does.
+from autocolor.scene.mesh import PART, Mesh
+from autocolor.scene.scalar import MOST_SCALARS, NODE, POLYGON, MeshScalar
 
 LOG: Final = logger_of(__name__)
-
-ROWS_AT_ONCE: Final = 1 << 16
-
-UNIT: Final = 1e-3
-"""Limit: how far the length of a unit vector may be from 1."""
-
-Rule = Callable[[AnyArray], Booleans]
-"""A function from rows, (columns, rows), to whether each row is right."""
-
-
-def checked(name: str, table: AnyArray, thing: str, rule: Rule, remedy: str) -> None:
-    """Raise InputError for the first row of a table, (rows,) or (rows, columns), that breaks a rule.
-
-    `thing` is the rule in words.
-    """
-    rows = table.T if table.ndim > 1 else table[None]
-    for chunk in chunks(rows.shape[1], ROWS_AT_ONCE):
-        right = rule(rows[:, chunk])
-        if not right.all():
-            row = chunk.start + int(np.argmin(right))
-            numbers = table[row].tolist()
-            raise InputError(f"{name}: {thing}, not {numbers} (row {row}, counted from 0); {remedy}")
-
-
-def is_shaped(name: str, table: AnyArray, what: str, rows: int | None, widths: tuple[int, ...]) -> None:
-    """Raise InputError unless a table has this many rows and one of the widths; (rows,) has the width 0."""
-    width = table.shape[1] if table.ndim > 1 else 0
-    if width in widths and rows in (None, len(table)):
-        return
-    count = "rows" if rows is None else str(rows)
-    shapes = " or ".join(f"({count}, {width})" if width else f"({count},)" for width in widths)
-    raise InputError(f"{name}: the shape of {what} must be {shapes}, not {table.shape}; write it again")
-
-
-def is_of(name: str, table: AnyArray, what: str, kinds: str) -> None:
-    """Raise InputError unless the numbers are whole ("iu"), or of any kind ("iuf")."""
-    if table.dtype.kind not in kinds:
-        rule = "whole numbers" if kinds == "iu" else "numbers"
-        raise InputError(f"{name}: {what} must be {rule}, not {table.dtype}; convert them")
-
-
-def within(count: int) -> Rule:
-    """The rule that numbers are from 0 to `count` - 1, compared exactly in any integer type."""
-
-    def rule(rows: AnyArray) -> Booleans:
-        right: Booleans = np.asarray(((rows >= 0) & (rows < count)).all(axis=0))
-        return right
-
-    return rule
-
-
-def are_coordinates(rows: AnyArray) -> Booleans:
-    """Which rows are finite and at most 1e30 in size."""
-    # The largest is infinite in half precision.
-    numbers = rows.astype(np.float32) if rows.dtype.newbyteorder("=") == np.float16 else rows
-    right: Booleans = np.asarray((np.abs(numbers) <= LARGEST_COORDINATE).all(axis=0))
-    return right
-
-
-def are_unit_vectors(rows: AnyArray) -> Booleans:
-    """Which vectors have the length 1 within UNIT."""
-    with np.errstate(over="ignore", invalid="ignore"):
-        lengths = np.sqrt((rows.astype(np.float64) ** 2).sum(axis=0))
-    right: Booleans = np.abs(lengths - 1) <= UNIT
-    return right
-
-
-LARGE_COPY: Final = 256_000_000
-"""Limit: bytes; a larger copy is a warning, which commands print without `-v`."""
-
-REMEDY: Final = (
-    "to map the tables, write them with `autocolor convert FOLDER OUT --to npy`, or use"
-    " numpy.asfortranarray before numpy.save"
-)
-
-
-def as_read(name: str, table: AnyArray, dtype: type[Any], width: int = 0) -> AnyArray:
-    """The table itself, or a copy in this type and by columns, which the log mentions.
-
-    A copy has at least `width` columns: further columns repeat the last. A large copy is a warning. Raises
-    InputError if it is larger than the memory budget allows.
-    """
-    rows = np.atleast_2d(table.T)
-    is_narrow = len(rows) < width
-    if table.dtype == dtype and rows.flags.c_contiguous and rows.flags.aligned and not is_narrow:
-        return table
-    reason = f"it is not {np.dtype(dtype)} stored by columns, but {table.dtype} stored by"
-    reason += " columns" if rows.flags.c_contiguous else " rows"
-    if is_narrow:
-        reason = "its triangles do not repeat their last node"
-    shape = max(len(rows), width), len(table)
-    size = math.prod(shape) * np.dtype(dtype).itemsize
-    require_memory(size, f"{name}: its copy, for {reason},", REMEDY)
-    if size > LARGE_COPY:
-        LOG.warning("%s: copied into %s MB of memory, for %s; %s", name, f"{size / 1e6:,.0f}", reason, REMEDY)
-    else:
-        LOG.info("%s: copied, for %s", name, reason)
-    copy = np.empty(shape, dtype)
-    for chunk in chunks(len(table), ROWS_AT_ONCE):
-        copy[: len(rows), chunk] = rows[:, chunk]
-        copy[len(rows) :, chunk] = rows[-1, chunk]
-    return read_only(copy).T if table.ndim > 1 else read_only(copy)[0]
-
-
-# A .npy file is mapped into memory: read page by page, and never copied whole. The header is matched, never
-# evaluated, and the size of the file is compared with it. If another program shortens the file later, the
-# system ends the process that reads it (SIGBUS). So write a new file and rename it.
-
-MOST_ROWS: Final = 200_000_000
-"""Limit: rows of a table. To check this many takes seconds."""
-
-LARGEST_HEADER: Final = 1024
-"""Bytes; numpy writes 128 for a table."""
-
-MAGIC: Final = b"\x93NUMPY"
-
-HEADER: Final = re.compile(
-    rb"\{'descr': '([<>|](?:f[248]|[iu][1248]))', 'fortran_order': (True|False),"
-    rb" 'shape': \((\d{1,12}), ?(\d{1,2})?\), \} *\n"
-)
-"""The header of a table of numbers exactly as numpy writes it."""
-
-
-class NpyHeader(NamedTuple):
-    """The header of a file, and the byte where the numbers begin.
-
-    `shape` is (rows,) or (rows, columns). With `by_columns` the numbers of a column follow each other.
-    """
-
-    dtype: np.dtype[np.generic]
-    by_columns: bool
-    shape: tuple[int, ...]
-    start: int
-
-    @property
-    def size(self) -> int:
-        """How many bytes the file must have."""
-        return self.start + math.prod(self.shape) * self.dtype.itemsize
-
-
-def parsed_header(name: str, head: bytes) -> NpyHeader:
-    """The header at the start of a file with this name. Raises InputError."""
-    width = {b"\x01\x00": 2, b"\x02\x00": 4}.get(head[6:8], 0)
-    start = 8 + width + int.from_bytes(head[8 : 8 + width], "little")
-    described = HEADER.fullmatch(head[8 + width : start]) if start <= LARGEST_HEADER else None
-    if not head.startswith(MAGIC) or not width or described is None:
-        raise InputError(
-            f"{name}: it must be an .npy file with a table of whole numbers or floating-point numbers, not"
-            f" begin with {shown(head[:80], 80)}; write it with numpy.save"
-        )
-    shape = tuple(int(count) for count in described.groups()[2:] if count is not None)
-    dtype = np.dtype(described[1].decode())
-    if shape[0] > MOST_ROWS:
-        raise InputError(f"{name}: a table must have at most {MOST_ROWS:,} rows, not {shape[0]:,}; divide it")
-    # A table with one row or one column is stored by rows and by columns alike.
-    by_columns = described[2] == b"True" or len(shape) == 1 or min(shape) <= 1
-    return NpyHeader(dtype, by_columns, shape, start)
-
-
-def mapped(path: Path, name: str = "") -> AnyArray:
-    """The table of an .npy file, (rows,) or (rows, columns), mapped and read-only.
-
-    Messages have the `name`, if it is another than the path's. Raises MissingInputError if there is no such
-    file, InputError if it is not such a table.
-    """
-    name = name or path.name
-    with opened(path) as (file, status):
-        header = parsed_header(name, file.read(LARGEST_HEADER))
-        if status.st_size != header.size:
-            raise InputError(
-                f"{name}: a table of shape {header.shape} and type {header.dtype} must have"
-                f" {header.size:,} bytes, not {status.st_size:,}; write it again"
-            )
-        try:
-            pages = mmap.mmap(file.fileno(), header.size, access=mmap.ACCESS_READ)
-        except ValueError as error:
-            # Another program shortened the file meanwhile.
-            raise InputError(f"{name}: a table must stay whole ({error}); write it again") from None
-    numbers: AnyArray = np.frombuffer(pages, header.dtype, math.prod(header.shape), header.start)
-    return read_only(numbers.reshape(header.shape, order="F" if header.by_columns else "C"))
-
-
-# The notes: names of parts and scalars, crease angle, and whether polygons share planes.
-
-NOTES: Final = "tables.json"
-
-FORMAT: Final = "autocolor npy tables 1"
-
-LARGEST_NOTES: Final = 4 << 20
-MOST_VALUES: Final = 200_000
-
-KEYS: Final = frozenset(("format", "part_names", "crease_angle", "scalars", "planes"))
-
-
-@dataclass(frozen=True)
-class TableNotes:
-    """The content of `tables.json`.
-
-    `scalars` are pairs of a name and "node" or "polygon", in the order of their files. `planes` is True if
-    files have the planes that polygons share, False if no polygons share a plane, None if unknown.
-    """
-
-    part_names: tuple[str, ...]
-    crease_angle: float
-    scalars: tuple[tuple[str, str], ...] = ()
-    planes: bool | None = None
-
-
-def notes_text(notes: TableNotes) -> bytes:
-    """The content of `tables.json`."""
-    content = {
-        "format": FORMAT,
-        "part_names": notes.part_names,
-        "crease_angle": notes.crease_angle,
-        "scalars": [{"name": name, "of": of} for name, of in notes.scalars],
-        "planes": notes.planes,
-    }
-    return (json.dumps(content, indent=1, allow_nan=False) + "\n").encode()
-
-
-def read_notes(path: Path) -> TableNotes:
-    """The notes of a file. Raises InputError."""
-    try:
-        content = bounded_json(read_bytes(path, LARGEST_NOTES), MOST_VALUES)
-    except ValueError as error:
-        _refuse(path, f"it must be JSON of at most {MOST_VALUES:,} values, not wrong ({str(error)[:100]})")
-    if not isinstance(content, dict) or set(content) != KEYS or content["format"] != FORMAT:
-        _refuse(path, f"its format must be {FORMAT!r}, with the keys {', '.join(sorted(KEYS))}, not another")
-    names, scalars = content["part_names"], content["scalars"]
-    if not isinstance(names, list) or not all(isinstance(name, str) and name for name in names):
-        _refuse(path, "part_names must be strings, one for each part, not others")
-    if len(set(names)) != len(names):
-        _refuse(path, "part_names must differ, not repeat")
-    problems: list[Problem] = []
-    angle = CREASE_ANGLES.validated(content["crease_angle"], ("crease_angle",), problems)
-    if not isinstance(angle, float):
-        _refuse(path, problems[0].sentence.partition(";")[0])
-    if not isinstance(scalars, list) or len(scalars) > MOST_SCALARS or not all(map(_is_scalar, scalars)):
-        _refuse(
-            path, f"scalars must be at most {MOST_SCALARS} names, each of 'node' or 'polygon', not others"
-        )
-    if not (content["planes"] is None or isinstance(content["planes"], bool)):
-        _refuse(path, "planes must be true, false or null, not another")
-    return TableNotes(
-        tuple(names), angle, tuple((each["name"], each["of"]) for each in scalars), content["planes"]
-    )
-
-
-def _is_scalar(entry: object) -> bool:
-    return (
-        isinstance(entry, dict)
-        and set(entry) == {"name", "of"}
-        and isinstance(entry["name"], str)
-        and bool(entry["name"])
-        and entry["of"] in (NODE, POLYGON)
-    )
-
-
-def _refuse(path: Path, sentence: str) -> NoReturn:
-    raise InputError(f"{path.name}: {sentence}; convert the mesh again, or correct it")
-
 
 NODES: Final = "nodes.npy"
 POLYGONS: Final = "polygons.npy"
@@ -337,13 +86,169 @@ NORMAL_NUMBERS: Final = "normal_numbers.npy"
 PLANES: Final = "planes.npy"
 PLANE_NUMBERS: Final = "plane_numbers.npy"
 PLANE_SIDES: Final = "plane_sides.npy"
-SCALARS: Final = "scalars"
+NOTES: Final = "tables.json"
+
+MAGIC: Final = np.lib.format.MAGIC_PREFIX
+
+# One table. numpy maps it into memory: it is read page by page, and never copied whole. If another program
+# shortens the file later, the system ends the process that reads it (SIGBUS): write a new file and rename it.
+
+LARGEST_HEADER: Final = 1024
+"""Limit: bytes of the header of a table; numpy writes 128."""
+
+BYTES_OF_ROW: Final = 20
+"""Measured: 168 MB to open and render ten million quads. So a sparse file is not read for hours, either."""
+
+ROWS_AT_ONCE: Final = 1 << 16
+
+UNIT: Final = 1e-3
+"""Limit: how far the length of a unit vector may be from 1."""
+
+
+def mapped(path: Path, name: str) -> AnyArray:
+    """The table of an .npy file, (rows,) or (rows, columns), mapped and read-only; messages have the `name`.
+
+    Raises MissingInputError if there is no such file, InputError if it is not such a table, or if the budget
+    does not allow so many rows.
+    """
+    with opened(path) as (file, status):
+        head = file.read(len(MAGIC))
+    try:
+        if head != MAGIC:
+            raise ValueError("it begins as another file")
+        table = np.load(path, mmap_mode="r", allow_pickle=False, max_header_size=LARGEST_HEADER)
+        if table.dtype.kind not in "iuf" or table.ndim not in (1, 2):
+            raise ValueError(f"its dtype is {table.dtype}, its shape {table.shape}")
+    except OSError as error:
+        raise unreadable(path, error) from None
+    except Exception as error:
+        # A wrong header makes numpy raise errors of many kinds.
+        raise InputError(
+            f"{name}: it must be an .npy file with a table of whole numbers or floating-point numbers, not"
+            f" another file ({printable(str(error)[:200])}); write it with numpy.save"
+        ) from None
+    size = table.offset + table.nbytes
+    if status.st_size != size:
+        raise InputError(
+            f"{name}: a table of shape {table.shape} and type {table.dtype} must have {size:,} bytes, not"
+            f" {status.st_size:,}; write it again"
+        )
+    require_memory(BYTES_OF_ROW * len(table), f"{name}: to render {len(table):,} rows", "divide the mesh")
+    return np.asarray(table)
+
+
+def refuse_rows(name: str, table: AnyArray, thing: str, is_right: Callable[[AnyArray], AnyArray]) -> None:
+    """Raise InputError for the first row of a table, (rows,) or (rows, columns), that breaks a rule.
+
+    `thing` is the rule in words. `is_right` takes some rows, (columns, rows), and returns for each number, or
+    each row, whether it is right. Rows are counted from 0, as numpy does.
+    """
+    rows = np.atleast_2d(table.T)
+    for chunk in chunks(rows.shape[1], ROWS_AT_ONCE):
+        right = np.atleast_2d(is_right(rows[:, chunk])).all(axis=0)
+        if not right.all():
+            row = chunk.start + int(np.argmin(right))
+            raise InputError(
+                f"{name}: {thing}, not {table[row].tolist()} (row {row}, counted from 0); correct that row"
+            )
+
+
+def are_unit_vectors(rows: AnyArray) -> AnyArray:
+    """Which vectors have the length 1 within UNIT."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        lengths = np.sqrt((rows.astype(np.float64) ** 2).sum(axis=0))
+    return np.asarray(np.abs(lengths - 1) <= UNIT)
+
+
+def as_read(name: str, table: AnyArray, dtype: type[Any], width: int) -> AnyArray:
+    """The table itself, or a copy in this type and by columns, which the log mentions.
+
+    Of triangles, a copy with the `width` 4 repeats the last column. Raises InputError if the copy is larger
+    than the memory budget allows.
+    """
+    is_narrow = table.ndim > 1 and table.shape[1] < width
+    if table.dtype == dtype and table.flags.f_contiguous and not is_narrow:
+        return table
+    size = len(table) * max(width, 1) * np.dtype(dtype).itemsize
+    advice = "write the tables with `autocolor convert FOLDER OUT --to npy`"
+    require_memory(size, f"{name}: a copy as {np.dtype(dtype)} by columns", advice)
+    order = "columns" if table.flags.f_contiguous else "rows"
+    LOG.info("%s: copied, because it is %s %s by %s", name, table.dtype, table.shape, order)
+    copy = np.empty((len(table), width) if width else len(table), dtype, order="F")
+    copy[..., : table.shape[-1]] = table
+    if is_narrow:
+        copy[:, -1] = table[:, -1]
+    return read_only(copy)
+
+
+# The notes: names of parts and scalars, crease angle, whether polygons share planes, and the files.
+
+FORMATS: Final = ("autocolor npy tables 2", "autocolor npy tables 1")
+"""The formats that are read; the first is written."""
+
+LARGEST_NOTES: Final = 4 << 20
+MOST_VALUES: Final = 200_000
+
+NO_NOTES: Final[Mapping[str, Any]] = {
+    "part_names": [],
+    "crease_angle": CREASE_ANGLE,
+    "scalars": [],
+    "planes": None,
+    "files": None,
+}
+
+
+def notes_of(data: bytes) -> Mapping[str, Any]:
+    """The notes in the bytes of `tables.json`, all keys of NO_NOTES among them. Raises InputError."""
+    try:
+        content = bounded_json(data, MOST_VALUES)
+        if not isinstance(content, dict) or not content.keys() <= {"format", "replaces", *NO_NOTES}:
+            raise ValueError(
+                f"it must be a table with no other keys than format, replaces, {', '.join(NO_NOTES)}"
+            )
+        notes = {"format": None, **NO_NOTES, **content}
+        scalars, angle = notes["scalars"], notes["crease_angle"]
+        rules = {
+            "format": (notes["format"] in FORMATS, repr(FORMATS[0])),
+            "part_names": (_are_names(notes["part_names"]), "different names, one for each part"),
+            "crease_angle": (type(angle) in (int, float) and 0 <= angle <= 180, "a number from 0 to 180"),
+            "scalars": (
+                isinstance(scalars, list) and len(scalars) <= MOST_SCALARS and all(map(_is_scalar, scalars)),
+                f"at most {MOST_SCALARS} names, each of 'node' or 'polygon'",
+            ),
+            "planes": (notes["planes"] in (None, True, False), "true, false or null"),
+            "files": (notes["files"] is None or _are_names(notes["files"]), "the names of the tables"),
+        }
+        for key, (is_right, rule) in rules.items():
+            if not is_right:
+                raise ValueError(f"{key} must be {rule}, not {shown(str(notes[key]))}")
+    except ValueError as error:
+        raise InputError(f"{NOTES}: {str(error)[:200]}; convert the mesh again, or correct it") from None
+    return notes
+
+
+def _are_names(names: object) -> bool:
+    if not isinstance(names, list) or not all(isinstance(name, str) and name for name in names):
+        return False
+    return len({*names}) == len(names)
+
+
+def _is_scalar(row: object) -> bool:
+    if not isinstance(row, dict) or row.keys() != {"name", "of"}:
+        return False
+    return isinstance(row["name"], str) and row["name"] != "" and row["of"] in (NODE, POLYGON)
+
+
+# The mesh of a folder.
 
 MOST_PARTS: Final = 1 << 16
 """Limit: parts in a folder that does not name its parts."""
 
-FINITE: Final = "coordinates must be finite and at most 1e30 in size"
-CORRECT: Final = "correct that row"
+VALUES: Final = "values"
+"""The numbers of a scalar, in messages; a NaN among them is a missing value."""
+
+Tables = Mapping[str, tuple[str, AnyArray]]
+"""The mapped tables of a mesh by their usual names: the name of the file, and the table."""
 
 
 def read_npy_tables(nodes: Path, polygons: Path, placement: Placement = PLAIN) -> MeshReport:
@@ -351,68 +256,78 @@ def read_npy_tables(nodes: Path, polygons: Path, placement: Placement = PLAIN) -
 
     Raises InputError that names table, row and remedy.
     """
-    is_plain = placement.up == "z" and placement.scale == 1
-    tables, notes, wanted = read_together(
-        lambda files: _mapped_tables(files, nodes, polygons, placement.crease_angle, is_plain)
+    has_plain_nodes = placement.up == "z" and placement.scale == 1
+    tables, notes = read_together(
+        nodes.with_name(NOTES), lambda: _opened(nodes, polygons, placement.crease_angle, has_plain_nodes)
     )
-    coordinates = _table(tables, NODES, "coordinates", None, (3,), np.float64, are_coordinates, FINITE)
-    corners = _numbers(tables, POLYGONS, "node numbers", None, (4, 3), "node table", len(coordinates))
+    coordinates = _table(tables, NODES, "coordinates", None, (3,), np.float64)
+    corners = _table(tables, POLYGONS, "node numbers", None, (4, 3), np.intp, 0, len(coordinates) - 1)
     count = len(corners)
-    if not is_plain:
+    if not has_plain_nodes:
         coordinates = np.asfortranarray(placed(coordinates.copy(order="F"), placement))
-        thing = "scaled coordinates must be at most 1e30 in size"
-        checked(NODES, coordinates, thing, are_coordinates, "give a smaller scale")
+        if not np.abs(coordinates).max(initial=0) <= LARGEST_COORDINATE:
+            raise InputError(
+                f"{NODES}: scaled coordinates must be at most 1e30 in size; give a smaller scale"
+            )
         read_only(coordinates)
     # Part 0 for all polygons takes the memory of one number.
     part_numbers: Indices = np.broadcast_to(np.zeros(1, np.intp), count)
-    names = () if notes is None else notes.part_names
+    names = tuple(notes["part_names"])
     if PARTS in tables:
-        most = len(names) or MOST_PARTS
-        part_numbers = _numbers(tables, PARTS, "part numbers", count, (0,), "part table", most)
+        last = (len(names) or MOST_PARTS) - 1
+        part_numbers = _table(tables, PARTS, "part numbers", count, (0,), np.intp, 0, last)
         names = names or tuple(f"part {number}" for number in range(int(part_numbers.max(initial=0)) + 1))
     planes: Any = ...
-    if notes is not None and notes.planes is not None and is_plain:
-        planes = _planes(tables, count) if notes.planes else None
+    if notes["planes"] is not None and has_plain_nodes:
+        planes = _planes(tables, count) if notes["planes"] else None
+    rows = {NODE: len(coordinates), POLYGON: count}
+    scalars = tuple(
+        MeshScalar(row["name"], _table(tables, name, VALUES, rows[row["of"]], (0,), np.float64), row["of"])
+        for name, row in ((_scalar_name(number), row) for number, row in enumerate(notes["scalars"], 1))
+    )
+    angle = notes["crease_angle"] if placement.crease_angle is None else placement.crease_angle
     mesh = Mesh.of_tables(
         coordinates,
         corners,
         part_numbers,
         names or (PART,),
-        wanted,
-        () if notes is None else _scalars(tables, notes, {NODE: len(coordinates), POLYGON: count}),
+        float(angle),
+        scalars,
         normals=_normals(tables, count),
         shared_planes=planes,
     )
     return MeshReport(mesh)
 
 
-Tables = Mapping[str, tuple[str, AnyArray]]
-"""The mapped tables of a folder by their usual names: the name of the file, and the table."""
+def _opened(
+    nodes: Path, polygons: Path, crease_angle: float | None, has_plain_nodes: bool
+) -> tuple[Tables, Mapping[str, Any]]:
+    """The tables to use, and the notes. Only headers are checked. Raises InputError."""
+    folder, notes, data = nodes.parent, NO_NOTES, b""
+    if (nodes, polygons) != (folder / NODES, folder / POLYGONS):
+        files = {NODES: nodes, POLYGONS: polygons}
+        return {name: (path.name, mapped(path, path.name)) for name, path in files.items()}, notes
+    if os.path.exists(folder / NOTES):
+        data = read_bytes(folder / NOTES, LARGEST_NOTES)
+        notes = notes_of(data)
 
+    def table(name: str) -> tuple[str, AnyArray]:
+        return name, read_table(folder / name, save_of(data), partial(mapped, name=name))
 
-def _mapped_tables(
-    files: TableFiles, nodes: Path, polygons: Path, crease_angle: float | None, is_plain: bool
-) -> tuple[Tables, TableNotes | None, float]:
-    """The tables to use, the notes if there are any, and the crease angle of the mesh.
-
-    Only headers are checked. Raises InputError.
-    """
-    folder = nodes.parent
-    is_folder = (nodes.name, polygons.name) == (NODES, POLYGONS) and polygons.parent == folder
-    has_notes = is_folder and files.has(folder, NOTES)
-    notes = read_notes(files.path(folder, NOTES)) if has_notes else None
-    angle = CREASE_ANGLE if notes is None else notes.crease_angle
-    wanted = angle if crease_angle is None else crease_angle
-    names = [PARTS] if is_folder and files.has(folder, PARTS) else []
-    if is_folder and is_plain and wanted == angle:
-        names += [name for name in (NORMALS, NORMAL_NUMBERS) if files.has(folder, name)]
-    if notes is not None:
-        names += [PLANES, PLANE_NUMBERS, PLANE_SIDES] if notes.planes and is_plain else []
-        names += [_scalar_name(number) for number in range(1, len(notes.scalars) + 1)]
-    places = {NODES: (folder, nodes.name), POLYGONS: (polygons.parent, polygons.name)}
-    places |= {name: (folder, name) for name in names}
-    tables = {key: (name, mapped(files.path(at, name), name)) for key, (at, name) in places.items()}
-    return tables, notes, wanted
+    listed, has_planes = notes["files"], notes["planes"] and has_plain_nodes
+    names = [NODES, POLYGONS, *map(_scalar_name, range(1, len(notes["scalars"]) + 1))]
+    names += [PLANES, PLANE_NUMBERS, PLANE_SIDES] if has_planes else []
+    names += [PARTS] if listed is not None and PARTS in listed else []
+    tables = {name: table(name) for name in names}
+    if listed is None:
+        with suppress(MissingInputError):
+            tables[PARTS] = table(PARTS)
+    if has_plain_nodes and crease_angle in (None, notes["crease_angle"]):
+        with suppress(MissingInputError):
+            tables[NORMALS] = table(NORMALS)
+    if NORMALS in tables:
+        tables[NORMAL_NUMBERS] = table(NORMAL_NUMBERS)
+    return tables, notes
 
 
 def _scalar_name(number: int) -> str:
@@ -426,93 +341,55 @@ def _table(
     rows: int | None,
     widths: tuple[int, ...],
     dtype: type[Any],
-    rule: Rule,
-    thing: str,
-    kinds: str = "iuf",
+    low: float = -LARGEST_COORDINATE,
+    high: float = LARGEST_COORDINATE,
 ) -> AnyArray:
-    """The checked table of a file, of the first of the widths. Raises InputError.
+    """The table of a file, of the first of the widths, with numbers from `low` to `high`.
 
-    `what` names the table, and `thing` the rule, in messages.
+    A table (rows,) has the width 0. Messages call the numbers `what`; VALUES may be NaN. Raises InputError.
     """
-    place, table = tables[name]
-    is_shaped(place, table, what, rows, widths)
-    is_of(place, table, what, kinds)
-    checked(place, table, thing, rule, CORRECT)
-    return as_read(place, table, dtype, widths[0])
+    file, table = tables[name]
+    width = table.shape[1] if table.ndim > 1 else 0
+    if width not in widths or rows not in (None, len(table)):
+        count = "rows" if rows is None else str(rows)
+        shapes = " or ".join(f"({count}, {each})" if each else f"({count},)" for each in widths)
+        raise InputError(f"{file}: the shape of {what} must be {shapes}, not {table.shape}; write it again")
+    if np.issubdtype(dtype, np.integer) and table.dtype.kind not in "iu":
+        raise InputError(f"{file}: {what} must be whole numbers, not {table.dtype}; convert them")
 
+    def is_right(numbers: AnyArray) -> AnyArray:
+        # In half precision, 1e30 is infinite. Whole numbers are compared exactly.
+        numbers = numbers.astype(np.float64, copy=False) if numbers.dtype.kind == "f" else numbers
+        # The usual case takes two thirds of the time.
+        if numbers.min() >= low and numbers.max() <= high:
+            return np.asarray(True)
+        right = (numbers >= low) & (numbers <= high)
+        return right | np.isnan(numbers) if what == VALUES else right
 
-def _numbers(
-    tables: Tables, name: str, what: str, rows: int | None, widths: tuple[int, ...], target: str, count: int
-) -> Indices:
-    """The checked numbers in a file, each a row of another table, `target`, of `count` rows."""
-    thing = f"{what} must be rows of the {target} (0 to {count - 1})"
-    return _table(tables, name, what, rows, widths, np.intp, within(count), thing, "iu")
+    refuse_rows(file, table, f"{what} must be from {low} to {high}", is_right)
+    return as_read(file, table, dtype, widths[0])
 
 
 def _normals(tables: Tables, polygons: int) -> NodeNormals | None:
     """The normals of the files; None if there are none."""
-    names = [name for name in (NORMALS, NORMAL_NUMBERS) if name in tables]
-    if not names:
+    if NORMALS not in tables:
         return None
-    if len(names) == 1:
-        raise InputError(
-            f"{names[0]}: {NORMALS} and {NORMAL_NUMBERS} must be in the folder together; delete it"
-        )
-    thing = "a normal must be a unit vector"
-    vectors = _table(tables, NORMALS, "normals", None, (3,), np.float32, are_unit_vectors, thing)
-    numbers = _numbers(tables, NORMAL_NUMBERS, "normal numbers", polygons, (4,), "normals", len(vectors))
+    vectors = _table(tables, NORMALS, "normals", None, (3,), np.float32)
+    refuse_rows(NORMALS, vectors, "a normal must be a unit vector", are_unit_vectors)
+    last = len(vectors) - 1
+    numbers = _table(tables, NORMAL_NUMBERS, "normal numbers", polygons, (4,), np.intp, 0, last)
     return NodeNormals(vectors, numbers)
 
 
 def _planes(tables: Tables, polygons: int) -> SharedPlanes:
     """The planes of the files that the notes promise."""
-    thing = "numbers must be finite and at most 1e30 in size"
-    planes = _table(tables, PLANES, "planes", None, (7,), np.float64, are_coordinates, thing)
-    checked(PLANES, planes[:, :3], "the normal of a plane must be a unit vector", are_unit_vectors, CORRECT)
+    planes = _table(tables, PLANES, "numbers of planes", None, (7,), np.float64)
+    refuse_rows(PLANES, planes[:, :3], "the normal of a plane must be a unit vector", are_unit_vectors)
+    last = len(planes) - 1
+    numbers = _table(tables, PLANE_NUMBERS, "plane numbers", polygons, (0,), np.intp, -1, last)
+    sides = _table(tables, PLANE_SIDES, "sides", polygons, (0,), np.uint8, 0, 1)
     columns = np.ascontiguousarray(planes.T)
-    numbers = _table(
-        tables,
-        PLANE_NUMBERS,
-        "plane numbers",
-        polygons,
-        (0,),
-        np.intp,
-        lambda row: ((row >= -1) & (row < len(planes)))[0],
-        f"plane numbers must be -1 or rows of the planes (0 to {len(planes) - 1})",
-        "i",
-    )
-    sides = _table(
-        tables,
-        PLANE_SIDES,
-        "sides",
-        polygons,
-        (0,),
-        np.uint8,
-        lambda row: ((row == 0) | (row == 1))[0],
-        "a side must be 0 or 1",
-    )
     return SharedPlanes(columns[:3], columns[3:6], columns[6], numbers, sides.view(np.bool_))
-
-
-def _scalars(tables: Tables, notes: TableNotes, counts: Mapping[str, int]) -> tuple[MeshScalar, ...]:
-    """The scalars that the notes name, for this many nodes and polygons."""
-    return tuple(
-        MeshScalar(
-            name,
-            _table(
-                tables,
-                _scalar_name(number),
-                f"a scalar of each {of}",
-                counts[of],
-                (0,),
-                np.float64,
-                lambda row: (np.isnan(row) | (np.abs(row) <= LARGEST_SCALAR))[0],
-                "a value must be at most 1e30 in size, or NaN if it is missing",
-            ),
-            of,
-        )
-        for number, (name, of) in enumerate(notes.scalars, 1)
-    )
 
 
 # Writing goes in chunks: no table is copied whole.
@@ -522,9 +399,8 @@ NUMBERS_AT_ONCE: Final = 1 << 17
 LARGE: Final = 1 << 21
 """From this many polygons on, normals are computed in files: they take 160 bytes a polygon."""
 
-
 OTHERS: Final = (
-    *(NOTES, PARTS, PLANES, PLANE_NUMBERS, PLANE_SIDES, NORMALS, NORMAL_NUMBERS),
+    *(PARTS, PLANES, PLANE_NUMBERS, PLANE_SIDES, NORMALS, NORMAL_NUMBERS),
     *map(_scalar_name, range(1, MOST_SCALARS + 1)),
 )
 """The names of tables that a mesh may lack: those of an older mesh are removed."""
@@ -542,11 +418,20 @@ def write_npy_tables(folder: Path, mesh: Mesh, *, overwrite: bool = False) -> li
 
 def _files(folder: Path, mesh: Mesh) -> Iterator[tuple[str, Iterable[bytes]]]:
     """The files of a mesh and their content; each is computed when it is written."""
+    names = []
     for name, table in _named_tables(folder, mesh):
+        names.append(name)
         yield name, _pieces(table)
-    scalars = tuple((scalar.name, scalar.of) for scalar in mesh.scalars)
-    notes = TableNotes(mesh.part_names, mesh.crease_angle, scalars, mesh.shared_planes is not None)
-    yield NOTES, [notes_text(notes)]
+    notes = {
+        "format": FORMATS[0],
+        "part_names": mesh.part_names,
+        "crease_angle": mesh.crease_angle,
+        "scalars": [{"name": scalar.name, "of": scalar.of} for scalar in mesh.scalars],
+        "planes": mesh.shared_planes is not None,
+        "files": names,
+        "replaces": save_in(folder / NOTES),
+    }
+    yield NOTES, [(json.dumps(notes, indent=1, allow_nan=False) + "\n").encode()]
 
 
 def _named_tables(folder: Path, mesh: Mesh) -> Iterator[tuple[str, AnyArray]]:
@@ -558,7 +443,7 @@ def _named_tables(folder: Path, mesh: Mesh) -> Iterator[tuple[str, AnyArray]]:
         yield _scalar_name(number), scalar.values
     planes = mesh.shared_planes
     if planes is not None:
-        yield PLANES, _plane_rows(planes)
+        yield PLANES, np.concatenate([planes.normals, planes.points, planes.distances[None]]).T
         yield PLANE_NUMBERS, planes.plane_of_polygon
         yield PLANE_SIDES, planes.turned.view(np.uint8)
     normals = _normals_of(folder, mesh)
@@ -568,7 +453,7 @@ def _named_tables(folder: Path, mesh: Mesh) -> Iterator[tuple[str, AnyArray]]:
 
 def _normals_of(folder: Path, mesh: Mesh) -> NodeNormals:
     """The normals of a mesh; for a large mesh they are computed in nameless files."""
-    if len(mesh.node_numbers) < LARGE or "normals" in vars(mesh):
+    if len(mesh.node_numbers) < LARGE or "normals" in vars(mesh) or not hasattr(os, "posix_fallocate"):
         return mesh.normals
     with timed(LOG, "node normals, in files"):
         return node_normals(
@@ -585,37 +470,22 @@ def scratch_array(folder: Path, shape: tuple[int, ...], dtype: type[Any]) -> Any
 
     All room is reserved at once, since a lack of room could not be reported later. Raises WriteError.
     """
-    count = math.prod(shape)
-    size = max(count * np.dtype(dtype).itemsize, 1)
+    size = max(math.prod(shape) * np.dtype(dtype).itemsize, 1)
     try:
         with tempfile.TemporaryFile(dir=folder) as file:
-            if hasattr(os, "posix_fallocate"):
-                os.posix_fallocate(file.fileno(), 0, size)
-            else:
-                for _ in range(0, size, NUMBERS_AT_ONCE):
-                    file.write(bytes(NUMBERS_AT_ONCE))
-                file.flush()
+            os.posix_fallocate(file.fileno(), 0, size)
             pages = mmap.mmap(file.fileno(), size)
     except OSError as error:
         raise WriteError(f"{folder}: there must be room to work in ({reason_of(error)}); make some") from None
-    return np.frombuffer(pages, dtype, count).reshape(shape)
-
-
-def _plane_rows(planes: SharedPlanes) -> AnyArray:
-    return np.concatenate([planes.normals, planes.points, planes.distances[None]]).T
-
-
-def npy_header(dtype: np.dtype[Any], shape: tuple[int, ...]) -> bytes:
-    """The header of an .npy file of a table that is stored by columns, as numpy writes it."""
-    order = len(shape) > 1
-    text = f"{{'descr': '{dtype.str}', 'fortran_order': {order}, 'shape': {shape}, }}"
-    size = -(-(10 + len(text) + 1) // 64) * 64
-    return MAGIC + b"\x01\x00" + (size - 10).to_bytes(2, "little") + text.ljust(size - 11).encode() + b"\n"
+    return np.ndarray(shape, dtype, pages)
 
 
 def _pieces(table: AnyArray) -> Iterable[bytes]:
-    """The bytes of the .npy file of a table, column after column."""
-    yield npy_header(table.dtype, table.shape)
-    for row in table.T if table.ndim > 1 else table[None]:
+    """The bytes of the .npy file of a table that is stored by columns, column after column."""
+    header = io.BytesIO()
+    described = {"descr": table.dtype.str, "fortran_order": table.ndim > 1, "shape": table.shape}
+    np.lib.format.write_array_header_1_0(header, described)
+    yield header.getvalue()
+    for row in np.atleast_2d(table.T):
         for chunk in chunks(len(row), NUMBERS_AT_ONCE):
             yield row[chunk].tobytes()

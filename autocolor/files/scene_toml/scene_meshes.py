@@ -21,7 +21,6 @@ from autocolor.files.meshes.obj import obj_text
 from autocolor.files.meshes.repair import COMPUTED, FILE, NORMALS, SCALES, UPS, MeshReport, Placement
 from autocolor.files.meshes.table_file import SUFFIX, table_file_bytes
 from autocolor.files.paths import free_path, path_within
-from autocolor.files.reading import TableFiles
 from autocolor.files.scene_toml.toml_text import KeyPath, SceneProblems, parsed_toml
 from autocolor.files.writing import write_atomically
 from autocolor.scene.columns import BarRange, Column, Problem, Row, RowError, Tier, from_plain
@@ -177,8 +176,8 @@ def _read_whole(files: Mapping[str, Path]) -> Iterable[Path]:
 
 def _size(path: Path) -> int:
     try:
-        return os.stat(TableFiles().path(path.parent, path.name)).st_size
-    except (OSError, InputError):
+        return os.stat(path).st_size
+    except OSError:
         return 0
 
 

@@ -33,8 +33,7 @@ KIND = ArrayFileKind(
 NUMBERS = {"numbers": np.arange(6).reshape(2, 3)}
 WITH_SERIES = dataclasses.replace(
     KIND,
-    formats=("test 3",),
-    plain=("test 2", "test 1"),
+    formats=("test 3", "test 2", "test 1"),
     series={"rows": Series("row", ("<f8", 1), most=3)},
 )
 
@@ -74,22 +73,24 @@ def test_a_series_has_as_many_arrays_as_the_header_tells(count: int) -> None:
         assert again.arrays[f"row_{number}"].tolist() == [number] * number
 
 
-WRONG_ROWS: tuple[object, ...] = (None, {}, "ab", 3, [0] * 4)
-ROWS = "file, header: rows must be a list of at most 3 rows, not"
-OTHER = "file: a test file must be whole and as autocolor wrote it, not with members like 'header.npy'"
-ADVICE = "; make it again"
+WHOLE = "file: a test file must be whole and as autocolor wrote it, and it is not"
 
 test_what_is_refused = refused(
     read,
     [
-        (content(0, format="test 4"), f"file, header: its format must be 'test 3'{ADVICE}"),
-        (
-            content(0, format="test 2", rows=[]),
-            f"file, header: it must have exactly the keys of its format{ADVICE}",
-        ),
-        *((content(0, rows=rows), f"{ROWS} {rows!r}{ADVICE}") for rows in WRONG_ROWS),
-        (content(1, rows=[0, 0]), f"{OTHER}, 'numbers.npy', 'row_0.npy'{ADVICE}"),
-        (content(3, rows=[0, 0]), f"{OTHER}, 'numbers.npy', 'row_0.npy'{ADVICE}"),
+        (content, f"{WHOLE} ({reason}); make it again")
+        for content, reason in (
+            (content(0, format="test 4"), "its format must be 'test 3'"),
+            (content(0, more=1), "its header must have exactly the keys of its format"),
+            *(
+                (content(0, rows=rows), f"rows must be a list of at most 3 rows, not {rows!r}")
+                for rows in (None, {}, "ab", 3, [0] * 4)
+            ),
+            *(
+                (content(count, rows=[0, 0]), "its members are 'header.npy', 'numbers.npy', 'row_0.npy'")
+                for count in (1, 3)
+            ),
+        )
     ],
 )
 

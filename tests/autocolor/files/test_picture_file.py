@@ -227,14 +227,6 @@ def test_a_smooth_picture_comes_back_with_its_smoothness(tmp_path: Path) -> None
     assert header == {**header_of(content(lit_wall)), "smooth": 3}
 
 
-def unseen() -> Scene:
-    return wall_scene(view=lit_wall().view.replace(direction=(0, -1, 0)), lights=[])
-
-
-def test_a_scene_in_which_nothing_is_seen_comes_back() -> None:
-    assert not read(content(unseen)).picture.surface_number.any()
-
-
 def test_an_existing_file_is_kept_unless_it_may_be_overwritten(tmp_path: Path) -> None:
     path, (picture, scene) = tmp_path / "wall.npz", read(content(lit_wall))
     path.write_bytes(b"mine")
@@ -299,7 +291,6 @@ def test_a_picture_file_of_an_older_format_is_still_read(tmp_path: Path, version
     older = dataclasses.replace(
         PICTURE_FILE,
         formats=(f"autocolor picture {version}",),
-        added=frozenset(),
         arrays={name: PICTURE_FILE.arrays[name] for name in arrays},
     )
     again = read(array_file_bytes(older, header, arrays))
@@ -359,31 +350,31 @@ def told(cases: list[tuple[Any, str]]) -> list[tuple[Any, str]]:
 SURFACES = ": its surfaces must be the scene's, ['wall'], not"
 SMOOTH = ": smooth must be a whole number that divides its lines and elements, (9, 12), not"
 SCALE = ": its scale must be a number above 0, not"
-KEYS = ", header: it must have exactly the keys of its format"
+WHOLE = ": a picture file must be whole and as autocolor wrote it, and it is not"
+KEYS = f"{WHOLE} (its header must have exactly the keys of its format)"
 TABLES = ": scene: it must be tables, its mesh among them, not"
 
 test_a_header_that_breaks_a_rule_is_refused = refused(
     lambda place: read(edited(content(lit_wall), *place)),
     told(
         [
-            (("format", "autocolor picture 5"), ", header: its format must be 'autocolor picture 4'"),
-            (("format", "autocolor picture 2"), KEYS),
+            (("format", "autocolor picture 5"), f"{WHOLE} (its format must be 'autocolor picture 4')"),
             (("more", 1), KEYS),
             (("scale",), KEYS),
             *(
                 (("smooth", value), f"{SMOOTH} {shown(value)}")
                 for value in (0, -3, 2, 9, 3.0, True, "3", [3])
             ),
-            *((("scale", value), f"{SCALE} {value!r}") for value in (0, -1.5, True, "1", 3.5e38)),
+            *((("scale", value), f"{SCALE} {shown(value)}") for value in (0, -1.5, True, "1", 3.5e38)),
             (("scale", 3.3e38), ": intensities must stay below 3.4e+38, not reach 3.3e+38 times their own"),
             (("surfaces", ["other"]), f"{SURFACES} ['other']"),
             (("surfaces", ["wall", "more"]), f"{SURFACES} ['wall', 'more']"),
             (("scene", []), f"{TABLES} []"),
             (("scene", {"mesh": []}), f"{TABLES} {{'mesh': []}}"),
-            (("mesh_scalars", 3), ", header: mesh_scalars must be a list of at most 1,000 rows, not 3"),
+            (("mesh_scalars", 3), f"{WHOLE} (mesh_scalars must be a list of at most 1,000 rows, not 3)"),
             (
                 ("shown_scalars", [1, 2]),
-                ", header: shown_scalars must be a list of at most 1 rows, not [1, 2]",
+                f"{WHOLE} (shown_scalars must be a list of at most 1 rows, not [1, 2])",
             ),
             (
                 ("scene.lights.0.intensity", -1),
@@ -434,16 +425,16 @@ test_a_header_with_wrong_scalars_is_refused = refused(
     ids=lambda text: repr(text[:9]),
 )
 def test_a_header_that_is_no_json_of_ours_is_refused(text: bytes) -> None:
-    with pytest.raises(InputError, match=r"^changed\.npz, header: it"):
+    with pytest.raises(InputError, match=r"^changed\.npz: a picture file must be whole"):
         read(with_header(content(lit_wall), text))
 
 
 INTENSITY = "relative_intensity"
 RASTER = (LINES, ELEMENTS)
-OF_TYPE = "it must be an array of"
+OF_TYPE = " dimensions, not "
 FINITE = "every intensity must be a finite number of at least 0"
 ONE_SHAPE = "its arrays must be of one shape, not"
-MEMBERS = "must be whole and as autocolor wrote it, not with members like"
+MEMBERS = "its members are 'header.npy', 'relative_intensity.npy', 'surface_number.npy'"
 
 
 @pytest.mark.parametrize(
@@ -451,7 +442,6 @@ MEMBERS = "must be whole and as autocolor wrote it, not with members like"
     [
         (lit_wall, INTENSITY, np.zeros(RASTER), OF_TYPE),
         (lit_wall, INTENSITY, np.zeros(RASTER, ">f4"), OF_TYPE),
-        (lit_wall, INTENSITY, np.zeros(RASTER, np.float32, "F"), OF_TYPE),
         (lit_wall, INTENSITY, np.zeros((ELEMENTS, LINES), np.float32), ONE_SHAPE),
         (lit_wall, INTENSITY, np.zeros((0, ELEMENTS), np.float32), ONE_SHAPE),
         (lit_wall, INTENSITY, np.full(RASTER, np.nan, np.float32), FINITE),
@@ -463,7 +453,7 @@ MEMBERS = "must be whole and as autocolor wrote it, not with members like"
         (lit_wall, "coordinates", np.full((4, 3), 1e31), "coordinates must be"),
         (lit_wall, "node_numbers", np.array([[0, 1, 2, 4]], np.int32), "of the node table (0 to 3)"),
         (lit_wall, "part_numbers", np.array([1], np.int32), "of the part table (0 to 0)"),
-        (lit_wall, "part_numbers", np.array([{"a": 1}], object), OF_TYPE),
+        (lit_wall, "part_numbers", np.array([{"a": 1}], object), "has not the bytes of object"),
         (in_color, "mesh_scalar_0", np.zeros(11), "one value a node"),
         (in_color, "mesh_scalar_0", np.zeros(12, np.float32), OF_TYPE),
         (in_color, "mesh_scalar_3", np.zeros(6), MEMBERS),
@@ -513,23 +503,31 @@ def described(text: str, data: bytes = b"") -> bytes:
     return b"\x93NUMPY\x01\x00" + len(text).to_bytes(2, "little") + text.encode() + data
 
 
+SHAPE = "{{'descr': '<f4', 'fortran_order': False, 'shape': {}, }}\n"
+
+
 @pytest.mark.parametrize(
     "data",
     [
         b"\x93NUMPY",
         b"\x93NUMPY\x02\x00" + b"\0" * 100,
         b"\x93NUMPY\x01\x00\xff\xff",
-        described("{'descr': '<f4', 'fortran_order': False, 'shape': (99999999999, 99999999999), }\n"),
-        described("{'descr': '<f4', 'fortran_order': False, 'shape': (0, 99999999999), }\n"),
-        described("{'descr': '<f4', 'fortran_order': False, 'shape': (True, 1), }\n", b"\0" * 4),
+        *(described(SHAPE.format(shape)) for shape in ("(99999999999, 99999999999)", "(-1, 4)", "(1.5, 1)")),
+        described(SHAPE.format("(0, 99999999999)")),
+        described(SHAPE.format("(True, 1)"), b"\0" * 4),
         described("{'descr': '|O', 'fortran_order': False, 'shape': (1, 1), }\n", b"\x80\x04N."),
         described("__import__('os')\n"),
+        described("(" * 1000),
+        described("-" * 1000 + "1"),
     ],
 )
-def test_an_array_of_another_description_is_refused(data: bytes) -> None:
+def test_an_array_of_another_description_is_refused_before_memory_is_taken(data: bytes) -> None:
     members = {**members_of(content(lit_wall)), "relative_intensity.npy": data}
-    with pytest.raises(InputError, match=r"^changed\.npz, relative_intensity: it must be an array of <f4"):
+    tracemalloc.start()
+    with pytest.raises(InputError, match=r"^changed\.npz: .*; save the picture again$"):
         read(zipped(members))
+    assert tracemalloc.get_traced_memory()[1] < 4_000_000
+    tracemalloc.stop()
 
 
 @pytest.mark.filterwarnings("ignore:Duplicate name")
@@ -539,6 +537,7 @@ def test_other_members_are_refused() -> None:
     with zipfile.ZipFile(twice, "a") as archive:
         archive.writestr("header.npy", members["header.npy"])
     for data in (
+        zipped(members, zipfile.ZIP_DEFLATED),
         zipped({}),
         zipped({name: data for name, data in members.items() if name != "header.npy"}),
         zipped({**members, "../header.npy": b""}),
@@ -549,19 +548,6 @@ def test_other_members_are_refused() -> None:
         with pytest.raises(InputError, match=r"^changed\.npz: a picture file must be whole") as caught:
             read(data)
         assert len(str(caught.value)) < 400
-
-
-def test_a_small_file_cannot_promise_more_memory_than_it_holds() -> None:
-    # A thousand times its size, if it were unpacked.
-    bomb = zipped(
-        {**members_of(content(lit_wall)), "coordinates.npy": bytes(72_000_000)}, zipfile.ZIP_DEFLATED
-    )
-    assert len(bomb) < 100_000
-    tracemalloc.start()
-    with pytest.raises(InputError, match="not compressed"):
-        read(bomb)
-    assert tracemalloc.get_traced_memory()[1] < 4_000_000
-    tracemalloc.stop()
 
 
 def test_a_file_that_is_missing_or_of_another_kind_is_refused(tmp_path: Path) -> None:

@@ -5,9 +5,10 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-import time
+from collections.abc import Callable
 from pathlib import Path
 
+import platformdirs
 import pytest
 
 from autocolor import OutputError, WriteError
@@ -15,7 +16,6 @@ from autocolor.files import state as state_module
 from autocolor.files.state import (
     COLORS,
     FILES,
-    LOCK,
     LONGEST_PATH,
     MOST_COLORS,
     MOST_FILES,
@@ -114,34 +114,34 @@ def test_a_list_that_cannot_be_written_stays_as_it_was(state: Path, monkeypatch:
     assert recent_files() == ()
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="platformdirs knows the folders of other systems")
 @pytest.mark.parametrize(
-    ("platform", "variables", "folder"),
+    ("named", "folder"),
     [
-        ("linux", {}, "/home/ann/.local/state/autocolor"),
-        ("linux", {"XDG_STATE_HOME": "/var/state"}, "/var/state/autocolor"),
-        ("linux", {"XDG_STATE_HOME": "state"}, "/home/ann/.local/state/autocolor"),
-        ("darwin", {}, "/home/ann/Library/Application Support/autocolor"),
-        ("win32", {"LOCALAPPDATA": "/local", "XDG_STATE_HOME": "/var/state"}, "/local/autocolor"),
-        ("win32", {}, "/home/ann/AppData/Local/autocolor"),
+        (None, "/home/ann/.local/state/autocolor"),
+        ("/var/state", "/var/state/autocolor"),
+        ("", "/home/ann/.local/state/autocolor"),
     ],
 )
-def test_each_system_has_its_place_for_state(
-    monkeypatch: pytest.MonkeyPatch, platform: str, variables: dict[str, str], folder: str
+def test_the_state_is_where_it_always_was(
+    monkeypatch: pytest.MonkeyPatch, named: str | None, folder: str
 ) -> None:
-    for name in ("XDG_STATE_HOME", "LOCALAPPDATA"):
-        monkeypatch.delenv(name, raising=False)
-    for name, value in {"HOME": "/home/ann", **variables}.items():
-        monkeypatch.setenv(name, value)
-    monkeypatch.setattr(sys, "platform", platform)
+    monkeypatch.setenv("HOME", "/home/ann")
+    monkeypatch.delenv("XDG_STATE_HOME")
+    if named is not None:
+        monkeypatch.setenv("XDG_STATE_HOME", named)
     assert state_folder() == Path(folder)
 
 
-def test_without_a_home_there_are_no_lists_and_the_variable_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    def home() -> Path:
-        raise RuntimeError
+def no_home(*_: object, **__: object) -> str:
+    raise RuntimeError
 
-    monkeypatch.delenv("XDG_STATE_HOME")
-    monkeypatch.setattr(Path, "home", home)
+
+@pytest.mark.parametrize("answer", [no_home, lambda *_, **__: "~/.local/state/autocolor"])
+def test_without_a_home_there_are_no_lists_and_the_variable_is_named(
+    monkeypatch: pytest.MonkeyPatch, answer: Callable[..., str]
+) -> None:
+    monkeypatch.setattr(platformdirs, "user_state_dir", answer)
     note_color((255, 0, 0))
     assert recent_colors() == ()
     with pytest.raises(OutputError) as refusal:
@@ -149,33 +149,6 @@ def test_without_a_home_there_are_no_lists_and_the_variable_is_named(monkeypatch
     assert str(refusal.value) == (
         "the state folder must be in a home folder, and there is none; set XDG_STATE_HOME"
     )
-
-
-def test_a_program_that_hangs_does_not_stop_others(state: Path) -> None:
-    state.mkdir(parents=True)
-    descriptor = lock_file(state / LOCK)
-    assert descriptor is not None
-    assert lock_file(state / LOCK) is None
-    began = time.monotonic()
-    note_color((255, 0, 0))
-    assert 0.2 < time.monotonic() - began < 60
-    os.close(descriptor)
-    assert recent_colors() == ((255, 0, 0),)
-    again = lock_file(state / LOCK)
-    assert again is not None
-    os.close(again)
-
-
-def test_two_programs_at_once_lose_nothing() -> None:
-    # A slow disk may hold the lock for longer than users should wait.
-    code = (
-        "import sys; from autocolor.files import state\n"
-        "state.LONGEST_WAIT = 60\n"
-        "for number in range(6): state.note_color((int(sys.argv[1]), number, 0))"
-    )
-    programs = [subprocess.Popen([sys.executable, "-c", code, each], cwd=ROOT) for each in ("1", "2")]
-    assert [program.wait(timeout=60) for program in programs] == [0, 0]
-    assert sorted(recent_colors()) == [(each, number, 0) for each in (1, 2) for number in range(6)]
 
 
 def test_a_program_that_is_killed_has_no_lock(tmp_path: Path) -> None:

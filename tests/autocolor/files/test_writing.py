@@ -3,7 +3,6 @@ from __future__ import annotations
 import errno
 import json
 import os
-import shutil
 from collections.abc import Iterator
 from contextlib import suppress
 from functools import partial
@@ -16,12 +15,17 @@ from click.testing import CliRunner
 from autocolor import read_scene
 from autocolor.commands.autocolor import autocolor
 from autocolor.errors import AutocolorError, InputError, OutputError, WriteError
-from autocolor.files import reading
-from autocolor.files.formats import read_mesh
+from autocolor.files import reading, writing
 from autocolor.files.opening import kind_of
-from autocolor.files.reading import COMMITTED, NAMES, TableFiles, read_together
+from autocolor.files.reading import (
+    hidden_path,
+    read_bytes,
+    read_table,
+    read_together,
+    save_of,
+    table_exists,
+)
 from autocolor.files.writing import refuse_output, write_atomically, write_together
-from ramtek_emu import writing
 from tests.kills import KINDS, Killed, killed, mesh_sum, steps
 
 
@@ -89,33 +93,55 @@ def test_an_interruption_leaves_nothing_behind(tmp_path: Path, monkeypatch: pyte
 
 # Folders of tables.
 
+NAMES = ("nodes.npy", "polygons.npy", "parts.npy", "scalars/1.npy")
+
 
 def tables_of(folder: Path, *, old: bool) -> None:
     """Save a set of tables: the old has a table that the new lacks, and the new has one in a folder."""
-    names = ["nodes.npy", "polygons.npy", "parts.npy" if old else "scalars/1.npy"]
+    names = [*NAMES[:2], NAMES[2] if old else NAMES[3]]
     files = [(name, [b"old" if old else b"new", name.encode()]) for name in names]
-    write_together(folder, files, others=["parts.npy", "scalars/1.npy"], overwrite=True)
+    files.append(("tables.json", [json.dumps(names).encode()]))
+    write_together(folder, files, others=NAMES[2:], overwrite=True)
 
 
 def names_in(folder: Path) -> list[str]:
     return sorted(str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file())
 
 
+def content_of(folder: Path) -> dict[str, bytes]:
+    """The content of the tables of a folder, as our readers find them."""
+    deciding = folder / "tables.json"
+
+    def read() -> dict[str, bytes]:
+        data = deciding.read_bytes() if deciding.exists() else b"[]"
+        return {name: read_table(folder / name, save_of(data), bytes_of) for name in json.loads(data)}
+
+    return read_together(deciding, read)
+
+
+def bytes_of(path: Path) -> bytes:
+    return read_bytes(path, 1000)
+
+
 def test_tables_written_together_get_their_names_and_other_files_stay(tmp_path: Path) -> None:
     folder = tmp_path / "tables"
     tables_of(folder, old=True)
     (folder / "notes.txt").write_text("mine")
+    (folder / "nodes.npy").chmod(0o600)
     tables_of(folder, old=False)
-    assert names_in(tmp_path / "tables") == ["nodes.npy", "notes.txt", "polygons.npy", "scalars/1.npy"]
+    assert names_in(folder) == ["nodes.npy", "notes.txt", "polygons.npy", "scalars/1.npy", "tables.json"]
     assert (folder / "nodes.npy").read_bytes() == b"newnodes.npy"
+    assert (folder / "nodes.npy").stat().st_mode & 0o777 == 0o600
+    tables_of(folder, old=True)
+    assert names_in(folder) == ["nodes.npy", "notes.txt", "parts.npy", "polygons.npy", "tables.json"]
 
 
 def test_tables_are_not_overwritten_unless_that_is_allowed(tmp_path: Path) -> None:
-    (tmp_path / "polygons.npy").write_bytes(b"mine")
+    (tmp_path / "polygons.csv").write_bytes(b"mine")
     with pytest.raises(OutputError, match="an output must be a new file"):
-        write_together(tmp_path, [("nodes.npy", [b""]), ("polygons.npy", [b""])], others=(), overwrite=False)
-    assert names_in(tmp_path) == ["polygons.npy"]
-    assert (tmp_path / "polygons.npy").read_bytes() == b"mine"
+        write_together(tmp_path, [("nodes.csv", [b""]), ("polygons.csv", [b""])], others=(), overwrite=False)
+    assert names_in(tmp_path) == ["polygons.csv"]
+    assert (tmp_path / "polygons.csv").read_bytes() == b"mine"
 
 
 def test_tables_that_cannot_be_written_leave_nothing(tmp_path: Path) -> None:
@@ -123,9 +149,12 @@ def test_tables_that_cannot_be_written_leave_nothing(tmp_path: Path) -> None:
         yield b"one"
         raise OSError(errno.ENOSPC, "No space left on device")
 
-    with pytest.raises(WriteError, match="must be written whole"):
-        write_together(tmp_path / "new", [("nodes.npy", pieces())], others=(), overwrite=True)
-    assert list(tmp_path.iterdir()) == []
+    for name in ("nodes.npy", "scalars/1.npy", "tables.json"):
+        with pytest.raises(WriteError, match="must be written whole"):
+            write_together(
+                tmp_path / "new", [("parts.npy", [b""]), (name, pieces())], others=(), overwrite=True
+            )
+        assert list(tmp_path.iterdir()) == []
     (tmp_path / "file").touch()
     for folder, sentence in (
         (tmp_path / "none" / "out", r"must be in an existing folder, not .*none; create it"),
@@ -134,16 +163,6 @@ def test_tables_that_cannot_be_written_leave_nothing(tmp_path: Path) -> None:
     ):
         with pytest.raises(OutputError, match=sentence):
             write_together(folder, [], others=(), overwrite=True)
-
-
-def content_of(folder: Path) -> dict[str, bytes]:
-    """The content of the tables of a folder, as our readers find them."""
-    names = ("nodes.npy", "polygons.npy", "parts.npy", "scalars/1.npy")
-
-    def read(files: TableFiles) -> dict[str, bytes]:
-        return {name: files.path(folder, name).read_bytes() for name in names if files.has(folder, name)}
-
-    return read_together(read)
 
 
 @pytest.mark.parametrize("has_old", [True, False])
@@ -162,8 +181,8 @@ def test_tables_whose_save_is_killed_at_any_step_are_the_old_or_the_new(
         with suppress(Killed), steps(number, killed) as done:
             tables_of(folder, old=False)
         found.append(kinds.index(content_of(folder)))
-        # The next save moves the tables that are left, and removes temporary files.
-        writing._SWEPT.clear()
+        assert table_exists(folder, "nodes.npy") == bool(has_old or found[-1])
+        # The next save names the tables that are left, and removes what is hidden.
         tables_of(folder, old=False)
         assert names_in(folder) == names_in(tmp_path / "False")
         assert content_of(folder) == kinds[1]
@@ -173,16 +192,45 @@ def test_tables_whose_save_is_killed_at_any_step_are_the_old_or_the_new(
     assert 0 < sum(found) < len(found)
 
 
+@pytest.mark.parametrize("is_alike", [True, False])
+def test_two_tables_of_which_one_decides_are_both_the_old_or_the_new(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, is_alike: bool
+) -> None:
+    monkeypatch.setattr(os, "fsync", lambda _: None)
+
+    def save(text: bytes) -> None:
+        deciding = b"alike" if is_alike else text
+        tables = [("nodes.csv", [text]), ("polygons.csv", [deciding])]
+        write_together(tmp_path, tables, others=(), overwrite=True)
+
+    def read() -> bytes:
+        deciding = (tmp_path / "polygons.csv").read_bytes()
+        nodes = read_table(tmp_path / "nodes.csv", save_of(deciding), bytes_of)
+        assert is_alike or nodes == deciding
+        return nodes
+
+    for number in count():
+        save(b"old")
+        with suppress(Killed), steps(number, killed) as done:
+            save(b"new")
+        assert read() in (b"old", b"new")
+        if len(done) < number:
+            break
+    assert read() == b"new"
+    assert names_in(tmp_path) == ["nodes.csv", "polygons.csv"]
+
+
 def test_tables_that_have_no_names_of_their_own_yet_are_found_in_every_way(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for name, suffix in (("CSV tables", "csv"), ("npy tables", "npy")):
+    for name, suffix, last in (("CSV tables", "csv", "polygons.csv"), ("npy tables", "npy", "tables.json")):
         kind, folder = KINDS[name], tmp_path / suffix
         folder.mkdir()
-        with monkeypatch.context() as patch, suppress(Killed):
-            patch.setattr(os, "replace", lambda *_: killed())
+        with monkeypatch.context() as patch:
+            # As if the program were killed before.
+            patch.setattr(writing, "_name_hidden_tables", lambda _: None)
             kind.save(folder, 1)
-        assert os.listdir(folder / "t") == [COMMITTED, *(["scalars"] if suffix == "npy" else [])]
+        assert [path.name for path in (folder / "t").glob("[!.]*.*")] == [last]
         expected = kind.read(folder)
         nodes, polygons = (f"t/{key}.{suffix}" for key in ("nodes", "polygons"))
         (folder / "scene.toml").write_text(f'mesh = [{{nodes = "{nodes}", polygons = "{polygons}"}}]')
@@ -192,111 +240,46 @@ def test_tables_that_have_no_names_of_their_own_yet_are_found_in_every_way(
         for command in (["info"], ["validate"], ["convert", str(folder / "out.ply")]):
             arguments = [command[0], str(folder / "t"), *command[1:]]
             assert CliRunner().invoke(autocolor, arguments).exit_code == 0
-        assert os.listdir(folder / "t")[0] == COMMITTED
 
 
 def test_tables_are_read_again_if_a_save_comes_while_they_are_opened(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(reading, "SECONDS_BETWEEN_TRIES", 0)
-    for old in (True, False):
-        tables_of(tmp_path / str(old), old=old)
-    folder = tmp_path / "True"
+    tables_of(tmp_path, old=True)
     moments = iter(["between", "late", "never"])
 
-    def opened(files: TableFiles) -> list[bytes]:
+    def opened() -> list[bytes]:
         moment = next(moments)
-        nodes = files.path(folder, "nodes.npy").read_bytes()
+        save = save_of((tmp_path / "tables.json").read_bytes())
+        nodes = read_table(tmp_path / "nodes.npy", save, bytes_of)
         if moment == "between":
-            tables_of(folder, old=False)
-        polygons = files.path(folder, "polygons.npy").read_bytes()
+            tables_of(tmp_path, old=False)
+        polygons = read_table(tmp_path / "polygons.npy", save, bytes_of)
         if moment == "late":
-            tables_of(folder, old=True)
+            tables_of(tmp_path, old=True)
         return [nodes, polygons]
 
-    assert read_together(opened) == [b"oldnodes.npy", b"oldpolygons.npy"]
-
-    def always(files: TableFiles) -> bool:
-        has = files.has(folder, "nodes.npy")
-        tables_of(folder, old=True)
-        return has
-
+    assert read_together(tmp_path / "tables.json", opened) == [b"oldnodes.npy", b"oldpolygons.npy"]
     with pytest.raises(InputError, match="tables must stay as they are while they are opened"):
-        read_together(always)
+        read_together(tmp_path / "tables.json", lambda: tables_of(tmp_path, old=True))
 
 
-@pytest.mark.parametrize(
-    "content",
-    [
-        b"",
-        b"[]",
-        b'{"files": ["../x.csv"], "absent": []}',
-        b'{"files": ["nodes.csv"], "absent": ["scene.toml"]}',
-    ],
-)
-def test_a_set_of_tables_that_we_did_not_write_is_refused(tmp_path: Path, content: bytes) -> None:
-    kind = KINDS["CSV tables"]
-    kind.save(tmp_path, 0)
-    committed = tmp_path / "t" / COMMITTED
-    committed.mkdir()
-    (committed / NAMES).write_bytes(content)
-    (tmp_path / "t" / "scene.toml").touch()
-    files = {key: tmp_path / "t" / f"{key}.csv" for key in ("nodes", "polygons")}
-    with pytest.raises(InputError, match="it must be a file that autocolor wrote"):
-        read_mesh(files)
-    with pytest.raises(InputError, match="it must be a file that autocolor wrote"):
-        kind.save(tmp_path, 1)
-    assert (tmp_path / "t" / "scene.toml").exists()
+def test_two_programs_do_not_save_tables_to_a_folder_at_once(tmp_path: Path) -> None:
+    def pieces() -> Iterator[bytes]:
+        with pytest.raises(WriteError, match=f"another one saves to {tmp_path}; try again"):
+            tables_of(tmp_path, old=False)
+        yield b"one"
+
+    write_together(tmp_path, [("nodes.npy", pieces()), ("tables.json", [b"[]"])], others=(), overwrite=True)
+    assert (tmp_path / "nodes.npy").read_bytes() == b"one"
 
 
-def test_links_in_a_set_of_tables_are_not_followed(tmp_path: Path) -> None:
-    kind = KINDS["CSV tables"]
-    kind.save(tmp_path, 0)
-    before = kind.read(tmp_path)
-    committed = tmp_path / "t" / COMMITTED
-    committed.mkdir()
-    (committed / "nodes.csv").symlink_to(tmp_path / "elsewhere")
-    (committed / NAMES).write_text(json.dumps({"files": ["nodes.csv"], "absent": []}))
-    assert kind.read(tmp_path) == before
-    shutil.rmtree(committed)
-    kind.save(tmp_path / "t", 1)
-    committed.symlink_to(tmp_path / "t" / "t")
-    (tmp_path / "t" / "t" / NAMES).write_text(json.dumps({"files": ["nodes.csv"], "absent": []}))
-    with pytest.raises(InputError, match="it is a link"):
-        kind.read(tmp_path)
-
-
-def test_scalars_are_not_written_through_a_link(tmp_path: Path) -> None:
-    (tmp_path / "elsewhere").mkdir()
-    (tmp_path / "t").mkdir()
-    (tmp_path / "t" / "scalars").symlink_to(tmp_path / "elsewhere")
-    with pytest.raises(OutputError, match="scalars: it must be a folder, not a link"):
-        KINDS["npy tables"].save(tmp_path, 1)
-    assert os.listdir(tmp_path / "elsewhere") == []
-    assert os.listdir(tmp_path / "t") == ["scalars"]
-
-
-def test_tables_keep_their_permissions(tmp_path: Path) -> None:
-    for number in (0, 1):
-        KINDS["npy tables"].save(tmp_path, number)
-        (tmp_path / "t" / "nodes.npy").chmod(0o600)
-    assert (tmp_path / "t" / "nodes.npy").stat().st_mode & 0o777 == 0o600
-
-
-def test_tables_that_are_left_replace_no_new_file_unless_that_is_allowed(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    with monkeypatch.context() as patch, suppress(Killed):
-        patch.setattr(os, "replace", lambda *_: killed())
-        KINDS["CSV tables"].save(tmp_path, 1)
-    (tmp_path / "t" / "nodes.csv").write_text("mine")
-    with pytest.raises(OutputError, match="must be a new file"):
-        write_together(tmp_path / "t", [("nodes.csv", [b"new"])], others=(), overwrite=False)
-    assert (tmp_path / "t" / "nodes.csv").read_text() == "mine"
-
-
-def test_a_folder_of_the_name_of_a_save_that_holds_other_files_is_named(tmp_path: Path) -> None:
-    (tmp_path / COMMITTED).mkdir()
-    (tmp_path / COMMITTED / "other").touch()
-    with pytest.raises(WriteError, match=rf"{COMMITTED} could not be"):
-        write_together(tmp_path, [("nodes.csv", [b"new"])], others=(), overwrite=True)
+def test_files_of_others_with_hidden_names_stay(tmp_path: Path) -> None:
+    tables_of(tmp_path, old=True)
+    hidden_path(tmp_path / "parts.npy", "0123456789ab").symlink_to(tmp_path / "elsewhere")
+    hidden_path(tmp_path / "nodes.npy", "0123456789ab").mkdir()
+    (tmp_path / ".nodes.npy.part").touch()
+    before = sorted(os.listdir(tmp_path))
+    tables_of(tmp_path, old=True)
+    assert sorted(os.listdir(tmp_path)) == before
