@@ -63,11 +63,12 @@ def look_at(path: Path) -> tuple[int | bytes, ...] | None:
     if numbers is None or path.suffix.lower() not in STORE_SUFFIXES:
         return numbers
     # SQLite is loaded for stores alone.
-    from autocolor.files.store.connections import refuse_journal
+    from autocolor.files.store.connections import is_being_changed
 
     try:
-        # While a commit writes to the store, there is a journal to roll back.
-        refuse_journal(path)
+        # While a commit of another program writes to the store, a journal is beside it.
+        if is_being_changed(path):
+            return None
     except InputError:
         return None
     return *numbers, read_head(path)[CHANGE_COUNTER]
