@@ -63,11 +63,11 @@ def look_at(path: Path) -> tuple[int | bytes, ...] | None:
     if numbers is None or path.suffix.lower() not in STORE_SUFFIXES:
         return numbers
     # SQLite is loaded for stores alone.
-    from autocolor.files.store.connections import is_being_changed
+    from autocolor.files.store.connections import played_files
 
     try:
         # While a commit of another program writes to the store, a journal is beside it.
-        if is_being_changed(path):
+        if "-journal" in played_files(path):
             return None
     except InputError:
         return None

@@ -17,6 +17,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
+from functools import partial
 from pathlib import Path
 from typing import Final
 
@@ -106,18 +107,15 @@ def loaded(path: Path) -> sqlite3.Connection:
     If a program was killed while it changed the store, SQLite first takes that change back, by the `-journal`
     beside it. Raises InputError, MissingInputError.
     """
-    _refuse_unsafe(path)
-    require_store(path)
-    is_logged = _is_logged(path)
-    mode = "rw" if is_logged or is_being_changed(path) else "ro"
+    mode = "ro"
+    is_logged = _is_in_wal_mode(path)
+    if played_files(path):
+        mode = "rw"
+    elif is_logged:
+        # SQLite makes a log even to read. Where it cannot, the file is complete without.
+        mode = "ro&immutable=1" if _write_protected(path) else "rw"
     with refusals(path.name):
-        try:
-            return _copy_of(path, mode)
-        except sqlite3.OperationalError as error:
-            if not is_logged or primary_code(error) not in PLACE_ERRORS or _has_log(path):
-                raise
-            # SQLite has no place for its log there. Without a log the file is complete.
-            return _copy_of(path, "ro&immutable=1")
+        return _copy_of(path, mode)
 
 
 def _copy_of(path: Path, mode: str) -> sqlite3.Connection:
@@ -138,32 +136,33 @@ def replacing(
     the place is write-protected, and WriteError if another program writes to the store all the time, or
     replaces it.
     """
-    try:
-        _refuse_unsafe(path)
-    except MissingInputError:
-        raise
-    except InputError as error:
-        raise WriteError(str(error)) from None
-    with refusals(path.name), _write_refusals(path.name), closing(_locked(path, check)) as file:
-        before = _numbers(path)
+    is_logged = _is_in_wal_mode(path)
+    with _unplayable():
+        is_logged |= "-wal" in played_files(path)
+    if place := _write_protected(path):
+        raise OutputError(
+            f"an output must be where it can be written, and {place} is write-protected; change its"
+            " permissions, or write to another file"
+        )
+    with refusals(path.name, is_written=True):
+        check = _without_log(path, check) if is_logged else check
+        with closing(_locked(path, check)) as file:
+            before = _numbers(path)
 
-        def save(data: bytes) -> None:
-            if _numbers(path) != before:
-                raise _changed(path)
-            if sys.platform == "win32":
-                # An open file cannot be replaced there.
-                file.close()
-            write_atomically(path, data, overwrite=True)
+            def save(data: bytes) -> None:
+                _refuse_other(path, before)
+                if sys.platform == "win32":
+                    # An open file cannot be replaced there.
+                    file.close()
+                write_atomically(path, data, overwrite=True)
 
-        # SQLite makes no copy by a connection that is about to write.
-        with closed_on_error(_copy_of(path, "ro")) as copy:
-            yield copy, save
+            # SQLite makes no copy by a connection that is about to write.
+            with closed_on_error(_copy_of(path, "ro")) as copy:
+                yield copy, save
 
 
 def _locked(path: Path, check: Callable[[], None]) -> sqlite3.Connection:
     """A connection to the store at a path in a transaction that lets no other program change it."""
-    if _is_logged(path):
-        check = _without_log(path, check)
     while True:
         before = _numbers(path)
         with closed_on_error(_opened(path, "rw")) as file:
@@ -186,13 +185,7 @@ def _without_log(path: Path, check: Callable[[], None]) -> Callable[[], None]:
             file.execute(statement)
         check()
         file.execute("PRAGMA journal_mode = DELETE")
-        before = _numbers(path)
-
-    def check_again() -> None:
-        if _numbers(path) != before:
-            raise _changed(path)
-
-    return check_again
+        return partial(_refuse_other, path, _numbers(path))
 
 
 def _numbers(path: Path) -> tuple[int, ...]:
@@ -201,11 +194,13 @@ def _numbers(path: Path) -> tuple[int, ...]:
     return status.st_dev, status.st_ino, status.st_mtime_ns, status.st_size
 
 
-def _changed(path: Path) -> WriteError:
-    return WriteError(
-        f"{path.name}: a store must stay as it is while it is changed, and another program replaced it;"
-        " nothing was saved, so try again"
-    )
+def _refuse_other(path: Path, numbers: tuple[int, ...]) -> None:
+    """Raise WriteError unless the file at a path has these numbers."""
+    if _numbers(path) != numbers:
+        raise WriteError(
+            f"{path.name}: a store must stay as it is while it is changed, and another program replaced it;"
+            " nothing was saved, so try again"
+        )
 
 
 def _opened(path: Path, mode: str) -> sqlite3.Connection:
@@ -315,72 +310,73 @@ JOURNAL_MAGIC: Final = bytes.fromhex("d9d505f920a163d7")
 """The bytes that follow the name of a super-journal at the end of a rollback journal."""
 
 
-def require_store(path: Path) -> None:
-    """Raise InputError if a file does not begin as a store."""
-    if not read_head(path).startswith(BEGINS):
-        raise InputError(
-            f"{path.name}: a store must be an SQLite file, and this one does not begin as such; write it"
-            " again with `autocolor convert`"
-        )
+def _is_in_wal_mode(path: Path) -> bool:
+    """Whether a store is in WAL mode.
 
-
-def _refuse_unsafe(path: Path) -> None:
-    """Raise InputError if a store is no regular file, is too large, or has unsafe files beside it.
-
-    If a journal ends with the name of a super-journal, SQLite deletes the named file when it has rolled the
-    journal back, or a change of its own.
+    Raises InputError if it is no regular file, too large, or does not begin as a store; MissingInputError.
     """
     status = status_of(path)
     refuse_irregular(path, status)
     require_size(path.name, status.st_size, GROWTH)
-    _ends_beside(path, "-wal")
-    if _ends_beside(path, "-journal")[1] == JOURNAL_MAGIC:
+    head = read_head(path)
+    if not head.startswith(BEGINS):
         raise InputError(
-            f"{path.name}: the -journal beside the store names another file, which SQLite deletes when it"
-            " rolls the journal back; if you trust both files, open the store once with `sqlite3 FILE"
-            " .tables`, otherwise move the journal away"
+            f"{path.name}: a store must be an SQLite file, and this one does not begin as such; write it"
+            " again with `autocolor convert`"
         )
+    return WAL_VERSION in head[18:20]
 
 
-def is_being_changed(path: Path) -> bool:
-    """Whether a journal with a header is beside a store: a program is writing, or was killed then.
+def played_files(path: Path) -> list[str]:
+    """The endings of the files beside a store that SQLite plays into it: "-journal", "-wal".
 
-    A program that reuses its journal leaves it with a header of zeros. Raises InputError.
+    SQLite takes a change back by the journal of a program that was killed; a journal that a program keeps for
+    its next change has a header of zeros. Raises InputError for a file that is not regular, because SQLite
+    would wait for a pipe without end; and for a journal that ends with the name of a super-journal, because
+    SQLite deletes the named file when it has rolled the journal back, or a change of its own.
     """
-    return any(_ends_beside(path, "-journal")[0])
+    endings = []
+    for ending in ("-journal", "-wal"):
+        try:
+            with opened(Path(os.path.realpath(path) + ending)) as (file, status):
+                if any(file.read(1)):
+                    endings.append(ending)
+                file.seek(max(0, status.st_size - len(JOURNAL_MAGIC)))
+                names_another = ending == "-journal" and file.read() == JOURNAL_MAGIC
+        except MissingInputError:
+            continue
+        if names_another:
+            raise InputError(
+                f"{path.name}: the -journal beside the store names another file, which SQLite deletes when it"
+                " rolls the journal back; if you trust both files, open the store once with `sqlite3 FILE"
+                " .tables`, otherwise move the journal away"
+            )
+    return endings
 
 
-def _is_logged(path: Path) -> bool:
-    """Whether a store is in WAL mode, or has a log beside it."""
-    return WAL_VERSION in read_head(path)[18:20] or _has_log(path)
-
-
-def _has_log(path: Path) -> bool:
-    return _ends_beside(path, "-wal")[0] != b""
+@contextmanager
+def _unplayable() -> Iterator[None]:
+    """Raise the refusals of `played_files` as WriteError."""
+    try:
+        yield
+    except InputError as error:
+        raise WriteError(str(error)) from None
 
 
 def refuse_remains(path: Path) -> None:
     """Raise WriteError if SQLite would play a journal or a log into a new store at a path."""
-    for ending, is_played in (("-journal", is_being_changed), ("-wal", _has_log)):
-        if is_played(path):
+    with _unplayable():
+        for ending in played_files(path):
             raise WriteError(
                 f"{path.name}: a new store must have no {path.name}{ending} beside it, because SQLite would"
                 " play it into the store; move it away"
             )
 
 
-def _ends_beside(path: Path, ending: str) -> tuple[bytes, bytes]:
-    """The first byte and the last eight bytes of a file beside a store; empty if there is none.
-
-    Raises InputError if it is not a regular file: SQLite would wait for a pipe without end.
-    """
-    try:
-        with opened(Path(os.path.realpath(path) + ending)) as (file, status):
-            first = file.read(1)
-            file.seek(max(0, status.st_size - len(JOURNAL_MAGIC)))
-            return first, file.read()
-    except MissingInputError:
-        return b"", b""
+def _write_protected(path: Path) -> Path | None:
+    """The store at a path or its folder, if it is write-protected."""
+    places = (path, Path(os.path.realpath(path)).parent)
+    return next((place for place in places if not os.access(place, os.W_OK)), None)
 
 
 # Errors of SQLite as errors of this package.
@@ -397,39 +393,26 @@ def primary_code(error: BaseException) -> int:
 
 
 @contextmanager
-def refusals(name: str = "", clock: Clock | None = None) -> Iterator[None]:
-    """Raise errors of SQLite as InputError, with advice; `name` is the file's name in the message."""
+def refusals(name: str = "", clock: Clock | None = None, is_written: bool = False) -> Iterator[None]:
+    """Raise errors of SQLite as InputError, with advice; `name` is the file's name in the message.
+
+    If the store `is_written`, the errors that keep it from being written are raised as WriteError.
+    """
     try:
         yield
     except (sqlite3.Error, sqlite3.Warning, UnicodeError, OverflowError) as error:
+        reason = sentence_of(error)
         if clock is not None and clock.ended:
             reason = f"a store must be read within {clock.seconds:g} seconds, not longer; leave rows out"
-        else:
-            reason = sentence_of(error)
-        raise InputError(f"{name}: {reason}" if name else reason) from None
-
-
-@contextmanager
-def _write_refusals(name: str) -> Iterator[None]:
-    """Raise errors that keep a store from being written as OutputError and WriteError; others stay."""
-    try:
-        yield
-    except sqlite3.Error as error:
-        if primary_code(error) in PLACE_ERRORS:
-            raise OutputError(
-                f"{name}: a store must be where it can be changed, and is write-protected"
-                f" ({printable(reason_of(error))}); change its permissions, or use another file"
-            ) from None
-        if primary_code(error) in (*BUSY_ERRORS, *DISK_ERRORS):
-            raise WriteError(f"{name}: {sentence_of(error)}") from None
-        raise
+        is_kept = is_written and primary_code(error) in (*BUSY_ERRORS, *DISK_ERRORS, *PLACE_ERRORS)
+        raise (WriteError if is_kept else InputError)(f"{name}: {reason}" if name else reason) from None
 
 
 def sentence_of(error: Exception) -> str:
     """A sentence for an error of SQLite: what is wrong with the store, and what to do."""
     code, text = primary_code(error), printable(reason_of(error)[:300])
     if code in BUSY_ERRORS:
-        return "another program is writing to the store; let it end, and try again"
+        return "another program is writing to the store, or has it open in WAL mode; close it, and try again"
     if code == sqlite3.SQLITE_TOOBIG:
         return f"a value must have at most {LONGEST_TEXT:,} bytes, not more; shorten it"
     if code in PLACE_ERRORS:

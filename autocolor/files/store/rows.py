@@ -71,7 +71,7 @@ def report_of(
     `name` is for a scene whose table gives no name. Raises InputError with every problem.
     """
     rows_of = {
-        table: rows_of_table(connection, table, tables[table].columns, NUMBER)
+        table: rows_of_table(connection, table, tables[table].columns)
         for table in ROW_TABLES
         if table in tables
     }
@@ -311,7 +311,7 @@ def _parts(
 
 
 def _crease_angle(connection: sqlite3.Connection, tables: StoredTables) -> float:
-    rows = rows_of_table(connection, MESH, tables[MESH].columns, NUMBER) if MESH in tables else []
+    rows = rows_of_table(connection, MESH, tables[MESH].columns) if MESH in tables else []
     if len(rows) > 1:
         raise InputError(f"{MESH} must have one row, not {len(rows)}; leave one")
     value = rows[0].get("crease_angle") if rows else None
@@ -330,7 +330,7 @@ def _scalars(
     if SCALARS not in tables:
         return ()
     require_columns(SCALARS, tables[SCALARS].columns, ("name", "of"))
-    rows = rows_of_table(connection, SCALARS, tables[SCALARS].columns, NUMBER)
+    rows = rows_of_table(connection, SCALARS, tables[SCALARS].columns)
     if len(rows) > MOST_SCALARS:
         raise InputError(
             f"{SCALARS} must have at most {MOST_SCALARS:,} rows, not {len(rows):,}; leave some out"

@@ -27,7 +27,6 @@ from autocolor.files.store.connections import (
     refusals,
     refuse_remains,
     replacing,
-    require_store,
     sentence_of,
 )
 from autocolor.files.store.rows import insert_mesh, insert_rows, report_of
@@ -123,22 +122,20 @@ def write_store(
     refuse_output(path, overwrite=overwrite)
     check = guard(path)
     with timed(LOG, f"wrote {path.name}"):
-        data = store_bytes(scene)
         if path.exists():
             try:
-                require_store(path)
                 with replacing(path, check) as (old, save), closing(old):
-                    save(_with_additions(old, scene, data, path.name))
+                    save(_with_additions(old, scene, path.name))
                 return
             except InputError as error:
                 LOG.warning("%s: written anew, because it cannot be read (%s)", path, error)
         refuse_remains(path)
         check()
-        write_atomically(path, data, overwrite=overwrite)
+        write_atomically(path, store_bytes(scene), overwrite=overwrite)
 
 
-def _with_additions(old: sqlite3.Connection, scene: Scene, data: bytes, name: str) -> bytes:
-    """The bytes of a store with a scene, `data`, and with what other programs added to the old store.
+def _with_additions(old: sqlite3.Connection, scene: Scene, name: str) -> bytes:
+    """The bytes of a store with a scene, and with what other programs added to the old store.
 
     Raises InputError if the old store is damaged, WriteError if an addition does not fit the scene's tables.
     """
@@ -150,7 +147,7 @@ def _with_additions(old: sqlite3.Connection, scene: Scene, data: bytes, name: st
         tables = [row[1] for row in rows if row[0] == "table" and row[1].lower() in DEFINITIONS]
         added = [row for row in rows if row[1] not in tables and INDEXES.get(row[1]) != row[3]]
         if not added:
-            return data
+            return store_bytes(scene)
         old.execute("BEGIN")
         for table in tables:
             old.execute(f"DROP TABLE {quoted(table)}")
@@ -178,12 +175,9 @@ def _may_create(action: int, first: str | None, second: str | None, *_: str | No
     """The permissions of the statements that create indexes and triggers; a stranger wrote them."""
     if action == sqlite3.SQLITE_INSERT:
         return sqlite3.SQLITE_OK if first == "sqlite_master" else sqlite3.SQLITE_DENY
-    creates = (sqlite3.SQLITE_CREATE_INDEX, sqlite3.SQLITE_CREATE_TRIGGER, sqlite3.SQLITE_REINDEX)
-    return (
-        sqlite3.SQLITE_OK
-        if action in creates
-        else authorizer(may_change=False)(action, first, second, None, None)
-    )
+    if action in (sqlite3.SQLITE_CREATE_INDEX, sqlite3.SQLITE_CREATE_TRIGGER, sqlite3.SQLITE_REINDEX):
+        return sqlite3.SQLITE_OK
+    return authorizer(may_change=False)(action, first, second, None, None)
 
 
 def _fill(connection: sqlite3.Connection, scene: Scene) -> None:
