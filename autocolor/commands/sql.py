@@ -28,8 +28,6 @@ if TYPE_CHECKING:
     from autocolor.files.scene_report import SceneReport
     from autocolor.files.store.tables import Answer, Tables, Value
 
-FORMATS: Final = ("table", "csv", "json")
-
 EXAMPLES: Final = """\b
 Examples:
   autocolor sql scenes/coupe "SELECT name, intensity FROM lights"
@@ -44,9 +42,8 @@ Examples:
 @scene_options
 @click.argument("statement", required=False)
 @click.option("--write", is_flag=True, help="Allow INSERT, UPDATE and DELETE, and save SCENE.")
-@click.option("--format", "form", type=click.Choice(FORMATS), help="Format of printed rows; default: table.")
-@click.option("--csv", "as_csv", is_flag=True, help="Print CSV, as --format csv does.")
-@click.option("--json", "as_json", is_flag=True, help="Print JSON, as --format json does.")
+@click.option("--csv", "form", flag_value="csv", help="Print rows as CSV.")
+@click.option("--json", "form", flag_value="json", help="Print rows as a JSON list of objects.")
 @click.option(
     "--seconds",
     type=click.FloatRange(0.001, 86400),
@@ -61,8 +58,6 @@ def sql(
     statement: str | None,
     write: bool,
     form: str | None,
-    as_csv: bool,
-    as_json: bool,
     seconds: float,
 ) -> None:
     """Run SQL on the tables of SCENE: STATEMENT, or else statements from a prompt or stdin.
@@ -70,13 +65,9 @@ def sql(
     SCENE is a store (.sqlite) or any other scene. `.schema` at the prompt shows the tables; docs/STORE.md
     describes them. A change is checked like a scene file; if it breaks a rule, nothing is changed.
     """
-    forms = [form] if form is not None else []
-    forms += [name for name, is_given in (("csv", as_csv), ("json", as_json)) if is_given]
-    if len(forms) > 1:
-        raise UsageError("rows must have one format, not several; give one of --format, --csv and --json")
     tables, report = _opened(source, write)
     tables.seconds = seconds
-    run = partial(_run, tables, source, write, forms[0] if forms else "table")
+    run = partial(_run, tables, source, write, form)
 
     with tables:
         if statement is not None:
@@ -112,7 +103,7 @@ def _refuse_write(path: Path) -> None:
     raise UsageError(f"--write must save to a store or to a scene's folder, not to {path}; {advice}")
 
 
-def _run(tables: Tables, source: SceneSource, write: bool, form: str, statement: str) -> None:
+def _run(tables: Tables, source: SceneSource, write: bool, form: str | None, statement: str) -> None:
     """Run a statement, and print its rows, or the number of changed rows."""
     if not (write and tables.would_change(statement)):
         for line in lines_of(tables.answer(statement), form):
@@ -140,11 +131,9 @@ WIDEST: Final = 60
 ABSENT: Final = "NULL"
 
 
-def lines_of(answer: Answer, form: str) -> Iterator[str]:
-    """The lines of an answer in one of FORMATS. Rows are read as the lines are asked for."""
-    if form == "csv":
-        return _csv(answer)
-    return _json(answer) if form == "json" else _table(answer)
+def lines_of(answer: Answer, form: str | None) -> Iterator[str]:
+    """The lines of an answer as "csv", "json" or a table. Rows are read as the lines are asked for."""
+    return {"csv": _csv, "json": _json, None: _table}[form](answer)
 
 
 def _table(answer: Answer) -> Iterator[str]:
@@ -286,25 +275,23 @@ def _dotted(line: str, tables: Tables) -> bool:
 
 
 def statements_in(lines: Iterable[str]) -> Iterator[str]:
-    """The statements in some lines. The last statement may lack its semicolon."""
+    """The statements in some lines. The last statement may lack its semicolon.
+
+    Raises UsageError for a line that is not text in UTF-8.
+    """
     text = ""
-    for line in _readable(lines):
-        text += line
-        if ";" in line:
-            whole, text = split(text)
-            yield from whole
-        if len(text) > MOST_LETTERS:
-            break
-    if text.strip():
-        yield text
-
-
-def _readable(lines: Iterable[str]) -> Iterator[str]:
-    """The lines. Raises UsageError for a line that is not text in UTF-8."""
     try:
-        yield from lines
+        for line in lines:
+            text += line
+            if ";" in line:
+                whole, text = split(text)
+                yield from whole
+            if len(text) > MOST_LETTERS:
+                break
     except UnicodeDecodeError:
         raise _not_text() from None
+    if text.strip():
+        yield text
 
 
 def _not_text() -> UsageError:

@@ -37,7 +37,7 @@ LEAST_SQLITE: Final = (3, 37, 0)
 """The first version with STRICT tables."""
 
 BEGINS: Final = b"SQLite format 3\0"
-GROWTH: Final = 3
+GROWTH: Final = 3.5
 """Measured: how many times its size the store of a scene takes while it is read."""
 
 LONGEST_TEXT: Final = 1 << 20

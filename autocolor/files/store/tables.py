@@ -20,7 +20,6 @@ from autocolor.files.store.connections import (
     CHANGES,
     DAMAGE_ERRORS,
     DISK_ERRORS,
-    LONGEST_TEXT,
     Clock,
     authorizer,
     closed_on_error,
@@ -238,8 +237,8 @@ LONGEST_COMPUTED: Final = 1 << 17
 """Limit: in bytes, of a value that a statement reads or computes. SQLite cannot interrupt a function:
 searching a text of this length for one of half its length takes 0.2 s; at LONGEST_TEXT it would take 9 s."""
 
-ROWS_AT_ONCE: Final = 1000
-"""Rows that are fetched at once, unless they are long."""
+ROWS_AT_ONCE: Final = 50
+"""Rows that are fetched at once. The rows of tables have at most LONGEST_COMPUTED bytes each."""
 
 STATEMENT_STEPS: Final = 1000
 """Steps of SQLite's machine between two looks at the clock; one step can be a slow function."""
@@ -265,25 +264,12 @@ def answer_of(
             # The time between two fetches is not the statement's.
             clock.begin()
             with _limited(connection, clock):
-                fetched = _some_of(cursor)
+                fetched = cursor.fetchmany(ROWS_AT_ONCE)
             if not fetched:
                 return
             yield from fetched
 
     return Answer(columns, rows())
-
-
-def _some_of(cursor: sqlite3.Cursor) -> list[tuple[Value, ...]]:
-    """The next ROWS_AT_ONCE rows; fewer if their texts have more than LONGEST_TEXT letters together."""
-    rows: list[tuple[Value, ...]] = []
-    letters = 0
-    while len(rows) < ROWS_AT_ONCE and letters < LONGEST_TEXT:
-        row = cursor.fetchone()
-        if row is None:
-            break
-        rows.append(row)
-        letters += sum(len(value) for value in row if isinstance(value, (str, bytes)))
-    return rows
 
 
 def change(

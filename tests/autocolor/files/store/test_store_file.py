@@ -357,8 +357,8 @@ def test_additions_of_others_stay_and_none_is_run_when_a_store_is_saved_over(tmp
             "'polygons_part' does not (index polygons_part already exists)",
         ),
         (
-            ("ALTER TABLE lights ADD COLUMN weight", "CREATE INDEX by_weight ON lights (weight)"),
-            "'by_weight' does not (table lights has no column named weight)",
+            ("ALTER TABLE lights ADD COLUMN weight REAL", "CREATE INDEX by_weight ON lights (weight)"),
+            "'by_weight' does not (no such column: weight)",
         ),
         (
             ("ALTER TABLE lights RENAME TO other", "CREATE VIEW lights AS SELECT * FROM other"),
