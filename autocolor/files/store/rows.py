@@ -86,52 +86,40 @@ def report_of(
         elif table not in ("parts", SCENE) and (rows or not is_single):
             values = _validated(ROW_TABLES[table], rows, problems)
             fields[table] = values[0] if is_single and values else values
-    part_rows = rows_of.get("parts", [])
+    part_rows, surface_rows = rows_of.get("parts", []), rows_of.get("surfaces")
     parts = {str(row.get("name")): plain_row(ROW_TABLES["parts"].columns, row) for row in part_rows}
     if len(parts) < len(part_rows):
         problems.append("parts: names must be unique, not repeated; rename one")
     _validated(ROW_TABLES["parts"], part_rows, problems)
-    if "surfaces" in rows_of:
-        problems.extend(islice(_unknown_surfaces(part_rows, rows_of["surfaces"]), MOST_PROBLEMS))
+    if surface_rows is not None:
+        unknown = _unknown_surfaces(part_rows, [str(row.get("name")) for row in surface_rows])
+        problems.extend(islice(unknown, MOST_PROBLEMS))
     if problems:
         raise InputError(problems[:MOST_PROBLEMS])
     mesh = mesh_of(connection, tables, tuple(parts) if part_rows else None)
-    return _report(mesh, parts, fields, "surfaces" in rows_of, surfaces)
+    for part in parts.values():
+        part.pop("name", None)
+    materials = {}
+    if surface_rows is None:
+        # Create the surfaces that only parts name, as the surfaces of materials are created.
+        materials = {name: str(part.pop("surface")) for name, part in parts.items() if "surface" in part}
+        if surfaces == PARTS:
+            fields["surfaces"] = PARTS
+    return scene_report([MeshReport(mesh, material_of_part=materials)], parts=parts, **fields)
 
 
-def _unknown_surfaces(parts: list[dict[str, SqlValue]], surfaces: list[dict[str, SqlValue]]) -> Iterator[str]:
+def _unknown_surfaces(parts: list[dict[str, SqlValue]], surfaces: list[str]) -> Iterator[str]:
     """A problem for each part whose surface has no row.
 
     Tools leave foreign keys unchecked unless they are asked to check them, and SQLite's own error names no
     row, so references are checked here.
     """
-    names = {str(row.get("name")): None for row in surfaces}
+    names = set(surfaces)
     for number, row in enumerate(parts, 1):
         surface = row.get("surface")
         if surface is not None and surface not in names:
-            advice = nearest(str(surface), names) or "; correct it"
+            advice = nearest(str(surface), surfaces) or "; correct it"
             yield f"parts, row {number}: surface {shown(surface)} is not in the surface table{advice}"
-
-
-def _report(
-    mesh: Mesh,
-    parts: Mapping[str, dict[str, Any]],
-    fields: dict[str, Any],
-    has_surfaces: bool,
-    surfaces: SurfaceSource,
-) -> SceneReport:
-    materials = {}
-    if not has_surfaces:
-        # Create the surfaces that only parts name, as the surfaces of materials are created.
-        materials = {part: str(table["surface"]) for part, table in parts.items() if "surface" in table}
-        if surfaces == PARTS:
-            fields["surfaces"] = PARTS
-    skipped = ("name",) if has_surfaces else ("name", "surface")
-    part_fields = {
-        name: {key: value for key, value in table.items() if key not in skipped}
-        for name, table in parts.items()
-    }
-    return scene_report([MeshReport(mesh, material_of_part=materials)], parts=part_fields, **fields)
 
 
 def _validated(table: RowTable, rows: list[dict[str, SqlValue]], problems: list[str]) -> tuple[Row, ...]:

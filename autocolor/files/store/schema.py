@@ -224,14 +224,8 @@ def in_sql(value: object) -> SqlValue:
 def row_values(columns: Iterable[SqlColumn], row: Row) -> list[SqlValue]:
     """The values of a row for some columns of its class."""
     table = to_plain(row)
-    return [in_sql(_within(table, column)) for column in columns]
-
-
-def _within(table: Mapping[str, Any], column: SqlColumn) -> object:
-    value: Any = table
-    for key in column.path:
-        value = value.get(key) if isinstance(value, Mapping) else None
-    return value if column.component is None or value is None else value[column.component]
+    values = ((_within(table, column.path), column.component) for column in columns)
+    return [in_sql(value if axis is None or value is None else value[axis]) for value, axis in values]
 
 
 def plain_row(columns: Iterable[SqlColumn], values: Mapping[str, SqlValue]) -> dict[str, Any]:
@@ -241,23 +235,32 @@ def plain_row(columns: Iterable[SqlColumn], values: Mapping[str, SqlValue]) -> d
     """
     table: dict[str, Any] = {}
     vectors: dict[tuple[str, ...], list[SqlValue]] = {}
+    limits = []
     for column in columns:
         value = values.get(column.name)
         if column.component is not None:
             vectors.setdefault(column.path, []).append(value)
         elif value is not None:
-            _put(table, column.path, _from_sql(column.kind, value))
+            _within(table, column.path[:-1], True)[column.path[-1]] = _from_sql(column.kind, value)
+        elif column.name in values and (endless := getattr(column.kind, "endless", None)) is not None:
+            limits.append((column.path, endless))
     for path, components in vectors.items():
         if components != [None] * len(AXES):
-            _put(table, path, components)
-    for column in columns:
-        endless = getattr(column.kind, "endless", None)
-        if endless is not None and column.name in values and values[column.name] is None:
-            inner: Any = table
-            for key in column.path[:-1]:
-                inner = inner.get(key) if isinstance(inner, dict) else None
-            if isinstance(inner, dict):
-                inner[column.path[-1]] = endless
+            _within(table, path[:-1], True)[path[-1]] = components
+    for path, endless in limits:
+        inner = _within(table, path[:-1])
+        if isinstance(inner, dict):
+            inner[path[-1]] = endless
+    return table
+
+
+def _within(table: Any, path: Sequence[str], is_made: bool = False) -> Any:
+    """The value at a path of keys in a table, or None. With `is_made`, missing tables are made there."""
+    for key in path:
+        if is_made:
+            table = table.setdefault(key, {})
+        else:
+            table = table.get(key) if isinstance(table, Mapping) else None
     return table
 
 
@@ -271,12 +274,6 @@ def _from_sql(kind: Kind, value: SqlValue) -> object:
         except (ValueError, RecursionError):
             return value
     return value
-
-
-def _put(table: dict[str, Any], path: Sequence[str], value: object) -> None:
-    for key in path[:-1]:
-        table = table.setdefault(key, {})
-    table[path[-1]] = value
 
 
 # The definitions of all tables.

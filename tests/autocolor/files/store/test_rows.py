@@ -12,7 +12,7 @@ from autocolor.files.store import rows as module
 from autocolor.files.store.rows import insert_mesh
 from autocolor.files.store.schema import DEFINITIONS
 from autocolor.files.store.store_file import read_store
-from tests.autocolor.files.store.stores import run, small_scene, small_store
+from tests.autocolor.files.store.stores import loosen, run, small_scene, small_store
 
 
 def test_a_row_that_is_added_needs_no_more_than_a_scene_file_does(tmp_path: Path) -> None:
@@ -104,24 +104,11 @@ def test_rows_by_name_and_names_are_read_from_what_any_tool_writes(tmp_path: Pat
     )
 
 
-LOOSE_NODES = (
-    "ALTER TABLE nodes RENAME TO old",
-    "CREATE TABLE nodes (node, x, y, z)",
-    "INSERT INTO nodes SELECT * FROM old",
-    "DROP TABLE old",
-)
-
-
 def test_a_missing_node_is_named_also_where_no_table_tells_of_references(tmp_path: Path) -> None:
     path = small_store(tmp_path)
-    run(
-        path,
-        *LOOSE_NODES,
-        "CREATE TABLE loose AS SELECT * FROM polygons",
-        "DROP TABLE polygons",
-        "ALTER TABLE loose RENAME TO polygons",
-        "UPDATE nodes SET node = 37 WHERE node = 4",
-    )
+    for table in ("nodes", "polygons"):
+        loosen(path, table)
+    run(path, "UPDATE nodes SET node = 37 WHERE node = 4")
     with pytest.raises(InputError) as refused:
         read_store(path)
     problem = "polygons, row 1: node 4 is not in the node table (1 to 37); correct it"
