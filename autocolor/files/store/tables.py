@@ -186,7 +186,8 @@ class Tables:
                     f"{self._name}: tables of other programs must not refer to rows that a change removes or"
                     f" renames ({error}); change their rows first"
                 ) from None
-            save(copy.serialize())
+            if count:
+                save(copy.serialize())
         self._connection.close()
         self._connection = copy
         return count
@@ -282,7 +283,9 @@ def change(
         # The last row is changed only after all rows of a RETURNING clause are fetched.
         for _ in cursor:
             pass
-    return max(cursor.rowcount, 0)
+        # The row count of Python 3.11's cursor is missing after WITH.
+        (count,) = connection.execute("SELECT changes()").fetchone()
+    return int(count)
 
 
 def changes_of(
