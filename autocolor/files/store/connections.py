@@ -107,11 +107,11 @@ def loaded(path: Path) -> sqlite3.Connection:
     If a program was killed while it changed the store, SQLite first takes that change back, by the `-journal`
     beside it. Raises InputError, MissingInputError.
     """
+    is_logged, played = _is_in_wal_mode(path), played_files(path)
     mode = "ro"
-    is_logged = _is_in_wal_mode(path)
-    if played_files(path):
+    if "-journal" in played:
         mode = "rw"
-    elif is_logged:
+    elif is_logged and not played:
         # SQLite makes a log even to read. Where it cannot, the file is complete without.
         mode = "ro&immutable=1" if _write_protected(path) else "rw"
     with refusals(path.name):
