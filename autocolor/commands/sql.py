@@ -6,7 +6,6 @@ import csv
 import io
 import json
 import re
-import sqlite3
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
@@ -230,6 +229,8 @@ def prompt(tables: Tables, run: Callable[[str], None]) -> None:
         while True:
             try:
                 line = input(NEXT if text else FIRST)
+                if not text and line.strip() in (".quit", ".exit"):
+                    return
                 if not text and _dotted(line, tables):
                     continue
                 whole, text = split(f"{text}{line}\n")
@@ -245,14 +246,8 @@ def prompt(tables: Tables, run: Callable[[str], None]) -> None:
                 click.echo("canceled; Ctrl+D ends", err=True)
             except AutocolorError as error:
                 tell(*(f"autocolor: {problem}" for problem in error.problems))
-            except _Quit:
-                return
     finally:
         SIGNALS.cancels = False
-
-
-class _Quit(Exception):  # noqa: N818
-    """The user asked to leave the prompt."""
 
 
 def _dotted(line: str, tables: Tables) -> bool:
@@ -267,8 +262,6 @@ def _dotted(line: str, tables: Tables) -> bool:
     elif words[0] == ".schema":
         for name in words[1:] or tables.names:
             tell(*tables.definition(name).split("\n"), err=False)
-    elif words[0] in (".quit", ".exit"):
-        raise _Quit
     else:
         click.echo(GREETING, err=True)
     return True
@@ -289,19 +282,13 @@ def statements_in(lines: Iterable[str]) -> Iterator[str]:
             if len(text) > MOST_LETTERS:
                 break
     except UnicodeDecodeError:
-        raise _not_text() from None
+        raise UsageError("statements must be text in UTF-8; save them in this encoding") from None
     if text.strip():
         yield text
 
 
-def _not_text() -> UsageError:
-    return UsageError("statements must be text in UTF-8 without NUL; save them in this encoding")
-
-
 def split(text: str) -> tuple[list[str], str]:
     """The complete statements of a text, with their semicolons, and the rest of the text.
-
-    Raises UsageError if it is not text in UTF-8.
 
     >>> split("SELECT ';'; SELECT 2; SELECT")
     (["SELECT ';';", ' SELECT 2;'], ' SELECT')
@@ -309,19 +296,11 @@ def split(text: str) -> tuple[list[str], str]:
     whole = []
     begin = 0
     for piece in _PIECES.finditer(text):
-        if piece[0] == ";" and _is_complete(text[begin : piece.end()]):
+        if piece[0] == ";":
             whole.append(text[begin : piece.end()])
             begin = piece.end()
     rest = text[begin:]
     return whole, rest if rest.strip() else ""
-
-
-def _is_complete(text: str) -> bool:
-    """Whether a text is a complete statement. A semicolon inside a trigger does not end a statement."""
-    try:
-        return sqlite3.complete_statement(text)
-    except ValueError:
-        raise _not_text() from None
 
 
 def reads_from_a_terminal() -> bool:

@@ -18,7 +18,6 @@ from autocolor.files.store.tables import Answer, Value, open_tables
 from tests.autocolor.commands.conftest import Run
 from tests.autocolor.files.store.stores import run as run_on_store
 from tests.autocolor.files.store.stores import small_scene, small_store, tables_of
-from tests.tables import refused
 
 LIGHTS = "SELECT name, intensity FROM lights"
 
@@ -244,9 +243,6 @@ def test_words_with_a_dot_show_the_tables_and_leave(
     assert told.count(module.GREETING) == 2
 
 
-NOT_TEXT = "statements must be text in UTF-8 without NUL; save them in this encoding"
-
-
 def test_the_statements_of_a_file_are_parted_at_their_semicolons() -> None:
     assert list(statements_in(["SELECT 1; SEL", "ECT\n", "2 -- a; b\n", "; SELECT 3"])) == [
         "SELECT 1;",
@@ -264,14 +260,12 @@ def test_text_without_an_end_is_not_collected_for_ever(monkeypatch: pytest.Monke
         assert list(statements_in(["x" * letters, "y"])) == ["x" * letters + "y" * (lines - 1)]
 
 
-test_statements_that_are_not_text = refused(
-    lambda lines: list(statements_in(lines)),
-    [
-        (["SELECT '\udcff';"], NOT_TEXT),
-        (["SELECT '\0';"], NOT_TEXT),
-        (io.TextIOWrapper(io.BytesIO(b"SELECT 1;\nSELECT '\xff';\n"), "utf-8"), NOT_TEXT),
-    ],
-)
+def test_statements_that_are_not_text_are_refused(tmp_path: Path) -> None:
+    lines = io.TextIOWrapper(io.BytesIO(b"SELECT 1;\nSELECT '\xff';\n"), "utf-8")
+    with pytest.raises(UsageError, match="statements must be text in UTF-8; save them in this encoding"):
+        list(statements_in(lines))
+    path = small_store(tmp_path)
+    assert [refusal(path, f"SELECT '{odd}'").exit_code for odd in ("\udcff", "\0")] == [2, 2]
 
 
 def test_semicolons_in_long_texts_names_and_comments_are_passed_over_at_once() -> None:
