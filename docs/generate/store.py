@@ -97,7 +97,7 @@ Such a store is refused, for reading and for writing. If you trust both files, o
 
 Each column that refers to another table has an index, so that joins are fast in any tool. The indexes are
 created after the rows. With them, a million nodes and a million quads are written in 3.9 seconds instead of
-2.7, and the file has 108 MB instead of 45. They are read in 2.1 seconds; `files/store/rows.py` has the other
+2.7, and the file has 108 MB instead of 45. They are read in 2.5 seconds; `files/store/rows.py` has the other
 measurements.
 
 ## The mesh
