@@ -327,7 +327,7 @@ def fault_of_sql(data: bytes) -> str:
             if tables.would_change(statement):
                 tables.change(statement)
                 continue
-            lines = list(islice(lines_of(tables.answer(statement), ("table", "json")[number % 2]), 200))
+            lines = list(islice(lines_of(tables.answer(statement), (None, "json")[number % 2]), 200))
             if number % 2 == 0 and not all(line.isprintable() for line in lines):
                 return "a table with a line that cannot be printed"
         return fault_of_scene(tables.scene())

@@ -14,11 +14,10 @@ import random
 import resource
 import shutil
 import signal
-import sqlite3
 import sys
 import time
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, closing, contextmanager
+from contextlib import ExitStack, contextmanager
 from functools import partial
 from itertools import cycle
 from pathlib import Path
@@ -120,17 +119,6 @@ def read_tables(suffix: str, folder: Path) -> str:
     return by_folder
 
 
-def read_saved_store(folder: Path) -> object:
-    """The checksum of the scene in a store. If a change was killed, SQLite first rolls it back."""
-    path = folder / "s.sqlite"
-    try:
-        return checksum_of(read_scene(path))
-    except InputError:
-        with closing(sqlite3.connect(path)) as connection:
-            connection.execute("SELECT count(*) FROM sqlite_schema")
-        return checksum_of(read_scene(path))
-
-
 def save_recording(path: Path, number: int) -> None:
     """Record some words, as `ramtek serve --record` does."""
     with writing.Output(path, overwrite=True) as output:
@@ -208,7 +196,7 @@ KINDS: Final = {
     ),
     "store": Kind(
         lambda folder, number: write_scene(folder / "s.sqlite", scene_number(number), overwrite=True),
-        read_saved_store,
+        lambda folder: checksum_of(read_scene(folder / "s.sqlite")),
     ),
     "OBJ and library": Kind(
         lambda folder, number: write_obj(folder / "s.obj", scene_number(number), True),
@@ -290,7 +278,6 @@ class Killing(Trial):
         shutil.copytree(self.saved / str(old), here, symlinks=True, dirs_exist_ok=True)
         way = chance.randrange(3)
         if way == 0:
-            # SQLite makes its steps itself, and has none here.
             process = child(partial(self.kind.save, here, new), chance.randrange(self.steps[new] + 1))
         elif way == 1:
             sizes = [path.stat().st_size for path in (self.saved / str(new)).rglob("*") if path.is_file()]

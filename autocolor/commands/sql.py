@@ -6,7 +6,6 @@ import csv
 import io
 import json
 import re
-import sqlite3
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
@@ -28,8 +27,6 @@ if TYPE_CHECKING:
     from autocolor.files.scene_report import SceneReport
     from autocolor.files.store.tables import Answer, Tables, Value
 
-FORMATS: Final = ("table", "csv", "json")
-
 EXAMPLES: Final = """\b
 Examples:
   autocolor sql scenes/coupe "SELECT name, intensity FROM lights"
@@ -44,9 +41,8 @@ Examples:
 @scene_options
 @click.argument("statement", required=False)
 @click.option("--write", is_flag=True, help="Allow INSERT, UPDATE and DELETE, and save SCENE.")
-@click.option("--format", "form", type=click.Choice(FORMATS), help="Format of printed rows; default: table.")
-@click.option("--csv", "as_csv", is_flag=True, help="Print CSV, as --format csv does.")
-@click.option("--json", "as_json", is_flag=True, help="Print JSON, as --format json does.")
+@click.option("--csv", "form", flag_value="csv", help="Print rows as CSV.")
+@click.option("--json", "form", flag_value="json", help="Print rows as a JSON list of objects.")
 @click.option(
     "--seconds",
     type=click.FloatRange(0.001, 86400),
@@ -61,8 +57,6 @@ def sql(
     statement: str | None,
     write: bool,
     form: str | None,
-    as_csv: bool,
-    as_json: bool,
     seconds: float,
 ) -> None:
     """Run SQL on the tables of SCENE: STATEMENT, or else statements from a prompt or stdin.
@@ -70,13 +64,9 @@ def sql(
     SCENE is a store (.sqlite) or any other scene. `.schema` at the prompt shows the tables; docs/STORE.md
     describes them. A change is checked like a scene file; if it breaks a rule, nothing is changed.
     """
-    forms = [form] if form is not None else []
-    forms += [name for name, is_given in (("csv", as_csv), ("json", as_json)) if is_given]
-    if len(forms) > 1:
-        raise UsageError("rows must have one format, not several; give one of --format, --csv and --json")
     tables, report = _opened(source, write)
     tables.seconds = seconds
-    run = partial(_run, tables, source, write, forms[0] if forms else "table")
+    run = partial(_run, tables, source, write, form)
 
     with tables:
         if statement is not None:
@@ -112,7 +102,7 @@ def _refuse_write(path: Path) -> None:
     raise UsageError(f"--write must save to a store or to a scene's folder, not to {path}; {advice}")
 
 
-def _run(tables: Tables, source: SceneSource, write: bool, form: str, statement: str) -> None:
+def _run(tables: Tables, source: SceneSource, write: bool, form: str | None, statement: str) -> None:
     """Run a statement, and print its rows, or the number of changed rows."""
     if not (write and tables.would_change(statement)):
         for line in lines_of(tables.answer(statement), form):
@@ -140,11 +130,9 @@ WIDEST: Final = 60
 ABSENT: Final = "NULL"
 
 
-def lines_of(answer: Answer, form: str) -> Iterator[str]:
-    """The lines of an answer in one of FORMATS. Rows are read as the lines are asked for."""
-    if form == "csv":
-        return _csv(answer)
-    return _json(answer) if form == "json" else _table(answer)
+def lines_of(answer: Answer, form: str | None) -> Iterator[str]:
+    """The lines of an answer as "csv", "json" or a table. Rows are read as the lines are asked for."""
+    return {"csv": _csv, "json": _json, None: _table}[form](answer)
 
 
 def _table(answer: Answer) -> Iterator[str]:
@@ -241,6 +229,8 @@ def prompt(tables: Tables, run: Callable[[str], None]) -> None:
         while True:
             try:
                 line = input(NEXT if text else FIRST)
+                if not text and line.strip() in (".quit", ".exit"):
+                    return
                 if not text and _dotted(line, tables):
                     continue
                 whole, text = split(f"{text}{line}\n")
@@ -256,14 +246,8 @@ def prompt(tables: Tables, run: Callable[[str], None]) -> None:
                 click.echo("canceled; Ctrl+D ends", err=True)
             except AutocolorError as error:
                 tell(*(f"autocolor: {problem}" for problem in error.problems))
-            except _Quit:
-                return
     finally:
         SIGNALS.cancels = False
-
-
-class _Quit(Exception):  # noqa: N818
-    """The user asked to leave the prompt."""
 
 
 def _dotted(line: str, tables: Tables) -> bool:
@@ -278,43 +262,33 @@ def _dotted(line: str, tables: Tables) -> bool:
     elif words[0] == ".schema":
         for name in words[1:] or tables.names:
             tell(*tables.definition(name).split("\n"), err=False)
-    elif words[0] in (".quit", ".exit"):
-        raise _Quit
     else:
         click.echo(GREETING, err=True)
     return True
 
 
 def statements_in(lines: Iterable[str]) -> Iterator[str]:
-    """The statements in some lines. The last statement may lack its semicolon."""
+    """The statements in some lines. The last statement may lack its semicolon.
+
+    Raises UsageError for a line that is not text in UTF-8.
+    """
     text = ""
-    for line in _readable(lines):
-        text += line
-        if ";" in line:
-            whole, text = split(text)
-            yield from whole
-        if len(text) > MOST_LETTERS:
-            break
+    try:
+        for line in lines:
+            text += line
+            if ";" in line:
+                whole, text = split(text)
+                yield from whole
+            if len(text) > MOST_LETTERS:
+                break
+    except UnicodeDecodeError:
+        raise UsageError("statements must be text in UTF-8; save them in this encoding") from None
     if text.strip():
         yield text
 
 
-def _readable(lines: Iterable[str]) -> Iterator[str]:
-    """The lines. Raises UsageError for a line that is not text in UTF-8."""
-    try:
-        yield from lines
-    except UnicodeDecodeError:
-        raise _not_text() from None
-
-
-def _not_text() -> UsageError:
-    return UsageError("statements must be text in UTF-8 without NUL; save them in this encoding")
-
-
 def split(text: str) -> tuple[list[str], str]:
     """The complete statements of a text, with their semicolons, and the rest of the text.
-
-    Raises UsageError if it is not text in UTF-8.
 
     >>> split("SELECT ';'; SELECT 2; SELECT")
     (["SELECT ';';", ' SELECT 2;'], ' SELECT')
@@ -322,19 +296,11 @@ def split(text: str) -> tuple[list[str], str]:
     whole = []
     begin = 0
     for piece in _PIECES.finditer(text):
-        if piece[0] == ";" and _is_complete(text[begin : piece.end()]):
+        if piece[0] == ";":
             whole.append(text[begin : piece.end()])
             begin = piece.end()
     rest = text[begin:]
     return whole, rest if rest.strip() else ""
-
-
-def _is_complete(text: str) -> bool:
-    """Whether a text is a complete statement. A semicolon inside a trigger does not end a statement."""
-    try:
-        return sqlite3.complete_statement(text)
-    except ValueError:
-        raise _not_text() from None
 
 
 def reads_from_a_terminal() -> bool:

@@ -236,31 +236,3 @@ def normals_of(arrays: Mapping[str, AnyArray]) -> NodeNormals | None:
         np.asfortranarray(table.astype(kind)) for table, kind in ((vectors, np.float32), (numbers, np.intp))
     )
     return NodeNormals(read_only(vectors), read_only(numbers))
-
-
-# The scalars of a mesh: rows of the header, and members.
-
-KEY: Final = "mesh_scalars"
-"""The key of the list in the header whose rows are tables of `name` and `of`."""
-
-MESH_SCALARS: Final = Series("mesh_scalar", ("<f8", 1), MOST_SCALARS)
-
-
-def scalar_rows(scalars: Sequence[MeshScalar]) -> list[dict[str, str]]:
-    """The rows of the header that describe the scalars."""
-    return [{"name": scalar.name, "of": scalar.of} for scalar in scalars]
-
-
-def scalar_members(scalars: Sequence[MeshScalar]) -> dict[str, AnyArray]:
-    """The values of the scalars by the names of their members."""
-    return {f"{MESH_SCALARS.member}_{number}": scalar.values for number, scalar in enumerate(scalars)}
-
-
-def scalars_of(header: Mapping[str, Any], arrays: Mapping[str, AnyArray]) -> tuple[MeshScalar, ...]:
-    """The scalars of a header and its arrays; old formats have no scalars. Raises InputError."""
-    scalars = []
-    for number, row in enumerate(header.get(KEY, ())):
-        if not isinstance(row, Mapping) or row.keys() != {"name", "of"}:
-            raise InputError(f"{KEY}[{number + 1}] must be a table of name and of, not {shown(row)}")
-        scalars.append(MeshScalar(row["name"], arrays[f"{MESH_SCALARS.member}_{number}"], row["of"]))
-    return tuple(scalars)

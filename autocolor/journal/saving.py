@@ -11,7 +11,6 @@ files alone.
 from __future__ import annotations
 
 import os
-from contextlib import closing
 from itertools import count
 from pathlib import Path
 from typing import NamedTuple
@@ -159,10 +158,9 @@ def _backup_of(path: Path) -> Path:
     backup = free_path(path)
     if path.suffix.lower() in STORE_SUFFIXES:
         # SQLite is loaded for stores alone. The latest changes may be beside the store, in its log.
-        from autocolor.files.store.connections import connected
+        from autocolor.files.store.store_file import image_of
 
-        with closing(connected(path)) as store:
-            data = store.serialize()
+        data = image_of(path)
     else:
         data = path.read_bytes()
     write_atomically(backup, data, overwrite=False)

@@ -72,23 +72,32 @@ A store is data, and reading it runs no code from it. Views, triggers and tables
 ignored; a view, a virtual table or a computed column with one of the names below is refused. Statements may
 read, compute, and with `--write` change rows. They may not attach files, load extensions, set pragmas or
 change tables, and they end after 30 seconds (`--seconds`). A value has at most 1 MiB, a value that a
-statement reads or computes 128 KiB, a file at most 2 GiB.
+statement reads or computes 128 KiB. A file has at most 1.1 GB, unless you
+allow more with `--limit`.
 
-A new store is written under another name and renamed. An existing store is changed in place by one
-transaction, so programs with the store open notice. Tables of other programs stay. A store with triggers,
-views or indexes of other programs is not written over: save the scene to another file. A store with triggers
-is not changed by `--write` either. A studio that shows a store, or a scene file, shows the changes of other
-programs as one step to undo; with unsaved edits it asks.
+A store is read into memory, changed there, and replaced as a whole: the new file is written under another
+name and renamed. A program of ours that is killed leaves the old store or the new one, and nothing beside
+it. While a store is changed, SQLite's own lock keeps other programs from changing it. A program of SQLite
+that has the store open from before keeps the old file. SQLite refuses its changes (`attempt to write a
+readonly database`) until it opens the store again.
 
-Reading leaves no file beside a store. What another program has written to a `-wal` file is read with the
-store while its `-shm` is there too; without it the store is refused. A `-journal` of a change that has not
-ended is never rolled back: it can name any file, and SQLite deletes that file afterwards. The store is
-refused then, for reading and for writing. If you trust both files, open the store once with
-`sqlite3 FILE .tables`, which rolls the journal back; otherwise move the journal away.
+Tables, views, indexes and triggers of other programs stay, and none of them is run. If an index or a
+trigger does not fit the tables of the new scene, the store is left as it is. `--write` refuses a store with
+triggers, because its statement would run them. A studio that shows a store, or a scene file, shows the
+changes of other programs as one step to undo; with unsaved edits it asks.
+
+What another program has written to a `-wal` file is read with the store. Before the store is replaced,
+SQLite moves the log into it, and the store leaves WAL mode. While a program has the store open in WAL mode,
+it is read and not replaced. Do not turn WAL mode on while several programs change a store.
+
+If a program was killed while it changed the store, SQLite takes the change back by the `-journal` beside
+it, as any tool of SQLite does. A `-journal` can also name another file, which SQLite deletes afterwards.
+Such a store is refused, for reading and for writing. If you trust both files, open the store once with
+`sqlite3 FILE .tables`; otherwise move the journal away.
 
 Each column that refers to another table has an index, so that joins are fast in any tool. The indexes are
 created after the rows. With them, a million nodes and a million quads are written in 3.9 seconds instead of
-2.7, and the file has 108 MB instead of 45. They are read in 2.1 seconds; `files/store/rows.py` has the other
+2.7, and the file has 108 MB instead of 45. They are read in 2.5 seconds; `files/store/rows.py` has the other
 measurements.
 
 ## The mesh

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import re
 import sqlite3
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import closing
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -32,7 +32,7 @@ from autocolor.files import picture_file
 from autocolor.files.array_file import array_file_bytes
 from autocolor.files.stamps import stamp_of
 from autocolor.files.store import store_file
-from autocolor.files.store.connections import connected_to_change
+from autocolor.files.store.connections import replacing
 from autocolor.journal import places
 from autocolor.journal.history import History
 from autocolor.journal.places import Source, checksum_of
@@ -134,6 +134,10 @@ def test_a_change_of_another_program_is_never_overwritten_silently(
     studio.undo()
     studio.redo()
     assert not studio.is_changed
+    # A store is not replaced while another program has it open in WAL mode.
+    if OPEN:
+        OPEN.pop().close()
+        studio.reopen()
     studio.edit(mine)
     save(studio, path)
     assert read_scene(path).view.angle == 5
@@ -192,11 +196,11 @@ def test_a_change_while_the_save_waits_for_the_store_is_seen(
     studio, _ = opened()
     studio.open(path)
 
-    def connected(store: Path) -> sqlite3.Connection:
+    def waiting(store: Path, check: Callable[[], None]) -> object:
         outside_row(store)
-        return connected_to_change(store)
+        return replacing(store, check)
 
-    monkeypatch.setattr(store_file, "connected_to_change", connected)
+    monkeypatch.setattr(store_file, "replacing", waiting)
     with pytest.raises(OutputError, match="another program changed"):
         studio.save_scene(path, overwrite=True)
     assert read_scene(path).view.angle == 7

@@ -1,32 +1,43 @@
-"""Connections to stores. A store is data: the file of a stranger can be read, and can do nothing else.
+"""Opening and replacing stores. A store is data: the file of a stranger can be read, and can do nothing else.
 
+- A store is a file of one scene. It is copied into memory, read and changed there, and replaced as a whole.
+  So a program of ours that is killed leaves the old store or the new one, and nothing beside it.
+- SQLite itself opens the file for the copy: it knows its locks, and what a `-journal` or a `-wal` beside the
+  store holds. A `-journal` may name any file as its super-journal, which SQLite deletes. It is refused.
 - The schema of a file may call only functions that compute (`trusted_schema`). Nothing can be attached or
   loaded, no statement can set a pragma (see `authorizer`), sizes are limited, and a statement that takes too
   long is ended. Python 3.11 cannot set SQLite's defensive mode; later versions do.
-- A `-journal` beside a store may name any file as its super-journal. SQLite deletes that file after it
-  rolled the journal back. So a store is always opened read-only first, and no journal is ever rolled back.
 """
 
 from __future__ import annotations
 
 import os
 import sqlite3
-import stat
+import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
+from functools import partial
 from pathlib import Path
 from typing import Final
 
 from autocolor.checks import printable
-from autocolor.errors import InputError, MissingInputError, UnavailableError, WriteError, reason_of
+from autocolor.errors import (
+    InputError,
+    MissingInputError,
+    OutputError,
+    UnavailableError,
+    WriteError,
+    reason_of,
+)
 from autocolor.files.reading import opened, read_head, refuse_irregular, require_size, status_of
+from autocolor.files.writing import write_atomically
 
 LEAST_SQLITE: Final = (3, 37, 0)
 """The first version with STRICT tables."""
 
 BEGINS: Final = b"SQLite format 3\0"
-GROWTH: Final = 2
+GROWTH: Final = 3.5
 """Measured: how many times its size the store of a scene takes while it is read."""
 
 LONGEST_TEXT: Final = 1 << 20
@@ -37,9 +48,6 @@ READING_SECONDS: Final = 120.0
 
 SECONDS_OF_WAITING: Final = 5.0
 """Limit: how long to wait for another program that is writing."""
-
-SECONDS_BETWEEN_TRIES: Final = 0.02
-"""Limit: seconds between two tries to begin a change while another program is writing."""
 
 STEPS: Final = 100_000
 """Steps of SQLite's machine between two looks at the clock: about a millisecond."""
@@ -67,129 +75,150 @@ LIMITS: Final = {
 
 
 def in_memory() -> sqlite3.Connection:
-    """A new store in memory. Raises UnavailableError."""
-    refuse_old_sqlite()
+    """A new store in memory. Raises UnavailableError if this Python's SQLite lacks what a store needs."""
+    if sqlite3.sqlite_version_info < LEAST_SQLITE or not hasattr(sqlite3.Connection, "serialize"):
+        raise UnavailableError(
+            "a store must have SQLite 3.37 or later with sqlite3_serialize, and this Python has"
+            f" {sqlite3.sqlite_version}; use another Python"
+        )
     return _guarded(sqlite3.connect(":memory:", isolation_level=None))
 
 
-def connected(path: Path) -> sqlite3.Connection:
-    """A read-only connection to the store at a path.
-
-    It also reads changes of another program that are still in the store's `-wal`. It rolls no journal back,
-    and creates no file. Raises InputError, MissingInputError.
-    """
-    _refuse_unsafe(path)
-    mode = _reading_mode(path)
-    with refusals(path.name):
-        return _opened(path, mode, SECONDS_OF_WAITING)
-
-
-def connected_to_change(path: Path, *, checks_references: bool = False) -> sqlite3.Connection:
-    """A connection to the store at a path that has begun a transaction to change it.
-
-    Check the file with `store_head` or `connected` before: an empty file would become a store. With
-    `checks_references`, SQLite follows and checks foreign keys in the transaction. Raises InputError,
-    MissingInputError, and WriteError if another program is still writing after some seconds.
-    """
-    _refuse_unsafe(path)
-    until = time.monotonic() + SECONDS_OF_WAITING
-    with refusals(path.name), write_refusals(path.name):
-        while (connection := _begun(path, checks_references)) is None:
-            if time.monotonic() > until:
-                refuse_journal(path)
-                raise WriteError(f"{path.name}: {BUSY}")
-            time.sleep(SECONDS_BETWEEN_TRIES)
-    return connection
-
-
-def _begun(path: Path, checks_references: bool) -> sqlite3.Connection | None:
-    """A writable connection in a transaction, or None while another program is writing.
-
-    While the reader has its lock, SQLite cannot roll back a journal that appears after the check.
-    """
-    try:
-        with closing(_opened(path, "ro", 0.0)) as reader:
-            reader.execute("BEGIN")
-            reader.execute(FIRST_LOOK).fetchone()
-            if _has_journal(path):
-                return None
-            connection = _opened(path, "rw", 0.0)
-            try:
-                connection.execute(f"PRAGMA foreign_keys = {'ON' if checks_references else 'OFF'}")
-                connection.execute("BEGIN IMMEDIATE")
-            except BaseException:
-                connection.close()
-                raise
-    except sqlite3.OperationalError as error:
-        if primary_code(error) in BUSY_ERRORS:
-            return None
-        raise
-    connection.execute(f"PRAGMA busy_timeout = {SECONDS_OF_WAITING * 1000:.0f}")
-    return connection
+def copied(connection: sqlite3.Connection) -> sqlite3.Connection:
+    """A copy of a store in memory. Raises sqlite3.Error."""
+    with closed_on_error(in_memory()) as copy:
+        connection.backup(copy)
+    return copy
 
 
 @contextmanager
-def transaction(connection: sqlite3.Connection, name: str) -> Iterator[None]:
-    """A transaction, which begins here unless the connection has begun it. After any error it is rolled back.
-
-    Raises WriteError if another program is writing to the store, if writing fails, or if a table of another
-    program then refers to a missing row.
-    """
-    with write_refusals(name):
-        try:
-            if not connection.in_transaction:
-                connection.execute("BEGIN IMMEDIATE")
-            yield
-            try:
-                connection.execute("COMMIT")
-            except sqlite3.IntegrityError as error:
-                raise WriteError(
-                    f"{name}: tables of other programs must not refer to rows that a change removes or"
-                    f" renames ({error}); change their rows first"
-                ) from None
-        except BaseException:
-            if connection.in_transaction:
-                connection.execute("ROLLBACK")
-            raise
-
-
-def journal_mode(connection: sqlite3.Connection) -> str:
-    """The journal mode of a store; "delete" if a store in WAL mode was opened as an immutable file."""
-    (mode,) = connection.execute("PRAGMA journal_mode").fetchone()
-    return str(mode)
-
-
-def refuse_old_sqlite() -> None:
-    """Raise UnavailableError if the SQLite of this Python has no STRICT tables."""
-    if sqlite3.sqlite_version_info < LEAST_SQLITE:
-        raise UnavailableError(
-            f"a store must have SQLite 3.37 or later, not {sqlite3.sqlite_version}; use a newer Python"
-        )
-
-
-def _opened(path: Path, mode: str, seconds_of_waiting: float) -> sqlite3.Connection:
-    """A connection that begins no transaction by itself."""
-    uri = f"{Path(os.path.abspath(path)).as_uri()}?mode={mode}"
-    connection = sqlite3.connect(uri, uri=True, isolation_level=None, timeout=seconds_of_waiting)
+def closed_on_error(connection: sqlite3.Connection) -> Iterator[sqlite3.Connection]:
+    """The connection, which is closed if the body fails."""
     try:
-        _guarded(connection)
-        # SQLite reads the file, and looks for its journal, only now.
-        connection.execute(FIRST_LOOK).fetchone()
+        yield connection
     except BaseException:
         connection.close()
         raise
-    return connection
+
+
+def loaded(path: Path) -> sqlite3.Connection:
+    """A copy in memory of the store at a path, with what its `-wal` holds.
+
+    If a program was killed while it changed the store, SQLite first takes that change back, by the `-journal`
+    beside it. Raises InputError, MissingInputError.
+    """
+    is_logged, played = _is_in_wal_mode(path), played_files(path)
+    mode = "ro"
+    if "-journal" in played:
+        mode = "rw"
+    elif is_logged and not played:
+        # SQLite makes a log even to read. Where it cannot, the file is complete without.
+        mode = "ro&immutable=1" if _write_protected(path) else "rw"
+    with refusals(path.name):
+        return _copy_of(path, mode)
+
+
+def _copy_of(path: Path, mode: str) -> sqlite3.Connection:
+    with closing(_opened(path, mode)) as file:
+        file.execute("BEGIN")
+        file.execute(FIRST_LOOK).fetchone()
+        return copied(file)
+
+
+@contextmanager
+def replacing(
+    path: Path, check: Callable[[], None]
+) -> Iterator[tuple[sqlite3.Connection, Callable[[bytes], None]]]:
+    """A copy in memory of the store at a path, and a function that replaces the store by the bytes given.
+
+    Until the end no other program can change the store: SQLite's own lock is held. `check` is called first
+    under this lock. After any error the copy is closed. Raises InputError, MissingInputError; OutputError if
+    the place is write-protected, and WriteError if another program writes to the store all the time, or
+    replaces it.
+    """
+    is_logged = _is_in_wal_mode(path)
+    with _unplayable():
+        is_logged |= "-wal" in played_files(path)
+    if place := _write_protected(path):
+        raise OutputError(
+            f"an output must be where it can be written, and {place} is write-protected; change its"
+            " permissions, or write to another file"
+        )
+    with refusals(path.name, is_written=True):
+        check = _without_log(path, check) if is_logged else check
+        with closing(_locked(path, check)) as file:
+            before = _numbers(path)
+
+            def save(data: bytes) -> None:
+                _refuse_other(path, before)
+                if sys.platform == "win32":
+                    # An open file cannot be replaced there.
+                    file.close()
+                write_atomically(path, data, overwrite=True)
+
+            # SQLite makes no copy by a connection that is about to write.
+            with closed_on_error(_copy_of(path, "ro")) as copy:
+                yield copy, save
+
+
+def _locked(path: Path, check: Callable[[], None]) -> sqlite3.Connection:
+    """A connection to the store at a path in a transaction that lets no other program change it."""
+    while True:
+        before = _numbers(path)
+        with closed_on_error(_opened(path, "rw")) as file:
+            file.execute("BEGIN IMMEDIATE")
+            check()
+            if _numbers(path)[:2] == before[:2]:
+                return file
+        # Another program of ours replaced the store while this one waited for the lock of the old file.
+        file.close()
+
+
+def _without_log(path: Path, check: Callable[[], None]) -> Callable[[], None]:
+    """Move what the log beside a store holds into the store, after a check; returns another check.
+
+    SQLite would play the log into the next file of this name, whatever that holds. The store then is no
+    longer in WAL mode. Afterwards nobody may have changed it.
+    """
+    with closing(_opened(path, "rw")) as file:
+        for statement in ("PRAGMA locking_mode = EXCLUSIVE", "BEGIN IMMEDIATE", "COMMIT"):
+            file.execute(statement)
+        check()
+        file.execute("PRAGMA journal_mode = DELETE")
+        return partial(_refuse_other, path, _numbers(path))
+
+
+def _numbers(path: Path) -> tuple[int, ...]:
+    """Numbers that tell one file at a path from another, and a file from a changed one."""
+    status = status_of(path)
+    return status.st_dev, status.st_ino, status.st_mtime_ns, status.st_size
+
+
+def _refuse_other(path: Path, numbers: tuple[int, ...]) -> None:
+    """Raise WriteError unless the file at a path has these numbers."""
+    if _numbers(path) != numbers:
+        raise WriteError(
+            f"{path.name}: a store must stay as it is while it is changed, and another program replaced it;"
+            " nothing was saved, so try again"
+        )
+
+
+def _opened(path: Path, mode: str) -> sqlite3.Connection:
+    """A connection to a file that begins no transaction by itself."""
+    uri = f"{Path(os.path.realpath(path)).as_uri()}?mode={mode}"
+    return _guarded(sqlite3.connect(uri, uri=True, isolation_level=None, timeout=SECONDS_OF_WAITING))
 
 
 def _guarded(connection: sqlite3.Connection) -> sqlite3.Connection:
     """The connection, with its limits and settings; nothing of its file is run."""
-    for limit, most in LIMITS.items():
-        connection.setlimit(limit, min(most, connection.getlimit(limit)))
-    for pragma in ("trusted_schema=OFF", "cell_size_check=ON", "mmap_size=0", "foreign_keys=OFF"):
-        connection.execute(f"PRAGMA {pragma}")
-    if hasattr(connection, "setconfig"):
-        # From Python 3.12 on.
-        connection.setconfig(getattr(sqlite3, "SQLITE_DBCONFIG_DEFENSIVE"), True)  # noqa: B009
+    with closed_on_error(connection):
+        for limit, most in LIMITS.items():
+            connection.setlimit(limit, min(most, connection.getlimit(limit)))
+        for pragma in ("trusted_schema=OFF", "cell_size_check=ON", "mmap_size=0", "foreign_keys=OFF"):
+            connection.execute(f"PRAGMA {pragma}")
+        if hasattr(connection, "setconfig"):
+            # From Python 3.12 on.
+            connection.setconfig(getattr(sqlite3, "SQLITE_DBCONFIG_DEFENSIVE"), True)  # noqa: B009
     return connection
 
 
@@ -274,108 +303,80 @@ class Clock:
         return int(self.ended)
 
 
-# Checks of a file, and of the files beside it, before SQLite opens it.
+# Checks of a file, and of the files beside it, before SQLite opens it. They open no file that is locked by
+# this process, because closing it would end the locks.
 
 JOURNAL_MAGIC: Final = bytes.fromhex("d9d505f920a163d7")
-"""The bytes that a rollback journal begins with, and that follow the name of a super-journal at its end."""
-
-JOURNAL_LEFT: Final = (
-    "the -journal beside the store is from a change that has not ended, and to roll it back can delete any"
-    " file that it names; if you trust both files, open the store once with `sqlite3 FILE .tables`, otherwise"
-    " move the journal away"
-)
+"""The bytes that follow the name of a super-journal at the end of a rollback journal."""
 
 
-def _refuse_unsafe(path: Path) -> None:
-    """Raise InputError if a store is no regular file, is too large, or has unsafe files beside it.
+def _is_in_wal_mode(path: Path) -> bool:
+    """Whether a store is in WAL mode.
 
-    It opens no file that SQLite locks, because closing the file would end the locks of this process on it.
+    Raises InputError if it is no regular file, too large, or does not begin as a store; MissingInputError.
     """
-    refuse_old_sqlite()
     status = status_of(path)
     refuse_irregular(path, status)
     require_size(path.name, status.st_size, GROWTH)
-    _, wal, shm = (_size_beside(path, ending) for ending in ("-journal", "-wal", "-shm"))
-    if os.path.islink(path):
-        # SQLite ignores a journal beside the link, but would find it if the folder were copied without links.
-        refuse_journal(path)
-    if wal and shm is None:
-        raise InputError(
-            f"{path.name}: the latest changes are in {path.name}-wal, which cannot be read without"
-            f" {path.name}-shm; open the store once with `sqlite3 FILE .tables`"
-        )
-
-
-def store_head(path: Path) -> bytes:
-    """The first bytes of a store. Raises InputError if a file does not begin as a store.
-
-    Call it before SQLite opens the store: closing the file ends the locks of this process on it.
-    """
     head = read_head(path)
-    if head[: len(BEGINS)] != BEGINS:
+    if not head.startswith(BEGINS):
         raise InputError(
             f"{path.name}: a store must be an SQLite file, and this one does not begin as such; write it"
             " again with `autocolor convert`"
         )
-    return head
+    return WAL_VERSION in head[18:20]
 
 
-def _reading_mode(path: Path) -> str:
-    """The mode to read a store in. Raises InputError if it cannot be read without rolling a journal back.
+def played_files(path: Path) -> list[str]:
+    """The endings of the files beside a store that SQLite plays into it: "-journal", "-wal".
 
-    In WAL mode SQLite makes the files that are missing beside a store even to read it. A store without a
-    `-wal` is complete by itself, so it is read as a file that does not change.
+    SQLite takes a change back by the journal of a program that was killed; a journal that a program keeps for
+    its next change has a header of zeros. Raises InputError for a file that is not regular, because SQLite
+    would wait for a pipe without end; and for a journal that ends with the name of a super-journal, because
+    SQLite deletes the named file when it has rolled the journal back, or a change of its own.
     """
-    head = store_head(path)
-    wal, shm = (_size_beside(path, ending) for ending in ("-wal", "-shm"))
-    if wal is not None and shm is not None:
-        return "ro"
-    if wal is None and WAL_VERSION not in head[18:20]:
-        return "ro"
-    # An immutable file is read without a look at its journal.
-    refuse_journal(path)
-    return "ro&immutable=1"
-
-
-def _size_beside(path: Path, ending: str) -> int | None:
-    """The size of a file beside a store; None if there is none. Raises InputError if it is not regular.
-
-    SQLite would wait for a pipe without end.
-    """
-    beside = Path(os.path.realpath(path) + ending)
-    try:
-        status = os.lstat(beside)
-    except OSError:
-        return None
-    if stat.S_ISLNK(status.st_mode):
-        raise InputError(f"{beside}: it must be a regular file, not a link; move the link away")
-    refuse_irregular(beside, status)
-    return status.st_size
-
-
-def refuse_journal(path: Path) -> None:
-    """Raise InputError if a rollback journal is beside a store, or beside the file that its link leads to."""
-    if _has_journal(path):
-        raise InputError(f"{path.name}: {JOURNAL_LEFT}")
-
-
-def _has_journal(path: Path) -> bool:
-    """Whether a journal beside a store may be rolled back, or may end with the name of a file to delete.
-
-    A program that reuses its journal leaves it with a header of zeros. The header also begins with zeros
-    until the journal is synced, before the store is changed. If such a journal ends with the name of a
-    super-journal, SQLite deletes the named file as soon as a change of ours is taken back.
-    """
-    for place in (path, os.path.realpath(path)):
+    endings = []
+    for ending in ("-journal", "-wal"):
         try:
-            with opened(Path(f"{place}-journal")) as (file, status):
-                is_hot = any(file.read(1))
+            with opened(Path(os.path.realpath(path) + ending)) as (file, status):
+                if any(file.read(1)):
+                    endings.append(ending)
                 file.seek(max(0, status.st_size - len(JOURNAL_MAGIC)))
-                if is_hot or file.read() == JOURNAL_MAGIC:
-                    return True
+                names_another = ending == "-journal" and file.read() == JOURNAL_MAGIC
         except MissingInputError:
             continue
-    return False
+        if names_another:
+            raise InputError(
+                f"{path.name}: the -journal beside the store names another file, which SQLite deletes when it"
+                " rolls the journal back; if you trust both files, open the store once with `sqlite3 FILE"
+                " .tables`, otherwise move the journal away"
+            )
+    return endings
+
+
+@contextmanager
+def _unplayable() -> Iterator[None]:
+    """Raise the refusals of `played_files` as WriteError."""
+    try:
+        yield
+    except InputError as error:
+        raise WriteError(str(error)) from None
+
+
+def refuse_remains(path: Path) -> None:
+    """Raise WriteError if SQLite would play a journal or a log into a new store at a path."""
+    with _unplayable():
+        for ending in played_files(path):
+            raise WriteError(
+                f"{path.name}: a new store must have no {path.name}{ending} beside it, because SQLite would"
+                " play it into the store; move it away"
+            )
+
+
+def _write_protected(path: Path) -> Path | None:
+    """The store at a path or its folder, if it is write-protected."""
+    places = (path, Path(os.path.realpath(path)).parent)
+    return next((place for place in places if not os.access(place, os.W_OK)), None)
 
 
 # Errors of SQLite as errors of this package.
@@ -385,8 +386,6 @@ DISK_ERRORS: Final = (sqlite3.SQLITE_FULL, sqlite3.SQLITE_IOERR)
 PLACE_ERRORS: Final = (sqlite3.SQLITE_READONLY, sqlite3.SQLITE_CANTOPEN)
 DAMAGE_ERRORS: Final = (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB)
 
-BUSY: Final = "another program is writing to the store; let it end, and try again"
-
 
 def primary_code(error: BaseException) -> int:
     """The error code of SQLite without its details; 0 if the error has none."""
@@ -394,42 +393,32 @@ def primary_code(error: BaseException) -> int:
 
 
 @contextmanager
-def refusals(name: str = "", clock: Clock | None = None) -> Iterator[None]:
-    """Raise errors of SQLite as InputError, with advice; `name` is the file's name in the message."""
+def refusals(name: str = "", clock: Clock | None = None, is_written: bool = False) -> Iterator[None]:
+    """Raise errors of SQLite as InputError, with advice; `name` is the file's name in the message.
+
+    If the store `is_written`, the errors that keep it from being written are raised as WriteError.
+    """
     try:
         yield
     except (sqlite3.Error, sqlite3.Warning, UnicodeError, OverflowError) as error:
+        reason = sentence_of(error)
         if clock is not None and clock.ended:
             reason = f"a store must be read within {clock.seconds:g} seconds, not longer; leave rows out"
-        else:
-            reason = sentence_of(error)
-        raise InputError(f"{name}: {reason}" if name else reason) from None
-
-
-@contextmanager
-def write_refusals(name: str) -> Iterator[None]:
-    """Raise errors that keep a store from being written as WriteError; other errors stay as they are."""
-    try:
-        yield
-    except sqlite3.Error as error:
-        if primary_code(error) in (*BUSY_ERRORS, *DISK_ERRORS, *PLACE_ERRORS):
-            raise WriteError(f"{name}: {sentence_of(error)}") from None
-        raise
+        is_kept = is_written and primary_code(error) in (*BUSY_ERRORS, *DISK_ERRORS, *PLACE_ERRORS)
+        raise (WriteError if is_kept else InputError)(f"{name}: {reason}" if name else reason) from None
 
 
 def sentence_of(error: Exception) -> str:
     """A sentence for an error of SQLite: what is wrong with the store, and what to do."""
     code, text = primary_code(error), printable(reason_of(error)[:300])
     if code in BUSY_ERRORS:
-        return BUSY
-    if getattr(error, "sqlite_errorcode", 0) == sqlite3.SQLITE_READONLY_ROLLBACK:
-        return JOURNAL_LEFT
+        return "another program is writing to the store, or has it open in WAL mode; close it, and try again"
     if code == sqlite3.SQLITE_TOOBIG:
         return f"a value must have at most {LONGEST_TEXT:,} bytes, not more; shorten it"
     if code in PLACE_ERRORS:
         return (
-            f"the store cannot be opened or changed where it is ({text}): a change of it was interrupted, or"
-            " it is write-protected; open it once with the program that wrote it, or use another file"
+            f"the store cannot be opened where it is ({text}): the files beside it are needed too, and are"
+            " write-protected or missing; copy all of them to another folder"
         )
     if code in DISK_ERRORS:
         return f"the disk must hold the store, and is full or fails ({text}); make room, and try again"

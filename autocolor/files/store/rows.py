@@ -1,18 +1,19 @@
 """The rows of a store as a scene, and a scene as rows.
 
-Measured, for a million nodes and a million quads: `np.fromiter` over the chained rows reads them in 1.4 s;
-`fetchall` and `np.array` take 3.6 s, chunks of `fetchmany` 3 s. Not reading row numbers without gaps, and not
-checking the types of STRICT tables, saves 1 s. Two node numbers packed in one integer would save a tenth, and
-numbers in place of part names another tenth; neither is worth it. `executemany` of zipped columns writes the
-rows in 2.6 s, fifty rows a statement in 2.2 s, and `ignore_check_constraints` gains nothing.
+Measured, for a million nodes and a million quads: `np.fromiter` of whole rows takes 1.2 times as long as of
+the numbers of all rows in one chain (1.4 s), which needs the row numbers, and a case for gaps among them,
+apart. `fetchall` and `np.array` take 3.6 s, chunks of `fetchmany` 3 s. Two node numbers packed in one
+integer would save a tenth, and numbers in place of part names another tenth; neither is worth it.
+`executemany` of zipped columns writes the rows in 2.6 s, fifty rows a statement in 2.2 s, and
+`ignore_check_constraints` gains nothing.
 """
 
 from __future__ import annotations
 
 import sqlite3
-from collections.abc import Callable, Iterator, Mapping
-from itertools import chain, islice
-from typing import Any, Final
+from collections.abc import Iterable, Iterator, Mapping
+from itertools import islice
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
@@ -36,6 +37,7 @@ from autocolor.files.store.schema import (
     SqlValue,
     StoredTable,
     StoredTables,
+    literal,
     plain_row,
     quoted,
     require_columns,
@@ -55,9 +57,6 @@ from autocolor.scene.surfaces import Part, Surface
 BYTES_OF_ROW: Final = 120
 """Measured: bytes that a row of the nodes or polygons takes while it is read, however small it is stored."""
 
-PYTHON_TYPES: Final = {"integer": int, "real": float, "text": str, "null": type(None)}
-"""The types of values in Python, by their names in SQLite."""
-
 MOST_PROBLEMS: Final = 100
 MOST_MESH_PROBLEMS: Final = 20
 """Limit: the problems of one kind in the tables of the mesh."""
@@ -73,7 +72,7 @@ def report_of(
     `name` is for a scene whose table gives no name. Raises InputError with every problem.
     """
     rows_of = {
-        table: rows_of_table(connection, table, tables[table].columns, NUMBER)
+        table: rows_of_table(connection, table, tables[table].columns)
         for table in ROW_TABLES
         if table in tables
     }
@@ -88,52 +87,40 @@ def report_of(
         elif table not in ("parts", SCENE) and (rows or not is_single):
             values = _validated(ROW_TABLES[table], rows, problems)
             fields[table] = values[0] if is_single and values else values
-    part_rows = rows_of.get("parts", [])
+    part_rows, surface_rows = rows_of.get("parts", []), rows_of.get("surfaces")
     parts = {str(row.get("name")): plain_row(ROW_TABLES["parts"].columns, row) for row in part_rows}
     if len(parts) < len(part_rows):
         problems.append("parts: names must be unique, not repeated; rename one")
     _validated(ROW_TABLES["parts"], part_rows, problems)
-    if "surfaces" in rows_of:
-        problems.extend(islice(_unknown_surfaces(part_rows, rows_of["surfaces"]), MOST_PROBLEMS))
+    if surface_rows is not None:
+        unknown = _unknown_surfaces(part_rows, [str(row.get("name")) for row in surface_rows])
+        problems.extend(islice(unknown, MOST_PROBLEMS))
     if problems:
         raise InputError(problems[:MOST_PROBLEMS])
     mesh = mesh_of(connection, tables, tuple(parts) if part_rows else None)
-    return _report(mesh, parts, fields, "surfaces" in rows_of, surfaces)
+    for part in parts.values():
+        part.pop("name", None)
+    materials = {}
+    if surface_rows is None:
+        # Create the surfaces that only parts name, as the surfaces of materials are created.
+        materials = {name: str(part.pop("surface")) for name, part in parts.items() if "surface" in part}
+        if surfaces == PARTS:
+            fields["surfaces"] = PARTS
+    return scene_report([MeshReport(mesh, material_of_part=materials)], parts=parts, **fields)
 
 
-def _unknown_surfaces(parts: list[dict[str, SqlValue]], surfaces: list[dict[str, SqlValue]]) -> Iterator[str]:
+def _unknown_surfaces(parts: list[dict[str, SqlValue]], surfaces: list[str]) -> Iterator[str]:
     """A problem for each part whose surface has no row.
 
     Tools leave foreign keys unchecked unless they are asked to check them, and SQLite's own error names no
     row, so references are checked here.
     """
-    names = {str(row.get("name")): None for row in surfaces}
+    names = set(surfaces)
     for number, row in enumerate(parts, 1):
         surface = row.get("surface")
         if surface is not None and surface not in names:
-            advice = nearest(str(surface), names) or "; correct it"
+            advice = nearest(str(surface), surfaces) or "; correct it"
             yield f"parts, row {number}: surface {shown(surface)} is not in the surface table{advice}"
-
-
-def _report(
-    mesh: Mesh,
-    parts: Mapping[str, dict[str, Any]],
-    fields: dict[str, Any],
-    has_surfaces: bool,
-    surfaces: SurfaceSource,
-) -> SceneReport:
-    materials = {}
-    if not has_surfaces:
-        # Create the surfaces that only parts name, as the surfaces of materials are created.
-        materials = {part: str(table["surface"]) for part, table in parts.items() if "surface" in table}
-        if surfaces == PARTS:
-            fields["surfaces"] = PARTS
-    skipped = ("name",) if has_surfaces else ("name", "surface")
-    part_fields = {
-        name: {key: value for key, value in table.items() if key not in skipped}
-        for name, table in parts.items()
-    }
-    return scene_report([MeshReport(mesh, material_of_part=materials)], parts=part_fields, **fields)
 
 
 def _validated(table: RowTable, rows: list[dict[str, SqlValue]], problems: list[str]) -> tuple[Row, ...]:
@@ -159,108 +146,161 @@ def _validated(table: RowTable, rows: list[dict[str, SqlValue]], problems: list[
 # The mesh.
 
 
+class NumberColumn(NamedTuple):
+    """A column of numbers in a table of the mesh: what a value must be, its types in SQL, and the dtype.
+
+    `expression` is read in place of the column if it is given.
+    """
+
+    rule: str
+    types: tuple[str, ...] = ("integer",)
+    dtype: type = np.int64
+    expression: str = ""
+
+
+COORDINATE: Final = NumberColumn("a number", ("real", "integer"), np.float64)
+CORNER: Final = NumberColumn("a node number")
+FOURTH: Final = NumberColumn(
+    "a node number, or NULL for a triangle", ("integer", "null"), np.int64, "ifnull(node4, node3)"
+)
+NUMBER_COLUMNS: Final = {
+    NODES: {"node": NumberColumn("a whole number"), **dict.fromkeys(AXES, COORDINATE)},
+    POLYGONS: {
+        "polygon": NumberColumn("a whole number"),
+        **dict.fromkeys(CORNERS[:3], CORNER),
+        CORNERS[3]: FOURTH,
+    },
+    **{
+        table: {
+            of: NumberColumn(f"the number of a {of}"),
+            "value": NumberColumn("a number, or NULL", ("real", "integer", "null"), np.float64),
+        }
+        for of, table in VALUES.items()
+    },
+}
+"""The columns of numbers of the tables of the mesh. The first one counts the rows."""
+
+
 def mesh_of(connection: sqlite3.Connection, tables: StoredTables, part_names: tuple[str, ...] | None) -> Mesh:
     """The mesh of a store. Without `part_names`, the polygons name the parts.
 
     Raises InputError with the problems, row by row.
     """
-    nodes, coordinates = _nodes(connection, tables[NODES])
-    polygons, corners = _polygons(connection, tables[POLYGONS])
-    problems: list[str] = []
-    rows = [_rows_of(corner, nodes) for corner in corners]
-    for corner, node_rows in enumerate(rows):
-        for row in np.flatnonzero(node_rows < 0)[:MOST_MESH_PROBLEMS].tolist():
-            numbers = f"({nodes[0]} to {nodes[-1]})" if len(nodes) else "(which is empty)"
-            problems.append(
-                f"{POLYGONS}, row {polygons[row]}: node {corners[corner][row]} is not in the node table"
-                f" {numbers}; correct it"
-            )
-    _raise_any(problems)
-    part_numbers, names = _parts(connection, tables[POLYGONS], polygons, part_names)
-    angle = _crease_angle(connection, tables)
-    scalars = _scalars(connection, tables, {NODE: nodes, POLYGON: polygons})
-    return Mesh(coordinates, np.stack(rows).T, part_numbers, names, angle, scalars)
-
-
-def _raise_any(problems: list[str]) -> None:
-    """Raise InputError with the different problems, if any."""
-    if problems:
-        # The third node of a triangle is its fourth too.
-        raise InputError(list(dict.fromkeys(problems))[:MOST_MESH_PROBLEMS])
-
-
-def _nodes(connection: sqlite3.Connection, table: StoredTable) -> tuple[Numbers, Floats]:
-    """The numbers of the nodes, rising, and their coordinates, (nodes, 3)."""
-    require_columns(NODES, table.columns, ("node", *AXES))
-
-    def check() -> None:
-        _refuse_types(connection, NODES, "node", ("node",), "a whole number", "integer")
-        _refuse_types(connection, NODES, "node", AXES, "a number", "real", "integer")
-
-    numbers = _keys(connection, NODES, "node", table, check)
-    query = f"SELECT x, y, z FROM {NODES} NOT INDEXED ORDER BY node"
-    coordinates = _fetched(connection, query, np.float64, 3 * len(numbers), check).reshape(-1, 3)
-    problems = [
+    nodes = _numbers_in(connection, tables, NODES)
+    coordinates = np.stack([nodes[axis] for axis in AXES], axis=1)
+    numbers = nodes["node"]
+    is_wrong = ~(np.abs(coordinates) <= LARGEST_COORDINATE).all(axis=1)
+    _raise_any(
         f"{NODES}, row {numbers[row]}: coordinates must be finite and at most 1e30 in size, not"
         f" {coordinates[row].tolist()}; correct them"
-        for row in np.flatnonzero(~(np.abs(coordinates) <= LARGEST_COORDINATE).all(axis=1))[
-            :MOST_MESH_PROBLEMS
-        ]
-    ]
-    _raise_any(problems)
-    return numbers, coordinates
+        for row in np.flatnonzero(is_wrong)
+    )
+    polygons = _numbers_in(connection, tables, POLYGONS)
+    corners = np.stack([polygons[corner] for corner in CORNERS], axis=1)
+    node_numbers = _rows_of(corners, numbers)
+    there = f"({numbers[0]} to {numbers[-1]})" if len(numbers) else "(which is empty)"
+    _raise_any(
+        f"{POLYGONS}, row {polygons['polygon'][row]}: node {corners[row, corner]} is not in the node table"
+        f" {there}; correct it"
+        for row, corner in zip(*np.nonzero(node_numbers < 0), strict=True)
+    )
+    part_numbers, names = _parts(connection, tables[POLYGONS], len(polygons), part_names)
+    angle = _crease_angle(connection, tables)
+    scalars = _scalars(connection, tables, {NODE: numbers, POLYGON: polygons["polygon"]})
+    return Mesh(coordinates, node_numbers, part_numbers, names, angle, scalars)
 
 
-def _polygons(connection: sqlite3.Connection, table: StoredTable) -> tuple[Numbers, list[Numbers]]:
-    """The numbers of the polygons, rising, and the numbers of the nodes at each of four corners."""
-    require_columns(POLYGONS, table.columns, ("polygon", *CORNERS[:3]))
-    has_fourth = CORNERS[3] in table.columns
+def _raise_any(problems: Iterable[str]) -> None:
+    """Raise InputError with the different problems, if any."""
+    # The third node of a triangle is its fourth too.
+    if first := list(dict.fromkeys(islice(problems, 2 * MOST_MESH_PROBLEMS))):
+        raise InputError(first[:MOST_MESH_PROBLEMS])
 
-    def check() -> None:
-        _refuse_types(connection, POLYGONS, "polygon", ("polygon",), "a whole number", "integer")
-        _refuse_types(connection, POLYGONS, "polygon", CORNERS[:3], "a node number", "integer")
-        if has_fourth:
-            rule = "a node number, or NULL for a triangle"
-            _refuse_types(connection, POLYGONS, "polygon", CORNERS[3:], rule, "integer", "null")
-        if "part" in table.columns:
-            _refuse_types(connection, POLYGONS, "polygon", ("part",), "the name of a part", "text")
 
-    numbers = _keys(connection, POLYGONS, "polygon", table, check)
-    fourth = "ifnull(node4, node3)" if has_fourth else "node3"
-    query = f"SELECT node1, node2, node3, {fourth} FROM {POLYGONS} NOT INDEXED ORDER BY polygon"
-    corners = _fetched(connection, query, np.int64, 4 * len(numbers), check).reshape(-1, 4)
-    return numbers, list(np.ascontiguousarray(corners.T))
+def _numbers_in(
+    connection: sqlite3.Connection, tables: StoredTables, table: str, where: str = "", *values: str
+) -> AnyArray:
+    """The numbers of a table of the mesh, a structured array, with rising numbers of its rows.
+
+    Only the nodes and polygons are NOT INDEXED: a damaged index could have other rows than its table.
+    """
+    stored, columns = tables[table], dict(NUMBER_COLUMNS[table])
+    if CORNERS[3] in columns and CORNERS[3] not in stored.columns:
+        columns[CORNERS[3]] = CORNER._replace(expression=CORNERS[2])
+    key = next(iter(columns))
+    needed = [name for name, column in columns.items() if not column.expression]
+    require_columns(table, stored.columns, ("scalar", *needed) if where else needed)
+    source = f"{table} {where}" if where else f"{table} NOT INDEXED"
+    if not stored.is_strict:
+        _refuse_types(connection, table, columns, stored)
+    (count,) = connection.execute(f"SELECT count(*) FROM {source}", values).fetchone()
+    require_memory(BYTES_OF_ROW * count, f"{table}: to read {count:,} rows", "leave rows out")
+    expressions = ", ".join(column.expression or name for name, column in columns.items())
+    dtype = [(name, column.dtype) for name, column in columns.items()]
+    try:
+        rows = connection.execute(f"SELECT {expressions} FROM {source} ORDER BY {key}", values)
+        numbers = np.fromiter(rows, dtype, count)
+    except (ValueError, TypeError):
+        raise InputError(
+            f"the store cannot be read ({table} has other rows than it counts); bring a copy back, or rescue"
+            " it with `sqlite3 FILE .recover`"
+        ) from None
+    repeated = numbers[key][1:][numbers[key][1:] == numbers[key][:-1]]
+    if len(repeated):
+        raise InputError(
+            f"{table}: rows must have different numbers, and {repeated[0]} is repeated; number them anew"
+        )
+    return numbers
+
+
+def _refuse_types(
+    connection: sqlite3.Connection, table: str, columns: Mapping[str, NumberColumn], stored: StoredTable
+) -> None:
+    """Raise InputError for the rows of a table with a value of another type."""
+    key = next(iter(columns))
+    rules = {name: (column.types, column.rule) for name, column in columns.items() if name in stored.columns}
+    if table == POLYGONS and "part" in stored.columns:
+        rules["part"] = ("text",), "the name of a part"
+    wrong = {
+        name: f"typeof({name}) NOT IN ({', '.join(map(literal, types))})"
+        for name, (types, _) in rules.items()
+    }
+    listed = ", ".join(f"{name}, {condition}" for name, condition in wrong.items())
+    query = f"SELECT {key}, {listed} FROM {table} NOT INDEXED WHERE {' OR '.join(wrong.values())}"
+    _raise_any(
+        f"{table}, row {shown(number)}: {name} must be {rule}, not"
+        f" {'missing' if value is None else shown(value)}; correct it"
+        for number, *pairs in connection.execute(query)
+        for (name, (_, rule)), value, is_wrong in zip(rules.items(), pairs[::2], pairs[1::2], strict=True)
+        if is_wrong
+    )
 
 
 def _parts(
-    connection: sqlite3.Connection, table: StoredTable, polygons: Numbers, names: tuple[str, ...] | None
+    connection: sqlite3.Connection, table: StoredTable, count: int, names: tuple[str, ...] | None
 ) -> tuple[Indices, tuple[str, ...]]:
     """The part number of each polygon, and the names of the parts."""
     if "part" not in table.columns:
-        return np.zeros(len(polygons), np.intp), names or (PART,)
+        return np.zeros(count, np.intp), names or (PART,)
     rows = connection.execute(f"SELECT part FROM {POLYGONS} NOT INDEXED ORDER BY polygon")
+    number_of = {(name,): number for number, name in enumerate(names or ())}
     if names is None:
-        number_of: dict[tuple[str], int] = {}
-        numbers = np.fromiter(
-            (number_of.setdefault(row, len(number_of)) for row in rows), np.intp, len(polygons)
+        numbers = (number_of.setdefault(row, len(number_of)) for row in rows)
+    else:
+        numbers = (number_of.get(row, -1) for row in rows)
+    part_numbers = np.fromiter(numbers, np.intp, count)
+    if (part_numbers < 0).any():
+        query = f"SELECT polygon, part FROM {POLYGONS} WHERE part NOT IN (SELECT name FROM parts)"
+        _raise_any(
+            f"{POLYGONS}, row {polygon}: part {shown(name)} is not in the part"
+            f" table{nearest(name, names or ()) or '; correct it, or add the part'}"
+            for polygon, name in connection.execute(f"{query} ORDER BY polygon")
         )
-        return numbers, tuple(name for (name,) in number_of)
-    number_of = {(name,): number for number, name in enumerate(names)}
-    numbers = np.fromiter((number_of.get(row, -1) for row in rows), np.intp, len(polygons))
-    problems = []
-    for row in np.flatnonzero(numbers < 0)[:MOST_MESH_PROBLEMS].tolist():
-        query = f"SELECT part FROM {POLYGONS} WHERE polygon = ?"
-        (name,) = connection.execute(query, (int(polygons[row]),)).fetchone()
-        problems.append(
-            f"{POLYGONS}, row {polygons[row]}: part {shown(name)} is not in the part"
-            f" table{nearest(name, names) or '; correct it, or add the part'}"
-        )
-    _raise_any(problems)
-    return numbers, names
+    return part_numbers, tuple(name for (name,) in number_of)
 
 
 def _crease_angle(connection: sqlite3.Connection, tables: StoredTables) -> float:
-    rows = rows_of_table(connection, MESH, tables[MESH].columns, NUMBER) if MESH in tables else []
+    rows = rows_of_table(connection, MESH, tables[MESH].columns) if MESH in tables else []
     if len(rows) > 1:
         raise InputError(f"{MESH} must have one row, not {len(rows)}; leave one")
     value = rows[0].get("crease_angle") if rows else None
@@ -279,7 +319,7 @@ def _scalars(
     if SCALARS not in tables:
         return ()
     require_columns(SCALARS, tables[SCALARS].columns, ("name", "of"))
-    rows = rows_of_table(connection, SCALARS, tables[SCALARS].columns, NUMBER)
+    rows = rows_of_table(connection, SCALARS, tables[SCALARS].columns)
     if len(rows) > MOST_SCALARS:
         raise InputError(
             f"{SCALARS} must have at most {MOST_SCALARS:,} rows, not {len(rows):,}; leave some out"
@@ -309,22 +349,12 @@ def _scalar(
     table = VALUES[of]
     values = np.full(len(numbers), np.nan)
     if table in tables:
-        require_columns(table, tables[table].columns, ("scalar", of, "value"))
-        for column, rule, types in (
-            (of, f"the number of a {of}", ("integer",)),
-            ("value", "a number, or NULL", ("real", "integer", "null")),
-        ):
-            _refuse_types(connection, table, of, (column,), rule, *types)
-        query = f"SELECT {of}, value FROM {table} WHERE scalar = ? AND value IS NOT NULL ORDER BY {of}"
-        # A double does not hold every whole number.
-        pairs = np.fromiter(connection.execute(query, (name,)), [("key", np.int64), ("value", np.float64)])
-        keys = pairs["key"]
-        rows = _rows_of(keys, numbers)
-        if (rows < 0).any():
-            missing = int(keys[rows < 0][0])
-            raise InputError(
-                f"{table}, scalar {shown(name)}: {of} {missing} is not in the {of} table; remove its value"
-            )
+        pairs = _numbers_in(connection, tables, table, "WHERE scalar = ? AND value IS NOT NULL", name)
+        rows = _rows_of(pairs[of], numbers)
+        _raise_any(
+            f"{table}, scalar {shown(name)}: {of} {number} is not in the {of} table; remove its value"
+            for number in pairs[of][rows < 0]
+        )
         values[rows] = pairs["value"]
     return MeshScalar(name, read_only(values), of)
 
@@ -332,7 +362,7 @@ def _scalar(
 def _rows_of(wanted: Numbers, numbers: Numbers) -> Indices:
     """The rows of wanted numbers among rising numbers; -1 for a number that is missing."""
     if not len(numbers):
-        return np.full(len(wanted), -1, np.intp)
+        return np.full(wanted.shape, -1, np.intp)
     first, last = int(numbers[0]), int(numbers[-1])
     if last - first == len(numbers) - 1:
         # Without gaps, which is the usual case.
@@ -340,63 +370,6 @@ def _rows_of(wanted: Numbers, numbers: Numbers) -> Indices:
         return np.where(is_there, wanted - first, -1)
     rows = np.minimum(np.searchsorted(numbers, wanted), len(numbers) - 1)
     return np.where(numbers[rows] == wanted, rows, -1)
-
-
-def _keys(
-    connection: sqlite3.Connection, name: str, key: str, table: StoredTable, check: Callable[[], None]
-) -> Numbers:
-    """The numbers of the rows of a table, rising. If they have no gaps, only the first and last are read.
-
-    NOT INDEXED: a damaged index could have other rows than its table.
-    """
-    if not table.is_strict:
-        check()
-    query = f"SELECT count(*), min({key}), max({key}) FROM {name} NOT INDEXED"
-    count, first, last = connection.execute(query).fetchone()
-    require_memory(BYTES_OF_ROW * count, f"{name}: to read {count:,} rows", "leave rows out")
-    if table.key == key and count and last - first == count - 1:
-        return np.arange(first, last + 1, dtype=np.int64)
-    query = f"SELECT {key} FROM {name} NOT INDEXED ORDER BY {key}"
-    numbers: Numbers = _fetched(connection, query, np.int64, count, check)
-    repeated = numbers[1:][numbers[1:] == numbers[:-1]]
-    if len(repeated):
-        raise InputError(
-            f"{name}: rows must have different numbers, and {repeated[0]} is repeated; number them anew"
-        )
-    return numbers
-
-
-def _fetched(
-    connection: sqlite3.Connection, query: str, dtype: type, count: int, check: Callable[[], None]
-) -> AnyArray:
-    """The values of all rows of a query, in one array. Raises InputError unless they are `count` numbers."""
-    try:
-        return np.fromiter(chain.from_iterable(connection.execute(query)), dtype, count)
-    except (ValueError, TypeError):
-        check()
-        raise InputError(
-            "the store cannot be read (it has fewer rows than it counts); bring a copy back, or rescue it"
-            " with `sqlite3 FILE .recover`"
-        ) from None
-
-
-def _refuse_types(
-    connection: sqlite3.Connection, table: str, key: str, columns: tuple[str, ...], rule: str, *types: str
-) -> None:
-    """Raise InputError for the rows with a value of another type."""
-    listed = ", ".join(f"'{name}'" for name in types)
-    wrong = " OR ".join(f"typeof({column}) NOT IN ({listed})" for column in columns)
-    names = ", ".join((key, *columns))
-    query = f"SELECT {names} FROM {table} NOT INDEXED WHERE {wrong} LIMIT {MOST_MESH_PROBLEMS}"
-    problems = []
-    for number, *values in connection.execute(query).fetchall():
-        for column, value in zip(columns, values, strict=True):
-            if not isinstance(value, tuple(PYTHON_TYPES[name] for name in types)):
-                text = "missing" if value is None else shown(value)
-                problems.append(
-                    f"{table}, row {shown(number)}: {column} must be {rule}, not {text}; correct it"
-                )
-    _raise_any(problems)
 
 
 # Inserting the rows of a scene.

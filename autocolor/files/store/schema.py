@@ -7,8 +7,8 @@ shows the rule when a value breaks it. Columns that refer to other tables have i
 A number, a switch, a name, a choice or a color is one SQL column of the key's name. A point or a direction is
 three: `position_x`, `position_y`, `position_z`. A row in a row is the columns of that row with the key before
 them: `flaps_z_minimum`. Any other value is one column: text as it is, and lists and tables as JSON. An absent
-value is NULL, and so is a limit that is infinite. A surface has a ramp or two colors and their blend: the
-columns that it does not use are NULL, and NULL in a column that it uses stands for the default.
+value is NULL, and so is a limit that is infinite. A surface has a ramp, or two colors and their blend: the
+columns of the other are NULL. NULL in a column that the surface uses stands for the default.
 """
 
 from __future__ import annotations
@@ -224,14 +224,8 @@ def in_sql(value: object) -> SqlValue:
 def row_values(columns: Iterable[SqlColumn], row: Row) -> list[SqlValue]:
     """The values of a row for some columns of its class."""
     table = to_plain(row)
-    return [in_sql(_within(table, column)) for column in columns]
-
-
-def _within(table: Mapping[str, Any], column: SqlColumn) -> object:
-    value: Any = table
-    for key in column.path:
-        value = value.get(key) if isinstance(value, Mapping) else None
-    return value if column.component is None or value is None else value[column.component]
+    values = ((_within(table, column.path), column.component) for column in columns)
+    return [in_sql(value if axis is None or value is None else value[axis]) for value, axis in values]
 
 
 def plain_row(columns: Iterable[SqlColumn], values: Mapping[str, SqlValue]) -> dict[str, Any]:
@@ -241,23 +235,32 @@ def plain_row(columns: Iterable[SqlColumn], values: Mapping[str, SqlValue]) -> d
     """
     table: dict[str, Any] = {}
     vectors: dict[tuple[str, ...], list[SqlValue]] = {}
+    limits = []
     for column in columns:
         value = values.get(column.name)
         if column.component is not None:
             vectors.setdefault(column.path, []).append(value)
         elif value is not None:
-            _put(table, column.path, _from_sql(column.kind, value))
+            _within(table, column.path[:-1], True)[column.path[-1]] = _from_sql(column.kind, value)
+        elif column.name in values and (endless := getattr(column.kind, "endless", None)) is not None:
+            limits.append((column.path, endless))
     for path, components in vectors.items():
         if components != [None] * len(AXES):
-            _put(table, path, components)
-    for column in columns:
-        endless = getattr(column.kind, "endless", None)
-        if endless is not None and column.name in values and values[column.name] is None:
-            inner: Any = table
-            for key in column.path[:-1]:
-                inner = inner.get(key) if isinstance(inner, dict) else None
-            if isinstance(inner, dict):
-                inner[column.path[-1]] = endless
+            _within(table, path[:-1], True)[path[-1]] = components
+    for path, endless in limits:
+        inner = _within(table, path[:-1])
+        if isinstance(inner, dict):
+            inner[path[-1]] = endless
+    return table
+
+
+def _within(table: Any, path: Sequence[str], is_made: bool = False) -> Any:
+    """The value at a path of keys in a table, or None. With `is_made`, missing tables are made there."""
+    for key in path:
+        if is_made:
+            table = table.setdefault(key, {})
+        else:
+            table = table.get(key) if isinstance(table, Mapping) else None
     return table
 
 
@@ -271,12 +274,6 @@ def _from_sql(kind: Kind, value: SqlValue) -> object:
         except (ValueError, RecursionError):
             return value
     return value
-
-
-def _put(table: dict[str, Any], path: Sequence[str], value: object) -> None:
-    for key in path[:-1]:
-        table = table.setdefault(key, {})
-    table[path[-1]] = value
 
 
 # The definitions of all tables.
@@ -442,7 +439,6 @@ MESH_TABLES: Final = (NODES, POLYGONS, MESH, SCALARS, *VALUES.values())
 # Reading a view, a virtual table or a computed column would run code of the file. A view or a virtual table
 # with the name of a table of ours is refused; others are ignored.
 
-MOST_TABLES: Final = 10_000
 MOST_ROWS: Final = 100_000
 """Limit: the rows of a table that is not of the mesh."""
 
@@ -451,10 +447,9 @@ NOT_STORED: Final = (1, 2, 3)
 
 
 class StoredTable(NamedTuple):
-    """A table of a file: its columns, its INTEGER PRIMARY KEY or "", and whether it is STRICT."""
+    """A table of a file: its columns, and whether it is STRICT."""
 
     columns: tuple[str, ...]
-    key: str
     is_strict: bool
 
 
@@ -472,20 +467,14 @@ def stored_tables(connection: sqlite3.Connection) -> StoredTables:
         raise InputError(
             f"the version of a store must be at most {VERSION}, not {version}; read it with a newer autocolor"
         )
-    rows = connection.execute("SELECT type, name, rootpage FROM sqlite_master LIMIT ?", (MOST_TABLES,))
-    kinds = {
-        name.lower(): (kind, name, root)
-        for kind, name, root in rows.fetchall()
-        if kind in ("table", "view") and isinstance(name, str)
-    }
-    tables = {}
-    strict = {row[1].lower() for row in connection.execute("PRAGMA table_list").fetchall() if row[5]}
-    for table in DEFINITIONS:
-        if table not in kinds:
+    tables, names = {}, []
+    for _, name, kind, _, _, is_strict in connection.execute("PRAGMA main.table_list").fetchall():
+        table = name.lower()
+        names.append(table)
+        if table not in DEFINITIONS:
             continue
-        kind, name, root = kinds[table]
-        if kind != "table" or not root:
-            what = "a view" if kind == "view" else "a virtual table"
+        if kind != "table":
+            what = "a view" if kind == "view" else f"a {kind} table"
             raise InputError(f"{table} must be a table, not {what}; make it a table, or rename it")
         columns = connection.execute(f"PRAGMA table_xinfo({quoted(name)})").fetchall()
         for column in columns:
@@ -494,10 +483,8 @@ def stored_tables(connection: sqlite3.Connection) -> StoredTables:
                     f"{table}: a column must hold values, not compute them as {shown(column[1])} does; make"
                     " it a plain column"
                 )
-        keys = [(column[1].lower(), column[2].upper()) for column in columns if column[5]]
-        key = keys[0][0] if len(keys) == 1 and keys[0][1] == "INTEGER" else ""
-        tables[table] = StoredTable(tuple(column[1].lower() for column in columns), key, table in strict)
-    _require("a store must have the tables", (NODES, POLYGONS), kinds)
+        tables[table] = StoredTable(tuple(column[1].lower() for column in columns), bool(is_strict))
+    _require("a store must have the tables", (NODES, POLYGONS), names)
     return tables
 
 
@@ -518,22 +505,21 @@ def _require(rule: str, needed: Sequence[str], names: Iterable[str]) -> None:
 
 
 def rows_of_table(
-    connection: sqlite3.Connection, table: str, columns: tuple[str, ...], order: str
+    connection: sqlite3.Connection, table: str, columns: Sequence[str]
 ) -> list[dict[str, SqlValue]]:
-    """The rows of a table, by the names of its columns, ordered by a column if the table has it.
+    """The rows of a table, by the names of its columns, ordered by the column NUMBER if the table has it.
 
     Raises InputError for more than MOST_ROWS rows, and for a value that is bytes.
     """
-    names = ", ".join(map(quoted, columns))
-    ordered = f" ORDER BY {quoted(order)}" if order in columns else ""
-    query = f"SELECT {names} FROM {quoted(table)}{ordered} LIMIT {MOST_ROWS + 1}"
-    rows = connection.execute(query).fetchall()
+    ordered = f" ORDER BY {quoted(NUMBER)}" if NUMBER in columns else ""
+    query = f"SELECT {', '.join(map(quoted, columns))} FROM {quoted(table)}{ordered} LIMIT {MOST_ROWS + 1}"
+    rows = [dict(zip(columns, row, strict=True)) for row in connection.execute(query)]
     if len(rows) > MOST_ROWS:
         raise InputError(f"{table} must have at most {MOST_ROWS:,} rows, not more; leave rows out")
     for number, row in enumerate(rows, 1):
-        for name, value in zip(columns, row, strict=True):
+        for name, value in row.items():
             if isinstance(value, bytes):
                 raise InputError(
                     f"{table}, row {number}: {name} must be a number or text, not bytes; correct it"
                 )
-    return [dict(zip(columns, row, strict=True)) for row in rows]
+    return rows

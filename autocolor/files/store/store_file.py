@@ -1,35 +1,33 @@
 """Reading a scene from a store, and writing a scene to a store.
 
-A new store is created in memory and written as one file, whole or not at all. An existing store is changed in
-place by one transaction: programs that have it open notice, and tables of other programs stay. A store with
-triggers, views or indexes of other programs is not written over, because these could run, or no longer fit.
+A store that exists is replaced as a whole. What other programs added to it stays: tables, views, indexes and
+triggers. None of them is run.
 """
 
 from __future__ import annotations
 
 import os
 import sqlite3
-from collections.abc import Callable, Sequence
 from contextlib import closing
 from pathlib import Path
 from typing import Final
 
-from autocolor.checks import shown
-from autocolor.errors import InputError, OutputError, UsageError, WriteError
+from autocolor.checks import printable, shown
+from autocolor.errors import InputError, UsageError, WriteError
 from autocolor.files.paths import STORE_SUFFIXES
 from autocolor.files.scene_report import SceneReport
 from autocolor.files.store.connections import (
     DAMAGE_ERRORS,
     Clock,
     authorizer,
-    connected,
-    connected_to_change,
+    closed_on_error,
     in_memory,
+    loaded,
     primary_code,
     refusals,
-    refuse_journal,
-    store_head,
-    transaction,
+    refuse_remains,
+    replacing,
+    sentence_of,
 )
 from autocolor.files.store.rows import insert_mesh, insert_rows, report_of
 from autocolor.files.store.schema import (
@@ -56,7 +54,7 @@ def read_store(path: str | os.PathLike[str], *, surfaces: SurfaceSource = MATERI
     view or trigger is run. Raises InputError with every problem, MissingInputError if there is no such file.
     """
     path = Path(path)
-    with closing(connected(path)) as connection, timed(LOG, f"read {path.name}"):
+    with timed(LOG, f"read {path.name}"), closing(loaded(path)) as connection:
         return report_in(connection, path.name, path.stem, surfaces)
 
 
@@ -82,18 +80,13 @@ def report_in(
 def store_of(scene: Scene) -> sqlite3.Connection:
     """A store in memory with the tables of a scene. Raises InputError for a text that is not UTF-8."""
     check_scene(scene)
-    connection = in_memory()
-    try:
+    with closed_on_error(in_memory()) as connection:
         connection.execute("PRAGMA journal_mode = OFF")
         connection.execute("PRAGMA page_size = 8192")
         connection.execute(f"PRAGMA application_id = {APPLICATION}")
         connection.execute("BEGIN")
         _fill(connection, scene)
         connection.execute("COMMIT")
-        connection.execute("PRAGMA journal_mode = MEMORY")
-    except BaseException:
-        connection.close()
-        raise
     return connection
 
 
@@ -103,15 +96,22 @@ def store_bytes(scene: Scene) -> bytes:
         return connection.serialize()
 
 
+def image_of(path: Path) -> bytes:
+    """The bytes of the store at a path, with what its `-wal` holds. Raises InputError, MissingInputError."""
+    with closing(loaded(path)) as connection:
+        return connection.serialize()
+
+
 def write_store(
     path: str | os.PathLike[str], scene: Scene, *, overwrite: bool = False, guard: Guard = no_guard
 ) -> None:
     """Write a scene to a store, so that `read_store` gives it back.
 
-    With `overwrite`, a store that exists is changed in place (see above), and a file that is no store, or is
-    damaged, is replaced; `guard` checks the file before. Raises OutputError if the file exists and
-    `overwrite` is false, or if nothing can be created there; WriteError if writing fails, or if the store has
-    triggers, views or indexes of others; InputError for a name that is not UTF-8. Nothing is changed then.
+    With `overwrite`, a store that exists is replaced, and the tables, views, indexes and triggers of other
+    programs stay in it. A file that is no store, or is damaged, is replaced too. `guard` checks the file
+    before. Raises OutputError if the file exists and `overwrite` is false, or if nothing can be created
+    there; WriteError if writing fails, or if an addition of others does not fit the new tables; InputError
+    for a name that is not UTF-8. Nothing is changed then.
     """
     path = Path(path)
     if path.suffix.lower() not in STORE_SUFFIXES:
@@ -119,69 +119,65 @@ def write_store(
             f"a store must be written to a file that ends in {' or '.join(STORE_SUFFIXES)}, not to {path};"
             " rename it"
         )
-    check_scene(scene)
     refuse_output(path, overwrite=overwrite)
     check = guard(path)
     with timed(LOG, f"wrote {path.name}"):
-        if path.exists() and _is_rewritten(path, scene, check):
-            return
-        try:
-            # Other programs would roll a journal without a store back into the new one.
-            refuse_journal(path)
-        except InputError as error:
-            raise WriteError(str(error)) from None
+        if path.exists():
+            try:
+                with replacing(path, check) as (old, save), closing(old):
+                    save(_with_additions(old, scene, path.name))
+                return
+            except InputError as error:
+                LOG.warning("%s: written anew, because it cannot be read (%s)", path, error)
+        refuse_remains(path)
         check()
         write_atomically(path, store_bytes(scene), overwrite=overwrite)
 
 
-def _is_rewritten(path: Path, scene: Scene, check: Callable[[], None]) -> bool:
-    """Change a store that exists; returns False, without a change, if the file is no readable store.
+def _with_additions(old: sqlite3.Connection, scene: Scene, name: str) -> bytes:
+    """The bytes of a store with a scene, and with what other programs added to the old store.
 
-    The transaction begins with a `check`, because it may have waited for another program.
+    Raises InputError if the old store is damaged, WriteError if an addition does not fit the scene's tables.
     """
-    if not os.access(path, os.W_OK):
-        raise OutputError(f"an output must be a file that can be written, not {path}; change its permissions")
+    title = ""
     try:
-        store_head(path)
-        connection = connected_to_change(path)
-    except InputError as error:
-        if any(os.path.lexists(f"{os.path.realpath(path)}{end}") for end in ("-wal", "-journal")):
-            raise WriteError(str(error)) from None
-        LOG.warning("%s: written anew, because the file is not a readable store", path)
-        return False
-    try:
-        with closing(connection), transaction(connection, path.name):
-            check()
-            refuse_additions(
-                connection,
-                ("trigger", "view", "index"),
-                f"{path.name}: a store that is written over must have no triggers, views or indexes of other"
-                " programs",
-                "write to another file",
-            )
-            query = "SELECT name FROM sqlite_master WHERE type = 'table'"
-            names = {name.lower() for (name,) in connection.execute(query)}
-            for table in DEFINITIONS:
-                if table in names:
-                    connection.execute(f"DROP TABLE {quoted(table)}")
-            _fill(connection, scene)
+        rows = old.execute(
+            "SELECT type, name, tbl_name, sql FROM sqlite_master WHERE sql IS NOT NULL"
+        ).fetchall()
+        tables = [row[1] for row in rows if row[0] == "table" and row[1].lower() in DEFINITIONS]
+        added = [row for row in rows if row[1] not in tables and INDEXES.get(row[1]) != row[3]]
+        if not added:
+            return store_bytes(scene)
+        old.execute("BEGIN")
+        for table in tables:
+            old.execute(f"DROP TABLE {quoted(table)}")
+        _fill(old, scene)
+        old.set_authorizer(_may_create)
+        # The indexes and triggers of a dropped table are dropped with it.
+        for row in added:
+            if row[2] in tables:
+                title = row[1]
+                old.execute(row[3])
+        old.set_authorizer(None)
+        old.execute("COMMIT")
+        return old.serialize()
     except sqlite3.Error as error:
-        if primary_code(error) not in DAMAGE_ERRORS:
-            raise WriteError(
-                f"{path}: a store must be one that SQLite can change, and this one is not ({error}); write to"
-                " another file"
-            ) from None
-        LOG.warning("%s: written anew, as it is damaged (%s)", path, error)
-        return False
-    return True
+        if primary_code(error) in DAMAGE_ERRORS:
+            raise InputError(sentence_of(error)) from None
+        raise WriteError(
+            f"{name}: what other programs added to a store must fit the tables of the scene, and"
+            f" {shown(title) if title else 'this'} does not ({printable(str(error))}); drop it, or write to"
+            " another file"
+        ) from None
 
 
-def refuse_additions(connection: sqlite3.Connection, kinds: Sequence[str], rule: str, advice: str) -> None:
-    """Raise WriteError if a store has triggers, views or indexes that are not our own."""
-    query = "SELECT type, name, sql FROM sqlite_master WHERE sql IS NOT NULL"
-    for kind, name, sql in connection.execute(query):
-        if kind in kinds and INDEXES.get(name) != sql:
-            raise WriteError(f"{rule}, and this one has {kind} {shown(name)}; {advice}")
+def _may_create(action: int, first: str | None, second: str | None, *_: str | None) -> int:
+    """The permissions of the statements that create indexes and triggers; a stranger wrote them."""
+    if action == sqlite3.SQLITE_INSERT:
+        return sqlite3.SQLITE_OK if first == "sqlite_master" else sqlite3.SQLITE_DENY
+    if action in (sqlite3.SQLITE_CREATE_INDEX, sqlite3.SQLITE_CREATE_TRIGGER, sqlite3.SQLITE_REINDEX):
+        return sqlite3.SQLITE_OK
+    return authorizer(may_change=False)(action, first, second, None, None)
 
 
 def _fill(connection: sqlite3.Connection, scene: Scene) -> None:

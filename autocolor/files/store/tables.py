@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import os
 import sqlite3
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import closing, contextmanager
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Final, NamedTuple
 
 from autocolor.budget import allowing, validated_limit
 from autocolor.checks import nearest, printable, shown
-from autocolor.errors import InputError, UsageError, WriteError
+from autocolor.errors import UsageError, WriteError
 from autocolor.files.formats import recognized
 from autocolor.files.meshes.repair import different
 from autocolor.files.opening import FILES, STORE, PathLike, read_scene_with_report
@@ -20,18 +20,17 @@ from autocolor.files.store.connections import (
     CHANGES,
     DAMAGE_ERRORS,
     DISK_ERRORS,
-    LONGEST_TEXT,
     Clock,
     authorizer,
-    connected,
-    connected_to_change,
-    journal_mode,
+    closed_on_error,
+    copied,
+    loaded,
     primary_code,
+    replacing,
     sentence_of,
-    transaction,
 )
 from autocolor.files.store.schema import MESH_TABLES, NODES, POLYGONS, VALUES, quoted
-from autocolor.files.store.store_file import refuse_additions, report_in, store_of
+from autocolor.files.store.store_file import report_in, store_of
 from autocolor.scene.scalar import NODE, POLYGON
 from autocolor.scene.scene import Scene
 
@@ -65,7 +64,7 @@ def open_tables(path: PathLike, *, up: str = "z", scale: float = 1.0, limit: flo
     path = Path(path)
     with allowing(limit):
         if is_store(path) and (up, scale) == ("z", 1):
-            return Tables(connected(path), path.name, path)
+            return Tables(loaded(path), path.name, path)
         return tables_of(read_scene_with_report(path, up=up, scale=scale).scene)
 
 
@@ -82,8 +81,9 @@ def tables_of(scene: Scene) -> Tables:
 class Tables:
     """The tables of one scene.
 
-    The changed scene is checked as a scene file is; a change is saved or refused as a whole. Changes of a
-    store are saved to its file at once. Changes of another scene stay in memory: `write_scene` writes
+    The tables of a store are those of its file when it was opened, or changed here the last time. The changed
+    scene is checked as a scene file is; a change is saved or refused as a whole. Changes of a store are saved
+    to its file at once. Changes of another scene stay in memory: `write_scene` writes
     `scene()`. A statement that takes longer than `seconds` is ended.
     """
 
@@ -153,54 +153,51 @@ class Tables:
         """Run one INSERT, UPDATE or DELETE, check the scene, and save it; returns how many rows it changed.
 
         A new name of a part or a surface replaces the old name everywhere. Removing a node or a polygon
-        removes its scalar values. Raises UsageError for a wrong statement, InputError with every problem of
-        the changed scene, WriteError if the store has triggers, or cannot be written. After any error,
+        removes its scalar values. A store is read again first, with the changes of other programs. Raises
+        UsageError for a wrong statement, InputError with every problem of the changed scene, WriteError if
+        the store has triggers, or cannot be written, OutputError if it is write-protected. After any error,
         nothing is changed.
         """
-        tables = changes_of(self._connection, statement, parameters)
-        # Without indexes, checking references to removed nodes takes the square of their number.
-        checks_references = not tables.keys() & {*MESH_TABLES}
-        if self._store is None:
-            self._connection.execute(f"PRAGMA foreign_keys = {'ON' if checks_references else 'OFF'}")
-            return self._changed(self._connection, tables, statement, parameters)
-        with (
-            allowing(self._limit),
-            closing(connected_to_change(self._store, checks_references=checks_references)) as connection,
-        ):
-            count = self._changed(connection, tables, statement, parameters)
-            is_outdated = journal_mode(connection) != journal_mode(self._connection)
-        if is_outdated:
-            # The store is in WAL mode, and was opened as a file that never changes.
-            self._connection.close()
-            with allowing(self._limit):
-                self._connection = connected(self._store)
-        return count
-
-    def _changed(
-        self,
-        connection: sqlite3.Connection,
-        tables: Mapping[str, set[int]],
-        statement: str,
-        parameters: Parameters,
-    ) -> int:
-        """Run a statement that changes these tables, and check the scene; returns the number of rows."""
-        with transaction(connection, self._name):
-            refuse_additions(
-                connection,
-                ("trigger",),
-                f"{self._name}: a store that is changed must have no triggers",
-                "drop it, or write the scene to another file",
-            )
-            connection.execute("PRAGMA defer_foreign_keys = ON")
-            count = change(connection, statement, parameters, self.seconds)
+        with allowing(self._limit), self._copy() as (copy, save):
+            tables = changes_of(copy, statement, parameters)
+            for (trigger,) in copy.execute("SELECT name FROM sqlite_master WHERE type = 'trigger'"):
+                raise WriteError(
+                    f"{self._name}: a store that is changed must have no triggers, and this one has trigger"
+                    f" {shown(trigger)}; drop it, or write the scene to another file"
+                )
+            # Without indexes, checking references to removed nodes takes the square of their number.
+            if not tables.keys() & {*MESH_TABLES}:
+                copy.execute("PRAGMA foreign_keys = ON")
+            copy.execute("BEGIN")
+            copy.execute("PRAGMA defer_foreign_keys = ON")
+            count = change(copy, statement, parameters, self.seconds)
             for table, actions in tables.items():
                 values, column = DEPENDENT.get(table, ("", ""))
-                if sqlite3.SQLITE_DELETE in actions and column in columns_in(connection, values):
-                    connection.execute(
-                        f"DELETE FROM {values} WHERE {column} NOT IN (SELECT {column} FROM {table})"
-                    )
-            report_in(connection, self._name, self._scene_name)
+                if sqlite3.SQLITE_DELETE in actions and column in columns_in(copy, values):
+                    copy.execute(f"DELETE FROM {values} WHERE {column} NOT IN (SELECT {column} FROM {table})")
+            report_in(copy, self._name, self._scene_name)
+            try:
+                copy.execute("COMMIT")
+            except sqlite3.IntegrityError as error:
+                raise WriteError(
+                    f"{self._name}: tables of other programs must not refer to rows that a change removes or"
+                    f" renames ({error}); change their rows first"
+                ) from None
+            if count:
+                save(copy.serialize())
+        self._connection.close()
+        self._connection = copy
         return count
+
+    @contextmanager
+    def _copy(self) -> Iterator[tuple[sqlite3.Connection, Callable[[bytes], None]]]:
+        """A copy of the tables, and a function that saves its bytes to the store's file, if there is one."""
+        if self._store is not None:
+            with replacing(self._store, lambda: None) as pair:
+                yield pair
+        else:
+            with closed_on_error(copied(self._connection)) as copy:
+                yield copy, lambda _: None
 
     @property
     def _scene_name(self) -> str:
@@ -238,8 +235,8 @@ LONGEST_COMPUTED: Final = 1 << 17
 """Limit: in bytes, of a value that a statement reads or computes. SQLite cannot interrupt a function:
 searching a text of this length for one of half its length takes 0.2 s; at LONGEST_TEXT it would take 9 s."""
 
-ROWS_AT_ONCE: Final = 1000
-"""Rows that are fetched at once, unless they are long."""
+ROWS_AT_ONCE: Final = 50
+"""Rows that are fetched at once. The rows of tables have at most LONGEST_COMPUTED bytes each."""
 
 STATEMENT_STEPS: Final = 1000
 """Steps of SQLite's machine between two looks at the clock; one step can be a slow function."""
@@ -265,25 +262,12 @@ def answer_of(
             # The time between two fetches is not the statement's.
             clock.begin()
             with _limited(connection, clock):
-                fetched = _some_of(cursor)
+                fetched = cursor.fetchmany(ROWS_AT_ONCE)
             if not fetched:
                 return
             yield from fetched
 
     return Answer(columns, rows())
-
-
-def _some_of(cursor: sqlite3.Cursor) -> list[tuple[Value, ...]]:
-    """The next ROWS_AT_ONCE rows; fewer if their texts have more than LONGEST_TEXT letters together."""
-    rows: list[tuple[Value, ...]] = []
-    letters = 0
-    while len(rows) < ROWS_AT_ONCE and letters < LONGEST_TEXT:
-        row = cursor.fetchone()
-        if row is None:
-            break
-        rows.append(row)
-        letters += sum(len(value) for value in row if isinstance(value, (str, bytes)))
-    return rows
 
 
 def change(
@@ -296,7 +280,9 @@ def change(
         # The last row is changed only after all rows of a RETURNING clause are fetched.
         for _ in cursor:
             pass
-    return max(cursor.rowcount, 0)
+        # The row count of Python 3.11's cursor is missing after WITH.
+        (count,) = connection.execute("SELECT changes()").fetchone()
+    return int(count)
 
 
 def changes_of(
@@ -330,8 +316,8 @@ def changes_of(
 def _limited(connection: sqlite3.Connection, clock: Clock, may_change: bool = False) -> Iterator[None]:
     """Limits of permissions, time and the size of values for a statement.
 
-    Raises UsageError for an error of SQLite; WriteError if the disk is full or fails, InputError for a
-    journal that appeared.
+    Raises UsageError for an error of SQLite; WriteError if the disk, which holds large sorted answers, is
+    full or fails.
     """
     connection.set_authorizer(authorizer(may_change))
     longest = connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, LONGEST_COMPUTED)
@@ -343,8 +329,6 @@ def _limited(connection: sqlite3.Connection, clock: Clock, may_change: bool = Fa
             raise KeyboardInterrupt from None
         if primary_code(error) in DISK_ERRORS:
             raise WriteError(sentence_of(error)) from None
-        if getattr(error, "sqlite_errorcode", 0) == sqlite3.SQLITE_READONLY_ROLLBACK:
-            raise InputError(sentence_of(error)) from None
         raise UsageError(_sentence(error, clock)) from None
     finally:
         connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, longest)

@@ -18,7 +18,6 @@ from autocolor.files.store.tables import Answer, Value, open_tables
 from tests.autocolor.commands.conftest import Run
 from tests.autocolor.files.store.stores import run as run_on_store
 from tests.autocolor.files.store.stores import small_scene, small_store, tables_of
-from tests.tables import refused
 
 LIGHTS = "SELECT name, intensity FROM lights"
 
@@ -54,7 +53,6 @@ def test_rows_are_a_table_csv_or_json(tmp_path: Path) -> None:
     assert asked(path, LIGHTS, "--csv").stdout == "name,intensity\nkey,1.0\nrim,1.0\n"
     rows = [{"name": "key", "intensity": 1.0}, {"name": "rim", "intensity": 1.0}]
     assert json.loads(asked(path, LIGHTS, "--json").stdout) == rows
-    assert json.loads(asked(path, LIGHTS, "--format", "json").stdout) == rows
 
 
 def test_a_folder_and_a_picture_file_are_asked_as_a_store_is(folder: Path, tmp_path: Path) -> None:
@@ -90,12 +88,6 @@ MAKE = "make a scene of it with `autocolor tables --write`, or a store with `aut
 @pytest.mark.parametrize(
     ("path", "statement", "options", "sentence"),
     [
-        (
-            "small.sqlite",
-            LIGHTS,
-            "--json --csv",
-            "rows must have one format, not several; give one of --format, --csv and --json",
-        ),
         ("a.npz", DELETE, "--write", f"{NOT_TO} a.npz; take its scene out with `autocolor tables --write`"),
         ("a.obj", DELETE, "--write", f"{NOT_TO} a.obj; {MAKE}"),
         ("small.sqlite", DELETE, "", ""),
@@ -122,13 +114,13 @@ def test_statements_come_from_stdin_one_after_the_other(tmp_path: Path) -> None:
     assert refusal(path, stdin="SELECT 1;\nSELECT * FROM lihgts;\n").exit_code == 2
 
 
-def lines(form: str, columns: tuple[str, ...], *rows: tuple[Value, ...]) -> list[str]:
+def lines(form: str | None, columns: tuple[str, ...], *rows: tuple[Value, ...]) -> list[str]:
     return list(lines_of(Answer(columns, iter(rows)), form))
 
 
 def test_numbers_stand_to_the_right_and_text_to_the_left() -> None:
     rows: list[tuple[Value, ...]] = [("a", 1, 1, None), ("body", 100, "x", None), ("b", None, 2.5, None)]
-    assert lines("table", ("name", "n", "mixed", "nothing"), *rows) == [
+    assert lines(None, ("name", "n", "mixed", "nothing"), *rows) == [
         "name     n  mixed  nothing",
         "----  ----  -----  -------",
         "a        1  1      NULL",
@@ -138,8 +130,8 @@ def test_numbers_stand_to_the_right_and_text_to_the_left() -> None:
 
 
 def test_an_answer_without_rows_has_its_columns_and_one_without_columns_nothing() -> None:
-    assert lines("table", ("name",)) == ["name", "----"]
-    assert lines("table", ()) == []
+    assert lines(None, ("name",)) == ["name", "----"]
+    assert lines(None, ()) == []
     assert lines("csv", ("name",)) == ["name"]
     assert lines("json", ("name",)) == ["[]"]
 
@@ -156,7 +148,7 @@ def test_an_answer_without_rows_has_its_columns_and_one_without_columns_nothing(
     ],
 )
 def test_a_cell_of_a_table_is_short_and_printable(value: Value, cell: str) -> None:
-    assert lines("table", ("\x1b[2J",), (value,))[2] == cell
+    assert lines(None, ("\x1b[2J",), (value,))[2] == cell
 
 
 def test_csv_and_json_hold_any_value() -> None:
@@ -170,7 +162,7 @@ def test_csv_and_json_hold_any_value() -> None:
 
 
 def test_rows_without_an_end_are_printed_as_they_come() -> None:
-    for form in ("table", "csv", "json"):
+    for form in (None, "csv", "json"):
         endless = lines_of(Answer(("n",), ((number,) for number in count())), form)
         assert len([next(endless) for _ in range(2000)]) == 2000
 
@@ -251,9 +243,6 @@ def test_words_with_a_dot_show_the_tables_and_leave(
     assert told.count(module.GREETING) == 2
 
 
-NOT_TEXT = "statements must be text in UTF-8 without NUL; save them in this encoding"
-
-
 def test_the_statements_of_a_file_are_parted_at_their_semicolons() -> None:
     assert list(statements_in(["SELECT 1; SEL", "ECT\n", "2 -- a; b\n", "; SELECT 3"])) == [
         "SELECT 1;",
@@ -271,14 +260,12 @@ def test_text_without_an_end_is_not_collected_for_ever(monkeypatch: pytest.Monke
         assert list(statements_in(["x" * letters, "y"])) == ["x" * letters + "y" * (lines - 1)]
 
 
-test_statements_that_are_not_text = refused(
-    lambda lines: list(statements_in(lines)),
-    [
-        (["SELECT '\udcff';"], NOT_TEXT),
-        (["SELECT '\0';"], NOT_TEXT),
-        (io.TextIOWrapper(io.BytesIO(b"SELECT 1;\nSELECT '\xff';\n"), "utf-8"), NOT_TEXT),
-    ],
-)
+def test_statements_that_are_not_text_are_refused(tmp_path: Path) -> None:
+    lines = io.TextIOWrapper(io.BytesIO(b"SELECT 1;\nSELECT '\xff';\n"), "utf-8")
+    with pytest.raises(UsageError, match="statements must be text in UTF-8; save them in this encoding"):
+        list(statements_in(lines))
+    path = small_store(tmp_path)
+    assert [refusal(path, f"SELECT '{odd}'").exit_code for odd in ("\udcff", "\0")] == [2, 2]
 
 
 def test_semicolons_in_long_texts_names_and_comments_are_passed_over_at_once() -> None:

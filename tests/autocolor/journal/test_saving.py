@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import sqlite3
 from contextlib import closing
 from pathlib import Path
@@ -150,14 +151,17 @@ def test_a_scene_file_keeps_its_comments_and_has_one_backup(scene_file: Path, wo
 
 
 def test_the_backup_of_a_store_has_the_changes_that_are_only_in_its_log(work: Path) -> None:
-    path = work / "car.sqlite"
-    autocolor.write_scene(path, car())
-    with closing(sqlite3.connect(path, isolation_level=None)) as other:
+    open_path, path = work / "open.sqlite", work / "car.sqlite"
+    autocolor.write_scene(open_path, car())
+    with closing(sqlite3.connect(open_path, isolation_level=None)) as other:
         other.execute("PRAGMA journal_mode = WAL")
         other.execute("UPDATE view SET angle = 7")
-        studio = studio_of(path)
-        studio.recolor("body", blend=0.25)
-        (backup,) = studio.save_session(work).backups
+        # As a program leaves them that is killed.
+        for ending in ("", "-wal", "-shm"):
+            shutil.copy(f"{open_path}{ending}", f"{path}{ending}")
+    studio = studio_of(path)
+    studio.recolor("body", blend=0.25)
+    (backup,) = studio.save_session(work).backups
     assert read_scene(backup).view.angle == 7
     assert read_scene(path).surface("body").paint.blend == 0.25
 

@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import sqlite3
 from pathlib import Path
 
 import numpy as np
@@ -9,10 +8,8 @@ import pytest
 from autocolor import InputError, read_scene
 from autocolor.budget import MEMORY
 from autocolor.files.store import rows as module
-from autocolor.files.store.rows import insert_mesh
-from autocolor.files.store.schema import DEFINITIONS
 from autocolor.files.store.store_file import read_store
-from tests.autocolor.files.store.stores import run, small_scene, small_store
+from tests.autocolor.files.store.stores import loosen, run, small_scene, small_store, tables_of
 
 
 def test_a_row_that_is_added_needs_no_more_than_a_scene_file_does(tmp_path: Path) -> None:
@@ -104,24 +101,11 @@ def test_rows_by_name_and_names_are_read_from_what_any_tool_writes(tmp_path: Pat
     )
 
 
-LOOSE_NODES = (
-    "ALTER TABLE nodes RENAME TO old",
-    "CREATE TABLE nodes (node, x, y, z)",
-    "INSERT INTO nodes SELECT * FROM old",
-    "DROP TABLE old",
-)
-
-
 def test_a_missing_node_is_named_also_where_no_table_tells_of_references(tmp_path: Path) -> None:
     path = small_store(tmp_path)
-    run(
-        path,
-        *LOOSE_NODES,
-        "CREATE TABLE loose AS SELECT * FROM polygons",
-        "DROP TABLE polygons",
-        "ALTER TABLE loose RENAME TO polygons",
-        "UPDATE nodes SET node = 37 WHERE node = 4",
-    )
+    for table in ("nodes", "polygons"):
+        loosen(path, table)
+    run(path, "UPDATE nodes SET node = 37 WHERE node = 4")
     with pytest.raises(InputError) as refused:
         read_store(path)
     problem = "polygons, row 1: node 4 is not in the node table (1 to 37); correct it"
@@ -154,24 +138,12 @@ def test_values_belong_to_nodes_whose_numbers_a_double_does_not_hold(tmp_path: P
 
 @pytest.mark.parametrize("chunk", [1, 2, 1 << 16])
 def test_rows_are_counted_from_1_and_a_triangle_has_no_fourth_node(
-    chunk: int, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, chunk: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(module, "CHUNK", chunk)
-    connection = sqlite3.connect(":memory:")
-    for definition in DEFINITIONS.values():
-        connection.execute(definition)
-    insert_mesh(connection, small_scene().mesh)
-    nodes = connection.execute("SELECT * FROM nodes").fetchall()
-    assert nodes[0] == (1, 0.0, 0.0, 0.0)
-    assert nodes[4] == (5, 0.5, 0.5, 1.0)
-    polygons = connection.execute("SELECT * FROM polygons").fetchall()
-    assert polygons == [(1, "hood", 1, 2, 3, 4), (2, "roof", 1, 2, 5, None)]
-    scalars = connection.execute("SELECT * FROM mesh_scalars").fetchall()
-    assert scalars == [(1, "stress", "node"), (2, "area", "polygon")]
-    values = connection.execute("SELECT * FROM node_scalars WHERE node > 2").fetchall()
-    assert values == [("stress", 3, None), ("stress", 4, 4.0), ("stress", 5, 5.0)]
-    assert connection.execute("SELECT * FROM polygon_scalars").fetchall() == [
-        ("area", 1, 1.0),
-        ("area", 2, 0.5),
-    ]
-    connection.close()
+    tables = tables_of(small_store(tmp_path))
+    assert tables["nodes"][::4] == [(1, 0.0, 0.0, 0.0), (5, 0.5, 0.5, 1.0)]
+    assert tables["polygons"] == [(1, "hood", 1, 2, 3, 4), (2, "roof", 1, 2, 5, None)]
+    assert tables["mesh_scalars"] == [(1, "stress", "node"), (2, "area", "polygon")]
+    assert tables["node_scalars"][2:] == [("stress", 3, None), ("stress", 4, 4.0), ("stress", 5, 5.0)]
+    assert tables["polygon_scalars"] == [("area", 1, 1.0), ("area", 2, 0.5)]

@@ -3,9 +3,6 @@ from __future__ import annotations
 import os
 import random
 import sqlite3
-import subprocess
-import sys
-from contextlib import closing
 from pathlib import Path
 
 import numpy as np
@@ -23,9 +20,8 @@ from autocolor.files.store.store_file import (
 )
 from autocolor.scene.creation import scene_of
 from tests.autocolor.files.store.stores import (
-    contents,
-    hostile_journal,
     is_equal,
+    loosen,
     run,
     small_scene,
     small_store,
@@ -94,223 +90,158 @@ def test_a_store_of_nodes_and_polygons_alone_is_completed_as_any_mesh_is(tmp_pat
     assert len(report.created) == 3
 
 
-LOOSE_POLYGONS = (
-    "ALTER TABLE polygons RENAME TO old",
-    "CREATE TABLE polygons (polygon, node1, node2, node3, node4, part)",
-    "INSERT INTO polygons SELECT polygon, node1, node2, node3, node4, part FROM old",
-    "DROP TABLE old",
-)
-LOOSE_NODES = (
-    "ALTER TABLE nodes RENAME TO old",
-    "CREATE TABLE nodes (node, x, y, z)",
-    "INSERT INTO nodes SELECT * FROM old",
-    "DROP TABLE old",
-)
+REFUSALS = """\
+UPDATE polygons SET node3 = 40 WHERE polygon = 2
+DELETE FROM nodes WHERE node = 4
+  polygons, row 1: node 4 is not in the node table (1 to 5); correct it
+  polygons, row 2: node 40 is not in the node table (1 to 5); correct it
 
-REFUSALS = (
-    (
-        "UPDATE polygons SET node3 = 40 WHERE polygon = 2",
-        "polygons, row 2: node 40 is not in the node table (1 to 5); correct it",
-    ),
-    (
-        "UPDATE polygons SET part = 'hod' WHERE polygon = 1",
-        "polygons, row 1: part 'hod' is not in the part table; did you mean 'hood'?",
-    ),
-    (
-        "UPDATE parts SET surface = 'bodi' WHERE name = 'hood'",
-        "parts, row 1: surface 'bodi' is not in the surface table; did you mean 'body'?",
-    ),
-    (
-        (
-            "CREATE TABLE loose AS SELECT * FROM parts",
-            "DROP TABLE parts",
-            "ALTER TABLE loose RENAME TO parts",
-            "UPDATE parts SET surface = 'glas'",
-        ),
-        (
-            "parts, row 1: surface 'glas' is not in the surface table; did you mean 'glass'?",
-            "parts, row 2: surface 'glas' is not in the surface table; did you mean 'glass'?",
-        ),
-    ),
-    (
-        "DELETE FROM nodes WHERE node = 5",
-        "polygons, row 2: node 5 is not in the node table (1 to 4); correct it",
-    ),
-    (
-        "UPDATE view SET direction_x = 1, direction_y = 0, direction_z = 0, target_x = 1, target_y = 2,"
-        " target_z = 3",
-        "view, row 1: it must have either a direction or a target; give one of them",
-    ),
-    (
-        "UPDATE surfaces SET object_color = 'rde' WHERE name = 'body'",
-        'surfaces, row 1: object_color must be "#rrggbb", a name such as "red", or three whole numbers from 0'
-        " to 255, not 'rde'; did you mean 'red'?",
-    ),
-    (
-        """UPDATE surfaces SET blend = 0.5, ramp = '["#200", "#f60"]' WHERE name = 'body'""",
-        "surfaces, row 1: ramp must stand without object_color, light_color, blend and light_percentage, not"
-        " beside them; leave out the ramp or these",
-    ),
-    (
-        (
-            "UPDATE surfaces SET exponent = 5, model = 'cook-torrance' WHERE name = 'glass'",
-            "UPDATE lights SET concentration = 3 WHERE name = 'rim'",
-        ),
-        (
-            "surfaces, row 2: exponent must go with model = 'phong' or 'blinn', not with 'cook-torrance';"
-            " leave it out, or change the model",
-            "lights, row 2: concentration must come with a direction or an aim, not with a point source; add"
-            " an aim",
-        ),
-    ),
-    (
-        "UPDATE lights SET half_spaces ="
-        """ '{"left": {"point": [0,0,0], "direction": [0,0,1], "edge_width": -1}}' WHERE name = 'key'""",
-        "lights, row 1: half_spaces.left.edge_width must be a finite number of at least 0, not -1",
-    ),
-    (
-        """UPDATE lights SET half_spaces = '{"left": ' WHERE name = 'key'""",
-        "lights, row 1: half_spaces must be a table of half-spaces by name, not '{\"left\": '",
-    ),
-    (
-        "UPDATE lights SET half_spaces = 3 WHERE name = 'key'",
-        "lights, row 1: half_spaces must be a table of half-spaces by name, not 3",
-    ),
-    (
-        "UPDATE lights SET only_parts = 'hood' WHERE name = 'key'",
-        "lights, row 1: only_parts must be a list of names, not 'hood'",
-    ),
-    (
-        """UPDATE lights SET only_parts = '["hod"]' WHERE name = 'key'""",
-        "light 'key': only_parts 'hod' is not in the part table; did you mean 'hood'?",
-    ),
-    (
-        "UPDATE lights SET follows = 'rm' WHERE name = 'key'",
-        "light 'key': follows 'rm' is not in the light table; did you mean 'rim'?",
-    ),
-    (
-        "UPDATE lights SET follows = 'rim' WHERE name = 'key'",
-        "light 'key': follows must be a light with an aim, not 'rim' without one; give it an aim",
-    ),
-    (
-        (
-            "CREATE TABLE two AS SELECT * FROM view",
-            "DROP TABLE view",
-            "ALTER TABLE two RENAME TO view",
-            "INSERT INTO view SELECT * FROM view",
-        ),
-        "view must have one row, not 2; leave one",
-    ),
-    (
-        ("DROP TABLE view", "CREATE TABLE view (eye_x)", "INSERT INTO view VALUES (x'00')"),
-        "view, row 1: eye_x must be a number or text, not bytes; correct it",
-    ),
-    (
-        (*LOOSE_NODES, "UPDATE nodes SET x = 'a' WHERE node = 2"),
-        "nodes, row 2: x must be a number, not 'a'; correct it",
-    ),
-    (
-        (*LOOSE_NODES, "UPDATE nodes SET y = NULL WHERE node = 1"),
-        "nodes, row 1: y must be a number, not missing; correct it",
-    ),
-    (
-        (*LOOSE_NODES, "UPDATE nodes SET node = 3 WHERE node = 2"),
-        "nodes: rows must have different numbers, and 3 is repeated; number them anew",
-    ),
-    (
-        (*LOOSE_NODES, "UPDATE nodes SET node = 1.5 WHERE node = 2"),
-        "nodes, row 1.5: node must be a whole number, not 1.5; correct it",
-    ),
-    (
-        (*LOOSE_POLYGONS, "UPDATE polygons SET polygon = 1.5 WHERE polygon = 1"),
-        "polygons, row 1.5: polygon must be a whole number, not 1.5; correct it",
-    ),
-    (
-        (*LOOSE_POLYGONS, "UPDATE polygons SET node2 = NULL WHERE polygon = 1"),
-        "polygons, row 1: node2 must be a node number, not missing; correct it",
-    ),
-    (
-        (*LOOSE_POLYGONS, "UPDATE polygons SET node4 = 'a' WHERE polygon = 1"),
-        "polygons, row 1: node4 must be a node number, or NULL for a triangle, not 'a'; correct it",
-    ),
-    (
-        (*LOOSE_POLYGONS, "UPDATE polygons SET part = 7 WHERE polygon = 1"),
-        "polygons, row 1: part must be the name of a part, not 7; correct it",
-    ),
-    (
-        (*LOOSE_NODES, "UPDATE nodes SET z = 9e999 WHERE node = 2"),
-        "nodes, row 2: coordinates must be finite and at most 1e30 in size, not [1.0, 0.0, inf]; correct"
-        " them",
-    ),
-    (
-        "INSERT INTO node_scalars VALUES ('stress', 9, 1.0)",
-        "node_scalars, scalar 'stress': node 9 is not in the node table; remove its value",
-    ),
-    (
-        "INSERT INTO node_scalars VALUES ('heat', 1, 1.0)",
-        "node_scalars: scalar 'heat' is not in the mesh_scalars table; remove its values",
-    ),
-    (
-        ("DROP TABLE mesh", "CREATE TABLE mesh (crease_angle)", "INSERT INTO mesh VALUES (200)"),
-        "mesh, row 1: crease_angle must be a number from 0 to 180, not 200; correct it",
-    ),
-    (
-        (
-            "DROP TABLE mesh_scalars",
-            "CREATE TABLE mesh_scalars (name, 'of')",
-            "INSERT INTO mesh_scalars VALUES ('stress', 'edge')",
-        ),
-        "mesh_scalars, row 1: it must have a name, and be of 'node' or 'polygon', not 'stress' of 'edge';"
-        " correct it",
-    ),
-    (
-        "PRAGMA user_version = 2",
-        "the version of a store must be at most 1, not 2; read it with a newer autocolor",
-    ),
-    (
-        "ALTER TABLE polygons RENAME COLUMN node3 TO node_3",
-        "polygons must have the columns polygon, node1, node2 and node3, and node3 is missing; add it; did"
-        " you mean 'node_3'?",
-    ),
-    (
-        ("ALTER TABLE lights RENAME TO other", "CREATE VIEW lights AS SELECT * FROM other"),
-        "lights must be a table, not a view; make it a table, or rename it",
-    ),
-    (
-        ("ALTER TABLE nodes RENAME TO other", "CREATE VIEW nodes AS SELECT * FROM other"),
-        "nodes must be a table, not a view; make it a table, or rename it",
-    ),
-    (
-        ("DROP TABLE mesh", "CREATE VIRTUAL TABLE mesh USING fts5(crease_angle)"),
-        "mesh must be a table, not a virtual table; make it a table, or rename it",
-    ),
-    (
-        ("DROP TABLE mesh", "CREATE TABLE mesh (number, crease_angle AS (hex(zeroblob(1000000))))"),
-        "mesh: a column must hold values, not compute them as 'crease_angle' does; make it a plain column",
-    ),
-    (
-        "UPDATE scene SET name = hex(zeroblob(2000000))",
-        "a value must have at most 1,048,576 bytes, not more; shorten it",
-    ),
-)
-"""Changes of the small store, and the problems that are then found in it."""
+UPDATE polygons SET part = 'hod' WHERE polygon = 1
+  polygons, row 1: part 'hod' is not in the part table; did you mean 'hood'?
+
+LOOSE parts
+UPDATE parts SET surface = 'glas'
+  parts, row 1: surface 'glas' is not in the surface table; did you mean 'glass'?
+  parts, row 2: surface 'glas' is not in the surface table; did you mean 'glass'?
+
+LOOSE nodes
+UPDATE nodes SET x = 'a', y = NULL WHERE node = 2
+UPDATE nodes SET node = 1.5 WHERE node = 4
+  nodes, row 2: x must be a number, not 'a'; correct it
+  nodes, row 2: y must be a number, not missing; correct it
+  nodes, row 1.5: node must be a whole number, not 1.5; correct it
+
+LOOSE nodes
+UPDATE nodes SET node = 3 WHERE node = 2
+  nodes: rows must have different numbers, and 3 is repeated; number them anew
+
+LOOSE nodes
+UPDATE nodes SET z = 9e999 WHERE node = 2
+  nodes, row 2: coordinates must be finite and at most 1e30 in size, not [1.0, 0.0, inf]; correct them
+
+LOOSE polygons
+UPDATE polygons SET node2 = NULL, node4 = 'a', part = x'07' WHERE polygon = 1
+UPDATE polygons SET polygon = 1.5 WHERE polygon = 2
+  polygons, row 1: node2 must be a node number, not missing; correct it
+  polygons, row 1: node4 must be a node number, or NULL for a triangle, not 'a'; correct it
+  polygons, row 1: part must be the name of a part, not b'\\x07'; correct it
+  polygons, row 1.5: polygon must be a whole number, not 1.5; correct it
+
+LOOSE node_scalars
+UPDATE node_scalars SET node = 2.5, value = 'hot' WHERE node = 2
+  node_scalars, row 2.5: node must be the number of a node, not 2.5; correct it
+  node_scalars, row 2.5: value must be a number, or NULL, not 'hot'; correct it
+
+UPDATE view SET direction_x = 1, direction_y = 0, direction_z = 0, target_x = 1, target_y = 2, target_z = 3
+  view, row 1: it must have either a direction or a target; give one of them
+
+UPDATE surfaces SET object_color = 'rde' WHERE name = 'body'
+  surfaces, row 1: object_color must be "#rrggbb", a name such as "red", or three whole numbers from 0 to \
+255, not 'rde'; did you mean 'red'?
+
+UPDATE surfaces SET blend = 0.5, ramp = '["#200", "#f60"]' WHERE name = 'body'
+  surfaces, row 1: ramp must stand without object_color, light_color, blend and light_percentage, not \
+beside them; leave out the ramp or these
+
+UPDATE surfaces SET exponent = 5, model = 'cook-torrance' WHERE name = 'glass'
+UPDATE lights SET concentration = 3 WHERE name = 'rim'
+  surfaces, row 2: exponent must go with model = 'phong' or 'blinn', not with 'cook-torrance'; leave it \
+out, or change the model
+  lights, row 2: concentration must come with a direction or an aim, not with a point source; add an aim
+
+UPDATE lights SET half_spaces = '{"left": {"point": [0,0,0], "direction": [0,0,1], "edge_width": -1}}' \
+WHERE name = 'key'
+  lights, row 1: half_spaces.left.edge_width must be a finite number of at least 0, not -1
+
+UPDATE lights SET half_spaces = '{"left": ' WHERE name = 'key'
+  lights, row 1: half_spaces must be a table of half-spaces by name, not '{"left": '
+
+UPDATE lights SET half_spaces = 3 WHERE name = 'key'
+  lights, row 1: half_spaces must be a table of half-spaces by name, not 3
+
+UPDATE lights SET only_parts = 'hood' WHERE name = 'key'
+  lights, row 1: only_parts must be a list of names, not 'hood'
+
+UPDATE lights SET only_parts = '["hod"]' WHERE name = 'key'
+  light 'key': only_parts 'hod' is not in the part table; did you mean 'hood'?
+
+UPDATE lights SET follows = 'rm' WHERE name = 'key'
+  light 'key': follows 'rm' is not in the light table; did you mean 'rim'?
+
+UPDATE lights SET follows = 'rim' WHERE name = 'key'
+  light 'key': follows must be a light with an aim, not 'rim' without one; give it an aim
+
+CREATE TABLE two AS SELECT * FROM view
+DROP TABLE view
+ALTER TABLE two RENAME TO view
+INSERT INTO view SELECT * FROM view
+  view must have one row, not 2; leave one
+
+DROP TABLE view
+CREATE TABLE view (eye_x)
+INSERT INTO view VALUES (x'00')
+  view, row 1: eye_x must be a number or text, not bytes; correct it
+
+INSERT INTO node_scalars VALUES ('stress', 9, 1.0)
+  node_scalars, scalar 'stress': node 9 is not in the node table; remove its value
+
+INSERT INTO node_scalars VALUES ('heat', 1, 1.0)
+  node_scalars: scalar 'heat' is not in the mesh_scalars table; remove its values
+
+DROP TABLE mesh
+CREATE TABLE mesh (crease_angle)
+INSERT INTO mesh VALUES (200)
+  mesh, row 1: crease_angle must be a number from 0 to 180, not 200; correct it
+
+DROP TABLE mesh_scalars
+CREATE TABLE mesh_scalars (name, 'of')
+INSERT INTO mesh_scalars VALUES ('stress', 'edge')
+  mesh_scalars, row 1: it must have a name, and be of 'node' or 'polygon', not 'stress' of 'edge'; correct \
+it
+
+PRAGMA user_version = 2
+  the version of a store must be at most 1, not 2; read it with a newer autocolor
+
+ALTER TABLE polygons RENAME COLUMN node3 TO node_3
+  polygons must have the columns polygon, node1, node2 and node3, and node3 is missing; add it; did you \
+mean 'node_3'?
+
+ALTER TABLE lights RENAME TO other
+CREATE VIEW lights AS SELECT * FROM other
+  lights must be a table, not a view; make it a table, or rename it
+
+DROP TABLE mesh
+CREATE VIRTUAL TABLE mesh USING fts5(crease_angle)
+  mesh must be a table, not a virtual table; make it a table, or rename it
+
+DROP TABLE mesh
+CREATE TABLE mesh (number, crease_angle AS (hex(zeroblob(1000000))))
+  mesh: a column must hold values, not compute them as 'crease_angle' does; make it a plain column
+
+UPDATE scene SET name = hex(zeroblob(2000000))
+  a value must have at most 1,048,576 bytes, not more; shorten it
+"""
+"""Changes of the small store, and below each the problems that are then found in it, all in one report."""
 
 
-@pytest.mark.parametrize(("statements", "problems"), REFUSALS)
-def test_a_refusal_names_the_table_the_row_and_what_to_do(
-    tmp_path: Path, statements: str | tuple[str, ...], problems: str | tuple[str, ...]
-) -> None:
+@pytest.mark.parametrize("case", REFUSALS.strip().split("\n\n"))
+def test_a_refusal_names_the_table_the_row_and_what_to_do(tmp_path: Path, case: str) -> None:
     path = small_store(tmp_path)
-    run(path, *([statements] if isinstance(statements, str) else statements))
+    lines = case.split("\n")
+    for line in lines:
+        if line.startswith("LOOSE "):
+            loosen(path, line.removeprefix("LOOSE "))
+        elif not line.startswith(" "):
+            run(path, line)
     with pytest.raises(InputError) as refused:
         read_store(path)
-    sentences = [problems] if isinstance(problems, str) else problems
+    sentences = [line.strip() for line in lines if line.startswith(" ")]
     assert list(refused.value.problems) == [f"small.sqlite: {sentence}" for sentence in sentences]
 
 
-@pytest.mark.parametrize(
-    "statement",
-    [
+def test_the_tables_themselves_refuse_what_a_scene_would_refuse(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    for statement in (
         "INSERT INTO nodes VALUES (9, 9e999, 0, 0)",
         "INSERT INTO nodes VALUES (9, 'one', 0, 0)",
         "UPDATE polygons SET node1 = NULL",
@@ -321,51 +252,67 @@ def test_a_refusal_names_the_table_the_row_and_what_to_do(
         "UPDATE surfaces SET model = 'gloss'",
         "INSERT INTO scene DEFAULT VALUES",
         "UPDATE lights SET name = 'key'",
-    ],
+    ):
+        with pytest.raises(sqlite3.IntegrityError):
+            run(path, statement)
+
+
+ADDITIONS = (
+    "CREATE TABLE notes (text, part REFERENCES parts)",
+    "INSERT INTO notes VALUES ('mine', 'x')",
+    "CREATE VIEW far AS SELECT * FROM nodes WHERE x > 0.9",
+    "CREATE UNIQUE INDEX by_part ON polygons (part, abs(node1)) WHERE node1 > 0",
+    "CREATE INDEX by_text ON notes (text)",
+    "CREATE TRIGGER evil AFTER DELETE ON lights BEGIN DELETE FROM notes; DELETE FROM parts; END",
+    "CREATE TRIGGER noted AFTER INSERT ON parts BEGIN DELETE FROM notes; END",
+    "CREATE TRIGGER seen INSTEAD OF DELETE ON far BEGIN DELETE FROM notes; END",
 )
-def test_the_tables_themselves_refuse_what_a_scene_would_refuse(tmp_path: Path, statement: str) -> None:
-    with pytest.raises(sqlite3.IntegrityError):
-        run(small_store(tmp_path), statement)
 
 
-def test_the_tables_of_others_stay_when_a_store_is_saved_over(tmp_path: Path) -> None:
+def test_additions_of_others_stay_and_none_is_run_when_a_store_is_saved_over(tmp_path: Path) -> None:
     path = small_store(tmp_path)
-    run(path, "CREATE TABLE notes (text, part REFERENCES parts)", "INSERT INTO notes VALUES ('mine', 'x')")
-    scene = read_store(path).scene.without_light("rim").replace(ambient=0.25)
+    run(path, *ADDITIONS)
+    schema = "SELECT type, name, tbl_name, sql FROM sqlite_master ORDER BY name"
+    before = run(path, schema)
+    assert is_equal(read_store(path).scene, small_scene())
+    scene = small_scene().without_light("rim").replace(ambient=0.25)
     write_store(path, scene, overwrite=True)
     assert is_equal(read_store(path).scene, scene)
     assert run(path, "SELECT * FROM notes") == [("mine", "x")]
+    assert run(path, schema) == before
+    assert run(path, "PRAGMA integrity_check") == [("ok",)]
 
 
 @pytest.mark.parametrize(
-    ("statement", "addition"),
+    ("statements", "problem"),
     [
-        ("CREATE VIEW far AS SELECT * FROM nodes WHERE x > 0.9", "view 'far'"),
-        ("CREATE INDEX by_part ON polygons (part)", "index 'by_part'"),
-        ("CREATE TRIGGER evil AFTER DELETE ON lights BEGIN DELETE FROM parts; END", "trigger 'evil'"),
+        (
+            ("DROP INDEX polygons_part", "CREATE UNIQUE INDEX polygons_part ON polygons (part)"),
+            "'polygons_part' does not (index polygons_part already exists)",
+        ),
+        (
+            ("ALTER TABLE lights ADD COLUMN weight REAL", "CREATE INDEX by_weight ON lights (weight)"),
+            "'by_weight' does not (no such column: weight)",
+        ),
+        (
+            ("ALTER TABLE lights RENAME TO other", "CREATE VIEW lights AS SELECT * FROM other"),
+            'this does not (view "lights" already exists)',
+        ),
     ],
 )
-def test_a_store_with_additions_of_others_is_read_and_not_saved_over(
-    tmp_path: Path, statement: str, addition: str
+def test_an_addition_that_does_not_fit_keeps_the_store_as_it_is(
+    tmp_path: Path, statements: tuple[str, ...], problem: str
 ) -> None:
     path = small_store(tmp_path)
-    run(path, statement)
+    run(path, *statements)
     before = path.read_bytes()
-    assert is_equal(read_store(path).scene, small_scene())
     with pytest.raises(WriteError) as refused:
         write_store(path, small_scene(), overwrite=True)
     assert str(refused.value) == (
-        "small.sqlite: a store that is written over must have no triggers, views or indexes of other"
-        f" programs, and this one has {addition}; write to another file"
+        "small.sqlite: what other programs added to a store must fit the tables of the scene, and"
+        f" {problem}; drop it, or write to another file"
     )
     assert path.read_bytes() == before
-
-
-def test_an_index_of_ours_that_was_changed_is_an_addition(tmp_path: Path) -> None:
-    path = small_store(tmp_path)
-    run(path, "DROP INDEX polygons_part", "CREATE UNIQUE INDEX polygons_part ON polygons (part)")
-    with pytest.raises(WriteError, match="this one has index 'polygons_part'; write to another file"):
-        write_store(path, small_scene(), overwrite=True)
 
 
 def test_a_column_that_refers_to_a_table_has_an_index(tmp_path: Path) -> None:
@@ -427,70 +374,6 @@ def test_a_store_that_exists_is_not_overwritten_unless_asked(tmp_path: Path) -> 
     assert path.read_bytes() == before
     with pytest.raises(UsageError, match=r"must be written to a file that ends in \.sqlite or \.db, not to"):
         write_store(tmp_path / "small.txt", small_scene())
-
-
-def test_a_store_that_another_program_writes_to_is_left_alone(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    path = small_store(tmp_path)
-    before = tables_of(path)
-    monkeypatch.setattr("autocolor.files.store.connections.SECONDS_OF_WAITING", 0.05)
-    with closing(sqlite3.connect(path, isolation_level=None)) as other:
-        other.execute("BEGIN EXCLUSIVE")
-        with pytest.raises(WriteError, match="another program is writing to the store"):
-            write_store(path, small_scene(), overwrite=True)
-        with pytest.raises(InputError, match="another program is writing to the store"):
-            read_store(path)
-        other.execute("ROLLBACK")
-    assert tables_of(path) == before
-
-
-def test_what_another_program_wrote_beside_the_store_is_read_with_it(tmp_path: Path) -> None:
-    path = small_store(tmp_path)
-    with closing(sqlite3.connect(path, isolation_level=None)) as other:
-        other.execute("PRAGMA journal_mode = WAL")
-        other.execute("UPDATE scene SET ambient = 0.75")
-        assert os.path.getsize(f"{path}-wal") > 0
-        assert read_store(path).scene.ambient == 0.75
-
-
-def test_a_change_that_was_interrupted_is_left_to_the_program_that_made_it(tmp_path: Path) -> None:
-    path = small_store(tmp_path)
-    code = (
-        "import os, sqlite3, sys; c = sqlite3.connect(sys.argv[1], isolation_level=None);"
-        "c.execute('PRAGMA cache_size = 1'); c.execute('PRAGMA cache_spill = 1'); c.execute('BEGIN');"
-        "c.execute('DELETE FROM lights');"
-        "[c.execute('INSERT INTO nodes VALUES (?, 1, 1, 1)', (n,)) for n in range(100, 20000)]; os._exit(0)"
-    )
-    subprocess.run([sys.executable, "-c", code, str(path)], check=True, timeout=60)
-    before = contents(tmp_path)
-    assert before.keys() == {path.name, f"{path.name}-journal"}
-    with pytest.raises(
-        InputError, match=r"small\.sqlite: the -journal beside the store is from a change that"
-    ):
-        read_store(path)
-    with pytest.raises(
-        WriteError, match=r"small\.sqlite: the -journal beside the store is from a change that"
-    ):
-        write_store(path, small_scene(), overwrite=True)
-    assert contents(tmp_path) == before
-    run(path, "SELECT 1 FROM lights")
-    assert is_equal(read_store(path).scene, small_scene())
-
-
-@pytest.mark.parametrize("kept", [None, b"text"])
-def test_no_store_is_written_beside_a_journal_that_would_be_rolled_back(
-    tmp_path: Path, kept: bytes | None
-) -> None:
-    path = small_store(tmp_path)
-    hostile_journal(path, tmp_path / "named.txt")
-    path.unlink()
-    if kept is not None:
-        path.write_bytes(kept)
-    before = contents(tmp_path)
-    with pytest.raises(WriteError):
-        write_store(path, small_scene(), overwrite=True)
-    assert contents(tmp_path) == before
 
 
 def test_a_file_that_is_no_store_or_is_not_there_is_refused(tmp_path: Path) -> None:

@@ -8,11 +8,11 @@ from pathlib import Path
 import pytest
 
 import autocolor
-from autocolor import InputError, UsageError, WriteError, open_tables
+from autocolor import InputError, MissingInputError, UsageError, WriteError, open_tables
 from autocolor.files.opening import read_scene
 from autocolor.files.scene_writing import write_scene
 from autocolor.files.store.store_file import store_of
-from autocolor.files.store.tables import LONGEST_COMPUTED, answer_of, change, changes_of
+from autocolor.files.store.tables import LONGEST_COMPUTED, answer_of, changes_of
 from tests.autocolor.files.store.stores import is_equal, run, small_scene, small_store, tables_of
 
 
@@ -50,35 +50,28 @@ def test_a_row_is_changed_by_its_key_and_saved_at_once(tmp_path: Path) -> None:
     assert scene.mesh.coordinates[4, 2] == 3.0
 
 
-@pytest.mark.parametrize(
-    ("table", "key", "values", "problem"),
-    [
-        ("light", "key", {"on": 1}, "there is no table 'light'; did you mean 'lights'?"),
-        ("lights", "kye", {"on": 1}, "there is no row of lights with name 'kye'; did you mean 'key'?"),
-        (
-            "lights",
-            "key",
-            {"intensty": 1},
-            "there is no column of lights 'intensty'; did you mean 'intensity'?",
-        ),
-        ("lights", "key", {}, "an update must change a column, not none"),
-        (
-            "lights",
-            "key",
-            {"intensity": -1},
-            "intensity must be a finite number of at least 0, and a changed row breaks this rule",
-        ),
-        ("nodes", 1, {"x": "left"}, "cannot store TEXT value in REAL column nodes.x"),
-    ],
-)
-def test_an_update_that_is_wrong_says_what_to_do(
-    tmp_path: Path, table: str, key: str, values: dict[str, object], problem: str
-) -> None:
+NOT_ONE = "a statement must be one that SQLite can run, and this one is not"
+NO_CHANGE = "a statement must be a SELECT or, with --write, an INSERT, UPDATE or DELETE of rows, not another"
+
+WRONG_UPDATES: dict[str, tuple[str, str | int, dict[str, object]]] = {
+    "there is no table 'light'; did you mean 'lights'?": ("light", "key", {"on": 1}),
+    "there is no row of lights with name 'kye'; did you mean 'key'?": ("lights", "kye", {"on": 1}),
+    "there is no column of lights 'intensty'; did you mean 'intensity'?": ("lights", "key", {"intensty": 1}),
+    "an update must change a column, not none; give one as in intensity=2.0": ("lights", "key", {}),
+    "intensity must be a finite number of at least 0, and a": ("lights", "key", {"intensity": -1}),
+    f"{NOT_ONE} (cannot store TEXT value in REAL column": ("nodes", 1, {"x": "left"}),
+}
+
+
+@pytest.mark.parametrize("problem", WRONG_UPDATES)
+def test_an_update_that_is_wrong_says_what_to_do(tmp_path: Path, problem: str) -> None:
     path = small_store(tmp_path)
-    before = tables_of(path)
-    with open_tables(path) as tables, pytest.raises(UsageError, match=problem):
+    before = path.read_bytes()
+    table, key, values = WRONG_UPDATES[problem]
+    with open_tables(path) as tables, pytest.raises(UsageError) as refused:
         tables.update(table, key, **values)
-    assert tables_of(path) == before
+    assert str(refused.value).startswith(problem)
+    assert path.read_bytes() == before
 
 
 def test_a_change_that_makes_the_scene_wrong_is_refused_as_a_whole(tmp_path: Path) -> None:
@@ -108,25 +101,26 @@ def test_a_surface_that_is_renamed_is_renamed_where_it_is_referred_to(tmp_path: 
 def test_values_of_scalars_go_with_their_polygons(tmp_path: Path) -> None:
     path = small_store(tmp_path)
     with open_tables(path) as tables:
-        assert tables.change("DELETE FROM polygons WHERE part = 'roof'") == 1
+        roof = "WITH roof AS (SELECT 'roof') DELETE FROM polygons WHERE part = (SELECT * FROM roof)"
+        assert [tables.change(roof) for _ in range(2)] == [1, 0]
     mesh = read_scene(path).mesh
     assert [(each.name, len(each.values)) for each in mesh.scalars] == [("stress", 5), ("area", 1)]
 
 
-@pytest.mark.parametrize("action", ["DELETE FROM surfaces;", "SELECT RAISE(IGNORE);"])
-def test_a_store_with_a_trigger_is_read_and_not_changed(tmp_path: Path, action: str) -> None:
+def test_a_store_with_a_trigger_is_read_and_not_changed(tmp_path: Path) -> None:
     path = small_store(tmp_path)
-    run(path, f"CREATE TRIGGER evil AFTER UPDATE ON lights BEGIN {action} END")
-    before = tables_of(path)
+    # It would change nothing itself, but keep the row from being changed.
+    run(path, "CREATE TRIGGER evil BEFORE UPDATE ON lights BEGIN SELECT RAISE(IGNORE); END")
+    before = path.read_bytes()
     with open_tables(path) as tables:
         assert is_equal(tables.scene(), small_scene())
-        with pytest.raises(
-            WriteError,
-            match=r"small\.sqlite: a store that is changed must have no triggers, and this one has trigger"
-            " 'evil'; drop it, or",
-        ):
+        with pytest.raises(WriteError) as refused:
             tables.update("lights", "key", intensity=2.0)
-    assert tables_of(path) == before
+    assert str(refused.value) == (
+        "small.sqlite: a store that is changed must have no triggers, and this one has trigger 'evil'; drop"
+        " it, or write the scene to another file"
+    )
+    assert path.read_bytes() == before
 
 
 def test_views_and_indexes_of_others_are_no_hindrance_to_a_change(tmp_path: Path) -> None:
@@ -135,6 +129,18 @@ def test_views_and_indexes_of_others_are_no_hindrance_to_a_change(tmp_path: Path
     with open_tables(path) as tables:
         tables.update("lights", "key", intensity=2.0)
         assert tables.select("SELECT max(intensity) AS most FROM bright") == [{"most": 2.0}]
+
+
+def test_a_change_is_made_to_the_store_as_it_is_now(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    with open_tables(path) as tables:
+        run(path, "UPDATE lights SET intensity = 5")
+        assert tables.select("SELECT max(intensity) AS most FROM lights") == [{"most": 1.0}]
+        tables.change("UPDATE lights SET intensity = intensity + 1 WHERE name = 'rim'")
+        assert [row["intensity"] for row in tables.table("lights")] == [5.0, 6.0]
+    path.unlink()
+    with pytest.raises(MissingInputError):
+        open_tables(path)
 
 
 def test_a_row_that_a_table_of_others_refers_to_is_not_removed(tmp_path: Path) -> None:
@@ -174,25 +180,19 @@ def connection() -> Iterator[sqlite3.Connection]:
 @pytest.mark.parametrize(
     ("statement", "problem"),
     [
-        (
-            "SELECT * FROM light",
-            "that SQLite can run, and this one is not (no such table: light); correct it",
-        ),
-        ("SELECT on FROM lights", '(near "on": syntax error); correct it'),
-        ("SELECT * FROM", "(incomplete input); correct it"),
-        ("SELECT 1; SELECT 2", "(You can only execute one statement at a time.); correct it"),
+        ("SELECT * FROM light", f"{NOT_ONE} (no such table: light); correct it"),
+        ("SELECT on FROM lights", f'{NOT_ONE} (near "on": syntax error); correct it'),
+        ("SELECT * FROM", f"{NOT_ONE} (incomplete input); correct it"),
+        ("SELECT 1; SELECT 2", f"{NOT_ONE} (You can only execute one statement at a time.); correct it"),
         ("  ; ", "a statement must not be empty; write one, as in SELECT"),
-        ("DELETE FROM lights", "must only read the tables, and this one changes lights; allow changes with"),
-        ("CREATE TABLE x (y)", "must be a SELECT or, with --write, an INSERT, UPDATE or DELETE of rows, not"),
-        ("ATTACH 'x' AS y", "must be a SELECT or, with --write, an INSERT, UPDATE or DELETE of rows, not"),
-        ("PRAGMA journal_mode = OFF", "must be a SELECT or, with --write"),
-        ("SELECT load_extension('x')", "(not authorized to use function: load_extension)"),
-        (
-            "SELECT hex(hex(replace(printf('%100000d', 1), ' ', 'abcdef')))",
-            "(string or blob too big)",
-        ),
-        ("SELECT length(randomblob(1000000000))", "(string or blob too big); correct it"),
-        ("SELECT length(zeroblob(1000000000))", "(string or blob too big); correct it"),
+        ("DELETE FROM lights", "a statement must only read the tables, and this one changes lights; allow"),
+        ("CREATE TABLE x (y)", NO_CHANGE),
+        ("ATTACH 'x' AS y", NO_CHANGE),
+        ("PRAGMA journal_mode = OFF", NO_CHANGE),
+        ("SELECT load_extension('x')", f"{NOT_ONE} (not authorized to use function: load_extension)"),
+        ("SELECT hex(hex(printf('%100000d', 1)))", f"{NOT_ONE} (string or blob too big)"),
+        ("SELECT length(randomblob(1000000000))", f"{NOT_ONE} (string or blob too big); correct it"),
+        ("SELECT length(zeroblob(1000000000))", f"{NOT_ONE} (string or blob too big); correct it"),
     ],
 )
 def test_a_wrong_statement_is_told_in_a_sentence_with_what_to_do(
@@ -200,7 +200,7 @@ def test_a_wrong_statement_is_told_in_a_sentence_with_what_to_do(
 ) -> None:
     with pytest.raises(UsageError) as refused:
         list(answer_of(connection, statement).rows)
-    assert problem in str(refused.value)
+    assert str(refused.value).startswith(problem)
 
 
 @pytest.mark.parametrize("select", ["max(i) FROM n", "i FROM n WHERE i < 0"])
@@ -233,13 +233,6 @@ def test_long_rows_are_fetched_a_few_at_a_time(connection: sqlite3.Connection) -
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     assert peak < 10_000_000
-
-
-def test_a_full_disk_is_no_fault_of_the_statement(connection: sqlite3.Connection) -> None:
-    connection.execute("PRAGMA max_page_count = 1")
-    grow = "UPDATE lights SET name = name || printf('%.100000c', 'a')"
-    with pytest.raises(WriteError, match=r"the disk must hold the store, and is full or fails .*; make room"):
-        change(connection, grow)
 
 
 def test_values_that_a_statement_computes_are_short_enough_to_be_searched_at_once(
