@@ -32,8 +32,8 @@ from autocolor.files.scene_toml.scene_text import (
     edited_to,
     scene_text,
     with_crease_angle,
+    with_document,
     with_meshes,
-    without_parts,
 )
 from autocolor.files.scene_toml.toml_text import LARGEST_TEXT, parsed_toml
 from autocolor.files.store.store_file import write_store
@@ -174,13 +174,19 @@ def _edited(old: bytes, target: Path, scene: Scene, meshes: Meshes, complete: bo
         }
         if before.isdisjoint(mesh.part_names):
             return None
-    data = without_parts(old, parts - set(mesh.part_names))
+    lost = parts - set(mesh.part_names)
+    if lost:
+        document["parts"] = {name: part for name, part in given.items() if name not in lost}
     if not is_same:
-        data = with_meshes(data, meshes.entries)
+        document = with_meshes(document, meshes.entries)
     if complete or mesh.crease_angle != (meshes.reports[0].mesh.crease_angle if is_same else CREASE_ANGLE):
-        data = with_crease_angle(data, mesh.crease_angle)
-    edited = _giving(data, target, scene, meshes)
-    return _giving(completed(edited, scene), target, scene, meshes) if complete and edited else edited
+        document = with_crease_angle(document, mesh.crease_angle)
+    data = with_document(old, document)
+    edited = None if data is None else _giving(data, target, scene, meshes)
+    if edited is None or not complete:
+        return edited
+    data = with_document(edited, completed(parsed_toml(edited, target.name), scene))
+    return None if data is None else _giving(data, target, scene, meshes)
 
 
 def _fresh(target: Path, scene: Scene, meshes: Meshes, complete: bool) -> bytes:

@@ -1,19 +1,19 @@
 """The text of a scene file: written for a scene, or an existing text edited until it gives the scene.
 
 To edit, the text is read, and the differences between the scene that it gives and the wanted scene are
-changed in it; everything else stays as it was written. This is repeated until both scenes are equal, because
-omitted keys are created from the given ones: lights, for example, depend on the view.
+changed in its values; `toml_edit` makes the text give these values, and everything else stays as it was
+written. This is repeated until both scenes are equal, because omitted keys are created from the given ones:
+lights, for example, depend on the view.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from itertools import count, takewhile
 from typing import Any, Final
 
 from autocolor.errors import InputError
-from autocolor.files.scene_toml.toml_edit import TomlText
-from autocolor.files.scene_toml.toml_text import KeyPath, parsed_toml, table_text, toml_key
+from autocolor.files.scene_toml.toml_edit import edited_toml, row_numbers
+from autocolor.files.scene_toml.toml_text import parsed_toml, table_text, toml_key
 from autocolor.scene.columns import Row, fields_of, from_plain, to_plain, with_values
 from autocolor.scene.geometry.normals import CREASE_ANGLE
 from autocolor.scene.lights import Flap, HalfSpace, Light
@@ -48,7 +48,7 @@ def scene_text(
     Keys whose values are their defaults can be left out. The scene's name is not written, as it is given by
     the name of the folder or file.
     """
-    tables = sparse_tables(scene) if without_defaults else to_plain(scene)
+    tables = sparse_tables(scene) if without_defaults else _plain(scene)
     kinds = {name: field.column.kind for name, field in fields_of(Scene).items()}
     keys = {
         key: value
@@ -125,18 +125,23 @@ def _rows(name: str, kind: RowList, rows: Any) -> Iterator[str]:
             yield table_text(f"[[{name}]]", keys)
 
 
+def _plain(scene: Scene) -> dict[str, Any]:
+    """The scene as keys and plain values; a light without flaps has no table of them."""
+    tables: dict[str, Any] = to_plain(scene)
+    lights = [{key: value for key, value in light.items() if value != {}} for light in tables["lights"]]
+    return {**tables, "lights": lights}
+
+
 # Editing a text.
 
 MOST_ROUNDS: Final = 6
 """Limit: a text needs at most three rounds: for written keys, for their order, for created keys."""
 
-NEW_ROW: Final = 1 << 20
-"""The number of the first new row of a table such as `[[lights]]`; larger than any row of the text."""
-
-ORDERED: Final = tuple(
-    (name,) for name, field in fields_of(Scene).items() if isinstance(field.column.kind, RangesByName)
+ORDERED: Final = (
+    "surfaces",
+    *(name for name, field in fields_of(Scene).items() if isinstance(field.column.kind, RangesByName)),
 )
-"""The paths of tables whose keys have an order, so that a new key must be the last key."""
+"""The tables whose keys have an order."""
 
 ReadText = Callable[[bytes], Scene]
 """Reads the text of a scene file for a given mesh; raises InputError."""
@@ -156,200 +161,145 @@ def edited_to(data: bytes, scene: Scene, read: ReadText) -> bytes | None:
             return None
         if with_values(current, {"mesh": scene.mesh, "name": scene.name}).equals(scene):
             return data
-        data = _edited(data, current, scene)
+        edited = with_document(data, _changed_document(parsed_toml(data, "scene.toml"), current, scene))
+        if edited is None:
+            return None
+        data = edited
     return None
 
 
-def completed(data: bytes, scene: Scene) -> bytes:
-    """The text of a scene file that gives the scene, with all omitted keys and rows added."""
-    document = parsed_toml(data, "scene.toml")
-    text = TomlText(data.decode(), FILE_TABLES)
-    tables: dict[str, Any] = to_plain(scene)
-    _complete(text, (), document, _without_tables(tables))
-    _complete(text, ("view",), document.get("view", {}), tables["view"])
-    if "scalar" in tables:
-        _complete(text, ("scalar",), document.get("scalar", {}), tables["scalar"])
-    for table in ("parts", "surfaces"):
-        for row in tables[table]:
-            name = row.pop("name")
-            _complete(text, (table, name), document.get(table, {}).get(name, {}), row)
-    text.arrange("surfaces", [surface.name for surface in scene.surfaces])
-    for table in ("views", "lights"):
-        if text.has((table, 0)) or table not in document:
-            written = document.get(table, [{}] * len(tables[table]))
-            for number, row in enumerate(tables[table]):
-                _complete(text, (table, number), written[number], row)
-    return text.text.encode()
+def with_document(data: bytes, document: Tables) -> bytes | None:
+    """The text of a scene file, edited until it gives these values; None if no edit does."""
+    text = edited_toml(data.decode(), document, FILE_TABLES, ORDERED)
+    return None if text is None else text.encode()
 
 
-def _complete(text: TomlText, path: KeyPath, given: Tables, keys: Tables) -> None:
-    """Set the keys of a table that the text omits."""
-    for key, value in keys.items():
-        if key not in given:
-            _set_all(text, path, {key: value})
-        elif isinstance(value, Mapping) and isinstance(given[key], Mapping):
-            _complete(text, (*path, key), given[key], value)
+def completed(document: Tables, scene: Scene) -> dict[str, Any]:
+    """The values of a scene file that gives the scene, with all omitted keys and rows added."""
+    tables = _plain(scene)
+    rows = {key: {row["name"]: without_name(row) for row in tables[key]} for key in ("parts", "surfaces")}
+    tables = {key: value for key, value in {**tables, **rows}.items() if key != "name" and value != []}
+    # Rows stay in the order of the scene.
+    whole = _filled(document, tables)
+    return {**whole, "surfaces": {name: whole["surfaces"][name] for name in tables["surfaces"]}}
 
 
-def with_meshes(data: bytes, entries: tuple[Mapping[str, Any], ...]) -> bytes:
-    """The text of a scene file with other `[[mesh]]` tables."""
-    text = TomlText(data.decode(), FILE_TABLES)
-    if not text.has(("mesh", 0)):
-        # Remove an inline array of tables.
-        text.remove(("mesh",))
-    for row, entry in enumerate(entries):
-        for key, value in sparse_entry(entry).items():
-            text.set(("mesh", NEW_ROW + row, key), value)
-    text.remove(*takewhile(text.has, (("mesh", row) for row in count())))
-    return text.text.encode()
+def _filled(written: Any, keys: Any) -> Any:
+    """Values with all keys that they omit."""
+    if isinstance(written, Mapping) and isinstance(keys, Mapping):
+        added = {key: value for key, value in keys.items() if key not in written}
+        return {
+            **{key: _filled(value, keys[key]) if key in keys else value for key, value in written.items()},
+            **added,
+        }
+    if isinstance(written, list) and isinstance(keys, list) and len(written) == len(keys):
+        return [_filled(value, row) for value, row in zip(written, keys, strict=True)]
+    return written
 
 
-def with_crease_angle(data: bytes, angle: float) -> bytes:
-    """The text of a scene file with a crease angle: in every `[[mesh]]` with the key, else in the first."""
-    text = TomlText(data.decode(), FILE_TABLES)
-    tables = parsed_toml(data, "scene.toml")["mesh"]
-    rows = [row for row, table in enumerate(tables) if "crease_angle" in table] or [0]
-    if text.has(("mesh", 0)):
-        for row in rows:
-            text.set(("mesh", row, "crease_angle"), angle)
-    else:
-        # The tables are one inline array.
-        for row in rows:
-            tables[row]["crease_angle"] = angle
-        text.set(("mesh",), tables)
-    return text.text.encode()
+def with_meshes(document: Tables, entries: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """The values of a scene file with other `[[mesh]]` tables."""
+    return {**document, "mesh": [sparse_entry(entry) for entry in entries]}
 
 
-def without_parts(data: bytes, names: set[str]) -> bytes:
-    """The text of a scene file without some parts."""
-    text = TomlText(data.decode(), FILE_TABLES)
-    text.remove(*(("parts", name) for name in names))
-    return text.text.encode()
+def with_crease_angle(document: Tables, angle: float) -> dict[str, Any]:
+    """The values of a scene file with a crease angle: in every `[[mesh]]` with the key, else in the first."""
+    tables = document["mesh"]
+    has_key = [row for row, table in enumerate(tables) if "crease_angle" in table] or [0]
+    meshes = [
+        {**table, "crease_angle": angle} if row in has_key else table for row, table in enumerate(tables)
+    ]
+    return {**document, "mesh": meshes}
 
 
-def _edited(data: bytes, old: Scene, new: Scene) -> bytes:
-    """The text of the old scene, with all values that differ in the new scene changed."""
-    document = parsed_toml(data, "scene.toml")
-    text = TomlText(data.decode(), FILE_TABLES)
-    before: dict[str, Any] = to_plain(old)
-    after: dict[str, Any] = to_plain(new)
+def _changed_document(document: Tables, old: Scene, new: Scene) -> dict[str, Any]:
+    """The values of the text of the old scene, with those changed that differ in the new scene."""
+    before, after = _plain(old), _plain(new)
     sparse = sparse_tables(new)
-
-    _change(text, (), _without_tables(before), _without_tables(after), after)
-    if "view" in document:
-        _change(text, ("view",), before["view"], after["view"], sparse["view"])
-    elif before["view"] != after["view"]:
-        _set_all(text, ("view",), sparse["view"])
-    if "scalar" not in after:
-        text.remove(("scalar",))
-    elif "scalar" in before:
-        _change(text, ("scalar",), before["scalar"], after["scalar"], sparse["scalar"])
-    else:
-        _set_all(text, ("scalar",), sparse["scalar"])
+    tables = {"name": None, **dict.fromkeys(FILE_TABLES)}
+    wanted = _changed(
+        document,
+        {key: value for key, value in before.items() if key not in tables},
+        {key: value for key, value in after.items() if key not in tables},
+        after,
+    )
+    for key in ("view", "scalar"):
+        if key not in after:
+            wanted.pop(key, None)
+        elif key in before and key in document:
+            wanted[key] = _changed(document[key], before[key], after[key], sparse[key])
+        elif before.get(key) != after[key]:
+            wanted[key] = sparse[key]
     for key in ("parts", "surfaces"):
-        _change_named(text, document, key, before[key], after[key], sparse[key])
+        wanted[key] = _changed_named(document.get(key, {}), key, before[key], after[key], sparse[key])
     for key in ("views", "lights"):
         if before[key] != after[key]:
-            _change_rows(text, document, key, before[key], after[key], sparse[key])
-    return text.text.encode()
+            wanted[key] = _changed_rows(document.get(key, []), before[key], after[key], sparse[key])
+    # Without the key, lights would be created.
+    return {
+        key: value
+        for key, value in wanted.items()
+        if value or key not in FILE_TABLES or key == "lights" or value == document.get(key)
+    }
 
 
-def _without_tables(plain: Tables) -> Tables:
-    """The keys of a scene that stand before all tables, with their values."""
-    return {key: value for key, value in plain.items() if key not in (*FILE_TABLES, "name")}
+def _changed(written: Tables, before: Tables, after: Tables, sparse: Tables) -> dict[str, Any]:
+    """A written table with the values changed that differ between two tables.
 
-
-def _change(text: TomlText, path: KeyPath, before: Tables, after: Tables, sparse: Tables) -> None:
-    """Change the values that differ between two tables. New keys are written if the sparse table has them."""
-    for key in before:
-        if key not in after:
-            text.remove((*path, key))
+    New keys are added if the sparse table has them.
+    """
+    table = {key: value for key, value in written.items() if key in after or key not in before}
     for key, value in after.items():
-        here = (*path, key)
         if key not in before:
             if key in sparse:
-                _set_all(text, path, {key: sparse[key]})
-        elif isinstance(value, Mapping) and isinstance(before[key], Mapping):
-            names = [name for name in before[key] if name in value]
-            if here not in ORDERED or names == list(value)[: len(names)]:
-                _change(text, here, before[key], value, sparse.get(key, value))
-            else:
-                text.set(here, value)
+                table[key] = sparse[key]
+        elif isinstance(value, Mapping) and isinstance(given := written.get(key, {}), Mapping):
+            inner = _changed(given, before[key], value, sparse.get(key, value))
+            if key in ORDERED:
+                inner = {name: inner.get(name, value[name]) for name in value}
+            if inner or key in written:
+                table[key] = inner
         elif before[key] != value:
-            text.set(here, value)
+            table[key] = value
+    return table
 
 
-def _change_named(
-    text: TomlText,
-    document: Tables,
+def _changed_named(
+    written: Tables,
     table: str,
     before: list[dict[str, Any]],
     after: list[dict[str, Any]],
     sparse: list[dict[str, Any]],
-) -> None:
-    """Change the rows that differ in a table of rows by name; surfaces get the order of the scene."""
-    written = document.get(table, {})
+) -> dict[str, Any]:
+    """A table of rows by name with the rows changed that differ; surfaces get the order of the scene."""
     olds = {row["name"]: row for row in before}
     names = [row["name"] for row in after]
     is_moved = table == "surfaces" and list(olds) != names
-    text.remove(*((table, name) for name in olds.keys() - set(names)))
+    rows = {}
     for row, keys in zip(after, sparse, strict=True):
         name = row["name"]
         old = olds.get(name)
         if old is not None and (name in written or table == "parts"):
-            _change(text, (table, name), old, row, keys)
+            changed = _changed(
+                written.get(name, {}), without_name(old), without_name(row), without_name(keys)
+            )
+            if changed or name in written:
+                rows[name] = changed
         elif old != row or is_moved:
-            _set_all(text, (table, name), without_name(keys))
-    if is_moved and not text.arrange(table, names):
-        # Rows without headers of their own cannot be moved, but new rows can follow them.
-        remaining = [name for name in written if name in names]
-        if remaining != names[: len(remaining)]:
-            text.remove((table,))
-            for name, keys in zip(names, sparse, strict=True):
-                _set_all(text, (table, name), without_name(keys))
+            rows[name] = without_name(keys)
+    if table == "surfaces":
+        return rows
+    return {**{name: rows[name] for name in written if name in rows}, **rows}
 
 
-def _change_rows(
-    text: TomlText,
-    document: Tables,
-    table: str,
+def _changed_rows(
+    written: list[dict[str, Any]],
     before: list[dict[str, Any]],
     after: list[dict[str, Any]],
     sparse: list[dict[str, Any]],
-) -> None:
-    """Change the rows that differ in a table such as `[[lights]]`; if the text has none, write all rows."""
-    written = document.get(table, [])
-    if not after or not text.has((table, 0)):
-        text.remove((table,))
-        # Without the key, lights would be created.
-        if (after and written) or (not after and table == "lights"):
-            text.set((table,), sparse)
-        if written or not after:
-            return
-    olds = {row["name"]: row for row in before}
-    number_of = {row["name"]: number for number, row in enumerate(written)}
-    names = dict.fromkeys(row["name"] for row in after)
-    if len(written) == len(names):
-        # A row with another name in the same place was renamed.
-        for old, new in zip(tuple(number_of), names, strict=True):
-            if new not in number_of and old not in names:
-                number_of[new], olds[new] = number_of.pop(old), olds[old]
-    text.remove(*((table, number) for name, number in number_of.items() if name not in names))
-    for row, keys in zip(after, sparse, strict=True):
-        name = row["name"]
-        if name in number_of:
-            _change(text, (table, number_of[name]), olds[name], row, keys)
-        else:
-            number_of[name] = NEW_ROW + len(number_of)
-            _set_all(text, (table, number_of[name]), keys)
-    text.arrange(table, [number_of[name] for name in names])
-
-
-def _set_all(text: TomlText, path: KeyPath, keys: Tables) -> None:
-    """Set all keys of a table; a table of tables, such as flaps, has a line for each inner table."""
-    for key, value in keys.items():
-        if isinstance(value, Mapping) and all(isinstance(inner, Mapping) for inner in value.values()):
-            for name, inner in value.items():
-                text.set((*path, key, name), inner)
-        else:
-            text.set((*path, key), value)
+) -> list[dict[str, Any]]:
+    """The rows of an array with the rows changed that differ; all rows, if none are written."""
+    return [
+        keys if number is None else _changed(written[number], before[number], row, keys)
+        for number, row, keys in zip(row_numbers(written, after), after, sparse, strict=True)
+    ]

@@ -188,10 +188,16 @@ def table_text(header: str, keys: Any) -> str:
     """A table with a line for each key; a table of tables, such as flaps, has a line for each inner table."""
     lines = [header] if header else []
     for key, value in keys.items():
-        if isinstance(value, Mapping) and all(isinstance(inner, Mapping) for inner in value.values()):
-            lines += [f"{key}.{toml_key(name)} = {toml_value(inner)}" for name, inner in value.items()]
+        if (
+            isinstance(value, Mapping)
+            and value
+            and all(isinstance(inner, Mapping) for inner in value.values())
+        ):
+            lines += [
+                f"{toml_key(key)}.{toml_key(name)} = {toml_value(inner)}" for name, inner in value.items()
+            ]
         else:
-            lines.append(f"{key} = {toml_value(value)}")
+            lines.append(f"{toml_key(key)} = {toml_value(value)}")
     return "\n".join(lines) + "\n"
 
 
