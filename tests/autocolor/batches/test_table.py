@@ -167,17 +167,14 @@ def test_a_json_table_has_plain_values(tmp_path: Path) -> None:
 
 
 REFUSED_FILES = [
-    ("t.csv", "", "t.csv: a table must have at least one variant, not none; add a row"),
+    ("t.csv", "", "t.csv: a table of variants must start with a row of column names, not be empty"),
     ("t.csv", "a,b\n", "t.csv: a table must have at least one variant"),
-    ("t.csv", "a,a\n1,2\n", "t.csv, row 1: a key must be at one column, not 'a' at two; leave one out"),
-    ("t.csv", "a,\n1,2\n", "t.csv, row 1: column 2 must have a key"),
-    ("t.csv", "a,b\n1,2\n\n3\n", "t.csv, row 4: a row must have 2 cells, as many as the header, not 1"),
+    ("t.csv", "a,b\n1,2\n\n3,4,5\n", "t.csv, row 4: a row must have at most 2 cells, separated by commas"),
     ("t.csv", "name,a\nx,1\nX,2\n", "t.csv, row 3: a name must be unique, not 'X' as in row 2; rename"),
     ("t.csv", "time,a\nsoon,1\n", "t.csv, row 2: the time of a variant must be a number of at most 1e+09"),
     ("t.csv", "time,a\n1e999,1\n", "t.csv, row 2: the time of a variant must be a number"),
-    ("t.csv", b"a\n\xff\n", "t.csv, line 2: a table must be text in UTF-8"),
+    ("t.csv", b"a\n\xff\n", "t.csv, line 2: a table of variants must be text in UTF-8"),
     ("t.csv", b"\xff\xfea\0", "t.csv: a table of variants must be text in UTF-8, not UTF-16"),
-    ("t.csv", 'a\n"1', "t.csv: a table must be valid CSV"),
     ("t.csv", ",".join(f"k{n}" for n in range(MOST_KEYS + 3)) + "\n", "t.csv, row 1: a table must have at"),
     ("t.csv", "a\n" + "1\n" * (MOST_VARIANTS + 1), "t.csv: a table must have at most 100,000 variants"),
     ("t.json", "{}", "t.json: a table in JSON must be a list of objects, not {}"),
