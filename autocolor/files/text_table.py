@@ -110,7 +110,8 @@ class TextTable:
         while rows := self.rows(1):
             cells = [self.plain(cell) for cell in rows[0]]
             if any(cells):
-                self.check_nameless(cells, self.row)
+                if problem := self.problem_of(cells):
+                    raise self.wrong(problem)
                 cells += [""] * (len(self.header) - len(cells))
                 yield self.row, {name: cell for name, cell in zip(self.header, cells, strict=False) if name}
 
@@ -121,29 +122,34 @@ class TextTable:
             return cell.replace(",", ".")
         return cell
 
-    def check_nameless(self, cells: Sequence[str], row: int) -> None:
-        """Raise InputError if a cell of a row is beyond the columns, or in a column without a name.
+    def with_points(self, cells: Sequence[str]) -> Sequence[str]:
+        """Many cells, of which those are plain that have a comma."""
+        if self.separator == ",":
+            return cells
+        return [self.plain(cell) if "," in cell else cell for cell in cells]
+
+    def problem_of(self, cells: Sequence[str]) -> str:
+        """The problem of a row with a cell beyond the columns, or in a column without a name; "" if none.
 
         Row numbers in the first column need no name.
         """
         width = len(self.header)
         if any(cells[width:]):
-            raise self.wrong(
+            return (
                 f"a row must have at most {width} cells, {self.understood}, not {len(cells)}; quote a value"
-                " that contains a separator",
-                row,
+                " that contains a separator"
             )
         for column, (name, cell) in enumerate(zip(self.header, cells, strict=False)):
             if cell and not name and (column or not ROW_NUMBER.fullmatch(cell)):
-                raise self.wrong(
+                return (
                     f"column {column + 1} must have a name, as it has {shown(cell, 40)} ({self.understood});"
-                    " write the name at its top",
-                    row,
+                    " write the name at its top"
                 )
+        return ""
 
-    def wrong(self, sentence: str, row: int | None = None) -> InputError:
-        """The error for a row, by default the last row that was read."""
-        return InputError(f"{self.place}, row {self.row if row is None else row}: {sentence}")
+    def wrong(self, sentence: str) -> InputError:
+        """The error for the last row that was read."""
+        return InputError(f"{self.place}, row {self.row}: {sentence}")
 
 
 def _separator_in(head: str) -> str:
