@@ -422,9 +422,9 @@ def _split(text: str, key: str) -> list[str]:
 def read_variants(path: str | PathLike[str]) -> tuple[Variant, ...]:
     """The variants of a table in a file: CSV with a row of keys at the top, or a JSON list of objects.
 
-    Values in CSV are texts as after `--set`, written as `text_table` understands; an empty cell leaves a field
-    as it is, and `none` unsets it. Raises InputError with the row, MissingInputError if there is no such file,
-    UsageError for another suffix.
+    Values in CSV are texts as after `--set`, written as `text_table` understands; an empty cell leaves a
+    field as it is, and `none` unsets it. Raises InputError with the row, MissingInputError if there is no
+    such file, UsageError for another suffix.
     """
     source = Path(path)
     read = READERS.get(source.suffix.lower())

@@ -14,7 +14,7 @@ from typing import Final, NamedTuple
 
 from autocolor.errors import InputError, reason_of
 from autocolor.files.formats import format_named, format_of_folder, mesh_suffixes
-from autocolor.files.palette_file import ACT, GPL
+from autocolor.files.palette_file import GPL
 from autocolor.files.paths import SCENE_FILE
 from autocolor.files.scene_sources import SCENE_FORMATS
 
@@ -65,7 +65,7 @@ def kind_of(path: Path) -> str:
     scene_format = format_named(path, SCENE_FORMATS)
     if scene_format is not None:
         return scene_format.name.removesuffix(" file")
-    if path.suffix.lower() in (GPL, ACT):
+    if path.suffix.lower() == GPL:
         return PAINTS
     return MESH if path.suffix.lower() in mesh_suffixes() else ""
 

@@ -16,7 +16,7 @@ from tests.small import cube, wall_scene
 
 
 def test_what_can_be_opened_is_listed_in_natural_order_with_folders_last(tmp_path: Path) -> None:
-    files = "car10.obj car2.obj Car3.OBJ notes.txt .hidden.obj lights.toml a.npz a.db b.GPL c.act d.csv"
+    files = "car10.obj car2.obj Car3.OBJ notes.txt .hidden.obj lights.toml a.npz a.db b.GPL d.csv"
     for name in files.split():
         (tmp_path / name).write_text("")
     for name in ("b", "a scene", "a mesh", ".git"):
@@ -30,7 +30,6 @@ def test_what_can_be_opened_is_listed_in_natural_order_with_folders_last(tmp_pat
         ("a.db", "store"),
         ("a.npz", "picture"),
         ("b.GPL", "paints"),
-        ("c.act", "paints"),
         ("car2.obj", "mesh"),
         ("Car3.OBJ", "mesh"),
         ("car10.obj", "mesh"),
