@@ -154,7 +154,7 @@ class TextTable:
 
 def _separator_in(head: str) -> str:
     """The separator that the first line with text has most of, outside of quotes; a comma if it has none."""
-    line = next((line for line in head.split("\n") if line.strip(" ,;\t")), "")
+    line = next((line for line in head.split("\n") if line.strip(" ,;\t")), head)
     text = QUOTED.sub("", line)
     return max(SEPARATORS, key=text.count)
 

@@ -4,6 +4,7 @@ import csv
 import io
 import json
 import pickle
+import time
 from collections.abc import Callable
 from pathlib import Path
 from types import MappingProxyType
@@ -155,6 +156,30 @@ def test_a_csv_table_has_texts_and_an_empty_cell_sets_nothing(tmp_path: Path) ->
         Variant("first", {"view.eye": "[1, 2, 3]", "ambient": "none"}, 0.0),
         Variant("0.1", {"ambient": "0.1"}, 2.5),
     )
+
+
+def test_a_table_of_excel_is_read_with_its_decimal_commas(tmp_path: Path) -> None:
+    path = written(
+        tmp_path,
+        "looks.csv",
+        "name;view.eye;ambient;two_sided;;\r\na;[1, 2.5];0,5;TRUE;;\r\n;;;;;\r\nb;;,5;\r\n",
+    )
+    assert read_variants(path) == (
+        Variant("a", {"view.eye": "[1, 2.5]", "ambient": "0.5", "two_sided": "TRUE"}),
+        Variant("b", {"ambient": ".5"}),
+    )
+
+
+def test_a_key_of_its_own_in_each_row_takes_linear_time(tmp_path: Path) -> None:
+    def seconds(count: int) -> float:
+        path = written(tmp_path, f"{count}.json", json.dumps([{f"k{row}": row} for row in range(count)]))
+        begin = time.process_time()
+        variants = read_variants(path)
+        assert [variant.name for variant in variants[:3]] == ["0", "1", "2"]
+        return time.process_time() - begin
+
+    # Eight times as many rows took 64 times as long.
+    assert seconds(16_000) < 30 * seconds(2000)
 
 
 def test_a_json_table_has_plain_values(tmp_path: Path) -> None:

@@ -61,6 +61,22 @@ def test_lines_end_in_any_way_and_cells_may_be_quoted(tmp_path: Path, ending: st
     assert read(tmp_path, NODES.replace("\n", ending), polygons).mesh.part_names == ('a, "b"',)
 
 
+@pytest.mark.parametrize(
+    ("nodes", "polygons"),
+    [
+        ("node;x;y;z;\n1;0,0;,0;0;\n2;1,0;0;0;\n3;1;1;0;\n4;0;1,000E0;0\n;;;;\n", "sep=,\n" + POLYGONS),
+        (
+            "\ufeff,node,x,y,z\n0,1.0,0,0,0\n1,2.0,1.,0,0\n2,3.0,1,1,0\n3,4.0,0,1,0\n",
+            ",part,node1,node2,node3,node4\n0,hood,1,2,3,4.0\n1,roof,1,2,3,\n",
+        ),
+        (NODES.replace(",", "\t"), POLYGONS.replace(",", "\t").replace("3,\n", "3\n")),
+    ],
+    ids=["Excel", "pandas", "tabs"],
+)
+def test_tables_of_other_programs_are_the_same_mesh(tmp_path: Path, nodes: str, polygons: str) -> None:
+    assert_equal(read(tmp_path, nodes, polygons), read(tmp_path).mesh)
+
+
 def test_every_problem_of_both_tables_is_named(tmp_path: Path) -> None:
     nodes = NODES + "1,0,0,0\nx,nan,1e31,\n5,0,0,0,0\n"
     polygons = POLYGONS + "2,a,1,2,3,4\n1.5,a,1,,x,4\n"
