@@ -22,10 +22,10 @@ import difflib
 import io
 import math
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -360,9 +360,9 @@ def _check_header(table: TextTable, columns: tuple[str, ...], required: tuple[st
 
 def _is_mistake(cell: str, columns: tuple[str, ...], missing: list[str]) -> bool:
     """Whether an unknown column is a mistake, not a scalar: it is a corner, or nearly a column."""
-    if cell.casefold() in columns or ("node1" in columns and CORNER.fullmatch(cell) is not None):
-        return True
-    return bool(difflib.get_close_matches(cell[:60], missing, n=1, cutoff=ALIKE))
+    is_corner = "node1" in columns and CORNER.fullmatch(cell) is not None
+    near = difflib.get_close_matches(cell[:60], missing, n=1, cutoff=ALIKE)
+    return is_corner or cell.casefold() in columns or bool(near)
 
 
 ROWS_IN_TEXT: Final = 1 << 16
@@ -376,63 +376,47 @@ def csv_tables_bytes(mesh: Mesh) -> tuple[bytes, bytes]:
     repairs it: a polygon without area is dropped, parts are those of polygons and in their order, and names
     are printable, at most 200 letters, with no spaces around them.
     """
-    nodes = "\n".join(_node_lines(mesh))
-    polygons = "\n".join(_polygon_lines(mesh))
-    return nodes.encode("utf-8", "replace") + b"\n", polygons.encode("utf-8", "replace") + b"\n"
+    names = np.array(mesh.part_names, object)
+
+    def nodes(rows: slice) -> Iterator[list[Any]]:
+        yield from mesh.coordinates[rows].T.tolist()
+
+    def polygons(rows: slice) -> Iterator[list[Any]]:
+        corners = mesh.node_numbers[rows] + 1
+        yield names[mesh.part_numbers[rows]].tolist()
+        yield from corners[:, :3].T.tolist()
+        yield np.where(corners[:, 2] == corners[:, 3], "", corners[:, 3].astype(object)).tolist()
+
+    return (
+        _table_bytes(mesh, NODE_COLUMNS, NODE, len(mesh.coordinates), nodes),
+        _table_bytes(mesh, POLYGON_COLUMNS, POLYGON, len(mesh.node_numbers), polygons),
+    )
 
 
-def _node_lines(mesh: Mesh) -> Iterator[str]:
-    yield _header(mesh, NODE_COLUMNS, NODE)
-    values = [each.values for each in mesh.scalars if each.of == NODE]
-    for chunk in chunks(len(mesh.coordinates), ROWS_IN_TEXT):
-        columns: list[Iterator[str]] = [
-            map(repr, mesh.coordinates[chunk, axis].tolist()) for axis in range(3)
-        ]
-        columns += [_cells(each[chunk]) for each in values]
-        for number, cells in enumerate(zip(*columns, strict=True), start=chunk.start + 1):
-            yield f"{number},{','.join(cells)}"
+def _table_bytes(
+    mesh: Mesh, columns: tuple[str, ...], of: str, count: int, cells: Callable[[slice], Iterable[list[Any]]]
+) -> bytes:
+    """A table with numbered rows, the cells of further columns, and scalars.
 
-
-def _polygon_lines(mesh: Mesh) -> Iterator[str]:
-    yield _header(mesh, POLYGON_COLUMNS, POLYGON)
-    values = [each.values for each in mesh.scalars if each.of == POLYGON]
-    names = np.array([_row([name]) for name in mesh.part_names], object)
-    for chunk in chunks(len(mesh.node_numbers), ROWS_IN_TEXT):
-        corners = mesh.node_numbers[chunk] + 1
-        is_triangle = corners[:, 2] == corners[:, 3]
-        columns: list[Iterator[str]] = [map(str, corners[:, at].tolist()) for at in range(3)]
-        columns.append(
-            "" if triangle else str(corner)
-            for triangle, corner in zip(is_triangle.tolist(), corners[:, 3].tolist(), strict=True)
-        )
-        columns += [_cells(each[chunk]) for each in values]
-        parts = names[mesh.part_numbers[chunk]].tolist()
-        for number, part, *cells in zip(range(chunk.start + 1, chunk.stop + 1), parts, *columns, strict=True):
-            yield f"{number},{part},{','.join(cells)}"
-
-
-def _header(mesh: Mesh, columns: tuple[str, ...], of: str) -> str:
-    """The names of the columns; a scalar named like a column of the mesh has a prefix."""
-    names = [each.name for each in mesh.scalars if each.of == of]
-    headings = [
-        f"{SCALAR}{name}"
-        if name.casefold() in columns or CORNER.fullmatch(name) or name.startswith(SCALAR)
-        else name
-        for name in names
+    A scalar named like a column of the mesh has a prefix; a missing value is an empty cell.
+    """
+    scalars = [each for each in mesh.scalars if each.of == of]
+    text = io.StringIO(newline="")
+    writer = csv.writer(text, lineterminator="\n")
+    needs_prefix = [
+        each.name.casefold() in columns or CORNER.fullmatch(each.name) or each.name.startswith(SCALAR)
+        for each in scalars
     ]
-    return _row([*columns, *headings])
-
-
-def _row(cells: list[str]) -> str:
-    """The cells as CSV, quoted where necessary."""
-    text = io.StringIO()
-    csv.writer(text, lineterminator="").writerow(cells)
-    return text.getvalue()
-
-
-def _cells(values: Floats) -> Iterator[str]:
-    """Values as cells; a missing value is an empty cell."""
-    return ("" if math.isnan(value) else repr(value) for value in values.tolist())
+    headings = [
+        f"{SCALAR * bool(prefix)}{each.name}" for each, prefix in zip(scalars, needs_prefix, strict=True)
+    ]
+    writer.writerow([*columns, *headings])
+    for rows in chunks(count, ROWS_IN_TEXT):
+        values = [each.values[rows].astype(object) for each in scalars]
+        for each in values:
+            each[each != each] = ""
+        writer.writerows(zip(range(rows.start + 1, rows.stop + 1), *cells(rows), *values, strict=True))
+    return text.getvalue().encode("utf-8", "replace")
 
 
 CSV_FILES: Final = ("nodes.csv", "polygons.csv")

@@ -8,7 +8,7 @@ lights, for example, depend on the view.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Final
 
 from autocolor.errors import InputError
@@ -25,6 +25,9 @@ from autocolor.scene.view import NamedView, View
 
 FILE_TABLES: Final = ("view", "views", "scalar", "mesh", "parts", "surfaces", "lights")
 """The tables of a scene file, in the order in which they are written."""
+
+BY_NAME: Final = ("parts", "surfaces")
+"""The tables of a scene file whose rows are tables by name; rows of other tables have the key `name`."""
 
 ALWAYS_WRITTEN: Final[dict[type[Row], tuple[str, ...]]] = {
     Part: ("name", "surface"),
@@ -48,32 +51,37 @@ def scene_text(
     Keys whose values are their defaults can be left out. The scene's name is not written, as it is given by
     the name of the folder or file.
     """
-    tables = sparse_tables(scene) if without_defaults else _plain(scene)
-    kinds = {name: field.column.kind for name, field in fields_of(Scene).items()}
+    tables = sparse_tables(scene) if without_defaults else _tables(scene)
+    entries = [dict(files) for files in mesh_files]
+    if entries:
+        # The first table has the crease angle.
+        entries[0]["crease_angle"] = scene.mesh.crease_angle
+    tables["mesh"] = [sparse_entry(entry) for entry in entries] if without_defaults else entries
     keys = {
         key: value
         for key, value in tables.items()
-        if key != "name" and (not isinstance(kinds[key], (Nested, RowList)) or (key, value) == ("lights", []))
+        if key not in FILE_TABLES or (key, value) == ("lights", [])
     }
     blocks = [table_text("", keys)] if keys else []
     for name in FILE_TABLES:
-        kind = kinds[name]
-        if name == "mesh":
-            blocks.extend(_mesh_tables(scene, mesh_files, without_defaults))
-        elif isinstance(kind, RowList):
-            blocks.extend(_rows(name, kind, tables[name]))
-        elif name in tables:
-            blocks.append(table_text(f"[{name}]", tables[name]))
+        table = tables.get(name)
+        if isinstance(table, list):
+            blocks += [table_text(f"[[{name}]]", row) for row in table]
+        elif name in BY_NAME:
+            blocks += [table_text(f"[{name}.{toml_key(key)}]", row) for key, row in tables[name].items()]
+        elif table is not None:
+            blocks.append(table_text(f"[{name}]", table))
     return "\n".join(blocks)
 
 
-def _mesh_tables(
-    scene: Scene, mesh_files: Sequence[Mapping[str, str]], without_defaults: bool
-) -> Iterator[str]:
-    """The `[[mesh]]` tables; the first one has the crease angle."""
-    for row, files in enumerate(mesh_files):
-        entry = {**files} if row else {**files, "crease_angle": scene.mesh.crease_angle}
-        yield table_text("[[mesh]]", sparse_entry(entry) if without_defaults else entry)
+def _tables(scene: Scene) -> dict[str, Any]:
+    """The scene as keys and plain values: parts and surfaces by name, and no empty tables of a light."""
+    tables: dict[str, Any] = to_plain(scene)
+    del tables["name"]
+    for key in BY_NAME:
+        tables[key] = {row["name"]: without_name(row) for row in tables[key]}
+    lights = [{key: value for key, value in light.items() if value != {}} for light in tables["lights"]]
+    return {**tables, "lights": lights}
 
 
 def sparse_tables(scene: Scene) -> dict[str, Any]:
@@ -81,11 +89,13 @@ def sparse_tables(scene: Scene) -> dict[str, Any]:
     tables: dict[str, Any] = {}
     for name, field in fields_of(Scene).items():
         value, kind = vars(scene)[name], field.column.kind
-        if isinstance(kind, RowList):
+        if name in BY_NAME:
+            tables[name] = {row.name: without_name(sparse_row(row)) for row in value}
+        elif isinstance(kind, RowList):
             tables[name] = [sparse_row(row) for row in value]
         elif isinstance(kind, Nested) and value is not None:
             tables[name] = sparse_row(value)
-        elif field.default is None or value != field.default():
+        elif name != "name" and (field.default is None or value != field.default()):
             tables.update(kind.to_plain(name, value))
     return tables
 
@@ -116,22 +126,6 @@ def sparse_row(row: Row) -> dict[str, object]:
     }
 
 
-def _rows(name: str, kind: RowList, rows: Any) -> Iterator[str]:
-    """The rows of a table, as [name.ROW] tables or as [[name]] tables."""
-    for keys in rows:
-        if kind.by_name:
-            yield table_text(f"[{name}.{toml_key(keys['name'])}]", without_name(keys))
-        else:
-            yield table_text(f"[[{name}]]", keys)
-
-
-def _plain(scene: Scene) -> dict[str, Any]:
-    """The scene as keys and plain values; a light without flaps has no table of them."""
-    tables: dict[str, Any] = to_plain(scene)
-    lights = [{key: value for key, value in light.items() if value != {}} for light in tables["lights"]]
-    return {**tables, "lights": lights}
-
-
 # Editing a text.
 
 MOST_ROUNDS: Final = 6
@@ -154,17 +148,23 @@ def edited_to(data: bytes, scene: Scene, read: ReadText) -> bytes | None:
 
     None if the text cannot be read, or if no edit makes it give the scene.
     """
+    edited: bytes | None = data
     for _ in range(MOST_ROUNDS):
         try:
-            current = read(data)
+            current = None if edited is None else read(edited)
         except InputError:
             return None
-        if with_values(current, {"mesh": scene.mesh, "name": scene.name}).equals(scene):
-            return data
-        edited = with_document(data, _changed_document(parsed_toml(data, "scene.toml"), current, scene))
-        if edited is None:
+        if edited is None or current is None:
             return None
-        data = edited
+        if with_values(current, {"mesh": scene.mesh, "name": scene.name}).equals(scene):
+            return edited
+        document = parsed_toml(edited, "scene.toml")
+        wanted = _changed(document, _tables(current), _tables(scene), sparse_tables(scene))
+        # Without the key, lights would be created.
+        given = {
+            key: value for key, value in wanted.items() if value != [] or key == "lights" or key in document
+        }
+        edited = with_document(edited, given)
     return None
 
 
@@ -176,10 +176,7 @@ def with_document(data: bytes, document: Tables) -> bytes | None:
 
 def completed(document: Tables, scene: Scene) -> dict[str, Any]:
     """The values of a scene file that gives the scene, with all omitted keys and rows added."""
-    tables = _plain(scene)
-    rows = {key: {row["name"]: without_name(row) for row in tables[key]} for key in ("parts", "surfaces")}
-    tables = {key: value for key, value in {**tables, **rows}.items() if key != "name" and value != []}
-    # Rows stay in the order of the scene.
+    tables = {key: value for key, value in _tables(scene).items() if value != []}
     whole = _filled(document, tables)
     return {**whole, "surfaces": {name: whole["surfaces"][name] for name in tables["surfaces"]}}
 
@@ -187,12 +184,9 @@ def completed(document: Tables, scene: Scene) -> dict[str, Any]:
 def _filled(written: Any, keys: Any) -> Any:
     """Values with all keys that they omit."""
     if isinstance(written, Mapping) and isinstance(keys, Mapping):
-        added = {key: value for key, value in keys.items() if key not in written}
-        return {
-            **{key: _filled(value, keys[key]) if key in keys else value for key, value in written.items()},
-            **added,
-        }
-    if isinstance(written, list) and isinstance(keys, list) and len(written) == len(keys):
+        filled = {key: _filled(value, keys.get(key)) for key, value in written.items()}
+        return {**filled, **{key: value for key, value in keys.items() if key not in written}}
+    if isinstance(written, list) and isinstance(keys, list):
         return [_filled(value, row) for value, row in zip(written, keys, strict=True)]
     return written
 
@@ -204,102 +198,44 @@ def with_meshes(document: Tables, entries: Sequence[Mapping[str, Any]]) -> dict[
 
 def with_crease_angle(document: Tables, angle: float) -> dict[str, Any]:
     """The values of a scene file with a crease angle: in every `[[mesh]]` with the key, else in the first."""
-    tables = document["mesh"]
-    has_key = [row for row, table in enumerate(tables) if "crease_angle" in table] or [0]
-    meshes = [
-        {**table, "crease_angle": angle} if row in has_key else table for row, table in enumerate(tables)
-    ]
-    return {**document, "mesh": meshes}
-
-
-def _changed_document(document: Tables, old: Scene, new: Scene) -> dict[str, Any]:
-    """The values of the text of the old scene, with those changed that differ in the new scene."""
-    before, after = _plain(old), _plain(new)
-    sparse = sparse_tables(new)
-    tables = {"name": None, **dict.fromkeys(FILE_TABLES)}
-    wanted = _changed(
-        document,
-        {key: value for key, value in before.items() if key not in tables},
-        {key: value for key, value in after.items() if key not in tables},
-        after,
-    )
-    for key in ("view", "scalar"):
-        if key not in after:
-            wanted.pop(key, None)
-        elif key in before and key in document:
-            wanted[key] = _changed(document[key], before[key], after[key], sparse[key])
-        elif before.get(key) != after[key]:
-            wanted[key] = sparse[key]
-    for key in ("parts", "surfaces"):
-        wanted[key] = _changed_named(document.get(key, {}), key, before[key], after[key], sparse[key])
-    for key in ("views", "lights"):
-        if before[key] != after[key]:
-            wanted[key] = _changed_rows(document.get(key, []), before[key], after[key], sparse[key])
-    # Without the key, lights would be created.
+    meshes = document["mesh"]
+    has_key = [row for row, mesh in enumerate(meshes) if "crease_angle" in mesh] or [0]
     return {
-        key: value
-        for key, value in wanted.items()
-        if value or key not in FILE_TABLES or key == "lights" or value == document.get(key)
+        **document,
+        "mesh": [
+            {**mesh, "crease_angle": angle} if row in has_key else mesh for row, mesh in enumerate(meshes)
+        ],
     }
 
 
 def _changed(written: Tables, before: Tables, after: Tables, sparse: Tables) -> dict[str, Any]:
     """A written table with the values changed that differ between two tables.
 
-    New keys are added if the sparse table has them.
+    New keys are added if the sparse table has them. A table that is not written is added with its sparse
+    values, so that it is valid alone.
     """
     table = {key: value for key, value in written.items() if key in after or key not in before}
     for key, value in after.items():
+        given = written.get(key, {} if key in BY_NAME else None)
+        if repr(before.get(key)) == repr(value):
+            continue
         if key not in before:
             if key in sparse:
                 table[key] = sparse[key]
-        elif isinstance(value, Mapping) and isinstance(given := written.get(key, {}), Mapping):
+        elif isinstance(value, Mapping) and isinstance(before[key], Mapping) and isinstance(given, Mapping):
             inner = _changed(given, before[key], value, sparse.get(key, value))
-            if key in ORDERED:
-                inner = {name: inner.get(name, value[name]) for name in value}
-            if inner or key in written:
-                table[key] = inner
-        elif before[key] != value:
-            table[key] = value
+            if key in ORDERED and list(before[key]) != list(value):
+                inner = {
+                    name: inner.get(name, sparse.get(key, value).get(name, value[name])) for name in value
+                }
+            table[key] = inner
+        elif isinstance(value, list) and key in FILE_TABLES:
+            table[key] = [
+                row if number is None else _changed(given[number], before[key][number], whole, row)
+                for number, whole, row in zip(
+                    row_numbers(given or (), value), value, sparse[key], strict=True
+                )
+            ]
+        else:
+            table[key] = sparse.get(key, value) if isinstance(value, Mapping) else value
     return table
-
-
-def _changed_named(
-    written: Tables,
-    table: str,
-    before: list[dict[str, Any]],
-    after: list[dict[str, Any]],
-    sparse: list[dict[str, Any]],
-) -> dict[str, Any]:
-    """A table of rows by name with the rows changed that differ; surfaces get the order of the scene."""
-    olds = {row["name"]: row for row in before}
-    names = [row["name"] for row in after]
-    is_moved = table == "surfaces" and list(olds) != names
-    rows = {}
-    for row, keys in zip(after, sparse, strict=True):
-        name = row["name"]
-        old = olds.get(name)
-        if old is not None and (name in written or table == "parts"):
-            changed = _changed(
-                written.get(name, {}), without_name(old), without_name(row), without_name(keys)
-            )
-            if changed or name in written:
-                rows[name] = changed
-        elif old != row or is_moved:
-            rows[name] = without_name(keys)
-    if table == "surfaces":
-        return rows
-    return {**{name: rows[name] for name in written if name in rows}, **rows}
-
-
-def _changed_rows(
-    written: list[dict[str, Any]],
-    before: list[dict[str, Any]],
-    after: list[dict[str, Any]],
-    sparse: list[dict[str, Any]],
-) -> list[dict[str, Any]]:
-    """The rows of an array with the rows changed that differ; all rows, if none are written."""
-    return [
-        keys if number is None else _changed(written[number], before[number], row, keys)
-        for number, row, keys in zip(row_numbers(written, after), after, sparse, strict=True)
-    ]

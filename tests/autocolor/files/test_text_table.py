@@ -109,8 +109,8 @@ test_what_is_refused = refused(
         ),
         (
             "\ta\nx\t1\n",
-            f"t.csv (separated by tabs), row 2: column 1 {NAMELESS} 'x' (separated by tabs); write the name at"
-            " its top",
+            f"t.csv (separated by tabs), row 2: column 1 {NAMELESS} 'x' (separated by tabs); write the name"
+            " at its top",
         ),
         (
             'a\n"1',
