@@ -24,8 +24,7 @@ from tomlkit.items import InlineTable
 from autocolor.files.scene_toml.toml_text import (
     TOKEN,
     KeyPath,
-    key_path,
-    resolved_path,
+    Statement,
     statements_of,
     toml_key,
     toml_value,
@@ -40,20 +39,6 @@ MISSING: Final = object()
 
 Document = Mapping[str, Any]
 """The values of a TOML text: tables are dictionaries, arrays are lists."""
-
-
-@dataclass(eq=False)
-class Statement:
-    """A key with its value, as written: `before` are the lines above it, `after` is the rest of its line.
-
-    `path` leads from the file's root to the value; rows of arrays of tables count from 0.
-    """
-
-    path: KeyPath
-    before: str
-    key: str
-    value: str
-    after: str
 
 
 @dataclass(eq=False)
@@ -72,8 +57,7 @@ class Block:
     @property
     def text(self) -> str:
         """The block as it is written."""
-        lines = [f"{each.before}{each.key}{each.value}{each.after}" for each in self.statements]
-        return "".join([self.head, *lines, self.tail])
+        return "".join([self.head, *(each.text for each in self.statements), self.tail])
 
 
 def blocks_of(text: str) -> list[Block]:
@@ -83,22 +67,18 @@ def blocks_of(text: str) -> list[Block]:
     file, if it is the only comment above the first header, belongs to the file.
     """
     blocks = [Block((), "")]
-    rows: dict[KeyPath, int] = {}
-    for above, statement, equals, after in statements_of(text):
-        if not statement:
+    for statement in statements_of(text):
+        above = statement.before
+        if not statement.key:
             blocks[-1].tail = above
-        elif statement.startswith("["):
+        elif statement.value:
+            blocks[-1].statements.append(statement)
+        else:
             start = max((line.end() for line in EMPTY_LINE.finditer(above)), default=0)
             if len(blocks) == 1 and not blocks[0].statements and not start:
                 start = len(above)
             blocks[-1].tail = above[:start]
-            path = resolved_path((), key_path(statement), rows, statement.startswith("[["))
-            blocks.append(Block(path, above[start:] + statement + after))
-        else:
-            value = statement[equals + 1 :].lstrip()
-            key = statement[: len(statement) - len(value)]
-            path = resolved_path(blocks[-1].path, key_path(f"{statement[:equals]} = 0"), rows, False)
-            blocks[-1].statements.append(Statement(path, above, key, value, after))
+            blocks.append(Block(statement.path, above[start:] + statement.key + statement.after))
     return blocks
 
 
@@ -274,19 +254,14 @@ def _add_keys(blocks: Iterable[Block], wanted: Document) -> None:
             for key, inner in rows:
                 add(block, (*path, key), inner)
         elif path not in statements:
-            lines = (
-                value if isinstance(value, dict) and value and all(map(_is_table, value.values())) else None
-            )
-            for name, inner in (lines or {}).items():
-                _add_key(block, (*path, name), inner)
-            if lines is None:
+            if isinstance(value, dict) and value and all(isinstance(inner, dict) for inner in value.values()):
+                # A table of tables, such as flaps, has a line for each inner table.
+                for name, inner in value.items():
+                    _add_key(block, (*path, name), inner)
+            else:
                 _add_key(block, path, value)
 
     add(block_at[()], (), wanted)
-
-
-def _is_table(value: object) -> bool:
-    return isinstance(value, dict)
 
 
 def _add_key(block: Block, path: KeyPath, value: Any) -> None:
