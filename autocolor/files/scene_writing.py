@@ -163,20 +163,19 @@ def _existing(target: Path) -> bytes | None:
 def _edited(old: bytes, target: Path, scene: Scene, meshes: Meshes, complete: bool) -> bytes | None:
     """The old text, edited until it gives the scene; None if it has another object, or no edit succeeds."""
     mesh, document = scene.mesh, parsed_toml(old, target.name)
-    given = document.get("parts")
-    parts = set(given) if isinstance(given, dict) else set()
+    given = document.pop("parts", None)
+    parts = given if isinstance(given, dict) else {}
     source = source_of(mesh)
     is_same = tuple(document.get("mesh", ())) == meshes.entries
     is_source = source is not None and source.scene_file == target.resolve()
-    if not (is_same or is_source or parts & set(mesh.part_names)):
+    if not (is_same or is_source or parts.keys() & set(mesh.part_names)):
         before = {
             name for report in reports_of(target.parent, entries_of(old)) for name in report.mesh.part_names
         }
         if before.isdisjoint(mesh.part_names):
             return None
-    lost = parts - set(mesh.part_names)
-    if lost:
-        document["parts"] = {name: part for name, part in given.items() if name not in lost}
+    if present := {name: part for name, part in parts.items() if name in mesh.part_names}:
+        document["parts"] = present
     if not is_same:
         document = with_meshes(document, meshes.entries)
     if complete or mesh.crease_angle != (meshes.reports[0].mesh.crease_angle if is_same else CREASE_ANGLE):

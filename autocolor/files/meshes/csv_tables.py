@@ -170,7 +170,7 @@ def _block(
     return arrays, np.array(numbers, np.int64)
 
 
-def _nameless(cells: Sequence[str], column: int) -> Numbers:
+def _nameless(cells: Sequence[str], column: int) -> AnyArray:
     """Numbers that nobody needs, for a column without a name. Raises ValueError if a cell might be wrong."""
     if column and any(cells):
         raise ValueError

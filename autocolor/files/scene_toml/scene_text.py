@@ -52,7 +52,7 @@ def scene_text(
     the name of the folder or file.
     """
     tables = sparse_tables(scene) if without_defaults else _tables(scene)
-    entries = [dict(files) for files in mesh_files]
+    entries: list[dict[str, Any]] = [dict(files) for files in mesh_files]
     if entries:
         # The first table has the crease angle.
         entries[0]["crease_angle"] = scene.mesh.crease_angle

@@ -132,7 +132,7 @@ def _changed(blocks: Iterable[Block], old: Document, wanted: Document, tables: S
     """The blocks and statements of wanted values, with these values and with the new numbers of rows."""
     numbers: dict[str | int, dict[int | None, int]] = {}
     for key, rows in old.items():
-        new_rows = wanted.get(key)
+        new_rows: Any = wanted.get(key)
         numbers[key] = {}
         if _are_rows(rows) and _are_rows(new_rows):
             numbers[key] = {number: row for row, number in enumerate(row_numbers(rows, new_rows))}
@@ -191,7 +191,7 @@ def _remove(block: Block, removed: Collection[Statement]) -> None:
 
 def _remove_unordered(blocks: list[Block], name: str, wanted: Document) -> None:
     """Remove the keys of a table that have no headers, if the wanted keys do not begin with them in order."""
-    paths = [each.path for block in blocks for each in (block, *block.statements)]
+    paths = [path for block in blocks for path in (block.path, *(each.path for each in block.statements))]
     keys = list(dict.fromkeys(path[1] for path in paths if len(path) > 1 and path[0] == name))
     if keys != list(wanted.get(name, ()))[: len(keys)]:
         for block in blocks:
@@ -352,10 +352,10 @@ def _array_text(array: Any, old: list[Any], new: list[Any]) -> str:
     numbers = _item_numbers(old, new)
     present = set(numbers)
     left: list[int | None] = [number for number in range(len(old)) if number in present]
-    for number in reversed(range(len(old))):
-        if number not in present:
-            del array[number]
-    added = []
+    for place in reversed(range(len(old))):
+        if place not in present:
+            del array[place]
+    added: list[Any] = []
     for place, number in enumerate(numbers):
         if number is None and place >= len(left):
             added.append(new[place])
