@@ -11,6 +11,7 @@ import io
 import json
 import math
 import re
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice, product
@@ -25,7 +26,8 @@ from autocolor.checks import shown
 from autocolor.errors import InputError, UsageError
 from autocolor.files.palette_file import read_palette
 from autocolor.files.paths import LONGEST_STEM, file_stem
-from autocolor.files.reading import bounded_json, read_bytes, text_lines, utf_8_text
+from autocolor.files.reading import bounded_json, read_bytes, text_lines
+from autocolor.files.text_table import TextTable
 from autocolor.immutable import Immutable
 from autocolor.scene.columns import Tier
 from autocolor.scene.kinds import in_digits
@@ -179,20 +181,27 @@ class _Names:
         return free
 
 
-def _varying(settings: Sequence[Mapping[str, object]]) -> list[str]:
-    """The keys in which some settings differ, in order of first occurrence; all keys if there are none."""
-    keys = dict.fromkeys(key for row in settings for key in row)
-    varying = []
-    for key in keys:
-        values = [repr(row[key]) if key in row else None for row in settings]
-        if any(value != values[0] for value in values):
-            varying.append(key)
-    return varying or list(keys)
+def _varying(settings: Sequence[Mapping[str, object]]) -> dict[str, int]:
+    """The keys in which some settings differ, in order of first occurrence, with their places.
+
+    All keys if there are none.
+    """
+    firsts: dict[str, str] = {}
+    counts: Counter[str] = Counter()
+    differing: set[str] = set()
+    for row in settings:
+        counts.update(row.keys())
+        for key, value in row.items():
+            if firsts.setdefault(key, repr(value)) != repr(value):
+                differing.add(key)
+    varying = [key for key in firsts if key in differing or counts[key] < len(settings)]
+    return {key: place for place, key in enumerate(varying or firsts)}
 
 
-def _label(settings: Mapping[str, object], keys: Iterable[str], number: int) -> str:
+def _label(settings: Mapping[str, object], varying: Mapping[str, int], number: int) -> str:
     """The values of some keys as a stem of a file, such as "navy-0.5"; the number if there are no values."""
-    text = "-".join(filter(None, (stem_of(settings[key]) for key in keys if key in settings)))
+    keys = sorted(settings.keys() & varying.keys(), key=varying.__getitem__)
+    text = "-".join(filter(None, (stem_of(settings[key]) for key in keys)))
     return file_stem(text) if text.strip(" .") else str(number)
 
 
@@ -413,8 +422,9 @@ def _split(text: str, key: str) -> list[str]:
 def read_variants(path: str | PathLike[str]) -> tuple[Variant, ...]:
     """The variants of a table in a file: CSV with a row of keys at the top, or a JSON list of objects.
 
-    Values in CSV are texts as after `--set`; an empty cell leaves a field as it is, and `none` unsets it.
-    Raises InputError with the row, MissingInputError if there is no such file, UsageError for another suffix.
+    Values in CSV are texts as after `--set`, written as `text_table` understands; an empty cell leaves a
+    field as it is, and `none` unsets it. Raises InputError with the row, MissingInputError if there is no
+    such file, UsageError for another suffix.
     """
     source = Path(path)
     read = READERS.get(source.suffix.lower())
@@ -422,35 +432,21 @@ def read_variants(path: str | PathLike[str]) -> tuple[Variant, ...]:
         raise UsageError(
             f"a table of variants must be a file that ends in .csv or .json, not {source.name}; rename it"
         )
-    data = text_lines(read_bytes(source, LARGEST_TABLE), source.name, "a table of variants")
-    rows = list(islice(read(data, source.name), MOST_VARIANTS + 1))
+    rows = list(islice(read(read_bytes(source, LARGEST_TABLE), source.name), MOST_VARIANTS + 1))
     if not rows:
         raise InputError(f"{source.name}: a table must have at least one variant, not none; add a row")
     return _named(rows, InputError, source.name)
 
 
 def _csv_rows(data: bytes, file: str) -> Iterator[_Row]:
-    """The rows of a CSV table; rows count from 1, the header, as in a spreadsheet. Raises InputError."""
-    try:
-        reader = csv.reader(io.StringIO(utf_8_text(data, file, "a table"), newline=""), strict=True)
-        header: list[str] | None = None
-        for number, cells in enumerate(reader, 1):
-            cells = [cell.strip() for cell in cells]
-            if not any(cells):
-                continue
-            if header is None:
-                header = _header(cells, f"{file}, row {number}")
-                continue
-            if len(cells) != len(header):
-                raise InputError(
-                    f"{file}, row {number}: a row must have {len(header)} cells, as many as the header, not"
-                    f" {len(cells)}; quote a value that contains a comma"
-                )
-            row = {key: cell for key, cell in zip(header, cells, strict=True) if cell}
-            name, time = row.pop(NAME, None), row.pop(TIME, None)
-            yield _Row(f"row {number}", name, row, None if time is None else _time(time))
-    except csv.Error as error:
-        raise InputError(f"{file}: a table must be valid CSV ({error}); correct it") from None
+    """The rows of a CSV table; rows count from 1, as in a spreadsheet. Raises InputError."""
+    table = TextTable(data, file, "a table of variants")
+    if len(table.header) - table.header.count("") > MOST_KEYS + 2:
+        raise table.wrong(f"a table must have at most {MOST_KEYS} keys, not more; leave keys out")
+    for number, cells in table.records():
+        row = {key: cell for key, cell in cells.items() if cell}
+        name, time = row.pop(NAME, None), row.pop(TIME, None)
+        yield _Row(f"row {number}", name, row, None if time is None else _time(time))
 
 
 def _time(text: str) -> float | str:
@@ -458,22 +454,10 @@ def _time(text: str) -> float | str:
     return float(text) if re.fullmatch(NUMBER, text) else text
 
 
-def _header(cells: list[str], place: str) -> list[str]:
-    """The keys of a header. Raises InputError for an empty or repeated key."""
-    for number, key in enumerate(cells, 1):
-        if not key:
-            raise InputError(f"{place}: column {number} must have a key, not none; write the key at its top")
-        if key in cells[: number - 1]:
-            raise InputError(f"{place}: a key must be at one column, not {shown(key)} at two; leave one out")
-        if number > MOST_KEYS + 2:
-            raise InputError(f"{place}: a table must have at most {MOST_KEYS} keys, not more; leave keys out")
-    return cells
-
-
 def _json_rows(data: bytes, file: str) -> Iterator[_Row]:
     """The rows of a JSON table. Raises InputError."""
     try:
-        rows = bounded_json(data, MOST_JSON_VALUES)
+        rows = bounded_json(text_lines(data, file, "a table of variants"), MOST_JSON_VALUES)
     except (ValueError, RecursionError) as error:
         raise InputError(f"{file}: a table must be valid JSON ({error}); correct it") from None
     if not isinstance(rows, list):

@@ -63,7 +63,7 @@ paints_option = click.option(
     "--paints",
     type=click.Path(),
     metavar="FILE",
-    help="Offer the named paints of a .gpl, .csv or .act file beside the swatches of color mixing.",
+    help="Offer the named paints of a .gpl or .csv file beside the swatches of color mixing.",
 )
 
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 EXAMPLES: Final = """\b
 Examples:
   autocolor palette coupe.npz body -o body.gpl
-  autocolor palette scenes/coupe tires -o tires.act
+  autocolor palette scenes/coupe tires -o tires.csv
   autocolor palette scenes/bracket bracket --set scalar.name=stress -o stress.csv
   autocolor recolor coupe.npz body --palette body.gpl
 """
@@ -36,8 +36,7 @@ Examples:
     "--output",
     type=click.Path(),
     metavar="FILE",
-    help="File to write: a GIMP palette (.gpl), a table (.csv), or up to 256 colors for Adobe's programs"
-    " (.act). Default: SCENE-SURFACE.gpl.",
+    help="File to write: a GIMP palette (.gpl) or a table (.csv). Default: SCENE-SURFACE.gpl.",
 )
 @click.option("--force", is_flag=True, help="Overwrite an existing file.")
 @click.pass_context

@@ -69,7 +69,7 @@ Examples:
     "--palette",
     type=click.Path(),
     metavar="FILE",
-    help="Take the colors of a .gpl, .csv or .act file as the ramp, such as a file of `autocolor palette`.",
+    help="Take the colors of a .gpl or .csv file as the ramp, such as a file of `autocolor palette`.",
 )
 @set_option
 @click.option(

@@ -2,13 +2,11 @@
 
 A palette is the entries of a surface's range, or a list of named paints. Names may repeat.
 
-- .gpl, a GIMP palette: any colors, with names. Written in UTF-8.
-- .csv, a table: the columns red, green and blue from 0 to 255, or the column color as "#rrggbb" or by name;
-  and perhaps the column name. Written as `red,green,blue`, and `name` if a color has a name.
-- .act, Adobe's color table: at most 256 colors, without names. Written with 772 bytes. The last four bytes
-  are the number of colors and the mark of no transparent color.
-
-Transparency is not modeled: the transparent color of an .act file is a color like the others.
+- .gpl, a GIMP palette, which Inkscape, Krita and Aseprite read and write: colors with names, in UTF-8.
+  Aseprite's `Channels: RGBA` adds a transparency to each color, which is left out.
+- .csv, a table as `text_table` reads it: the columns red, green and blue from 0 to 255, or the column color
+  as "#rrggbb" or by name; and perhaps the column name. Written as `red,green,blue`, and `name` if a color has
+  a name.
 """
 
 from __future__ import annotations
@@ -17,7 +15,7 @@ import csv
 import io
 import os
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -27,9 +25,10 @@ import numpy as np
 from autocolor.arrays import Bytes
 from autocolor.checks import Color, printable, shown
 from autocolor.errors import InputError, UsageError
-from autocolor.files.formats import Format, format_named, recognized, suffix_rule, suffixes_of
+from autocolor.files.formats import suffix_rule
 from autocolor.files.meshes.number_text import Problems
-from autocolor.files.reading import UTF_8_MARK, read_bytes, read_head, status_of, text_lines, utf_8_text
+from autocolor.files.reading import read_bytes, read_head, text_lines, utf_8_text
+from autocolor.files.text_table import TextTable
 from autocolor.files.writing import write_atomically
 from autocolor.immutable import Immutable, read_only
 from autocolor.scene.kinds import ColorKind
@@ -42,6 +41,10 @@ LONGEST_NAME: Final = 100
 
 LARGEST: Final = 1 << 20
 """Limit: the bytes of a palette file. MOST_COLORS with names of LONGEST_NAME letters take half of it."""
+
+GPL: Final = ".gpl"
+CSV: Final = ".csv"
+SUFFIXES: Final = (CSV, GPL)
 
 NAME_RULE: Final = f"must be at most {LONGEST_NAME} printable characters, without spaces around them"
 
@@ -64,17 +67,21 @@ class Palette(Immutable):
     names: tuple[str, ...]
 
     def __init__(self, colors: ColorsGiven, names: Iterable[str] = ()) -> None:
-        array = _validated(colors)
-        names = ((names,) if isinstance(names, str) else tuple(names)) or ("",) * len(array)
-        if len(names) != len(array):
+        values = _listed(colors)
+        names = ((names,) if isinstance(names, str) else tuple(names)) or ("",) * len(values)
+        if not 1 <= len(values) <= MOST_COLORS:
+            rule = f"a palette must have 1 to {MOST_COLORS:,} colors, not {len(values):,}"
+            raise InputError(f"{rule}; {'choose some of them' if values else 'add a color'}")
+        if len(names) != len(values):
             raise InputError(
-                f"a palette must have a name for each of its {len(array):,} colors, or no names, not"
+                f"a palette must have a name for each of its {len(values):,} colors, or no names, not"
                 f" {len(names):,}; write '' for a color without a name"
             )
-        for number, name in enumerate(names, start=1):
-            if not is_name(name):
-                raise InputError(f"name {number} of a palette {NAME_RULE}, not {shown(name)}; correct it")
-        vars(self).update(colors=array, names=names)
+        for number, (color, name) in enumerate(zip(values, names, strict=True), start=1):
+            if problem := _problem_of(color, name):
+                raise InputError(f"color {number} of a palette: {problem}")
+        array = np.array([COLOR.accepted(color) for color in values], np.uint8)
+        vars(self).update(colors=read_only(array), names=names)
 
     def __len__(self) -> int:
         return len(self.colors)
@@ -98,65 +105,41 @@ class Palette(Immutable):
         return self.color(folded.index(name.casefold())) if name and name.casefold() in folded else None
 
 
-def count_problem(count: int) -> str:
-    """The sentence that refuses a palette with so many colors."""
-    advice = "choose some of them" if count else "add a color"
-    return f"a palette must have 1 to {MOST_COLORS:,} colors, not {count:,}; {advice}"
-
-
-def is_name(name: object) -> bool:
-    """Whether a value can be the name of a color, or "" for none."""
-    return (
-        isinstance(name, str) and len(name) <= LONGEST_NAME and name.isprintable() and name == name.strip(" ")
-    )
-
-
-def _validated(colors: Any) -> Bytes:
-    """The colors as an array of their own, (n, 3) uint8, read-only. Raises InputError."""
-    if isinstance(colors, np.ndarray) and colors.dtype == np.uint8:
-        if colors.ndim != 2 or colors.shape[1] != 3:
-            raise InputError(
-                f"the colors of a palette must be an array (n, 3), not {colors.shape}; give a row for each"
-            )
-        array = np.array(colors)
-    else:
-        array = np.array(list(_accepted(colors)), np.uint8).reshape(-1, 3)
-    if not 1 <= len(array) <= MOST_COLORS:
-        raise InputError(count_problem(len(array)))
-    return read_only(array)
-
-
-def _accepted(colors: Any) -> Iterable[Color]:
-    """The colors that some values describe. Raises InputError."""
+def _listed(colors: Any) -> list[Any]:
+    """The colors as a list of texts and lists. Raises InputError."""
     try:
-        values = [colors] if isinstance(colors, str) else list(colors)
+        values = colors.tolist() if isinstance(colors, np.ndarray) else colors
+        return [values] if isinstance(values, str) else list(values)
     except TypeError:
         raise InputError(
             f"the colors of a palette must be a sequence of colors, not {shown(colors)}; give a list"
         ) from None
-    for number, value in enumerate(values, start=1):
-        try:
-            yield COLOR.accepted(value)
-        except (ValueError, TypeError, OverflowError):
-            advice = COLOR.advice(value) or "; correct it"
-            raise InputError(
-                f"color {number} of a palette {COLOR.rule()}, not {shown(value)}{advice}"
-            ) from None
+
+
+def _problem_of(color: Any, name: Any) -> str:
+    """What is wrong with a color or its name; "" if nothing is."""
+    try:
+        COLOR.accepted(color)
+    except (ValueError, TypeError, OverflowError):
+        return f"a color {COLOR.rule()}, not {shown(color, 40)}{COLOR.advice(color) or '; correct it'}"
+    if isinstance(name, str) and len(name) <= LONGEST_NAME and name.isprintable() and name == name.strip(" "):
+        return ""
+    return f"a name {NAME_RULE}, not {shown(name, 40)}; correct it"
 
 
 def read_palette(path: str | os.PathLike[str]) -> Palette:
-    """The palette of a .gpl, .csv or .act file; `.colors` is (n, 3) uint8, `.names` has n texts.
+    """The palette of a .csv file, or of a GIMP palette with any ending.
 
     Raises InputError with the problems and their lines, MissingInputError if there is no such file.
     """
     path = Path(path)
-    status_of(path)
-    palette_format = recognized(path, PALETTE_FORMATS)
-    if palette_format is None:
-        raise InputError(
-            f"{path.name or path}: a palette must {suffix_rule(path, SUFFIXES)}; save it as one of these"
-        )
-    return palette_format.read(read_bytes(path, LARGEST), path.name)
+    data = read_bytes(path, LARGEST)
+    if path.suffix.lower() == GPL or data.startswith(GIMP.encode()):
+        return _read_gpl(data, path.name)
+    if path.suffix.lower() == CSV:
+        return _read_csv(data, path.name)
+    rule = suffix_rule(path, SUFFIXES)
+    raise InputError(f"{path.name or path}: a palette must {rule}; save it as one of these")
 
 
 def write_palette(
@@ -166,252 +149,133 @@ def write_palette(
     names: Iterable[str] | None = None,
     overwrite: bool = False,
 ) -> None:
-    """Write a palette, or colors with or without `names`, to a .gpl, .csv or .act file, atomically.
+    """Write a palette, or colors with or without `names`, to a .gpl or .csv file, atomically.
 
         autocolor.write_palette("ramp.gpl", ["#200", "#f60", "#fff"], names=["low", "middle", "high"])
 
-    `read_palette` gives back the same palette. Raises UsageError for another ending, and for names or more
-    than 256 colors in an .act file; InputError for invalid colors and names; OutputError if the file exists
-    and `overwrite` is false, or if it cannot be created; WriteError if writing fails.
+    `read_palette` gives back the same palette. Raises UsageError for another ending; InputError for invalid
+    colors and names; OutputError if the file exists and `overwrite` is false, or if it cannot be created;
+    WriteError if writing fails.
     """
     path = Path(path)
-    palette_format = check_palette_path(path)
+    check_palette_path(path)
     if not isinstance(palette, Palette):
         palette = Palette(palette, names or ())
     elif names is not None:
         palette = Palette(palette.colors, names)
-    write_atomically(path, palette_format.written(palette, path), overwrite=overwrite)
+    text = _gpl_of(palette, path.stem) if path.suffix.lower() == GPL else _csv_of(palette)
+    write_atomically(path, text.encode(), overwrite=overwrite)
 
 
-def check_palette_path(path: Path) -> PaletteFormat:
-    """The format in which a palette is written to a path. Raises UsageError for an unknown ending."""
-    palette_format = format_named(path, PALETTE_FORMATS)
-    if palette_format is None:
+def check_palette_path(path: Path) -> None:
+    """Raise UsageError unless palettes can be written to files with the ending of a path."""
+    if path.suffix.lower() not in SUFFIXES:
         raise UsageError(f"{path.name}: a palette must {suffix_rule(path, SUFFIXES)}; rename it")
-    return palette_format
 
 
 def is_palette(path: Path) -> bool:
     """Whether a file seems to be a palette. Its ending decides; for .csv, its first row decides, too."""
-    palette_format = format_named(path, PALETTE_FORMATS)
-    if palette_format is None or palette_format.suffixes != (CSV,):
-        return palette_format is not None
-    head = read_head(path).removeprefix(UTF_8_MARK).decode("utf-8", "replace")
-    return _are_columns(re.split("[\r\n]", head)[0].lower().replace('"', "").split(","))
+    if path.suffix.lower() != CSV:
+        return path.suffix.lower() == GPL
+    head = read_head(path)
+    try:
+        return _are_columns(TextTable(head[: head.rfind(b"\n") + 1] or head, path.name).header)
+    except InputError:
+        return False
 
 
-# The GIMP palette: a line for each color, its red, green, blue and name. The header may give the palette a
-# name and a number of columns, which are not kept.
+# The GIMP palette: a line for each color. The name of the palette and its number of columns are not kept.
 
-GPL: Final = ".gpl"
 GIMP: Final = "GIMP Palette"
-GIMP_HEADER: Final = re.compile(r"(?:Name|Columns):.*")
-GIMP_COLOR: Final = re.compile(
-    r"[ \t]*([0-9]{1,3})[ \t]+([0-9]{1,3})[ \t]+([0-9]{1,3})(?:[ \t]+(.*))?", re.DOTALL
-)
-COMPONENT_RULE: Final = "must be a whole number from 0 to 255"
-
-
-def _begins_as_gpl(head: bytes) -> bool:
-    return head.removeprefix(UTF_8_MARK).startswith(GIMP.encode())
+GIMP_HEADER: Final = re.compile(r"(Name|Columns|Channels):[ \t]*(.*)")
+COMPONENT: Final = r"[ \t]*([0-9]{1,3})(?![0-9])"
+GIMP_COLORS: Final = {
+    "red, green, blue": re.compile(rf"{COMPONENT * 3}(?:[ \t]+(.*))?", re.DOTALL),
+    "red, green, blue, alpha": re.compile(rf"{COMPONENT * 3}[ \t]+[0-9]{{1,3}}(?:[ \t]+(.*))?", re.DOTALL),
+}
+"""A line of a color, by the numbers that it must have."""
 
 
 def _read_gpl(data: bytes, place: str) -> Palette:
-    lines = _text(data, place).split("\n")
-    if lines[0].rstrip(" \t") != GIMP:
-        raise InputError(f"{place}, line 1: it must be {GIMP!r}, not {shown(lines[0], 40)}; save it by GIMP")
+    text = utf_8_text(text_lines(data, place, "a palette"), place, "a palette")
+    first, *lines = text.split("\n")
+    if first.rstrip(" \t") != GIMP:
+        raise InputError(f"{place}, line 1: it must be {GIMP!r}, not {shown(first, 40)}; save it by GIMP")
     problems = Problems("line")
-    colors: list[tuple[int, ...]] = []
-    names: list[str] = []
-    for number, line in enumerate(lines[1:], start=2):
-        if line.isspace() or not line or line.lstrip(" \t").startswith("#"):
+    rows: list[tuple[int, Any, str]] = []
+    numbers = "red, green, blue"
+    for number, line in enumerate(lines, start=2):
+        if not line.strip() or line.lstrip(" \t").startswith("#"):
             continue
-        if not colors and GIMP_HEADER.fullmatch(line):
-            continue
-        match = GIMP_COLOR.fullmatch(line)
-        if match is None:
-            problems.note(
-                place,
-                number,
-                f"a color must be red, green, blue and perhaps a name, not {shown(line, 40)}; correct it",
-            )
-            continue
-        *components, name = match.groups(default="")
-        colors.append(_components(problems, place, number, components))
-        names.append(_name(problems, place, number, name))
-    return _palette(problems, place, colors, names)
+        header = None if rows else GIMP_HEADER.fullmatch(line)
+        color = GIMP_COLORS[numbers].fullmatch(line)
+        if header is not None:
+            if header[1] == "Channels" and header[2].strip() == "RGBA":
+                numbers = "red, green, blue, alpha"
+        elif color is None:
+            rule = f"a color must be {numbers} and perhaps a name, not {shown(line, 40)}; correct it"
+            problems.note(place, number, rule)
+        else:
+            rows.append((number, [int(color[at]) for at in (1, 2, 3)], color[4] or ""))
+    return _palette(problems, place, place, rows)
 
 
-def _gpl_of(palette: Palette, path: Path) -> bytes:
-    title = printable(path.stem).strip() or "palette"
-    lines = [GIMP, f"Name: {title}", "#"]
+def _gpl_of(palette: Palette, title: str) -> str:
+    lines = [GIMP, f"Name: {printable(title).strip() or 'palette'}", "#"]
     for color, name in zip(palette.colors.tolist(), palette.names, strict=True):
         lines.append(" ".join(f"{component:3}" for component in color) + (f"\t{name}" if name else ""))
-    return "\n".join([*lines, ""]).encode()
+    return "\n".join([*lines, ""])
 
 
-# The table: columns in any order, cells separated by commas. Empty rows are skipped.
+# The table.
 
-CSV: Final = ".csv"
 RED_GREEN_BLUE: Final = ("red", "green", "blue")
-COLOR_COLUMN: Final = ("color",)
-NAME: Final = "name"
 
 
-def _are_columns(cells: Sequence[str]) -> bool:
+def _are_columns(header: Sequence[str]) -> bool:
     """Whether these are the names of the columns of a palette, with or without names."""
-    columns = sorted(cell.strip() for cell in cells)
-    return any(
-        columns == sorted((*needed, *more))
-        for needed in (RED_GREEN_BLUE, COLOR_COLUMN)
-        for more in ((), (NAME,))
-    )
+    columns = sorted({name.lower() for name in header} - {"", "name"})
+    return columns in (sorted(RED_GREEN_BLUE), ["color"])
 
 
 def _read_csv(data: bytes, place: str) -> Palette:
-    problems = Problems("row")
-    colors: list[tuple[int, ...]] = []
-    names: list[str] = []
-    columns: list[str] = []
-    row = 0
-    try:
-        for row, cells in enumerate(csv.reader(io.StringIO(_text(data, place), ""), strict=True), start=1):
-            if row == 1:
-                columns = [cell.strip().lower() for cell in cells]
-                if not _are_columns(columns):
-                    raise InputError(
-                        f"{place}, row 1: the columns must be red, green, blue, or color, and perhaps name,"
-                        f" not {shown(','.join(columns), 60)}; name them so"
-                    )
-            elif any(cells):
-                color, name = _read_row(problems, place, row, columns, [cell.strip() for cell in cells])
-                colors.append(color)
-                names.append(name)
-    except csv.Error as error:
-        raise InputError(f"{place}, row {row + 1}: it must be CSV ({error}); correct the row") from None
-    return _palette(problems, place, colors, names)
+    table = TextTable(data, place, "a palette")
+    if not _are_columns(table.header):
+        columns = shown(", ".join(table.header), 60)
+        raise table.wrong(
+            f"the columns must be red, green, blue, or color, and perhaps name, not {columns}"
+            f" ({table.understood}); name them so"
+        )
+    rows = []
+    for row, cells in table.records():
+        values = {name.lower(): cell for name, cell in cells.items()}
+        color: Any = values.get("color")
+        if color is None:
+            # pandas writes the whole numbers of a column with missing values with a point.
+            texts = [values[name].removesuffix(".0") for name in RED_GREEN_BLUE]
+            color = [int(text) if re.fullmatch("[0-9]{1,3}", text) else text for text in texts]
+        rows.append((row, color, values.get("name", "")))
+    return _palette(Problems("row"), place, table.place, rows)
 
 
-def _read_row(
-    problems: Problems, place: str, row: int, columns: Sequence[str], cells: Sequence[str]
-) -> tuple[tuple[int, ...], str]:
-    """The color and the name of a row. Problems are noted."""
-    if len(cells) != len(columns):
-        problems.note(place, row, f"a row must have {len(columns)} cells, not {len(cells)}; correct it")
-        return (0, 0, 0), ""
-    values = dict(zip(columns, cells, strict=True))
-    name = _name(problems, place, row, values.get(NAME, ""))
-    if "red" in values:
-        return _components(problems, place, row, [values[column] for column in RED_GREEN_BLUE]), name
-    text = values["color"]
-    try:
-        return COLOR.accepted(text), name
-    except (ValueError, TypeError):
-        advice = COLOR.advice(text) or "; correct it"
-        problems.note(place, row, f"a color {COLOR.rule()}, not {shown(text, 40)}{advice}")
-        return (0, 0, 0), name
-
-
-def _csv_of(palette: Palette, _: Path) -> bytes:
+def _csv_of(palette: Palette) -> str:
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     has_names = any(palette.names)
-    writer.writerow([*RED_GREEN_BLUE, *([NAME] if has_names else [])])
+    writer.writerow([*RED_GREEN_BLUE, *(["name"] if has_names else [])])
     for color, name in zip(palette.colors.tolist(), palette.names, strict=True):
         writer.writerow([*color, *([name] if has_names else [])])
-    return text.getvalue().encode()
+    return text.getvalue()
 
 
-# Adobe's color table: the bytes of 256 colors; then perhaps the number of colors in use and the number of the
-# transparent color, in two bytes each, the high byte first. 65535 is no transparent color.
-
-ACT: Final = ".act"
-ACT_COLORS: Final = 256
-ACT_SIZES: Final = (3 * ACT_COLORS, 3 * ACT_COLORS + 4)
-
-
-def _read_act(data: bytes, place: str) -> Palette:
-    if len(data) not in ACT_SIZES:
-        raise InputError(
-            f"{place}: an .act file must have {ACT_SIZES[0]} or {ACT_SIZES[1]} bytes, not {len(data):,};"
-            " save it again"
-        )
-    count = ACT_COLORS
-    if len(data) > ACT_SIZES[0]:
-        count = int.from_bytes(data[ACT_SIZES[0] :][:2], "big")
-        if not 1 <= count <= ACT_COLORS:
-            raise InputError(
-                f"{place}: the number of colors, bytes 768 and 769, must be 1 to {ACT_COLORS}, not {count:,};"
-                " save it again"
-            )
-    return Palette(np.frombuffer(data[: 3 * count], np.uint8).reshape(-1, 3))
-
-
-def _act_of(palette: Palette, path: Path) -> bytes:
-    if len(palette) > ACT_COLORS:
-        raise UsageError(
-            f"{path.name}: an .act file must hold at most {ACT_COLORS} colors, not {len(palette):,}; write a"
-            " .gpl or .csv file"
-        )
-    if any(palette.names):
-        raise UsageError(
-            f"{path.name}: an .act file must hold colors without names; write a .gpl or .csv file, or leave"
-            " the names out"
-        )
-    return palette.colors.tobytes().ljust(ACT_SIZES[0], b"\0") + len(palette).to_bytes(2, "big") + b"\xff\xff"
-
-
-# What the two formats of text share.
-
-
-def _text(data: bytes, place: str) -> str:
-    """The text of a palette file, with lines that end with LF. Raises InputError."""
-    return utf_8_text(text_lines(data, place, "a palette"), place, "a palette")
-
-
-def _components(problems: Problems, place: str, line: int, texts: Sequence[str]) -> tuple[int, ...]:
-    """Red, green and blue. Problems are noted."""
-    components = []
-    for name, text in zip(RED_GREEN_BLUE, texts, strict=True):
-        is_number = re.fullmatch("[0-9]{1,3}", text) is not None and int(text) <= 255
-        if not is_number:
-            problems.note(place, line, f"{name} {COMPONENT_RULE}, not {shown(text, 40)}; correct it")
-        components.append(int(text) if is_number else 0)
-    return tuple(components)
-
-
-def _name(problems: Problems, place: str, line: int, text: str) -> str:
-    """A name without spaces around it. Problems are noted."""
-    name = text.strip(" \t")
-    if is_name(name):
-        return name
-    problems.note(place, line, f"a name {NAME_RULE}, not {shown(name, 40)}; correct it")
-    return ""
-
-
-def _palette(
-    problems: Problems, place: str, colors: Sequence[tuple[int, ...]], names: Sequence[str]
-) -> Palette:
-    """The palette of a file, unless there were problems. Raises InputError."""
+def _palette(problems: Problems, file: str, place: str, rows: Iterable[tuple[int, Any, str]]) -> Palette:
+    """The palette of the lines, colors and names of a file. Raises InputError with all problems."""
+    rows = [(line, color, name.strip(" \t")) for line, color, name in rows]
+    for line, color, name in rows:
+        if problem := _problem_of(color, name):
+            problems.note(place, line, problem)
     problems.raise_any()
-    if not 1 <= len(colors) <= MOST_COLORS:
-        raise InputError(f"{place}: {count_problem(len(colors))}")
-    return Palette(np.array(colors, np.uint8), names)
-
-
-@dataclass(frozen=True)
-class PaletteFormat(Format):
-    """A format of palettes: its reader, from the bytes and the name of a file, and its writer."""
-
-    read: Callable[[bytes, str], Palette]
-    written: Callable[[Palette, Path], bytes]
-
-
-PALETTE_FORMATS: Final = (
-    PaletteFormat("GIMP palette", (GPL,), _read_gpl, _gpl_of, begins=_begins_as_gpl),
-    PaletteFormat("CSV palette", (CSV,), _read_csv, _csv_of),
-    PaletteFormat("Adobe color table", (ACT,), _read_act, _act_of),
-)
-"""All palette formats. A new format is its reader, its writer, and its row here."""
-
-SUFFIXES: Final = suffixes_of(PALETTE_FORMATS)
+    try:
+        return Palette([color for _, color, _ in rows], [name for _, _, name in rows])
+    except InputError as error:
+        raise InputError(f"{file}: {error}") from None

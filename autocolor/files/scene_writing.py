@@ -31,8 +31,8 @@ from autocolor.files.scene_toml.scene_text import (
     edited_to,
     scene_text,
     with_crease_angle,
+    with_document,
     with_meshes,
-    without_parts,
 )
 from autocolor.files.scene_toml.toml_text import LARGEST_TEXT, parsed_toml
 from autocolor.files.store.store_file import write_store
@@ -164,24 +164,29 @@ def _existing(target: Path) -> bytes | None:
 def _edited(old: bytes, target: Path, scene: Scene, meshes: Meshes, complete: bool) -> bytes | None:
     """The old text, edited until it gives the scene; None if it has another object, or no edit succeeds."""
     mesh, document = scene.mesh, parsed_toml(old, target.name)
-    given = document.get("parts")
-    parts = set(given) if isinstance(given, dict) else set()
+    given = document.pop("parts", None)
+    parts = given if isinstance(given, dict) else {}
     source = source_of(mesh)
     is_same = tuple(document.get("mesh", ())) == meshes.entries
     is_source = source is not None and source.scene_file == target.resolve()
-    if not (is_same or is_source or parts & set(mesh.part_names)):
+    if not (is_same or is_source or parts.keys() & set(mesh.part_names)):
         before = {
             name for report in reports_of(target.parent, entries_of(old)) for name in report.mesh.part_names
         }
         if before.isdisjoint(mesh.part_names):
             return None
-    data = without_parts(old, parts - set(mesh.part_names))
+    if present := {name: part for name, part in parts.items() if name in mesh.part_names}:
+        document["parts"] = present
     if not is_same:
-        data = with_meshes(data, meshes.entries)
+        document = with_meshes(document, meshes.entries)
     if complete or mesh.crease_angle != (meshes.reports[0].mesh.crease_angle if is_same else CREASE_ANGLE):
-        data = with_crease_angle(data, mesh.crease_angle)
-    edited = _giving(data, target, scene, meshes)
-    return _giving(completed(edited, scene), target, scene, meshes) if complete and edited else edited
+        document = with_crease_angle(document, mesh.crease_angle)
+    data = with_document(old, document)
+    edited = None if data is None else _giving(data, target, scene, meshes)
+    if edited is None or not complete:
+        return edited
+    data = with_document(edited, completed(parsed_toml(edited, target.name), scene))
+    return None if data is None else _giving(data, target, scene, meshes)
 
 
 def _fresh(target: Path, scene: Scene, meshes: Meshes, complete: bool) -> bytes:

@@ -11,8 +11,8 @@ from functools import partial
 from typing import Any, Final, NamedTuple
 
 from autocolor.checks import nearest
-from autocolor.errors import InputError, UsageError
-from autocolor.files.scene_toml.toml_text import parsed_toml
+from autocolor.errors import UsageError
+from autocolor.files.text_table import value_of_text
 from autocolor.scene.columns import REFUSED, Column, Field, Kind, Row, fields_of, keys_of
 from autocolor.scene.kinds import Instance, Text
 from autocolor.scene.row_kinds import NamedRows, Nested, OneRowOf, Reference, References, Referring, RowList
@@ -77,7 +77,7 @@ def _value_at(scene: Scene, field: Field | None, key: str, value: object) -> obj
     if value.lower() == UNSET:
         refers = field is not None and field.is_optional and isinstance(kind, Referring)
         return None if refers and value not in names else _unset(field, key, value)
-    parsed = value_of(value)
+    parsed = value_of_text(value)
     if isinstance(kind, (Reference, Text)) and not isinstance(parsed, str):
         # A name such as 2 needs no quotes.
         return value
@@ -116,21 +116,6 @@ def _unset_value(field: Field | None, key: str) -> object:
         return default
     rule = field.column.kind.rule()
     raise UsageError(f"{key}: it {rule}, not none; only an optional field can be unset")
-
-
-def value_of(text: str) -> Any:
-    """The text parsed as a TOML value, or the text itself if it is not TOML.
-
-    >>> value_of("2.5"), value_of("[1, 2]"), value_of("true"), value_of("#b01020")
-    (2.5, [1, 2], True, '#b01020')
-    """
-    # In TOML, the # of a color begins a comment, and a line break ends the value.
-    if not text or text.startswith("#") or not text.isprintable():
-        return text
-    try:
-        return parsed_toml(f"value = {text}".encode(), "a value")["value"]
-    except (InputError, UnicodeEncodeError):
-        return text
 
 
 def _put(fields: Changes, path: tuple[str, ...], value: Any, key: str) -> None:

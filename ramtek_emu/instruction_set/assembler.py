@@ -50,6 +50,9 @@ def assemble(lines: Iterable[str]) -> Iterator[bytes]:
     pending: Draft | None = None
     ended = 0
     for number, line in enumerate(lines, 1):
+        if number == 1:
+            # A UTF-8 mark, decoded as UTF-8 or, as the texts of a listing are, as Latin-1.
+            line = line.removeprefix("\ufeff").removeprefix("\xef\xbb\xbf")
         tokens = tokens_of(line, number)
         if not tokens:
             continue

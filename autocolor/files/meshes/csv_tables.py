@@ -4,9 +4,8 @@
     1,0.0,0.0,0.0,12.5          1,hood,1,2,3,4
     2,1.0,0.0,0.0,              2,roof,2,5,3,
 
-The first row names the columns, which may be in any order. Cells are separated by commas; empty rows are
-skipped. Nodes that no polygon uses stay. In messages rows are counted from 1, the header, as in a
-spreadsheet.
+The first row names the columns, which may be in any order. `text_table` says how cells may be written. Nodes
+that no polygon uses stay.
 
 In the node table `node` may be omitted; nodes are then numbered from 1. Node numbers are unique integers, in
 any order and with gaps. In the polygon table `polygon` (unique integers) and `part` may be omitted. A
@@ -23,11 +22,10 @@ import difflib
 import io
 import math
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from itertools import islice
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -37,82 +35,77 @@ from autocolor.errors import InputError
 from autocolor.files.meshes.file_scalars import FileScalars
 from autocolor.files.meshes.number_text import MOST_PROBLEMS, NUMBER, Problems
 from autocolor.files.meshes.repair import LONGEST_NAME, PLAIN, MeshReport, Placement, RawPolygons, repaired
-from autocolor.files.reading import read_table, read_together, read_whole, save_of, shown, text_lines
+from autocolor.files.reading import read_table, read_together, read_whole, save_of, shown
+from autocolor.files.text_table import TextTable
 from autocolor.files.writing import write_together
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalar import MOST_SCALARS, NODE, POLYGON
 
-# The rows of a table, in blocks whose columns are converted at once. A block in which a column cannot be
-# converted at once is read cell by cell, so that every problem is reported with its row.
-
 ROWS_AT_ONCE: Final = 1 << 14
 """Measured: with more, the cells of a block fall out of the processor's cache."""
 
-WHOLE_NUMBER: Final = re.compile(r"[+-]?[0-9]{1,18}")
+WHOLE_NUMBER: Final = re.compile(r"[+-]?[0-9]{1,18}(?:\.0*)?")
 
-IN_NUMBERS: Final = b"0123456789+-.eE ,"
-IN_WHOLES: Final = b"0123456789+- ,"
+LETTERS: Final = b"0123456789+-.eE ,"
+"""The letters of numbers, and the comma between them."""
 
 NOTHING: Final = -(1 << 63)
 """The whole number for an empty or wrong cell; numbers in cells have at most 18 digits."""
 
+GROWTH: Final = 7
+"""Measured: how many times its size a table of a million rows takes."""
+
 
 @dataclass(frozen=True)
 class NumberCells:
-    """Decimal numbers of at most 1e30 in size. With `may_be_empty`, an empty cell is NaN."""
+    """Decimal numbers of at most 1e30 in size, float64, or `whole` numbers of at most 18 digits, int64.
+
+    An empty or wrong cell is NaN or 0, or NOTHING. `rule` is the beginning of the sentence for a wrong one.
+    """
 
     rule: str
+    whole: bool = False
     may_be_empty: bool = False
 
-    def at_once(self, cells: Sequence[str]) -> Floats:
-        """The numbers, float64. Raises ValueError if any might be wrong."""
-        _require_letters(cells, IN_NUMBERS)
-        if self.may_be_empty:
-            cells = [cell or "nan" for cell in cells]
-        numbers = np.fromiter(map(float, cells), np.float64, len(cells))
-        if (np.abs(numbers) > LARGEST_COORDINATE).any():
+    def at_once(self, cells: Sequence[str]) -> Floats | Numbers:
+        """The numbers of many cells. Raises ValueError if any might be wrong."""
+        text = ",".join(cells)
+        if text.encode("ascii").translate(None, LETTERS):
             raise ValueError
-        return numbers
-
-    def one(self, cell: str, note: Callable[[str], None]) -> float:
-        """The number, 0 if it is wrong."""
-        if not cell and self.may_be_empty:
-            return np.nan
-        number = float(cell) if NUMBER.fullmatch(cell.encode()) else np.inf
-        if abs(number) <= LARGEST_COORDINATE:
-            return number
-        note(f"{self.rule}, not {shown(cell)}; correct it")
-        return 0.0
-
-
-@dataclass(frozen=True)
-class WholeCells:
-    """Whole numbers of at most 18 digits. A wrong or empty cell is NOTHING."""
-
-    what: str
-    may_be_empty: bool = False
-
-    def at_once(self, cells: Sequence[str]) -> Numbers:
-        """The numbers, int64. Raises ValueError if any might be wrong."""
-        _require_letters(cells, IN_WHOLES)
-        # A number of 18 digits and a sign is converted alone.
+        if not self.whole:
+            numbers = np.fromiter(
+                map(float, [cell or "nan" for cell in cells] if self.may_be_empty else cells),
+                np.float64,
+                len(cells),
+            )
+            if (np.abs(numbers) > LARGEST_COORDINATE).any():
+                raise ValueError
+            return numbers
+        if "." in text:
+            # pandas writes the whole numbers of a column with missing values so.
+            cells = [cell.removesuffix(".0") for cell in cells]
         if max(map(len, cells)) > 18:
             raise ValueError
         if self.may_be_empty and "" in cells:
             return np.array([int(cell) if cell else NOTHING for cell in cells], np.int64)
         return np.fromiter(map(int, cells), np.int64, len(cells))
 
-    def one(self, cell: str, note: Callable[[str], None]) -> int:
-        """The number, NOTHING if it is wrong."""
-        if WHOLE_NUMBER.fullmatch(cell):
-            return int(cell)
-        if cell or not self.may_be_empty:
-            note(f"{self.what} must be a whole number, not {shown(cell)}; correct it")
-        return NOTHING
+    def one(self, cell: str, note: Callable[[str], None]) -> float | int:
+        """The number of a cell without spaces around it. Notes a problem."""
+        if not cell and self.may_be_empty:
+            return NOTHING if self.whole else math.nan
+        if self.whole and WHOLE_NUMBER.fullmatch(cell):
+            return int(cell.partition(".")[0])
+        if not self.whole and NUMBER.fullmatch(cell.encode()) and abs(float(cell)) <= LARGEST_COORDINATE:
+            return float(cell)
+        note(f"{self.rule}, not {shown(cell)}; correct it")
+        return NOTHING if self.whole else 0.0
 
 
 class NameCells:
     """Names, as their rows in the list of all names, `rows`; an empty cell has the name `empty`."""
+
+    whole = True
 
     def __init__(self, empty: str) -> None:
         self.empty = empty
@@ -132,79 +125,25 @@ class NameCells:
         return self.rows.setdefault(name, len(self.rows))
 
 
-CellKind = NumberCells | WholeCells | NameCells
-"""The kinds of columns. `at_once` converts many cells, or raises ValueError if any might be wrong. `one`
-converts a cell without spaces around it, and notes a problem."""
-
-
-def _require_letters(cells: Sequence[str], letters: bytes) -> None:
-    """Raise ValueError if cells have other letters."""
-    if ",".join(cells).encode("ascii").translate(None, letters):
-        raise ValueError
-
-
-GROWTH: Final = 7
-"""Measured: how many times its size a table of a million rows takes."""
-
-
-class CsvRows:
-    """The header of a file, its cells without spaces around, and the other rows in blocks."""
-
-    def __init__(self, place: str, data: bytes) -> None:
-        self.place = place
-        data = text_lines(data, place, "a table")
-        try:
-            data.decode("utf-8")
-        except UnicodeDecodeError as error:
-            line = data.count(b"\n", 0, error.start) + 1
-            raise InputError(
-                f"{self.place}, row {line}: a table must be text in UTF-8; save it as UTF-8"
-            ) from None
-        lines = io.TextIOWrapper(io.BytesIO(data), "utf-8", newline="")
-        self._reader = csv.reader(lines, strict=True)
-        self.row = 0
-        header = self._next(1)
-        if not header:
-            raise InputError(f"{self.place}: a table must start with a row of column names, not be empty")
-        self.header = [cell.strip() for cell in header[0]]
-
-    def _next(self, count: int) -> list[list[str]]:
-        """The next rows, fewer at the end of the file. Raises InputError."""
-        rows: list[list[str]] = []
-        try:
-            rows.extend(islice(self._reader, count))
-        except csv.Error as error:
-            row = self.row + len(rows) + 1
-            raise InputError(f"{self.place}, row {row}: it must be CSV ({error}); correct the row") from None
-        self.row += len(rows)
-        return rows
-
-    def converted(self, problems: Problems, columns: Sequence[CellKind]) -> tuple[list[AnyArray], Numbers]:
-        """The values of each column, and the row numbers of the file.
-
-        Empty rows are skipped, and shorter ones filled with empty cells. Problems are noted.
-        """
-        in_blocks: list[list[AnyArray]] = [[] for _ in columns]
-        numbers: list[Numbers] = []
-        first = self.row + 1
-        while (block := self._next(ROWS_AT_ONCE)) or not numbers:
-            values, in_file = _block(problems, self.place, block, first, columns)
-            for column, each in zip(in_blocks, values, strict=True):
-                column.append(each)
-            numbers.append(in_file)
-            first += len(block)
-        return [np.concatenate(column) for column in in_blocks], np.concatenate(numbers)
+CellKind = NumberCells | NameCells
 
 
 def _block(
-    problems: Problems, place: str, block: list[list[str]], first: int, columns: Sequence[CellKind]
+    table: TextTable, problems: Problems, block: list[list[str]], columns: Sequence[CellKind]
 ) -> tuple[list[AnyArray], Numbers]:
-    """The values of each column in some rows, and the numbers of these in the file."""
-    width = len(columns)
-    if block and all(len(cells) == width for cells in block):
+    """The values of each column in the last rows of a table, and the numbers of these rows in the file.
+
+    Empty rows are skipped, and shorter ones filled with empty cells. The columns are converted at once; where
+    this is not possible, cell by cell, so that every problem is noted with its row.
+    """
+    first = table.row + 1 - len(block)
+    if block and all(len(cells) == len(columns) for cells in block):
         try:
             at_once = [
-                cells.at_once(column) for cells, column in zip(columns, zip(*block, strict=True), strict=True)
+                _nameless(cells, column) if not name else kind.at_once(table.with_points(cells))
+                for column, (name, kind, cells) in enumerate(
+                    zip(table.header, columns, zip(*block, strict=True), strict=True)
+                )
             ]
         except (ValueError, OverflowError):
             pass
@@ -213,22 +152,29 @@ def _block(
     values: list[list[float | int]] = [[] for _ in columns]
     numbers = []
     for row, raw in enumerate(block, start=first):
-        cells = [cell.strip() for cell in raw]
+        cells = [table.plain(cell) for cell in raw]
         if not any(cells):
             continue
 
         def note(sentence: str, row: int = row) -> None:
-            problems.note(place, row, sentence)
+            problems.note(table.place, row, sentence)
 
-        if len(cells) > width:
-            note(f"a row must have {width} cells, not {len(cells)}; correct it")
-        cells.extend([""] * (width - len(cells)))
+        if problem := table.problem_of(cells):
+            note(problem)
+        cells.extend([""] * (len(columns) - len(cells)))
         numbers.append(row)
-        for column, kind, cell in zip(values, columns, cells, strict=False):
-            column.append(kind.one(cell, note))
-    types = [np.float64 if isinstance(each, NumberCells) else np.int64 for each in columns]
+        for name, column, kind, cell in zip(table.header, values, columns, cells, strict=False):
+            column.append(kind.one(cell, note) if name else 0)
+    types = [np.int64 if kind.whole else np.float64 for kind in columns]
     arrays: list[AnyArray] = [np.array(each, of) for each, of in zip(values, types, strict=True)]
     return arrays, np.array(numbers, np.int64)
+
+
+def _nameless(cells: Sequence[str], column: int) -> AnyArray:
+    """Numbers that nobody needs, for a column without a name. Raises ValueError if a cell might be wrong."""
+    if column and any(cells):
+        raise ValueError
+    return WHOLE.at_once(cells)
 
 
 NODE_COLUMNS: Final = ("node", "x", "y", "z")
@@ -244,6 +190,7 @@ ALIKE: Final = 0.8
 """Limit: an unknown column at least this similar to a missing column is a mistake, not a scalar."""
 
 COORDINATES: Final = NumberCells("a coordinate must be a decimal number of at most 1e30 in size")
+WHOLE: Final = NumberCells("a number must be a whole number", whole=True, may_be_empty=True)
 VALUES: Final = NumberCells(
     "a value must be a decimal number of at most 1e30 in size, or empty if it is missing", may_be_empty=True
 )
@@ -255,19 +202,25 @@ class Table:
     def __init__(
         self,
         problems: Problems,
-        place: str,
+        name: str,
         data: bytes,
         columns: Mapping[str, CellKind],
         required: tuple[str, ...],
     ) -> None:
+        text = TextTable(data, name)
         self.problems = problems
-        self.place = place
-        rows = CsvRows(place, data)
-        header = rows.header
-        _check_header(self.place, header, tuple(columns), required)
-        kinds = [columns.get(name, VALUES) for name in header]
-        values, self.numbers = rows.converted(problems, kinds)
-        self.columns: dict[str, AnyArray] = dict(zip(header, values, strict=True))
+        self.place = text.place
+        _check_header(text, tuple(columns), required)
+        kinds = [columns.get(name, VALUES) for name in text.header]
+        blocks = [_block(text, problems, text.rows(ROWS_AT_ONCE), kinds)]
+        while rows := text.rows(ROWS_AT_ONCE):
+            blocks.append(_block(text, problems, rows, kinds))
+        self.numbers = np.concatenate([numbers for _, numbers in blocks])
+        in_columns = zip(*(values for values, _ in blocks), strict=True)
+        self.columns: dict[str, AnyArray] = dict(
+            zip(text.header, map(np.concatenate, in_columns), strict=True)
+        )
+        self.columns.pop("", None)
         self.scalars = {
             name.removeprefix(SCALAR): values for name, values in self.columns.items() if name not in columns
         }
@@ -299,7 +252,10 @@ def read_csv_tables(nodes: Path, polygons: Path, placement: Placement = PLAIN) -
         problems,
         nodes.name,
         node_data,
-        {"node": WholeCells("a node number"), **dict.fromkeys("xyz", COORDINATES)},
+        {
+            "node": NumberCells("a node number must be a whole number", whole=True),
+            **dict.fromkeys("xyz", COORDINATES),
+        },
         ("x", "y", "z"),
     )
     coordinates = np.stack([node_table.columns[axis] for axis in "xyz"], axis=1)
@@ -307,15 +263,16 @@ def read_csv_tables(nodes: Path, polygons: Path, placement: Placement = PLAIN) -
     node_table.note_repeated("node", numbers)
 
     names = NameCells(polygons.stem)
-    corner, last = WholeCells("a corner"), WholeCells("a corner", may_be_empty=True)
+    corner = NumberCells("a corner must be a whole number", whole=True)
     polygon_table = Table(
         problems,
         polygons.name,
         polygon_data,
         {
-            "polygon": WholeCells("a polygon number"),
+            "polygon": NumberCells("a polygon number must be a whole number", whole=True),
             "part": names,
-            **dict(zip(CORNERS, (corner, corner, corner, last), strict=True)),
+            **dict.fromkeys(CORNERS, corner),
+            CORNERS[-1]: replace(corner, may_be_empty=True),
         },
         CORNERS,
     )
@@ -381,43 +338,34 @@ def _range_of(numbers: Numbers) -> str:
     return f"{different_numbers[0]} to {different_numbers[-1]}{gaps}"
 
 
-def _check_header(place: str, cells: list[str], columns: tuple[str, ...], required: tuple[str, ...]) -> None:
-    """Raise InputError if a required column is missing, or a column is repeated or seems misspelled."""
-    missing = [column for column in columns if column not in cells]
+def _check_header(table: TextTable, columns: tuple[str, ...], required: tuple[str, ...]) -> None:
+    """Raise InputError if a required column is missing, or a column seems misspelled."""
+    names = [name for name in table.header if name]
+    missing = [column for column in columns if column not in names]
     lacks_required = any(column in missing for column in required)
-    problems = [
-        f"{place}, row 1: there is no column {shown(cell)}{nearest(cell[:60], columns)}"
-        for cell in dict.fromkeys(cells)
-        if cell not in columns and (lacks_required or _is_mistake(cell, columns, missing))
+    rules = [
+        f"there is no column {shown(name)} ({table.understood}){nearest(name[:60], columns)}"
+        for name in names
+        if name not in columns and (lacks_required or _is_mistake(name, columns, missing))
     ][:MOST_PROBLEMS]
-    counts: dict[str, int] = {}
-    for cell in cells:
-        counts[cell] = counts.get(cell, 0) + 1
-    problems += [
-        f"{place}, row 1: a column name must be unique, not repeated: {shown(cell)}; remove one"
-        for cell, count in counts.items()
-        if count > 1 and cell
-    ][:MOST_PROBLEMS]
-    if not problems:
-        problems = [
-            f"{place}, row 1: there must be a column {column!r}, not only {', '.join(cells)}; add it"
-            for column in required
-            if column in missing
+    rules = rules or [
+        f"there must be a column {column!r}, not only {', '.join(names)} ({table.understood}); add it"
+        for column in required
+        if column in missing
+    ]
+    if not rules and len(names) - len(columns) > MOST_SCALARS:
+        rules = [
+            f"there must be at most {MOST_SCALARS:,} columns of scalars, not {len(names):,}; remove some"
         ]
-    if not problems and len(counts) - len(columns) > MOST_SCALARS:
-        problems = [
-            f"{place}, row 1: there must be at most {MOST_SCALARS:,} columns of scalars, not {len(counts):,};"
-            " remove some"
-        ]
-    if problems:
-        raise InputError(problems)
+    if rules:
+        raise InputError(f"{table.place}, row {table.row}: {rule}" for rule in rules)
 
 
 def _is_mistake(cell: str, columns: tuple[str, ...], missing: list[str]) -> bool:
-    """Whether an unknown column is a mistake, not a scalar: it is empty, a corner, or nearly a column."""
-    if not cell or cell.casefold() in columns or ("node1" in columns and CORNER.fullmatch(cell) is not None):
-        return True
-    return bool(difflib.get_close_matches(cell[:60], missing, n=1, cutoff=ALIKE))
+    """Whether an unknown column is a mistake, not a scalar: it is a corner, or nearly a column."""
+    is_corner = "node1" in columns and CORNER.fullmatch(cell) is not None
+    near = difflib.get_close_matches(cell[:60], missing, n=1, cutoff=ALIKE)
+    return is_corner or cell.casefold() in columns or bool(near)
 
 
 ROWS_IN_TEXT: Final = 1 << 16
@@ -431,63 +379,47 @@ def csv_tables_bytes(mesh: Mesh) -> tuple[bytes, bytes]:
     repairs it: a polygon without area is dropped, parts are those of polygons and in their order, and names
     are printable, at most 200 letters, with no spaces around them.
     """
-    nodes = "\n".join(_node_lines(mesh))
-    polygons = "\n".join(_polygon_lines(mesh))
-    return nodes.encode("utf-8", "replace") + b"\n", polygons.encode("utf-8", "replace") + b"\n"
+    names = np.array(mesh.part_names, object)
+
+    def nodes(rows: slice) -> Iterator[list[Any]]:
+        yield from mesh.coordinates[rows].T.tolist()
+
+    def polygons(rows: slice) -> Iterator[list[Any]]:
+        corners = mesh.node_numbers[rows] + 1
+        yield names[mesh.part_numbers[rows]].tolist()
+        yield from corners[:, :3].T.tolist()
+        yield np.where(corners[:, 2] == corners[:, 3], "", corners[:, 3].astype(object)).tolist()
+
+    return (
+        _table_bytes(mesh, NODE_COLUMNS, NODE, len(mesh.coordinates), nodes),
+        _table_bytes(mesh, POLYGON_COLUMNS, POLYGON, len(mesh.node_numbers), polygons),
+    )
 
 
-def _node_lines(mesh: Mesh) -> Iterator[str]:
-    yield _header(mesh, NODE_COLUMNS, NODE)
-    values = [each.values for each in mesh.scalars if each.of == NODE]
-    for chunk in chunks(len(mesh.coordinates), ROWS_IN_TEXT):
-        columns: list[Iterator[str]] = [
-            map(repr, mesh.coordinates[chunk, axis].tolist()) for axis in range(3)
-        ]
-        columns += [_cells(each[chunk]) for each in values]
-        for number, cells in enumerate(zip(*columns, strict=True), start=chunk.start + 1):
-            yield f"{number},{','.join(cells)}"
+def _table_bytes(
+    mesh: Mesh, columns: tuple[str, ...], of: str, count: int, cells: Callable[[slice], Iterable[list[Any]]]
+) -> bytes:
+    """A table with numbered rows, the cells of further columns, and scalars.
 
-
-def _polygon_lines(mesh: Mesh) -> Iterator[str]:
-    yield _header(mesh, POLYGON_COLUMNS, POLYGON)
-    values = [each.values for each in mesh.scalars if each.of == POLYGON]
-    names = np.array([_row([name]) for name in mesh.part_names], object)
-    for chunk in chunks(len(mesh.node_numbers), ROWS_IN_TEXT):
-        corners = mesh.node_numbers[chunk] + 1
-        is_triangle = corners[:, 2] == corners[:, 3]
-        columns: list[Iterator[str]] = [map(str, corners[:, at].tolist()) for at in range(3)]
-        columns.append(
-            "" if triangle else str(corner)
-            for triangle, corner in zip(is_triangle.tolist(), corners[:, 3].tolist(), strict=True)
-        )
-        columns += [_cells(each[chunk]) for each in values]
-        parts = names[mesh.part_numbers[chunk]].tolist()
-        for number, part, *cells in zip(range(chunk.start + 1, chunk.stop + 1), parts, *columns, strict=True):
-            yield f"{number},{part},{','.join(cells)}"
-
-
-def _header(mesh: Mesh, columns: tuple[str, ...], of: str) -> str:
-    """The names of the columns; a scalar named like a column of the mesh has a prefix."""
-    names = [each.name for each in mesh.scalars if each.of == of]
-    headings = [
-        f"{SCALAR}{name}"
-        if name.casefold() in columns or CORNER.fullmatch(name) or name.startswith(SCALAR)
-        else name
-        for name in names
+    A scalar named like a column of the mesh has a prefix; a missing value is an empty cell.
+    """
+    scalars = [each for each in mesh.scalars if each.of == of]
+    text = io.StringIO(newline="")
+    writer = csv.writer(text, lineterminator="\n")
+    needs_prefix = [
+        each.name.casefold() in columns or CORNER.fullmatch(each.name) or each.name.startswith(SCALAR)
+        for each in scalars
     ]
-    return _row([*columns, *headings])
-
-
-def _row(cells: list[str]) -> str:
-    """The cells as CSV, quoted where necessary."""
-    text = io.StringIO()
-    csv.writer(text, lineterminator="").writerow(cells)
-    return text.getvalue()
-
-
-def _cells(values: Floats) -> Iterator[str]:
-    """Values as cells; a missing value is an empty cell."""
-    return ("" if math.isnan(value) else repr(value) for value in values.tolist())
+    headings = [
+        f"{SCALAR * bool(prefix)}{each.name}" for each, prefix in zip(scalars, needs_prefix, strict=True)
+    ]
+    writer.writerow([*columns, *headings])
+    for rows in chunks(count, ROWS_IN_TEXT):
+        values = [each.values[rows].astype(object) for each in scalars]
+        for each in values:
+            each[each != each] = ""
+        writer.writerows(zip(range(rows.start + 1, rows.stop + 1), *cells(rows), *values, strict=True))
+    return text.getvalue().encode("utf-8", "replace")
 
 
 CSV_FILES: Final = ("nodes.csv", "polygons.csv")

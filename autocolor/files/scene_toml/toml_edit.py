@@ -1,339 +1,409 @@
-"""Editing values in the text of a TOML file; everything else stays as it is written.
+"""Editing the text of a TOML file until it gives other values; everything else stays as it is written.
 
-A changed value replaces the old value in its place, also inside an inline table. A new key is written below
-the other keys of its table, or into a new table after tables of the same kind. Removing a key removes the
-rest of its line, but not the comments above it. Removing a table removes the comments above its header.
+The text is split into blocks of statements: a block is a header, with the comments directly above it, and the
+keys below it. Statements and blocks are removed, added and moved here. A changed value is edited by tomlkit,
+which keeps the comments, the order and the style within arrays and inline tables.
 
-The text is split into blocks of statements; joined again they are the same text. A block is a header and the
-statements below it; the first block has no header. Comments directly above a header, with no empty line
-between, belong to it. A comment at the top of a file, if it is the only comment above the first header,
-belongs to the file.
-
-Measured and rejected: tomlkit leaves the comment above a header with the table before, gathers arrays of
-tables that stand apart, writes an inline table anew for each change, and takes 21 s to save a file of a
-megabyte; with repairs for the first fault, there is as much code as here.
+Measured and rejected: tomlkit for whole files. It leaves the comment above a header with the table before,
+gathers arrays of tables that stand apart, writes wrong headers for tables inside of their rows, and takes
+21 s for a file of a megabyte.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+import tomllib
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Final, NamedTuple
+from typing import Any, Final
+
+import tomlkit
+from tomlkit.exceptions import TOMLKitError
+from tomlkit.items import InlineTable
 
 from autocolor.files.scene_toml.toml_text import (
     TOKEN,
     KeyPath,
-    key_path,
-    resolved_path,
+    Statement,
     statements_of,
     toml_key,
     toml_value,
 )
+from autocolor.logs import logger_of
+
+LOG: Final = logger_of(__name__)
 
 EMPTY_LINE: Final = re.compile(r"^[ \t\r]*\n", re.MULTILINE)
 
+MISSING: Final = object()
 
-@dataclass(eq=False)
-class Statement:
-    """A key with its value, as written: `before` are the lines above it, `after` is the rest of its line.
-
-    `path` leads from the file's root to the value; rows of arrays of tables count from 0.
-    """
-
-    path: KeyPath
-    before: str
-    key: str
-    equals: str
-    value: str
-    after: str
-
-    @property
-    def text(self) -> str:
-        """The statement as it is written, with the lines above it."""
-        return f"{self.before}{self.key}{self.equals}{self.value}{self.after}"
+Document = Mapping[str, Any]
+"""The values of a TOML text: tables are dictionaries, arrays are lists."""
 
 
 @dataclass(eq=False)
 class Block:
-    """A header, with the comment above it, its statements, and the lines below them."""
+    """A header, with the comment above it, its statements, and the lines below them.
+
+    The first block of a text has no header. A block that is `apart` has an empty line above and below.
+    """
 
     path: KeyPath
     head: str
     statements: list[Statement] = field(default_factory=list)
     tail: str = ""
+    apart: bool = False
 
     @property
     def text(self) -> str:
         """The block as it is written."""
-        return self.head + "".join(statement.text for statement in self.statements) + self.tail
+        return "".join([self.head, *(each.text for each in self.statements), self.tail])
 
 
 def blocks_of(text: str) -> list[Block]:
-    """The blocks of a valid TOML text, whose lines end with line feeds."""
+    """The blocks of a valid TOML text, whose lines end with line feeds; joined they are the same text.
+
+    Comments directly above a header, with no empty line between, belong to it. A comment at the top of a
+    file, if it is the only comment above the first header, belongs to the file.
+    """
     blocks = [Block((), "")]
-    rows: dict[KeyPath, int] = {}
-    for lead, statement, equals, after in statements_of(text):
-        if not statement:
-            blocks[-1].tail = lead
-        elif statement.startswith("["):
-            array = statement.startswith("[[")
-            # The lines above the last empty line belong to the block before.
-            above = max((line.end() for line in EMPTY_LINE.finditer(lead)), default=0)
-            if len(blocks) == 1 and not blocks[0].statements and not above:
-                above = len(lead)
-            blocks[-1].tail, comment = lead[:above], lead[above:]
-            path = resolved_path((), key_path(statement), rows, array)
-            blocks.append(Block(path, comment + statement + after))
+    for statement in statements_of(text):
+        above = statement.before
+        if not statement.key:
+            blocks[-1].tail = above
+        elif statement.value:
+            blocks[-1].statements.append(statement)
         else:
-            key = statement[:equals].rstrip()
-            value = statement[equals + 1 :].lstrip()
-            path = resolved_path(blocks[-1].path, key_path(f"{key} = 0"), rows, False)
-            between = statement[len(key) : len(statement) - len(value)]
-            blocks[-1].statements.append(Statement(path, lead, key, between, value, after))
+            start = max((line.end() for line in EMPTY_LINE.finditer(above)), default=0)
+            if len(blocks) == 1 and not blocks[0].statements and not start:
+                start = len(above)
+            blocks[-1].tail = above[:start]
+            blocks.append(Block(statement.path, above[start:] + statement.key + statement.after))
     return blocks
 
 
-class InlineItem(NamedTuple):
-    """An item of an inline table: the path of its key, its key as written, and the place of its value."""
+def row_numbers(old: Sequence[Document], new: Sequence[Document]) -> list[int | None]:
+    """For each new row of an array the number of the old row of the same name; None for an added row.
 
-    path: KeyPath
-    key: str
-    start: int
-    stop: int
-
-
-def inline_items(text: str) -> list[InlineItem]:
-    """The items of an inline table, whose text is from its opening bracket to its closing one."""
-    items: list[InlineItem] = []
-    nested, first, equals, stop = 0, 1, 0, 0
-    for token in TOKEN.finditer(text):
-        kind = token.lastgroup
-        nested += (kind == "open") - (kind == "close")
-        if (kind == "comma" and nested == 1) or (kind == "close" and nested == 0):
-            if equals:
-                key = text[first : equals - 1].strip()
-                start = equals + len(text[equals:stop]) - len(text[equals:stop].lstrip())
-                items.append(InlineItem(key_path(f"{key} = 0"), key, start, stop))
-            first, equals = token.end(), 0
-        elif kind == "equals" and nested == 1 and not equals:
-            equals = token.end()
-        elif kind != "space":
-            stop = token.end()
-    return items
-
-
-class TomlText:
-    """A valid TOML text to be edited.
-
-    `tables` are the names of the tables that get headers of their own, in the order of new ones.
-
-    A path leads from the root to a value. A row of an array of tables keeps the number that it has in the
-    original text; a new row has any other number.
+    In an array of the same length, a row with a new name in the place of a removed name was renamed. Rows
+    without names are the same rows in the same place.
     """
-
-    def __init__(self, text: str, tables: Sequence[str]) -> None:
-        # Edit lines that end with line feeds; a file whose lines end otherwise gets them back.
-        self._ends = "\r\n" if text.count("\r\n") == text.count("\n") > 0 else "\n"
-        self._tables = tables
-        self._blocks = blocks_of(text.replace(self._ends, "\n"))
-
-        self._index()
-
-    @property
-    def text(self) -> str:
-        """The edited text."""
-        return "".join(block.text for block in self._blocks).replace("\n", self._ends)
-
-    def has(self, path: KeyPath) -> bool:
-        """Whether the text has a key or a table at a path or below it; inline tables are not searched."""
-        return path in self._paths
-
-    def set(self, path: KeyPath, value: Any) -> None:
-        """Set the value at a path. A missing key is added."""
-        for end in range(1, len(path) + 1):
-            statement = self._statement_at.get(path[:end])
-            if statement is not None:
-                rest = path[end:]
-                statement.value = _inline(statement.value, rest, value) if rest else toml_value(value)
-                return
-        self.remove(path)
-        self._add(path, value)
-
-    def remove(self, *paths: KeyPath) -> None:
-        """Remove the keys and tables at some paths and below them, if any.
-
-        Remove many paths in one call: each call goes through the whole text.
-        """
-        for path in paths:
-            for end in range(1, len(path)):
-                statement = self._statement_at.get(path[:end])
-                if statement is not None:
-                    statement.value = _inline_without(statement.value, path[end:])
-        removed = self._paths.intersection(paths)
-        if not removed:
-            return
-
-        def is_removed(path: KeyPath) -> bool:
-            return any(path[:end] in removed for end in range(1, len(path) + 1))
-
-        last = self._blocks[-1]
-        self._blocks = [block for block in self._blocks if not is_removed(block.path)]
-        for block in self._blocks:
-            statements, above = [], ""
-            for statement in block.statements:
-                if is_removed(statement.path):
-                    above += statement.before
-                else:
-                    statement.before, above = above + statement.before, ""
-                    statements.append(statement)
-            block.statements, block.tail = statements, above + block.tail
-        if self._blocks[-1] is not last:
-            end_block = self._blocks[-1]
-            end_block.tail = f"{end_block.tail.rstrip()}\n" if end_block.tail.strip() else ""
-        self._index()
-
-    def arrange(self, table: str, keys: Sequence[str | int]) -> bool:
-        """Sort the rows of a table by these names or numbers; returns whether every row has a header."""
-        rows = [block for block in self._blocks if len(block.path) > 1 and block.path[0] == table]
-        place_of = {key: place for place, key in enumerate(keys)}
-        ordered = sorted(
-            (block for block in rows if block.path[1] in place_of), key=lambda block: place_of[block.path[1]]
-        )
-        if len(ordered) == len(rows) and ordered != rows:
-            place = self._blocks.index(rows[0])
-            in_table = set(rows)
-            others = [block for block in self._blocks if block not in in_table]
-            self._blocks = [*others[:place], *ordered, *others[place:]]
-            self._end_with_empty_lines(place - 1, place + len(rows) - 1)
-        return {block.path[1] for block in rows} == set(keys)
-
-    def _index(self) -> None:
-        """Note the place of every path. Without this, editing many keys takes the square of their number."""
-        self._paths: set[KeyPath] = {()}
-        self._statement_at: dict[KeyPath, Statement] = {}
-        self._block_at: dict[KeyPath, Block] = {}
-        for block in self._blocks:
-            self._block_at.setdefault(block.path, block)
-            self._note(block.path)
-            for statement in block.statements:
-                self._statement_at[statement.path] = statement
-                self._note(statement.path)
-
-    def _note(self, path: KeyPath) -> None:
-        self._paths.update(path[:end] for end in range(1, len(path) + 1))
-
-    def _add(self, path: KeyPath, value: Any) -> None:
-        """Add a key that the text does not have."""
-        table = path[:-1]
-        block = self._block_at.get(table)
-        if block is None and table in self._paths:
-            # Insert the key next to dotted keys of the same table.
-            for block in self._blocks:
-                beside = [row for row, each in enumerate(block.statements) if _is_below(each.path, table)]
-                if beside and _is_below(table, block.path):
-                    self._insert(block, beside[-1] + 1, path, value)
-                    return
-            # The text has only headers of tables inside this table.
-            block = self._new_block(table)
-        if block is None:
-            above = (self._block_at.get(table[:end]) for end in range(len(table) - 1, 0, -1))
-            block = next((each for each in above if each is not None), None)
-            if path[0] not in self._tables:
-                block = block or self._blocks[0]
-            elif block is None or self._has_headers(block):
-                block = self._new_block(table)
-        self._insert(block, len(block.statements), path, value)
-
-    def _has_headers(self, block: Block) -> bool:
-        """Whether tables inside of a block's table have headers of their own."""
-        return any(_is_below(each.path, block.path) and each is not block for each in self._blocks)
-
-    def _insert(self, block: Block, row: int, path: KeyPath, value: Any) -> None:
-        """Write a new key as a statement of a block, at a row of its statements."""
-        before = ""
-        if row:
-            block.statements[row - 1].after = block.statements[row - 1].after.rstrip("\n") + "\n"
-        elif block.head:
-            block.head = block.head.rstrip("\n") + "\n"
-        elif not block.statements:
-            # Below the comment at the top of the file.
-            before, block.tail = block.tail, "\n"
-            if before and not before.endswith("\n"):
-                before += "\n"
-        key = ".".join(toml_key(part) for part in path[len(block.path) :] if isinstance(part, str))
-        statement = Statement(path, before, key, " = ", toml_value(value), "\n")
-        block.statements.insert(row, statement)
-        self._statement_at[path] = statement
-        self._note(path)
-
-    def _new_block(self, path: KeyPath) -> Block:
-        """A new table without keys."""
-        keys = [part for part in path if isinstance(part, str)]
-        name = ".".join(map(toml_key, keys))
-        block = Block(path, f"[[{name}]]\n" if isinstance(path[-1], int) else f"[{name}]\n")
-        place = self._place_before(path, keys[0])
-        self._blocks.insert(place + 1, block)
-        self._block_at[path] = block
-        self._note(path)
-        self._end_with_empty_lines(place, place + 1)
-        return block
-
-    def _place_before(self, path: KeyPath, table: str) -> int:
-        """The row of the block after which a new block goes.
-
-        This is the last block whose path begins as the new path does, for as many parts as possible. If no
-        block begins so, it is the last block of a table that is written before this table.
-        """
-        starts = [path[:end] for end in range(len(path), 0, -1) if path[:end] in self._paths]
-        earlier = self._tables[: self._tables.index(table)]
-        for start in (*starts, *((each,) for each in reversed(earlier))):
-            for row in range(len(self._blocks) - 1, 0, -1):
-                if _is_below(self._blocks[row].path, start):
-                    return row
-        return 0
-
-    def _end_with_empty_lines(self, first: int, last: int) -> None:
-        """End some blocks with an empty line, unless the next block belongs to the same row."""
-        rows = self._blocks[first : last + 1]
-        for block, following in zip(rows, self._blocks[first + 1 : last + 2], strict=False):
-            is_same_row = len(block.path) > 1 and block.path[:2] == following.path[:2]
-            text = block.text
-            if text and not is_same_row and not text.endswith("\n\n"):
-                block.tail += "\n" if text.endswith("\n") else "\n\n"
-            elif text and not text.endswith("\n"):
-                block.tail += "\n"
+    olds = {row.get("name", number): number for number, row in enumerate(old)}
+    names = [row.get("name", number) for number, row in enumerate(new)]
+    if len(old) == len(new):
+        renamed = [(name, was) for name, was in zip(names, tuple(olds), strict=False) if name not in olds]
+        olds |= {name: olds[was] for name, was in renamed if was not in names}
+    return [olds.get(name) for name in names]
 
 
-def _is_below(path: KeyPath, above: KeyPath) -> bool:
-    """Whether a path is equal to another path, or below it."""
-    return path[: len(above)] == above
+def edited_toml(
+    text: str, wanted: Document, tables: Sequence[str] = (), ordered: Sequence[str] = ()
+) -> str | None:
+    """The valid TOML text, edited until it gives the wanted values; None if no edit does.
+
+    `tables` are the keys of tables that get headers of their own, in the order of new ones; `ordered` are the
+    keys of tables whose keys have an order. Rows of an array are the same rows if they have the same name.
+    """
+    # Tuples become lists, as in what is read back.
+    wanted = tomllib.loads(f"wanted = {toml_value(wanted)}")["wanted"]
+    # Edit lines that end with line feeds; a file whose lines end otherwise gets them back.
+    ends = "\r\n" if text.count("\r\n") == text.count("\n") > 0 else "\n"
+    text = text.replace(ends, "\n")
+    blocks = blocks_of(text)
+    last = blocks[-1]
+    blocks = _changed(blocks, tomllib.loads(text), wanted, tables)
+    if blocks[-1] is not last:
+        blocks[-1].tail = f"{blocks[-1].tail.rstrip()}\n" if blocks[-1].tail.strip() else ""
+    for name in ordered:
+        _remove_unordered(blocks, name, wanted)
+    for name in tables:
+        _add_blocks(blocks, name, wanted, tables)
+        _arrange(blocks, name, wanted)
+    _add_keys(blocks, wanted)
+    edited = _joined(blocks)
+    try:
+        is_right = tomllib.loads(edited) == wanted
+    except tomllib.TOMLDecodeError:
+        is_right = False
+    return edited.replace("\n", ends) if is_right else None
 
 
-def _inline(text: str, path: KeyPath, value: Any) -> str:
-    """The text of an inline table after a value inside it was set. A missing key is added."""
-    items = inline_items(text)
-    for item in items:
-        if _is_below(path, item.path):
-            inner, rest = text[item.start : item.stop], path[len(item.path) :]
-            written = _inline(inner, rest, value) if rest else toml_value(value)
-            return text[: item.start] + written + text[item.stop :]
-    text = _inline_without(text, path)
-    key = ".".join(toml_key(str(part)) for part in path)
-    start = f"{text[:-1].rstrip()}," if inline_items(text) else "{"
-    return f"{start} {key} = {toml_value(value)} }}"
+def _changed(blocks: Iterable[Block], old: Document, wanted: Document, tables: Sequence[str]) -> list[Block]:
+    """The blocks and statements of wanted values, with these values and with the new numbers of rows."""
+    numbers: dict[str | int, dict[int | None, int]] = {}
+    for key, rows in old.items():
+        new_rows: Any = wanted.get(key)
+        numbers[key] = {}
+        if _are_rows(rows) and _are_rows(new_rows):
+            numbers[key] = {number: row for row, number in enumerate(row_numbers(rows, new_rows))}
+
+    def renumbered(path: KeyPath) -> KeyPath:
+        if len(path) < 2 or not isinstance(path[1], int):
+            return path
+        return (path[0], numbers[path[0]].get(path[1], -1), *path[2:])
+
+    roots = {(name,) for name in tables}
+    remaining = []
+    for block in blocks:
+        block.path = renumbered(block.path)
+        if not isinstance(_at(wanted, block.path), dict):
+            continue
+        remaining.append(block)
+        removed = set()
+        for statement in block.statements:
+            value = _at(old, statement.path)
+            statement.path = renumbered(statement.path)
+            new = _at(wanted, statement.path)
+            # An empty table or array makes room for headers.
+            if new is MISSING or (new and value in ([], {}) and statement.path in roots):
+                removed.add(statement)
+            elif repr(new) != repr(value):
+                statement.value = _value_text(statement, value, new)
+        _remove(block, removed)
+    return remaining
 
 
-def _inline_without(text: str, path: KeyPath) -> str:
-    """The text of an inline table without the keys at a path inside it and below, if any."""
-    items = inline_items(text)
-    others = []
-    for item in items:
-        inner, rest = text[item.start : item.stop], path[len(item.path) :]
-        if rest and _is_below(path, item.path):
-            return text[: item.start] + _inline_without(inner, rest) + text[item.stop :]
-        if not _is_below(item.path, path):
-            others.append(f"{item.key} = {inner}")
-    if len(others) == len(items):
-        return text
-    return f"{{ {', '.join(others)} }}" if others else "{}"
+def _at(value: Any, path: KeyPath) -> Any:
+    """The value at a path, or MISSING; -1 is the number of a removed row."""
+    for key in path:
+        try:
+            value = MISSING if key == -1 else value[key]
+        except (LookupError, TypeError):
+            return MISSING
+    return value
+
+
+def _are_rows(value: object) -> bool:
+    return isinstance(value, list) and all(isinstance(row, dict) for row in value)
+
+
+def _remove(block: Block, removed: Collection[Statement]) -> None:
+    """Remove statements of a block, but not the comments above them."""
+    statements, above = [], ""
+    for statement in block.statements:
+        if statement in removed:
+            above += statement.before
+        else:
+            statement.before, above = above + statement.before, ""
+            statements.append(statement)
+    block.statements, block.tail = statements, above + block.tail
+
+
+def _remove_unordered(blocks: list[Block], name: str, wanted: Document) -> None:
+    """Remove the keys of a table that have no headers, if the wanted keys do not begin with them in order."""
+    paths = [path for block in blocks for path in (block.path, *(each.path for each in block.statements))]
+    keys = list(dict.fromkeys(path[1] for path in paths if len(path) > 1 and path[0] == name))
+    if keys != list(wanted.get(name, ()))[: len(keys)]:
+        for block in blocks:
+            if len(block.path) < 2:
+                _remove(block, [each for each in block.statements if each.path[0] == name])
+
+
+def _add_blocks(blocks: list[Block], name: str, wanted: Document, tables: Sequence[str]) -> None:
+    """Add the blocks of new tables, unless the table is written without headers."""
+    table = wanted.get(name)
+    written = {each.path[0]: block for block in blocks for each in block.statements if len(block.path) < 2}
+    if not table or name in written:
+        return
+    paths: list[KeyPath] = [(name,)]
+    if isinstance(table, list):
+        paths = [(name, row) for row in range(len(table))]
+    elif all(isinstance(row, dict) for row in table.values()):
+        paths = [(name, key) for key in table]
+    present = {block.path[:2] for block in blocks}
+    # After the last block of the same table, or of one that is written before it.
+    last = {block.path[0]: place for place, block in enumerate(blocks) if block.path}
+    before = [name, *reversed(tables[: tables.index(name)])]
+    place = next((last[each] for each in before if each in last), 0)
+    for path in paths:
+        if path not in present:
+            place += 1
+            header = ".".join(toml_key(part) for part in path if isinstance(part, str))
+            head = f"[[{header}]]\n" if isinstance(table, list) else f"[{header}]\n"
+            blocks.insert(place, Block(path, head, apart=True))
+
+
+def _arrange(blocks: list[Block], name: str, wanted: Document) -> None:
+    """Move the rows of a table to the wanted order."""
+    rows = [block for block in blocks if len(block.path) > 1 and block.path[0] == name]
+    table = wanted.get(name, ())
+    place_of = {
+        key: place for place, key in enumerate(table if isinstance(table, dict) else range(len(table)))
+    }
+    firsts = [place_of[key] for key in dict.fromkeys(block.path[1] for block in rows)]
+    if firsts != sorted(firsts):
+        first, in_table = blocks.index(rows[0]), set(rows)
+        others = [block for block in blocks if block not in in_table]
+        rows.sort(key=lambda block: place_of[block.path[1]])
+        for block in rows:
+            block.apart = True
+        blocks[:] = [*others[:first], *rows, *others[first:]]
+
+
+def _add_keys(blocks: Iterable[Block], wanted: Document) -> None:
+    """Add the wanted keys that no statement says."""
+    block_at = {block.path: block for block in blocks}
+    statements = {each.path for block in block_at.values() for each in block.statements}
+    above = {path[:end] for path in (*block_at, *statements) for end in range(1, len(path))}
+
+    def add(block: Block, path: KeyPath, value: Any) -> None:
+        """Add the keys of a value; the block has the nearest header above it."""
+        block = block_at.get(path, block)
+        if path in block_at or path in above:
+            rows = value.items() if isinstance(value, dict) else enumerate(value)
+            for key, inner in rows:
+                add(block, (*path, key), inner)
+        elif path not in statements:
+            if isinstance(value, dict) and value and all(isinstance(inner, dict) for inner in value.values()):
+                # A table of tables, such as flaps, has a line for each inner table.
+                for name, inner in value.items():
+                    _add_key(block, (*path, name), inner)
+            else:
+                _add_key(block, path, value)
+
+    add(block_at[()], (), wanted)
+
+
+def _add_key(block: Block, path: KeyPath, value: Any) -> None:
+    """Add a key below the other keys of its table, or below the header, or below the comment at the top."""
+    row = len(block.statements)
+    if len(path) > len(block.path) + 1:
+        beside = [at for at, each in enumerate(block.statements) if each.path[: len(path) - 1] == path[:-1]]
+        row = beside[-1] + 1 if beside else row
+    before = ""
+    if row:
+        block.statements[row - 1].after = block.statements[row - 1].after.rstrip("\n") + "\n"
+    elif block.head:
+        block.head = block.head.rstrip("\n") + "\n"
+    elif not block.statements:
+        before, block.tail = block.tail, "\n"
+        before += "\n" if before and not before.endswith("\n") else ""
+    key = ".".join(toml_key(part) for part in path[len(block.path) :] if isinstance(part, str))
+    block.statements.insert(row, Statement(path, before, f"{key} = ", toml_value(value), "\n"))
+
+
+def _joined(blocks: Iterable[Block]) -> str:
+    """The text of the blocks."""
+    texts: list[str] = []
+    before = Block((), "")
+    for block in blocks:
+        if texts and texts[-1]:
+            is_apart = (block.apart or before.apart) and block.path[:2] != before.path[:2]
+            line_end = "\n\n" if is_apart else "\n"
+            while not texts[-1].endswith(line_end):
+                texts[-1] += "\n"
+        texts.append(block.text)
+        before = block
+    return "".join(texts)
+
+
+# The text of a value.
+
+
+def _value_text(statement: Statement, old: Any, new: Any) -> str:
+    """The text of a value that was changed; its comments are lost if tomlkit cannot edit it."""
+    if type(old) is not type(new) or not isinstance(new, (dict, list)) or not old or not new:
+        return toml_value(new)
+    try:
+        document = tomlkit.parse(f"value = {statement.value}")
+        _set(document, "value", old, new)
+        text = tomlkit.dumps(document).removeprefix("value = ")
+        given = tomllib.loads(f"value = {text}")["value"]
+        if given == new and _keys(given) == _keys(new):
+            return text
+    except (TOMLKitError, LookupError, ValueError, TypeError, AttributeError):
+        pass
+    if any(token.lastgroup == "comment" for token in TOKEN.finditer(statement.value)):
+        LOG.warning("%s: written anew, without its comments", statement.key.rstrip(" \t="))
+    return toml_value(new)
+
+
+def _keys(value: Any) -> Any:
+    """The keys of the tables in a value, in their order."""
+    if isinstance(value, dict):
+        return [(key, _keys(inner)) for key, inner in value.items()]
+    return [_keys(inner) for inner in value] if isinstance(value, list) else None
+
+
+def _set(container: Any, key: str | int, old: Any, new: Any) -> None:
+    """Set a value of a table or an array of tomlkit, from an old to a new value."""
+    if repr(old) == repr(new):
+        return
+    if isinstance(old, dict) and isinstance(new, dict) and new:
+        table = container[key]
+        for name, value in old.items():
+            if name in new:
+                _set(table, name, value, new[name])
+            else:
+                del table[name]
+        added = [name for name in new if name not in old]
+        for name in added:
+            table[name] = tomlkit.value(toml_value(new[name]))
+        if added and isinstance(table, InlineTable):
+            table.add(tomlkit.ws(" "))
+    elif isinstance(old, list) and isinstance(new, list) and old and new:
+        container[key] = tomlkit.value(_array_text(container[key], old, new))
+    elif old != new:
+        container[key] = tomlkit.value(toml_value(new))
+
+
+def _array_text(array: Any, old: list[Any], new: list[Any]) -> str:
+    """The text of an array of tomlkit with the new values."""
+    numbers = _item_numbers(old, new)
+    present = set(numbers)
+    left: list[int | None] = [number for number in range(len(old)) if number in present]
+    for place in reversed(range(len(old))):
+        if place not in present:
+            del array[place]
+    added: list[Any] = []
+    for place, number in enumerate(numbers):
+        if number is None and place >= len(left):
+            added.append(new[place])
+        elif number is None:
+            array.insert(place, tomlkit.value(toml_value(new[place])))
+            left.insert(place, None)
+        else:
+            if left[place] != number:
+                at = left.index(number)
+                array.insert(place, array.pop(at))
+                left.insert(place, left.pop(at))
+            _set(array, place, old[number], new[place])
+    text: str = array.as_string()
+    for value in added:
+        text = _appended(text, toml_value(value))
+    return text
+
+
+def _item_numbers(old: list[Any], new: list[Any]) -> list[int | None]:
+    """For each new item of an array the number of the item that it was; None for an added item."""
+    if _are_rows(old) and _are_rows(new):
+        return row_numbers(old, new)
+    least = min(len(old), len(new))
+    if len(old) == len(new):
+        return list(range(least))
+    # Items were added or removed between the first and the last equal items.
+    first = next((place for place in range(least) if old[place] != new[place]), least)
+    rest = least - first
+    last = next((place for place in range(rest) if old[-1 - place] != new[-1 - place]), rest)
+    between: list[int | None] = [None] * (len(new) - first - last)
+    return [*range(first), *between, *range(len(old) - last, len(old))]
+
+
+def _appended(text: str, value: str) -> str:
+    """The text of an array with a value after its last one, on a line of its own if the bracket has one.
+
+    tomlkit writes the comma into a comment below the last value.
+    """
+    tokens = [
+        token for token in TOKEN.finditer(text[:-1]) if token.lastgroup not in ("comment", "space", "newline")
+    ]
+    last = tokens[-1]
+    has_comma = last.lastgroup == "comma"
+    start, rest = text[: last.end()], text[last.end() : -1]
+    start += "" if has_comma or len(tokens) == 1 else ","
+    if "\n" not in rest:
+        return f"{start} {value}{rest}]"
+    line = start.rpartition("\n")[2]
+    indent = line[: len(line) - len(line.lstrip())]
+    above, _, end = rest.rpartition("\n")
+    return f"{start}{above}\n{indent}{value}{',' * has_comma}\n{end}]"

@@ -11,6 +11,7 @@ import json
 import re
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from typing import Any, Final
 
 from autocolor.checks import nearest
@@ -105,78 +106,83 @@ def _check_bounds(text: str, place: str) -> None:
             dots = 0
 
 
-def key_lines(data: bytes) -> dict[KeyPath, int]:
-    """The line of each table and key of a valid TOML text, by its path; rows of arrays count from 0."""
-    lines: dict[KeyPath, int] = {}
-    rows: dict[KeyPath, int] = {}
-    table: KeyPath = ()
-    line = 1
-    for above, statement, equals, after in statements_of(data.decode().replace("\r\n", "\n")):
-        line += above.count("\n")
-        if not statement:
-            break
-        if statement.startswith("["):
-            path = table = resolved_path((), key_path(statement), rows, statement.startswith("[["))
-        else:
-            path = resolved_path(table, key_path(f"{statement[:equals]} = 0"), rows, False)
-        for end in range(1, len(path) + 1):
-            lines.setdefault(path[:end], line)
-        line += statement.count("\n") + after.count("\n")
-    return lines
+@dataclass(eq=False)
+class Statement:
+    """A key with its value, as written, or a header, which has no value.
 
-
-def statements_of(text: str) -> Iterator[tuple[str, str, int, str]]:
-    """For each statement: the lines above, its text, the place of its = in it, and the rest of its line.
-
-    Last come the lines above the end of the text, with an empty statement.
+    `path` leads from the file's root to the value or the table; rows of arrays of tables count from 0.
+    `before` are the lines above it, `after` is the rest of its line.
     """
+
+    path: KeyPath
+    before: str
+    key: str
+    value: str
+    after: str
+
+    @property
+    def text(self) -> str:
+        """The statement as it is written, with the lines above it."""
+        return f"{self.before}{self.key}{self.value}{self.after}"
+
+
+def statements_of(text: str) -> Iterator[Statement]:
+    """The headers and keys of a valid TOML text; at last the lines above its end, as a key without a name.
+
+    Joined they are the same text.
+    """
+    table: KeyPath = ()
+    rows: dict[KeyPath, int] = {}
     start, first, stop, equals, nested = 0, -1, 0, 0, 0
-    for token in TOKEN.finditer(text):
+    for token in TOKEN.finditer(f"{text}\n"):
         kind = token.lastgroup
         nested += (kind == "open") - (kind == "close")
-        if kind == "newline" and nested <= 0:
-            if first >= 0:
-                yield text[start:first], text[first:stop], equals, text[stop : token.end()]
-                start, first, equals = token.end(), -1, 0
-            nested = 0
-        elif kind not in ("comment", "space", "newline"):
+        if kind not in ("comment", "space", "newline"):
             first = token.start() if first < 0 else first
             stop = token.end()
-            if kind == "equals" and not equals:
-                equals = token.start() - first
-    if first >= 0:
-        yield text[start:first], text[first:stop], equals, text[stop:]
-        start = len(text)
-    yield text[start:], "", 0, ""
+            equals = token.start() if kind == "equals" and not equals else equals
+        elif kind == "newline" and nested <= 0 and first >= 0:
+            before, after = text[start:first], text[stop : token.end()]
+            if text[first] == "[":
+                header = text[first:stop]
+                table = _path((), header, rows, header.startswith("[["))
+                yield Statement(table, before, header, "", after)
+            else:
+                path = _path(table, f"{text[first:equals]} = 0", rows, False)
+                value = text[equals + 1 : stop].lstrip()
+                yield Statement(path, before, text[first : stop - len(value)], value, after)
+            start, first, equals = token.end(), -1, 0
+    yield Statement((), text[start:], "", "", "")
 
 
-def key_path(text: str) -> tuple[str, ...]:
-    """The keys of a header, or of a statement with the value 0; the parser itself reads them."""
-    value: Any = tomllib.loads(text)
-    path: list[str] = []
-    while isinstance(value, (dict, list)) and value and len(path) < MOST_KEY_PARTS:
-        if isinstance(value, list):
-            value = value[0]
-        else:
-            key = next(iter(value))
-            path.append(key)
-            value = value[key]
-    return tuple(path)
-
-
-def resolved_path(table: KeyPath, keys: tuple[str, ...], rows: dict[KeyPath, int], array: bool) -> KeyPath:
-    """The path of a header or key in a table, with row numbers; a header of an array begins a row.
+def _path(table: KeyPath, text: str, rows: dict[KeyPath, int], is_row: bool) -> KeyPath:
+    """The path of a header or a key in a table, with row numbers; the parser itself reads the keys.
 
     `rows` has the number of the last row of each array of tables.
     """
+    value: Any = tomllib.loads(text)
     path = table
-    for depth, key in enumerate(keys):
+    while value:
+        key, value = next(iter(value.items()))
         path = (*path, key)
-        if array and depth == len(keys) - 1:
+        value = value[0] if isinstance(value, list) else value
+        if is_row and not value:
             rows[path] = rows.get(path, -1) + 1
         if path in rows:
             path = (*path, rows[path])
     return path
+
+
+def key_lines(data: bytes) -> dict[KeyPath, int]:
+    """The line of each table and key of a valid TOML text, by its path; rows of arrays count from 0."""
+    lines: dict[KeyPath, int] = {}
+    line = 1
+    for statement in statements_of(data.decode().replace("\r\n", "\n")):
+        line += statement.before.count("\n")
+        for end in range(1, len(statement.path) + 1):
+            lines.setdefault(statement.path[:end], line)
+        line += statement.text.count("\n") - statement.before.count("\n")
+    return lines
 
 
 # Writing.
@@ -188,10 +194,16 @@ def table_text(header: str, keys: Any) -> str:
     """A table with a line for each key; a table of tables, such as flaps, has a line for each inner table."""
     lines = [header] if header else []
     for key, value in keys.items():
-        if isinstance(value, Mapping) and all(isinstance(inner, Mapping) for inner in value.values()):
-            lines += [f"{key}.{toml_key(name)} = {toml_value(inner)}" for name, inner in value.items()]
+        if (
+            isinstance(value, Mapping)
+            and value
+            and all(isinstance(inner, Mapping) for inner in value.values())
+        ):
+            lines += [
+                f"{toml_key(key)}.{toml_key(name)} = {toml_value(inner)}" for name, inner in value.items()
+            ]
         else:
-            lines.append(f"{key} = {toml_value(value)}")
+            lines.append(f"{toml_key(key)} = {toml_value(value)}")
     return "\n".join(lines) + "\n"
 
 
@@ -236,7 +248,6 @@ class SceneProblems:
         self.document = document
         self.lines: dict[KeyPath, int] | None = None
         self.messages: list[tuple[int, str]] = []
-        self.count = 0
         self.all_missing = True
 
     def note(self, path: KeyPath, text: str, names: tuple[str, Iterable[str]] | None = None) -> None:
@@ -253,7 +264,6 @@ class SceneProblems:
             self._note(problem.under(path))
 
     def _note(self, problem: Problem) -> None:
-        self.count += 1
         if self.full:
             return
         where, depth = self._table_of(problem.path)
@@ -278,7 +288,6 @@ class SceneProblems:
                 self._note(Problem(path, sentence, names_key=True))
             return
         self.all_missing = False
-        self.count += len(error.problems)
         line = self._line(path) or 0
         self.messages.extend(
             (line, problem) for problem in error.problems[: MOST_PROBLEMS - len(self.messages)]

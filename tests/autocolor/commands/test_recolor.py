@@ -149,7 +149,7 @@ def test_what_is_refused_writes_nothing(
     assert refused(f"recolor {line}", code).startswith(sentence)
 
 
-@pytest.mark.parametrize("suffix", first(1, [".gpl", ".csv", ".act"]))
+@pytest.mark.parametrize("suffix", first(1, [".gpl", ".csv"]))
 def test_the_entries_of_a_range_come_back_from_a_palette_file(saved: Path, run: Run, suffix: str) -> None:
     levels = settings("surfaces.side.levels=200")
     assert run("recolor", "scene.npz", *levels, "-o", "before.png", "--save", "few.npz").code == 0

@@ -10,7 +10,8 @@ import pytest
 from autocolor import Flap, Flaps, HalfSpace, Scene, Surface, read_scene
 from autocolor.commands.settings import keys_after, with_settings
 from autocolor.errors import UsageError
-from autocolor.files.settings import place_of, value_at, value_of
+from autocolor.files.settings import place_of, value_at
+from autocolor.files.text_table import value_of_text
 from autocolor.scene.changes import HalfSpaceChanges
 from tests.small import scene_folder
 from tests.tables import refused
@@ -30,8 +31,8 @@ NO_TOML = ["#b01020", "gamma", "", "1\nother = 2", "{a=", "[", "9", "a.", "\udcf
 
 @pytest.mark.parametrize("text", NO_TOML)
 def test_other_values_are_texts_however_long_they_are(text: str) -> None:
-    assert value_of(text * 5000) == text * 5000
-    assert text == "9" or value_of(text) == text
+    assert value_of_text(text * 5000) == text * 5000
+    assert text == "9" or value_of_text(text) == text
 
 
 @pytest.mark.parametrize(

@@ -19,7 +19,7 @@ from autocolor import (
     read_palette,
     write_palette,
 )
-from autocolor.files.palette_file import LARGEST, LONGEST_NAME, MOST_COLORS, PALETTE_FORMATS, is_palette
+from autocolor.files.palette_file import LARGEST, LONGEST_NAME, MOST_COLORS, is_palette
 from tests.tables import refused
 
 COLORS = st.tuples(*[st.integers(0, 255)] * 3)
@@ -29,9 +29,9 @@ HEAD = b"GIMP Palette\n"
 
 
 @st.composite
-def palettes(draw: st.DrawFn, *, most: int = 10, named: bool = True) -> Palette:
-    colors = draw(st.lists(COLORS, min_size=1, max_size=most))
-    names = draw(st.lists(NAMES, min_size=len(colors), max_size=len(colors))) if named else ()
+def palettes(draw: st.DrawFn) -> Palette:
+    colors = draw(st.lists(COLORS, min_size=1, max_size=10))
+    names = draw(st.lists(NAMES, min_size=len(colors), max_size=len(colors)))
     return Palette(colors, names)
 
 
@@ -41,19 +41,11 @@ def read(name: str, data: bytes) -> Palette:
         return read_palette(Path(folder) / name)
 
 
-@given(palette=palettes())
-def test_a_palette_that_is_written_and_read_is_the_same(palette: Palette) -> None:
-    for each in PALETTE_FORMATS[:2]:
-        assert each.read(each.written(palette, Path("paints")), "paints") == palette
-
-
-@given(palette=palettes(most=256, named=False))
-def test_a_color_table_of_adobe_that_is_written_and_read_is_the_same(palette: Palette) -> None:
-    act = PALETTE_FORMATS[2]
-    data = act.written(palette, Path("paints"))
-    assert len(data) == 772
-    assert data[-2:] == b"\xff\xff"
-    assert act.read(data, "paints") == palette
+@given(palette=palettes(), suffix=st.sampled_from([".gpl", ".csv"]))
+def test_a_palette_that_is_written_and_read_is_the_same(palette: Palette, suffix: str) -> None:
+    with tempfile.TemporaryDirectory() as folder:
+        write_palette(Path(folder, f"paints{suffix}"), palette)
+        assert read_palette(Path(folder, f"paints{suffix}")) == palette
 
 
 @pytest.mark.parametrize(
@@ -62,7 +54,6 @@ def test_a_color_table_of_adobe_that_is_written_and_read_is_the_same(palette: Pa
         ("a.gpl", b"GIMP Palette\nName: a\n#\n255   0   0\n  1  22   3\n"),
         ("a.GPL", b"GIMP Palette\nName: a\n#\n255   0   0\n  1  22   3\n"),
         ("a.csv", b"red,green,blue\n255,0,0\n1,22,3\n"),
-        ("a.act", b"\xff\0\0\x01\x16\x03" + bytes(762) + b"\0\x02\xff\xff"),
     ],
 )
 def test_the_ending_of_a_file_chooses_its_format(tmp_path: Path, name: str, data: bytes) -> None:
@@ -99,17 +90,24 @@ def test_a_gimp_palette_of_gimp_is_read() -> None:
         b"name,color\nRed one,#b01020\nNavy,navy\n",
         b"\xef\xbb\xbfColor, Name\r\n#B01020,Red one\r\n\r\nNAVY, Navy \r\n",
         b"blue,red,name,green\n32,176,Red one,16\n128,000,Navy,0",
+        b"sep=;\r\n;name;color;\r\n0;Red one;#b01020;\r\n1;Navy;navy;\r\n;;;\r\n",
+        b"name\tred\tgreen\tblue\nRed one\t176.0\t16.0\t32.0\nNavy\t0.0\t0.0\t128.0\n",
     ],
 )
 def test_columns_of_a_table_may_be_in_any_order_and_colors_have_names(data: bytes) -> None:
     assert read("paints.csv", data) == Palette(["#b01020", "navy"], ["Red one", "Navy"])
 
 
-def test_a_color_table_without_a_count_has_256_colors_and_a_transparent_color_is_a_color() -> None:
-    data = bytes(range(256)) * 3
-    assert read("full.act", data).colors.tobytes() == data
-    assert read("full.act", data + b"\x01\x00\x00\x01").colors.tobytes() == data
-    assert read("some.act", data + b"\x00\x02\x00\x01").colors.tolist() == [[0, 1, 2], [3, 4, 5]]
+def test_the_transparency_of_aseprite_is_left_out() -> None:
+    data = (
+        b"GIMP Palette\nChannels: RGBA\n#\n  0   0   0   0 Clear\n254  91  89 255\n106 205  91 255 \t7 up\n"
+    )
+    assert read("a.gpl", data) == Palette([(0, 0, 0), (254, 91, 89), (106, 205, 91)], ["Clear", "", "7 up"])
+    rule = "a color must be red, green, blue, alpha and perhaps a name, not"
+    with pytest.raises(InputError, match=f"^a.gpl, line 4: {rule} '1 2 3 sea'; correct it$"):
+        read("a.gpl", b"GIMP Palette\nChannels: RGBA\n0 0 0 0\n1 2 3 sea\n")
+    # Without the header line the number is a name.
+    assert read("a.gpl", HEAD + b"1 2 3 255\n") == Palette([(1, 2, 3)], ["255"])
 
 
 COUNT = "a palette must have 1 to 4,096 colors, not"
@@ -117,8 +115,6 @@ COLOR = "a color must be red, green, blue and perhaps a name, not"
 COLUMNS = "the columns must be red, green, blue, or color, and perhaps name, not"
 NAME = "must be at most 100 printable characters, without spaces around them, not"
 A_COLOR = 'must be "#rrggbb", a name such as "red", or three whole numbers from 0 to 255, not'
-BYTE = "must be a whole number from 0 to 255, not"
-USED = "the number of colors, bytes 768 and 769, must be 1 to 256, not"
 
 test_what_is_refused_in_a_gimp_palette = refused(
     lambda data: read("a.gpl", data),
@@ -128,7 +124,8 @@ test_what_is_refused_in_a_gimp_palette = refused(
         (HEAD + b"1 2 3\n" * 4097, f"a.gpl: {COUNT} 4,097; choose some of them"),
         (
             HEAD + b"1 2 256 a\n0 0\n-1 0 0\n",
-            f"a.gpl, line 2: blue {BYTE} '256'; correct it\na.gpl, line 3: {COLOR} '0 0'; correct it\n"
+            f"a.gpl, line 2: a color {A_COLOR} [1, 2, 256]; correct it\n"
+            f"a.gpl, line 3: {COLOR} '0 0'; correct it\n"
             f"a.gpl, line 4: {COLOR} '-1 0 0'; correct it",
         ),
         (HEAD + b"Name: mine\n1 2 3\nName: late\n", f"a.gpl, line 4: {COLOR} 'Name: late'; correct it"),
@@ -146,29 +143,26 @@ test_what_is_refused_in_a_gimp_palette = refused(
 test_what_is_refused_in_a_table = refused(
     lambda data: read("a.csv", data),
     [
-        (b"", f"a.csv: {COUNT} 0; add a color"),
-        (b"1,2,3\n", f"a.csv, row 1: {COLUMNS} '1,2,3'; name them so"),
-        (b"red,green,blue,red\n", f"a.csv, row 1: {COLUMNS} 'red,green,blue,red'; name them so"),
+        (b"", "a.csv: a palette must start with a row of column names, not be empty"),
+        (b"red,green,blue\n", f"a.csv: {COUNT} 0; add a color"),
+        (b"1,2,3\n", f"a.csv, row 1: {COLUMNS} '1, 2, 3' (separated by commas); name them so"),
         (
-            b"name,color\na,rde\nb\nc,#12\n",
+            b"red;green;blu\n",
+            f"a.csv (separated by semicolons), row 1: {COLUMNS} 'red, green, blu' (separated by semicolons);"
+            " name them so",
+        ),
+        (
+            b"name,color\na,rde\nc,#12\n",
             f"a.csv, row 2: a color {A_COLOR} 'rde'; did you mean 'red'?\n"
-            "a.csv, row 3: a row must have 2 cells, not 1; correct it\n"
-            f"a.csv, row 4: a color {A_COLOR} '#12'; write three or six hexadecimal digits after the #",
+            f"a.csv, row 3: a color {A_COLOR} '#12'; write three or six hexadecimal digits after the #",
         ),
         (
             b"red,green,blue\n1,+2,1e1\n",
-            f"a.csv, row 2: green {BYTE} '+2'; correct it\na.csv, row 2: blue {BYTE} '1e1'; correct it",
+            f"a.csv, row 2: a color {A_COLOR} [1, '+2', '1e1']; correct it",
         ),
-        (b'color\n"red', "a.csv, row 2: it must be CSV (unexpected end of data); correct the row"),
-    ],
-)
-test_what_is_refused_in_a_color_table = refused(
-    lambda data: read("a.act", data),
-    [
-        (bytes(771), "a.act: an .act file must have 768 or 772 bytes, not 771; save it again"),
-        *(
-            (bytes(768) + count.to_bytes(2, "big") + bytes(2), f"a.act: {USED} {count:,}; save it again")
-            for count in (0, 257, 65535)
+        (
+            b'color\n"red',
+            "a.csv, row 2: it must be CSV (unexpected end of data), separated by commas; correct the row",
         ),
     ],
 )
@@ -202,12 +196,9 @@ test_what_cannot_be_written_is_refused = refused(
     [
         (("a.gpl", []), f"{COUNT} 0; add a color"),
         (("a.gpl", zeros(MOST_COLORS + 1)), f"{COUNT} 4,097; choose some of them"),
-        (
-            ("a.gpl", np.zeros(3, np.uint8)),
-            "the colors of a palette must be an array (n, 3), not (3,); give a row for each",
-        ),
-        (("a.gpl", [(0, 0, 256)]), f"color 1 of a palette {A_COLOR} (0, 0, 256); correct it"),
-        (("a.gpl", ["red", "rde"]), f"color 2 of a palette {A_COLOR} 'rde'; did you mean 'red'?"),
+        (("a.gpl", np.zeros(3, np.uint8)), f"color 1 of a palette: a color {A_COLOR} 0; correct it"),
+        (("a.gpl", [(0, 0, 256)]), f"color 1 of a palette: a color {A_COLOR} (0, 0, 256); correct it"),
+        (("a.gpl", ["red", "rde"]), f"color 2 of a palette: a color {A_COLOR} 'rde'; did you mean 'red'?"),
         (
             ("a.gpl", "red", ["a", "b"]),
             "a palette must have a name for each of its 1 colors, or no names, not 2; write '' for a color"
@@ -215,19 +206,10 @@ test_what_cannot_be_written_is_refused = refused(
         ),
         (("a.gpl", 5), "the colors of a palette must be a sequence of colors, not 5; give a list"),
         *(
-            (("a.gpl", ["red"], [name]), f"name 1 of a palette {NAME} {name!r}; correct it")
+            (("a.gpl", ["red"], [name]), f"color 1 of a palette: a name {NAME} {name!r}; correct it")
             for name in (" a", "a\n", 1)
         ),
-        (("a.png", "red"), "a.png: a palette must end in .act, .csv or .gpl, not in '.png'; rename it"),
-        (
-            ("a.act", zeros(257)),
-            "a.act: an .act file must hold at most 256 colors, not 257; write a .gpl or .csv file",
-        ),
-        (
-            ("a.act", "red", ["red"]),
-            "a.act: an .act file must hold colors without names; write a .gpl or .csv file, or leave the"
-            " names out",
-        ),
+        (("a.png", "red"), "a.png: a palette must end in .csv or .gpl, not in '.png'; rename it"),
     ],
 )
 
@@ -269,7 +251,6 @@ def test_a_color_is_found_by_its_name_whatever_the_capitals() -> None:
     ("name", "data", "is_one"),
     [
         ("a.gpl", b"", True),
-        ("a.act", b"", True),
         ("a.csv", b"\xef\xbb\xbfname,Color\r\n", True),
         ("a.csv", b'"red","green","blue"\n', True),
         ("nodes.csv", b"node,x,y,z\n", False),

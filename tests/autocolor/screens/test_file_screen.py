@@ -160,12 +160,12 @@ def test_a_rig_is_put_on_the_scene_and_fitted(hand: Hand) -> None:
 
 def test_paints_are_opened_for_color_mixing_and_are_no_step(hand: Hand, folder: Path) -> None:
     before, recent = hand.scene, recent_files()
-    write_palette(folder / "ral.act", ["red", "navy"])
+    write_palette(folder / "ral.gpl", ["red", "navy"])
     hand.pick("refresh")
-    assert rows_of(hand)["ral.act"].value == "paints"
-    pick(hand, "ral.act")
+    assert rows_of(hand)["ral.gpl"].value == "paints"
+    pick(hand, "ral.gpl")
     assert hand.viewer.page == "mixing"
-    assert told(hand) == ("2 paints of ral.act: take them in color mixing", False)
+    assert told(hand) == ("2 paints of ral.gpl: take them in color mixing", False)
     assert hand.scene is before
     # Nothing is written unasked.
     assert recent_files() == recent

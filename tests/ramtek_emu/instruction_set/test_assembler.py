@@ -33,6 +33,14 @@ def test_assembling_a_listing_gives_any_bytes_back(data: bytes) -> None:
     assert b"".join(assemble(listing(data))) == data
 
 
+@pytest.mark.parametrize("encoding", ["utf-8", "latin-1"])
+def test_a_utf_8_mark_is_no_part_of_a_listing(encoding: str) -> None:
+    program = "\ufeffRSET\nERS BACK=2\n".encode().decode(encoding)
+    assert assembled(program) == assembled("RSET\nERS BACK=2\n")
+    with pytest.raises(ListingError):
+        assembled("RSET\n" + program)
+
+
 def test_a_program_written_by_hand_is_assembled() -> None:
     program = """
     ; a box and a line

@@ -13,7 +13,6 @@ from autocolor.files.formats import format_of_folder
 from autocolor.files.meshes.csv_tables import (
     ROWS_AT_ONCE,
     NumberCells,
-    WholeCells,
     csv_tables_bytes,
     read_csv_tables,
     write_csv_tables,
@@ -62,6 +61,22 @@ def test_lines_end_in_any_way_and_cells_may_be_quoted(tmp_path: Path, ending: st
     assert read(tmp_path, NODES.replace("\n", ending), polygons).mesh.part_names == ('a, "b"',)
 
 
+@pytest.mark.parametrize(
+    ("nodes", "polygons"),
+    [
+        ("node;x;y;z;\n1;0,0;,0;0;\n2;1,0;0;0;\n3;1;1;0;\n4;0;1,000E0;0\n;;;;\n", "sep=,\n" + POLYGONS),
+        (
+            "\ufeff,node,x,y,z\n0,1.0,0,0,0\n1,2.0,1.,0,0\n2,3.0,1,1,0\n3,4.0,0,1,0\n",
+            ",part,node1,node2,node3,node4\n0,hood,1,2,3,4.0\n1,roof,1,2,3,\n",
+        ),
+        (NODES.replace(",", "\t"), POLYGONS.replace(",", "\t").replace("3,\n", "3\n")),
+    ],
+    ids=["Excel", "pandas", "tabs"],
+)
+def test_tables_of_other_programs_are_the_same_mesh(tmp_path: Path, nodes: str, polygons: str) -> None:
+    assert_equal(read(tmp_path, nodes, polygons), read(tmp_path).mesh)
+
+
 def test_every_problem_of_both_tables_is_named(tmp_path: Path) -> None:
     nodes = NODES + "1,0,0,0\nx,nan,1e31,\n5,0,0,0,0\n"
     polygons = POLYGONS + "2,a,1,2,3,4\n1.5,a,1,,x,4\n"
@@ -72,7 +87,8 @@ def test_every_problem_of_both_tables_is_named(tmp_path: Path) -> None:
         f"nodes.csv, row 7: {rule}, not 'nan'; correct it",
         f"nodes.csv, row 7: {rule}, not '1e31'; correct it",
         f"nodes.csv, row 7: {rule}, not ''; correct it",
-        "nodes.csv, row 8: a row must have 4 cells, not 5; correct it",
+        "nodes.csv, row 8: a row must have at most 4 cells, separated by commas, not 5; quote a value that"
+        " contains a separator",
         "polygons.csv, row 4: a polygon number must be unique, not repeated: 2; renumber it",
         "polygons.csv, row 5: a polygon number must be a whole number, not '1.5'; correct it",
         "polygons.csv, row 5: a corner must be a whole number, not ''; correct it",
@@ -86,7 +102,7 @@ VALUE = (
     " correct it"
 )
 NODE = "row 4: node {} is not in the node table ({})"
-NO_COLUMN = "row 1: there is no column {!r}; "
+NO_COLUMN = "row 1: there is no column {!r} (separated by commas); "
 MANY = ",".join(["x", "y", "z", *(f"s{number}" for number in range(1010))])
 STRICT = ("1_0", "0x1", "\u0661", "inf", "1d2", "1,5")
 
@@ -99,10 +115,12 @@ STRICT = ("1_0", "0x1", "\u0661", "inf", "1d2", "1,5")
             (f"x,y,z,s\n1,0,0,\n2,1,0,{number}\n", VALUE.format(number))
             for number in ("nan", "1e31", "-1.0000000000000002e30", "1_0", "x")
         ),
-        ("node;x;y;z\n", NO_COLUMN.format("node;x;y;z") + "choose 'node', 'x', 'y' or 'z'"),
         ("nod,x,y,z\n", NO_COLUMN.format("nod") + "did you mean 'node'?"),
-        ("x,y,z,x\n", "row 1: a column name must be unique, not repeated: 'x'; remove one"),
-        ("x,y\n", "row 1: there must be a column 'z', not only x, y; add it"),
+        (
+            "x,y,z,x\n",
+            "row 1: a column name must be unique, not repeated: 'x' (separated by commas); remove one",
+        ),
+        ("x,y\n", "row 1: there must be a column 'z', not only x, y (separated by commas); add it"),
         (MANY, "row 1: there must be at most 1,000 columns of scalars, not 1,013; remove some"),
     ],
 )
@@ -123,7 +141,7 @@ def test_what_is_refused_in_a_node_table(tmp_path: Path, nodes: str, sentence: s
         (POLYGONS + "3,roof,1,2,40,\n", NODE.format(40, "1 to 9, with gaps")),
         *(
             (f"{known}node1,node2,node3,node4,{name}\n", NO_COLUMN.format(name))
-            for known, name in (("", "polygn"), ("polygon,", "Part"), ("part,", "node5"), ("part,", ""))
+            for known, name in (("", "polygn"), ("polygon,", "Part"), ("part,", "node5"))
         ),
     ],
 )
@@ -192,7 +210,7 @@ def refuse(sentence: str) -> None:
 
 @given(st.lists(CELL.map(str.strip), min_size=1, max_size=3), st.booleans())
 def test_cells_converted_at_once_are_those_converted_one_by_one(cells: list[str], may_be_empty: bool) -> None:
-    for kind in (NumberCells("rule", may_be_empty), WholeCells("a number", may_be_empty)):
+    for kind in (NumberCells("rule", whole, may_be_empty) for whole in (False, True)):
         try:
             values = kind.at_once(cells)
         except (ValueError, OverflowError):

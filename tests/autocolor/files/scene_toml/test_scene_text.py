@@ -1,14 +1,17 @@
 from __future__ import annotations
 
 import dataclasses
+import tomllib
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor import Flap, Flaps, InputError, Scene
+from autocolor import Flap, Flaps, InputError, Light, Scene
 from autocolor.files.formats import read_mesh
 from autocolor.files.meshes.repair import MeshReport
 from autocolor.files.opening import read_scene_with_report
@@ -18,8 +21,8 @@ from autocolor.files.scene_toml.scene_text import (
     edited_to,
     scene_text,
     with_crease_angle,
+    with_document,
     with_meshes,
-    without_parts,
 )
 from autocolor.scene.columns import with_values
 from tests.autocolor.linked_scenes import linked_scenes
@@ -183,6 +186,9 @@ file = "car.obj"
 """
 
 
+MESHES = '[[mesh]]\nfile = "a"\n[[mesh]]\nfile = "b"\n'
+
+
 @pytest.fixture(scope="module")
 def meshes(tmp_path_factory: pytest.TempPathFactory) -> list[MeshReport]:
     path = tmp_path_factory.mktemp("mesh") / "car.obj"
@@ -241,35 +247,81 @@ def test_a_text_that_cannot_be_read_or_never_gives_the_scene_is_given_up(meshes:
     assert edited_to(DOTTED.encode(), scene.replace(ambient=0.7), lambda _: scene) is None
 
 
+def rewritten(text: str, change: Callable[[dict[str, Any]], dict[str, Any]]) -> str:
+    """The text with other values in the document that it is."""
+    data = with_document(text.encode(), change(tomllib.loads(text)))
+    assert data is not None
+    return data.decode()
+
+
 def test_mesh_tables_are_replaced_where_they_are() -> None:
     text = '# A.\n[[mesh]]\nfile = "a.obj" # old\n[[mesh]]\nfile = "b.obj"\n[view]\n'
-    after = with_meshes(text.encode(), ({"file": "c.obj", "up": "y"}, {"file": "d.obj", "up": "z"}))
-    assert after == b'# A.\n[[mesh]]\nfile = "c.obj"\nup = "y"\n\n[[mesh]]\nfile = "d.obj"\n\n[view]\n'
-    assert with_meshes(b'mesh = [{file="a"}]\n', ({"file": "c"},)) == b'[[mesh]]\nfile = "c"\n'
+    entries = [{"file": "c.obj", "up": "y"}, {"file": "d.obj", "up": "z"}]
+    assert rewritten(text, lambda document: with_meshes(document, entries)) == (
+        '# A.\n[[mesh]]\nfile = "c.obj" # old\nup = "y"\n[[mesh]]\nfile = "d.obj"\n[view]\n'
+    )
+    assert rewritten('mesh = [{file="a"}] # one\n', lambda document: with_meshes(document, entries[1:])) == (
+        'mesh = [{file="d.obj"}] # one\n'
+    )
 
 
 def test_a_crease_angle_is_set_where_one_is() -> None:
-    text = '[[mesh]]\nfile = "a"\n[[mesh]]\nfile = "b"\ncrease_angle = 3 # deg\n'
-    assert with_crease_angle(text.encode(), 7.5).decode() == text.replace("3 #", "7.5 #")
-    assert with_crease_angle(b'[[mesh]]\nfile = "a"\n', 7.5) == b'[[mesh]]\nfile = "a"\ncrease_angle = 7.5\n'
-    assert with_crease_angle(b'mesh = [{file="a"}, {file="b"}] # two\n', 7.5) == (
-        b'mesh = [{ file = "a", crease_angle = 7.5 }, { file = "b" }] # two\n'
-    )
-
-
-def test_parts_are_removed() -> None:
-    assert without_parts(b'[parts]\na.surface = "x"\nb.stage = true\n', {"a"}) == (
-        b"[parts]\nb.stage = true\n"
-    )
+    for text, expected in (
+        (f"{MESHES}crease_angle = 3 # deg\n", f"{MESHES}crease_angle = 7.5 # deg\n"),
+        ('[[mesh]]\nfile = "a"\n', '[[mesh]]\nfile = "a"\ncrease_angle = 7.5\n'),
+        (
+            'mesh = [{file="a"}, {file="b"}] # 2\n',
+            'mesh = [{file="a",crease_angle = 7.5 }, {file="b"}] # 2\n',
+        ),
+    ):
+        assert rewritten(text, lambda document: with_crease_angle(document, 7.5)) == expected
 
 
 @pytest.mark.parametrize("text", [INLINE, DOTTED, HEADERS, '# Mine.\n[[mesh]]\nfile = "car.obj"\n'])
 def test_a_text_is_completed_with_all_that_it_does_not_tell(text: str, meshes: list[MeshReport]) -> None:
     scene = read(text.encode(), meshes)
-    after = completed(text.encode(), scene)
-    again = report_of_text(after, Path("car", "scene.toml"), meshes=meshes)
+    after = rewritten(text, lambda document: completed(document, scene))
+    again = report_of_text(after.encode(), Path("car", "scene.toml"), meshes=meshes)
     assert again.scene.replace(mesh=scene.mesh).equals(scene)
     assert again.created == ()
-    assert after.count(b"# Mine.") == 1
-    assert after.count(b"two_sided") == len(scene.surfaces)
-    assert completed(after, scene) == after
+    assert after.count("# Mine.") == 1
+    assert after.count("two_sided") == len(scene.surfaces)
+    assert rewritten(after, lambda document: completed(document, scene)) == after
+
+
+COMMENTED = """\
+# Mine.
+ambient = 0.1 # dark
+view = { eye = [0.5, -4, 0.5], target = [0.5, 0, 0.5] }
+mesh = [ { file = "car.obj" } ]
+surfaces = { body = { object_color = [176, 16, 32] } }
+lights = [
+  # the window, measured in May
+  { name = "key", position = [1, -3, 2], intensity = 1 },  # 100 W
+  { name = "rim", position = [
+    -1, # west
+    3, 2
+  ], intensity = 1 }, # the lamp
+]
+"""
+
+
+def test_comments_within_arrays_stay_when_a_light_is_changed_added_or_removed(
+    meshes: list[MeshReport],
+) -> None:
+    scene = read(COMMENTED.encode(), meshes)
+    assert edited(COMMENTED, scene.with_light("key", intensity=2.5), meshes) == COMMENTED.replace(
+        "1 },  #", "2.5 },  #"
+    )
+    assert edited(COMMENTED, scene.with_light("rim", position=(-1, 7, 2)), meshes) == COMMENTED.replace(
+        "    3, 2", "    7.0, 2"
+    )
+    key, rim = scene.lights
+    moon = Light("moon", (1.0, 2.0, 3.0))
+    assert edited(COMMENTED, scene.replace(lights=(key, rim, moon)), meshes) == COMMENTED.replace(
+        "# the lamp\n", '# the lamp\n  { name = "moon", position = [1.0, 2.0, 3.0] },\n'
+    )
+    without = edited(COMMENTED, scene.replace(lights=(rim,)), meshes)
+    assert without == COMMENTED.replace(
+        '  { name = "key", position = [1, -3, 2], intensity = 1 },  # 100 W\n', ""
+    )
