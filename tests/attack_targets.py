@@ -244,13 +244,13 @@ VARIANTS: Final = {
     "csv": b'name,time,view.eye,ambient\nfirst,0,"[1, 2, 3]",0.1\n,2.5,,none\n',
     "json": b'[{"name": "a", "surfaces.low.object_color": [1, 2, 3], "scalar": null}, {"ambient": 1}]',
 }
-PALETTES: Final = ("gpl", "csv", "act")
+PALETTES: Final = ("gpl", "csv")
 
 
 def palette_reader(suffix: str) -> Reading:
     """The reader of a format of palettes."""
     name = f"paints.{suffix}"
-    names = [] if suffix == "act" else ["signal red", 'a "b", c']
+    names = ["signal red", 'a "b", c']
     write = partial(autocolor.write_palette, palette=["#b01020", "#1e5ac8"], names=names)
     return Reading([written(name, write)], lambda _: autocolor.read_palette(name) and "", [name])
 

@@ -75,6 +75,7 @@ PLACES = {
     ("platformdirs",): {("autocolor.files.state", True)},
     ("meshio", "trimesh"): {("autocolor.files.meshes.foreign_worker", False)},
     ("OpenEXR",): {("autocolor.layers", False)},
+    ("tomlkit",): {("autocolor.files.scene_toml.toml_edit", True)},
     # The studio names the class of its widgets for type checkers.
     ("anywidget", "traitlets"): {("autocolor.web.notebook", False), ("autocolor.studio", False)},
     ("hypothesis",): {("autocolor.testing", True), ("ramtek_emu.testing", True)},

@@ -234,8 +234,10 @@ RED_GREEN_BLUE: Final = ("red", "green", "blue")
 
 def _are_columns(header: Sequence[str]) -> bool:
     """Whether these are the names of the columns of a palette, with or without names."""
-    columns = sorted({name.lower() for name in header} - {"", "name"})
-    return columns in (sorted(RED_GREEN_BLUE), ["color"])
+    columns = sorted(name.lower() for name in header if name)
+    return columns in [
+        sorted((*needed, *name)) for needed in (RED_GREEN_BLUE, ("color",)) for name in ((), ("name",))
+    ]
 
 
 def _read_csv(data: bytes, place: str) -> Palette:
