@@ -47,9 +47,6 @@ Words = NDArray[np.uint16]
 AnyArray = NDArray[Any]
 """An array whose element type is not known, or is checked elsewhere."""
 
-Scratch = Callable[[tuple[int, ...], type[Any]], AnyArray]
-"""A function that makes an array to work in, of a shape and a type: `np.empty`, or one with mapped files."""
-
 Real = TypeVar("Real", np.float32, np.float64)
 
 RealArray = NDArray[Real]

@@ -43,14 +43,12 @@ from threading import Event, Thread
 import numpy as np
 import autocolor
 from autocolor.commands.autocolor import autocolor as command
-from autocolor.files.meshes.npy_tables import scratch_array
 from ramtek_emu.host.port import TcpPort
 from ramtek_emu.host.server import TcpServer
 from ramtek_emu import Ramtek9300
 
 folder = Path(sys.argv[2])
 scene = autocolor.read_scene(sys.argv[1])
-assert scratch_array(folder, (3, 1000), np.float64).sum() == 0
 display = Ramtek9300()
 studio = autocolor.Studio(scene, display)
 studio.recolor("body", object_color="#1f3f8f")

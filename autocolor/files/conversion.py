@@ -7,22 +7,19 @@ from __future__ import annotations
 
 import difflib
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
 from autocolor.checks import shown
 from autocolor.errors import UsageError
 from autocolor.files.formats import (
-    LIGHTS,
-    NODE_SCALARS,
     NORMALS,
     PARTS,
-    POLYGON_SCALARS,
     QUADS,
+    SCALARS,
     SETTINGS,
     SURFACES,
-    VIEW,
     Format,
     format_named,
     format_of_folder,
@@ -93,44 +90,36 @@ def left_out(scene: Scene, output: Format, *, is_bare: bool) -> list[str]:
 
     If the source `is_bare`, a mesh without a scene, only parts of the mesh count: all else was created.
     """
-    phrases = list(_of_mesh(scene, output))
-    if not is_bare:
-        phrases.extend(_of_scene(scene, output))
-    return phrases
-
-
-def _of_mesh(scene: Scene, output: Format) -> Iterator[str]:
-    mesh = scene.mesh
-    if PARTS not in output.holds and len(mesh.part_names) > 1:
-        yield f"{len(mesh.part_names):,} parts ({_named(mesh.part_names)})"
-    for extra, noun in ((NODE_SCALARS, "node scalar"), (POLYGON_SCALARS, "polygon scalar")):
-        names = [each.name for each in mesh.scalars if (each.of == NODE) == (extra == NODE_SCALARS)]
-        if extra not in output.holds and names:
-            yield f"{len(names):,} {noun}{'s' if len(names) > 1 else ''} ({_named(names)})"
+    mesh, surfaces, views = scene.mesh, scene.surfaces, len(scene.views)
     quads = len(mesh.node_numbers) - mesh.triangle_count
-    if QUADS not in output.holds and quads:
-        yield f"{quads:,} quad{'s' if quads > 1 else ''} (each is written as two triangles)"
-    if NORMALS not in output.holds and mesh.own_normals is not None:
-        yield "the file's own normals (they will be computed)"
-    if SETTINGS not in output.holds and mesh.crease_angle != CREASE_ANGLE:
-        yield f"the crease angle of {mesh.crease_angle:g} degrees"
+    angle = "" if mesh.crease_angle == CREASE_ANGLE else f"the crease angle of {mesh.crease_angle:g} degrees"
+    phrases = [
+        (PARTS, _counted("part", mesh.part_names) if len(mesh.part_names) > 1 else ""),
+        (SCALARS, _counted("node scalar", [each.name for each in mesh.scalars if each.of == NODE])),
+        (SCALARS, _counted("polygon scalar", [each.name for each in mesh.scalars if each.of != NODE])),
+        (QUADS, f"{_counted('quad', range(quads))} (each is written as two triangles)" if quads else ""),
+        (NORMALS, "the file's own normals (they will be computed)" if mesh.own_normals else ""),
+        (SETTINGS, angle),
+    ]
+    if not is_bare:
+        beyond = beyond_materials(surfaces) if SURFACES in output.holds else []
+        phrases += [
+            (SURFACES, _counted("surface", [each.name for each in surfaces])),
+            (SETTINGS, f"what a material does not have of {_counted('surface', beyond)}" if beyond else ""),
+            (SETTINGS, _counted("light", [each.name for each in scene.lights])),
+            (SETTINGS, f"the view and {_counted('named view', range(views))}" if views else "the view"),
+            (SETTINGS, _counted("setting", _settings(scene))),
+        ]
+    return [phrase for held, phrase in phrases if phrase and held not in output.holds]
 
 
-def _of_scene(scene: Scene, output: Format) -> Iterator[str]:
-    count = len(scene.surfaces)
-    if SURFACES not in output.holds and count:
-        named = _named([each.name for each in scene.surfaces])
-        yield f"{count:,} surface{'s' if count > 1 else ''} ({named})"
-    elif LIGHTS not in output.holds and (names := beyond_materials(scene.surfaces)):
-        yield f"what a material does not have of {len(names):,} of {count:,} surfaces ({_named(names)})"
-    if LIGHTS not in output.holds and scene.lights:
-        count = len(scene.lights)
-        yield f"{count:,} light{'s' if count > 1 else ''} ({_named([each.name for each in scene.lights])})"
-    if VIEW not in output.holds:
-        count = len(scene.views)
-        yield f"the view and {count} named view{'s' if count > 1 else ''}" if count else "the view"
-    if SETTINGS not in output.holds and (names := _settings(scene)):
-        yield f"{len(names)} setting{'s' if len(names) > 1 else ''} ({_named(names)})"
+def _counted(noun: str, names: Sequence[object]) -> str:
+    """The number of things, and the first of their names if they have any; empty if there are none."""
+    count = len(names)
+    listed = [shown(name) for name in names[:MOST_NAMED] if isinstance(name, str)]
+    more = f" and {count - MOST_NAMED:,} more" if count > MOST_NAMED else ""
+    named = f" ({', '.join(listed)}{more})" if listed else ""
+    return f"{count:,} {noun}{'s' if count > 1 else ''}{named}" if count else ""
 
 
 def _settings(scene: Scene) -> list[str]:
@@ -142,8 +131,3 @@ def _settings(scene: Scene) -> list[str]:
         and field.default is not None
         and vars(scene)[name] != field.default()
     ]
-
-
-def _named(names: Sequence[str]) -> str:
-    more = f" and {len(names) - MOST_NAMED:,} more" if len(names) > MOST_NAMED else ""
-    return ", ".join(shown(name) for name in names[:MOST_NAMED]) + more

@@ -30,8 +30,8 @@ from autocolor.files.meshes.stl import begins_as_stl, read_stl, stl_bytes
 from autocolor.files.meshes.table_file import SUFFIX, read_table_file, table_file_bytes
 from autocolor.files.meshes.vtk import begins_as_vtk, read_vtk
 from autocolor.files.meshes.vtp import begins_as_vtp, read_vtp
-from autocolor.files.reading import read_head, refuse_irregular, status_of, table_exists
-from autocolor.files.writing import write_atomically
+from autocolor.files.reading import read_head, refuse_irregular, status_of
+from autocolor.files.writing import table_exists, write_atomically
 from autocolor.logs import logger_of, timed
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import Scene
@@ -39,18 +39,15 @@ from autocolor.scene.scene import Scene
 LOG: Final = logger_of(__name__)
 
 PARTS: Final = "parts"
-NODE_SCALARS: Final = "node scalars"
-POLYGON_SCALARS: Final = "polygon scalars"
+SCALARS: Final = "scalars"
 QUADS: Final = "quads"
 NORMALS: Final = "own normals"
-MESH_EXTRAS: Final = frozenset((PARTS, NODE_SCALARS, POLYGON_SCALARS, QUADS, NORMALS))
+MESH_EXTRAS: Final = frozenset((PARTS, SCALARS, QUADS, NORMALS))
 """Contents of a mesh, beside nodes and triangles, that some formats cannot hold."""
 
 SURFACES: Final = "surfaces"
-LIGHTS: Final = "lights"
-VIEW: Final = "view"
-SETTINGS: Final = "settings"
-WHOLE_SCENE: Final = MESH_EXTRAS | {SURFACES, LIGHTS, VIEW, SETTINGS}
+SETTINGS: Final = "lights, views and settings"
+WHOLE_SCENE: Final = MESH_EXTRAS | {SURFACES, SETTINGS}
 """The parts of a scene, beside nodes and triangles, that some formats cannot hold."""
 
 SceneWriter = Callable[[Path, Scene, bool], list[Path]]

@@ -7,10 +7,8 @@ add a format of scenes, write its reader and a row of FORMATS below.
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from itertools import islice
 from pathlib import Path
 from typing import Final, NamedTuple
 
@@ -37,30 +35,27 @@ from autocolor.files.meshes.up_axis import seems_to_lie
 from autocolor.files.palette_file import GPL
 from autocolor.files.paths import PICTURE_SUFFIX, SCENE_FILE, STORE_SUFFIXES
 from autocolor.files.picture_file import read_picture
-from autocolor.files.reading import status_of, table_exists
+from autocolor.files.reading import status_of
 from autocolor.files.scene_report import SceneReport, scene_report
 from autocolor.files.scene_toml.scene_file import read_scene_file
 from autocolor.files.scene_toml.scene_meshes import MeshSource, keep_source
 from autocolor.files.scene_writing import write_scene_with_tables
+from autocolor.files.writing import table_exists
 from autocolor.scene.creation import MATERIALS, PARTS, SurfaceSource
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import Scene
 
 PathLike = str | os.PathLike[str]
 
-SceneReader = Callable[..., SceneReport]
-"""A function that reads the scene of a path. It raises InputError.
-
-With `outside`, the scene may name files outside its folder. Parts without a surface get the surfaces of their
-materials or their own surfaces, as `surfaces` says.
-"""
-
 
 @dataclass(frozen=True, kw_only=True)
 class SceneFormat(Format):
-    """A file format that holds a whole scene."""
+    """A file format that holds a whole scene.
 
-    read: SceneReader
+    `read` takes a path, and the options `outside` and `surfaces` of `read_scene`. It raises InputError.
+    """
+
+    read: Callable[..., SceneReport]
 
 
 def _read_picture_scene(path: Path, **_: object) -> SceneReport:
@@ -271,9 +266,6 @@ FOLDER: Final = "folder"
 MESH: Final = "mesh"
 PAINTS: Final = "paints"
 
-MOST_LISTED: Final = 1000
-"""Limit: the names that are listed of a folder; nobody finds a file in a longer list."""
-
 
 class Openable(NamedTuple):
     """A path, and its kind: "scene", "store", "picture", "mesh", "paints" or "folder"."""
@@ -285,17 +277,16 @@ class Openable(NamedTuple):
 def openables_of(folder: Path) -> list[Openable]:
     """The files of a folder that can be opened, then its folders, by name; hidden names are left out.
 
-    At most MOST_LISTED names of a folder are read. Raises InputError if the folder cannot be read.
+    Raises InputError if the folder cannot be read.
     """
     try:
-        with os.scandir(folder) as listed:
-            names = [entry.name for entry in islice(listed, MOST_LISTED)]
+        names = sorted(os.listdir(folder), key=str.casefold)
     except OSError as error:
         raise InputError(
             f"{folder.name or folder}: a folder must be readable, and is not ({reason_of(error)});"
             " choose another"
         ) from None
-    paths = [folder / name for name in sorted(names, key=_in_order) if not name.startswith(".")]
+    paths = [folder / name for name in names if not name.startswith(".")]
     openables = [Openable(path, kind) for path in paths if (kind := kind_of(path))]
     return sorted(openables, key=lambda openable: openable.kind == FOLDER)
 
@@ -328,9 +319,3 @@ def stays_within(path: Path, folder: Path) -> bool:
         names = () if mesh_format is None else mesh_format.in_folder
         read += [path / name for name in (SCENE_FILE, *names)]
     return all(Path(os.path.realpath(file)).is_relative_to(real) for file in read)
-
-
-def _in_order(name: str) -> list[tuple[int, str]]:
-    """The sort key of a name: car2 comes before car10."""
-    parts = re.split(r"(\d+)", name.casefold())
-    return [(int(part), "") if part.isdecimal() and part.isascii() else (0, part) for part in parts]

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import errno
-import hashlib
 import json
 import os
 import stat
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any, BinaryIO, Final, NoReturn, TypeVar
+from typing import Any, BinaryIO, Final, NoReturn
 
 from autocolor import checks
 from autocolor.budget import allowed_memory, require_memory
@@ -24,8 +22,6 @@ HEAD: Final = 4096
 """Bytes that are enough to recognize a file format."""
 
 UTF_8_MARK: Final = b"\xef\xbb\xbf"
-
-Result = TypeVar("Result")
 
 
 def read_bytes(path: Path, largest: int) -> bytes:
@@ -99,89 +95,6 @@ def read_head(path: Path) -> bytes:
     with suppress(InputError), opened(path) as (file, _):
         return file.read(HEAD)
     return b""
-
-
-# Tables in a folder that are saved together (see `writing.write_together`). One of them, the deciding file,
-# is replaced last. The others are written to hidden files, whose names have the checksum of that file, and
-# are renamed after it was replaced. So readers know which hidden files to read.
-
-DECIDING: Final = {".npy": "tables.json", ".csv": "polygons.csv"}
-"""The deciding file of a set of tables, by the suffix of the others."""
-
-SCALARS: Final = "scalars"
-"""The folder of scalars in a folder of tables."""
-
-MOST_TRIES: Final = 20
-"""Limit: how often tables are opened while others save them; the pauses between take two seconds together."""
-
-SECONDS_BETWEEN_TRIES: Final = 0.01
-
-
-def save_of(data: bytes) -> str:
-    """The checksum of the content of a deciding file, 12 hexadecimal digits."""
-    return hashlib.sha256(data).hexdigest()[:12]
-
-
-def save_in(deciding: Path) -> str:
-    """The checksum of a deciding file; of no bytes if it cannot be read."""
-    digest = hashlib.sha256()
-    with suppress(InputError), opened(deciding) as (file, _):
-        while data := file.read(LEAST_READ):
-            digest.update(data)
-    return digest.hexdigest()[:12]
-
-
-def hidden_path(path: Path, save: str) -> Path:
-    """The hidden name of a table of a save."""
-    return path.with_name(f".{path.name}.{save}.part")
-
-
-def read_table(path: Path, save: str, read: Callable[[Path], Result]) -> Result:
-    """The result of `read` for the hidden path of a table of a save, or for its own if the table has it."""
-    try:
-        return read(hidden_path(path, save))
-    except MissingInputError:
-        return read(path)
-
-
-def table_exists(folder: Path, name: str) -> bool:
-    """Whether a folder has a table."""
-    path = folder / name
-    if os.path.exists(path) or path.suffix not in DECIDING:
-        return os.path.exists(path)
-    return os.path.exists(hidden_path(path, save_in(folder / DECIDING[path.suffix])))
-
-
-def read_together(deciding: Path, read: Callable[[], Result]) -> Result:
-    """The result of `read`, which opens a deciding file and other tables, all of the same save.
-
-    If a save replaced the deciding file meanwhile, `read` is called again. Raises InputError if saves come
-    all the time, and the errors of `read`.
-    """
-    for number in range(MOST_TRIES):
-        before = _stamp(deciding)
-        try:
-            result = read()
-        except InputError:
-            if _stamp(deciding) == before:
-                raise
-        else:
-            if _stamp(deciding) == before:
-                return result
-        time.sleep(SECONDS_BETWEEN_TRIES * number)
-    raise InputError(
-        f"tables must stay as they are while they are opened, but another program saved them {MOST_TRIES}"
-        " times; try again when it has ended"
-    )
-
-
-def _stamp(path: Path) -> tuple[int, ...] | None:
-    """Numbers that differ for another file, or other content; None for no file."""
-    try:
-        status = os.stat(path)
-    except (OSError, ValueError):
-        return None
-    return status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns
 
 
 def refuse_irregular(path: Path, status: os.stat_result) -> None:

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 from typing import Final
@@ -28,11 +27,8 @@ MOST_FILES: Final = 10
 COLORS: Final = "recent-colors.json"
 FILES: Final = "recent-files.json"
 
-LONGEST_PATH: Final = 4096
-"""Letters; no system has longer paths."""
-
 LARGEST: Final = 1 << 18
-"""Bytes: more than MOST_FILES paths of LONGEST_PATH letters, each letter written in six bytes."""
+"""Limit: bytes of a list; no paths are so long that it has more."""
 
 
 def state_folder() -> Path:
@@ -66,51 +62,41 @@ def lock_file(path: Path) -> int | None:
 
 def recent_colors() -> tuple[Color, ...]:
     """The colors that were picked last, newest first, at most MOST_COLORS."""
-    return tuple(ColorKind().accepted(text) for text in _entries(COLORS, MOST_COLORS, _is_color))
+    colors = [ColorKind().accepted(text) for text in _entries(COLORS) if SIX_DIGITS.fullmatch(text)]
+    return tuple(colors[:MOST_COLORS])
 
 
 def note_color(color: Color) -> None:
     """Put a color first among the recent ones."""
-    _note(COLORS, in_digits(color), MOST_COLORS, _is_color)
+    _note(COLORS, in_digits(color), MOST_COLORS)
 
 
 def recent_files() -> tuple[Path, ...]:
     """The files and folders that were opened last, newest first, at most MOST_FILES; some may be gone."""
-    return tuple(map(Path, _entries(FILES, MOST_FILES, _is_path)))
+    paths = [Path(text) for text in _entries(FILES) if os.path.isabs(text) and "\0" not in text]
+    return tuple(paths[:MOST_FILES])
 
 
 def note_file(path: str | os.PathLike[str]) -> None:
     """Put a file or folder first among the recent ones, by its absolute path."""
-    _note(FILES, os.path.abspath(path), MOST_FILES, _is_path)
+    _note(FILES, os.path.abspath(path), MOST_FILES)
 
 
-def _is_color(entry: str) -> bool:
-    return SIX_DIGITS.fullmatch(entry) is not None
-
-
-def _is_path(entry: str) -> bool:
-    return os.path.isabs(entry) and "\0" not in entry and len(entry) <= LONGEST_PATH
-
-
-def _entries(name: str, most: int, is_valid: Callable[[str], bool]) -> list[str]:
-    """The entries of a list, without damaged and repeated entries."""
+def _entries(name: str) -> list[str]:
+    """The different texts in a list."""
     try:
         entries = json.loads(read_bytes(state_folder() / name, LARGEST))
     except (AutocolorError, ValueError, RecursionError):
         return []
-    if not isinstance(entries, list):
-        return []
-    valid = [entry for entry in entries if isinstance(entry, str) and is_valid(entry)]
-    return list(dict.fromkeys(valid))[:most]
+    texts = [entry for entry in entries if isinstance(entry, str)] if isinstance(entries, list) else []
+    return [*dict.fromkeys(texts)]
 
 
-def _note(name: str, entry: str, most: int, is_valid: Callable[[str], bool]) -> None:
-    """Put an entry first in a list; nothing happens if it is invalid, or the list cannot be written."""
-    if not is_valid(entry):
-        return
+def _note(name: str, entry: str, most: int) -> None:
+    """Put an entry first in a list; nothing happens if the list cannot be written."""
     with suppress(AutocolorError, OSError):
         folder = state_folder()
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        others = [other for other in _entries(name, most, is_valid) if other != entry]
+        others = [other for other in _entries(name) if other != entry]
         data = json.dumps([entry, *others][:most], indent=1).encode()
         write_atomically(folder / name, data, overwrite=True)

@@ -6,15 +6,13 @@
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Final
+from typing import Final, TypeVar
 
 import ramtek_emu
-from autocolor.errors import OutputError, UsageError, WriteError, reason_of
-from autocolor.files.reading import DECIDING, SCALARS, hidden_path, save_in, save_of
+from autocolor.errors import InputError, MissingInputError, OutputError, UsageError, WriteError, reason_of
 from ramtek_emu import writing
 
 lock = writing.lock
@@ -44,94 +42,6 @@ def write_atomically(
         writing.write_atomically(path, data, overwrite=overwrite, sync=sync)
 
 
-def write_together(
-    folder: Path, files: Iterable[tuple[str, Iterable[bytes]]], *, others: Iterable[str], overwrite: bool
-) -> list[Path]:
-    """Write tables to a folder, which is created if it does not exist; returns their paths, sorted.
-
-    One of the files decides (see `reading.DECIDING`). Its content must differ from save to save, unless there
-    is only one other file. The others are written under hidden names. When the deciding file is replaced, our
-    readers read the new tables, and then the tables get their own names. If a program is killed before, the
-    old tables are whole. If it is killed later, the next call gives the tables their names. Tables in
-    `others` that are not written now are removed. All other files in the folder stay.
-
-    Raises OutputError if a table exists and `overwrite` is false, or if the folder cannot be created, and
-    WriteError if writing fails. The old or the new tables are whole then.
-    """
-    parent = folder.resolve().parent
-    if not parent.is_dir():
-        raise OutputError(f"an output must be in an existing folder, not {folder.parent}; create it")
-    if os.path.exists(folder) and not os.path.isdir(folder):
-        raise OutputError(f"an output of several files must be a folder, not the file {folder}; name another")
-    with (
-        new_folder(folder, "a mesh"),
-        refusals_of_this_package(),
-        _refusals_at(folder),
-        _saving_alone(folder),
-    ):
-        _name_hidden_tables(folder)
-        try:
-            return _written(folder, files, others, overwrite)
-        finally:
-            _name_hidden_tables(folder)
-
-
-UNFINISHED: Final = "0" * 12
-"""Stands for the checksum in the hidden name of a table that is not whole yet."""
-
-HIDDEN: Final = re.compile(r"\.([a-z0-9_]+(\.npy|\.csv))\.([0-9a-f]{12})\.part")
-"""The hidden name of a table: its own name, its suffix, and the checksum of the deciding file."""
-
-
-def _written(
-    folder: Path, files: Iterable[tuple[str, Iterable[bytes]]], others: Iterable[str], overwrite: bool
-) -> list[Path]:
-    """Write tables under hidden names, and replace the deciding file. Raises OSError and OutputError."""
-    paths: list[Path] = []
-    deciding, data = folder, b""
-    for name, content in files:
-        path = folder / name
-        path.parent.mkdir(exist_ok=True)
-        writing.refuse_output(path, overwrite)
-        if name in DECIDING.values():
-            deciding, data = path, b"".join(content)
-            continue
-        with open(hidden_path(path, UNFINISHED), "wb") as file:
-            file.writelines(content)
-            file.flush()
-            os.fsync(file.fileno())
-        paths.append(path)
-    save = save_of(data)
-    for path in paths:
-        writing.refuse_output(path, overwrite)
-        os.replace(hidden_path(path, UNFINISHED), hidden_path(path, save))
-    for place in {path.parent for path in paths}:
-        writing.sync_folder(place)
-    writing.write_atomically(deciding, data, overwrite=overwrite)
-    for path in {folder / name for name in others} - {*paths}:
-        if path.is_file():
-            path.unlink()
-    return sorted([*paths, deciding])
-
-
-def _name_hidden_tables(folder: Path) -> None:
-    """Give the tables of the present save their names; remove hidden ones of other saves. Raises OSError."""
-    for place in (folder, folder / SCALARS):
-        for hidden in list(place.iterdir()) if place.is_dir() else ():
-            name = HIDDEN.fullmatch(hidden.name)
-            if name is None or hidden.is_symlink() or not hidden.is_file():
-                continue
-            if name[3] == save_in(folder / DECIDING[name[2]]):
-                with suppress(OSError):
-                    os.chmod(hidden, os.stat(place / name[1]).st_mode & 0o777)
-                os.replace(hidden, place / name[1])
-            else:
-                hidden.unlink()
-        writing.sync_folder(place)
-    with suppress(OSError):
-        os.rmdir(folder / SCALARS)
-
-
 @contextmanager
 def new_folder(folder: Path, thing: str) -> Iterator[None]:
     """Create a missing folder for `thing`; remove it again if the body fails. Raises OutputError."""
@@ -153,12 +63,160 @@ def new_folder(folder: Path, thing: str) -> Iterator[None]:
         raise
 
 
+def refuse_output(path: str | os.PathLike[str], *, overwrite: bool) -> None:
+    """Raise OutputError if no file can be written to the path; for use before an expensive computation."""
+    with refusals_of_this_package():
+        writing.refuse_output(path, overwrite)
+
+
+def check_suffix(path: str | os.PathLike[str], suffix: str, what: str) -> None:
+    """Raise UsageError if the name of a file does not end in a suffix; `what` is written to it."""
+    if Path(path).suffix.lower() != suffix:
+        raise UsageError(f"{what} must be written to a file that ends in {suffix}, not to {path}; rename it")
+
+
+@contextmanager
+def refusals_of_this_package(path: Path | None = None) -> Iterator[None]:
+    """Raise OutputError and WriteError of this package instead of those of `ramtek_emu`.
+
+    With a path, any other OSError becomes one of them, too.
+    """
+    try:
+        yield
+    except OSError as error:
+        refusal = error
+        if not isinstance(error, (ramtek_emu.OutputError, ramtek_emu.WriteError)):
+            if path is None:
+                raise
+            refusal = writing.refusal(path, error)
+        kind = OutputError if isinstance(refusal, ramtek_emu.OutputError) else WriteError
+        raise kind(str(refusal)) from None
+
+
+# Tables of a folder that are saved together. They are written under hidden names. Then a file that is named
+# SAVED says that all are whole, and the tables get their own names. While SAVED is there, our readers prefer
+# the hidden names. So after a kill they find all the old tables, or all the new.
+
+SAVED: Final = ".tables-saved"
+
+HIDDEN: Final = ".table.part"
+"""The ending of the hidden name of a table."""
+
+SCALARS: Final = "scalars"
+"""The folder of scalars in a folder of tables."""
+
+MOST_TRIES: Final = 100
+"""Limit: how often tables are opened while others save them."""
+
+Result = TypeVar("Result")
+
+
+def hidden_path(path: Path) -> Path:
+    """The hidden name of a table."""
+    return path.with_name(f".{path.name}{HIDDEN}")
+
+
+def table_exists(folder: Path, name: str) -> bool:
+    """Whether a folder has a table."""
+    path = folder / name
+    return os.path.exists(path) or (os.path.exists(folder / SAVED) and os.path.exists(hidden_path(path)))
+
+
+def read_table(folder: Path, name: str, read: Callable[[Path], Result]) -> Result:
+    """The result of `read` for the path where a table of a folder is at present."""
+    if os.path.exists(folder / SAVED):
+        with suppress(MissingInputError):
+            return read(hidden_path(folder / name))
+    return read(folder / name)
+
+
+def read_together(folder: Path, first: str, read: Callable[[], Result]) -> Result:
+    """The result of `read`, which opens tables of a folder with `read_table`, all of the same save.
+
+    `first` is the table whose name is last in the alphabet; a save renames it first. If it was saved
+    meanwhile, `read` is called again. Raises InputError if saves come all the time, and the errors of `read`.
+    """
+
+    def stamps() -> list[tuple[int, int]]:
+        found = []
+        for path in (folder / SAVED, folder / first):
+            with suppress(OSError, ValueError):
+                status = os.stat(path)
+                found.append((status.st_ino, status.st_mtime_ns))
+        return found
+
+    for _ in range(MOST_TRIES):
+        before = stamps()
+        try:
+            result = read()
+        except InputError:
+            if stamps() == before:
+                raise
+        else:
+            if stamps() == before:
+                return result
+    raise InputError(f"{folder}: tables must stay while they are opened, but a program saves them; try again")
+
+
+def write_together(
+    folder: Path, files: Iterable[tuple[str, Iterable[bytes]]], *, others: Iterable[str], overwrite: bool
+) -> list[Path]:
+    """Write tables to a folder, which is created if it does not exist; returns their paths, sorted.
+
+    Tables in `others` that are not written now are removed. All other files in the folder stay. Raises
+    OutputError if a table exists and `overwrite` is false, or if the folder cannot be created, and WriteError
+    if writing fails. The old or the new tables are whole then.
+    """
+    paths: list[Path] = []
+    with new_folder(folder, "a mesh"), refusals_of_this_package(folder), _saving_alone(folder):
+        _finish(folder)
+        try:
+            for name, content in files:
+                path = folder / name
+                path.parent.mkdir(exist_ok=True)
+                writing.refuse_output(path, overwrite)
+                with open(hidden_path(path), "wb") as file:
+                    file.writelines(content)
+                    file.flush()
+                    os.fsync(file.fileno())
+                paths.append(path)
+            for place in {path.parent for path in paths}:
+                writing.sync_folder(place)
+            writing.write_atomically(folder / SAVED, b"", overwrite=True)
+            for path in {folder / name for name in others} - {*paths}:
+                if path.is_file():
+                    path.unlink()
+        finally:
+            _finish(folder)
+    return sorted(paths)
+
+
+def _finish(folder: Path) -> None:
+    """Give the tables of a save their names, or remove them if the save was not whole. Raises OSError."""
+    is_whole = os.path.exists(folder / SAVED)
+    for place in (folder, folder / SCALARS):
+        for hidden in sorted(place.glob(f".*{HIDDEN}"), reverse=True):
+            path = place / hidden.name[1 : -len(HIDDEN)]
+            if is_whole:
+                with suppress(OSError):
+                    os.chmod(hidden, os.stat(path).st_mode & 0o777)
+                os.replace(hidden, path)
+            else:
+                os.unlink(hidden)
+        writing.sync_folder(place)
+    with suppress(FileNotFoundError):
+        os.unlink(folder / SAVED)
+    # It may be empty now.
+    with suppress(OSError):
+        os.rmdir(folder / SCALARS)
+
+
 @contextmanager
 def _saving_alone(folder: Path) -> Iterator[None]:
     """Refuse to save tables to a folder while another program does. Raises WriteError."""
     try:
         descriptor = os.open(folder, os.O_RDONLY)
-    except OSError:
+    except PermissionError:
         # Windows opens no folders.
         yield
         return
@@ -175,37 +233,3 @@ def _saving_alone(folder: Path) -> Iterator[None]:
         yield
     finally:
         os.close(descriptor)
-
-
-def refuse_output(path: str | os.PathLike[str], *, overwrite: bool) -> None:
-    """Raise OutputError if no file can be written to the path; for use before an expensive computation."""
-    with refusals_of_this_package():
-        writing.refuse_output(path, overwrite)
-
-
-def check_suffix(path: str | os.PathLike[str], suffix: str, what: str) -> None:
-    """Raise UsageError if the name of a file does not end in a suffix; `what` is written to it."""
-    if Path(path).suffix.lower() != suffix:
-        raise UsageError(f"{what} must be written to a file that ends in {suffix}, not to {path}; rename it")
-
-
-@contextmanager
-def _refusals_at(path: Path) -> Iterator[None]:
-    try:
-        yield
-    except (ramtek_emu.OutputError, ramtek_emu.WriteError):
-        # They are OSErrors, too.
-        raise
-    except OSError as error:
-        raise writing.refusal(path, error) from None
-
-
-@contextmanager
-def refusals_of_this_package() -> Iterator[None]:
-    """Raise OutputError and WriteError of this package instead of those of `ramtek_emu`."""
-    try:
-        yield
-    except ramtek_emu.OutputError as refusal:
-        raise OutputError(str(refusal)) from None
-    except ramtek_emu.WriteError as refusal:
-        raise WriteError(str(refusal)) from None

@@ -24,6 +24,7 @@ import math
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
@@ -35,9 +36,9 @@ from autocolor.errors import InputError
 from autocolor.files.meshes.file_scalars import FileScalars
 from autocolor.files.meshes.number_text import MOST_PROBLEMS, NUMBER, Problems
 from autocolor.files.meshes.repair import LONGEST_NAME, PLAIN, MeshReport, Placement, RawPolygons, repaired
-from autocolor.files.reading import read_table, read_together, read_whole, save_of, shown
+from autocolor.files.reading import read_whole, shown
 from autocolor.files.text_table import TextTable
-from autocolor.files.writing import write_together
+from autocolor.files.writing import read_table, read_together, write_together
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalar import MOST_SCALARS, NODE, POLYGON
 
@@ -241,12 +242,11 @@ def read_csv_tables(nodes: Path, polygons: Path, placement: Placement = PLAIN) -
     Raises InputError with every problem of both tables, each with its file and row.
     """
 
-    def tables() -> tuple[bytes, bytes]:
-        polygon_data = read_whole(polygons, GROWTH)
-        save = save_of(polygon_data)
-        return read_table(nodes, save, lambda path: read_whole(path, GROWTH)), polygon_data
+    def tables() -> list[bytes]:
+        read = partial(read_whole, growth=GROWTH)
+        return [read_table(path.parent, path.name, read) for path in (nodes, polygons)]
 
-    node_data, polygon_data = read_together(polygons, tables)
+    node_data, polygon_data = read_together(polygons.parent, polygons.name, tables)
     problems = Problems("row")
     node_table = Table(
         problems,

@@ -16,7 +16,7 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Floats, Indices, Numbers, Scratch, Singles, chunks, cross, lengths, underflowing
+from autocolor.arrays import Floats, Indices, Numbers, Singles, chunks, cross, lengths, underflowing
 from autocolor.immutable import Immutable, read_only
 
 CREASE_ANGLE: Final = 40.0
@@ -90,20 +90,16 @@ def node_normals(
     node_numbers: Indices,
     part_numbers: Indices,
     crease_angle: float = CREASE_ANGLE,
-    scratch: Scratch = np.empty,
 ) -> NodeNormals:
-    """The normals at the corners of the polygons; a polygon without area adds nothing.
-
-    `scratch` makes the arrays of the work and of the result: for a large mesh files may back them.
-    """
+    """The normals at the corners of the polygons; a polygon without area adds nothing."""
     coordinate_rows, node_rows = np.ascontiguousarray(coordinates.T), np.ascontiguousarray(node_numbers.T)
-    normals, angles = _normals_and_angles(coordinate_rows, node_rows, scratch)
-    places = places_of_corners(coordinate_rows, node_rows, scratch)
-    fans, opposite = fans_of_corners(places, part_numbers, normals, crease_angle, scratch)
+    normals, angles = _normals_and_angles(coordinate_rows, node_rows)
+    places = places_of_corners(coordinate_rows, node_rows)
+    fans, opposite = fans_of_corners(places, part_numbers, normals, crease_angle)
     del places
 
     # Sum the normals of each fan, weighted by the angles.
-    vectors, numbers = _weighted_sums(fans, normals, angles, scratch)
+    vectors, numbers = _weighted_sums(fans, normals, angles)
     del angles, fans
     if opposite:
         vectors, united = _united_with_opposite(vectors, opposite)
@@ -111,7 +107,7 @@ def node_normals(
             numbers[:, chunk] = united[numbers[:, chunk]]
 
     # Give a fan whose normals cancel out the normal of one of its polygons.
-    sizes = scratch(vectors.shape[1:], np.float64)
+    sizes = np.empty(vectors.shape[1:], np.float64)
     for chunk in chunks(len(sizes), POLYGONS_AT_ONCE):
         sizes[chunk] = lengths(vectors[:, chunk])
     canceled = np.flatnonzero(sizes < 1e-9)
@@ -123,18 +119,16 @@ def node_normals(
         vectors[:, canceled] = normals[:, polygon_of_fan[canceled]]
         vectors[2, canceled[~vectors[:, canceled].any(axis=0)]] = 1.0
         sizes[canceled] = 1.0
-    singles: Singles = scratch(vectors.shape, np.float32)
+    singles: Singles = np.empty(vectors.shape, np.float32)
     for chunk in chunks(len(sizes), POLYGONS_AT_ONCE):
         singles[:, chunk] = vectors[:, chunk] / sizes[chunk]
     return NodeNormals(read_only(singles.T), read_only(numbers.T))
 
 
-def _normals_and_angles(
-    coordinate_rows: Floats, node_rows: Indices, scratch: Scratch
-) -> tuple[Floats, Floats]:
+def _normals_and_angles(coordinate_rows: Floats, node_rows: Indices) -> tuple[Floats, Floats]:
     """The normals of the polygons, (3, polygons), and the angles at their corners, (4, polygons)."""
     count = node_rows.shape[1]
-    normals, angles = scratch((3, count), np.float64), scratch((4, count), np.float64)
+    normals, angles = np.empty((3, count), np.float64), np.empty((4, count), np.float64)
     for chunk in chunks(count, POLYGONS_AT_ONCE):
         corners = np.take(coordinate_rows, node_rows[:, chunk], axis=1)
         normals[:, chunk] = polygon_normals(corners)
@@ -142,13 +136,11 @@ def _normals_and_angles(
     return normals, angles
 
 
-def _weighted_sums(
-    fans: Indices, normals: Floats, angles: Floats, scratch: Scratch
-) -> tuple[Floats, Indices]:
+def _weighted_sums(fans: Indices, normals: Floats, angles: Floats) -> tuple[Floats, Indices]:
     """The sums of the weighted normals of each fan, (3, fans), and the fan of each corner, (4, polygons)."""
-    sums = scratch((3, int(fans.max(initial=-1)) + 1), np.float64)
+    sums = np.empty((3, int(fans.max(initial=-1)) + 1), np.float64)
     sums[:] = 0.0
-    numbers: Indices = scratch(angles.shape, np.intp)
+    numbers: Indices = np.empty(angles.shape, np.intp)
     for chunk in chunks(angles.shape[1], POLYGONS_AT_ONCE):
         fan = fans[4 * chunk.start : 4 * chunk.stop]
         numbers[:, chunk] = fan.reshape(-1, 4).T
@@ -214,12 +206,12 @@ def _corner_angles(corners: Floats) -> Floats:
 # worked on in chunks, so that a large mesh needs no more than a few numbers a corner.
 
 
-def places_of_corners(coordinate_rows: Floats, node_rows: Indices, scratch: Scratch = np.empty) -> Indices:
+def places_of_corners(coordinate_rows: Floats, node_rows: Indices) -> Indices:
     """A number for each corner, (4, polygons), equal for corners at the same place.
 
     `coordinate_rows` is (3, nodes); `node_rows`, (4, polygons), holds the node numbers of the polygons.
     """
-    if not _some_share_a_place(coordinate_rows, scratch):
+    if not _some_share_a_place(coordinate_rows):
         return node_rows
     order = np.lexsort(coordinate_rows)
     moved = np.zeros(len(order), np.bool_)
@@ -227,18 +219,18 @@ def places_of_corners(coordinate_rows: Floats, node_rows: Indices, scratch: Scra
         moved[1:] |= np.diff(row[order]) != 0
     places = np.empty(len(order), np.intp)
     places[order] = np.cumsum(moved)
-    of_corners: Indices = scratch(node_rows.shape, np.intp)
+    of_corners: Indices = np.empty(node_rows.shape, np.intp)
     for chunk in chunks(node_rows.shape[1], CORNERS_AT_ONCE):
         of_corners[:, chunk] = places.take(node_rows[:, chunk])
     return of_corners
 
 
-def _some_share_a_place(coordinate_rows: Floats, scratch: Scratch) -> bool:
+def _some_share_a_place(coordinate_rows: Floats) -> bool:
     """Whether two nodes may be at the same place: compares hashes of the coordinates.
 
     Measured: it takes a fifth of the time of sorting the nodes.
     """
-    hashes = scratch(coordinate_rows.shape[1:], np.uint64)
+    hashes = np.empty(coordinate_rows.shape[1:], np.uint64)
     for chunk in chunks(len(hashes), CORNERS_AT_ONCE):
         part = np.zeros(chunk.stop - chunk.start, np.uint64)
         for row in coordinate_rows:
@@ -256,14 +248,13 @@ def fans_of_corners(
     part_numbers: Indices,
     normals: Floats,
     crease_angle: float,
-    scratch: Scratch = np.empty,
 ) -> tuple[Indices, list[Indices]]:
     """The fan of each corner, (corners,), and pairs of fans with opposite winding, each (2, pairs).
 
     `places`, (4, polygons), has the place of each corner; `normals`, (3, polygons), holds unit vectors, or
     zeros. Fans are numbered from 0 in the order of their first corners.
     """
-    parents = scratch((places.size,), np.intp if places.size < LARGE else np.int32)
+    parents = np.empty((places.size,), np.intp if places.size < LARGE else np.int32)
     for chunk in chunks(places.shape[1], CORNERS_AT_ONCE):
         corners = np.arange(4 * chunk.start, 4 * chunk.stop)
         # Unite the last two corners of a triangle, which repeats its last node.
@@ -271,7 +262,7 @@ def fans_of_corners(
         parents[4 * chunk.start : 4 * chunk.stop] = corners
     least_cosine = np.cos(np.radians(crease_angle)) - 1e-9
     opposite_corners = []
-    for one, other in _corners_at_shared_edges(places, part_numbers, scratch):
+    for one, other in _corners_at_shared_edges(places, part_numbers):
         # Two polygons have opposite winding if both run along the shared edge in the same direction. Compare
         # the normal of the first then with the reversed normal of the second.
         opposite = places[one & 3, one >> 2] == places[other & 3, other >> 2]
@@ -284,19 +275,17 @@ def fans_of_corners(
         unite(parents, ends[:, same].ravel(), other_ends[::-1, same].ravel())
         if len(reversed_):
             opposite_corners.append(np.stack([ends[:, reversed_].ravel(), other_ends[:, reversed_].ravel()]))
-    fans = group_numbers(parents, scratch)
+    fans = group_numbers(parents)
     return fans, [fans[pairs] for pairs in opposite_corners]
 
 
-def _corners_at_shared_edges(
-    places: Indices, part_numbers: Indices, scratch: Scratch
-) -> Iterator[tuple[Indices, Indices]]:
+def _corners_at_shared_edges(places: Indices, part_numbers: Indices) -> Iterator[tuple[Indices, Indices]]:
     """Pairs of corners whose outgoing edges join the same two places in the same part, chunk by chunk.
 
     Where more than two polygons share an edge, each is paired with the next in the polygon table.
     """
     several_parts = bool((part_numbers != part_numbers[:1]).any())
-    for keys, edges in _edges(places, scratch):
+    for keys, edges in _edges(places):
         # Sort the edges so that equal edges of one part become neighbors.
         if several_parts:
             polygons = np.repeat(np.arange(places.shape[1]), 4) if edges is None else edges >> 2
@@ -314,7 +303,7 @@ def _corners_at_shared_edges(
             yield corners[shared], corners[shared + 1]
 
 
-def _edges(places: Indices, scratch: Scratch) -> Iterator[tuple[Numbers, Indices | None]]:
+def _edges(places: Indices) -> Iterator[tuple[Numbers, Indices | None]]:
     """The edges in divisions: a key that does not depend on their direction, and their first corners.
 
     Edges without length have the key -1. The corners of a division ascend, and equal keys are in the same
@@ -330,7 +319,7 @@ def _edges(places: Indices, scratch: Scratch) -> Iterator[tuple[Numbers, Indices
         yield all_keys.ravel(), None
         return
     # Number the divisions by the lower place of an edge.
-    divisions = scratch((places.size,), np.uint8)
+    divisions = np.empty((places.size,), np.uint8)
     for chunk in chunks(places.shape[1], CORNERS_AT_ONCE):
         start = places[:, chunk]
         lower = np.minimum(start, np.roll(start, -1, axis=0))
@@ -378,9 +367,9 @@ def unite(parents: Indices, one: Indices, other: Indices) -> None:
         np.minimum.at(parents, np.maximum(one, other), np.minimum(one, other))
 
 
-def group_numbers(parents: Indices, scratch: Scratch = np.empty) -> Indices:
+def group_numbers(parents: Indices) -> Indices:
     """The group of each item; groups are numbered from 0 in the order of their roots."""
-    groups: Indices = scratch(parents.shape, parents.dtype.type)
+    groups: Indices = np.empty(parents.shape, parents.dtype.type)
     count = 0
     for chunk in chunks(len(parents), CORNERS_AT_ONCE):
         items = np.arange(chunk.start, chunk.stop)

@@ -11,10 +11,10 @@ import pytest
 from autocolor import Mesh, Scene, read_scene, scene_of
 from autocolor.errors import OutputError, UsageError
 from autocolor.files.conversion import OUTPUTS, left_out, output_named, output_of
-from autocolor.files.formats import NODE_SCALARS, PARTS, POLYGON_SCALARS, QUADS, Format
+from autocolor.files.formats import PARTS, QUADS, SCALARS, Format
 from autocolor.files.meshes.obj_writing import material_names, write_obj
 from autocolor.files.opening import SCENE
-from autocolor.scene.scalar import NODE, MeshScalar
+from autocolor.scene.scalar import MeshScalar
 from autocolor.scene.surfaces import Surface
 from tests.kills import Killed, killed, steps
 from tests.small import cube
@@ -52,9 +52,10 @@ def test_a_scene_reads_back_with_all_that_the_format_holds(output: Format, tmp_p
     values = {(each.name, each.of): each.values for each in mesh.scalars}
     found = {(each.name, each.of): each.values for each in again.scalars}
     for name, of in values:
-        is_held = (NODE_SCALARS if of == NODE else POLYGON_SCALARS) in output.holds
-        assert ((name, of) in found) == is_held
-        assert not is_held or np.array_equal(found[name, of], values[name, of], equal_nan=True)
+        assert ((name, of) in found) == (SCALARS in output.holds)
+        assert SCALARS not in output.holds or np.array_equal(
+            found[name, of], values[name, of], equal_nan=True
+        )
 
 
 @pytest.mark.parametrize(
@@ -200,7 +201,7 @@ def test_of_a_scene_its_surfaces_lights_view_and_settings_are_told() -> None:
     assert left_out(scene, NOTHING, is_bare=False) == [QUADS_TOLD, *told]
     more = scene.with_saved_view("hood").with_surface("cube", diffuse=0.25)
     assert left_out(more, OBJ, is_bare=False)[:3] == [
-        "what a material does not have of 1 of 1 surfaces ('cube')",
+        "what a material does not have of 1 surface ('cube')",
         "4 lights ('key', 'fill', 'top', 'rim')",
         "the view and 1 named view",
     ]

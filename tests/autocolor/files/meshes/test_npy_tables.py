@@ -2,7 +2,6 @@ from __future__ import annotations
 
 import io
 import json
-import logging
 import os
 import subprocess
 import sys
@@ -17,6 +16,7 @@ from hypothesis import strategies as st
 from autocolor import Mesh, View, read_scene, render, scene_of
 from autocolor.arrays import AnyArray
 from autocolor.budget import MEMORY, allowing
+from autocolor.checks import shown
 from autocolor.errors import InputError, MissingInputError, OutputError, WriteError
 from autocolor.files.formats import read_mesh
 from autocolor.files.meshes import npy_tables as room
@@ -89,18 +89,12 @@ def test_tables_of_any_type_and_order_give_the_same_mesh(
         assert not table.flags.writeable
 
 
-def test_tables_in_the_order_of_rendering_are_mapped_and_others_copied_which_the_log_says(
-    tmp_path: Path, caplog: pytest.LogCaptureFixture
-) -> None:
+def test_tables_in_the_order_of_rendering_are_mapped_and_others_copied(tmp_path: Path) -> None:
     mesh = cube()
-    caplog.set_level(logging.INFO, "autocolor")
     found = read(folder_of(tmp_path, nodes=mesh.coordinates, polygons=mesh.node_numbers))
-    assert "copied" not in caplog.text
     assert not found.coordinates.flags.owndata
     rows = np.ascontiguousarray(mesh.coordinates, np.float32)
     triangles = read(folder_of(tmp_path, nodes=rows, polygons=mesh.node_numbers[:, :3]))
-    assert "nodes.npy: copied, because it is float32 (8, 3) by rows" in caplog.text
-    assert "polygons.npy: copied, because it is int64 (6, 3) by columns" in caplog.text
     assert triangles.node_numbers.tolist() == mesh.node_numbers[:, [0, 1, 2, 2]].tolist()
     with (
         pytest.raises(InputError, match=r"^nodes.npy: a copy as float64 by columns must take"),
@@ -203,7 +197,11 @@ BAD: list[tuple[str, AnyArray, str]] = [
     ("parts", np.zeros(5, int), "the shape of part numbers must be (6,), not (5,); write it again"),
     ("parts", np.arange(6) == 3, NO_TABLE.format("bool", "(6,)")),
     ("parts", np.eye(6, dtype=int)[3], f"part numbers must be from 0 to 0, not 1 (row 3, {ROW}"),
-    ("normals", np.ones((24, 3)), f"a normal must be a unit vector, not [1.0, 1.0, 1.0] (row 0, {ROW}"),
+    (
+        "normals",
+        np.ones((24, 3)),
+        f"numbers of normals {WITHIN[:-5]}, with normals of the length 1, not [1.0, 1.0, 1.0] (row 0, {ROW}",
+    ),
     (
         "normal_numbers",
         np.full((6, 4), 24),
@@ -227,26 +225,22 @@ def test_a_bad_table_is_refused_with_its_name_its_row_and_the_remedy(
 @pytest.mark.parametrize(
     ("name", "value", "rule"),
     [
-        ("planes", 0, "planes.npy: the normal of a plane must be a unit vector"),
+        ("planes", 0, "planes.npy: numbers of planes must be from -1e+30 to 1e+30, with normals of the"),
         ("planes", np.nan, "planes.npy: numbers of planes must be from"),
         ("plane_numbers", 9, "plane_numbers.npy: plane numbers must be from -1 to"),
         ("plane_sides", 9, "plane_sides.npy: sides must be from 0 to 1, not 9"),
+        ("normal_numbers", -1, "normal_numbers.npy: normal numbers must be from 0 to"),
+        ("parts", -1, "parts.npy: part numbers must be from 0 to"),
     ],
 )
-def test_bad_planes_are_refused(tmp_path: Path, name: str, value: float, rule: str) -> None:
+def test_a_table_that_is_wrong_or_missing_is_refused(
+    tmp_path: Path, name: str, value: float, rule: str
+) -> None:
     write_npy_tables(tmp_path, decal_on_ground(1)[0])
     path = tmp_path / f"{name}.npy"
     np.save(path, np.full_like(np.load(path), value))
     assert refusal(read, tmp_path).startswith(rule)
     path.unlink()
-    with pytest.raises(MissingInputError, match=name):
-        read(tmp_path)
-
-
-@pytest.mark.parametrize("name", ["normal_numbers", "parts", "scalars/1"])
-def test_a_table_that_is_missing_is_refused(tmp_path: Path, name: str) -> None:
-    write_npy_tables(tmp_path, stressed())
-    (tmp_path / f"{name}.npy").unlink()
     with pytest.raises(MissingInputError, match=rf"{name}\.npy: there is no such file"):
         read(tmp_path)
 
@@ -349,6 +343,8 @@ def described(text: bytes, version: bytes = b"\1\0") -> bytes:
         *(described(HEADER.replace(b"(3,)", shape)) for shape in (b"(-3,)", b"(1.5,)", b"(True,)", b"3")),
         *(described(HEADER.replace(b"3,", b"9" * count + b",")) for count in (9, 19, 40)),
         *(described(text) for text in (b"__import__('os')", b"(" * 900, b"-" * 900, b"{[]: 1}", b"{}")),
+        *(saved(np.zeros((10, 3)))[:change] for change in (-1, -240)),
+        saved(np.zeros((10, 3))) + b"0",
         described(HEADER.replace(b"<f8", b"|O")),
         described(HEADER + b" " * 2000),
     ],
@@ -359,28 +355,14 @@ def test_what_is_no_table_of_numbers_is_refused_in_a_sentence(tmp_path: Path, da
     path.write_bytes(data)
     with pytest.raises(InputError, match=r"^nodes\.npy: .* must ") as refused:
         mapped(path, "nodes.npy")
-    assert str(refused.value).endswith(("; write it with numpy.save", "; write it again"))
+    assert str(refused.value).endswith("; write it with numpy.save")
     assert str(refused.value).isprintable()
     assert len(str(refused.value)) < 400
 
 
-@pytest.mark.parametrize("change", [-1, -240, 1, 4096])
-def test_a_file_of_another_size_than_its_header_says_is_refused(tmp_path: Path, change: int) -> None:
-    data = saved(np.zeros((10, 3)))
-    path = tmp_path / "nodes.npy"
-    path.write_bytes(data[:change] if change < 0 else data + bytes(change))
-    with pytest.raises(InputError, match=r"write it (again|with numpy.save)$"):
-        mapped(path, "nodes.npy")
-
-
 def test_files_that_are_missing_or_no_files_are_refused(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe.npy")
-    for name, sentence in (
-        ("none.npy", "there is no such file"),
-        ("", "it must be a regular file, not a folder"),
-        ("pipe.npy", "it must be a regular file, not a pipe"),
-        ("a\0b", "a file name must be valid"),
-    ):
+    for name, sentence in (("none.npy", "there is no such file"), ("pipe.npy", "not a pipe")):
         with pytest.raises(InputError, match=sentence):
             mapped(tmp_path / name, name)
 
@@ -407,42 +389,29 @@ RIGHT: dict[str, Any] = {
 
 
 @pytest.mark.parametrize(
-    ("change", "rule"),
+    ("key", "value"),
     [
-        ({"format": "another"}, "format must be 'autocolor npy tables 2', not 'another'"),
-        (
-            {"more": 1},
-            "it must be a table with no other keys than format, replaces, part_names, crease_angle, scalars",
-        ),
-        ({"part_names": "hood"}, "part_names must be different names, one for each part, not 'hood'"),
-        ({"part_names": [""]}, "part_names must be different names, one for each part, not \"['']\""),
-        (
-            {"part_names": ["a", "a"]},
-            "part_names must be different names, one for each part, not \"['a', 'a']\"",
-        ),
-        ({"crease_angle": 181}, "crease_angle must be a number from 0 to 180, not '181'"),
-        ({"crease_angle": "wide"}, "not 'wide'"),
-        ({"scalars": [{"name": "x", "of": "edge"}]}, "names, each of 'node' or 'polygon'"),
-        ({"scalars": [{"name": "x", "of": []}]}, "names, each of 'node' or 'polygon'"),
-        ({"scalars": 3}, "scalars must be at most 1000"),
-        ({"planes": 2}, "planes must be true, false or null, not '2'"),
-        ({"files": [1]}, "files must be the names of the tables, not '[1]'"),
+        ("more", 1),
+        ("part_names", ["a", "a"]),
+        ("part_names", [""]),
+        ("crease_angle", 181),
+        ("crease_angle", "wide"),
+        ("scalars", [{"name": "x", "of": []}]),
+        ("scalars", 3),
+        ("planes", 2),
+        ("files", [1]),
     ],
 )
-def test_notes_that_say_something_else_are_refused(
-    tmp_path: Path, change: dict[str, object], rule: str
-) -> None:
+def test_notes_that_say_something_else_are_refused(tmp_path: Path, key: str, value: object) -> None:
     write_npy_tables(tmp_path, stressed())
-    (tmp_path / "tables.json").write_text(json.dumps({**RIGHT, **change}))
-    sentence = refusal(read, tmp_path)
-    assert rule in sentence
-    assert sentence.startswith("tables.json: ")
-    assert sentence.endswith("; convert the mesh again, or correct it")
+    (tmp_path / "tables.json").write_text(json.dumps({**RIGHT, key: value}))
+    assert refusal(read, tmp_path) == (
+        f"tables.json: '{key}' must be as a conversion writes it, not {shown(str(value))}; convert the mesh"
+        " again, or correct it"
+    )
 
 
-@pytest.mark.parametrize(
-    "data", [b"", b"{", b"\xff\xfe", b"[" * 100_000, b"3", b'{"crease_angle": NaN}', b"9" * 5000]
-)
+@pytest.mark.parametrize("data", [b"", b"{", b"[" * 100_000, b"3", b'{"format": "2"}', b"9" * 5000])
 def test_bytes_that_are_no_notes_are_refused(tmp_path: Path, data: bytes) -> None:
     write_npy_tables(tmp_path, cube())
     (tmp_path / "tables.json").write_bytes(data)
@@ -476,20 +445,6 @@ def test_numpy_reads_every_table_as_it_is_in_the_mesh(
     }
 
 
-@given(meshes())
-def test_normals_that_are_computed_in_files_are_the_same_to_the_bit(
-    tmp_path_factory: pytest.TempPathFactory, mesh: Mesh
-) -> None:
-    folder = tmp_path_factory.mktemp("tables")
-    fresh = Mesh(mesh.coordinates, mesh.node_numbers, mesh.part_numbers, mesh.part_names, mesh.crease_angle)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(room, "LARGE", 0)
-        write_npy_tables(folder, fresh)
-    assert "normals" not in vars(fresh)
-    assert read(folder).normals.vectors.tobytes() == mesh.normals.vectors.tobytes()
-    assert read(folder).normals.numbers.tobytes() == mesh.normals.numbers.tobytes()
-
-
 def test_a_folder_may_be_converted_to_itself_while_its_tables_are_mapped(tmp_path: Path) -> None:
     one = folder_of(tmp_path / "one", nodes=cube().coordinates, polygons=cube().node_numbers)
     write_npy_tables(tmp_path / "two", read(one))
@@ -512,20 +467,10 @@ def test_files_that_are_there_are_not_written_over_unless_it_is_wanted(tmp_path:
     assert read(tmp_path).node_numbers.tolist() == cube().node_numbers.tolist()
 
 
-def test_a_mesh_that_cannot_be_written_leaves_no_file(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_mesh_that_cannot_be_written_leaves_no_file(tmp_path: Path) -> None:
     (tmp_path / "scalars").write_text("in the way")
-    with pytest.raises((OutputError, WriteError), match=r"^an output must .* (place|name)$"):
+    with pytest.raises(WriteError, match=r"^an output must be written whole, .* place$"):
         write_npy_tables(tmp_path, stressed())
-
-    def full(*_: object) -> None:
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr("os.posix_fallocate", full)
-    monkeypatch.setattr(room, "LARGE", 0)
-    with pytest.raises(WriteError, match=r"there must be room to work in \(.*\); make some"):
-        write_npy_tables(tmp_path, cube())
     assert [path.name for path in tmp_path.iterdir()] == ["scalars"]
 
 
