@@ -30,7 +30,7 @@ from autocolor.files.meshes.stl import begins_as_stl, read_stl, stl_bytes
 from autocolor.files.meshes.table_file import SUFFIX, read_table_file, table_file_bytes
 from autocolor.files.meshes.vtk import begins_as_vtk, read_vtk
 from autocolor.files.meshes.vtp import begins_as_vtp, read_vtp
-from autocolor.files.reading import read_head, refuse_irregular, status_of
+from autocolor.files.reading import read_head
 from autocolor.files.writing import table_exists, write_atomically
 from autocolor.logs import logger_of, timed
 from autocolor.scene.mesh import Mesh
@@ -131,8 +131,7 @@ class MeshFormat(Format):
     """A mesh file format.
 
     `keys` are the keys of a `[[mesh]]` table that name its files; suffixes and first bytes are those of the
-    first file. In a folder of this format, the first files `in_folder` are the files of the keys. If the only
-    key is "file", the folder itself is the file.
+    first file. In a folder of this format, the files `in_folder` are the files of the keys.
 
     Files that are `mapped` into memory are read page by page, so their size has no limit. `prior_of_y` is how
     often y is up in the files of others, from -1 to 1 (see `meshes.up_axis`); None if the format says which
@@ -248,8 +247,8 @@ FILE_FORMATS: Final = tuple(each for each in MESH_FORMATS if each.keys == FILE)
 
 
 def format_of(path: Path) -> MeshFormat | None:
-    """The format of a single file, by its suffix or its first bytes, or of a folder; None if unknown."""
-    return (format_of_folder(path) if path.is_dir() else None) or recognized(path, FILE_FORMATS)
+    """The format of a single file, by its suffix or its first bytes; None if unknown."""
+    return recognized(path, FILE_FORMATS)
 
 
 def format_of_folder(folder: Path) -> MeshFormat | None:
@@ -274,13 +273,6 @@ def format_of_files(files: Mapping[str, Path]) -> MeshFormat | None:
     return recognized(first, several) or next((each for each in several if each.begins is None), None)
 
 
-def files_of_folder(folder: Path, mesh_format: MeshFormat) -> dict[str, Path]:
-    """The files of the mesh in a folder, by their keys; the folder itself if the only key is "file"."""
-    if mesh_format.keys == FILE:
-        return {"file": folder}
-    return {key: folder / name for key, name in zip(mesh_format.keys, mesh_format.in_folder, strict=False)}
-
-
 def read_mesh(files: Mapping[str, Path], placement: Placement = PLAIN) -> MeshReport:
     """The mesh of some files, given by their keys in `[[mesh]]`, and what was repaired. Raises InputError."""
     path = next(iter(files.values()))
@@ -291,9 +283,6 @@ def read_mesh(files: Mapping[str, Path], placement: Placement = PLAIN) -> MeshRe
             " export it as one of these"
         )
     with timed(LOG, f"read {', '.join(path.name for path in files.values())}"):
-        # A folder of tables is no file.
-        for file in files.values() if len(files) < len(mesh_format.keys) else ():
-            refuse_irregular(file, status_of(file))
         report = mesh_format.read(*files.values(), placement)
     named = format_named(path, MESH_FORMATS)
     if named not in (None, mesh_format) and path.suffix.lower() not in mesh_format.suffixes:

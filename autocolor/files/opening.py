@@ -7,7 +7,7 @@ add a format of scenes, write its reader and a row of FORMATS below.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, NamedTuple
@@ -22,7 +22,6 @@ from autocolor.files.formats import (
     WHOLE_SCENE,
     Format,
     MeshFormat,
-    files_of_folder,
     format_named,
     format_of_folder,
     read_mesh,
@@ -58,15 +57,6 @@ class SceneFormat(Format):
     read: Callable[..., SceneReport]
 
 
-def _read_picture_scene(path: Path, **_: object) -> SceneReport:
-    """The scene of a picture file, which is complete: the options have no effect. Raises InputError."""
-    return SceneReport(read_picture(path).scene)
-
-
-def _write_scene_folder(path: Path, scene: Scene, overwrite: bool) -> list[Path]:
-    return write_scene_with_tables(path, scene, overwrite=overwrite, complete=False)
-
-
 def _read_store(path: Path, *, outside: bool, surfaces: SurfaceSource) -> SceneReport:
     """The scene of a store, which names no other files: `outside` has no effect. Raises InputError."""
     # SQLite is loaded for stores only.
@@ -86,7 +76,8 @@ PICTURE: Final = SceneFormat(
     name="picture",
     suffixes=(PICTURE_SUFFIX,),
     begins=lambda head: head.startswith(b"PK\x03\x04"),
-    read=_read_picture_scene,
+    # A picture file is complete: the options have no effect.
+    read=lambda path, **_: SceneReport(read_picture(path).scene),
 )
 
 SCENE: Final = SceneFormat(
@@ -94,7 +85,9 @@ SCENE: Final = SceneFormat(
     suffixes=(".toml",),
     in_folder=(SCENE_FILE,),
     read=read_scene_file,
-    write=_write_scene_folder,
+    write=lambda path, scene, overwrite: write_scene_with_tables(
+        path, scene, overwrite=overwrite, complete=False
+    ),
 )
 
 STORE: Final = SceneFormat(
@@ -171,21 +164,29 @@ def read_scene_with_report(
                 raise UsageError(
                     f"{name} is for mesh files, not for {path}, which gives its own; leave it out"
                 )
-        report = source.read(path, outside=outside, surfaces=surfaces)
-        return _with_source(report, path.parent, path)
+        report, folder, scene_file = source.read(path, outside=outside, surfaces=surfaces), path.parent, path
+    else:
+        report, scene_file = _bare_mesh(path, source, placement, surfaces), None
+        folder = path if path.is_dir() else path.parent
+    if report.mesh_files:
+        source_path = scene_file and scene_file.resolve()
+        keep_source(report.scene.mesh, MeshSource(folder.resolve(), report.mesh_files, source_path))
+    return report
+
+
+def _bare_mesh(
+    path: Path, mesh_format: MeshFormat, placement: Placement, surfaces: SurfaceSource
+) -> SceneReport:
+    """The scene of a mesh file, or of a folder of tables, with everything else created from defaults."""
     files, name = {"file": path}, path.stem
     if path.is_dir():
-        files, name = files_of_folder(path, source), path.resolve().name
-    report = _bare_mesh(files, name or "scene", placement, surfaces)
-    return _with_source(report, next(iter(files.values())).parent)
-
-
-def _with_source(report: SceneReport, folder: Path, scene_file: Path | None = None) -> SceneReport:
-    """Remember the files of the mesh of a report; returns the report."""
-    if report.mesh_files:
-        path = None if scene_file is None else scene_file.resolve()
-        keep_source(report.scene.mesh, MeshSource(folder.resolve(), report.mesh_files, path))
-    return report
+        files = {key: path / each for key, each in zip(mesh_format.keys, mesh_format.in_folder, strict=True)}
+        name = path.resolve().name
+    read = read_mesh(files, placement)
+    scale = {} if placement.scale == 1 else {"scale": placement.scale}
+    normals = {} if read.mesh.own_normals is None else {"normals": FILE}
+    entry = {**{key: file.name for key, file in files.items()}, "up": placement.up, **scale, **normals}
+    return scene_report([read], mesh_files=(entry,), name=name or "scene", surfaces=surfaces)
 
 
 def is_picture(path: Path) -> bool:
@@ -246,17 +247,6 @@ def hinted_up(path: PathLike, mesh: Mesh) -> str:
         return ""
     prior = file_format.prior_of_y if isinstance(file_format, MeshFormat) else None
     return "y" if prior is not None and seems_to_lie(mesh, prior) else ""
-
-
-def _bare_mesh(
-    files: Mapping[str, Path], name: str, placement: Placement, surfaces: SurfaceSource
-) -> SceneReport:
-    """The scene of a mesh, with everything else created from defaults."""
-    read = read_mesh(files, placement)
-    scale = {} if placement.scale == 1 else {"scale": placement.scale}
-    normals = {} if read.mesh.own_normals is None else {"normals": FILE}
-    entry = {**{key: file.name for key, file in files.items()}, "up": placement.up, **scale, **normals}
-    return scene_report([read], mesh_files=(entry,), name=name, surfaces=surfaces)
 
 
 # The files of a folder that can be opened. Kinds are recognized by names only, which is quick: no file is

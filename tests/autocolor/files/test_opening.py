@@ -7,7 +7,6 @@ from typing import Any
 
 import pytest
 
-from autocolor import Scene
 from autocolor.errors import InputError, MissingInputError, UsageError
 from autocolor.files.opening import (
     TWO_TABLES,
@@ -17,8 +16,6 @@ from autocolor.files.opening import (
     read_scene_with_report,
     stays_within,
 )
-from autocolor.scene.columns import fields_of
-from autocolor.scene.defaults import MAPPING_FIELDS
 from tests.autocolor.files.store.stores import is_equal, small_scene, small_store
 from tests.tables import call, refused
 
@@ -135,18 +132,6 @@ def test_what_is_no_scene_is_refused(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "scene.toml")
     with pytest.raises(InputError, match="not a pipe"):
         read_scene(tmp_path)
-
-
-def test_a_scene_file_that_leaves_out_how_intensities_are_shown_means_the_defaults_of_a_scene(
-    folder: Path,
-) -> None:
-    (folder / "scene.toml").write_text('[[mesh]]\nfile = "car.obj"\n')
-    scene, bare = read_scene(folder), read_scene(folder / "car.obj")
-    fields = fields_of(Scene)
-    assert {name: vars(scene)[name] for name in MAPPING_FIELDS} == {
-        name: default() for name in MAPPING_FIELDS if (default := fields[name].default) is not None
-    }
-    assert {name: vars(bare)[name] for name in MAPPING_FIELDS} == MAPPING_FIELDS
 
 
 def test_what_can_be_opened_is_listed_by_name_with_folders_last(tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from autocolor.errors import InputError, MissingInputError, UsageError
 from autocolor.files.paths import check_stem, file_stem, free_path, path_within
-from autocolor.files.reading import MOST_NESTED, bounded_json, read_bytes, read_whole, shown, text_problem
+from autocolor.files.reading import MOST_NESTED, bounded_json, read_bytes, read_whole, text_problem
 
 
 def test_at_most_the_bytes_asked_for_are_read_without_a_byte_order_mark(tmp_path: Path) -> None:
@@ -74,11 +74,6 @@ def test_what_is_no_text_is_said() -> None:
     assert text_problem(b"v\nv\0") == "must be text, not hold a NUL byte (line 2); save it as UTF-8 text"
 
 
-def test_what_is_shown_is_short() -> None:
-    assert shown("a" * 1_000_000) == repr("a" * 40) + "..."
-    assert shown(b"\xff\n") == repr("\\xff\n")
-
-
 def test_json_may_be_nested_a_hundred_deep_and_have_as_many_values_as_allowed() -> None:
     for depth in (MOST_NESTED, MOST_NESTED + 1):
         data = b'{"[[": "\\"[[", "list": ' + b"[" * (depth - 1) + b"]" * (depth - 1) + b"}"
@@ -104,21 +99,12 @@ FILE = "must be the name of a file, not"
 IN_FOLDER = "must be the name of a file in the scene's folder, not"
 
 
-@pytest.mark.parametrize("name", ["a.obj", "parts/a.obj", "./a.obj", "a b.obj", "é.obj", "..a.obj"])
-def test_names_in_the_folder_are_taken(tmp_path: Path, name: str) -> None:
-    (tmp_path / "é.obj").symlink_to(tmp_path / "a.obj")
-    problems: list[str] = []
-    assert path_within(problems, tmp_path, name) == tmp_path / name
-    assert problems == []
-
-
 @pytest.mark.parametrize(
     ("name", "sentence"),
     [
         ("", f"{FILE} ''; correct it"),
         ("a\0b", f"{FILE} 'a\\x00b'; correct it"),
         ("https://a.b/c.obj", f"{FILE} the address 'https://a.b/c.obj'; fetch it and name the file"),
-        ("file:/a.obj", f"{FILE} the address 'file:/a.obj'; fetch it and name the file"),
         ("a\\b.obj", "must have / between folders, not \\ as in 'a\\\\b.obj'; correct it"),
         ("/a.obj", f"{IN_FOLDER} '/a.obj'; copy the file there"),
         ("b/../../a", f"{IN_FOLDER} 'b/../../a'; copy the file there"),
@@ -136,6 +122,8 @@ def test_names_of_other_places_are_refused_unless_files_outside_are_allowed(
     folder = tmp_path / "scene"
     folder.mkdir()
     (folder / "up").symlink_to(tmp_path)
+    for right in ("a.obj", "parts/a.obj", "./a.obj", "a b.obj", "é.obj", "..a.obj"):
+        assert path_within([], folder, right) == folder / right
     problems: list[str] = []
     assert path_within(problems, folder, name) is None
     assert problems == [sentence]

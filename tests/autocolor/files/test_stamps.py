@@ -34,15 +34,6 @@ def test_a_store_that_is_changed_in_place_or_replaced_is_noticed(tmp_path: Path)
     assert look_at(path) not in (None, seen)
 
 
-def test_a_change_of_the_same_size_and_time_is_noticed(tmp_path: Path) -> None:
-    path = small_store(tmp_path)
-    before, seen = os.stat(path), look_at(path)
-    run(path, BRIGHTER)
-    os.utime(path, ns=(before.st_atime_ns, before.st_mtime_ns))
-    assert os.stat(path).st_size == before.st_size
-    assert look_at(path) not in (None, seen)
-
-
 def test_a_change_that_is_only_beside_the_store_is_noticed(tmp_path: Path) -> None:
     path = small_store(tmp_path)
     run(path, "PRAGMA journal_mode = WAL")
