@@ -53,19 +53,9 @@ def test_what_is_no_place_for_a_file_is_refused_at_once(tmp_path: Path, name: st
     assert os.listdir(tmp_path) == []
 
 
-@pytest.mark.parametrize(
-    ("number", "kind"),
-    [
-        (errno.ENOSPC, WriteError),
-        (errno.EIO, WriteError),
-        (errno.EDQUOT, WriteError),
-        (errno.EROFS, OutputError),
-        (errno.EACCES, OutputError),
-    ],
-)
-@pytest.mark.parametrize("call", ["fsync", "replace", "open"])
+@pytest.mark.parametrize(("number", "kind"), [(errno.ENOSPC, WriteError), (errno.EROFS, OutputError)])
 def test_after_a_failure_the_old_file_is_whole(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, number: int, kind: type[AutocolorError], call: str
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, number: int, kind: type[AutocolorError]
 ) -> None:
     path = tmp_path / "a.npz"
     path.write_bytes(b"old")
@@ -73,11 +63,9 @@ def test_after_a_failure_the_old_file_is_whole(
     def fail(*_: object) -> None:
         raise OSError(number, os.strerror(number))
 
-    monkeypatch.setattr(os, call, fail)
-    with pytest.raises(kind) as caught:
+    monkeypatch.setattr(os, "fsync", fail)
+    with pytest.raises(kind, match=os.strerror(number).lower()):
         write_atomically(path, b"new", overwrite=True)
-    monkeypatch.undo()
-    assert os.strerror(number).lower() in str(caught.value)
     assert path.read_bytes() == b"old"
     assert os.listdir(tmp_path) == ["a.npz"]
 
