@@ -98,11 +98,12 @@ def left_out(scene: Scene, output: Format, *, is_bare: bool) -> list[str]:
         (SCALARS, _counted("node scalar", [each.name for each in mesh.scalars if each.of == NODE])),
         (SCALARS, _counted("polygon scalar", [each.name for each in mesh.scalars if each.of != NODE])),
         (QUADS, f"{_counted('quad', range(quads))} (each is written as two triangles)" if quads else ""),
-        (NORMALS, "the file's own normals (they will be computed)" if mesh.own_normals else ""),
+        (NORMALS, "the file's own normals (they will be computed)" if mesh.own_normals is not None else ""),
         (SETTINGS, angle),
     ]
     if not is_bare:
-        beyond = beyond_materials(surfaces) if SURFACES in output.holds else []
+        has_materials = SURFACES in output.holds and SETTINGS not in output.holds
+        beyond = beyond_materials(surfaces) if has_materials else []
         phrases += [
             (SURFACES, _counted("surface", [each.name for each in surfaces])),
             (SETTINGS, f"what a material does not have of {_counted('surface', beyond)}" if beyond else ""),

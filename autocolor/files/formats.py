@@ -285,8 +285,7 @@ def read_mesh(files: Mapping[str, Path], placement: Placement = PLAIN) -> MeshRe
     with timed(LOG, f"read {', '.join(path.name for path in files.values())}"):
         report = mesh_format.read(*files.values(), placement)
     named = format_named(path, MESH_FORMATS)
-    if named not in (None, mesh_format) and path.suffix.lower() not in mesh_format.suffixes:
-        assert named is not None
+    if named is not None and named is not mesh_format:
         message = (
             f"{path.name}: it begins as {mesh_format.name} and was read as that, not as {named.name};"
             " rename it"

@@ -7,6 +7,7 @@ add a format of scenes, write its reader and a row of FORMATS below.
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -270,12 +271,14 @@ def openables_of(folder: Path) -> list[Openable]:
     Raises InputError if the folder cannot be read.
     """
     try:
-        names = sorted(os.listdir(folder), key=str.casefold)
+        names = os.listdir(folder)
     except OSError as error:
         raise InputError(
             f"{folder.name or folder}: a folder must be readable, and is not ({reason_of(error)});"
             " choose another"
         ) from None
+    # car2 comes before car10.
+    names.sort(key=lambda name: re.sub(r"\d+", lambda number: number[0].zfill(20), name.casefold()))
     paths = [folder / name for name in names if not name.startswith(".")]
     openables = [Openable(path, kind) for path in paths if (kind := kind_of(path))]
     return sorted(openables, key=lambda openable: openable.kind == FOLDER)

@@ -8,8 +8,9 @@ import os
 import stat
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from io import BufferedReader
 from pathlib import Path
-from typing import Any, BinaryIO, Final, NoReturn
+from typing import Any, Final, NoReturn
 
 from autocolor import checks
 from autocolor.budget import allowed_memory, require_memory
@@ -62,7 +63,7 @@ def require_size(name: str, size: int, growth: float) -> None:
 
 
 @contextmanager
-def opened(path: Path) -> Iterator[tuple[BinaryIO, os.stat_result]]:
+def opened(path: Path) -> Iterator[tuple[BufferedReader, os.stat_result]]:
     """A regular file opened for reading, and its status; it never waits for a pipe or a device.
 
     Raises MissingInputError if the file does not exist, InputError if it is not a regular file, or if it

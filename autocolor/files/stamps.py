@@ -27,12 +27,10 @@ def stamp_of(path: Path) -> str | None:
     """
     digest, suffix = hashlib.sha256(), path.suffix.lower()
     try:
-        for data in _bytes_of(path):
-            digest.update(data)
+        _add_bytes(digest, path)
         if suffix in STORE_SUFFIXES:
             with suppress(MissingInputError):
-                for data in _bytes_of(_beside(path, "-wal")):
-                    digest.update(data)
+                _add_bytes(digest, _beside(path, "-wal"))
         elif suffix == ".toml":
             for numbers in _mesh_numbers(path):
                 digest.update(repr(numbers).encode())
@@ -67,11 +65,10 @@ def _beside(store: Path, ending: str) -> Path:
     return Path(f"{os.path.realpath(store)}{ending}")
 
 
-def _bytes_of(path: Path) -> Iterator[bytes]:
-    """The bytes of a regular file in pieces. Raises InputError."""
+def _add_bytes(digest: hashlib._Hash, path: Path) -> None:
+    """Add the bytes of a regular file to a digest. Raises InputError."""
     with opened(path) as (file, _):
-        while data := file.read(1 << 20):
-            yield data
+        hashlib.file_digest(file, lambda: digest)
 
 
 def _mesh_numbers(scene_file: Path) -> Iterator[tuple[str | int, ...]]:

@@ -134,8 +134,8 @@ def test_what_is_no_scene_is_refused(tmp_path: Path) -> None:
         read_scene(tmp_path)
 
 
-def test_what_can_be_opened_is_listed_by_name_with_folders_last(tmp_path: Path) -> None:
-    files = "car1.obj car2.obj Car3.OBJ notes.txt .hidden.obj lights.toml a.npz a.db b.GPL d.csv"
+def test_what_can_be_opened_is_listed_in_natural_order_with_folders_last(tmp_path: Path) -> None:
+    files = "car10.obj car2.obj Car3.OBJ notes.txt .hidden.obj lights.toml a.npz a.db b.GPL d.csv"
     for name in files.split():
         (tmp_path / name).write_text("")
     for name in ("b", "a scene", "a mesh", ".git"):
@@ -149,9 +149,9 @@ def test_what_can_be_opened_is_listed_by_name_with_folders_last(tmp_path: Path) 
         ("a.db", "store"),
         ("a.npz", "picture"),
         ("b.GPL", "paints"),
-        ("car1.obj", "mesh"),
         ("car2.obj", "mesh"),
         ("Car3.OBJ", "mesh"),
+        ("car10.obj", "mesh"),
         ("lights.toml", "scene"),
         ("b", "folder"),
     ]
