@@ -20,7 +20,7 @@ from vtkmodules.vtkIOGeometry import vtkGLTFReader
 from autocolor.arrays import Floats, Indices
 from autocolor.files.meshes.file_scalars import FileScalars
 from autocolor.files.meshes.foreign_mesh import ForeignMesh, ForeignRefusal, part_names_of
-from autocolor.files.meshes.foreign_vtk import listening, polygons_of, warnings_in
+from autocolor.files.meshes.foreign_vtk import listening, polygons_of, refuse_printed
 from autocolor.files.meshes.gltf_document import Completed, Primitive, completed
 from autocolor.files.meshes.repair import RawPolygons
 from autocolor.scene.scalar import NODE
@@ -42,8 +42,7 @@ def read(path: Path, kind: str) -> ForeignMesh:
     whole = completed(path)
     if not whole.names:
         raise ForeignRefusal("its scene must have a node with a mesh")
-    scene, warnings = _built(whole.glb, path)
-    parts = list(_parts(scene, whole))
+    parts = list(_parts(_built(whole.glb, path), whole))
     if not parts:
         raise ForeignRefusal(
             "; ".join(["its meshes must have triangles", *whole.sentences]), "export it with surfaces"
@@ -82,14 +81,14 @@ def read(path: Path, kind: str) -> ForeignMesh:
     materials = {name: part.material for name, part in zip(part_names, parts, strict=True) if part.material}
     return ForeignMesh(
         polygons,
-        (*warnings, *whole.sentences, *scalars.messages),
+        (*whole.sentences, *scalars.messages),
         materials,
         {name: color for name, color in whole.colors.items() if name in materials.values()},
     )
 
 
-def _built(glb: bytes, path: Path) -> tuple[Any, list[str]]:
-    """VTK's scene of a GLB file that is written out in full, and its warnings. Raises ForeignRefusal."""
+def _built(glb: bytes, path: Path) -> Any:
+    """VTK's scene of a GLB file that is written out in full. Raises ForeignRefusal."""
     window = listening()
     # The worker's folder for temporary files is removed with the result.
     with tempfile.NamedTemporaryFile(suffix=".glb", delete=False) as file:
@@ -99,7 +98,8 @@ def _built(glb: bytes, path: Path) -> tuple[Any, list[str]]:
     reader.ApplyDeformationsToGeometryOn()
     reader.SetOutputPointsPrecision(vtkAlgorithm.DOUBLE_PRECISION)
     reader.Update()
-    return reader.GetOutputDataObject(0), warnings_in(window.GetOutput(), path)
+    refuse_printed(window, path)
+    return reader.GetOutputDataObject(0)
 
 
 def _parts(scene: Any, whole: Completed) -> Iterator[Part]:

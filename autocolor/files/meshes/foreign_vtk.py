@@ -9,6 +9,7 @@ them.
 
 from __future__ import annotations
 
+import math
 import re
 from collections import Counter
 from pathlib import Path
@@ -30,7 +31,7 @@ from autocolor.files.meshes.cells import surface_sentences
 from autocolor.files.meshes.file_scalars import FileScalars
 from autocolor.files.meshes.foreign_mesh import ForeignMesh, ForeignRefusal, unreadable
 from autocolor.files.meshes.repair import RawPolygons, printable_name
-from autocolor.files.reading import read_head
+from autocolor.files.reading import HEAD, read_head, read_whole
 from autocolor.scene.scalar import NODE, POLYGON
 
 XML_TYPE: Final = re.compile(rb"<VTKFile\s[^>]*?type\s*=\s*[\"'](\w+)[\"']")
@@ -69,12 +70,12 @@ def read(path: Path, kind: str) -> ForeignMesh:
     """The surface of a VTK file of the kind "vtk" or "xml". Raises ForeignRefusal."""
     window = listening()
     data, sentences = (_xml if kind == "xml" else _legacy)(path)
-    sentences = [*warnings_in(window.GetOutput(), path), *sentences]
+    refuse_printed(window, path)
     is_grid = data.IsA("vtkUnstructuredGrid")
     _require_sound(data)
     higher = _make_linear(data) if is_grid else 0
     found = _surface(data)
-    sentences.extend(warnings_in(window.GetOutput(), path)[len(sentences) :])
+    refuse_printed(window, path)
     if higher:
         sentences.append(f"took the corners alone of cells of higher order: {higher:,}")
     sentences.extend(found.sentences)
@@ -94,8 +95,15 @@ def read(path: Path, kind: str) -> ForeignMesh:
 
 def _legacy(path: Path) -> tuple[Any, list[str]]:
     """The data set of a legacy file, with all of its arrays."""
+    data = read_whole(path, 1)
+    if b"\n" not in data[:HEAD]:
+        data = data.replace(b"\r", b"\n")
+    if data[:HEAD].split(b"\n", 3)[2:3] and data[:HEAD].split(b"\n", 3)[2].strip().upper() == b"ASCII":
+        # VTK takes the end of the file for the end of any list of numbers, but not an empty FIELD.
+        data += b"\nFIELD end 0\n"
     reader = vtkDataSetReader()
-    reader.SetFileName(str(path))
+    reader.ReadFromInputStringOn()
+    reader.SetBinaryInputString(data, len(data))
     for what in ("Scalars", "Vectors", "Tensors", "Normals", "Fields", "TCoords", "ColorScalars"):
         getattr(reader, f"ReadAll{what}On")()
     reader.Update()
@@ -133,15 +141,17 @@ def listening() -> Any:
     return window
 
 
-def warnings_in(text: str, path: Path) -> list[str]:
-    """Sentences for the warnings that VTK printed. Raises ForeignRefusal with the first error."""
-    warnings = []
-    for level, lines in PRINTED.findall(text):
+def refuse_printed(window: Any, path: Path) -> None:
+    """Raise ForeignRefusal with what VTK printed, an error if there is any. Its warnings tell of lost data, too."""
+    printed = PRINTED.findall(_text(window.GetOutput()))
+    for _, lines in sorted(printed, key=lambda each: "ERROR" not in each[0]):
         line = " ".join(OBJECT.sub(" ", lines).replace(str(path), path.name).split())
-        if "ERROR" in level:
-            raise unreadable("VTK", line.rstrip("."))
-        warnings.append(f"VTK warned: {line}")
-    return warnings
+        raise unreadable("VTK", line.rstrip("."))
+
+
+def _text(given: str | bytes | None) -> str:
+    """A text of VTK's, which is bytes if it is not UTF-8."""
+    return given.decode("latin-1") if isinstance(given, bytes) else given or ""
 
 
 # Checks of what VTK trusts.
@@ -152,18 +162,18 @@ def _require_sound(data: Any) -> None:
     nodes, cells = data.GetNumberOfPoints(), data.GetNumberOfCells()
     if not nodes or not cells:
         raise ForeignRefusal(f"it must have nodes and cells, not {nodes:,} nodes and {cells:,} cells")
-    if data.IsA("vtkStructuredGrid") and nodes != int(np.prod(data.GetDimensions())):
-        raise ForeignRefusal(f"a grid of {data.GetDimensions()} nodes must have as many, not {nodes:,}")
+    if data.IsA("vtkStructuredGrid") and nodes != math.prod(_dimensions(data)):
+        raise ForeignRefusal(f"a grid of {_dimensions(data)} nodes must have as many, not {nodes:,}")
     if data.IsA("vtkRectilinearGrid"):
         counts = tuple(getattr(data, f"Get{axis}Coordinates")().GetNumberOfTuples() for axis in "XYZ")
-        if counts != data.GetDimensions():
-            raise ForeignRefusal(f"a grid of {data.GetDimensions()} nodes must have as many, not {counts}")
+        if counts != _dimensions(data):
+            raise ForeignRefusal(f"a grid of {_dimensions(data)} nodes must have as many, not {counts}")
     if data.IsA("vtkPolyData"):
         for what, fewest in (("Verts", 0), ("Lines", 0), ("Polys", 0), ("Strips", 0)):
             _require_nodes(getattr(data, f"Get{what}")(), nodes, fewest)
     if data.IsA("vtkUnstructuredGrid"):
         sizes = _require_nodes(data.GetCells(), nodes)
-        types = vtk_to_numpy(data.GetCellTypes())
+        types = _types(data)
         if len(types) != len(sizes):
             raise ForeignRefusal(f"each of the {len(sizes):,} cells must have a type, not {len(types):,}")
         for type_ in np.unique(types).tolist():
@@ -182,7 +192,7 @@ def _require_sound(data: Any) -> None:
             array = owner.GetAbstractArray(at)
             if array.GetNumberOfTuples() != rows:
                 raise ForeignRefusal(
-                    f"the array {shown(array.GetName())} must have a value for each of the {rows:,} {what}s,"
+                    f"the array {shown(_text(array.GetName()))} must have a value for each of the {rows:,} {what}s,"
                     f" not {array.GetNumberOfTuples():,}"
                 )
 
@@ -210,12 +220,23 @@ def _lists(cells: Any) -> tuple[Indices, Indices]:
     return numbers.astype(np.intp), offsets.astype(np.intp) if len(offsets) else np.zeros(1, np.intp)
 
 
+def _dimensions(grid: Any) -> tuple[int, ...]:
+    """The nodes along each axis of a structured grid."""
+    extent = grid.GetExtent()
+    return tuple(high - low + 1 for low, high in zip(extent[::2], extent[1::2], strict=True))
+
+
+def _types(grid: Any) -> Indices:
+    """The types of the cells of an unstructured grid, by the name that versions before 9.6 have for them."""
+    return vtk_to_numpy(getattr(grid, "GetCellTypesArray", grid.GetCellTypes)()).astype(np.intp)
+
+
 def _make_linear(grid: Any) -> int:
     """Replace cells of higher order by their corners; returns their number.
 
     VTK's filter numbers the cells of a surface wrongly if any cell is of higher order.
     """
-    types = vtk_to_numpy(grid.GetCellTypes())
+    types = _types(grid)
     is_higher = np.isin(types, list(LINEAR))
     if not is_higher.any():
         return 0
@@ -334,9 +355,9 @@ def _volumes(data: Any) -> Booleans:
     if data.IsA("vtkPolyData"):
         return np.zeros(data.GetNumberOfCells(), np.bool_)
     if data.IsA("vtkUnstructuredGrid"):
-        is_volume: Booleans = np.isin(vtk_to_numpy(data.GetCellTypes()), VOLUMES)
+        is_volume: Booleans = np.isin(_types(data), VOLUMES)
         return is_volume
-    return np.full(data.GetNumberOfCells(), min(data.GetDimensions()) > 1)
+    return np.full(data.GetNumberOfCells(), min(_dimensions(data)) > 1)
 
 
 def _repeat_faces(found: Polygons, is_volume: Booleans) -> Booleans:
@@ -358,8 +379,12 @@ def _turned_outward(data: Any, places: Floats, found: Polygons, is_volume: Boole
 
     Programs number the corners of wedges either way round, and grids may be left-handed.
     """
+    # Without the array of hidden cells, each cell has a center.
+    plain = data.NewInstance()
+    plain.CopyStructure(data)
+    plain.GetCellData().Initialize()
     centers = vtkCellCenters()
-    centers.SetInputData(data)
+    centers.SetInputData(plain)
     centers.CopyArraysOff()
     centers.Update()
     of_cells = vtk_to_numpy(centers.GetOutput().GetPoints().GetData()).astype(np.float64)
@@ -388,7 +413,7 @@ def _attributes(data: Any, found: Surface) -> tuple[FileScalars, Floats | None, 
         (POLYGON, data.GetCellData(), found.cells),
     ):
         roles = {
-            each.GetName(): what
+            _text(each.GetName()): what
             for each, what in (
                 (owner.GetNormals(), "normals of cells"),
                 (owner.GetTCoords(), "texture coordinates"),
@@ -400,7 +425,7 @@ def _attributes(data: Any, found: Surface) -> tuple[FileScalars, Floats | None, 
         }
         for at in range(owner.GetNumberOfArrays()):
             array = owner.GetAbstractArray(at)
-            name = array.GetName() or ""
+            name = _text(array.GetName())
             is_normals = roles.get(name) == "normals of cells" or name.lower() == "normals"
             if name == "vtkGhostType":
                 continue
