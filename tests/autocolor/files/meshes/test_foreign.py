@@ -20,7 +20,6 @@ from autocolor.files.meshes import foreign
 from autocolor.files.meshes.foreign import (
     FOREIGN,
     RESULT,
-    ForeignMesh,
     foreign_mesh_bytes,
     largest_result,
     most_memory,
@@ -29,6 +28,7 @@ from autocolor.files.meshes.foreign import (
     read_in_own_process,
     size_of_3mf,
 )
+from autocolor.files.meshes.foreign_mesh import ForeignMesh
 from autocolor.files.meshes.repair import RawPolygons
 from tests.autocolor.files.meshes.conftest import OWN
 from tests.autocolor.files.refusals import refusal
