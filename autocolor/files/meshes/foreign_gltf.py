@@ -1,12 +1,13 @@
 """Reading glTF and GLB files with VTK, in the process of `foreign_worker`.
 
-`gltf_document` unpacks the arrays before; VTK places the nodes, and applies skins and the default weights of
-morph targets. Each primitive of triangles of each node is a part. Nodes of a part with equal coordinates and
-scalars are welded, since glTF writes a node again for each normal and texture coordinate.
+VTK unpacks the arrays, places the nodes, and applies skins and the default weights of morph targets. Each
+primitive of each node of the default scene is a part. Its nodes at the same place are welded, since glTF
+writes a node again for each normal and texture coordinate.
 """
 
 from __future__ import annotations
 
+import json
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -18,19 +19,21 @@ from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
 from vtkmodules.vtkIOGeometry import vtkGLTFReader
 
 from autocolor.arrays import Floats, Indices
+from autocolor.checks import Color, listed
 from autocolor.files.meshes.file_scalars import FileScalars
 from autocolor.files.meshes.foreign_mesh import ForeignMesh, ForeignRefusal, part_names_of
 from autocolor.files.meshes.foreign_vtk import listening, polygons_of, refuse_printed
-from autocolor.files.meshes.gltf_document import Completed, Primitive, completed
-from autocolor.files.meshes.repair import RawPolygons
+from autocolor.files.meshes.gltf_document import Row, completed, document, refuse_extensions, rows
+from autocolor.files.meshes.repair import RawPolygons, different, printable_name
+from autocolor.files.meshes.welding import welded
 from autocolor.scene.scalar import NODE
 
 
-class PlacedPart(NamedTuple):
-    """A primitive at a node of the scene."""
+class Part(NamedTuple):
+    """A primitive at a node of the scene; `material` is its number, or None."""
 
     name: str
-    material: str
+    material: int | None
     places: Floats
     triangles: Indices
     normals: Floats | None
@@ -39,67 +42,77 @@ class PlacedPart(NamedTuple):
 
 def read(path: Path, kind: str) -> ForeignMesh:
     """The parts of the default scene of a glTF file. Raises InputError and ForeignRefusal."""
-    whole = completed(path)
-    sentences = [f"{what}: {count:,}" for what, count in whole.left_out.items()]
-    if not any(whole.primitives.values()):
-        raise ForeignRefusal("; ".join(["its scene must have meshes of triangles", *sentences]))
-    parts = list(_parts(_built(whole.glb, path), whole))
-    part_names = part_names_of([part.name for part in parts])
-    scalars = FileScalars()
-    welded = [_welded(part.places, part.scalars) for part in parts]
-    for key in dict.fromkeys(key for part in parts for key in part.scalars):
-        values = [
-            part.scalars.get(key, np.full(len(part.places), np.nan))[leaders]
-            for part, (leaders, _) in zip(parts, welded, strict=True)
-        ]
-        scalars.add(key, np.concatenate(values), NODE)
-    corners, corner_normals, normals = [], [], []
-    nodes = vectors = 0
-    for part, (leaders, rows) in zip(parts, welded, strict=True):
-        corners.append(nodes + rows[part.triangles])
-        nodes += len(leaders)
-        if part.normals is None:
-            corner_normals.append(np.full(part.triangles.shape, -1))
-        else:
-            corner_normals.append(vectors + part.triangles)
-            normals.append(part.normals)
-            vectors += len(part.normals)
-    counts = [len(part.triangles) for part in parts]
-    polygons = RawPolygons(
-        np.concatenate([part.places[leaders] for part, (leaders, _) in zip(parts, welded, strict=True)]),
-        np.concatenate(corners).ravel(),
-        np.full(sum(counts), 3, np.intp),
-        np.repeat(np.arange(len(counts)), counts),
-        part_names,
-        scalars.scalars,
-        normals=np.concatenate(normals) if normals else None,
-        corner_normals=np.concatenate(corner_normals).ravel() if normals else None,
-    )
-    materials = {name: part.material for name, part in zip(part_names, parts, strict=True) if part.material}
-    return ForeignMesh(
-        polygons,
-        (*sentences, *scalars.messages),
-        materials,
-        {name: color for name, color in whole.colors.items() if name in materials.values()},
-    )
+    described, binary = document(path)
+    try:
+        return _read(path, described, binary)
+    except (AttributeError, IndexError, KeyError, TypeError, ValueError):
+        raise ForeignRefusal("its JSON must describe a scene as glTF 2.0 does, and is damaged") from None
 
 
-def _built(glb: bytes, path: Path) -> Any:
-    """VTK's scene of a GLB file that is written out in full. Raises ForeignRefusal."""
-    window = listening()
-    # The worker's folder for temporary files is removed with the result.
+def _read(path: Path, described: Row, binary: bytes) -> ForeignMesh:
+    refuse_extensions(described)
+    sentences = _left_out(described)
     with tempfile.NamedTemporaryFile(suffix=".glb", delete=False) as file:
-        file.write(glb)
-    reader = vtkGLTFReader()
+        file.write(completed(path, described, binary))
+    window, reader = listening(), vtkGLTFReader()
     reader.SetFileName(file.name)
     reader.ApplyDeformationsToGeometryOn()
     reader.SetOutputPointsPrecision(vtkAlgorithm.DOUBLE_PRECISION)
     reader.Update()
     refuse_printed(window, path)
-    return reader.GetOutputDataObject(0)
+    materials, colors = _materials(described)
+    all_parts = list(_parts(reader.GetOutputDataObject(0), described, materials, path.stem))
+    parts = [part for part in all_parts if len(part.triangles)]
+    if skipped := len(all_parts) - len(parts):
+        sentences.append(f"skipped primitives of points or lines: {skipped:,}")
+    if not parts:
+        raise ForeignRefusal("; ".join(["its scene must have meshes of triangles", *sentences]))
+    names = part_names_of([part.name for part in parts])
+    polygons, scalars = _joined(parts, names)
+    material_of_part = {
+        name: materials[part.material]
+        for name, part in zip(names, parts, strict=True)
+        if part.material is not None
+    }
+    used = {name: color for name, color in colors.items() if name in material_of_part.values()}
+    return ForeignMesh(polygons, (*sentences, *scalars.messages), material_of_part, used)
 
 
-def _parts(scene: Any, whole: Completed) -> Iterator[PlacedPart]:
+def _joined(parts: list[Part], names: tuple[str, ...]) -> tuple[RawPolygons, FileScalars]:
+    """The polygons of all parts, and their scalars, which are missing where a part has none."""
+    scalars = FileScalars()
+    keys = dict.fromkeys(key for part in parts for key in part.scalars)
+    nodes, corners, normals, corner_normals = [], [], [], []
+    for part in parts:
+        if keys or not np.isfinite(part.places).all():
+            points, places = part.places, np.arange(len(part.places))
+        else:
+            points, places = welded(part.places)
+        corners.append(sum(map(len, nodes)) + places[part.triangles])
+        nodes.append(points)
+        first = sum(map(len, normals))
+        has_normals = part.normals is not None
+        corner_normals.append(first + part.triangles if has_normals else np.full(part.triangles.shape, -1))
+        normals.append(np.empty((0, 3)) if part.normals is None else part.normals)
+    for key in keys:
+        missing = [np.full(len(part.places), np.nan) for part in parts]
+        values = [part.scalars.get(key, none) for part, none in zip(parts, missing, strict=True)]
+        scalars.add(key, np.concatenate(values), NODE)
+    counts = [len(part.triangles) for part in parts]
+    polygons = RawPolygons(
+        np.concatenate(nodes),
+        np.concatenate(corners).ravel(),
+        np.full(sum(counts), 3, np.intp),
+        np.repeat(np.arange(len(parts)), counts),
+        names,
+        scalars.scalars,
+        normals=np.concatenate(normals),
+        corner_normals=np.concatenate(corner_normals).ravel(),
+    )
+    return polygons, scalars
+
+
+def _parts(scene: Any, described: Row, materials: tuple[str, ...], stem: str) -> Iterator[Part]:
     """The parts of a scene. VTK names its blocks Node_3 and Mesh_1, by the numbers of nodes and meshes."""
 
     def blocks(parent: Any, node: int) -> Iterator[tuple[int, int, Any]]:
@@ -111,29 +124,37 @@ def _parts(scene: Any, whole: Completed) -> Iterator[PlacedPart]:
             else:
                 yield node, int(number), block
 
+    nodes, meshes = rows(described, "nodes"), rows(described, "meshes")
     for node, mesh, block in blocks(scene, -1):
-        primitives = whole.primitives[mesh]
-        turned = len(primitives) > 0 and _is_mirrored(block.GetBlock(0).GetFieldData())
+        name = _name(nodes[node]) or _name(meshes[mesh]) or stem
+        weights = nodes[node].get("weights") or meshes[mesh].get("weights") or ()
+        primitives = rows(meshes[mesh], "primitives")
         for at, primitive in enumerate(primitives):
-            data = block.GetBlock(at)
-            found = polygons_of(data)
-            if data.GetNumberOfPoints() != primitive.nodes or not (found.corner_counts == 3).all():
-                raise ForeignRefusal(f"meshes {mesh}: VTK must give the nodes and triangles of the file")
-            triangles = found.corners.reshape(-1, 3)
-            normals = data.GetPointData().GetNormals()
-            name, material = whole.names[node], _material(whole, primitive)
-            yield PlacedPart(
-                f"{name} {material}".strip() if len(primitives) > 1 else name,
+            data, material = block.GetBlock(at), primitive.get("material")
+            accessor = rows(described, "accessors")[primitive["attributes"]["POSITION"]]
+            if data.GetNumberOfPoints() != accessor["count"]:
+                raise ForeignRefusal(f"meshes {mesh}: VTK must give the nodes of the file, and does not")
+            if "JOINTS_1" in primitive["attributes"]:
+                raise ForeignRefusal(f"meshes {mesh}: a node of a skin must have four joints at most")
+            of_material = "" if material is None or len(primitives) == 1 else materials[material]
+            triangles, values = polygons_of(data).corners.reshape(-1, 3), data.GetPointData()
+            if _is_mirrored(block.GetBlock(0).GetFieldData()):
+                triangles = triangles[:, ::-1]
+            # Morph targets need not move normals.
+            normals = None if any(weights) else values.GetNormals()
+            arrays = [values.GetArray(number) for number in range(values.GetNumberOfArrays())]
+            yield Part(
+                f"{name} {of_material}".strip(),
                 material,
                 vtk_to_numpy(data.GetPoints().GetData()).astype(np.float64),
-                triangles[:, ::-1] if turned else triangles,
+                triangles,
                 None if normals is None else vtk_to_numpy(normals).astype(np.float64),
-                primitive.scalars,
+                {
+                    array.GetName().removeprefix("_"): vtk_to_numpy(array).astype(np.float64)
+                    for array in arrays
+                    if array.GetNumberOfComponents() == 1 and array.GetName().startswith("_")
+                },
             )
-
-
-def _material(whole: Completed, primitive: Primitive) -> str:
-    return "" if primitive.material is None else whole.materials[primitive.material]
 
 
 def _is_mirrored(data: Any) -> bool:
@@ -143,11 +164,60 @@ def _is_mirrored(data: Any) -> bool:
     return bool(np.prod(np.sign(signs)) < 0)
 
 
-def _welded(places: Floats, scalars: dict[str, Floats]) -> tuple[Indices, Indices]:
-    """The first rows of equal coordinates and scalars, in their order; and the new row of each row."""
-    columns = np.column_stack([places, *scalars.values()]) + 0.0
-    _, first, rows = np.unique(columns, axis=0, return_index=True, return_inverse=True)
-    order = np.argsort(first)
-    rank = np.empty(len(order), np.intp)
-    rank[order] = np.arange(len(order))
-    return first[order], rank[rows.reshape(-1)]
+def _left_out(described: Row) -> list[str]:
+    """A sentence about what the file has and a mesh does not."""
+    attributes = [
+        name
+        for mesh in rows(described, "meshes")
+        for primitive in rows(mesh, "primitives")
+        for name in primitive.get("attributes") or ()
+    ]
+    extensions = [name for node in rows(described, "nodes") for name in node.get("extensions") or ()]
+    kinds = {
+        "animations": bool(described.get("animations")),
+        "cameras": bool(described.get("cameras")),
+        "colors of nodes": any(name.startswith("COLOR_") for name in attributes),
+        "lights": "KHR_lights_punctual" in extensions,
+        "other scenes": len(rows(described, "scenes")) > 1,
+        "textures": any(map(_has_texture, rows(described, "materials"))),
+    }
+    found = [kind for kind, is_there in kinds.items() if is_there]
+    return [f"left out its {listed(found)}"] if found else []
+
+
+# Materials.
+
+
+def _has_texture(row: Row) -> bool:
+    return "Texture" in json.dumps(row)
+
+
+def _materials(described: Row) -> tuple[tuple[str, ...], dict[str, Color]]:
+    """The names of the materials, and the base colors of those that have no texture instead."""
+    names = [_name(row) or f"material {number}" for number, row in enumerate(rows(described, "materials"))]
+    names_of_materials = different(names)
+    colors: dict[str, Color] = {}
+    for name, row in zip(names_of_materials, rows(described, "materials"), strict=True):
+        shiny = (row.get("extensions") or {}).get("KHR_materials_pbrSpecularGlossiness") or {}
+        rough = row.get("pbrMetallicRoughness") or {}
+        color = rough.get("baseColorFactor") or shiny.get("diffuseFactor")
+        if color is not None or not _has_texture({**rough, **shiny}):
+            red, green, blue = (srgb(each) for each in (color or (1.0, 1.0, 1.0))[:3])
+            colors[name] = (red, green, blue)
+    return names_of_materials, colors
+
+
+def srgb(linear: float) -> int:
+    """A linear component of a color, 0 to 1, as sRGB, 0 to 255.
+
+    >>> srgb(0), srgb(0.5), srgb(1)
+    (0, 188, 255)
+    """
+    linear = min(max(linear, 0.0), 1.0)
+    return round(255 * (12.92 * linear if linear <= 0.0031308 else 1.055 * linear ** (1 / 2.4) - 0.055))
+
+
+def _name(row: Row) -> str:
+    """The name of a row, printable; empty if it has none."""
+    name = row.get("name")
+    return printable_name(name) if isinstance(name, str) else ""
