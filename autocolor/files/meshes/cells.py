@@ -1,34 +1,38 @@
 """The surface of cells: polygons as they are, and the outer faces of volume cells.
 
-A face of a volume cell is outer if no other cell has it. Faces are turned outward by the volume of their
-cell, since programs number the corners of wedges either way round. A polygon that repeats a face of a volume
-cell is left out: programs often write boundaries besides the volume.
+A face of a volume cell is outer if no other cell has it. Faces are turned outward, since programs number the
+corners of wedges either way round. A polygon that repeats a face of a volume cell is left out: programs often
+write boundaries besides the volume.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Booleans, Floats, Indices, runs
+from autocolor.arrays import Booleans, Floats, Indices, cross, dot, runs
 
 FACES: Final = {
-    "tetra": ((0, 1, 3, 3), (1, 2, 3, 3), (2, 0, 3, 3), (0, 2, 1, 1)),
+    "tetra": ((0, 2, 1, 1), (0, 1, 3, 3), (1, 2, 3, 3), (2, 0, 3, 3)),
     "pyramid": ((0, 3, 2, 1), (0, 1, 4, 4), (1, 2, 4, 4), (2, 3, 4, 4), (3, 0, 4, 4)),
-    "wedge": ((0, 1, 2, 2), (3, 5, 4, 4), (0, 3, 4, 1), (1, 4, 5, 2), (2, 5, 3, 0)),
+    "wedge": ((0, 2, 1, 1), (3, 4, 5, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5)),
     "hexahedron": (
-        (0, 4, 7, 3),
-        (1, 2, 6, 5),
-        (0, 1, 5, 4),
-        (3, 7, 6, 2),
         (0, 3, 2, 1),
         (4, 5, 6, 7),
+        (0, 1, 5, 4),
+        (1, 2, 6, 5),
+        (2, 3, 7, 6),
+        (3, 0, 4, 7),
     ),
 }
-"""The faces of each shape, all turned the same way; a triangle repeats its last corner."""
+"""The faces of each shape, outward if its base is counterclockwise as seen from its top; a triangle repeats
+its last corner."""
+
+BASES: Final = {"tetra": 3, "pyramid": 4, "wedge": 3, "hexahedron": 4}
+"""The corners of the base of each shape, which come first; the others are its top."""
 
 CORNERS: Final = {"tetra": 4, "pyramid": 5, "wedge": 6, "hexahedron": 8}
 
@@ -40,6 +44,16 @@ class Volumes:
     shape: str
     corners: Indices
     cells: Indices
+
+    def faces(self, coordinates: Floats) -> Flats:
+        """All faces, turned outward."""
+        base, top = np.split(coordinates[self.corners], [BASES[self.shape]], axis=1)
+        up = (top.mean(axis=1) - base.mean(axis=1)).T
+        area = cross((base[:, 2] - base[:, 0]).T, (base[:, -1] - base[:, 1]).T)
+        tables = self.corners[:, np.array(FACES[self.shape])]
+        is_turned = dot(area, up) < 0
+        tables[is_turned] = tables[is_turned][..., [1, 0, 3, 2]]
+        return Flats.of(tables.reshape(-1, 4), np.repeat(self.cells, tables.shape[1]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,7 +71,9 @@ class Flats:
         return starts
 
     def chosen(self, rows: Indices | Booleans) -> Flats:
-        """Some of the polygons, in the order of the rows."""
+        """Some of the polygons, in the order of the rows; polygons without corners are left out."""
+        rows = np.arange(len(self.cells))[rows]
+        rows = rows[self.corner_counts[rows] > 0]
         counts = self.corner_counts[rows]
         return Flats(self.corners[runs(self.starts[rows], counts)], counts, self.cells[rows])
 
@@ -68,8 +84,7 @@ class Flats:
             np.concatenate([np.empty(0, np.intp), *(getattr(each, name) for each in several)])
             for name in ("corners", "corner_counts", "cells")
         )
-        order = np.argsort(cells, kind="stable")
-        return Flats(corners, counts, cells).chosen(order[counts[order] > 0])
+        return Flats(corners, counts, cells).chosen(np.argsort(cells, kind="stable"))
 
     @staticmethod
     def of(table: Indices, cells: Indices) -> Flats:
@@ -88,75 +103,38 @@ class CellSurface(NamedTuple):
     sentences: tuple[str, ...]
 
 
-def cell_surface(coordinates: Floats, flats: Flats, volumes: Sequence[Volumes]) -> CellSurface:
-    """The surface of polygons and volume cells.
+def cell_surface(
+    coordinates: Floats, flats: Flats, volumes: Sequence[Volumes], polyhedra: Sequence[Flats] = ()
+) -> CellSurface:
+    """The surface of polygons and volume cells; `polyhedra` are the faces of others, turned outward.
 
     With volume cells, nodes that the surface does not use are left out, and its corners are rows of the
     others.
     """
-    volumes = [each for each in volumes if len(each.cells)]
-    count = sum(len(each.cells) for each in volumes)
+    faces = Flats.joined([*(each.faces(coordinates) for each in volumes), *polyhedra])
+    count = len(np.unique(faces.cells))
     if not count:
         return CellSurface(flats, np.arange(len(coordinates)), ())
-    tables = [each.corners[:, np.array(FACES[each.shape])].reshape(-1, 4) for each in volumes]
-    owners = [np.repeat(each.cells, len(FACES[each.shape])) for each in volumes]
-    faces = Flats.of(np.concatenate(tables), np.concatenate(owners))
-    small = np.flatnonzero(flats.corner_counts <= 4)
-    groups = _groups([faces, flats.chosen(small)], len(coordinates))
-    cells_at = np.bincount(groups[: len(faces.cells)], minlength=int(groups.max()) + 1)[groups]
-    faces = faces.chosen(cells_at[: len(faces.cells)] == 1)
-    centers = np.zeros((int(faces.cells.max(initial=0)) + 1, 3))
-    for each in volumes:
-        is_near = each.cells < len(centers)
-        centers[each.cells[is_near]] = coordinates[each.corners[is_near]].mean(axis=1)
-    faces = turned_outward(coordinates, faces, centers)
-    # Leave out polygons that are faces, and the nodes within.
-    sentences = []
-    is_face = np.zeros(len(flats.cells), np.bool_)
-    is_face[small] = cells_at[len(groups) - len(small) :] > 0
-    if number := int(is_face.sum()):
-        sentences.append(f"left out {number:,} polygon{'s' * (number > 1)} that are faces of volume cells")
-    flats = Flats.joined([flats.chosen(~is_face), faces])
+    # Polygons with the same corners, in any order, have the same sum of random numbers.
+    numbers = np.random.default_rng(0).integers(1 << 62, size=len(coordinates))
+    flats = Flats.joined([flats])
+    sums = [np.add.reduceat(numbers[each.corners], each.starts) for each in (faces, flats)]
+    groups = np.unique(np.concatenate(sums), return_inverse=True)[1].reshape(-1)
+    of_faces = groups[: len(faces.cells)]
+    owners = np.bincount(of_faces, minlength=int(groups.max()) + 1)
+    is_face = owners[groups[len(of_faces) :]] > 0
+    flats = Flats.joined([flats.chosen(~is_face), faces.chosen(owners[of_faces] == 1)])
     nodes, corners = np.unique(flats.corners, return_inverse=True)
-    sentences = [*surface_sentences(count, len(coordinates) - len(nodes)), *sentences]
+    sentences = surface_sentences(count, len(coordinates) - len(nodes))
+    if number := int(is_face.sum()):
+        sentences.append(f"left out polygons that are faces of volume cells: {number:,}")
     surface = Flats(corners.reshape(-1), flats.corner_counts, flats.cells)
     return CellSurface(surface, nodes, tuple(sentences))
 
 
-def surface_sentences(cells: int, left: int) -> Iterator[str]:
+def surface_sentences(cells: int, left: int) -> list[str]:
     """Sentences about the outer surface of some volume cells, which leaves some nodes out."""
-    yield f"took the outer surface of {cells:,} volume {'cell' if cells == 1 else 'cells'}"
+    sentences = [f"took the outer surface of {cells:,} volume {'cell' if cells == 1 else 'cells'}"]
     if left:
-        yield f"left out {left:,} node{'s' * (left > 1)} that the surface does not use"
-
-
-def turned_outward(coordinates: Floats, faces: Flats, centers: Floats) -> Flats:
-    """The outer faces of volume cells, turned away from the centers of their cells, (cells, 3).
-
-    The faces of a cell are turned together, if the volume between them and the center is negative.
-    """
-    starts, counts = faces.starts, faces.corner_counts
-    owners = np.repeat(np.arange(len(counts)), counts)
-    at = np.arange(len(owners))
-    following = np.where(at + 1 == (starts + counts)[owners], starts[owners], at + 1)
-    with np.errstate(all="ignore"):
-        arms = coordinates[faces.corners] - centers[faces.cells[owners]]
-        areas = np.add.reduceat(np.cross(arms, arms[following]), starts)
-        volumes = np.bincount(faces.cells, (areas * arms[starts]).sum(axis=1), len(centers))
-    mirrored = 2 * starts[owners] + counts[owners] - 1 - at
-    is_turned = (volumes < 0)[faces.cells[owners]]
-    return Flats(faces.corners[np.where(is_turned, mirrored, at)], counts, faces.cells)
-
-
-def _groups(several: Sequence[Flats], nodes: int) -> Indices:
-    """Numbers of polygons of up to four corners, equal for the same corners in any order."""
-    counts = np.concatenate([each.corner_counts for each in several])
-    corners = np.full((len(counts), 4), nodes, np.int64)
-    corners[np.arange(4) < counts[:, None]] = np.concatenate([each.corners for each in several])
-    corners.sort(axis=1)
-    one, other = corners[:, 0] * (nodes + 1) + corners[:, 1], corners[:, 2] * (nodes + 1) + corners[:, 3]
-    order = np.lexsort((one, other))
-    differs = (np.diff(one[order]) != 0) | (np.diff(other[order]) != 0)
-    groups = np.empty(len(order), np.intp)
-    groups[order] = np.concatenate([[0], np.cumsum(differs)])
-    return groups
+        sentences.append(f"left out {left:,} node{'s' * (left > 1)} that the surface does not use")
+    return sentences

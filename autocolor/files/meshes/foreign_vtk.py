@@ -3,31 +3,28 @@
 Of polygonal data, the polygons and the triangles of strips are read; of grids, the polygons and the outer
 faces of volume cells. Quads stay quads. Of cells of higher order only the corners are read. Hidden and
 duplicate cells are left out. The data of points and cells are scalars of the mesh (see `file_scalars`), and
-the normals of points are the file's own normals. Nodes and cells are checked before VTK looks for the
-surface: it trusts them.
+the normals of points are the file's own normals. VTK's filter gives the surface of grids in rows and columns
+alone: it trusts the nodes of cells, and numbers the cells of a surface wrongly beside cells of higher order.
 """
 
 from __future__ import annotations
 
-import math
 import re
 from collections import Counter
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Any, Final
 
 import numpy as np
 from vtkmodules import vtkIOXML
-from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
+from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
-from vtkmodules.vtkCommonDataModel import vtkCellArray
 from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
-from vtkmodules.vtkFiltersCore import vtkCellCenters
 from vtkmodules.vtkFiltersGeometry import vtkGeometryFilter
 from vtkmodules.vtkIOLegacy import vtkDataSetReader
 
-from autocolor.arrays import Booleans, Floats, Indices, runs
-from autocolor.checks import shown
-from autocolor.files.meshes.cells import Flats, surface_sentences, turned_outward
+from autocolor.arrays import AnyArray, Floats, Indices, cross, dot, runs
+from autocolor.checks import listed, shown
+from autocolor.files.meshes.cells import CORNERS, CellSurface, Flats, Volumes, cell_surface, surface_sentences
 from autocolor.files.meshes.file_scalars import FileScalars
 from autocolor.files.meshes.foreign_mesh import ForeignMesh, ForeignRefusal, unreadable
 from autocolor.files.meshes.repair import RawPolygons, printable_name
@@ -41,29 +38,26 @@ DATA_SETS: Final = ("PolyData", "UnstructuredGrid", "StructuredGrid", "Rectiline
 
 # Cells by the numbers of their types.
 
-STRIP: Final = 6
-POLYGON_CELL: Final = 7
-POLYHEDRON: Final = 42
-CORNERS: Final = {1: 1, 3: 2, 5: 3, 8: 4, 9: 4, 10: 4, 11: 8, 12: 8, 13: 6, 14: 5, 15: 10, 16: 12}
-ANY_SIZE: Final = {0: 0, 2: 0, 4: 0, STRIP: 3, POLYGON_CELL: 3, POLYHEDRON: 4}
-"""The fewest nodes of cells with any number of nodes."""
-
-LINEAR: Final = {
-    **dict.fromkeys((21, 35, 68, 75), 3),
-    **dict.fromkeys((22, 34, 69, 76), 5),
-    **dict.fromkeys((23, 28, 30, 70, 77), 9),
-    **dict.fromkeys((24, 71, 78), 10),
-    **dict.fromkeys((25, 29, 33, 72, 79), 12),
-    **dict.fromkeys((26, 31, 32, 73, 80), 13),
-    **dict.fromkeys((27, 37, 74, 81), 14),
-    36: POLYGON_CELL,
+EMPTY, STRIP, ANY_POLYGON, PIXEL, VOXEL, POLYHEDRON = 0, 6, 7, 8, 11, 42
+WITHOUT_FACES: Final = {1: "vertices", 2: "vertices", **dict.fromkeys((3, 4, 21, 35, 68, 75), "lines")}
+TYPES: Final = {
+    "triangle": (5, 22, 34, 69, 76),
+    "quad": (PIXEL, 9, 23, 28, 30, 70, 77),
+    "tetra": (10, 24, 71, 78),
+    "pyramid": (14, 27, 37, 74, 81),
+    "wedge": (13, 26, 31, 32, 73, 80),
+    "hexahedron": (VOXEL, 12, 25, 29, 33, 72, 79),
 }
-"""The linear types of cells of higher order, whose corners come first."""
+"""The types of each shape. From 21 on they are of higher order; their corners come first."""
 
-VOLUMES: Final = (*range(10, 17), POLYHEDRON)
+SHAPES: Final = {type_: shape for shape, types in TYPES.items() for type_ in types}
+ALL_CORNERS: Final = {"triangle": 3, "quad": 4, **CORNERS}
+HIGHER_ORDER: Final = 21
+ALONG_AXES: Final = [0, 1, 3, 2, 4, 5, 7, 6]
+"""The order in which the corners of a pixel or voxel go around it."""
 
-NOT_SHOWN: Final = 1 | 32
-"""The bits of cells that are duplicates of cells elsewhere, or hidden."""
+DUPLICATE, HIDDEN = 1, 32
+"""The bits of cells that are elsewhere, too, or are not shown."""
 
 
 def read(path: Path, kind: str) -> ForeignMesh:
@@ -71,25 +65,52 @@ def read(path: Path, kind: str) -> ForeignMesh:
     window = listening()
     data, sentences = (_xml if kind == "xml" else _legacy)(path)
     refuse_printed(window, path)
-    _require_sound(data)
-    higher = _make_linear(data) if data.IsA("vtkUnstructuredGrid") else 0
-    found = _surface(data)
+    nodes, cells = data.GetNumberOfPoints(), data.GetNumberOfCells()
+    if not nodes or not cells:
+        raise ForeignRefusal(f"it must have nodes and cells, not {nodes:,} nodes and {cells:,} cells")
+    scalars, normals = FileScalars(), None
+    arrays = [*_arrays(data.GetPointData(), NODE, nodes), *_arrays(data.GetCellData(), POLYGON, cells)]
+    ghosts = np.zeros(cells, np.uint8)
+    if ghost_type := data.GetCellData().GetArray("vtkGhostType"):
+        ghosts = vtk_to_numpy(ghost_type)
+    if data.IsA("vtkUnstructuredGrid"):
+        places, found = _unstructured(data, ghosts, sentences)
+    elif data.IsA("vtkPolyData"):
+        places, found = _places(data), CellSurface(polygons_of(data), np.arange(nodes), ())
+        skipped = {"vertices": data.GetNumberOfVerts(), "lines": data.GetNumberOfLines()}
+        sentences += [f"skipped {what}: {count:,}" for what, count in skipped.items() if count]
+    else:
+        places, found = _structured(data)
     refuse_printed(window, path)
-    if higher:
-        sentences.append(f"took the corners alone of cells of higher order: {higher:,}")
-    sentences.extend(found.sentences)
-    scalars, normals, messages = _attributes(data, found)
+    is_left_out = (ghosts & (DUPLICATE | HIDDEN)) != 0
+    if is_left_out.any():
+        sentences.append(f"left out hidden or duplicate cells: {np.count_nonzero(is_left_out):,}")
+    flats = found.flats.chosen(~is_left_out[found.flats.cells])
+    if not len(flats.cells):
+        raise ForeignRefusal("; ".join(["it must have polygons or volume cells", *sentences]))
+    left_out = []
+    for of, array, is_normals in arrays:
+        rows, name = found.nodes if of == NODE else flats.cells, _text(array.GetName())
+        is_color = array.IsA("vtkUnsignedCharArray") and array.GetNumberOfComponents() in (3, 4)
+        if is_normals and of == NODE:
+            normals = vtk_to_numpy(array)[rows].astype(np.float64)
+        elif is_normals or is_color or not array.IsNumeric() or array.IsA("vtkBitArray"):
+            left_out.append(shown(name))
+        elif name != "vtkGhostType":
+            scalars.add(name, vtk_to_numpy(array), of, rows)
+    if left_out:
+        sentences.append(f"left out arrays that are no scalars: {listed(left_out)}")
     polygons = RawPolygons(
-        found.coordinates,
-        found.flats.corners,
-        found.flats.corner_counts,
-        np.zeros(len(found.flats.cells), np.intp),
+        places,
+        flats.corners,
+        flats.corner_counts,
+        np.zeros(len(flats.cells), np.intp),
         (printable_name(path.stem) or "part",),
         scalars.scalars,
         normals=normals,
-        corner_normals=None if normals is None else found.flats.corners,
+        corner_normals=None if normals is None else flats.corners,
     )
-    return ForeignMesh(polygons, (*sentences, *messages))
+    return ForeignMesh(polygons, (*sentences, *found.sentences, *scalars.messages))
 
 
 def _legacy(path: Path) -> tuple[Any, list[str]]:
@@ -153,150 +174,140 @@ def _text(given: str | bytes | None) -> str:
     return given.decode("latin-1") if isinstance(given, bytes) else given or ""
 
 
-# Checks of what VTK trusts.
-
-
-def _require_sound(data: Any) -> None:
-    """Raise ForeignRefusal unless all cells have nodes that are there, and all arrays a value for each."""
-    nodes, cells = data.GetNumberOfPoints(), data.GetNumberOfCells()
-    if not nodes or not cells:
-        raise ForeignRefusal(f"it must have nodes and cells, not {nodes:,} nodes and {cells:,} cells")
-    if data.IsA("vtkStructuredGrid") and nodes != math.prod(_dimensions(data)):
-        raise ForeignRefusal(f"a grid of {_dimensions(data)} nodes must have as many, not {nodes:,}")
-    if data.IsA("vtkRectilinearGrid"):
-        counts = tuple(getattr(data, f"Get{axis}Coordinates")().GetNumberOfTuples() for axis in "XYZ")
-        if counts != _dimensions(data):
-            raise ForeignRefusal(f"a grid of {_dimensions(data)} nodes must have as many, not {counts}")
-    if data.IsA("vtkPolyData"):
-        for what in ("Verts", "Lines", "Polys", "Strips"):
-            _require_nodes(getattr(data, f"Get{what}")(), nodes)
-    if data.IsA("vtkUnstructuredGrid"):
-        sizes = _require_nodes(data.GetCells(), nodes)
-        types = _types(data)
-        if len(types) != len(sizes):
-            raise ForeignRefusal(f"each of the {len(sizes):,} cells must have a type, not {len(types):,}")
-        for type_ in np.unique(types).tolist():
-            corners = CORNERS.get(LINEAR.get(type_, type_), 0)
-            least = corners or ANY_SIZE.get(LINEAR.get(type_, type_))
-            if least is None:
-                raise ForeignRefusal(f"a cell must be of a type with faces, not of the type {type_}")
-            of_type = sizes[types == type_]
-            most = corners if corners and type_ not in LINEAR else np.inf
-            wrong = of_type[(of_type < least) | (of_type > most)]
-            if len(wrong):
-                raise ForeignRefusal(f"a cell of the type {type_} must have {least} nodes, not {wrong[0]}")
-        if (types == POLYHEDRON).any():
-            _require_nodes(data.GetPolyhedronFaces(), nodes)
-    for owner, rows, what in ((data.GetPointData(), nodes, "node"), (data.GetCellData(), cells, "cell")):
-        for at in range(owner.GetNumberOfArrays()):
-            array = owner.GetAbstractArray(at)
-            if array.GetNumberOfTuples() != rows:
-                raise ForeignRefusal(
-                    f"the array {shown(_text(array.GetName()))} must have a value for each of the {rows:,}"
-                    f" {what}s, not {array.GetNumberOfTuples():,}"
-                )
-
-
-def _require_nodes(cells: Any, nodes: int) -> Indices:
-    """The number of nodes of each cell. Raises ForeignRefusal if a cell has nodes that are not there."""
-    numbers, offsets = _lists(cells)
-    if not len(numbers):
-        return np.zeros(len(offsets) - 1, np.intp)
-    sizes = np.diff(offsets)
-    if offsets[0] != 0 or offsets[-1] != len(numbers) or sizes.min() < 0:
-        raise ForeignRefusal("the offsets of cells must rise from 0 to the number of their nodes")
-    wrong = np.flatnonzero((numbers < 0) | (numbers >= nodes))
-    if len(wrong):
-        cell = int(np.searchsorted(offsets, wrong[0], side="right"))
-        raise ForeignRefusal(
-            f"a cell must have nodes of the file, from 0 to {nodes - 1:,}, not {numbers[wrong[0]]}"
-            f" (cell {cell:,})"
-        )
-    return sizes
-
-
-def _lists(cells: Any) -> tuple[Indices, Indices]:
-    """The nodes of all cells of a cell array, one after the other, and the offsets of the cells."""
-    if cells is None:
-        raise ForeignRefusal("its cells must have lists of their nodes")
-    numbers, offsets = (vtk_to_numpy(each()) for each in (cells.GetConnectivityArray, cells.GetOffsetsArray))
-    return numbers.astype(np.intp), offsets.astype(np.intp) if len(offsets) else np.zeros(1, np.intp)
-
-
-def _dimensions(grid: Any) -> tuple[int, ...]:
-    """The nodes along each axis of a structured grid."""
-    extent = grid.GetExtent()
-    return tuple(high - low + 1 for low, high in zip(extent[::2], extent[1::2], strict=True))
-
-
-def _types(grid: Any) -> Indices:
-    """The types of the cells of an unstructured grid, by the name that versions before 9.6 have for them."""
-    types: Indices = vtk_to_numpy(getattr(grid, "GetCellTypesArray", grid.GetCellTypes)()).astype(np.intp)
-    return types
-
-
-def _make_linear(grid: Any) -> int:
-    """Replace cells of higher order by their corners; returns their number.
-
-    VTK's filter numbers the cells of a surface wrongly if any cell is of higher order.
-    """
-    types = _types(grid)
-    is_higher = np.isin(types, list(LINEAR))
-    if not is_higher.any():
-        return 0
-    numbers, offsets = _lists(grid.GetCells())
-    sizes, linear = np.diff(offsets), types.copy()
-    for type_ in np.unique(types[is_higher]).tolist():
-        of_type = types == type_
-        linear[of_type] = LINEAR[type_]
-        sizes[of_type] = CORNERS.get(LINEAR[type_], 0) or sizes[of_type] // 2
-    cells = vtkCellArray()
-    ends = np.concatenate([[0], np.cumsum(sizes)])
-    is_filled = sizes > 0
-    chosen = numbers[runs(offsets[:-1][is_filled], sizes[is_filled])]
-    cells.SetData(*(numpy_to_vtkIdTypeArray(each.astype(np.int64), deep=True) for each in (ends, chosen)))
-    new_types = numpy_to_vtk(linear.astype(np.uint8), deep=True)
-    if faces := grid.GetPolyhedronFaces():
-        grid.SetPolyhedralCells(new_types, cells, grid.GetPolyhedronFaceLocations(), faces)
-    else:
-        grid.SetCells(new_types, cells)
-    return int(is_higher.sum())
-
-
 # The surface.
 
 
-class GridSurface(NamedTuple):
-    """The polygons of a surface, its nodes, their rows in the file, and what was left out."""
+def _arrays(owner: Any, of: str, rows: int) -> list[tuple[str, Any, bool]]:
+    """The arrays of nodes or cells but texture coordinates, and whether each is normals.
 
-    flats: Flats
-    coordinates: Floats
-    nodes: Indices
-    sentences: list[str]
+    Raises ForeignRefusal unless each has a value for each row.
+    """
+    arrays = []
+    for at in range(owner.GetNumberOfArrays()):
+        array = owner.GetAbstractArray(at)
+        name = _text(array.GetName())
+        if array.GetNumberOfTuples() != rows:
+            raise ForeignRefusal(
+                f"the array {shown(name)} must have a value for each of the {rows:,} {of}s, not"
+                f" {array.GetNumberOfTuples():,}"
+            )
+        is_normals = array is owner.GetNormals() or (
+            name.lower() == "normals" and array.GetNumberOfComponents() == 3
+        )
+        if array is not owner.GetTCoords() and array is not owner.GetTangents():
+            arrays.append((of, array, is_normals))
+    return arrays
+
+
+def _places(data: Any) -> Floats:
+    """The coordinates of the nodes, (nodes, 3)."""
+    places: Floats = vtk_to_numpy(data.GetPoints().GetData()).astype(np.float64)
+    return places
+
+
+def _lists(cells: Any, count: int) -> tuple[Indices, Indices]:
+    """The numbers in all lists of a cell array, one after the other, and the length of each list.
+
+    Raises ForeignRefusal unless all are from 0 to below `count`.
+    """
+    if cells is None:
+        raise ForeignRefusal("its cells must have lists of their nodes")
+    arrays = (cells.GetConnectivityArray(), cells.GetOffsetsArray())
+    numbers, offsets = (vtk_to_numpy(each).astype(np.intp) for each in arrays)
+    if not len(numbers):
+        return numbers, np.zeros(max(len(offsets) - 1, 0), np.intp)
+    sizes = np.diff(offsets)
+    if offsets[0] != 0 or offsets[-1] != len(numbers) or sizes.min() < 0:
+        raise ForeignRefusal("the offsets of cells must rise from 0 to the number of their nodes")
+    wrong = np.flatnonzero((numbers < 0) | (numbers >= count))
+    if len(wrong):
+        cell = int(np.searchsorted(offsets, wrong[0], side="right"))
+        raise ForeignRefusal(
+            f"a cell must have nodes of the file, from 0 to {count - 1:,}, not {numbers[wrong[0]]}"
+            f" (cell {cell:,})"
+        )
+    return numbers, sizes
 
 
 def polygons_of(data: Any) -> Flats:
-    """The polygons of polygonal data, and the triangles of its strips."""
-    numbers, offsets = _lists(data.GetPolys())
-    first, polygons = data.GetNumberOfVerts() + data.GetNumberOfLines(), len(offsets) - 1
-    if not data.GetNumberOfStrips():
-        return Flats(numbers, np.diff(offsets), np.arange(first, first + polygons))
-    strips, ends = _lists(data.GetStrips())
-    is_long = np.diff(ends) > 2
-    begins, sizes = ends[:-1][is_long], np.diff(ends)[is_long] - 2
-    # Each node of a strip but its last two begins a triangle; every second triangle is turned over.
-    starts = runs(begins, sizes)
+    """The polygons of polygonal data, and the triangles of its strips. Raises ForeignRefusal."""
+    first, several = data.GetNumberOfVerts() + data.GetNumberOfLines(), []
+    for cells in (data.GetPolys(), data.GetStrips()):
+        numbers, sizes = _lists(cells, data.GetNumberOfPoints())
+        several.append(Flats(numbers, sizes, np.arange(first, first + len(sizes))))
+        first += len(sizes)
+    return Flats.joined([several[0], _triangles(several[1])])
+
+
+def _triangles(strips: Flats) -> Flats:
+    """The triangles of strips: each node but the last two begins a triangle; every second is turned over."""
+    strips = strips.chosen(strips.corner_counts > 2)
+    sizes = strips.corner_counts - 2
+    starts = runs(strips.starts, sizes)
     is_odd = runs(np.zeros(len(sizes), np.intp), sizes) % 2
-    triangles = strips[np.column_stack([starts + is_odd, starts + 1 - is_odd, starts + 2])]
-    return Flats(
-        np.concatenate([numbers, triangles.ravel()]),
-        np.concatenate([np.diff(offsets), np.full(len(triangles), 3, np.intp)]),
-        first + np.concatenate([np.arange(polygons), polygons + np.repeat(np.flatnonzero(is_long), sizes)]),
-    )
+    table = strips.corners[np.column_stack([starts + is_odd, starts + 1 - is_odd, starts + 2])]
+    return Flats.of(table, np.repeat(strips.cells, sizes))
 
 
-def _surface(data: Any) -> GridSurface:
-    """The surface of a data set: its polygons in the order of their cells."""
+def _unstructured(grid: Any, ghosts: AnyArray, sentences: list[str]) -> tuple[Floats, CellSurface]:
+    """The coordinates of the nodes of a surface, and the surface. Raises ForeignRefusal for strange cells."""
+    places = _places(grid)
+    numbers, sizes = _lists(grid.GetCells(), len(places))
+    # The name of the array before VTK 9.6 is the second.
+    types = vtk_to_numpy(getattr(grid, "GetCellTypesArray", grid.GetCellTypes)()).astype(np.intp)
+    if len(types) != len(sizes):
+        raise ForeignRefusal(f"each of the {len(sizes):,} cells must have a type, not {len(types):,}")
+    types[(ghosts & HIDDEN) != 0] = EMPTY
+    cells = Flats(numbers, sizes, np.arange(len(sizes)))
+    flats, volumes, polyhedra, skipped = list[Flats](), list[Volumes](), list[Flats](), Counter[str]()
+    for type_ in np.unique(types).tolist():
+        rows, shape = np.flatnonzero(types == type_), SHAPES.get(type_)
+        if type_ in WITHOUT_FACES:
+            skipped[f"skipped {WITHOUT_FACES[type_]}"] += len(rows)
+        elif type_ in (STRIP, ANY_POLYGON):
+            flats.append(_triangles(cells.chosen(rows)) if type_ == STRIP else cells.chosen(rows))
+        elif type_ == POLYHEDRON:
+            polyhedra.append(_faces(grid, rows))
+        elif shape is not None:
+            count, is_higher = ALL_CORNERS[shape], type_ >= HIGHER_ORDER
+            least, most = sizes[rows].min(), sizes[rows].max()
+            if least < count or (most > count and not is_higher):
+                wrong = least if least < count else most
+                raise ForeignRefusal(f"a cell of the type {type_} must have {count} nodes, not {wrong}")
+            if is_higher:
+                skipped["took the corners alone of cells of higher order"] += len(rows)
+            order = ALONG_AXES[:count] if type_ in (PIXEL, VOXEL) else range(count)
+            table = numbers[cells.starts[rows, None] + np.array(order)]
+            if shape in CORNERS:
+                volumes.append(Volumes(shape, table, rows))
+            else:
+                flats.append(Flats.of(table, rows))
+        elif type_ != EMPTY:
+            raise ForeignRefusal(f"a cell must be of a type with faces, not of the type {type_}")
+    sentences += [f"{what}: {count:,}" for what, count in skipped.items()]
+    surface = cell_surface(places, Flats.joined(flats), volumes, polyhedra)
+    return places[surface.nodes], surface
+
+
+def _faces(grid: Any, rows: Indices) -> Flats:
+    """The faces of the polyhedra in some rows of a grid. Raises ForeignRefusal."""
+    corners, corner_counts = _lists(grid.GetPolyhedronFaces(), grid.GetNumberOfPoints())
+    faces, face_counts = _lists(grid.GetPolyhedronFaceLocations(), len(corner_counts))
+    of_cells = Flats(faces, face_counts, np.arange(len(face_counts))).chosen(rows)
+    owners = np.repeat(of_cells.cells, of_cells.corner_counts)
+    chosen = Flats(corners, corner_counts, np.arange(len(corner_counts))).chosen(of_cells.corners)
+    return Flats(chosen.corners, chosen.corner_counts, owners)
+
+
+def _structured(data: Any) -> tuple[Floats, CellSurface]:
+    """The same for a grid in rows and columns. Raises ForeignRefusal."""
+    extent = data.GetExtent()
+    sides = tuple(high - low + 1 for low, high in zip(extent[::2], extent[1::2], strict=True))
+    axes = [getattr(data, f"Get{axis}Coordinates", None) for axis in "XYZ"]
+    counts = [each().GetNumberOfTuples() for each in axes if each]
+    if np.prod(sides) != data.GetNumberOfPoints() or (counts and tuple(counts) != sides):
+        given = counts or f"{data.GetNumberOfPoints():,}"
+        raise ForeignRefusal(f"a grid of {sides} nodes must have as many, not {given}")
     geometry = vtkGeometryFilter()
     geometry.SetInputData(data)
     geometry.SetOutputPointsPrecision(vtkAlgorithm.DOUBLE_PRECISION)
@@ -304,120 +315,25 @@ def _surface(data: Any) -> GridSurface:
     geometry.PassThroughPointIdsOn()
     geometry.Update()
     output = geometry.GetOutput()
-    if not output.GetNumberOfPoints():
+    flats = polygons_of(output)
+    if not len(flats.cells):
         raise ForeignRefusal("it must have polygons or volume cells, not points and lines alone")
-    rows = vtk_to_numpy(output.GetPointData().GetArray("vtkOriginalPointIds")).astype(np.intp)
-    cell_rows = vtk_to_numpy(output.GetCellData().GetArray("vtkOriginalCellIds")).astype(np.intp)
-    places = vtk_to_numpy(output.GetPoints().GetData()).astype(np.float64)
-    found = polygons_of(output)
-    found = Flats(found.corners, found.corner_counts, cell_rows[found.cells])
-    skipped = {"vertices": output.GetNumberOfVerts(), "lines": output.GetNumberOfLines()}
-    sentences = [f"skipped {what}: {count:,}" for what, count in skipped.items() if count]
-
-    # Leave out cells that are not shown. VTK leaves out those of volumes alone.
-    if ghosts := data.GetCellData().GetArray("vtkGhostType"):
-        is_shown = (vtk_to_numpy(ghosts) & NOT_SHOWN) == 0
-        if number := int(np.count_nonzero(~is_shown)):
-            sentences.append(f"left out hidden or duplicate cells: {number:,}")
-            found = found.chosen(is_shown[found.cells])
-    is_volume = _volumes(data)
-    if count := int(is_volume.sum()):
-        is_face = _repeat_faces(found, is_volume)
-        if number := int(is_face.sum()):
-            sentences.append(f"left out polygons that are faces of volume cells: {number:,}")
-        is_outer = is_volume[found.cells]
-        flats, faces = found.chosen(~is_face & ~is_outer), found.chosen(is_outer)
-        found = Flats.joined([flats, turned_outward(places, faces, _centers(data))])
-        sentences.extend(surface_sentences(count, data.GetNumberOfPoints() - len(np.unique(found.corners))))
-    if not len(found.cells):
-        raise ForeignRefusal("; ".join(["it must have polygons or volume cells", *sentences]))
-
-    # Number the polygons and the nodes in the order of the file.
-    found = Flats.joined([found])
-    order = np.argsort(rows, kind="stable")
-    rank = np.empty(len(order), np.intp)
-    rank[order] = np.arange(len(order))
-    flats = Flats(rank[found.corners], found.corner_counts, found.cells)
-    return GridSurface(flats, places[order], rows[order], sentences)
-
-
-def _volumes(data: Any) -> Booleans:
-    """Which cells are volumes."""
-    if data.IsA("vtkPolyData"):
-        return np.zeros(data.GetNumberOfCells(), np.bool_)
-    if data.IsA("vtkUnstructuredGrid"):
-        is_volume: Booleans = np.isin(_types(data), VOLUMES)
-        return is_volume
-    return np.full(data.GetNumberOfCells(), min(_dimensions(data)) > 1)
-
-
-def _repeat_faces(found: Flats, is_volume: Booleans) -> Booleans:
-    """Which polygons have the corners of an outer face: programs often write boundaries besides volumes."""
-    is_face = is_volume[found.cells]
-    repeat = np.zeros(len(is_face), np.bool_)
-    for count in np.unique(found.corner_counts[~is_face]).tolist():
-        rows = np.flatnonzero(found.corner_counts == count)
-        corners = np.sort(found.corners[found.starts[rows, None] + np.arange(count)], axis=1)
-        groups = np.unique(corners, axis=0, return_inverse=True)[1].reshape(-1)
-        repeat[rows] = ~is_face[rows] & (np.bincount(groups, is_face[rows])[groups] > 0)
-    return repeat
-
-
-def _centers(data: Any) -> Floats:
-    """The centers of all cells. Raises ForeignRefusal if a cell has none."""
-    # Without the array of hidden cells, each cell has a center.
-    plain = data.NewInstance()
-    plain.CopyStructure(data)
-    plain.GetCellData().Initialize()
-    centers = vtkCellCenters()
-    centers.SetInputData(plain)
-    centers.CopyArraysOff()
-    centers.Update()
-    places: Floats = vtk_to_numpy(centers.GetOutput().GetPoints().GetData()).astype(np.float64)
-    if len(places) != data.GetNumberOfCells():
-        raise ForeignRefusal("it must have no empty cells beside volume cells")
-    return places
-
-
-def _attributes(data: Any, found: GridSurface) -> tuple[FileScalars, Floats | None, list[str]]:
-    """The scalars of a surface, the normals of its nodes or None, and what was skipped."""
-    scalars, normals, skipped = FileScalars(), None, Counter[str]()
-    for of, owner, rows in (
-        (NODE, data.GetPointData(), found.nodes),
-        (POLYGON, data.GetCellData(), found.flats.cells),
-    ):
-        roles = {
-            _text(each.GetName()): what
-            for each, what in (
-                (owner.GetNormals(), "normals of cells"),
-                (owner.GetTCoords(), "texture coordinates"),
-                (owner.GetTangents(), "tangents"),
-                (owner.GetGlobalIds(), "arrays of numbers for identification"),
-                (owner.GetPedigreeIds(), "arrays of numbers for identification"),
-            )
-            if each is not None
-        }
-        for at in range(owner.GetNumberOfArrays()):
-            array = owner.GetAbstractArray(at)
-            name = _text(array.GetName())
-            is_normals = roles.get(name) == "normals of cells" or name.lower() == "normals"
-            if name == "vtkGhostType":
-                continue
-            if of == NODE and is_normals and array.GetNumberOfComponents() == 3:
-                normals = vtk_to_numpy(array)[rows].astype(np.float64)
-            elif what := roles.get(name) or _ignored(array):
-                skipped[what] += 1
-            else:
-                scalars.add(name, vtk_to_numpy(array), of, rows)
-    sentences = [f"skipped {what}: {count:,}" for what, count in skipped.items()]
-    return scalars, normals, [*scalars.messages, *sentences]
-
-
-def _ignored(array: Any) -> str:
-    """What messages call an array that is skipped for its type; empty for a scalar, vector or tensor."""
-    if not array.IsNumeric():
-        return "arrays of texts"
-    if array.IsA("vtkBitArray"):
-        return "arrays of bits"
-    is_color = array.IsA("vtkUnsignedCharArray") and array.GetNumberOfComponents() in (3, 4)
-    return "arrays of colors" if is_color else ""
+    places = _places(output)
+    quads = flats.corners.reshape(-1, 4)
+    a, b, c, d = (places[corners].T for corners in quads.T)
+    sentences: list[str] = []
+    if min(sides) > 1:
+        count, left = data.GetNumberOfCells(), data.GetNumberOfPoints() - len(places)
+        sentences = surface_sentences(count, left)
+        # A left-handed grid is inside out.
+        if dot(a, cross(b, c) + cross(c, d)).sum() < 0:
+            quads = quads[:, ::-1]
+    nodes, cells = (
+        vtk_to_numpy(data.GetArray(name)).astype(np.intp)
+        for data, name in (
+            (output.GetPointData(), "vtkOriginalPointIds"),
+            (output.GetCellData(), "vtkOriginalCellIds"),
+        )
+    )
+    flats = Flats(quads.ravel(), flats.corner_counts, cells[flats.cells])
+    return places, CellSurface(flats, nodes, tuple(sentences))

@@ -7,7 +7,6 @@ import os
 import subprocess
 import sys
 from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 
@@ -32,7 +31,7 @@ sys.modules[fake.__name__] = fake
 """
 """A library that runs the file that it is asked to read; the file may give `mesh`."""
 
-OWN = [sys.executable, "-c", FAKE + "sys.exit(worker.main(sys.argv[1:]))"]
+OWN = (sys.executable, "-c", FAKE + "sys.exit(worker.main(sys.argv[1:]))")
 """A worker of its own that has this library, too."""
 
 SHARED = [
@@ -42,12 +41,12 @@ SHARED = [
     + """
 import importlib, json, os
 for line in sys.stdin:
-    *arguments, printed = json.loads(line)
+    arguments = json.loads(line)
     importlib.import_module("autocolor.files.meshes.foreign_" + arguments[1])
     child = os.fork()
     if child == 0:
         os.dup2(os.open(os.devnull, os.O_RDWR), 1)
-        os.dup2(os.open(printed, os.O_WRONLY | os.O_CREAT), 2)
+        os.dup2(1, 2)
         os._exit(worker.main(arguments))
     print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), flush=True)
 """,
@@ -71,10 +70,10 @@ def worker() -> Iterator[subprocess.Popen[str]]:
 def shared(worker: subprocess.Popen[str], monkeypatch: pytest.MonkeyPatch) -> None:
     """Files are read by forks of one process."""
 
-    def exit_code(command: list[str], seconds: float, printed: Path) -> int:
+    def exit_code(command: tuple[str, ...], seconds: float) -> int:
         assert worker.stdin is not None
         assert worker.stdout is not None
-        print(json.dumps([*command[-7:], str(printed)]), file=worker.stdin, flush=True)
+        print(json.dumps(command[-7:]), file=worker.stdin, flush=True)
         return int(worker.stdout.readline())
 
     monkeypatch.setattr(foreign, "_exit_code", exit_code)

@@ -320,7 +320,7 @@ CUT = (
 )
 WITHIN = "accessors 0: its {} values must be within its view"
 VTK = "VTK must be able to read it, and cannot ({})"
-SEGV = "VTK must read it, and was ended by SIGSEGV"
+SEGV = "VTK must read it, and crashed (code -11)"
 PRIMITIVE = "meshes.0.primitives.0"
 
 

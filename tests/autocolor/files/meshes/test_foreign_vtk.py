@@ -216,8 +216,7 @@ def test_what_is_left_out_is_told(tmp_path: Path) -> None:
     assert report.repairs == (
         "set.vtp: skipped vertices: 1",
         "set.vtp: skipped lines: 1",
-        "set.vtp: skipped arrays of colors: 1",
-        "set.vtp: skipped arrays of texts: 1",
+        "set.vtp: left out arrays that are no scalars: 'color' and 'text'",
         "set.vtp: 1 polygon with more than four corners was split",
     )
     assert {each.name: each.values.tolist()[:2] for each in report.mesh.scalars} == {
@@ -280,7 +279,7 @@ DATA = "Error reading ascii data. Possible mismatch of datasize with declaration
         ("a.vtk", TEXT.replace(b" 2 3\n", b" 2 99\n"),
          f"a.vtk: a cell must have nodes of the file, from 0 to 3, not 99 (cell 1){END}"),
         ("a.vtk", TEXT.replace(b"0 1 0\n", b"0 nan 0\n"),
-         "a.vtk: VTK gave a node whose coordinates are not finite and at most 1e30 in size, [0.0, nan, 0.0]"
+         "a.vtk: the coordinates of a node must be finite and at most 1e30 in size, not [0.0, nan, 0.0]"
          f" (node 4){END}"),
         ("a.vtk", TEXT.replace(b"0 1 0\n", b"0 1\n"), CANNOT.format(DATA)),
         ("a.vtk", TEXT[: TEXT.index(b" 0 1 0\n")], CANNOT.format(DATA)),
