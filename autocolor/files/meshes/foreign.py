@@ -28,7 +28,7 @@ from typing import Final, NamedTuple
 
 import autocolor.files
 from autocolor.budget import allowed_memory, validated_limit
-from autocolor.checks import printable, shown
+from autocolor.checks import printable
 from autocolor.errors import InputError, UnavailableError
 from autocolor.files.meshes.foreign_mesh import REMEDY, ForeignMesh, ForeignRefusal, loaded
 from autocolor.files.meshes.gltf_document import size_of_gltf
@@ -68,6 +68,9 @@ WORKER: Final = (sys.executable, "-P", "-m", "autocolor.files.meshes.foreign_wor
 
 FAILED: Final = 3
 """The exit code if the file cannot be read; the result is then a sentence without the file's name."""
+
+CANNOT_START: Final = 127
+"""The exit code that a shell gives for a command that cannot be started."""
 
 RESULT_GROWTH: Final = 3
 """Measured: how many times the size of a result this process takes to read it."""
@@ -135,10 +138,8 @@ def _exit_code(command: tuple[str, ...], seconds: float) -> int | None:
         )
     except subprocess.TimeoutExpired:
         return None
-    except OSError as error:
-        raise InputError(
-            f"the process of a reader cannot be started ({shown(str(error))}); free memory"
-        ) from None
+    except OSError:
+        return CANNOT_START
 
 
 class Library(NamedTuple):

@@ -20,24 +20,21 @@ from vtkmodules.vtkIOGeometry import vtkGLTFReader
 
 from autocolor.arrays import Floats, Indices
 from autocolor.checks import Color, listed
-from autocolor.files.meshes.file_scalars import FileScalars
 from autocolor.files.meshes.foreign_mesh import ForeignMesh, ForeignRefusal, part_names_of
-from autocolor.files.meshes.foreign_vtk import listening, polygons_of, refuse_printed
+from autocolor.files.meshes.foreign_vtk import listening, places_of, polygons_of, refuse_printed
 from autocolor.files.meshes.gltf_document import Row, completed, document, refuse_extensions, rows
 from autocolor.files.meshes.repair import RawPolygons, different, printable_name
 from autocolor.files.meshes.welding import welded
-from autocolor.scene.scalar import NODE
 
 
 class Part(NamedTuple):
-    """A primitive at a node of the scene; `material` is its number, or None."""
+    """A primitive at a node of the scene; `material` is "" and `normals` are empty if it has none."""
 
     name: str
-    material: int | None
+    material: str
     places: Floats
     triangles: Indices
-    normals: Floats | None
-    scalars: dict[str, Floats]
+    normals: Floats
 
 
 def read(path: Path, kind: str) -> ForeignMesh:
@@ -68,48 +65,34 @@ def _read(path: Path, described: Row, binary: bytes) -> ForeignMesh:
     if not parts:
         raise ForeignRefusal("; ".join(["its scene must have meshes of triangles", *sentences]))
     names = part_names_of([part.name for part in parts])
-    polygons, scalars = _joined(parts, names)
-    material_of_part = {
-        name: materials[part.material]
-        for name, part in zip(names, parts, strict=True)
-        if part.material is not None
-    }
+    material_of_part = {name: part.material for name, part in zip(names, parts, strict=True) if part.material}
     used = {name: color for name, color in colors.items() if name in material_of_part.values()}
-    return ForeignMesh(polygons, (*sentences, *scalars.messages), material_of_part, used)
+    return ForeignMesh(_joined(parts, names), tuple(sentences), material_of_part, used)
 
 
-def _joined(parts: list[Part], names: tuple[str, ...]) -> tuple[RawPolygons, FileScalars]:
-    """The polygons of all parts, and their scalars, which are missing where a part has none."""
-    scalars = FileScalars()
-    keys = dict.fromkeys(key for part in parts for key in part.scalars)
-    nodes, corners, normals, corner_normals = [], [], [], []
+def _joined(parts: list[Part], names: tuple[str, ...]) -> RawPolygons:
+    """The polygons of all parts."""
+    nodes, corners, rows_of_normals, count, normals = [], [], [], 0, 0
     for part in parts:
-        if keys or not np.isfinite(part.places).all():
-            points, places = part.places, np.arange(len(part.places))
-        else:
-            points, places = welded(part.places)
-        corners.append(sum(map(len, nodes)) + places[part.triangles])
+        points, places = welded(part.places)
         nodes.append(points)
-        first = sum(map(len, normals))
-        has_normals = part.normals is not None
-        corner_normals.append(first + part.triangles if has_normals else np.full(part.triangles.shape, -1))
-        normals.append(np.empty((0, 3)) if part.normals is None else part.normals)
-    for key in keys:
-        missing = [np.full(len(part.places), np.nan) for part in parts]
-        values = [part.scalars.get(key, none) for part, none in zip(parts, missing, strict=True)]
-        scalars.add(key, np.concatenate(values), NODE)
-    counts = [len(part.triangles) for part in parts]
-    polygons = RawPolygons(
+        corners.append(count + places[part.triangles])
+        has_normals = len(part.normals) > 0
+        rows_of_normals.append(np.where(has_normals, normals + part.triangles, -1))
+        count, normals = count + len(points), normals + len(part.normals)
+    counts, vectors = (
+        [len(part.triangles) for part in parts],
+        np.concatenate([part.normals for part in parts]),
+    )
+    return RawPolygons(
         np.concatenate(nodes),
         np.concatenate(corners).ravel(),
         np.full(sum(counts), 3, np.intp),
         np.repeat(np.arange(len(parts)), counts),
         names,
-        scalars.scalars,
-        normals=np.concatenate(normals),
-        corner_normals=np.concatenate(corner_normals).ravel(),
+        normals=vectors.astype(np.float64) if len(vectors) else None,
+        corner_normals=np.concatenate(rows_of_normals).ravel() if len(vectors) else None,
     )
-    return polygons, scalars
 
 
 def _parts(scene: Any, described: Row, materials: tuple[str, ...], stem: str) -> Iterator[Part]:
@@ -130,30 +113,22 @@ def _parts(scene: Any, described: Row, materials: tuple[str, ...], stem: str) ->
         weights = nodes[node].get("weights") or meshes[mesh].get("weights") or ()
         primitives = rows(meshes[mesh], "primitives")
         for at, primitive in enumerate(primitives):
-            data, material = block.GetBlock(at), primitive.get("material")
-            accessor = rows(described, "accessors")[primitive["attributes"]["POSITION"]]
-            if data.GetNumberOfPoints() != accessor["count"]:
+            data, attributes = block.GetBlock(at), primitive["attributes"]
+            count = rows(described, "accessors")[attributes["POSITION"]]["count"]
+            if data.GetNumberOfPoints() != count:
                 raise ForeignRefusal(f"meshes {mesh}: VTK must give the nodes of the file, and does not")
-            if "JOINTS_1" in primitive["attributes"]:
+            if "JOINTS_1" in attributes:
                 raise ForeignRefusal(f"meshes {mesh}: a node of a skin must have four joints at most")
-            of_material = "" if material is None or len(primitives) == 1 else materials[material]
-            triangles, values = polygons_of(data).corners.reshape(-1, 3), data.GetPointData()
-            if _is_mirrored(block.GetBlock(0).GetFieldData()):
-                triangles = triangles[:, ::-1]
-            # Morph targets need not move normals.
-            normals = None if any(weights) else values.GetNormals()
-            arrays = [values.GetArray(number) for number in range(values.GetNumberOfArrays())]
+            number = primitive.get("material")
+            material = "" if number is None else materials[number]
+            triangles, normals = polygons_of(data).corners.reshape(-1, 3), data.GetPointData().GetNormals()
             yield Part(
-                f"{name} {of_material}".strip(),
+                f"{name} {material}" if material and len(primitives) > 1 else name,
                 material,
-                vtk_to_numpy(data.GetPoints().GetData()).astype(np.float64),
-                triangles,
-                None if normals is None else vtk_to_numpy(normals).astype(np.float64),
-                {
-                    array.GetName().removeprefix("_"): vtk_to_numpy(array).astype(np.float64)
-                    for array in arrays
-                    if array.GetNumberOfComponents() == 1 and array.GetName().startswith("_")
-                },
+                places_of(data),
+                triangles[:, ::-1] if _is_mirrored(block.GetBlock(0).GetFieldData()) else triangles,
+                # Morph targets need not move normals.
+                np.empty((0, 3)) if normals is None or any(weights) else vtk_to_numpy(normals),
             )
 
 
@@ -172,14 +147,14 @@ def _left_out(described: Row) -> list[str]:
         for primitive in rows(mesh, "primitives")
         for name in primitive.get("attributes") or ()
     ]
-    extensions = [name for node in rows(described, "nodes") for name in node.get("extensions") or ()]
     kinds = {
         "animations": bool(described.get("animations")),
+        "attributes of its own": any(name.startswith("_") for name in attributes),
         "cameras": bool(described.get("cameras")),
         "colors of nodes": any(name.startswith("COLOR_") for name in attributes),
-        "lights": "KHR_lights_punctual" in extensions,
+        "lights": "KHR_lights_punctual" in json.dumps(described.get("nodes")),
         "other scenes": len(rows(described, "scenes")) > 1,
-        "textures": any(map(_has_texture, rows(described, "materials"))),
+        "textures": _has_texture(described.get("materials")),
     }
     found = [kind for kind, is_there in kinds.items() if is_there]
     return [f"left out its {listed(found)}"] if found else []
@@ -188,23 +163,23 @@ def _left_out(described: Row) -> list[str]:
 # Materials.
 
 
-def _has_texture(row: Row) -> bool:
-    return "Texture" in json.dumps(row)
+def _has_texture(value: object) -> bool:
+    return "Texture" in json.dumps(value)
 
 
 def _materials(described: Row) -> tuple[tuple[str, ...], dict[str, Color]]:
     """The names of the materials, and the base colors of those that have no texture instead."""
-    names = [_name(row) or f"material {number}" for number, row in enumerate(rows(described, "materials"))]
-    names_of_materials = different(names)
+    materials = rows(described, "materials")
+    names = different([_name(row) or f"material {number}" for number, row in enumerate(materials)])
     colors: dict[str, Color] = {}
-    for name, row in zip(names_of_materials, rows(described, "materials"), strict=True):
+    for name, row in zip(names, materials, strict=True):
         shiny = (row.get("extensions") or {}).get("KHR_materials_pbrSpecularGlossiness") or {}
         rough = row.get("pbrMetallicRoughness") or {}
         color = rough.get("baseColorFactor") or shiny.get("diffuseFactor")
         if color is not None or not _has_texture({**rough, **shiny}):
             red, green, blue = (srgb(each) for each in (color or (1.0, 1.0, 1.0))[:3])
             colors[name] = (red, green, blue)
-    return names_of_materials, colors
+    return names, colors
 
 
 def srgb(linear: float) -> int:

@@ -29,7 +29,7 @@ from autocolor.files.meshes.file_scalars import FileScalars
 from autocolor.files.meshes.foreign_mesh import ForeignMesh, ForeignRefusal, unreadable
 from autocolor.files.meshes.repair import RawPolygons, printable_name
 from autocolor.files.reading import HEAD, read_head, read_whole
-from autocolor.scene.scalar import NODE, POLYGON
+from autocolor.scene.scalar import NODE, POLYGON, MeshScalar
 
 XML_TYPE: Final = re.compile(rb"<VTKFile\s[^>]*?type\s*=\s*[\"'](\w+)[\"']")
 
@@ -68,49 +68,40 @@ def read(path: Path, kind: str) -> ForeignMesh:
     nodes, cells = data.GetNumberOfPoints(), data.GetNumberOfCells()
     if not nodes or not cells:
         raise ForeignRefusal(f"it must have nodes and cells, not {nodes:,} nodes and {cells:,} cells")
-    scalars, normals = FileScalars(), None
-    arrays = [*_arrays(data.GetPointData(), NODE, nodes), *_arrays(data.GetCellData(), POLYGON, cells)]
+    for count, owner in ((nodes, data.GetPointData()), (cells, data.GetCellData())):
+        for array in (owner.GetAbstractArray(at) for at in range(owner.GetNumberOfArrays())):
+            if array.GetNumberOfTuples() != count:
+                name = shown(_text(array.GetName()))
+                raise ForeignRefusal(
+                    f"the array {name} must have {count:,} values, as many as nodes or cells"
+                )
     ghosts = np.zeros(cells, np.uint8)
     if ghost_type := data.GetCellData().GetArray("vtkGhostType"):
         ghosts = vtk_to_numpy(ghost_type)
-    if data.IsA("vtkUnstructuredGrid"):
-        places, found = _unstructured(data, ghosts, sentences)
-    elif data.IsA("vtkPolyData"):
-        places, found = _places(data), CellSurface(polygons_of(data), np.arange(nodes), ())
-        skipped = {"vertices": data.GetNumberOfVerts(), "lines": data.GetNumberOfLines()}
-        sentences += [f"skipped {what}: {count:,}" for what, count in skipped.items() if count]
-    else:
-        places, found = _structured(data)
+    read_surface = {"vtkUnstructuredGrid": _unstructured, "vtkPolyData": _flat}.get(
+        data.GetClassName(), _structured
+    )
+    places, found = read_surface(data, ghosts)
     refuse_printed(window, path)
+    sentences += found.sentences
     is_left_out = (ghosts & (DUPLICATE | HIDDEN)) != 0
     if is_left_out.any():
         sentences.append(f"left out hidden or duplicate cells: {np.count_nonzero(is_left_out):,}")
     flats = found.flats.chosen(~is_left_out[found.flats.cells])
     if not len(flats.cells):
         raise ForeignRefusal("; ".join(["it must have polygons or volume cells", *sentences]))
-    left_out = []
-    for of, array, is_normals in arrays:
-        rows, name = found.nodes if of == NODE else flats.cells, _text(array.GetName())
-        is_color = array.IsA("vtkUnsignedCharArray") and array.GetNumberOfComponents() in (3, 4)
-        if is_normals and of == NODE:
-            normals = vtk_to_numpy(array)[rows].astype(np.float64)
-        elif is_normals or is_color or not array.IsNumeric() or array.IsA("vtkBitArray"):
-            left_out.append(shown(name))
-        elif name != "vtkGhostType":
-            scalars.add(name, vtk_to_numpy(array), of, rows)
-    if left_out:
-        sentences.append(f"left out arrays that are no scalars: {listed(left_out)}")
+    scalars, normals = _attributes(data, found.nodes, flats.cells, sentences)
     polygons = RawPolygons(
         places,
         flats.corners,
         flats.corner_counts,
         np.zeros(len(flats.cells), np.intp),
         (printable_name(path.stem) or "part",),
-        scalars.scalars,
+        scalars,
         normals=normals,
         corner_normals=None if normals is None else flats.corners,
     )
-    return ForeignMesh(polygons, (*sentences, *found.sentences, *scalars.messages))
+    return ForeignMesh(polygons, tuple(sentences))
 
 
 def _legacy(path: Path) -> tuple[Any, list[str]]:
@@ -177,29 +168,7 @@ def _text(given: str | bytes | None) -> str:
 # The surface.
 
 
-def _arrays(owner: Any, of: str, rows: int) -> list[tuple[str, Any, bool]]:
-    """The arrays of nodes or cells but texture coordinates, and whether each is normals.
-
-    Raises ForeignRefusal unless each has a value for each row.
-    """
-    arrays = []
-    for at in range(owner.GetNumberOfArrays()):
-        array = owner.GetAbstractArray(at)
-        name = _text(array.GetName())
-        if array.GetNumberOfTuples() != rows:
-            raise ForeignRefusal(
-                f"the array {shown(name)} must have a value for each of the {rows:,} {of}s, not"
-                f" {array.GetNumberOfTuples():,}"
-            )
-        is_normals = array is owner.GetNormals() or (
-            name.lower() == "normals" and array.GetNumberOfComponents() == 3
-        )
-        if array is not owner.GetTCoords() and array is not owner.GetTangents():
-            arrays.append((of, array, is_normals))
-    return arrays
-
-
-def _places(data: Any) -> Floats:
+def places_of(data: Any) -> Floats:
     """The coordinates of the nodes, (nodes, 3)."""
     places: Floats = vtk_to_numpy(data.GetPoints().GetData()).astype(np.float64)
     return places
@@ -210,8 +179,6 @@ def _lists(cells: Any, count: int) -> tuple[Indices, Indices]:
 
     Raises ForeignRefusal unless all are from 0 to below `count`.
     """
-    if cells is None:
-        raise ForeignRefusal("its cells must have lists of their nodes")
     arrays = (cells.GetConnectivityArray(), cells.GetOffsetsArray())
     numbers, offsets = (vtk_to_numpy(each).astype(np.intp) for each in arrays)
     if not len(numbers):
@@ -239,6 +206,13 @@ def polygons_of(data: Any) -> Flats:
     return Flats.joined([several[0], _triangles(several[1])])
 
 
+def _flat(data: Any, ghosts: AnyArray) -> tuple[Floats, CellSurface]:
+    """The coordinates of the nodes and the polygons of polygonal data. Raises ForeignRefusal."""
+    skipped = {"vertices": data.GetNumberOfVerts(), "lines": data.GetNumberOfLines()}
+    sentences = tuple(f"skipped {what}: {count:,}" for what, count in skipped.items() if count)
+    return places_of(data), CellSurface(polygons_of(data), np.arange(data.GetNumberOfPoints()), sentences)
+
+
 def _triangles(strips: Flats) -> Flats:
     """The triangles of strips: each node but the last two begins a triangle; every second is turned over."""
     strips = strips.chosen(strips.corner_counts > 2)
@@ -249,14 +223,12 @@ def _triangles(strips: Flats) -> Flats:
     return Flats.of(table, np.repeat(strips.cells, sizes))
 
 
-def _unstructured(grid: Any, ghosts: AnyArray, sentences: list[str]) -> tuple[Floats, CellSurface]:
+def _unstructured(grid: Any, ghosts: AnyArray) -> tuple[Floats, CellSurface]:
     """The coordinates of the nodes of a surface, and the surface. Raises ForeignRefusal for strange cells."""
-    places = _places(grid)
+    places = places_of(grid)
     numbers, sizes = _lists(grid.GetCells(), len(places))
     # The name of the array before VTK 9.6 is the second.
     types = vtk_to_numpy(getattr(grid, "GetCellTypesArray", grid.GetCellTypes)()).astype(np.intp)
-    if len(types) != len(sizes):
-        raise ForeignRefusal(f"each of the {len(sizes):,} cells must have a type, not {len(types):,}")
     types[(ghosts & HIDDEN) != 0] = EMPTY
     cells = Flats(numbers, sizes, np.arange(len(sizes)))
     flats, volumes, polyhedra, skipped = list[Flats](), list[Volumes](), list[Flats](), Counter[str]()
@@ -270,9 +242,9 @@ def _unstructured(grid: Any, ghosts: AnyArray, sentences: list[str]) -> tuple[Fl
             polyhedra.append(_faces(grid, rows))
         elif shape is not None:
             count, is_higher = ALL_CORNERS[shape], type_ >= HIGHER_ORDER
-            least, most = sizes[rows].min(), sizes[rows].max()
-            if least < count or (most > count and not is_higher):
-                wrong = least if least < count else most
+            is_wrong = sizes[rows] < count if is_higher else sizes[rows] != count
+            if is_wrong.any():
+                wrong = sizes[rows[is_wrong][0]]
                 raise ForeignRefusal(f"a cell of the type {type_} must have {count} nodes, not {wrong}")
             if is_higher:
                 skipped["took the corners alone of cells of higher order"] += len(rows)
@@ -284,9 +256,9 @@ def _unstructured(grid: Any, ghosts: AnyArray, sentences: list[str]) -> tuple[Fl
                 flats.append(Flats.of(table, rows))
         elif type_ != EMPTY:
             raise ForeignRefusal(f"a cell must be of a type with faces, not of the type {type_}")
-    sentences += [f"{what}: {count:,}" for what, count in skipped.items()]
     surface = cell_surface(places, Flats.joined(flats), volumes, polyhedra)
-    return places[surface.nodes], surface
+    sentences = (*(f"{what}: {count:,}" for what, count in skipped.items()), *surface.sentences)
+    return places[surface.nodes], surface._replace(sentences=sentences)
 
 
 def _faces(grid: Any, rows: Indices) -> Flats:
@@ -299,14 +271,15 @@ def _faces(grid: Any, rows: Indices) -> Flats:
     return Flats(chosen.corners, chosen.corner_counts, owners)
 
 
-def _structured(data: Any) -> tuple[Floats, CellSurface]:
+def _structured(data: Any, ghosts: AnyArray) -> tuple[Floats, CellSurface]:
     """The same for a grid in rows and columns. Raises ForeignRefusal."""
     extent = data.GetExtent()
     sides = tuple(high - low + 1 for low, high in zip(extent[::2], extent[1::2], strict=True))
-    axes = [getattr(data, f"Get{axis}Coordinates", None) for axis in "XYZ"]
-    counts = [each().GetNumberOfTuples() for each in axes if each]
-    if np.prod(sides) != data.GetNumberOfPoints() or (counts and tuple(counts) != sides):
-        given = counts or f"{data.GetNumberOfPoints():,}"
+    wanted, given = (np.prod(sides),), (data.GetNumberOfPoints(),)
+    if data.IsA("vtkRectilinearGrid"):
+        axes = (data.GetXCoordinates(), data.GetYCoordinates(), data.GetZCoordinates())
+        wanted, given = sides, tuple(axis.GetNumberOfTuples() for axis in axes)
+    if wanted != given:
         raise ForeignRefusal(f"a grid of {sides} nodes must have as many, not {given}")
     geometry = vtkGeometryFilter()
     geometry.SetInputData(data)
@@ -315,25 +288,40 @@ def _structured(data: Any) -> tuple[Floats, CellSurface]:
     geometry.PassThroughPointIdsOn()
     geometry.Update()
     output = geometry.GetOutput()
-    flats = polygons_of(output)
-    if not len(flats.cells):
+    if not output.GetNumberOfPolys():
         raise ForeignRefusal("it must have polygons or volume cells, not points and lines alone")
-    places = _places(output)
+    nodes = vtk_to_numpy(output.GetPointData().GetArray("vtkOriginalPointIds")).astype(np.intp)
+    cells = vtk_to_numpy(output.GetCellData().GetArray("vtkOriginalCellIds")).astype(np.intp)
+    flats, places, sentences = polygons_of(output), places_of(output), list[str]()
     quads = flats.corners.reshape(-1, 4)
-    a, b, c, d = (places[corners].T for corners in quads.T)
-    sentences: list[str] = []
     if min(sides) > 1:
-        count, left = data.GetNumberOfCells(), data.GetNumberOfPoints() - len(places)
-        sentences = surface_sentences(count, left)
+        sentences = surface_sentences(data.GetNumberOfCells(), data.GetNumberOfPoints() - len(nodes))
+        a, b, c, d = (places[corners].T for corners in quads.T)
         # A left-handed grid is inside out.
         if dot(a, cross(b, c) + cross(c, d)).sum() < 0:
             quads = quads[:, ::-1]
-    nodes, cells = (
-        vtk_to_numpy(data.GetArray(name)).astype(np.intp)
-        for data, name in (
-            (output.GetPointData(), "vtkOriginalPointIds"),
-            (output.GetCellData(), "vtkOriginalCellIds"),
-        )
-    )
     flats = Flats(quads.ravel(), flats.corner_counts, cells[flats.cells])
     return places, CellSurface(flats, nodes, tuple(sentences))
+
+
+def _attributes(
+    data: Any, nodes: Indices, cells: Indices, sentences: list[str]
+) -> tuple[tuple[MeshScalar, ...], Floats | None]:
+    """The scalars of a surface, and the normals of its nodes or None; adds sentences about other arrays."""
+    scalars, normals, left_out = FileScalars(), None, list[str]()
+    for of, owner, rows in ((NODE, data.GetPointData(), nodes), (POLYGON, data.GetCellData(), cells)):
+        for at in range(owner.GetNumberOfArrays()):
+            array = owner.GetAbstractArray(at)
+            name, width = _text(array.GetName()), array.GetNumberOfComponents()
+            is_normals = array is owner.GetNormals() or (name.lower() == "normals" and width == 3)
+            is_color = array.IsA("vtkUnsignedCharArray") and width in (3, 4)
+            if is_normals and of == NODE:
+                normals = vtk_to_numpy(array)[rows].astype(np.float64)
+            elif is_normals or is_color or not array.IsNumeric() or array.IsA("vtkBitArray"):
+                left_out.append(shown(name))
+            elif name != "vtkGhostType" and array is not owner.GetTCoords():
+                scalars.add(name, vtk_to_numpy(array), of, rows)
+    if left_out:
+        sentences.append(f"left out arrays that are no scalars: {listed(left_out)}")
+    sentences += scalars.messages
+    return scalars.scalars, normals
