@@ -15,55 +15,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor.files.formats import read_mesh
+from autocolor.files.meshes.foreign import read_in_own_process
 from autocolor.files.meshes.gltf_document import size_of_gltf
 from autocolor.files.meshes.repair import MeshReport, Placement
-from tests.autocolor.files.meshes.test_foreign_vtk import CUBE, area_of, volume_of
+from tests.autocolor.files.meshes.test_foreign_vtk import CUBE, FACES, area_of, format_named, volume_of
 from tests.autocolor.files.refusals import is_read_or_refused, refusal
 
-needs_vtk = pytest.mark.needs("vtkmodules")
-shared = pytest.mark.usefixtures("shared")
+pytestmark = [pytest.mark.needs("vtkmodules"), pytest.mark.usefixtures("shared")]
 
-TRIANGLES = np.array(
-    [
-        0,
-        2,
-        3,
-        0,
-        3,
-        1,
-        4,
-        5,
-        7,
-        4,
-        7,
-        6,
-        0,
-        1,
-        5,
-        0,
-        5,
-        4,
-        1,
-        3,
-        7,
-        1,
-        7,
-        5,
-        3,
-        2,
-        6,
-        3,
-        6,
-        7,
-        2,
-        0,
-        4,
-        2,
-        4,
-        6,
-    ],
-    np.uint16,
-)
+TRIANGLES = np.array([face[at] for face in FACES for at in (0, 1, 2, 0, 2, 3)], np.uint16)
 COMPONENTS = {"i1": 5120, "u1": 5121, "i2": 5122, "u2": 5123, "u4": 5125, "f4": 5126}
 TYPES = {1: "SCALAR", 3: "VEC3", 4: "VEC4", 16: "MAT4"}
 
@@ -90,19 +50,14 @@ class Gltf:
         return len(self.json["bufferViews"]) - 1
 
     def array(self, values: Any, **others: Any) -> int:
-        """The number of a new accessor, whose rows begin at multiples of four bytes."""
-        width = values.shape[1] if values.ndim == 2 else 1
-        padded = np.zeros(
-            (len(values), width + (-width * values.itemsize % 4) // values.itemsize), values.dtype
-        )
-        padded[:, :width] = values.reshape(len(values), width)
-        padded = values if width == 1 else padded
-        stride = {} if padded.shape == values.shape else {"byteStride": padded.strides[0]}
-        row = {
-            "bufferView": self.view(padded.tobytes(), **stride),
-            "componentType": COMPONENTS[values.dtype.str[1:]],
-        }
-        self.json["accessors"].append({**row, "count": len(values), "type": TYPES[width], **others})
+        """The number of a new accessor, whose rows of several numbers begin at multiples of four bytes."""
+        width, stride = values.shape[1] if values.ndim == 2 else 1, {}
+        row = {"count": len(values), "type": TYPES[width], "componentType": COMPONENTS[values.dtype.str[1:]]}
+        if width > 1:
+            values = np.pad(values, ((0, 0), (0, (-width * values.itemsize % 4) // values.itemsize)))
+            stride = {"byteStride": values.strides[0]} if values.shape[1] > width else {}
+        view = self.view(np.ascontiguousarray(values).tobytes(), **stride)
+        self.json["accessors"].append({**row, "bufferView": view, **others})
         return len(self.json["accessors"]) - 1
 
     def named(self, *names: str) -> Gltf:
@@ -136,8 +91,6 @@ def box(report: MeshReport) -> list[list[float]]:
     return [np.roll(each, 1).round(5).tolist() for each in report.mesh.bounds]
 
 
-@needs_vtk
-@shared
 @pytest.mark.parametrize("suffix", ["gltf", "glb"])
 def test_each_node_is_a_part_that_is_placed_and_up(tmp_path: Path, suffix: str) -> None:
     file = Gltf().named("wheel", "wheel", "")
@@ -164,8 +117,6 @@ def test_each_node_is_a_part_that_is_placed_and_up(tmp_path: Path, suffix: str) 
     assert names == [report.mesh.part_names] * 2
 
 
-@needs_vtk
-@shared
 def test_parts_of_one_mesh_are_named_by_their_materials(tmp_path: Path) -> None:
     file = Gltf().named("door")
     file.json["materials"] = [{"name": "paint"}, {"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}]
@@ -179,8 +130,6 @@ def test_parts_of_one_mesh_are_named_by_their_materials(tmp_path: Path) -> None:
     assert file.read(tmp_path).mesh.part_names[3] == "panel"
 
 
-@needs_vtk
-@shared
 def test_quantized_and_sparse_numbers_are_unpacked(tmp_path: Path) -> None:
     for kind, scale, normalized, side in (
         ("i2", 32767, True, 1), ("u2", 65535, True, 1), ("i1", 127, True, 1), ("u1", 255, True, 1),
@@ -215,8 +164,6 @@ def test_quantized_and_sparse_numbers_are_unpacked(tmp_path: Path) -> None:
     assert box(file.read(tmp_path)) == [[0, 0, 0], [1, 1, 0]]
 
 
-@needs_vtk
-@shared
 def test_strips_and_fans_are_triangles_and_points_and_lines_are_counted(tmp_path: Path) -> None:
     for mode, indices in ((4, [0, 1, 3, 0, 3, 2]), (5, [0, 1, 2, 3]), (6, [0, 1, 3, 2])):
         file = Gltf(mode=mode)
@@ -237,8 +184,6 @@ def raised(file: Gltf, height: float) -> int:
     return file.array(np.outer(CUBE[:, 2], [0, 0, height]).astype(np.float32))
 
 
-@needs_vtk
-@shared
 def test_morph_targets_are_applied_with_their_weights(tmp_path: Path) -> None:
     file = Gltf().named("own", "mesh's")
     file.primitive["targets"] = [{"POSITION": raised(file, 2)}, {"POSITION": raised(file, 100)}]
@@ -255,8 +200,6 @@ def test_morph_targets_are_applied_with_their_weights(tmp_path: Path) -> None:
     assert volume_of(file.read(tmp_path)) == pytest.approx(2)
 
 
-@needs_vtk
-@shared
 @pytest.mark.parametrize("with_matrices", [True, False])
 def test_skins_move_nodes_by_the_weights_of_their_joints(tmp_path: Path, with_matrices: bool) -> None:
     chance = np.random.default_rng(4)
@@ -288,35 +231,34 @@ def test_skins_move_nodes_by_the_weights_of_their_joints(tmp_path: Path, with_ma
     assert np.allclose(found, expected, atol=1e-4)
 
 
-@needs_vtk
-@shared
-def test_scalars_and_nodes_are_those_of_the_file(tmp_path: Path) -> None:
+def test_nodes_at_one_place_are_one_and_what_is_left_out_is_told(tmp_path: Path) -> None:
     file = Gltf()
-    # Each corner has a node of its own, as with normals of its own, and a scalar.
     own = CUBE[TRIANGLES].astype(np.float32)
-    attributes = {
-        "POSITION": file.array(own),
-        "NORMAL": file.array(own - np.float32(0.5)),
-        "COLOR_0": file.places,
-    }
-    attributes["_HEAT"] = file.array(np.where(own[:, 0] == 0, 1, 2).astype(np.float32))
+    normals, heat = file.array(own - np.float32(0.5)), file.array(own[:, 0].copy())
+    attributes = {"POSITION": file.array(own), "NORMAL": normals, "COLOR_0": file.places, "_HEAT": heat}
     file.json["meshes"][0]["primitives"] = [{"attributes": attributes}]
+    file.json["extensionsRequired"] = ["KHR_texture_basisu", "KHR_materials_unlit"]
+    file.json["extensionsUsed"] = ["KHR_lights_punctual", "X_new"]
+    file.json["nodes"][0]["extensions"] = {"KHR_lights_punctual": {"light": 0}}
+    file.json |= {"animations": [{}], "cameras": [{}, {}]}
     report = file.read(tmp_path)
-    [heat] = report.mesh.scalars
-    assert heat.name == "HEAT"
-    assert heat.values.tolist() == (report.mesh.coordinates[:, 2] + 1).tolist()
-    assert report.repairs == ("a.gltf: left out its colors of nodes",)
-    # Without scalars, nodes at one place are one.
-    del attributes["_HEAT"]
-    assert len(file.read(tmp_path).mesh.coordinates) == 8
+    assert len(report.mesh.coordinates) == 8
+    polygons = read_in_own_process(format_named("glTF"), tmp_path / "a.gltf", 1).polygons
+    assert polygons.normals is not None
+    assert polygons.corner_normals is not None
+    at_corners = polygons.coordinates[polygons.corners] - 0.5
+    assert np.allclose(polygons.normals[polygons.corner_normals], at_corners)
+    assert report.repairs == (
+        "a.gltf: left out its animations, attributes of its own, cameras, colors of nodes and lights",
+    )
 
 
 # What is refused.
 
 ONE = "it must have no extension that may change the geometry, as {!r} does; export it without this extension"
 CUT = (
-    "a.glb: a binary glTF file must have version 2, its own length and a chunk of JSON first; the file is cut"
-    " short or damaged"
+    "a.gltf: a binary glTF file must have version 2, its own length and a chunk of JSON first; the file is"
+    " cut short or damaged"
 )
 WITHIN = "accessors 0: its {} values must be within its view"
 VTK = "VTK must be able to read it, and cannot ({})"
@@ -335,8 +277,6 @@ def changed(path: str, value: object) -> Gltf:
     return file
 
 
-@needs_vtk
-@shared
 @pytest.mark.parametrize(
     ("path", "value", "sentence"),
     [
@@ -378,52 +318,33 @@ def test_what_cannot_be_is_refused(tmp_path: Path, path: str, value: object, sen
     assert refusal(changed(path, value).read, tmp_path) == f"a.gltf: {sentence}{end}"
 
 
-@needs_vtk
-@shared
-def test_extensions_of_materials_and_lights_do_no_harm(tmp_path: Path) -> None:
-    file = Gltf()
-    file.json["extensionsRequired"] = ["KHR_texture_basisu", "KHR_materials_unlit"]
-    file.json["extensionsUsed"] = ["KHR_lights_punctual", "X_new"]
-    file.json["nodes"][0]["extensions"] = {"KHR_lights_punctual": {"light": 0}}
-    file.json |= {"animations": [{}], "cameras": [{}, {}]}
-    assert file.read(tmp_path).repairs == ("a.gltf: left out its animations, cameras and lights",)
-
-
-def test_buffers_in_the_folder_are_counted_and_data_in_the_file_are_not(tmp_path: Path) -> None:
-    (tmp_path / "sub").mkdir()
-    (tmp_path / "sub" / "a b.bin").write_bytes(bytes(1000))
-    path = tmp_path / "a.gltf"
-    path.write_text('{"buffers": [{"uri": "sub/a%20b.bin"}, {"uri": "DATA:;base64,AAAA"}, {}]}')
-    assert size_of_gltf(path) == path.stat().st_size + 1000
-    (tmp_path / "sub" / "a b.bin").unlink()
-    assert refusal(size_of_gltf, path) == (
-        "a.gltf: buffers 0: it must be in its folder, where there is no file 'a b.bin'; copy it there"
-    )
+NAMED = "a.gltf: buffers 0: it must be the name of a file"
 
 
 @pytest.mark.parametrize(
     ("uri", "sentence"),
     [
-        *(
-            (address, f"not the address {address!r}; fetch it and name the file")
-            for address in ("http://example.org/a.bin", "file:///etc/passwd")
-        ),
-        *(
-            (uri, f"in the scene's folder, not {name!r}; copy the file there")
-            for uri, name in (("../a.bin", "../a.bin"), ("%2e%2e/a.bin", "../a.bin"), ("/etc/a", "/etc/a"))
-        ),
-        ("a%00.bin", "not 'a\\x00.bin'; correct it"),
-        (7, "not ''; correct it"),
+        ("http://x/a.bin", f"{NAMED}, not the address 'http://x/a.bin'; fetch it and name the file"),
+        ("file:///etc/a", f"{NAMED}, not the address 'file:///etc/a'; fetch it and name the file"),
+        ("../a.bin", f"{NAMED} in the scene's folder, not '../a.bin'; copy the file there"),
+        ("%2e%2e/a.bin", f"{NAMED} in the scene's folder, not '../a.bin'; copy the file there"),
+        ("/etc/a", f"{NAMED} in the scene's folder, not '/etc/a'; copy the file there"),
+        ("a%00.bin", f"{NAMED}, not 'a\\x00.bin'; correct it"),
+        (7, f"{NAMED}, not ''; correct it"),
+        ("sub/a%20c.bin",
+         "a.gltf: buffers 0: it must be in its folder, where there is no file 'a c.bin'; copy it there"),
     ],
-)
+)  # fmt: skip
 def test_no_address_is_fetched_and_no_file_out_of_the_folder_read(
     tmp_path: Path, uri: object, sentence: str
 ) -> None:
+    (tmp_path / "sub").mkdir()
+    (tmp_path / "sub" / "a b.bin").write_bytes(bytes(1000))
     path = tmp_path / "a.gltf"
-    path.write_text(json.dumps({"buffers": [{}, {"uri": uri}]}))
-    told = refusal(read_mesh, {"file": path})
-    assert told.startswith("a.gltf: buffers 1: it must be the name of a file")
-    assert told.endswith(sentence)
+    path.write_text(json.dumps({"buffers": [{"uri": uri}]}))
+    assert refusal(read_mesh, {"file": path}) == sentence
+    path.write_text('{"buffers": [{"uri": "sub/a%20b.bin"}, {"uri": "DATA:;base64,AAAA"}, {}]}')
+    assert size_of_gltf(path) == path.stat().st_size + 1000
 
 
 JSON = b'{"buffers": [{"uri": "https://x"}]}'
@@ -435,31 +356,21 @@ def glb(
     return struct.pack("<4sIII4s", b"glTF", version, length, size, kind) + JSON
 
 
-@pytest.mark.parametrize(
-    ("name", "data", "sentence"),
-    [
-        *(
-            ("a.gltf", data, "a.gltf: a glTF file must describe its scene in JSON, not ")
-            for data in (b"", b"[]", b"{", b'{"a": NaN}', b"[" * 100_000, b"\xff")
-        ),
-        ("a.glb", glb(), "a.glb: buffers 0: it must be the name of a file, not the address 'https://x'"),
-        *(
-            ("a.glb", data, CUT)
-            for data in (
-                *(glb()[:19], glb()[:20], glb(version=1), glb(version=3), glb(kind=b"BIN\0")),
-                *(glb(length=21 + len(JSON)), glb(size=len(JSON) + 1), b"glTF" + bytes(40)),
-            )
-        ),
-    ],
-    ids=lambda each: str(each)[:40],
-)
-def test_what_is_no_scene_is_refused(tmp_path: Path, name: str, data: bytes, sentence: str) -> None:
-    (tmp_path / name).write_bytes(data)
-    assert refusal(read_mesh, {"file": tmp_path / name}).startswith(sentence)
+NO_JSON = "a.gltf: a glTF file must describe its scene in JSON, not "
+SCENES = [
+    *((data, NO_JSON) for data in (b"", b"[]", b"{", b'{"a": NaN}', b"[" * 100_000, b"\xff")),
+    *((data, CUT) for data in (glb()[:19], glb()[:20], glb(version=1), glb(version=3), glb(kind=b"BIN\0"))),
+    *((data, CUT) for data in (glb(length=21 + len(JSON)), glb(size=len(JSON) + 1), b"glTF" + bytes(40))),
+    (glb(), "a.gltf: buffers 0: it must be the name of a file, not the address 'https://x'"),
+]
 
 
-@needs_vtk
-@shared
+@pytest.mark.parametrize(("data", "sentence"), SCENES, ids=lambda each: str(each)[:40])
+def test_what_is_no_scene_is_refused(tmp_path: Path, data: bytes, sentence: str) -> None:
+    (tmp_path / "a.gltf").write_bytes(data)
+    assert refusal(read_mesh, {"file": tmp_path / "a.gltf"}).startswith(sentence)
+
+
 @given(
     st.sampled_from(["nodes.0", "accessors.0", "accessors.1", "bufferViews.0", PRIMITIVE, "meshes.0"]),
     st.sampled_from(

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 
 from autocolor.errors import InputError
 from autocolor.files.formats import read_mesh
+from autocolor.files.meshes.foreign import FOREIGN, ForeignFormat, read_in_own_process
 from autocolor.files.meshes.repair import MeshReport
 from tests.autocolor.files.refusals import is_read_or_refused, refusal
 from tests.tables import first
@@ -34,6 +35,10 @@ def volume_of(report: MeshReport) -> float:
     """The volume within the mesh, positive if it is turned outward."""
     a, b, c, d = report.mesh.coordinates[report.mesh.node_numbers.T]
     return float(sum(np.einsum("ij,ij->", a, np.cross(one, other)) for one, other in ((b, c), (c, d))) / 6)
+
+
+def format_named(name: str) -> ForeignFormat:
+    return next(each for each in FOREIGN if each.name == name)
 
 
 # Data sets in memory.
@@ -202,11 +207,13 @@ def test_a_data_set_has_its_surface_in_every_encoding(
     data = make()
     report = read_mesh({"file": by_vtk(tmp_path, data, encoding[0] or suffix, *encoding[1:])})
     assert counts(report) == pytest.approx(list(expected))
-    # Scalars of cells come with the polygons that the cells became.
+    # The values of a cell come with the polygons that it became.
     mesh = report.mesh
     values = {each.name: each.values for each in mesh.scalars}
-    cells = np.arange(data.GetNumberOfCells())
-    assert set(values["row"].tolist()) <= set(cells.tolist())
+    for row, corners in zip(values["row"].tolist(), mesh.node_numbers, strict=True):
+        low, high = np.reshape(data.GetCell(int(row)).GetBounds(), (3, 2)).T
+        places = mesh.coordinates[corners]
+        assert ((places >= low) & (places <= high)).all()
     for node, place in zip(values.get("node", ()), mesh.coordinates, strict=False):
         assert np.allclose(place, data.GetPoint(int(node)))
 
@@ -222,6 +229,10 @@ def test_what_is_left_out_is_told(tmp_path: Path) -> None:
     assert {each.name: each.values.tolist()[:2] for each in report.mesh.scalars} == {
         "heat": [0, 1], "v magnitude": [5, 5], "row": [2, 3],
     }  # fmt: skip
+    polygons = read_in_own_process(format_named("VTK XML"), tmp_path / "set.vtp", 1).polygons
+    assert polygons.normals is not None
+    assert polygons.corner_normals is not None
+    assert polygons.normals[polygons.corner_normals].tolist() == [[0, 0, 2]] * len(polygons.corners)
     make, suffix, _ = SETS["higher order"]
     assert read_mesh({"file": by_vtk(tmp_path, make(), suffix)}).repairs == (
         "set.vtu: took the corners alone of cells of higher order: 2",
