@@ -111,19 +111,20 @@ def cell_surface(
     With volume cells, nodes that the surface does not use are left out, and its corners are rows of the
     others.
     """
-    faces = Flats.joined([*(each.faces(coordinates) for each in volumes), *polyhedra])
-    count = len(np.unique(faces.cells))
+    faces = [*(each.faces(coordinates) for each in volumes), *polyhedra]
+    count = sum(int(np.count_nonzero(np.bincount(each.cells))) for each in faces)
     if not count:
         return CellSurface(flats, np.arange(len(coordinates)), ())
     # Polygons with the same corners, in any order, have the same sum of random numbers.
     numbers = np.random.default_rng(0).integers(1 << 62, size=len(coordinates))
-    flats = Flats.joined([flats])
-    sums = [np.add.reduceat(numbers[each.corners], each.starts) for each in (faces, flats)]
+    faces.append(Flats.joined([flats]))
+    sums = [np.add.reduceat(numbers[each.corners], each.starts) for each in faces]
     groups = np.unique(np.concatenate(sums), return_inverse=True)[1].reshape(-1)
-    of_faces = groups[: len(faces.cells)]
-    owners = np.bincount(of_faces, minlength=int(groups.max()) + 1)
-    is_face = owners[groups[len(of_faces) :]] > 0
-    flats = Flats.joined([flats.chosen(~is_face), faces.chosen(owners[of_faces] == 1)])
+    *groups_of_faces, groups_of_flats = np.split(groups, np.cumsum([len(each) for each in sums])[:-1])
+    owners = np.bincount(np.concatenate(groups_of_faces), minlength=int(groups.max()) + 1)
+    is_face = owners[groups_of_flats] > 0
+    outer = [each.chosen(owners[group] == 1) for each, group in zip(faces, groups_of_faces, strict=False)]
+    flats = Flats.joined([*outer, faces[-1].chosen(~is_face)])
     nodes, corners = np.unique(flats.corners, return_inverse=True)
     sentences = surface_sentences(count, len(coordinates) - len(nodes))
     if number := int(is_face.sum()):

@@ -78,7 +78,7 @@ def save(mesh: ForeignMesh, result: Path) -> None:
     arrays: dict[str, AnyArray] = {name: vars(polygons)[name] for name in names}
     arrays |= {f"scalar_{number}": each.values for number, each in enumerate(polygons.scalars)}
     with open(result, "wb") as file:
-        np.savez(file, header=np.array(json.dumps(header)), **arrays)
+        np.savez(file, allow_pickle=False, header=np.array(json.dumps(header)), **arrays)
 
 
 def loaded(result: Path) -> ForeignMesh:

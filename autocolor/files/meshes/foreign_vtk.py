@@ -268,7 +268,7 @@ def _faces(grid: Any, rows: Indices) -> Flats:
     of_cells = Flats(faces, face_counts, np.arange(len(face_counts))).chosen(rows)
     owners = np.repeat(of_cells.cells, of_cells.corner_counts)
     chosen = Flats(corners, corner_counts, np.arange(len(corner_counts))).chosen(of_cells.corners)
-    return Flats(chosen.corners, chosen.corner_counts, owners)
+    return Flats(chosen.corners, chosen.corner_counts, owners[corner_counts[of_cells.corners] > 0])
 
 
 def _structured(data: Any, ghosts: AnyArray) -> tuple[Floats, CellSurface]:

@@ -143,9 +143,9 @@ def completed(path: Path, described: Row, binary: bytes) -> bytes:
         starts.append((len(joined), least))
         joined += data[:least] + bytes(-least % 4)
     for number, view in enumerate(rows(described, "bufferViews")):
-        place, buffer = f"bufferViews {number}", view.get("buffer")
-        start, size = starts[buffer] if buffer in range(len(starts)) else (0, -1)
-        offset = whole(view, "byteOffset", place, 0)
+        place = f"bufferViews {number}"
+        buffer, offset = whole(view, "buffer", place), whole(view, "byteOffset", place, 0)
+        start, size = starts[buffer] if buffer < len(starts) else (0, -1)
         if offset + whole(view, "byteLength", place) > size:
             raise ForeignRefusal(f"{place}: it must be within its buffer")
         view |= {"buffer": 0, "byteOffset": start + offset}
@@ -154,8 +154,8 @@ def completed(path: Path, described: Row, binary: bytes) -> bytes:
     for skin in rows(described, "skins"):
         if "inverseBindMatrices" not in skin:
             count = len(skin["joints"])
-            view = _added(described, joined, np.tile(np.eye(4, dtype="<f4"), (count, 1, 1)))
-            row = {"bufferView": view, "byteOffset": 0, "componentType": FLOAT, "type": "MAT4"}
+            added = _added(described, joined, np.tile(np.eye(4, dtype="<f4"), (count, 1, 1)))
+            row = {"bufferView": added, "byteOffset": 0, "componentType": FLOAT, "type": "MAT4"}
             described["accessors"].append({**row, "count": count})
             skin["inverseBindMatrices"] = len(described["accessors"]) - 1
     if "scenes" not in described:

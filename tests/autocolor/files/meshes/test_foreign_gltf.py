@@ -246,7 +246,7 @@ def test_nodes_at_one_place_are_one_and_what_is_left_out_is_told(tmp_path: Path)
     polygons = read_in_own_process(format_named("glTF"), tmp_path / "a.gltf", 1).polygons
     assert polygons.normals is not None
     assert polygons.corner_normals is not None
-    at_corners = polygons.coordinates[polygons.corners] - 0.5
+    at_corners = (polygons.coordinates[polygons.corners] - 0.5) / math.sqrt(0.75)
     assert np.allclose(polygons.normals[polygons.corner_normals], at_corners)
     assert report.repairs == (
         "a.gltf: left out its animations, attributes of its own, cameras, colors of nodes and lights",
