@@ -30,6 +30,7 @@ import autocolor.files
 from autocolor.budget import allowed_memory, validated_limit
 from autocolor.checks import printable
 from autocolor.errors import InputError, UnavailableError
+from autocolor.files.array_file import GROWTH
 from autocolor.files.meshes.foreign_mesh import REMEDY, ForeignMesh, ForeignRefusal, loaded
 from autocolor.files.meshes.gltf_document import size_of_gltf
 from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, repaired
@@ -69,12 +70,6 @@ WORKER: Final = (sys.executable, "-P", "-m", "autocolor.files.meshes.foreign_wor
 FAILED: Final = 3
 """The exit code if the file cannot be read; the result is then a sentence without the file's name."""
 
-CANNOT_START: Final = 127
-"""The exit code that a shell gives for a command that cannot be started."""
-
-RESULT_GROWTH: Final = 3
-"""Measured: how many times the size of a result this process takes to read it."""
-
 OUT_OF_TIME: Final = -int(getattr(signal, "SIGXCPU", 24))
 """The exit code of a process that computed for too long and was ended by the system."""
 
@@ -110,7 +105,7 @@ def read_in_own_process(read_as: ForeignFormat, path: Path, size: int) -> Foreig
             raise InputError(f"{path.name}: {printable(result.read_text('utf-8', 'replace')[:2000])}")
         if code != 0:
             raise InputError(f"{path.name}: {library} must read it, and crashed (code {code}); {REMEDY}")
-        require_size(path.name, result.stat().st_size, RESULT_GROWTH)
+        require_size(path.name, result.stat().st_size, GROWTH)
         try:
             return loaded(result)
         except ForeignRefusal as error:
@@ -139,7 +134,8 @@ def _exit_code(command: tuple[str, ...], seconds: float) -> int | None:
     except subprocess.TimeoutExpired:
         return None
     except OSError:
-        return CANNOT_START
+        # As a shell says that a command cannot be started.
+        return 127
 
 
 class Library(NamedTuple):

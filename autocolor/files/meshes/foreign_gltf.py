@@ -27,7 +27,7 @@ from autocolor.files.meshes.repair import RawPolygons, different, printable_name
 from autocolor.files.meshes.welding import welded
 
 
-class Part(NamedTuple):
+class PlacedPrimitive(NamedTuple):
     """A primitive at a node of the scene; `material` is "" and `normals` are empty if it has none."""
 
     name: str
@@ -70,7 +70,7 @@ def _read(path: Path, described: Row, binary: bytes) -> ForeignMesh:
     return ForeignMesh(_joined(parts, names), tuple(sentences), material_of_part, used)
 
 
-def _joined(parts: list[Part], names: tuple[str, ...]) -> RawPolygons:
+def _joined(parts: list[PlacedPrimitive], names: tuple[str, ...]) -> RawPolygons:
     """The polygons of all parts."""
     nodes, corners, rows_of_normals, count, normals = [], [], [], 0, 0
     for part in parts:
@@ -95,7 +95,7 @@ def _joined(parts: list[Part], names: tuple[str, ...]) -> RawPolygons:
     )
 
 
-def _parts(scene: Any, described: Row, materials: tuple[str, ...], stem: str) -> Iterator[Part]:
+def _parts(scene: Any, described: Row, materials: tuple[str, ...], stem: str) -> Iterator[PlacedPrimitive]:
     """The parts of a scene. VTK names its blocks Node_3 and Mesh_1, by the numbers of nodes and meshes."""
 
     def blocks(parent: Any, node: int) -> Iterator[tuple[int, int, Any]]:
@@ -122,7 +122,7 @@ def _parts(scene: Any, described: Row, materials: tuple[str, ...], stem: str) ->
             number = primitive.get("material")
             material = "" if number is None else materials[number]
             triangles, normals = polygons_of(data).corners.reshape(-1, 3), data.GetPointData().GetNormals()
-            yield Part(
+            yield PlacedPrimitive(
                 f"{name} {material}" if material and len(primitives) > 1 else name,
                 material,
                 places_of(data),

@@ -38,7 +38,12 @@ DATA_SETS: Final = ("PolyData", "UnstructuredGrid", "StructuredGrid", "Rectiline
 
 # Cells by the numbers of their types.
 
-EMPTY, STRIP, ANY_POLYGON, PIXEL, VOXEL, POLYHEDRON = 0, 6, 7, 8, 11, 42
+EMPTY: Final = 0
+STRIP: Final = 6
+ANY_POLYGON: Final = 7
+PIXEL: Final = 8
+VOXEL: Final = 11
+POLYHEDRON: Final = 42
 WITHOUT_FACES: Final = {1: "vertices", 2: "vertices", **dict.fromkeys((3, 4, 21, 35, 68, 75), "lines")}
 TYPES: Final = {
     "triangle": (5, 22, 34, 69, 76),
@@ -56,8 +61,9 @@ HIGHER_ORDER: Final = 21
 ALONG_AXES: Final = [0, 1, 3, 2, 4, 5, 7, 6]
 """The order in which the corners of a pixel or voxel go around it."""
 
-DUPLICATE, HIDDEN = 1, 32
-"""The bits of cells that are elsewhere, too, or are not shown."""
+DUPLICATE: Final = 1
+HIDDEN: Final = 32
+"""The bits of cells that are elsewhere, too, and of those that are not shown."""
 
 
 def read(path: Path, kind: str) -> ForeignMesh:
@@ -107,8 +113,6 @@ def read(path: Path, kind: str) -> ForeignMesh:
 def _legacy(path: Path) -> tuple[Any, list[str]]:
     """The data set of a legacy file, with all of its arrays."""
     data = read_whole(path, 1)
-    if b"\n" not in data[:HEAD]:
-        data = data.replace(b"\r", b"\n")
     if b"ASCII" in data[:HEAD].upper().split(b"DATASET")[0]:
         # VTK takes the end of the file for the end of any list of numbers, but not an empty FIELD.
         data += b"\n\nFIELD end 0\n"
