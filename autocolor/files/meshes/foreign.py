@@ -68,7 +68,7 @@ WORKER: Final = (sys.executable, "-P", "-m", "autocolor.files.meshes.foreign_wor
 """The command; -P keeps modules in the current folder, which may be a stranger's, from being imported."""
 
 FAILED: Final = 3
-"""The exit code if the file cannot be read; the result is then a sentence without the file's name."""
+"""The exit code if the file cannot be read; the result is then a sentence."""
 
 OUT_OF_TIME: Final = -int(getattr(signal, "SIGXCPU", 24))
 """The exit code of a process that computed for too long and was ended by the system."""
@@ -102,7 +102,8 @@ def read_in_own_process(read_as: ForeignFormat, path: Path, size: int) -> Foreig
                 " not; write it as OBJ or PLY, or allow more with --limit (limit= in Python)"
             )
         if code == FAILED and result.is_file():
-            raise InputError(f"{path.name}: {printable(result.read_text('utf-8', 'replace')[:2000])}")
+            sentence = printable(result.read_text("utf-8", "replace")[:2000])
+            raise InputError(sentence if sentence.startswith(path.name) else f"{path.name}: {sentence}")
         if code != 0:
             raise InputError(f"{path.name}: {library} must read it, and crashed (code {code}); {REMEDY}")
         require_size(path.name, result.stat().st_size, GROWTH)

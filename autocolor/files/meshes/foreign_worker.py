@@ -36,16 +36,15 @@ def main(arguments: list[str]) -> int:
             save(module.read(Path(mesh), kind), Path(result))
         return 0
     except (Exception, SystemExit) as error:
-        sentence = sentence_of(error, library, os.path.basename(mesh))
-        Path(result).write_text(sentence, "utf-8", "replace")
+        Path(result).write_text(sentence_of(error, library), "utf-8", "replace")
         return FAILED
 
 
-def sentence_of(error: BaseException, library: str, mesh: str) -> str:
-    """The message of an exception without the name of the mesh file, in one line."""
+def sentence_of(error: BaseException, library: str) -> str:
+    """The message of an exception in one line; it begins with the name of the mesh file or has none."""
     text = " ".join(str(error).split())
     if isinstance(error, (ForeignRefusal, InputError)):
-        return text.removeprefix(f"{mesh}: ")
+        return text
     if isinstance(error, MemoryError):
         text = "it needs more memory than its size and --limit allow"
     else:

@@ -15,6 +15,7 @@ from autocolor.files.meshes import foreign
 FAKE = """
 import sys, types
 import numpy as np
+from autocolor.errors import InputError
 from autocolor.files.meshes import foreign_worker as worker
 from autocolor.files.meshes.foreign_mesh import ForeignMesh, ForeignRefusal
 from autocolor.files.meshes.repair import RawPolygons

@@ -67,6 +67,7 @@ ABSENT = MUST.format("its numbers are of nodes, corners or parts that are not th
         ("raise ValueError('no\\nnodes')", CANNOT.format("ValueError: no nodes")),
         ("raise ValueError('x' * 1000)", CANNOT.format("ValueError: " + "x" * 288)),
         ("raise ForeignRefusal('a cell must be flat', 'bend it')", "a.fake: a cell must be flat; bend it"),
+        ("raise InputError('a.fake, line 2: it ends')", "a.fake, line 2: it ends"),
         ("import sys; sys.exit(2)", CANNOT.format("SystemExit: 2")),
         ("mesh = None", CANNOT.format("AttributeError: 'NoneType' object has no attribute 'polygons'")),
         ("def f(f): f(f)\nf(f)", CANNOT.format("RecursionError: maximum recursion depth exceeded")),
