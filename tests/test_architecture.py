@@ -73,7 +73,9 @@ PLACES = {
         ("autocolor.batches.sheet", False), ("autocolor.scene.kinds", False),
     },
     ("platformdirs",): {("autocolor.files.state", True)},
-    ("meshio", "trimesh"): {("autocolor.files.meshes.foreign_worker", False)},
+    ("vtkmodules",): {
+        ("autocolor.files.meshes.foreign_vtk", True), ("autocolor.files.meshes.foreign_gltf", True),
+    },
     ("OpenEXR",): {("autocolor.layers", False)},
     ("tomlkit",): {("autocolor.files.scene_toml.toml_edit", True)},
     # The studio names the class of its widgets for type checkers.

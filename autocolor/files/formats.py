@@ -28,8 +28,6 @@ from autocolor.files.meshes.ply_elements import begins_as_ply
 from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement
 from autocolor.files.meshes.stl import begins_as_stl, read_stl, stl_bytes
 from autocolor.files.meshes.table_file import SUFFIX, read_table_file, table_file_bytes
-from autocolor.files.meshes.vtk import begins_as_vtk, read_vtk
-from autocolor.files.meshes.vtp import begins_as_vtp, read_vtp
 from autocolor.files.reading import read_head
 from autocolor.files.writing import table_exists, write_atomically
 from autocolor.logs import logger_of, timed
@@ -227,14 +225,13 @@ MESH_FORMATS: Final = (
         write=_file(table_file_bytes),
         holds=MESH_EXTRAS,
     ),
-    MeshFormat(name="VTK", suffixes=(".vtk",), begins=begins_as_vtk, read=read_vtk, prior_of_y=SIMULATION),
-    MeshFormat(name="VTP", suffixes=(".vtp",), begins=begins_as_vtp, read=read_vtp, prior_of_y=SIMULATION),
     *(
         MeshFormat(
             name=each.name,
             suffixes=each.suffixes,
+            begins=each.begins,
             read=partial(read_foreign, each),
-            prior_of_y=None if each.library == "trimesh" else SIMULATION,
+            prior_of_y=None if each.up else SIMULATION,
         )
         for each in FOREIGN
     ),

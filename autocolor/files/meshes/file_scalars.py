@@ -15,10 +15,10 @@ from typing import Final
 import numpy as np
 
 from autocolor.arrays import AnyArray, Floats, Indices
-from autocolor.files.meshes.repair import printable_name
+from autocolor.files.meshes.repair import different, printable_name
 from autocolor.files.reading import shown
 from autocolor.immutable import read_only
-from autocolor.scene.scalar import LARGEST_SCALAR, MOST_SCALARS, NODE, MeshScalar
+from autocolor.scene.scalar import LARGEST_SCALAR, MOST_SCALARS, NODE, POLYGON, MeshScalar
 
 SYMMETRIC: Final = (0, 3, 5, 3, 1, 4, 5, 4, 2)
 """The place of each of the nine components of a tensor among six."""
@@ -28,59 +28,52 @@ class FileScalars:
     """Collects the scalars of a file, with different names, and sentences about what was left out."""
 
     def __init__(self) -> None:
-        self._by_name: dict[str, MeshScalar] = {}
-        self.sentences: list[str] = []
+        self._scalars: dict[str, list[tuple[str, Floats]]] = {NODE: [], POLYGON: []}
+        self._sentences: list[str] = []
         self._skipped = 0
 
     def add(self, name: str, values: AnyArray, of: str, rows: Indices | None = None) -> None:
         """Add an array, (rows,) or (rows, components), or the given `rows` of it, in their order."""
-        if len(self._by_name) >= MOST_SCALARS:
-            self._skipped += 1
-            return
         name = printable_name(name) or "scalar"
         values = values if rows is None else values[rows]
         values = values.reshape(len(values), -1) if values.size else values.reshape(len(values), 1)
-        what, numbers = _one_component(values)
-        if numbers is None:
-            self.sentences.append(
+        if sum(map(len, self._scalars.values())) >= MOST_SCALARS:
+            self._skipped += 1
+        elif (found := _one_component(values)) is None:
+            self._sentences.append(
                 f"skipped the {of} array {shown(name)}, which has {values.shape[1]:,} components"
             )
-            return
-        with np.errstate(invalid="ignore"):
-            is_large = np.abs(numbers) > LARGEST_SCALAR
-        name = self._unique(f"{name}{what}", of)
-        if count := int(is_large.sum()):
-            numbers = np.where(is_large, np.nan, numbers)
-            self.sentences.append(
-                f"scalar {shown(name)}: {count:,} value{'s' * (count > 1)} above 1e30 in size"
-                f" {'was' if count == 1 else 'were'} made missing"
-            )
-        self._by_name[name] = MeshScalar(name, read_only(np.array(numbers, np.float64)), of)
-
-    def _unique(self, name: str, of: str) -> str:
-        """The name, with an ending if another scalar has it."""
-        if name not in self._by_name:
-            return name
-        stem = name if self._by_name[name].of == of else f"{name} of {of}s"
-        name, number = stem, 1
-        while name in self._by_name:
-            number += 1
-            name = f"{stem} {number}"
-        return name
+        else:
+            what, numbers = found
+            with np.errstate(invalid="ignore"):
+                is_large = np.abs(numbers) > LARGEST_SCALAR
+            if count := int(is_large.sum()):
+                numbers = np.where(is_large, np.nan, numbers)
+                self._sentences.append(
+                    f"scalar {shown(name + what)}: {count:,} value{'s' * (count > 1)} above 1e30 in size"
+                    f" {'was' if count == 1 else 'were'} made missing"
+                )
+            self._scalars[of].append((name + what, numbers))
 
     @property
     def scalars(self) -> tuple[MeshScalar, ...]:
         """The scalars, those of nodes first."""
-        return tuple(sorted(self._by_name.values(), key=lambda each: each.of != NODE))
+        all_scalars = [(of, *each) for of, several in self._scalars.items() for each in several]
+        of_nodes = different([name for name, _ in self._scalars[NODE]])
+        names = different([*of_nodes, *(name for name, _ in self._scalars[POLYGON])], f" of {POLYGON}s")
+        return tuple(
+            MeshScalar(name, read_only(np.array(values, np.float64)), of)
+            for name, (of, _, values) in zip(names, all_scalars, strict=True)
+        )
 
     @property
     def messages(self) -> tuple[str, ...]:
         """Sentences about what was left out or made missing."""
         more = f"skipped {self._skipped:,} arrays: a mesh has at most {MOST_SCALARS:,} scalars"
-        return (*self.sentences, more) if self._skipped else tuple(self.sentences)
+        return (*self._sentences, more) if self._skipped else tuple(self._sentences)
 
 
-def _one_component(values: AnyArray) -> tuple[str, Floats | None]:
+def _one_component(values: AnyArray) -> tuple[str, Floats] | None:
     """The ending of a scalar's name, and its values, (rows,); None for other numbers of components."""
     components = values.shape[1]
     values = values.astype(np.float64, copy=False)
@@ -91,7 +84,7 @@ def _one_component(values: AnyArray) -> tuple[str, Floats | None]:
             return " magnitude", np.sqrt((values * values).sum(axis=1))
         if components in (6, 9):
             return " von Mises", von_mises(values if components == 9 else values[:, SYMMETRIC])
-    return "", None
+    return None
 
 
 def von_mises(tensors: Floats) -> Floats:

@@ -1,0 +1,237 @@
+"""The JSON of a glTF or GLB file, checked and completed, so that VTK cannot misunderstand it.
+
+Buffers are read by our rule of paths, and joined. Numbers that may be left out, such as the offset of a view,
+are written out, because VTK takes their absence for a fault. VTK reads what an accessor has beyond its view
+as zeros, so that is refused here. An extension that may change the geometry is refused by its name.
+"""
+
+from __future__ import annotations
+
+import binascii
+import json
+import math
+import os
+import re
+import struct
+from pathlib import Path
+from typing import Any, Final
+from urllib.parse import unquote, unquote_to_bytes
+
+import numpy as np
+
+from autocolor.arrays import AnyArray
+from autocolor.checks import shown
+from autocolor.errors import InputError
+from autocolor.files.meshes.foreign_mesh import ForeignRefusal
+from autocolor.files.paths import path_within
+from autocolor.files.reading import bounded_json, read_whole, status_of
+
+MOST_VALUES: Final = 2_000_000
+"""Limit: values in the JSON of a glTF file; numbers of meshes are in its buffers."""
+
+Row = dict[str, Any]
+
+
+def document(path: Path) -> tuple[Row, bytes]:
+    """The JSON of a glTF file, and the binary chunk of a GLB file. Raises InputError if either is damaged."""
+    data, binary = read_whole(path, 1), b""
+    if data.startswith(b"glTF"):
+        # A GLB file begins with its version, its length, and a chunk of JSON with its size.
+        version, length, size, kind = struct.unpack_from("<III4s", data.ljust(20, b"\0"), 4)
+        binary = data[28 + size : length]
+        if version != 2 or kind != b"JSON" or length > len(data) or size > len(data) - 20:
+            raise InputError(
+                f"{path.name}: a binary glTF file must have version 2, its own length and a chunk of JSON"
+                " first; the file is cut short or damaged"
+            )
+        data = data[20 : 20 + size]
+    try:
+        described = bounded_json(data, MOST_VALUES)
+        if not isinstance(described, dict):
+            raise ValueError(f"a {type(described).__name__}")
+    except ValueError as error:
+        reason = " ".join(str(error).split())[:100]
+        raise InputError(
+            f"{path.name}: a glTF file must describe its scene in JSON, not {reason}; write it again"
+        ) from None
+    return described, binary
+
+
+def buffer_files(path: Path, described: Row) -> list[Path | None]:
+    """The files of the buffers, in the folder of a glTF file; None for buffers within the file.
+
+    Raises InputError for an address, a file outside of the folder, or a file that is not there.
+    """
+    files: list[Path | None] = []
+    for number, row in enumerate(rows(described, "buffers")):
+        uri = row.get("uri")
+        if uri is None or (isinstance(uri, str) and uri[:5].lower() == "data:"):
+            files.append(None)
+            continue
+        reasons: list[str] = []
+        named = path_within(reasons, path.parent, unquote(uri) if isinstance(uri, str) else "")
+        if named is not None and not named.is_file():
+            reasons.append(f"must be in its folder, where there is no file {named.name!r}; copy it there")
+        if reasons:
+            raise InputError(f"{path.name}: buffers {number}: it {reasons[0]}")
+        files.append(named)
+    return files
+
+
+def rows(row: Row, key: str) -> list[Row]:
+    """The tables in a list of a row; a value of another type counts as an empty list or table."""
+    values = row.get(key)
+    return [each if isinstance(each, dict) else {} for each in values] if isinstance(values, list) else []
+
+
+def size_of_gltf(path: Path) -> int:
+    """The bytes of a glTF file and of the buffers in its folder. Raises InputError."""
+    described, _ = document(path)
+    files = buffer_files(path, described)
+    return status_of(path).st_size + sum(os.stat(each).st_size for each in files if each is not None)
+
+
+# Extensions. Most concern materials and textures, which are left out.
+
+HARMLESS: Final = re.compile(
+    r"(KHR|EXT|ADOBE|MSFT|AGI)_(materials|texture|lights|xmp|animation|packing|articulations|audio)\w*"
+    r"|KHR_mesh_quantization|EXT_(mesh|instance|structural)_(features|metadata)|FB_ngon_encoding|MSFT_lod"
+)
+"""Extensions without which the geometry is the same."""
+
+GEOMETRIC: Final = re.compile(r"\w*(draco|meshopt|instancing|gaussian|compression|CESIUM_RTC)\w*")
+"""Extensions that are refused even if they are only listed as used."""
+
+WITH_GEOMETRY: Final = ("scenes", "nodes", "meshes", "accessors", "bufferViews", "buffers", "skins")
+
+
+def refuse_extensions(described: Row) -> None:
+    """Raise ForeignRefusal for an extension that is required, or concerns geometry, and is not harmless."""
+    owners = [row for key in WITH_GEOMETRY for row in rows(described, key)]
+    owners += [row for mesh in rows(described, "meshes") for row in rows(mesh, "primitives")]
+    needed = [str(each) for each in described.get("extensionsRequired") or ()]
+    needed += [each for each in map(str, described.get("extensionsUsed") or ()) if GEOMETRIC.fullmatch(each)]
+    needed += [each for owner in owners for each in owner.get("extensions") or ()]
+    for name in needed:
+        if not HARMLESS.fullmatch(name):
+            raise ForeignRefusal(
+                f"it must have no extension that may change the geometry, as {shown(name)} does",
+                "export it without this extension",
+            )
+
+
+# The file that VTK reads.
+
+TYPES: Final = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
+FLOAT: Final = 5126
+WIDTHS: Final = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
+
+
+def completed(path: Path, described: Row, binary: bytes) -> bytes:
+    """A GLB file of one buffer, with the scene that `described` becomes. Raises ForeignRefusal."""
+    starts, joined = [], bytearray()
+    for number, (row, named) in enumerate(
+        zip(rows(described, "buffers"), buffer_files(path, described), strict=True)
+    ):
+        uri = row.get("uri")
+        data = binary if uri is None else _data_of(uri) if named is None else read_whole(named, 1)
+        least = whole(row, "byteLength", f"buffers {number}")
+        if len(data) < least:
+            raise ForeignRefusal(
+                f"buffers {number}: it must have the {least:,} bytes that the file says, not {len(data):,}"
+            )
+        starts.append((len(joined), least))
+        joined += data[:least] + bytes(-least % 4)
+    for number, view in enumerate(rows(described, "bufferViews")):
+        place = f"bufferViews {number}"
+        buffer, offset = whole(view, "buffer", place), whole(view, "byteOffset", place, 0)
+        start, size = starts[buffer] if buffer < len(starts) else (0, -1)
+        if offset + whole(view, "byteLength", place) > size:
+            raise ForeignRefusal(f"{place}: it must be within its buffer")
+        view |= {"buffer": 0, "byteOffset": start + offset}
+    for number, row in enumerate(rows(described, "accessors")):
+        _complete(described, row, joined, f"accessors {number}")
+    for skin in rows(described, "skins"):
+        if "inverseBindMatrices" not in skin:
+            count = len(skin["joints"])
+            added = _added(described, joined, np.tile(np.eye(4, dtype="<f4"), (count, 1, 1)))
+            row = {"bufferView": added, "byteOffset": 0, "componentType": FLOAT, "type": "MAT4"}
+            described["accessors"].append({**row, "count": count})
+            skin["inverseBindMatrices"] = len(described["accessors"]) - 1
+    if "scenes" not in described:
+        below = {each for row in rows(described, "nodes") for each in row.get("children", ())}
+        roots = [number for number in range(len(rows(described, "nodes"))) if number not in below]
+        described["scenes"] = [{"nodes": roots}]
+    described["buffers"] = [{"byteLength": len(joined)}]
+    for key in ("extensionsRequired", "extensionsUsed", "images", "textures", "animations", "cameras"):
+        described.pop(key, None)
+    for node in rows(described, "nodes"):
+        # VTK warns of rounded unit quaternions.
+        if length := math.hypot(*node.get("rotation", ())):
+            node["rotation"] = [each / length for each in node["rotation"]]
+    text = json.dumps(described).encode()
+    text += b" " * (-len(text) % 4)
+    size = 28 + len(text) + len(joined)
+    head = struct.pack("<4sIII4s", b"glTF", 2, size, len(text), b"JSON")
+    return head + text + struct.pack("<I4s", len(joined), b"BIN\0") + joined
+
+
+def _complete(described: Row, row: Row, joined: bytearray, place: str) -> None:
+    """Write out the offset of an accessor, whose values must be within its view.
+
+    Sparse values, which VTK leaves out at times, and vectors of whole numbers that are not normalized, which
+    it refuses, become plain arrays.
+    """
+
+    def values_of(part: Row, length: int, columns: int, type_: np.dtype[Any]) -> AnyArray:
+        view, size = described["bufferViews"][part["bufferView"]], columns * type_.itemsize
+        offset = part["byteOffset"] = whole(part, "byteOffset", place, 0)
+        stride = whole(view, "byteStride", place, size)
+        if length and offset + stride * (length - 1) + size > view["byteLength"]:
+            raise ForeignRefusal(f"{place}: its {length:,} values must be within its view")
+        start, strides = view["byteOffset"] + offset, (stride, type_.itemsize)
+        return np.ndarray((length, columns), type_, joined, start, strides).copy()
+
+    count, dtype = whole(row, "count", place), np.dtype(TYPES.get(row.get("componentType", 0), "V0"))
+    width = WIDTHS.get(row.get("type", ""), 0)
+    if not width * dtype.itemsize:
+        raise ForeignRefusal(
+            f"{place}: its type must be one of glTF, not {shown(row.get('type'))} of"
+            f" {shown(row.get('componentType'))}"
+        )
+    is_whole = width == 3 and dtype.kind != "f" and not row.get("normalized")
+    is_plain = "bufferView" in row and "sparse" not in row and not is_whole
+    values = values_of(row, count, width, dtype) if "bufferView" in row else np.zeros((count, width), dtype)
+    if sparse := row.pop("sparse", None):
+        changed, indices = whole(sparse, "count", place), sparse["indices"]
+        at = values_of(indices, changed, 1, np.dtype(TYPES[indices["componentType"]]))[:, 0]
+        values[at] = values_of(sparse["values"], changed, width, dtype)
+    if is_whole:
+        values, row["componentType"] = values.astype("<f4"), FLOAT
+    if not is_plain:
+        row |= {"bufferView": _added(described, joined, values), "byteOffset": 0}
+
+
+def _added(described: Row, joined: bytearray, values: AnyArray) -> int:
+    """The number of a new view of the joined buffer, which gets these values."""
+    data = values.tobytes()
+    described["bufferViews"].append({"buffer": 0, "byteOffset": len(joined), "byteLength": len(data)})
+    joined += data + bytes(-len(data) % 4)
+    return len(described["bufferViews"]) - 1
+
+
+def whole(row: Row, key: str, place: str, default: int | None = None) -> int:
+    """A whole number of at least 0 in a row. Raises ForeignRefusal."""
+    value = row.get(key, default)
+    if type(value) is not int or not 0 <= value < 1 << 40:
+        raise ForeignRefusal(f"{place}: {key} must be a whole number of at least 0, not {shown(value)}")
+    return value
+
+
+def _data_of(uri: str) -> bytes:
+    """The bytes within a data URI. Raises ForeignRefusal."""
+    head, _, text = uri.partition(",")
+    try:
+        return binascii.a2b_base64(unquote(text)) if head.endswith(";base64") else unquote_to_bytes(text)
+    except ValueError as error:
+        raise ForeignRefusal(f"the data of a buffer must be base64, not damaged ({error})") from None
