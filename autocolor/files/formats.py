@@ -27,8 +27,6 @@ from autocolor.files.meshes.ply_elements import begins_as_ply
 from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement
 from autocolor.files.meshes.stl import begins_as_stl, read_stl, stl_bytes
 from autocolor.files.meshes.table_file import SUFFIX, read_table_file, table_file_bytes
-from autocolor.files.meshes.vtk import begins_as_vtk, read_vtk
-from autocolor.files.meshes.vtp import begins_as_vtp, read_vtp
 from autocolor.files.reading import read_head, refuse_irregular, status_of, table_exists
 from autocolor.logs import logger_of, timed
 from autocolor.scene.mesh import Mesh
@@ -180,14 +178,13 @@ MESH_FORMATS: Final = (
         prior_of_y=PRINTED,
     ),
     MeshFormat("tables", (SUFFIX,), read_table_file, written=table_file_bytes),
-    MeshFormat("VTK", (".vtk",), read_vtk, begins=begins_as_vtk, prior_of_y=SIMULATION),
-    MeshFormat("VTP", (".vtp",), read_vtp, begins=begins_as_vtp, prior_of_y=SIMULATION),
     *(
         MeshFormat(
             each.name,
             each.suffixes,
             partial(read_foreign, each),
-            prior_of_y=None if each.library == "trimesh" else SIMULATION,
+            begins=each.begins,
+            prior_of_y=None if each.up else SIMULATION,
         )
         for each in FOREIGN
     ),

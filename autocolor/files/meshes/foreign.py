@@ -1,9 +1,9 @@
-"""Mesh files that trimesh and meshio read for us, each in a process of its own: the extra `meshes`.
+"""Mesh files that libraries read for us, each in a process of its own.
 
-- glTF (.glb, .gltf) and 3MF: trimesh. glTF is y up by its specification: the reader turns it so unless it
-  is read with x up. 3MF is z up. Neither is scaled: glTF is in meters, 3MF in its own unit.
-- VTU, Abaqus (.inp), Gmsh (.msh), Nastran (.bdf, .nas, .fem), Medit (.mesh), SU2 and binary UGRID (as in
-  .b8.ugrid): meshio, of which these formats need no further package.
+- VTK (.vtk, and .vtp, .vtu, .vts, .vtr, .vti) and glTF (.glb, .gltf): VTK, the extra `vtk`. glTF is y up by its
+  specification: the reader turns it so unless it is read with x up.
+- 3MF: lib3mf; Abaqus (.inp), Gmsh (.msh), Nastran (.bdf, .nas, .fem), Medit (.mesh), SU2 and binary UGRID (as in
+  .b8.ugrid): meshio, of which these formats need no further package. They are the extra `meshes`.
 
 A library may hang, crash, print or eat memory without harm to this process. The other process
 (`foreign_worker`) writes the mesh as an array file, which is checked like any other file.
@@ -15,6 +15,7 @@ import dataclasses
 import importlib.util
 import io
 import os
+import re
 import signal
 import struct
 import subprocess
@@ -22,17 +23,16 @@ import sys
 import tempfile
 import zipfile
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final
-from urllib.parse import unquote
+from typing import Final
 
 import numpy as np
 
 import autocolor.files
 from autocolor.arrays import AnyArray
 from autocolor.budget import allowed_memory, validated_limit
-from autocolor.checks import LARGEST_COORDINATE, Color, listed, printable, shown
+from autocolor.checks import LARGEST_COORDINATE, printable, shown
 from autocolor.errors import InputError, UnavailableError
 from autocolor.files.array_file import (
     KEY,
@@ -44,22 +44,17 @@ from autocolor.files.array_file import (
     scalar_rows,
     scalars_of,
 )
-from autocolor.files.meshes.number_text import MOST_PROBLEMS
+from autocolor.files.meshes.foreign_mesh import REMEDY, ForeignMesh
+from autocolor.files.meshes.gltf_document import size_of_gltf
 from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, RawPolygons, repaired
-from autocolor.files.paths import path_within
-from autocolor.files.reading import bounded_json, opened, read_bytes, read_whole, require_size
+from autocolor.files.reading import opened, read_bytes, read_whole, require_size
 from autocolor.scene.columns import replaced
 from autocolor.scene.defaults import COLORED_PAINT, created_surface
 from autocolor.scene.scalar import NODE
 
 MEGABYTE: Final = 1 << 20
 
-REMEDY: Final = "correct the file, or write it as OBJ or PLY"
-
-# The size of a file and of the files that it names, checked before a library reads them.
-
-MOST_VALUES: Final = 2_000_000
-"""Limit: values in the JSON of a glTF file; numbers of meshes are in its buffers."""
+# The size of a file and of the files that it names, which gives the limits.
 
 MOST_MEMBERS: Final = 10_000
 LARGEST_GROWTH: Final = 200
@@ -70,91 +65,6 @@ def size_of_file(path: Path) -> int:
     """The bytes of a file that names no others. Raises InputError if it is not regular."""
     with opened(path) as (_, status):
         return status.st_size
-
-
-def size_of_gltf(path: Path) -> int:
-    """The bytes of a glTF file and of the buffers in its folder. Raises InputError.
-
-    A file that is named by an address or out of the folder is refused: no address is ever fetched.
-    """
-    data = read_whole(path, 1)
-    described = _gltf_json(path.name, data)
-    problems: list[str] = []
-    size = len(data)
-    for key in ("buffers", "images"):
-        rows = described.get(key, [])
-        if not isinstance(rows, list):
-            raise InputError(f"{path.name}: {key} must be a list; correct the file")
-        for number, row in enumerate(rows):
-            uri = row.get("uri") if isinstance(row, dict) else None
-            if uri is None or (isinstance(uri, str) and uri[:5].lower() == "data:"):
-                continue
-            reasons: list[str] = []
-            named = path_within(reasons, path.parent, unquote(uri) if isinstance(uri, str) else "")
-            problems.extend(f"{path.name}: {key} {number}: it {reason}" for reason in reasons)
-            if len(problems) >= MOST_PROBLEMS:
-                raise InputError(problems)
-            if named is None or key == "images":
-                continue
-            if not named.is_file():
-                raise InputError(
-                    f"{path.name}: buffers {number}: there is no file {named.name!r} in its folder; copy it"
-                    " there"
-                )
-            size += os.stat(named).st_size
-    if problems:
-        raise InputError(problems)
-    _refuse_deep_nodes(path.name, described.get("nodes"))
-    return size
-
-
-MOST_LEVELS: Final = 100
-"""Limit: nodes of a glTF file above a node. The library places each node from the root, which takes time."""
-
-
-def _refuse_deep_nodes(place: str, nodes: object) -> None:
-    """Raise InputError if nodes of a glTF file are nested too deeply; the library finds other faults."""
-    rows = nodes if isinstance(nodes, list) else []
-    children: list[list[int]] = []
-    for row in rows:
-        numbers = row.get("children") if isinstance(row, dict) else None
-        numbers = numbers if isinstance(numbers, list) else []
-        children.append([each for each in numbers if type(each) is int and 0 <= each < len(rows)])
-    # Go down from the roots, level by level, to each node once. Nodes in a circle have no root.
-    level = set(range(len(rows))).difference(*children)
-    reached = set(level)
-    for _ in range(MOST_LEVELS + 1):
-        level = {each for number in level for each in children[number]} - reached
-        reached |= level
-    if level:
-        raise InputError(
-            f"{place}: nodes {min(level)}: a node must have at most {MOST_LEVELS} nodes above it, not more;"
-            " export the scene flat"
-        )
-
-
-def _gltf_json(place: str, data: bytes) -> dict[str, Any]:
-    """The scene that a glTF file describes. Raises InputError if it is no JSON, or too much of it."""
-    if data.startswith(b"glTF"):
-        # A binary file begins with its version, its length, and a chunk of JSON with its size.
-        version, length, size, kind = struct.unpack_from("<III4s", data.ljust(20, b"\0"), 4)
-        if version != 2 or length > len(data) or size > len(data) - 20 or kind != b"JSON":
-            raise InputError(
-                f"{place}: a binary glTF file must have version 2, its own length and a chunk of JSON first;"
-                " the file is cut short or damaged"
-            )
-        data = data[20 : 20 + size]
-
-    try:
-        described = bounded_json(data, MOST_VALUES)
-        if not isinstance(described, dict):
-            raise ValueError(f"a {type(described).__name__}")
-    except ValueError as error:
-        reason = " ".join(str(error).split())[:100]
-        raise InputError(
-            f"{place}: a glTF file must describe its scene in JSON, not {reason}; write it again"
-        ) from None
-    return described
 
 
 def size_of_3mf(path: Path) -> int:
@@ -188,30 +98,18 @@ def size_of_3mf(path: Path) -> int:
 # The mesh that comes back from the other process.
 
 
-@dataclass(frozen=True, eq=False)
-class ForeignMesh:
-    """A mesh as a library gives it.
-
-    `material_of_part` has the names of materials by part, `colors` the colors of materials that have a
-    color, and `sentences` say what was left out.
-    """
-
-    polygons: RawPolygons
-    sentences: tuple[str, ...] = ()
-    material_of_part: Mapping[str, str] = field(default_factory=dict)
-    colors: Mapping[str, Color] = field(default_factory=dict)
-
-
 RESULT: Final = ArrayFileKind(
     noun="result of a reader",
     advice="write the mesh as OBJ or PLY",
-    formats=("autocolor foreign mesh 2",),
+    formats=("autocolor foreign mesh 3",),
     keys=frozenset(("part_names", "sentences", "material_of_part", "colors")),
     arrays={
         "coordinates": ("<f8", 2),
         "corners": ("<i8", 1),
         "corner_counts": ("<i8", 1),
         "part_numbers": ("<i8", 1),
+        "normals": ("<f8", 2),
+        "corner_normals": ("<i8", 1),
     },
     series={KEY: MESH_SCALARS},
 )
@@ -231,7 +129,9 @@ def foreign_mesh_bytes(mesh: ForeignMesh) -> bytes:
         "colors": dict(mesh.colors),
         KEY: scalar_rows(polygons.scalars),
     }
-    arrays = {name: vars(polygons)[name] for name in RESULT.arrays}
+    has_normals = polygons.normals is not None
+    absent = {} if has_normals else {"normals": np.empty((0, 3)), "corner_normals": np.empty(0)}
+    arrays = {name: vars(polygons)[name] for name in RESULT.arrays} | absent
     return array_file_bytes(RESULT, header, {**arrays, **scalar_members(polygons.scalars)})
 
 
@@ -262,6 +162,7 @@ def read_foreign_mesh(path: Path, place: str, library: str) -> ForeignMesh:
         arrays["part_numbers"].astype(np.intp),
         tuple(header["part_names"]),
         scalars,
+        **_normals(arrays),
     )
     sentences = (printable(each[:LONGEST_SENTENCE]) for each in header["sentences"][:MOST_SENTENCES])
     return ForeignMesh(polygons, tuple(sentences), header["material_of_part"], header["colors"])
@@ -282,9 +183,22 @@ def _problem(arrays: Mapping[str, AnyArray], parts: int) -> str | None:
     wrong = np.flatnonzero((corners < 0) | (corners >= len(nodes)))
     if len(wrong):
         return f"a polygon with the node {corners[wrong[0]] + 1:,}, which must be from 1 to {len(nodes):,}"
+    normals, of_corners = arrays["normals"], arrays["corner_normals"]
+    if normals.shape[1] != 3 or not ((of_corners >= -1) & (of_corners < len(normals))).all():
+        return "normals of corners that are not there"
+    if len(of_corners) not in (0, len(corners)):
+        return "normals for some corners only"
     if len(part_numbers) != len(counts) or not ((part_numbers >= 0) & (part_numbers < parts)).all():
         return "polygons of parts that are not there"
     return None
+
+
+def _normals(arrays: Mapping[str, AnyArray]) -> dict[str, AnyArray]:
+    """The normals, and their rows by corner, of a mesh that has any; a normal without a direction is missing."""
+    normals, of_corners = arrays["normals"], arrays["corner_normals"].astype(np.intp)
+    is_sound = np.append(np.isfinite(normals).all(axis=1) & (normals != 0).any(axis=1), False)
+    of_corners = np.where(is_sound[of_corners], of_corners, -1)
+    return {"normals": normals.copy(), "corner_normals": of_corners} if (of_corners >= 0).any() else {}
 
 
 # The other process. Its limits grow with the size of the file.
@@ -296,7 +210,7 @@ WORKER: Final = (sys.executable, "-P", "-m", "autocolor.files.meshes.foreign_wor
 """The command; -P keeps modules in the current folder, which may be a stranger's, from being imported."""
 
 FAILED: Final = 3
-"""The exit code if the library cannot read the file; the result is then a sentence in UTF-8."""
+"""The exit code if the file cannot be read; the result is then a sentence in UTF-8, without the file's name."""
 
 OUT_OF_TIME: Final = -int(getattr(signal, "SIGXCPU", 24))
 """The exit code of a process that computed for too long and was ended by the system."""
@@ -304,7 +218,7 @@ OUT_OF_TIME: Final = -int(getattr(signal, "SIGXCPU", 24))
 
 def most_seconds(size: int) -> float:
     """Limit: seconds of computing for a file of `size` bytes. Measured: text takes 0.1 to 0.5 a megabyte."""
-    return min((2 + size / MEGABYTE) * max(1, validated_limit(None)), 1e9)
+    return min((4 + size / MEGABYTE) * max(1, validated_limit(None)), 1e9)
 
 
 def most_memory(size: int) -> int:
@@ -314,68 +228,81 @@ def most_memory(size: int) -> int:
 
 def largest_result(size: int) -> int:
     """Limit: bytes of the result for a file of `size` bytes."""
-    return 16 * MEGABYTE + 30 * size
+    return 128 * MEGABYTE + 30 * size
 
 
 def read_in_own_process(
     library: str,
+    module: str,
     kind: str,
     path: Path,
     size: int,
     command: Sequence[str] = WORKER,
     starting: float = STARTING_SECONDS,
 ) -> ForeignMesh:
-    """The mesh of a file of `size` bytes that a library reads as a format, `kind`. Raises InputError."""
+    """The mesh of a file of `size` bytes that a library reads as a format, `kind`. Raises InputError.
+
+    `foreign_` and `module` are the name of the module that calls the library.
+    """
     with tempfile.TemporaryDirectory(prefix="autocolor-") as folder:
         result = Path(folder) / "mesh.npz"
         limit = str(validated_limit(None))
-        arguments = [library, kind, os.fspath(path.absolute()), os.fspath(result), str(size), limit]
+        arguments = [module, kind, os.fspath(path.absolute()), os.fspath(result), str(size), limit]
         seconds = most_seconds(size)
-        code = _exit_code([*command, *arguments], starting + 2 * seconds)
+        printed = Path(folder) / "printed"
+        code = _exit_code([*command, *arguments], starting + 2 * seconds, printed)
         if code in (None, OUT_OF_TIME):
             raise InputError(
                 f"{path.name}: {library} must read it within {seconds:.0f} seconds, for its size, and did"
                 " not; write it as OBJ or PLY, or allow more with --limit (limit= in Python)"
             )
         if code == FAILED and result.is_file():
-            sentence = read_bytes(result, 4 * LONGEST_SENTENCE).decode("utf-8", "replace")
-            raise InputError(
-                f"{path.name}: {library} must be able to read it, and cannot"
-                f" ({printable(sentence[:LONGEST_SENTENCE])}); {REMEDY}"
-            )
+            sentence = read_bytes(result, 8 * LONGEST_SENTENCE).decode("utf-8", "replace")
+            raise InputError(f"{path.name}: {printable(sentence)}")
         if code != 0 or not result.is_file():
-            raise InputError(f"{path.name}: {library} must read it, and {_end_of(code)}; {REMEDY}")
+            raise InputError(
+                f"{path.name}: {library} must read it, and {_end_of(code)}{_last_line(printed)}; {REMEDY}"
+            )
         return read_foreign_mesh(result, path.name, library)
 
 
-def _exit_code(command: Sequence[str], seconds: float) -> int | None:
-    """The exit code of a command, whose output is dropped; None if it took longer than `seconds`."""
+def _exit_code(command: Sequence[str], seconds: float, printed: Path) -> int | None:
+    """The exit code of a command, which prints errors to a file; None if it took longer than `seconds`."""
     root = str(Path(autocolor.files.__path__[0]).parents[1])
     inherited = os.environ.get("PYTHONPATH")
     environment = {
         **os.environ,
         "PYTHONPATH": os.pathsep.join([root, inherited] if inherited else [root]),
         # Each thread reserves memory, which is limited.
-        "OPENBLAS_NUM_THREADS": "1",
-        "OMP_NUM_THREADS": "1",
+        **dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "VTK_SMP_MAX_THREADS"), "1"),
     }
     nowhere = subprocess.DEVNULL
     try:
-        return subprocess.run(
-            command,
-            stdin=nowhere,
-            stdout=nowhere,
-            stderr=nowhere,
-            env=environment,
-            timeout=seconds,
-            check=False,
-        ).returncode
+        with open(printed, "wb") as errors:
+            return subprocess.run(
+                command, stdin=nowhere, stdout=nowhere, stderr=errors, env=environment, timeout=seconds
+            ).returncode
     except subprocess.TimeoutExpired:
         return None
     except OSError as error:
         raise InputError(
             f"the process of a reader cannot be started ({shown(str(error))}); free memory"
         ) from None
+
+
+LAST: Final = 4096
+"""Bytes at the end of what a library printed that are searched for its last line."""
+
+
+def _last_line(printed: Path) -> str:
+    """The last line that a library printed before its process ended, in parentheses; empty without one."""
+    with open(printed, "rb") as file:
+        file.seek(max(0, os.fstat(file.fileno()).st_size - LAST))
+        lines = file.read(LAST).decode("utf-8", "replace").splitlines()
+    # Colors, and before a bar the time and the place in the source, say nothing to a reader.
+    plain = (re.sub("\x1b\\[[0-9;]*m|^.*\\b(ERR|WARN)\\| ", "", line).strip() for line in reversed(lines))
+    line = next((each for each in plain if each), "")
+    return f" ({printable(line[:LONGEST_SENTENCE])})" if line else ""
 
 
 def _end_of(code: int) -> str:
@@ -390,33 +317,63 @@ def _end_of(code: int) -> str:
 
 @dataclass(frozen=True)
 class ForeignFormat:
-    """A format that a library reads: its name, its suffixes, the library and its word for the format.
+    """A format that a library reads: its name, its suffixes, the library, its extra, and what `begins` it.
 
-    `packages` must be installed. `size_of` gives the number of bytes to read, and checks which files the file
-    names; `up` is the file's up axis. `growth` is how many times its size a file takes, as measured.
+    `module` and `kind` are what the worker calls the library and the format. The package `needs` must be
+    installed. `growth` is how many times its size a file takes, as measured. `size_of` gives the number of
+    bytes to read, and checks which files the file names. `up` is the file's up axis if the format says it.
     """
 
     name: str
     suffixes: tuple[str, ...]
     library: str
+    module: str
     kind: str
-    packages: tuple[str, ...]
+    needs: str
     growth: float
     size_of: Callable[[Path], int] = size_of_file
-    up: str = "z"
+    up: str = ""
+    begins: Callable[[bytes], bool] | None = None
+    extra: str = "meshes"
 
+
+def begins_as_vtk(head: bytes) -> bool:
+    """Whether the first bytes are those of a legacy VTK file."""
+    return head[:14].lower() == b"# vtk datafile"
+
+
+def begins_as_vtk_xml(head: bytes) -> bool:
+    """Whether the first bytes are those of a VTK XML file, of which a declaration or comments may be first."""
+    return head.lstrip().startswith(b"<") and b"<VTKFile" in head
+
+
+def begins_as_glb(head: bytes) -> bool:
+    """Whether the first bytes are those of a binary glTF file."""
+    return head.startswith(b"glTF")
+
+
+XML_SUFFIXES: Final = (".vtp", ".vtu", ".vts", ".vtr", ".vti")
 
 FOREIGN: Final = (
-    ForeignFormat("glTF", (".glb",), "trimesh", "glb", ("trimesh", "networkx"), 12, size_of_gltf, "y"),
-    ForeignFormat("glTF text", (".gltf",), "trimesh", "gltf", ("trimesh", "networkx"), 12, size_of_gltf, "y"),
-    ForeignFormat("3MF", (".3mf",), "trimesh", "3mf", ("trimesh", "networkx", "lxml"), 20, size_of_3mf),
-    ForeignFormat("VTU", (".vtu",), "meshio", "vtu", ("meshio",), 15),
-    ForeignFormat("Abaqus", (".inp",), "meshio", "abaqus", ("meshio",), 8),
-    ForeignFormat("Gmsh", (".msh",), "meshio", "gmsh", ("meshio",), 8),
-    ForeignFormat("Nastran", (".bdf", ".nas", ".fem"), "meshio", "nastran", ("meshio",), 8),
-    ForeignFormat("Medit", (".mesh",), "meshio", "medit", ("meshio",), 8),
-    ForeignFormat("SU2", (".su2",), "meshio", "su2", ("meshio",), 8),
-    ForeignFormat("UGRID", (".ugrid",), "meshio", "ugrid", ("meshio",), 8),
+    ForeignFormat(
+        "VTK", (".vtk",), "VTK", "vtk", "legacy", "vtkmodules", 10, begins=begins_as_vtk, extra="vtk"
+    ),
+    ForeignFormat(
+        "VTK XML", XML_SUFFIXES, "VTK", "vtk", "xml", "vtkmodules", 15, begins=begins_as_vtk_xml, extra="vtk"
+    ),
+    ForeignFormat(
+        "glTF", (".glb",), "VTK", "gltf", "", "vtkmodules", 12, size_of_gltf, "y", begins_as_glb, "vtk"
+    ),
+    ForeignFormat(
+        "glTF text", (".gltf",), "VTK", "gltf", "", "vtkmodules", 12, size_of_gltf, "y", extra="vtk"
+    ),
+    ForeignFormat("3MF", (".3mf",), "lib3mf", "3mf", "", "lib3mf", 20, size_of_3mf, "z"),
+    ForeignFormat("Abaqus", (".inp",), "meshio", "meshio", "abaqus", "meshio", 8),
+    ForeignFormat("Gmsh", (".msh",), "meshio", "meshio", "gmsh", "meshio", 8),
+    ForeignFormat("Nastran", (".bdf", ".nas", ".fem"), "meshio", "meshio", "nastran", "meshio", 8),
+    ForeignFormat("Medit", (".mesh",), "meshio", "meshio", "medit", "meshio", 8),
+    ForeignFormat("SU2", (".su2",), "meshio", "meshio", "su2", "meshio", 8),
+    ForeignFormat("UGRID", (".ugrid",), "meshio", "meshio", "ugrid", "meshio", 8),
 )
 
 
@@ -426,23 +383,22 @@ def read_foreign(read_as: ForeignFormat, path: Path, placement: Placement = PLAI
     Raises InputError, and UnavailableError if a package is missing.
     """
     size = read_as.size_of(path)
-    missing = [name for name in read_as.packages if importlib.util.find_spec(name) is None]
-    if missing:
+    if importlib.util.find_spec(read_as.needs) is None:
         raise UnavailableError(
-            f"{path.name}: to read {read_as.suffixes[0]} files, the package {listed(missing)} must be"
-            f" installed; run: pip install {' '.join(missing)}"
+            f"{path.name}: to read {read_as.suffixes[0]} files, the library {read_as.library} must be"
+            f' installed; run: pip install "autocolor[{read_as.extra}]"'
         )
     require_size(path.name, size, read_as.growth)
-    mesh = read_in_own_process(read_as.library, read_as.kind, path, size)
-    if placement.up == "z":
+    mesh = read_in_own_process(read_as.library, read_as.module, read_as.kind, path, size)
+    if placement.up == "z" and read_as.up:
         placement = dataclasses.replace(placement, up=read_as.up)
     report = repaired(mesh.polygons, path.name, placement, skipped=mesh.sentences)
-    materials = [name for name in dict.fromkeys(mesh.material_of_part.values()) if name in mesh.colors]
+    names = [name for name in dict.fromkeys(mesh.material_of_part.values()) if name in mesh.colors]
+    paint = COLORED_PAINT.object_color
     return dataclasses.replace(
         report,
         material_of_part=dict(mesh.material_of_part),
         materials=tuple(
-            replaced(created_surface(name, COLORED_PAINT.object_color), {"object_color": mesh.colors[name]})
-            for name in materials
+            replaced(created_surface(name, paint), {"object_color": mesh.colors[name]}) for name in names
         ),
     )
