@@ -24,6 +24,7 @@ import tempfile
 import zipfile
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Final
 
@@ -46,6 +47,7 @@ from autocolor.files.array_file import (
 )
 from autocolor.files.meshes.foreign_mesh import REMEDY, ForeignMesh
 from autocolor.files.meshes.gltf_document import size_of_gltf
+from autocolor.files.meshes.meshio_text import size_of_text
 from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, RawPolygons, repaired
 from autocolor.files.reading import opened, read_bytes, read_whole, require_size
 from autocolor.scene.columns import replaced
@@ -368,10 +370,21 @@ FOREIGN: Final = (
         "glTF text", (".gltf",), "VTK", "gltf", "", "vtkmodules", 12, size_of_gltf, "y", extra="vtk"
     ),
     ForeignFormat("3MF", (".3mf",), "lib3mf", "3mf", "", "lib3mf", 20, size_of_3mf, "z"),
-    ForeignFormat("Abaqus", (".inp",), "meshio", "meshio", "abaqus", "meshio", 8),
+    ForeignFormat(
+        "Abaqus", (".inp",), "meshio", "meshio", "abaqus", "meshio", 8, partial(size_of_text, kind="abaqus")
+    ),
     ForeignFormat("Gmsh", (".msh",), "meshio", "meshio", "gmsh", "meshio", 8),
-    ForeignFormat("Nastran", (".bdf", ".nas", ".fem"), "meshio", "meshio", "nastran", "meshio", 8),
-    ForeignFormat("Medit", (".mesh",), "meshio", "meshio", "medit", "meshio", 8),
+    ForeignFormat(
+        "Nastran",
+        (".bdf", ".nas", ".fem"),
+        "meshio",
+        "meshio",
+        "nastran",
+        "meshio",
+        8,
+        partial(size_of_text, kind="nastran"),
+    ),
+    ForeignFormat("Medit", (".mesh", ".meshb"), "meshio", "meshio", "medit", "meshio", 8),
     ForeignFormat("SU2", (".su2",), "meshio", "meshio", "su2", "meshio", 8),
     ForeignFormat("UGRID", (".ugrid",), "meshio", "meshio", "ugrid", "meshio", 8),
 )

@@ -11,6 +11,8 @@ from __future__ import annotations
 import contextlib
 import io
 import re
+import tempfile
+import warnings
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping
 from itertools import islice
@@ -19,41 +21,52 @@ from typing import Any, Final
 
 import meshio
 import numpy as np
+from meshio._common import cell_data_from_raw
 from meshio.gmsh import _gmsh22, _gmsh40, _gmsh41, main
 from meshio.gmsh.common import _fast_forward_to_end_block, _read_data
 
 from autocolor.arrays import AnyArray, Indices
+from autocolor.errors import InputError
 from autocolor.files.meshes.cells import CORNERS, Flats, Volumes, cell_surface
 from autocolor.files.meshes.file_scalars import FileScalars
 from autocolor.files.meshes.foreign_mesh import ForeignMesh, ForeignRefusal, part_names_of, unreadable
-from autocolor.files.meshes.meshio_text import PlainText, abaqus_text, nastran_text
+from autocolor.files.meshes.meshio_text import PlainText, abaqus_text, medit_text, nastran_text
 from autocolor.files.meshes.repair import RawPolygons
 from autocolor.scene.scalar import NODE, POLYGON
 
 TEXTS: Final[dict[str, Callable[[Path], PlainText]]] = {"abaqus": abaqus_text, "nastran": nastran_text}
 
-KEYS: Final = {"gmsh": "element type", "medit": "version", "su2": "element type"}
+KEYS: Final = {"gmsh": "element type", "su2": "element type"}
 """What a number is that meshio looks up and does not find; else it is a node."""
 
-HARMLESS: Final = re.compile(r"Skipping\.|tags of string type|tag data that couldn't")
-"""Warnings of meshio that mean no missing nodes or cells, or that count as skipped."""
+HARMLESS: Final = re.compile(r"tags of string type|tag data that couldn't|Gmf(?!\w*[PQ]\d)\w+ type\. Skip")
+"""Warnings of meshio about names of boundaries, partitions, and Medit's data other than cells."""
 
 
 def read(path: Path, kind: str) -> ForeignMesh:
     """The surface of a mesh in a format that meshio names `kind`. Raises ForeignRefusal."""
     printed = io.StringIO()
     try:
-        with contextlib.redirect_stdout(printed), contextlib.redirect_stderr(printed):
+        with (
+            contextlib.redirect_stdout(printed),
+            contextlib.redirect_stderr(printed),
+            warnings.catch_warnings(),
+        ):
+            # numpy warns of text that is no number, and gives fewer numbers.
+            warnings.simplefilter("error", DeprecationWarning)
             text = TEXTS[kind](path) if kind in TEXTS else None
             sentences = _before_gmsh(path) if kind == "gmsh" else _before_su2(path) if kind == "su2" else []
             source = str(path) if text is None else io.StringIO("\n".join([*text.lines, ""]))
+            if kind == "medit" and path.suffix.lower() == ".mesh":
+                with tempfile.NamedTemporaryFile("w", suffix=".mesh", delete=False) as file:
+                    file.write(medit_text(path))
+                source = file.name
             mesh = getattr(meshio, kind).read(source)
-        for warning in dict.fromkeys(" ".join(printed.getvalue().split()).split("Warning: ")):
+        for warning in " ".join(printed.getvalue().split()).split("Warning: "):
             if warning and not HARMLESS.search(warning):
                 raise unreadable("meshio", warning)
-            sentences += [f"meshio: {warning}"] * bool(warning)
         return polygons_of(mesh, path.stem, text, sentences)
-    except (ForeignRefusal, MemoryError):
+    except (ForeignRefusal, InputError, MemoryError):
         raise
     except (Exception, SystemExit) as error:
         raise unreadable("meshio", _reason(kind, error)) from None
@@ -63,13 +76,18 @@ def _reason(kind: str, error: BaseException) -> str:
     """Why meshio failed, in words; most of its exceptions are Python's own."""
     text = " ".join(str(error).split())
     if isinstance(error, KeyError):
-        return f"it knows no {KEYS.get(kind, 'node')} {text}"
+        return f"there is no {KEYS.get(kind, 'node')} {error.args[0]}"
+    if isinstance(error, IndexError) and kind == "gmsh":
+        return "an element has a node that the file does not have"
     if isinstance(error, (OSError, meshio.ReadError, ValueError)) and text and "reshape" not in text:
         return text
     return "its numbers or keywords are cut short or in another order than in the format"
 
 
-# What meshio gets wrong in Gmsh's files and SU2's.
+# What meshio gets wrong in the files of Gmsh and SU2.
+
+# Its reader of MSH 2.2 divides data by the wrong lengths of blocks.
+_gmsh22.cell_data_from_raw = lambda cells, data: cell_data_from_raw([each for _, each in cells], data)
 
 
 def _before_gmsh(path: Path) -> list[str]:
@@ -165,6 +183,8 @@ INTERNAL: Final = re.compile(r"(gmsh|medit|nastran|su2|ugrid):")
 def polygons_of(mesh: Any, stem: str, text: PlainText | None, sentences: list[str]) -> ForeignMesh:
     """The surface of a mesh of meshio; cells in no group are the part `stem`."""
     points = np.asarray(mesh.points, np.float64)
+    if not len(points):
+        raise ForeignRefusal("the file must have nodes, not none")
     if points.ndim != 2 or points.shape[1] > 3:
         raise ForeignRefusal(
             f"nodes must have two or three coordinates, not an array of shape {points.shape}"

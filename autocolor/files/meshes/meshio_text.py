@@ -1,4 +1,4 @@
-"""Texts of Abaqus and Nastran, looked over before meshio reads them.
+"""Texts of Abaqus, Nastran and Medit, looked over before meshio reads them.
 
 meshio skips what it does not know: a file with placed parts or local coordinate systems would be read
 wrongly. Such keywords are refused here by name. Of the rest a plain text is made: all nodes first, elements
@@ -138,13 +138,14 @@ def abaqus_text(path: Path) -> PlainText:
     sets: dict[str, list[Indices]] = {}
     skipped: Counter[str] = Counter()
     instances = [block for block in blocks if block.keyword == "INSTANCE"]
+    for place, _, _, rows in instances:
+        if len(instances) > 1 or rows:
+            raise ForeignRefusal(f"an assembly must be one part that is not moved, not *INSTANCE ({place})")
     in_assembly = {f"PART {block.parameters.get('PART', '').upper()}" for block in instances} | {"INSTANCE"}
     scope, scopes = "", set()
     for place, keyword, parameters, rows in blocks:
         if keyword in GENERATING or (keyword == "SYSTEM" and rows):
             raise ForeignRefusal(f"nodes and elements must be written out, not made by *{keyword} ({place})")
-        if keyword == "INSTANCE" and (len(instances) > 1 or rows):
-            raise ForeignRefusal(f"an assembly must have one part that is not moved, not *INSTANCE ({place})")
         if keyword in ("PART", "INSTANCE", "END PART", "END INSTANCE"):
             name = parameters.get("NAME", "").upper()
             scope = {"PART": f"PART {name}", "INSTANCE": "INSTANCE"}.get(keyword, "")
@@ -242,15 +243,16 @@ def _cards(path: Path) -> Iterator[_Card]:
         _Line(place, text.split("$")[0].expandtabs(8).rstrip().upper())
         for place, text in _lines(path, "nastran", [])
     ]
-    begins = [row for row, line in enumerate(lines) if line.text.lstrip().startswith("BEGIN")]
-    card, mark = _Card("", "", []), ""
-    for place, text in lines[begins[0] + 1 if begins else 0 :]:
+    begins = [row for row, line in enumerate(lines) if line.text.startswith("BEGIN")]
+    card, mark, ends = _Card("", "", []), "", not begins
+    for place, text in lines[begins[0] if begins else 0 :]:
         if text.startswith("ENDDATA"):
+            ends = True
             break
+        if not text or text.split() == ["BEGIN", "BULK"]:
+            continue
         if text.startswith(("BEGIN", "=")):
             raise ForeignRefusal(f"bulk data must be one list of whole cards, not {shown(text)} ({place})")
-        if not text:
-            continue
         name = text.split(",")[0] if "," in text else text[:8]
         count = 4 if "*" in name else 8
         if "," in text:
@@ -267,6 +269,8 @@ def _cards(path: Path) -> Iterator[_Card]:
         else:
             card.fields.extend(fields[:count])
         mark = fields[count].strip("+* ")
+    if not ends:
+        raise ForeignRefusal("bulk data must end with ENDDATA; the file is cut short")
     yield card
 
 
@@ -280,7 +284,7 @@ def nastran_text(path: Path) -> PlainText:
     default = ""
     for place, name, fields in _cards(path):
         if name == "GRID":
-            coordinates = [field.replace("D", "E") or "0." for field in fields[2:5]]
+            coordinates = [field.replace("D", "E") or "0." for field in [*fields, ""][2:5]]
             nodes.append(",".join(["GRID", fields[0], "", *coordinates]))
             placed.append((fields[1], fields[0], place))
         elif name == "GRDSET":
@@ -310,3 +314,36 @@ def nastran_text(path: Path) -> PlainText:
     sentences = [f"skipped: {name} ({count:,})" for name, count in skipped.items()]
     text = ["BEGIN BULK", *nodes, *elements, "ENDDATA"]
     return PlainText(text, sentences, np.empty(0, np.intp), {})
+
+
+# Medit: keywords, each with numbers.
+
+MEDIT: Final = re.compile(r"(?<!\S)([A-Za-z]\w*)((?:\s+[-+.\d]\S*)*)")
+MEDIT_SHAPES: Final = (
+    "Edges",
+    "Triangles",
+    "Quadrilaterals",
+    "Tetrahedra",
+    "Prisms",
+    "Pyramids",
+    "Hexahedra",
+)
+
+
+def medit_text(path: Path) -> str:
+    """A Medit text with its nodes and cells only, and each keyword and count on a line of its own.
+
+    Raises ForeignRefusal for cells that meshio does not know.
+    """
+    text = re.sub("#.*", "", path.read_text(encoding="latin-1"))
+    sections = []
+    for keyword, numbers in MEDIT.findall(text):
+        shape = keyword.replace("Hexaedra", "Hexahedra")
+        if shape in ("MeshVersionFormatted", "Dimension"):
+            # Later versions have longer numbers in binary files only.
+            sections.append(f"{shape} {numbers.strip() if shape == 'Dimension' else 2}")
+        elif shape == "Vertices" or shape in MEDIT_SHAPES:
+            sections += [shape, *numbers.split(None, 1)]
+        elif shape.startswith(MEDIT_SHAPES):
+            raise ForeignRefusal(f"cells must be of the first order, not {keyword}")
+    return "\n".join([*sections, "End", ""])
