@@ -13,9 +13,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Booleans, Floats, Indices, Numbers, chunks, runs
-
-AT_A_TIME: Final = 1 << 15
+from autocolor.arrays import Booleans, Floats, Indices, runs
 
 FACES: Final = {
     "tetra": ((0, 1, 3, 3), (1, 2, 3, 3), (2, 0, 3, 3), (0, 2, 1, 1)),
@@ -52,25 +50,33 @@ class Flats:
     corner_counts: Indices
     cells: Indices
 
+    @property
+    def starts(self) -> Indices:
+        """The place of the first corner of each polygon."""
+        starts: Indices = np.cumsum(self.corner_counts) - self.corner_counts
+        return starts
+
+    def chosen(self, rows: Indices | Booleans) -> Flats:
+        """Some of the polygons, in the order of the rows."""
+        counts = self.corner_counts[rows]
+        return Flats(self.corners[runs(self.starts[rows], counts)], counts, self.cells[rows])
+
     @staticmethod
     def joined(several: Sequence[Flats]) -> Flats:
         """The polygons of several, in the order of their rows; polygons without corners are left out."""
-        counts = np.concatenate([np.empty(0, np.intp), *(each.corner_counts for each in several)])
-        corners = np.concatenate([np.empty(0, np.intp), *(each.corners for each in several)])
-        cells = np.concatenate([np.empty(0, np.intp), *(each.cells for each in several)])
-        starts = np.cumsum(counts) - counts
+        corners, counts, cells = (
+            np.concatenate([np.empty(0, np.intp), *(getattr(each, name) for each in several)])
+            for name in ("corners", "corner_counts", "cells")
+        )
         order = np.argsort(cells, kind="stable")
-        order = order[counts[order] > 0]
-        return Flats(corners[runs(starts[order], counts[order])], counts[order], cells[order])
+        return Flats(corners, counts, cells).chosen(order[counts[order] > 0])
 
     @staticmethod
     def of(table: Indices, cells: Indices) -> Flats:
         """The polygons of a table, (polygons, corners). A quad that repeats its last corner is a triangle."""
-        counts = np.full(len(table), table.shape[1], np.intp)
-        if table.shape[1] != 4:
-            return Flats(table.ravel(), counts, cells)
         is_corner = np.ones(table.shape, np.bool_)
-        is_corner[:, 3] = table[:, 3] != table[:, 2]
+        if table.shape[1] == 4:
+            is_corner[:, 3] = table[:, 3] != table[:, 2]
         return Flats(table[is_corner], is_corner.sum(axis=1), cells)
 
 
@@ -92,26 +98,29 @@ def cell_surface(coordinates: Floats, flats: Flats, volumes: Sequence[Volumes]) 
     count = sum(len(each.cells) for each in volumes)
     if not count:
         return CellSurface(flats, np.arange(len(coordinates)), ())
-    faces, owners = _faces(coordinates, volumes)
-    keys = _keys(faces, len(coordinates))
-    order = np.lexsort(keys)
-    differs = (np.diff(keys[0][order]) != 0) | (np.diff(keys[1][order]) != 0)
-    is_outer = np.concatenate([[True], differs]) & np.concatenate([differs, [True]])
-    outer = np.sort(order[is_outer])
-    # Leave out polygons that are faces.
+    tables = [each.corners[:, np.array(FACES[each.shape])].reshape(-1, 4) for each in volumes]
+    owners = [np.repeat(each.cells, len(FACES[each.shape])) for each in volumes]
+    faces = Flats.of(np.concatenate(tables), np.concatenate(owners))
+    small = np.flatnonzero(flats.corner_counts <= 4)
+    groups = _groups([faces, flats.chosen(small)], len(coordinates))
+    cells_at = np.bincount(groups[: len(faces.cells)], minlength=int(groups.max()) + 1)[groups]
+    faces = faces.chosen(cells_at[: len(faces.cells)] == 1)
+    centers = np.zeros((int(faces.cells.max(initial=0)) + 1, 3))
+    for each in volumes:
+        is_near = each.cells < len(centers)
+        centers[each.cells[is_near]] = coordinates[each.corners[is_near]].mean(axis=1)
+    faces = turned_outward(coordinates, faces, centers)
+    # Leave out polygons that are faces, and the nodes within.
     sentences = []
-    is_face = _are_among(flats, keys, len(coordinates))
+    is_face = np.zeros(len(flats.cells), np.bool_)
+    is_face[small] = cells_at[len(groups) - len(small) :] > 0
     if number := int(is_face.sum()):
         sentences.append(f"left out {number:,} polygon{'s' * (number > 1)} that are faces of volume cells")
-        flats = _chosen(flats, ~is_face)
-    flats = Flats.joined([flats, Flats.of(faces[outer], owners[outer])])
-    # Leave out the nodes within.
-    is_used = np.zeros(len(coordinates), np.bool_)
-    is_used[flats.corners] = True
-    sentences = [*surface_sentences(count, int((~is_used).sum())), *sentences]
-    row_of = np.cumsum(is_used) - 1
-    surface = Flats(row_of[flats.corners], flats.corner_counts, flats.cells)
-    return CellSurface(surface, np.flatnonzero(is_used), tuple(sentences))
+    flats = Flats.joined([flats.chosen(~is_face), faces])
+    nodes, corners = np.unique(flats.corners, return_inverse=True)
+    sentences = [*surface_sentences(count, len(coordinates) - len(nodes)), *sentences]
+    surface = Flats(corners.reshape(-1), flats.corner_counts, flats.cells)
+    return CellSurface(surface, nodes, tuple(sentences))
 
 
 def surface_sentences(cells: int, left: int) -> Iterator[str]:
@@ -121,72 +130,33 @@ def surface_sentences(cells: int, left: int) -> Iterator[str]:
         yield f"left out {left:,} node{'s' * (left > 1)} that the surface does not use"
 
 
-def _faces(coordinates: Floats, volumes: Sequence[Volumes]) -> tuple[Indices, Indices]:
-    """All faces of the cells, (faces, 4), turned outward, and the row of each face's cell."""
-    faces, owners = [], []
-    for each in volumes:
-        template = np.array(FACES[each.shape])
-        table = np.empty((len(each.corners), len(template), 4), np.intp)
-        for chunk in chunks(len(each.corners), AT_A_TIME):
-            faces_of_cells = each.corners[chunk][:, template]
-            inward = _volumes(coordinates[each.corners[chunk]], template) < 0
-            # A triangle repeats its last corner: swapping the first two turns it.
-            triangles = template[:, 2] == template[:, 3]
-            turned = np.where(
-                triangles[:, None], faces_of_cells[..., [1, 0, 2, 3]], faces_of_cells[..., ::-1]
-            )
-            table[chunk] = np.where(inward[:, None, None], turned, faces_of_cells)
-        faces.append(table.reshape(-1, 4))
-        owners.append(np.repeat(each.cells, len(template)))
-    return np.concatenate(faces), np.concatenate(owners)
+def turned_outward(coordinates: Floats, faces: Flats, centers: Floats) -> Flats:
+    """The outer faces of volume cells, turned away from the centers of their cells, (cells, 3).
+
+    The faces of a cell are turned together, if the volume between them and the center is negative.
+    """
+    starts, counts = faces.starts, faces.corner_counts
+    owners = np.repeat(np.arange(len(counts)), counts)
+    at = np.arange(len(owners))
+    following = np.where(at + 1 == (starts + counts)[owners], starts[owners], at + 1)
+    with np.errstate(all="ignore"):
+        arms = coordinates[faces.corners] - centers[faces.cells[owners]]
+        areas = np.add.reduceat(np.cross(arms, arms[following]), starts)
+        volumes = np.bincount(faces.cells, (areas * arms[starts]).sum(axis=1), len(centers))
+    mirrored = 2 * starts[owners] + counts[owners] - 1 - at
+    is_turned = (volumes < 0)[faces.cells[owners]]
+    return Flats(faces.corners[np.where(is_turned, mirrored, at)], counts, faces.cells)
 
 
-def _volumes(corners: Floats, template: Indices) -> Floats:
-    """Six times the volumes of cells, (cells, corners, 3), by their faces."""
-    size = np.ptp(corners, axis=1).max(axis=1)
-    size[size == 0] = 1.0
-    corners = (corners - corners.mean(axis=1, keepdims=True)) / size[:, None, None]
-    a, b, c, d = (corners[:, template[:, at]] for at in range(4))
-    sums: Floats = (np.cross(c - a, d - b) * (a + b + c + d)).sum(axis=(1, 2))
-    return sums
-
-
-def _keys(faces: Indices, nodes: int) -> tuple[Numbers, Numbers]:
-    """Two numbers for each face, equal for faces with the same corners in any order."""
-    corners = np.sort(faces, axis=1).astype(np.int64)
-    # Which corner a triangle repeats must not matter.
-    is_triangle = faces[:, 2] == faces[:, 3]
-    corners[is_triangle, :3] = np.sort(faces[is_triangle, :3], axis=1)
-    corners[is_triangle, 3] = nodes
-    return corners[:, 0] * (nodes + 1) + corners[:, 1], corners[:, 2] * (nodes + 1) + corners[:, 3]
-
-
-def _are_among(flats: Flats, keys: tuple[Numbers, Numbers], nodes: int) -> Booleans:
-    """Which polygons have the corners of a face."""
-    are_among = np.zeros(len(flats.cells), np.bool_)
-    starts = np.cumsum(flats.corner_counts) - flats.corner_counts
-    small = np.flatnonzero((flats.corner_counts == 3) | (flats.corner_counts == 4))
-    if not len(small):
-        return are_among
-    table = flats.corners[
-        starts[small, None] + np.minimum(np.arange(4), flats.corner_counts[small, None] - 1)
-    ]
-    own = _keys(table, nodes)
-    pairs = np.stack([np.concatenate(each) for each in zip(keys, own, strict=True)])
-    order = np.lexsort((np.arange(pairs.shape[1]), pairs[0], pairs[1]))
-    same = np.zeros(len(order), np.bool_)
-    same[1:] = (np.diff(pairs[:, order], axis=1) == 0).all(axis=0)
-    # The first of a run of equal keys is a face if any is, since faces come before polygons.
-    firsts = np.maximum.accumulate(np.where(same, 0, np.arange(len(order))))
-    is_known = order[firsts] < len(keys[0])
-    mine = order >= len(keys[0])
-    are_among[small[order[mine] - len(keys[0])]] = is_known[mine]
-    return are_among
-
-
-def _chosen(flats: Flats, chosen: Booleans) -> Flats:
-    return Flats(
-        flats.corners[np.repeat(chosen, flats.corner_counts)],
-        flats.corner_counts[chosen],
-        flats.cells[chosen],
-    )
+def _groups(several: Sequence[Flats], nodes: int) -> Indices:
+    """A number for each polygon of up to four corners, equal for polygons with the same corners in any order."""
+    counts = np.concatenate([each.corner_counts for each in several])
+    corners = np.full((len(counts), 4), nodes, np.int64)
+    corners[np.arange(4) < counts[:, None]] = np.concatenate([each.corners for each in several])
+    corners.sort(axis=1)
+    one, other = corners[:, 0] * (nodes + 1) + corners[:, 1], corners[:, 2] * (nodes + 1) + corners[:, 3]
+    order = np.lexsort((one, other))
+    differs = (np.diff(one[order]) != 0) | (np.diff(other[order]) != 0)
+    groups = np.empty(len(order), np.intp)
+    groups[order] = np.concatenate([[0], np.cumsum(differs)])
+    return groups

@@ -296,13 +296,16 @@ LAST: Final = 4096
 """Bytes at the end of what a library printed that are searched for its last line."""
 
 
+NOISE: Final = re.compile(r"^.*\b(ERR|WARN)\| |\x1b\[[0-9;]*m|\w+ \(0x[0-9a-f]+\): ")
+
+
 def _last_line(printed: Path) -> str:
     """The last line that a library printed before its process ended, in parentheses; empty without one."""
     with open(printed, "rb") as file:
         file.seek(max(0, os.fstat(file.fileno()).st_size - LAST))
         lines = file.read(LAST).decode("utf-8", "replace").splitlines()
-    # Colors, and before a bar the time and the place in the source, say nothing to a reader.
-    plain = (re.sub("\x1b\\[[0-9;]*m|^.*\\b(ERR|WARN)\\| ", "", line).strip() for line in reversed(lines))
+    # Colors, and before a bar the time and the place in the source, and addresses say nothing to a reader.
+    plain = (NOISE.sub("", line).strip() for line in reversed(lines))
     line = next((each for each in plain if each), "")
     return f" ({printable(line[:LONGEST_SENTENCE])})" if line else ""
 

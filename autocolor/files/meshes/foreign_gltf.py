@@ -42,10 +42,11 @@ def read(path: Path, kind: str) -> ForeignMesh:
     whole = completed(path)
     if not whole.names:
         raise ForeignRefusal("its scene must have a node with a mesh")
+    sentences = [f"{what}: {count:,}" for what, count in whole.left_out.items()]
     parts = list(_parts(_built(whole.glb, path), whole))
     if not parts:
         raise ForeignRefusal(
-            "; ".join(["its meshes must have triangles", *whole.sentences]), "export it with surfaces"
+            "; ".join(["its meshes must have triangles", *sentences]), "export it with surfaces"
         )
     part_names = part_names_of([part.name for part in parts])
     scalars = FileScalars()
@@ -81,7 +82,7 @@ def read(path: Path, kind: str) -> ForeignMesh:
     materials = {name: part.material for name, part in zip(part_names, parts, strict=True) if part.material}
     return ForeignMesh(
         polygons,
-        (*whole.sentences, *scalars.messages),
+        (*sentences, *scalars.messages),
         materials,
         {name: color for name, color in whole.colors.items() if name in materials.values()},
     )
@@ -120,7 +121,7 @@ def _parts(scene: Any, whole: Completed) -> Iterator[Part]:
         for at, primitive in enumerate(primitives):
             data = block.GetBlock(at)
             found = polygons_of(data)
-            if data.GetNumberOfPoints() != primitive.nodes or not (found.counts == 3).all():
+            if data.GetNumberOfPoints() != primitive.nodes or not (found.corner_counts == 3).all():
                 raise ForeignRefusal(f"meshes {mesh}: VTK must give the nodes and triangles of the file")
             triangles = found.corners.reshape(-1, 3)
             normals = data.GetPointData().GetNormals()

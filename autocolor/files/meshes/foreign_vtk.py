@@ -27,7 +27,7 @@ from vtkmodules.vtkIOLegacy import vtkDataSetReader
 
 from autocolor.arrays import Booleans, Floats, Indices, runs
 from autocolor.checks import shown
-from autocolor.files.meshes.cells import surface_sentences
+from autocolor.files.meshes.cells import Flats, surface_sentences, turned_outward
 from autocolor.files.meshes.file_scalars import FileScalars
 from autocolor.files.meshes.foreign_mesh import ForeignMesh, ForeignRefusal, unreadable
 from autocolor.files.meshes.repair import RawPolygons, printable_name
@@ -82,13 +82,13 @@ def read(path: Path, kind: str) -> ForeignMesh:
     scalars, normals, messages = _attributes(data, found)
     polygons = RawPolygons(
         found.coordinates,
-        found.corners,
-        found.counts,
-        np.zeros(len(found.counts), np.intp),
+        found.flats.corners,
+        found.flats.corner_counts,
+        np.zeros(len(found.flats.cells), np.intp),
         (printable_name(path.stem) or "part",),
         scalars.scalars,
         normals=normals,
-        corner_normals=None if normals is None else found.corners,
+        corner_normals=None if normals is None else found.flats.corners,
     )
     return ForeignMesh(polygons, (*sentences, *messages))
 
@@ -262,32 +262,16 @@ def _make_linear(grid: Any) -> int:
 # The surface.
 
 
-class Polygons(NamedTuple):
-    """Polygons: the nodes of all corners, the number of corners of each, and the row of its cell."""
-
-    corners: Indices
-    counts: Indices
-    cells: Indices
-
-    def chosen(self, rows: Indices | Booleans) -> Polygons:
-        """Some of the polygons, in the order of the rows."""
-        starts = np.cumsum(self.counts) - self.counts
-        counts = self.counts[rows]
-        return Polygons(self.corners[runs(starts[rows], counts)], counts, self.cells[rows])
-
-
 class Surface(NamedTuple):
-    """The polygons of a surface, as those of `Polygons`, with its nodes and their rows in the file."""
+    """The polygons of a surface, its nodes, their rows in the file, and what was left out."""
 
+    flats: Flats
     coordinates: Floats
     nodes: Indices
-    corners: Indices
-    counts: Indices
-    cells: Indices
     sentences: list[str]
 
 
-def polygons_of(data: Any) -> Polygons:
+def polygons_of(data: Any) -> Flats:
     """The polygons of polygonal data, and the triangles of its strips."""
     numbers, offsets = _lists(data.GetPolys())
     first = data.GetNumberOfVerts() + data.GetNumberOfLines()
@@ -299,7 +283,7 @@ def polygons_of(data: Any) -> Polygons:
     is_odd = runs(np.zeros(len(sizes), np.intp), sizes) % 2
     triangles = strips[np.column_stack([starts, starts + 1 + is_odd, starts + 2 - is_odd])]
     polygons = len(offsets) - 1
-    return Polygons(
+    return Flats(
         np.concatenate([numbers, triangles.ravel()]),
         np.concatenate([np.diff(offsets), np.full(len(triangles), 3, np.intp)]),
         first + np.concatenate([np.arange(polygons), polygons + np.repeat(np.flatnonzero(is_long), sizes)]),
@@ -321,7 +305,7 @@ def _surface(data: Any) -> Surface:
     cell_rows = vtk_to_numpy(output.GetCellData().GetArray("vtkOriginalCellIds")).astype(np.intp)
     places = vtk_to_numpy(output.GetPoints().GetData()).astype(np.float64)
     found = polygons_of(output)
-    found = found._replace(cells=cell_rows[found.cells])
+    found = Flats(found.corners, found.corner_counts, cell_rows[found.cells])
     skipped = {"vertices": output.GetNumberOfVerts(), "lines": output.GetNumberOfLines()}
     sentences = [f"skipped {what}: {count:,}" for what, count in skipped.items() if count]
 
@@ -332,22 +316,23 @@ def _surface(data: Any) -> Surface:
         found = found.chosen(is_shown[found.cells])
     is_volume = _volumes(data)
     if count := int(is_volume.sum()):
-        if not is_volume.all():
-            is_face = _repeat_faces(found, is_volume)
-            if number := int(is_face.sum()):
-                sentences.append(f"left out polygons that are faces of volume cells: {number:,}")
-                found = found.chosen(~is_face)
-        found = _turned_outward(data, places, found, is_volume)
+        is_face = _repeat_faces(found, is_volume)
+        if number := int(is_face.sum()):
+            sentences.append(f"left out polygons that are faces of volume cells: {number:,}")
+        is_outer = is_volume[found.cells]
+        flats, faces = found.chosen(~is_face & ~is_outer), found.chosen(is_outer)
+        found = Flats.joined([flats, turned_outward(places, faces, _centers(data))])
         sentences.extend(surface_sentences(count, data.GetNumberOfPoints() - len(np.unique(found.corners))))
-    if not len(found.counts):
+    if not len(found.cells):
         raise ForeignRefusal("; ".join(["it must have polygons or volume cells", *sentences]))
-    found = found.chosen(np.argsort(found.cells, kind="stable"))
 
-    # Number the nodes in the order of the file.
+    # Number the polygons and the nodes in the order of the file.
+    found = Flats.joined([found])
     order = np.argsort(rows, kind="stable")
     rank = np.empty(len(order), np.intp)
     rank[order] = np.arange(len(order))
-    return Surface(places[order], rows[order], rank[found.corners], found.counts, found.cells, sentences)
+    flats = Flats(rank[found.corners], found.corner_counts, found.cells)
+    return Surface(flats, places[order], rows[order], sentences)
 
 
 def _volumes(data: Any) -> Booleans:
@@ -360,25 +345,20 @@ def _volumes(data: Any) -> Booleans:
     return np.full(data.GetNumberOfCells(), min(_dimensions(data)) > 1)
 
 
-def _repeat_faces(found: Polygons, is_volume: Booleans) -> Booleans:
+def _repeat_faces(found: Flats, is_volume: Booleans) -> Booleans:
     """Which polygons have the corners of an outer face: programs often write boundaries besides volumes."""
     is_face = is_volume[found.cells]
-    repeat = np.zeros(len(found.counts), np.bool_)
-    starts = np.cumsum(found.counts) - found.counts
-    for count in np.unique(found.counts[~is_face]).tolist():
-        rows = np.flatnonzero(found.counts == count)
-        corners = np.sort(found.corners[starts[rows, None] + np.arange(count)], axis=1)
-        _, groups = np.unique(corners, axis=0, return_inverse=True)
-        groups = groups.reshape(-1)
+    repeat = np.zeros(len(is_face), np.bool_)
+    for count in np.unique(found.corner_counts[~is_face]).tolist():
+        rows = np.flatnonzero(found.corner_counts == count)
+        corners = np.sort(found.corners[found.starts[rows, None] + np.arange(count)], axis=1)
+        groups = np.unique(corners, axis=0, return_inverse=True)[1].reshape(-1)
         repeat[rows] = ~is_face[rows] & (np.bincount(groups, is_face[rows])[groups] > 0)
     return repeat
 
 
-def _turned_outward(data: Any, places: Floats, found: Polygons, is_volume: Booleans) -> Polygons:
-    """The polygons, of which the faces of a volume cell face away from the center of the cell.
-
-    Programs number the corners of wedges either way round, and grids may be left-handed.
-    """
+def _centers(data: Any) -> Floats:
+    """The centers of all cells. Raises ForeignRefusal if a cell has none."""
     # Without the array of hidden cells, each cell has a center.
     plain = data.NewInstance()
     plain.CopyStructure(data)
@@ -387,22 +367,10 @@ def _turned_outward(data: Any, places: Floats, found: Polygons, is_volume: Boole
     centers.SetInputData(plain)
     centers.CopyArraysOff()
     centers.Update()
-    of_cells = vtk_to_numpy(centers.GetOutput().GetPoints().GetData()).astype(np.float64)
-    if len(of_cells) != len(is_volume):
+    places = vtk_to_numpy(centers.GetOutput().GetPoints().GetData()).astype(np.float64)
+    if len(places) != data.GetNumberOfCells():
         raise ForeignRefusal("it must have no empty cells beside volume cells")
-
-    # The volume between the center of a cell and its outer faces is negative if they face inward.
-    starts = np.cumsum(found.counts) - found.counts
-    at = np.arange(len(found.corners))
-    owners = np.repeat(np.arange(len(found.counts)), found.counts)
-    following = np.where(at + 1 == (starts + found.counts)[owners], starts[owners], at + 1)
-    with np.errstate(all="ignore"):
-        arms = places[found.corners] - of_cells[found.cells[owners]]
-        areas = np.add.reduceat(np.cross(arms, arms[following]), starts)
-        volumes = np.bincount(found.cells, (areas * arms[starts]).sum(axis=1), len(is_volume))
-        is_turned = ((volumes < 0) & is_volume)[found.cells]
-    mirrored = 2 * starts[owners] + found.counts[owners] - 1 - at
-    return found._replace(corners=found.corners[np.where(is_turned[owners], mirrored, at)])
+    return places
 
 
 def _attributes(data: Any, found: Surface) -> tuple[FileScalars, Floats | None, list[str]]:
@@ -410,7 +378,7 @@ def _attributes(data: Any, found: Surface) -> tuple[FileScalars, Floats | None, 
     scalars, normals, skipped = FileScalars(), None, Counter[str]()
     for of, owner, rows in (
         (NODE, data.GetPointData(), found.nodes),
-        (POLYGON, data.GetCellData(), found.cells),
+        (POLYGON, data.GetCellData(), found.flats.cells),
     ):
         roles = {
             _text(each.GetName()): what

@@ -18,12 +18,12 @@ from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 from urllib.parse import unquote, unquote_to_bytes
 
 import numpy as np
 
-from autocolor.arrays import AnyArray, Floats, Indices
+from autocolor.arrays import AnyArray, Floats
 from autocolor.checks import Color, shown
 from autocolor.errors import InputError
 from autocolor.files.meshes.foreign_mesh import ForeignRefusal
@@ -103,39 +103,36 @@ def size_of_gltf(path: Path) -> int:
 # Extensions. Most concern materials and textures, which are left out.
 
 HARMLESS: Final = re.compile(
-    r"(KHR|EXT|ADOBE|MSFT|AGI)_(materials|texture|lights|xmp|animation|packing|articulations)\w*"
+    r"(KHR|EXT|ADOBE|MSFT|AGI)_(materials|texture|lights|xmp|animation|packing|articulations|audio)\w*"
     r"|KHR_mesh_quantization|EXT_(mesh|instance|structural)_(features|metadata)|FB_ngon_encoding|MSFT_lod"
-    r"|EXT_(primitive_voxels_)?feature_metadata|KHR_audio|KHR_implicit_shapes|KHR_physics_rigid_bodies"
 )
-"""Extensions that leave the geometry as it is without them."""
+"""Extensions without which the geometry is the same."""
 
 GEOMETRIC: Final = re.compile(r"\w*(draco|meshopt|instancing|gaussian|compression|CESIUM_RTC)\w*")
-"""Extensions that are refused wherever they are named, even if no part of the file has them."""
+"""Extensions that are refused even if they are only listed as used."""
 
 WITH_GEOMETRY: Final = ("scenes", "nodes", "meshes", "accessors", "bufferViews", "buffers", "skins")
 
 
 def _refuse_extensions(described: Row) -> None:
     """Raise ForeignRefusal if an extension is required, or has a part in the geometry, and is not harmless."""
+    rows = [row for key in WITH_GEOMETRY for row in _list(described, key)]
+    rows += [row for mesh in _list(described, "meshes") for row in _list(mesh, "primitives")]
+    needed = [str(each) for each in _list(described, "extensionsRequired")]
+    needed += [each for each in map(str, _list(described, "extensionsUsed")) if GEOMETRIC.fullmatch(each)]
+    needed += [each for row in rows if isinstance(row, dict) for each in row.get("extensions") or ()]
+    for name in needed:
+        if not HARMLESS.fullmatch(name):
+            raise ForeignRefusal(
+                f"it must have no extension that may change the geometry, as {shown(name)} does",
+                "export it without this extension",
+            )
 
-    def names(row: object, key: str) -> set[str]:
-        listed = row.get(key) if isinstance(row, dict) else None
-        return {str(each) for each in listed} if isinstance(listed, (list, dict)) else set()
 
-    used = names(described, "extensionsUsed")
-    needed = names(described, "extensionsRequired") | {each for each in used if GEOMETRIC.fullmatch(each)}
-    for key in WITH_GEOMETRY:
-        for row in described.get(key) or ():
-            needed |= names(row, "extensions")
-            primitives = row.get("primitives") if key == "meshes" and isinstance(row, dict) else None
-            for primitive in primitives if isinstance(primitives, list) else ():
-                needed |= names(primitive, "extensions")
-    unknown = sorted(name for name in needed if not HARMLESS.fullmatch(name))
-    if unknown:
-        raise ForeignRefusal(
-            f"it must have no extension that may change the geometry, as {shown(unknown[0])} does",
-            "export it without this extension",
-        )
+def _list(row: object, key: str) -> list[Any]:
+    """The list of a row; empty if it has none."""
+    rows = row.get(key) if isinstance(row, dict) else None
+    return rows if isinstance(rows, list) else []
 
 
 # Accessors.
@@ -153,9 +150,8 @@ class Accessors:
         self._buffers: dict[int, bytes] = {}
 
     def rows(self, key: str) -> list[Any]:
-        """The rows of a list of the file; none if it has no such list."""
-        rows = self.described.get(key, [])
-        return rows if isinstance(rows, list) else []
+        """The rows of a list of the file."""
+        return _list(self.described, key)
 
     def row(self, key: str, number: object) -> Row:
         """One row of a list of the file. Raises ForeignRefusal if there is none."""
@@ -273,9 +269,8 @@ def numbers(row: Row, key: str, place: str, count: int | None = None) -> list[fl
 # The scene.
 
 
-@dataclass(frozen=True, eq=False)
-class Primitive:
-    """The triangles of a mesh with one material: the number of nodes, their scalars, and the material or None."""
+class Primitive(NamedTuple):
+    """The number of nodes of a primitive, their scalars, and its material or None."""
 
     nodes: int
     scalars: dict[str, Floats]
@@ -296,18 +291,14 @@ class Completed:
     colors: dict[str, Color] = field(default_factory=dict)
     left_out: Counter[str] = field(default_factory=Counter)
 
-    @property
-    def sentences(self) -> list[str]:
-        """What was left out, with its number."""
-        return [f"{what}: {count:,}" for what, count in self.left_out.items()]
-
 
 def completed(path: Path) -> Completed:
     """The default scene of a glTF file. Raises InputError and ForeignRefusal."""
-    return _Writer(Accessors(path)).completed(path.stem)
-
-
-MODES: Final = {4: "triangles", 5: "strips", 6: "fans"}
+    file = Accessors(path)
+    _refuse_extensions(file.described)
+    writer = _Writer(file)
+    writer.write(path.stem)
+    return writer.result
 
 
 class _Writer:
@@ -320,39 +311,42 @@ class _Writer:
         self._views: list[Row] = []
         self._accessors: list[Row] = []
 
-    def completed(self, stem: str) -> Completed:
+    def write(self, stem: str) -> None:
         file, result = self.file, self.result
-        _refuse_extensions(file.described)
-        nodes = dict(self._nodes())
+        roots = self._roots()
+        nodes = dict(self._nodes(roots))
         self._materials()
         meshes: list[Row] = [{"primitives": []} for _ in file.rows("meshes")]
         written: list[Row] = [{} for _ in file.rows("nodes")]
-        skins = [{"joints": [0]} for _ in file.rows("skins")]
+        skins: list[Row] = [{"joints": [0]} for _ in file.rows("skins")]
         for number, row in nodes.items():
-            written[number] = _placed(row, f"nodes {number}")
-            mesh = row.get("mesh")
+            node, mesh = _placed(row, f"nodes {number}"), row.get("mesh")
+            written[number] = node
             if mesh is None:
                 continue
             named = file.row("meshes", mesh)
             result.names[number] = _name(row) or _name(named) or stem
+            users = [each for each in nodes.values() if each.get("mesh") == mesh]
             if mesh not in result.primitives:
-                meshes[mesh] = self._mesh(mesh, named, list(nodes.values()))
-            written[number]["mesh"] = mesh
-            weights = numbers(row, "weights", f"nodes {number}")
-            if weights and "weights" in meshes[mesh]:
-                written[number]["weights"] = weights
+                meshes[mesh] = self._mesh(mesh, named, users)
+            node["mesh"] = mesh
+            if "weights" in meshes[mesh] and "weights" in row:
+                node["weights"] = numbers(row, "weights", f"nodes {number}")
             if "skin" in row:
+                node["skin"] = row["skin"]
                 skins[row["skin"]] = self._skin(row["skin"], nodes, meshes[mesh])
-                written[number]["skin"] = row["skin"]
-        for key, what in (("animations", "animations"), ("cameras", "cameras")):
-            if count := len(file.rows(key)):
-                result.left_out[f"left out {what}"] += count
-        if count := sum("KHR_lights_punctual" in (row.get("extensions") or {}) for row in nodes.values()):
-            result.left_out["left out lights"] += count
+        lights = sum("KHR_lights_punctual" in (row.get("extensions") or ()) for row in nodes.values())
+        for what, count in (
+            ("animations", len(file.rows("animations"))),
+            ("cameras", len(file.rows("cameras"))),
+            ("lights", lights),
+            ("other scenes", len(file.rows("scenes")) - 1),
+        ):
+            if count > 0:
+                result.left_out[f"left out {what}"] = count
         described = {
             "asset": {"version": "2.0"},
-            "scene": 0,
-            "scenes": [{"nodes": self._roots()}],
+            "scenes": [{"nodes": roots}],
             "nodes": written,
             "meshes": meshes,
             "skins": skins,
@@ -362,28 +356,24 @@ class _Writer:
         }
         text = json.dumps({key: each for key, each in described.items() if each}).encode()
         text += b" " * (-len(text) % 4)
-        result.glb = b"".join(
-            (
-                struct.pack("<4sII", b"glTF", 2, 28 + len(text) + len(self._binary)),
-                struct.pack("<I4s", len(text), b"JSON"), text,
-                struct.pack("<I4s", len(self._binary), b"BIN\0"), self._binary,
-            )
-        )  # fmt: skip
-        return result
+        result.glb = (
+            struct.pack("<4sIII4s", b"glTF", 2, 28 + len(text) + len(self._binary), len(text), b"JSON")
+            + text
+            + struct.pack("<I4s", len(self._binary), b"BIN\0")
+            + self._binary
+        )
 
     def _roots(self) -> list[int]:
         """The nodes of the default scene; without scenes, the nodes that are no children."""
-        file, scenes = self.file, self.file.rows("scenes")
-        if scenes:
-            if len(scenes) > 1:
-                self.result.left_out["left out other scenes"] = len(scenes) - 1
+        file = self.file
+        if file.rows("scenes"):
             return _children(file.row("scenes", file.described.get("scene", 0)), "nodes")
-        below = {each for row in file.rows("nodes") if isinstance(row, dict) for each in _children(row)}
+        below = {each for row in file.rows("nodes") for each in _list(row, "children")}
         return [number for number in range(len(file.rows("nodes"))) if number not in below]
 
-    def _nodes(self) -> Iterator[tuple[int, Row]]:
-        """The nodes of the scene with their numbers. Raises ForeignRefusal unless they are trees."""
-        level, reached = self._roots(), set[int]()
+    def _nodes(self, level: list[int]) -> Iterator[tuple[int, Row]]:
+        """The nodes of a scene with their numbers. Raises ForeignRefusal unless they are trees."""
+        reached = set[int]()
         for _ in range(MOST_LEVELS + 1):
             below: list[int] = []
             for number in level:
@@ -409,110 +399,90 @@ class _Writer:
         matrices = np.tile(np.eye(4).reshape(1, 16), (len(joints), 1))
         if "inverseBindMatrices" in row:
             matrices = self.file.array(row["inverseBindMatrices"], 16)[: len(joints)]
-        if len(matrices) < len(joints) or mesh.get("extras", len(joints)) >= len(joints):
-            raise ForeignRefusal(f"{place}: it must have a matrix for each joint, and joints for all nodes")
+        if len(matrices) < len(joints) or mesh["extras"] >= len(joints):
+            raise ForeignRefusal(f"{place}: it must have a matrix for each joint, and all joints of its mesh")
         return {"joints": joints, "inverseBindMatrices": self._written(matrices, "<f4", "MAT4")}
 
-    def _mesh(self, number: int, row: Row, nodes: list[Row]) -> Row:
+    def _mesh(self, number: int, row: Row, users: list[Row]) -> Row:
         """A mesh without its points and lines; `extras` is the highest number of a joint that it uses."""
         place = f"meshes {number}"
+        is_skinned = any("skin" in each for each in users)
         weights = numbers(row, "weights", place)
-        of_nodes = [each.get("weights") for each in nodes if each.get("mesh") == number]
-        is_morphed = any(weights or ()) or any(any(each or ()) for each in of_nodes)
-        is_skinned = any("skin" in each for each in nodes if each.get("mesh") == number)
-        primitives, extras = [], -1
+        is_morphed = any(weights or ()) or any(any(_list(each, "weights")) for each in users)
+        mesh: Row = {"primitives": [], "extras": 0}
+        if is_morphed and weights:
+            mesh["weights"] = weights
         self.result.primitives[number] = []
-        for primitive in row["primitives"] if isinstance(row.get("primitives"), list) else ():
-            written = self._primitive(number, primitive, place, is_morphed)
-            if written is None:
+        for primitive in _list(row, "primitives"):
+            mode = primitive.get("mode", 4) if isinstance(primitive, dict) else None
+            if mode in (0, 1, 2, 3):
+                self.result.left_out["skipped primitives of points or lines"] += 1
                 continue
+            if mode not in (4, 5, 6):
+                raise ForeignRefusal(f"{place}: the mode of a primitive must be 0 to 6, not {shown(mode)}")
+            written = self._triangles(number, primitive, mode, place)
+            targets = _list(primitive, "targets") if is_morphed else []
+            attributes = primitive["attributes"]
+            nodes = self.result.primitives[number][-1].nodes
+            names = [name for name in ("POSITION", "NORMAL") if name in attributes]
+            # Normals that some morph targets leave as they are would be wrong.
+            names = [name for name in names if name == "POSITION" or all(name in each for each in targets)]
+            written["attributes"] = {name: self._vectors(attributes, name, nodes, place) for name in names}
+            if targets:
+                mesh.setdefault("weights", [0.0] * len(targets))
+                written["targets"] = [
+                    {name: self._vectors(each, name, nodes, place) for name in names} for each in targets
+                ]
             if is_skinned:
-                written["attributes"], highest = self._bound(primitive, written["attributes"], place)
-                extras = max(extras, highest)
-            primitives.append(written)
-        mesh: Row = {"primitives": primitives}
-        if is_morphed:
-            mesh["weights"] = weights or [0.0] * len(primitives[0].get("targets", ())) if primitives else []
-        return {**mesh, "extras": extras} if is_skinned else mesh
+                self._bind(mesh, written, attributes, nodes, place)
+            mesh["primitives"].append(written)
+        return mesh
 
-    def _primitive(self, mesh: int, row: Row, place: str, is_morphed: bool) -> Row | None:
-        """The triangles, strip or fan of a primitive; None for points and lines, which are counted."""
+    def _triangles(self, mesh: int, row: Row, mode: int, place: str) -> Row:
+        """The corners of triangles, a strip or a fan, whose primitive is added to the result."""
         file, result = self.file, self.result
-        mode = row.get("mode", 4) if isinstance(row, dict) else None
-        if type(mode) is not int or not 0 <= mode <= 6:
-            raise ForeignRefusal(f"{place}: the mode of a primitive must be 0 to 6, not {shown(mode)}")
-        if mode not in MODES:
-            result.left_out["skipped primitives of points or lines"] += 1
-            return None
-        attributes = part(row, "attributes", place)
-        places = file.array(attributes.get("POSITION"), 3)
-        indices: Indices = np.arange(len(places))
+        attributes, material = part(row, "attributes", place), row.get("material")
+        count = len(file.array(attributes.get("POSITION"), 3))
+        corners: AnyArray = np.arange(count, dtype=np.uint32)
         if "indices" in row:
-            listed = file.array(row["indices"], 1)[:, 0]
-            if listed.dtype.kind != "u" or (len(listed) and listed.max() >= len(places)):
-                raise ForeignRefusal(f"{place}: indices must be whole numbers from 0 to {len(places) - 1}")
-            indices = listed
-        if len(indices) < 3 or (mode == 4 and len(indices) % 3):
+            corners = file.array(row["indices"], 1)[:, 0]
+        if corners.dtype.kind != "u" or corners.max(initial=0) >= max(count, 1):
+            raise ForeignRefusal(f"{place}: a corner must be a node from 0 to {count - 1:,}")
+        if len(corners) < 3 or (mode == 4 and len(corners) % 3):
             raise ForeignRefusal(
-                f"{place}: triangles must have three corners each, not {len(indices):,} in all"
+                f"{place}: triangles must have three corners each, not {len(corners):,} in all"
             )
-        written: Row = {
-            "mode": mode,
-            "attributes": {"POSITION": self._written(places, "<f4", "VEC3")},
-            "indices": self._written(indices, "<u4", "SCALAR"),
-        }
-        targets = row.get("targets") if is_morphed else None
-        kept = ["POSITION", "NORMAL"] if "NORMAL" in attributes else ["POSITION"]
-        if isinstance(targets, list) and targets:
-            if not all(isinstance(each, dict) and "POSITION" in each for each in targets):
-                raise ForeignRefusal(f"{place}: a morph target must have positions")
-            kept = [name for name in kept if all(name in each for each in targets)]
-            written["targets"] = [
-                {name: self._values(each[name], 3, places, place) for name in kept} for each in targets
-            ]
-        if "NORMAL" in kept:
-            written["attributes"]["NORMAL"] = self._values(attributes["NORMAL"], 3, places, place)
-        material = row.get("material")
         if material is not None and "texture" in json.dumps(file.row("materials", material)).lower():
             result.left_out["left out the textures of parts"] += 1
-        if "COLOR_0" in attributes:
+        if any(name.startswith("COLOR_") for name in attributes):
             result.left_out["left out the colors of nodes of parts"] += 1
-        result.primitives[mesh].append(
-            Primitive(len(places), self._scalars(attributes, len(places)), material)
-        )
-        return written
-
-    def _scalars(self, attributes: Row, count: int) -> dict[str, Floats]:
-        """The attributes of one component of an application, by their names without the mark before it."""
         scalars = {}
         for name, number in attributes.items():
-            if name.startswith("_") and self.file.row("accessors", number).get("type") == "SCALAR":
-                values = self.file.array(number, 1)[:, 0].astype(np.float64)
-                if len(values) == count:
-                    scalars[name.removeprefix("_")] = values
-        return scalars
+            if name.startswith("_") and file.row("accessors", number).get("type") == "SCALAR":
+                scalars[name.removeprefix("_")] = file.array(number, 1)[:, 0].astype(np.float64)
+                if len(scalars[name.removeprefix("_")]) != count:
+                    raise ForeignRefusal(f"{place}: {shown(name)} must have a value for each of the nodes")
+        result.primitives[mesh].append(Primitive(count, scalars, material))
+        return {"mode": mode, "indices": self._written(corners, "<u4", "SCALAR")}
 
-    def _bound(self, primitive: Row, attributes: Row, place: str) -> tuple[Row, int]:
-        """The attributes with the joints and weights of a skin, and the highest joint that has a weight."""
-        given = part(primitive, "attributes", place)
-        if "JOINTS_1" in given or "JOINTS_0" not in given or "WEIGHTS_0" not in given:
+    def _vectors(self, row: Row, name: str, nodes: int, place: str) -> int:
+        """The number of a new accessor of vectors, one for each node."""
+        values = self.file.array(row.get(name), 3)
+        if len(values) != nodes:
+            raise ForeignRefusal(f"{place}: {name} must have a vector for each of the {nodes:,} nodes")
+        return self._written(values, "<f4", "VEC3")
+
+    def _bind(self, mesh: Row, written: Row, attributes: Row, nodes: int, place: str) -> None:
+        """Add the joints and weights of the nodes of a skin."""
+        if "JOINTS_1" in attributes or not {"JOINTS_0", "WEIGHTS_0"} <= attributes.keys():
             raise ForeignRefusal(f"{place}: a node of a skin must have one to four joints with weights")
-        joints, weights = self.file.array(given["JOINTS_0"], 4), self.file.array(given["WEIGHTS_0"], 4)
-        if not len(joints) == len(weights) == self._accessors[attributes["POSITION"]]["count"]:
+        joints, weights = (self.file.array(attributes[name], 4) for name in ("JOINTS_0", "WEIGHTS_0"))
+        if not len(joints) == len(weights) == nodes:
             raise ForeignRefusal(f"{place}: each node of a skin must have its joints and weights")
         joints = np.where(weights > 0, joints, 0)
-        bound = {
-            "JOINTS_0": self._written(joints, "<u2", "VEC4"),
-            "WEIGHTS_0": self._written(weights, "<f4", "VEC4"),
-        }
-        return {**attributes, **bound}, int(joints.max(initial=0))
-
-    def _values(self, number: object, width: int, places: AnyArray, place: str) -> int:
-        """The number of a new accessor of vectors, which must be as many as the nodes."""
-        values = self.file.array(number, width)
-        if len(values) != len(places):
-            raise ForeignRefusal(f"{place}: accessors {number} must have a vector for each of the nodes")
-        return self._written(values, "<f4", f"VEC{width}")
+        mesh["extras"] = max(mesh["extras"], int(joints.max(initial=0)))
+        written["attributes"]["JOINTS_0"] = self._written(joints, "<u2", "VEC4")
+        written["attributes"]["WEIGHTS_0"] = self._written(weights, "<f4", "VEC4")
 
     def _written(self, values: AnyArray, dtype: str, type_: str) -> int:
         """The number of a new accessor with these values."""
