@@ -33,15 +33,11 @@ MOST_FILES: Final = 100
 
 
 class PlainText(NamedTuple):
-    """A text that meshio reads, and what was skipped.
-
-    `ids` are the numbers of the elements in the order of the text, `sets` those of each set of elements.
-    """
+    """A text that meshio reads, what was skipped, and the rows of elements in each set, if any."""
 
     lines: list[str]
     sentences: list[str]
-    ids: Indices
-    sets: dict[str, Indices]
+    sets: dict[str, Indices] | None = None
 
 
 class _Line(NamedTuple):
@@ -195,8 +191,9 @@ def abaqus_text(path: Path) -> PlainText:
             ]
     sets.pop("", None)
     sentences = [f"skipped: {noun} ({count:,})" for noun, count in skipped.items()]
-    joined = {name: np.concatenate(each) for name, each in sets.items()}
-    return PlainText([*nodes, *elements], sentences, np.concatenate(ids), joined)
+    numbers = np.concatenate(ids)
+    rows = {name: np.flatnonzero(np.isin(numbers, np.concatenate(each))) for name, each in sets.items()}
+    return PlainText([*nodes, *elements], sentences, rows)
 
 
 def _node(row: str) -> str:
@@ -312,8 +309,7 @@ def nastran_text(path: Path) -> PlainText:
                 f"node {node} must be in the basic coordinate system, not in {kind} ({place})"
             )
     sentences = [f"skipped: {name} ({count:,})" for name, count in skipped.items()]
-    text = ["BEGIN BULK", *nodes, *elements, "ENDDATA"]
-    return PlainText(text, sentences, np.empty(0, np.intp), {})
+    return PlainText(["BEGIN BULK", *nodes, *elements, "ENDDATA"], sentences)
 
 
 # Medit: keywords, each with numbers.
