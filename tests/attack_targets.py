@@ -504,7 +504,7 @@ def fault_of_show(data: bytes) -> str:
 
 # The table.
 
-MESHES: Final = ("CSV", "Movie.BYU", "npy", "OBJ", "OFF", "PLY", "STL", "VTK", "VTP", "scene")
+MESHES: Final = ("CSV", "Movie.BYU", "npy", "OBJ", "OFF", "PLY", "STL", "scene")
 READERS: Final[dict[str, Callable[[], Reading]]] = {
     **{kind.lower().removeprefix("movie."): partial(file_target, kind) for kind in MESHES},
     "tables": lambda: file_target("tables", packed=True),

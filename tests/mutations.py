@@ -18,7 +18,6 @@ import numpy as np
 from autocolor import Scene
 from autocolor.files.conversion import OutputFormat, outputs
 from autocolor.scene.scalar import MeshScalar
-from tests.autocolor.files.meshes.vtp_files import VtpWriter
 from tests.small import boxes
 
 NUMBERS = (
@@ -140,25 +139,6 @@ PLY_BITS = (
     + b"".join(struct.pack(">3fB", *place, 9) for place in ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0.5)))
     + struct.pack(">B4IhB3Ih", 4, 0, 1, 2, 3, 7, 3, 0, 1, 2, -7)
 )
-VTK_TEXT = (
-    b"# vtk DataFile Version 3.0\nnotched\nASCII\nDATASET POLYDATA\nPOINTS 5 float\n"
-    b"0 0 0 1 0 0 1 1 0\n0 1 0.5 2 2 2\nPOLYGONS 2 9\n4 0 1 2 3\n3 1 4 2\n"
-    b"CELL_DATA 2\nSCALARS load double 1\nLOOKUP_TABLE default\n1 2\n"
-    b"POINT_DATA 5\nSCALARS stress float\nLOOKUP_TABLE default\n1 2 3 4 5e3\nVECTORS move float\n"
-    + b"0 0 1 " * 5
-    + b"\n"
-)
-VTK_GRID = (
-    b"# vtk DataFile Version 2.0\ngrid\nBINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n"
-    + struct.pack(">12d", 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0.5)
-    + b"\nCELLS 2 9\n"
-    + struct.pack(">9i", 4, 0, 1, 2, 3, 3, 0, 1, 2)
-    + b"\nCELL_TYPES 2\n"
-    + struct.pack(">2i", 9, 5)
-    + b"\nPOINT_DATA 4\nSCALARS stress float 1\nLOOKUP_TABLE default\n"
-    + struct.pack(">4f", 1, 2, 3, 4)
-    + b"\n"
-)
 BYU_TEXT = (
     b"       2       6       3      11\n       1       2       3       3\n"
     b" 0.00000E+00 0.00000E+00 0.00000E+00 1.00000E+00 0.00000E+00 0.00000E+00\n"
@@ -170,44 +150,6 @@ BYU_FREE = (
     b"2 8 6 24\n1 5 6 6\n0 0 0 1 0 0 0 1 0 1 1 0\n0 0 1 1 0 1 0 1 1 1 1 1\n"
     b"1 3 4 -2 5 6 8 -7 1 2 6 -5\n3 7 8 -4 1 5 7 -3 2 4 8 -6\n"
 )
-VTK_VOLUME = (
-    b"# vtk DataFile Version 3.0\nvolume\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 9 double\n"
-    b"0 0 0 1 0 0 0 1 0 1 1 0\n0 0 1 1 0 1 0 1 1 1 1 1\n0.5 0.5 0.5\n"
-    b"CELLS 4 24\n8 0 1 3 2 4 5 7 6\n3 0 1 8\n4 0 1 2 3\n5 0 1 2 3 8\nCELL_TYPES 4\n12 5 6 7\n"
-    b"CELL_DATA 4\nFIELD f 1\nrow 1 4 int\n0 1 2 3\n"
-)
-VTK_OFFSETS = (
-    b"# vtk DataFile Version 5.1\nvolume\nBINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 float\n"
-    + struct.pack(">15f", 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 0)
-    + b"\nCELLS 3 7\nOFFSETS vtktypeint64\n"
-    + struct.pack(">3q", 0, 4, 7)
-    + b"\nCONNECTIVITY vtktypeint64\n"
-    + struct.pack(">7q", 0, 1, 2, 3, 1, 4, 2)
-    + b"\nCELL_TYPES 2\n"
-    + struct.pack(">2i", 10, 5)
-    + b"\nPOINT_DATA 5\nVECTORS v float\n"
-    + struct.pack(">15f", *range(15))
-    + b"\n"
-)
-VTK_BLOCK = (
-    b"# vtk DataFile Version 3.0\nblock\nBINARY\nDATASET RECTILINEAR_GRID\nDIMENSIONS 3 3 3\n"
-    + b"".join(b"%c_COORDINATES 3 float\n%b\n" % (axis, struct.pack(">3f", 0, 1, 3)) for axis in b"XYZ")
-    + b"POINT_DATA 27\nSCALARS s unsigned_char\nLOOKUP_TABLE default\n"
-    + bytes(range(27))
-    + b"\nCELL_DATA 8\nFIELD f 1\nrow 1 8 unsigned_char\n"
-    + bytes(range(8))
-    + b"\n"
-)
-
-
-def vtp_seed(form: str = "ascii", compressor: str = "") -> bytes:
-    """A VTP file in an encoding."""
-    writer = VtpWriter(form, compressor=compressor)
-    data = f"<PointData>{writer.array('stress', 'Float64', [1, 2, 3, 4, 5e3])}</PointData>"
-    data += f"<CellData>{writer.array('load', 'Int32', [1, 2, 3])}</CellData>"
-    places = [0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0.5, 2, 2, 2]
-    cells = writer.piece(places, "Float32", data, Lines=[[0, 1]], Polys=[[0, 1, 2, 3]], Strips=[[1, 4, 2]])
-    return cells.data
 
 
 OBJ_TEXT = (
@@ -234,15 +176,6 @@ BY_HAND = (
     Seed("STL in bits that begins solid", {"plate.stl": b"solid" + STL_BITS[5:]}, "plate.stl"),
     Seed("PLY in text", {"plate.ply": PLY_TEXT}, "plate.ply"),
     Seed("PLY in bits", {"plate.ply": PLY_BITS}, "plate.ply"),
-    Seed("VTK in text", {"plate.vtk": VTK_TEXT}, "plate.vtk"),
-    Seed("VTK in bits", {"plate.vtk": VTK_GRID}, "plate.vtk"),
-    Seed("VTK volume in text", {"plate.vtk": VTK_VOLUME}, "plate.vtk"),
-    Seed("VTK volume in bits", {"plate.vtk": VTK_OFFSETS}, "plate.vtk"),
-    Seed("VTK block in bits", {"plate.vtk": VTK_BLOCK}, "plate.vtk"),
-    Seed("VTP in text", {"plate.vtp": vtp_seed()}, "plate.vtp"),
-    Seed("VTP in base64", {"plate.vtp": vtp_seed("binary", "vtkZLibDataCompressor")}, "plate.vtp"),
-    Seed("VTP in bits", {"plate.vtp": vtp_seed("appended")}, "plate.vtp"),
-    Seed("VTP packed", {"plate.vtp": vtp_seed("appended", "vtkLZMADataCompressor")}, "plate.vtp"),
     Seed("OFF with normals", {"plate.off": OFF_NORMALS}, "plate.off"),
     Seed("OFF", {"plate.off": OFF_TEXT}, "plate.off"),
     Seed("Movie.BYU", {"plate.g": BYU_TEXT}, "plate.g"),

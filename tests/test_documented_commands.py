@@ -61,8 +61,6 @@ INPUTS = {
         for face in FACES
     )
     + "endsolid housing\n",
-    "housing.vtk": "# vtk DataFile Version 3.0\nhousing\nASCII\nDATASET POLYDATA\n"
-    f"POINTS 4 float\n{NODES}POLYGONS 4 16\n{POLYGONS}",
     "car.obj": "".join(f"v {x} {y} {z}\n" for x, y, z in CORNERS) + "g hood\nf 1 2 4\ng floor\nf 1 3 2\n",
     "tour.csv": 'name,time,view.eye,lights.key.intensity\nstart,0,"[-6.9, -5.1, 2.1]",\n'
     'low,3,"[-7.5, 0, 0.9]",0.4\nend,4,"[-6.9, 5.1, 2.1]",\n',

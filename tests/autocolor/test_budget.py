@@ -131,11 +131,8 @@ def converted(name: str) -> Callable[[Path], Path]:
     return write
 
 
-VTK = "# vtk DataFile Version 3.0\nx\nASCII\nDATASET "
 FORMATS = {
-    "grid": plain_text(f"{VTK}STRUCTURED_POINTS\nDIMENSIONS 4 4 1\nORIGIN 0 0 0\nSPACING 1 1 1\n"),
     "OFF": plain_text("OFF\n16 9 0\n{nodes}\n{polygons}\n"),
-    "VTK": plain_text(f"{VTK}POLYDATA\nPOINTS 16 float\n{{nodes}}\nPOLYGONS 9 45\n{{polygons}}\n"),
     **{name: converted(name) for name in ("CSV", "OBJ", "PLY", "tables", "store")},
 }
 

@@ -249,7 +249,7 @@ def read_in_own_process(
     with tempfile.TemporaryDirectory(prefix="autocolor-") as folder:
         result = Path(folder) / "mesh.npz"
         limit = str(validated_limit(None))
-        arguments = [module, kind, os.fspath(path.absolute()), os.fspath(result), str(size), limit]
+        arguments = [library, module, kind, os.fspath(path.absolute()), os.fspath(result), str(size), limit]
         seconds = most_seconds(size)
         printed = Path(folder) / "printed"
         code = _exit_code([*command, *arguments], starting + 2 * seconds, printed)
@@ -401,7 +401,7 @@ def read_foreign(read_as: ForeignFormat, path: Path, placement: Placement = PLAI
     size = read_as.size_of(path)
     if importlib.util.find_spec(read_as.needs) is None:
         raise UnavailableError(
-            f"{path.name}: to read {read_as.suffixes[0]} files, the library {read_as.library} must be"
+            f"{path.name}: to read {read_as.name} files, the library {read_as.library} must be"
             f' installed; run: pip install "autocolor[{read_as.extra}]"'
         )
     require_size(path.name, size, read_as.growth)

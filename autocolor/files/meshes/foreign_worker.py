@@ -1,7 +1,7 @@
 """The process in which a library reads a file.
 
-It is started as `python -m autocolor.files.meshes.foreign_worker MODULE KIND MESH RESULT SIZE LIMIT`. The module
-`foreign_MODULE` calls the library, SIZE is the number of bytes to read, and LIMIT a factor for the budget. Once
+It is started as `python -m autocolor.files.meshes.foreign_worker LIBRARY MODULE KIND MESH RESULT SIZE LIMIT`. The
+module `foreign_MODULE` calls the library, SIZE is the number of bytes to read, and LIMIT a factor for the budget. Once
 the library is loaded, the system limits time, memory and the size of the result. From then on Python opens no
 file but in the folder of the mesh and of Python, writes none but in the folder of the result, and has no
 network; native code of a library is not held to this. If the file cannot be read, the exit code is FAILED and
@@ -10,6 +10,7 @@ the result a sentence.
 
 from __future__ import annotations
 
+import errno
 import importlib
 import math
 import os
@@ -45,7 +46,7 @@ WRITING: Final = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND
 
 def main(arguments: list[str]) -> int:
     """Read a file and write its mesh, or the reason of a failure. Returns the exit code."""
-    name, kind, mesh, result, size, factor = arguments
+    library, name, kind, mesh, result, size, factor = arguments
     warnings.simplefilter("ignore")
     sys.dont_write_bytecode = True
     tempfile.tempdir = os.path.dirname(result)
@@ -59,7 +60,7 @@ def main(arguments: list[str]) -> int:
             file.write(data)
         return 0
     except (Exception, SystemExit) as error:
-        sentence = sentence_of(error, name, os.path.basename(mesh))
+        sentence = sentence_of(error, library, os.path.basename(mesh))
         with open(result, "wb") as file:
             file.write(sentence.encode("utf-8", "replace"))
         return FAILED
@@ -72,8 +73,8 @@ def sentence_of(error: BaseException, library: str, mesh: str) -> str:
         return text.removeprefix(f"{mesh}: ")[: 4 * LONGEST_SENTENCE]
     if isinstance(error, MemoryError):
         text = "it needs more memory than its size and --limit allow"
-    elif isinstance(error, OSError) and error.filename is None:
-        text = f"its mesh is larger than its size and --limit allow: {text}"
+    elif isinstance(error, OSError) and error.errno == errno.EFBIG:
+        text = "its mesh is larger than its size and --limit allow"
     else:
         text = f"{type(error).__name__}: {text}"[:LONGEST_SENTENCE]
     return str(unreadable(library, text))

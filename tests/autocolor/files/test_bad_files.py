@@ -12,7 +12,7 @@ import pytest
 from autocolor.errors import InputError
 from autocolor.files.formats import file_formats, suffixes_of
 from autocolor.files.scene_sources import SCENE_FORMATS, read_scene_with_report
-from tests.mutations import BY_HAND, OBJ_TEXT, PLY_BITS, PLY_TEXT, STL_BITS, VTK_GRID, VTK_TEXT
+from tests.mutations import BY_HAND, OBJ_TEXT, PLY_BITS, PLY_TEXT, STL_BITS
 
 OURS = [each for each in file_formats() if not isinstance(each.read, partial)]
 """The mesh formats that no library reads in a process of its own; that has tests of its own."""
@@ -47,7 +47,7 @@ def test_what_is_no_file_or_a_file_of_nothing_is_refused(tmp_path: Path, suffix:
 )
 def test_an_endless_line_is_refused(tmp_path: Path, suffix: str) -> None:
     path = tmp_path / f"car{suffix}"
-    starts = {".ply": PLY_TEXT[:24], ".vtk": VTK_TEXT[:60], ".stl": b"solid ", ".obj": b"v 0 0 0\nf "}
+    starts = {".ply": PLY_TEXT[:24], ".stl": b"solid ", ".obj": b"v 0 0 0\nf "}
     path.write_bytes(starts.get(suffix, b"") + b"1 " * 2_000_000)
     assert "car" in refusal(path)
 
@@ -58,21 +58,17 @@ CORNERS = [b"0", b"-9", b"99", b"4294967297", b"1.5", b"9" * 25]
 PLACES = [
     ("car.obj", OBJ_TEXT, b"1.5e0", [each.encode() for each in NUMBERS]),
     ("car.ply", PLY_TEXT, b"0 1 0.5", [f"0 1 {each}".encode() for each in NUMBERS]),
-    ("car.vtk", VTK_TEXT, b"0 1 0.5", [f"0 1 {each}".encode() for each in NUMBERS]),
     *(
         (name, text, count, [count.split()[0] + b" %d" % each for each in COUNTS])
         for name, text, counts in (
             ("car.ply", PLY_TEXT, (b"vertex 4", b"face 2")),
             ("car.ply", PLY_BITS, (b"vertex 4", b"face 2")),
-            ("car.vtk", VTK_TEXT, (b"POINTS 5", b"POLYGONS 2")),
-            ("car.vtk", VTK_GRID, (b"POINTS 4", b"CELLS 2")),
         )
         for count in counts
     ),
     ("car.stl", STL_BITS, STL_BITS[80:84], [b"\xff\xff\xff\xff"]),
     ("car.obj", OBJ_TEXT, b"f -1 -3 2", [b"f -1 -3 " + each for each in CORNERS]),
     ("car.ply", PLY_TEXT, b"3 0 1 2\n", [b"3 0 1 " + each + b"\n" for each in CORNERS[1:]]),
-    ("car.vtk", VTK_TEXT, b"3 1 4 2\n", [b"3 1 4 " + each + b"\n" for each in CORNERS[1:]]),
 ]
 
 
