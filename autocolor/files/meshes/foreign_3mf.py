@@ -24,7 +24,7 @@ from autocolor.files.meshes.repair import RawPolygons, printable_name
 
 LIBRARY: Final = lib3mf.get_wrapper()
 
-MOST_PLACED: Final = 100_000
+MOST_PLACED: Final = 10_000
 """Limit: objects that the build places; a few objects can name each other very often."""
 
 LEFT_OUT: Final = ("Support", "SolidSupport", "Other")

@@ -59,8 +59,8 @@ def _lines(path: Path, kind: str, files: list[Path]) -> Iterator[_Line]:
     main = files[0]
     if len(files) > MOST_FILES:
         raise InputError(f"{main.name}: it must include at most {MOST_FILES} files, not more; join them")
-    with opened(path) as (file, _):
-        for number, line in enumerate(io.TextIOWrapper(file, "utf-8-sig", "replace"), 1):
+    with opened(path) as (file, _), io.TextIOWrapper(file, "utf-8-sig", "replace") as lines:
+        for number, line in enumerate(lines, 1):
             place = f"line {number}" if path == main else f"{path.name}, line {number}"
             if match := INCLUDE[kind].match(line):
                 problems: list[str] = []
