@@ -40,14 +40,10 @@ class Part(NamedTuple):
 def read(path: Path, kind: str) -> ForeignMesh:
     """The parts of the default scene of a glTF file. Raises InputError and ForeignRefusal."""
     whole = completed(path)
-    if not whole.names:
-        raise ForeignRefusal("its scene must have a node with a mesh")
     sentences = [f"{what}: {count:,}" for what, count in whole.left_out.items()]
+    if not any(whole.primitives.values()):
+        raise ForeignRefusal("; ".join(["its scene must have meshes of triangles", *sentences]))
     parts = list(_parts(_built(whole.glb, path), whole))
-    if not parts:
-        raise ForeignRefusal(
-            "; ".join(["its meshes must have triangles", *sentences]), "export it with surfaces"
-        )
     part_names = part_names_of([part.name for part in parts])
     scalars = FileScalars()
     welded = [_welded(part.places, part.scalars) for part in parts]

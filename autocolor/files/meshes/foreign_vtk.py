@@ -131,7 +131,7 @@ def _xml(path: Path) -> tuple[Any, list[str]]:
 # What VTK prints.
 
 PRINTED: Final = re.compile(r"(ERROR|Generic ERROR|Warning|Generic Warning): In [^\n]*\n((?:[^\n]+\n)+)")
-OBJECT: Final = re.compile(r"\w+ \((?:0x)?[0-9a-fA-F]+\): |\s+")
+OBJECT: Final = re.compile(r"\w* ?\((?:0x)?(?:[0-9a-fA-F]+|nullptr)\): |\s+")
 
 
 def listening() -> Any:
