@@ -124,39 +124,50 @@ def _blocks(path: Path) -> Iterator[_Block]:
     yield block
 
 
-def abaqus_text(path: Path) -> PlainText:
-    """The nodes and the elements with faces of an Abaqus text. Raises ForeignRefusal.
+def _in_assembly(blocks: list[_Block]) -> Iterator[_Block]:
+    """The blocks of nodes, elements and sets that the assembly has. Raises ForeignRefusal.
 
-    An assembly is read if it has one instance, which is not moved.
+    An assembly has one instance, which is not moved; its own nodes are points of reference. A file without
+    an assembly has one part, or none.
     """
-    blocks = list(_blocks(path))
-    nodes, elements, ids = ["*NODE"], ["*COMMENT"], [np.empty(0, np.intp)]
-    sets: dict[str, list[Indices]] = {}
-    skipped: Counter[str] = Counter()
     instances = [block for block in blocks if block.keyword == "INSTANCE"]
     for place, _, _, rows in instances:
         if len(instances) > 1 or rows:
             raise ForeignRefusal(f"an assembly must be one part that is not moved, not *INSTANCE ({place})")
-    in_assembly = {f"PART {block.parameters.get('PART', '').upper()}" for block in instances} | {"INSTANCE"}
-    scope, scopes = "", set()
-    for place, keyword, parameters, rows in blocks:
+    parts = {block.parameters.get("PART", "").upper() for block in instances}
+    scope, scopes = "", set[str]()
+    for block in blocks:
+        place, keyword, parameters, rows = block
         if keyword in GENERATING or (keyword == "SYSTEM" and rows):
             raise ForeignRefusal(f"nodes and elements must be written out, not made by *{keyword} ({place})")
-        if keyword in ("PART", "INSTANCE", "END PART", "END INSTANCE"):
-            name = parameters.get("NAME", "").upper()
-            scope = {"PART": f"PART {name}", "INSTANCE": "INSTANCE"}.get(keyword, "")
-        is_placed = not instances or scope in in_assembly or "INSTANCE" in parameters
-        if keyword not in ("NODE", "ELEMENT", "ELSET") or not is_placed:
+        if keyword in ("PART", "END PART", "END INSTANCE"):
+            scope = parameters.get("NAME", "").upper()
+        elif keyword == "INSTANCE":
+            scope = parameters.get("PART", "").upper()
+        is_used = not instances or scope in parts or "INSTANCE" in parameters
+        if keyword not in ("NODE", "ELEMENT", "ELSET") or not is_used:
             continue
         for key in ("INPUT", "FILE", "SYSTEM"):
             if parameters.get(key, "R").upper() != "R":
                 raise ForeignRefusal(f"*{keyword} must have no {key}= ({place})")
+        scopes |= {scope} if keyword == "NODE" else set()
+        if len(scopes) > 1:
+            raise ForeignRefusal(f"several *PART must be placed by an *INSTANCE ({place})")
+        yield block
+
+
+def abaqus_text(path: Path) -> PlainText:
+    """The nodes and the elements with faces of an Abaqus text. Raises ForeignRefusal and InputError."""
+    nodes, elements, ids = ["*NODE"], ["*COMMENT"], [np.empty(0, np.intp)]
+    sets: dict[str, list[Indices]] = {}
+    skipped: Counter[str] = Counter()
+    for place, keyword, parameters, rows in _in_assembly(list(_blocks(path))):
         if keyword == "NODE":
             nodes += [_node(row) for row in rows]
-            scopes.add(scope)
-            if len(scopes) > 1:
-                raise ForeignRefusal(f"several *PART must be placed by an *INSTANCE ({place})")
-        elif keyword == "ELEMENT":
+            continue
+        words = [word.strip() for word in ",".join(rows).split(",") if word.strip()]
+        members = sets.setdefault(parameters.get("ELSET", ""), [])
+        if keyword == "ELEMENT":
             kind = parameters.get("TYPE", "").upper()
             if faceless := FACELESS.match(kind):
                 skipped[str(faceless.lastgroup)] += len(rows)
@@ -166,44 +177,40 @@ def abaqus_text(path: Path) -> PlainText:
             shape = (FLATS if flat else SOLIDS).get(count)
             if shape is None:
                 raise ForeignRefusal(f"element type {shown(kind)} is not known ({place})")
-            words = _words(rows)
-            numbers = _numbers(words, place)[:: int(count) + 1]
-            if len(words) != len(numbers) * (int(count) + 1):
+            if len(words) % (int(count) + 1):
                 raise ForeignRefusal(f"elements of type {kind} must have {count} nodes ({place})")
             elements += [f"*ELEMENT, TYPE={shape}", *rows]
-            ids.append(numbers)
-            sets.setdefault(parameters.get("ELSET", ""), []).append(numbers)
-        elif "INTERNAL" not in parameters:
-            members = sets.setdefault(parameters.get("ELSET", ""), [])
-            if "GENERATE" in parameters:
-                for row in rows:
-                    first, last, step = [*_numbers(_words([row]), place).tolist(), 1, 1][:3]
-                    members.append(np.arange(first, last + 1, max(step, 1)))
-                continue
-            words = _words(rows)
+            ids.append(_numbers(words, place)[:: int(count) + 1])
+            members.append(ids[-1])
+        elif "INTERNAL" in parameters:
+            continue
+        elif "GENERATE" in parameters:
+            for row in rows:
+                first, last, step = [*_numbers(row.strip(",").split(","), place).tolist(), 1, 1][:3]
+                members.append(np.arange(first, last + 1, max(step, 1)))
+        else:
             members.append(_numbers([word for word in words if word.isdigit()], place))
             names = {name.upper(): name for name in sets}
-            members += [
-                each
-                for word in words
-                if not word.isdigit()
-                for each in list(sets[names.get(word.upper(), "")])
-            ]
+            for word in words:
+                if word.upper() in names:
+                    members += list(sets[names[word.upper()]])
     sets.pop("", None)
-    sentences = [f"skipped: {noun} ({count:,})" for noun, count in skipped.items()]
-    numbers = np.concatenate(ids)
-    rows = {name: np.flatnonzero(np.isin(numbers, np.concatenate(each))) for name, each in sets.items()}
-    return PlainText([*nodes, *elements], sentences, rows)
+    every = np.concatenate(ids)
+    cells = {
+        name: np.flatnonzero(np.isin(every, np.concatenate([ids[0], *numbers])))
+        for name, numbers in sets.items()
+    }
+    return PlainText([*nodes, *elements], _counted(skipped), cells)
+
+
+def _counted(skipped: Counter[str]) -> list[str]:
+    return [f"skipped: {noun} ({count:,})" for noun, count in skipped.items()]
 
 
 def _node(row: str) -> str:
     """A line of a node as meshio reads it: its number and three coordinates."""
     words = [word.strip() or "0" for word in row.upper().replace("D", "E").split(",")[:4]]
     return ",".join(words + ["0"] * (4 - len(words)))
-
-
-def _words(rows: list[str]) -> list[str]:
-    return [word.strip() for word in ",".join(rows).split(",") if word.strip()]
 
 
 def _numbers(words: list[str], place: str) -> Indices:
@@ -308,8 +315,7 @@ def nastran_text(path: Path) -> PlainText:
             raise ForeignRefusal(
                 f"node {node} must be in the basic coordinate system, not in {kind} ({place})"
             )
-    sentences = [f"skipped: {name} ({count:,})" for name, count in skipped.items()]
-    return PlainText(["BEGIN BULK", *nodes, *elements, "ENDDATA"], sentences)
+    return PlainText(["BEGIN BULK", *nodes, *elements, "ENDDATA"], _counted(skipped))
 
 
 # Medit: keywords, each with numbers.
