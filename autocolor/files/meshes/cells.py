@@ -149,7 +149,7 @@ def turned_outward(coordinates: Floats, faces: Flats, centers: Floats) -> Flats:
 
 
 def _groups(several: Sequence[Flats], nodes: int) -> Indices:
-    """A number for each polygon of up to four corners, equal for polygons with the same corners in any order."""
+    """Numbers of polygons of up to four corners, equal for the same corners in any order."""
     counts = np.concatenate([each.corner_counts for each in several])
     corners = np.full((len(counts), 4), nodes, np.int64)
     corners[np.arange(4) < counts[:, None]] = np.concatenate([each.corners for each in several])

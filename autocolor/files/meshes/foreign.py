@@ -1,9 +1,9 @@
 """Mesh files that libraries read for us, each in a process of its own.
 
-- VTK (.vtk, and .vtp, .vtu, .vts, .vtr, .vti) and glTF (.glb, .gltf): VTK, the extra `vtk`. glTF is y up by its
-  specification: the reader turns it so unless it is read with x up.
-- 3MF: lib3mf; Abaqus (.inp), Gmsh (.msh), Nastran (.bdf, .nas, .fem), Medit (.mesh), SU2 and binary UGRID (as in
-  .b8.ugrid): meshio, of which these formats need no further package. They are the extra `meshes`.
+- VTK (.vtk, and .vtp, .vtu, .vts, .vtr, .vti) and glTF (.glb, .gltf): VTK, the extra `vtk`. glTF is y up by
+  its specification: the reader turns it so unless it is read with x up.
+- 3MF: lib3mf; Abaqus (.inp), Gmsh (.msh), Nastran (.bdf, .nas, .fem), Medit (.mesh), SU2 and binary UGRID
+  (as in .b8.ugrid): meshio, of which these formats need no further package. They are the extra `meshes`.
 
 A library may hang, crash, print or eat memory without harm to this process. The other process
 (`foreign_worker`) writes the mesh as an array file, which is checked like any other file.
@@ -31,7 +31,7 @@ from typing import Final
 import numpy as np
 
 import autocolor.files
-from autocolor.arrays import AnyArray
+from autocolor.arrays import AnyArray, Floats, Indices
 from autocolor.budget import allowed_memory, validated_limit
 from autocolor.checks import LARGEST_COORDINATE, printable, shown
 from autocolor.errors import InputError, UnavailableError
@@ -157,6 +157,7 @@ def read_foreign_mesh(path: Path, place: str, library: str) -> ForeignMesh:
             raise InputError(
                 f"{place}: {library} gave a scalar without a value for each {scalar.of}; {REMEDY}"
             )
+    normals = _normals(arrays)
     polygons = RawPolygons(
         arrays["coordinates"].copy(),
         arrays["corners"].astype(np.intp),
@@ -164,7 +165,8 @@ def read_foreign_mesh(path: Path, place: str, library: str) -> ForeignMesh:
         arrays["part_numbers"].astype(np.intp),
         tuple(header["part_names"]),
         scalars,
-        **_normals(arrays),
+        normals=normals and normals[0],
+        corner_normals=normals and normals[1],
     )
     sentences = (printable(each[:LONGEST_SENTENCE]) for each in header["sentences"][:MOST_SENTENCES])
     return ForeignMesh(polygons, tuple(sentences), header["material_of_part"], header["colors"])
@@ -195,12 +197,12 @@ def _problem(arrays: Mapping[str, AnyArray], parts: int) -> str | None:
     return None
 
 
-def _normals(arrays: Mapping[str, AnyArray]) -> dict[str, AnyArray]:
-    """The normals, and their rows by corner, of a mesh that has any; a normal without a direction is missing."""
-    normals, of_corners = arrays["normals"], arrays["corner_normals"].astype(np.intp)
+def _normals(arrays: Mapping[str, AnyArray]) -> tuple[Floats, Indices] | None:
+    """The normals and their rows by corner, None without any; a normal without direction is missing."""
+    normals, rows = arrays["normals"], arrays["corner_normals"].astype(np.intp)
     is_sound = np.append(np.isfinite(normals).all(axis=1) & (normals != 0).any(axis=1), False)
-    of_corners = np.where(is_sound[of_corners], of_corners, -1)
-    return {"normals": normals.copy(), "corner_normals": of_corners} if (of_corners >= 0).any() else {}
+    rows = np.where(is_sound[rows], rows, -1)
+    return (normals.copy(), rows) if (rows >= 0).any() else None
 
 
 # The other process. Its limits grow with the size of the file.
@@ -212,7 +214,7 @@ WORKER: Final = (sys.executable, "-P", "-m", "autocolor.files.meshes.foreign_wor
 """The command; -P keeps modules in the current folder, which may be a stranger's, from being imported."""
 
 FAILED: Final = 3
-"""The exit code if the file cannot be read; the result is then a sentence in UTF-8, without the file's name."""
+"""The exit code if the file cannot be read; the result is then a sentence without the file's name."""
 
 OUT_OF_TIME: Final = -int(getattr(signal, "SIGXCPU", 24))
 """The exit code of a process that computed for too long and was ended by the system."""
@@ -281,9 +283,9 @@ def _exit_code(command: Sequence[str], seconds: float, printed: Path) -> int | N
     nowhere = subprocess.DEVNULL
     try:
         with open(printed, "wb") as errors:
-            return subprocess.run(
+            return subprocess.call(
                 command, stdin=nowhere, stdout=nowhere, stderr=errors, env=environment, timeout=seconds
-            ).returncode
+            )
     except subprocess.TimeoutExpired:
         return None
     except OSError as error:
@@ -342,36 +344,22 @@ class ForeignFormat:
     extra: str = "meshes"
 
 
-def begins_as_vtk(head: bytes) -> bool:
-    """Whether the first bytes are those of a legacy VTK file."""
-    return head[:14].lower() == b"# vtk datafile"
-
-
 def begins_as_vtk_xml(head: bytes) -> bool:
-    """Whether the first bytes are those of a VTK XML file, of which a declaration or comments may be first."""
+    """Whether the first bytes are those of a VTK XML file, also after a declaration or comments."""
     return head.lstrip().startswith(b"<") and b"<VTKFile" in head
-
-
-def begins_as_glb(head: bytes) -> bool:
-    """Whether the first bytes are those of a binary glTF file."""
-    return head.startswith(b"glTF")
 
 
 XML_SUFFIXES: Final = (".vtp", ".vtu", ".vts", ".vtr", ".vti")
 
 FOREIGN: Final = (
-    ForeignFormat(
-        "VTK", (".vtk",), "VTK", "vtk", "legacy", "vtkmodules", 10, begins=begins_as_vtk, extra="vtk"
-    ),
-    ForeignFormat(
-        "VTK XML", XML_SUFFIXES, "VTK", "vtk", "xml", "vtkmodules", 15, begins=begins_as_vtk_xml, extra="vtk"
-    ),
-    ForeignFormat(
-        "glTF", (".glb",), "VTK", "gltf", "", "vtkmodules", 12, size_of_gltf, "y", begins_as_glb, "vtk"
-    ),
-    ForeignFormat(
-        "glTF text", (".gltf",), "VTK", "gltf", "", "vtkmodules", 12, size_of_gltf, "y", extra="vtk"
-    ),
+    ForeignFormat("VTK", (".vtk",), "VTK", "vtk", "legacy", "vtkmodules", 10, extra="vtk",
+                  begins=lambda head: head[:14].lower() == b"# vtk datafile"),
+    ForeignFormat("VTK XML", XML_SUFFIXES, "VTK", "vtk", "xml", "vtkmodules", 15, extra="vtk",
+                  begins=begins_as_vtk_xml),
+    ForeignFormat("glTF", (".glb",), "VTK", "gltf", "", "vtkmodules", 12, size_of_gltf, "y", extra="vtk",
+                  begins=lambda head: head.startswith(b"glTF")),
+    ForeignFormat("glTF text", (".gltf",), "VTK", "gltf", "", "vtkmodules", 12, size_of_gltf, "y",
+                  extra="vtk"),
     ForeignFormat("3MF", (".3mf",), "lib3mf", "3mf", "", "lib3mf", 20, size_of_3mf, "z"),
     ForeignFormat(
         "Abaqus", (".inp",), "meshio", "meshio", "abaqus", "meshio", 8, partial(size_of_text, kind="abaqus")
@@ -390,7 +378,7 @@ FOREIGN: Final = (
     ForeignFormat("Medit", (".mesh", ".meshb"), "meshio", "meshio", "medit", "meshio", 8),
     ForeignFormat("SU2", (".su2",), "meshio", "meshio", "su2", "meshio", 8),
     ForeignFormat("UGRID", (".ugrid",), "meshio", "meshio", "ugrid", "meshio", 8),
-)
+)  # fmt: skip
 
 
 def read_foreign(read_as: ForeignFormat, path: Path, placement: Placement = PLAIN) -> MeshReport:

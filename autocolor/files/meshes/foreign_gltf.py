@@ -1,8 +1,8 @@
 """Reading glTF and GLB files with VTK, in the process of `foreign_worker`.
 
 `gltf_document` unpacks the arrays before; VTK places the nodes, and applies skins and the default weights of
-morph targets. Each primitive of triangles of each node is a part. Its nodes with equal coordinates and scalars
-are welded, since glTF writes a node again for each normal and texture coordinate.
+morph targets. Each primitive of triangles of each node is a part. Nodes of a part with equal coordinates and
+scalars are welded, since glTF writes a node again for each normal and texture coordinate.
 """
 
 from __future__ import annotations

@@ -1,10 +1,10 @@
 """Reading VTK files, legacy and XML, with VTK's own library, in the process of `foreign_worker`.
 
-Of polygonal data, the polygons and the triangles of strips are read; of grids, the polygons and the outer faces
-of volume cells. Quads stay quads. Of cells of higher order only the corners are read. Hidden and duplicate
-cells are left out. The data of points and cells are scalars of the mesh (see `file_scalars`), and the normals
-of points are the file's own normals. Nodes and cells are checked before VTK looks for the surface: it trusts
-them.
+Of polygonal data, the polygons and the triangles of strips are read; of grids, the polygons and the outer
+faces of volume cells. Quads stay quads. Of cells of higher order only the corners are read. Hidden and
+duplicate cells are left out. The data of points and cells are scalars of the mesh (see `file_scalars`), and
+the normals of points are the file's own normals. Nodes and cells are checked before VTK looks for the surface:
+it trusts them.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ LINEAR: Final = {
     **dict.fromkeys((27, 37, 74, 81), 14),
     36: POLYGON_CELL,
 }
-"""The linear types of cells of higher order. Their corners come first; a quadratic polygon has as many others."""
+"""The linear types of cells of higher order, whose corners come first."""
 
 VOLUMES: Final = (*range(10, 17), POLYHEDRON)
 
@@ -111,7 +111,7 @@ def _legacy(path: Path) -> tuple[Any, list[str]]:
 
 
 def _xml(path: Path) -> tuple[Any, list[str]]:
-    """The data set of an XML file, of all of its pieces. Raises ForeignRefusal for a type with other files."""
+    """The data set of an XML file, of all pieces. Raises ForeignRefusal for a type with other files."""
     match = XML_TYPE.search(read_head(path))
     type_ = match[1].decode("latin-1") if match else "none"
     if type_ not in DATA_SETS:
@@ -142,7 +142,7 @@ def listening() -> Any:
 
 
 def refuse_printed(window: Any, path: Path) -> None:
-    """Raise ForeignRefusal with what VTK printed, an error if there is any. Its warnings tell of lost data, too."""
+    """Raise ForeignRefusal with the first error that VTK printed, or warning: it may tell of lost data."""
     printed = PRINTED.findall(_text(window.GetOutput()))
     for _, lines in sorted(printed, key=lambda each: "ERROR" not in each[0]):
         line = " ".join(OBJECT.sub(" ", lines).replace(str(path), path.name).split())
@@ -192,8 +192,8 @@ def _require_sound(data: Any) -> None:
             array = owner.GetAbstractArray(at)
             if array.GetNumberOfTuples() != rows:
                 raise ForeignRefusal(
-                    f"the array {shown(_text(array.GetName()))} must have a value for each of the {rows:,} {what}s,"
-                    f" not {array.GetNumberOfTuples():,}"
+                    f"the array {shown(_text(array.GetName()))} must have a value for each of the {rows:,}"
+                    f" {what}s, not {array.GetNumberOfTuples():,}"
                 )
 
 
@@ -209,13 +209,14 @@ def _require_nodes(cells: Any, nodes: int, fewest: int = 0) -> Indices:
     if len(wrong):
         cell = int(np.searchsorted(offsets, wrong[0], side="right"))
         raise ForeignRefusal(
-            f"a cell must have nodes of the file, from 0 to {nodes - 1:,}, not {numbers[wrong[0]]} (cell {cell:,})"
+            f"a cell must have nodes of the file, from 0 to {nodes - 1:,}, not {numbers[wrong[0]]}"
+            f" (cell {cell:,})"
         )
     return sizes
 
 
 def _lists(cells: Any) -> tuple[Indices, Indices]:
-    """The nodes of all cells of a cell array, one after the other, and the offset of each cell and the end."""
+    """The nodes of all cells of a cell array, one after the other, and the offsets of the cells."""
     numbers, offsets = (vtk_to_numpy(each()) for each in (cells.GetConnectivityArray, cells.GetOffsetsArray))
     return numbers.astype(np.intp), offsets.astype(np.intp) if len(offsets) else np.zeros(1, np.intp)
 
@@ -228,7 +229,8 @@ def _dimensions(grid: Any) -> tuple[int, ...]:
 
 def _types(grid: Any) -> Indices:
     """The types of the cells of an unstructured grid, by the name that versions before 9.6 have for them."""
-    return vtk_to_numpy(getattr(grid, "GetCellTypesArray", grid.GetCellTypes)()).astype(np.intp)
+    types: Indices = vtk_to_numpy(getattr(grid, "GetCellTypesArray", grid.GetCellTypes)()).astype(np.intp)
+    return types
 
 
 def _make_linear(grid: Any) -> int:
@@ -281,7 +283,7 @@ def polygons_of(data: Any) -> Flats:
     # Each node of a strip but its last two begins a triangle; every second triangle is turned over.
     starts = runs(begins, sizes)
     is_odd = runs(np.zeros(len(sizes), np.intp), sizes) % 2
-    triangles = strips[np.column_stack([starts, starts + 1 + is_odd, starts + 2 - is_odd])]
+    triangles = strips[np.column_stack([starts + is_odd, starts + 1 - is_odd, starts + 2])]
     polygons = len(offsets) - 1
     return Flats(
         np.concatenate([numbers, triangles.ravel()]),
@@ -367,7 +369,7 @@ def _centers(data: Any) -> Floats:
     centers.SetInputData(plain)
     centers.CopyArraysOff()
     centers.Update()
-    places = vtk_to_numpy(centers.GetOutput().GetPoints().GetData()).astype(np.float64)
+    places: Floats = vtk_to_numpy(centers.GetOutput().GetPoints().GetData()).astype(np.float64)
     if len(places) != data.GetNumberOfCells():
         raise ForeignRefusal("it must have no empty cells beside volume cells")
     return places

@@ -1,11 +1,11 @@
 """The process in which a library reads a file.
 
-It is started as `python -m autocolor.files.meshes.foreign_worker LIBRARY MODULE KIND MESH RESULT SIZE LIMIT`. The
-module `foreign_MODULE` calls the library, SIZE is the number of bytes to read, and LIMIT a factor for the budget. Once
-the library is loaded, the system limits time, memory and the size of the result. From then on Python opens no
-file but in the folder of the mesh and of Python, writes none but in the folder of the result, and has no
-network; native code of a library is not held to this. If the file cannot be read, the exit code is FAILED and
-the result a sentence.
+It is started as `python -m autocolor.files.meshes.foreign_worker LIBRARY MODULE KIND MESH RESULT SIZE LIMIT`.
+The module `foreign_MODULE` calls the library, SIZE is the number of bytes to read, and LIMIT a factor for the
+budget. Once the library is loaded, the system limits time, memory and the size of the result. From then on
+Python opens no file but in the folder of the mesh and of Python, writes none but in the folder of the result,
+and has no network; native code of a library is not held to this. If the file cannot be read, the exit code is
+FAILED and the result a sentence.
 """
 
 from __future__ import annotations

@@ -2,8 +2,8 @@
 
 The numbers of accessors are unpacked here: sparse accessors, strides, quantized positions and defaults become
 plain arrays. Nodes, skins and morph targets stay for the library. Buffers are read by our rule of paths. What
-the program does not use is left out, and counted in `sentences`: textures, colors of nodes, animations, lights
-and cameras. An extension that may change the geometry is refused by its name.
+the program does not use is left out and counted: textures, colors of nodes, animations, lights and cameras.
+An extension that may change the geometry is refused by its name.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import math
 import os
 import re
 import struct
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -115,12 +115,12 @@ WITH_GEOMETRY: Final = ("scenes", "nodes", "meshes", "accessors", "bufferViews",
 
 
 def _refuse_extensions(described: Row) -> None:
-    """Raise ForeignRefusal if an extension is required, or has a part in the geometry, and is not harmless."""
+    """Raise ForeignRefusal for an extension that is required or in the geometry, and is not harmless."""
     rows = [row for key in WITH_GEOMETRY for row in _list(described, key)]
     rows += [row for mesh in _list(described, "meshes") for row in _list(mesh, "primitives")]
     needed = [str(each) for each in _list(described, "extensionsRequired")]
     needed += [each for each in map(str, _list(described, "extensionsUsed")) if GEOMETRIC.fullmatch(each)]
-    needed += [each for row in rows if isinstance(row, dict) for each in row.get("extensions") or ()]
+    needed += [each for row in rows if isinstance(row, dict) for each in _table(row, "extensions")]
     for name in needed:
         if not HARMLESS.fullmatch(name):
             raise ForeignRefusal(
@@ -180,9 +180,9 @@ class Accessors:
         else:
             values = np.zeros((count, width), dtype)
         if "sparse" in row:
-            sparse = part(row, "sparse", place)
+            sparse = _table(row, "sparse")
             changed = whole(sparse, "count", place)
-            indices, those = part(sparse, "indices", place), part(sparse, "values", place)
+            indices, those = _table(sparse, "indices"), _table(sparse, "values")
             index_type = np.dtype(TYPES.get(indices.get("componentType", 0), "<u1"))
             at = self._viewed(indices, place, changed, 1, index_type)[:, 0]
             if changed and at.max() >= count:
@@ -242,12 +242,10 @@ def whole(row: Row, key: str, place: str, default: int | None = None) -> int:
     return value
 
 
-def part(row: Row, key: str, place: str) -> Row:
-    """A table within a row. Raises ForeignRefusal."""
+def _table(row: Row, key: str) -> Row:
+    """The table of a row; empty if it has none."""
     value = row.get(key)
-    if not isinstance(value, dict):
-        raise ForeignRefusal(f"{place}: {key} must be a table, not {shown(value)}")
-    return value
+    return value if isinstance(value, dict) else {}
 
 
 def numbers(row: Row, key: str, place: str, count: int | None = None) -> list[float] | None:
@@ -255,13 +253,10 @@ def numbers(row: Row, key: str, place: str, count: int | None = None) -> list[fl
     if key not in row:
         return None
     values = row[key]
-    try:
-        if isinstance(values, list) and len(values) == (len(values) if count is None else count):
-            found = [float(each) for each in values]
-            if all(map(math.isfinite, found)):
-                return found
-    except (TypeError, ValueError, OverflowError):
-        pass
+    if isinstance(values, list) and (count is None or len(values) == count):
+        found = [float(each) for each in values if type(each) in (int, float) and abs(each) < 1e38]
+        if len(found) == len(values):
+            return found
     wanted = "finite numbers" if count is None else f"{count} finite numbers"
     raise ForeignRefusal(f"{place}: {key} must be {wanted}, not {shown(values)}")
 
@@ -316,6 +311,9 @@ class _Writer:
         roots = self._roots()
         nodes = dict(self._nodes(roots))
         self._materials()
+        users: dict[str, list[Row]] = defaultdict(list)
+        for row in nodes.values():
+            users[str(row.get("mesh"))].append(row)
         meshes: list[Row] = [{"primitives": []} for _ in file.rows("meshes")]
         written: list[Row] = [{} for _ in file.rows("nodes")]
         skins: list[Row] = [{"joints": [0]} for _ in file.rows("skins")]
@@ -326,16 +324,15 @@ class _Writer:
                 continue
             named = file.row("meshes", mesh)
             result.names[number] = _name(row) or _name(named) or stem
-            users = [each for each in nodes.values() if each.get("mesh") == mesh]
             if mesh not in result.primitives:
-                meshes[mesh] = self._mesh(mesh, named, users)
+                meshes[mesh] = self._mesh(mesh, named, users[str(mesh)])
             node["mesh"] = mesh
             if "weights" in meshes[mesh] and "weights" in row:
                 node["weights"] = numbers(row, "weights", f"nodes {number}")
             if "skin" in row:
                 node["skin"] = row["skin"]
                 skins[row["skin"]] = self._skin(row["skin"], nodes, meshes[mesh])
-        lights = sum("KHR_lights_punctual" in (row.get("extensions") or ()) for row in nodes.values())
+        lights = sum("KHR_lights_punctual" in _table(row, "extensions") for row in nodes.values())
         for what, count in (
             ("animations", len(file.rows("animations"))),
             ("cameras", len(file.rows("cameras"))),
@@ -415,14 +412,14 @@ class _Writer:
         self.result.primitives[number] = []
         for primitive in _list(row, "primitives"):
             mode = primitive.get("mode", 4) if isinstance(primitive, dict) else None
-            if mode in (0, 1, 2, 3):
+            if type(mode) is not int or not 0 <= mode <= 6:
+                raise ForeignRefusal(f"{place}: the mode of a primitive must be 0 to 6, not {shown(mode)}")
+            if mode < 4:
                 self.result.left_out["skipped primitives of points or lines"] += 1
                 continue
-            if mode not in (4, 5, 6):
-                raise ForeignRefusal(f"{place}: the mode of a primitive must be 0 to 6, not {shown(mode)}")
             written = self._triangles(number, primitive, mode, place)
             targets = _list(primitive, "targets") if is_morphed else []
-            attributes = primitive["attributes"]
+            attributes = _table(primitive, "attributes")
             nodes = self.result.primitives[number][-1].nodes
             names = [name for name in ("POSITION", "NORMAL") if name in attributes]
             # Normals that some morph targets leave as they are would be wrong.
@@ -441,7 +438,7 @@ class _Writer:
     def _triangles(self, mesh: int, row: Row, mode: int, place: str) -> Row:
         """The corners of triangles, a strip or a fan, whose primitive is added to the result."""
         file, result = self.file, self.result
-        attributes, material = part(row, "attributes", place), row.get("material")
+        attributes, material = _table(row, "attributes"), row.get("material")
         count = len(file.array(attributes.get("POSITION"), 3))
         corners: AnyArray = np.arange(count, dtype=np.uint32)
         if "indices" in row:
@@ -500,8 +497,8 @@ class _Writer:
         names = [_name(row) or f"material {number}" for number, row in enumerate(rows)]
         self.result.materials = different(names)
         for name, row in zip(self.result.materials, rows, strict=True):
-            shiny = (row.get("extensions") or {}).get("KHR_materials_pbrSpecularGlossiness") or {}
-            rough = row.get("pbrMetallicRoughness") or {}
+            shiny = _table(_table(row, "extensions"), "KHR_materials_pbrSpecularGlossiness")
+            rough = _table(row, "pbrMetallicRoughness")
             color = numbers(rough, "baseColorFactor", name, 4) or numbers(shiny, "diffuseFactor", name, 4)
             if color is None and not any("Texture" in key for key in (*rough, *shiny)):
                 color = [1.0, 1.0, 1.0]
