@@ -228,7 +228,7 @@ SHAPED: Final = re.compile(
 SHAPES: Final = (("CTRIA3", 3), ("CQUAD4", 4), ("CTETRA", 4), ("CPYRAM", 5), ("CPENTA", 6), ("CHEXA", 8))
 """The shape that meshio knows, and the number of corners, for each group of SHAPED."""
 
-UNKNOWN: Final = re.compile(r"C(TRI|TRA|QUAD|TET|PYR|PENT|HEX)")
+UNKNOWN: Final = re.compile(r"C(TRI|TRA|QUAD|TET|PYR|PENT|HEX|IHEX|PLST|WEDGE|TWIST)")
 WITHOUT_FACES: Final = re.compile(
     r"C(BAR|BEAM3?|ROD|ONROD|TUBE|BEND|ELAS\d|BUSH\w*|DAMP\d|MASS\d|ONM\d|GAP|VISC|FAST|WELD|SEAM)"
     r"|RBE\d|RBAR1?|RROD|PLOTEL"
@@ -321,31 +321,21 @@ def nastran_text(path: Path) -> PlainText:
 # Medit: keywords, each with numbers.
 
 MEDIT: Final = re.compile(r"(?<!\S)([A-Za-z]\w*)((?:\s+[-+.\d]\S*)*)")
-MEDIT_SHAPES: Final = (
-    "Edges",
-    "Triangles",
-    "Quadrilaterals",
-    "Tetrahedra",
-    "Prisms",
-    "Pyramids",
-    "Hexahedra",
-)
+CELLS: Final = re.compile("Edges|Triangles|Quadrilaterals|Tetrahedra|Prisms|Pyramids|Hexah?edra")
 
 
 def medit_text(path: Path) -> str:
-    """A Medit text with its nodes and cells only, and each keyword and count on a line of its own.
-
-    Raises ForeignRefusal for cells that meshio does not know.
-    """
+    """The nodes and cells of a Medit text, each keyword and count on its line. Raises ForeignRefusal."""
     text = re.sub("#.*", "", path.read_text(encoding="latin-1"))
     sections = []
     for keyword, numbers in MEDIT.findall(text):
-        shape = keyword.replace("Hexaedra", "Hexahedra")
-        if shape in ("MeshVersionFormatted", "Dimension"):
-            # Later versions have longer numbers in binary files only.
-            sections.append(f"{shape} {numbers.strip() if shape == 'Dimension' else 2}")
-        elif shape == "Vertices" or shape in MEDIT_SHAPES:
-            sections += [shape, *numbers.split(None, 1)]
-        elif shape.startswith(MEDIT_SHAPES):
+        if keyword == "MeshVersionFormatted":
+            # Later versions differ in binary files only.
+            sections.append(f"{keyword} 2")
+        elif keyword == "Dimension":
+            sections.append(f"{keyword} {numbers.strip()}")
+        elif keyword == "Vertices" or CELLS.fullmatch(keyword):
+            sections += [keyword, *numbers.split(None, 1)]
+        elif CELLS.match(keyword):
             raise ForeignRefusal(f"cells must be of the first order, not {keyword}")
     return "\n".join([*sections, "End", ""])
