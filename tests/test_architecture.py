@@ -72,7 +72,11 @@ PLACES = {
         ("ramtek_emu.png", True), ("ramtek_emu.films", True), ("autocolor.batches.outputs", False),
         ("autocolor.batches.sheet", False), ("autocolor.scene.kinds", False),
     },
-    ("meshio", "trimesh"): {("autocolor.files.meshes.foreign_worker", False)},
+    ("vtkmodules",): {
+        ("autocolor.files.meshes.foreign_vtk", True), ("autocolor.files.meshes.foreign_gltf", True),
+    },
+    ("meshio",): {("autocolor.files.meshes.foreign_meshio", True)},
+    ("lib3mf",): {("autocolor.files.meshes.foreign_3mf", True)},
     ("OpenEXR",): {("autocolor.layers", False)},
     # The studio names the class of its widgets for type checkers.
     ("anywidget", "traitlets"): {("autocolor.web.notebook", False), ("autocolor.studio", False)},

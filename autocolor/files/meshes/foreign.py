@@ -24,9 +24,8 @@ import tempfile
 import zipfile
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -322,26 +321,42 @@ def _end_of(code: int) -> str:
     return "ended without a mesh" if code == 0 else f"ended with code {code}"
 
 
+class Library(NamedTuple):
+    """A library: its name, the package to import, and the extra that installs it."""
+
+    name: str
+    package: str
+    extra: str
+
+
+VTK: Final = Library("VTK", "vtkmodules", "vtk")
+LIB3MF: Final = Library("lib3mf", "lib3mf", "meshes")
+MESHIO: Final = Library("meshio", "meshio", "meshes")
+
+
 @dataclass(frozen=True)
 class ForeignFormat:
-    """A format that a library reads: its name, its suffixes, the library, its extra, and what `begins` it.
+    """A format that a library reads: its name, its suffixes, the library, and what first bytes `begin` it.
 
-    `module` and `kind` are what the worker calls the library and the format. The package `needs` must be
-    installed. `growth` is how many times its size a file takes, as measured. `size_of` gives the number of
-    bytes to read, and checks which files the file names. `up` is the file's up axis if the format says it.
+    `module` and `kind` are what the worker calls the reader and the format. `growth` is how many times its
+    size a file takes, as measured. `size_of` gives the number of bytes to read, and checks which files the
+    file names. `up` is the file's up axis if the format says it.
     """
 
     name: str
     suffixes: tuple[str, ...]
-    library: str
+    library: Library
     module: str
     kind: str
-    needs: str
     growth: float
+    begins: Callable[[bytes], bool] | None = None
     size_of: Callable[[Path], int] = size_of_file
     up: str = ""
-    begins: Callable[[bytes], bool] | None = None
-    extra: str = "meshes"
+
+
+def begins_as_vtk(head: bytes) -> bool:
+    """Whether the first bytes are those of a legacy VTK file."""
+    return head[:14].lower() == b"# vtk datafile"
 
 
 def begins_as_vtk_xml(head: bytes) -> bool:
@@ -349,36 +364,27 @@ def begins_as_vtk_xml(head: bytes) -> bool:
     return head.lstrip().startswith(b"<") and b"<VTKFile" in head
 
 
+def begins_as_glb(head: bytes) -> bool:
+    """Whether the first bytes are those of a binary glTF file."""
+    return head.startswith(b"glTF")
+
+
 XML_SUFFIXES: Final = (".vtp", ".vtu", ".vts", ".vtr", ".vti")
 
 FOREIGN: Final = (
-    ForeignFormat("VTK", (".vtk",), "VTK", "vtk", "legacy", "vtkmodules", 10, extra="vtk",
-                  begins=lambda head: head[:14].lower() == b"# vtk datafile"),
-    ForeignFormat("VTK XML", XML_SUFFIXES, "VTK", "vtk", "xml", "vtkmodules", 15, extra="vtk",
-                  begins=begins_as_vtk_xml),
-    ForeignFormat("glTF", (".glb",), "VTK", "gltf", "", "vtkmodules", 12, size_of_gltf, "y", extra="vtk",
-                  begins=lambda head: head.startswith(b"glTF")),
-    ForeignFormat("glTF text", (".gltf",), "VTK", "gltf", "", "vtkmodules", 12, size_of_gltf, "y",
-                  extra="vtk"),
-    ForeignFormat("3MF", (".3mf",), "lib3mf", "3mf", "", "lib3mf", 20, size_of_3mf, "z"),
+    ForeignFormat("VTK", (".vtk",), VTK, "vtk", "legacy", 10, begins_as_vtk),
+    ForeignFormat("VTK XML", XML_SUFFIXES, VTK, "vtk", "xml", 15, begins_as_vtk_xml),
+    ForeignFormat("glTF", (".glb", ".gltf"), VTK, "gltf", "", 12, begins_as_glb, size_of_gltf, "y"),
+    ForeignFormat("3MF", (".3mf",), LIB3MF, "3mf", "", 20, None, size_of_3mf, "z"),
+    ForeignFormat("Abaqus", (".inp",), MESHIO, "meshio", "abaqus", 8, size_of=size_of_text("abaqus")),
+    ForeignFormat("Gmsh", (".msh",), MESHIO, "meshio", "gmsh", 8),
     ForeignFormat(
-        "Abaqus", (".inp",), "meshio", "meshio", "abaqus", "meshio", 8, partial(size_of_text, kind="abaqus")
+        "Nastran", (".bdf", ".nas", ".fem"), MESHIO, "meshio", "nastran", 8, size_of=size_of_text("nastran")
     ),
-    ForeignFormat("Gmsh", (".msh",), "meshio", "meshio", "gmsh", "meshio", 8),
-    ForeignFormat(
-        "Nastran",
-        (".bdf", ".nas", ".fem"),
-        "meshio",
-        "meshio",
-        "nastran",
-        "meshio",
-        8,
-        partial(size_of_text, kind="nastran"),
-    ),
-    ForeignFormat("Medit", (".mesh", ".meshb"), "meshio", "meshio", "medit", "meshio", 8),
-    ForeignFormat("SU2", (".su2",), "meshio", "meshio", "su2", "meshio", 8),
-    ForeignFormat("UGRID", (".ugrid",), "meshio", "meshio", "ugrid", "meshio", 8),
-)  # fmt: skip
+    ForeignFormat("Medit", (".mesh", ".meshb"), MESHIO, "meshio", "medit", 8),
+    ForeignFormat("SU2", (".su2",), MESHIO, "meshio", "su2", 8),
+    ForeignFormat("UGRID", (".ugrid",), MESHIO, "meshio", "ugrid", 8),
+)
 
 
 def read_foreign(read_as: ForeignFormat, path: Path, placement: Placement = PLAIN) -> MeshReport:
@@ -387,13 +393,14 @@ def read_foreign(read_as: ForeignFormat, path: Path, placement: Placement = PLAI
     Raises InputError, and UnavailableError if a package is missing.
     """
     size = read_as.size_of(path)
-    if importlib.util.find_spec(read_as.needs) is None:
+    library = read_as.library
+    if importlib.util.find_spec(library.package) is None:
         raise UnavailableError(
-            f"{path.name}: to read {read_as.name} files, the library {read_as.library} must be"
-            f' installed; run: pip install "autocolor[{read_as.extra}]"'
+            f"{path.name}: to read {read_as.name} files, the library {library.name} must be installed; run:"
+            f' pip install "autocolor[{library.extra}]"'
         )
     require_size(path.name, size, read_as.growth)
-    mesh = read_in_own_process(read_as.library, read_as.module, read_as.kind, path, size)
+    mesh = read_in_own_process(library.name, read_as.module, read_as.kind, path, size)
     if placement.up == "z" and read_as.up:
         placement = dataclasses.replace(placement, up=read_as.up)
     report = repaired(mesh.polygons, path.name, placement, skipped=mesh.sentences)

@@ -26,7 +26,7 @@ from autocolor.files.meshes.repair import RawPolygons
 from autocolor.scene.scalar import NODE
 
 
-class Part(NamedTuple):
+class PlacedPart(NamedTuple):
     """A primitive at a node of the scene."""
 
     name: str
@@ -99,7 +99,7 @@ def _built(glb: bytes, path: Path) -> Any:
     return reader.GetOutputDataObject(0)
 
 
-def _parts(scene: Any, whole: Completed) -> Iterator[Part]:
+def _parts(scene: Any, whole: Completed) -> Iterator[PlacedPart]:
     """The parts of a scene. VTK names its blocks Node_3 and Mesh_1, by the numbers of nodes and meshes."""
 
     def blocks(parent: Any, node: int) -> Iterator[tuple[int, int, Any]]:
@@ -122,7 +122,7 @@ def _parts(scene: Any, whole: Completed) -> Iterator[Part]:
             triangles = found.corners.reshape(-1, 3)
             normals = data.GetPointData().GetNormals()
             name, material = whole.names[node], _material(whole, primitive)
-            yield Part(
+            yield PlacedPart(
                 f"{name} {material}".strip() if len(primitives) > 1 else name,
                 material,
                 vtk_to_numpy(data.GetPoints().GetData()).astype(np.float64),

@@ -3,8 +3,8 @@
 Of polygonal data, the polygons and the triangles of strips are read; of grids, the polygons and the outer
 faces of volume cells. Quads stay quads. Of cells of higher order only the corners are read. Hidden and
 duplicate cells are left out. The data of points and cells are scalars of the mesh (see `file_scalars`), and
-the normals of points are the file's own normals. Nodes and cells are checked before VTK looks for the surface:
-it trusts them.
+the normals of points are the file's own normals. Nodes and cells are checked before VTK looks for the
+surface: it trusts them.
 """
 
 from __future__ import annotations
@@ -100,7 +100,7 @@ def _legacy(path: Path) -> tuple[Any, list[str]]:
         data = data.replace(b"\r", b"\n")
     if data[:HEAD].split(b"\n", 3)[2:3] and data[:HEAD].split(b"\n", 3)[2].strip().upper() == b"ASCII":
         # VTK takes the end of the file for the end of any list of numbers, but not an empty FIELD.
-        data += b"\nFIELD end 0\n"
+        data += b"\n\nFIELD end 0\n"
     reader = vtkDataSetReader()
     reader.ReadFromInputStringOn()
     reader.SetBinaryInputString(data, len(data))
@@ -217,6 +217,8 @@ def _require_nodes(cells: Any, nodes: int, fewest: int = 0) -> Indices:
 
 def _lists(cells: Any) -> tuple[Indices, Indices]:
     """The nodes of all cells of a cell array, one after the other, and the offsets of the cells."""
+    if cells is None:
+        raise ForeignRefusal("its cells must have lists of their nodes")
     numbers, offsets = (vtk_to_numpy(each()) for each in (cells.GetConnectivityArray, cells.GetOffsetsArray))
     return numbers.astype(np.intp), offsets.astype(np.intp) if len(offsets) else np.zeros(1, np.intp)
 
@@ -264,7 +266,7 @@ def _make_linear(grid: Any) -> int:
 # The surface.
 
 
-class Surface(NamedTuple):
+class GridSurface(NamedTuple):
     """The polygons of a surface, its nodes, their rows in the file, and what was left out."""
 
     flats: Flats
@@ -292,7 +294,7 @@ def polygons_of(data: Any) -> Flats:
     )
 
 
-def _surface(data: Any) -> Surface:
+def _surface(data: Any) -> GridSurface:
     """The surface of a data set: its polygons in the order of their cells."""
     geometry = vtkGeometryFilter()
     geometry.SetInputData(data)
@@ -334,7 +336,7 @@ def _surface(data: Any) -> Surface:
     rank = np.empty(len(order), np.intp)
     rank[order] = np.arange(len(order))
     flats = Flats(rank[found.corners], found.corner_counts, found.cells)
-    return Surface(flats, places[order], rows[order], sentences)
+    return GridSurface(flats, places[order], rows[order], sentences)
 
 
 def _volumes(data: Any) -> Booleans:
@@ -375,7 +377,7 @@ def _centers(data: Any) -> Floats:
     return places
 
 
-def _attributes(data: Any, found: Surface) -> tuple[FileScalars, Floats | None, list[str]]:
+def _attributes(data: Any, found: GridSurface) -> tuple[FileScalars, Floats | None, list[str]]:
     """The scalars of a surface, the normals of its nodes or None, and what was skipped."""
     scalars, normals, skipped = FileScalars(), None, Counter[str]()
     for of, owner, rows in (

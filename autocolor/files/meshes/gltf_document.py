@@ -105,6 +105,7 @@ def size_of_gltf(path: Path) -> int:
 HARMLESS: Final = re.compile(
     r"(KHR|EXT|ADOBE|MSFT|AGI)_(materials|texture|lights|xmp|animation|packing|articulations|audio)\w*"
     r"|KHR_mesh_quantization|EXT_(mesh|instance|structural)_(features|metadata)|FB_ngon_encoding|MSFT_lod"
+    r"|CESIUM_primitive_outline|MOZ_\w+"
 )
 """Extensions without which the geometry is the same."""
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import io
 import re
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Final, NamedTuple
 
@@ -45,9 +45,9 @@ class _Line(NamedTuple):
     text: str
 
 
-def size_of_text(path: Path, kind: str) -> int:
-    """The letters of a text and of the files that it includes. Raises InputError as `_lines` does."""
-    return sum(len(line.text) + 1 for line in _lines(path, kind, []))
+def size_of_text(kind: str) -> Callable[[Path], int]:
+    """A function that gives the letters of a text of INCLUDE and of the files that it includes."""
+    return lambda path: sum(len(line.text) + 1 for line in _lines(path, kind, []))
 
 
 def _lines(path: Path, kind: str, files: list[Path]) -> Iterator[_Line]:

@@ -1,4 +1,4 @@
-"""Files that libraries read are read by forks of one process, so that a library is loaded once for all tests."""
+"""Forks of one process read the files that libraries read, so that a library is loaded once for all tests."""
 
 from __future__ import annotations
 

@@ -20,7 +20,6 @@ from autocolor.files.meshes import foreign
 from autocolor.files.meshes.foreign import (
     FOREIGN,
     RESULT,
-    ForeignMesh,
     foreign_mesh_bytes,
     largest_result,
     most_memory,
@@ -29,6 +28,7 @@ from autocolor.files.meshes.foreign import (
     read_in_own_process,
     size_of_3mf,
 )
+from autocolor.files.meshes.foreign_mesh import ForeignMesh
 from autocolor.files.meshes.repair import RawPolygons
 from tests.autocolor.files.meshes.conftest import OWN
 from tests.autocolor.files.refusals import refusal
@@ -64,7 +64,7 @@ def test_a_mesh_comes_back_and_what_a_library_prints_goes_nowhere(
     ("body", "sentence"),
     [
         ("raise ValueError('no\\nnodes')", CANNOT.format("ValueError: no nodes")),
-        ("raise ForeignRefusal('a cell must be flat', 'flatten it')", "a.glb: a cell must be flat; flatten it"),
+        ("raise ForeignRefusal('a cell must be flat', 'bend it')", "a.glb: a cell must be flat; bend it"),
         ("import sys; sys.exit(2)", CANNOT.format("SystemExit: 2")),
         ("mesh = None", CANNOT.format("AttributeError: 'NoneType' object has no attribute 'polygons'")),
         ("def f(f): f(f)\nf(f)", CANNOT.format("RecursionError: maximum recursion depth exceeded")),

@@ -39,7 +39,7 @@ def test_a_failure_is_one_line_of_limited_length_without_the_name_of_the_file() 
     cannot = "VTK must be able to read it, and cannot ({}); correct the file, or write it as OBJ or PLY"
     assert told(ValueError("a\n b")) == cannot.format("ValueError: a b")
     assert told(MemoryError()) == cannot.format("it needs more memory than its size and --limit allow")
-    assert told(InputError("a.vtk: it must be\n text")) == "it must be text"
+    assert told(InputError("a.vtk: it must be text")) == "it must be text"
     assert len(told(ValueError("x" * 1000))) == len(cannot) - 2 + 300
 
 
