@@ -12,7 +12,7 @@ import ctypes
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import lib3mf
 import numpy as np
@@ -47,9 +47,9 @@ def read(path: Path, kind: str) -> ForeignMesh:
         if model.GetKeyStore().GetResourceDataCount():
             raise ForeignRefusal("the file must not be encrypted; save it without secure content")
         parts = _Parts(model)
-        for placed, name, transform in _placed(model, path.stem, parts.skipped):
-            parts.add(placed, name, transform)
-        return parts.mesh(sentences)
+        for mesh, name, transform in _placed(model, path.stem, parts):
+            parts.add(mesh, name, transform)
+        return parts.joined(sentences)
     except lib3mf.ELib3MFException as error:
         raise unreadable("lib3mf", error.error_message or error.error_description) from None
 
@@ -64,50 +64,79 @@ def _sentences_of(reader: Any) -> list[str]:
     return [f"lib3mf: {text}" for text in texts]
 
 
-def _placed(model: Any, stem: str, skipped: Counter[str]) -> Iterator[tuple[Any, str, Floats]]:
-    """The meshes that the build places, in the order of the file: object, name, and transform, (4, 3).
+class _Mesh(NamedTuple):
+    """Nodes, (nodes, 3), triangles, (triangles, 3), and the rows of the triangles of each material."""
+
+    nodes: Floats
+    triangles: Indices
+    materials: list[tuple[str, Indices]]
+
+
+class _Object(NamedTuple):
+    """An object's own name, its mesh or None, and its components with their transforms."""
+
+    name: str
+    mesh: _Mesh | None
+    components: list[tuple[Any, Floats]]
+
+
+def _placed(model: Any, stem: str, parts: _Parts) -> Iterator[tuple[_Mesh, str, Floats]]:
+    """The meshes that the build places, in the order of the file, with names and transforms, (4, 3).
 
     An object without a name has the name of the object that it is a component of, else `stem`.
     """
+    objects: dict[int, _Object] = {}
     items, waiting = model.GetBuildItems(), []
     while items.MoveNext():
         item = items.GetCurrent()
-        waiting.append((item.GetObjectResource(), stem, _matrix(item.GetObjectTransform())))
+        waiting.append((item, stem, _matrix(item.GetObjectTransform())))
     waiting.reverse()
     count = 0
     while waiting:
-        placed, name, transform = waiting.pop()
+        item, name, transform = waiting.pop()
         count += 1
         if count > MOST_PLACED:
             raise ForeignRefusal(f"the build must place at most {MOST_PLACED:,} objects, not more")
-        name, kind = placed.GetName().strip() or name, placed.GetType().name
-        if kind in LEFT_OUT:
-            skipped[f"left out objects of the type {kind.lower()}"] += 1
-        elif placed.IsComponentsObject():
-            for row in reversed(range(placed.GetComponentCount())):
-                component = placed.GetComponent(row)
-                # Coordinates are rows: the component's own transform comes first.
-                matrix = _matrix(component.GetTransform()) @ transform[:3]
-                matrix[3] += transform[3]
-                waiting.append((component.GetObjectResource(), name, matrix))
-        else:
-            _check_shape(placed, name, skipped)
-            yield placed, name, transform
+        number = item.GetObjectResourceID()
+        if number not in objects:
+            objects[number] = _object(item.GetObjectResource(), parts)
+        own_name, mesh, components = objects[number]
+        for component, matrix in reversed(components):
+            # Coordinates are rows: the component's own transform comes first.
+            combined = matrix @ transform[:3]
+            combined[3] += transform[3]
+            waiting.append((component, own_name or name, combined))
+        if mesh is not None:
+            yield mesh, own_name or name, transform
 
 
-def _check_shape(placed: Any, name: str, skipped: Counter[str]) -> None:
-    """Raise ForeignRefusal unless the shape of an object is its triangles."""
-    if not placed.IsMeshObject():
+def _object(handle: Any, parts: _Parts) -> _Object:
+    """An object. Raises ForeignRefusal unless its shape is its triangles or its components."""
+    name, kind = handle.GetName().strip(), handle.GetType().name
+    components: list[tuple[Any, Floats]] = []
+    if kind in LEFT_OUT:
+        parts.skipped[f"left out objects of the type {kind.lower()}"] += 1
+        return _Object(name, None, components)
+    if handle.IsComponentsObject():
+        for row in range(handle.GetComponentCount()):
+            component = handle.GetComponent(row)
+            components.append((component, _matrix(component.GetTransform())))
+        return _Object(name, None, components)
+    if not handle.IsMeshObject():
         raise ForeignRefusal(f"object {shown(name)} must be a mesh, not a level set")
-    lattice = placed.BeamLattice()
+    lattice = handle.BeamLattice()
     if lattice.GetBeamCount() or lattice.GetBallCount():
         raise ForeignRefusal(f"object {shown(name)} must have triangles only, not a beam lattice")
-    if placed.HasSlices(False):
-        if placed.GetSlicesMeshResolution().name == "Lowres":
+    if handle.HasSlices(False):
+        if handle.GetSlicesMeshResolution().name == "Lowres":
             raise ForeignRefusal(f"object {shown(name)} must have triangles of full detail, not slices")
-        skipped["left out the slices of objects"] += 1
-    if placed.GetVolumeData() is not None:
-        skipped["left out the volume data of objects"] += 1
+        parts.skipped["left out the slices of objects"] += 1
+    if handle.GetVolumeData() is not None:
+        parts.skipped["left out the volume data of objects"] += 1
+    if not handle.GetTriangleCount():
+        parts.skipped["skipped objects without triangles"] += 1
+        return _Object(name, None, components)
+    return _Object(name, parts.mesh_of(handle), components)
 
 
 class _Parts:
@@ -116,32 +145,25 @@ class _Parts:
     def __init__(self, model: Any) -> None:
         self.skipped: Counter[str] = Counter()
         self._model = model
-        self._meshes: dict[int, tuple[Floats, Indices, list[tuple[str, Indices]]]] = {}
         self._colors: dict[str, Color] = {}
         self._names: list[tuple[str, str]] = []
         self._coordinates: list[Floats] = []
         self._triangles: list[Indices] = []
         self._count = 0
 
-    def add(self, placed: Any, name: str, transform: Floats) -> None:
-        """Add a mesh object under a transform, (4, 3), as a part for each of its materials."""
-        number = placed.GetUniqueResourceID()
-        if number not in self._meshes:
-            self._meshes[number] = self._mesh(placed)
-        coordinates, triangles, materials = self._meshes[number]
-        if not len(triangles):
-            self.skipped["skipped objects without triangles"] += 1
-            return
+    def add(self, mesh: _Mesh, name: str, transform: Floats) -> None:
+        """Add a mesh under a transform, (4, 3), as a part for each of its materials."""
+        nodes, triangles, materials = mesh
         if np.linalg.det(transform[:3]) < 0:
             # A reflection turns the triangles over.
             triangles = triangles[:, ::-1]
-        self._coordinates.append(coordinates @ transform[:3] + transform[3])
+        self._coordinates.append(nodes @ transform[:3] + transform[3])
         for material, rows in materials:
             self._triangles.append(self._count + triangles[rows])
             self._names.append((f"{name} {material}" if material and len(materials) > 1 else name, material))
-        self._count += len(coordinates)
+        self._count += len(nodes)
 
-    def mesh(self, sentences: list[str]) -> ForeignMesh:
+    def joined(self, sentences: list[str]) -> ForeignMesh:
         """All parts. Raises ForeignRefusal if there are none."""
         counted = [f"{sentence}: {number:,}" for sentence, number in self.skipped.items()]
         if not self._names:
@@ -161,13 +183,13 @@ class _Parts:
             polygons, (*sentences, *counted), {part: each for part, each in materials if each}, self._colors
         )
 
-    def _mesh(self, placed: Any) -> tuple[Floats, Indices, list[tuple[str, Indices]]]:
-        """A mesh's nodes, (nodes, 3), its triangles, (triangles, 3), and the rows of each material's."""
+    def mesh_of(self, handle: Any) -> _Mesh:
+        """The mesh of a mesh object, whose colors are noted."""
         functions = LIBRARY.lib
-        nodes = _table(placed, functions.lib3mf_meshobject_getvertices, lib3mf.Position, "<f4")
-        triangles = _table(placed, functions.lib3mf_meshobject_gettriangleindices, lib3mf.Triangle, "<u4")
+        nodes = _table(handle, functions.lib3mf_meshobject_getvertices, lib3mf.Position, "<f4")
+        triangles = _table(handle, functions.lib3mf_meshobject_gettriangleindices, lib3mf.Triangle, "<u4")
         properties = _table(
-            placed, functions.lib3mf_meshobject_getalltriangleproperties, lib3mf.TriangleProperties, "<u4"
+            handle, functions.lib3mf_meshobject_getalltriangleproperties, lib3mf.TriangleProperties, "<u4"
         )
         keys, key_of, counts = np.unique(properties[:, :2], axis=0, return_inverse=True, return_counts=True)
         names = [self._material(*numbers) for numbers in np.column_stack([keys, counts]).tolist()]
@@ -175,11 +197,11 @@ class _Parts:
         material_of = np.array([numbers[name] for name in names], np.intp)[key_of.reshape(-1)]
         order = np.argsort(material_of, kind="stable")
         rows = np.split(order, np.searchsorted(material_of[order], range(1, len(numbers))))
-        materials = sorted(zip(numbers, rows, strict=False), key=lambda each: each[1][:1].tolist())
+        materials = sorted(zip(numbers, rows, strict=True), key=lambda each: int(each[1][0]))
         is_mixed = (properties[:, 1:2] != properties[:, 2:]).any(axis=1) & (material_of != numbers.get(""))
         if is_mixed.any():
             self.skipped["took the first color of triangles with several"] += int(is_mixed.sum())
-        return nodes.astype(np.float64), triangles.astype(np.intp), materials
+        return _Mesh(nodes.astype(np.float64), triangles.astype(np.intp), materials)
 
     def _material(self, resource: int, row: int, triangles: int) -> str:
         """The name of the material in a row of a resource, whose color is noted; "" if there is none."""
