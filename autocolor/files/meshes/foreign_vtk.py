@@ -67,13 +67,12 @@ NOT_SHOWN: Final = 1 | 32
 
 
 def read(path: Path, kind: str) -> ForeignMesh:
-    """The surface of a VTK file of the kind "vtk" or "xml". Raises ForeignRefusal."""
+    """The surface of a VTK file of the kind "legacy" or "xml". Raises ForeignRefusal."""
     window = listening()
     data, sentences = (_xml if kind == "xml" else _legacy)(path)
     refuse_printed(window, path)
-    is_grid = data.IsA("vtkUnstructuredGrid")
     _require_sound(data)
-    higher = _make_linear(data) if is_grid else 0
+    higher = _make_linear(data) if data.IsA("vtkUnstructuredGrid") else 0
     found = _surface(data)
     refuse_printed(window, path)
     if higher:
@@ -98,7 +97,7 @@ def _legacy(path: Path) -> tuple[Any, list[str]]:
     data = read_whole(path, 1)
     if b"\n" not in data[:HEAD]:
         data = data.replace(b"\r", b"\n")
-    if data[:HEAD].split(b"\n", 3)[2:3] and data[:HEAD].split(b"\n", 3)[2].strip().upper() == b"ASCII":
+    if b"ASCII" in data[:HEAD].upper().split(b"DATASET")[0]:
         # VTK takes the end of the file for the end of any list of numbers, but not an empty FIELD.
         data += b"\n\nFIELD end 0\n"
     reader = vtkDataSetReader()
@@ -169,8 +168,8 @@ def _require_sound(data: Any) -> None:
         if counts != _dimensions(data):
             raise ForeignRefusal(f"a grid of {_dimensions(data)} nodes must have as many, not {counts}")
     if data.IsA("vtkPolyData"):
-        for what, fewest in (("Verts", 0), ("Lines", 0), ("Polys", 0), ("Strips", 0)):
-            _require_nodes(getattr(data, f"Get{what}")(), nodes, fewest)
+        for what in ("Verts", "Lines", "Polys", "Strips"):
+            _require_nodes(getattr(data, f"Get{what}")(), nodes)
     if data.IsA("vtkUnstructuredGrid"):
         sizes = _require_nodes(data.GetCells(), nodes)
         types = _types(data)
@@ -179,12 +178,13 @@ def _require_sound(data: Any) -> None:
         for type_ in np.unique(types).tolist():
             corners = CORNERS.get(LINEAR.get(type_, type_), 0)
             least = corners or ANY_SIZE.get(LINEAR.get(type_, type_))
-            of_type = sizes[types == type_]
             if least is None:
                 raise ForeignRefusal(f"a cell must be of a type with faces, not of the type {type_}")
-            if of_type.min() < least or (corners and type_ not in LINEAR and of_type.max() > corners):
-                wrong = of_type.min() if of_type.min() < least else of_type.max()
-                raise ForeignRefusal(f"a cell of the type {type_} must have {least} nodes, not {wrong}")
+            of_type = sizes[types == type_]
+            most = corners if corners and type_ not in LINEAR else np.inf
+            wrong = of_type[(of_type < least) | (of_type > most)]
+            if len(wrong):
+                raise ForeignRefusal(f"a cell of the type {type_} must have {least} nodes, not {wrong[0]}")
         if (types == POLYHEDRON).any():
             _require_nodes(data.GetPolyhedronFaces(), nodes)
     for owner, rows, what in ((data.GetPointData(), nodes, "node"), (data.GetCellData(), cells, "cell")):
@@ -197,13 +197,13 @@ def _require_sound(data: Any) -> None:
                 )
 
 
-def _require_nodes(cells: Any, nodes: int, fewest: int = 0) -> Indices:
+def _require_nodes(cells: Any, nodes: int) -> Indices:
     """The number of nodes of each cell. Raises ForeignRefusal if a cell has nodes that are not there."""
     numbers, offsets = _lists(cells)
     if not len(numbers):
         return np.zeros(len(offsets) - 1, np.intp)
     sizes = np.diff(offsets)
-    if offsets[0] != 0 or offsets[-1] != len(numbers) or sizes.min() < fewest:
+    if offsets[0] != 0 or offsets[-1] != len(numbers) or sizes.min() < 0:
         raise ForeignRefusal("the offsets of cells must rise from 0 to the number of their nodes")
     wrong = np.flatnonzero((numbers < 0) | (numbers >= nodes))
     if len(wrong):
@@ -316,8 +316,9 @@ def _surface(data: Any) -> GridSurface:
     # Leave out cells that are not shown. VTK leaves out those of volumes alone.
     if ghosts := data.GetCellData().GetArray("vtkGhostType"):
         is_shown = (vtk_to_numpy(ghosts) & NOT_SHOWN) == 0
-        sentences.append(f"left out hidden or duplicate cells: {np.count_nonzero(~is_shown):,}")
-        found = found.chosen(is_shown[found.cells])
+        if number := int(np.count_nonzero(~is_shown)):
+            sentences.append(f"left out hidden or duplicate cells: {number:,}")
+            found = found.chosen(is_shown[found.cells])
     is_volume = _volumes(data)
     if count := int(is_volume.sum()):
         is_face = _repeat_faces(found, is_volume)
