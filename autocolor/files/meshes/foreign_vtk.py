@@ -278,7 +278,9 @@ class GridSurface(NamedTuple):
 def polygons_of(data: Any) -> Flats:
     """The polygons of polygonal data, and the triangles of its strips."""
     numbers, offsets = _lists(data.GetPolys())
-    first = data.GetNumberOfVerts() + data.GetNumberOfLines()
+    first, polygons = data.GetNumberOfVerts() + data.GetNumberOfLines(), len(offsets) - 1
+    if not data.GetNumberOfStrips():
+        return Flats(numbers, np.diff(offsets), np.arange(first, first + polygons))
     strips, ends = _lists(data.GetStrips())
     is_long = np.diff(ends) > 2
     begins, sizes = ends[:-1][is_long], np.diff(ends)[is_long] - 2
@@ -286,7 +288,6 @@ def polygons_of(data: Any) -> Flats:
     starts = runs(begins, sizes)
     is_odd = runs(np.zeros(len(sizes), np.intp), sizes) % 2
     triangles = strips[np.column_stack([starts + is_odd, starts + 1 - is_odd, starts + 2])]
-    polygons = len(offsets) - 1
     return Flats(
         np.concatenate([numbers, triangles.ravel()]),
         np.concatenate([np.diff(offsets), np.full(len(triangles), 3, np.intp)]),
