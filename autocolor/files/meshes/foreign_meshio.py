@@ -1,250 +1,178 @@
-"""Abaqus, Nastran, Gmsh, Medit, SU2 and UGRID, read by meshio.
+"""Abaqus, Nastran, Gmsh, Medit, SU2 and UGRID.
 
-The texts of Abaqus and Nastran are looked over first (`meshio_text`). Of volume cells the outer surface is
-taken, of cells of higher order the corners; cells without faces are skipped and counted. Parts are the
-physical groups of Gmsh, the element sets of Abaqus, and the numbers by which the other formats tell cells
-apart. A cell in several sets belongs to the first set; a cell in no set, to the part named after the file.
+The texts of Abaqus and Nastran are read by `meshio_text`, the others by meshio. Of volume cells the outer
+surface is taken, of cells of higher order the corners; cells without faces are skipped and counted. Parts
+are the physical groups of Gmsh, the element sets of Abaqus, and the numbers by which the other formats tell
+cells apart; a cell in none is in the part named after the file.
 """
 
 from __future__ import annotations
 
-import contextlib
 import io
 import re
 import tempfile
 import warnings
-from collections import Counter
-from collections.abc import Callable, Iterator, Mapping
-from itertools import islice
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Iterator
+from contextlib import redirect_stderr
 from pathlib import Path
 from typing import Any, Final
 
 import meshio
 import numpy as np
-from meshio._common import cell_data_from_raw
-from meshio.gmsh import _gmsh22, _gmsh40, _gmsh41, main
-from meshio.gmsh.common import _fast_forward_to_end_block, _read_data
 
-from autocolor.arrays import Indices
-from autocolor.errors import InputError
+from autocolor.arrays import Floats, Indices
 from autocolor.files.meshes.cells import CORNERS, Flats, Volumes, cell_surface
-from autocolor.files.meshes.file_scalars import FileScalars
 from autocolor.files.meshes.foreign_mesh import ForeignMesh, ForeignRefusal, part_names_of, unreadable
-from autocolor.files.meshes.meshio_text import abaqus_text, medit_text, nastran_text
+from autocolor.files.meshes.meshio_text import CORNERS_OF, Record, abaqus, nastran
 from autocolor.files.meshes.repair import RawPolygons
-from autocolor.scene.scalar import NODE, POLYGON
 
-HARMLESS: Final = re.compile(r"tags of string type|tag data that couldn't|Gmf(?!\w*[PQ]\d)\w+ type\. Skip")
+Block = tuple[str, Indices, list[str]]
+"""Cells of a type of meshio: the type, the rows of their nodes, (cells, nodes), and the part of each."""
+
+HARMLESS: Final = re.compile(
+    r"tags of string type|tag data that|know (keyword \w+|Gmf(?!\w*[PQ]\d)\w+ type)\. Skip"
+)
 """Warnings of meshio about names of boundaries, partitions, and Medit's data other than cells."""
+
+SHAPE: Final = re.compile(r"(triangle|quad|tetra|hexahedron|wedge|pyramid)[0-9]*")
 
 
 def read(path: Path, kind: str) -> ForeignMesh:
     """The surface of a mesh in a format that meshio names `kind`. Raises ForeignRefusal and InputError."""
-    printed, sentences, sets = io.StringIO(), list[str](), None
-    source: str | io.StringIO = str(path)
+    skipped: Counter[str] = Counter()
+    if kind in ("abaqus", "nastran"):
+        points, blocks = _assembled(abaqus(path) if kind == "abaqus" else nastran(path), skipped)
+        return _surface(points, blocks, path.stem, skipped)
+    if kind == "su2" and (zones := re.search(rb"^\s*NZONE\s*=\s*(?!1\b)\d+", path.read_bytes(), re.M)):
+        raise ForeignRefusal(f"the file must have one zone, not {zones[0].decode().strip()}")
+    mesh = _read_gmsh(path, skipped) if kind == "gmsh" else _read_by_meshio(path, kind)
+    return _surface(mesh.points, _blocks(mesh), path.stem, skipped)
+
+
+def _assembled(records: Iterable[Record], skipped: Counter[str]) -> tuple[Floats, list[Block]]:
+    """The nodes, (nodes, 3), and the elements of a text, and the number of those without faces."""
+    nodes: dict[int, list[float]] = {}
+    elements = defaultdict[tuple[str, int], tuple[list[str], list[list[int]]]](lambda: ([], []))
+    for place, kind, name, words in records:
+        try:
+            if kind == "skipped":
+                skipped[f"elements of type {name}"] += 1
+            elif kind == "node":
+                nodes[int(words[0])] = [_number(word) for word in [*words[1:], "", "", ""][:3]]
+            else:
+                parts, numbers = elements[kind, len(words)]
+                numbers.append([int(word) for word in words])
+                parts.append(name)
+        except ValueError as error:
+            raise ForeignRefusal(f"nodes and elements must be given by numbers ({place}: {error})") from None
+    rows = {number: row for row, number in enumerate(nodes)}
+    blocks = [
+        (kind, np.array([[rows.get(node, -1) for node in each] for each in numbers], np.intp), parts)
+        for (kind, _), (parts, numbers) in elements.items()
+    ]
+    return np.array([*nodes.values()]), blocks
+
+
+def _number(word: str) -> float:
+    """A real number, whose exponent may be written as in FORTRAN: 1.5D3 or 1.5-3. Raises ValueError."""
     try:
-        with contextlib.ExitStack() as stack:
-            stack.enter_context(contextlib.redirect_stdout(printed))
-            stack.enter_context(contextlib.redirect_stderr(printed))
-            stack.enter_context(warnings.catch_warnings())
+        return float(word or 0)
+    except ValueError:
+        return float(re.sub(r"(?<=[\d.])(?=[-+])|D", "E", word.upper()))
+
+
+def _read_by_meshio(path: Path, kind: str) -> Any:
+    """The mesh of meshio. Raises ForeignRefusal with the reason that meshio prints or raises."""
+    printed = io.StringIO()
+    try:
+        with redirect_stderr(printed), warnings.catch_warnings():
             # numpy warns of text that is no number, and gives fewer numbers.
             warnings.simplefilter("error", DeprecationWarning)
-            if kind in ("abaqus", "nastran"):
-                text = abaqus_text(path) if kind == "abaqus" else nastran_text(path)
-                source, sentences, sets = io.StringIO("\n".join([*text.lines, ""])), text.sentences, text.sets
-            elif kind == "medit" and path.suffix.lower() == ".mesh":
-                with tempfile.NamedTemporaryFile("w", suffix=".mesh", delete=False) as file:
-                    file.write(medit_text(path))
-                source = file.name
-            elif kind == "gmsh":
-                sentences = _prepare_gmsh(path.read_bytes())
-            elif zones := re.search(rb"^\s*NZONE\s*=\s*(?!1\b)\d+", path.read_bytes(), re.M):
-                raise ForeignRefusal(f"the file must have one zone, not {zones[0].decode().strip()}")
-            mesh = getattr(meshio, kind).read(source)
-        for warning in " ".join(printed.getvalue().split()).split("Warning: "):
-            if warning and not HARMLESS.search(warning):
-                raise unreadable("meshio", warning)
-        return _polygons_of(mesh, path.stem, sets, sentences)
-    except (ForeignRefusal, InputError, MemoryError):
+            mesh = getattr(meshio, kind).read(str(path))
+    except MemoryError:
         raise
-    except (Exception, SystemExit) as error:
-        raise unreadable("meshio", _reason(kind, error)) from None
+    except Exception as error:
+        # Most are Python's own, such as a KeyError, and say nothing to a user.
+        told = isinstance(error, (OSError, meshio.ReadError, ValueError)) and "reshape" not in str(error)
+        reason = " ".join(str(error).split()) * told
+        raise unreadable("meshio", reason or "it is cut short, or has what meshio does not know") from None
+    for warning in " ".join(printed.getvalue().split()).split("Warning: "):
+        if warning and not HARMLESS.search(warning):
+            raise unreadable("meshio", warning)
+    return mesh
 
 
-def _reason(kind: str, error: BaseException) -> str:
-    """Why meshio failed, in words; most of its exceptions are Python's own."""
-    text = " ".join(str(error).split())
-    if isinstance(error, KeyError):
-        noun = "node" if kind in ("abaqus", "nastran") else "element type"
-        return f"there is no {noun} {error.args[0]}"
-    if isinstance(error, (OSError, meshio.ReadError, ValueError)) and text and "reshape" not in text:
-        return text
-    return "its numbers are cut short, or name nodes that it does not have"
-
-
-# Gmsh: what meshio would get wrong.
-
-
-def _prepare_gmsh(data: bytes) -> list[str]:
-    """Correct meshio's readers for the bytes of a Gmsh file. Returns sentences about data to leave out."""
-    header = re.match(rb"\s*(?:\$Comments.*?\$EndComments\s+)?\$MeshFormat\s+(\S+) (\d)", data, re.S)
-    if header is None:
+def _read_gmsh(path: Path, skipped: Counter[str]) -> Any:
+    """The mesh of meshio of a Gmsh file, from a copy that meshio reads right. Raises ForeignRefusal."""
+    # meshio gives data to nodes and elements without a look at their numbers.
+    pattern = rb"^\$((?:ElementNode|Element|Node)Data)\s.*?^\$End\1\s*"
+    data, count = re.subn(pattern, b"", path.read_bytes(), flags=re.S | re.M)
+    skipped.update({"sections of data": count} if count else {})
+    if not re.match(rb"\s*(\$Comments.*\$EndComments\s+)?\$MeshFormat", data, re.S):
         raise ForeignRefusal("a Gmsh file must begin with $MeshFormat, as it does from MSH 2 on")
     # Gmsh wrote version 4.0 as "4", which meshio takes for 4.1.
-    main._readers["4"] = _gmsh40
-    # The reader of MSH 2.2 divides data by wrong lengths of blocks.
-    _gmsh22.cell_data_from_raw = lambda cells, raw: cell_data_from_raw([each for _, each in cells], raw)
-    # meshio ignores the numbers in data. In a binary file it refuses data that is not in order.
-    skipped = [
-        name
-        for name, of in (("NodeData", "Nodes"), ("ElementData", "Elements"))
-        if header[2] == b"0" and not _are_in_order(data, name, of, header[1])
-    ]
-    for module in (_gmsh22, _gmsh40, _gmsh41):
-        module._read_data = lambda file, name, *others: (
-            _fast_forward_to_end_block(file, name) if name in skipped else _read_data(file, name, *others)
-        )
-    return [f"left out ${name}, whose numbers are not all numbers of the mesh in order" for name in skipped]
+    data = re.sub(rb"(\$MeshFormat\s+4) ", rb"\1.0 ", data, count=1)
+    with tempfile.NamedTemporaryFile(suffix=".msh", delete=False) as file:
+        file.write(data)
+    try:
+        return _read_by_meshio(Path(file.name), "gmsh")
+    except ForeignRefusal as refusal:
+        if "gmsh:physical" not in str(refusal):
+            raise
+        # meshio needs each element in a physical group, or none.
+        skipped["tables of physical groups, which some elements are not in"] += 1
+        data = re.sub(rb"^\$Entities\s.*?^\$EndEntities\s*", b"", data, flags=re.S | re.M)
+        Path(file.name).write_bytes(data)
+        return _read_by_meshio(Path(file.name), "gmsh")
 
 
-def _are_in_order(data: bytes, name: str, of: str, version: bytes) -> bool:
-    """Whether all sections of data in a text have the numbers of all nodes or elements, in their order."""
-    sections = list(_sections(data, name))
-    numbers = [each for lines in _sections(data, of) for each in _numbers(lines, of, version)] * bool(
-        sections
-    )
-    for lines in sections:
-        at = 0
-        for _ in ("strings", "real numbers", "whole numbers"):
-            at += 1 + int(lines[at])
-        if [line.split()[0] for line in lines[at:]] != numbers:
-            return False
-    return True
+def _blocks(mesh: Any) -> Iterator[Block]:
+    """The cells of a mesh of meshio; those with the same number are a part, and 0 is no number."""
+    key = next((key for key in mesh.cell_data if key != "gmsh:geometrical"), None)
+    # The physical groups of Gmsh have numbers of their own in each dimension.
+    named = {(int(tag), int(dimension)): name for name, (tag, dimension) in mesh.field_data.items()}
+    for row, block in enumerate(mesh.cells):
+        tags = np.abs(mesh.cell_data[key][row]).tolist() if key else [0] * len(block)
+        names = {tag: named.get((tag, block.dim), f"part {tag}" * (tag != 0)) for tag in set(tags)}
+        yield block.type, block.data, [names[tag] for tag in tags]
 
 
-def _sections(data: bytes, name: str) -> Iterator[list[bytes]]:
-    """The lines of each section of a Gmsh text with a name."""
-    for match in re.finditer(rb"\$%b\s+(.*?)\s*\$End%b" % (name.encode(), name.encode()), data, re.S):
-        yield match[1].split(b"\n")
-
-
-def _numbers(lines: list[bytes], of: str, version: bytes) -> list[bytes]:
-    """The numbers of the nodes or elements in the lines of their section."""
-    if version.startswith(b"2"):
-        return [line.split()[0] for line in lines[1:]]
-    rows, numbers = iter(lines[1:]), []
-    for header in rows:
-        count = int(header.split()[-1])
-        numbers += [line.split()[0] for line in islice(rows, count)]
-        if of == "Nodes" and version == b"4.1":
-            # The coordinates follow in lines of their own.
-            list(islice(rows, count))
-    return numbers
-
-
-def _grouped(read_entities: Callable[..., Any]) -> Callable[..., Any]:
-    """A reader of entities of meshio with group 0 for an entity in no group: else cells lose all groups."""
-
-    def read(*arguments: Any) -> Any:
-        result = read_entities(*arguments)
-        for groups in result if len(result) == 4 else result[0]:
-            groups.update({entity: numbers or [0] for entity, numbers in groups.items()})
-        return result
-
-    return read
-
-
-for _module in (_gmsh40, _gmsh41):
-    _module._read_entities = _grouped(_module._read_entities)
-
-
-# The surface of a mesh of meshio.
-
-SHAPE: Final = re.compile(r"(triangle|quad|tetra|hexahedron|wedge|pyramid)[0-9]*")
-ALL_CORNERS: Final = {"triangle": 3, "quad": 4, **CORNERS}
-
-GROUPS: Final = re.compile(r"gmsh:physical|(medit|nastran|ugrid):ref|su2:tag")
-"""The cell data with the numbers of groups."""
-
-
-def _polygons_of(
-    mesh: Any, stem: str, sets: Mapping[str, Indices] | None, sentences: list[str]
-) -> ForeignMesh:
-    """The surface of a mesh of meshio; `sets` are the rows of cells by the names of parts, or None."""
-    points = np.asarray(mesh.points, np.float64)
-    if not len(points) or not mesh.cells or points.shape[1] > 3:
-        raise ForeignRefusal("the file must have nodes of two or three coordinates, and elements")
+def _surface(points: Floats, blocks: Iterable[Block], stem: str, skipped: Counter[str]) -> ForeignMesh:
+    """The surface of blocks of cells; a part without a name is named `stem`. Raises ForeignRefusal."""
+    points = np.atleast_2d(points)
     coordinates = np.zeros((len(points), 3))
     coordinates[:, : points.shape[1]] = points
-
     flats: list[Flats] = []
     volumes: list[Volumes] = []
-    higher_order = count = 0
-    skipped: Counter[str] = Counter()
-    for block in mesh.cells:
-        rows = np.arange(count, count + len(block))
-        count += len(rows)
-        shape = SHAPE.fullmatch(block.type)
-        if shape is None:
-            skipped[block.type] += len(rows)
+    part_numbers: dict[str, int] = {}
+    part_of_cell: list[int] = []
+    for kind, nodes, parts in blocks:
+        match = SHAPE.fullmatch(kind)
+        if match is None:
+            skipped[f"cells of type {kind}"] += len(nodes)
             continue
-        corners = ALL_CORNERS[shape[1]]
-        higher_order += len(rows) * (block.data.shape[1] > corners)
-        table = block.data[:, :corners].astype(np.intp)
-        if len(rows) and not (table.min() >= 0 and table.max() < len(coordinates)):
+        if not ((nodes >= 0) & (nodes < len(coordinates))).all():
             raise ForeignRefusal(f"a cell must have nodes of the file, which has {len(coordinates):,}")
-        if shape[1] in CORNERS:
-            volumes.append(Volumes(shape[1], table, rows))
+        cells = len(part_of_cell) + np.arange(len(nodes))
+        part_of_cell += [part_numbers.setdefault(part or stem, len(part_numbers)) for part in parts]
+        corners = nodes[:, : CORNERS_OF[match[1]]].astype(np.intp)
+        if nodes.shape[1] > corners.shape[1]:
+            skipped["nodes between corners of cells"] += nodes.size - corners.size
+        if match[1] in CORNERS:
+            volumes.append(Volumes(match[1], corners, cells))
         else:
-            flats.append(Flats.of(table, rows))
+            flats.append(Flats.of(corners, cells))
+    if not part_of_cell:
+        raise ForeignRefusal("the file must have elements with faces")
     surface = cell_surface(coordinates, Flats.joined(flats), volumes)
-    cells = surface.flats.cells
-    part_of_cell, part_names = _groups(mesh, count, stem) if sets is None else _sets(sets, count, stem)
-    used, part_numbers = np.unique(part_of_cell[cells], return_inverse=True)
-    scalars = FileScalars()
-    for name, values in mesh.point_data.items():
-        if ":" not in name:
-            scalars.add(name, values, NODE, surface.nodes)
-    for name, blocks in mesh.cell_data.items():
-        if ":" not in name:
-            scalars.add(name, np.concatenate(blocks), POLYGON, cells)
+    used, numbers = np.unique(np.array(part_of_cell)[surface.flats.cells], return_inverse=True)
     polygons = RawPolygons(
         coordinates[surface.nodes],
         surface.flats.corners,
         surface.flats.corner_counts,
-        part_numbers.reshape(-1).astype(np.intp),
-        part_names_of([part_names[part] for part in used.tolist()]),
-        scalars.scalars,
+        numbers.reshape(-1).astype(np.intp),
+        part_names_of([[*part_numbers][part] for part in used.tolist()]),
     )
-    sentences += [f"skipped cells of type {kind}: {number:,}" for kind, number in skipped.items()]
-    if higher_order:
-        sentences.append(f"took the corners alone of cells of higher order: {higher_order:,}")
-    return ForeignMesh(polygons, (*sentences, *surface.sentences, *scalars.messages))
-
-
-def _sets(sets: Mapping[str, Indices], count: int, stem: str) -> tuple[Indices, list[str]]:
-    """The part number of each cell by sets of cells, and the names of the parts."""
-    part_of_cell = np.zeros(count, np.intp)
-    for number, rows in enumerate(sets.values(), 1):
-        part_of_cell[rows[part_of_cell[rows] == 0]] = number
-    return part_of_cell, [stem, *sets]
-
-
-def _groups(mesh: Any, count: int, stem: str) -> tuple[Indices, list[str]]:
-    """The part number of each cell by the numbers of groups, and the names of the parts."""
-    for key, blocks in mesh.cell_data.items():
-        if not GROUPS.fullmatch(key):
-            continue
-        # The physical groups of Gmsh have numbers of their own in each dimension; 0 is no group.
-        is_gmsh = key == "gmsh:physical"
-        dimensions = np.concatenate([np.full(len(each), each.dim * is_gmsh) for each in mesh.cells])
-        groups, parts = np.unique(
-            np.column_stack([np.abs(np.concatenate(blocks)), dimensions]), axis=0, return_inverse=True
-        )
-        named = {(int(tag), int(dimension)): name for name, (tag, dimension) in mesh.field_data.items()}
-        names = [
-            stem if is_gmsh and not tag else named.get((tag, dimension), f"part {tag}")
-            for tag, dimension in groups.tolist()
-        ]
-        return parts.reshape(-1).astype(np.intp), names
-    return np.zeros(count, np.intp), [stem]
+    sentences = (f"skipped {what}: {count:,}" for what, count in skipped.items())
+    return ForeignMesh(polygons, (*sentences, *surface.sentences))
