@@ -2,7 +2,7 @@
 
 - VTK (.vtk, and .vtp, .vtu, .vts, .vtr, .vti) and glTF (.glb, .gltf): VTK, the extra `vtk`. glTF is y up by
   its specification: the reader turns it so unless it is read with x up.
-- 3MF: lib3mf; Abaqus (.inp), Gmsh (.msh), Nastran (.bdf, .nas, .fem), Medit (.mesh), SU2 and binary UGRID
+- 3MF: lib3mf; Abaqus (.inp), Gmsh (.msh), Nastran (.bdf, .nas, .fem), Medit (.mesh) and binary UGRID
   (as in .b8.ugrid): meshio, of which these formats need no further package. They are the extra `meshes`.
 
 A library may hang, crash, print or eat memory without harm to this process. The other process
@@ -385,7 +385,6 @@ FOREIGN: Final = (
         "Nastran", (".bdf", ".nas", ".fem"), MESHIO, "meshio", "nastran", 8, size_of=size_of_text("nastran")
     ),
     ForeignFormat("Medit", (".mesh", ".meshb"), MESHIO, "meshio", "medit", 8),
-    ForeignFormat("SU2", (".su2",), MESHIO, "meshio", "su2", 8),
     ForeignFormat("UGRID", (".ugrid",), MESHIO, "meshio", "ugrid", 8),
 )
 

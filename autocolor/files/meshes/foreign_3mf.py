@@ -120,7 +120,7 @@ def _mesh(model: Any, handle: Any, name: str, skipped: Counter[str], colors: dic
     properties = _table(handle.GetAllTriangleProperties(), 4, "<u4")
     keys, key_of, counts = np.unique(properties[:, :2], axis=0, return_inverse=True, return_counts=True)
     rows = np.split(np.argsort(key_of.reshape(-1), kind="stable"), np.cumsum(counts)[:-1])
-    names = [_material(model, *key, colors) for key in keys.tolist()]
+    names = [_material(model, resource, row, colors) for resource, row in keys.tolist()]
     is_color = np.array([name != "" for name in names], np.bool_)[key_of.reshape(-1)]
     is_mixed = ~is_color | (properties[:, 1:2] != properties[:, 2:]).any(axis=1)
     if count := int((is_mixed & (properties[:, 0] > 0)).sum()):

@@ -1,4 +1,4 @@
-"""Abaqus, Nastran, Gmsh, Medit, SU2 and UGRID.
+"""Abaqus, Nastran, Gmsh, Medit and UGRID.
 
 The texts of Abaqus and Nastran are read by `meshio_text`, the others by meshio. Of volume cells the outer
 surface is taken, of cells of higher order the corners; cells without faces are skipped and counted. Parts
@@ -30,10 +30,8 @@ from autocolor.files.meshes.repair import RawPolygons
 Block = tuple[str, Indices, list[str]]
 """Cells of a type of meshio: the type, the rows of their nodes, (cells, nodes), and the part of each."""
 
-HARMLESS: Final = re.compile(
-    r"tags of string type|tag data that|know (keyword \w+|Gmf(?!\w*[PQ]\d)\w+ type)\. Skip"
-)
-"""Warnings of meshio about names of boundaries, partitions, and Medit's data other than cells."""
+HARMLESS: Final = re.compile(r"tag data that|know (keyword \w+|Gmf(?!\w*[PQ]\d)\w+ type)\. Skip")
+"""Warnings of meshio about partitions, and Medit's data other than cells."""
 
 SHAPE: Final = re.compile(r"(triangle|quad|tetra|hexahedron|wedge|pyramid)[0-9]*")
 
@@ -44,8 +42,6 @@ def read(path: Path, kind: str) -> ForeignMesh:
     if kind in ("abaqus", "nastran"):
         points, blocks = _assembled(abaqus(path) if kind == "abaqus" else nastran(path), skipped)
         return _surface(points, blocks, path.stem, skipped)
-    if kind == "su2" and (zones := re.search(rb"^\s*NZONE\s*=\s*(?!1\b)\d+", path.read_bytes(), re.M)):
-        raise ForeignRefusal(f"the file must have one zone, not {zones[0].decode().strip()}")
     mesh = _read_gmsh(path, skipped) if kind == "gmsh" else _read_by_meshio(path, kind)
     return _surface(mesh.points, _blocks(mesh), path.stem, skipped)
 
@@ -84,9 +80,8 @@ def _number(word: str) -> float:
 
 def _read_by_meshio(path: Path, kind: str) -> Any:
     """The mesh of meshio. Raises ForeignRefusal with the reason that meshio prints or raises."""
-    printed = io.StringIO()
     try:
-        with redirect_stderr(printed), warnings.catch_warnings():
+        with redirect_stderr(io.StringIO()) as printed, warnings.catch_warnings():
             # numpy warns of text that is no number, and gives fewer numbers.
             warnings.simplefilter("error", DeprecationWarning)
             mesh = getattr(meshio, kind).read(str(path))

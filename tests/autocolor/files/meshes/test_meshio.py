@@ -1,4 +1,4 @@
-"""Files of Abaqus, Nastran, Gmsh, Medit, SU2 and UGRID: written by meshio, and by hand."""
+"""Files of Abaqus, Nastran, Gmsh, Medit and UGRID: written by meshio, and by hand."""
 
 from __future__ import annotations
 
@@ -26,18 +26,6 @@ def area_and_volume(report: MeshReport) -> tuple[float, float]:
     return round(float(area), 9), round(float(volume), 9)
 
 
-def read_text(folder: Path, name: str, text: str, **others: str) -> MeshReport:
-    for other, content in others.items():
-        (folder / f"{other}.txt").write_text(content)
-    (folder / name).write_text(text)
-    return read_mesh({"file": folder / name})
-
-
-def told(report: MeshReport) -> list[str]:
-    """The messages about a file, without its name and without unused nodes."""
-    return [each.partition(": ")[2] for each in report.repairs if "no polygon uses" not in each]
-
-
 SURFACE = ("took the outer surface of 1 volume cell",)
 
 # A cube that meshio writes.
@@ -51,42 +39,38 @@ CELLS = {
                 [4, 5, 7, 6, 8]],
     "quad": [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [1, 3, 7, 5], [3, 2, 6, 7], [2, 0, 4, 6]],
 }  # fmt: skip
-WRITTEN = {
-    "a.msh": ("gmsh", [{"fmt_version": version, "binary": binary}
-                       for version in ("4.1", "2.2", "4.0") for binary in (True, False)]),
-    "a.bdf": ("nastran", [{}, {"point_format": "free"},
-                          {"point_format": "fixed-small", "cell_format": "fixed-large"}]),
-    "a.inp": ("abaqus", [{}]),
-    "a.mesh": ("medit", [{}]),
-    "a.meshb": ("medit", [{}]),
-    "a.su2": ("su2", [{}]),
-    "a.b8.ugrid": ("ugrid", [{}]),
-}  # fmt: skip
-CASES = [
-    (name, library, kind, options)
-    for name, (library, all_options) in WRITTEN.items()
-    for options in all_options
-    for kind in CELLS
-    if (library, kind) not in [("abaqus", "pyramid"), ("su2", "quad")]
-]
+WRITTEN = [
+    ("a.bdf", "nastran", {}),
+    ("a.bdf", "nastran", {"point_format": "fixed-small", "cell_format": "fixed-large"}),
+    ("a.inp", "abaqus", {}),
+    ("a.mesh", "medit", {}),
+    ("a.meshb", "medit", {}),
+    ("a.b8.ugrid", "ugrid", {}),
+    *(("a.msh", "gmsh", {"fmt_version": version, "binary": binary})
+      for version in ("4.1", "2.2", "4.0") for binary in (True, False)),
+]  # fmt: skip
 
 
-@pytest.mark.parametrize("case", first(40, CASES))
+@pytest.mark.parametrize("kind", CELLS)
+@pytest.mark.parametrize("case", first(8, WRITTEN))
 def test_a_cube_of_each_kind_of_cell_is_read(
-    tmp_path: Path, case: tuple[str, str, str, dict[str, Any]]
+    tmp_path: Path, case: tuple[str, str, dict[str, Any]], kind: str
 ) -> None:
     import meshio
 
-    name, library, kind, options = case
+    name, library, options = case
+    if (library, kind) == ("abaqus", "pyramid"):
+        # meshio knows no pyramid of Abaqus.
+        return
     mesh = meshio.Mesh(np.vstack([CUBE, [0.5, 0.5, 0.5]]), [(kind, np.array(CELLS[kind]))])
-    with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
+    with contextlib.redirect_stderr(io.StringIO()):
         getattr(meshio, library).write(tmp_path / name, mesh, **options)
     report = read_mesh({"file": tmp_path / name})
     assert area_and_volume(report) == (6, 1)
     assert len(report.mesh.node_numbers) == {"tetra": 12, "wedge": 8}.get(kind, 6)
 
 
-# Abaqus.
+# Texts.
 
 SQUARE = "*NODE\n1, 0., 0., 0.\n2, 1., 0., 0.\n3, 1., 1., 0.\n4, 0., 1., 0.\n"
 SHELL = "*ELEMENT, TYPE=S4\n1, 1, 2, 3, 4\n"
@@ -94,35 +78,6 @@ TOP = "5, 0, 0, 1\n6, 1, 0, 1\n7, 1, 1, 1\n8, 0, 1, 1\n"
 INSTANCE = "*INSTANCE, NAME=P-1, PART=P\n"
 PART = f"*PART, NAME=p\n{SQUARE}{SHELL}*END PART\n"
 
-
-@pytest.mark.parametrize(
-    ("text", "area", "parts", "sentences"),
-    [
-        (SQUARE.replace("3,", "** others\n\n3,") + SHELL, 1, ("a",), ()),
-        ("*node, nset=all\n1,0.,\n2,1.D0,0\n3,.1+1,10.-1,,0,0,1\n4,0.,1.\n"
-         "*Element, type=s4r5,\n elset=Hood\n1,1,2,3,4\n", 1, ("Hood",), ()),
-        (SQUARE + SHELL + "*NODE\n20, 2, 0\n21, 2, 1\n*ELEMENT, TYPE=M3D4\n2, 2, 20, 21, 3\n", 2, ("a",), ()),
-        (SQUARE + TOP + "*ELEMENT, TYPE=C3D8R\n1, 1, 2, 3, 4,\n5, 6, 7, 8\n", 6, ("a",), SURFACE),
-        (SQUARE + "5, .5, .5\n*ELEMENT, TYPE=STRI65, ELSET=b\n1, 1, 2, 3, 5, 5, 5\n", 0.5, ("b",),
-         ("skipped nodes between corners of cells: 3",)),
-        (SQUARE + SHELL + "*ELEMENT, TYPE=SPRINGA\n2, 1, 2\n3, 2, 3\n*ELEMENT, TYPE=MASS\n4, 4\n"
-         "*STEP\n*NODE PRINT\nU\n", 1, ("a",),
-         ("skipped elements of type SPRINGA: 2", "skipped elements of type MASS: 1")),
-        (PART + "*ASSEMBLY, NAME=A\n" + INSTANCE + "*END INSTANCE\n*NODE\n1, 5, 5, 5\n", 1, ("a",), ()),
-        (INSTANCE + SQUARE + SHELL + "*END INSTANCE\n", 1, ("a",), ()),
-        ("*SYSTEM\n*INCLUDE, INPUT=one.txt\n*element, type=S4\n*include, input = two.txt\n", 1, ("a",), ()),
-    ],
-)  # fmt: skip
-def test_abaqus_texts_are_read(
-    tmp_path: Path, text: str, area: float, parts: tuple[str, ...], sentences: tuple[str, ...]
-) -> None:
-    report = read_text(tmp_path, "a.inp", text, one=SQUARE, two="1,1,2,3,4\n")
-    assert area_and_volume(report)[0] == area
-    assert report.mesh.part_names == parts
-    assert told(report) == list(sentences)
-
-
-# Nastran.
 
 GRIDS = "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,1.,1.,0.\nGRID,4,,0.,1.,0.\n"
 UPPER = "".join(
@@ -132,29 +87,6 @@ UPPER = "".join(
 QUAD = "CQUAD4,1,7,1,2,3,4,45.,0.1\n"
 HEXA = "".join(f"{each:<8}" for each in ("CHEXA", 1, 7, 1, 2, 3, 4, 5, 6))
 BULK = "SOL 101\nBEGIN BULK\n{}ENDDATA\n"
-
-
-@pytest.mark.parametrize(
-    ("bulk", "area", "sentences"),
-    [
-        (f"{GRIDS}$ text\n{QUAD}CELAS1,2,1,1,1\nCONM2,3,1\n", 1,
-         ("skipped elements of type CELAS1: 1", "skipped elements of type CONM2: 1")),
-        (f"{GRIDS}{UPPER}{HEXA}+A\n+A      7       8\n", 6, SURFACE),
-        (f"{GRIDS}{UPPER}{HEXA}\n        7       8\n".lower(), 6, SURFACE),
-        (f"GRID*   1{'':31}0.              0.              *A\n*A      0.\nGRID*   2{'':31}.1+1\n{GRIDS[34:]}"
-         f"CTRIAR  1       7       1       2       3\nCTRIA3  2       8       1       3       4\n", 1, ()),
-        ("CORD2R,5,0,1.,0.,0.,1.,0.,1.,+\n+,2.,0.,0.\nINCLUDE 'one.txt'\n" + QUAD, 1, ()),
-    ],
-)  # fmt: skip
-def test_nastran_texts_are_read(tmp_path: Path, bulk: str, area: float, sentences: tuple[str, ...]) -> None:
-    report = read_text(tmp_path, "a.bdf", BULK.format(bulk), one=GRIDS)
-    assert area_and_volume(report)[0] == area
-    assert report.mesh.part_names == (("part 7", "part 8") if "CTRIAR" in bulk else ("part 7",))
-    assert told(report) == list(sentences)
-
-
-# Gmsh and Medit.
-
 MSH2 = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n"
 NODES2 = "$Nodes\n4\n10 0 0 0\n20 1 0 0\n40 0 1 0\n30 1 1 0\n$EndNodes\n"
 CELLS2 = "$Elements\n3\n1 15 2 0 1 10\n2 2 2 3 1 10 20 30\n5 2 2 0 1 10 30 40\n$EndElements\n"
@@ -172,25 +104,60 @@ DATA = '$NodeData\n1\n"t"\n1\n0.0\n3\n0\n1\n1\n30 7\n$EndNodeData\n'
 MEDIT = "MeshVersionFormatted 2\n# nodes\nDimension\n3\nVertices\n4\n0 0 0 1\n1 0 0 1\n1 1 0 1\n0 1 0 1\n"
 REQUIRED = "RequiredVertices\n1\n1\nTriangles\n2\n1 2 3 5\n1 3 4 6\nEnd\n"
 
+READ = {
+    "a.inp": [
+        (SQUARE.replace("3,", "** others\n\n3,") + SHELL, 1, ("a",), ()),
+        ("*node, nset=all\n1,0.,\n2,1.D0,0\n3,.1+1,10.-1,,0,0,1\n4,0.,1.\n"
+         "*Element, type=s4r5,\n elset=Hood\n1,1,2,3,4\n", 1, ("Hood",), ()),
+        (SQUARE + SHELL + "*NODE\n20, 2, 0\n21, 2, 1\n*ELEMENT, TYPE=M3D4\n2, 2, 20, 21, 3\n",
+         2, ("a",), ()),
+        (SQUARE + TOP + "*ELEMENT, TYPE=C3D8R\n1, 1, 2, 3, 4,\n5, 6, 7, 8\n", 6, ("a",), SURFACE),
+        (SQUARE + "5, .5, .5\n*ELEMENT, TYPE=STRI65, ELSET=b\n1, 1, 2, 3, 5, 5, 5\n", 0.5, ("b",),
+         ("skipped nodes between corners of cells: 3",)),
+        (SQUARE + SHELL + "*ELEMENT, TYPE=SPRINGA\n2, 1, 2\n3, 2, 3\n*ELEMENT, TYPE=MASS\n4, 4\n"
+         "*STEP\n*NODE PRINT\nU\n", 1, ("a",),
+         ("skipped elements of type SPRINGA: 2", "skipped elements of type MASS: 1")),
+        (PART + "*ASSEMBLY, NAME=A\n" + INSTANCE + "*END INSTANCE\n*NODE\n1, 5, 5, 5\n", 1, ("a",), ()),
+        (INSTANCE + SQUARE + SHELL + "*END INSTANCE\n", 1, ("a",), ()),
+        ("*SYSTEM\n*INCLUDE, INPUT=one.txt\n*element, type=S4\n*include, input = two.txt\n",
+         1, ("a",), ()),
+    ],
+    "a.bdf": [
+        (f"{GRIDS}$ text\n{QUAD}CELAS1,2,1,1,1\nCONM2,3,1\nENDDATA", 1, ("part 7",),
+         ("skipped elements of type CELAS1: 1", "skipped elements of type CONM2: 1")),
+        (BULK.format(f"{GRIDS}{UPPER}{HEXA}+A\n+A      7       8\n"), 6, ("part 7",), SURFACE),
+        (BULK.format(f"{GRIDS}{UPPER}{HEXA}\n        7       8\n").lower(), 6, ("part 7",), SURFACE),
+        (f"GRID*   1{'':31}0.              0.              *A\n*A      0.\nGRID*   2{'':31}.1+1\n{GRIDS[34:]}"
+         "CTRIAR  1       7       1       2       3\nCTRIA3  2       8       1       3       4\n",
+         1, ("part 7", "part 8"), ()),
+        ("CORD2R,5,0,1.,0.,0.,1.,0.,1.,+\n+,2.,0.,0.\nINCLUDE 'three.txt'\n" + QUAD, 1, ("part 7",), ()),
+    ],
+    "a.msh": [
+        (MSH2 + NAMES + NODES2 + CELLS2, 1, ("hood", "a"), ("skipped cells of type vertex: 1",)),
+        (MSH4 + NAMES + ENTITIES + NODES4 + CELLS4, 1, ("hood", "part 9"), ()),
+        (MSH4 + NAMES + ENTITIES.replace(" 1 9 ", " 0 ") + NODES4 + CELLS4, 1, ("a",),
+         ("skipped tables of physical groups, which some elements are not in: 1",)),
+        (OLD + DATA, 1, ("a",), ("skipped sections of data: 1",)),
+    ],
+    "a.mesh": [(MEDIT + REQUIRED, 1, ("part 5", "part 6"), ())],
+}  # fmt: skip
+
 
 @pytest.mark.parametrize(
-    ("name", "text", "parts", "sentences"),
-    [
-        ("a.msh", MSH2 + NAMES + NODES2 + CELLS2, ("hood", "a"), ("skipped cells of type vertex: 1",)),
-        ("a.msh", MSH4 + NAMES + ENTITIES + NODES4 + CELLS4, ("hood", "part 9"), ()),
-        ("a.msh", MSH4 + NAMES + ENTITIES.replace(" 1 9 ", " 0 ") + NODES4 + CELLS4, ("a",),
-         ("skipped tables of physical groups, which some elements are not in: 1",)),
-        ("a.msh", OLD + DATA, ("a",), ("skipped sections of data: 1",)),
-        ("a.mesh", MEDIT + REQUIRED, ("part 5", "part 6"), ()),
-    ],
-)  # fmt: skip
-def test_groups_and_references_are_parts(
-    tmp_path: Path, name: str, text: str, parts: tuple[str, ...], sentences: tuple[str, ...]
+    ("name", "text", "area", "parts", "sentences"),
+    [(name, *case) for name, cases in READ.items() for case in cases],
+)
+def test_texts_are_read(
+    tmp_path: Path, name: str, text: str, area: float, parts: tuple[str, ...], sentences: tuple[str, ...]
 ) -> None:
-    report = read_text(tmp_path, name, text)
-    assert area_and_volume(report)[0] == 1
+    for other, content in [("one", SQUARE), ("two", "1,1,2,3,4\n"), ("three", GRIDS)]:
+        (tmp_path / f"{other}.txt").write_text(content)
+    (tmp_path / name).write_text(text)
+    report = read_mesh({"file": tmp_path / name})
+    assert area_and_volume(report)[0] == area
     assert report.mesh.part_names == parts
-    assert told(report) == list(sentences)
+    told = [each.partition(": ")[2] for each in report.repairs if "no polygon uses" not in each]
+    assert told == list(sentences)
 
 
 MADE = "nodes and elements must be written out, not made by"
@@ -236,10 +203,6 @@ REFUSED = {
         (MSH2 + NODES2 + CELLS2.replace("1 15", "1 77"), CUT),
         (MSH2 + NODES2 + CELLS2[:-14], f"{CANNOT} ($Elements not closed by $EndElements.)"),
     ],
-    "a.su2": [
-        ("NZONE= 2\nIZONE= 1\nNDIME= 3\n", "the file must have one zone, not NZONE= 2"),
-        ("NDIME= 2\nNPOIN= 9\n0 0\n", CUT),
-    ],
     "a.mesh": [
         (f"{MEDIT}EdgesP2\n1\n1 2 3 1\n", CUT),
         (f"{MEDIT}Triangles\n1\n1 1 9 1\n", "a cell must have nodes of the file, which has 4"),
@@ -256,16 +219,13 @@ def test_what_would_be_misread_is_refused_by_name(tmp_path: Path, name: str, tex
     assert sentence == f"{name}: {reason}; correct the file, or write it as OBJ or PLY"
 
 
-INCLUDED = "a.inp, line 1: an included file must be the name of a file"
-
-
 @pytest.mark.parametrize(
-    ("name", "sentence"),
+    ("name", "reason"),
     [
-        ("../a.txt", f"{INCLUDED} in the scene's folder, not '../a.txt'; copy the file there"),
-        ("a.inp", "a.inp: it must include at most 100 files, not more; join them"),
+        ("../a.txt", ", line 1: an included file must be the name of a file in the scene's folder, not"),
+        ("a.inp", ": it must include at most 100 files, not more; join them"),
     ],
 )
-def test_included_files_are_in_the_folder_and_few(tmp_path: Path, name: str, sentence: str) -> None:
+def test_included_files_are_in_the_folder_and_few(tmp_path: Path, name: str, reason: str) -> None:
     (tmp_path / "a.inp").write_text(f"*INCLUDE, INPUT={name}\n{SQUARE}{SHELL}")
-    assert refusal(read_mesh, {"file": tmp_path / "a.inp"}) == sentence
+    assert refusal(read_mesh, {"file": tmp_path / "a.inp"}).startswith(f"a.inp{reason}")
