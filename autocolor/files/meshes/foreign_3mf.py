@@ -118,14 +118,15 @@ def _mesh(model: Any, handle: Any, name: str, skipped: Counter[str], colors: dic
     triangles = _table(handle.GetTriangleIndices(), 3, "<u4").astype(np.intp)
     # The resource of each triangle, and the row of each corner in it.
     properties = _table(handle.GetAllTriangleProperties(), 4, "<u4")
-    keys, key_of, counts = np.unique(properties[:, :2], axis=0, return_inverse=True, return_counts=True)
-    rows = np.split(np.argsort(key_of.reshape(-1), kind="stable"), np.cumsum(counts)[:-1])
+    keys, key_of = np.unique(properties[:, :2], axis=0, return_inverse=True)
     names = [_material(model, resource, row, colors) for resource, row in keys.tolist()]
-    is_color = np.array([name != "" for name in names], np.bool_)[key_of.reshape(-1)]
-    is_mixed = ~is_color | (properties[:, 1:2] != properties[:, 2:]).any(axis=1)
+    numbers = {name: number for number, name in enumerate(dict.fromkeys(names))}
+    material_of = np.array([numbers[name] for name in names], np.intp)[key_of.reshape(-1)]
+    is_mixed = (properties[:, 1:2] != properties[:, 2:]).any(axis=1) | (material_of == numbers.get("", -1))
     if count := int((is_mixed & (properties[:, 0] > 0)).sum()):
         skipped["textures and mixed colors of triangles"] += count
-    return nodes, triangles, list(zip(names, rows, strict=False))
+    rows = np.split(np.argsort(material_of, kind="stable"), np.cumsum(np.bincount(material_of))[:-1])
+    return nodes, triangles, list(zip(numbers, rows, strict=False))
 
 
 def _material(model: Any, resource: int, row: int, colors: dict[str, Color]) -> str:

@@ -115,7 +115,8 @@ def test_objects_of_model_files_with_equal_numbers_are_different(tmp_path: Path)
 PAINTS = (
     '<basematerials id="5"><base name="red" displaycolor="#FF0000"/>'
     '<base name="blue" displaycolor="#0000FF80"/><base name="red" displaycolor="#880000"/></basematerials>'
-    '<m:colorgroup id="6"><m:color color="#00FF00"/><m:color color="#FFFF00"/></m:colorgroup>'
+    '<m:colorgroup id="6"><m:color color="#00FF00"/><m:color color="#FFFF00"/><m:color color="#00FF00"/>'
+    "</m:colorgroup>"
     '<m:compositematerials id="7" matid="5" matindices="0 1"><m:composite values="0.5 0.5"/>'
     "</m:compositematerials>"
 )
@@ -131,6 +132,7 @@ MIXED = "a.3mf: left out textures and mixed colors of triangles"
         ("", 'pid="6" p1="1"', {"cube": None, "cube #ffff00": ("#ffff00", (255, 255, 0))}, ()),
         ('pid="6" pindex="0"', 'pid="6" p1="0" p2="1" p3="1"', {"cube": ("#00ff00", (0, 255, 0))},
          (f"{MIXED}: 6",)),
+        ('pid="6" pindex="0"', 'pid="6" p1="2"', {"cube": ("#00ff00", (0, 255, 0))}, ()),
         ('pid="7" pindex="0"', "", {"cube": None}, (f"{MIXED}: 12",)),
     ],
 )  # fmt: skip

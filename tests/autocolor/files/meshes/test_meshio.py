@@ -104,7 +104,7 @@ DATA = '$NodeData\n1\n"t"\n1\n0.0\n3\n0\n1\n1\n30 7\n$EndNodeData\n'
 MEDIT = "MeshVersionFormatted 2\n# nodes\nDimension\n3\nVertices\n4\n0 0 0 1\n1 0 0 1\n1 1 0 1\n0 1 0 1\n"
 REQUIRED = "RequiredVertices\n1\n1\nTriangles\n2\n1 2 3 5\n1 3 4 6\nEnd\n"
 
-READ = {
+READ: dict[str, list[tuple[str, float, tuple[str, ...], tuple[str, ...]]]] = {
     "a.inp": [
         (SQUARE.replace("3,", "** others\n\n3,") + SHELL, 1, ("a",), ()),
         ("*node, nset=all\n1,0.,\n2,1.D0,0\n3,.1+1,10.-1,,0,0,1\n4,0.,1.\n"
