@@ -213,5 +213,5 @@ def nastran(path: Path) -> Iterator[Record]:
         elif kind == "skipped":
             yield place, kind, name, []
         elif kind:
-            part, corners = f"part {fields[1] or fields[0]}", fields[2 : 2 + CORNERS_OF[kind]]
-            yield place, kind, part, corners
+            corners = [*fields[2:], *[""] * 8][: CORNERS_OF[kind]]
+            yield place, kind, f"part {fields[1] or fields[0]}", corners

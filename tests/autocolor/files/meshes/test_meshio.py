@@ -191,8 +191,8 @@ REFUSED = {
            f"bulk data must be one list of whole cards, not '{line}' (line 7)")
           for line in ("=,*1,=", "BEGIN SUPER=1")),
         (BULK.format(f"{GRIDS}CQUAD9,1,7,1,2,3,4\n"), "element type 'CQUAD9' is not known (line 7)"),
-        (BULK.format(f"{GRIDS}CQUAD4,1,7,1,2,3\n"),
-         f"{NUMBERS} (line 7: invalid literal for int() with base 10: '')"),
+        *((BULK.format(f"{GRIDS}{card}\n"), f"{NUMBERS} (line 7: invalid literal for int() with base 10: '')")
+          for card in ("CQUAD4,1,7,1,2,3", HEXA)),
         (f"BEGIN BULK\n{GRIDS}{QUAD}", "bulk data must end with ENDDATA; the file is cut short"),
     ],
     "a.msh": [
