@@ -76,6 +76,8 @@ PLACES = {
     ("vtkmodules",): {
         ("autocolor.files.meshes.foreign_vtk", True), ("autocolor.files.meshes.foreign_gltf", True),
     },
+    ("meshio",): {("autocolor.files.meshes.foreign_meshio", True)},
+    ("lib3mf",): {("autocolor.files.meshes.foreign_3mf", True)},
     ("OpenEXR",): {("autocolor.layers", False)},
     ("tomlkit",): {("autocolor.files.scene_toml.toml_edit", True)},
     # The studio names the class of its widgets for type checkers.

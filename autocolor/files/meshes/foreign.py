@@ -2,7 +2,7 @@
 
 - VTK (.vtk, and .vtp, .vtu, .vts, .vtr, .vti) and glTF (.glb, .gltf): VTK, the extra `vtk`. glTF is y up by
   its specification: the reader turns it so unless it is read with x up.
-- 3MF: lib3mf; Abaqus (.inp), Gmsh (.msh), Nastran (.bdf, .nas, .fem), Medit (.mesh), SU2 and binary UGRID
+- 3MF: lib3mf; Abaqus (.inp), Gmsh (.msh), Nastran (.bdf, .nas, .fem), Medit (.mesh) and binary UGRID
   (as in .b8.ugrid): meshio, of which these formats need no further package. They are the extra `meshes`.
 
 A library may hang, crash, print or eat memory without harm to this process. The other process
@@ -33,6 +33,7 @@ from autocolor.errors import InputError, UnavailableError
 from autocolor.files.array_file import GROWTH
 from autocolor.files.meshes.foreign_mesh import REMEDY, ForeignMesh, ForeignRefusal, loaded
 from autocolor.files.meshes.gltf_document import size_of_gltf
+from autocolor.files.meshes.meshio_text import size_of_text
 from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, repaired
 from autocolor.files.reading import opened, require_size
 from autocolor.scene.columns import replaced
@@ -186,11 +187,12 @@ FOREIGN: Final = (
     ForeignFormat("VTK XML", XML_SUFFIXES, VTK, "vtk", "xml", 15, r"(?s)\s*<(.*<)?VTKFile"),
     ForeignFormat("glTF", (".glb", ".gltf"), VTK, "gltf", "", 12, "glTF", size_of_gltf, "y"),
     ForeignFormat("3MF", (".3mf",), LIB3MF, "3mf", "", 20, "", size_of_3mf, "z"),
-    ForeignFormat("Abaqus", (".inp",), MESHIO, "meshio", "abaqus", 8),
+    ForeignFormat("Abaqus", (".inp",), MESHIO, "meshio", "abaqus", 8, size_of=size_of_text("abaqus")),
     ForeignFormat("Gmsh", (".msh",), MESHIO, "meshio", "gmsh", 8),
-    ForeignFormat("Nastran", (".bdf", ".nas", ".fem"), MESHIO, "meshio", "nastran", 8),
-    ForeignFormat("Medit", (".mesh",), MESHIO, "meshio", "medit", 8),
-    ForeignFormat("SU2", (".su2",), MESHIO, "meshio", "su2", 8),
+    ForeignFormat(
+        "Nastran", (".bdf", ".nas", ".fem"), MESHIO, "meshio", "nastran", 8, size_of=size_of_text("nastran")
+    ),
+    ForeignFormat("Medit", (".mesh", ".meshb"), MESHIO, "meshio", "medit", 8),
     ForeignFormat("UGRID", (".ugrid",), MESHIO, "meshio", "ugrid", 8),
 )
 

@@ -1,0 +1,217 @@
+"""The nodes and elements of the texts of Abaqus and Nastran.
+
+meshio skips in silence what it does not know of these formats, such as placed parts and coordinate systems;
+here they are refused by name. This module imports no library.
+"""
+
+from __future__ import annotations
+
+import io
+import re
+from collections import Counter
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Final
+
+from autocolor.checks import shown
+from autocolor.errors import InputError
+from autocolor.files.meshes.cells import CORNERS
+from autocolor.files.meshes.foreign_mesh import ForeignRefusal
+from autocolor.files.paths import path_within
+from autocolor.files.reading import opened
+
+CORNERS_OF: Final = {"triangle": 3, "quad": 4, **CORNERS}
+"""The number of corners of each shape."""
+
+
+Record = tuple[str, str, str, list[str]]
+"""A node or an element of a text: its place, kind, name and words.
+
+A "node" has its number and coordinates as words. An element has its shape as its kind, the name of its part,
+and the numbers of its nodes, corners first; without faces, it is "skipped", and its name is its type.
+"""
+
+INCLUDE: Final = {
+    "abaqus": re.compile(r"\s*\*\s*include\s*,\s*input\s*=(.*)", re.I),
+    "nastran": re.compile(r"\s*include\s+(.*)", re.I),
+}
+
+MOST_FILES: Final = 100
+"""Limit: files that a text includes, and that these include; a file may include itself."""
+
+
+def size_of_text(kind: str) -> Callable[[Path], int]:
+    """A function that gives the letters of a text of INCLUDE and of the files that it includes."""
+    return lambda path: sum(len(line) + 1 for _, line in _lines(path, kind, []))
+
+
+def _lines(path: Path, kind: str, files: list[Path]) -> Iterator[tuple[str, str]]:
+    """The places and lines of a text of INCLUDE, and of the files that it includes, added to `files`.
+
+    Raises InputError for an included file that is not in the folder of the first file.
+    """
+    files.append(path)
+    main = files[0]
+    if len(files) > MOST_FILES:
+        raise InputError(f"{main.name}: it must include at most {MOST_FILES} files, not more; join them")
+    with opened(path) as (file, _), io.TextIOWrapper(file, "utf-8-sig", "replace") as lines:
+        for number, line in enumerate(lines, 1):
+            place = f"line {number}" if path == main else f"{path.name}, line {number}"
+            if match := INCLUDE[kind].match(line):
+                problems: list[str] = []
+                included = path_within(problems, main.parent, match[1].strip().strip("'\""))
+                if included is None:
+                    raise InputError(f"{main.name}, {place}: an included file {problems[0]}")
+                yield from _lines(included, kind, files)
+            else:
+                yield place, line.strip("\n")
+
+
+# Abaqus: keywords with parameters, and rows of words.
+
+GENERATING: Final = re.compile(
+    "NGEN|NFILL|NCOPY|NMAP|ELGEN|ELCOPY|IMPORT|PARAMETER|SYMMETRIC MODEL GENERATION|.*="
+)
+"""Keywords that make or move nodes and elements."""
+
+TYPE: Final = re.compile(
+    r"(?P<skipped>SPRING|MASS|ROTARYI|HEATCAP|DASHPOT|T[23]D|CONN[23]D|JOINTC|GAP|DCOUP|B[23]|PIPE|ELBOW"
+    r"|FRAME[23]D|R2D2|RB[23]D2|RAX2|[MS]AX[12]|[DA]C1D)"
+    r"|(?:S|STRI|DS|M3D|SFM3D|R3D|CPS|CPEG?|CG?AX|D?C?C2D|DC?CAX|AC2D|ACAX|COH2D|COHAX)"
+    r"(?:(?P<triangle>[36])|(?P<quad>[489]))"
+    r"|(?:C3D|DC3D|DCC3D|AC3D|EC3D|EMC3D|Q3D|COH3D|SC|CSS)"
+    r"(?:(?P<tetra>4|10)|(?P<pyramid>5|13)|(?P<wedge>6|15)|(?P<hexahedron>8|20|27))(?!\d)"
+)
+"""Types of elements by shape; the number of nodes is matched."""
+
+
+def _keywords(path: Path) -> Iterator[tuple[str, str, dict[str, str], list[list[str]]]]:
+    """The place, name, parameters and rows of each keyword, without comments and empty lines."""
+    place, name, parameters, rows, continues = "", "", dict[str, str](), list[list[str]](), False
+    for here, line in _lines(path, "abaqus", []):
+        text = line.strip()
+        if not text or text.startswith("**"):
+            continue
+        words = [word.strip() for word in text.split(",")]
+        if not text.startswith("*") and not continues:
+            rows.append(words)
+            continue
+        if not continues:
+            yield place, name, parameters, rows
+            place, name, parameters, rows = here, " ".join(words.pop(0)[1:].upper().split()), {}, []
+        pairs = [word.partition("=") for word in words]
+        parameters |= {key.strip().upper(): value.strip().strip('"') for key, _, value in pairs}
+        continues = text.endswith(",")
+    yield place, name, parameters, rows
+
+
+def abaqus(path: Path) -> Iterator[Record]:
+    """The nodes and elements of an Abaqus text; each ELSET of *ELEMENT is a part.
+
+    There is one part, or one instance of it, which is not moved. The nodes of the assembly itself are points
+    of reference. Raises ForeignRefusal and InputError.
+    """
+    counts, in_assembly = Counter[str](), False
+    for place, name, parameters, rows in _keywords(path):
+        keys = ("INPUT", "SYSTEM") if name in ("NODE", "ELEMENT") else ()
+        maker = ", ".join([name, *(f"{key}=" for key in keys if key in parameters)])
+        if GENERATING.fullmatch(maker) or (name == "SYSTEM" and rows):
+            raise ForeignRefusal(f"nodes and elements must be written out, not made by *{maker} ({place})")
+        counts[name] += 1
+        if name in ("PART", "INSTANCE") and (rows or counts[name] > 1):
+            raise ForeignRefusal(f"there must be one part, which no *INSTANCE moves, not *{name} ({place})")
+        if name in ("ASSEMBLY", "INSTANCE", "END INSTANCE"):
+            in_assembly = name != "INSTANCE"
+        elif name == "NODE" and not in_assembly:
+            yield from ((place, "node", "", row) for row in rows)
+        elif name == "ELEMENT":
+            yield from _elements(place, in_assembly, parameters, rows)
+
+
+def _elements(
+    place: str, in_assembly: bool, parameters: dict[str, str], rows: list[list[str]]
+) -> Iterator[Record]:
+    """The elements in the rows of an *ELEMENT. Raises ForeignRefusal."""
+    kind, words = parameters.get("TYPE", "").upper(), list[str]()
+    match = TYPE.match(kind)
+    if match is None:
+        raise ForeignRefusal(f"element type {shown(kind)} is not known ({place})")
+    shape = match.lastgroup or ""
+    if shape == "skipped":
+        yield from ((place, shape, kind, []) for _ in rows)
+        return
+    if in_assembly:
+        raise ForeignRefusal(f"elements of type {kind} must be in a *PART, not in *ASSEMBLY ({place})")
+    for row in rows:
+        words += filter(None, row)
+        if len(words) == int(match[shape]) + 1:
+            yield place, shape, parameters.get("ELSET", ""), words[1:]
+            words = []
+    if words:
+        raise ForeignRefusal(f"elements of type {kind} must have {match[shape]} nodes ({place})")
+
+
+# Nastran: cards of a name and fields, on one or several lines.
+
+CARD: Final = re.compile(
+    r"C(?:(?P<triangle>TRI(?:A3|AR|A6|AX)|TRAX3)|(?P<quad>QUAD[4R8]?|QUADX[48]?|SHEAR)|(?P<tetra>TETRA)"
+    r"|(?P<pyramid>PYRAM?)|(?P<wedge>PENTA)|(?P<hexahedron>HEXA))"
+    r"|(?P<skipped>C(?:BAR|BEAM3?|ROD|ONROD|TUBE|BEND|ELAS\d|BUSH\w*|DAMP\d|MASS\d|ONM\d|GAP|VISC|FAST|WELD"
+    r"|SEAM)|RBE\d|RBAR1?|RROD|PLOTEL)"
+    r"|(?P<unknown>C(?:TRI|TRA|QUAD|TET|PYR|PEN|HEX|IHEX|IF|PLST|WEDGE|TWIST|RAC|CONE|DUM|HAC|AABSF|HBDY)\w*)"
+)
+"""The names of elements by shape."""
+
+
+def _cards(path: Path) -> Iterator[tuple[str, str, list[str]]]:
+    """The place, name and fields of each card of a text: fields are free, or of 8 or 16 letters."""
+    place, name, fields, mark, is_open = "", "", list[str](), "", False
+    for here, line in _lines(path, "nastran", []):
+        text = line.split("$")[0].expandtabs(8).rstrip().upper()
+        if text.startswith("ENDDATA"):
+            is_open = False
+            break
+        if text.split() == ["BEGIN", "BULK"]:
+            is_open = True
+        elif text.startswith(("BEGIN", "=")):
+            raise ForeignRefusal(f"bulk data must be one list of whole cards, not {shown(text)} ({here})")
+        elif text:
+            start = text.split(",")[0] if "," in text else text[:8]
+            count = 4 if "*" in start else 8
+            width = 64 // count
+            ends = range(8, 72, width)
+            words = text.split(",")[1:] if "," in text else [text[at : at + width] for at in [*ends, 72]]
+            words = [*(word.strip() for word in words), *[""] * 9]
+            start = start.strip()
+            if start and start[0] not in "+*":
+                yield place, name, fields
+                place, name, fields = here, start.strip("* "), []
+            elif start.strip("+* ") and mark and start.strip("+* ") != mark:
+                raise ForeignRefusal(f"a line that continues a card must follow it ({here})")
+            fields += words[:count]
+            mark = words[count].strip("+* ")
+    if is_open:
+        raise ForeignRefusal("bulk data must end with ENDDATA; the file is cut short")
+    yield place, name, fields
+
+
+def nastran(path: Path) -> Iterator[Record]:
+    """The nodes and elements of a Nastran text; the elements of each property are a part.
+
+    Raises ForeignRefusal and InputError.
+    """
+    for place, name, fields in _cards(path):
+        match = CARD.fullmatch(name)
+        kind = (match and match.lastgroup) or ""
+        if name in ("GRID", "GRDSET") and fields[1].strip("0"):
+            system = f"the coordinate system {fields[1]}"
+            raise ForeignRefusal(f"{name} {fields[0]} must be in the basic system, not in {system} ({place})")
+        if kind == "unknown":
+            raise ForeignRefusal(f"element type {shown(name)} is not known ({place})")
+        if name == "GRID":
+            yield place, "node", "", [fields[0], *fields[2:5]]
+        elif kind == "skipped":
+            yield place, kind, name, []
+        elif kind:
+            corners = [*fields[2:], *[""] * 8][: CORNERS_OF[kind]]
+            yield place, kind, f"part {fields[1] or fields[0]}", corners
