@@ -214,11 +214,12 @@ def read_text(data: bytes, place: str, stem: str) -> tuple[Floats, Indices, tupl
     for match in chain(SOLID.finditer(data), (None,)):
         end = len(data) if match is None else match.start()
         of_solid = [_corners(data, *block, place) for block in _blocks(data, begin, end)]
-        if of_solid and name is None:
+        count = sum(map(len, of_solid)) // 3
+        if count and name is None:
             _refuse(data, begin, place, "a facet must stand in a solid, not outside; add a line 'solid'")
-        if of_solid:
+        if count:
             corners += of_solid
-            counts.append(sum(map(len, of_solid)) // 3)
+            counts.append(count)
             names.append(name_of(name or b"") or stem)
         if match is None:
             break

@@ -11,10 +11,9 @@ from autocolor.arrays import Floats, Singles
 from autocolor.files.meshes import stl, welding
 from autocolor.files.meshes.repair import MeshReport, Placement
 from autocolor.files.meshes.stl import (
-    FACET,
+    MUST_BE,
     TRIANGLE,
     begins_as_stl,
-    has_binary_size,
     read_binary,
     read_stl,
     read_text,
@@ -74,7 +73,7 @@ def test_a_cube_has_eight_nodes_however_it_is_written(path: Path, data: bytes) -
 def test_a_cube_reads_back_with_outward_normals(path: Path) -> None:
     data = stl_bytes(Mesh(NODES.astype(float), np.array(QUADS)))
     report = read(path, data)
-    assert has_binary_size(data)
+    assert len(data) == 84 + 12 * 50
     assert (len(report.mesh.coordinates), report.mesh.triangle_count, report.repairs) == (8, 12, ())
     records = np.frombuffer(data, TRIANGLE, 12, 84)
     centers = records["corners"].mean(axis=1) - 0.5
@@ -166,9 +165,10 @@ test_a_wrong_binary_file_is_refused = refused(
             *(
                 (
                     binary()[:size],
-                    f": a binary STL file must have at least 84 bytes, not {size}; {CUT}, export it again",
+                    f": a binary STL file of {count} triangles must have {84 + 50 * count} bytes, not {size};"
+                    f" {CUT}{OTHER}",
                 )
-                for size in (0, 80, 83)
+                for size, count in ((0, 0), (80, 0), (83, 12))
             ),
             (binary(np.empty((0, 3, 3))), NONE),
             (
@@ -201,7 +201,7 @@ def test_a_coordinate_may_be_the_largest_and_no_larger(path: Path, sign: int) ->
         corners[at] = np.nextafter(most, np.float32(sign * np.inf))
         assert f"facet {at[0] + 1}: {LARGE}" in refusal(read, path, binary(corners))
     solid = f"solid a\n{A}endsolid\n"
-    assert read_text(solid.replace("1e0", f"{sign}e30").encode(), "a.stl").corners[2, 1] == sign * 1e30
+    assert read_text(solid.replace("1e0", f"{sign}e30").encode(), "a.stl", "a")[0][2, 1] == sign * 1e30
     larger = f"{sign}.0000000000000002e30"
     assert f"in size, not '{larger}'" in refusal(read, path, solid.replace("1e0", larger).encode())
 
@@ -263,9 +263,8 @@ def test_the_habits_of_other_programs_are_read(
     assert refusal(read, path, wrong.encode()).startswith(f"cube.stl, line {line}: a coordinate must be ")
 
 
-WRONG_FACET = f"a facet must be '{FACET}', "
-MUST = WRONG_FACET + "with numbers for the points, and {!r} must stand here, not {!r}; correct it"
-NO_END = WRONG_FACET + "and not end before its {!r}; correct it"
+MUST = MUST_BE + " (here {!r}), not {!r}; correct it"
+NO_END = MUST_BE + ", and not end before {!r}; correct it"
 
 
 @pytest.mark.parametrize("block", [1, 1 << 21])
@@ -301,21 +300,22 @@ def test_a_wrong_text_is_refused(
     text: str, line: int, sentence: str, block: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(stl, "BLOCK", block)
-    assert refusal(read_text, text.encode(), "a.stl") == f"a.stl, line {line}: {sentence}"
+    assert refusal(read_text, text.encode(), "a.stl", "a") == f"a.stl, line {line}: {sentence}"
 
 
 points = st.lists(st.tuples(*[st.sampled_from([0.0, -0.0, 1.0, 1e-45, -2.5, 1e30])] * 3), max_size=40)
 
 
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
-@pytest.mark.parametrize("factors", [FACTORS, FACTORS[:1], ((0, 0, 0),), ()])
+@pytest.mark.parametrize(("rounds", "factors"), [(4, FACTORS), (1, FACTORS), (4, (0, 0, 0)), (0, FACTORS)])
 @given(corners=points)
 def test_equal_points_become_one_in_the_order_of_their_first_corners(
-    dtype: type, factors: tuple[tuple[int, int, int], ...], corners: list[tuple[float, float, float]]
+    dtype: type, rounds: int, factors: tuple[int, ...], corners: list[tuple[float, float, float]]
 ) -> None:
     given_corners: Floats | Singles = np.array(corners, dtype).reshape(-1, 3)
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(welding, "FACTORS", factors)
+        patched.setattr(welding, "ROUNDS", rounds)
         found, rows = welded(given_corners)
     # The patient way: -0 equals 0 as a key of a dictionary, too.
     numbers: dict[tuple[float, ...], int] = {}
