@@ -59,7 +59,7 @@ MOST_PARTS: Final = 10_000
 LARGEST_INDEX: Final = 1 << 53
 """Part numbers below this are exact in floating point."""
 
-NORMALS: Final = (("nx", "ny", "nz"), ("normal_x", "normal_y", "normal_z"))
+NORMAL: Final = ("nx", "ny", "nz")
 
 COLOR: Final = re.compile(r"[rgba]|((ambient|diffuse|specular)_)?(red|green|blue|alpha)")
 NOT_SCALAR: Final = re.compile(
@@ -127,12 +127,8 @@ def _read(path: Path) -> tuple[RawPolygons, list[str]]:
                     scalars.add(comments.scalars.get(name, name), column, of)
         if any(COLOR.fullmatch(name) for name in rows.columns.keys() - comments.scalars.keys()):
             messages.append(f"left out the colors of {of}s")
-    normals = None
-    for names in NORMALS:
-        axes = _numbers(vertices, names)
-        if len(axes) == 3 and not comments.scalars.keys() & {*names}:
-            normals = np.stack(axes, axis=1).astype(np.float64)
-            break
+    axes = _numbers(vertices, [name for name in NORMAL if name not in comments.scalars])
+    normals = np.stack(axes, axis=1).astype(np.float64) if len(axes) == 3 else None
     polygons = RawPolygons(
         coordinates,
         corners,

@@ -37,9 +37,9 @@ def welded(corners: AnyArray) -> tuple[AnyArray, Indices]:
     columns = np.ascontiguousarray(points.T)
     first = np.arange(len(points))
     left = first.copy()
-    for number in range(ROUNDS):
+    for turn in range(ROUNDS):
         others = columns if len(left) == len(points) else columns[:, left]
-        slots = _slots(others, number)
+        slots = _slots(others, turn)
         table = np.empty(int(slots.max(initial=0)) + 1, np.intp)
         # The last corner that is written to a slot stays there.
         table[slots[::-1]] = left[::-1]
@@ -60,10 +60,10 @@ def welded(corners: AnyArray) -> tuple[AnyArray, Indices]:
     return points[is_first], number.take(first)
 
 
-def _slots(columns: AnyArray, number: int) -> Indices:
+def _slots(columns: AnyArray, turn: int) -> Indices:
     """A slot of a table for each point of (3, n), the same for equal points, of n to 2 n slots."""
     # The upper bits of a product of 64 bits depend on all bits of the coordinate.
-    mixed = np.full(columns.shape[1], number * FACTORS[0] % (1 << 64), np.uint64)
+    mixed = np.full(columns.shape[1], turn * FACTORS[0] % (1 << 64), np.uint64)
     words = columns.view(np.uint32 if columns.dtype == np.float32 else np.uint64)
     for word, factor in zip(words, FACTORS, strict=True):
         mixed += word
