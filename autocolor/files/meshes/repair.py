@@ -161,8 +161,11 @@ def repaired(
     corners, normals = polygons.corners, None
     if placement.normals == FILE and polygons.normals is not None:
         normals = polygons.corner_normals
-    differs, counts, shortened = _without_repeats(corners, polygons.corner_counts)
-    if differs is not None:
+    counts = polygons.corner_counts
+    differs = _differ_from_next(corners, counts)
+    if not differs.all():
+        owners = np.repeat(np.arange(len(counts)), counts)
+        counts = np.bincount(owners[differs], minlength=len(counts))
         corners, normals = corners[differs], None if normals is None else normals[differs]
     too_few = counts < 3
     try:
@@ -185,7 +188,7 @@ def repaired(
     is_kept = np.zeros(len(counts), np.bool_)
     is_kept[owners] = True
     kinds = (
-        (shortened & ~too_few & is_kept, "{} with repeated corners {} repaired"),
+        ((counts < polygons.corner_counts) & ~too_few & is_kept, "{} with repeated corners {} repaired"),
         (too_few, "{} with fewer than three different corners {} dropped"),
         (~too_few & ~is_kept, "{} without area {} dropped"),
         ((counts > 4) & is_kept, "{} with more than four corners {} split"),
@@ -233,21 +236,14 @@ def _counted(sentence: str, noun: str, count: int) -> str:
     return sentence.format(f"{count:,} {noun}{'s' * (count > 1)}", "was" if count == 1 else "were")
 
 
-def _without_repeats(corners: Indices, counts: Indices) -> tuple[Booleans | None, Indices, Booleans]:
-    """Which corners differ from the next one, the counts of these, and which polygons had other corners.
-
-    The first is None if all corners differ.
-    """
+def _differ_from_next(corners: Indices, counts: Indices) -> Booleans:
+    """Which corners differ from the next corner of their polygon; the first one follows the last one."""
     following = np.arange(1, len(corners) + 1)
     ends = np.cumsum(counts)
     filled = counts > 0
     following[ends[filled] - 1] = (ends - counts)[filled]
-    differs = corners != corners[following]
-    if differs.all():
-        return None, counts, np.zeros(len(counts), np.bool_)
-    owners = np.repeat(np.arange(len(counts)), counts)
-    kept_counts = np.bincount(owners[differs], minlength=len(counts))
-    return differs, kept_counts, kept_counts != counts
+    differ: Booleans = corners != corners[following]
+    return differ
 
 
 def _have_area(coordinates: Floats, node_numbers: Indices) -> Booleans:
