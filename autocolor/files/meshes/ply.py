@@ -63,7 +63,7 @@ NORMAL: Final = ("nx", "ny", "nz")
 
 COLOR: Final = re.compile(r"[rgba]|((ambient|diffuse|specular)_)?(red|green|blue|alpha)")
 NOT_SCALAR: Final = re.compile(
-    rf"{COLOR.pattern}|(ambient|diffuse|specular)_(coeff|power)|n[xyz]|normal_[xyz]|[stuv]0?|texture_[stuv]"
+    rf"{COLOR.pattern}|(ambient|diffuse|specular)_(coeff|power)|n[xyz]|[stuv]0?|texture_[stuv]"
     "|texcoord|texnumber|flags|[xyz]"
 )
 """Properties that are not scalars: coordinates, normals, colors, texture coordinates and flags."""

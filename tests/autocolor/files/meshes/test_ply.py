@@ -320,51 +320,50 @@ LIST = "a.ply: an element 'face' must have a list 'vertex_indices', not only"
 LARGE = "a coordinate must be a finite number of at most 1e30 in size"
 CORNER = "a corner must be the number of one of 4 nodes, from 0 on"
 VALUE = "a value must be a decimal number, nan or inf"
-STRIP: Mapping[str, Columns] = {"vertex": xyz(), "tristrips": {CORNERS: [(0, 1, 2)]}}
+STRIP = {"vertex": xyz(), "tristrips": {CORNERS: [(0, 1, 2)]}}
+
+WRONG: list[tuple[Mapping[str, Columns], str]] = [
+    ({"vertex": {"int x": [1], "int y": [2]}}, f"{AXES} x and y; export it with coordinates"),
+    ({"face": {CORNERS: [(0, 1, 2)]}}, f"{AXES} none; export it with coordinates"),
+    (
+        {"vertex": {"list uchar int x": [(1,)], "int y": [2], "int z": [3]}},
+        f"{AXES} x, y and z; export it with coordinates",
+    ),
+    *(
+        (
+            {"vertex": xyz([(0, 0, 0), (0, value, 0)])},
+            f"a.ply, vertex 1: {LARGE}, not {value:g}; correct it",
+        )
+        for value in (np.nan, -np.inf, np.nextafter(1e30, np.inf))
+    ),
+    *(
+        (
+            {"vertex": xyz(), "face": {f"int {name}": [1]}},
+            f"{LIST} {name}; export it with polygons",
+        )
+        for name in ("quality", "vertex_indices")
+    ),
+    *(
+        (
+            {"vertex": xyz(), "face": {f"list uchar {kind} vertex_indices": [(0, 1, 2), corners]}},
+            f"a.ply, face 1: {CORNER}, not {told}; correct it",
+        )
+        for kind, corners, told in (
+            ("int", (0, 4, -1, 3), "4"),
+            ("uint64", (0, 1, 2**64 - 1), "1.84467440737096e+19"),
+            ("float", (0, 1.5, np.nan), "1.5"),
+        )
+    ),
+    (
+        {"vertex": xyz(), "face": {"list short int vertex_index": [[0, 1] * 500, [0, 1, 2] * 400]}},
+        "a.ply, face 1: a polygon must have at most 1,000 corners, not 1,200; split it",
+    ),
+    (STRIP, "a.ply: elements 'tristrips' are not read; export it with faces"),
+]
 
 test_what_is_refused = refused(
     "a.ply",
-    [
-        (ply_file(elements), sentence)
-        for elements, sentence in (
-            ({"vertex": {"int x": [1], "int y": [2]}}, f"{AXES} x and y; export it with coordinates"),
-            ({"face": {CORNERS: [(0, 1, 2)]}}, f"{AXES} none; export it with coordinates"),
-            (
-                {"vertex": {"list uchar int x": [(1,)], "int y": [2], "int z": [3]}},
-                f"{AXES} x, y and z; export it with coordinates",
-            ),
-            *(
-                (
-                    {"vertex": xyz([(0, 0, 0), (0, value, 0)])},
-                    f"a.ply, vertex 1: {LARGE}, not {value:g}; correct it",
-                )
-                for value in (np.nan, -np.inf, np.nextafter(1e30, np.inf))
-            ),
-            *(
-                (
-                    {"vertex": xyz(), "face": {f"int {name}": [1]}},
-                    f"{LIST} {name}; export it with polygons",
-                )
-                for name in ("quality", "vertex_indices")
-            ),
-            *(
-                (
-                    {"vertex": xyz(), "face": {f"list uchar {kind} vertex_indices": [(0, 1, 2), corners]}},
-                    f"a.ply, face 1: {CORNER}, not {told}; correct it",
-                )
-                for kind, corners, told in (
-                    ("int", (0, 4, -1, 3), "4"),
-                    ("uint64", (0, 1, 2**64 - 1), "1.84467440737096e+19"),
-                    ("float", (0, 1.5, np.nan), "1.5"),
-                )
-            ),
-            (
-                {"vertex": xyz(), "face": {"list short int vertex_index": [[0, 1] * 500, [0, 1, 2] * 400]}},
-                "a.ply, face 1: a polygon must have at most 1,000 corners, not 1,200; split it",
-            ),
-            (STRIP, "a.ply: elements 'tristrips' are not read; export it with faces"),
-        )
-    ]
+    [(ply_file(elements), sentence) for elements, sentence in WRONG]
     + [
         (
             plate(order="", breaks="\n\n", corners=[(0, 1, 9)], vertex={"double z2": [0, 0, value, 0]}),
