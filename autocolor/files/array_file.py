@@ -1,16 +1,15 @@
 """Files of arrays, as .npz archives that numpy can open: picture files and table files.
 
 A file has a member `header`, JSON in UTF-8, and arrays of given types. Some arrays are in series, whose
-lengths the header gives. Members are stored without compression. Their sizes in the archive's directory are
-compared with the memory budget, and the size of each array with the size of its member, before numpy reads
-them. So a small or sparse file cannot take much memory. Nothing is ever unpickled.
+lengths the header gives. The sizes in the archive's directory are compared with the memory budget before
+anything is read, and an array is a view of the bytes of its member. So a small or sparse file cannot take
+much memory. Nothing is ever unpickled.
 """
 
 from __future__ import annotations
 
 import io
 import json
-import math
 import zipfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -102,7 +101,7 @@ def array_file_bytes(kind: ArrayFileKind, header: Mapping[str, Any], arrays: Map
 
 
 def read_array_file(kind: ArrayFileKind, source: Path) -> ArrayFile:
-    """The header and the arrays of a file, read-only, each member checked before its array is made.
+    """The header and the arrays of a file, read-only.
 
     Raises InputError if the file is damaged or incomplete.
     """
@@ -110,14 +109,21 @@ def read_array_file(kind: ArrayFileKind, source: Path) -> ArrayFile:
         require_size(source.name, status.st_size, GROWTH)
         try:
             with zipfile.ZipFile(file) as archive:
-                members = archive.infolist()
                 # Members may overlap, so that their sum is larger than the file.
-                require_size(source.name, sum(member.file_size for member in members), GROWTH)
-                for member in members:
-                    _check_member(archive, member)
-            file.seek(0)
-            with np.load(file, allow_pickle=False, max_header_size=LARGEST_ARRAY_HEADER) as arrays:
-                return _checked(kind, arrays, [member.filename for member in members])
+                sizes = [member.file_size for member in archive.infolist()]
+                require_size(source.name, sum(sizes), GROWTH)
+                header = _header(kind, _array(archive, "header", HEADER_TYPE))
+                names = archive.namelist()
+                types = {
+                    name: wanted
+                    for name, wanted in kind.types(header).items()
+                    if name not in kind.optional or f"{name}.npy" in names
+                }
+                if sorted(names) != sorted(f"{name}.npy" for name in ("header", *types)):
+                    raise ValueError(f"its members are {', '.join(map(shown, names[:3]))}")
+                return ArrayFile(
+                    header, {name: _array(archive, name, wanted) for name, wanted in types.items()}
+                )
         except (InputError, MemoryError):
             raise
         except Exception as error:
@@ -129,35 +135,17 @@ def read_array_file(kind: ArrayFileKind, source: Path) -> ArrayFile:
     )
 
 
-def _check_member(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> None:
-    """Raise ValueError unless a member is stored as it is, and has as many bytes as its array needs."""
-    if member.compress_type != zipfile.ZIP_STORED:
-        raise ValueError(f"{shown(member.filename)} is compressed")
-    with archive.open(member) as data:
-        if np.lib.format.read_magic(data) != (1, 0):
-            raise ValueError(f"{shown(member.filename)} is of another version")
-        shape, _, dtype = np.lib.format.read_array_header_1_0(data, LARGEST_ARRAY_HEADER)
-        if math.prod(shape) * dtype.itemsize != member.file_size - data.tell():
-            raise ValueError(f"{shown(member.filename)} has not the bytes of {dtype} of shape {shape}")
-
-
-def _checked(kind: ArrayFileKind, arrays: Mapping[str, AnyArray], names: Sequence[str]) -> ArrayFile:
-    """The header and the arrays, by rows. Raises ValueError unless they are as their kind says."""
-    header = _header(kind, _array(arrays, "header", HEADER_TYPE))
-    absent = {name for name in kind.optional if name not in arrays}
-    types = {name: wanted for name, wanted in kind.types(header).items() if name not in absent}
-    if sorted(names) != sorted(f"{name}.npy" for name in ("header", *types)):
-        raise ValueError(f"its members are {', '.join(map(shown, names[:3]))}")
-    return ArrayFile(header, {name: _array(arrays, name, wanted) for name, wanted in types.items()})
-
-
-def _array(arrays: Mapping[str, AnyArray], name: str, wanted: ArrayType) -> AnyArray:
+def _array(archive: zipfile.ZipFile, name: str, wanted: ArrayType) -> AnyArray:
     """An array by rows. Raises ValueError if its dtype, or the number of its dimensions, is another."""
-    array = arrays[name]
-    if (array.dtype.str, array.ndim) != wanted:
-        described = f"{array.dtype.str} of shape {array.shape}"
+    data = archive.read(f"{name}.npy")
+    stream = io.BytesIO(data)
+    np.lib.format.read_magic(stream)
+    shape, is_by_columns, dtype = np.lib.format.read_array_header_1_0(stream, LARGEST_ARRAY_HEADER)
+    if (dtype.str, len(shape)) != wanted:
+        described = f"{dtype.str} of shape {shape}"
         raise ValueError(f"{name} must be {wanted[0]} with {wanted[1]} dimensions, not {described}")
-    return read_only(np.ascontiguousarray(array))
+    array = np.frombuffer(data, dtype, offset=stream.tell())
+    return read_only(np.ascontiguousarray(array.reshape(shape, order="F" if is_by_columns else "C")))
 
 
 def _header(kind: ArrayFileKind, data: AnyArray) -> dict[str, Any]:
@@ -226,13 +214,10 @@ def normal_members(normals: NodeNormals | None) -> dict[str, AnyArray]:
 
 def normals_of(arrays: Mapping[str, AnyArray]) -> NodeNormals | None:
     """The normals of the arrays of a file, if it has any; a mesh checks them. Raises InputError."""
-    tables = [arrays.get(f"{series.member}_0") for series in NORMALS.values()]
-    vectors, numbers = tables
-    if vectors is None or numbers is None:
-        if vectors is not numbers:
-            raise InputError("own normals must have vectors and numbers, not one alone")
+    vectors, numbers = (arrays.get(f"{series.member}_0") for series in NORMALS.values())
+    if vectors is None and numbers is None:
         return None
-    vectors, numbers = (
-        np.asfortranarray(table.astype(kind)) for table, kind in ((vectors, np.float32), (numbers, np.intp))
-    )
+    if vectors is None or numbers is None:
+        raise InputError("own normals must have vectors and numbers, not one alone")
+    vectors, numbers = np.asfortranarray(vectors, np.float32), np.asfortranarray(numbers, np.intp)
     return NodeNormals(read_only(vectors), read_only(numbers))

@@ -170,13 +170,10 @@ def _picture(header: Mapping[str, Any], scene: Scene, arrays: Mapping[str, AnyAr
     )
     shapes = {array.shape for array in (relative, numbers, parts) if array is not None}
     _require(len(shapes) == 1 and relative.size, f"its arrays must be of one shape, not {sorted(shapes)}")
+    # Both comparisons with NaN are false.
     _require(
-        np.isfinite(relative).all() and relative.min() >= 0,
-        "every intensity must be a finite number of at least 0",
-    )
-    _require(
-        float(relative.max()) * scale <= LARGEST_SINGLE,
-        f"intensities must stay below {LARGEST_SINGLE:.3g}, not reach {scale:g} times their own",
+        relative.min() >= 0 and float(relative.max()) * scale <= LARGEST_SINGLE,
+        f"every intensity must be a number from 0 to {LARGEST_SINGLE:.3g}",
     )
     _require(
         type(smooth) is int and smooth >= 1 and not any(size % smooth for size in numbers.shape),
@@ -197,25 +194,19 @@ def _check_numbers(scene: Scene, surfaces: AnyArray, parts: AnyArray | None) -> 
 
     Without part numbers (`parts` is None), only the surface numbers are checked.
     """
-    in_use = np.zeros(1 + len(scene.parts), np.uint8)
+    surface_of = np.zeros(1 + len(scene.parts), np.uint8)
     for part in scene.mesh.parts_in_use:
-        in_use[1 + part] = scene.surface_number_of_part[part]
-    invalid = set(np.flatnonzero(np.bincount(surfaces.ravel())).tolist()) - {*in_use.tolist()}
-    _require(
-        not invalid,
-        f"a surface number must be that of a surface with polygons, not {min(invalid, default=0)}",
-    )
-    if parts is None:
-        return
-    outside = sorted({int(parts.min()), int(parts.max())} - {*range(len(in_use))})
-    _require(not outside, f"a part number must be 0 to {len(scene.parts)}, not {[*outside, 0][0]}")
-    wrong = (in_use.take(parts) != surfaces) | ((parts > 0) & (surfaces == 0))
+        surface_of[1 + part] = scene.surface_number_of_part[part]
+    wrong = ~np.isin(surfaces, [0, *surface_of])
+    what = "surface number must be that of a surface with polygons"
+    if parts is not None and not wrong.any():
+        what = "part number must be that of a part of the surface there"
+        wrong = (parts < 0) | (parts >= len(surface_of))
+        wrong |= (surface_of.take(parts, mode="clip") != surfaces) | ((parts > 0) & (surfaces == 0))
+        surfaces = parts
     if wrong.any():
         line, element = np.argwhere(wrong)[0].tolist()
-        raise InputError(
-            f"a part number must be that of a part of the surface there, not {parts[line, element]} (line"
-            f" {line}, element {element})"
-        )
+        raise InputError(f"a {what}, not {surfaces[line, element]} (line {line}, element {element})")
 
 
 def _shown_scalar(

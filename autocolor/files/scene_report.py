@@ -57,10 +57,8 @@ def scene_report(
     if len(names) == 1:
         created.append(f"surface {names[0]!r} was created")
     elif names:
-        listed = ", ".join(map(repr, names[:12])) + (
-            f" and {len(names) - 12} more" if len(names) > 12 else ""
-        )
-        created.append(f"{len(names)} surfaces were created: {listed}")
+        more = f" and {len(names) - 12} more" if len(names) > 12 else ""
+        created.append(f"{len(names)} surfaces were created: {', '.join(map(repr, names[:12]))}{more}")
     if len(scene.surfaces) == MOST_SURFACES:
         of_last = sum(part.surface == scene.surfaces[-1].name for part in scene.parts)
         if of_last > 1:

@@ -12,14 +12,13 @@
 
 from __future__ import annotations
 
-import codecs
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Booleans, Floats, Indices, cross, dot, lengths, underflowing, used_rows
+from autocolor.arrays import Booleans, Floats, Indices, chunks, cross, dot, lengths, underflowing, used_rows
 from autocolor.checks import printable
 from autocolor.errors import InputError
 from autocolor.files.meshes.file_normals import file_normals
@@ -127,12 +126,13 @@ AT_A_TIME: Final = 1 << 14
 FLAT: Final = 1e-12
 """Assumed: a triangle has no area if twice its area is below this fraction of the squared polygon size."""
 
+
 LEAST_AREA: Final = 16 * (10 * FLAT) ** 2
 """A triangle surely has area if its cross product, squared, exceeds this fraction of the fourth power of its
 longer edge. The size of a polygon is at most twice the distance from its first corner to another."""
 
 LEAST_SQUARE: Final = 1e-250
-"""Squares below have lost digits."""
+"""Squares below this have lost digits."""
 
 
 @underflowing
@@ -161,8 +161,11 @@ def repaired(
     corners, normals = polygons.corners, None
     if placement.normals == FILE and polygons.normals is not None:
         normals = polygons.corner_normals
-    differs, counts, shortened = _without_repeats(corners, polygons.corner_counts)
-    if differs is not None:
+    counts = polygons.corner_counts
+    differs = _differ_from_next(corners, counts)
+    if not differs.all():
+        owners = np.repeat(np.arange(len(counts)), counts)
+        counts = np.bincount(owners[differs], minlength=len(counts))
         corners, normals = corners[differs], None if normals is None else normals[differs]
     too_few = counts < 3
     try:
@@ -176,27 +179,23 @@ def repaired(
         raise InputError(f"{place}: {error}") from None
 
     # Drop pieces without area.
-    has_area = np.concatenate(
-        [
-            _have_area(coordinates, node_numbers[first : first + AT_A_TIME])
-            for first in range(0, max(len(node_numbers), 1), AT_A_TIME)
-        ]
-    )
+    has_area = np.empty(len(node_numbers), np.bool_)
+    for chunk in chunks(len(node_numbers), AT_A_TIME):
+        has_area[chunk] = _have_area(coordinates, node_numbers[chunk])
     if not has_area.all():
         node_numbers, owners = node_numbers[has_area], owners[has_area]
         normals = None if normals is None else normals[has_area]
     is_kept = np.zeros(len(counts), np.bool_)
     is_kept[owners] = True
     kinds = (
-        (shortened & ~too_few & is_kept, "{} with repeated corners {} repaired"),
+        ((counts < polygons.corner_counts) & ~too_few & is_kept, "{} with repeated corners {} repaired"),
         (too_few, "{} with fewer than three different corners {} dropped"),
         (~too_few & ~is_kept, "{} without area {} dropped"),
         ((counts > 4) & is_kept, "{} with more than four corners {} split"),
     )
     for repaired_polygons, sentence in kinds:
         if count := int(repaired_polygons.sum()):
-            polygon, was = ("polygon", "was") if count == 1 else ("polygons", "were")
-            repairs.append(sentence.format(f"{count:,} {polygon}", was))
+            repairs.append(_counted(sentence, "polygon", count))
             if not len(node_numbers):
                 where = polygons.place_of(int(repaired_polygons.argmax()))
                 repairs[-1] += f" ({where})" if count == 1 else f" (the first: {where})"
@@ -208,10 +207,7 @@ def repaired(
     dropped = 0 if unused_nodes else int(np.count_nonzero(~is_used))
     if dropped:
         rows_of[NODE] = np.flatnonzero(is_used)
-        repairs.append(
-            f"{dropped:,} {'node' if dropped == 1 else 'nodes'} that no polygon uses"
-            f" {'was' if dropped == 1 else 'were'} dropped"
-        )
+        repairs.append(_counted("{} that no polygon uses {} dropped", "node", dropped))
         coordinates = coordinates[rows_of[NODE]]
         node_numbers = (np.cumsum(is_used) - 1)[node_numbers]
     own_normals = None
@@ -235,27 +231,19 @@ def repaired(
     return MeshReport(mesh, tuple(f"{place}: {repair}" for repair in repairs))
 
 
-def _without_repeats(corners: Indices, counts: Indices) -> tuple[Booleans | None, Indices, Booleans]:
-    """Which corners differ from the next one, the counts of these, and which polygons had other corners.
+def _counted(sentence: str, noun: str, count: int) -> str:
+    """A sentence with the count of a noun and its verb."""
+    return sentence.format(f"{count:,} {noun}{'s' * (count > 1)}", "was" if count == 1 else "were")
 
-    The first is None if all corners differ.
-    """
-    sides = int(counts[0]) if len(counts) else 0
-    if sides > 0 and (counts == sides).all():
-        # Measured: polygons with equally many sides take a fifth of the time of the general case below.
-        table = corners.reshape(-1, sides).T
-        if not any((table[at] == table[at - 1]).any() for at in range(sides)):
-            return None, counts, np.zeros(len(counts), np.bool_)
+
+def _differ_from_next(corners: Indices, counts: Indices) -> Booleans:
+    """Which corners differ from the next corner of their polygon; the first one follows the last one."""
     following = np.arange(1, len(corners) + 1)
     ends = np.cumsum(counts)
     filled = counts > 0
     following[ends[filled] - 1] = (ends - counts)[filled]
-    differs = corners != corners[following]
-    if differs.all():
-        return None, counts, np.zeros(len(counts), np.bool_)
-    owners = np.repeat(np.arange(len(counts)), counts)
-    kept_counts = np.bincount(owners[differs], minlength=len(counts))
-    return differs, kept_counts, kept_counts != counts
+    differ: Booleans = corners != corners[following]
+    return differ
 
 
 def _have_area(coordinates: Floats, node_numbers: Indices) -> Booleans:
@@ -265,31 +253,24 @@ def _have_area(coordinates: Floats, node_numbers: Indices) -> Booleans:
     Measured: a quick test first, and a close look at the polygons that it leaves, take a third of the time
     for triangles and two thirds for quads.
     """
-    have_area = _surely_have_area(coordinates, node_numbers.T)
-    others = np.flatnonzero(~have_area)
-    if len(others):
-        have_area[others] = ~_are_flat(coordinates[node_numbers[others]])
-    return have_area
-
-
-def _surely_have_area(coordinates: Floats, corners: Indices) -> Booleans:
-    """Which polygons of (4, n) are far from flat, for both diagonals."""
-    first = coordinates.take(corners[0], axis=0).T
-    one, two = (coordinates.take(row, axis=0).T - first for row in corners[1:3])
+    first, *others = (coordinates.take(corners, axis=0).T for corners in node_numbers.T)
+    one, two, three = (other - first for other in others)
     with np.errstate(over="ignore", under="ignore", invalid="ignore"):
-        if (corners[2] == corners[3]).all():
-            return _far_from_flat(one, two, dot(two, two))
-        three = coordinates.take(corners[3], axis=0).T - first
-        squares = np.maximum(dot(two, two), dot(three, three))
-        return _far_from_flat(one, two, squares) & _far_from_flat(one, three, squares)
+        squares = np.maximum(np.maximum(dot(one, one), dot(two, two)), dot(three, three))
+        least = np.maximum(LEAST_AREA * squares * squares, LEAST_SQUARE)
 
+        def is_far_from_flat(other: Floats) -> Booleans:
+            normals = cross(one, other)
+            is_far: Booleans = dot(normals, normals) > least
+            return is_far
 
-def _far_from_flat(one: Floats, other: Floats, squares: Floats) -> Booleans:
-    """Whether the triangles of two edges, (3, n), have area for sure; `squares` are at least the other's."""
-    normals = cross(one, other)
-    sizes = np.maximum(dot(one, one), squares)
-    are_far: Booleans = dot(normals, normals) > np.maximum(LEAST_AREA * sizes * sizes, LEAST_SQUARE)
-    return are_far
+        have_area = is_far_from_flat(two)
+        if (node_numbers[:, 2] != node_numbers[:, 3]).any():
+            have_area &= is_far_from_flat(three)
+    left = np.flatnonzero(~have_area)
+    if len(left):
+        have_area[left] = ~_are_flat(coordinates[node_numbers[left]])
+    return have_area
 
 
 def _are_flat(corners: Floats) -> Booleans:
@@ -314,14 +295,10 @@ LONGEST_NAME: Final = 200
 
 def name_of(data: bytes) -> str:
     """The name in bytes, as `printable_name`; bytes that are not UTF-8 are Latin-1."""
-    data = data.strip()
-    start = data[: 4 * LONGEST_NAME]
     try:
-        # The cut may be within a letter.
-        text = codecs.getincrementaldecoder("utf-8")().decode(start, final=start == data)
+        return printable_name(data.decode("utf-8"))
     except UnicodeDecodeError:
-        text = start.decode("latin-1")
-    return printable_name(text)
+        return printable_name(data.decode("latin-1"))
 
 
 def printable_name(text: str) -> str:

@@ -12,14 +12,14 @@ import re
 from collections.abc import Iterator
 from itertools import chain
 from pathlib import Path
-from typing import Final, NamedTuple, NoReturn
+from typing import Final, NoReturn
 
 import numpy as np
 
 from autocolor.arrays import AnyArray, Floats, Indices, Singles, chunks, cross, normalized, underflowing
 from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError
-from autocolor.files.meshes.number_text import COORDINATE, D_TO_E, MOST_PROBLEMS, decimal
+from autocolor.files.meshes.number_text import COORDINATE, D_TO_E, decimal
 from autocolor.files.meshes.repair import (
     PLAIN,
     MeshReport,
@@ -39,11 +39,8 @@ GROWTH: Final = 6
 BEGINNING: Final = re.compile(rb"\s*+(?:(?:[#;!]|//)[^\r\n]*+\s*+)*+solid\b", re.IGNORECASE)
 """A solid in text, after empty lines and comments."""
 
-FIRST_FACET: Final = re.compile(
-    BEGINNING.pattern + rb"[^\r\n]*+[\r\n]\s*+(?:colou?r\b[^\r\n]*+\s*+)?facet\s+(?:normal|outer)\s",
-    re.IGNORECASE,
-)
 IN_UTF_16: Final = (b"\xff\xfe", b"\xfe\xff")
+FACET_WORDS: Final = re.compile(rb"[\r\n]\s*facet\s+(?:normal|outer)\s", re.IGNORECASE)
 
 
 def read_stl(path: Path, placement: Placement = PLAIN) -> MeshReport:
@@ -69,22 +66,16 @@ def read_stl(path: Path, placement: Placement = PLAIN) -> MeshReport:
 def _triangles(path: Path) -> tuple[AnyArray, Indices, tuple[str, ...], tuple[str, ...]]:
     """The corners of the triangles, (corners, 3), their part numbers, the names of parts, and messages."""
     data = read_whole(path, GROWTH)
-    if has_binary_size(data) or not _is_text(data):
-        corners, skipped = read_binary(data, path.name)
-        return corners, np.zeros(len(corners) // 3, np.intp), (path.stem,), skipped
-    triangles = read_text(text_lines(data, path.name, "an ascii STL file"), path.name)
-    names = different([name_of(name) or path.stem for name in triangles.names])
-    return triangles.corners, triangles.part_numbers, names, triangles.messages
-
-
-def _is_text(data: bytes) -> bool:
-    """Whether a file is text; its size must not be a binary file's."""
-    return data[:2] in IN_UTF_16 or (BEGINNING.match(data) is not None and b"\0" not in data[:84])
+    is_text = data[:2] in IN_UTF_16 or (BEGINNING.match(data) is not None and b"\0" not in data[:84])
+    if is_text and len(data) != _binary_size(data):
+        return read_text(text_lines(data, path.name, "an ascii STL file"), path.name, path.stem)
+    corners, messages = read_binary(data, path.name)
+    return corners, np.zeros(len(corners) // 3, np.intp), (path.stem,), messages
 
 
 def begins_as_stl(head: bytes) -> bool:
     """Whether a file begins with a solid in text. Binary files are recognized by their suffix alone."""
-    return FIRST_FACET.match(head.removeprefix(UTF_8_MARK)) is not None
+    return BEGINNING.match(head.removeprefix(UTF_8_MARK)) is not None and FACET_WORDS.search(head) is not None
 
 
 # A binary file has 80 bytes of any text, the count of triangles, and 50 bytes for each triangle.
@@ -93,45 +84,36 @@ BEFORE_TRIANGLES: Final = 84
 TRIANGLE: Final = np.dtype([("normal", "<f4", (3,)), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
 
-def has_binary_size(data: bytes) -> bool:
-    """Whether a file has exactly the size of a binary file with its count of triangles."""
-    return len(data) >= BEFORE_TRIANGLES and len(data) == BEFORE_TRIANGLES + TRIANGLE.itemsize * _count(data)
+def _binary_size(data: bytes) -> int:
+    """The size of a binary file with the count of triangles that is in the data."""
+    count = int.from_bytes(data[BEFORE_TRIANGLES - 4 : BEFORE_TRIANGLES], "little")
+    return BEFORE_TRIANGLES + TRIANGLE.itemsize * count
 
 
 def read_binary(data: bytes, place: str) -> tuple[Singles, tuple[str, ...]]:
     """The corners of the triangles, (corners, 3), and messages about what was skipped.
 
-    `place` is the file's name in messages. Raises InputError if the file is cut short, or about triangles
-    with coordinates that are no finite numbers of at most 1e30 in size.
+    `place` is the file's name in messages. Raises InputError if the file is cut short, or about a triangle
+    with a coordinate that is no finite number of at most 1e30 in size.
     """
-    if len(data) < BEFORE_TRIANGLES:
-        raise InputError(
-            f"{place}: a binary STL file must have at least {BEFORE_TRIANGLES} bytes, not {len(data)}; it is"
-            " cut short, export it again"
-        )
-    count = _count(data)
-    size = BEFORE_TRIANGLES + TRIANGLE.itemsize * count
+    size = _binary_size(data)
+    count = (size - BEFORE_TRIANGLES) // TRIANGLE.itemsize
     if size > len(data):
         raise InputError(
             f"{place}: a binary STL file of {count:,} triangles must have {size:,} bytes, not {len(data):,};"
             " it is cut short or of another format, export it again"
         )
-    corners = np.array(np.frombuffer(data, TRIANGLE, count, BEFORE_TRIANGLES)["corners"])
+    corners = np.array(np.frombuffer(data, TRIANGLE, count, BEFORE_TRIANGLES)["corners"]).reshape(-1, 3)
     # A comparison with NaN is false. The bound is rounded to float32 as the coordinates are.
-    most = np.float32(LARGEST_COORDINATE)
-    if count and not (corners.min() >= -most and corners.max() <= most):
-        is_wrong = ~(np.abs(corners) <= most)
-        rule = "a coordinate must be a finite number of at most 1e30 in size"
+    is_right = np.abs(corners) <= np.float32(LARGEST_COORDINATE)
+    if not is_right.all():
+        row, axis = np.argwhere(~is_right)[0].tolist()
         raise InputError(
-            f"{place}, facet {row + 1}: {rule}, not {corners[row][is_wrong[row]][0]:g}; correct it"
-            for row in np.flatnonzero(is_wrong.any(axis=(1, 2)))[:MOST_PROBLEMS].tolist()
+            f"{place}, facet {row // 3 + 1}: a coordinate must be a finite number of at most 1e30 in size,"
+            f" not {corners[row, axis]:g}; correct it"
         )
     left = len(data) - size
-    return corners.reshape(-1, 3), (f"skipped bytes after the last triangle: {left:,}",) if left else ()
-
-
-def _count(data: bytes) -> int:
-    return int.from_bytes(data[BEFORE_TRIANGLES - 4 : BEFORE_TRIANGLES], "little")
+    return corners, (f"skipped bytes after the last triangle: {left:,}",) if left else ()
 
 
 TITLE: Final = b"binary STL, written by autocolor"
@@ -208,6 +190,7 @@ HABITS: Final = re.compile(
 )
 
 FACET: Final = "facet normal . . . outer loop vertex . . . vertex . . . vertex . . . endloop endfacet"
+MUST_BE: Final = f"a facet must be {FACET!r}, with numbers for the points"
 WORDS: Final = tuple(word.encode() for word in FACET.split())
 KEYWORDS: Final = tuple((at, word) for at, word in enumerate(WORDS) if word != b".")
 COORDINATES: Final = (8, 9, 10, 12, 13, 14, 16, 17, 18)
@@ -217,42 +200,37 @@ NUMERIC: Final = b"0123456789+-.ed "
 """The letters of coordinates in small letters."""
 
 
-class TextTriangles(NamedTuple):
-    """The corners of triangles, (corners, 3); the part number of each, the names of parts, and messages."""
+def read_text(data: bytes, place: str, stem: str) -> tuple[Floats, Indices, tuple[str, ...], tuple[str, ...]]:
+    """The corners of triangles, (corners, 3), their part numbers, the names of parts, and messages.
 
-    corners: Floats
-    part_numbers: Indices
-    names: tuple[bytes, ...]
-    messages: tuple[str, ...]
-
-
-def read_text(data: bytes, place: str) -> TextTriangles:
-    """The triangles of a file whose lines end with LF; `place` is its name in messages. Raises InputError."""
+    The lines of `data` end with LF; `place` is the file's name in messages, `stem` the name of a solid
+    without one. Raises InputError.
+    """
     corners = [np.empty((0, 3))]
     counts: list[int] = []
-    names: list[bytes] = []
+    names: list[str] = []
     name: bytes | None = None
     begin = 0
     for match in chain(SOLID.finditer(data), (None,)):
         end = len(data) if match is None else match.start()
         of_solid = [_corners(data, *block, place) for block in _blocks(data, begin, end)]
         count = sum(map(len, of_solid)) // 3
-        if name is None and count:
+        if count and name is None:
             _refuse(data, begin, place, "a facet must stand in a solid, not outside; add a line 'solid'")
-        if name is not None and of_solid:
+        if count:
             corners += of_solid
             counts.append(count)
-            names.append(name)
+            names.append(name_of(name or b"") or stem)
         if match is None:
             break
         if name is None and match[1]:
             _refuse(data, match.start(), place, "a solid must begin before it ends; remove the line")
         name = None if match[1] else match[2]
         begin = match.end()
-    return TextTriangles(
+    return (
         np.concatenate(corners),
         np.repeat(np.arange(len(counts)), np.array(counts, np.intp)),
-        tuple(names),
+        different(names),
         ("the last solid has no 'endsolid': the file may be cut short",) if name is not None else (),
     )
 
@@ -311,23 +289,18 @@ def _corners_of_facets(text: bytes) -> Floats | None:
 
 def _refuse_words(text: bytes, line: int, place: str) -> NoReturn:
     """Raise InputError about the first word of facets, from a line on, that is wrong."""
-    at = 0
-    for at, match in enumerate(re.finditer(rb"\S+", text)):
+    words = [*re.finditer(rb"\S+", text)]
+    for at, match in enumerate(words):
         wanted = WORDS[at % len(WORDS)]
-        word = match[0]
-        if wanted != b"." and word.lower() != wanted:
-            rule = (
-                f"a facet must be {FACET!r}, with numbers for the points, and {wanted.decode()!r} must stand"
-                " here"
-            )
-        elif at % len(WORDS) in COORDINATES and not abs(decimal(word)) <= LARGEST_COORDINATE:
+        if wanted != b"." and match[0].lower() != wanted:
+            rule = f"{MUST_BE} (here {wanted.decode()!r})"
+        elif at % len(WORDS) in COORDINATES and not abs(decimal(match[0])) <= LARGEST_COORDINATE:
             rule = COORDINATE
         else:
             continue
-        _refuse(text, match.start(), place, f"{rule}, not {shown(word)}; correct it", line)
-    wanted = WORDS[(at + 1) % len(WORDS)]
-    rule = f"a facet must be {FACET!r}, and not end before its {wanted.decode()!r}; correct it"
-    _refuse(text, len(text), place, rule, line)
+        _refuse(text, match.start(), place, f"{rule}, not {shown(match[0])}; correct it", line)
+    wanted = WORDS[len(words) % len(WORDS)]
+    _refuse(text, len(text), place, f"{MUST_BE}, and not end before {wanted.decode()!r}; correct it", line)
 
 
 def _refuse(data: bytes, at: int, place: str, sentence: str, first_line: int = 1) -> NoReturn:

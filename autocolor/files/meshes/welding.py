@@ -13,13 +13,10 @@ import numpy as np
 
 from autocolor.arrays import AnyArray, Indices
 
-FACTORS: Final = (
-    (0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9),
-    (0xFF51AFD7ED558CCD, 0xC4CEB9FE1A85EC53, 0x9FB21C651E98DF25),
-    (0xD6E8FEB86659FD93, 0xA0761D6478BD642F, 0xE7037ED1A0B428DB),
-    (0x8EBC6AF09C88C6E3, 0x589965CC75374CC3, 0x1D8E4E27C47D124F),
-)
-"""Odd numbers, three for each round, that spread coordinates over the slots of a table."""
+FACTORS: Final = (0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9)
+"""Odd numbers that spread coordinates over the slots of a table."""
+
+ROUNDS: Final = 4
 
 
 def welded(corners: AnyArray) -> tuple[AnyArray, Indices]:
@@ -40,9 +37,9 @@ def welded(corners: AnyArray) -> tuple[AnyArray, Indices]:
     columns = np.ascontiguousarray(points.T)
     first = np.arange(len(points))
     left = first.copy()
-    for factors in FACTORS:
+    for turn in range(ROUNDS):
         others = columns if len(left) == len(points) else columns[:, left]
-        slots = _slots(others, factors)
+        slots = _slots(others, turn)
         table = np.empty(int(slots.max(initial=0)) + 1, np.intp)
         # The last corner that is written to a slot stays there.
         table[slots[::-1]] = left[::-1]
@@ -63,14 +60,13 @@ def welded(corners: AnyArray) -> tuple[AnyArray, Indices]:
     return points[is_first], number.take(first)
 
 
-def _slots(columns: AnyArray, factors: tuple[int, int, int]) -> Indices:
-    """A slot for each point of (3, n), the same for equal points, of n to 2 n slots."""
+def _slots(columns: AnyArray, turn: int) -> Indices:
+    """A slot of a table for each point of (3, n), the same for equal points, of n to 2 n slots."""
     # The upper bits of a product of 64 bits depend on all bits of the coordinate.
-    mixed = np.zeros(columns.shape[1], np.uint64)
-    for axis, factor in zip(
-        columns.view(np.uint32 if columns.dtype == np.float32 else np.uint64), factors, strict=True
-    ):
-        mixed += axis
+    mixed = np.full(columns.shape[1], turn * FACTORS[0] % (1 << 64), np.uint64)
+    words = columns.view(np.uint32 if columns.dtype == np.float32 else np.uint64)
+    for word, factor in zip(words, FACTORS, strict=True):
+        mixed += word
         mixed ^= mixed >> np.uint64(32)
         mixed *= np.uint64(factor)
     size = max(columns.shape[1], 2).bit_length()

@@ -110,9 +110,9 @@ def members_of(data: bytes) -> dict[str, bytes]:
         return {name: archive.read(name) for name in archive.namelist()}
 
 
-def zipped(members: dict[str, bytes], compression: int = zipfile.ZIP_STORED) -> bytes:
+def zipped(members: dict[str, bytes]) -> bytes:
     buffer = io.BytesIO()
-    with zipfile.ZipFile(buffer, "w", compression) as archive:
+    with zipfile.ZipFile(buffer, "w") as archive:
         for name, data in members.items():
             archive.writestr(name, data)
     return buffer.getvalue()
@@ -220,9 +220,6 @@ def test_a_smooth_picture_comes_back_with_its_smoothness(tmp_path: Path) -> None
     assert again.picture.smooth == 3
     assert (image(*again[::-1]) == image(scene, picture)).all()
     # The file is that of a plain picture with one number more.
-    plain = read(content(lit_wall)).picture
-    assert plain.smooth == 1
-    assert (plain.intensity == again.picture.intensity).all()
     header = header_of((tmp_path / "wall.npz").read_bytes())
     assert header == {**header_of(content(lit_wall)), "smooth": 3}
 
@@ -307,13 +304,6 @@ def test_a_picture_file_of_an_older_format_is_still_read(tmp_path: Path, version
 # Damaged files.
 
 
-def test_a_file_cut_short_anywhere_is_refused() -> None:
-    whole = content(lit_wall)
-    for length in range(0, len(whole), 97):
-        with pytest.raises(InputError, match=r"^changed\.npz: a picture file must be whole"):
-            read(whole[:length])
-
-
 @given(data=st.data(), in_members=st.booleans())
 def test_changed_bytes_are_refused_or_give_a_picture_that_can_be_shown(
     data: st.DataObject, in_members: bool
@@ -323,17 +313,9 @@ def test_changed_bytes_are_refused_or_give_a_picture_that_can_be_shown(
     name = data.draw(st.sampled_from(sorted(members)))
     changed = bytearray(members[name] if in_members else whole)
     for _ in range(data.draw(st.integers(1, 4))):
-        place = data.draw(st.integers(0, len(changed) - 1))
-        kind = data.draw(st.sampled_from(["flip", "cut", "insert", "set"]))
-        if kind == "flip":
-            changed[place] ^= 1 << data.draw(st.integers(0, 7))
-        elif kind == "set":
-            changed[place] = data.draw(st.integers(0, 255))
-        elif kind == "cut":
-            del changed[place : place + data.draw(st.integers(1, 100))]
-        else:
-            changed[place:place] = data.draw(st.binary(min_size=1, max_size=40))
-        changed = changed or bytearray(b"P")
+        place = data.draw(st.integers(0, len(changed)))
+        length = data.draw(st.sampled_from([0, 1, 1, 100]))
+        changed[place : place + length] = data.draw(st.binary(max_size=40))
     with suppress(InputError):
         # Members have right checksums.
         picture, scene = read(zipped({**members, name: bytes(changed)}) if in_members else bytes(changed))
@@ -366,7 +348,7 @@ test_a_header_that_breaks_a_rule_is_refused = refused(
                 for value in (0, -3, 2, 9, 3.0, True, "3", [3])
             ),
             *((("scale", value), f"{SCALE} {shown(value)}") for value in (0, -1.5, True, "1", 3.5e38)),
-            (("scale", 3.3e38), ": intensities must stay below 3.4e+38, not reach 3.3e+38 times their own"),
+            (("scale", 3.3e38), ": every intensity must be a number from 0 to 3.4e+38"),
             (("surfaces", ["other"]), f"{SURFACES} ['other']"),
             (("surfaces", ["wall", "more"]), f"{SURFACES} ['wall', 'more']"),
             (("scene", []), f"{TABLES} []"),
@@ -432,7 +414,7 @@ def test_a_header_that_is_no_json_of_ours_is_refused(text: bytes) -> None:
 INTENSITY = "relative_intensity"
 RASTER = (LINES, ELEMENTS)
 OF_TYPE = " dimensions, not "
-FINITE = "every intensity must be a finite number of at least 0"
+FINITE = "every intensity must be a number from 0 to 3.4e+38"
 ONE_SHAPE = "its arrays must be of one shape, not"
 MEMBERS = "its members are 'header.npy', 'relative_intensity.npy', 'surface_number.npy'"
 
@@ -453,7 +435,7 @@ MEMBERS = "its members are 'header.npy', 'relative_intensity.npy', 'surface_numb
         (lit_wall, "coordinates", np.full((4, 3), 1e31), "coordinates must be"),
         (lit_wall, "node_numbers", np.array([[0, 1, 2, 4]], np.int32), "of the node table (0 to 3)"),
         (lit_wall, "part_numbers", np.array([1], np.int32), "of the part table (0 to 0)"),
-        (lit_wall, "part_numbers", np.array([{"a": 1}], object), "has not the bytes of object"),
+        (lit_wall, "part_numbers", np.array([{"a": 1}], object), OF_TYPE),
         (in_color, "mesh_scalar_0", np.zeros(11), "one value a node"),
         (in_color, "mesh_scalar_0", np.zeros(12, np.float32), OF_TYPE),
         (in_color, "mesh_scalar_3", np.zeros(6), MEMBERS),
@@ -477,23 +459,17 @@ def test_part_numbers_that_break_a_rule_are_refused_in_a_sentence() -> None:
     assert again.picture.parts == ("a", "b", "none")
     numbers = again.picture.part_number
     assert set(numbers.ravel().tolist()) == {0, 1, 2}
-    line, element = np.argwhere(numbers == 1)[0].tolist()
-    empty_line, empty = np.argwhere(numbers == 0)[0].tolist()
-    at, not_there = f"(line {line}, element {element})", f"(line {empty_line}, element {empty})"
-    of_surface = "a part number must be that of a part of the surface there"
-    for place, number, sentence in (
-        ((line, element), 4, "a part number must be 0 to 3, not 4"),
-        ((line, element), -1, "a part number must be 0 to 3, not -1"),
-        ((line, element), 0, f"{of_surface}, not 0 {at}"),
-        ((line, element), 3, f"{of_surface}, not 3 {at}"),
-        ((empty_line, empty), 1, f"{of_surface}, not 1 {not_there}"),
-        ((empty_line, empty), 3, f"{of_surface}, not 3 {not_there}"),
-    ):
-        changed = numbers.copy()
-        changed[place] = number
-        with pytest.raises(InputError) as caught:
-            read(with_array(whole, "part_number", changed))
-        assert str(caught.value) == f"changed.npz: {sentence}; save the picture again"
+    for at, wrong in ((1, (4, -1, 0, 3)), (0, (1, 3))):
+        line, element = np.argwhere(numbers == at)[0].tolist()
+        for number in wrong:
+            changed = numbers.copy()
+            changed[line, element] = number
+            with pytest.raises(InputError) as caught:
+                read(with_array(whole, "part_number", changed))
+            assert str(caught.value) == (
+                "changed.npz: a part number must be that of a part of the surface there, not"
+                f" {number} (line {line}, element {element}); save the picture again"
+            )
     # Another part of the same surface may be there.
     read(with_array(whole, "part_number", np.where(numbers > 0, 2, 0).astype(np.int32)))
 
@@ -537,7 +513,6 @@ def test_other_members_are_refused() -> None:
     with zipfile.ZipFile(twice, "a") as archive:
         archive.writestr("header.npy", members["header.npy"])
     for data in (
-        zipped(members, zipfile.ZIP_DEFLATED),
         zipped({}),
         zipped({name: data for name, data in members.items() if name != "header.npy"}),
         zipped({**members, "../header.npy": b""}),
@@ -550,11 +525,13 @@ def test_other_members_are_refused() -> None:
         assert len(str(caught.value)) < 400
 
 
-def test_a_file_that_is_missing_or_of_another_kind_is_refused(tmp_path: Path) -> None:
+def test_a_file_that_is_missing_cut_short_or_of_another_kind_is_refused(tmp_path: Path) -> None:
     with pytest.raises(MissingInputError):
         read_picture(tmp_path / "wall.npz")
     with pytest.raises(InputError, match="must be a regular file, not a folder"):
         read_picture(tmp_path)
-    for data in (b"x", b"PK\x05\x06" + b"\0" * 18, b"\x80\x04N.", b"PK" * 500):
+    whole = content(lit_wall)
+    cut = (whole[:length] for length in range(0, len(whole), 97))
+    for data in (b"x", b"PK\x05\x06" + b"\0" * 18, b"\x80\x04N.", b"PK" * 500, *cut):
         with pytest.raises(InputError, match=r"^changed\.npz: a picture file must be whole"):
             read(data)

@@ -137,7 +137,6 @@ def test_elements_with_any_properties_are_read_and_refused_if_they_are_cut(
     }
     data = ply_file(elements, order=order)
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(ply_elements, "ROWS_AT_ONCE", at_once)
         patched.setattr(number_text, "BLOCK", at_once)
         report = read(path, data + (b"end" if order else b"1\n"))
         # In text, the last number may lose a digit.
@@ -171,65 +170,39 @@ def test_lines_end_in_any_way(path: Path, order: str, feed: str) -> None:
     assert report.repairs == ()
 
 
-LINE = "a line of the header must be a format, a comment, an element with its count, one of its properties or"
+LINE = (
+    "a line of the header must be a format, a comment, an element with its count or one of its properties"
+    " with a type of PLY, each with a name of its own"
+)
 FACE = "element face 1"
+FIRST = "a.ply: a PLY file must begin with a line 'ply', not"
+END = "a.ply: a header must have a line 'end_header' within 16,777,216 bytes"
 
 test_a_wrong_header_is_refused = refused(
     "a.ply",
     [
-        *(
-            (data, f"a.ply: {sentence}; export it again")
-            for data, sentence in (
-                *(
-                    (data, f"a PLY file must begin with a line 'ply', not {data.decode().strip()!r}")
-                    for data in (b"", b"solid a\n", b"plyx\n")
-                ),
-                (b"ply\nend_header\n", "a header must have a line 'format', not none"),
-                (header(FACE)[:-11], "a header must have a line 'end_header' before the file ends"),
-                (header(FACE, order=""), "an element must have a property, not none: 'face'"),
-            )
-        ),
+        (b"", f"{FIRST} ''; export it again"),
+        (b"solid a\n", f"{FIRST} 'solid a'; export it again"),
+        (b"plyx\n", f"{FIRST} 'plyx'; export it again"),
+        (b"ply\nend_header\n", "a.ply: a header must have a line 'format', not none; export it again"),
+        (header(FACE)[:-11], f"{END}; export it again"),
         *(
             (
                 header(*lines),
-                f"a.ply, line {2 + len(lines)}: {LINE} end_header, not {lines[-1]!r}; export it again",
+                f"a.ply, line {2 + len(lines)}: {LINE}, not {lines[-1]!r}; export it again",
             )
             for lines in (
-                *(
-                    [line]
-                    for line in (
-                        "format binary 1.0",
-                        "format ascii 2.0",
-                        "elements vertex 8",
-                        "property int x",
-                    )
-                ),
+                ["format binary 1.0"],
+                ["format ascii 2.0"],
+                ["elements vertex 8"],
+                ["property int x"],
                 *([f"element {words}"] for words in ("a -1", "a", "a 1 2", f"a {10**18}")),
-                *([FACE, f"property {words}"] for words in ("float", "list int x", "list int int x y")),
-            )
-        ),
-        *(
-            (header(FACE, *lines), f"a.ply, line {sentence}")
-            for *lines, sentence in (
-                (
-                    "property flaot x",
-                    "4: a type must be one of PLY, not 'flaot'; did you mean 'float'?; export it again",
+                *(
+                    [FACE, f"property {words}"]
+                    for words in ("float", "list int x", "list int int x y", "flaot x", "list float int x")
                 ),
-                (
-                    "property list float int x",
-                    "4: the count of a list must have a whole type, not 'float'; export it again",
-                ),
-                (FACE, "4: the name of an element must be unique, not repeated: 'face'; rename one"),
-                (
-                    *("property float x", "property int x"),
-                    "5: the name of a property must be unique, not repeated: 'x'; rename one",
-                ),
-                (
-                    *(f"property int p{at}" for at in range(500)),
-                    *(f"element a{at} 0" for at in range(500)),
-                    "1003: a header must have at most 1,000 elements and properties, not more; leave out what"
-                    " is not needed",
-                ),
+                [FACE, FACE],
+                [FACE, "property float x", "property int x"],
             )
         ),
     ],
@@ -245,12 +218,9 @@ def test_a_header_may_be_long_but_not_endless(path: Path, monkeypatch: pytest.Mo
     assert len(report.mesh.node_numbers) == 1
     assert report.repairs == tuple(f"a.ply: skipped elements 'e{at}': 1" for at in range(96, -1, -2))
     # Without its line feed, a header ends where the file ends.
-    assert "must have the properties x, y and z, not none" in refusal(read, path, header()[:-1])
+    assert "must have the numbers x, y and z, not only none" in refusal(read, path, header()[:-1])
     monkeypatch.setattr(ply_elements, "LARGEST_HEADER", 100)
-    for comments in (["comment a"] * 100, ["comment a" + "a" * 1000]):
-        assert refusal(read, path, header(*comments)) == (
-            "a.ply: a header must have a line 'end_header' within 100 bytes; export it again"
-        )
+    assert "'end_header' within 100 bytes" in refusal(read, path, header(*["comment a"] * 100))
 
 
 FACES = [(0, 1, 2), (0, 2, 3), (0, 1, 2, 3)]
@@ -283,7 +253,7 @@ def test_numbers_of_faces_and_comments_make_the_parts(
 
 
 def test_numbers_that_are_no_parts_are_scalars(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(ply, "MOST_UNNAMED_PARTS", 2)
+    monkeypatch.setattr(ply, "MOST_PARTS", 2)
     for values in ([1, 2, 3], [0.5, 0.5, 1], [np.nan, 1, 1], [2.0**53] * 3):
         mesh = read(path, plate(corners=FACES, face={"double part": values})).mesh
         assert (mesh.part_names, len(mesh.scalars)) == (("a",), 1)
@@ -330,13 +300,9 @@ def test_normals_colors_and_texture_coordinates_are_scalars_only_if_a_comment_sa
     assert [each.name for each in others] == [f"{name}_of_it" for name in names]
 
 
-@pytest.mark.parametrize("names", [("nx", "ny", "nz"), ("normal_x", "normal_y", "normal_z")])
 @pytest.mark.parametrize("order", FORMATS)
-def test_the_normals_of_vertices_are_used(path: Path, names: tuple[str, ...], order: str) -> None:
-    columns = {
-        f"float {name}": row
-        for name, row in zip(names, ([0, 2, 0, 0], [0, 0, 3, 0], [4, 0, 0, 0]), strict=True)
-    }
+def test_the_normals_of_vertices_are_used(path: Path, order: str) -> None:
+    columns = {"float nx": [0, 2, 0, 0], "float ny": [0, 0, 3, 0], "float nz": [4, 0, 0, 0]}
     path.write_bytes(plate(vertex=columns, order=order))
     report = read_ply(path, Placement(normals=FILE))
     own = report.mesh.own_normals
@@ -345,194 +311,127 @@ def test_the_normals_of_vertices_are_used(path: Path, names: tuple[str, ...], or
     assert own.numbers[0, 3] == -1
     assert report.repairs == ("a.ply: 1 corner has no normal of its own; it was computed",)
     assert read_ply(path).mesh.own_normals is None
-    path.write_bytes(plate(f"scalar {names[0]} slope", vertex=columns, order=order))
+    path.write_bytes(plate("scalar nx slope", vertex=columns, order=order))
     assert read_ply(path, Placement(normals=FILE)).mesh.own_normals is None
 
 
-LACKS = "a.ply: an element {!r} must have {}, not {}; export it with {}"
-AXES = "the properties x, y and z"
-LIST = "a list 'vertex_indices'"
+AXES = "a.ply: an element 'vertex' must have the numbers x, y and z, not only"
+LIST = "a.ply: an element 'face' must have a list 'vertex_indices', not only"
 LARGE = "a coordinate must be a finite number of at most 1e30 in size"
-CORNER = "a corner must be a node number"
-NO_NODES = {"vertex": xyz([]), "face": {CORNERS: [(0, 1, 2)]}}
-FAR = (-np.inf, np.nextafter(1e30, np.inf))
+CORNER = "a corner must be the number of one of 4 nodes, from 0 on"
+VALUE = "a value must be a decimal number, nan or inf"
+STRIP = {"vertex": xyz(), "tristrips": {CORNERS: [(0, 1, 2)]}}
+
+WRONG: list[tuple[Mapping[str, Columns], str]] = [
+    ({"vertex": {"int x": [1], "int y": [2]}}, f"{AXES} x and y; export it with coordinates"),
+    ({"face": {CORNERS: [(0, 1, 2)]}}, f"{AXES} none; export it with coordinates"),
+    (
+        {"vertex": {"list uchar int x": [(1,)], "int y": [2], "int z": [3]}},
+        f"{AXES} x, y and z; export it with coordinates",
+    ),
+    *(
+        (
+            {"vertex": xyz([(0, 0, 0), (0, value, 0)])},
+            f"a.ply, vertex 1: {LARGE}, not {value:g}; correct it",
+        )
+        for value in (np.nan, -np.inf, np.nextafter(1e30, np.inf))
+    ),
+    *(
+        (
+            {"vertex": xyz(), "face": {f"int {name}": [1]}},
+            f"{LIST} {name}; export it with polygons",
+        )
+        for name in ("quality", "vertex_indices")
+    ),
+    *(
+        (
+            {"vertex": xyz(), "face": {f"list uchar {kind} vertex_indices": [(0, 1, 2), corners]}},
+            f"a.ply, face 1: {CORNER}, not {told}; correct it",
+        )
+        for kind, corners, told in (
+            ("int", (0, 4, -1, 3), "4"),
+            ("uint64", (0, 1, 2**64 - 1), "1.84467440737096e+19"),
+            ("float", (0, 1.5, np.nan), "1.5"),
+        )
+    ),
+    (
+        {"vertex": xyz(), "face": {"list short int vertex_index": [[0, 1] * 500, [0, 1, 2] * 400]}},
+        "a.ply, face 1: a polygon must have at most 1,000 corners, not 1,200; split it",
+    ),
+    (STRIP, "a.ply: elements 'tristrips' are not read; export it with faces"),
+]
 
 test_what_is_refused = refused(
     "a.ply",
-    [
+    [(ply_file(elements), sentence) for elements, sentence in WRONG]
+    + [
         (
-            ply_file({"vertex": {"int x": [1], "int y": [2]}}),
-            LACKS.format("vertex", AXES, "only x and y", "coordinates"),
-        ),
-        (ply_file({"face": {CORNERS: [(0, 1, 2)]}}), LACKS.format("vertex", AXES, "none", "coordinates")),
-        (
-            ply_file({"vertex": {"list uchar int x": [(1,)], "int y": [2], "int z": [3]}}),
-            LACKS.format("vertex", AXES, "only x, y and z", "coordinates"),
-        ),
-        (
-            ply_file({"vertex": xyz([(0, 0, 0), (1, np.nan, 1)])}),
-            f"a.ply, vertex 1: {LARGE}, not nan; correct it",
-        ),
-        *(
-            (
-                ply_file({"vertex": xyz([(0, value, 0)])}),
-                f"a.ply, vertex 0: {LARGE}, not {value:g}; correct it",
-            )
-            for value in FAR
-        ),
-        *(
-            (
-                ply_file({"vertex": xyz(), "face": {declared: [1]}}),
-                LACKS.format("face", LIST, f"only {declared.split()[1]}", "polygons"),
-            )
-            for declared in ("int quality", "int vertex_indices")
-        ),
-        (
-            plate(corners=[(0, 1, 2), (0, 4, -1, 3), (2, 1, -3)]),
-            f"a.ply, face 1: {CORNER} from 0 to 3, not 4; correct it",
-        ),
-        *(
-            (
-                ply_file({"vertex": xyz(), "face": {f"list uchar {kind} vertex_indices": [corners]}}),
-                f"a.ply, face 0: {CORNER} from 0 to 3, not {told}; correct it",
-            )
-            for kind, corners, told in (
-                ("uint64", (0, 1, 2**64 - 1), "1.84467440737096e+19"),
-                ("float", (0, 1.5, np.nan), "1.5"),
-            )
-        ),
-        (
-            ply_file(NO_NODES),
-            f"a.ply, face 0: {CORNER} of the file, which has no nodes, not 0; correct it",
-        ),
-        (
-            ply_file(
-                {"vertex": xyz(), "face": {"list short int vertex_index": [[0, 1] * 500, [0, 1, 2] * 400]}}
-            ),
-            "a.ply, face 1: a polygon must have at most 1,000 corners, not 1,200; split it",
-        ),
-        (
-            ply_file({"vertex": xyz(), "tristrips": {CORNERS: [(0, 1, 2, -2)]}}),
-            f"a.ply, tristrips 0: {CORNER} from -1 to 3, not -2; correct it",
-        ),
-        *(
-            (
-                plate(order="", breaks="\n\n", corners=[(0, 1, 9)], vertex={"double z2": [0, 0, value, 0]}),
-                f"a.ply, line {sentence}",
-            )
-            for value, sentence in (
-                (0, f"19: {CORNER} from 0 to 3, not 9; correct it"),
-                *(
-                    (word, f"15: a value must be a decimal number, nan or inf, not {word!r}; correct it")
-                    for word in ("0x1", "1_0", "1,5", "1-2", "--1")
-                ),
-            )
-        ),
+            plate(order="", breaks="\n\n", corners=[(0, 1, 9)], vertex={"double z2": [0, 0, value, 0]}),
+            f"a.ply, line {sentence}; correct it",
+        )
+        for value, sentence in (
+            (0, f"19: {CORNER}, not 9"),
+            *((word, f"15: {VALUE}, not {word!r}") for word in ("0x1", "1_0", "1,5", "1-2", "--1")),
+        )
     ],
 )
 
 
-def sized(count: int | str, *properties: str, data: bytes, name: str = "vertex", order: str = "<") -> bytes:
+def sized(count: int, *properties: str, data: bytes, order: str = "<") -> bytes:
     """An element of a count of rows, whatever data follow."""
-    return header(f"element {name} {count}", *(f"property {each}" for each in properties), order=order) + data
+    return header(f"element face {count}", *(f"property {each}" for each in properties), order=order) + data
 
 
-WIDTH = "a line of an element 'vertex' must have the values of x and of_it, and this has too {}; correct it"
+OUTSIDE = "elements 'face' must end within the file, with lists of 0 or more values"
+WIDTH = (
+    "a line of an element 'face' must have the values of x and of_it, with the count before each list, and no"
+    " others; correct it"
+)
 WIDE = ("float x", "list uchar int of_it")
 
 test_what_does_not_fit_its_counts_is_refused = refused(
     "a.ply",
     [
-        (
-            sized(10**17, *WIDE, data=bytes(20)),
-            "a.ply: 100,000,000,000,000,000 elements 'vertex' must have at least 500,000,000,000,000,000"
-            f" bytes, not 20; {CUT}",
-        ),
+        (sized(10**17, *WIDE, data=bytes(20)), f"a.ply: 100,000,000,000,000,000 {OUTSIDE}; {CUT}"),
         *(
-            (
-                sized(2, f"list {kind} uchar of_it", data=data),
-                f"a.ply: 2 elements 'vertex' must have all their lists before the end, not after it; {CUT}",
-            )
+            (sized(2, f"list {kind} uchar of_it", data=data), f"a.ply: 2 {OUTSIDE}; {CUT}")
             for kind, data in (
                 ("uchar", b"\1\0\xff\0"),
                 ("int", b"\1\0\0\0\0\xff\xff\xff\x7f"),
                 ("uint64", b"\0" * 8 + b"\xff" * 8),
+                ("char", b"\xff" + bytes(20)),
+                ("int", b"\0\0\0\0\xfe\xff\xff\xff" + bytes(20)),
             )
         ),
-        *(
-            (
-                sized(2, f"list {kind} uchar of_it", name="face", data=bytes(before) + count + bytes(20)),
-                f"a.ply, face {row}: the count of a list must be 0 or more, not less; export it again",
-            )
-            for kind, count in (("char", b"\xff"), ("int", b"\xfe\xff\xff\xff"))
-            for row, before in ((0, 0), (1, len(count)))
-        ),
+        (sized(1, "list uint64 uchar a", data=b"\xff" * 8 + bytes(9)), f"a.ply: 1 {OUTSIDE}; {CUT}"),
         (
-            sized(
-                3, "list char uchar a", "list char uchar of_it", name="face", data=b"\0\0\0\xff" + bytes(9)
-            ),
-            "a.ply, face 1: the count of a list must be 0 or more, not less; export it again",
+            sized(3, "list char uchar a", "list char uchar of_it", data=b"\0\0\0\xff" + bytes(9)),
+            f"a.ply: 3 {OUTSIDE}; {CUT}",
         ),
         *(
             (
                 sized(count, *WIDE, order="", data=b"1 0\n"),
-                f"a.ply: there must be {count:,} elements 'vertex', not 1; {CUT}",
+                f"a.ply: there must be {count:,} elements 'face', not 1; {CUT}",
             )
             for count in (2, 999_999_999_999)
         ),
         *(
-            (sized(2, *WIDE, order="", data=data.encode()), f"a.ply, {sentence}")
-            for data, sentence in (
-                *(
-                    (
-                        f"1 {word} 5\n2 0\n",
-                        f"line 7: the count of a list must be a whole number from 0 on, not"
-                        f" {word!r}; correct it",
-                    )
-                    for word in ("-1", "0.5", "nan")
-                ),
-                ("1 0\n2 2 0\n", f"line 8: {WIDTH.format('few')}"),
-                ("1\n2 0 0 0 0\n", f"line 7: {WIDTH.format('few')}"),
-                ("1 0 5\n2 0\n", f"line 7: {WIDTH.format('many')}"),
+            (sized(2, *WIDE, order="", data=data), f"a.ply, line {line}: {WIDTH}")
+            for line, data in (
+                *((7, f"1 {word} 5\n2 0\n".encode()) for word in ("-1", "0.5", "nan", "2")),
+                (8, b"1 0\n2 2 0\n"),
+                (7, b"1\n2 0 0 0 0\n"),
+                (7, b"1 0 5\n2 0\n"),
             )
         ),
     ],
 )
 
 
-def test_faces_may_be_empty_and_rows_long(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_faces_may_be_empty(path: Path) -> None:
     for order in FORMATS:
         mesh = read(path, plate(corners=[(), (), (), (), (), (0, 1, 2, 3)], order=order)).mesh
         assert mesh.node_numbers.tolist() == [[0, 1, 2, 3]]
-    monkeypatch.setattr(ply_elements, "LONGEST_ROW", 2)
-    assert read(path, plate(corners=FACES)).mesh.node_numbers[0].tolist() == [0, 1, 2, 2]
-
-
-@given(
-    strips=st.lists(st.lists(st.integers(-1, 5), max_size=12), max_size=4), order=st.sampled_from([*FORMATS])
-)
-def test_triangles_are_those_of_one_strip_after_the_other(
-    strips: list[list[int]], order: str, tmp_path_factory: pytest.TempPathFactory
-) -> None:
-    # No three of these nodes lie on a line.
-    nodes = [(at, at * at, at**3) for at in range(6)]
-    expected = [[nodes[0], nodes[1], nodes[2]]]
-    for each in strips:
-        strip: list[int] = []
-        for number in [*each, -1]:
-            if number >= 0:
-                strip.append(number)
-                continue
-            for at in range(len(strip) - 2):
-                a, b, c = strip[at : at + 3]
-                if len({a, b, c}) == 3:
-                    expected.append([nodes[row] for row in ((b, a, c) if at % 2 else (a, b, c))])
-            strip = []
-    elements = {"vertex": xyz(nodes), "tristrips": {CORNERS: [(0, 1, 2), *strips]}}
-    path = tmp_path_factory.getbasetemp() / "strips.ply"
-    mesh = read(path, ply_file(elements, order=order)).mesh
-    found = mesh.coordinates[mesh.node_numbers[:, :3]]
-    assert [[tuple(node) for node in triangle] for triangle in found.tolist()] == expected
 
 
 def test_strips_are_left_out_where_there_are_faces(path: Path) -> None:
