@@ -361,8 +361,8 @@ def stored_tables(connection: sqlite3.Connection) -> StoredTables:
         columns = connection.execute(query).fetchall() if kind == "table" else []
         if not columns or any(column[6] in NOT_STORED for column in columns):
             raise InputError(
-                f"{table} must be a table of plain columns, not a view or a virtual table, and without computed"
-                " columns; make it one, or rename it"
+                f"{table} must be a table of plain columns, and no view, virtual table or computed column;"
+                " make it one, or rename it"
             )
         tables[table] = [column[1].lower() for column in columns]
     require_names("a store must have the tables", (NODES, POLYGONS), names)
@@ -396,9 +396,7 @@ def rows_of_table(
     rows = [dict(zip(columns, row, strict=True)) for row in connection.execute(query)]
     is_single = table == MESH or (table in ROW_TABLES and ROW_TABLES[table].is_single)
     if len(rows) > (most := 1 if is_single else MOST_ROWS):
-        raise InputError(
-            f"{table} must have at most {most:,} row{'s' * (most > 1)}, not more; leave rows out"
-        )
+        raise InputError(f"the rows of {table} must be at most {most:,}, not more; leave rows out")
     for number, row in enumerate(rows, 1):
         for name, value in row.items():
             if isinstance(value, bytes):

@@ -229,8 +229,8 @@ def _statement(connection: sqlite3.Connection, seconds: float, may_change: bool 
     """
     changed: set[str] = set()
     late = UsageError(
-        f"a statement must end within {seconds:g} seconds, not run on; narrow it with WHERE or LIMIT, or allow"
-        " more with --seconds"
+        f"a statement must end within {seconds:g} seconds, not run on; narrow it with WHERE or LIMIT, or"
+        " allow more with --seconds"
     )
     longest = connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, LONGEST_COMPUTED)
     try:
