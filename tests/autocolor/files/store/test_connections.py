@@ -159,22 +159,6 @@ def test_what_a_log_holds_is_read_and_is_not_played_into_the_next_store(
     assert os.listdir(tmp_path).count("copy.sqlite-wal") == 0
 
 
-def test_a_log_is_read_beside_its_program_and_the_store_is_not_replaced_then(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(connections, "SECONDS_OF_WAITING", 0.05)
-    path = small_store(tmp_path)
-    with closing(sqlite3.connect(path, isolation_level=None)) as other:
-        other.execute("PRAGMA journal_mode = WAL")
-        other.execute(BRIGHTER)
-        with closing(loaded(path)) as connection:
-            assert connection.execute(BRIGHTNESS).fetchone() == (2.0,)
-        with pytest.raises(WriteError, match="is writing to the store, or has it open in WAL mode; close it"):
-            change(path)
-        other.execute(BRIGHTER)
-    assert brightness(path) == 3.0
-
-
 def test_a_store_in_wal_mode_without_a_log_is_read_without_a_trace(tmp_path: Path) -> None:
     path = small_store(tmp_path)
     run(path, "PRAGMA journal_mode = WAL")
@@ -222,19 +206,27 @@ def test_no_store_is_made_beside_a_file_that_would_be_played_into_it(
 # Other programs.
 
 
-def test_a_program_that_is_writing_is_waited_for_and_then_refused(
+def test_a_program_that_has_the_store_is_waited_for_and_then_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(connections, "SECONDS_OF_WAITING", 0.05)
     path = small_store(tmp_path)
+    sentence = "another program is writing to the store, or has it open in WAL mode; close it"
     with closing(sqlite3.connect(path, isolation_level=None)) as other:
         other.execute("BEGIN EXCLUSIVE")
         for act, error in ((read, InputError), (change, WriteError)):
-            with pytest.raises(error, match="another program is writing to the store"):
+            with pytest.raises(error, match=sentence):
                 act(path)
         other.execute(BRIGHTER)
         other.execute("COMMIT")
-    assert brightness(path) == 2.0
+        other.execute("PRAGMA journal_mode = WAL")
+        other.execute(BRIGHTER)
+        with closing(loaded(path)) as connection:
+            assert connection.execute(BRIGHTNESS).fetchone() == (3.0,)
+        with pytest.raises(WriteError, match=sentence):
+            change(path)
+        other.execute(BRIGHTER)
+    assert brightness(path) == 4.0
 
 
 def test_nobody_else_changes_a_store_while_it_is_changed(tmp_path: Path) -> None:
@@ -298,28 +290,22 @@ REFUSED = (
     "ATTACH 'other.db' AS other",
     "DETACH main",
     "SELECT * FROM nodes WHERE nodes MATCH 'a'",
-    "SELECT rtreenode(2, zeroblob(100))",
     "SELECT FTS3_Tokenizer('simple', x'00')",
     "PRAGMA journal_mode = WAL",
     "PRAGMA writable_schema = ON",
     "PRAGMA user_version = 9",
     "PRAGMA Application_Id = 9",
-    "PRAGMA trusted_schema = ON",
     "VACUUM INTO 'x'",
     "CREATE TABLE other (x)",
-    "CREATE TEMP TABLE other (x)",
     "CREATE TEMP VIEW other AS SELECT 1",
-    "CREATE VIEW other AS SELECT 1",
     "CREATE INDEX other ON nodes (x)",
     "CREATE TRIGGER other AFTER DELETE ON nodes BEGIN SELECT 1; END",
     "CREATE VIRTUAL TABLE other USING fts5(x)",
-    "DROP TABLE nodes",
     "DROP VIEW far",
     "ALTER TABLE nodes ADD COLUMN w",
     "REINDEX nodes",
     "ANALYZE",
     "DELETE FROM sqlite_master",
-    "UPDATE SQLite_schema SET name = 'x'",
     # A trigger changes nothing, whatever the schema calls it.
     "DELETE FROM far",
 )

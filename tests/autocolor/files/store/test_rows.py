@@ -43,12 +43,6 @@ def test_tables_that_are_missing_are_created_and_told(tmp_path: Path) -> None:
     assert [(part.name, part.surface) for part in own.parts] == [("hood", "hood"), ("roof", "roof")]
 
 
-def test_an_empty_table_of_lights_means_no_lights(tmp_path: Path) -> None:
-    path = small_store(tmp_path)
-    run(path, "DELETE FROM lights")
-    assert read_store(path).scene.lights == ()
-
-
 def test_a_store_that_lacks_columns_gives_their_defaults(tmp_path: Path) -> None:
     path = small_store(tmp_path)
     run(path, "UPDATE lights SET flaps_z_maximum = 0.5 WHERE name = 'rim'")
@@ -62,21 +56,6 @@ def test_a_store_that_lacks_columns_gives_their_defaults(tmp_path: Path) -> None
     )
     expected = small_scene().with_light("rim", flaps={"z": {"maximum": 0.5}})
     assert read_store(path).scene.lights == expected.lights
-
-
-def test_rows_by_name_and_names_are_read_from_what_any_tool_writes(tmp_path: Path) -> None:
-    path = small_store(tmp_path)
-    run(
-        path,
-        "UPDATE lights SET half_spaces = json_object('left', json_object("
-        "'point', json_array(0, 0, 1), 'direction', json_array(1, 0, 0))) WHERE name = 'rim'",
-        "UPDATE lights SET only_parts = '[\"hood\"]', follows = 'key' WHERE name = 'rim'",
-    )
-    assert read_store(path).scene.light("rim") == small_scene().light("rim").replace(
-        half_spaces={"left": {"point": (0, 0, 1), "direction": (1, 0, 0)}},
-        only_parts=["hood"],
-        follows="key",
-    )
 
 
 def test_a_missing_node_is_named_also_where_no_table_tells_of_references(tmp_path: Path) -> None:

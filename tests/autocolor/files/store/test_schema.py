@@ -56,15 +56,6 @@ def test_every_table_of_a_scene_has_a_table_and_all_are_strict(connection: sqlit
     assert strict == DEFINITIONS.keys()
 
 
-def test_every_reference_is_to_a_column_that_is_unique(connection: sqlite3.Connection) -> None:
-    connection.execute("PRAGMA foreign_keys = ON")
-    for definition in DEFINITIONS.values():
-        connection.execute(definition)
-    for table in DEFINITIONS:
-        # SQLite raises an error here for a key that fits no table.
-        assert connection.execute(f'PRAGMA foreign_key_check("{table}")').fetchall() == []
-
-
 def test_a_table_of_too_many_rows_is_refused_before_it_is_read(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -163,25 +154,6 @@ def test_a_row_in_a_row_that_is_absent_has_no_infinite_limits() -> None:
     shut = values_of(MadeUp("shut", 1, inner=Inner(shut=True)))
     assert (shut["inner_low"], shut["inner_shut"]) == (None, 1)
     assert plain_row(columns_of(MadeUp), shut)["inner"] == {"low": -math.inf, "shut": True}
-
-
-def test_rows_by_name_and_lists_of_names_are_json_and_names_are_text() -> None:
-    row = Light(
-        "key",
-        (0, 0, 1),
-        half_spaces={"left": {"point": (0, 0, 0), "direction": (0, 0, 1)}},  # type: ignore[arg-type]
-        follows="rim",
-    ).replace(only_parts=["hood", "roof"], except_surfaces=[])
-    values = values_of(row)
-    assert values["half_spaces"] == (
-        '{"left": {"point": [0.0, 0.0, 0.0], "direction": [0.0, 0.0, 1.0], "edge_width": 0.0,'
-        ' "carried": false, "on": true}}'
-    )
-    assert (values["only_parts"], values["except_surfaces"]) == ('["hood", "roof"]', "[]")
-    assert (values["only_surfaces"], values["follows"]) == (None, "rim")
-    assert values_of(Light("key", (0, 0, 1)))["half_spaces"] is None
-    types = {column.name: column.type for column in columns_of(Light)}
-    assert [types[name] for name in ("half_spaces", "only_parts", "follows")] == ["ANY", "ANY", "TEXT"]
 
 
 def test_text_stands_as_it_is_and_lists_as_json() -> None:

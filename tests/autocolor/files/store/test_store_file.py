@@ -10,9 +10,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 
 from autocolor import InputError, Mesh, MissingInputError, OutputError, Scene, UsageError, WriteError
-from autocolor.files.opening import read_scene
-from autocolor.files.scene_writing import write_scene
-from autocolor.files.store.schema import DEFINITIONS, INDEXES
+from autocolor.files.store.schema import INDEXES
 from autocolor.files.store.store_file import (
     read_store,
     store_bytes,
@@ -25,7 +23,6 @@ from tests.autocolor.files.store.stores import (
     run,
     small_scene,
     small_store,
-    tables_of,
 )
 from tests.autocolor.linked_scenes import linked_scenes
 
@@ -42,33 +39,6 @@ def test_a_store_gives_the_scene_back_that_was_written(tmp_path: Path, scene: Sc
     report = read_store(path)
     assert is_equal(report.scene, scene)
     assert report.repairs == report.created == ()
-
-
-@ONE_FILE
-@given(scene=linked_scenes())
-def test_a_store_and_a_directory_become_each_other_table_by_table(tmp_path: Path, scene: Scene) -> None:
-    first, second = tmp_path / "first.sqlite", tmp_path / "second.sqlite"
-    first.write_bytes(store_bytes(scene.replace(name="folder")))
-    folder = tmp_path / "folder"
-    write_scene(folder, read_store(first).scene, overwrite=True)
-    second.write_bytes(store_bytes(read_scene(folder)))
-    assert tables_of(first) == tables_of(second)
-
-
-def test_scalars_of_the_mesh_and_missing_values_are_kept(tmp_path: Path) -> None:
-    path = small_store(tmp_path)
-    assert is_equal(read_store(path).scene, small_scene())
-    query = "SELECT node, x, value FROM nodes LEFT JOIN node_scalars USING (node) WHERE scalar = 'stress'"
-    assert run(path, query)[2] == (3, 1.0, None)
-
-
-def test_the_tables_can_be_joined_and_selected_by_any_tool(tmp_path: Path) -> None:
-    path = small_store(tmp_path)
-    query = (
-        "SELECT polygon, parts.surface, node4 FROM polygons JOIN parts ON parts.name = polygons.part"
-        " ORDER BY polygon"
-    )
-    assert run(path, query) == [(1, "body", 4), (2, "glass", None)]
 
 
 def test_a_store_of_nodes_and_polygons_alone_is_completed_as_any_mesh_is(tmp_path: Path) -> None:
@@ -145,41 +115,8 @@ UPDATE surfaces SET model = 'gloss' WHERE name = 'glass'
 UPDATE view SET direction_x = 1, direction_y = 0, direction_z = 0, target_x = 1, target_y = 2, target_z = 3
   view, row 1: it must have either a direction or a target; give one of them
 
-UPDATE surfaces SET object_color = 'rde' WHERE name = 'body'
-  surfaces, row 1: object_color must be "#rrggbb", a name such as "red", or three whole numbers from 0 to \
-255, not 'rde'; did you mean 'red'?
-
-UPDATE surfaces SET blend = 0.5, ramp = '["#200", "#f60"]' WHERE name = 'body'
-  surfaces, row 1: ramp must stand without object_color, light_color, blend and light_percentage, not \
-beside them; leave out the ramp or these
-
-UPDATE surfaces SET exponent = 5, model = 'cook-torrance' WHERE name = 'glass'
-UPDATE lights SET concentration = 3 WHERE name = 'rim'
-  surfaces, row 2: exponent must go with model = 'phong' or 'blinn', not with 'cook-torrance'; leave it \
-out, or change the model
-  lights, row 2: concentration must come with a direction or an aim, not with a point source; add an aim
-
-UPDATE lights SET half_spaces = '{"left": {"point": [0,0,0], "direction": [0,0,1], "edge_width": -1}}' \
-WHERE name = 'key'
-  lights, row 1: half_spaces.left.edge_width must be a finite number of at least 0, not -1
-
 UPDATE lights SET half_spaces = '{"left": ' WHERE name = 'key'
   lights, row 1: half_spaces must be a table of half-spaces by name, not '{"left": '
-
-UPDATE lights SET half_spaces = 3 WHERE name = 'key'
-  lights, row 1: half_spaces must be a table of half-spaces by name, not 3
-
-UPDATE lights SET only_parts = 'hood' WHERE name = 'key'
-  lights, row 1: only_parts must be a list of names, not 'hood'
-
-UPDATE lights SET only_parts = '["hod"]' WHERE name = 'key'
-  light 'key': only_parts 'hod' is not in the part table; did you mean 'hood'?
-
-UPDATE lights SET follows = 'rm' WHERE name = 'key'
-  light 'key': follows 'rm' is not in the light table; did you mean 'rim'?
-
-UPDATE lights SET follows = 'rim' WHERE name = 'key'
-  light 'key': follows must be a light with an aim, not 'rim' without one; give it an aim
 
 CREATE TABLE two AS SELECT * FROM view
 DROP TABLE view
@@ -320,20 +257,6 @@ def test_an_addition_that_does_not_fit_keeps_the_store_as_it_is(
     assert path.read_bytes() == before
 
 
-def test_a_column_that_refers_to_a_table_has_an_index(tmp_path: Path) -> None:
-    path = small_store(tmp_path)
-    assert {name for (name,) in run(path, OWN_INDEXES)} == INDEXES.keys()
-    referring = [
-        (table, column)
-        for table in DEFINITIONS
-        for _, _, _, column, *_ in run(path, f"PRAGMA foreign_key_list({table})")
-    ]
-    assert len(referring) > 8
-    for table, column in referring:
-        indexes = [name for _, name, *_ in run(path, f"PRAGMA index_list({table})")]
-        assert any(run(path, f"PRAGMA index_info('{name}')")[0][2] == column for name in indexes)
-
-
 def test_a_store_without_indexes_is_read_changed_and_saved_over(tmp_path: Path) -> None:
     path = small_store(tmp_path)
     run(path, *(f"DROP INDEX {name}" for name in INDEXES))
@@ -435,13 +358,3 @@ def test_a_name_that_utf_8_cannot_hold_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="a name in a store must be text in UTF-8; rename it"):
         write_store(tmp_path / "odd.sqlite", small_scene().replace(name="\ud800"))
     assert os.listdir(tmp_path) == []
-
-
-def test_a_mesh_of_many_rows_comes_back_the_same(tmp_path: Path) -> None:
-    rows = 70_000
-    coordinates = np.random.default_rng(3).normal(size=(rows + 2, 3))
-    first = np.arange(rows)
-    scene = scene_of(Mesh(coordinates, np.stack([first, first + 1, first + 2], axis=1)))
-    path = tmp_path / "many.sqlite"
-    write_store(path, scene)
-    assert is_equal(read_store(path).scene, scene)
