@@ -237,7 +237,7 @@ def _show(words: Sequence[str], tables: Tables) -> None:
         for name in words[1:] or tables.names:
             tables.columns(name)
             for row in tables.select("SELECT sql FROM sqlite_master WHERE name = ?", [name]):
-                tell(*f"{row['sql']};".split("\n"), err=False)
+                tell(*f"{row['sql']!s};".split("\n"), err=False)
     else:
         click.echo(GREETING, err=True)
 

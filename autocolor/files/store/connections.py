@@ -254,14 +254,7 @@ def _write_protected(path: Path) -> Path | None:
 
 # Limits of statements.
 
-READING_PRAGMAS: Final = (
-    "foreign_key_list",
-    "index_info",
-    "index_list",
-    "table_info",
-    "table_list",
-    "table_xinfo",
-)
+READING_PRAGMAS: Final = ("index_info", "index_list", "table_info", "table_list", "table_xinfo")
 """The pragmas that only read, whatever their argument; those of NUMBERS without an argument."""
 
 NUMBERS: Final = ("application_id", "user_version")
@@ -274,18 +267,11 @@ UNSAFE_FUNCTIONS: Final = frozenset(
 )  # fmt: skip
 """The functions that do more than compute with their arguments.
 
-The functions up to `edit` run other code or open files. Most builds lack them, but Debian's has
-`fts3_tokenizer`, which gives and takes addresses of memory. The functions from `match` on read the inner
-tables of full-text and R-tree indexes, which may be damaged.
+The functions up to `edit` run other code or open files. The functions from `match` on read the inner tables
+of full-text and R-tree indexes, which may be damaged.
 """
 
-READS: Final = (
-    sqlite3.SQLITE_SELECT,
-    sqlite3.SQLITE_READ,
-    sqlite3.SQLITE_RECURSIVE,
-    sqlite3.SQLITE_TRANSACTION,
-    sqlite3.SQLITE_SAVEPOINT,
-)
+READS: Final = (sqlite3.SQLITE_SELECT, sqlite3.SQLITE_READ, sqlite3.SQLITE_RECURSIVE)
 CHANGES: Final = (sqlite3.SQLITE_INSERT, sqlite3.SQLITE_UPDATE, sqlite3.SQLITE_DELETE)
 
 STEPS: Final = 1000
@@ -385,10 +371,7 @@ def sentence_of(error: Exception) -> str:
     if code == sqlite3.SQLITE_TOOBIG:
         return f"a value must have at most {LONGEST_TEXT:,} bytes, not more; shorten it"
     if code in PLACE_ERRORS:
-        return (
-            f"the store cannot be opened where it is ({text}): the files beside it are needed too, and are"
-            " write-protected or missing; copy all of them to another folder"
-        )
+        return f"the store and its folder must let SQLite open it, and do not ({text}); copy all of its files"
     if code in DISK_ERRORS:
         return f"the disk must hold the store, and is full or fails ({text}); make room, and try again"
     return (

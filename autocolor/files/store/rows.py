@@ -256,9 +256,10 @@ def _scalars(
     connection: sqlite3.Connection, tables: StoredTables, numbers: Mapping[Any, Numbers]
 ) -> Iterator[MeshScalar]:
     """The scalars of the mesh; a value is missing if it is NULL or has no row."""
-    described: list[dict[str, Any]] = rows_of_table(connection, tables, SCALARS)
-    for row in described[: MOST_SCALARS + 1]:
-        name, of = row.get("name"), row.get("of")
+    described: list[tuple[Any, Any]] = [
+        (row.get("name"), row.get("of")) for row in rows_of_table(connection, tables, SCALARS)
+    ]
+    for name, of in described[: MOST_SCALARS + 1]:
         values = np.full(len(numbers.get(of, ())), np.nan)
         if of in VALUES and VALUES[of] in tables:
             pairs = _numbers_in(
@@ -270,8 +271,8 @@ def _scalars(
                 for number in pairs[of][rows < 0]
             )
             values[rows] = pairs["value"]
-        yield MeshScalar(name, read_only(values), of)  # type: ignore[arg-type]
-    known = [row.get("name") for row in described]
+        yield MeshScalar(name, read_only(values), of)
+    known = [name for name, _ in described]
     for table in VALUES.values():
         if "scalar" in tables.get(table, ()):
             _raise_any(

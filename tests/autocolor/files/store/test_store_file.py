@@ -10,7 +10,6 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 
 from autocolor import InputError, Mesh, MissingInputError, OutputError, Scene, UsageError, WriteError
-from autocolor.files.store.schema import INDEXES
 from autocolor.files.store.store_file import (
     read_store,
     store_bytes,
@@ -25,8 +24,6 @@ from tests.autocolor.files.store.stores import (
     small_store,
 )
 from tests.autocolor.linked_scenes import linked_scenes
-
-OWN_INDEXES = "SELECT name FROM sqlite_master WHERE type = 'index' AND sql IS NOT NULL"
 
 ONE_FILE = settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 
@@ -255,14 +252,6 @@ def test_an_addition_that_does_not_fit_keeps_the_store_as_it_is(
         f" {problem}; drop it, or write to another file"
     )
     assert path.read_bytes() == before
-
-
-def test_a_store_without_indexes_is_read_changed_and_saved_over(tmp_path: Path) -> None:
-    path = small_store(tmp_path)
-    run(path, *(f"DROP INDEX {name}" for name in INDEXES))
-    assert is_equal(read_store(path).scene, small_scene())
-    write_store(path, small_scene(), overwrite=True)
-    assert {name for (name,) in run(path, OWN_INDEXES)} == INDEXES.keys()
 
 
 def test_rows_are_read_from_tables_and_not_from_indexes_that_are_out_of_date(tmp_path: Path) -> None:
