@@ -7,12 +7,12 @@ import io
 import json
 import re
 import sys
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from functools import partial
 from itertools import chain, islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, TextIO
 
 import click
 
@@ -71,11 +71,11 @@ def sql(
     with tables:
         if statement is not None:
             run(statement)
-        elif reads_from_a_terminal():
+        elif sys.stdin is not None and sys.stdin.isatty():
             prompt(tables, run)
         else:
-            for line in statements_in(sys.stdin):
-                run(line)
+            for each in statements_in(sys.stdin or io.StringIO()):
+                run(each)
     context.exit(0 if report is None else ended(report, source))
 
 
@@ -86,38 +86,36 @@ def _opened(source: SceneSource, write: bool) -> tuple[Tables, SceneReport | Non
     path = Path(source.path)
     if is_store(path):
         return open_tables(path), None
-    if write:
-        _refuse_write(path)
+    if write and not (path.is_dir() or path.suffix.lower() == ".toml"):
+        advice = "take its scene out with `autocolor tables --write`"
+        if path.suffix.lower() != ".npz":
+            advice = "make a scene of it with `autocolor tables --write`, or a store with `autocolor convert`"
+        raise UsageError(f"--write must save to a store or to a scene's folder, not to {path}; {advice}")
     report = read(source)
     return tables_of(report.scene), report
 
 
-def _refuse_write(path: Path) -> None:
-    """Raise UsageError unless a scene can be saved at the path."""
-    if path.is_dir() or path.suffix.lower() == ".toml":
-        return
-    advice = "take its scene out with `autocolor tables --write`"
-    if path.suffix.lower() != ".npz":
-        advice = "make a scene of it with `autocolor tables --write`, or a store with `autocolor convert`"
-    raise UsageError(f"--write must save to a store or to a scene's folder, not to {path}; {advice}")
-
-
 def _run(tables: Tables, source: SceneSource, write: bool, form: str | None, statement: str) -> None:
     """Run a statement, and print its rows, or the number of changed rows."""
-    if not (write and tables.would_change(statement)):
+    from autocolor.files.store.tables import ChangeError, is_store
+
+    try:
         for line in lines_of(tables.answer(statement), form):
             click.echo(line)
         return
+    except ChangeError:
+        if not write:
+            raise
     try:
         count = tables.change(statement)
     except InputError as error:
         with as_usage():
             raise InputError(["nothing was changed", *error.problems]) from None
     click.echo(f"changed {count:,} row{'' if count == 1 else 's'}", err=True)
-    if not tables.is_in_a_file:
+    path = Path(source.path)
+    if not is_store(path):
         from autocolor.files.scene_writing import write_scene_with_tables
 
-        path = Path(source.path)
         tell_written(*map(str, write_scene_with_tables(path, tables.scene(), overwrite=True, complete=False)))
 
 
@@ -127,8 +125,6 @@ MEASURED: Final = 1000
 WIDEST: Final = 60
 """Limit: letters of a cell of a table; longer text is cut."""
 
-ABSENT: Final = "NULL"
-
 
 def lines_of(answer: Answer, form: str | None) -> Iterator[str]:
     """The lines of an answer as "csv", "json" or a table. Rows are read as the lines are asked for."""
@@ -137,52 +133,36 @@ def lines_of(answer: Answer, form: str | None) -> Iterator[str]:
 
 def _table(answer: Answer) -> Iterator[str]:
     """The columns and the rows, aligned, with numbers at the right."""
-    rows = iter(answer.rows)
-    cells = []
-    has_number = [False] * len(answer.columns)
-    has_other = [False] * len(answer.columns)
-    for values in islice(rows, MEASURED):
-        cells.append([_cell(value) for value in values])
-        for place, value in enumerate(values):
-            has_number[place] |= isinstance(value, (int, float))
-            has_other[place] |= not isinstance(value, (int, float, type(None)))
     if not answer.columns:
         return
-    header = [escaped(name) for name in answer.columns]
-    widths = [max(map(len, column)) for column in zip(header, *cells, strict=True)]
-    is_number = [number and not other for number, other in zip(has_number, has_other, strict=True)]
-    yield _line(header, widths, is_number)
+    rows = iter(answer.rows)
+    first = [answer.columns, *islice(rows, MEASURED)]
+    widths = [max(len(_cell(value)) for value in column) for column in zip(*first, strict=True)]
+    lines = (_line(row, widths) for row in chain(first, rows))
+    yield next(lines)
     yield "  ".join("-" * width for width in widths)
-    for row in chain(cells, ([_cell(value) for value in values] for values in rows)):
-        yield _line(row, widths, is_number)
+    yield from lines
 
 
-def _line(cells: Sequence[str], widths: Sequence[int], is_number: Sequence[bool]) -> str:
-    placed = [
-        cell.rjust(width) if right else cell.ljust(width)
-        for cell, width, right in zip(cells, widths, is_number, strict=True)
+def _line(row: Sequence[Value], widths: Sequence[int]) -> str:
+    places = [
+        f"{_cell(value):{'>' if isinstance(value, (int, float)) else '<'}{width}}"
+        for value, width in zip(row, widths, strict=True)
     ]
-    return "  ".join(placed).rstrip()
+    return "  ".join(places).rstrip()
 
 
 def _cell(value: Value) -> str:
-    if value is None:
-        return ABSENT
-    text = f"{len(value):,} bytes" if isinstance(value, bytes) else str(value)
+    text = f"{len(value):,} bytes" if isinstance(value, bytes) else "NULL" if value is None else str(value)
     return escaped(text if len(text) <= WIDEST else f"{text[: WIDEST - 3]}...")
 
 
 def _csv(answer: Answer) -> Iterator[str]:
     """Rows as CSV, NULL as an empty cell."""
-    yield _csv_line(answer.columns)
-    for row in answer.rows:
-        yield _csv_line(["" if value is None else _plain(value) for value in row])
-
-
-def _csv_line(cells: Sequence[object]) -> str:
-    text = io.StringIO()
-    csv.writer(text, lineterminator="").writerow(cells)
-    return text.getvalue()
+    for row in chain([answer.columns], answer.rows):
+        text = io.StringIO()
+        csv.writer(text, lineterminator="").writerow(map(_plain, row))
+        yield text.getvalue()
 
 
 def _json(answer: Answer) -> Iterator[str]:
@@ -205,11 +185,9 @@ def _plain(value: Value) -> object:
 
 
 GREETING: Final = "statements end with ;   .tables   .schema [TABLE]   .help   .quit, or Ctrl+D"
-FIRST: Final = "sql> "
-NEXT: Final = "...> "
 
-MOST_LETTERS: Final = 1 << 20
-"""Limit: letters of a statement."""
+MOST_LETTERS: Final = 1 << 24
+"""Limit: letters of all statements of a file."""
 
 _PIECES: Final = re.compile(
     r"""'[^']*(?:'|\Z)|"[^"]*(?:"|\Z)|`[^`]*(?:`|\Z)|\[[^]]*(?:]|\Z)|--[^\n]*|/\*.*?(?:\*/|\Z)|;""", re.DOTALL
@@ -228,14 +206,15 @@ def prompt(tables: Tables, run: Callable[[str], None]) -> None:
     try:
         while True:
             try:
-                line = input(NEXT if text else FIRST)
+                line = input("...> " if text else "sql> ")
                 if not text and line.strip() in (".quit", ".exit"):
                     return
-                if not text and _dotted(line, tables):
-                    continue
-                whole, text = split(f"{text}{line}\n")
-                for statement in whole:
-                    run(statement)
+                if not text and line.strip().startswith("."):
+                    _show(line.split(), tables)
+                else:
+                    *whole, text = split(f"{text}{line}\n")
+                    for statement in whole:
+                        run(statement)
             except EOFError:
                 click.echo(err=True)
                 return
@@ -250,59 +229,40 @@ def prompt(tables: Tables, run: Callable[[str], None]) -> None:
         SIGNALS.cancels = False
 
 
-def _dotted(line: str, tables: Tables) -> bool:
-    """Run a command that begins with a dot; returns False for a line of SQL."""
-    words = line.split()
-    if not words:
-        return True
-    if not words[0].startswith("."):
-        return False
+def _show(words: Sequence[str], tables: Tables) -> None:
+    """Answer a command that begins with a dot."""
     if words[0] == ".tables":
         tell(*tables.names, err=False)
     elif words[0] == ".schema":
         for name in words[1:] or tables.names:
-            tell(*tables.definition(name).split("\n"), err=False)
+            tables.columns(name)
+            for row in tables.select("SELECT sql FROM sqlite_master WHERE name = ?", [name]):
+                tell(*f"{row['sql']!s};".split("\n"), err=False)
     else:
         click.echo(GREETING, err=True)
-    return True
 
 
-def statements_in(lines: Iterable[str]) -> Iterator[str]:
-    """The statements in some lines. The last statement may lack its semicolon.
+def statements_in(file: TextIO) -> list[str]:
+    """The statements of a file. The last statement may lack its semicolon.
 
-    Raises UsageError for a line that is not text in UTF-8.
+    Raises UsageError for text that is not in UTF-8, or too long.
     """
-    text = ""
     try:
-        for line in lines:
-            text += line
-            if ";" in line:
-                whole, text = split(text)
-                yield from whole
-            if len(text) > MOST_LETTERS:
-                break
+        text = file.read(MOST_LETTERS + 1)
     except UnicodeDecodeError:
         raise UsageError("statements must be text in UTF-8; save them in this encoding") from None
-    if text.strip():
-        yield text
+    if len(text) > MOST_LETTERS:
+        raise UsageError(f"statements must have at most {MOST_LETTERS:,} letters, not more; run a part first")
+    return [statement for statement in split(text) if statement]
 
 
-def split(text: str) -> tuple[list[str], str]:
-    """The complete statements of a text, with their semicolons, and the rest of the text.
+def split(text: str) -> list[str]:
+    """The complete statements of a text, with their semicolons, and the rest of the text, if only "".
 
     >>> split("SELECT ';'; SELECT 2; SELECT")
-    (["SELECT ';';", ' SELECT 2;'], ' SELECT')
+    ["SELECT ';';", ' SELECT 2;', ' SELECT']
     """
-    whole = []
-    begin = 0
-    for piece in _PIECES.finditer(text):
-        if piece[0] == ";":
-            whole.append(text[begin : piece.end()])
-            begin = piece.end()
-    rest = text[begin:]
-    return whole, rest if rest.strip() else ""
-
-
-def reads_from_a_terminal() -> bool:
-    """Whether stdin is a terminal, where a user types the statements."""
-    return sys.stdin is not None and sys.stdin.isatty()
+    ends = [piece.end() for piece in _PIECES.finditer(text) if piece[0] == ";"]
+    whole = [text[begin:end] for begin, end in zip([0, *ends], ends, strict=False)]
+    rest = text[ends[-1] :] if ends else text
+    return [*whole, rest if rest.strip() else ""]

@@ -63,10 +63,11 @@ means no lights.
 
 ## What is checked, and what is run
 
-The tables check types, ranges and choices themselves, and name the rule that is broken. Tools leave
-references unchecked unless they are asked (`PRAGMA foreign_keys = ON`), so reading a store checks them
-again, as it does every value: "polygons, row 12: node 40 is not in the node table (1 to 37); correct it".
-Nothing is repaired: polygons without area and parts without polygons stay, as they do in `.tables` files.
+The tables check the types of values, and that names differ. Tools leave references unchecked unless they are
+asked (`PRAGMA foreign_keys = ON`). Reading a store checks all of it, every range, choice and reference: "polygons,
+row 12: node 40 is not in the node table; correct it". `--write` and `open_tables` read the changed scene before
+they save it. Nothing is repaired: polygons without area and parts without polygons stay, as they do in `.tables`
+files.
 
 A store is data, and reading it runs no code from it. Views, triggers and tables of other names are
 ignored; a view, a virtual table or a computed column with one of the names below is refused. Statements may

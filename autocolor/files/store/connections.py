@@ -5,8 +5,7 @@
 - SQLite itself opens the file for the copy: it knows its locks, and what a `-journal` or a `-wal` beside the
   store holds. A `-journal` may name any file as its super-journal, which SQLite deletes. It is refused.
 - The schema of a file may call only functions that compute (`trusted_schema`). Nothing can be attached or
-  loaded, no statement can set a pragma (see `authorizer`), sizes are limited, and a statement that takes too
-  long is ended. Python 3.11 cannot set SQLite's defensive mode; later versions do.
+  loaded, no statement can set a pragma, and a statement that takes too long is ended (see `limited`).
 """
 
 from __future__ import annotations
@@ -17,12 +16,12 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
-from functools import partial
 from pathlib import Path
 from typing import Final
 
 from autocolor.checks import printable
 from autocolor.errors import (
+    AutocolorError,
     InputError,
     MissingInputError,
     OutputError,
@@ -37,41 +36,17 @@ LEAST_SQLITE: Final = (3, 37, 0)
 """The first version with STRICT tables."""
 
 BEGINS: Final = b"SQLite format 3\0"
+MODES: Final = slice(18, 20)
+"""The place of two bytes in the header of a file that are 2 in WAL mode, and 1 otherwise."""
+
 GROWTH: Final = 3.5
 """Measured: how many times its size the store of a scene takes while it is read."""
 
 LONGEST_TEXT: Final = 1 << 20
 """Limit: in bytes, of a value and of a row."""
 
-READING_SECONDS: Final = 120.0
-"""Limit: how long a store may be read; the largest takes half of that."""
-
 SECONDS_OF_WAITING: Final = 5.0
 """Limit: how long to wait for another program that is writing."""
-
-STEPS: Final = 100_000
-"""Steps of SQLite's machine between two looks at the clock: about a millisecond."""
-
-FIRST_LOOK: Final = "SELECT count(*) FROM sqlite_master"
-
-WAL_VERSION: Final = 2
-"""The byte in the header of a store in WAL mode; bytes 18 and 19 are for writing and for reading."""
-
-LIMITS: Final = {
-    sqlite3.SQLITE_LIMIT_LENGTH: LONGEST_TEXT,
-    sqlite3.SQLITE_LIMIT_SQL_LENGTH: LONGEST_TEXT,
-    sqlite3.SQLITE_LIMIT_COLUMN: 2000,
-    sqlite3.SQLITE_LIMIT_EXPR_DEPTH: 200,
-    sqlite3.SQLITE_LIMIT_COMPOUND_SELECT: 50,
-    sqlite3.SQLITE_LIMIT_VDBE_OP: 250_000,
-    sqlite3.SQLITE_LIMIT_FUNCTION_ARG: 100,
-    sqlite3.SQLITE_LIMIT_ATTACHED: 0,
-    sqlite3.SQLITE_LIMIT_LIKE_PATTERN_LENGTH: 1000,
-    sqlite3.SQLITE_LIMIT_VARIABLE_NUMBER: 1000,
-    sqlite3.SQLITE_LIMIT_TRIGGER_DEPTH: 1,
-    sqlite3.SQLITE_LIMIT_WORKER_THREADS: 0,
-}
-"""Upper limits of statements, and of the values in a file."""
 
 
 def in_memory() -> sqlite3.Connection:
@@ -81,14 +56,20 @@ def in_memory() -> sqlite3.Connection:
             "a store must have SQLite 3.37 or later with sqlite3_serialize, and this Python has"
             f" {sqlite3.sqlite_version}; use another Python"
         )
-    return _guarded(sqlite3.connect(":memory:", isolation_level=None))
+    return _connected(":memory:")
 
 
-def copied(connection: sqlite3.Connection) -> sqlite3.Connection:
-    """A copy of a store in memory. Raises sqlite3.Error."""
-    with closed_on_error(in_memory()) as copy:
-        connection.backup(copy)
-    return copy
+def _connected(uri: str) -> sqlite3.Connection:
+    """A connection that begins no transaction by itself, with limits; nothing of its file is run."""
+    connection = sqlite3.connect(uri, uri=True, isolation_level=None, timeout=SECONDS_OF_WAITING)
+    with closed_on_error(connection):
+        for limit in (sqlite3.SQLITE_LIMIT_LENGTH, sqlite3.SQLITE_LIMIT_SQL_LENGTH):
+            connection.setlimit(limit, LONGEST_TEXT)
+        # No function that compares with a pattern can be interrupted.
+        connection.setlimit(sqlite3.SQLITE_LIMIT_LIKE_PATTERN_LENGTH, 1000)
+        for pragma in ("trusted_schema=OFF", "cell_size_check=ON", "mmap_size=0", "foreign_keys=OFF"):
+            connection.execute(f"PRAGMA {pragma}")
+    return connection
 
 
 @contextmanager
@@ -99,6 +80,16 @@ def closed_on_error(connection: sqlite3.Connection) -> Iterator[sqlite3.Connecti
     except BaseException:
         connection.close()
         raise
+
+
+def copied(connection: sqlite3.Connection) -> sqlite3.Connection:
+    """A copy of a store in memory. Raises sqlite3.Error."""
+    data = bytearray(connection.serialize())
+    # Nothing in memory is in WAL mode.
+    data[MODES] = b"\1\1"
+    with closed_on_error(in_memory()) as copy:
+        copy.deserialize(data)
+    return copy
 
 
 def loaded(path: Path) -> sqlite3.Connection:
@@ -114,14 +105,9 @@ def loaded(path: Path) -> sqlite3.Connection:
     elif is_logged and not played:
         # SQLite makes a log even to read. Where it cannot, the file is complete without.
         mode = "ro&immutable=1" if _write_protected(path) else "rw"
-    with refusals(path.name):
-        return _copy_of(path, mode)
-
-
-def _copy_of(path: Path, mode: str) -> sqlite3.Connection:
-    with closing(_opened(path, mode)) as file:
+    with refusals(path.name), closing(_opened(path, mode)) as file:
         file.execute("BEGIN")
-        file.execute(FIRST_LOOK).fetchone()
+        file.execute("SELECT count(*) FROM sqlite_master").fetchone()
         return copied(file)
 
 
@@ -136,56 +122,54 @@ def replacing(
     the place is write-protected, and WriteError if another program writes to the store all the time, or
     replaces it.
     """
-    is_logged = _is_in_wal_mode(path)
-    with _unplayable():
-        is_logged |= "-wal" in played_files(path)
+    is_logged, played = _is_in_wal_mode(path), played_files(path)
     if place := _write_protected(path):
         raise OutputError(
             f"an output must be where it can be written, and {place} is write-protected; change its"
             " permissions, or write to another file"
         )
-    with refusals(path.name, is_written=True):
-        check = _without_log(path, check) if is_logged else check
-        with closing(_locked(path, check)) as file:
-            before = _numbers(path)
+    with (
+        refusals(path.name, is_written=True),
+        closing(_locked(path, check, is_logged or "-wal" in played)) as file,
+    ):
+        before = _numbers(path)
 
-            def save(data: bytes) -> None:
-                _refuse_other(path, before)
-                if sys.platform == "win32":
-                    # An open file cannot be replaced there.
-                    file.close()
-                write_atomically(path, data, overwrite=True)
+        def save(data: bytes) -> None:
+            if _numbers(path) != before:
+                raise WriteError(
+                    f"{path.name}: a store must stay as it is while it is changed, and another program"
+                    " replaced it; nothing was saved, so try again"
+                )
+            if sys.platform == "win32":
+                # An open file cannot be replaced there.
+                file.close()
+            write_atomically(path, data, overwrite=True)
 
-            # SQLite makes no copy by a connection that is about to write.
-            with closed_on_error(_copy_of(path, "ro")) as copy:
-                yield copy, save
+        with closed_on_error(copied(file)) as copy:
+            yield copy, save
 
 
-def _locked(path: Path, check: Callable[[], None]) -> sqlite3.Connection:
-    """A connection to the store at a path in a transaction that lets no other program change it."""
+def _locked(path: Path, check: Callable[[], None], is_logged: bool) -> sqlite3.Connection:
+    """A connection to the store at a path in a transaction that lets no other program change it.
+
+    What a log beside the store holds is moved into the store, because SQLite would play it into the next file
+    of this name, whatever that holds. The store then is no longer in WAL mode.
+    """
     while True:
         before = _numbers(path)
         with closed_on_error(_opened(path, "rw")) as file:
+            if is_logged:
+                file.execute("PRAGMA locking_mode = EXCLUSIVE")
             file.execute("BEGIN IMMEDIATE")
             check()
+            if is_logged:
+                # The lock stays.
+                for statement in ("COMMIT", "PRAGMA journal_mode = DELETE", "BEGIN IMMEDIATE"):
+                    file.execute(statement)
             if _numbers(path)[:2] == before[:2]:
                 return file
         # Another program of ours replaced the store while this one waited for the lock of the old file.
         file.close()
-
-
-def _without_log(path: Path, check: Callable[[], None]) -> Callable[[], None]:
-    """Move what the log beside a store holds into the store, after a check; returns another check.
-
-    SQLite would play the log into the next file of this name, whatever that holds. The store then is no
-    longer in WAL mode. Afterwards nobody may have changed it.
-    """
-    with closing(_opened(path, "rw")) as file:
-        for statement in ("PRAGMA locking_mode = EXCLUSIVE", "BEGIN IMMEDIATE", "COMMIT"):
-            file.execute(statement)
-        check()
-        file.execute("PRAGMA journal_mode = DELETE")
-        return partial(_refuse_other, path, _numbers(path))
 
 
 def _numbers(path: Path) -> tuple[int, ...]:
@@ -194,113 +178,8 @@ def _numbers(path: Path) -> tuple[int, ...]:
     return status.st_dev, status.st_ino, status.st_mtime_ns, status.st_size
 
 
-def _refuse_other(path: Path, numbers: tuple[int, ...]) -> None:
-    """Raise WriteError unless the file at a path has these numbers."""
-    if _numbers(path) != numbers:
-        raise WriteError(
-            f"{path.name}: a store must stay as it is while it is changed, and another program replaced it;"
-            " nothing was saved, so try again"
-        )
-
-
 def _opened(path: Path, mode: str) -> sqlite3.Connection:
-    """A connection to a file that begins no transaction by itself."""
-    uri = f"{Path(os.path.realpath(path)).as_uri()}?mode={mode}"
-    return _guarded(sqlite3.connect(uri, uri=True, isolation_level=None, timeout=SECONDS_OF_WAITING))
-
-
-def _guarded(connection: sqlite3.Connection) -> sqlite3.Connection:
-    """The connection, with its limits and settings; nothing of its file is run."""
-    with closed_on_error(connection):
-        for limit, most in LIMITS.items():
-            connection.setlimit(limit, min(most, connection.getlimit(limit)))
-        for pragma in ("trusted_schema=OFF", "cell_size_check=ON", "mmap_size=0", "foreign_keys=OFF"):
-            connection.execute(f"PRAGMA {pragma}")
-        if hasattr(connection, "setconfig"):
-            # From Python 3.12 on.
-            connection.setconfig(getattr(sqlite3, "SQLITE_DBCONFIG_DEFENSIVE"), True)  # noqa: B009
-    return connection
-
-
-# Permissions of statements.
-
-READING_PRAGMAS: Final = frozenset(
-    (
-        "application_id", "data_version", "foreign_key_check", "foreign_key_list", "index_info", "index_list",
-        "integrity_check", "page_count", "page_size", "quick_check", "schema_version", "table_info",
-        "table_list", "table_xinfo", "user_version",
-    )
-)  # fmt: skip
-"""The pragmas that only read. Most take an argument; for those in SETTABLE an argument is a new value."""
-
-SETTABLE: Final = ("application_id", "schema_version", "user_version")
-
-UNSAFE_FUNCTIONS: Final = frozenset(
-    (
-        "load_extension", "fts3_tokenizer", "readfile", "writefile", "edit", "match", "matchinfo", "snippet",
-        "offsets", "optimize", "highlight", "bm25", "fts5", "rtreecheck", "rtreedepth", "rtreenode",
-    )
-)  # fmt: skip
-"""The functions that do more than compute with their arguments.
-
-The functions up to `edit` run other code or open files. Most builds lack them, but Debian's has
-`fts3_tokenizer`, which gives and takes addresses of memory. The functions from `match` on read the inner
-tables of full-text and R-tree indexes, which may be damaged.
-"""
-
-READS: Final = (
-    sqlite3.SQLITE_SELECT,
-    sqlite3.SQLITE_READ,
-    sqlite3.SQLITE_RECURSIVE,
-    sqlite3.SQLITE_TRANSACTION,
-    sqlite3.SQLITE_SAVEPOINT,
-)
-CHANGES: Final = (sqlite3.SQLITE_INSERT, sqlite3.SQLITE_UPDATE, sqlite3.SQLITE_DELETE)
-
-Authorizer = Callable[[int, str | None, str | None, str | None, str | None], int]
-
-
-def authorizer(may_change: bool) -> Authorizer:
-    """The permissions of a statement: it may read, compute and, with `may_change`, change rows itself.
-
-    A change by a trigger of the file is refused.
-    """
-
-    def permission(
-        action: int, first: str | None, second: str | None, database: str | None, inner: str | None
-    ) -> int:
-        if action == sqlite3.SQLITE_FUNCTION:
-            is_allowed = (second or "").lower() not in UNSAFE_FUNCTIONS
-        elif action == sqlite3.SQLITE_PRAGMA:
-            name = (first or "").lower()
-            is_allowed = name in READING_PRAGMAS and not (second is not None and name in SETTABLE)
-        elif action in CHANGES:
-            is_allowed = may_change and inner is None and not (first or "").lower().startswith("sqlite_")
-        else:
-            is_allowed = action in READS
-        return sqlite3.SQLITE_OK if is_allowed else sqlite3.SQLITE_DENY
-
-    return permission
-
-
-class Clock:
-    """Ends statements of a connection that take longer than some seconds; `ended` is true afterwards."""
-
-    def __init__(
-        self, connection: sqlite3.Connection, seconds: float = READING_SECONDS, steps: int = STEPS
-    ) -> None:
-        self.seconds = seconds
-        self.begin()
-        connection.set_progress_handler(self._look, steps)
-
-    def begin(self) -> None:
-        """Count from now."""
-        self.ended = False
-        self._until = time.monotonic() + self.seconds
-
-    def _look(self) -> int:
-        self.ended = time.monotonic() > self._until
-        return int(self.ended)
+    return _connected(f"{Path(os.path.realpath(path)).as_uri()}?mode={mode}")
 
 
 # Checks of a file, and of the files beside it, before SQLite opens it. They open no file that is locked by
@@ -324,7 +203,7 @@ def _is_in_wal_mode(path: Path) -> bool:
             f"{path.name}: a store must be an SQLite file, and this one does not begin as such; write it"
             " again with `autocolor convert`"
         )
-    return WAL_VERSION in head[18:20]
+    return 2 in head[MODES]
 
 
 def played_files(path: Path) -> list[str]:
@@ -354,23 +233,17 @@ def played_files(path: Path) -> list[str]:
     return endings
 
 
-@contextmanager
-def _unplayable() -> Iterator[None]:
-    """Raise the refusals of `played_files` as WriteError."""
-    try:
-        yield
-    except InputError as error:
-        raise WriteError(str(error)) from None
-
-
 def refuse_remains(path: Path) -> None:
     """Raise WriteError if SQLite would play a journal or a log into a new store at a path."""
-    with _unplayable():
-        for ending in played_files(path):
-            raise WriteError(
-                f"{path.name}: a new store must have no {path.name}{ending} beside it, because SQLite would"
-                " play it into the store; move it away"
-            )
+    try:
+        played = played_files(path)
+    except InputError as error:
+        raise WriteError(str(error)) from None
+    for ending in played:
+        raise WriteError(
+            f"{path.name}: a new store must have no {path.name}{ending} beside it, because SQLite would play"
+            " it into the store; move it away"
+        )
 
 
 def _write_protected(path: Path) -> Path | None:
@@ -379,12 +252,96 @@ def _write_protected(path: Path) -> Path | None:
     return next((place for place in places if not os.access(place, os.W_OK)), None)
 
 
+# Limits of statements.
+
+READING_PRAGMAS: Final = ("index_info", "index_list", "table_info", "table_list", "table_xinfo")
+"""The pragmas that only read, whatever their argument; those of NUMBERS without an argument."""
+
+NUMBERS: Final = ("application_id", "user_version")
+
+UNSAFE_FUNCTIONS: Final = frozenset(
+    (
+        "load_extension", "fts3_tokenizer", "readfile", "writefile", "edit", "match", "matchinfo", "snippet",
+        "offsets", "optimize", "highlight", "bm25", "fts5", "rtreecheck", "rtreedepth", "rtreenode",
+    )
+)  # fmt: skip
+"""The functions that do more than compute with their arguments.
+
+The functions up to `edit` run other code or open files. The functions from `match` on read the inner tables
+of full-text and R-tree indexes, which may be damaged.
+"""
+
+READS: Final = (sqlite3.SQLITE_SELECT, sqlite3.SQLITE_READ, sqlite3.SQLITE_RECURSIVE)
+CHANGES: Final = (sqlite3.SQLITE_INSERT, sqlite3.SQLITE_UPDATE, sqlite3.SQLITE_DELETE)
+
+STEPS: Final = 1000
+"""Steps of SQLite's machine between two looks at the clock; one step can be a slow function."""
+
+Authorizer = Callable[[int, str | None, str | None, str | None, str | None], int]
+
+
+def authorizer(may_change: bool = False, changed: set[str] | None = None) -> Authorizer:
+    """The permissions of a statement: it may read, compute and, with `may_change`, change rows itself.
+
+    A change by a trigger of the file is refused. The tables that the statement changes, or would change, are
+    added to `changed`.
+    """
+
+    def permission(
+        action: int, first: str | None, second: str | None, database: str | None, inner: str | None
+    ) -> int:
+        name = (first or "").lower()
+        if action == sqlite3.SQLITE_FUNCTION:
+            is_allowed = (second or "").lower() not in UNSAFE_FUNCTIONS
+        elif action == sqlite3.SQLITE_PRAGMA:
+            is_allowed = name in READING_PRAGMAS or (name in NUMBERS and second is None)
+        elif action in CHANGES:
+            is_allowed = may_change and inner is None
+            if changed is not None:
+                changed.add(name)
+        else:
+            is_allowed = action in READS
+        return sqlite3.SQLITE_OK if is_allowed else sqlite3.SQLITE_DENY
+
+    return permission
+
+
+@contextmanager
+def limited(
+    connection: sqlite3.Connection, permission: Authorizer, seconds: float, late: AutocolorError
+) -> Iterator[None]:
+    """Permissions and time of the statements in the body. Raises `late` if they take longer."""
+    until = time.monotonic() + seconds
+    is_late = False
+
+    def look() -> int:
+        nonlocal is_late
+        is_late = time.monotonic() > until
+        return int(is_late)
+
+    connection.set_authorizer(permission)
+    connection.set_progress_handler(look, STEPS)
+    try:
+        yield
+    except sqlite3.OperationalError as error:
+        if is_late:
+            raise late from None
+        if "interrupted" in str(error):
+            # The user pressed Ctrl+C, which SQLite took.
+            raise KeyboardInterrupt from None
+        raise
+    finally:
+        connection.set_authorizer(None)
+        connection.set_progress_handler(None, 0)
+
+
 # Errors of SQLite as errors of this package.
 
 BUSY_ERRORS: Final = (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED)
 DISK_ERRORS: Final = (sqlite3.SQLITE_FULL, sqlite3.SQLITE_IOERR)
 PLACE_ERRORS: Final = (sqlite3.SQLITE_READONLY, sqlite3.SQLITE_CANTOPEN)
 DAMAGE_ERRORS: Final = (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB)
+SQL_ERRORS: Final = (sqlite3.Error, sqlite3.Warning, UnicodeError, OverflowError)
 
 
 def primary_code(error: BaseException) -> int:
@@ -393,19 +350,17 @@ def primary_code(error: BaseException) -> int:
 
 
 @contextmanager
-def refusals(name: str = "", clock: Clock | None = None, is_written: bool = False) -> Iterator[None]:
+def refusals(name: str = "", is_written: bool = False) -> Iterator[None]:
     """Raise errors of SQLite as InputError, with advice; `name` is the file's name in the message.
 
     If the store `is_written`, the errors that keep it from being written are raised as WriteError.
     """
     try:
         yield
-    except (sqlite3.Error, sqlite3.Warning, UnicodeError, OverflowError) as error:
-        reason = sentence_of(error)
-        if clock is not None and clock.ended:
-            reason = f"a store must be read within {clock.seconds:g} seconds, not longer; leave rows out"
+    except SQL_ERRORS as error:
+        reason = f"{name}: {sentence_of(error)}" if name else sentence_of(error)
         is_kept = is_written and primary_code(error) in (*BUSY_ERRORS, *DISK_ERRORS, *PLACE_ERRORS)
-        raise (WriteError if is_kept else InputError)(f"{name}: {reason}" if name else reason) from None
+        raise (WriteError if is_kept else InputError)(reason) from None
 
 
 def sentence_of(error: Exception) -> str:
@@ -416,10 +371,7 @@ def sentence_of(error: Exception) -> str:
     if code == sqlite3.SQLITE_TOOBIG:
         return f"a value must have at most {LONGEST_TEXT:,} bytes, not more; shorten it"
     if code in PLACE_ERRORS:
-        return (
-            f"the store cannot be opened where it is ({text}): the files beside it are needed too, and are"
-            " write-protected or missing; copy all of them to another folder"
-        )
+        return f"the store and its folder must let SQLite open it, and do not ({text}); copy all of its files"
     if code in DISK_ERRORS:
         return f"the disk must hold the store, and is full or fails ({text}); make room, and try again"
     return (

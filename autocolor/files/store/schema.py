@@ -1,8 +1,8 @@
 """The tables of a store: the SQL columns of row classes, the definitions of tables, and their inspection.
 
 Each table of a scene is one SQL table, made from the descriptions of its columns; the nodes, the polygons and
-the scalars of the mesh have tables of their own. All are STRICT. A CHECK is named by its rule, so any tool
-shows the rule when a value breaks it. Columns that refer to other tables have indexes.
+the scalars of the mesh have tables of their own. All are STRICT: any tool checks types. Ranges, choices and
+references are checked when a store is read. Columns that refer to other tables have indexes.
 
 A number, a switch, a name, a choice or a color is one SQL column of the key's name. A point or a direction is
 three: `position_x`, `position_y`, `position_z`. A row in a row is the columns of that row with the key before
@@ -14,26 +14,16 @@ columns of the other are NULL. NULL in a column that the surface uses stands for
 from __future__ import annotations
 
 import json
-import math
 import sqlite3
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Final, NamedTuple
+from itertools import groupby
+from typing import Any, Final
 
-from autocolor.checks import LARGEST_COORDINATE, listed, nearest, shown
+from autocolor.checks import listed, nearest
 from autocolor.errors import InputError
 from autocolor.scene.columns import Field, Kind, Row, fields_of, to_plain
-from autocolor.scene.kinds import (
-    LARGEST_PLACE,
-    Boolean,
-    ColorKind,
-    Instance,
-    Number,
-    OneOf,
-    Text,
-    VectorKind,
-    Whole,
-)
+from autocolor.scene.kinds import Boolean, ColorKind, Instance, Number, OneOf, Text, VectorKind, Whole
 from autocolor.scene.row_kinds import NamedRows, Nested, OneRowOf, Reference, RowList
 from autocolor.scene.scalar import NODE, POLYGON
 from autocolor.scene.scene import Scene
@@ -42,9 +32,13 @@ NUMBER: Final = "number"
 """The column that counts the rows of a table from 1, in their order; the tables of the mesh apart."""
 
 AXES: Final = ("x", "y", "z")
-LARGEST_FLOAT: Final = 1.7976931348623157e308
+TYPES: Final[Mapping[str, tuple[type[Kind], ...]]] = {
+    "REAL": (Number, VectorKind),
+    "INTEGER": (Whole, Boolean),
+    "TEXT": (Text, OneOf, ColorKind, Reference, OneRowOf),
+}
+"""The types in SQL of kinds of values; those of others are ANY."""
 
-TEXT_KINDS: Final = (Text, OneOf, ColorKind, Reference, OneRowOf)
 JSON_BEGINS: Final = ("[", "{", '"')
 """A text with such a beginning is JSON."""
 
@@ -56,8 +50,7 @@ SqlValue = None | int | float | str
 class SqlColumn:
     """A column of an SQL table, for the value at `path` in a row's keys and plain values.
 
-    A vector has three columns; `component` is 0, 1 or 2. If `references` is the name of a table, the values
-    of the column are values of that table's column `name`.
+    A vector has three columns; `component` is 0, 1 or 2.
     """
 
     name: str
@@ -67,38 +60,16 @@ class SqlColumn:
     component: int | None = None
     may_be_null: bool = False
     default: SqlValue = None
-    references: str = ""
 
     @property
     def type(self) -> str:
         """The type in SQL."""
-        if isinstance(self.kind, (Number, VectorKind)):
-            return "REAL"
-        if isinstance(self.kind, (Whole, Boolean)):
-            return "INTEGER"
-        return "TEXT" if isinstance(self.kind, TEXT_KINDS) else "ANY"
+        return next((name for name, kinds in TYPES.items() if isinstance(self.kind, kinds)), "ANY")
 
     @property
-    def checks(self) -> Iterator[str]:
-        """The SQL conditions that the values must meet; NULL meets every condition."""
-        name, kind = quoted(self.name), self.kind
-        if isinstance(kind, VectorKind):
-            yield f"abs({name}) <= {LARGEST_PLACE!r}"
-        elif isinstance(kind, Number):
-            yield f"abs({name}) <= {LARGEST_FLOAT!r}"
-            if kind.at_least > -math.inf:
-                yield f"{name} {'>' if kind.above else '>='} {kind.at_least!r}"
-            if kind.at_most < math.inf:
-                yield f"{name} <= {kind.at_most!r}"
-        elif isinstance(kind, Whole):
-            yield f"{name} BETWEEN {kind.at_least} AND {kind.at_most}"
-        elif isinstance(kind, Boolean):
-            yield f"{name} IN (0, 1)"
-        elif isinstance(kind, (OneOf, OneRowOf)):
-            names = kind.names if isinstance(kind, OneOf) else kind.classes
-            yield f"{name} IN ({', '.join(map(literal, names))})"
-        elif isinstance(kind, Reference) or (isinstance(kind, Text) and not kind.may_be_empty):
-            yield f"{name} <> ''"
+    def references(self) -> str:
+        """The table whose column `name` has the values of the column; empty for none."""
+        return self.kind.table if isinstance(self.kind, Reference) and not self.kind.word else ""
 
     @property
     def declaration(self) -> str:
@@ -112,10 +83,6 @@ class SqlColumn:
             parts.append(f"DEFAULT {literal(self.default)}")
         if self.references:
             parts.append(f"REFERENCES {quoted(self.references)} (name) ON UPDATE CASCADE")
-        checks = list(self.checks)
-        if checks:
-            # Any tool shows the name of a check that fails.
-            parts.append(checked(f"{'.'.join(self.path)} {self.kind.rule()}", " AND ".join(checks)))
         return " ".join(parts)
 
 
@@ -128,94 +95,69 @@ def quoted(name: str) -> str:
     return '"' + name.replace('"', '""') + '"'
 
 
-def checked(rule: str, condition: str) -> str:
-    """A CHECK of a table, named by its rule."""
-    return f"CONSTRAINT {quoted(rule)} CHECK ({condition})"
-
-
 def literal(value: SqlValue) -> str:
-    """A value as SQL writes it.
+    """A value, not None, as SQL writes it.
 
-    >>> literal("it's"), literal(0.5), literal(None)
-    ("'it''s'", '0.5', 'NULL')
+    >>> literal("it's"), literal(0.5)
+    ("'it''s'", '0.5')
     """
-    if value is None:
-        return "NULL"
     return "'" + value.replace("'", "''") + "'" if isinstance(value, str) else repr(value)
 
 
 def columns_of(row_class: type[Row]) -> tuple[SqlColumn, ...]:
     """The columns for the fields of a row class, except fields with meshes and lists of rows."""
-    return tuple(
-        column
-        for name, field in fields_of(row_class).items()
-        for column in _columns(name, field, (), is_given=True)
-    )
+    fields = fields_of(row_class).items()
+    return tuple(column for name, field in fields for column in _columns(name, field, (), is_given=True))
 
 
 def _columns(name: str, field: Field, prefix: tuple[str, ...], is_given: bool) -> Iterator[SqlColumn]:
     """The columns of a field.
 
     All of them may be NULL if the row around the field may be absent, or if the field may be reset because
-    the row uses an alternative.
+    the row uses an alternative. A row that may be absent must have a column that is never NULL.
     """
     column, is_optional, default = field
-    kind, path = column.kind, (*prefix, name)
+    kind = column.kind
     if isinstance(kind, (Instance, RowList)):
         return
-    if isinstance(kind, Nested) and (not is_optional or _has_required_column(kind.row_class)):
-        inner_prefix = prefix if kind.inline else path
+    if isinstance(kind, Nested):
         alternatives = {name for group in kind.row_class.alternatives for name in group}
         for inner_name, inner in fields_of(kind.row_class).items():
             inner_is_given = is_given and not is_optional and inner_name not in alternatives
+            inner_prefix = prefix if kind.inline else (*prefix, name)
             yield from _columns(inner_name, inner, inner_prefix, inner_is_given)
         return
-    may_be_null = is_optional or not is_given or getattr(kind, "endless", None) is not None
-    may_be_null |= isinstance(kind, NamedRows)
-    start: Any = default() if default is not None and is_given and not may_be_null else None
-    defaults: dict[str, Any] = {} if start is None else dict(kind.to_plain(name, start))
-    keys = kind.keys(name, column)
-    for key, inner_column in keys.items():
+    may_be_null = is_optional or not is_given or _is_endless(kind) or isinstance(kind, NamedRows)
+    start: Any = None if default is None or may_be_null else default()
+    defaults: Mapping[str, Any] = {} if start is None else kind.to_plain(name, start)
+    for key, inner_column in kind.keys(name, column).items():
         # The other keys belong to the classes of a variant; a class has only some of the keys.
-        is_own = key == name
-        inner_kind, text = inner_column.kind, inner_column.help
-        nullable = may_be_null or not is_own
-        value = defaults.get(key) if is_own else None
-        if isinstance(inner_kind, VectorKind):
-            for number, axis in enumerate(AXES):
-                component = None if value is None else float(value[number])
-                name_of_axis = "_".join((*prefix, key, axis))
-                yield SqlColumn(name_of_axis, (*prefix, key), inner_kind, text, number, nullable, component)
-        else:
-            references = inner_kind.table if isinstance(inner_kind, Reference) and not inner_kind.word else ""
+        may_be_absent = may_be_null or key != name
+        value = defaults.get(key) if key == name else None
+        path, inner_kind = (*prefix, key), inner_column.kind
+        for number, axis in enumerate(AXES) if isinstance(inner_kind, VectorKind) else [(None, "")]:
             yield SqlColumn(
-                "_".join((*prefix, key)),
-                (*prefix, key),
+                "_".join((*path, axis) if axis else path),
+                path,
                 inner_kind,
-                text,
-                None,
-                nullable,
-                in_sql(value),
-                references,
+                inner_column.help,
+                number,
+                may_be_absent,
+                in_sql(value if number is None or value is None else value[number]),
             )
 
 
-def _has_required_column(row_class: type[Row]) -> bool:
-    """Whether a row of the class always has a value that is not NULL, so that an absent row is all NULL."""
-    return any(
-        not field.is_optional
-        and getattr(field.column.kind, "endless", None) is None
-        and (not isinstance(field.column.kind, Nested) or _has_required_column(field.column.kind.row_class))
-        for field in fields_of(row_class).values()
-    )
+def _is_endless(kind: Kind) -> bool:
+    """Whether a value may be infinite, which a table has as NULL."""
+    return getattr(kind, "endless", None) is not None
 
 
 def in_sql(value: object) -> SqlValue:
     """A plain value as a value of a table."""
-    if value is None or isinstance(value, (bool, int)):
-        return None if value is None else int(value)
-    if isinstance(value, float):
+    if value is None or isinstance(value, float):
         return value
+    if isinstance(value, int):
+        return int(value)
     if isinstance(value, str) and not value.startswith(JSON_BEGINS):
         return value
     return json.dumps(value, ensure_ascii=False)
@@ -234,19 +176,15 @@ def plain_row(columns: Iterable[SqlColumn], values: Mapping[str, SqlValue]) -> d
     NULL is left out, or becomes an infinite limit if its row has other values.
     """
     table: dict[str, Any] = {}
-    vectors: dict[tuple[str, ...], list[SqlValue]] = {}
     limits = []
-    for column in columns:
-        value = values.get(column.name)
-        if column.component is not None:
-            vectors.setdefault(column.path, []).append(value)
-        elif value is not None:
-            _within(table, column.path[:-1], True)[column.path[-1]] = _from_sql(column.kind, value)
-        elif column.name in values and (endless := getattr(column.kind, "endless", None)) is not None:
-            limits.append((column.path, endless))
-    for path, components in vectors.items():
-        if components != [None] * len(AXES):
-            _within(table, path[:-1], True)[path[-1]] = components
+    for path, group in groupby(columns, lambda column: column.path):
+        first, *others = group
+        given = [values.get(column.name) for column in (first, *others)]
+        if any(value is not None for value in given):
+            value = given if others else _from_sql(first.kind, given[0])
+            _within(table, path[:-1], is_made=True)[path[-1]] = value
+        elif first.name in values and _is_endless(first.kind):
+            limits.append((path, getattr(first.kind, "endless")))  # noqa: B009
     for path, endless in limits:
         inner = _within(table, path[:-1])
         if isinstance(inner, dict):
@@ -294,9 +232,6 @@ VALUES: Final = {NODE: "node_scalars", POLYGON: "polygon_scalars"}
 """The tables of the values of scalars, for nodes and for polygons."""
 
 
-SINGLE_ROW: Final = checked(f"{NUMBER} must be 1", f"{quoted(NUMBER)} = 1")
-
-
 @dataclass(frozen=True)
 class RowTable:
     """A table for the rows of a class, in their order. With `is_single` it has at most one row.
@@ -312,29 +247,7 @@ class RowTable:
     @property
     def definition(self) -> str:
         """The statement that creates the table."""
-        key = f"{quoted(NUMBER)} INTEGER PRIMARY KEY"
-        if self.is_single:
-            key += f" DEFAULT 1 {SINGLE_ROW}"
-        lines = [key, *(column.declaration for column in self.columns), *_vector_checks(self.columns)]
-        return _definition(self.name, lines)
-
-
-def _vector_checks(columns: tuple[SqlColumn, ...]) -> list[str]:
-    """CHECKs of vector columns: all components or none are NULL, and directions are not zero."""
-    checks = []
-    vectors: dict[tuple[str, ...], list[SqlColumn]] = {}
-    for column in columns:
-        if column.component is not None:
-            vectors.setdefault(column.path, []).append(column)
-    for x, y, z in vectors.values():
-        name = ".".join(x.path)
-        a, b, c = (quoted(column.name) for column in (x, y, z))
-        if x.may_be_null:
-            all_or_none = f"({a} IS NULL) = ({b} IS NULL) AND ({a} IS NULL) = ({c} IS NULL)"
-            checks.append(checked(f"{name} must have all of x, y and z, or none of them", all_or_none))
-        if getattr(x.kind, "has_length", False):
-            checks.append(checked(f"{name} must not be zero", f"{a} <> 0 OR {b} <> 0 OR {c} <> 0"))
-    return checks
+        return _definition(self.name, NUMBER, [column.declaration for column in self.columns])
 
 
 def row_table(name: str, row_class: type[Row], is_single: bool = False) -> RowTable:
@@ -345,73 +258,50 @@ def row_table(name: str, row_class: type[Row], is_single: bool = False) -> RowTa
     return RowTable(name, row_class, columns, is_single)
 
 
-def _row_tables() -> dict[str, RowTable]:
-    """The tables for the rows of a scene by name, in the order of its fields."""
-    tables = {SCENE: row_table(SCENE, Scene, is_single=True)}
-    for name, field in fields_of(Scene).items():
-        kind = field.column.kind
-        if isinstance(kind, (RowList, Nested)):
-            tables[name] = row_table(name, kind.row_class, is_single=isinstance(kind, Nested))
-    return tables
-
-
-ROW_TABLES: Final[Mapping[str, RowTable]] = _row_tables()
-"""The tables of a scene without its mesh: `scene`, `parts`, `surfaces`, `lights`, `view`, `scalar`."""
-
-
-def _definition(name: str, lines: list[str], end: str = "STRICT") -> str:
-    return f"CREATE TABLE {quoted(name)} (\n  " + ",\n  ".join(lines) + f"\n) {end}"
-
-
-def _number(name: str, rest: str = " NOT NULL") -> str:
-    rule = f"{name} must be finite and at most {LARGEST_COORDINATE:g} in size"
-    return f"{name} REAL{rest} {checked(rule, f'abs({name}) <= {LARGEST_COORDINATE!r}')}"
-
-
-def _values(of: str, table: str) -> str:
-    return _definition(
-        VALUES[of],
-        [
-            f"scalar TEXT NOT NULL REFERENCES {SCALARS} (name) ON UPDATE CASCADE ON DELETE CASCADE",
-            f"{of} INTEGER NOT NULL REFERENCES {table} ({of})",
-            _number("value", ""),
-            f"PRIMARY KEY (scalar, {of})",
-        ],
-        "STRICT, WITHOUT ROWID",
+def _definition(name: str, key: str, lines: Iterable[str]) -> str:
+    return (
+        f"CREATE TABLE {quoted(name)} (\n  "
+        + ",\n  ".join([f"{key} INTEGER PRIMARY KEY", *lines])
+        + "\n) STRICT"
     )
 
 
+ROW_TABLES: Final[Mapping[str, RowTable]] = {
+    SCENE: row_table(SCENE, Scene, is_single=True),
+    **{
+        name: row_table(name, field.column.kind.row_class, isinstance(field.column.kind, Nested))
+        for name, field in fields_of(Scene).items()
+        if isinstance(field.column.kind, (RowList, Nested))
+    },
+}
+"""The tables of a scene without its mesh: `scene`, `parts`, `surfaces`, `lights`, `view`, `scalar`."""
+
 DEFINITIONS: Final[Mapping[str, str]] = {
-    NODES: _definition(NODES, ["node INTEGER PRIMARY KEY", *map(_number, ("x", "y", "z"))]),
+    NODES: _definition(NODES, "node", (f"{axis} REAL NOT NULL" for axis in AXES)),
     **{name: table.definition for name, table in ROW_TABLES.items()},
     POLYGONS: _definition(
         POLYGONS,
+        "polygon",
         [
-            "polygon INTEGER PRIMARY KEY",
             "part TEXT NOT NULL REFERENCES parts (name) ON UPDATE CASCADE",
             *(f"node{corner} INTEGER NOT NULL REFERENCES {NODES} (node)" for corner in (1, 2, 3)),
             f"node4 INTEGER REFERENCES {NODES} (node)",
         ],
     ),
-    MESH: _definition(
-        MESH,
-        [
-            f"{NUMBER} INTEGER PRIMARY KEY DEFAULT 1 {SINGLE_ROW}",
-            "crease_angle REAL NOT NULL "
-            + checked("crease_angle must be from 0 to 180", "crease_angle BETWEEN 0 AND 180"),
-        ],
-    ),
+    MESH: _definition(MESH, NUMBER, ["crease_angle REAL NOT NULL"]),
     SCALARS: _definition(
-        SCALARS,
-        [
-            f"{NUMBER} INTEGER PRIMARY KEY",
-            "name TEXT NOT NULL UNIQUE " + checked("name must not be empty", "name <> ''"),
-            f'"of" TEXT NOT NULL DEFAULT {NODE!r} '
-            + checked(f"of must be {NODE!r} or {POLYGON!r}", f'"of" IN ({NODE!r}, {POLYGON!r})'),
-        ],
+        SCALARS, NUMBER, ["name TEXT NOT NULL UNIQUE", f'"of" TEXT NOT NULL DEFAULT {NODE!r}']
     ),
-    VALUES[NODE]: _values(NODE, NODES),
-    VALUES[POLYGON]: _values(POLYGON, POLYGONS),
+    **{
+        VALUES[of]: (
+            f'CREATE TABLE "{VALUES[of]}" (\n'
+            f"  scalar TEXT NOT NULL REFERENCES {SCALARS} (name) ON UPDATE CASCADE ON DELETE CASCADE,\n"
+            f"  {of} INTEGER NOT NULL REFERENCES {table} ({of}) ON DELETE CASCADE,\n"
+            f"  value REAL,\n"
+            f"  PRIMARY KEY (scalar, {of})\n) STRICT, WITHOUT ROWID"
+        )
+        for of, table in ((NODE, NODES), (POLYGON, POLYGONS))
+    },
 }
 """The statements that create all tables of a store, by name."""
 
@@ -445,19 +335,12 @@ MOST_ROWS: Final = 100_000
 NOT_STORED: Final = (1, 2, 3)
 """The numbers that `PRAGMA table_xinfo` has for hidden and computed columns."""
 
-
-class StoredTable(NamedTuple):
-    """A table of a file: its columns, and whether it is STRICT."""
-
-    columns: tuple[str, ...]
-    is_strict: bool
-
-
-StoredTables = Mapping[str, StoredTable]
+StoredTables = Mapping[str, Sequence[str]]
+"""The names of the columns of tables of a file, by the names of the tables, all in lower case."""
 
 
 def stored_tables(connection: sqlite3.Connection) -> StoredTables:
-    """The tables of DEFINITIONS that a store has, by name.
+    """The tables of DEFINITIONS that a store has.
 
     Raises InputError if the file is of a later version, or something else has the name of a table.
     """
@@ -468,32 +351,25 @@ def stored_tables(connection: sqlite3.Connection) -> StoredTables:
             f"the version of a store must be at most {VERSION}, not {version}; read it with a newer autocolor"
         )
     tables, names = {}, []
-    for _, name, kind, _, _, is_strict in connection.execute("PRAGMA main.table_list").fetchall():
+    for _, name, kind, *_ in connection.execute("PRAGMA main.table_list").fetchall():
         table = name.lower()
         names.append(table)
         if table not in DEFINITIONS:
             continue
-        if kind != "table":
-            what = "a view" if kind == "view" else f"a {kind} table"
-            raise InputError(f"{table} must be a table, not {what}; make it a table, or rename it")
-        columns = connection.execute(f"PRAGMA table_xinfo({quoted(name)})").fetchall()
-        for column in columns:
-            if column[6] in NOT_STORED:
-                raise InputError(
-                    f"{table}: a column must hold values, not compute them as {shown(column[1])} does; make"
-                    " it a plain column"
-                )
-        tables[table] = StoredTable(tuple(column[1].lower() for column in columns), bool(is_strict))
-    _require("a store must have the tables", (NODES, POLYGONS), names)
+        # To ask for the columns of a virtual table would start it.
+        query = f"PRAGMA table_xinfo({quoted(name)})"
+        columns = connection.execute(query).fetchall() if kind == "table" else []
+        if not columns or any(column[6] in NOT_STORED for column in columns):
+            raise InputError(
+                f"{table} must be a table of plain columns, and no view, virtual table or computed column;"
+                " make it one, or rename it"
+            )
+        tables[table] = [column[1].lower() for column in columns]
+    require_names("a store must have the tables", (NODES, POLYGONS), names)
     return tables
 
 
-def require_columns(table: str, columns: Iterable[str], needed: Sequence[str]) -> None:
-    """Raise InputError if a table lacks a column that it needs."""
-    _require(f"{table} must have the columns", needed, columns)
-
-
-def _require(rule: str, needed: Sequence[str], names: Iterable[str]) -> None:
+def require_names(rule: str, needed: Sequence[str], names: Iterable[str]) -> None:
     """Raise InputError, with the nearest name, if some of the needed names are missing."""
     missing = [name for name in needed if name not in names]
     if missing:
@@ -505,17 +381,22 @@ def _require(rule: str, needed: Sequence[str], names: Iterable[str]) -> None:
 
 
 def rows_of_table(
-    connection: sqlite3.Connection, table: str, columns: Sequence[str]
+    connection: sqlite3.Connection, tables: StoredTables, table: str
 ) -> list[dict[str, SqlValue]]:
     """The rows of a table, by the names of its columns, ordered by the column NUMBER if the table has it.
 
-    Raises InputError for more than MOST_ROWS rows, and for a value that is bytes.
+    No rows if there is no such table. Raises InputError for more rows than it may have, and for a value that
+    is bytes.
     """
+    columns = tables.get(table, ())
+    if not columns:
+        return []
     ordered = f" ORDER BY {quoted(NUMBER)}" if NUMBER in columns else ""
     query = f"SELECT {', '.join(map(quoted, columns))} FROM {quoted(table)}{ordered} LIMIT {MOST_ROWS + 1}"
     rows = [dict(zip(columns, row, strict=True)) for row in connection.execute(query)]
-    if len(rows) > MOST_ROWS:
-        raise InputError(f"{table} must have at most {MOST_ROWS:,} rows, not more; leave rows out")
+    is_single = table == MESH or (table in ROW_TABLES and ROW_TABLES[table].is_single)
+    if len(rows) > (most := 1 if is_single else MOST_ROWS):
+        raise InputError(f"the rows of {table} must be at most {most:,}, not more; leave rows out")
     for number, row in enumerate(rows, 1):
         for name, value in row.items():
             if isinstance(value, bytes):

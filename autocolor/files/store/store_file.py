@@ -18,10 +18,10 @@ from autocolor.files.paths import STORE_SUFFIXES
 from autocolor.files.scene_report import SceneReport
 from autocolor.files.store.connections import (
     DAMAGE_ERRORS,
-    Clock,
     authorizer,
     closed_on_error,
     in_memory,
+    limited,
     loaded,
     primary_code,
     refusals,
@@ -29,12 +29,11 @@ from autocolor.files.store.connections import (
     replacing,
     sentence_of,
 )
-from autocolor.files.store.rows import insert_mesh, insert_rows, report_of
+from autocolor.files.store.rows import insert_rows, report_of
 from autocolor.files.store.schema import (
     APPLICATION,
     DEFINITIONS,
     INDEXES,
-    ROW_TABLES,
     VERSION,
     quoted,
     stored_tables,
@@ -45,6 +44,9 @@ from autocolor.scene.creation import MATERIALS, SurfaceSource
 from autocolor.scene.scene import Scene, check_scene
 
 LOG: Final = logger_of(__name__)
+
+READING_SECONDS: Final = 120.0
+"""Limit: how long a store may be read; the largest takes half of that."""
 
 
 def read_store(path: str | os.PathLike[str], *, surfaces: SurfaceSource = MATERIALS) -> SceneReport:
@@ -62,16 +64,12 @@ def report_in(
     connection: sqlite3.Connection, file: str, name: str, surfaces: SurfaceSource = MATERIALS
 ) -> SceneReport:
     """The scene in the tables of a connection. Raises InputError; messages begin with `file`."""
-    connection.set_authorizer(authorizer(may_change=False))
-    clock = Clock(connection)
+    late = InputError(f"a store must be read within {READING_SECONDS:g} seconds, not longer; leave rows out")
     try:
-        with refusals(clock=clock):
+        with refusals(), limited(connection, authorizer(), READING_SECONDS, late):
             return report_of(connection, stored_tables(connection), name or "scene", surfaces)
     except InputError as error:
         raise InputError(f"{file}: {problem}" for problem in error.problems) from None
-    finally:
-        connection.set_authorizer(None)
-        connection.set_progress_handler(None, 0)
 
 
 # Writing.
@@ -128,7 +126,7 @@ def write_store(
                     save(_with_additions(old, scene, path.name))
                 return
             except InputError as error:
-                LOG.warning("%s: written anew, because it cannot be read (%s)", path, error)
+                LOG.warning("%s: written anew, if nothing is beside it: it cannot be read (%s)", path, error)
         refuse_remains(path)
         check()
         write_atomically(path, store_bytes(scene), overwrite=overwrite)
@@ -177,7 +175,7 @@ def _may_create(action: int, first: str | None, second: str | None, *_: str | No
         return sqlite3.SQLITE_OK if first == "sqlite_master" else sqlite3.SQLITE_DENY
     if action in (sqlite3.SQLITE_CREATE_INDEX, sqlite3.SQLITE_CREATE_TRIGGER, sqlite3.SQLITE_REINDEX):
         return sqlite3.SQLITE_OK
-    return authorizer(may_change=False)(action, first, second, None, None)
+    return authorizer()(action, first, second, None, None)
 
 
 def _fill(connection: sqlite3.Connection, scene: Scene) -> None:
@@ -189,9 +187,7 @@ def _fill(connection: sqlite3.Connection, scene: Scene) -> None:
     for definition in DEFINITIONS.values():
         connection.execute(definition)
     try:
-        for table in ROW_TABLES.values():
-            insert_rows(connection, scene, table)
-        insert_mesh(connection, scene.mesh)
+        insert_rows(connection, scene)
     except UnicodeEncodeError:
         raise InputError("a name in a store must be text in UTF-8; rename it") from None
     for definition in INDEXES.values():

@@ -16,29 +16,30 @@ from autocolor.files.formats import recognized
 from autocolor.files.meshes.repair import different
 from autocolor.files.opening import FILES, STORE, PathLike, read_scene_with_report
 from autocolor.files.store.connections import (
-    BUSY_ERRORS,
-    CHANGES,
-    DAMAGE_ERRORS,
     DISK_ERRORS,
-    Clock,
+    SQL_ERRORS,
     authorizer,
     closed_on_error,
     copied,
+    limited,
     loaded,
     primary_code,
     replacing,
     sentence_of,
 )
-from autocolor.files.store.schema import MESH_TABLES, NODES, POLYGONS, VALUES, quoted
+from autocolor.files.store.schema import quoted
 from autocolor.files.store.store_file import report_in, store_of
-from autocolor.scene.scalar import NODE, POLYGON
 from autocolor.scene.scene import Scene
-
-DEPENDENT: Final = {POLYGONS: (VALUES[POLYGON], POLYGON), NODES: (VALUES[NODE], NODE)}
-"""For each table: the table of values that are removed with its rows, and the column that refers to it."""
 
 SECONDS: Final = 30.0
 """Limit: how long a statement may take, unless the user allows more."""
+
+LONGEST_COMPUTED: Final = 1 << 17
+"""Limit: in bytes, of a value that a statement reads or computes. SQLite cannot interrupt a function:
+searching a text of this length for one of half its length takes 0.2 s; at LONGEST_TEXT it would take 9 s."""
+
+ROWS_AT_ONCE: Final = 50
+"""Rows that are fetched at once. The rows of tables have at most LONGEST_COMPUTED bytes each."""
 
 Parameters = Sequence[object] | Mapping[str, object]
 Value = None | int | float | str | bytes
@@ -49,6 +50,10 @@ class Answer(NamedTuple):
 
     columns: tuple[str, ...]
     rows: Iterator[tuple[Value, ...]]
+
+
+class ChangeError(UsageError):
+    """A statement that would change rows, where it may only read them."""
 
 
 def open_tables(path: PathLike, *, up: str = "z", scale: float = 1.0, limit: float | None = None) -> Tables:
@@ -90,6 +95,7 @@ class Tables:
     def __init__(self, connection: sqlite3.Connection, name: str, store: Path | None = None) -> None:
         self._connection = connection
         self._name = name
+        self._scene_name = name if store is None else store.stem
         self._store = store
         self.seconds = SECONDS
         self._limit = validated_limit(None)
@@ -98,12 +104,12 @@ class Tables:
     def names(self) -> list[str]:
         """The names of all tables and views, also of other programs."""
         query = "SELECT name FROM sqlite_master WHERE type IN ('table', 'view') AND name NOT LIKE 'sqlite_%'"
-        return [name for (name,) in self._connection.execute(f"{query} ORDER BY rowid LIMIT 1000")]
+        return [str(row["name"]) for row in self.select(f"{query} ORDER BY rowid")]
 
     def columns(self, table: str) -> list[str]:
         """The names of the columns of a table. Raises UsageError for an unknown table."""
         require_name(table, self.names, "table")
-        return columns_in(self._connection, table)
+        return list(self.answer(f"SELECT * FROM {quoted(table)}").columns)
 
     def select(self, statement: str, parameters: Parameters = ()) -> list[dict[str, Value]]:
         """The rows that a SELECT gives, as dictionaries by the names of columns.
@@ -115,13 +121,24 @@ class Tables:
         return [dict(zip(columns, row, strict=True)) for row in rows]
 
     def answer(self, statement: str, parameters: Parameters = ()) -> Answer:
-        """Like `select`, but rows are fetched in chunks, so that an answer may be larger than memory."""
-        return answer_of(self._connection, statement, parameters, self.seconds)
+        """Like `select`, but rows are fetched in chunks, so that an answer may be larger than memory.
 
-    def table(self, name: str) -> list[dict[str, Value]]:
-        """All rows of a table."""
-        require_name(name, self.names, "table")
-        return self.select(f"SELECT * FROM {quoted(name)}")
+        Raises UsageError, also while rows are fetched; ChangeError for a statement that would change rows.
+        """
+        connection = self._connection
+        with _statement(connection, self.seconds):
+            cursor = connection.execute(statement, parameters)
+
+        def rows() -> Iterator[tuple[Value, ...]]:
+            while True:
+                # The time between two fetches is not the statement's.
+                with _statement(connection, self.seconds):
+                    fetched = cursor.fetchmany(ROWS_AT_ONCE)
+                if not fetched:
+                    return
+                yield from fetched
+
+        return Answer(different([column[0] for column in cursor.description or ()]), rows())
 
     def update(self, table: str, key: str | int, /, **values: object) -> None:
         """Change columns of the row with this key, which is a name or a number.
@@ -140,15 +157,6 @@ class Tables:
             rows = self.select(f"SELECT {quoted(by)} FROM {quoted(table)} LIMIT 1000")
             require_name(str(key), [str(row[by]) for row in rows], f"row of {table} with {by}")
 
-    @property
-    def is_in_a_file(self) -> bool:
-        """Whether a change is saved to the file of a store at once."""
-        return self._store is not None
-
-    def would_change(self, statement: str, parameters: Parameters = ()) -> bool:
-        """Whether a statement changes rows; it is not run. Raises UsageError for a wrong statement."""
-        return bool(changes_of(self._connection, statement, parameters))
-
     def change(self, statement: str, parameters: Parameters = ()) -> int:
         """Run one INSERT, UPDATE or DELETE, check the scene, and save it; returns how many rows it changed.
 
@@ -159,22 +167,19 @@ class Tables:
         nothing is changed.
         """
         with allowing(self._limit), self._copy() as (copy, save):
-            tables = changes_of(copy, statement, parameters)
             for (trigger,) in copy.execute("SELECT name FROM sqlite_master WHERE type = 'trigger'"):
                 raise WriteError(
                     f"{self._name}: a store that is changed must have no triggers, and this one has trigger"
                     f" {shown(trigger)}; drop it, or write the scene to another file"
                 )
-            # Without indexes, checking references to removed nodes takes the square of their number.
-            if not tables.keys() & {*MESH_TABLES}:
-                copy.execute("PRAGMA foreign_keys = ON")
-            copy.execute("BEGIN")
-            copy.execute("PRAGMA defer_foreign_keys = ON")
-            count = change(copy, statement, parameters, self.seconds)
-            for table, actions in tables.items():
-                values, column = DEPENDENT.get(table, ("", ""))
-                if sqlite3.SQLITE_DELETE in actions and column in columns_in(copy, values):
-                    copy.execute(f"DELETE FROM {values} WHERE {column} NOT IN (SELECT {column} FROM {table})")
+            for begin in ("PRAGMA foreign_keys = ON", "BEGIN", "PRAGMA defer_foreign_keys = ON"):
+                copy.execute(begin)
+            with _statement(copy, self.seconds, may_change=True):
+                # The last row is changed only after all rows of a RETURNING clause are fetched.
+                for _ in copy.execute(statement, parameters):
+                    pass
+            # The row count of Python 3.11's cursor is missing after WITH.
+            (count,) = copy.execute("SELECT changes()").fetchone()
             report_in(copy, self._name, self._scene_name)
             try:
                 copy.execute("COMMIT")
@@ -187,7 +192,7 @@ class Tables:
                 save(copy.serialize())
         self._connection.close()
         self._connection = copy
-        return count
+        return int(count)
 
     @contextmanager
     def _copy(self) -> Iterator[tuple[sqlite3.Connection, Callable[[bytes], None]]]:
@@ -199,24 +204,13 @@ class Tables:
             with closed_on_error(copied(self._connection)) as copy:
                 yield copy, lambda _: None
 
-    @property
-    def _scene_name(self) -> str:
-        return self._name if self._store is None else self._store.stem
-
     def scene(self) -> Scene:
         """The scene of the tables as they are now. Raises InputError."""
         with allowing(self._limit):
             return report_in(self._connection, self._name, self._scene_name).scene
 
-    def definition(self, table: str) -> str:
-        """The statement that creates a table."""
-        require_name(table, self.names, "table")
-        query = "SELECT sql FROM sqlite_master WHERE name = ?"
-        (text,) = self._connection.execute(query, (table,)).fetchone()
-        return f"{text};"
-
     def close(self) -> None:
-        """Close the file."""
+        """Free the tables."""
         self._connection.close()
 
     def __enter__(self) -> Tables:
@@ -225,147 +219,42 @@ class Tables:
     def __exit__(self, *_: object) -> None:
         self.close()
 
-    def __repr__(self) -> str:
-        return f"Tables({self._name!r}: {', '.join(self.names)})"
-
-
-# Statements.
-
-LONGEST_COMPUTED: Final = 1 << 17
-"""Limit: in bytes, of a value that a statement reads or computes. SQLite cannot interrupt a function:
-searching a text of this length for one of half its length takes 0.2 s; at LONGEST_TEXT it would take 9 s."""
-
-ROWS_AT_ONCE: Final = 50
-"""Rows that are fetched at once. The rows of tables have at most LONGEST_COMPUTED bytes each."""
-
-STATEMENT_STEPS: Final = 1000
-"""Steps of SQLite's machine between two looks at the clock; one step can be a slow function."""
-
-
-def answer_of(
-    connection: sqlite3.Connection, statement: str, parameters: Parameters = (), seconds: float = SECONDS
-) -> Answer:
-    """The answer to one statement that changes nothing. Raises UsageError, also while rows are fetched."""
-    changes = changes_of(connection, statement, parameters)
-    if changes:
-        raise UsageError(
-            f"a statement must only read the tables, and this one changes {', '.join(sorted(changes))}; allow"
-            " changes with --write (tables.change in Python), or write a SELECT"
-        )
-    clock = Clock(connection, seconds, STATEMENT_STEPS)
-    with _limited(connection, clock):
-        cursor = connection.execute(statement, parameters)
-    columns = different([column[0] for column in cursor.description or ()])
-
-    def rows() -> Iterator[tuple[Value, ...]]:
-        while True:
-            # The time between two fetches is not the statement's.
-            clock.begin()
-            with _limited(connection, clock):
-                fetched = cursor.fetchmany(ROWS_AT_ONCE)
-            if not fetched:
-                return
-            yield from fetched
-
-    return Answer(columns, rows())
-
-
-def change(
-    connection: sqlite3.Connection, statement: str, parameters: Parameters = (), seconds: float = SECONDS
-) -> int:
-    """Run one statement that changes rows, within a transaction; returns how many. Raises UsageError."""
-    clock = Clock(connection, seconds, STATEMENT_STEPS)
-    with _limited(connection, clock, may_change=True):
-        cursor = connection.execute(statement, parameters)
-        # The last row is changed only after all rows of a RETURNING clause are fetched.
-        for _ in cursor:
-            pass
-        # The row count of Python 3.11's cursor is missing after WITH.
-        (count,) = connection.execute("SELECT changes()").fetchone()
-    return int(count)
-
-
-def changes_of(
-    connection: sqlite3.Connection, statement: str, parameters: Parameters = ()
-) -> Mapping[str, set[int]]:
-    """The tables that a statement would change, and how. It is not run.
-
-    Raises UsageError for a wrong statement.
-    """
-    changes: dict[str, set[int]] = {}
-    permission = authorizer(may_change=True)
-
-    def note_change(
-        action: int, first: str | None, second: str | None, database: str | None, inner: str | None
-    ) -> int:
-        if action in CHANGES and first is not None and inner is None:
-            changes.setdefault(first.lower(), set()).add(action)
-        # The changes of triggers are refused by name when the statement is run.
-        return permission(action, first, second, database, None)
-
-    if not statement.strip().rstrip(";").strip():
-        raise UsageError("a statement must not be empty; write one, as in SELECT * FROM lights")
-    is_pragma = statement.lstrip().lower().startswith(("pragma", "explain"))
-    with _limited(connection, Clock(connection, SECONDS, STATEMENT_STEPS), may_change=True):
-        connection.set_authorizer(note_change)
-        connection.execute(statement if is_pragma else f"EXPLAIN {statement}", parameters).fetchall()
-    return changes
-
 
 @contextmanager
-def _limited(connection: sqlite3.Connection, clock: Clock, may_change: bool = False) -> Iterator[None]:
-    """Limits of permissions, time and the size of values for a statement.
+def _statement(connection: sqlite3.Connection, seconds: float, may_change: bool = False) -> Iterator[None]:
+    """Limits of permissions, time and the size of values for a statement, and its errors as UsageError.
 
-    Raises UsageError for an error of SQLite; WriteError if the disk, which holds large sorted answers, is
-    full or fails.
+    Raises ChangeError if it would change tables and may not; WriteError if the disk, which holds large sorted
+    answers, is full or fails.
     """
-    connection.set_authorizer(authorizer(may_change))
+    changed: set[str] = set()
+    late = UsageError(
+        f"a statement must end within {seconds:g} seconds, not run on; narrow it with WHERE or LIMIT, or"
+        " allow more with --seconds"
+    )
     longest = connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, LONGEST_COMPUTED)
     try:
-        yield
-    except (sqlite3.Error, sqlite3.Warning, OverflowError, UnicodeError) as error:
-        if "interrupted" in str(error) and not clock.ended:
-            # The user pressed Ctrl+C, which SQLite took.
-            raise KeyboardInterrupt from None
-        if primary_code(error) in DISK_ERRORS:
+        with limited(connection, authorizer(may_change, changed), seconds, late):
+            yield
+    except SQL_ERRORS as error:
+        text, code = printable(str(error)), primary_code(error)
+        if code in DISK_ERRORS:
             raise WriteError(sentence_of(error)) from None
-        raise UsageError(_sentence(error, clock)) from None
-    finally:
-        connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, longest)
-        connection.set_authorizer(None)
-
-
-CHECK_FAILED: Final = "CHECK constraint failed: "
-
-
-def _sentence(error: Exception, clock: Clock) -> str:
-    """A sentence for a statement that failed: what is wrong, and what to do."""
-    text, code = printable(str(error)), primary_code(error)
-    if clock.ended:
-        return (
-            f"a statement must end within {clock.seconds:g} seconds, not run on; narrow it with WHERE or"
-            " LIMIT, or allow more with --seconds"
-        )
-    if code in (*BUSY_ERRORS, *DAMAGE_ERRORS):
-        return sentence_of(error)
-    if code == sqlite3.SQLITE_AUTH:
-        return (
+        if code != sqlite3.SQLITE_AUTH:
+            raise UsageError(
+                f"a statement must be one that SQLite can run, and this one is not ({text}); correct it"
+            ) from None
+        if changed and not may_change:
+            raise ChangeError(
+                f"a statement must only read the tables, and this one changes {', '.join(sorted(changed))};"
+                " allow changes with --write (tables.change in Python), or write a SELECT"
+            ) from None
+        raise UsageError(
             "a statement must be a SELECT or, with --write, an INSERT, UPDATE or DELETE of rows, not another"
             f" ({text}); change the tables themselves with a tool of SQLite"
-        )
-    if text.startswith(CHECK_FAILED):
-        # The name of the CHECK is its rule.
-        return f"{text.removeprefix(CHECK_FAILED)}, and a changed row breaks this rule; correct its value"
-    return f"a statement must be one that SQLite can run, and this one is not ({text}); correct it"
-
-
-def columns_in(connection: sqlite3.Connection, table: str) -> list[str]:
-    """The names of the columns of a table; empty if there is no such table."""
-    try:
-        return [row[1] for row in connection.execute(f"PRAGMA table_info({quoted(table)})")]
-    except sqlite3.Error:
-        # A view of another program may be broken.
-        return []
+        ) from None
+    finally:
+        connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, longest)
 
 
 def require_name(name: str, names: Sequence[str], noun: str) -> None:

@@ -121,11 +121,11 @@ def lines(form: str | None, columns: tuple[str, ...], *rows: tuple[Value, ...]) 
 def test_numbers_stand_to_the_right_and_text_to_the_left() -> None:
     rows: list[tuple[Value, ...]] = [("a", 1, 1, None), ("body", 100, "x", None), ("b", None, 2.5, None)]
     assert lines(None, ("name", "n", "mixed", "nothing"), *rows) == [
-        "name     n  mixed  nothing",
+        "name  n     mixed  nothing",
         "----  ----  -----  -------",
-        "a        1  1      NULL",
+        "a        1      1  NULL",
         "body   100  x      NULL",
-        "b     NULL  2.5    NULL",
+        "b     NULL    2.5  NULL",
     ]
 
 
@@ -243,33 +243,25 @@ def test_words_with_a_dot_show_the_tables_and_leave(
     assert told.count(module.GREETING) == 2
 
 
-def test_the_statements_of_a_file_are_parted_at_their_semicolons() -> None:
-    assert list(statements_in(["SELECT 1; SEL", "ECT\n", "2 -- a; b\n", "; SELECT 3"])) == [
-        "SELECT 1;",
-        " SELECT\n2 -- a; b\n;",
-        " SELECT 3",
-    ]
-    assert split("  \n") == ([], "")
-
-
-def test_text_without_an_end_is_not_collected_for_ever(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(module, "MOST_LETTERS", 10)
-    endless = iter(lambda: "x" * 6, None)
-    assert list(statements_in(endless)) == ["x" * 12]
-    for letters, lines in [(9, 2), (10, 2), (11, 1)]:
-        assert list(statements_in(["x" * letters, "y"])) == ["x" * letters + "y" * (lines - 1)]
-
-
-def test_statements_that_are_not_text_are_refused(tmp_path: Path) -> None:
-    lines = io.TextIOWrapper(io.BytesIO(b"SELECT 1;\nSELECT '\xff';\n"), "utf-8")
-    with pytest.raises(UsageError, match="statements must be text in UTF-8; save them in this encoding"):
-        list(statements_in(lines))
-    path = small_store(tmp_path)
-    assert [refusal(path, f"SELECT '{odd}'").exit_code for odd in ("\udcff", "\0")] == [2, 2]
-
-
-def test_semicolons_in_long_texts_names_and_comments_are_passed_over_at_once() -> None:
+def test_statements_are_parted_at_their_semicolons() -> None:
+    text = "SELECT 1; SELECT\n2 -- a; b\n; SELECT 3"
+    assert split(text) == ["SELECT 1;", " SELECT\n2 -- a; b\n;", " SELECT 3"]
+    assert split("  \n") == [""]
+    # Semicolons in long texts, names and comments are passed over at once.
     many = ";" * 300_000
     for text in (f"SELECT '{many}';", f'SELECT "{many}";', f"SELECT 1 /*{many}*/;", f"--{many}\nSELECT 1;"):
-        assert split(text) == ([text], "")
-    assert split(f"SELECT '{many}") == ([], f"SELECT '{many}")
+        assert split(text) == [text, ""]
+    assert split(f"SELECT '{many}") == [f"SELECT '{many}"]
+
+
+def test_statements_that_are_not_text_or_too_long_are_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with pytest.raises(UsageError, match="statements must be text in UTF-8; save them in this encoding"):
+        statements_in(io.TextIOWrapper(io.BytesIO(b"SELECT 1;\nSELECT '\xff';\n"), "utf-8"))
+    monkeypatch.setattr(module, "MOST_LETTERS", 10)
+    assert statements_in(io.StringIO("SELECT 10;")) == ["SELECT 10;"]
+    with pytest.raises(UsageError, match="statements must have at most 10 letters, not more; run a part"):
+        statements_in(io.StringIO("SELECT 100;"))
+    path = small_store(tmp_path)
+    assert [refusal(path, f"SELECT '{odd}'").exit_code for odd in ("\udcff", "\0")] == [2, 2]

@@ -16,11 +16,9 @@ from autocolor.budget import allowing
 from autocolor.files.store import connections
 from autocolor.files.store.connections import (
     UNSAFE_FUNCTIONS,
-    Clock,
     authorizer,
     in_memory,
     loaded,
-    refusals,
     replacing,
 )
 from autocolor.files.store.store_file import store_bytes, write_store
@@ -44,42 +42,22 @@ def change(path: Path) -> None:
     write_store(path, small_scene().with_light("key", intensity=9.0), overwrite=True)
 
 
-def test_a_copy_is_of_a_file_of_any_name(tmp_path: Path) -> None:
+def test_sizes_are_limited_and_the_schema_is_not_trusted() -> None:
+    with closing(in_memory()) as connection:
+        for pragma, value in {"trusted_schema": 0, "cell_size_check": 1, "foreign_keys": 0}.items():
+            assert connection.execute(f"PRAGMA {pragma}").fetchone() == (value,), pragma
+        assert connection.execute("SELECT length(?)", (bytes(1 << 20),)).fetchone() == (1 << 20,)
+        for wrong in ("SELECT length(zeroblob(1048577))", f"SELECT 'a' LIKE '{1001 * '%'}'"):
+            with pytest.raises(sqlite3.Error, match=r"too (big|complex)"):
+                connection.execute(wrong).fetchall()
+
+
+def test_a_file_may_have_any_name_and_a_copy_is_not_the_file(tmp_path: Path) -> None:
     name = "a?b#c%20\u202e\x1b\n\udcff.sqlite" if sys.platform.startswith("linux") else "a b#c%20.sqlite"
     path = small_store(tmp_path).rename(tmp_path / name)
     with closing(loaded(path)) as connection:
         connection.execute("DELETE FROM lights")
     assert run(path, "SELECT count(*) FROM lights") == [(2,)]
-
-
-def test_sizes_are_limited_and_the_schema_is_not_trusted() -> None:
-    connection = in_memory()
-    limits = {
-        "LENGTH": 1 << 20, "SQL_LENGTH": 1 << 20, "COLUMN": 2000, "EXPR_DEPTH": 200, "COMPOUND_SELECT": 50,
-        "VDBE_OP": 250_000, "FUNCTION_ARG": 100, "ATTACHED": 0, "LIKE_PATTERN_LENGTH": 1000,
-        "VARIABLE_NUMBER": 1000, "TRIGGER_DEPTH": 1, "WORKER_THREADS": 0,
-    }  # fmt: skip
-    for name, most in limits.items():
-        assert connection.getlimit(getattr(sqlite3, f"SQLITE_LIMIT_{name}")) == most, name
-    for pragma, value in {"trusted_schema": 0, "cell_size_check": 1, "foreign_keys": 0}.items():
-        assert connection.execute(f"PRAGMA {pragma}").fetchone() == (value,), pragma
-    for size in ((1 << 20) - 1, 1 << 20):
-        assert connection.execute("SELECT length(?)", (bytes(size),)).fetchone() == (size,)
-    with pytest.raises(sqlite3.DataError, match="too big"):
-        connection.execute("SELECT length(?)", (bytes((1 << 20) + 1),)).fetchall()
-    connection.close()
-
-
-def test_a_statement_that_takes_too_long_is_ended() -> None:
-    connection = in_memory()
-    clock = Clock(connection, seconds=0.05)
-    endless = "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) SELECT max(i) FROM n"
-    with (
-        pytest.raises(InputError, match=r"x: a store must be read within 0\.05 seconds, not longer"),
-        refusals("x", clock),
-    ):
-        connection.execute(endless).fetchall()
-    connection.close()
 
 
 def test_what_is_no_file_or_too_large_is_not_opened(tmp_path: Path) -> None:
@@ -115,23 +93,6 @@ def test_a_pipe_beside_a_store_is_not_waited_for(
     os.mkfifo(f"{path}{ending}")
     with pytest.raises((InputError, WriteError), match=f"{ending}: it must be a regular file, not a pipe"):
         act(path)
-
-
-def test_sqlite_itself_deletes_the_file_that_a_hostile_journal_names(tmp_path: Path) -> None:
-    path, named = small_store(tmp_path), tmp_path / "named.txt"
-    named.write_text("precious")
-    hostile_journal(path, named)
-    run(path, "SELECT * FROM lights")
-    if named.exists():
-        pytest.skip(f"SQLite {sqlite3.sqlite_version} trusts no journal with the name of another file")
-    named.write_text("precious")
-    hostile_journal(path, named, has_header=False)
-    with closing(sqlite3.connect(path, isolation_level=None)) as other:
-        other.execute("BEGIN")
-        other.execute("DELETE FROM lights")
-        assert named.exists()
-        other.execute("ROLLBACK")
-    assert not named.exists()
 
 
 @pytest.mark.parametrize("act", [read, change])
@@ -198,22 +159,6 @@ def test_what_a_log_holds_is_read_and_is_not_played_into_the_next_store(
     assert os.listdir(tmp_path).count("copy.sqlite-wal") == 0
 
 
-def test_a_log_is_read_beside_its_program_and_the_store_is_not_replaced_then(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(connections, "SECONDS_OF_WAITING", 0.05)
-    path = small_store(tmp_path)
-    with closing(sqlite3.connect(path, isolation_level=None)) as other:
-        other.execute("PRAGMA journal_mode = WAL")
-        other.execute(BRIGHTER)
-        with closing(loaded(path)) as connection:
-            assert connection.execute(BRIGHTNESS).fetchone() == (2.0,)
-        with pytest.raises(WriteError, match="is writing to the store, or has it open in WAL mode; close it"):
-            change(path)
-        other.execute(BRIGHTER)
-    assert brightness(path) == 3.0
-
-
 def test_a_store_in_wal_mode_without_a_log_is_read_without_a_trace(tmp_path: Path) -> None:
     path = small_store(tmp_path)
     run(path, "PRAGMA journal_mode = WAL")
@@ -261,19 +206,27 @@ def test_no_store_is_made_beside_a_file_that_would_be_played_into_it(
 # Other programs.
 
 
-def test_a_program_that_is_writing_is_waited_for_and_then_refused(
+def test_a_program_that_has_the_store_is_waited_for_and_then_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(connections, "SECONDS_OF_WAITING", 0.05)
     path = small_store(tmp_path)
+    sentence = "another program is writing to the store, or has it open in WAL mode; close it"
     with closing(sqlite3.connect(path, isolation_level=None)) as other:
         other.execute("BEGIN EXCLUSIVE")
         for act, error in ((read, InputError), (change, WriteError)):
-            with pytest.raises(error, match="another program is writing to the store"):
+            with pytest.raises(error, match=sentence):
                 act(path)
         other.execute(BRIGHTER)
         other.execute("COMMIT")
-    assert brightness(path) == 2.0
+        other.execute("PRAGMA journal_mode = WAL")
+        other.execute(BRIGHTER)
+        with closing(loaded(path)) as connection:
+            assert connection.execute(BRIGHTNESS).fetchone() == (3.0,)
+        with pytest.raises(WriteError, match=sentence):
+            change(path)
+        other.execute(BRIGHTER)
+    assert brightness(path) == 4.0
 
 
 def test_nobody_else_changes_a_store_while_it_is_changed(tmp_path: Path) -> None:
@@ -337,29 +290,22 @@ REFUSED = (
     "ATTACH 'other.db' AS other",
     "DETACH main",
     "SELECT * FROM nodes WHERE nodes MATCH 'a'",
-    "SELECT rtreenode(2, zeroblob(100))",
     "SELECT FTS3_Tokenizer('simple', x'00')",
-    "PRAGMA journal_mode",
     "PRAGMA journal_mode = WAL",
     "PRAGMA writable_schema = ON",
     "PRAGMA user_version = 9",
-    "PRAGMA Schema_Version = 9",
-    "PRAGMA trusted_schema = ON",
+    "PRAGMA Application_Id = 9",
     "VACUUM INTO 'x'",
     "CREATE TABLE other (x)",
-    "CREATE TEMP TABLE other (x)",
     "CREATE TEMP VIEW other AS SELECT 1",
-    "CREATE VIEW other AS SELECT 1",
     "CREATE INDEX other ON nodes (x)",
     "CREATE TRIGGER other AFTER DELETE ON nodes BEGIN SELECT 1; END",
     "CREATE VIRTUAL TABLE other USING fts5(x)",
-    "DROP TABLE nodes",
     "DROP VIEW far",
     "ALTER TABLE nodes ADD COLUMN w",
     "REINDEX nodes",
     "ANALYZE",
     "DELETE FROM sqlite_master",
-    "UPDATE SQLite_schema SET name = 'x'",
     # A trigger changes nothing, whatever the schema calls it.
     "DELETE FROM far",
 )
@@ -372,7 +318,6 @@ READS = (
     "PRAGMA INDEX_LIST(nodes)",
     "PRAGMA User_Version",
     "PRAGMA application_id",
-    "PRAGMA integrity_check",
 )
 GUARDED = (
     "CREATE TABLE nodes (x UNIQUE)",
@@ -394,20 +339,14 @@ def is_allowed(may_change: bool, statement: str) -> bool:
         return True
 
 
-def test_a_statement_that_reads_may_do_nothing_else() -> None:
-    assert [each for each in (*REFUSED, *CHANGES) if is_allowed(False, each)] == []
-    assert [each for each in READS if not is_allowed(False, each)] == []
-
-
-def test_a_statement_that_changes_rows_may_change_nothing_else() -> None:
-    assert [each for each in REFUSED if is_allowed(True, each)] == []
-    assert [each for each in (*CHANGES, *READS) if not is_allowed(True, each)] == []
-
-
-def test_what_is_not_known_is_denied_and_so_are_functions_that_do_more_than_compute() -> None:
+def test_a_statement_reads_or_also_changes_rows_and_may_do_nothing_else() -> None:
     for may_change in (False, True):
+        refused = [*REFUSED, *(() if may_change else CHANGES)]
+        assert [each for each in refused if is_allowed(may_change, each)] == []
+        assert [each for each in READS if not is_allowed(may_change, each)] == []
         ask = authorizer(may_change)
         assert {ask(unknown, None, None, None, None) for unknown in (0, 100, -1)} == {sqlite3.SQLITE_DENY}
         for function in UNSAFE_FUNCTIONS:
             answer = ask(sqlite3.SQLITE_FUNCTION, None, function.upper(), None, None)
             assert answer == sqlite3.SQLITE_DENY
+    assert [each for each in CHANGES if not is_allowed(True, each)] == []
