@@ -13,7 +13,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
-from autocolor.checks import shown
+from autocolor.checks import nearest, shown
 from autocolor.errors import InputError
 from autocolor.files.meshes.repair import MeshReport
 from autocolor.files.reading import read_bytes
@@ -152,10 +152,10 @@ def _parts(
         if reports is None:
             continue
         if name not in part_names:
-            problems.note(path, "no mesh has a part of this name", (name, part_names))
+            problems.note(path, f"no mesh has a part of this name{nearest(name, part_names)}")
         if part is not None and part.surface not in names_of_surfaces and "surface" in table:
             rule = f"must be a surface, a part or a material of the scene, not {shown(part.surface)}"
-            problems.note((*path, "surface"), rule, (part.surface, names_of_surfaces))
+            problems.note((*path, "surface"), f"{rule}{nearest(part.surface, names_of_surfaces)}")
         elif part is not None:
             fields[name] = table
     return fields

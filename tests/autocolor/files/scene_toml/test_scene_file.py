@@ -112,7 +112,6 @@ direction = [0, 0, 1]
         " 'interpolation', 'background', 'front', 'views' or 'scalar'",
         f"{place} 4, [view]: eye {vector} [0, 0]",
         "bad.obj, line 10: a corner must be a whole number, not 'x'; correct it",
-        f"{place} 9, mesh[2]: {folder / 'none.obj'}: there is no such file or folder; check the name",
         f"{place} 10, mesh[2]: crease_angle must be a number from 0 to 180, not 200",
         f"{place} 12, [surfaces.body]: there is no field 'two_side'; did you mean 'two_sided'?",
         f"{place} 13, lights[1] 'key': position {vector} missing; add it",

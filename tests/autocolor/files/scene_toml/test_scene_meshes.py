@@ -8,12 +8,10 @@ import numpy as np
 import pytest
 
 from autocolor import Mesh, OutputError, read_scene, render, write_picture
-from autocolor.budget import MEMORY, allowing
 from autocolor.errors import InputError
 from autocolor.files.meshes.repair import MeshReport
 from autocolor.files.scene_toml import scene_meshes
 from autocolor.files.scene_toml.scene_meshes import (
-    GROWTH,
     MeshSource,
     entries_of,
     meshes_of,
@@ -91,16 +89,6 @@ def test_a_mesh_has_a_file_or_two_tables_and_nothing_else(folder: Path, keys: st
     ]
 
 
-def test_a_wrong_key_does_not_keep_the_file_from_being_read(folder: Path) -> None:
-    (folder / "car.obj").write_text("v 0 0\n")
-    assert refusal(folder, MESH + 'up = "w"\ncolor = 3\n') == [
-        "car.obj, line 1: a node must have three coordinates x y z, not 2; add what is missing",
-        "scene.toml, line 3, mesh[1]: up must be 'x', 'y' or 'z', not 'w'",
-        "scene.toml, line 4, mesh[1]: there is no field 'color'; choose 'file', 'nodes', 'polygons', 'up',"
-        " 'scale', 'normals' or 'crease_angle'",
-    ]
-
-
 @pytest.mark.parametrize("rows", ["mesh = [1]\n", 'mesh = ["car.obj"]\n', "mesh = [[]]\n"])
 def test_a_mesh_that_is_no_table_is_refused(folder: Path, rows: str) -> None:
     (sentence,) = refusal(folder, rows)
@@ -118,13 +106,14 @@ def test_no_file_outside_the_folder_is_opened_unless_that_is_allowed(folder: Pat
     assert len(read(folder, '[[mesh]]\nfile = "../car.obj"\n', outside=True)) == 1
 
 
-def test_all_meshes_together_have_bounds_before_any_is_read(folder: Path) -> None:
-    with allowing((2 * GROWTH * len(CAR) + 0.5) / MEMORY):
-        assert len(read(folder, MESH * 2)) == 2
-        (sentence,) = refusal(folder, MESH * 3)
-    assert sentence.startswith("scene.toml, line 1, mesh: the mesh files together must take at most 0.0 MB ")
-    (folder / "car.obj").unlink()
-    assert refusal(folder, MESH * 1000)[0].endswith("there is no such file or folder; check the name")
+def test_the_problems_of_keys_and_of_files_stand_together(folder: Path) -> None:
+    (folder / "bad.obj").write_text("v 0 0\n")
+    assert refusal(folder, MESH + 'up = "w"\ncolor = 3\n[[mesh]]\nfile = "bad.obj"\n') == [
+        "scene.toml, line 3, mesh[1]: up must be 'x', 'y' or 'z', not 'w'",
+        "scene.toml, line 4, mesh[1]: there is no field 'color'; choose 'file', 'nodes', 'polygons', 'up',"
+        " 'scale', 'normals' or 'crease_angle'",
+        "bad.obj, line 1: a node must have three coordinates x y z, not 2; add what is missing",
+    ]
     assert refusal(folder, MESH * 1001) == [
         "scene.toml, line 1, mesh must have at most 1,000 tables, not 1,001; join some"
     ]

@@ -2,9 +2,7 @@ from __future__ import annotations
 
 import dataclasses
 import tomllib
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -17,10 +15,8 @@ from autocolor.files.meshes.repair import MeshReport
 from autocolor.files.opening import read_scene_with_report
 from autocolor.files.scene_toml.scene_file import report_of_text
 from autocolor.files.scene_toml.scene_text import (
-    completed,
     edited_to,
     scene_text,
-    with_crease_angle,
     with_document,
     with_meshes,
 )
@@ -186,9 +182,6 @@ file = "car.obj"
 """
 
 
-MESHES = '[[mesh]]\nfile = "a"\n[[mesh]]\nfile = "b"\n'
-
-
 @pytest.fixture(scope="module")
 def meshes(tmp_path_factory: pytest.TempPathFactory) -> list[MeshReport]:
     path = tmp_path_factory.mktemp("mesh") / "car.obj"
@@ -200,8 +193,8 @@ def read(text: bytes, meshes: list[MeshReport]) -> Scene:
     return report_of_text(text, Path("car", "scene.toml"), meshes=meshes).scene
 
 
-def edited(text: str, scene: Scene, meshes: list[MeshReport]) -> str:
-    data = edited_to(text.encode(), scene, lambda data: read(data, meshes))
+def edited(text: str, scene: Scene, meshes: list[MeshReport], complete: bool = False) -> str:
+    data = edited_to(text.encode(), scene, lambda data: read(data, meshes), complete=complete)
     assert data is not None
     return data.decode()
 
@@ -247,46 +240,40 @@ def test_a_text_that_cannot_be_read_or_never_gives_the_scene_is_given_up(meshes:
     assert edited_to(DOTTED.encode(), scene.replace(ambient=0.7), lambda _: scene) is None
 
 
-def rewritten(text: str, change: Callable[[dict[str, Any]], dict[str, Any]]) -> str:
-    """The text with other values in the document that it is."""
-    data = with_document(text.encode(), change(tomllib.loads(text)))
-    assert data is not None
-    return data.decode()
-
-
-def test_mesh_tables_are_replaced_where_they_are() -> None:
-    text = '# A.\n[[mesh]]\nfile = "a.obj" # old\n[[mesh]]\nfile = "b.obj"\n[view]\n'
-    entries = [{"file": "c.obj", "up": "y"}, {"file": "d.obj", "up": "z"}]
-    assert rewritten(text, lambda document: with_meshes(document, entries)) == (
-        '# A.\n[[mesh]]\nfile = "c.obj" # old\nup = "y"\n[[mesh]]\nfile = "d.obj"\n[view]\n'
-    )
-    assert rewritten('mesh = [{file="a"}] # one\n', lambda document: with_meshes(document, entries[1:])) == (
-        'mesh = [{file="d.obj"}] # one\n'
-    )
-
-
-def test_a_crease_angle_is_set_where_one_is() -> None:
-    for text, expected in (
-        (f"{MESHES}crease_angle = 3 # deg\n", f"{MESHES}crease_angle = 7.5 # deg\n"),
-        ('[[mesh]]\nfile = "a"\n', '[[mesh]]\nfile = "a"\ncrease_angle = 7.5\n'),
+def test_mesh_tables_are_replaced_where_they_are_and_a_crease_angle_is_set_where_one_is() -> None:
+    two = '[[mesh]]\nfile = "a"\n[[mesh]]\nfile = "b"\n'
+    for text, entries, angle, expected in (
+        (
+            '# A.\n[[mesh]]\nfile = "a" # old\n[[mesh]]\nfile = "b"\n[view]\n',
+            [{"file": "c", "up": "y"}, {"file": "d"}],
+            None,
+            '# A.\n[[mesh]]\nfile = "c" # old\nup = "y"\n[[mesh]]\nfile = "d"\n[view]\n',
+        ),
+        ('mesh = [{file="a"}] # one\n', [{"file": "d"}], None, 'mesh = [{file="d"}] # one\n'),
+        (f"{two}crease_angle = 3 # deg\n", None, 7.5, f"{two}crease_angle = 7.5 # deg\n"),
+        ('[[mesh]]\nfile = "a"\n', None, 7.5, '[[mesh]]\nfile = "a"\ncrease_angle = 7.5\n'),
         (
             'mesh = [{file="a"}, {file="b"}] # 2\n',
+            None,
+            7.5,
             'mesh = [{file="a",crease_angle = 7.5 }, {file="b"}] # 2\n',
         ),
     ):
-        assert rewritten(text, lambda document: with_crease_angle(document, 7.5)) == expected
+        document = tomllib.loads(text)
+        data = with_document(text.encode(), with_meshes(document, entries or document["mesh"], angle))
+        assert data == expected.encode()
 
 
 @pytest.mark.parametrize("text", [INLINE, DOTTED, HEADERS, '# Mine.\n[[mesh]]\nfile = "car.obj"\n'])
 def test_a_text_is_completed_with_all_that_it_does_not_tell(text: str, meshes: list[MeshReport]) -> None:
     scene = read(text.encode(), meshes)
-    after = rewritten(text, lambda document: completed(document, scene))
+    after = edited(text, scene, meshes, complete=True)
     again = report_of_text(after.encode(), Path("car", "scene.toml"), meshes=meshes)
     assert again.scene.replace(mesh=scene.mesh).equals(scene)
     assert again.created == ()
     assert after.count("# Mine.") == 1
     assert after.count("two_sided") == len(scene.surfaces)
-    assert rewritten(after, lambda document: completed(document, scene)) == after
+    assert edited(after, scene, meshes, complete=True) == after
 
 
 COMMENTED = """\

@@ -15,7 +15,6 @@ from autocolor.files.scene_toml.toml_text import (
     SceneProblems,
     key_lines,
     parsed_toml,
-    statements_of,
     table_text,
     toml_value,
 )
@@ -127,34 +126,22 @@ position = [
 # The end."""
 
 
-def test_a_text_is_cut_into_its_statements() -> None:
-    assert [(each.path, each.key, each.value, each.after) for each in statements_of(TABLES)] == [
-        (("ambient",), "ambient = ", "0.1", " # dim\n"),
-        (("quoted # = key", "inner"), '"quoted # = key".inner = ', "{ a = 1 }", "\n"),
-        (("lights", 0), "[[lights]]", "", " # one\n"),
-        (("lights", 0, "name"), "name=", '"key = ]"', " # two\n"),
-        (("lights", 0, "flaps", "y"), "[lights.flaps.y]", "", "\n"),
-        (("lights", 0, "flaps", "y", "on"), "on = ", "true", "\n"),
-        (("lights", 1), "[[lights]]", "", "\n"),
-        (("lights", 1, "position"), "position = ", "[\n  1, # east\n  2, 3,\n]", "\n"),
-        (("parts", "a b"), '[parts."a b"]', "", "\n"),
-        ((), "", "", ""),
-    ]
-    assert key_lines(TABLES.encode())["lights", 1, "position"] == 11
-
-
-PIECES = st.sampled_from(
-    ["\n", "# comment\n", " # c\n", "a = 1\n", "b.c = [1,\n # x\n 2]\n", 'd = """x\n[y]\n"""', "[t]\n", "\t"]
-)
-
-
-@given(st.lists(PIECES).map("".join) | st.text("ab=[]{}'\"#\n., 1", max_size=30))
-def test_no_letter_of_any_valid_text_is_lost(text: str) -> None:
-    try:
-        tomllib.loads(text)
-    except tomllib.TOMLDecodeError:
-        return
-    assert "".join(each.text for each in statements_of(text)) == text
+def test_keys_and_headers_have_paths_and_lines() -> None:
+    assert key_lines(TABLES.encode()) == {
+        ("ambient",): 2,
+        ("quoted # = key",): 3,
+        ("quoted # = key", "inner"): 3,
+        ("lights",): 6,
+        ("lights", 0): 6,
+        ("lights", 0, "name"): 7,
+        ("lights", 0, "flaps"): 8,
+        ("lights", 0, "flaps", "y"): 8,
+        ("lights", 0, "flaps", "y", "on"): 9,
+        ("lights", 1): 10,
+        ("lights", 1, "position"): 11,
+        ("parts",): 15,
+        ("parts", "a b"): 15,
+    }
 
 
 @pytest.mark.parametrize(
