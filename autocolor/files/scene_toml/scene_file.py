@@ -99,15 +99,14 @@ def report_of_text(
 def _fields(problems: SceneProblems, document: Mapping[str, Any]) -> dict[str, Any]:
     """The valid values of the keys that are not in TABLES, by key."""
     fields = {}
-    refused: list[Problem] = []
     for key, value in document.items():
-        if key not in FILE_KEYS:
-            # Finding the closest key is slow, and a file may have many unknown keys.
-            if not problems.full:
-                problems.note_all([unknown_key(key, FILE_KEYS)])
-        elif key not in TABLES:
+        # Finding the closest key is slow, and a file may have many unknown keys.
+        if key not in FILE_KEYS and not problems.full:
+            problems.note_all([unknown_key(key, FILE_KEYS)])
+        elif key in FILE_KEYS and key not in TABLES:
+            refused: list[Problem] = []
             fields[key] = keys_of(Scene)[key].column.kind.validated(value, (key,), refused)
-    problems.note_all(refused)
+            problems.note_all(refused)
     return {key: value for key, value in fields.items() if value is not REFUSED}
 
 
@@ -115,18 +114,13 @@ def _surfaces(problems: SceneProblems, document: Mapping[str, Any]) -> dict[str,
     """The surfaces of the file by name, None for a surface with problems; omitted keys have defaults."""
     tables = _named_tables(problems, document, "surfaces")
     if len(tables) > MOST_SURFACES:
-        problems.note(
-            ("surfaces",), f"must be at most {MOST_SURFACES}, not {len(tables):,}; let parts share a surface"
-        )
+        rule = f"must be at most {MOST_SURFACES}, not {len(tables):,}; let parts share a surface"
+        problems.note(("surfaces",), rule)
         return {}
     return {
-        name: _row(problems, ("surfaces", name), table, partial(_surface, name, number))
+        name: _row(problems, ("surfaces", name), table, partial(replaced, default_surface(name, number)))
         for number, (name, table) in enumerate(tables.items())
     }
-
-
-def _surface(name: str, number: int, table: Mapping[str, Any]) -> Surface:
-    return replaced(default_surface(name, number), table)
 
 
 def _part(name: str, table: Mapping[str, Any]) -> Part:

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from difflib import SequenceMatcher
 from typing import Any, Final
@@ -134,7 +134,7 @@ def _edited_text(
     blocks = _wanted_blocks(blocks, old, wanted)
     if blocks[-1] is not last:
         blocks[-1].tail = f"{blocks[-1].tail.rstrip()}\n" if blocks[-1].tail.strip() else ""
-    inline = tomllib.loads(blocks[0].keys)
+    inline: dict[str | int, Any] = {**tomllib.loads(blocks[0].keys)}
     inline |= {block.path[0]: True for block in blocks if len(block.path) == 1 and block.keys}
     for name in tables:
         if not inline.get(name) or name in moved:
@@ -149,7 +149,7 @@ def _edited_text(
 
 def _wanted_blocks(blocks: Sequence[Block], old: Document, wanted: Document) -> list[Block]:
     """The blocks of tables that stay, with the new numbers of rows."""
-    numbers = {}
+    numbers: dict[str | int, dict[Any, int]] = {}
     for key, rows in old.items():
         if isinstance(rows, list) and isinstance(new := wanted.get(key), list):
             numbers[key] = {number: row for row, number in enumerate(item_numbers(rows, new))}
@@ -191,8 +191,10 @@ def _add_blocks(blocks: list[Block], name: str, table: Any, before: Sequence[str
 def _arrange(blocks: list[Block], name: str, wanted: Document) -> None:
     """Move the rows of a table to the wanted order."""
     rows = [block for block in blocks if len(block.path) > 1 and block.path[0] == name]
-    order = [key if isinstance(wanted[name], dict) else row for row, key in enumerate(wanted.get(name, ()))]
-    arranged = sorted(rows, key=lambda block: order.index(block.path[1]))
+    table = wanted.get(name, ())
+    keys: Iterable[str | int] = table if isinstance(table, dict) else range(len(table))
+    order = {key: row for row, key in enumerate(keys)}
+    arranged = sorted(rows, key=lambda block: order[block.path[1]])
     if arranged != rows:
         first = blocks.index(rows[0])
         others = [block for block in blocks if block not in rows]
@@ -225,7 +227,7 @@ def _edit_keys(block: Block, wanted: Document, moved: Collection[str]) -> None:
     kept = {key: value for key, value in wanted.items() if key in old and key not in moved}
     keys = _edited(block.keys, old, kept)
     if keys is None:
-        name = block.head.strip() or "keys at the top"
+        name = block.head.strip().rpartition("\n")[2] or "keys at the top"
         LOG.warning("%s: some values are written anew, without their comments", name)
         keys, kept = _edited_singly(block.keys, old, kept)
     added = {key: value for key, value in wanted.items() if key not in kept}
