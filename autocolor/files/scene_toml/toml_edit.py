@@ -134,10 +134,11 @@ def _edited_text(
     blocks = _wanted_blocks(blocks, old, wanted)
     if blocks[-1] is not last:
         blocks[-1].tail = f"{blocks[-1].tail.rstrip()}\n" if blocks[-1].tail.strip() else ""
-    inline: dict[str | int, Any] = {**tomllib.loads(blocks[0].keys)}
-    inline |= {block.path[0]: True for block in blocks if len(block.path) == 1 and block.keys}
+    # Tables without headers: keys of the file, or keys below one header for all rows.
+    inline = {name for name, value in tomllib.loads(blocks[0].keys).items() if value}
+    inline |= {str(block.path[0]) for block in blocks if len(block.path) == 1 and block.keys}
     for name in tables:
-        if not inline.get(name) or name in moved:
+        if name not in inline or name in moved:
             _add_blocks(blocks, name, wanted.get(name), tables[: tables.index(name)])
         _arrange(blocks, name, wanted)
     above = {block.path[:end] for block in blocks for end in range(1, len(block.path) + 1)}

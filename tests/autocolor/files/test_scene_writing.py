@@ -12,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import (
+    InputError,
     Light,
     MeshScalar,
     OutputError,
@@ -233,6 +234,16 @@ def test_names_of_any_characters_are_read_back(tmp_path: Path, name: str) -> Non
     scene = scene.with_light("key", name=name).replace(exposure={name: (0.0, 1.5)})
     saved(tmp_path, scene)
     saved(tmp_path, scene.with_surface(name, blend=0.125))
+
+
+def test_a_name_that_utf_8_lacks_is_refused_and_nothing_is_written(tmp_path: Path) -> None:
+    space = {"\ud800": {"point": (0, 0, 0), "direction": (0, 0, 1)}}
+    for fields, name in (({"name": "\ud800"}, r"'\\ud800'"), ({"half_spaces": space}, "'key'")):
+        with pytest.raises(
+            InputError, match=rf"^light {name}: a name in a file must be text in UTF-8; rename"
+        ):
+            write_scene(tmp_path / "cube", scene_of(cube()).with_light("key", **fields))
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_fields_at_their_defaults_are_left_out(tmp_path: Path) -> None:

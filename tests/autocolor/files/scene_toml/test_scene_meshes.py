@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import dataclasses
+import re
 import tomllib
 from pathlib import Path
 
@@ -84,6 +85,11 @@ def test_a_mesh_has_a_file_or_two_tables_and_nothing_else(folder: Path, keys: st
     assert refusal(folder, "[[mesh]]\n" + keys) == [
         f"scene.toml, line 1, mesh[1]: it must have a file, or nodes and polygons, not {given}; correct it"
     ]
+
+
+def test_a_mesh_that_is_no_table_is_refused(folder: Path) -> None:
+    for sentence in refusal(folder, 'mesh = [1, "car.obj", []]\n'):
+        assert re.match(r"scene.toml, line 1, mesh\[[123]\]: must be a table of file, nodes, ", sentence)
 
 
 @pytest.mark.parametrize("name", ["../car.obj", "/etc/passwd", "a\\\\b.obj", "http://x/car.obj", "link.obj"])
