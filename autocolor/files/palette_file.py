@@ -66,8 +66,14 @@ class Palette(Immutable):
     colors: Bytes
     names: tuple[str, ...]
 
-    def __init__(self, colors: ColorsGiven, names: Iterable[str] = ()) -> None:
-        values = _listed(colors)
+    def __init__(self, colors: Any, names: Iterable[str] = ()) -> None:
+        try:
+            values = colors.tolist() if isinstance(colors, np.ndarray) else colors
+            values = [values] if isinstance(values, str) else list(values)
+        except TypeError:
+            raise InputError(
+                f"the colors of a palette must be a sequence of colors, not {shown(colors)}; give a list"
+            ) from None
         names = ((names,) if isinstance(names, str) else tuple(names)) or ("",) * len(values)
         if not 1 <= len(values) <= MOST_COLORS:
             rule = f"a palette must have 1 to {MOST_COLORS:,} colors, not {len(values):,}"
@@ -103,17 +109,6 @@ class Palette(Immutable):
         """The first color with this name, in capitals or not; None if no color has this name."""
         folded = [each.casefold() for each in self.names]
         return self.color(folded.index(name.casefold())) if name and name.casefold() in folded else None
-
-
-def _listed(colors: Any) -> list[Any]:
-    """The colors as a list of texts and lists. Raises InputError."""
-    try:
-        values = colors.tolist() if isinstance(colors, np.ndarray) else colors
-        return [values] if isinstance(values, str) else list(values)
-    except TypeError:
-        raise InputError(
-            f"the colors of a palette must be a sequence of colors, not {shown(colors)}; give a list"
-        ) from None
 
 
 def _problem_of(color: Any, name: Any) -> str:
@@ -187,9 +182,9 @@ def is_palette(path: Path) -> bool:
 # The GIMP palette: a line for each color. The name of the palette and its number of columns are not kept.
 
 GIMP: Final = "GIMP Palette"
-GIMP_HEADER: Final = re.compile(r"(Name|Columns|Channels):[ \t]*(.*)")
+GIMP_HEADER: Final = re.compile(r"(Name|Columns|Channels):[ \t]*(.*?)[ \t]*")
 COMPONENT: Final = r"[ \t]*([0-9]{1,3})(?![0-9])"
-GIMP_COLORS: Final = {
+COLOR_LINE: Final = {
     "red, green, blue": re.compile(rf"{COMPONENT * 3}(?:[ \t]+(.*))?", re.DOTALL),
     "red, green, blue, alpha": re.compile(rf"{COMPONENT * 3}[ \t]+[0-9]{{1,3}}(?:[ \t]+(.*))?", re.DOTALL),
 }
@@ -207,16 +202,13 @@ def _read_gpl(data: bytes, place: str) -> Palette:
     for number, line in enumerate(lines, start=2):
         if not line.strip() or line.lstrip(" \t").startswith("#"):
             continue
-        header = None if rows else GIMP_HEADER.fullmatch(line)
-        color = GIMP_COLORS[numbers].fullmatch(line)
-        if header is not None:
-            if header[1] == "Channels" and header[2].strip() == "RGBA":
-                numbers = "red, green, blue, alpha"
-        elif color is None:
+        if not rows and (header := GIMP_HEADER.fullmatch(line)):
+            numbers = "red, green, blue, alpha" if header.groups() == ("Channels", "RGBA") else numbers
+        elif color := COLOR_LINE[numbers].fullmatch(line):
+            rows.append((number, [int(color[at]) for at in (1, 2, 3)], color[4] or ""))
+        else:
             rule = f"a color must be {numbers} and perhaps a name, not {shown(line, 40)}; correct it"
             problems.note(place, number, rule)
-        else:
-            rows.append((number, [int(color[at]) for at in (1, 2, 3)], color[4] or ""))
     return _palette(problems, place, place, rows)
 
 
@@ -235,9 +227,12 @@ RED_GREEN_BLUE: Final = ("red", "green", "blue")
 def _are_columns(header: Sequence[str]) -> bool:
     """Whether these are the names of the columns of a palette, with or without names."""
     columns = sorted(name.lower() for name in header if name)
-    return columns in [
-        sorted((*needed, *name)) for needed in (RED_GREEN_BLUE, ("color",)) for name in ((), ("name",))
-    ]
+    return columns in (
+        sorted(RED_GREEN_BLUE),
+        sorted((*RED_GREEN_BLUE, "name")),
+        ["color"],
+        ["color", "name"],
+    )
 
 
 def _read_csv(data: bytes, place: str) -> Palette:
@@ -262,11 +257,10 @@ def _read_csv(data: bytes, place: str) -> Palette:
 
 def _csv_of(palette: Palette) -> str:
     text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    has_names = any(palette.names)
-    writer.writerow([*RED_GREEN_BLUE, *(["name"] if has_names else [])])
-    for color, name in zip(palette.colors.tolist(), palette.names, strict=True):
-        writer.writerow([*color, *([name] if has_names else [])])
+    columns = 4 if any(palette.names) else 3
+    rows = zip(palette.colors.tolist(), palette.names, strict=True)
+    table = [(*RED_GREEN_BLUE, "name"), *((*color, name) for color, name in rows)]
+    csv.writer(text, lineterminator="\n").writerows(row[:columns] for row in table)
     return text.getvalue()
 
 

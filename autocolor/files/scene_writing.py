@@ -7,9 +7,10 @@ scene file of the same object is edited, so that its comments and its order stay
 
 from __future__ import annotations
 
+import json
 import os
-from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager, suppress
+from collections.abc import Iterable
+from contextlib import suppress
 from pathlib import Path
 from typing import Final
 
@@ -27,10 +28,9 @@ from autocolor.files.scene_toml.scene_meshes import (
     written_mesh,
 )
 from autocolor.files.scene_toml.scene_text import (
-    completed,
     edited_to,
     scene_text,
-    with_crease_angle,
+    sparse_entry,
     with_document,
     with_meshes,
 )
@@ -83,21 +83,28 @@ def write_scene_with_tables(
     target = _target(path)
     check_scene(scene)
     refuse_names((*scene.parts, *scene.surfaces, *scene.lights, *scene.views))
-    with new_folder(target.parent, "a scene"), _removed_on_failure() as written:
-        refuse_output(target, overwrite=overwrite)
-        check = guard(target)
-        old = _existing(target)
-        meshes = meshes_there(target.parent, scene.mesh, old)
-        if meshes is None:
-            meshes = written_mesh(target.parent, scene.mesh, written)
-        data = None if old is None else _edited(old, target, scene, meshes, complete)
-        if data is None:
-            if old is not None:
-                LOG.warning("%s: written anew; its old content and comments are lost", target)
-            data = _fresh(target, scene, meshes, complete)
-        check()
-        write_atomically(target, data, overwrite=overwrite)
-        return [*written, target]
+    written: list[Path] = []
+    with new_folder(target.parent, "a scene"):
+        try:
+            refuse_output(target, overwrite=overwrite)
+            check = guard(target)
+            old = _existing(target)
+            meshes = meshes_there(target.parent, scene.mesh, old)
+            if meshes is None:
+                meshes = written_mesh(target.parent, scene.mesh, written)
+            data = None if old is None else _edited(old, target, scene, meshes, complete)
+            if data is None:
+                if old is not None:
+                    LOG.warning("%s: written anew; its old content and comments are lost", target)
+                data = _fresh(target, scene, meshes, complete)
+            check()
+            write_atomically(target, data, overwrite=overwrite)
+        except BaseException:
+            for mesh_file in written:
+                with suppress(OSError):
+                    os.unlink(mesh_file)
+            raise
+    return [*written, target]
 
 
 def _target(path: str | os.PathLike[str]) -> Path:
@@ -123,32 +130,10 @@ def _target(path: str | os.PathLike[str]) -> Path:
 def refuse_names(rows: Iterable[Row]) -> None:
     """Raise InputError if a text in a row has a character that UTF-8 lacks."""
     for row in rows:
-        if any(0xD800 <= ord(letter) < 0xE000 for text in _texts_in(to_plain(row)) for letter in text):
-            raise InputError(f"{row_label(row)}: a name in a file must be text in UTF-8; rename it")
-
-
-def _texts_in(value: object) -> Iterator[str]:
-    """All texts in a plain value, with the keys of its tables."""
-    if isinstance(value, str):
-        yield value
-    elif isinstance(value, (list, tuple, Mapping)):
-        inner = value.values() if isinstance(value, Mapping) else value
-        yield from value if isinstance(value, Mapping) else ()
-        for each in inner:
-            yield from _texts_in(each)
-
-
-@contextmanager
-def _removed_on_failure() -> Iterator[list[Path]]:
-    """A list of files that are removed again if the body fails."""
-    written: list[Path] = []
-    try:
-        yield written
-    except BaseException:
-        for path in written:
-            with suppress(OSError):
-                os.unlink(path)
-        raise
+        try:
+            json.dumps(to_plain(row), ensure_ascii=False).encode()
+        except UnicodeEncodeError:
+            raise InputError(f"{row_label(row)}: a name in a file must be text in UTF-8; rename it") from None
 
 
 def _existing(target: Path) -> bytes | None:
@@ -164,36 +149,29 @@ def _existing(target: Path) -> bytes | None:
 def _edited(old: bytes, target: Path, scene: Scene, meshes: Meshes, complete: bool) -> bytes | None:
     """The old text, edited until it gives the scene; None if it has another object, or no edit succeeds."""
     mesh, document = scene.mesh, parsed_toml(old, target.name)
-    given = document.pop("parts", None)
-    parts = given if isinstance(given, dict) else {}
     source = source_of(mesh)
     is_same = tuple(document.get("mesh", ())) == meshes.entries
-    is_source = source is not None and source.scene_file == target.resolve()
-    if not (is_same or is_source or parts.keys() & set(mesh.part_names)):
-        before = {
-            name for report in reports_of(target.parent, entries_of(old)) for name in report.mesh.part_names
-        }
-        if before.isdisjoint(mesh.part_names):
+    if not is_same and (source is None or source.scene_file != target.resolve()):
+        reports = reports_of(target.parent, entries_of(old))
+        if not {name for report in reports for name in report.mesh.part_names} & set(mesh.part_names):
             return None
-    if present := {name: part for name, part in parts.items() if name in mesh.part_names}:
-        document["parts"] = present
-    if not is_same:
-        document = with_meshes(document, meshes.entries)
-    if complete or mesh.crease_angle != (meshes.reports[0].mesh.crease_angle if is_same else CREASE_ANGLE):
-        document = with_crease_angle(document, mesh.crease_angle)
+    parts = document.get("parts")
+    if isinstance(parts, dict):
+        document["parts"] = {name: part for name, part in parts.items() if name in mesh.part_names}
+    present = meshes.reports[0].mesh.crease_angle if is_same else CREASE_ANGLE
+    angle = mesh.crease_angle if complete or mesh.crease_angle != present else None
+    if angle is not None or not is_same:
+        entries = meshes.entries if is_same else tuple(map(sparse_entry, meshes.entries))
+        document = with_meshes(document, entries, angle)
     data = with_document(old, document)
-    edited = None if data is None else _giving(data, target, scene, meshes)
-    if edited is None or not complete:
-        return edited
-    data = with_document(edited, completed(parsed_toml(edited, target.name), scene))
-    return None if data is None else _giving(data, target, scene, meshes)
+    return None if data is None else _giving(data, target, scene, meshes, complete)
 
 
 def _fresh(target: Path, scene: Scene, meshes: Meshes, complete: bool) -> bytes:
     """A new text that gives the scene. Raises OutputError if the text would be too long, or give another."""
     entries = [{key: entry[key] for key in entry if key != "crease_angle"} for entry in meshes.entries]
     text = scene_text(scene, entries, without_defaults=not complete).encode()
-    data = _giving(text, target, scene, meshes)
+    data = _giving(text, target, scene, meshes, complete=False)
     if data is None:
         raise OutputError(
             f"{target}: a scene file must have at most {LARGEST_TEXT:,} bytes and give the same scene, and"
@@ -202,11 +180,11 @@ def _fresh(target: Path, scene: Scene, meshes: Meshes, complete: bool) -> bytes:
     return data
 
 
-def _giving(data: bytes, target: Path, scene: Scene, meshes: Meshes) -> bytes | None:
+def _giving(data: bytes, target: Path, scene: Scene, meshes: Meshes, complete: bool) -> bytes | None:
     """The text, edited until it gives the scene; None if no edit does."""
 
     def read(text: bytes) -> Scene:
         return report_of_text(text, target, meshes=meshes.reports).scene
 
-    edited = edited_to(data, scene, read)
+    edited = edited_to(data, scene, read, complete=complete)
     return edited if edited is not None and len(edited) <= LARGEST_TEXT else None

@@ -44,7 +44,7 @@ def scene_with(scene: Scene, settings: Mapping[str, object]) -> Scene:
     changes: dict[tuple[str, str], Changes] = {}
     for key, value in settings.items():
         place = place_of(scene, key)
-        value = _value_at(scene, field_of(place), key, value)
+        value = _value_for(scene, field_of(place), key, value)
         _put(changes.setdefault((place.table, place.name), {}), place.path, value, key)
     # Set whole rows, which are fields of the scene, before their fields.
     for table, name in sorted(changes, key=lambda row: row[0] != ""):
@@ -66,22 +66,30 @@ def _replaced(scene: Scene, table: str, name: str, fields: Changes) -> Scene:
     return edits[table](**fields)
 
 
-def _value_at(scene: Scene, field: Field | None, key: str, value: object) -> object:
+def _value_for(scene: Scene, field: Field | None, key: str, value: object) -> object:
     """The value for a field. Raises UsageError if it unsets a field that must have a value."""
-    if value is None:
-        return _unset_value(field, key)
-    if not isinstance(value, str):
+    if field is None:
+        return value_of_text(value) if isinstance(value, str) else value
+    kind = field.column.kind
+    if isinstance(value, str):
+        names = [row.name for row in vars(scene)[kind.table]] if isinstance(kind, Referring) else []
+        refers = isinstance(kind, Referring) and (not field.is_optional or value in names)
+        is_value = kind.validated(value, (), []) is not REFUSED
+        if value.lower() != UNSET or (is_value and (refers or not isinstance(kind, Referring))):
+            parsed = value_of_text(value)
+            if isinstance(kind, References) and isinstance(parsed, str):
+                return _names_of(parsed, names)
+            # A name such as 2 needs no quotes.
+            return value if isinstance(kind, (Reference, Text)) and not isinstance(parsed, str) else parsed
+    elif value is not None:
         return value
-    kind = None if field is None else field.column.kind
-    names = [row.name for row in vars(scene)[kind.table]] if isinstance(kind, Referring) else []
-    if value.lower() == UNSET:
-        refers = field is not None and field.is_optional and isinstance(kind, Referring)
-        return None if refers and value not in names else _unset(field, key, value)
-    parsed = value_of_text(value)
-    if isinstance(kind, (Reference, Text)) and not isinstance(parsed, str):
-        # A name such as 2 needs no quotes.
-        return value
-    return _names_of(parsed, names) if isinstance(kind, References) and isinstance(parsed, str) else parsed
+    if field.is_optional:
+        return None
+    default = None if field.default is None else field.default()
+    # The default unsets a field if scene files leave it out: no limit of a flap, no flaps.
+    if default is None or kind.to_plain(key, default).get(key) not in (None, {}):
+        raise UsageError(f"{key}: it {kind.rule()}, not none; only an optional field can be unset")
+    return default
 
 
 def _names_of(text: str, existing: Sequence[str]) -> list[str]:
@@ -94,28 +102,6 @@ def _names_of(text: str, existing: Sequence[str]) -> list[str]:
         return [text]
     listed = text[1:-1] if text.startswith("[") and text.endswith("]") else text
     return [name.strip().strip("\"'") for name in listed.split(",") if name.strip()]
-
-
-def _unset(field: Field | None, key: str, text: str) -> object:
-    """The value of a field that the text "none" unsets, or the text itself if it is a valid value.
-
-    Raises UsageError if the field must have a value.
-    """
-    if field is None or field.column.kind.validated(text, (), []) is not REFUSED:
-        return text
-    return _unset_value(field, key)
-
-
-def _unset_value(field: Field | None, key: str) -> object:
-    """The value of an unset field. Raises UsageError if the field must have a value."""
-    if field is None or field.is_optional:
-        return None
-    default = None if field.default is None else field.default()
-    # The default unsets a field if scene files leave it out: no limit of a flap, no flaps.
-    if default is not None and field.column.kind.to_plain(key, default).get(key) in (None, {}):
-        return default
-    rule = field.column.kind.rule()
-    raise UsageError(f"{key}: it {rule}, not none; only an optional field can be unset")
 
 
 def _put(fields: Changes, path: tuple[str, ...], value: Any, key: str) -> None:
@@ -157,66 +143,55 @@ class SettingPlace(NamedTuple):
 def place_of(scene: Scene, key: str) -> SettingPlace:
     """The place of a key. Raises UsageError if its table or row does not exist, or if it names no field."""
     kinds = settable_kinds()
-    table, _, rest = key.partition(".")
+    table, _, field = key.partition(".")
     kind = kinds.get(table)
-    if kind is None or (rest and not isinstance(kind, (Nested, RowList))):
+    has_fields = isinstance(kind, (Nested, RowList))
+    if kind is None or (field and not has_fields):
         wrong = table if kind is None else key
         raise UsageError(f"{key}: there is no field {wrong!r}{nearest(table, kinds)}")
-    if not isinstance(kind, (Nested, RowList)):
+    if not has_fields or (key == table and fields_of(Scene)[table].is_optional):
+        # A whole row can be set and unset, if it is optional.
         return SettingPlace("", "", (table,))
-    row: Row | None = None
+    name, row = "", None
     if isinstance(kind, RowList):
         rows = {row.name: row for row in vars(scene)[table]}
-        name, field = _name_and_rest(rest, rows)
-        if name is None and "." in rest:
-            wrong = rest.partition(".")[0]
-            raise UsageError(f"{key}: there is no {table[:-1]} {wrong!r}{nearest(wrong, rows)}")
-        row = None if name is None else rows[name]
-    else:
-        name, field = "", rest
-    if key == table and fields_of(Scene)[table].is_optional:
-        # The key is a whole row, which can be unset.
-        return SettingPlace("", "", (table,))
-    if name is None or not field:
+        name, field = _name_and_rest(field, rows, key, kind.row_class)
+        row = rows.get(name)
+    if not field or (isinstance(kind, RowList) and row is None):
         raise UsageError(f"{key}: it must name a field; write it as in {EXAMPLES[table]}")
-    if field == "name" and isinstance(kind, RowList):
+    path = tuple(field.split("."))
+    named = None if row is None else fields_of(type(row)).get(path[0])
+    is_name = isinstance(kind, RowList) and field == "name"
+    if row is not None and named is not None and isinstance(named.column.kind, NamedRows) and len(path) > 1:
+        inner = field.partition(".")[2]
+        names = [inner_row.name for inner_row in vars(row)[path[0]]]
+        inner_name, rest = _name_and_rest(inner, names, key, named.column.kind.row_class)
+        path = (path[0], inner_name, *(rest.split(".") if rest else ()))
+        is_name = "name" in (inner, rest)
+    if is_name:
         raise UsageError(f"{key}: a name cannot be set; change it in the scene file")
-    path = _path_in(row, field, key)
     if len(path) > MOST_PARTS:
         raise UsageError(f"{key}: there is no such field; write it as in {EXAMPLES[table]}")
     return SettingPlace(table, name, path)
 
 
-def _name_and_rest(text: str, names: Iterable[str]) -> tuple[str | None, str]:
-    """The longest name that a text begins with, or None, and the text after the name and a period.
+def _name_and_rest(text: str, names: Iterable[str], key: str, cls: type[Row]) -> tuple[str, str]:
+    """The longest name that a text begins with, and the text after the name and a period.
 
-    A name may contain periods, and may be quoted in the text.
+    A name may contain periods, and may be quoted in the text. A text that is only a name may be a new one.
+    Raises UsageError if no row of the class has the name.
     """
     written = {form: name for name in names for form in (name, f'"{name}"', f"'{name}'")}
     start = max((form for form in written if f"{text}.".startswith(f"{form}.")), key=len, default=None)
-    return (None, "") if start is None else (written[start], text[len(start) + 1 :])
-
-
-def _path_in(row: Row | None, field: str, key: str) -> tuple[str, ...]:
-    """The path of a field in a row. Raises UsageError if a row of NamedRows on it does not exist."""
-    outer, _, rest = field.partition(".")
-    outer_field = None if row is None else fields_of(type(row)).get(outer)
-    if row is None or outer_field is None or not isinstance(outer_field.column.kind, NamedRows) or not rest:
-        return tuple(field.split("."))
-    names = [inner_row.name for inner_row in vars(row)[outer]]
-    name, inner = _name_and_rest(rest, names)
-    if inner == "name":
-        raise UsageError(f"{key}: a name cannot be set; change it in the scene file")
-    if name is not None:
-        return (outer, name, *inner.split(".")) if inner else (outer, name)
-    if rest[0] in "\"'" and rest[0] == rest[-1]:
-        return outer, rest[1:-1]
-    wrong, _, inner = rest.partition(".")
-    if inner:
-        noun = outer_field.column.kind.row_class.noun
-        advice = nearest(wrong, names) or f"; add a {noun} with all its keys in a table"
-        raise UsageError(f"{key}: there is no {noun} {wrong!r}{advice}")
-    return outer, wrong
+    if start is not None:
+        return written[start], text[len(start) + 1 :]
+    if text and text[0] in "\"'" and text[0] == text[-1]:
+        return text[1:-1], ""
+    wrong, _, rest = text.partition(".")
+    if rest:
+        advice = nearest(wrong, set(written.values())) or f"; add a {cls.noun} with all its keys in a table"
+        raise UsageError(f"{key}: there is no {cls.noun} {wrong!r}{advice}")
+    return wrong, ""
 
 
 def field_of(place: SettingPlace) -> Field | None:

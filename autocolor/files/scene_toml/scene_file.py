@@ -13,7 +13,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
-from autocolor.checks import shown
+from autocolor.checks import nearest, shown
 from autocolor.errors import InputError
 from autocolor.files.meshes.repair import MeshReport
 from autocolor.files.reading import read_bytes
@@ -99,15 +99,14 @@ def report_of_text(
 def _fields(problems: SceneProblems, document: Mapping[str, Any]) -> dict[str, Any]:
     """The valid values of the keys that are not in TABLES, by key."""
     fields = {}
-    refused: list[Problem] = []
     for key, value in document.items():
-        if key not in FILE_KEYS:
-            # Finding the closest key is slow, and a file may have many unknown keys.
-            if not problems.full:
-                problems.note_all([unknown_key(key, FILE_KEYS)])
-        elif key not in TABLES:
+        # Finding the closest key is slow, and a file may have many unknown keys.
+        if key not in FILE_KEYS and not problems.full:
+            problems.note_all([unknown_key(key, FILE_KEYS)])
+        elif key in FILE_KEYS and key not in TABLES:
+            refused: list[Problem] = []
             fields[key] = keys_of(Scene)[key].column.kind.validated(value, (key,), refused)
-    problems.note_all(refused)
+            problems.note_all(refused)
     return {key: value for key, value in fields.items() if value is not REFUSED}
 
 
@@ -115,18 +114,13 @@ def _surfaces(problems: SceneProblems, document: Mapping[str, Any]) -> dict[str,
     """The surfaces of the file by name, None for a surface with problems; omitted keys have defaults."""
     tables = _named_tables(problems, document, "surfaces")
     if len(tables) > MOST_SURFACES:
-        problems.note(
-            ("surfaces",), f"must be at most {MOST_SURFACES}, not {len(tables):,}; let parts share a surface"
-        )
+        rule = f"must be at most {MOST_SURFACES}, not {len(tables):,}; let parts share a surface"
+        problems.note(("surfaces",), rule)
         return {}
     return {
-        name: _row(problems, ("surfaces", name), table, partial(_surface, name, number))
+        name: _row(problems, ("surfaces", name), table, partial(replaced, default_surface(name, number)))
         for number, (name, table) in enumerate(tables.items())
     }
-
-
-def _surface(name: str, number: int, table: Mapping[str, Any]) -> Surface:
-    return replaced(default_surface(name, number), table)
 
 
 def _part(name: str, table: Mapping[str, Any]) -> Part:
@@ -152,10 +146,10 @@ def _parts(
         if reports is None:
             continue
         if name not in part_names:
-            problems.note(path, "no mesh has a part of this name", (name, part_names))
+            problems.note(path, f"no mesh has a part of this name{nearest(name, part_names)}")
         if part is not None and part.surface not in names_of_surfaces and "surface" in table:
             rule = f"must be a surface, a part or a material of the scene, not {shown(part.surface)}"
-            problems.note((*path, "surface"), rule, (part.surface, names_of_surfaces))
+            problems.note((*path, "surface"), f"{rule}{nearest(part.surface, names_of_surfaces)}")
         elif part is not None:
             fields[name] = table
     return fields

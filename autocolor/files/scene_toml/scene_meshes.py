@@ -8,22 +8,21 @@ before a scene file names it.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Final, NamedTuple
 from weakref import WeakKeyDictionary
 
-from autocolor.budget import memory_problem
 from autocolor.errors import InputError, OutputError
-from autocolor.files.formats import format_of_files, read_mesh
+from autocolor.files.formats import read_mesh
 from autocolor.files.meshes.obj import obj_text
 from autocolor.files.meshes.repair import COMPUTED, FILE, NORMALS, SCALES, UPS, MeshReport, Placement
 from autocolor.files.meshes.table_file import SUFFIX, table_file_bytes
 from autocolor.files.paths import free_path, path_within
 from autocolor.files.scene_toml.toml_text import KeyPath, SceneProblems, parsed_toml
 from autocolor.files.writing import write_atomically
-from autocolor.scene.columns import BarRange, Column, Problem, Row, RowError, Tier, from_plain
+from autocolor.scene.columns import BarRange, Column, Problem, Row, RowError, Tier, from_plain, keys_of
 from autocolor.scene.kinds import OneOf, Text
 from autocolor.scene.mesh import CREASE_ANGLES, Mesh, has_same_tables
 
@@ -66,32 +65,20 @@ class MeshEntry(Row):
         ),
     ] = None
 
-    def placement(self, crease_angle: float | None) -> Placement:
-        """The placement of the mesh; all meshes of a scene have the same crease angle."""
-        return Placement(self.up, self.scale, crease_angle, self.normals)
+    @property
+    def file_keys(self) -> tuple[str, ...]:
+        """The keys of the files that are given."""
+        return tuple(key for keys in FILE_KEYS for key in keys if vars(self)[key] is not None)
 
     def rules(self) -> Iterator[Problem]:
         """The keys must name either one file or two tables."""
-        given = tuple(key for keys in FILE_KEYS for key in keys if vars(self)[key] is not None)
-        if given not in FILE_KEYS:
-            listed = " and ".join(given) or "none of them"
+        if self.file_keys not in FILE_KEYS:
+            listed = " and ".join(self.file_keys) or "none of them"
             yield Problem((), f"it must have a file, or nodes and polygons, not {listed}; correct it")
 
 
-GROWTH: Final = 6
-"""Measured: how many times their size mesh files of most formats take while they are read."""
-
 Entries = tuple[Mapping[str, Any], ...]
 """`[[mesh]]` tables."""
-
-
-@dataclass(frozen=True)
-class MeshFiles:
-    """A mesh to read: the path of its `[[mesh]]` table, its files by key, and the table itself."""
-
-    path: KeyPath
-    files: Mapping[str, Path]
-    entry: MeshEntry
 
 
 def meshes_of(problems: SceneProblems, rows: list[Any], folder: Path, *, outside: bool) -> list[MeshReport]:
@@ -99,93 +86,49 @@ def meshes_of(problems: SceneProblems, rows: list[Any], folder: Path, *, outside
     if len(rows) > MOST_MESHES:
         problems.note(("mesh",), f"must have at most {MOST_MESHES:,} tables, not {len(rows):,}; join some")
         return []
-    sources = [
-        source
-        for row, table in enumerate(rows)
-        if not problems.full
-        and (source := _files(problems, ("mesh", row), table, folder, outside)) is not None
-    ]
-    crease_angle = _crease_angle(problems, sources)
-    size = sum(_size(file) for source in sources for file in _read_whole(source.files))
-    if problem := memory_problem(GROWTH * size, "thin out the mesh files"):
-        problems.note(("mesh",), f"the mesh files together {problem}")
-        return []
-    reports = []
-    for source in sources:
+    entries: dict[KeyPath, MeshEntry] = {}
+    for row, table in enumerate(rows):
         try:
-            reports.append(read_mesh(source.files, source.entry.placement(crease_angle)))
+            entries["mesh", row] = from_plain(MeshEntry, table)
+        except RowError as error:
+            problems.note_all(error.row_problems, ("mesh", row))
+    angles = {path: entry.crease_angle for path, entry in entries.items() if entry.crease_angle is not None}
+    angle = next(iter(angles.values()), None)
+    for path, other in angles.items():
+        if other != angle:
+            rule = f"must be the same in all meshes, {angle:g} as before, not {other:g}; give one of them"
+            problems.note((*path, "crease_angle"), rule)
+    reports = []
+    for path, entry in entries.items():
+        if problems.full:
+            break
+        files = _files(problems, path, entry, folder, outside)
+        try:
+            if tuple(files) in FILE_KEYS:
+                placement = Placement(entry.up, entry.scale, angle, entry.normals)
+                reports.append(read_mesh(files, placement))
         except InputError as error:
-            problems.note_file((*source.path, next(iter(source.files))), error)
+            problems.note_file((*path, next(iter(files))), error)
     return reports
 
 
 def _files(
-    problems: SceneProblems, path: KeyPath, table: object, folder: Path, outside: bool
-) -> MeshFiles | None:
-    """The files of one `[[mesh]]` table; None, with its problems added, if they are invalid."""
-    entry = _entry(problems, path, table)
-    if entry is None:
-        return None
+    problems: SceneProblems, path: KeyPath, entry: MeshEntry, folder: Path, outside: bool
+) -> dict[str, Path]:
+    """The files of one `[[mesh]]` table by key, without those that are refused."""
     files = {}
-    for key in [key for keys in FILE_KEYS for key in keys if vars(entry)[key] is not None]:
+    for key in entry.file_keys:
         reasons: list[str] = []
         file = path_within(reasons, folder, vars(entry)[key], outside=outside)
         problems.note_all([Problem((key,), reason) for reason in reasons], path)
         if file is not None:
             files[key] = file
-    return MeshFiles(path, files, entry) if tuple(files) in FILE_KEYS else None
+    return files
 
 
-def _entry(problems: SceneProblems, path: KeyPath, table: object) -> MeshEntry | None:
-    """One `[[mesh]]` table without its invalid keys, which are added to the problems.
-
-    Its files are still read, so that their problems are reported too.
-    """
-    try:
-        return from_plain(MeshEntry, table)
-    except RowError as error:
-        problems.note_all(error.row_problems, path)
-        wrong = {problem.path[0] for problem in error.row_problems if problem.path}
-    if not wrong or not isinstance(table, Mapping):
-        return None
-    try:
-        return from_plain(MeshEntry, {key: value for key, value in table.items() if key not in wrong})
-    except RowError:
-        return None
-
-
-def _crease_angle(problems: SceneProblems, sources: list[MeshFiles]) -> float | None:
-    """The crease angle that the tables give; None if no table gives an angle."""
-    given = [
-        (source.entry.crease_angle, source) for source in sources if source.entry.crease_angle is not None
-    ]
-    for angle, source in given[1:]:
-        if angle != given[0][0]:
-            problems.note(
-                (*source.path, "crease_angle"),
-                f"must be the same in all meshes, {given[0][0]:g} as before, not {angle:g}; give one of them",
-            )
-    return given[0][0] if given else None
-
-
-def _read_whole(files: Mapping[str, Path]) -> Iterable[Path]:
-    """The files of a mesh that are read whole; mapped files are not."""
-    mesh_format = format_of_files(files)
-    return () if mesh_format is not None and mesh_format.mapped else files.values()
-
-
-def _size(path: Path) -> int:
-    try:
-        return os.stat(path).st_size
-    except OSError:
-        return 0
-
-
-def mesh_file(table: Mapping[str, Any]) -> dict[str, str]:
+def mesh_file(table: Mapping[str, Any]) -> dict[str, Any]:
     """The keys of a `[[mesh]]` table that are needed to read the mesh again."""
-    return {
-        key: table[key] for key in ("file", "nodes", "polygons", "up", "scale", "normals") if key in table
-    }
+    return {key: table[key] for key in keys_of(MeshEntry) if key in table and key != "crease_angle"}
 
 
 @dataclass(frozen=True)
@@ -268,19 +211,16 @@ def written_mesh(folder: Path, mesh: Mesh, written: list[Path]) -> Meshes:
 
     The file is added to `written`. Raises OutputError or WriteError.
     """
-    normals = COMPUTED if mesh.own_normals is None else FILE
+    normals = {} if mesh.own_normals is None else {"normals": FILE}
     as_obj = () if mesh.scalars else ((".obj", obj_text),)
     for suffix, content in (*as_obj, (SUFFIX, table_file_bytes)):
         path = free_path(folder / f"{MESH_STEM}{suffix}")
         write_atomically(path, content(mesh), overwrite=False)
         written.append(path)
-        try:
-            report = read_mesh({"file": path}, Placement(normals=normals))
-            if has_same_tables(report.mesh, mesh) and not report.repairs:
-                entry = {"file": path.name, **({} if normals == COMPUTED else {"normals": normals})}
-                return Meshes((entry,), [report])
-        except InputError:
-            pass
+        entries = ({"file": path.name, **normals},)
+        reports = reports_of(folder, entries)
+        if reports and has_same_tables(reports[0].mesh, mesh) and not reports[0].repairs:
+            return Meshes(entries, reports)
         os.unlink(written.pop())
     raise OutputError(
         f"{folder}: a mesh must read back the same from a file, and one of {len(mesh.node_numbers):,}"

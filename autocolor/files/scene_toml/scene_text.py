@@ -13,7 +13,7 @@ from typing import Any, Final
 
 from autocolor.errors import InputError
 from autocolor.files.meshes.repair import COMPUTED
-from autocolor.files.scene_toml.toml_edit import edited_toml, row_numbers
+from autocolor.files.scene_toml.toml_edit import edited_toml, item_numbers
 from autocolor.files.scene_toml.toml_text import parsed_toml, table_text, toml_key
 from autocolor.scene.columns import Row, fields_of, from_plain, to_plain, with_values
 from autocolor.scene.geometry.normals import CREASE_ANGLE
@@ -144,23 +144,27 @@ ReadText = Callable[[bytes], Scene]
 Tables = Mapping[str, Any]
 
 
-def edited_to(data: bytes, scene: Scene, read: ReadText) -> bytes | None:
+def edited_to(data: bytes, scene: Scene, read: ReadText, *, complete: bool = False) -> bytes | None:
     """The text of a scene file, edited until it gives the scene; its mesh and its name may differ.
 
-    None if the text cannot be read, or if no edit makes it give the scene.
+    If `complete`, all omitted keys and rows are added. None if the text cannot be read, or if no edit makes
+    it give the scene.
     """
     edited: bytes | None = data
     for _ in range(MOST_ROUNDS):
+        if edited is None:
+            return None
         try:
-            current = None if edited is None else read(edited)
+            current = read(edited)
         except InputError:
             return None
-        if edited is None or current is None:
-            return None
-        if with_values(current, {"mesh": scene.mesh, "name": scene.name}).equals(scene):
-            return edited
         document = parsed_toml(edited, "scene.toml")
-        wanted = _changed(document, _tables(current), _tables(scene), sparse_tables(scene))
+        if not with_values(current, {"mesh": scene.mesh, "name": scene.name}).equals(scene):
+            wanted = _changed(document, _tables(current), _tables(scene), sparse_tables(scene))
+        else:
+            wanted = _completed(document, scene) if complete else document
+            if wanted == document:
+                return edited
         # Without the key, lights would be created.
         given = {
             key: value for key, value in wanted.items() if value != [] or key == "lights" or key in document
@@ -175,7 +179,7 @@ def with_document(data: bytes, document: Tables) -> bytes | None:
     return None if text is None else text.encode()
 
 
-def completed(document: Tables, scene: Scene) -> dict[str, Any]:
+def _completed(document: Tables, scene: Scene) -> dict[str, Any]:
     """The values of a scene file that gives the scene, with all omitted keys and rows added."""
     tables = {key: value for key, value in _tables(scene).items() if value != []}
     whole = _filled(document, tables)
@@ -192,21 +196,18 @@ def _filled(written: Any, keys: Any) -> Any:
     return written
 
 
-def with_meshes(document: Tables, entries: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-    """The values of a scene file with other `[[mesh]]` tables."""
-    return {**document, "mesh": [sparse_entry(entry) for entry in entries]}
+def with_meshes(
+    document: Tables, entries: Sequence[Mapping[str, Any]], angle: float | None
+) -> dict[str, Any]:
+    """The values of a scene file with other `[[mesh]]` tables.
 
-
-def with_crease_angle(document: Tables, angle: float) -> dict[str, Any]:
-    """The values of a scene file with a crease angle: in every `[[mesh]]` with the key, else in the first."""
-    meshes = document["mesh"]
-    has_key = [row for row, mesh in enumerate(meshes) if "crease_angle" in mesh] or [0]
-    return {
-        **document,
-        "mesh": [
-            {**mesh, "crease_angle": angle} if row in has_key else mesh for row, mesh in enumerate(meshes)
-        ],
-    }
+    A crease angle stands in every table that has the key, else in the first.
+    """
+    meshes = [dict(entry) for entry in entries]
+    if angle is not None:
+        for mesh in [mesh for mesh in meshes if "crease_angle" in mesh] or meshes[:1]:
+            mesh["crease_angle"] = angle
+    return {**document, "mesh": meshes}
 
 
 def _changed(written: Tables, before: Tables, after: Tables, sparse: Tables) -> dict[str, Any]:
@@ -234,7 +235,7 @@ def _changed(written: Tables, before: Tables, after: Tables, sparse: Tables) -> 
             table[key] = [
                 row if number is None else _changed(given[number], before[key][number], whole, row)
                 for number, whole, row in zip(
-                    row_numbers(given or (), value), value, sparse[key], strict=True
+                    item_numbers(given or (), value), value, sparse[key], strict=True
                 )
             ]
         else:

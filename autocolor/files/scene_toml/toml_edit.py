@@ -1,8 +1,8 @@
 """Editing the text of a TOML file until it gives other values; everything else stays as it is written.
 
-The text is split into blocks of statements: a block is a header, with the comments directly above it, and the
-keys below it. Statements and blocks are removed, added and moved here. A changed value is edited by tomlkit,
-which keeps the comments, the order and the style within arrays and inline tables.
+The text is cut into blocks: a header, with the comments directly above it, and the keys below it. Blocks are
+removed, added and moved here. The keys of a block whose values change are edited by tomlkit, which keeps the
+comments, the order and the style, also within arrays. tomllib reads each edited block, and the whole text.
 
 Measured and rejected: tomlkit for whole files. It leaves the comment above a header with the table before,
 gathers arrays of tables that stand apart, writes wrong headers for tables inside of their rows, and takes
@@ -14,7 +14,8 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from difflib import SequenceMatcher
 from typing import Any, Final
 
 import tomlkit
@@ -24,8 +25,8 @@ from tomlkit.items import InlineTable
 from autocolor.files.scene_toml.toml_text import (
     TOKEN,
     KeyPath,
-    Statement,
     statements_of,
+    table_text,
     toml_key,
     toml_value,
 )
@@ -35,29 +36,22 @@ LOG: Final = logger_of(__name__)
 
 EMPTY_LINE: Final = re.compile(r"^[ \t\r]*\n", re.MULTILINE)
 
-MISSING: Final = object()
-
 Document = Mapping[str, Any]
 """The values of a TOML text: tables are dictionaries, arrays are lists."""
 
 
 @dataclass(eq=False)
 class Block:
-    """A header, with the comment above it, its statements, and the lines below them.
+    """A header, with the comment above it, its keys, and the lines below them.
 
     The first block of a text has no header. A block that is `apart` has an empty line above and below.
     """
 
     path: KeyPath
     head: str
-    statements: list[Statement] = field(default_factory=list)
+    keys: str = ""
     tail: str = ""
     apart: bool = False
-
-    @property
-    def text(self) -> str:
-        """The block as it is written."""
-        return "".join([self.head, *(each.text for each in self.statements), self.tail])
 
 
 def blocks_of(text: str) -> list[Block]:
@@ -67,37 +61,48 @@ def blocks_of(text: str) -> list[Block]:
     file, if it is the only comment above the first header, belongs to the file.
     """
     blocks = [Block((), "")]
+    end = 0
     for statement in statements_of(text):
-        above = statement.before
-        if not statement.key:
-            blocks[-1].tail = above
-        elif statement.value:
-            blocks[-1].statements.append(statement)
-        else:
+        above, written = text[end : statement.start], text[statement.start : statement.end]
+        end = statement.end
+        if statement.is_header:
             start = max((line.end() for line in EMPTY_LINE.finditer(above)), default=0)
-            if len(blocks) == 1 and not blocks[0].statements and not start:
+            if len(blocks) == 1 and not blocks[0].keys and not start:
                 start = len(above)
             blocks[-1].tail = above[:start]
-            blocks.append(Block(statement.path, above[start:] + statement.key + statement.after))
+            blocks.append(Block(statement.path, above[start:] + written))
+        else:
+            blocks[-1].keys += above + written
+    blocks[-1].tail = text[end:]
     return blocks
 
 
-def row_numbers(old: Sequence[Document], new: Sequence[Document]) -> list[int | None]:
-    """For each new row of an array the number of the old row of the same name; None for an added row.
+def item_numbers(old: Sequence[Any], new: Sequence[Any]) -> list[int | None]:
+    """For each new item of an array the number of the item that it was; None for an added item.
 
-    In an array of the same length, a row with a new name in the place of a removed name was renamed. Rows
-    without names are the same rows in the same place.
+    Tables are the same if they have the same name. Items in the place of as many others were changed, or
+    renamed.
     """
-    olds = {row.get("name", number): number for number, row in enumerate(old)}
-    names = [row.get("name", number) for number, row in enumerate(new)]
-    if len(old) == len(new):
-        renamed = [(name, was) for name, was in zip(names, tuple(olds), strict=False) if name not in olds]
-        olds |= {name: olds[was] for name, was in renamed if was not in names}
-    return [olds.get(name) for name in names]
+    if len(old) == len(new) and not any(isinstance(item, dict) for item in old):
+        return list(range(len(old)))
+    olds, news = ([item["name"] if _has_name(item) else repr(item) for item in items] for items in (old, new))
+    numbers: list[int | None] = [None] * len(new)
+    left = dict(zip(olds, range(len(old)), strict=True))
+    for change, start, stop, place, end in SequenceMatcher(None, olds, news, autojunk=False).get_opcodes():
+        if change == "equal" or (stop - start == end - place and left.keys().isdisjoint(news[place:end])):
+            numbers[place:end] = range(start, stop)
+    for number in numbers:
+        if number is not None:
+            left.pop(olds[number], None)
+    return [left.get(key) if number is None else number for key, number in zip(news, numbers, strict=True)]
+
+
+def _has_name(item: object) -> bool:
+    return isinstance(item, dict) and isinstance(item.get("name"), str)
 
 
 def edited_toml(
-    text: str, wanted: Document, tables: Sequence[str] = (), ordered: Sequence[str] = ()
+    text: str, wanted: Document, tables: Sequence[str] = (), ordered: Collection[str] = ()
 ) -> str | None:
     """The valid TOML text, edited until it gives the wanted values; None if no edit does.
 
@@ -109,112 +114,73 @@ def edited_toml(
     # Edit lines that end with line feeds; a file whose lines end otherwise gets them back.
     ends = "\r\n" if text.count("\r\n") == text.count("\n") > 0 else "\n"
     text = text.replace(ends, "\n")
+    old = tomllib.loads(text)
+    # Keys without headers that have another order are removed, and added again; if need be all of them.
+    moved = {name for name in ordered if not _begins(wanted.get(name), old.get(name))}
+    for again in (moved, ordered):
+        edited = _edited_text(text, old, wanted, tables, again)
+        values = _values_of(edited)
+        if values == wanted and all(_begins(wanted.get(name), values.get(name)) for name in ordered):
+            return edited.replace("\n", ends)
+    return None
+
+
+def _edited_text(
+    text: str, old: Document, wanted: Document, tables: Sequence[str], moved: Collection[str]
+) -> str:
+    """The text with the wanted values, unless an edit fails; keys of moved tables are added anew."""
     blocks = blocks_of(text)
     last = blocks[-1]
-    blocks = _changed(blocks, tomllib.loads(text), wanted, tables)
+    blocks = _wanted_blocks(blocks, old, wanted)
     if blocks[-1] is not last:
         blocks[-1].tail = f"{blocks[-1].tail.rstrip()}\n" if blocks[-1].tail.strip() else ""
-    for name in ordered:
-        _remove_unordered(blocks, name, wanted)
+    # Tables without headers: keys of the file, or keys below one header for all rows.
+    inline = {name for name, value in tomllib.loads(blocks[0].keys).items() if value}
+    inline |= {str(block.path[0]) for block in blocks if len(block.path) == 1 and block.keys}
     for name in tables:
-        _add_blocks(blocks, name, wanted, tables)
+        if name not in inline or name in moved:
+            _add_blocks(blocks, name, wanted.get(name), tables[: tables.index(name)])
         _arrange(blocks, name, wanted)
-    _add_keys(blocks, wanted)
-    edited = _joined(blocks)
-    try:
-        is_right = tomllib.loads(edited) == wanted
-    except tomllib.TOMLDecodeError:
-        is_right = False
-    return edited.replace("\n", ends) if is_right else None
-
-
-def _changed(blocks: Iterable[Block], old: Document, wanted: Document, tables: Sequence[str]) -> list[Block]:
-    """The blocks and statements of wanted values, with these values and with the new numbers of rows."""
-    numbers: dict[str | int, dict[int | None, int]] = {}
-    for key, rows in old.items():
-        new_rows: Any = wanted.get(key)
-        numbers[key] = {}
-        if _are_rows(rows) and _are_rows(new_rows):
-            numbers[key] = {number: row for row, number in enumerate(row_numbers(rows, new_rows))}
-
-    def renumbered(path: KeyPath) -> KeyPath:
-        if len(path) < 2 or not isinstance(path[1], int):
-            return path
-        return (path[0], numbers[path[0]].get(path[1], -1), *path[2:])
-
-    roots = {(name,) for name in tables}
-    remaining = []
+    above = {block.path[:end] for block in blocks for end in range(1, len(block.path) + 1)}
+    headers = {block.path for block in blocks}
     for block in blocks:
-        block.path = renumbered(block.path)
-        if not isinstance(_at(wanted, block.path), dict):
-            continue
-        remaining.append(block)
-        removed = set()
-        for statement in block.statements:
-            value = _at(old, statement.path)
-            statement.path = renumbered(statement.path)
-            new = _at(wanted, statement.path)
-            # An empty table or array makes room for headers.
-            if new is MISSING or (new and value in ([], {}) and statement.path in roots):
-                removed.add(statement)
-            elif repr(new) != repr(value):
-                statement.value = _value_text(statement, value, new)
-        _remove(block, removed)
-    return remaining
+        _edit_keys(block, _own_values(_at(wanted, block.path), block.path, headers, above), moved)
+    return _joined(blocks)
+
+
+def _wanted_blocks(blocks: Sequence[Block], old: Document, wanted: Document) -> list[Block]:
+    """The blocks of tables that stay, with the new numbers of rows."""
+    numbers: dict[str | int, dict[Any, int]] = {}
+    for key, rows in old.items():
+        if isinstance(rows, list) and isinstance(new := wanted.get(key), list):
+            numbers[key] = {number: row for row, number in enumerate(item_numbers(rows, new))}
+    for block in blocks:
+        if len(block.path) > 1 and isinstance(block.path[1], int):
+            name, number, *rest = block.path
+            block.path = (name, numbers.get(name, {}).get(number, -1), *rest)
+    return [block for block in blocks if isinstance(_at(wanted, block.path), dict)]
 
 
 def _at(value: Any, path: KeyPath) -> Any:
-    """The value at a path, or MISSING; -1 is the number of a removed row."""
+    """The value at a path, None if there is none; -1 is the number of a removed row."""
     for key in path:
         try:
-            value = MISSING if key == -1 else value[key]
+            value = None if key == -1 else value[key]
         except (LookupError, TypeError):
-            return MISSING
+            return None
     return value
 
 
-def _are_rows(value: object) -> bool:
-    return isinstance(value, list) and all(isinstance(row, dict) for row in value)
-
-
-def _remove(block: Block, removed: Collection[Statement]) -> None:
-    """Remove statements of a block, but not the comments above them."""
-    statements, above = [], ""
-    for statement in block.statements:
-        if statement in removed:
-            above += statement.before
-        else:
-            statement.before, above = above + statement.before, ""
-            statements.append(statement)
-    block.statements, block.tail = statements, above + block.tail
-
-
-def _remove_unordered(blocks: list[Block], name: str, wanted: Document) -> None:
-    """Remove the keys of a table that have no headers, if the wanted keys do not begin with them in order."""
-    paths = [path for block in blocks for path in (block.path, *(each.path for each in block.statements))]
-    keys = list(dict.fromkeys(path[1] for path in paths if len(path) > 1 and path[0] == name))
-    if keys != list(wanted.get(name, ()))[: len(keys)]:
-        for block in blocks:
-            if len(block.path) < 2:
-                _remove(block, [each for each in block.statements if each.path[0] == name])
-
-
-def _add_blocks(blocks: list[Block], name: str, wanted: Document, tables: Sequence[str]) -> None:
-    """Add the blocks of new tables, unless the table is written without headers."""
-    table = wanted.get(name)
-    written = {each.path[0]: block for block in blocks for each in block.statements if len(block.path) < 2}
-    if not table or name in written:
-        return
-    paths: list[KeyPath] = [(name,)]
+def _add_blocks(blocks: list[Block], name: str, table: Any, before: Sequence[str]) -> None:
+    """Add the blocks of new tables below those of the same key, or of the nearest key before it."""
+    paths: list[KeyPath] = [(name,)] if table else []
     if isinstance(table, list):
         paths = [(name, row) for row in range(len(table))]
-    elif all(isinstance(row, dict) for row in table.values()):
+    elif table and all(isinstance(row, dict) for row in table.values()):
         paths = [(name, key) for key in table]
     present = {block.path[:2] for block in blocks}
-    # After the last block of the same table, or of one that is written before it.
     last = {block.path[0]: place for place, block in enumerate(blocks) if block.path}
-    before = [name, *reversed(tables[: tables.index(name)])]
-    place = next((last[each] for each in before if each in last), 0)
+    place = next((last[each] for each in (name, *reversed(before)) if each in last), 0)
     for path in paths:
         if path not in present:
             place += 1
@@ -227,129 +193,144 @@ def _arrange(blocks: list[Block], name: str, wanted: Document) -> None:
     """Move the rows of a table to the wanted order."""
     rows = [block for block in blocks if len(block.path) > 1 and block.path[0] == name]
     table = wanted.get(name, ())
-    place_of = {
-        key: place for place, key in enumerate(table if isinstance(table, dict) else range(len(table)))
-    }
-    firsts = [place_of[key] for key in dict.fromkeys(block.path[1] for block in rows)]
-    if firsts != sorted(firsts):
-        first, in_table = blocks.index(rows[0]), set(rows)
-        others = [block for block in blocks if block not in in_table]
-        rows.sort(key=lambda block: place_of[block.path[1]])
+    keys: Iterable[str | int] = table if isinstance(table, dict) else range(len(table))
+    order = {key: row for row, key in enumerate(keys)}
+    arranged = sorted(rows, key=lambda block: order[block.path[1]])
+    if arranged != rows:
+        first = blocks.index(rows[0])
+        others = [block for block in blocks if block not in rows]
         for block in rows:
             block.apart = True
-        blocks[:] = [*others[:first], *rows, *others[first:]]
+        blocks[:] = [*others[:first], *arranged, *others[first:]]
 
 
-def _add_keys(blocks: Iterable[Block], wanted: Document) -> None:
-    """Add the wanted keys that no statement says."""
-    block_at = {block.path: block for block in blocks}
-    statements = {each.path for block in block_at.values() for each in block.statements}
-    above = {path[:end] for path in (*block_at, *statements) for end in range(1, len(path))}
-
-    def add(block: Block, path: KeyPath, value: Any) -> None:
-        """Add the keys of a value; the block has the nearest header above it."""
-        block = block_at.get(path, block)
-        if path in block_at or path in above:
-            rows = value.items() if isinstance(value, dict) else enumerate(value)
-            for key, inner in rows:
-                add(block, (*path, key), inner)
-        elif path not in statements:
-            if isinstance(value, dict) and value and all(isinstance(inner, dict) for inner in value.values()):
-                # A table of tables, such as flaps, has a line for each inner table.
-                for name, inner in value.items():
-                    _add_key(block, (*path, name), inner)
-            else:
-                _add_key(block, path, value)
-
-    add(block_at[()], (), wanted)
+def _own_values(
+    table: Document, path: KeyPath, headers: Collection[KeyPath], above: Collection[KeyPath]
+) -> dict[str, Any]:
+    """The values of a table at a path that no other block has; `above` are the paths of blocks and above."""
+    values = {}
+    for key, value in table.items():
+        inner = (*path, key)
+        if inner not in above:
+            values[key] = value
+        elif inner not in headers and isinstance(value, dict):
+            values[key] = _own_values(value, inner, headers, above)
+    return {key: value for key, value in values.items() if value != {} or (*path, key) not in above}
 
 
-def _add_key(block: Block, path: KeyPath, value: Any) -> None:
-    """Add a key below the other keys of its table, or below the header, or below the comment at the top."""
-    row = len(block.statements)
-    if len(path) > len(block.path) + 1:
-        beside = [at for at, each in enumerate(block.statements) if each.path[: len(path) - 1] == path[:-1]]
-        row = beside[-1] + 1 if beside else row
-    before = ""
-    if row:
-        block.statements[row - 1].after = block.statements[row - 1].after.rstrip("\n") + "\n"
-    elif block.head:
-        block.head = block.head.rstrip("\n") + "\n"
-    elif not block.statements:
-        before, block.tail = block.tail, "\n"
-        before += "\n" if before and not before.endswith("\n") else ""
-    key = ".".join(toml_key(part) for part in path[len(block.path) :] if isinstance(part, str))
-    block.statements.insert(row, Statement(path, before, f"{key} = ", toml_value(value), "\n"))
+def _edit_keys(block: Block, wanted: Document, moved: Collection[str]) -> None:
+    """Edit the keys of a block until they give the wanted values; keys of moved tables are added anew."""
+    old = tomllib.loads(block.keys)
+    if repr(old) == repr(wanted):
+        return
+    if block.path:
+        moved = old.keys() if len(block.path) == 1 and block.path[0] in moved else ()
+    kept = {key: value for key, value in wanted.items() if key in old and key not in moved}
+    keys = _edited(block.keys, old, kept)
+    if keys is None:
+        name = block.head.strip().rpartition("\n")[2] or "keys at the top"
+        LOG.warning("%s: some values are written anew, without their comments", name)
+        keys, kept = _edited_singly(block.keys, old, kept)
+    added = {key: value for key, value in wanted.items() if key not in kept}
+    if added:
+        if not keys and not block.path:
+            # New keys of a file go below the comment at its top.
+            keys, block.tail = block.tail, "\n"
+        block.head = f"{block.head.rstrip()}\n" if block.head else ""
+        keys = f"{keys}{'' if not keys or keys.endswith(chr(10)) else chr(10)}{table_text('', added)}"
+    block.keys = keys
 
 
-def _joined(blocks: Iterable[Block]) -> str:
+def _begins(wanted: Any, old: Any) -> bool:
+    """Whether the wanted keys begin with those old keys that stay, in their order."""
+    if not isinstance(wanted, dict) or not isinstance(old, dict):
+        return True
+    left = [key for key in old if key in wanted]
+    return left == list(wanted)[: len(left)]
+
+
+def _joined(blocks: Sequence[Block]) -> str:
     """The text of the blocks."""
-    texts: list[str] = []
+    text = ""
     before = Block((), "")
     for block in blocks:
-        if texts and texts[-1]:
+        if text:
             is_apart = (block.apart or before.apart) and block.path[:2] != before.path[:2]
             line_end = "\n\n" if is_apart else "\n"
-            while not texts[-1].endswith(line_end):
-                texts[-1] += "\n"
-        texts.append(block.text)
+            while not text.endswith(line_end):
+                text += "\n"
+        text += block.head + block.keys + block.tail
         before = block
-    return "".join(texts)
+    return text
 
 
-# The text of a value.
-
-
-def _value_text(statement: Statement, old: Any, new: Any) -> str:
-    """The text of a value that was changed; its comments are lost if tomlkit cannot edit it."""
-    if type(old) is not type(new) or not isinstance(new, (dict, list)) or not old or not new:
-        return toml_value(new)
+def _values_of(text: str) -> dict[str, Any] | None:
+    """The values of a text; None if it is no valid TOML."""
     try:
-        document = tomlkit.parse(f"value = {statement.value}")
-        _set(document, "value", old, new)
-        text = tomlkit.dumps(document).removeprefix("value = ")
-        given = tomllib.loads(f"value = {text}")["value"]
-        if given == new and _keys(given) == _keys(new):
-            return text
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError:
+        return None
+
+
+# The keys of one block.
+
+
+def _edited(text: str, old: Document, new: Document) -> str | None:
+    """The text edited by tomlkit; None if tomlkit cannot edit it."""
+    try:
+        document = tomlkit.parse(text)
+        _set_keys(document, old, new)
+        edited = tomlkit.dumps(document)
     except (TOMLKitError, LookupError, ValueError, TypeError, AttributeError):
-        pass
-    if any(token.lastgroup == "comment" for token in TOKEN.finditer(statement.value)):
-        LOG.warning("%s: written anew, without its comments", statement.key.rstrip(" \t="))
-    return toml_value(new)
+        return None
+    return edited if _values_of(edited) == new else None
 
 
-def _keys(value: Any) -> Any:
-    """The keys of the tables in a value, in their order."""
-    if isinstance(value, dict):
-        return [(key, _keys(inner)) for key, inner in value.items()]
-    return [_keys(inner) for inner in value] if isinstance(value, list) else None
+def _edited_singly(text: str, old: Document, new: Document) -> tuple[str, dict[str, Any]]:
+    """The text edited key by key, and the new values that it gives: of those keys that tomlkit can edit."""
+    now = dict(old)
+    for key in old:
+        without = {name: value for name, value in now.items() if name != key}
+        choices = [{**now, key: new[key]}, without] if key in new else [without]
+        for values in choices:
+            if repr(now) != repr(values) and (edited := _edited(text, now, values)) is not None:
+                text, now = edited, values
+            if repr(now) == repr(values):
+                break
+        else:
+            return "", {}
+    return text, now
+
+
+def _set_keys(table: Any, old: Document, new: Document) -> None:
+    """Change the keys of a table of tomlkit from old to new values."""
+    # Keys are removed last: tomlkit does not find all dotted keys below a removed key.
+    for key, value in old.items():
+        if key in new:
+            _set(table, key, value, new[key])
+    for key in old:
+        if key not in new:
+            del table[key]
+    added = [key for key in new if key not in old]
+    for key in added:
+        table[key] = tomlkit.value(toml_value(new[key]))
+    if added and isinstance(table, InlineTable):
+        table.add(tomlkit.ws(" "))
 
 
 def _set(container: Any, key: str | int, old: Any, new: Any) -> None:
-    """Set a value of a table or an array of tomlkit, from an old to a new value."""
-    if repr(old) == repr(new):
-        return
-    if isinstance(old, dict) and isinstance(new, dict) and new:
-        table = container[key]
-        for name, value in old.items():
-            if name in new:
-                _set(table, name, value, new[name])
-            else:
-                del table[name]
-        added = [name for name in new if name not in old]
-        for name in added:
-            table[name] = tomlkit.value(toml_value(new[name]))
-        if added and isinstance(table, InlineTable):
-            table.add(tomlkit.ws(" "))
-    elif isinstance(old, list) and isinstance(new, list) and old and new:
-        container[key] = tomlkit.value(_array_text(container[key], old, new))
-    elif old != new:
-        container[key] = tomlkit.value(toml_value(new))
+    """Set a value of a table or an array of tomlkit."""
+    if isinstance(old, dict) and isinstance(new, dict) and old.keys() & new.keys():
+        _set_keys(container[key], old, new)
+    elif old != new or isinstance(old, bool) != isinstance(new, bool):
+        is_array = isinstance(old, list) and isinstance(new, list) and old and new
+        text = _array_text(container[key], old, new) if is_array else toml_value(new)
+        container[key] = tomlkit.value(text)
 
 
 def _array_text(array: Any, old: list[Any], new: list[Any]) -> str:
     """The text of an array of tomlkit with the new values."""
-    numbers = _item_numbers(old, new)
+    numbers = item_numbers(old, new)
     present = set(numbers)
     left: list[int | None] = [number for number in range(len(old)) if number in present]
     for place in reversed(range(len(old))):
@@ -372,21 +353,6 @@ def _array_text(array: Any, old: list[Any], new: list[Any]) -> str:
     for value in added:
         text = _appended(text, toml_value(value))
     return text
-
-
-def _item_numbers(old: list[Any], new: list[Any]) -> list[int | None]:
-    """For each new item of an array the number of the item that it was; None for an added item."""
-    if _are_rows(old) and _are_rows(new):
-        return row_numbers(old, new)
-    least = min(len(old), len(new))
-    if len(old) == len(new):
-        return list(range(least))
-    # Items were added or removed between the first and the last equal items.
-    first = next((place for place in range(least) if old[place] != new[place]), least)
-    rest = least - first
-    last = next((place for place in range(rest) if old[-1 - place] != new[-1 - place]), rest)
-    between: list[int | None] = [None] * (len(new) - first - last)
-    return [*range(first), *between, *range(len(old) - last, len(old))]
 
 
 def _appended(text: str, value: str) -> str:

@@ -11,10 +11,9 @@ import json
 import re
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
-from typing import Any, Final
+from functools import cached_property
+from typing import Any, Final, NamedTuple
 
-from autocolor.checks import nearest
 from autocolor.errors import InputError, MissingInputError
 from autocolor.files.reading import text_problem
 from autocolor.scene.columns import Problem
@@ -106,34 +105,23 @@ def _check_bounds(text: str, place: str) -> None:
             dots = 0
 
 
-@dataclass(eq=False)
-class Statement:
-    """A key with its value, as written, or a header, which has no value.
+class Statement(NamedTuple):
+    """A header, or a key with its value: where its line or lines start and end in the text.
 
     `path` leads from the file's root to the value or the table; rows of arrays of tables count from 0.
-    `before` are the lines above it, `after` is the rest of its line.
     """
 
     path: KeyPath
-    before: str
-    key: str
-    value: str
-    after: str
-
-    @property
-    def text(self) -> str:
-        """The statement as it is written, with the lines above it."""
-        return f"{self.before}{self.key}{self.value}{self.after}"
+    start: int
+    end: int
+    is_header: bool
 
 
 def statements_of(text: str) -> Iterator[Statement]:
-    """The headers and keys of a valid TOML text; at last the lines above its end, as a key without a name.
-
-    Joined they are the same text.
-    """
+    """The headers and keys of a valid TOML text whose lines end with line feeds."""
     table: KeyPath = ()
     rows: dict[KeyPath, int] = {}
-    start, first, stop, equals, nested = 0, -1, 0, 0, 0
+    first, stop, equals, nested = -1, 0, 0, 0
     for token in TOKEN.finditer(f"{text}\n"):
         kind = token.lastgroup
         nested += (kind == "open") - (kind == "close")
@@ -142,17 +130,13 @@ def statements_of(text: str) -> Iterator[Statement]:
             stop = token.end()
             equals = token.start() if kind == "equals" and not equals else equals
         elif kind == "newline" and nested <= 0 and first >= 0:
-            before, after = text[start:first], text[stop : token.end()]
-            if text[first] == "[":
-                header = text[first:stop]
-                table = _path((), header, rows, header.startswith("[["))
-                yield Statement(table, before, header, "", after)
+            is_header = text[first] == "["
+            if is_header:
+                path = table = _path((), text[first:stop], rows, text.startswith("[[", first))
             else:
                 path = _path(table, f"{text[first:equals]} = 0", rows, False)
-                value = text[equals + 1 : stop].lstrip()
-                yield Statement(path, before, text[first : stop - len(value)], value, after)
-            start, first, equals = token.end(), -1, 0
-    yield Statement((), text[start:], "", "", "")
+            yield Statement(path, first, min(token.end(), len(text)), is_header)
+            first, equals = -1, 0
 
 
 def _path(table: KeyPath, text: str, rows: dict[KeyPath, int], is_row: bool) -> KeyPath:
@@ -175,13 +159,14 @@ def _path(table: KeyPath, text: str, rows: dict[KeyPath, int], is_row: bool) -> 
 
 def key_lines(data: bytes) -> dict[KeyPath, int]:
     """The line of each table and key of a valid TOML text, by its path; rows of arrays count from 0."""
+    text = data.decode().replace("\r\n", "\n")
     lines: dict[KeyPath, int] = {}
-    line = 1
-    for statement in statements_of(data.decode().replace("\r\n", "\n")):
-        line += statement.before.count("\n")
+    line, before = 1, 0
+    for statement in statements_of(text):
+        line += text.count("\n", before, statement.start)
+        before = statement.start
         for end in range(1, len(statement.path) + 1):
             lines.setdefault(statement.path[:end], line)
-        line += statement.text.count("\n") - statement.before.count("\n")
     return lines
 
 
@@ -246,22 +231,47 @@ class SceneProblems:
         self.place = place
         self.data = data
         self.document = document
-        self.lines: dict[KeyPath, int] | None = None
         self.messages: list[tuple[int, str]] = []
         self.all_missing = True
 
-    def note(self, path: KeyPath, text: str, names: tuple[str, Iterable[str]] | None = None) -> None:
-        """Add a problem of the value at a path.
+    @property
+    def full(self) -> bool:
+        """Whether the report has reached its largest number of problems."""
+        return len(self.messages) >= MOST_PROBLEMS
 
-        `names` are a wrong name and the valid names: the message suggests the closest valid name.
-        """
-        self.note_all([Problem(path, text + (nearest(*names) if names else ""))])
+    @cached_property
+    def _lines(self) -> dict[KeyPath, int]:
+        return key_lines(self.data)
+
+    def note(self, path: KeyPath, text: str) -> None:
+        """Add a problem of the value at a path."""
+        self.note_all([Problem(path, text)])
 
     def note_all(self, problems: Iterable[Problem], path: KeyPath = ()) -> None:
         """Add problems of the table at a path."""
         for problem in problems:
             self.all_missing = False
             self._note(problem.under(path))
+
+    def note_file(self, path: KeyPath, error: InputError) -> None:
+        """Add the problems of a mesh file; their messages name the file. `path` is the key that names it."""
+        if isinstance(error, MissingInputError):
+            for sentence in error.problems:
+                self._note(Problem(path, sentence, names_key=True))
+        else:
+            self.all_missing = False
+            self._add([(self._line(path), problem) for problem in error.problems])
+
+    def raise_any(self) -> None:
+        """Raise InputError with all problems, if any; MissingInputError if only files are missing."""
+        sentences = [sentence for _, sentence in sorted(self.messages, key=lambda message: message[0])]
+        if self.full:
+            sentences.append(f"{self.place}: there may be more problems; correct these first")
+        if sentences:
+            raise MissingInputError(sentences) if self.all_missing else InputError(sentences)
+
+    def _add(self, messages: list[tuple[int, str]]) -> None:
+        self.messages += messages[: MOST_PROBLEMS - len(self.messages)]
 
     def _note(self, problem: Problem) -> None:
         if self.full:
@@ -274,39 +284,12 @@ class SceneProblems:
             sentence = sentence[:LONGEST_SENTENCE] + "..."
         line = self._line(problem.path)
         at = f", line {line}" if line else ""
-        self.messages.append((line or 0, f"{self.place}{at}, {where}{sentence}"))
+        self._add([(line, f"{self.place}{at}, {where}{sentence}")])
 
-    @property
-    def full(self) -> bool:
-        """Whether the report has reached its largest number of problems."""
-        return len(self.messages) >= MOST_PROBLEMS
-
-    def note_file(self, path: KeyPath, error: InputError) -> None:
-        """Add the problems of a mesh file; their messages name the file. `path` is the key that names it."""
-        if isinstance(error, MissingInputError):
-            for sentence in error.problems:
-                self._note(Problem(path, sentence, names_key=True))
-            return
-        self.all_missing = False
-        line = self._line(path) or 0
-        self.messages.extend(
-            (line, problem) for problem in error.problems[: MOST_PROBLEMS - len(self.messages)]
-        )
-
-    def raise_any(self) -> None:
-        """Raise InputError with all problems, if any; MissingInputError if only files are missing."""
-        if not self.messages:
-            return
-        sentences = [sentence for _, sentence in sorted(self.messages, key=lambda message: message[0])]
-        if self.full:
-            sentences.append(f"{self.place}: there may be more problems; correct these first")
-        raise MissingInputError(sentences) if self.all_missing else InputError(sentences)
-
-    def _line(self, path: KeyPath) -> int | None:
-        if self.lines is None:
-            self.lines = key_lines(self.data)
+    def _line(self, path: KeyPath) -> int:
+        """The line of a path, or of the nearest table around it; 0 if the file has neither."""
         return next(
-            (self.lines[path[:end]] for end in range(len(path), 0, -1) if path[:end] in self.lines), None
+            (self._lines[path[:end]] for end in range(len(path), 0, -1) if path[:end] in self._lines), 0
         )
 
     def _table_of(self, path: KeyPath) -> tuple[str, int]:
@@ -314,11 +297,12 @@ class SceneProblems:
 
         Rows are counted from 1.
         """
-        if len(path) > 1 and path[0] in ("lights", "views", "mesh") and isinstance(path[1], int):
-            rows = self.document.get(str(path[0]))
-            row = rows[path[1]] if isinstance(rows, list) else None
+        table, key = (*path, "", "")[:2]
+        if isinstance(key, int):
+            rows = self.document.get(str(table))
+            row = rows[key] if isinstance(rows, list) else None
             name = row.get("name") if isinstance(row, dict) else None
-            return f"{path[0]}[{path[1] + 1}]{f' {name[:60]!r}' if isinstance(name, str) else ''}: ", 2
-        if len(path) > 1 and path[0] in ("surfaces", "parts"):
-            return f"[{path[0]}.{str(path[1])[:60]}]: ", 2
-        return ("[view]: ", 1) if path[:1] == ("view",) else ("", 0)
+            return f"{table}[{key + 1}]{f' {name[:60]!r}' if isinstance(name, str) else ''}: ", 2
+        if table in ("surfaces", "parts") and len(path) > 1:
+            return f"[{table}.{key[:60]}]: ", 2
+        return ("[view]: ", 1) if table == "view" else ("", 0)

@@ -14,7 +14,6 @@ from hypothesis import strategies as st
 from autocolor import (
     InputError,
     MissingInputError,
-    OutputError,
     Palette,
     read_palette,
     write_palette,
@@ -46,32 +45,6 @@ def test_a_palette_that_is_written_and_read_is_the_same(palette: Palette, suffix
     with tempfile.TemporaryDirectory() as folder:
         write_palette(Path(folder, f"paints{suffix}"), palette)
         assert read_palette(Path(folder, f"paints{suffix}")) == palette
-
-
-@pytest.mark.parametrize(
-    ("name", "data"),
-    [
-        ("a.gpl", b"GIMP Palette\nName: a\n#\n255   0   0\n  1  22   3\n"),
-        ("a.GPL", b"GIMP Palette\nName: a\n#\n255   0   0\n  1  22   3\n"),
-        ("a.csv", b"red,green,blue\n255,0,0\n1,22,3\n"),
-    ],
-)
-def test_the_ending_of_a_file_chooses_its_format(tmp_path: Path, name: str, data: bytes) -> None:
-    write_palette(tmp_path / name, ["red", (1, 22, 3)])
-    assert (tmp_path / name).read_bytes() == data
-    assert read_palette(tmp_path / name).colors.tolist() == [[255, 0, 0], [1, 22, 3]]
-
-
-def test_names_are_written_as_the_programs_write_them(tmp_path: Path) -> None:
-    palette = Palette(["#b01020", (4, 5, 6)], ['Signal "red", a', ""])
-    write_palette(tmp_path / "car.gpl", palette)
-    assert (tmp_path / "car.gpl").read_bytes() == (
-        b'GIMP Palette\nName: car\n#\n176  16  32\tSignal "red", a\n  4   5   6\n'
-    )
-    write_palette(tmp_path / "two.csv", palette.colors, names=palette.names)
-    assert (tmp_path / "two.csv").read_text() == (
-        'red,green,blue,name\n176,16,32,"Signal ""red"", a"\n4,5,6,\n'
-    )
 
 
 def test_a_gimp_palette_of_gimp_is_read() -> None:
@@ -212,16 +185,6 @@ test_what_cannot_be_written_is_refused = refused(
         (("a.png", "red"), "a.png: a palette must end in .csv or .gpl, not in '.png'; rename it"),
     ],
 )
-
-
-def test_a_file_that_is_there_is_overwritten_only_if_asked(tmp_path: Path) -> None:
-    path = tmp_path / "a.csv"
-    path.write_text("mine")
-    with pytest.raises(OutputError, match="exist"):
-        write_palette(path, ["red"])
-    assert path.read_text() == "mine"
-    write_palette(path, ["red"], overwrite=True)
-    assert read_palette(path).color(0) == (255, 0, 0)
 
 
 def test_a_palette_is_a_value_that_nobody_changes() -> None:

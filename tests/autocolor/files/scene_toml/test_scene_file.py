@@ -63,12 +63,6 @@ def test_all_but_a_mesh_is_created(folder: Path) -> None:
     assert report.mesh_files == ({"file": "car.obj"},)
 
 
-def test_lights_may_be_none(folder: Path) -> None:
-    report = read(folder, "lights = []\n" + MESH)
-    assert report.scene.lights == ()
-    assert not any("lights" in sentence for sentence in report.created)
-
-
 def test_parts_of_the_same_name_in_several_meshes_are_one(folder: Path) -> None:
     (folder / "n.csv").write_text("x,y,z\n0,0,0\n1,0,0\n0,1,0\n")
     (folder / "p.csv").write_text("part,node1,node2,node3,node4\ndoor,1,2,3,\n")
@@ -112,7 +106,6 @@ direction = [0, 0, 1]
         " 'interpolation', 'background', 'front', 'views' or 'scalar'",
         f"{place} 4, [view]: eye {vector} [0, 0]",
         "bad.obj, line 10: a corner must be a whole number, not 'x'; correct it",
-        f"{place} 9, mesh[2]: {folder / 'none.obj'}: there is no such file or folder; check the name",
         f"{place} 10, mesh[2]: crease_angle must be a number from 0 to 180, not 200",
         f"{place} 12, [surfaces.body]: there is no field 'two_side'; did you mean 'two_sided'?",
         f"{place} 13, lights[1] 'key': position {vector} missing; add it",
@@ -200,20 +193,6 @@ def test_of_many_unknown_keys_few_get_the_closest_key(folder: Path, monkeypatch:
     monkeypatch.setattr(difflib, "get_close_matches", compare)
     assert len(refusal(folder, "".join(f"qq{number} = 1\n" for number in range(500)) + MESH)) == 101
     assert len(compared) == 100
-
-
-def test_a_part_of_the_stage_needs_no_surface_and_is_not_framed(folder: Path) -> None:
-    (folder / "floor.obj").write_text("v -50 -50 0\nv 50 -50 0\nv 50 50 0\nv -50 50 0\no floor\nf 1 2 3 4\n")
-    both = MESH + '[[mesh]]\nfile = "floor.obj"\n'
-    alone, whole = read(folder, MESH).scene, read(folder, both).scene
-    scene = read(folder, both + "[parts.floor]\nstage = true\n").scene
-    assert [(part.name, part.surface, part.stage) for part in scene.parts] == [
-        ("hood", "surface", False),
-        ("roof", "surface", False),
-        ("floor", "surface", True),
-    ]
-    assert (scene.view, scene.lights) == (alone.view, alone.lights)
-    assert whole.view != alone.view
 
 
 @pytest.mark.parametrize(

@@ -15,8 +15,6 @@ from autocolor.files.scene_toml.toml_text import (
     SceneProblems,
     key_lines,
     parsed_toml,
-    statements_of,
-    table_text,
     toml_value,
 )
 from autocolor.scene.columns import Problem
@@ -101,13 +99,6 @@ def test_brackets_and_dots_in_texts_and_comments_do_not_count() -> None:
     assert set(parsed_toml(text.encode(), "x")) == {"a", "b", "c", "d"}
 
 
-def test_a_table_is_written_with_its_header_and_its_inner_tables_in_lines() -> None:
-    keys = {"a": 1, "flaps": {"x": {"on": True}, "y z": {"minimum": 0.5}}, "b": {"c": 2}}
-    body = 'a = 1\nflaps.x = { on = true }\nflaps."y z" = { minimum = 0.5 }\nb = { c = 2 }\n'
-    assert table_text("[view]", keys) == f"[view]\n{body}"
-    assert table_text("", keys) == body
-
-
 TABLES = """\
 # The title.
 ambient = 0.1 # dim
@@ -127,41 +118,22 @@ position = [
 # The end."""
 
 
-def test_a_text_is_cut_into_its_statements() -> None:
-    assert [(each.path, each.key, each.value, each.after) for each in statements_of(TABLES)] == [
-        (("ambient",), "ambient = ", "0.1", " # dim\n"),
-        (("quoted # = key", "inner"), '"quoted # = key".inner = ', "{ a = 1 }", "\n"),
-        (("lights", 0), "[[lights]]", "", " # one\n"),
-        (("lights", 0, "name"), "name=", '"key = ]"', " # two\n"),
-        (("lights", 0, "flaps", "y"), "[lights.flaps.y]", "", "\n"),
-        (("lights", 0, "flaps", "y", "on"), "on = ", "true", "\n"),
-        (("lights", 1), "[[lights]]", "", "\n"),
-        (("lights", 1, "position"), "position = ", "[\n  1, # east\n  2, 3,\n]", "\n"),
-        (("parts", "a b"), '[parts."a b"]', "", "\n"),
-        ((), "", "", ""),
-    ]
-    assert key_lines(TABLES.encode())["lights", 1, "position"] == 11
-
-
-PIECES = st.sampled_from(
-    ["\n", "# comment\n", " # c\n", "a = 1\n", "b.c = [1,\n # x\n 2]\n", 'd = """x\n[y]\n"""', "[t]\n", "\t"]
-)
-
-
-@given(st.lists(PIECES).map("".join) | st.text("ab=[]{}'\"#\n., 1", max_size=30))
-def test_no_letter_of_any_valid_text_is_lost(text: str) -> None:
-    try:
-        tomllib.loads(text)
-    except tomllib.TOMLDecodeError:
-        return
-    assert "".join(each.text for each in statements_of(text)) == text
-
-
-@pytest.mark.parametrize(
-    "text", ["a = 'x", 'a = "x\\', 'a = """x', "a = '''x''", 'a = """""', "]]]]", '"' * 9999]
-)
-def test_open_ends_are_refused(text: str) -> None:
-    assert refusal(text).startswith("scene.toml, line 1: it must be valid TOML")
+def test_keys_and_headers_have_paths_and_lines() -> None:
+    assert key_lines(TABLES.encode()) == {
+        ("ambient",): 2,
+        ("quoted # = key",): 3,
+        ("quoted # = key", "inner"): 3,
+        ("lights",): 6,
+        ("lights", 0): 6,
+        ("lights", 0, "name"): 7,
+        ("lights", 0, "flaps"): 8,
+        ("lights", 0, "flaps", "y"): 8,
+        ("lights", 0, "flaps", "y", "on"): 9,
+        ("lights", 1): 10,
+        ("lights", 1, "position"): 11,
+        ("parts",): 15,
+        ("parts", "a b"): 15,
+    }
 
 
 @given(st.binary(max_size=100) | st.text("ab.=[]{}\"'\\#,1-: \n\r\t", max_size=100).map(str.encode))
@@ -232,25 +204,6 @@ def test_a_problem_has_the_line_the_table_and_the_key(path: tuple[str | int, ...
     noted.note(path, "must be so")
     under.note_all([Problem(path[2:], "must be so")], path[:2])
     assert sentences_of(noted) == sentences_of(under) == (sentence,)
-
-
-def test_problems_stand_in_the_order_of_the_lines_and_of_noting() -> None:
-    problems = problems_of()
-    problems.raise_any()
-    for path, text in ((("view", "eye"), "must a"), (("ambient",), "must b"), (("view", "eye"), "must c")):
-        problems.note(path, text)
-    assert [sentence[-1] for sentence in sentences_of(problems)] == ["b", "a", "c"]
-
-
-def test_a_mesh_file_has_places_of_its_own() -> None:
-    problems = problems_of()
-    problems.note(("lights", 0, "position"), "must be so")
-    problems.note_file(("mesh", 0, "file"), InputError(["car.obj, line 1: one", "car.obj, line 2: two"]))
-    assert sentences_of(problems) == (
-        "car.obj, line 1: one",
-        "car.obj, line 2: two",
-        "scene.toml, line 11, lights[1] 'key': position must be so",
-    )
 
 
 def test_files_are_missing_input_only_where_nothing_else_is_wrong() -> None:
