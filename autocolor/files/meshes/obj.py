@@ -141,6 +141,7 @@ def read_polygons(data: bytes, place: str, statements: Statements) -> RawPolygon
             f"{place}, line {line_of[polygon]}: a corner must be one of the file's {node_count:,} nodes, or"
             f" count back to one, not {node_numbers[corner]}; correct it"
         )
+    has_normals = bool(normal_numbers.any())
     return RawPolygons(
         np.concatenate(nodes),
         corners,
@@ -148,8 +149,8 @@ def read_polygons(data: bytes, place: str, statements: Statements) -> RawPolygon
         part_numbers,
         tuple(statements.parts()),
         place_of=lambda row: f"line {line_of[row]}",
-        normals=np.concatenate(normals) if normal_numbers.any() else None,
-        corner_normals=_rows(normal_numbers, normals_before, counts, normal_count),
+        normals=np.concatenate(normals) if has_normals else None,
+        corner_normals=_rows(normal_numbers, normals_before, counts, normal_count) if has_normals else None,
     )
 
 
