@@ -20,7 +20,6 @@ from __future__ import annotations
 import csv
 import difflib
 import io
-import math
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -33,7 +32,7 @@ from autocolor.arrays import AnyArray, Numbers, chunks
 from autocolor.checks import LARGEST_COORDINATE, nearest
 from autocolor.errors import InputError
 from autocolor.files.meshes.file_scalars import FileScalars
-from autocolor.files.meshes.number_text import MOST_PROBLEMS, NUMBER, Problems
+from autocolor.files.meshes.number_text import MOST_PROBLEMS, Problems
 from autocolor.files.meshes.repair import (
     PLAIN,
     MeshReport,
@@ -51,7 +50,8 @@ from autocolor.scene.scalar import MOST_SCALARS, NODE, POLYGON
 ROWS_AT_ONCE: Final = 1 << 14
 """Measured: with more, the cells of a block fall out of the processor's cache."""
 
-WHOLE_NUMBER: Final = re.compile(r"[+-]?[0-9]{1,18}(?:\.0*)?")
+POINT: Final = re.compile(r"(?<=[0-9])\.0*$")
+"""The point of a whole number, and zeros after it."""
 
 LETTERS: Final = b"0123456789+-.eE ,"
 """The letters of numbers, and the comma between them."""
@@ -74,8 +74,8 @@ class NumberCells:
     whole: bool = False
     may_be_empty: bool = False
 
-    def at_once(self, cells: Sequence[str]) -> AnyArray:
-        """The numbers of many cells. Raises ValueError if any might be wrong."""
+    def numbers(self, cells: Sequence[str]) -> AnyArray:
+        """The numbers of some cells. Raises ValueError or OverflowError if any might be wrong."""
         text = ",".join(cells)
         if text.encode("ascii").translate(None, LETTERS):
             raise ValueError
@@ -85,21 +85,14 @@ class NumberCells:
             if (np.abs(numbers) > LARGEST_COORDINATE).any():
                 raise ValueError
             return numbers
+        if "." in text:
+            # pandas writes the whole numbers of a column with missing values so.
+            cells = [POINT.sub("", cell) for cell in cells]
         if max(map(len, cells)) > 18:
             raise ValueError
         if self.may_be_empty and "" in cells:
             return np.array([int(cell) if cell else NOTHING for cell in cells], np.int64)
         return np.fromiter(map(int, cells), np.int64, len(cells))
-
-    def one(self, cell: str) -> float | int:
-        """The number of a cell without spaces around it. Raises ValueError."""
-        if not cell and self.may_be_empty:
-            return NOTHING if self.whole else math.nan
-        if self.whole and WHOLE_NUMBER.fullmatch(cell):
-            return int(cell.partition(".")[0])
-        if not self.whole and NUMBER.fullmatch(cell.encode()) and abs(float(cell)) <= LARGEST_COORDINATE:
-            return float(cell)
-        raise ValueError
 
 
 COORDINATES: Final = NumberCells("a coordinate must be a decimal number of at most 1e30 in size")
@@ -167,14 +160,14 @@ class Table:
             row_of = {cell: self.name_row(cell) for cell in dict.fromkeys(cells)}
             return np.fromiter(map(row_of.__getitem__, cells), np.int64, len(cells))
         try:
-            return kind.at_once(cells)
+            return kind.numbers(cells)
         except (ValueError, OverflowError):
             pass
-        values: list[float | int] = []
+        values = []
         for row, cell in zip(rows, map(str.strip, cells), strict=True):
             try:
-                values.append(kind.one(cell))
-            except ValueError:
+                values.append(kind.numbers([cell])[0])
+            except (ValueError, OverflowError):
                 self.note(row, f"{kind.rule}, not {shown(cell)}; correct it")
         return np.array(values, np.int64 if kind.whole else np.float64)
 

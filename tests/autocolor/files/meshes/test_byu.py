@@ -116,17 +116,9 @@ test_what_is_refused = refused(
                 )
                 for wrong, told in (("6 7", "6 to 7"), ("0 6", "0 to 6"), ("6 5", "6 to 5"))
             ),
-            (
-                "0 0 1 1 0",
-                "0 0 1 nan 0",
-                f", line 4: {LARGE}",
-            ),
+            ("0 0 1 1 0", "0 0 1 nan 0", f", line 4: {LARGE}"),
             *(
-                (
-                    "1 3 4 -2",
-                    f"1 3 {corner} -2",
-                    f", line 5: {CORNER}, not '{corner}'; correct it",
-                )
+                ("1 3 4 -2", f"1 3 {corner} -2", f", line 5: {CORNER}, not '{corner}'; correct it")
                 for corner in (9, 0)
             ),
             (

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ from hypothesis import strategies as st
 from autocolor.errors import InputError
 from autocolor.files.formats import format_of_folder
 from autocolor.files.meshes.csv_tables import (
+    NOTHING,
     ROWS_AT_ONCE,
     NumberCells,
     csv_tables_bytes,
@@ -192,18 +194,23 @@ def test_further_columns_are_scalars_and_empty_cells_missing_values(tmp_path: Pa
 
 
 CELL = st.text("0123456789+-.eE _nx\u0661 ", max_size=6) | st.floats().map(repr) | st.integers().map(str)
+DECIMAL = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?", re.ASCII)
+WHOLE = re.compile(r"[+-]?[0-9]+(\.0*)?", re.ASCII)
 
 
-@given(st.lists(CELL.map(str.strip), min_size=1, max_size=3), st.booleans())
-def test_cells_converted_at_once_are_those_converted_one_by_one(cells: list[str], may_be_empty: bool) -> None:
-    for kind in (NumberCells("rule", whole, may_be_empty) for whole in (False, True)):
-        try:
-            values = kind.at_once(cells)
-        except (ValueError, OverflowError):
-            continue
-        for value, cell in zip(values.tolist(), cells, strict=True):
-            one = kind.one(cell)
-            assert value == one or (math.isnan(value) and math.isnan(one))
+@given(st.lists(CELL, min_size=1, max_size=3), st.booleans(), st.booleans())
+def test_numbers_of_cells_are_those_of_a_slow_twin(cells: list[str], whole: bool, may_be_empty: bool) -> None:
+    try:
+        values = NumberCells("rule", whole, may_be_empty).numbers(cells).tolist()
+    except (ValueError, OverflowError):
+        return
+    for value, cell in zip(values, map(str.strip, cells), strict=True):
+        if not cell:
+            assert may_be_empty
+            assert value == NOTHING or math.isnan(value)
+        else:
+            assert (WHOLE if whole else DECIMAL).fullmatch(cell)
+            assert value == (int(cell.partition(".")[0]) if whole else float(cell))
 
 
 def test_rows_of_many_blocks_keep_their_numbers_and_values(tmp_path: Path) -> None:

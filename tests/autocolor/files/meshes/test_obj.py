@@ -11,12 +11,7 @@ from hypothesis import strategies as st
 from autocolor import Mesh, Surface
 from autocolor.files.meshes import obj as module
 from autocolor.files.meshes.mtl import mtl_text
-from autocolor.files.meshes.obj import (
-    UNUSED,
-    begins_as_obj,
-    obj_text,
-    read_obj,
-)
+from autocolor.files.meshes.obj import UNUSED, begins_as_obj, obj_text, read_obj
 from autocolor.files.meshes.repair import FILE, MeshReport, Placement
 from tests.autocolor.files.meshes.written import assert_equal, writable_meshes
 from tests.autocolor.files.refusals import refusal, refused
@@ -140,10 +135,7 @@ NODES_OF = "a corner must be one of the file's {} nodes, or count back to one, n
 test_what_is_refused = refused(
     "car.obj",
     [
-        (
-            text.encode(),
-            "\n".join(f"car.obj{sentence}" for sentence in sentences),
-        )
+        (text.encode(), "\n".join(f"car.obj{sentence}" for sentence in sentences))
         for text, *sentences in (
             *(
                 (
@@ -169,10 +161,7 @@ test_what_is_refused = refused(
                 for corner, word in NO_CORNERS
             ),
             *(
-                (
-                    f"{SQUARE}\nf 1 2 {number}\nf 1 2 3\n",
-                    f", line 6: {NODES_OF.format(4, number)}",
-                )
+                (f"{SQUARE}\nf 1 2 {number}\nf 1 2 3\n", f", line 6: {NODES_OF.format(4, number)}")
                 for number in ("5", "0", "-5", "9" * 18)
             ),
             (f"f 1 2 7 8\n{SQUARE}f 1 9 10\n", f", line 1: {NODES_OF.format(4, 7)}"),

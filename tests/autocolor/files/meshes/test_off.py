@@ -137,11 +137,7 @@ test_what_is_refused = refused(
                 ": there must be 7 lines of polygons, as the header says, not 6; correct the header or the"
                 " polygons",
             ),
-            (
-                "1 1 0\n",
-                "1 inf 0\n",
-                f", line 6: {LARGE}",
-            ),
+            ("1 1 0\n", "1 inf 0\n", f", line 6: {LARGE}"),
             *(("4 0 1 5 4", f"4 0 1 5 {word}", WORD.format(word)) for word in ("8", "-1", "5.5", "inf")),
             *(
                 (
@@ -154,7 +150,5 @@ test_what_is_refused = refused(
             ),
         )
     ]
-    + [
-        (b"", f"cube.off: there must be 3 numbers up to the end of the header, not 0; {CUT}"),
-    ],
+    + [(b"", f"cube.off: there must be 3 numbers up to the end of the header, not 0; {CUT}")],
 )
