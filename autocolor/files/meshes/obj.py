@@ -309,18 +309,17 @@ class Statements:
 
     def read(self, line: bytes) -> None:
         """Process a line that is no node, normal or polygon."""
-        words = line.split(None, 2)
-        if not words or words[0].startswith(b"#"):
+        keyword, _, rest = line.replace(b"\t", b" ").strip().partition(b" ")
+        if not keyword or keyword.startswith(b"#"):
             return
-        keyword = words[0]
         if keyword == b"g":
-            self.group = name_of(words[1]) if len(words) > 1 else None
+            self.group = name_of(rest.split()[0]) if rest.strip() else None
         elif keyword == b"o":
-            self.group = name_of(line.split(None, 1)[1]) if len(words) > 1 else None
+            self.group = name_of(rest) or None
         elif keyword == b"usemtl":
-            self.material = name_of(line.split(None, 1)[1]) if len(words) > 1 else None
-        elif keyword == b"mtllib":
-            self.libraries.extend(line.split(None, 1)[1:])
+            self.material = name_of(rest) or None
+        elif keyword == b"mtllib" and rest:
+            self.libraries.append(rest)
         elif keyword not in UNUSED:
             name = SKIPPED.get(keyword) or f"statements {shown(keyword)}"
             is_new = name not in self.skipped and len(self.skipped) >= MOST_SKIPPED
@@ -362,12 +361,10 @@ def _lines(mesh: Mesh, materials: Sequence[str], library: str) -> Iterator[str]:
         parts = mesh.part_numbers[chunk].tolist()
         corner_rows = (mesh.node_numbers[chunk] + 1).tolist()
         if own is not None:
+            normal_rows = (own.numbers[chunk] + 1).tolist()
             corner_rows = [
-                [
-                    f"{node}//{normal + 1}" if normal >= 0 else str(node)
-                    for node, normal in zip(*row, strict=True)
-                ]
-                for row in zip(corner_rows, own.numbers[chunk].tolist(), strict=True)
+                [f"{node}//{normal}" if normal else str(node) for node, normal in zip(*rows, strict=True)]
+                for rows in zip(corner_rows, normal_rows, strict=True)
             ]
         for part, corners in zip(parts, corner_rows, strict=True):
             if part != before:
