@@ -303,7 +303,7 @@ def _cells(values: AnyArray) -> list[Any]:
     """Some values of a column as cells."""
     cells = values.astype(object)
     cells[values == NOTHING if values.dtype == np.int64 else values != values] = ""
-    return cells.tolist()
+    return list(cells)
 
 
 CSV_FILES: Final = ("nodes.csv", "polygons.csv")

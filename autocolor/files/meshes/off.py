@@ -104,12 +104,12 @@ def _polygons(text: NumberText, begins: Indices, end: int, nodes: int) -> tuple[
     first = int(begins[0])
     numbers = text.values(first, end - first)
     starts = begins - first
-    counts = numbers[starts]
-    is_count = (counts >= 0) & (counts < np.diff(begins, append=end)) & (np.floor(counts) == counts)
+    sizes = numbers[starts]
+    is_count = (sizes >= 0) & (sizes < np.diff(begins, append=end)) & (np.floor(sizes) == sizes)
     if not is_count.all():
         rule = "a polygon must begin with the number of the corners on its line"
         raise text.wrong(int(begins[is_count.argmin()]), rule)
-    counts = counts.astype(np.intp)
+    counts = sizes.astype(np.intp)
     # Corners follow the count of their polygon; a color may follow them.
     steps = np.zeros(len(numbers) + 1, np.int8)
     steps[starts + 1] = 1
