@@ -47,7 +47,7 @@ from autocolor.files.writing import write_together
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalar import MOST_SCALARS, NODE, POLYGON
 
-ROWS_AT_ONCE: Final = 1 << 14
+ROWS_AT_ONCE: Final = 1 << 11
 """Measured: with more, the cells of a block fall out of the processor's cache."""
 
 POINT: Final = re.compile(r"(?<=[0-9])\.0*$")
