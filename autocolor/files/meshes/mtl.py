@@ -34,20 +34,16 @@ LARGEST_LIBRARIES: Final = 4 * 1024 * 1024
 """Limit: bytes of all libraries of a file, enough for ten thousand materials."""
 
 MOST_LIBRARIES: Final = 100
-MOST_NAMED: Final = 5
-"""Limit: libraries that are looked for, and missing ones that are named."""
+"""Limit: names of libraries that are looked for."""
 
 LARGEST: Final = 1e6
 """Limit: above every coefficient and exponent of a material."""
 
 TEXTURES: Final = re.compile(rb"map_\w+|bump|disp|decal|refl|norm", re.IGNORECASE)
-TRANSPARENCY: Final = {b"d": 1.0, b"Tr": 0.0}
+OPAQUE: Final = {b"d": 1.0, b"Tr": 0.0}
 """The statements of transparency, and their values for an opaque material."""
 
 USED: Final = (b"Kd", b"Ks", b"Ns", b"illum")
-
-WITHOUT_HIGHLIGHT: Final = (0.0, 1.0)
-"""The illumination models, `illum`, in which nothing reflects specularly."""
 
 LEAST_EXPONENT: Final = 1.0
 """Assumed: some programs write 0 for the roughest material, which would be a highlight all over."""
@@ -63,14 +59,11 @@ def read_materials(
     """
     if not wanted:
         return (), ()
-    missing: list[bytes] = []
-    paths = _paths(obj, libraries, missing)
+    paths, missing = _paths(obj, libraries)
     sentences: list[str] = []
     surface_of: dict[str, Surface] = {}
     left = LARGEST_LIBRARIES
     for path in paths:
-        if len(surface_of) == len(wanted):
-            break
         try:
             data = read_bytes(path, left)
             left -= len(data)
@@ -81,97 +74,83 @@ def read_materials(
         surfaces, notes = materials_of(data, path.name, set(wanted))
         surface_of = {**surfaces, **surface_of}
         sentences.extend(notes)
-    sentences.extend(
-        f"the materials have default colors: there is no library {shown(name)} in the folder of {obj.name};"
-        " copy it there"
-        for name in missing[:MOST_NAMED]
-    )
+    if missing:
+        sentences.append(
+            f"the materials have default colors: there is no library {_some(missing)} in the folder of"
+            f" {obj.name}; copy it there"
+        )
     undefined = [name for name in wanted if name not in surface_of]
     if surface_of and undefined:
-        more = f" and {len(undefined) - 3:,} more" if len(undefined) > 3 else ""
-        names = ", ".join(shown(name) for name in undefined[:3])
-        sentences.append(f"no library defines material {names}{more}; default colors are used")
+        sentences.append(f"no library defines material {_some(undefined)}; default colors are used")
     return tuple(surface_of[name] for name in wanted if name in surface_of), tuple(sentences)
 
 
-def _paths(obj: Path, libraries: Sequence[bytes], missing: list[bytes]) -> list[Path]:
-    """The paths of the libraries, at most MOST_LIBRARIES; arguments without a file are added to `missing`."""
-    folder = obj.parent
-    paths: dict[str, Path] = {}
+def _some(names: Sequence[str | bytes]) -> str:
+    """The first names for a message, and how many more there are."""
+    more = f" and {len(names) - 3:,} more" if len(names) > 3 else ""
+    return f"{', '.join(map(shown, names[:3]))}{more}"
+
+
+def _paths(obj: Path, libraries: Sequence[bytes]) -> tuple[list[Path], list[bytes]]:
+    """The paths of the libraries, and the arguments without a file."""
+    paths: list[Path | None] = []
+    missing: list[bytes] = []
     for library in dict.fromkeys(libraries[:MOST_LIBRARIES]):
         # The argument is one name with spaces, or several names.
-        path = _path(folder, library)
-        several = [path] if path else [_path(folder, name) for name in library.split()[:MOST_LIBRARIES]]
-        if not any(several):
+        whole = _path(obj.parent, library)
+        files = [whole] if whole else [_path(obj.parent, name) for name in library.split()[:MOST_LIBRARIES]]
+        paths += files
+        if not any(files):
             missing.append(library)
-        paths.update({os.path.realpath(path): path for path in several if path is not None})
-    if not paths:
-        beside = _path(folder, os.fsencode(f"{obj.stem}.mtl"))
-        paths = {} if beside is None else {"": beside}
+    if not any(paths) and (beside := _path(obj.parent, os.fsencode(f"{obj.stem}.mtl"))):
         # The library may have been renamed together with the OBJ file.
-        if beside is not None:
-            missing.clear()
-    return list(paths.values())[:MOST_LIBRARIES]
+        return [beside], []
+    return [path for path in dict.fromkeys(paths) if path][:MOST_LIBRARIES], missing
 
 
 def _path(folder: Path, name: bytes) -> Path | None:
     """The path of a library within the folder; None if there is no such file."""
     text = name_of(name.strip().strip(b'"'))
-    for candidate in dict.fromkeys((text, text.replace("\\", "/"), PureWindowsPath(text).name)):
+    for candidate in (text, text.replace("\\", "/"), PureWindowsPath(text).name):
         path = path_within([], folder, candidate)
-        try:
-            if path is not None and path.is_file():
-                return path
-        except (OSError, ValueError):
-            pass
+        if path is not None and os.path.isfile(path):
+            return path
     return None
 
 
 def materials_of(data: bytes, place: str, wanted: set[str]) -> tuple[Mapping[str, Surface], list[str]]:
     """The surfaces of the materials in `wanted` that a library defines, and what was left out or wrong."""
-    problems: list[str] = []
-    textured: set[str] = set()
-    transparent: set[str] = set()
+    wrong: list[str] = []
+    left_out: dict[str, set[str]] = {"the textures": set(), "the transparency": set()}
     tables: dict[str, dict[bytes, list[float]]] = {}
     name, table = "", dict[bytes, list[float]]()
     for number, line in enumerate(io.BytesIO(data), start=1):
-        words = line.split(b"#", 1)[0].split()
-        if not words:
-            continue
-        keyword = words[0]
+        keyword, *words = line.split(b"#", 1)[0].split() or [b""]
         if keyword == b"newmtl":
-            name = name_of(line.split(None, 1)[1]) if len(words) > 1 else ""
+            name = name_of(line.split(None, 1)[1]) if words else ""
             table = tables.setdefault(name, {}) if name in wanted and name not in tables else {}
-        elif keyword in USED or keyword in TRANSPARENCY:
-            values = _numbers(words[1:])
-            if values is None:
-                problems.append(
+        elif keyword in USED or keyword in OPAQUE:
+            values = [decimal(word) for word in words[:3]]
+            # A comparison with NaN is false.
+            if len(values) not in (1, 3) or not all(0 <= value < LARGEST for value in values):
+                wrong.append(
                     f"{place}, line {number}: {keyword.decode()} must have one number or three, from 0 to"
-                    f" {LARGEST:g}, not {shown(b' '.join(words[1:]))}; the default is used"
+                    f" {LARGEST:g}, not {shown(b' '.join(words))}; the default is used"
                 )
             elif keyword in USED:
                 table[keyword] = values
-            elif values[0] != TRANSPARENCY[keyword]:
-                transparent.add(name)
+            elif values[0] != OPAQUE[keyword]:
+                left_out["the transparency"].add(name)
         elif TEXTURES.fullmatch(keyword):
-            textured.add(name)
-    left_out = (("the textures", textured & wanted), ("the transparency", transparent & wanted))
+            left_out["the textures"].add(name)
     sentences = [
-        f"{place}: left out {what} of {len(names):,} material{'s' if len(names) > 1 else ''}"
-        for what, names in left_out
-        if names
+        f"{place}: left out {what} of {count:,} material{'s' if count > 1 else ''}"
+        for what, names in left_out.items()
+        if (count := len(names & wanted))
     ]
-    sentences.extend(problems[:1])
-    if len(problems) > 1:
-        sentences.append(f"{place}: {len(problems) - 1:,} more such lines")
-    return {name: _surface(name, values) for name, values in tables.items()}, sentences
-
-
-def _numbers(words: list[bytes]) -> list[float] | None:
-    """The numbers of a statement, one or three; None if one is below 0 or not below LARGEST."""
-    numbers = [decimal(word) for word in words[:3]]
-    # A comparison with NaN is false.
-    return numbers if len(numbers) in (1, 3) and all(0 <= number < LARGEST for number in numbers) else None
+    if len(wrong) > 1:
+        wrong[1:] = [f"{place}: {len(wrong) - 1:,} more such lines"]
+    return {name: _surface(name, values) for name, values in tables.items()}, sentences + wrong
 
 
 def _surface(name: str, values: Mapping[bytes, list[float]]) -> Surface:
@@ -180,7 +159,8 @@ def _surface(name: str, values: Mapping[bytes, list[float]]) -> Surface:
     if b"Kd" in values:
         parts = [min(half_up(255 * min(part, 1.0)), 255) for part in values[b"Kd"]]
         changes["object_color"] = parts * 3 if len(parts) == 1 else parts
-    has_highlight = values.get(b"illum", [2.0])[0] not in WITHOUT_HIGHLIGHT
+    # In the illumination models 0 and 1 nothing reflects specularly.
+    has_highlight = values.get(b"illum", [2.0])[0] > 1
     changes["specular"] = max(values.get(b"Ks", [0.0])) if has_highlight else 0.0
     if changes["specular"] == 0:
         changes["blend"] = 1.0

@@ -31,13 +31,9 @@ BLOCK: Final = 1 << 17
 D_TO_E: Final = bytes.maketrans(b"dD", b"eE")
 """Fortran writes exponents with D."""
 
-IN_DECIMALS: Final = b"0123456789+-.eEdD \t\n\r\f\v"
 IN_WHOLES: Final = b"0123456789+- \t\n\r\f\v"
-IN_VALUES: Final = IN_DECIMALS + b"nNaAiIfF"
-"""With the letters of nan and inf; `float` accepts no other word of these letters."""
-
-IN_PLY: Final = IN_VALUES + b"tTyY"
-"""With the letters of infinity, which C programs write in PLY files."""
+IN_VALUES: Final = IN_WHOLES + b".eEdDnNaAiIfFtTyY"
+"""With the letters of nan, inf and infinity; `float` accepts no other word of these letters."""
 
 DIGITS: Final = b"0123456789 \t\n"
 MOST_DIGITS: Final = 18
@@ -57,29 +53,25 @@ def decimal(word: bytes) -> float:
 
 
 class Problems:
-    """Collects the problems of files, up to MOST_PROBLEMS, in the order of files and lines.
+    """Collects the problems of a file, up to MOST_PROBLEMS, in the order of its lines.
 
     `unit` is what messages call a line: "line" or "row".
     """
 
     def __init__(self, unit: str) -> None:
         self._unit = unit
-        self._sentences: list[tuple[int, int, str]] = []
-        self._places: list[str] = []
+        self._sentences: list[tuple[int, str]] = []
 
     def note(self, place: str, line: int, sentence: str) -> None:
         """Add a problem; raise InputError once there are MOST_PROBLEMS."""
-        if place not in self._places:
-            self._places.append(place)
-        self._sentences.append((self._places.index(place), line, f"{place}, {self._unit} {line}: {sentence}"))
+        self._sentences.append((line, f"{place}, {self._unit} {line}: {sentence}"))
         if len(self._sentences) >= MOST_PROBLEMS:
             self.raise_any()
 
     def raise_any(self) -> None:
         """Raise InputError with the problems, if any."""
         if self._sentences:
-            in_order = sorted(self._sentences, key=lambda each: each[:2])
-            raise InputError([sentence for _, _, sentence in in_order])
+            raise InputError(sentence for _, sentence in sorted(self._sentences, key=lambda each: each[0]))
 
 
 GROWTH: Final = 3
@@ -117,9 +109,9 @@ class NumberText:
         return self.data.count(b"\n", 0, int(self.starts[at])) + self.first_line
 
     def word(self, at: int) -> bytes:
-        """A word, cut to 1,000 bytes."""
-        start = int(self.starts[at])
-        return self.data[start : start + 1000].split(None, 1)[0]
+        """A word."""
+        end = int(self.starts[at + 1]) if at + 1 < len(self) else len(self.data)
+        return self.data[int(self.starts[at]) : end].split()[0]
 
     def wrong(self, at: int, rule: str) -> InputError:
         """The error for a word that breaks a rule, with its line."""
@@ -129,15 +121,8 @@ class NumberText:
 
     def lines(self) -> Indices:
         """The first word of each line that has words."""
-        letters = np.frombuffer(self.data, np.uint8)
-        ends = np.flatnonzero(letters == ord("\n"))
-        begins = letters[np.minimum(ends + 1, max(len(letters) - 1, 0))]
-        if ((begins > ord(" ")) | (begins == ord("\n"))).all() and len(self):
-            # Measured: if no line is indented, this takes a third of the time of the general case below.
-            is_first = letters[self.starts - 1] == ord("\n")
-            is_first[0] = True
-            return np.flatnonzero(is_first)
         # Two words are on different lines if a line ends between them.
+        ends = np.flatnonzero(np.frombuffer(self.data, np.uint8) == ord("\n"))
         firsts: Indices = np.searchsorted(self.starts, np.append(0, ends))
         return firsts[(np.diff(firsts, prepend=-1) > 0) & (firsts < len(self))]
 
@@ -149,35 +134,23 @@ class NumberText:
                 " the file is cut short or its counts are wrong"
             )
 
-    def coordinates(self, first: int, count: int) -> Floats:
-        """The decimal numbers of some words, each at most 1e30 in size. Raises InputError."""
-        values = self._converted(first, count, IN_DECIMALS, COORDINATE, float)
-        large = np.flatnonzero(np.abs(values) > LARGEST_COORDINATE)
-        if len(large):
-            raise self.wrong(first + int(large[0]), COORDINATE)
-        return values
+    def vectors(self, begins: Indices, end: int, width: int = 3) -> Floats:
+        """The numbers, (n, width), that begin at each of some ascending words. Raises InputError.
 
-    def coordinates_at(self, begins: Indices, end: int) -> Floats:
-        """The three coordinates, (n, 3), that begin at each of some ascending words. Raises InputError.
-
-        The other words between them and up to the word `end` may also be nan or inf.
+        The first three are coordinates. The others, and the words between them up to the word `end`, may also
+        be nan or inf.
         """
-        vectors = self.vectors_at(begins, end)
-        wrong = np.argwhere(~(np.abs(vectors) <= LARGEST_COORDINATE))
+        first = int(begins[0])
+        values = self._converted(first, end - first, IN_VALUES, COORDINATE, float)
+        vectors: Floats = values[(begins - first)[:, None] + np.arange(width)]
+        wrong = np.argwhere(~(np.abs(vectors[:, :3]) <= LARGEST_COORDINATE))
         if len(wrong):
             raise self.wrong(int(begins[wrong[0, 0]] + wrong[0, 1]), COORDINATE)
         return vectors
 
-    def vectors_at(self, begins: Indices, end: int) -> Floats:
-        """The same, for vectors of which any number may be nan or inf."""
-        first = int(begins[0])
-        values = self._converted(first, end - first, IN_VALUES, COORDINATE, float)
-        vectors: Floats = values[(begins - first)[:, None] + np.arange(3)]
-        return vectors
-
-    def values(self, first: int, count: int, letters: bytes = IN_VALUES) -> Floats:
-        """The values of some words, which may be nan or inf. Raises InputError for other letters."""
-        return self._converted(first, count, letters, "a value must be a decimal number, nan or inf", float)
+    def values(self, first: int, count: int) -> Floats:
+        """The values of some words, which may be nan or inf. Raises InputError for other words."""
+        return self._converted(first, count, IN_VALUES, "a value must be a decimal number, nan or inf", float)
 
     def wholes(self, first: int, count: int, what: str) -> Numbers:
         """The whole numbers of some words, below 2^63; `what` names them in messages. Raises InputError."""
@@ -187,38 +160,30 @@ class NumberText:
         self, first: int, count: int, letters: bytes, rule: str, convert: type[float] | type[int]
     ) -> AnyArray:
         """Some words as float64 or int64. Raises InputError for other letters or words."""
+
+        def converted(text: bytes) -> AnyArray:
+            if text.translate(None, letters):
+                raise ValueError
+            words = text.translate(D_TO_E).decode("ascii").split()
+            return np.fromiter(map(convert, words), values.dtype, len(words))
+
         values = np.empty(count, np.float64 if convert is float else np.int64)
         for chunk in chunks(first + count, BLOCK, first):
             end = int(self.starts[chunk.stop]) if chunk.stop < len(self) else len(self.data)
             text = self.data[int(self.starts[chunk.start]) : end]
             longest = int(np.diff(self.starts[chunk], append=end).max())
+            rows = slice(chunk.start - first, chunk.stop - first)
             if longest <= MOST_DIGITS and not text.translate(None, DIGITS):
                 # Measured: a tenth of the time of converting word by word. With digits alone, parsing cannot
                 # stop.
-                values[chunk.start - first : chunk.stop - first] = np.fromstring(text, np.int64, sep=" ")
+                values[rows] = np.fromstring(text, np.int64, sep=" ")
                 continue
             try:
-                if text.translate(None, letters):
-                    raise ValueError
-                words = text.translate(D_TO_E).decode("ascii").split()
-                values[chunk.start - first : chunk.stop - first] = np.fromiter(
-                    map(convert, words), values.dtype, len(words)
-                )
+                values[rows] = converted(text)
             except (ValueError, OverflowError):
-                raise self.wrong(self._first_wrong(chunk, letters), rule) from None
+                for at in range(chunk.start, chunk.stop):
+                    try:
+                        converted(self.word(at))
+                    except (ValueError, OverflowError):
+                        raise self.wrong(at, rule) from None
         return values
-
-    def _first_wrong(self, chunk: slice, letters: bytes) -> int:
-        """The first word of a chunk that is not a number of these letters."""
-        for at in range(chunk.start, chunk.stop):
-            word = self.word(at)
-            try:
-                number = int(word) if letters == IN_WHOLES else float(word.translate(D_TO_E))
-                if word.translate(None, letters) or (letters == IN_WHOLES and abs(number) >= 1 << 63):
-                    return at
-            except ValueError:
-                return at
-        # The words are numbers as far as `word` shows them: the longest is too long.
-        lengths = np.diff(self.starts[chunk], append=math.inf)
-        start: int = chunk.start
-        return start + int(lengths.argmax())

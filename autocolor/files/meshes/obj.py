@@ -15,8 +15,7 @@ import dataclasses
 import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from itertools import compress
+from itertools import compress, pairwise
 from pathlib import Path
 from typing import Final, NamedTuple
 
@@ -52,21 +51,10 @@ def read_obj(path: Path, placement: Placement = PLAIN) -> MeshReport:
     """
     data = text_lines(read_whole(path, GROWTH), path.name, "an OBJ file")
     statements = Statements(path.stem)
-    tables = read_tables(data, path.name, statements)
+    polygons = read_polygons(data, path.name, statements)
     del data
-    parts = statements.parts()
-    polygons = RawPolygons(
-        tables.coordinates,
-        tables.node_rows,
-        tables.corner_counts,
-        tables.part_numbers,
-        tuple(parts),
-        place_of=lambda row: f"line {tables.lines[row]}",
-        normals=tables.normals if tables.normal_numbers.any() else None,
-        corner_normals=tables.normal_rows,
-    )
     report = repaired(polygons, path.name, placement, skipped=statements.sentences)
-    material_of_part = {part: material for part, material in parts.items() if material is not None}
+    material_of_part = {part: name for part, name in statements.parts().items() if name is not None}
     wanted = tuple(dict.fromkeys(material_of_part.values()))
     surfaces, sentences = read_materials(path, statements.libraries, wanted)
     return dataclasses.replace(
@@ -82,45 +70,6 @@ def begins_as_obj(head: bytes) -> bool:
     return NODE_LINE.search(head) is not None and b"\0" not in head
 
 
-@dataclass(frozen=True, eq=False)
-class ObjTables:
-    """The nodes, normals and polygons of an OBJ file.
-
-    `coordinates` and `normals` are (rows, 3). `node_numbers` and `normal_numbers` are those of all corners,
-    concatenated, as in the file: from 1, or negative, counted back from the latest; a normal number of 0 is
-    none. `corner_counts`, `part_numbers`, `nodes_before`, `normals_before` (how many are defined before the
-    polygon) and `lines` have one element for each polygon.
-    """
-
-    coordinates: Floats
-    normals: Floats
-    node_numbers: Numbers
-    normal_numbers: Numbers
-    corner_counts: Numbers
-    part_numbers: Numbers
-    nodes_before: Numbers
-    normals_before: Numbers
-    lines: Numbers
-
-    @property
-    def node_rows(self) -> Indices:
-        """The row in `coordinates` of each corner; -1 if there is no such node."""
-        return self._rows(self.node_numbers, self.nodes_before, len(self.coordinates))
-
-    @property
-    def normal_rows(self) -> Indices:
-        """The row in `normals` of each corner; -1 if there is no such normal."""
-        return self._rows(self.normal_numbers, self.normals_before, len(self.normals))
-
-    def _rows(self, numbers: Numbers, before: Numbers, count: int) -> Indices:
-        rows = numbers - 1
-        back = np.flatnonzero(numbers < 0)
-        if len(back):
-            rows[back] = np.repeat(before, self.corner_counts)[back] + numbers[back]
-        rows[(rows < 0) | (rows >= count)] = -1
-        return rows.astype(np.intp, copy=False)
-
-
 # Large blocks of lines become arrays at once. The numbers of the lines of one kind in a block, such as nodes,
 # are converted together: all other lines become empty, so that a wrong word gets its line.
 
@@ -131,17 +80,12 @@ COMMENT: Final = re.compile(rb"#[^\n]*")
 INDENT: Final = re.compile(rb"^[ \t]+", re.MULTILINE)
 CONTINUED: Final = re.compile(rb"(?:[^\n]*\\\n)++[^\n]*+")
 
-WITH_COLOR: Final = 6
-"""The least numbers of a node with a color."""
-
-LONGEST_WORD: Final = 1000
-
 SPACE, FEED, SLASH = b" \n/"
 NONE: Final = np.empty(0, np.int64)
 
 
-def read_tables(data: bytes, place: str, statements: Statements) -> ObjTables:
-    """The tables of an OBJ file whose lines end with line feeds; `place` is its name in messages.
+def read_polygons(data: bytes, place: str, statements: Statements) -> RawPolygons:
+    """The nodes and polygons of an OBJ file whose lines end with line feeds; `place` is its name in messages.
 
     Raises InputError with the first problem of a block.
     """
@@ -155,7 +99,11 @@ def read_tables(data: bytes, place: str, statements: Statements) -> ObjTables:
     nodes, normals, polygons = [np.empty((0, 3))], [np.empty((0, 3))], [[NONE] * 7]
     node_count = normal_count = 0
     first_line = 1
-    for block in _blocks(data):
+    data = data if data.endswith(b"\n") else data + b"\n"
+    start = 0
+    while start < len(data):
+        end = data.find(b"\n", min(start + BLOCK, len(data) - 1)) + 1
+        block, start = data[start:end], end
         letters = np.frombuffer(block, np.uint8)
         ends = np.flatnonzero(letters == FEED)
         starts = np.concatenate([[0], ends[:-1] + 1])
@@ -170,43 +118,54 @@ def read_tables(data: bytes, place: str, statements: Statements) -> ObjTables:
 
         lines = Lines(letters, starts, ends, place, first_line)
         vectors, sizes = lines.vectors(is_node)
-        statements.has_colors |= bool(sizes.max(initial=0) >= WITH_COLOR)
+        # Three numbers after the coordinates are a color; a single one is a weight.
+        statements.has_colors |= bool(sizes.max(initial=0) >= 6)
         nodes.append(vectors)
         normals.append(lines.normals(is_normal))
-        corners = lines.corners(is_polygon)
-        others = np.flatnonzero(~(is_node | is_polygon | unused))
         rows = np.flatnonzero(is_polygon)
+        others = np.flatnonzero(~(is_node | is_polygon | unused))
         parts = _part_numbers(block, others, starts, ends, rows, statements)
         nodes_before = node_count + np.cumsum(is_node)[rows]
         normals_before = normal_count + np.cumsum(is_normal)[rows]
-        polygons.append([*corners, parts, nodes_before, normals_before, first_line + rows])
+        polygons.append([*lines.corners(is_polygon), parts, nodes_before, normals_before, first_line + rows])
         node_count += len(nodes[-1])
         normal_count += len(normals[-1])
         first_line += len(ends)
     columns = (np.concatenate(column) for column in zip(*polygons, strict=True))
-    tables = ObjTables(np.concatenate(nodes), np.concatenate(normals), *columns)
-    missing = np.flatnonzero(tables.node_rows < 0)
-    if len(missing):
-        corner = int(missing[0])
-        polygon = int(np.searchsorted(np.cumsum(tables.corner_counts), corner, side="right"))
-        rule = f"from 1 to {node_count}" if node_count else "of the file, which has no nodes"
-        if before := tables.nodes_before[polygon]:
-            rule += f" or from -{before} to -1"
+    node_numbers, normal_numbers, counts, part_numbers, nodes_before, normals_before, line_of = columns
+    corners = _rows(node_numbers, nodes_before, counts, node_count)
+    if len(corners) and corners.min() < 0:
+        corner = int(corners.argmin())
+        polygon = int(np.searchsorted(np.cumsum(counts), corner, side="right"))
         raise InputError(
-            f"{place}, line {tables.lines[polygon]}: a corner must be a node number {rule}, not"
-            f" {tables.node_numbers[corner]}; correct it"
+            f"{place}, line {line_of[polygon]}: a corner must be one of the file's {node_count:,} nodes, or"
+            f" count back to one, not {node_numbers[corner]}; correct it"
         )
-    return tables
+    has_normals = bool(normal_numbers.any())
+    return RawPolygons(
+        np.concatenate(nodes),
+        corners,
+        counts,
+        part_numbers,
+        tuple(statements.parts()),
+        place_of=lambda row: f"line {line_of[row]}",
+        normals=np.concatenate(normals) if has_normals else None,
+        corner_normals=_rows(normal_numbers, normals_before, counts, normal_count) if has_normals else None,
+    )
 
 
-def _blocks(data: bytes) -> Iterator[bytes]:
-    """The file in blocks of complete lines; a line feed is added to the last line if it has none."""
-    start = 0
-    while start < len(data):
-        end = data.find(b"\n", min(start + BLOCK, len(data)))
-        block = data[start:] if end < 0 else data[start : end + 1]
-        yield block if block.endswith(b"\n") else block + b"\n"
-        start += len(block)
+def _rows(numbers: Numbers, before: Numbers, counts: Numbers, count: int) -> Indices:
+    """The rows of the nodes or normals at all corners; -1 for a number that the file does not have.
+
+    Numbers count from 1 or, if negative, back from the latest; `before` is how many are defined before each
+    polygon, `counts` the corners of each, and `count` how many nodes or normals the file has.
+    """
+    rows = numbers - 1
+    back = np.flatnonzero(numbers < 0)
+    if len(back):
+        rows[back] = np.repeat(before, counts)[back] + numbers[back]
+    rows[(rows < 0) | (rows >= count)] = -1
+    return rows.astype(np.intp, copy=False)
 
 
 class Lines(NamedTuple):
@@ -228,7 +187,7 @@ class Lines(NamedTuple):
             rule = "a node must have three coordinates x y z"
             line = self.first_line + int(np.flatnonzero(chosen)[sizes.argmin()])
             raise InputError(f"{self.place}, line {line}: {rule}, not {sizes.min()}; add what is missing")
-        return text.coordinates_at(upto - sizes, len(text)), sizes
+        return text.vectors(upto - sizes, len(text)), sizes
 
     def normals(self, chosen: Booleans) -> Floats:
         """The chosen normals, (n, 3); one that is no three numbers is NaN, which is a missing normal."""
@@ -265,7 +224,7 @@ class Lines(NamedTuple):
         if len(wrong):
             at = int(wrong[0])
             line = self.first_line + lines.count(b"\n", 0, at)
-            word = shown(lines[at : at + LONGEST_WORD].split(None, 1)[0])
+            word = shown(lines[at : at + 100].split(None, 1)[0])
             rule = "a corner must be a node number, alone or with texture and normal numbers as in 7/1/3"
             raise InputError(f"{self.place}, line {line}: {rule}, not {word}; correct it")
         normals = np.zeros(len(heads), np.int64)
@@ -294,15 +253,13 @@ def _part_numbers(
 ) -> Numbers:
     """The part number of each polygon, from the names in the other lines before it."""
     numbers = np.empty(len(polygons), np.int64)
-    done = 0
-    before = np.searchsorted(polygons, others).tolist()
-    for upto, start, end in zip(before, starts[others].tolist(), ends[others].tolist(), strict=True):
-        if upto > done:
-            numbers[done:upto] = statements.part_number
-            done = upto
-        statements.read(block[start:end])
-    if len(polygons) > done:
-        numbers[done:] = statements.part_number
+    places = zip(starts[others].tolist(), ends[others].tolist(), strict=True)
+    lines = [b"", *(block[start:end] for start, end in places)]
+    bounds = [0, *np.searchsorted(polygons, others).tolist(), len(polygons)]
+    for line, (first, end) in zip(lines, pairwise(bounds), strict=True):
+        statements.read(line)
+        if end > first:
+            numbers[first:end] = statements.part_number
     return numbers
 
 
@@ -318,14 +275,10 @@ UNUSED: Final = frozenset(
 )
 """Statements that are ignored without being counted."""
 
-SKIPPED: Final = {
-    b"p": "points",
-    b"l": "lines",
-    **dict.fromkeys(
-        b"vp deg bmat step cstype curv curv2 surf parm trim hole scrv sp end con ctech stech".split(),
-        "statements of curves and curved surfaces",
-    ),
-}
+SKIPPED: Final = {b"p": "points", b"l": "lines"}
+
+MOST_SKIPPED: Final = 5
+"""Limit: kinds of skipped statements that are counted by their names."""
 
 
 class Statements:
@@ -338,7 +291,6 @@ class Statements:
         self.libraries: list[bytes] = []
         self.numbers: dict[tuple[str | None, str | None], int] = {}
         self.skipped: Counter[str] = Counter()
-        self.unknown = ""
         self.has_colors = False
 
     @property
@@ -348,37 +300,30 @@ class Statements:
 
     def parts(self) -> dict[str, str | None]:
         """The names of the parts in the order of their numbers, and the material of each, if any."""
-        # First give out the names in the file, so that no extended name takes them.
-        firsts = {
-            group or material or self.file_stem: (group, material)
-            for group, material in reversed(self.numbers)
-        }
-        given = set(firsts.values())
-        others = [key for key in self.numbers if key not in given]
-        extended = [" ".join(filter(None, key)) or self.file_stem for key in others]
-        names = different([*firsts, *extended])
-        name_of_key = dict(zip([*firsts.values(), *others], names, strict=True))
-        return {name_of_key[key]: key[1] for key in self.numbers}
+        names: list[str] = []
+        for group, material in self.numbers:
+            name = group or material or self.file_stem
+            names.append(f"{name} {material}" if name in names and group and material else name)
+        materials = (material for _, material in self.numbers)
+        return dict(zip(different(names), materials, strict=True))
 
     def read(self, line: bytes) -> None:
         """Process a line that is no node, normal or polygon."""
-        words = line.split(None, 2)
-        if not words or words[0].startswith(b"#"):
+        keyword, _, rest = line.replace(b"\t", b" ").strip().partition(b" ")
+        if not keyword or keyword.startswith(b"#"):
             return
-        keyword = words[0]
         if keyword == b"g":
-            self.group = name_of(words[1]) if len(words) > 1 else None
+            self.group = name_of(rest.split()[0]) if rest.strip() else None
         elif keyword == b"o":
-            self.group = name_of(line.split(None, 1)[1]) if len(words) > 1 else None
+            self.group = name_of(rest) or None
         elif keyword == b"usemtl":
-            self.material = name_of(line.split(None, 1)[1]) if len(words) > 1 else None
-        elif keyword == b"mtllib":
-            self.libraries.extend(line.split(None, 1)[1:])
+            self.material = name_of(rest) or None
+        elif keyword == b"mtllib" and rest:
+            self.libraries.append(rest)
         elif keyword not in UNUSED:
-            # Name only the first unknown statement, to keep the report short.
-            if keyword not in SKIPPED and not self.unknown:
-                self.unknown = f"unknown statements (the first is {shown(keyword)})"
-            self.skipped[SKIPPED.get(keyword, self.unknown)] += 1
+            name = SKIPPED.get(keyword) or f"statements {shown(keyword)}"
+            is_new = name not in self.skipped and len(self.skipped) >= MOST_SKIPPED
+            self.skipped["other statements" if is_new else name] += 1
 
     @property
     def sentences(self) -> tuple[str, ...]:
@@ -416,12 +361,10 @@ def _lines(mesh: Mesh, materials: Sequence[str], library: str) -> Iterator[str]:
         parts = mesh.part_numbers[chunk].tolist()
         corner_rows = (mesh.node_numbers[chunk] + 1).tolist()
         if own is not None:
+            normal_rows = (own.numbers[chunk] + 1).tolist()
             corner_rows = [
-                [
-                    f"{node}//{normal + 1}" if normal >= 0 else str(node)
-                    for node, normal in zip(*row, strict=True)
-                ]
-                for row in zip(corner_rows, own.numbers[chunk].tolist(), strict=True)
+                [f"{node}//{normal}" if normal else str(node) for node, normal in zip(*rows, strict=True)]
+                for rows in zip(corner_rows, normal_rows, strict=True)
             ]
         for part, corners in zip(parts, corner_rows, strict=True):
             if part != before:

@@ -10,7 +10,7 @@ from typing import Final
 
 from autocolor.files.meshes.mtl import materials_of, mtl_text
 from autocolor.files.meshes.obj import obj_text
-from autocolor.files.meshes.repair import name_of
+from autocolor.files.meshes.repair import different, name_of
 from autocolor.files.paths import free_path
 from autocolor.files.writing import refuse_output, write_atomically
 from autocolor.scene.creation import SHARED
@@ -55,22 +55,17 @@ def write_obj(path: Path, scene: Scene, overwrite: bool) -> list[Path]:
 
 def material_names(surfaces: Iterable[str]) -> dict[str, str]:
     """Unique material names for surfaces: their own names, without characters that MTL cannot hold."""
-    names: dict[str, str] = {}
-    for surface in surfaces:
-        name = stem = name_of(surface.encode("utf-8", "replace")) or "surface"
-        number = 1
-        while name in names.values():
-            number += 1
-            name = f"{stem} {number}"
-        names[surface] = name
-    return names
+    surfaces = list(surfaces)
+    names = [name_of(surface.encode("utf-8", "replace")) or "surface" for surface in surfaces]
+    return dict(zip(surfaces, different(names), strict=True))
 
 
 def beyond_materials(surfaces: Iterable[Surface]) -> list[str]:
     """The names of the surfaces that a material library cannot hold whole."""
-
-    def read_back(surface: Surface) -> Surface:
-        materials, _ = materials_of(mtl_text([("material", surface)]), "", {"material"})
-        return materials["material"].replace(name=surface.name)
-
-    return [surface.name for surface in surfaces if read_back(surface) != surface]
+    surface_of = {str(number): surface for number, surface in enumerate(surfaces)}
+    read_back, _ = materials_of(mtl_text(surface_of.items()), "", {*surface_of})
+    return [
+        surface.name
+        for number, surface in surface_of.items()
+        if read_back[number].replace(name=surface.name) != surface
+    ]

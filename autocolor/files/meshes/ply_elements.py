@@ -18,7 +18,7 @@ import numpy as np
 from autocolor.arrays import AnyArray, Booleans, Floats, Indices, runs
 from autocolor.checks import listed
 from autocolor.errors import InputError
-from autocolor.files.meshes.number_text import IN_PLY, NumberText
+from autocolor.files.meshes.number_text import NumberText
 from autocolor.files.meshes.repair import name_of
 from autocolor.files.reading import HEAD, shown, text_problem
 
@@ -292,7 +292,7 @@ def read_text(data: bytes, header: PlyHeader, place: str) -> tuple[dict[str, Ele
     # Empty lines stand for the header, so that line numbers are those of the file.
     text = NumberText(b"\n" * header.lines + body, place)
     firsts = text.lines()
-    numbers = text.values(0, len(text), IN_PLY)
+    numbers = text.values(0, len(text))
     ends = np.append(firsts[1:], len(text))
     elements: dict[str, ElementRows] = {}
     row = 0

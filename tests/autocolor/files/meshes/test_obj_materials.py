@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Surface
-from autocolor.files.meshes.mtl import MOST_LIBRARIES, MOST_NAMED
+from autocolor.files.meshes.mtl import MOST_LIBRARIES
 from autocolor.files.meshes.obj import read_obj
 from autocolor.files.meshes.repair import MeshReport
 from autocolor.scene.defaults import COLORED_PAINT, created_surface
@@ -99,23 +99,18 @@ def test_a_material_has_the_properties_of_its_statements(
     assert report.repairs == ()
 
 
-@pytest.mark.parametrize(
-    "keyword", ["map_Kd", "map_Ks", "bump", "map_Bump", "MAP_KD", "disp", "decal", "refl", "norm"]
-)
-def test_textures_are_told_as_left_out(folder: Path, keyword: str) -> None:
-    report = described(folder, f"newmtl red\n{keyword} -s 1 1 1 a.png\n")
-    assert report.repairs == ("car.mtl: left out the textures of 1 material",)
-    assert report.materials == (surface(),)
-
-
-@pytest.mark.parametrize("statement", ["d 0.5", "Tr 0.5", "d 0", "Tr 1"])
-def test_what_is_left_out_is_counted_by_materials_that_are_wanted(folder: Path, statement: str) -> None:
-    text = "".join(
-        f"newmtl {name}\nmap_Kd a.png\nmap_Ks a.png\n{statement}\n" for name in ("red", "blue", "unused")
-    )
-    assert described(folder, text, b"red", b"blue").repairs == (
+@pytest.mark.parametrize("transparency", ["d 0.5", "Tr 0.5", "d 0", "Tr 1"])
+@pytest.mark.parametrize("texture", ["map_Kd", "map_Bump", "MAP_KD", "bump", "disp", "decal", "refl", "norm"])
+def test_what_is_left_out_is_counted_by_materials_that_are_wanted(
+    folder: Path, texture: str, transparency: str
+) -> None:
+    names = ("red", "blue", "unused")
+    text = "".join(f"newmtl {name}\n{texture} -s 1 1 1 a.png\nmap_Ks a.png\n" for name in names)
+    report = described(folder, f"{text}newmtl red\n{transparency}\n", b"red", b"blue")
+    assert report.materials == (surface(), surface("blue"))
+    assert report.repairs == (
         "car.mtl: left out the textures of 2 materials",
-        "car.mtl: left out the transparency of 2 materials",
+        "car.mtl: left out the transparency of 1 material",
     )
 
 
@@ -128,45 +123,14 @@ def test_what_is_left_out_is_counted_by_materials_that_are_wanted(folder: Path, 
     ],
 )
 def test_a_bad_number_is_told_with_its_line_and_the_default_is_used(folder: Path, statement: str) -> None:
-    report = described(folder, f"# a library\nnewmtl red\n{statement}\n")
+    report = described(folder, f"# a library\nnewmtl red\n{statement}\nKs x\nKs y\n")
     keyword, _, words = statement.partition(" ")
     assert report.repairs == (
         f"car.mtl, line 3: {keyword} must have one number or three, from 0 to 1e+06, not {words!r};"
         " the default is used",
+        "car.mtl: 2 more such lines",
     )
     assert report.materials == (surface(),)
-
-
-def test_of_several_bad_numbers_the_first_is_told(folder: Path) -> None:
-    text = "newmtl red\nKd x\nKs 1 2\nNs -1\n"
-    rule = "Kd must have one number or three, from 0 to 1e+06, not 'x'; the default is used"
-    assert described(folder, text).repairs == (f"car.mtl, line 2: {rule}", "car.mtl: 2 more such lines")
-
-
-@pytest.mark.parametrize("ending", [b"\n", b"\r\n", b"\r"])
-def test_lines_of_a_library_end_in_any_way(folder: Path, ending: bytes) -> None:
-    report = described(folder, b"\xef\xbb\xbf" + (BLUE + RED).replace(b"\n", ending), b"red", b"blue")
-    assert report.materials == (
-        surface(object_color=(255, 0, 0)),
-        surface("blue", object_color=(0, 0, 255)),
-    )
-
-
-@pytest.mark.parametrize(
-    ("written", "name"),
-    [
-        (b"my red", "my red"),
-        (b"\t red \t", "red"),
-        (b"h\xc3\xa4ube", "h\u00e4ube"),
-        (b"h\xe4ube", "h\u00e4ube"),
-        (b"\x1b[31m", "?[31m"),
-        (b"x" * 1000, "x" * 200),
-    ],
-)
-def test_a_material_has_the_name_that_an_obj_file_gives_it(folder: Path, written: bytes, name: str) -> None:
-    report = described(folder, b"newmtl %s\nKd 1 0 0\n" % written, name.encode(), b"Red")
-    assert names_of(report) == [name]
-    assert report.repairs == ("no library defines material 'Red'; default colors are used",)
 
 
 def test_parts_have_materials_and_these_their_surfaces(folder: Path) -> None:
@@ -181,12 +145,10 @@ def test_parts_have_materials_and_these_their_surfaces(folder: Path) -> None:
 
 
 def test_materials_that_no_library_defines_are_told(folder: Path) -> None:
-    rule = "; default colors are used"
-    assert read(folder, b"red.mtl").repairs == (f"no library defines material 'blue', 'green'{rule}",)
     for count, more in ((3, ""), (4, " and 1 more"), (9, " and 6 more")):
         wanted = (b"red", *(b"tin%d" % number for number in range(count)))
         assert read(folder, b"red.mtl", wanted=wanted).repairs == (
-            f"no library defines material 'tin0', 'tin1', 'tin2'{more}{rule}",
+            f"no library defines material 'tin0', 'tin1', 'tin2'{more}; default colors are used",
         )
     assert read(folder).repairs == ()
 
@@ -242,9 +204,8 @@ def test_a_library_outside_or_that_is_no_file_or_an_address_is_not_read(
 def test_of_a_material_in_several_libraries_the_first_counts(folder: Path) -> None:
     (folder / "other.mtl").write_bytes(b"newmtl red\nKd 0 1 0\nnewmtl red\nKd 1 1 1\n")
     for libraries, color in (
-        ((b"red.mtl", b"other.mtl"), (255, 0, 0)),
-        ((b"other.mtl", b"red.mtl"), (0, 255, 0)),
-        ((b"other.mtl red.mtl",), (0, 255, 0)),
+        ([b"red.mtl", b"other.mtl"], (255, 0, 0)),
+        ([b"other.mtl red.mtl"], (0, 255, 0)),
     ):
         (material,) = read(folder, *libraries).materials
         assert material.paint.object_color == color
@@ -252,11 +213,7 @@ def test_of_a_material_in_several_libraries_the_first_counts(folder: Path) -> No
 
 def test_without_a_library_that_of_the_same_name_beside_it_is_read(folder: Path) -> None:
     beside = folder / "car.mtl"
-    assert read(folder).materials == ()
     beside.symlink_to(folder.parent / "outside.mtl")
-    assert read(folder).materials == ()
-    beside.unlink()
-    os.mkfifo(beside)
     assert read(folder).materials == ()
     beside.unlink()
     beside.write_bytes(BLUE)
@@ -267,18 +224,12 @@ def test_without_a_library_that_of_the_same_name_beside_it_is_read(folder: Path)
     assert names_of(read(folder, b"red.mtl")) == ["red"]
 
 
-def test_without_materials_no_library_is_read(folder: Path) -> None:
-    (folder / "red.mtl").write_bytes(b"\0")
-    (folder / "car.obj").write_text("mtllib red.mtl none.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n")
-    assert read_obj(folder / "car.obj").repairs == ()
-
-
-@pytest.mark.parametrize("more", [-1, 0, 1])
+@pytest.mark.parametrize("more", [0, 1])
 def test_libraries_have_a_limited_size_together(folder: Path, more: int) -> None:
     (folder / "red.mtl").write_bytes(RED.ljust((4 << 20) - len(BLUE) + more))
     report = read(folder, b"red.mtl", b"my blue.mtl", wanted=(b"red", b"blue"))
-    assert names_of(report) == (["red", "blue"] if more <= 0 else ["red"])
-    assert len(report.repairs) == (0 if more <= 0 else 2)
+    assert names_of(report) == (["red"] if more else ["red", "blue"])
+    assert len(report.repairs) == 2 * more
 
 
 @pytest.mark.parametrize("separator", [b" ", b"\nmtllib "], ids=["one line", "many lines"])
@@ -287,7 +238,7 @@ def test_a_library_is_looked_for_among_the_first_alone(folder: Path, separator: 
         names = [*(b"none%d.mtl" % number for number in range(before)), b"red.mtl"]
         report = read(folder, separator.join(names), wanted=(b"red",))
         assert names_of(report) == (["red"] if before < MOST_LIBRARIES else [])
-    assert len(report.repairs) == (1 if separator == b" " else MOST_NAMED)
+    assert len(report.repairs) == 1
 
 
 WORDS = st.sampled_from(

@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 
 from autocolor import Mesh
-from autocolor.arrays import Floats
 from autocolor.files.formats import MESH_FORMATS
-from autocolor.files.meshes.up_axis import _rests, _symmetries, seems_to_lie
+from autocolor.files.meshes.up_axis import seems_to_lie
 from tests.small import cube, sphere
 
 OBJ = next(each.prior_of_y for each in MESH_FORMATS if each.name == "OBJ") or 0.0
@@ -82,25 +81,3 @@ def test_neither_the_size_of_an_object_nor_a_place_off_the_ground_hides_that_it_
 def test_an_object_without_clues_is_not_hinted(prior: float) -> None:
     for mesh in (sphere(), joined(cube(), cube(2.0)), Mesh(np.eye(3), np.array([[0, 1, 2]]))):
         assert not seems_to_lie(mesh, prior)
-
-
-def centered(mesh: Mesh) -> Floats:
-    low, high = mesh.bounds
-    points: Floats = (mesh.coordinates - (low + high) / 2) / (high - low).max()
-    return points
-
-
-def test_the_symmetry_of_a_mirrored_object_is_1_and_of_a_pyramid_less() -> None:
-    assert _symmetries(centered(sphere())) == [1, 1, 1]
-    x, y, z = _symmetries(centered(bottle()))
-    assert (x, y) == (1, 1)
-    assert z < 0.2
-
-
-def test_the_rest_of_a_box_is_the_root_of_its_faces() -> None:
-    # The faces are 2, 4 and 8; the rest is face / sqrt(face * 8), at both ends.
-    rests = _rests(centered(box((0, 4), (0, 2), (0, 1))))
-    assert np.array(rests) == pytest.approx(np.sqrt([[2 / 8, 2 / 8], [4 / 8, 4 / 8], [1.0, 1.0]]))
-    assert _rests(centered(bottle()))[2] == pytest.approx(
-        (math.sqrt(0.36 / 0.6), 0.04 / math.sqrt(0.36 * 0.6))
-    )
