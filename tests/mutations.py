@@ -191,6 +191,7 @@ def written_seed(output: Format) -> Seed:
     with tempfile.TemporaryDirectory() as name:
         suffix = output.suffixes[0] if output.suffixes else ""
         target = Path(name) / f"small{'' if output.in_folder else suffix}"
+        assert output.write is not None
         output.write(target, scene(), False)
         if not output.in_folder:
             return Seed(f"{output.name} as written", {target.name: target.read_bytes()}, target.name)

@@ -110,6 +110,7 @@ def converted(name: str) -> Callable[[Path], Path]:
     def write(folder: Path) -> Path:
         output = output_named(name)
         path = folder / f"hills{output.suffixes[0] if output.suffixes else ''}"
+        assert output.write is not None
         output.write(path, hills(), False)
         return path
 

@@ -7,7 +7,7 @@ import os
 import tempfile
 import zipfile
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -84,7 +84,7 @@ test_what_is_refused = refused(
             (content(0, more=1), "its header must have exactly the keys of its format"),
             *(
                 (content(0, rows=rows), f"rows must be a list of at most 3 rows, not {rows!r}")
-                for rows in (None, {}, "ab", 3, [0] * 4)
+                for rows in cast("tuple[object, ...]", (None, {}, "ab", 3, [0] * 4))
             ),
             *(
                 (content(count, rows=[0, 0]), "its members are 'header.npy', 'numbers.npy', 'row_0.npy'")
