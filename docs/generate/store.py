@@ -64,10 +64,10 @@ means no lights.
 ## What is checked, and what is run
 
 The tables check the types of values, and that names differ. Tools leave references unchecked unless they are
-asked (`PRAGMA foreign_keys = ON`). Reading a store checks all of it, every range, choice and reference: "polygons,
-row 12: node 40 is not in the node table; correct it". `--write` and `open_tables` read the changed scene before
-they save it. Nothing is repaired: polygons without area and parts without polygons stay, as they do in `.tables`
-files.
+asked (`PRAGMA foreign_keys = ON`). Reading a store checks all of it, every range, choice and reference:
+"polygons, row 12: node 40 is not in the node table; correct it". `--write` and `open_tables` read the changed
+scene before they save it. Nothing is repaired: polygons without area and parts without polygons stay, as they
+do in `.tables` files.
 
 A store is data, and reading it runs no code from it. Views, triggers and tables of other names are
 ignored; a view, a virtual table or a computed column with one of the names below is refused. Statements may
