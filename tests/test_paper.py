@@ -134,7 +134,7 @@ def test_tables_are_mapped_into_memory_and_read_as_they_are_used(tmp_path: Path)
         base: Any = table
         while isinstance(base, np.ndarray):
             base = base.base
-        assert isinstance(base.obj, mmap.mmap)
+        assert isinstance(base, mmap.mmap)
 
 
 def test_the_hidden_surface_algorithm_sees_what_a_ray_through_each_pixel_meets_first() -> None:

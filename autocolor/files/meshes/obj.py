@@ -80,7 +80,9 @@ COMMENT: Final = re.compile(rb"#[^\n]*")
 INDENT: Final = re.compile(rb"^[ \t]+", re.MULTILINE)
 CONTINUED: Final = re.compile(rb"(?:[^\n]*\\\n)++[^\n]*+")
 
-SPACE, FEED, SLASH = b" \n/"
+SPACE: Final = ord(" ")
+FEED: Final = ord("\n")
+SLASH: Final = ord("/")
 NONE: Final = np.empty(0, np.int64)
 
 

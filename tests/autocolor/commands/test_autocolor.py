@@ -28,7 +28,6 @@ WRITING = {
     "sweep": f"sweep scene.npz --vary {COLOR}=red -o made.png",
     "page": "page scene.npz -o made.html",
     "animate": f"animate scene.npz --vary {COLOR}=red,blue --frames 2 -o made.apng",
-    "validate": "validate scene --show -o made.png",
     "convert": "convert scene made.obj",
 }
 PRINTING = {

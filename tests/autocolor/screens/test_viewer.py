@@ -368,7 +368,7 @@ def test_closing_with_unsaved_work_takes_two_times_in_a_row(hand: Hand) -> None:
 @pytest.mark.parametrize(
     ("name", "text", "starts", "ends"),
     [
-        ("three.obj", "v 0 0 0\nf 1 2 3\nf 1 x 2\nf 1 y 2\n", "three.obj", "more)"),
+        ("three.toml", "ambient = -1\nscaling = 1\ndither = 2\n", "three.toml", "more)"),
         ("a\nb\x1b[31m.obj", "v 0 0 zero\n", r"a\nb\x1b[31m.obj, line 1", ""),
     ],
 )
