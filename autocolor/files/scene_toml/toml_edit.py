@@ -15,7 +15,6 @@ import re
 import tomllib
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from difflib import SequenceMatcher
 from typing import Any, Final
 
 import tomlkit
@@ -80,25 +79,24 @@ def blocks_of(text: str) -> list[Block]:
 def item_numbers(old: Sequence[Any], new: Sequence[Any]) -> list[int | None]:
     """For each new item of an array the number of the item that it was; None for an added item.
 
-    Tables are the same if they have the same name. Items in the place of as many others were changed, or
-    renamed.
+    Tables are the same if they have the same name, other items if they are equal. Of as many items as before,
+    those that are left were changed, or renamed.
     """
     if len(old) == len(new) and not any(isinstance(item, dict) for item in old):
         return list(range(len(old)))
-    olds, news = ([item["name"] if _has_name(item) else repr(item) for item in items] for items in (old, new))
-    numbers: list[int | None] = [None] * len(new)
-    left = dict(zip(olds, range(len(old)), strict=True))
-    for change, start, stop, place, end in SequenceMatcher(None, olds, news, autojunk=False).get_opcodes():
-        if change == "equal" or (stop - start == end - place and left.keys().isdisjoint(news[place:end])):
-            numbers[place:end] = range(start, stop)
-    for number in numbers:
-        if number is not None:
-            left.pop(olds[number], None)
-    return [left.get(key) if number is None else number for key, number in zip(news, numbers, strict=True)]
+    left: dict[object, list[int]] = {}
+    for number, item in enumerate(old):
+        left.setdefault(_identity(item), []).append(number)
+    numbers = [left[key].pop(0) if left.get(key := _identity(item)) else None for item in new]
+    others = iter(
+        sorted(number for numbers in left.values() for number in numbers) if len(old) == len(new) else ()
+    )
+    return [next(others, None) if number is None else number for number in numbers]
 
 
-def _has_name(item: object) -> bool:
-    return isinstance(item, dict) and isinstance(item.get("name"), str)
+def _identity(item: Any) -> str:
+    """What tells that an item is the same: its name, or its value."""
+    return str(item["name"]) if isinstance(item, dict) and "name" in item else repr(item)
 
 
 def edited_toml(
@@ -119,7 +117,10 @@ def edited_toml(
     moved = {name for name in ordered if not _begins(wanted.get(name), old.get(name))}
     for again in (moved, ordered):
         edited = _edited_text(text, old, wanted, tables, again)
-        values = _values_of(edited)
+        try:
+            values = tomllib.loads(edited)
+        except tomllib.TOMLDecodeError:
+            continue
         if values == wanted and all(_begins(wanted.get(name), values.get(name)) for name in ordered):
             return edited.replace("\n", ends)
     return None
@@ -230,7 +231,7 @@ def _edit_keys(block: Block, wanted: Document, moved: Collection[str]) -> None:
     if keys is None:
         name = block.head.strip().rpartition("\n")[2] or "keys at the top"
         LOG.warning("%s: some values are written anew, without their comments", name)
-        keys, kept = _edited_singly(block.keys, old, kept)
+        keys, kept = "", {}
     added = {key: value for key, value in wanted.items() if key not in kept}
     if added:
         if not keys and not block.path:
@@ -264,14 +265,6 @@ def _joined(blocks: Sequence[Block]) -> str:
     return text
 
 
-def _values_of(text: str) -> dict[str, Any] | None:
-    """The values of a text; None if it is no valid TOML."""
-    try:
-        return tomllib.loads(text)
-    except tomllib.TOMLDecodeError:
-        return None
-
-
 # The keys of one block.
 
 
@@ -281,25 +274,9 @@ def _edited(text: str, old: Document, new: Document) -> str | None:
         document = tomlkit.parse(text)
         _set_keys(document, old, new)
         edited = tomlkit.dumps(document)
+        return edited if tomllib.loads(edited) == new else None
     except (TOMLKitError, LookupError, ValueError, TypeError, AttributeError):
         return None
-    return edited if _values_of(edited) == new else None
-
-
-def _edited_singly(text: str, old: Document, new: Document) -> tuple[str, dict[str, Any]]:
-    """The text edited key by key, and the new values that it gives: of those keys that tomlkit can edit."""
-    now = dict(old)
-    for key in old:
-        without = {name: value for name, value in now.items() if name != key}
-        choices = [{**now, key: new[key]}, without] if key in new else [without]
-        for values in choices:
-            if repr(now) != repr(values) and (edited := _edited(text, now, values)) is not None:
-                text, now = edited, values
-            if repr(now) == repr(values):
-                break
-        else:
-            return "", {}
-    return text, now
 
 
 def _set_keys(table: Any, old: Document, new: Document) -> None:

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from autocolor import (
     InputError,
     MissingInputError,
+    OutputError,
     Palette,
     read_palette,
     write_palette,
@@ -148,6 +149,15 @@ def test_a_palette_that_is_not_there_is_missing(tmp_path: Path) -> None:
         InputError, match=r"^a\.gpk: a palette must end in .*\.gpl'\?; save it as one of these$"
     ):
         read("a.gpk", b"x")
+
+
+def test_a_palette_file_is_not_overwritten_unasked(tmp_path: Path) -> None:
+    write_palette(tmp_path / "a.gpl", "red")
+    with pytest.raises(OutputError, match="exists"):
+        write_palette(tmp_path / "a.gpl", "blue")
+    assert read_palette(tmp_path / "a.gpl") == Palette("red")
+    write_palette(tmp_path / "a.gpl", "blue", overwrite=True)
+    assert read_palette(tmp_path / "a.gpl") == Palette("blue")
 
 
 def zeros(count: int) -> Any:

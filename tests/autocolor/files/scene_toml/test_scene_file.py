@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import difflib
 import tempfile
 from pathlib import Path
 
@@ -181,18 +180,6 @@ def test_a_scene_may_have_255_surfaces_and_any_integer(folder: Path) -> None:
     assert len(scene.surfaces) == 255
     large = "0x" + "f" * 90
     assert read(folder, f"ambient = {large}\n{MESH}").scene.ambient == float(int(large, 16))
-
-
-def test_of_many_unknown_keys_few_get_the_closest_key(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    compared: list[str] = []
-
-    def compare(name: str, names: list[str], n: int) -> list[str]:
-        compared.append(name)
-        return []
-
-    monkeypatch.setattr(difflib, "get_close_matches", compare)
-    assert len(refusal(folder, "".join(f"qq{number} = 1\n" for number in range(500)) + MESH)) == 101
-    assert len(compared) == 100
 
 
 @pytest.mark.parametrize(
