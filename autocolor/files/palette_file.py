@@ -46,8 +46,6 @@ GPL: Final = ".gpl"
 CSV: Final = ".csv"
 SUFFIXES: Final = (CSV, GPL)
 
-NAME_RULE: Final = f"must be at most {LONGEST_NAME} printable characters, without spaces around them"
-
 COLOR: Final = ColorKind()
 
 
@@ -115,7 +113,8 @@ def _problem_of(color: Any, name: Any) -> str:
         return f"a color {COLOR.rule()}, not {shown(color, 40)}{COLOR.advice(color) or '; correct it'}"
     if isinstance(name, str) and len(name) <= LONGEST_NAME and name.isprintable() and name == name.strip(" "):
         return ""
-    return f"a name {NAME_RULE}, not {shown(name, 40)}; correct it"
+    rule = f"must be at most {LONGEST_NAME} printable characters, without spaces around them"
+    return f"a name {rule}, not {shown(name, 40)}; correct it"
 
 
 def read_palette(path: str | os.PathLike[str]) -> Palette:

@@ -77,8 +77,8 @@ def _value_for(scene: Scene, field: Field | None, key: str, value: object) -> ob
         is_value = kind.validated(value, (), []) is not REFUSED
         if value.lower() != UNSET or (is_value and (refers or not isinstance(kind, Referring))):
             parsed = value_of_text(value)
-            if isinstance(kind, References) and isinstance(parsed, str):
-                return _names_of(parsed, names)
+            if isinstance(kind, References) and not isinstance(parsed, list):
+                return _names_of(parsed if isinstance(parsed, str) else value, names)
             # A name such as 2 needs no quotes.
             return value if isinstance(kind, (Reference, Text)) and not isinstance(parsed, str) else parsed
     elif value is not None:
@@ -221,8 +221,8 @@ def field_and_value(cls: type[Row], row: Any, path: Sequence[str]) -> tuple[Fiel
     value = None if row is None else vars(row)[key.field]
     if isinstance(kind, OneRowOf) and path[0] != key.field:
         owners = [inner for inner in kind.classes.values() if path[0] in keys_of(inner)]
-        is_owner = type(value) in owners
-        return field_and_value(type(value) if is_owner else owners[0], value if is_owner else None, path)
+        owner = next((each for each in owners if type(value) is each), owners[0])
+        return field_and_value(owner, value if type(value) is owner else None, path)
     if isinstance(kind, Nested) and kind.inline:
         return field_and_value(kind.row_class, value, path)
     if len(path) == 1:

@@ -126,17 +126,17 @@ ORDERED: Final = (
 )
 """The tables whose keys have an order."""
 
-ReadText = Callable[[bytes], Scene]
-"""Reads the text of a scene file for a given mesh; raises InputError."""
-
 Tables = Mapping[str, Any]
 
 
-def edited_to(data: bytes, scene: Scene, read: ReadText, *, complete: bool = False) -> bytes | None:
+def edited_to(
+    data: bytes, scene: Scene, read: Callable[[bytes], Scene], *, complete: bool = False
+) -> bytes | None:
     """The text of a scene file, edited until it gives the scene; its mesh and its name may differ.
 
-    If `complete`, all keys and rows are written, with values as in a new file. None if the text cannot be
-    read, or if no edit makes it give the scene.
+    `read` reads a text for the scene's mesh, or raises InputError. If `complete`, all keys and rows are
+    written, with values as in a new file. None if the text cannot be read, or if no edit makes it give the
+    scene.
     """
     edited: bytes | None = data
     for _ in range(MOST_ROUNDS):
@@ -168,20 +168,6 @@ def with_document(data: bytes, document: Tables) -> bytes | None:
     """The text of a scene file, edited until it gives these values; None if no edit does."""
     text = edited_toml(data.decode(), document, FILE_TABLES, ORDERED)
     return None if text is None else text.encode()
-
-
-def with_meshes(
-    document: Tables, entries: Sequence[Mapping[str, Any]], angle: float | None
-) -> dict[str, Any]:
-    """The values of a scene file with other `[[mesh]]` tables.
-
-    A crease angle stands in every table that has the key, else in the first.
-    """
-    meshes = [dict(entry) for entry in entries]
-    if angle is not None:
-        for mesh in [mesh for mesh in meshes if "crease_angle" in mesh] or meshes[:1]:
-            mesh["crease_angle"] = angle
-    return {**document, "mesh": meshes}
 
 
 def _changed(written: Tables, before: Tables, after: Tables, sparse: Tables) -> dict[str, Any]:

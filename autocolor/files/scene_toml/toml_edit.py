@@ -113,17 +113,15 @@ def edited_toml(
     ends = "\r\n" if text.count("\r\n") == text.count("\n") > 0 else "\n"
     text = text.replace(ends, "\n")
     old = tomllib.loads(text)
-    # Keys without headers that have another order are removed, and added again; if need be all of them.
+    # Keys without headers that have another order are removed, and added again.
     moved = {name for name in ordered if not _begins(wanted.get(name), old.get(name))}
-    for again in (moved, ordered):
-        edited = _edited_text(text, old, wanted, tables, again)
-        try:
-            values = tomllib.loads(edited)
-        except tomllib.TOMLDecodeError:
-            continue
-        if values == wanted and all(_begins(wanted.get(name), values.get(name)) for name in ordered):
-            return edited.replace("\n", ends)
-    return None
+    edited = _edited_text(text, old, wanted, tables, moved)
+    try:
+        values = tomllib.loads(edited)
+    except tomllib.TOMLDecodeError:
+        return None
+    is_right = values == wanted and all(_begins(wanted.get(name), values.get(name)) for name in ordered)
+    return edited.replace("\n", ends) if is_right else None
 
 
 def _edited_text(

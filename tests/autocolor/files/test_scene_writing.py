@@ -30,6 +30,7 @@ from autocolor.files.scene_writing import write_scene_with_tables
 from autocolor.scene.columns import with_values
 from autocolor.testing import scenes
 from tests.small import cube
+from tests.tables import refused
 
 HAND_WRITTEN = """\
 # A car by hand.
@@ -252,26 +253,22 @@ def test_a_complete_file_has_all_keys_and_tells_what_was_written(car: Path) -> N
 
 PLACE = "a scene must be written to a folder or to a file that ends in .toml, .sqlite or .db, not to"
 
-
-@pytest.mark.parametrize(
-    ("name", "kind", "sentence"),
+test_a_path_of_another_kind_of_file_is_refused = refused(
+    lambda name: write_scene(name, scene_of(cube())),
     [
-        *(
-            (name, UsageError, f"{PLACE} {name}; choose another name")
-            for name in ("cube.obj", "a.npz", "mine.txt")
-        ),
-        ("", UsageError, "a scene must have a place, not an empty name; for the current folder write '.'"),
-        *((name, OutputError, "") for name in ("a\0b", "a\0b.toml", "x" * 300, "x" * 300 + ".toml")),
+        ("cube.obj", f"{PLACE} cube.obj; choose another name"),
+        ("a.npz", f"{PLACE} a.npz; choose another name"),
+        ("", "a scene must have a place, not an empty name; for the current folder write '.'"),
     ],
+    UsageError,
 )
-def test_a_path_where_no_scene_can_be_is_refused(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, kind: type[Exception], sentence: str
-) -> None:
-    monkeypatch.chdir(tmp_path)
+
+
+def test_no_file_of_another_kind_is_replaced_and_no_name_is_too_odd_to_be_refused(tmp_path: Path) -> None:
     (tmp_path / "mine.txt").write_text("mine")
-    with pytest.raises(kind) as refusal:
-        write_scene(name, scene_of(cube()), overwrite=True)
-    assert sentence in str(refusal.value)
+    for name in ("mine.txt", "a\0b", "a\0b.toml", "x" * 300, "x" * 300 + ".toml"):
+        with pytest.raises(UsageError if name == "mine.txt" else OutputError):
+            write_scene(tmp_path / name, scene_of(cube()), overwrite=True)
     assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]
 
 

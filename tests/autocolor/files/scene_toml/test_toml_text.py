@@ -206,11 +206,3 @@ def test_a_sentence_is_short_whatever_a_file_holds(text: str) -> None:
     problems.note(("surfaces", text, text), text)
     (sentence,) = sentences_of(problems)
     assert len(sentence) <= LONGEST_SENTENCE + len("scene.toml, line 14, [surfaces.]: ...") + 60
-
-
-@pytest.mark.parametrize("text", ["lights = 3\n", "lights = [1]\n", "[lights]\nname = 'x'\n"])
-def test_a_table_that_is_no_table_still_has_a_place(text: str) -> None:
-    problems = problems_of(text)
-    problems.note(("lights", 0, "name"), "must be so")
-    (sentence,) = sentences_of(problems)
-    assert sentence == "scene.toml, line 1, lights[1]: name must be so"
