@@ -113,6 +113,8 @@ def edited_toml(
     ends = "\r\n" if text.count("\r\n") == text.count("\n") > 0 else "\n"
     text = text.replace(ends, "\n")
     old = tomllib.loads(text)
+    if repr(old) == repr(wanted):
+        return text.replace("\n", ends)
     # Keys without headers that have another order are removed, and added again.
     moved = {name for name in ordered if not _begins(wanted.get(name), old.get(name))}
     edited = _edited_text(text, old, wanted, tables, moved)
