@@ -57,18 +57,12 @@ def require_memory(needed: float, subject: str, remedy: str) -> None:
 
     `subject` begins the message, with the place; `remedy` says what to do instead of allowing more.
     """
-    if problem := memory_problem(needed, remedy):
-        raise InputError(f"{subject} {problem}")
-
-
-def memory_problem(needed: float, remedy: str) -> str | None:
-    """The end of a message if more bytes are needed than the budget allows, else None."""
     allowed = allowed_memory()
     if needed <= allowed:
-        return None
+        return
     limit = math.ceil(10 * needed / MEMORY) / 10
-    return (
-        f"must take at most {math.floor(allowed / 1e5) / 10:,.1f} MB of memory, not"
+    raise InputError(
+        f"{subject} must take at most {math.floor(allowed / 1e5) / 10:,.1f} MB of memory, not"
         f" {math.ceil(needed / 1e5) / 10:,.1f} MB; {remedy}, or allow it with --limit {limit:.16g}"
         f" (limit={limit:.16g} in Python)"
     )

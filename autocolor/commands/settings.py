@@ -10,7 +10,7 @@ from typing import Any
 
 from autocolor.commands.options import as_usage
 from autocolor.errors import UsageError
-from autocolor.files.settings import field_at, field_of, place_of, row_at, scene_with, settable_kinds
+from autocolor.files.settings import field_and_value, field_of, place_of, row_at, scene_with, settable_kinds
 from autocolor.scene.color_scales import COLOR_SCALES
 from autocolor.scene.columns import Row, keys_of, to_plain
 from autocolor.scene.kinds import ColorKind, OneOf, color_names
@@ -90,7 +90,7 @@ def _fields_after(start: str, cls: type[Row], row: Row | None = None) -> list[st
     """The keys of a class after a start; the key of NamedRows ends in "." if there are such rows."""
     keys = []
     for key in keys_of(cls):
-        field = field_at(cls, (key,))
+        field = field_and_value(cls, None, (key,))[0]
         if field is None or (key == "name" and cls is not Scalar):
             continue
         has_rows = isinstance(field.column.kind, NamedRows) and row is not None and bool(vars(row)[key])

@@ -46,13 +46,7 @@ GPL: Final = ".gpl"
 CSV: Final = ".csv"
 SUFFIXES: Final = (CSV, GPL)
 
-NAME_RULE: Final = f"must be at most {LONGEST_NAME} printable characters, without spaces around them"
-
 COLOR: Final = ColorKind()
-
-
-ColorsGiven = Bytes | Sequence[str | Sequence[int]]
-"""Colors as an array (n, 3) uint8, or as texts such as "#b01020" and sequences of three whole numbers."""
 
 
 @dataclass(frozen=True, repr=False, eq=False, init=False)
@@ -119,7 +113,8 @@ def _problem_of(color: Any, name: Any) -> str:
         return f"a color {COLOR.rule()}, not {shown(color, 40)}{COLOR.advice(color) or '; correct it'}"
     if isinstance(name, str) and len(name) <= LONGEST_NAME and name.isprintable() and name == name.strip(" "):
         return ""
-    return f"a name {NAME_RULE}, not {shown(name, 40)}; correct it"
+    rule = f"must be at most {LONGEST_NAME} printable characters, without spaces around them"
+    return f"a name {rule}, not {shown(name, 40)}; correct it"
 
 
 def read_palette(path: str | os.PathLike[str]) -> Palette:
@@ -139,7 +134,7 @@ def read_palette(path: str | os.PathLike[str]) -> Palette:
 
 def write_palette(
     path: str | os.PathLike[str],
-    palette: Palette | ColorsGiven,
+    palette: Palette | Bytes | Sequence[str | Sequence[int]],
     *,
     names: Iterable[str] | None = None,
     overwrite: bool = False,
@@ -158,8 +153,18 @@ def write_palette(
         palette = Palette(palette, names or ())
     elif names is not None:
         palette = Palette(palette.colors, names)
-    text = _gpl_of(palette, path.stem) if path.suffix.lower() == GPL else _csv_of(palette)
-    write_atomically(path, text.encode(), overwrite=overwrite)
+    text = io.StringIO()
+    rows = zip(palette.colors.tolist(), palette.names, strict=True)
+    if path.suffix.lower() == GPL:
+        text.write(f"{GIMP}\nName: {printable(path.stem).strip() or 'palette'}\n#\n")
+        for (red, green, blue), name in rows:
+            text.write(f"{red:3} {green:3} {blue:3}\t{name}".rstrip("\t") + "\n")
+    else:
+        columns = 4 if any(palette.names) else 3
+        table = csv.writer(text, lineterminator="\n")
+        table.writerow((*COMPONENTS[:3], "name")[:columns])
+        table.writerows((*color, name)[:columns] for color, name in rows)
+    write_atomically(path, text.getvalue().encode(), overwrite=overwrite)
 
 
 def check_palette_path(path: Path) -> None:
@@ -184,11 +189,8 @@ def is_palette(path: Path) -> bool:
 GIMP: Final = "GIMP Palette"
 GIMP_HEADER: Final = re.compile(r"(Name|Columns|Channels):[ \t]*(.*?)[ \t]*")
 COMPONENT: Final = r"[ \t]*([0-9]{1,3})(?![0-9])"
-COLOR_LINE: Final = {
-    "red, green, blue": re.compile(rf"{COMPONENT * 3}(?:[ \t]+(.*))?", re.DOTALL),
-    "red, green, blue, alpha": re.compile(rf"{COMPONENT * 3}[ \t]+[0-9]{{1,3}}(?:[ \t]+(.*))?", re.DOTALL),
-}
-"""A line of a color, by the numbers that it must have."""
+NAME: Final = r"(?:[ \t]+(.*))?"
+COMPONENTS: Final = ("red", "green", "blue", "alpha")
 
 
 def _read_gpl(data: bytes, place: str) -> Palette:
@@ -198,40 +200,28 @@ def _read_gpl(data: bytes, place: str) -> Palette:
         raise InputError(f"{place}, line 1: it must be {GIMP!r}, not {shown(first, 40)}; save it by GIMP")
     problems = Problems("line")
     rows: list[tuple[int, Any, str]] = []
-    numbers = "red, green, blue"
+    count = 3
     for number, line in enumerate(lines, start=2):
         if not line.strip() or line.lstrip(" \t").startswith("#"):
             continue
         if not rows and (header := GIMP_HEADER.fullmatch(line)):
-            numbers = "red, green, blue, alpha" if header.groups() == ("Channels", "RGBA") else numbers
-        elif color := COLOR_LINE[numbers].fullmatch(line):
-            rows.append((number, [int(color[at]) for at in (1, 2, 3)], color[4] or ""))
+            count = 4 if header.groups() == ("Channels", "RGBA") else count
+        elif color := re.fullmatch(COMPONENT * count + NAME, line, re.DOTALL):
+            rows.append((number, [int(color[at]) for at in (1, 2, 3)], (color[count + 1] or "").strip(" \t")))
         else:
-            rule = f"a color must be {numbers} and perhaps a name, not {shown(line, 40)}; correct it"
-            problems.note(place, number, rule)
-    return _palette(problems, place, place, rows)
-
-
-def _gpl_of(palette: Palette, title: str) -> str:
-    lines = [GIMP, f"Name: {printable(title).strip() or 'palette'}", "#"]
-    for color, name in zip(palette.colors.tolist(), palette.names, strict=True):
-        lines.append(" ".join(f"{component:3}" for component in color) + (f"\t{name}" if name else ""))
-    return "\n".join([*lines, ""])
+            rule = f"a color must be {', '.join(COMPONENTS[:count])} and perhaps a name"
+            problems.note(place, number, f"{rule}, not {shown(line, 40)}; correct it")
+    return _palette(problems, place, rows)
 
 
 # The table.
 
-RED_GREEN_BLUE: Final = ("red", "green", "blue")
-
 
 def _are_columns(header: Sequence[str]) -> bool:
     """Whether these are the names of the columns of a palette, with or without names."""
-    columns = sorted(name.lower() for name in header if name)
-    return columns in (
-        sorted(RED_GREEN_BLUE),
-        sorted((*RED_GREEN_BLUE, "name")),
-        ["color"],
-        ["color", "name"],
+    columns = [name.lower() for name in header if name]
+    return sorted(columns) in (["blue", "green", "red"], ["color"]) or (
+        "name" in columns and _are_columns([name for name in columns if name != "name"])
     )
 
 
@@ -249,24 +239,14 @@ def _read_csv(data: bytes, place: str) -> Palette:
         color: Any = values.get("color")
         if color is None:
             # pandas writes the whole numbers of a column with missing values with a point.
-            texts = [values[name].removesuffix(".0") for name in RED_GREEN_BLUE]
+            texts = [values[name].removesuffix(".0") for name in COMPONENTS[:3]]
             color = [int(text) if re.fullmatch("[0-9]{1,3}", text) else text for text in texts]
         rows.append((row, color, values.get("name", "")))
-    return _palette(Problems("row"), place, table.place, rows)
+    return _palette(Problems("row"), table.place, rows)
 
 
-def _csv_of(palette: Palette) -> str:
-    text = io.StringIO()
-    columns = 4 if any(palette.names) else 3
-    rows = zip(palette.colors.tolist(), palette.names, strict=True)
-    table = [(*RED_GREEN_BLUE, "name"), *((*color, name) for color, name in rows)]
-    csv.writer(text, lineterminator="\n").writerows(row[:columns] for row in table)
-    return text.getvalue()
-
-
-def _palette(problems: Problems, file: str, place: str, rows: Iterable[tuple[int, Any, str]]) -> Palette:
+def _palette(problems: Problems, place: str, rows: Sequence[tuple[int, Any, str]]) -> Palette:
     """The palette of the lines, colors and names of a file. Raises InputError with all problems."""
-    rows = [(line, color, name.strip(" \t")) for line, color, name in rows]
     for line, color, name in rows:
         if problem := _problem_of(color, name):
             problems.note(place, line, problem)
@@ -274,4 +254,4 @@ def _palette(problems: Problems, file: str, place: str, rows: Iterable[tuple[int
     try:
         return Palette([color for _, color, _ in rows], [name for _, _, name in rows])
     except InputError as error:
-        raise InputError(f"{file}: {error}") from None
+        raise InputError(f"{place}: {error}") from None

@@ -32,7 +32,6 @@ from autocolor.files.scene_toml.scene_text import (
     scene_text,
     sparse_entry,
     with_document,
-    with_meshes,
 )
 from autocolor.files.scene_toml.toml_text import LARGEST_TEXT, parsed_toml
 from autocolor.files.store.store_file import write_store
@@ -161,8 +160,11 @@ def _edited(old: bytes, target: Path, scene: Scene, meshes: Meshes, complete: bo
     present = meshes.reports[0].mesh.crease_angle if is_same else CREASE_ANGLE
     angle = mesh.crease_angle if complete or mesh.crease_angle != present else None
     if angle is not None or not is_same:
-        entries = meshes.entries if is_same else tuple(map(sparse_entry, meshes.entries))
-        document = with_meshes(document, entries, angle)
+        tables = [dict(entry) if is_same else sparse_entry(entry) for entry in meshes.entries]
+        # The angle stands in every table that has the key, else in the first.
+        for table in [table for table in tables if "crease_angle" in table] or tables[:1]:
+            table.update({} if angle is None else {"crease_angle": angle})
+        document["mesh"] = tables
     data = with_document(old, document)
     return None if data is None else _giving(data, target, scene, meshes, complete)
 

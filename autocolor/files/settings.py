@@ -77,8 +77,8 @@ def _value_for(scene: Scene, field: Field | None, key: str, value: object) -> ob
         is_value = kind.validated(value, (), []) is not REFUSED
         if value.lower() != UNSET or (is_value and (refers or not isinstance(kind, Referring))):
             parsed = value_of_text(value)
-            if isinstance(kind, References) and isinstance(parsed, str):
-                return _names_of(parsed, names)
+            if isinstance(kind, References) and not isinstance(parsed, list):
+                return _names_of(parsed if isinstance(parsed, str) else value, names)
             # A name such as 2 needs no quotes.
             return value if isinstance(kind, (Reference, Text)) and not isinstance(parsed, str) else parsed
     elif value is not None:
@@ -196,8 +196,13 @@ def _name_and_rest(text: str, names: Iterable[str], key: str, cls: type[Row]) ->
 
 def field_of(place: SettingPlace) -> Field | None:
     """The field at a place; None if its row has no such field."""
+    return field_and_value(_class_of(place), None, place.path)[0]
+
+
+def _class_of(place: SettingPlace) -> type[Row]:
+    """The class of the row at a place."""
     kind = settable_kinds().get(place.table)
-    return field_at(kind.row_class if isinstance(kind, (Nested, RowList)) else Scene, place.path)
+    return kind.row_class if isinstance(kind, (Nested, RowList)) else Scene
 
 
 def settable_kinds() -> Mapping[str, Kind]:
@@ -206,24 +211,29 @@ def settable_kinds() -> Mapping[str, Kind]:
     return {name: kind for name, kind in kinds.items() if not isinstance(kind, Instance)}
 
 
-def field_at(cls: type[Row], path: Sequence[str]) -> Field | None:
-    """The field at a path of keys in a row of a class, or None."""
+def field_and_value(cls: type[Row], row: Any, path: Sequence[str]) -> tuple[Field | None, Any]:
+    """The field at a path of keys in a row of a class, and its value; None for what is absent."""
     key = keys_of(cls).get(path[0])
     if key is None:
-        return None
+        return None, None
     field = fields_of(cls)[key.field]
     kind = field.column.kind
+    value = None if row is None else vars(row)[key.field]
     if isinstance(kind, OneRowOf) and path[0] != key.field:
-        return field_at(next(cls for cls in kind.classes.values() if path[0] in keys_of(cls)), path)
+        owners = [inner for inner in kind.classes.values() if path[0] in keys_of(inner)]
+        owner = next((each for each in owners if type(value) is each), owners[0])
+        return field_and_value(owner, value if type(value) is owner else None, path)
     if isinstance(kind, Nested) and kind.inline:
-        return field_at(kind.row_class, path)
+        return field_and_value(kind.row_class, value, path)
     if len(path) == 1:
-        return field
+        return field, value
     if isinstance(kind, NamedRows):
+        inner = next((each for each in value or () if each.name == path[1]), None)
+        if len(path) > 2:
+            return field_and_value(kind.row_class, inner, path[2:])
         # The row itself is optional.
-        whole = Field(Column(Nested(kind.row_class), field.column.tier, field.column.help), True, None)
-        return whole if len(path) == 2 else field_at(kind.row_class, path[2:])
-    return field_at(kind.row_class, path[1:]) if isinstance(kind, Nested) else None
+        return Field(Column(Nested(kind.row_class), field.column.tier, field.column.help), True, None), inner
+    return field_and_value(kind.row_class, value, path[1:]) if isinstance(kind, Nested) else (None, None)
 
 
 def row_at(scene: Scene, place: SettingPlace) -> Any:
@@ -242,20 +252,4 @@ def value_at(scene: Scene, place: SettingPlace) -> Any:
     >>> value_at(scene, place_of(scene, "surfaces.body.exponent"))
     80.0
     """
-    value = row_at(scene, place)
-    path = list(place.path)
-    while path and value is not None:
-        if isinstance(value, tuple):
-            value = next((row for row in value if row.name == path[0]), None)
-            path.pop(0)
-            continue
-        key = keys_of(type(value)).get(path[0])
-        if key is None:
-            return None
-        kind, inner = fields_of(type(value))[key.field].column.kind, vars(value)[key.field]
-        # The keys of an inline row, and of a row of one of several classes, are keys of the row around it.
-        is_inside = path[0] != key.field and (isinstance(kind, OneRowOf) or key.is_inside)
-        value = inner
-        if not is_inside:
-            path.pop(0)
-    return value
+    return field_and_value(_class_of(place), row_at(scene, place), place.path)[1]

@@ -9,7 +9,6 @@ count the rows of `lights`, `views` and `mesh` from 1.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
@@ -26,7 +25,6 @@ from autocolor.scene.columns import (
     Problem,
     RowError,
     SomeRow,
-    from_plain,
     keys_of,
     replaced,
     unknown_key,
@@ -112,19 +110,13 @@ def _fields(problems: SceneProblems, document: Mapping[str, Any]) -> dict[str, A
 
 def _surfaces(problems: SceneProblems, document: Mapping[str, Any]) -> dict[str, Surface | None]:
     """The surfaces of the file by name, None for a surface with problems; omitted keys have defaults."""
-    tables = _named_tables(problems, document, "surfaces")
-    if len(tables) > MOST_SURFACES:
-        rule = f"must be at most {MOST_SURFACES}, not {len(tables):,}; let parts share a surface"
+    tables = document.get("surfaces")
+    count = len(tables) if isinstance(tables, dict) else 0
+    if count > MOST_SURFACES:
+        rule = f"must be at most {MOST_SURFACES}, not {count:,}; let parts share a surface"
         problems.note(("surfaces",), rule)
         return {}
-    return {
-        name: _row(problems, ("surfaces", name), table, partial(replaced, default_surface(name, number)))
-        for number, (name, table) in enumerate(tables.items())
-    }
-
-
-def _part(name: str, table: Mapping[str, Any]) -> Part:
-    return from_plain(Part, {"surface": name, **table, "name": name})
+    return _rows_by_name(problems, document, "surfaces", default_surface)
 
 
 def _parts(
@@ -138,13 +130,11 @@ def _parts(
     part_names = dict.fromkeys(name for report in reports or () for name in report.mesh.part_names)
     materials = (name for report in reports or () for name in report.material_of_part.values())
     names_of_surfaces = dict.fromkeys((*surface_names, *part_names, *materials))
-    for name, table in _named_tables(problems, document, "parts").items():
-        if problems.full:
+    parts = _rows_by_name(problems, document, "parts", lambda name, _: Part(name, name))
+    for name, part in parts.items():
+        path, table = ("parts", name), document["parts"][name]
+        if problems.full or reports is None:
             break
-        path = ("parts", name)
-        part = _row(problems, path, table, partial(_part, name))
-        if reports is None:
-            continue
         if name not in part_names:
             problems.note(path, f"no mesh has a part of this name{nearest(name, part_names)}")
         if part is not None and part.surface not in names_of_surfaces and "surface" in table:
@@ -161,28 +151,31 @@ def _with_own_surfaces(parts: Mapping[str, PartChanges], reports: list[MeshRepor
     return {name: {"surface": name, **parts.get(name, {})} for name in names}
 
 
-def _named_tables(problems: SceneProblems, document: Mapping[str, Any], key: str) -> dict[str, Any]:
-    """The tables written [key.NAME], by NAME."""
+def _rows_by_name(
+    problems: SceneProblems, document: Mapping[str, Any], key: str, default: Callable[[str, int], SomeRow]
+) -> dict[str, SomeRow | None]:
+    """The rows of the tables [key.NAME], by NAME; an invalid table gives None and adds problems.
+
+    `default` returns the row, by its name and number, whose values omitted keys have.
+    """
     tables = document.get(key, {})
     if not isinstance(tables, dict):
         problems.note((key,), f"must be tables written [{key}.NAME], not {shown(tables)}")
         return {}
-    return tables
-
-
-def _row(
-    problems: SceneProblems, path: tuple[str, str], table: Any, make: Callable[[Mapping[str, Any]], SomeRow]
-) -> SomeRow | None:
-    """The row that `make` returns for a table [key.NAME]; an invalid table gives None and adds problems."""
-    if not isinstance(table, dict):
-        problems.note(path, f"it must be a table, not {shown(table)}; write keys and values")
-        return None
-    try:
-        row = make(table)
-    except RowError as error:
-        problems.note_all(error.row_problems, path)
-        return None
-    if "name" in table:
-        keys = [key for key in keys_of(type(row)) if key != "name"]
-        problems.note_all([unknown_key("name", keys)], path)
-    return row
+    rows: dict[str, SomeRow | None] = dict.fromkeys(tables)
+    for number, (name, table) in enumerate(tables.items()):
+        if problems.full:
+            break
+        if not isinstance(table, dict):
+            problems.note((key, name), f"it must be a table, not {shown(table)}; write keys and values")
+            continue
+        present = default(name, number)
+        if "name" in table:
+            keys = [each for each in keys_of(type(present)) if each != "name"]
+            problems.note_all([unknown_key("name", keys)], (key, name))
+            continue
+        try:
+            rows[name] = replaced(present, table)
+        except RowError as error:
+            problems.note_all(error.row_problems, (key, name))
+    return rows

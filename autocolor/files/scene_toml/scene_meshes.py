@@ -27,10 +27,6 @@ from autocolor.scene.kinds import OneOf, Text
 from autocolor.scene.mesh import CREASE_ANGLES, Mesh, has_same_tables
 
 MOST_MESHES: Final = 1000
-MESH_STEM: Final = "mesh"
-"""The name, without its ending, of a mesh file that is written beside a scene file."""
-
-SCALE_BAR: Final = BarRange(0.01, 10, 0.01)
 
 FILE_KEYS: Final = (("file",), ("nodes", "polygons"))
 """The keys that name the files of a mesh: one file, or a node table and a polygon table."""
@@ -50,7 +46,8 @@ class MeshEntry(Row):
     polygons: Annotated[str | None, Column(Text(), Tier.FRAME, "The polygon table.")] = None
     up: Annotated[str, Column(OneOf(UPS), Tier.FRAME, "The file's up axis; the world's is z.")] = "z"
     scale: Annotated[
-        float, Column(SCALES, Tier.FRAME, "A factor for the coordinates of the file.", bar=SCALE_BAR)
+        float,
+        Column(SCALES, Tier.FRAME, "A factor for the coordinates of the file.", bar=BarRange(0.01, 10, 0.01)),
     ] = 1.0
     normals: Annotated[
         str, Column(OneOf(NORMALS), Tier.FRAME, "Whose normals are used: computed, or the file's own.")
@@ -214,7 +211,7 @@ def written_mesh(folder: Path, mesh: Mesh, written: list[Path]) -> Meshes:
     normals = {} if mesh.own_normals is None else {"normals": FILE}
     as_obj = () if mesh.scalars else ((".obj", obj_text),)
     for suffix, content in (*as_obj, (SUFFIX, table_file_bytes)):
-        path = free_path(folder / f"{MESH_STEM}{suffix}")
+        path = free_path(folder / f"mesh{suffix}")
         write_atomically(path, content(mesh), overwrite=False)
         written.append(path)
         entries = ({"file": path.name, **normals},)

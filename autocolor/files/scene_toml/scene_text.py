@@ -17,12 +17,9 @@ from autocolor.files.scene_toml.toml_edit import edited_toml, item_numbers
 from autocolor.files.scene_toml.toml_text import parsed_toml, table_text, toml_key
 from autocolor.scene.columns import Row, fields_of, from_plain, to_plain, with_values
 from autocolor.scene.geometry.normals import CREASE_ANGLE
-from autocolor.scene.lights import Flap, HalfSpace, Light
+from autocolor.scene.lights import Light
 from autocolor.scene.row_kinds import NamedRows, Nested, RangesByName, RowList, without_name
-from autocolor.scene.scalar import Scalar
 from autocolor.scene.scene import Scene
-from autocolor.scene.surfaces import Part, Surface
-from autocolor.scene.view import NamedView, View
 
 FILE_TABLES: Final = ("view", "views", "scalar", "mesh", "parts", "surfaces", "lights")
 """The tables of a scene file, in the order in which they are written."""
@@ -30,18 +27,8 @@ FILE_TABLES: Final = ("view", "views", "scalar", "mesh", "parts", "surfaces", "l
 BY_NAME: Final = ("parts", "surfaces")
 """The tables of a scene file whose rows are tables by name; rows of other tables have the key `name`."""
 
-ALWAYS_WRITTEN: Final[dict[type[Row], tuple[str, ...]]] = {
-    Part: ("name", "surface"),
-    # Surfaces without an object color are given different colors.
-    Surface: ("name", "object_color"),
-    Light: ("name", "position"),
-    View: ("eye", "direction", "target"),
-    NamedView: ("name", "eye", "direction", "target"),
-    Flap: (),
-    HalfSpace: ("name", "point", "direction"),
-    Scalar: ("name",),
-}
-"""The keys that are also written with `without_defaults`."""
+ALWAYS_WRITTEN: Final = ("eye", "direction", "target", "object_color")
+"""Keys that are always written: a view needs them, and surfaces without a color are given different ones."""
 
 
 def scene_text(
@@ -52,7 +39,7 @@ def scene_text(
     Keys whose values are their defaults can be left out. The scene's name is not written, as it is given by
     the name of the folder or file.
     """
-    tables = sparse_tables(scene) if without_defaults else _tables(scene)
+    tables = tables_of(scene, sparse=without_defaults)
     entries: list[dict[str, Any]] = [dict(files) for files in mesh_files]
     if entries:
         # The first table has the crease angle.
@@ -75,30 +62,30 @@ def scene_text(
     return "\n".join(blocks)
 
 
-def _tables(scene: Scene) -> dict[str, Any]:
-    """The scene as keys and plain values: parts and surfaces by name, and no empty tables of a light."""
-    tables: dict[str, Any] = to_plain(scene)
-    del tables["name"]
-    for key in BY_NAME:
-        tables[key] = {row["name"]: without_name(row) for row in tables[key]}
-    lights = [{key: value for key, value in light.items() if value != {}} for light in tables["lights"]]
-    return {**tables, "lights": lights}
+def tables_of(scene: Scene, *, sparse: bool = False) -> dict[str, Any]:
+    """The tables of a scene as keys and plain values: parts and surfaces by name.
 
-
-def sparse_tables(scene: Scene) -> dict[str, Any]:
-    """The tables of a scene as keys and plain values, without keys whose values are their defaults."""
+    If `sparse`, keys whose values are their defaults are left out; empty tables of a light always are.
+    """
+    keys_of_row = sparse_row if sparse else _plain_row
     tables: dict[str, Any] = {}
     for name, field in fields_of(Scene).items():
         value, kind = vars(scene)[name], field.column.kind
         if name in BY_NAME:
-            tables[name] = {row.name: without_name(sparse_row(row)) for row in value}
+            tables[name] = {row.name: without_name(keys_of_row(row)) for row in value}
         elif isinstance(kind, RowList):
-            tables[name] = [sparse_row(row) for row in value]
+            tables[name] = [keys_of_row(row) for row in value]
         elif isinstance(kind, Nested) and value is not None:
-            tables[name] = sparse_row(value)
-        elif name != "name" and (field.default is None or value != field.default()):
+            tables[name] = keys_of_row(value)
+        elif name != "name" and not (
+            field.default and value == field.default() and (sparse or value is None)
+        ):
             tables.update(kind.to_plain(name, value))
     return tables
+
+
+def _plain_row(row: Row) -> dict[str, object]:
+    return {key: value for key, value in to_plain(row).items() if value != {}}
 
 
 def sparse_entry(entry: Mapping[str, Any]) -> dict[str, Any]:
@@ -110,7 +97,8 @@ def sparse_entry(entry: Mapping[str, Any]) -> dict[str, Any]:
 def sparse_row(row: Row) -> dict[str, object]:
     """The row as keys and plain values, without keys whose values are their defaults."""
     keys = to_plain(row)
-    always = ALWAYS_WRITTEN[type(row)]
+    required = [name for name, field in fields_of(type(row)).items() if field.default is None]
+    always = (*required, *ALWAYS_WRITTEN)
     given = {key: keys[key] for key in always if key in keys}
     model = {key: keys[key] for key in ("model",) if key in keys}
     default = to_plain(from_plain(type(row), given))
@@ -138,17 +126,17 @@ ORDERED: Final = (
 )
 """The tables whose keys have an order."""
 
-ReadText = Callable[[bytes], Scene]
-"""Reads the text of a scene file for a given mesh; raises InputError."""
-
 Tables = Mapping[str, Any]
 
 
-def edited_to(data: bytes, scene: Scene, read: ReadText, *, complete: bool = False) -> bytes | None:
+def edited_to(
+    data: bytes, scene: Scene, read: Callable[[bytes], Scene], *, complete: bool = False
+) -> bytes | None:
     """The text of a scene file, edited until it gives the scene; its mesh and its name may differ.
 
-    If `complete`, all omitted keys and rows are added. None if the text cannot be read, or if no edit makes
-    it give the scene.
+    `read` reads a text for the scene's mesh, or raises InputError. If `complete`, all keys and rows are
+    written, with values as in a new file. None if the text cannot be read, or if no edit makes it give the
+    scene.
     """
     edited: bytes | None = data
     for _ in range(MOST_ROUNDS):
@@ -159,17 +147,20 @@ def edited_to(data: bytes, scene: Scene, read: ReadText, *, complete: bool = Fal
         except InputError:
             return None
         document = parsed_toml(edited, "scene.toml")
-        if not with_values(current, {"mesh": scene.mesh, "name": scene.name}).equals(scene):
-            wanted = _changed(document, _tables(current), _tables(scene), sparse_tables(scene))
+        is_same = with_values(current, {"mesh": scene.mesh, "name": scene.name}).equals(scene)
+        if is_same and not complete:
+            return edited
+        if is_same:
+            wanted = {**document, **tables_of(scene)}
         else:
-            wanted = _completed(document, scene) if complete else document
-            if wanted == document:
-                return edited
+            wanted = _changed(document, tables_of(current), tables_of(scene), tables_of(scene, sparse=True))
         # Without the key, lights would be created.
         given = {
             key: value for key, value in wanted.items() if value != [] or key == "lights" or key in document
         }
-        edited = with_document(edited, given)
+        before, edited = edited, with_document(edited, given)
+        if is_same and edited == before:
+            return edited
     return None
 
 
@@ -177,37 +168,6 @@ def with_document(data: bytes, document: Tables) -> bytes | None:
     """The text of a scene file, edited until it gives these values; None if no edit does."""
     text = edited_toml(data.decode(), document, FILE_TABLES, ORDERED)
     return None if text is None else text.encode()
-
-
-def _completed(document: Tables, scene: Scene) -> dict[str, Any]:
-    """The values of a scene file that gives the scene, with all omitted keys and rows added."""
-    tables = {key: value for key, value in _tables(scene).items() if value != []}
-    whole = _filled(document, tables)
-    return {**whole, "surfaces": {name: whole["surfaces"][name] for name in tables["surfaces"]}}
-
-
-def _filled(written: Any, keys: Any) -> Any:
-    """Values with all keys that they omit."""
-    if isinstance(written, Mapping) and isinstance(keys, Mapping):
-        filled = {key: _filled(value, keys.get(key)) for key, value in written.items()}
-        return {**filled, **{key: value for key, value in keys.items() if key not in written}}
-    if isinstance(written, list) and isinstance(keys, list):
-        return [_filled(value, row) for value, row in zip(written, keys, strict=True)]
-    return written
-
-
-def with_meshes(
-    document: Tables, entries: Sequence[Mapping[str, Any]], angle: float | None
-) -> dict[str, Any]:
-    """The values of a scene file with other `[[mesh]]` tables.
-
-    A crease angle stands in every table that has the key, else in the first.
-    """
-    meshes = [dict(entry) for entry in entries]
-    if angle is not None:
-        for mesh in [mesh for mesh in meshes if "crease_angle" in mesh] or meshes[:1]:
-            mesh["crease_angle"] = angle
-    return {**document, "mesh": meshes}
 
 
 def _changed(written: Tables, before: Tables, after: Tables, sparse: Tables) -> dict[str, Any]:

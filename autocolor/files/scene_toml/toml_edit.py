@@ -15,7 +15,6 @@ import re
 import tomllib
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from difflib import SequenceMatcher
 from typing import Any, Final
 
 import tomlkit
@@ -80,25 +79,24 @@ def blocks_of(text: str) -> list[Block]:
 def item_numbers(old: Sequence[Any], new: Sequence[Any]) -> list[int | None]:
     """For each new item of an array the number of the item that it was; None for an added item.
 
-    Tables are the same if they have the same name. Items in the place of as many others were changed, or
-    renamed.
+    Tables are the same if they have the same name, other items if they are equal. Of as many items as before,
+    those that are left were changed, or renamed.
     """
     if len(old) == len(new) and not any(isinstance(item, dict) for item in old):
         return list(range(len(old)))
-    olds, news = ([item["name"] if _has_name(item) else repr(item) for item in items] for items in (old, new))
-    numbers: list[int | None] = [None] * len(new)
-    left = dict(zip(olds, range(len(old)), strict=True))
-    for change, start, stop, place, end in SequenceMatcher(None, olds, news, autojunk=False).get_opcodes():
-        if change == "equal" or (stop - start == end - place and left.keys().isdisjoint(news[place:end])):
-            numbers[place:end] = range(start, stop)
-    for number in numbers:
-        if number is not None:
-            left.pop(olds[number], None)
-    return [left.get(key) if number is None else number for key, number in zip(news, numbers, strict=True)]
+    left: dict[object, list[int]] = {}
+    for number, item in enumerate(old):
+        left.setdefault(_identity(item), []).append(number)
+    numbers = [left[key].pop(0) if left.get(key := _identity(item)) else None for item in new]
+    others = iter(
+        sorted(number for numbers in left.values() for number in numbers) if len(old) == len(new) else ()
+    )
+    return [next(others, None) if number is None else number for number in numbers]
 
 
-def _has_name(item: object) -> bool:
-    return isinstance(item, dict) and isinstance(item.get("name"), str)
+def _identity(item: Any) -> str:
+    """What tells that an item is the same: its name, or its value."""
+    return str(item["name"]) if isinstance(item, dict) and "name" in item else repr(item)
 
 
 def edited_toml(
@@ -115,14 +113,17 @@ def edited_toml(
     ends = "\r\n" if text.count("\r\n") == text.count("\n") > 0 else "\n"
     text = text.replace(ends, "\n")
     old = tomllib.loads(text)
-    # Keys without headers that have another order are removed, and added again; if need be all of them.
+    if repr(old) == repr(wanted):
+        return text.replace("\n", ends)
+    # Keys without headers that have another order are removed, and added again.
     moved = {name for name in ordered if not _begins(wanted.get(name), old.get(name))}
-    for again in (moved, ordered):
-        edited = _edited_text(text, old, wanted, tables, again)
-        values = _values_of(edited)
-        if values == wanted and all(_begins(wanted.get(name), values.get(name)) for name in ordered):
-            return edited.replace("\n", ends)
-    return None
+    edited = _edited_text(text, old, wanted, tables, moved)
+    try:
+        values = tomllib.loads(edited)
+    except tomllib.TOMLDecodeError:
+        return None
+    is_right = values == wanted and all(_begins(wanted.get(name), values.get(name)) for name in ordered)
+    return edited.replace("\n", ends) if is_right else None
 
 
 def _edited_text(
@@ -264,14 +265,6 @@ def _joined(blocks: Sequence[Block]) -> str:
     return text
 
 
-def _values_of(text: str) -> dict[str, Any] | None:
-    """The values of a text; None if it is no valid TOML."""
-    try:
-        return tomllib.loads(text)
-    except tomllib.TOMLDecodeError:
-        return None
-
-
 # The keys of one block.
 
 
@@ -281,9 +274,9 @@ def _edited(text: str, old: Document, new: Document) -> str | None:
         document = tomlkit.parse(text)
         _set_keys(document, old, new)
         edited = tomlkit.dumps(document)
+        return edited if tomllib.loads(edited) == new else None
     except (TOMLKitError, LookupError, ValueError, TypeError, AttributeError):
         return None
-    return edited if _values_of(edited) == new else None
 
 
 def _edited_singly(text: str, old: Document, new: Document) -> tuple[str, dict[str, Any]]:
@@ -291,11 +284,11 @@ def _edited_singly(text: str, old: Document, new: Document) -> tuple[str, dict[s
     now = dict(old)
     for key in old:
         without = {name: value for name, value in now.items() if name != key}
-        choices = [{**now, key: new[key]}, without] if key in new else [without]
-        for values in choices:
-            if repr(now) != repr(values) and (edited := _edited(text, now, values)) is not None:
-                text, now = edited, values
+        for values in [{**now, key: new[key]}, without] if key in new else [without]:
             if repr(now) == repr(values):
+                break
+            if (edited := _edited(text, now, values)) is not None:
+                text, now = edited, values
                 break
         else:
             return "", {}

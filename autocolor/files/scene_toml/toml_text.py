@@ -80,29 +80,27 @@ def _syntax_problem(message: str, text: str, place: str) -> str:
 
 def _check_bounds(text: str, place: str) -> None:
     """Raise InputError for deep nesting, long dotted keys and long words, which are slow to parse."""
-    nested = dots = 0
+    nested, parts = 0, 1
     for token in TOKEN.finditer(text):
         kind = token.lastgroup
-        rule = ""
-        if kind == "open":
-            nested += 1
-            if nested > MOST_NESTED:
-                rule = f"brackets must be nested at most {MOST_NESTED} deep, not deeper; flatten them"
-        elif kind == "close":
-            nested = max(0, nested - 1)
+        if kind in ("open", "close"):
+            nested = nested + 1 if kind == "open" else max(0, nested - 1)
+        if kind in ("open", "close", "newline", "comma", "equals"):
+            parts = 1
         elif kind == "dot":
-            dots += 1
-            if dots >= MOST_KEY_PARTS:
-                rule = f"a key must have at most {MOST_KEY_PARTS} parts between dots, not more; shorten it"
+            parts += 1
+        if nested > MOST_NESTED:
+            rule = f"brackets must be nested at most {MOST_NESTED} deep, not deeper; flatten them"
+        elif parts > MOST_KEY_PARTS:
+            rule = f"a key must have at most {MOST_KEY_PARTS} parts between dots, not more; shorten it"
         elif kind == "word" and len(token[0]) > LONGEST_WORD:
             rule = (
                 f"a number or a key must have at most {LONGEST_WORD} digits or letters, not"
                 f" {len(token[0]):,}; write it shorter, or in quotes"
             )
-        if rule:
-            raise InputError(f"{place}, line {text.count(chr(10), 0, token.start()) + 1}: {rule}")
-        if kind in ("open", "close", "newline", "comma", "equals"):
-            dots = 0
+        else:
+            continue
+        raise InputError(f"{place}, line {text.count(chr(10), 0, token.start()) + 1}: {rule}")
 
 
 class Statement(NamedTuple):
@@ -247,20 +245,32 @@ class SceneProblems:
         """Add a problem of the value at a path."""
         self.note_all([Problem(path, text)])
 
-    def note_all(self, problems: Iterable[Problem], path: KeyPath = ()) -> None:
-        """Add problems of the table at a path."""
+    def note_all(self, problems: Iterable[Problem], path: KeyPath = (), *, is_missing: bool = False) -> None:
+        """Add problems of the table at a path; `is_missing` tells that they are only missing files."""
         for problem in problems:
-            self.all_missing = False
-            self._note(problem.under(path))
+            self.all_missing = self.all_missing and is_missing
+            if self.full:
+                return
+            whole = problem.under(path)
+            where, depth = self._table_of(whole.path)
+            if len(whole.path) == depth == 1 and whole.text.startswith("must "):
+                where, depth = "", 0
+            line = self._line(whole.path)
+            sentence = whole._replace(path=whole.path[depth:]).sentence
+            if len(sentence) > LONGEST_SENTENCE:
+                sentence = f"{sentence[:LONGEST_SENTENCE]}..."
+            at = f", line {line}" if line else ""
+            self.messages.append((line, f"{self.place}{at}, {where}{sentence}"))
 
     def note_file(self, path: KeyPath, error: InputError) -> None:
         """Add the problems of a mesh file; their messages name the file. `path` is the key that names it."""
         if isinstance(error, MissingInputError):
-            for sentence in error.problems:
-                self._note(Problem(path, sentence, names_key=True))
+            missing = [Problem(path, sentence, names_key=True) for sentence in error.problems]
+            self.note_all(missing, is_missing=True)
         else:
             self.all_missing = False
-            self._add([(self._line(path), problem) for problem in error.problems])
+            own = [(self._line(path), sentence) for sentence in error.problems]
+            self.messages += own[: MOST_PROBLEMS - len(self.messages)]
 
     def raise_any(self) -> None:
         """Raise InputError with all problems, if any; MissingInputError if only files are missing."""
@@ -270,27 +280,10 @@ class SceneProblems:
         if sentences:
             raise MissingInputError(sentences) if self.all_missing else InputError(sentences)
 
-    def _add(self, messages: list[tuple[int, str]]) -> None:
-        self.messages += messages[: MOST_PROBLEMS - len(self.messages)]
-
-    def _note(self, problem: Problem) -> None:
-        if self.full:
-            return
-        where, depth = self._table_of(problem.path)
-        if len(problem.path) == depth == 1 and problem.text.startswith("must "):
-            where, depth = "", 0
-        sentence = problem._replace(path=problem.path[depth:]).sentence
-        if len(sentence) > LONGEST_SENTENCE:
-            sentence = sentence[:LONGEST_SENTENCE] + "..."
-        line = self._line(problem.path)
-        at = f", line {line}" if line else ""
-        self._add([(line, f"{self.place}{at}, {where}{sentence}")])
-
     def _line(self, path: KeyPath) -> int:
         """The line of a path, or of the nearest table around it; 0 if the file has neither."""
-        return next(
-            (self._lines[path[:end]] for end in range(len(path), 0, -1) if path[:end] in self._lines), 0
-        )
+        around = [path[:end] for end in range(len(path), 0, -1)]
+        return next((self._lines[table] for table in around if table in self._lines), 0)
 
     def _table_of(self, path: KeyPath) -> tuple[str, int]:
         """The label of a path's table, as in "lights[1] 'key': ", and how many parts of the path it names.

@@ -80,8 +80,6 @@ test_a_strangers_file_is_refused_with_every_problem_and_its_line = refused(
             "minimum = [0, 0, 5]\nmaximum = [1, 1, 1]\n",
             "rig.toml, the minimum of z must be at most the maximum, not 5 to 1; exchange them",
         ),
-        (BOUNDS + "lights = 3", "rig.toml, line 3, lights must be a list of Light rows, not 3"),
-        ("\0", "rig.toml: a rig file must be text, not hold a NUL byte (line 1); save it as UTF-8 text"),
     ],
 )
 

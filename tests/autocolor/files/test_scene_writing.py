@@ -12,6 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import (
+    Flap,
+    Flaps,
     InputError,
     Light,
     MeshScalar,
@@ -27,8 +29,8 @@ from autocolor.files import scene_writing
 from autocolor.files.scene_writing import write_scene_with_tables
 from autocolor.scene.columns import with_values
 from autocolor.testing import scenes
-from tests.autocolor.strategies import of_mesh
 from tests.small import cube
+from tests.tables import refused
 
 HAND_WRITTEN = """\
 # A car by hand.
@@ -37,6 +39,7 @@ ambient = 0.20   # as at dusk
 
 [[mesh]]
 file = "car.obj"
+crease_angle = 30 # sharp
 
 # Red all over.
 [surfaces.paint]
@@ -108,17 +111,6 @@ def test_every_column_of_a_scene_is_read_back_also_over_another_one(
     assert same(read_scene(folder), second)
 
 
-@given(scenes())
-def test_any_edit_of_a_file_that_says_little_is_read_back(
-    tmp_path_factory: pytest.TempPathFactory, drawn: Scene
-) -> None:
-    folder = tmp_path_factory.mktemp("scene")
-    (folder / "car.obj").write_text(CAR.replace("hood", "part 0").replace("roof", "part 1"))
-    (folder / "scene.toml").write_text(MINE)
-    assert saved(folder, of_mesh(drawn, read_scene(folder).mesh)).count("# Mine.") == 1
-    assert not (folder / "mesh.obj").exists()
-
-
 def test_a_scene_with_scalars_is_written_without_loss_and_a_new_scalar_to_a_new_file(tmp_path: Path) -> None:
     stress = MeshScalar("stress", np.array([np.nan, *range(7)]))
     load = MeshScalar("load", np.linspace(-1, 1, 6), "polygon")
@@ -141,9 +133,12 @@ def test_only_what_was_changed_is_changed_in_its_place(car: Path) -> None:
     assert saved(car, read_scene(car)) == HAND_WRITTEN
     scene = read_scene(car).with_surface("paint", object_color="#00ff00").with_light("sun", intensity=2.5)
     scene = scene.with_light("sun", flaps={"x": {"minimum": 0.3}}).with_part("roof", stage=True)
+    scene = scene.replace(mesh=dataclasses.replace(scene.mesh, crease_angle=50.0))
     assert changed_lines(HAND_WRITTEN, saved(car, scene.replace(ambient=0.25))) == [
         "-ambient = 0.20   # as at dusk",
         "+ambient = 0.25   # as at dusk",
+        "-crease_angle = 30 # sharp",
+        "+crease_angle = 50.0 # sharp",
         '-object_color = "#B01020"  # Ferrari',
         '+object_color = "#00ff00"  # Ferrari',
         '-roof = { surface = "paint" }',
@@ -152,26 +147,6 @@ def test_only_what_was_changed_is_changed_in_its_place(car: Path) -> None:
         "+flaps.x = { minimum = 0.3, on = true }",
         "+intensity = 2.5",
     ]
-
-
-def test_what_was_created_is_written_once_it_is_changed(tmp_path: Path) -> None:
-    (tmp_path / "car.obj").write_text(CAR)
-    (tmp_path / "scene.toml").write_text(MINE)
-    scene = read_scene(tmp_path)
-    assert saved(tmp_path, scene) == MINE
-    text = saved(tmp_path, scene.with_view(eye=(9.0, 9.0, 9.0), target=(0.0, 0.0, 0.0)))
-    assert text.startswith("# Mine.\n")
-    assert "[view]\neye = " in text
-    # Those that the new view would create are others.
-    assert text.count("[[lights]]") == 4
-
-
-def test_the_crease_angle_is_changed_where_the_file_gives_it(car: Path) -> None:
-    (car / "scene.toml").write_text(HAND_WRITTEN.replace('"car.obj"', '"car.obj"\ncrease_angle = 30 # sharp'))
-    scene = read_scene(car)
-    text = saved(car, scene.replace(mesh=dataclasses.replace(scene.mesh, crease_angle=50.0)))
-    assert "crease_angle = 50.0 # sharp\n" in text
-    assert not (car / "mesh.obj").exists()
 
 
 def test_a_changed_mesh_is_written_beside_and_the_comments_stay(car: Path) -> None:
@@ -226,16 +201,6 @@ def test_a_mesh_file_outside_of_the_folder_is_written_beside(car: Path, tmp_path
     assert "# The sun." in text
 
 
-@pytest.mark.parametrize(
-    "name", ['a"b', "a.b", "ö", " a", "a\n", "a\\", "#", "o\nv 0 0 0", "x" * 300, "\x7f", "="]
-)
-def test_names_of_any_characters_are_read_back(tmp_path: Path, name: str) -> None:
-    scene = scene_of(dataclasses.replace(cube(), part_names=(name,)), surfaces="parts")
-    scene = scene.with_light("key", name=name).replace(exposure={name: (0.0, 1.5)})
-    saved(tmp_path, scene)
-    saved(tmp_path, scene.with_surface(name, blend=0.125))
-
-
 def test_a_name_that_utf_8_lacks_is_refused_and_nothing_is_written(tmp_path: Path) -> None:
     space = {"\ud800": {"point": (0, 0, 0), "direction": (0, 0, 1)}}
     for fields, name in (({"name": "\ud800"}, r"'\\ud800'"), ({"half_spaces": space}, "'key'")):
@@ -246,12 +211,19 @@ def test_a_name_that_utf_8_lacks_is_refused_and_nothing_is_written(tmp_path: Pat
     assert list(tmp_path.iterdir()) == []
 
 
-def test_fields_at_their_defaults_are_left_out(tmp_path: Path) -> None:
+def test_fields_at_their_defaults_are_left_out_and_rows_of_a_light_have_a_line_each(tmp_path: Path) -> None:
     scene = scene_of(
         cube(),
         surfaces="parts",
         view={"eye": (0, -5, 0), "direction": (0, 1, 0)},
         lights=[Light("sun", (1.0, 2.0, 3.0))],
+    )
+    scene = scene.with_light(
+        "sun",
+        half_spaces={"a door": {"point": (0, 0, 0), "direction": (0, 1, 0), "on": False}},
+        flaps=Flaps(z=Flap(minimum=0.5), x=Flap(on=False)),
+        only_parts=["cube"],
+        except_surfaces=[],
     )
     assert saved(tmp_path, scene.with_surface("cube", diffuse=0.7, specular=0.5, exponent=20)) == (
         "[view]\neye = [0.0, -5.0, 0.0]\ndirection = [0.0, 1.0, 0.0]\n\n"
@@ -259,6 +231,9 @@ def test_fields_at_their_defaults_are_left_out(tmp_path: Path) -> None:
         '[parts.cube]\nsurface = "cube"\n\n'
         '[surfaces.cube]\nobject_color = "#f4a39b"\nblend = 0.88\nlight_percentage = 60.0\n\n'
         '[[lights]]\nname = "sun"\nposition = [1.0, 2.0, 3.0]\n'
+        "flaps.x = { on = false }\nflaps.z = { minimum = 0.5 }\n"
+        'half_spaces."a door" = { point = [0.0, 0.0, 0.0], direction = [0.0, 1.0, 0.0], on = false }\n'
+        'except_surfaces = []\nonly_parts = ["cube"]\n'
     )
 
 
@@ -278,26 +253,22 @@ def test_a_complete_file_has_all_keys_and_tells_what_was_written(car: Path) -> N
 
 PLACE = "a scene must be written to a folder or to a file that ends in .toml, .sqlite or .db, not to"
 
-
-@pytest.mark.parametrize(
-    ("name", "kind", "sentence"),
+test_a_path_of_another_kind_of_file_is_refused = refused(
+    lambda name: write_scene(name, scene_of(cube())),
     [
-        *(
-            (name, UsageError, f"{PLACE} {name}; choose another name")
-            for name in ("cube.obj", "a.npz", "mine.txt")
-        ),
-        ("", UsageError, "a scene must have a place, not an empty name; for the current folder write '.'"),
-        *((name, OutputError, "") for name in ("a\0b", "a\0b.toml", "x" * 300, "x" * 300 + ".toml")),
+        ("cube.obj", f"{PLACE} cube.obj; choose another name"),
+        ("a.npz", f"{PLACE} a.npz; choose another name"),
+        ("", "a scene must have a place, not an empty name; for the current folder write '.'"),
     ],
+    UsageError,
 )
-def test_a_path_where_no_scene_can_be_is_refused(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, kind: type[Exception], sentence: str
-) -> None:
-    monkeypatch.chdir(tmp_path)
+
+
+def test_no_file_of_another_kind_is_replaced_and_no_name_is_too_odd_to_be_refused(tmp_path: Path) -> None:
     (tmp_path / "mine.txt").write_text("mine")
-    with pytest.raises(kind) as refusal:
-        write_scene(name, scene_of(cube()), overwrite=True)
-    assert sentence in str(refusal.value)
+    for name in ("mine.txt", "a\0b", "a\0b.toml", "x" * 300, "x" * 300 + ".toml"):
+        with pytest.raises(UsageError if name == "mine.txt" else OutputError):
+            write_scene(tmp_path / name, scene_of(cube()), overwrite=True)
     assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]
 
 

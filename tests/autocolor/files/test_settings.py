@@ -67,6 +67,13 @@ def test_a_plain_value_and_its_text_set_the_same(key: str, plain: object, text: 
     assert not changed.equals(scene)
 
 
+def test_a_number_as_a_name_needs_no_quotes() -> None:
+    scene = wall_scene()
+    scene = scene.replace(surfaces=(*scene.surfaces, scene.surfaces[0].replace(name="2")))
+    assert scene_with(scene, {"parts.wall.surface": "2"}).parts[0].surface == "2"
+    assert scene_with(scene, {"lights.key.only_surfaces": "2"}).light("key").links.only_surfaces == ("2",)
+
+
 @pytest.mark.parametrize(("whole", "bands"), [(None, 16), ({"name": "x", "bands": 4}, 4)])
 def test_a_whole_row_is_set_before_its_fields_in_any_order(whole: object, bands: int) -> None:
     settings = {"scalar.name": "z", "scalar": whole}

@@ -1,17 +1,15 @@
 from __future__ import annotations
 
 import dataclasses
-import re
+import tempfile
 import tomllib
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from autocolor import Mesh, OutputError, read_scene, render, write_picture
+from autocolor import Mesh, read_scene, render, write_picture
 from autocolor.errors import InputError
-from autocolor.files.meshes.repair import MeshReport
-from autocolor.files.scene_toml import scene_meshes
 from autocolor.files.scene_toml.scene_meshes import (
     MeshSource,
     meshes_of,
@@ -21,6 +19,7 @@ from autocolor.files.scene_toml.scene_meshes import (
 )
 from autocolor.files.scene_toml.toml_text import SceneProblems
 from tests.small import cube
+from tests.tables import refused
 
 CAR = "v 0 0 0\nv 1 0 0\nv 1 1 2\nv 0 1 0\ng hood\nf 1 2 3 4\n"
 MESH = '[[mesh]]\nfile = "car.obj"\n'
@@ -38,15 +37,11 @@ def folder(tmp_path: Path) -> Path:
     return made
 
 
-def noted(folder: Path, text: str, outside: bool = False) -> tuple[list[MeshReport], SceneProblems]:
-    """The meshes of the `[[mesh]]` of a scene file, and the problems noted."""
+def read(folder: Path, text: str, outside: bool = False) -> list[Mesh]:
+    """The meshes of the `[[mesh]]` of a scene file."""
     document = tomllib.loads(text)
     problems = SceneProblems("scene.toml", text.encode(), document)
-    return meshes_of(problems, document["mesh"], folder, outside=outside), problems
-
-
-def read(folder: Path, text: str, outside: bool = False) -> list[Mesh]:
-    reports, problems = noted(folder, text, outside)
+    reports = meshes_of(problems, document["mesh"], folder, outside=outside)
     problems.raise_any()
     return [report.mesh for report in reports]
 
@@ -72,24 +67,32 @@ def test_each_mesh_has_its_up_axis_and_all_have_one_crease_angle(folder: Path) -
     ]
 
 
-@pytest.mark.parametrize(
-    ("keys", "given"),
+def refuse_text(text: str) -> None:
+    """Raise the problems of the `[[mesh]]` of a scene file in an empty folder."""
+    with tempfile.TemporaryDirectory() as empty:
+        read(Path(empty), text)
+
+
+NEEDS = "scene.toml, line 1, mesh[1]: it must have a file, or nodes and polygons, not"
+
+test_what_is_refused = refused(
+    refuse_text,
     [
-        ("", "none of them"),
-        ('nodes = "n.csv"\n', "nodes"),
-        ('polygons = "p.csv"\n', "polygons"),
-        ('file = "car.obj"\nnodes = "n.csv"\npolygons = "p.csv"\n', "file and nodes and polygons"),
+        ("[[mesh]]\n", f"{NEEDS} none of them; correct it"),
+        ('[[mesh]]\nnodes = "n.csv"\n', f"{NEEDS} nodes; correct it"),
+        ('[[mesh]]\npolygons = "p.csv"\n', f"{NEEDS} polygons; correct it"),
+        (
+            MESH + 'nodes = "n.csv"\npolygons = "p.csv"\n',
+            f"{NEEDS} file and nodes and polygons; correct it",
+        ),
+        (
+            "mesh = [1]\n",
+            "scene.toml, line 1, mesh[1]: must be a table of file, nodes, polygons, up, scale, normals and"
+            " crease_angle, not 1",
+        ),
+        (MESH * 1001, "scene.toml, line 1, mesh must have at most 1,000 tables, not 1,001; join some"),
     ],
 )
-def test_a_mesh_has_a_file_or_two_tables_and_nothing_else(folder: Path, keys: str, given: str) -> None:
-    assert refusal(folder, "[[mesh]]\n" + keys) == [
-        f"scene.toml, line 1, mesh[1]: it must have a file, or nodes and polygons, not {given}; correct it"
-    ]
-
-
-def test_a_mesh_that_is_no_table_is_refused(folder: Path) -> None:
-    for sentence in refusal(folder, 'mesh = [1, "car.obj", []]\n'):
-        assert re.match(r"scene.toml, line 1, mesh\[[123]\]: must be a table of file, nodes, ", sentence)
 
 
 @pytest.mark.parametrize("name", ["../car.obj", "/etc/passwd", "a\\\\b.obj", "http://x/car.obj", "link.obj"])
@@ -108,9 +111,6 @@ def test_the_problems_of_keys_and_of_files_stand_together(folder: Path) -> None:
         "scene.toml, line 4, mesh[1]: there is no field 'color'; choose 'file', 'nodes', 'polygons', 'up',"
         " 'scale', 'normals' or 'crease_angle'",
         "bad.obj, line 1: a node must have three coordinates x y z, not 2; add what is missing",
-    ]
-    assert refusal(folder, MESH * 1001) == [
-        "scene.toml, line 1, mesh must have at most 1,000 tables, not 1,001; join some"
     ]
 
 
@@ -156,31 +156,21 @@ def test_a_mesh_is_written_as_obj_or_as_arrays_where_obj_does_not_hold_it(
     assert np.array_equal(meshes.reports[0].mesh.node_numbers, mesh.node_numbers)
 
 
-def test_a_mesh_that_no_format_holds_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(scene_meshes, "has_same_tables", lambda *_: False)
-    written: list[Path] = []
-    with pytest.raises(OutputError, match=r"one of 6 polygons is too large; leave parts out"):
-        written_mesh(tmp_path, cube(), written)
-    assert list(tmp_path.iterdir()) == written == []
-
-
 def test_the_files_that_a_scene_file_names_come_first_unless_they_hold_another_mesh(folder: Path) -> None:
     (folder / "copy.obj").write_text(CAR)
     mesh = read_scene(folder / "car.obj", up="y", scale=0.25).mesh
-    named = '[[mesh]]\nfile = "copy.obj"\nscale = 0.25\ncrease_angle = 3\nup = "{}"\n'
-    found = meshes_there(folder, mesh, named.format("y").encode())
-    assert found is not None
-    assert found.entries == ({"file": "copy.obj", "scale": 0.25, "crease_angle": 3, "up": "y"},)
     source = {"file": "car.obj", "up": "y", "scale": 0.25}
-    for text in (named.format("z").encode(), None):
-        found = meshes_there(folder, mesh, text)
+    copy = {"file": "copy.obj", "scale": 0.25, "crease_angle": 3, "up": "y"}
+    named = '[[mesh]]\nfile = "copy.obj"\nscale = 0.25\ncrease_angle = 3\nup = "{}"\n'
+    for place, text, entry in (
+        (folder, named.format("y").encode(), copy),
+        (folder, named.format("z").encode(), source),
+        (folder, None, source),
+        (folder.parent, None, {**source, "file": "coupe/car.obj"}),
+    ):
+        found = meshes_there(place, mesh, text)
         assert found is not None
-        assert found.entries == (source,)
-    above = meshes_there(folder.parent, mesh, None)
-    assert above is not None
-    assert above.entries == ({**source, "file": "coupe/car.obj"},)
-    (folder / "inner").mkdir()
-    assert meshes_there(folder / "inner", mesh, None) is None
+        assert found.entries == (entry,)
     (folder / "car.obj").unlink()
     assert meshes_there(folder, mesh, None) is None
 
