@@ -1,7 +1,6 @@
 from __future__ import annotations
 
 import math
-import re
 from pathlib import Path
 
 import numpy as np
@@ -12,9 +11,7 @@ from hypothesis import strategies as st
 from autocolor.errors import InputError
 from autocolor.files.formats import format_of_folder
 from autocolor.files.meshes.csv_tables import (
-    NOTHING,
     ROWS_AT_ONCE,
-    NumberCells,
     csv_tables_bytes,
     read_csv_tables,
     write_csv_tables,
@@ -76,6 +73,8 @@ def test_every_problem_of_a_table_is_named_with_its_row(tmp_path: Path) -> None:
     # Rows are read in blocks, and a table may have empty lines.
     rows = "\n" * 2 + "".join(f"{row + 5},{row}.5,0,0\n" for row in range(ROWS_AT_ONCE))
     last = ROWS_AT_ONCE + 7
+    mesh = read(tmp_path, NODES + rows).mesh
+    assert mesh.coordinates[4:, 0].tolist() == [row + 0.5 for row in range(ROWS_AT_ONCE)]
     rule = "a coordinate must be a decimal number of at most 1e30 in size"
     assert refusal(tmp_path, NODES + rows + "x,nan,1e31,\n").splitlines() == [
         f"nodes.csv, row {last + 1}: a node number must be a whole number, not 'x'; correct it",
@@ -87,12 +86,12 @@ def test_every_problem_of_a_table_is_named_with_its_row(tmp_path: Path) -> None:
     ]
 
 
-COORDINATE = "row 2: a coordinate must be a decimal number of at most 1e30 in size, not {!r}; correct it"
+COORDINATE = ", row 2: a coordinate must be a decimal number of at most 1e30 in size, not {!r}; correct it"
 VALUE = (
-    "row 3: a value must be a decimal number of at most 1e30 in size, or empty if it is missing, not {!r};"
+    ", row 3: a value must be a decimal number of at most 1e30 in size, or empty if it is missing, not {!r};"
     " correct it"
 )
-UNKNOWN = "row 1: there is no column {!r} (separated by commas)"
+UNKNOWN = ", row 1: there is no column {!r} (separated by commas)"
 
 
 @pytest.mark.parametrize(
@@ -109,25 +108,31 @@ UNKNOWN = "row 1: there is no column {!r} (separated by commas)"
         (
             "nodes",
             NODES + "1,0,0,0\n",
-            "row 6: a node number must be unique, not repeated: 1; renumber it",
+            ", row 6: a node number must be unique, not repeated: 1; renumber it",
         ),
         (
             "nodes",
             NODES + "5,0,0,0,0\n",
-            "row 6: a row must have at most 4 cells, separated by commas, not 5; quote a value that contains"
+            ", row 6: a row must have at most 4 cells, separated by commas, not 5; quote a value that contains"
             " a separator",
         ),
+        ("nodes", "", ": a table must start with a row of column names, not be empty"),
+        ("nodes", "x,y,z\n", ": a node table must have a node, not none; add rows"),
         ("nodes", "nod,x,y,z\n", f"{UNKNOWN.format('nod')}; did you mean 'node'?"),
         (
             "nodes",
             "x,y,z,x\n",
-            "row 1: a column name must be unique, not repeated: 'x' (separated by commas); remove one",
+            ", row 1: a column name must be unique, not repeated: 'x' (separated by commas); remove one",
         ),
-        ("nodes", "x,y\n", "row 1: there must be a column 'z', not only x, y (separated by commas); add it"),
+        (
+            "nodes",
+            "x,y\n",
+            ", row 1: there must be a column 'z', not only x, y (separated by commas); add it",
+        ),
         (
             "nodes",
             ",".join(["x,y,z", *(f"s{number}" for number in range(1010))]),
-            "row 1: there must be at most 1,000 columns of scalars, not 1,013; remove some",
+            ", row 1: there must be at most 1,000 columns of scalars, not 1,013; remove some",
         ),
         *(
             ("polygons", f"{known}node1,node2,node3,node4,{name}\n", UNKNOWN.format(name))
@@ -136,28 +141,17 @@ UNKNOWN = "row 1: there is no column {!r} (separated by commas)"
         (
             "polygons",
             POLYGONS + "2,a,1,2,3,4\n",
-            "row 4: a polygon number must be unique, not repeated: 2; renumber it",
+            ", row 4: a polygon number must be unique, not repeated: 2; renumber it",
         ),
         (
             "polygons",
             POLYGONS + "3,a,1,,3,4\n",
-            "row 4: a corner must be a whole number, not ''; correct it",
+            ", row 4: a corner must be a whole number, not ''; correct it",
         ),
     ],
 )
 def test_what_is_refused(tmp_path: Path, name: str, text: str, sentence: str) -> None:
-    assert refusal(tmp_path, **{name: text}).startswith(f"{name}.csv, {sentence}")
-
-
-@pytest.mark.parametrize(
-    ("nodes", "sentence"),
-    [
-        ("", "nodes.csv: a table must start with a row of column names, not be empty"),
-        ("x,y,z\n", "nodes.csv: a node table must have a node, not none; add rows"),
-    ],
-)
-def test_an_empty_table_is_refused(tmp_path: Path, nodes: str, sentence: str) -> None:
-    assert refusal(tmp_path, nodes) == sentence
+    assert refusal(tmp_path, **{name: text}).startswith(f"{name}.csv{sentence}")
 
 
 @pytest.mark.parametrize(
@@ -191,26 +185,6 @@ def test_further_columns_are_scalars_and_empty_cells_missing_values(tmp_path: Pa
         ("heat", "polygon", "[nan, 5.0]"),
         ("stress of polygons", "polygon", "[7.0, 8.0]"),
     ]
-
-
-CELL = st.text("0123456789+-.eE _nx\u0661 ", max_size=6) | st.floats().map(repr) | st.integers().map(str)
-DECIMAL = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?", re.ASCII)
-WHOLE = re.compile(r"[+-]?[0-9]+(\.0*)?", re.ASCII)
-
-
-@given(st.lists(CELL, min_size=1, max_size=3), st.booleans(), st.booleans())
-def test_numbers_of_cells_are_those_of_a_slow_twin(cells: list[str], whole: bool, may_be_empty: bool) -> None:
-    try:
-        values = NumberCells("rule", whole, may_be_empty).numbers(cells).tolist()
-    except (ValueError, OverflowError):
-        return
-    for value, cell in zip(values, map(str.strip, cells), strict=True):
-        if not cell:
-            assert may_be_empty
-            assert value == NOTHING or math.isnan(value)
-        else:
-            assert (WHOLE if whole else DECIMAL).fullmatch(cell)
-            assert value == (int(cell.partition(".")[0]) if whole else float(cell))
 
 
 def test_a_mesh_is_two_tables_with_its_scalars() -> None:

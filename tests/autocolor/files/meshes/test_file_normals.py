@@ -6,14 +6,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from autocolor import (
-    Light,
     Mesh,
-    Reflectance,
-    View,
     read_scene,
     render,
     write_picture,
@@ -28,7 +23,7 @@ from autocolor.journal.places import checksum_of
 from autocolor.scene.geometry.normals import NodeNormals
 from autocolor.scene.mesh import has_same_tables
 from autocolor.scene.scalar import MeshScalar
-from tests.small import sphere, wall_scene
+from tests.small import sphere
 from tests.tables import refused
 
 SQUARE = [[0, 0, 0], [2, 0, 0], [2, 2, 0], [0, 2, 0], [1, 3, 0], [3, 3, 1]]
@@ -66,55 +61,6 @@ def with_normals(mesh: Mesh, path: Path) -> Mesh:
     own = NodeNormals(np.asfortranarray(unit), mesh.node_numbers)
     path.write_bytes(obj_text(Mesh(mesh.coordinates, mesh.node_numbers, own_normals=own)))
     return read_scene(path).mesh
-
-
-def test_a_coarse_sphere_with_its_own_normals_is_lit_as_a_fine_one(tmp_path: Path) -> None:
-    fields = {
-        "reflectance": Reflectance(1.0, 0.0),
-        "view": View((0.0, -40.0, 0.0), target=(0.0, 0.0, 0.0), field_of_view=3.0),
-        "lights": (Light("far", (0.6, -0.8, 0.0), aim=(0.0, 0.0, 0.0), at_infinity=True),),
-    }
-    # Its polygons meet at 45 degrees, which is a crease where normals are computed.
-    own = with_normals(sphere(8, 4), tmp_path / "sphere.obj")
-    pictures = [
-        render(wall_scene(mesh, **fields), 60, 60)  # type: ignore[arg-type]
-        for mesh in (sphere(128, 64), own)
-    ]
-    fine, coarse = (np.where(each.surface_number > 0, each.intensity, np.nan) for each in pictures)
-    assert np.nanmax(np.abs(coarse - fine)) < 0.2
-
-
-@given(
-    polygons=st.lists(
-        st.lists(st.tuples(st.integers(0, 5), st.integers(-2, 4)), min_size=3, max_size=6),
-        min_size=1,
-        max_size=4,
-    )
-)
-def test_each_corner_that_is_left_has_the_normal_of_the_file(polygons: list[list[tuple[int, int]]]) -> None:
-    # All normals point to the front or lie in the plane, as far as polygons are in the plane and not turned.
-    normals = [[0, 0, 3], [1, 0, 1], [0, -1e200, 1e200], [np.nan, 0, 1]]
-    unit = [[0, 0, 1], [0.5**0.5, 0, 0.5**0.5], [0, -(0.5**0.5), 0.5**0.5]]
-    try:
-        mesh = mesh_of(
-            [[node for node, _ in each] for each in polygons],
-            normals,
-            [[row for _, row in each] for each in polygons],
-        ).mesh
-    except InputError:
-        return
-    allowed = {node: [None] for node in range(6)}
-    for polygon in polygons:
-        for node, row in polygon:
-            allowed[node].append(unit[row] if 0 <= row < 3 else None)  # type: ignore[arg-type]
-    for nodes, vectors in zip(mesh.node_numbers.tolist(), vectors_of(mesh) or [], strict=False):
-        for node, vector in zip(nodes, vectors, strict=True):
-            assert any(
-                vector is each or (vector and each and np.allclose(np.abs(vector), np.abs(each)))
-                for each in allowed[node]
-            )
-    assert np.isfinite(mesh.normals.vectors).all()
-    assert (mesh.normals.numbers >= 0).all()
 
 
 def test_pieces_and_repaired_polygons_keep_their_normals() -> None:

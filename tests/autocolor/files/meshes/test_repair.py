@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from autocolor.errors import InputError
 from autocolor.files.meshes.repair import (
     FLAT,
     LONGEST_NAME,
@@ -115,6 +116,16 @@ test_a_mesh_without_polygons_left_is_refused = refused(
         )
     ],
 )
+
+
+@given(st.lists(st.lists(st.integers(0, 5), max_size=9), max_size=6))
+def test_whatever_is_left_has_area_and_normals(polygons: list[list[int]]) -> None:
+    try:
+        mesh = mesh_of(*polygons).mesh
+    except InputError:
+        return
+    assert np.isfinite(mesh.normals.vectors).all()
+    assert all(len(set(row)) >= 3 for row in mesh.node_numbers.tolist())
 
 
 def flat(corners: list[list[float]]) -> bool:
