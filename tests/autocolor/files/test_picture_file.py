@@ -10,7 +10,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -308,7 +308,7 @@ test_a_header_that_breaks_a_rule_is_refused = refused(
             (lit_wall, "surfaces", ["a"], ": its surfaces must be the scene's, ['wall'], not ['a']"),
             *(
                 (lit_wall, "scene", value, f": scene: it must be tables, its mesh among them, not {value}")
-                for value in ([], {"mesh": []})
+                for value in cast("tuple[object, ...]", ([], {"mesh": []}))
             ),
             (lit_wall, "scene.lights", None, ": lights must be a list of Light rows, not missing; add it"),
             (
@@ -345,7 +345,6 @@ ONE_SHAPE = "its arrays must be of one shape, not"
         (lit_wall, "relative_intensity", np.full(RASTER, -1, np.float32), FINITE),
         (lit_wall, "surface_number", np.full(RASTER, 2, np.uint8), "with polygons, not 2"),
         (panels, "surface_number", np.full(RASTER, 2, np.uint8), "with polygons, not 2"),
-        (lit_wall, "surface_number", np.zeros((*RASTER, 1), np.uint8), OF_TYPE),
         (lit_wall, "part_number", np.ones((ELEMENTS, LINES), np.int32), ONE_SHAPE),
         (lit_wall, "node_numbers", np.array([[0, 1, 2, 4]], np.int32), "of the node table (0 to 3)"),
         (in_color, "mesh_scalar_0", np.zeros(11), "one value a node"),
@@ -374,11 +373,6 @@ def test_part_numbers_that_break_a_rule_are_refused_in_a_sentence(at: int, numbe
         "changed.npz: a part number must be that of a part of the surface there, not"
         f" {number} (line {line}, element {element}); save the picture again"
     )
-
-
-def test_another_part_of_the_same_surface_may_be_at_a_pixel() -> None:
-    numbers = read(content(panels)).picture.part_number
-    read(with_array(content(panels), "part_number", np.where(numbers > 0, 2, 0).astype(np.int32)))
 
 
 def described(text: str, data: bytes = b"") -> bytes:

@@ -113,8 +113,8 @@ UNKNOWN = ", row 1: there is no column {!r} (separated by commas)"
         (
             "nodes",
             NODES + "5,0,0,0,0\n",
-            ", row 6: a row must have at most 4 cells, separated by commas, not 5; quote a value that contains"
-            " a separator",
+            ", row 6: a row must have at most 4 cells, separated by commas, not 5; quote a value that"
+            " contains a separator",
         ),
         ("nodes", "", ": a table must start with a row of column names, not be empty"),
         ("nodes", "x,y,z\n", ": a node table must have a node, not none; add rows"),

@@ -64,7 +64,7 @@ def with_normals(mesh: Mesh, path: Path) -> Mesh:
 
 
 def test_pieces_and_repaired_polygons_keep_their_normals() -> None:
-    normals = [UP, [1, 0, 1], [0, 1, 1], [-1, 0, 1], [0, -1, 1]]
+    normals: list[list[float]] = [UP, [1, 0, 1], [0, 1, 1], [-1, 0, 1], [0, -1, 1]]
     mesh = mesh_of([[0, 1, 2, 4, 3], [0, 0, 1, 2]], normals, [[0, 1, 2, 3, 4], [9, 0, 1, 2]]).mesh
     own = dict(zip([0, 1, 2, 4, 3], normals, strict=True))
     for nodes, vectors in zip(mesh.node_numbers.tolist(), vectors_of(mesh)[:-1], strict=False):

@@ -124,17 +124,6 @@ def test_a_bad_number_is_told_with_its_line_and_the_default_is_used(folder: Path
     assert report.materials == (surface(),)
 
 
-def test_parts_have_materials_and_these_their_surfaces(folder: Path) -> None:
-    (folder / "car.obj").write_text(
-        "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\nmtllib red.mtl\ng hood\nf 1 2 3\nusemtl red\nf 1 2 3\ng door\n"
-        "f 1 2 3\nusemtl blue\nf 1 2 3\n"
-    )
-    report = read_obj(folder / "car.obj")
-    assert report.mesh.part_names == ("car", "hood", "hood red", "door", "door blue")
-    assert report.material_of_part == {"hood red": "red", "door": "red", "door blue": "blue"}
-    assert report.materials == (surface(object_color=(255, 0, 0)),)
-
-
 def test_materials_that_no_library_defines_are_told(folder: Path) -> None:
     for count, more in ((3, ""), (4, " and 1 more"), (9, " and 6 more")):
         wanted = (b"red", *(b"tin%d" % number for number in range(count)))

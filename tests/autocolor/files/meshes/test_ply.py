@@ -151,16 +151,16 @@ def test_elements_with_any_properties_are_read_and_refused_if_they_are_cut(
 
 @pytest.mark.parametrize("order", FORMATS)
 @pytest.mark.parametrize("feed", ["\n", "\r\n", "\r"])
-def test_lines_end_in_any_way(path: Path, order: str, feed: str) -> None:
+def test_lines_end_in_any_way_and_faces_may_be_empty(path: Path, order: str, feed: str) -> None:
     # The numbers of a binary file may begin like the end of a line.
     elements: dict[str, Columns] = {
         "vertex": {"uchar heat": [10, 13, 10, 13], **xyz()},
-        "face": {CORNERS: [(0, 1, 2, 3)]},
+        "face": {CORNERS: [(), (), (0, 1, 2, 3)]},
     }
-    report = read(path, ply_file(elements, order=order, feed=feed, breaks="\n \t\n"))
-    assert report.mesh.scalars[0].values.tolist() == [10, 13, 10, 13]
-    assert report.mesh.coordinates.tolist() == [list(node) for node in SQUARE]
-    assert report.repairs == ()
+    mesh = read(path, ply_file(elements, order=order, feed=feed, breaks="\n \t\n")).mesh
+    assert mesh.scalars[0].values.tolist() == [10, 13, 10, 13]
+    assert mesh.coordinates.tolist() == [list(node) for node in SQUARE]
+    assert mesh.node_numbers.tolist() == [[0, 1, 2, 3]]
 
 
 LINE = (
@@ -371,19 +371,15 @@ test_what_does_not_fit_its_counts_is_refused = refused(
             for count, properties, data in (
                 (10**17, WIDE, bytes(20)),
                 (2, ("list uchar uchar a",), b"\1\0\xff\0"),
-                (2, ("list uint64 uchar a",), b"\0" * 8 + b"\xff" * 8),
                 (1, ("list uint64 uchar a",), b"\xff" * 8 + bytes(9)),
                 (2, ("list char uchar a",), b"\xff" + bytes(20)),
                 (2, ("list int uchar a",), b"\0\0\0\0\xfe\xff\xff\xff" + bytes(20)),
                 (3, ("list char uchar a", "list char uchar b"), b"\0\0\0\xff" + bytes(9)),
             )
         ),
-        *(
-            (
-                sized(count, *WIDE, order="", data=b"1 0\n"),
-                f"a.ply: there must be {count:,} elements 'face', not 1; {CUT}",
-            )
-            for count in (2, 999_999_999_999)
+        (
+            sized(999_999_999_999, *WIDE, order="", data=b"1 0\n"),
+            f"a.ply: there must be 999,999,999,999 elements 'face', not 1; {CUT}",
         ),
         *(
             (sized(2, *WIDE, order="", data=data), f"a.ply, line {line}: {WIDTH}")
@@ -395,12 +391,6 @@ test_what_does_not_fit_its_counts_is_refused = refused(
         ),
     ],
 )
-
-
-def test_faces_may_be_empty(path: Path) -> None:
-    for order in FORMATS:
-        mesh = read(path, plate(corners=[(), (), (), (), (), (0, 1, 2, 3)], order=order)).mesh
-        assert mesh.node_numbers.tolist() == [[0, 1, 2, 3]]
 
 
 def test_a_scalar_is_written_under_its_name_where_that_is_free() -> None:
