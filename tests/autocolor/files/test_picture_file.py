@@ -10,7 +10,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -27,18 +27,17 @@ from autocolor import (
     Part,
     Scene,
     UsageError,
-    image,
     read_picture,
-    read_scene,
     render,
     scene_of,
     write_picture,
 )
 from autocolor.checks import shown
-from autocolor.errors import MissingInputError, OutputError
+from autocolor.errors import OutputError
 from autocolor.files.array_file import array_file_bytes, read_array_file
 from autocolor.files.picture_file import PICTURE_FILE, SavedPicture
 from autocolor.images import display_image
+from autocolor.lighting.picture import Picture
 from autocolor.scene.columns import keys_of
 from autocolor.scene.scalar import MeshScalar
 from autocolor.scene.surfaces import Paint, Reflectance, Surface
@@ -85,9 +84,13 @@ def panels() -> Scene:
 def content(make: Callable[[], Scene]) -> bytes:
     """The bytes of the picture file of a scene."""
     scene = make()
+    return bytes_of(scene, render(scene, LINES, ELEMENTS))
+
+
+def bytes_of(scene: Scene, picture: Picture) -> bytes:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder, "made.npz")
-        write_picture(path, scene, render(scene, LINES, ELEMENTS))
+        write_picture(path, scene, picture)
         return path.read_bytes()
 
 
@@ -96,13 +99,6 @@ def read(data: bytes) -> SavedPicture:
         path = Path(folder, "changed.npz")
         path.write_bytes(data)
         return read_picture(path)
-
-
-def written_again(saved: SavedPicture) -> bytes:
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder, "again.npz")
-        write_picture(path, saved.scene, saved.picture)
-        return path.read_bytes()
 
 
 def members_of(data: bytes) -> dict[str, bytes]:
@@ -129,22 +125,21 @@ def header_of(whole: bytes) -> Header:
     return header
 
 
-def with_header(whole: bytes, header: Header | bytes) -> bytes:
-    data = header if isinstance(header, bytes) else json.dumps(header).encode()
-    return with_array(whole, "header", np.frombuffer(data, np.uint8))
+def with_header(whole: bytes, header: bytes) -> bytes:
+    return with_array(whole, "header", np.frombuffer(header, np.uint8))
 
 
-def edited(whole: bytes, path: str, value: object = None) -> bytes:
+def edited(whole: bytes, path: str, value: object) -> bytes:
     """The file with another value at a path of its header; without a value if it is None."""
     header: Any = header_of(whole)
-    *keys, last = [int(key) if key.isdecimal() else key for key in path.split(".")]
+    *keys, last = path.split(".")
     table = header
     for key in keys:
         table = table[key]
     table[last] = value
     if value is None:
         del table[last]
-    return with_header(whole, header)
+    return with_header(whole, json.dumps(header).encode())
 
 
 def is_equal(one: Scene, other: Scene) -> bool:
@@ -158,22 +153,23 @@ def is_equal(one: Scene, other: Scene) -> bool:
     )
 
 
-@given(scene=linked_scenes())
-def test_every_scene_that_renders_comes_back_with_its_picture(
-    scene: Scene, tmp_path_factory: pytest.TempPathFactory
+@given(scene=linked_scenes(), smooth=st.sampled_from([1, np.int64(3)]))
+def test_every_scene_that_renders_comes_back_with_its_picture_and_is_written_the_same(
+    scene: Scene, smooth: int
 ) -> None:
     try:
-        picture = render(scene, LINES, ELEMENTS)
+        picture = render(scene, LINES // smooth, ELEMENTS // smooth, smooth=smooth)
         now = display_image(scene, picture)
     except InputError:
         return
-    path = tmp_path_factory.mktemp("pictures") / "scene.npz"
-    write_picture(path, scene, picture)
-    again = read_picture(path)
+    data = bytes_of(scene, picture)
+    again = read(data)
     assert is_equal(again.scene, scene)
-    assert is_equal(read_scene(path), scene)
-    for name in ("intensity", "surface_number", "part_number"):
-        assert np.array_equal(getattr(again.picture, name), getattr(picture, name))
+    assert bytes_of(again.scene, again.picture) == data
+    for name in ("intensity", "surface_number", "part_number", "scalar"):
+        one, other = getattr(again.picture, name), getattr(picture, name)
+        assert (one is None) is (other is None)
+        assert one is None or one.tobytes() == other.tobytes()
     for name in ("parts", "surfaces", "ranges", "scalar_limits", "smooth"):
         assert getattr(again.picture, name) == getattr(picture, name)
     then = display_image(again.scene, again.picture)
@@ -181,27 +177,10 @@ def test_every_scene_that_renders_comes_back_with_its_picture(
     assert (then.entries == now.entries).all()
 
 
-@pytest.mark.parametrize("name", ["stress", "load", "\udcff", "z"])
-def test_a_picture_comes_back_with_its_scalar_and_is_written_with_the_same_bytes(
-    tmp_path: Path, name: str
-) -> None:
-    scene = in_color().replace(scalar={"name": name})
-    picture = render(scene, LINES, ELEMENTS)
-    write_picture(tmp_path / "one.npz", scene, picture)
-    again = read_picture(tmp_path / "one.npz")
-    assert is_equal(again.scene, scene)
-    assert picture.scalar is not None
-    assert again.picture.scalar is not None
-    assert again.picture.scalar.tobytes() == picture.scalar.tobytes()
-    assert again.picture.scalar_limits == picture.scalar_limits
-    assert written_again(again) == (tmp_path / "one.npz").read_bytes()
-
-
 def test_numpy_can_open_a_picture_file() -> None:
     picture, scene = read(content(in_color))
+    assert is_equal(scene, in_color())
     with np.load(io.BytesIO(content(in_color))) as arrays:
-        scalars = {"mesh_scalar_0", "mesh_scalar_1", "mesh_scalar_2", "scalar_0"}
-        assert {*arrays} == {"header", *PICTURE_FILE.arrays, *scalars}
         scale = json.loads(arrays["header"].tobytes())["scale"]
         assert (arrays["relative_intensity"] * np.float32(scale) == picture.intensity).all()
         assert (arrays["surface_number"] == picture.surface_number).all()
@@ -210,53 +189,36 @@ def test_numpy_can_open_a_picture_file() -> None:
         assert arrays["mesh_scalar_1"].tolist() == np.linspace(-1, 1, 6).tolist()
 
 
-def test_a_smooth_picture_comes_back_with_its_smoothness(tmp_path: Path) -> None:
-    scene = lit_wall()
-    # Integers of numpy are as good as others.
-    lines, elements, smooth = np.array([LINES // 3, ELEMENTS // 3, 3])
-    picture = render(scene, lines, elements, smooth=smooth)
-    write_picture(tmp_path / "wall.npz", scene, picture)
-    again = read_picture(tmp_path / "wall.npz")
-    assert again.picture.smooth == 3
-    assert (image(*again[::-1]) == image(scene, picture)).all()
-    # The file is that of a plain picture with one number more.
-    header = header_of((tmp_path / "wall.npz").read_bytes())
-    assert header == {**header_of(content(lit_wall)), "smooth": 3}
-
-
 def test_an_existing_file_is_kept_unless_it_may_be_overwritten(tmp_path: Path) -> None:
     path, (picture, scene) = tmp_path / "wall.npz", read(content(lit_wall))
     path.write_bytes(b"mine")
     with pytest.raises(OutputError):
         write_picture(path, scene, picture)
-    assert path.read_bytes() == b"mine"
     guarded: list[bytes] = []
-    write_picture(
-        path,
-        scene,
-        picture,
-        overwrite=True,
-        guard=lambda _: lambda: guarded.append(path.read_bytes()),
-    )
+    guard = lambda _: lambda: guarded.append(path.read_bytes())  # noqa: E731
+    write_picture(path, scene, picture, overwrite=True, guard=guard)
     assert (guarded, path.read_bytes()) == ([b"mine"], content(lit_wall))
 
 
-def test_a_picture_that_is_not_of_the_scene_or_has_another_suffix_is_not_written(tmp_path: Path) -> None:
-    picture, scene = read(content(lit_wall))
-    colored = read(content(in_color))
-    other = scene.replace(surfaces=[Surface("paint")], parts=[Part("wall", "paint")])
-    alone = "a picture and its scene must both have a scalar or neither, not one alone; render the scene"
-    suffix = f"a picture with its scene must be written to a file that ends in .npz, not to {tmp_path}"
-    for name, shown_scene, sentence in (
-        ("wall.png", scene, f"{suffix}/wall.png; rename it"),
-        ("wall.npz", scene.replace(scalar={"name": "z"}), alone),
-        ("wall.npz", other, "must be those of the scene, ['paint'], not"),
-    ):
-        with pytest.raises((InputError, UsageError)) as refusal:
-            write_picture(tmp_path / name, shown_scene, picture)
-        assert sentence in str(refusal.value)
-    with pytest.raises(UsageError, match=alone):
-        write_picture(tmp_path / "wall.npz", colored.scene.replace(scalar=None), colored.picture)
+ALONE = "a picture and its scene must both have a scalar or neither, not one alone; render the scene"
+PAINTED = {"surfaces": [Surface("paint")], "parts": [Part("wall", "paint")]}
+
+
+@pytest.mark.parametrize(
+    ("make", "name", "changes", "sentence"),
+    [
+        (lit_wall, "wall.png", {}, "a picture with its scene must be written to a file that ends in .npz"),
+        (lit_wall, "wall.npz", {"scalar": {"name": "z"}}, ALONE),
+        (in_color, "wall.npz", {"scalar": None}, ALONE),
+        (lit_wall, "wall.npz", PAINTED, r"must be those of the scene, \['paint'\], not"),
+    ],
+)
+def test_a_picture_that_is_not_of_the_scene_or_has_another_suffix_is_not_written(
+    tmp_path: Path, make: Callable[[], Scene], name: str, changes: Header, sentence: str
+) -> None:
+    picture, scene = read(content(make))
+    with pytest.raises((InputError, UsageError), match=sentence):
+        write_picture(tmp_path / name, scene.replace(**changes), picture)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -295,7 +257,7 @@ def test_a_picture_file_of_an_older_format_is_still_read(tmp_path: Path, version
     assert (again.picture.intensity == picture.intensity).all()
     assert (again.picture.surface_number == picture.surface_number).all()
     # It does not know its parts, also once it is written again.
-    for each in (again, read(written_again(again))):
+    for each in (again, read(bytes_of(again.scene, again.picture))):
         assert each.picture.parts == ()
         assert each.picture.part_number.shape == (LINES, ELEMENTS)
         assert not each.picture.part_number.any()
@@ -322,126 +284,72 @@ def test_changed_bytes_are_refused_or_give_a_picture_that_can_be_shown(
         display_image(scene, picture)
 
 
-# Rules.
-
-
-def told(cases: list[tuple[Any, str]]) -> list[tuple[Any, str]]:
-    return [(given, f"changed.npz{sentence}; save the picture again") for given, sentence in cases]
-
-
-SURFACES = ": its surfaces must be the scene's, ['wall'], not"
 SMOOTH = ": smooth must be a whole number that divides its lines and elements, (9, 12), not"
-SCALE = ": its scale must be a number above 0, not"
-WHOLE = ": a picture file must be whole and as autocolor wrote it, and it is not"
-KEYS = f"{WHOLE} (its header must have exactly the keys of its format)"
-TABLES = ": scene: it must be tables, its mesh among them, not"
+LIMITS = ": shown_scalars[1].limits must be two finite numbers, the second above the first, not"
 
 test_a_header_that_breaks_a_rule_is_refused = refused(
-    lambda place: read(edited(content(lit_wall), *place)),
-    told(
-        [
-            (("format", "autocolor picture 5"), f"{WHOLE} (its format must be 'autocolor picture 4')"),
-            (("more", 1), KEYS),
-            (("scale",), KEYS),
-            *(
-                (("smooth", value), f"{SMOOTH} {shown(value)}")
-                for value in (0, -3, 2, 9, 3.0, True, "3", [3])
-            ),
-            *((("scale", value), f"{SCALE} {shown(value)}") for value in (0, -1.5, True, "1", 3.5e38)),
-            (("scale", 3.3e38), ": every intensity must be a number from 0 to 3.4e+38"),
-            (("surfaces", ["other"]), f"{SURFACES} ['other']"),
-            (("surfaces", ["wall", "more"]), f"{SURFACES} ['wall', 'more']"),
-            (("scene", []), f"{TABLES} []"),
-            (("scene", {"mesh": []}), f"{TABLES} {{'mesh': []}}"),
-            (("mesh_scalars", 3), f"{WHOLE} (mesh_scalars must be a list of at most 1,000 rows, not 3)"),
-            (
-                ("shown_scalars", [1, 2]),
-                f"{WHOLE} (shown_scalars must be a list of at most 1 rows, not [1, 2])",
-            ),
-            (
-                ("scene.lights.0.intensity", -1),
-                ": lights[1].intensity must be a finite number of at least 0, not -1",
-            ),
-            (("scene.lights",), ": lights must be a list of Light rows, not missing; add it"),
-            (("scene.mesh.crease_angle",), ": mesh: crease_angle must be a number from 0 to 180, not nan"),
-        ]
-    ),
-)
-
-LIMITS = ": shown_scalars[1].limits must be two finite numbers, the second above the first, not"
-AT_PIXELS = "there must be a scalar at the pixels if the scene shows one, and none if it does not, not 1"
-
-test_a_header_with_wrong_scalars_is_refused = refused(
-    lambda place: read(edited(content(in_color), *place)),
-    told(
-        [
-            (("mesh_scalars.0.name", 3), ": a scalar must have a name, not 3; give it a name"),
-            (
-                ("mesh_scalars.0.of", "polygon"),
-                ": scalar 'stress': there must be one value a polygon (6), not 12",
-            ),
-            (("mesh_scalars.0", 1), ": mesh_scalars[1] must be a table of name and of, not 1"),
-            (("shown_scalars.0.limits", [0, 1e300]), f"{LIMITS} [0, 1e+300]"),
-            (("shown_scalars.0.more", 3), f"{LIMITS} {{'limits': [0.0, 10.0], 'more': 3}}"),
-            (("shown_scalars.0", 3), f"{LIMITS} 3"),
-            (("scene.scalar",), f": {AT_PIXELS}"),
-        ]
-    ),
-)
-
-
-@pytest.mark.parametrize(
-    "text",
+    lambda place: read(edited(content(place[0]), *place[1:])),
     [
-        b"",
-        b"{",
-        b"null",
-        b"\xff\xfe{}",
-        b'{"format": NaN}',
-        b"[" * 100_000,
-        b'{"a":' * 100_000,
-        b"9" * 5000,
-        b"[" + b"[]," * 1_000_001 + b"[]]",
-        b" " * ((16 << 20) + 1),
+        ((make, key, value), f"changed.npz{sentence}; save the picture again")
+        for make, key, value, sentence in (
+            (
+                in_color,
+                "scene.scalar",
+                None,
+                ": there must be a scalar at the pixels if the scene shows one, and none if it does not, not"
+                " 1",
+            ),
+            *((lit_wall, "smooth", value, f"{SMOOTH} {shown(value)}") for value in (0, -3, 2, 3.0, True)),
+            *(
+                (lit_wall, "scale", value, f": its scale must be a number above 0, not {shown(value)}")
+                for value in (0, -1.5, True, "1", 3.5e38)
+            ),
+            (lit_wall, "scale", 3.3e38, ": every intensity must be a number from 0 to 3.4e+38"),
+            (lit_wall, "surfaces", ["a"], ": its surfaces must be the scene's, ['wall'], not ['a']"),
+            *(
+                (lit_wall, "scene", value, f": scene: it must be tables, its mesh among them, not {value}")
+                for value in cast("tuple[object, ...]", ([], {"mesh": []}))
+            ),
+            (lit_wall, "scene.lights", None, ": lights must be a list of Light rows, not missing; add it"),
+            (
+                lit_wall,
+                "scene.mesh.crease_angle",
+                None,
+                ": mesh: crease_angle must be a number from 0 to 180, not nan",
+            ),
+            *(
+                (in_color, "shown_scalars", [row], f"{LIMITS} {shown(told)}")
+                for row, told in (
+                    ({"limits": [0, 1e300]}, [0, 1e300]),
+                    ({"limits": [0, 1], "more": 3}, {"limits": [0, 1], "more": 3}),
+                    (3, 3),
+                )
+            ),
+        )
     ],
-    ids=lambda text: repr(text[:9]),
 )
-def test_a_header_that_is_no_json_of_ours_is_refused(text: bytes) -> None:
-    with pytest.raises(InputError, match=r"^changed\.npz: a picture file must be whole"):
-        read(with_header(content(lit_wall), text))
 
 
-INTENSITY = "relative_intensity"
 RASTER = (LINES, ELEMENTS)
 OF_TYPE = " dimensions, not "
 FINITE = "every intensity must be a number from 0 to 3.4e+38"
 ONE_SHAPE = "its arrays must be of one shape, not"
-MEMBERS = "its members are 'header.npy', 'relative_intensity.npy', 'surface_number.npy'"
 
 
 @pytest.mark.parametrize(
     ("make", "name", "array", "sentence"),
     [
-        (lit_wall, INTENSITY, np.zeros(RASTER), OF_TYPE),
-        (lit_wall, INTENSITY, np.zeros(RASTER, ">f4"), OF_TYPE),
-        (lit_wall, INTENSITY, np.zeros((ELEMENTS, LINES), np.float32), ONE_SHAPE),
-        (lit_wall, INTENSITY, np.zeros((0, ELEMENTS), np.float32), ONE_SHAPE),
-        (lit_wall, INTENSITY, np.full(RASTER, np.nan, np.float32), FINITE),
-        (lit_wall, INTENSITY, np.full(RASTER, -1, np.float32), FINITE),
+        (lit_wall, "relative_intensity", np.zeros(RASTER), OF_TYPE),
+        (lit_wall, "relative_intensity", np.zeros((ELEMENTS, LINES), np.float32), ONE_SHAPE),
+        (lit_wall, "relative_intensity", np.full(RASTER, np.nan, np.float32), FINITE),
+        (lit_wall, "relative_intensity", np.full(RASTER, -1, np.float32), FINITE),
         (lit_wall, "surface_number", np.full(RASTER, 2, np.uint8), "with polygons, not 2"),
         (panels, "surface_number", np.full(RASTER, 2, np.uint8), "with polygons, not 2"),
-        (lit_wall, "surface_number", np.zeros((*RASTER, 1), np.uint8), OF_TYPE),
         (lit_wall, "part_number", np.ones((ELEMENTS, LINES), np.int32), ONE_SHAPE),
-        (lit_wall, "coordinates", np.full((4, 3), 1e31), "coordinates must be"),
         (lit_wall, "node_numbers", np.array([[0, 1, 2, 4]], np.int32), "of the node table (0 to 3)"),
-        (lit_wall, "part_numbers", np.array([1], np.int32), "of the part table (0 to 0)"),
-        (lit_wall, "part_numbers", np.array([{"a": 1}], object), OF_TYPE),
         (in_color, "mesh_scalar_0", np.zeros(11), "one value a node"),
-        (in_color, "mesh_scalar_0", np.zeros(12, np.float32), OF_TYPE),
-        (in_color, "mesh_scalar_3", np.zeros(6), MEMBERS),
         (in_color, "scalar_0", np.zeros((ELEMENTS, LINES), np.float32), "at each of (9, 12) pixels"),
         (in_color, "scalar_0", np.full(RASTER, np.inf, np.float32), "at each of (9, 12) pixels"),
-        (in_color, "scalar_1", np.zeros(RASTER, np.float32), MEMBERS),
     ],
 )
 def test_a_wrong_array_is_refused(
@@ -453,25 +361,18 @@ def test_a_wrong_array_is_refused(
     assert sentence in str(caught.value)
 
 
-def test_part_numbers_that_break_a_rule_are_refused_in_a_sentence() -> None:
+@pytest.mark.parametrize(("at", "number"), [(1, 4), (1, -1), (1, 0), (1, 3), (0, 1), (0, 3)])
+def test_part_numbers_that_break_a_rule_are_refused_in_a_sentence(at: int, number: int) -> None:
     whole = content(panels)
-    again = read(whole)
-    assert again.picture.parts == ("a", "b", "none")
-    numbers = again.picture.part_number
-    assert set(numbers.ravel().tolist()) == {0, 1, 2}
-    for at, wrong in ((1, (4, -1, 0, 3)), (0, (1, 3))):
-        line, element = np.argwhere(numbers == at)[0].tolist()
-        for number in wrong:
-            changed = numbers.copy()
-            changed[line, element] = number
-            with pytest.raises(InputError) as caught:
-                read(with_array(whole, "part_number", changed))
-            assert str(caught.value) == (
-                "changed.npz: a part number must be that of a part of the surface there, not"
-                f" {number} (line {line}, element {element}); save the picture again"
-            )
-    # Another part of the same surface may be there.
-    read(with_array(whole, "part_number", np.where(numbers > 0, 2, 0).astype(np.int32)))
+    numbers = read(whole).picture.part_number.copy()
+    line, element = np.argwhere(numbers == at)[0].tolist()
+    numbers[line, element] = number
+    with pytest.raises(InputError) as caught:
+        read(with_array(whole, "part_number", numbers))
+    assert str(caught.value) == (
+        "changed.npz: a part number must be that of a part of the surface there, not"
+        f" {number} (line {line}, element {element}); save the picture again"
+    )
 
 
 def described(text: str, data: bytes = b"") -> bytes:
@@ -485,16 +386,12 @@ SHAPE = "{{'descr': '<f4', 'fortran_order': False, 'shape': {}, }}\n"
 @pytest.mark.parametrize(
     "data",
     [
-        b"\x93NUMPY",
         b"\x93NUMPY\x02\x00" + b"\0" * 100,
         b"\x93NUMPY\x01\x00\xff\xff",
-        *(described(SHAPE.format(shape)) for shape in ("(99999999999, 99999999999)", "(-1, 4)", "(1.5, 1)")),
-        described(SHAPE.format("(0, 99999999999)")),
-        described(SHAPE.format("(True, 1)"), b"\0" * 4),
+        *(described(SHAPE.format(shape)) for shape in ("(99999999999, 99999999999)", "(-1, 4)")),
         described("{'descr': '|O', 'fortran_order': False, 'shape': (1, 1), }\n", b"\x80\x04N."),
         described("__import__('os')\n"),
         described("(" * 1000),
-        described("-" * 1000 + "1"),
     ],
 )
 def test_an_array_of_another_description_is_refused_before_memory_is_taken(data: bytes) -> None:
@@ -506,32 +403,16 @@ def test_an_array_of_another_description_is_refused_before_memory_is_taken(data:
     tracemalloc.stop()
 
 
-@pytest.mark.filterwarnings("ignore:Duplicate name")
-def test_other_members_are_refused() -> None:
-    members = members_of(content(lit_wall))
-    twice = io.BytesIO(content(lit_wall))
-    with zipfile.ZipFile(twice, "a") as archive:
-        archive.writestr("header.npy", members["header.npy"])
+def test_a_file_that_is_cut_short_or_has_other_members_is_refused() -> None:
+    whole = content(lit_wall)
+    members = members_of(whole)
     for data in (
-        zipped({}),
+        *(whole[:length] for length in range(0, len(whole), 97)),
         zipped({name: data for name, data in members.items() if name != "header.npy"}),
         zipped({**members, "../header.npy": b""}),
-        zipped({f"folder/{name}": data for name, data in members.items()}),
         zipped({"x" * 60_000: b""}),
-        twice.getvalue(),
+        *(with_header(whole, text) for text in (b"{", b"null", b" " * ((16 << 20) + 1))),
     ):
         with pytest.raises(InputError, match=r"^changed\.npz: a picture file must be whole") as caught:
             read(data)
         assert len(str(caught.value)) < 400
-
-
-def test_a_file_that_is_missing_cut_short_or_of_another_kind_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(MissingInputError):
-        read_picture(tmp_path / "wall.npz")
-    with pytest.raises(InputError, match="must be a regular file, not a folder"):
-        read_picture(tmp_path)
-    whole = content(lit_wall)
-    cut = (whole[:length] for length in range(0, len(whole), 97))
-    for data in (b"x", b"PK\x05\x06" + b"\0" * 18, b"\x80\x04N.", b"PK" * 500, *cut):
-        with pytest.raises(InputError, match=r"^changed\.npz: a picture file must be whole"):
-            read(data)

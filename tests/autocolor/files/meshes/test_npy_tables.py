@@ -15,7 +15,7 @@ from autocolor import Mesh, View, read_scene, render, scene_of
 from autocolor.arrays import AnyArray
 from autocolor.budget import MEMORY, allowing
 from autocolor.checks import shown
-from autocolor.errors import InputError, MissingInputError
+from autocolor.errors import InputError
 from autocolor.files.formats import read_mesh
 from autocolor.files.meshes import npy_tables as room
 from autocolor.files.meshes.npy_tables import FORMATS, mapped, write_npy_tables
@@ -42,8 +42,7 @@ def read(folder: Path, placement: Placement | None = None) -> Mesh:
     return read_mesh(files, placement or Placement()).mesh
 
 
-def stressed() -> Mesh:
-    return cube().with_scalars(MeshScalar("stress", np.zeros(8)))
+STRESSED = cube().with_scalars(MeshScalar("stress", np.zeros(8)))
 
 
 @given(meshes(), views() | outside_views(), rasters, st.booleans())
@@ -55,10 +54,11 @@ def test_a_mapped_mesh_gives_the_same_picture_as_the_one_it_was_written_of(
     is_large: bool,
 ) -> None:
     folder = tmp_path_factory.mktemp("tables")
-    write_npy_tables(folder, mesh)
-    found = read(folder)
-    assert vars(found).keys() >= {"normals", "shared_planes"}
     with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(room, "NUMBERS_AT_ONCE", 3)
+        write_npy_tables(folder, mesh)
+        found = read(folder)
+        assert vars(found).keys() >= {"normals", "shared_planes"}
         if is_large:
             patch.setattr(projection_room, "LARGE", 0)
         pictures = [render(scene_of(each, view=view), *raster) for each in (found, mesh)]
@@ -89,11 +89,10 @@ def test_tables_of_any_type_and_order_give_the_same_mesh(
 
 def test_tables_in_the_order_of_rendering_are_mapped_and_others_copied(tmp_path: Path) -> None:
     mesh = cube()
-    found = read(folder_of(tmp_path, nodes=mesh.coordinates, polygons=mesh.node_numbers))
-    assert not found.coordinates.flags.owndata
-    rows = np.ascontiguousarray(mesh.coordinates, np.float32)
-    triangles = read(folder_of(tmp_path, nodes=rows, polygons=mesh.node_numbers[:, :3]))
-    assert triangles.node_numbers.tolist() == mesh.node_numbers[:, [0, 1, 2, 2]].tolist()
+    folder_of(tmp_path, nodes=mesh.coordinates, polygons=mesh.node_numbers)
+    assert not read(tmp_path).coordinates.flags.owndata
+    folder_of(tmp_path, nodes=mesh.coordinates.astype(np.float32), polygons=mesh.node_numbers[:, :3])
+    assert read(tmp_path).node_numbers.tolist() == mesh.node_numbers[:, [0, 1, 2, 2]].tolist()
     with (
         pytest.raises(InputError, match=r"^nodes.npy: a copy as float64 by columns must take"),
         allowing(170 / MEMORY),
@@ -101,32 +100,21 @@ def test_tables_in_the_order_of_rendering_are_mapped_and_others_copied(tmp_path:
         read(tmp_path)
 
 
-def test_a_folder_with_its_scalars_parts_and_planes_is_read_back(tmp_path: Path) -> None:
+def test_a_folder_with_its_scalars_and_planes_is_read_back(tmp_path: Path) -> None:
     mesh, _ = decal_on_ground(1)
-    random = np.random.default_rng(2)
-    whole = Mesh(
-        mesh.coordinates, mesh.node_numbers, mesh.part_numbers, mesh.part_names, 25.0,
-        (
-            MeshScalar("stress", np.append(random.normal(size=len(mesh.coordinates) - 1), np.nan)),
-            MeshScalar("load", random.normal(size=len(mesh.node_numbers)), "polygon"),
-        ),
-    )  # fmt: skip
+    stress = np.append(np.nan, np.arange(1.0, len(mesh.coordinates)))
+    load = np.arange(float(len(mesh.node_numbers)))
+    whole = mesh.with_scalars(MeshScalar("stress", stress), MeshScalar("load", load, "polygon"))
     write_npy_tables(tmp_path, whole)
-    notes = tmp_path / "tables.json"
-    is_new = json.loads(notes.read_text())
-    older = {key: is_new[key] for key in ("part_names", "crease_angle", "scalars", "planes")}
-    for content in (is_new, {"format": FORMATS[1], **older}):
-        notes.write_text(json.dumps(content))
-        found = read(tmp_path)
-        assert found.crease_angle == 25
-        for one, other in zip(found.scalars, whole.scalars, strict=True):
-            assert (one.name, one.of) == (other.name, other.of)
-            assert one.values.tobytes() == other.values.tobytes()
-            assert not one.values.flags.owndata
-        planes, expected = vars(found)["shared_planes"], whole.shared_planes
-        assert expected is not None
-        for name in ("normals", "points", "distances", "plane_of_polygon", "turned"):
-            assert getattr(planes, name).tobytes() == getattr(expected, name).tobytes()
+    found = read(tmp_path)
+    for one, other in zip(found.scalars, whole.scalars, strict=True):
+        assert (one.name, one.of) == (other.name, other.of)
+        assert one.values.tobytes() == other.values.tobytes()
+        assert not one.values.flags.owndata
+    planes, expected = vars(found)["shared_planes"], whole.shared_planes
+    assert expected is not None
+    for name in ("normals", "points", "distances", "plane_of_polygon", "turned"):
+        assert getattr(planes, name).tobytes() == getattr(expected, name).tobytes()
 
 
 def test_a_scene_file_and_a_folder_name_the_tables_alike_and_mapped_tables_need_little_memory(
@@ -144,78 +132,71 @@ def test_a_turned_or_scaled_mesh_has_normals_of_its_own(tmp_path: Path) -> None:
     mesh = grid(3, 3, (0, 0, 0), (1, 0, 0), (0, 1, 0))
     write_npy_tables(tmp_path, mesh)
     turned = read(tmp_path, Placement("y", 2.0))
-    low, high = turned.bounds
-    assert (low.tolist(), high.tolist()) == ([0, -0.0, 0], [2, 0, 2])
     assert (turned.normals.vectors.round(6) == [0, -1, 0]).all()
-    assert "shared_planes" not in vars(read(tmp_path, Placement("y")))
+    assert "shared_planes" not in vars(turned)
     assert read(tmp_path, Placement(crease_angle=mesh.crease_angle)).normals.numbers.base is not None
     assert "normals" not in vars(read(tmp_path, Placement(crease_angle=1.0)))
-    folder_of(tmp_path / "far", nodes=np.full((3, 3), 1e29), polygons=np.array([[0, 1, 2]]))
     with pytest.raises(InputError, match=r"scaled coordinates must be at most 1e30.*a smaller"):
-        read(tmp_path / "far", Placement(scale=100))
+        read(tmp_path, Placement(scale=2e30))
 
 
 def test_parts_without_names_are_numbered_and_notes_of_a_user_name_them(tmp_path: Path) -> None:
-    mesh, parts = cube(), np.array([0, 2, 2, 0, 0, 0])
-    folder_of(tmp_path, nodes=mesh.coordinates, polygons=mesh.node_numbers, parts=parts)
-    found = read(tmp_path)
-    assert found.part_names == ("part 0", "part 1", "part 2")
-    assert found.parts_in_use == (0, 2)
+    parts = np.array([0, 2, 2, 0, 0, 0])
+    folder_of(tmp_path, nodes=cube().coordinates, polygons=cube().node_numbers, parts=parts)
+    assert read(tmp_path).part_names == ("part 0", "part 1", "part 2")
     notes = {"format": FORMATS[1], "part_names": ["a", "b", "c"], "crease_angle": 30}
     (tmp_path / "tables.json").write_text(json.dumps(notes))
     assert (read(tmp_path).part_names, read(tmp_path).crease_angle) == (("a", "b", "c"), 30.0)
 
 
-NO_TABLE = (
-    "it must be an .npy file with a table of whole numbers or floating-point numbers, not another file (its"
-    " dtype is {}, its shape {}); write it with numpy.save"
-)
 ROW = "counted from 0); correct that row"
-WITHIN = "must be from -1e+30 to 1e+30, not"
-BAD: list[tuple[str, AnyArray, str]] = [
-    ("nodes", np.full((8, 3), 2e30), f"coordinates {WITHIN} [2e+30, 2e+30, 2e+30] (row 0, {ROW}"),
-    ("nodes", np.full((8, 3), np.inf, np.float16), f"coordinates {WITHIN} [inf, inf, inf] (row 0, {ROW}"),
-    ("nodes", np.zeros((8, 2)), "the shape of coordinates must be (rows, 3), not (8, 2); write it again"),
-    (
-        "polygons",
-        np.zeros((2, 5), int),
-        "the shape of node numbers must be (rows, 4) or (rows, 3), not (2, 5); write it again",
-    ),
-    (
-        "polygons",
-        np.array([[0, 1, 2, 3], [0, 1, 8, 8]]),
-        f"node numbers must be from 0 to 7, not [0, 1, 8, 8] (row 1, {ROW}",
-    ),
-    (
-        "polygons",
-        np.array([[0, 1, 2, 2**63 + 1]], np.uint64),
-        f"node numbers must be from 0 to 7, not [0, 1, 2, 9223372036854775809] (row 0, {ROW}",
-    ),
-    ("polygons", np.zeros((2, 4)), "node numbers must be whole numbers, not float64; convert them"),
-    ("parts", np.zeros(5, int), "the shape of part numbers must be (6,), not (5,); write it again"),
-    ("parts", np.arange(6) == 3, NO_TABLE.format("bool", "(6,)")),
-    ("parts", np.eye(6, dtype=int)[3], f"part numbers must be from 0 to 0, not 1 (row 3, {ROW}"),
-    (
-        "normals",
-        np.ones((24, 3)),
-        f"numbers of normals {WITHIN[:-5]}, with normals of the length 1, not [1.0, 1.0, 1.0] (row 0, {ROW}",
-    ),
-    (
-        "normal_numbers",
-        np.full((6, 4), 24),
-        f"normal numbers must be from 0 to 23, not [24, 24, 24, 24] (row 0, {ROW}",
-    ),
-    ("scalars/1", np.full(8, np.inf), f"values {WITHIN} inf (row 0, {ROW}"),
-    ("scalars/1", np.zeros(9), "the shape of values must be (8,), not (9,); write it again"),
-    ("nodes", np.zeros((2, 2, 2)), NO_TABLE.format("float64", "(2, 2, 2)")),
-]
+WITHIN = "must be from -1e+30 to 1e+30"
+FAR = np.zeros((8, 3))
+FAR[7, 1] = np.nan
 
 
-@pytest.mark.parametrize(("name", "table", "sentence"), BAD)
+@pytest.mark.parametrize(
+    ("name", "table", "sentence"),
+    [
+        ("nodes", FAR, f"coordinates {WITHIN}, not [0.0, nan, 0.0] (row 7, {ROW}"),
+        ("nodes", np.asfortranarray(FAR), f"coordinates {WITHIN}, not [0.0, nan, 0.0] (row 7, {ROW}"),
+        ("nodes", np.full((8, 3), 2e30), f"coordinates {WITHIN}, not [2e+30, 2e+30, 2e+30] (row 0, {ROW}"),
+        (
+            "polygons",
+            np.zeros((2, 5), int),
+            "the shape of node numbers must be (rows, 4) or (rows, 3), not (2, 5); write it again",
+        ),
+        (
+            "polygons",
+            np.array([[0, 1, 2, 3], [0, 1, 8, 8]]),
+            f"node numbers must be from 0 to 7, not [0, 1, 8, 8] (row 1, {ROW}",
+        ),
+        (
+            "polygons",
+            np.array([[0, 1, 2, 2**63 + 1]], np.uint64),
+            f"node numbers must be from 0 to 7, not [0, 1, 2, 9223372036854775809] (row 0, {ROW}",
+        ),
+        ("polygons", np.zeros((2, 4)), "node numbers must be whole numbers, not float64; convert them"),
+        ("parts", np.zeros(5, int), "the shape of part numbers must be (6,), not (5,); write it again"),
+        ("parts", np.eye(6, dtype=int)[3], f"part numbers must be from 0 to 0, not 1 (row 3, {ROW}"),
+        (
+            "normals",
+            np.ones((24, 3)),
+            f"numbers of normals {WITHIN}, with normals of the length 1, not [1.0, 1.0, 1.0] (row 0, {ROW}",
+        ),
+        (
+            "normal_numbers",
+            np.full((6, 4), 24),
+            f"normal numbers must be from 0 to 23, not [24, 24, 24, 24] (row 0, {ROW}",
+        ),
+        ("scalars/1", np.full(8, np.inf), f"values {WITHIN}, not inf (row 0, {ROW}"),
+    ],
+)
 def test_a_bad_table_is_refused_with_its_name_its_row_and_the_remedy(
-    tmp_path: Path, name: str, table: AnyArray, sentence: str
+    tmp_path: Path, name: str, table: AnyArray, sentence: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    write_npy_tables(tmp_path, stressed())
+    monkeypatch.setattr(room, "ROWS_AT_ONCE", 3)
+    write_npy_tables(tmp_path, STRESSED)
     np.save(tmp_path / f"{name}.npy", table)
     assert refusal(read, tmp_path) == f"{name}.npy: {sentence}"
 
@@ -223,12 +204,10 @@ def test_a_bad_table_is_refused_with_its_name_its_row_and_the_remedy(
 @pytest.mark.parametrize(
     ("name", "value", "rule"),
     [
-        ("planes", 0, "planes.npy: numbers of planes must be from -1e+30 to 1e+30, with normals of the"),
-        ("planes", np.nan, "planes.npy: numbers of planes must be from"),
-        ("plane_numbers", 9, "plane_numbers.npy: plane numbers must be from -1 to"),
-        ("plane_sides", 9, "plane_sides.npy: sides must be from 0 to 1, not 9"),
-        ("normal_numbers", -1, "normal_numbers.npy: normal numbers must be from 0 to"),
-        ("parts", -1, "parts.npy: part numbers must be from 0 to"),
+        ("planes", 0, "numbers of planes must be from -1e+30 to 1e+30, with normals of the"),
+        ("plane_numbers", 9, "plane numbers must be from -1 to"),
+        ("plane_sides", 9, "sides must be from 0 to 1, not 9"),
+        ("normal_numbers", -1, "normal numbers must be from 0 to"),
     ],
 )
 def test_a_table_that_is_wrong_or_missing_is_refused(
@@ -237,17 +216,15 @@ def test_a_table_that_is_wrong_or_missing_is_refused(
     write_npy_tables(tmp_path, decal_on_ground(1)[0])
     path = tmp_path / f"{name}.npy"
     np.save(path, np.full_like(np.load(path), value))
-    assert refusal(read, tmp_path).startswith(rule)
+    assert refusal(read, tmp_path).startswith(f"{name}.npy: {rule}")
     path.unlink()
-    with pytest.raises(MissingInputError, match=rf"{name}\.npy: there is no such file"):
-        read(tmp_path)
+    assert f"{name}.npy: there is no such file" in refusal(read, tmp_path)
 
 
 def test_normals_that_were_deleted_are_computed(tmp_path: Path) -> None:
     write_npy_tables(tmp_path, cube())
-    for name in ("normals", "normal_numbers"):
-        (tmp_path / f"{name}.npy").unlink()
-    assert "normals" not in vars(read(tmp_path))
+    for path in tmp_path.glob("normal*.npy"):
+        path.unlink()
     assert read(tmp_path).normals.numbers.tolist() == cube().normals.numbers.tolist()
 
 
@@ -257,7 +234,7 @@ def test_tables_with_changed_bytes_are_refused_or_give_a_mesh_that_renders(
 ) -> None:
     random = np.random.default_rng(seed)
     folder = tmp_path_factory.mktemp("tables")
-    write_npy_tables(folder, stressed())
+    write_npy_tables(folder, STRESSED)
     paths = sorted(path for path in folder.rglob("*") if path.is_file())
     path = paths[random.integers(len(paths))]
     data = bytearray(path.read_bytes())
@@ -271,57 +248,12 @@ def test_tables_with_changed_bytes_are_refused_or_give_a_mesh_that_renders(
     assert np.isfinite(render(scene_of(found), 6, 8).intensity).all()
 
 
-@pytest.mark.parametrize("row", [0, 2, 3, 8])
-@pytest.mark.parametrize("order", ["C", "F"])
-def test_the_first_wrong_row_is_named_in_whichever_chunk_it_lies(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, row: int, order: Any
-) -> None:
-    monkeypatch.setattr(room, "ROWS_AT_ONCE", 3)
-    table = np.zeros((9, 3), order=order)
-    table[row:, 1] = np.nan
-    folder_of(tmp_path, nodes=table, polygons=np.array([[0, 1, 2]]))
-    assert refusal(read, tmp_path) == (
-        f"nodes.npy: coordinates must be from -1e+30 to 1e+30, not [0.0, nan, 0.0] (row {row}, {ROW}"
-    )
-
-
-# Single tables.
-
-DTYPES = ("<f8", ">f8", "<f4", "<i4", "<u2", "|i1", ">i8", "<u8")
+HEADER = b"{'descr': '<f8', 'fortran_order': False, 'shape': (3,), }"
 
 
 def saved(table: AnyArray) -> bytes:
     file = io.BytesIO()
     np.save(file, table)
-    return file.getvalue()
-
-
-@given(
-    st.sampled_from(DTYPES),
-    st.sampled_from([(0,), (1,), (5,), (0, 3), (1, 4), (7, 3), (6, 4), (9, 1)]),
-    st.sampled_from("CF"),
-)
-def test_a_table_that_numpy_saved_is_mapped_with_its_numbers_and_outlives_the_name_of_its_file(
-    tmp_path_factory: pytest.TempPathFactory, dtype: str, shape: tuple[int, ...], order: str
-) -> None:
-    count = int(np.prod(shape))
-    table = np.arange(count).reshape(shape).astype(dtype, order="F" if order == "F" else "C")
-    path = tmp_path_factory.mktemp("npy") / "table.npy"
-    np.save(path, table)
-    found = mapped(path, "table.npy")
-    path.unlink()
-    assert found.dtype == table.dtype
-    assert found.tolist() == table.tolist()
-    assert not found.flags.writeable
-    assert not found.flags.owndata
-
-
-HEADER = b"{'descr': '<f8', 'fortran_order': False, 'shape': (3,), }"
-
-
-def archive() -> bytes:
-    file = io.BytesIO()
-    np.savez(file, nodes=np.zeros((3, 3)))
     return file.getvalue()
 
 
@@ -333,29 +265,26 @@ def described(text: bytes, version: bytes = b"\1\0") -> bytes:
 @pytest.mark.parametrize(
     "data",
     [
-        *(saved(np.array(["a"])), saved(np.array([1 + 2j])), saved(np.array(3.0)), saved(np.array([True]))),
-        *(saved(np.zeros(2, [("x", "<f8")])), saved(np.array(["2026-01-01"], "M8[D]"))),
-        *(saved(np.array([{}], object)), archive()),
-        *(b"", b"\x93NUMPY\1\0\xff\xff", b"\x80\4N.", b"x" * 1000),
+        *(saved(np.array(value)) for value in (["a"], [1 + 2j], 3.0, [True], [[[1.0]]])),
+        saved(np.array([{}], object)),
+        *(b"", b"\x93NUMPY\1\0\xff\xff", b"\x80\4N."),
         described(HEADER, b"\4\0"),
         *(described(HEADER.replace(b"(3,)", shape)) for shape in (b"(-3,)", b"(1.5,)", b"(True,)", b"3")),
         *(described(HEADER.replace(b"3,", b"9" * count + b",")) for count in (9, 19, 40)),
-        *(described(text) for text in (b"__import__('os')", b"(" * 900, b"-" * 900, b"{[]: 1}", b"{}")),
-        *(saved(np.zeros((10, 3)))[:change] for change in (-1, -240)),
+        *(described(text) for text in (b"__import__('os')", b"(" * 900, b"{[]: 1}", b"{}")),
+        saved(np.zeros((10, 3)))[:-1],
         saved(np.zeros((10, 3))) + b"0",
-        described(HEADER.replace(b"<f8", b"|O")),
-        described(HEADER + b" " * 2000),
     ],
     ids=repr,
 )
 def test_what_is_no_table_of_numbers_is_refused_in_a_sentence(tmp_path: Path, data: bytes) -> None:
     path = tmp_path / "nodes.npy"
     path.write_bytes(data)
-    with pytest.raises(InputError, match=r"^nodes\.npy: .* must ") as refused:
-        mapped(path, "nodes.npy")
-    assert str(refused.value).endswith("; write it with numpy.save")
-    assert str(refused.value).isprintable()
-    assert len(str(refused.value)) < 400
+    sentence = refusal(mapped, path, "nodes.npy")
+    assert sentence.startswith("nodes.npy: ")
+    assert sentence.endswith("; write it with numpy.save")
+    assert sentence.isprintable()
+    assert len(sentence) < 400
 
 
 def test_a_sparse_table_is_refused_before_it_is_read(tmp_path: Path) -> None:
@@ -364,19 +293,6 @@ def test_a_sparse_table_is_refused_before_it_is_read(tmp_path: Path) -> None:
     os.truncate(path, path.stat().st_size - 24 + 7_200_000_000)
     with pytest.raises(InputError, match=r"^nodes\.npy: to render 300,000,000 rows must take at most 4,000"):
         mapped(path, "nodes.npy")
-
-
-# The notes.
-
-RIGHT: dict[str, Any] = {
-    "format": FORMATS[0],
-    "part_names": ["hood", "roof"],
-    "crease_angle": 30,
-    "scalars": [{"name": "stress", "of": "node"}],
-    "planes": None,
-    "files": ["nodes.npy", "polygons.npy"],
-    "replaces": "",
-}
 
 
 @pytest.mark.parametrize(
@@ -394,59 +310,22 @@ RIGHT: dict[str, Any] = {
     ],
 )
 def test_notes_that_say_something_else_are_refused(tmp_path: Path, key: str, value: object) -> None:
-    write_npy_tables(tmp_path, stressed())
-    (tmp_path / "tables.json").write_text(json.dumps({**RIGHT, key: value}))
+    write_npy_tables(tmp_path, STRESSED)
+    notes = tmp_path / "tables.json"
+    notes.write_text(json.dumps({**json.loads(notes.read_text()), key: value}))
     assert refusal(read, tmp_path) == (
         f"tables.json: '{key}' must be as a conversion writes it, not {shown(str(value))}; convert the mesh"
         " again, or correct it"
     )
-
-
-@pytest.mark.parametrize("data", [b"", b"[" * 100_000, b"3", b'{"format": "2"}', b"9" * 5000])
-def test_bytes_that_are_no_notes_are_refused(tmp_path: Path, data: bytes) -> None:
-    write_npy_tables(tmp_path, cube())
-    (tmp_path / "tables.json").write_bytes(data)
+    notes.write_text('{"format": "2"}')
     assert refusal(read, tmp_path).endswith("convert the mesh again, or correct it")
 
 
-# Writing.
-
-
-@given(meshes())
-def test_numpy_reads_every_table_as_it_is_in_the_mesh(
-    tmp_path_factory: pytest.TempPathFactory, mesh: Mesh
-) -> None:
-    folder = tmp_path_factory.mktemp("tables")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(room, "NUMBERS_AT_ONCE", 3)
-        write_npy_tables(folder, mesh)
-    expected: dict[str, AnyArray] = {
-        "nodes": mesh.coordinates,
-        "polygons": mesh.node_numbers,
-        "parts": mesh.part_numbers,
-        "normals": mesh.normals.vectors,
-        "normal_numbers": mesh.normals.numbers,
-    }
-    for name, table in expected.items():
-        found = np.load(folder / f"{name}.npy")
-        assert (found.dtype, found.shape, found.tobytes()) == (table.dtype, table.shape, table.tobytes())
-        assert found.T.flags.c_contiguous
-    assert {*json.loads((folder / "tables.json").read_text())["files"], "tables.json"} == {
-        path.name for path in folder.iterdir()
-    }
-
-
-def test_a_folder_may_be_converted_to_itself_while_its_tables_are_mapped(tmp_path: Path) -> None:
-    one = folder_of(tmp_path / "one", nodes=cube().coordinates, polygons=cube().node_numbers)
-    write_npy_tables(tmp_path / "two", read(one))
-    assert np.load(tmp_path / "two" / "normals.npy").tobytes() == cube().normals.vectors.tobytes()
-    write_npy_tables(one, read(one), overwrite=True)
-    for path in (tmp_path / "two").iterdir():
-        assert (one / path.name).read_bytes() == path.read_bytes()
-
-
-def test_nothing_of_the_planes_of_the_older_mesh_is_left(tmp_path: Path) -> None:
+def test_a_folder_may_be_converted_to_itself_and_nothing_of_the_older_mesh_is_left(tmp_path: Path) -> None:
     write_npy_tables(tmp_path, decal_on_ground(1)[0])
     write_npy_tables(tmp_path, cube(), overwrite=True)
     assert not (tmp_path / "planes.npy").exists()
-    assert read(tmp_path).node_numbers.tolist() == cube().node_numbers.tolist()
+    # Its tables are mapped meanwhile.
+    older = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+    write_npy_tables(tmp_path, read(tmp_path), overwrite=True)
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == older

@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import math
 from pathlib import Path
 
 import numpy as np
@@ -32,19 +31,12 @@ def read(path: Path, text: str | bytes, normals: str = FILE) -> MeshReport:
 @pytest.mark.parametrize(
     "corners",
     [
-        "1/1 2/2 3/3 4/4",
-        "1/9/9 2/9/9 3/9/9 4/9/9",
         "1/1 2//2 3/3/3 4",
-        "1//5 2//5 3//5 4//5",
-        "-4 -3 -2 -1",
+        "1/9/9 2/9/9 3/9/9 4/9/9",
         "-4/-1/-1 2 3/ 4//",
-        "+1 2 3 4",
-        "01 2 3 4",
-        "\t1\t2  3 4 ",
-        "1 2 3 4 # a comment",
+        "+1 02 3 4",
+        "\t1\t2  3 4 # a comment",
         "1 2 \\\n3 4",
-        "1 2 3 4 \\\n",
-        "1 2 3 4 \\\n\\\n",
         "1 2 3 4 \\\n \n",
     ],
 )
@@ -52,19 +44,16 @@ def test_corners_are_written_in_many_ways(path: Path, corners: str) -> None:
     assert read(path, f"{SQUARE}f {corners}\n").mesh.node_numbers.tolist() == [[0, 1, 2, 3]]
 
 
-@pytest.mark.parametrize("number", ["1", "-1.5", "+.5", "5.", "1e3", "1E-3", "1e30", "-1e30", "00", "1" * 30])
+@pytest.mark.parametrize("number", ["-1.5", "+.5", "5.", "1E-3", "-1e30", "1D3", "-1d-3", "00", "1" * 30])
 def test_decimal_numbers_are_read(path: Path, number: str) -> None:
     mesh = read(path, f"v {number} 0 0\nv 0 1 0\n\tv {number} {number} 1\nf 1 2 3\n").mesh
-    assert mesh.coordinates[:, 0].tolist() == [float(number), 0, float(number)]
-    d = number.replace("e", "D").replace("E", "d")
-    assert read(path, f"v {d} 0 0\nv 0 1 0\nv {d} {d} 1\nf 1 2 3\n").mesh.coordinates[2, 0] == float(number)
+    value = float(number.lower().replace("d", "e"))
+    assert mesh.coordinates[:, 0].tolist() == [value, 0, value]
 
 
-@pytest.mark.parametrize("word", ["0.5", "nan", "-nan", "inf", "1e999"])
 @pytest.mark.parametrize("weight", ["", " 1"])
-def test_weights_are_ignored_and_colors_of_nodes_are_left_out(path: Path, word: str, weight: str) -> None:
-    nodes = f"v 0 0 0{weight} {word} 0.5 {word}\nv 1 0 0{weight}\nv 1 1 0\n"
-    report = read(path, nodes + "f 1 2 3\n")
+def test_weights_are_ignored_and_colors_of_nodes_are_left_out(path: Path, weight: str) -> None:
+    report = read(path, f"v 0 0 0{weight} nan 0.5 1e999\nv 1 0 0{weight}\nv 1 1 0\nf 1 2 3\n")
     assert report.mesh.coordinates.tolist() == [[0, 0, 0], [1, 0, 0], [1, 1, 0]]
     assert report.repairs == ("car.obj: left out the colors of nodes",)
     assert read(path, f"v 0 0 0 1\nv 1 0 0{weight}\nv 1 1 0\nf 1 2 3\n").repairs == ()
@@ -124,11 +113,8 @@ def test_normals_are_those_of_the_corners_and_missing_where_there_are_none(path:
     assert read(path, f"{square}f 1 2/1 3\n").mesh.own_normals is None
 
 
-NUMBERS = (
-    "nan", "inf", "-Infinity", "0x10", "1_0", "1,5", "1e31", "1e999", "\u0661", "1d", ".", "1e", "--1",
-    "1-2", "e5", *(repr(math.nextafter(sign * 1e30, sign * math.inf)) for sign in (-1, 1)),
-)  # fmt: skip
-NO_WHOLES = ("1.5", "1.0", "x", "1e2", "\u0663", "9" * 19, "1_0", "--1", "-")
+NUMBERS = ("nan", "0x10", "1_0", "1,5", "1d", "1-2", *(f"{sign}1.0000000000000002e30" for sign in ("", "-")))
+NO_WHOLES = ("1.5", "x", "1e2", "\u0663", "9" * 19, "-")
 NO_CORNERS = (("/1", "/1"), ("1/2/3/4", "1/2/3/4"), ("1///2", "/2"))
 NODES_OF = "a corner must be one of the file's {} nodes, or count back to one, not {}; correct it"
 
@@ -160,12 +146,11 @@ test_what_is_refused = refused(
                 )
                 for corner, word in NO_CORNERS
             ),
-            *(
-                (f"{SQUARE}\nf 1 2 {number}\nf 1 2 3\n", f", line 6: {NODES_OF.format(4, number)}")
-                for number in ("5", "0", "-5", "9" * 18)
+            (f"{SQUARE}\nf 1 2 {'9' * 18}\nf 1 2 3\n", f", line 6: {NODES_OF.format(4, '9' * 18)}"),
+            (
+                f"{SQUARE}f 1 \\\n2 3\nf 1 2 x\n",
+                ", line 7: a corner must be a whole number, not 'x'; correct it",
             ),
-            (f"f 1 2 7 8\n{SQUARE}f 1 9 10\n", f", line 1: {NODES_OF.format(4, 7)}"),
-            ("f 1\n", f", line 1: {NODES_OF.format(0, 1)}"),
             (
                 SQUARE + "v 1 2\nf 1 2 3\n",
                 ", line 5: a node must have three coordinates x y z, not 2; add what is missing",
@@ -175,55 +160,21 @@ test_what_is_refused = refused(
                 + f"f {' '.join(map(str, range(1, 1002)))}\n",
                 ", line 1002: a polygon must have at most 1,000 corners, not 1,001; split it",
             ),
-            ("# nothing\n", ": a mesh must have a polygon with area, not none; add polygons"),
-            *(
-                (
-                    f"{SQUARE}\np 1\n{indent}f 1 2\nl 1 2\nl 2 3\nf 3 3 3\n\nf 1 2 1 2\n",
-                    ": a mesh must have a polygon with area, not none; skipped points: 1; skipped lines: 2;"
-                    " 2 polygons with fewer than three different corners were dropped (the first: line 7);"
-                    " 1 polygon without area was dropped (line 12); add polygons",
-                )
-                for indent in ("", " ")
+            (
+                f"{SQUARE}\np 1\n f 1 2\nl 1 2\nl 2 3\nf 3 3 3\n\nf 1 2 1 2\n",
+                ": a mesh must have a polygon with area, not none; skipped points: 1; skipped lines: 2;"
+                " 2 polygons with fewer than three different corners were dropped (the first: line 7);"
+                " 1 polygon without area was dropped (line 12); add polygons",
             ),
         )
     ],
 )
 
 
-def test_a_wrong_word_in_a_long_file_is_found(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(module, "BLOCK", 30)
-    for at in (3, 40, 77):
-        lines = ["# v", *["v 0 1 2"] * 38, *["f 1 2 3"] * 40]
-        if at < 39:
-            lines[1] = "# f 1 2 x"
-        lines[at] = lines[at].replace("2", f"1 \\\n {'9' * 99_999}x # a")
-        sentence = refusal(read, path, "\n".join(lines))
-        assert sentence.startswith(f"car.obj, line {at + 1}: ")
-        assert len(sentence) < 200
-
-
-@pytest.mark.parametrize(
-    ("statements", "names"),
-    [
-        ("g hood\n{f}g roof\n{f}g hood\n{f}", ("hood", "roof")),
-        ("g hood left\n{f}", ("hood",)),
-        ("o my car\n{f}", ("my car",)),
-        ("usemtl red\n{f}usemtl blue paint\n{f}", ("red", "blue paint")),
-        ("g hood\nusemtl red\n{f}usemtl blue\n{f}", ("hood", "hood blue")),
-        ("usemtl red\n{f}g hood\n{f}g\n{f}usemtl\n{f}", ("red", "hood", "car")),
-        ("g empty\ng hood\n{f}g more\n", ("hood",)),
-        (
-            "g hood\nusemtl red\n{f}usemtl tin\n{f}g hood tin\no hood tin\n{f}",
-            ("hood", "hood tin", "hood tin tin"),
-        ),
-        ("o h\u00e4ube\n{f}g \x1b[31m\n{f}", ("h\u00e4ube", "?[31m")),
-        (f"g {'x' * 10_000}\n{{f}}", ("x" * 200,)),
-    ],
-)
-def test_groups_objects_and_materials_name_the_parts(
-    path: Path, statements: str, names: tuple[str, ...]
-) -> None:
+def test_groups_objects_and_materials_name_the_parts(path: Path) -> None:
+    statements = "g hood\n{f}usemtl red\n{f}o h\u00e4ube\n{f}g \x1b[31m\n{f}o " + "x" * 10_000 + "\n{f}"
     text = SQUARE + statements.format(f="f 1 2 3 4\n")
+    names = ("hood", "hood red", "h\u00e4ube", "?[31m", "x" * 200)
     assert read(path, "".join(f" {line}\n" for line in text.splitlines())).mesh.part_names == names
     assert read(path, text.encode("latin-1")).mesh.part_names == names
 
@@ -264,41 +215,26 @@ def test_each_pair_of_a_group_and_a_material_is_a_part_of_its_own(
 
 
 def test_what_is_skipped_is_counted_and_comes_before_the_repairs(path: Path) -> None:
-    text = "\n".join(["p 1", "l 1 2", "l 2 3", "surf 3", "surf 4", "f 1 2 3 4", "f 1 1 2"])
+    text = "\n".join(["surf 3", "surf 4", "f 1 2 3 4", "f 1 1 2"])
     rubbish = "".join(f"rubbish{line}{'x' * 1000} 1\n" for line in range(1000))
-    *sentences, rubbish_0, rubbish_1, others, dropped = read(path, f"{SQUARE}{text}\n{rubbish}").repairs
-    assert sentences == [
-        "car.obj: skipped points: 1",
-        "car.obj: skipped lines: 2",
-        "car.obj: skipped statements 'surf': 2",
-    ]
-    assert rubbish_1.startswith("car.obj: skipped statements 'rubbish1x")
+    surf, rubbish_0, _, others, dropped = read(path, f"{SQUARE}p 1\nl 1 2\n{text}\n{rubbish}").repairs[2:]
+    assert surf == "car.obj: skipped statements 'surf': 2"
+    assert rubbish_0.startswith("car.obj: skipped statements 'rubbish0x")
     assert len(rubbish_0) < 100
     assert others == "car.obj: skipped other statements: 998"
     assert dropped == "car.obj: 1 polygon with fewer than three different corners was dropped"
 
 
-@pytest.mark.parametrize(
-    "line", ["", "   ", "# g a", "#", *(f"{word.decode()} 1 2" for word in sorted(UNUSED))]
-)
-def test_comments_and_unused_statements_leave_nothing_behind(path: Path, line: str) -> None:
-    report = read(path, f"{SQUARE}{line}\nf 1 2 3 4\n")
+def test_comments_and_unused_statements_leave_nothing_behind(path: Path) -> None:
+    lines = "\n".join(["   ", "# g a", "#", *(f"{word.decode()} 1 2" for word in sorted(UNUSED))])
+    report = read(path, f"{SQUARE}{lines}\nf 1 2 3 4\n")
     assert (report.mesh.part_names, report.repairs, report.material_of_part) == (("car",), (), {})
 
 
-@pytest.mark.parametrize(
-    ("head", "is_obj"),
-    [
-        (b"# a car\nv 1 2 3\n", True),
-        (b" \tv -1\t+2 .5 0 0 0\n", True),
-        (b"v 1 2\n3\n", False),
-        (b"v a b c\n", False),
-        (b"vn 0 0 1\nav 0 0 1\n", False),
-        (b"v 0 0 0\n\0", False),
-    ],
-)
-def test_a_file_is_known_by_a_line_of_a_node(head: bytes, is_obj: bool) -> None:
-    assert begins_as_obj(head) is is_obj
+def test_a_file_is_known_by_a_line_of_a_node() -> None:
+    assert begins_as_obj(b" \tv -1\t+2 .5 0 0 0\n")
+    for head in (b"v 1 2\n3\n", b"v a b c\n", b"vn 0 0 1\nav 0 0 1\n", b"v 0 0 0\n\0"):
+        assert not begins_as_obj(head)
 
 
 # Writing.
@@ -312,7 +248,6 @@ def test_nodes_come_first_and_a_part_has_its_name_where_it_begins() -> None:
         ("hood", "left door"),
     )
     nodes = "v 0.0 0.0 0.0\nv 1.0 0.0 0.0\nv 1.0 0.1 0.0\nv 0.0 1.0 1e-09\n"
-    assert obj_text(mesh).decode() == nodes + "o hood\nf 1 2 3 4\no left door\nf 1 2 3\nf 2 3 4\n"
     assert obj_text(mesh, ("red", "tin"), "car.mtl").decode() == (
         f"mtllib car.mtl\n{nodes}o hood\nusemtl red\nf 1 2 3 4\no left door\nusemtl tin\nf 1 2 3\nf 2 3 4\n"
     )

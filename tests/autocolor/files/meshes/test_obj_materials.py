@@ -19,16 +19,12 @@ BLUE = b"newmtl blue\nKd 0 0 1\n"
 DEFAULT = {"specular": 0.0, "blend": 1.0}
 """The properties of a material that is defined by its name alone: it has no highlight."""
 
-WITHOUT_MEANING = (
-    "", "# Kd 1 1 1", "Ka 1 1 1", "illum 2", "Ni 1.5", "Tf 1 1 1", "Ke 0 0 0", "sharpness 60", "odd", "d 1",
-    "d 1.0", "Tr 0", "Tr 0.000", "newmtl", "newmtl none\nKd 1 0 0\nd 0.5\nbump a",
-)  # fmt: skip
 SHINY = {"specular": 0.5, "blend": COLORED_PAINT.blend}
 
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """A folder with two libraries, a folder with one, a pipe and links, and a library outside."""
+    """A folder with two libraries, a folder with one, a pipe and a link, and a library outside."""
     folder = tmp_path / "car"
     (folder / "more").mkdir(parents=True)
     (folder / "red.mtl").write_bytes(RED)
@@ -37,7 +33,6 @@ def folder(tmp_path: Path) -> Path:
     (tmp_path / "outside.mtl").write_bytes(b"newmtl red\nKd 1 1 1\n")
     os.mkfifo(folder / "pipe.mtl")
     (folder / "inside.mtl").symlink_to(folder / "red.mtl")
-    (folder / "link.mtl").symlink_to(tmp_path / "outside.mtl")
     (folder / "linked").symlink_to(tmp_path)
     return folder
 
@@ -73,22 +68,19 @@ def names_of(report: MeshReport) -> list[str]:
         ("Kd 1 0.5 0", {"object_color": (255, 128, 0)}),
         ("Kd 0.2", {"object_color": (51, 51, 51)}),
         ("Kd 2 1.0001 1e5", {"object_color": (255, 255, 255)}),
-        ("Kd .5 1. +0.25", {"object_color": (128, 255, 64)}),
-        ("Kd 5e-1 5E-1 0.5 # gray", {"object_color": (128, 128, 128)}),
-        ("\tKd  1\t0 0 ", {"object_color": (255, 0, 0)}),
+        ("\tKd .5\t1. +25e-2 # a", {"object_color": (128, 255, 64)}),
         ("Kd 0 1 0\nKd 1 0 0 0.5", {"object_color": (255, 0, 0)}),
         ("Ks 0.2 0.5 0.1", SHINY),
         ("Ks 0.5\nillum 2", SHINY),
-        ("Ks 0.5 0.5 0.5\nillum 3", SHINY),
-        ("Ks 999999.5 0 0", {**SHINY, "specular": 999999.5}),
         ("Ks 0 0 0", {}),
         ("Ks 0.5 0.5 0.5\nillum 0", {}),
         ("illum 1\nKs 0.5", {}),
         ("Ns 0", {"exponent": 1}),
-        ("Ns 0.75", {"exponent": 1}),
         ("Ns 32.5", {"exponent": 32.5}),
         ("newmtl red\nKd 0 1 0", {}),
-        *((statement, {}) for statement in WITHOUT_MEANING),
+        ("# Kd 1 1 1\nKa 1 1 1\nodd\nd 1.0\nTr 0.000", {}),
+        ("newmtl", {}),
+        ("newmtl none\nKd 1 0 0\nd 0.5\nbump a", {}),
     ],
 )
 def test_a_material_has_the_properties_of_its_statements(
@@ -100,12 +92,9 @@ def test_a_material_has_the_properties_of_its_statements(
 
 
 @pytest.mark.parametrize("transparency", ["d 0.5", "Tr 0.5", "d 0", "Tr 1"])
-@pytest.mark.parametrize("texture", ["map_Kd", "map_Bump", "MAP_KD", "bump", "disp", "decal", "refl", "norm"])
-def test_what_is_left_out_is_counted_by_materials_that_are_wanted(
-    folder: Path, texture: str, transparency: str
-) -> None:
-    names = ("red", "blue", "unused")
-    text = "".join(f"newmtl {name}\n{texture} -s 1 1 1 a.png\nmap_Ks a.png\n" for name in names)
+def test_what_is_left_out_is_counted_by_materials_that_are_wanted(folder: Path, transparency: str) -> None:
+    textures = {"red": "map_Kd -s 1 1 1 a.png\nmap_Ks a.png", "blue": "bump a.png", "unused": "bump a.png"}
+    text = "".join(f"newmtl {name}\n{lines}\n" for name, lines in textures.items())
     report = described(folder, f"{text}newmtl red\n{transparency}\n", b"red", b"blue")
     assert report.materials == (surface(), surface("blue"))
     assert report.repairs == (
@@ -114,13 +103,15 @@ def test_what_is_left_out_is_counted_by_materials_that_are_wanted(
     )
 
 
+@pytest.mark.parametrize("texture", ["map_Bump", "MAP_KD", "disp", "decal", "refl", "norm"])
+def test_all_kinds_of_textures_are_left_out(folder: Path, texture: str) -> None:
+    report = described(folder, f"newmtl red\n{texture} a.png\n")
+    assert report.repairs == ("car.mtl: left out the textures of 1 material",)
+
+
 @pytest.mark.parametrize(
     "statement",
-    [
-        *("Kd ", "Kd x", "Kd -1 0 0", "Kd nan", "Kd inf", "Kd 1e999", "Kd 0x10", "Kd 1_0", "Kd 1,0,0"),
-        *("Kd 1 1 x", "Kd 1 2", "Kd \u0663", "Ks 1 2", "Ks 1e6", "Ks 0 0 1e6", "Ns -0.5", "illum x"),
-        *("d -halo 0.5", "Tr 2e6"),
-    ],
+    ["Kd ", "Kd x", "Kd -1 0 0", "Kd nan", "Kd 1e999", "Kd 1 2", "Ks 0 0 1e6", "Ns -0.5", "illum x"],
 )
 def test_a_bad_number_is_told_with_its_line_and_the_default_is_used(folder: Path, statement: str) -> None:
     report = described(folder, f"# a library\nnewmtl red\n{statement}\nKs x\nKs y\n")
@@ -131,17 +122,6 @@ def test_a_bad_number_is_told_with_its_line_and_the_default_is_used(folder: Path
         "car.mtl: 2 more such lines",
     )
     assert report.materials == (surface(),)
-
-
-def test_parts_have_materials_and_these_their_surfaces(folder: Path) -> None:
-    (folder / "car.obj").write_text(
-        "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\nmtllib red.mtl\ng hood\nf 1 2 3\nusemtl red\nf 1 2 3\ng door\n"
-        "f 1 2 3\nusemtl blue\nf 1 2 3\n"
-    )
-    report = read_obj(folder / "car.obj")
-    assert report.mesh.part_names == ("car", "hood", "hood red", "door", "door blue")
-    assert report.material_of_part == {"hood red": "red", "door": "red", "door blue": "blue"}
-    assert report.materials == (surface(object_color=(255, 0, 0)),)
 
 
 def test_materials_that_no_library_defines_are_told(folder: Path) -> None:
@@ -156,18 +136,13 @@ def test_materials_that_no_library_defines_are_told(folder: Path) -> None:
 @pytest.mark.parametrize(
     ("libraries", "names"),
     [
-        ([b" red.mtl "], ["red"]),
-        ([b'"red.mtl"'], ["red"]),
         ([b"./red.mtl"], ["red"]),
         ([b"inside.mtl"], ["red"]),
-        ([b"my blue.mtl"], ["blue"]),
         ([b'"my blue.mtl"'], ["blue"]),
         ([b"more\\green.mtl"], ["green"]),
         ([b"red.mtl more/green.mtl"], ["red", "green"]),
         ([b"none.mtl red.mtl"], ["red"]),
-        ([b"C:\\Users\\anna\\cars\\red.mtl"], ["red"]),
         ([b"C:\\Users\\anna\\my blue.mtl"], ["blue"]),
-        ([b"/home/anna/cars/red.mtl"], ["red"]),
         ([b"../red.mtl"], ["red"]),
         ([b"\\\\server\\share\\red.mtl"], ["red"]),
         ([b"more/green.mtl", b"my blue.mtl", b"red.mtl"], ["red", "blue", "green"]),
@@ -184,9 +159,8 @@ def test_a_library_is_found_in_the_folder_of_the_obj_file_or_below_it(
 @pytest.mark.parametrize(
     "library",
     [
-        *(b"none.mtl", b"../outside.mtl", b"more/../../outside.mtl", b"linked/outside.mtl", b"link.mtl"),
-        *(b"more", b".", b"pipe.mtl", b"a\xffb.mtl", b"*", b"x" * 5000),
-        *(b"http://example.org/none.mtl", b"https://example.org/a/none.mtl", b"file:///none.mtl"),
+        *(b"none.mtl", b"../outside.mtl", b"linked/outside.mtl", b"more", b"pipe.mtl", b"a\xffb.mtl"),
+        *(b"x" * 5000, b"http://example.org/none.mtl", b"file:///none.mtl"),
     ],
 )
 def test_a_library_outside_or_that_is_no_file_or_an_address_is_not_read(
@@ -203,12 +177,8 @@ def test_a_library_outside_or_that_is_no_file_or_an_address_is_not_read(
 
 def test_of_a_material_in_several_libraries_the_first_counts(folder: Path) -> None:
     (folder / "other.mtl").write_bytes(b"newmtl red\nKd 0 1 0\nnewmtl red\nKd 1 1 1\n")
-    for libraries, color in (
-        ([b"red.mtl", b"other.mtl"], (255, 0, 0)),
-        ([b"other.mtl red.mtl"], (0, 255, 0)),
-    ):
-        (material,) = read(folder, *libraries).materials
-        assert material.paint.object_color == color
+    for line, color in ((b"red.mtl other.mtl", (255, 0, 0)), (b"other.mtl red.mtl", (0, 255, 0))):
+        assert [each.paint.object_color for each in read(folder, line).materials] == [color]
 
 
 def test_without_a_library_that_of_the_same_name_beside_it_is_read(folder: Path) -> None:
@@ -217,11 +187,8 @@ def test_without_a_library_that_of_the_same_name_beside_it_is_read(folder: Path)
     assert read(folder).materials == ()
     beside.unlink()
     beside.write_bytes(BLUE)
-    for libraries in ((), (b"none.mtl",)):
-        report = read(folder, *libraries)
-        assert names_of(report) == ["blue"]
-        assert len(report.repairs) == 1
-    assert names_of(read(folder, b"red.mtl")) == ["red"]
+    for libraries, names in (((), ["blue"]), ((b"none.mtl",), ["blue"]), ((b"red.mtl",), ["red"])):
+        assert names_of(read(folder, *libraries)) == names
 
 
 @pytest.mark.parametrize("more", [0, 1])
@@ -233,12 +200,12 @@ def test_libraries_have_a_limited_size_together(folder: Path, more: int) -> None
 
 
 @pytest.mark.parametrize("separator", [b" ", b"\nmtllib "], ids=["one line", "many lines"])
-def test_a_library_is_looked_for_among_the_first_alone(folder: Path, separator: bytes) -> None:
-    for before in (MOST_LIBRARIES - 1, MOST_LIBRARIES):
-        names = [*(b"none%d.mtl" % number for number in range(before)), b"red.mtl"]
-        report = read(folder, separator.join(names), wanted=(b"red",))
-        assert names_of(report) == (["red"] if before < MOST_LIBRARIES else [])
-    assert len(report.repairs) == 1
+@pytest.mark.parametrize(("before", "names"), [(MOST_LIBRARIES - 1, ["red"]), (MOST_LIBRARIES, [])])
+def test_a_library_is_looked_for_among_the_first_alone(
+    folder: Path, separator: bytes, before: int, names: list[str]
+) -> None:
+    libraries = separator.join([*(b"none%d.mtl" % number for number in range(before)), b"red.mtl"])
+    assert names_of(read(folder, libraries)) == names
 
 
 WORDS = st.sampled_from(
