@@ -32,9 +32,6 @@ from autocolor.errors import (
 from autocolor.files.reading import opened, read_head, refuse_irregular, require_size, status_of
 from autocolor.files.writing import write_atomically
 
-LEAST_SQLITE: Final = (3, 37, 0)
-"""The first version with STRICT tables."""
-
 BEGINS: Final = b"SQLite format 3\0"
 MODES: Final = slice(18, 20)
 """The place of two bytes in the header of a file that are 2 in WAL mode, and 1 otherwise."""
@@ -51,7 +48,8 @@ SECONDS_OF_WAITING: Final = 5.0
 
 def in_memory() -> sqlite3.Connection:
     """A new store in memory. Raises UnavailableError if this Python's SQLite lacks what a store needs."""
-    if sqlite3.sqlite_version_info < LEAST_SQLITE or not hasattr(sqlite3.Connection, "serialize"):
+    # The first version with STRICT tables.
+    if sqlite3.sqlite_version_info < (3, 37) or not hasattr(sqlite3.Connection, "serialize"):
         raise UnavailableError(
             "a store must have SQLite 3.37 or later with sqlite3_serialize, and this Python has"
             f" {sqlite3.sqlite_version}; use another Python"
@@ -250,9 +248,7 @@ def _write_protected(path: Path) -> Path | None:
 # Limits of statements.
 
 READING_PRAGMAS: Final = ("index_info", "index_list", "table_info", "table_list", "table_xinfo")
-"""The pragmas that only read, whatever their argument; those of NUMBERS without an argument."""
-
-NUMBERS: Final = ("application_id", "user_version")
+"""The pragmas that only read, whatever their argument."""
 
 UNSAFE_FUNCTIONS: Final = {"load_extension", "fts3_tokenizer", "match", "matchinfo", "snippet", "offsets"} | {
     *("optimize", "highlight", "bm25", "fts5", "rtreecheck", "rtreedepth", "rtreenode")
@@ -262,9 +258,6 @@ damaged."""
 
 READS: Final = (sqlite3.SQLITE_SELECT, sqlite3.SQLITE_READ, sqlite3.SQLITE_RECURSIVE)
 CHANGES: Final = (sqlite3.SQLITE_INSERT, sqlite3.SQLITE_UPDATE, sqlite3.SQLITE_DELETE)
-
-STEPS: Final = 1000
-"""Steps of SQLite's machine between two looks at the clock; one step can be a slow function."""
 
 Authorizer = Callable[[int, str | None, str | None, str | None, str | None], int]
 
@@ -283,7 +276,9 @@ def authorizer(may_change: bool = False, changed: set[str] | None = None) -> Aut
         if action == sqlite3.SQLITE_FUNCTION:
             is_allowed = (second or "").lower() not in UNSAFE_FUNCTIONS
         elif action == sqlite3.SQLITE_PRAGMA:
-            is_allowed = name in READING_PRAGMAS or (name in NUMBERS and second is None)
+            is_allowed = name in READING_PRAGMAS or (
+                name in ("application_id", "user_version") and second is None
+            )
         elif action in CHANGES:
             is_allowed = may_change and inner is None
             if changed is not None:
@@ -309,7 +304,8 @@ def limited(
         return int(is_late)
 
     connection.set_authorizer(permission)
-    connection.set_progress_handler(look, STEPS)
+    # A step of SQLite's machine can be a slow function.
+    connection.set_progress_handler(look, 1000)
     try:
         yield
     except sqlite3.OperationalError as error:

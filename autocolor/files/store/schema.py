@@ -384,9 +384,6 @@ def rows_of_table(
     if len(rows) > (most := 1 if is_single else MOST_ROWS):
         raise InputError(f"the rows of {table} must be at most {most:,}, not more; leave rows out")
     for number, row in enumerate(rows, 1):
-        for name, value in row.items():
-            if isinstance(value, bytes):
-                raise InputError(
-                    f"{table}, row {number}: {name} must be a number or text, not bytes; correct it"
-                )
+        for name in (name for name, value in row.items() if isinstance(value, bytes)):
+            raise InputError(f"{table}, row {number}: {name} must be a number or text, not bytes; correct it")
     return rows

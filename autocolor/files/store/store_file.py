@@ -58,17 +58,15 @@ def read_store(path: str | os.PathLike[str], *, surfaces: SurfaceSource = MATERI
     """
     path = Path(path)
     with timed(LOG, f"read {path.name}"), closing(loaded(path)) as connection:
-        return report_in(connection, path.name, path.stem, surfaces)
+        return report_in(connection, path.name, surfaces)
 
 
-def report_in(
-    connection: sqlite3.Connection, file: str, name: str, surfaces: SurfaceSource = MATERIALS
-) -> SceneReport:
+def report_in(connection: sqlite3.Connection, file: str, surfaces: SurfaceSource = MATERIALS) -> SceneReport:
     """The scene in the tables of a connection. Raises InputError; messages begin with `file`."""
     late = InputError(f"a store must be read within {READING_SECONDS:g} seconds, not longer; leave rows out")
     try:
         with limited(connection, authorizer(), READING_SECONDS, late):
-            return report_of(connection, stored_tables(connection), name or "scene", surfaces)
+            return report_of(connection, stored_tables(connection), Path(file).stem or "scene", surfaces)
     except SQL_ERRORS as error:
         raise InputError(f"{file}: {sentence_of(error)}") from None
     except InputError as error:

@@ -69,6 +69,12 @@ UPDATE nodes SET node = 1.5 WHERE node = 4
   nodes, row 2: z must be a number of at most 1e30 in size, not inf; correct it
   nodes, row 1.5: node must be a whole number, not 1.5; correct it
 
+DROP TABLE polygon_scalars
+CREATE TABLE polygon_scalars (scalar TEXT, polygon REAL, value TEXT) STRICT
+INSERT INTO polygon_scalars VALUES ('area', 1.5, '2')
+  polygon_scalars, row 1.5: polygon must be the number of a polygon, not 1.5; correct it
+  polygon_scalars, row 1.5: value must be a number of at most 1e30 in size, not '2'; correct it
+
 LOOSE nodes
 UPDATE nodes SET node = 3 WHERE node = 2
   nodes: rows must have different numbers, and 3 is repeated; number them anew
