@@ -12,7 +12,6 @@ from pathlib import Path
 from autocolor.files.store.schema import (
     DEFINITIONS,
     INDEXES,
-    MESH_TABLES,
     ROW_TABLES,
     RowTable,
     SqlColumn,
@@ -82,9 +81,10 @@ it. While a store is changed, SQLite's own lock keeps other programs from changi
 that has the store open from before keeps the old file. SQLite refuses its changes (`attempt to write a
 readonly database`) until it opens the store again.
 
-Tables, views, indexes and triggers of other programs stay, and none of them is run. If an index or a
-trigger does not fit the tables of the new scene, the store is left as it is. `--write` refuses a store with
-triggers, because its statement would run them. A studio that shows a store, or a scene file, shows the
+Tables, views, indexes and triggers of other programs stay, and none of them is run. If one does not fit the
+rows of the new scene, the store is left as it is. A table with a name below and other columns than ours is
+made anew, without the indexes that others gave it. `--write` refuses a store with triggers, because its statement
+would run them. A studio that shows a store, or a scene file, shows the
 changes of other programs as one step to undo; with unsaved edits it asks.
 
 What another program has written to a `-wal` file is read with the store. Before the store is replaced,
@@ -118,7 +118,7 @@ MANY = """
 def document() -> str:
     """The whole reference."""
     parts = [HEAD]
-    for name in MESH_TABLES:
+    for name in [name for name in DEFINITIONS if name not in ROW_TABLES]:
         parts.append(f"\n```sql\n{DEFINITIONS[name]};\n```\n")
     parts.append(f"\n```sql\n{''.join(f'{index};{chr(10)}' for index in INDEXES.values())}```\n")
     for head, is_single in ((ROWS, True), (MANY, False)):

@@ -32,9 +32,6 @@ from autocolor.errors import (
 from autocolor.files.reading import opened, read_head, refuse_irregular, require_size, status_of
 from autocolor.files.writing import write_atomically
 
-LEAST_SQLITE: Final = (3, 37, 0)
-"""The first version with STRICT tables."""
-
 BEGINS: Final = b"SQLite format 3\0"
 MODES: Final = slice(18, 20)
 """The place of two bytes in the header of a file that are 2 in WAL mode, and 1 otherwise."""
@@ -51,16 +48,19 @@ SECONDS_OF_WAITING: Final = 5.0
 
 def in_memory() -> sqlite3.Connection:
     """A new store in memory. Raises UnavailableError if this Python's SQLite lacks what a store needs."""
-    if sqlite3.sqlite_version_info < LEAST_SQLITE or not hasattr(sqlite3.Connection, "serialize"):
+    # The first version with STRICT tables.
+    if sqlite3.sqlite_version_info < (3, 37) or not hasattr(sqlite3.Connection, "serialize"):
         raise UnavailableError(
             "a store must have SQLite 3.37 or later with sqlite3_serialize, and this Python has"
             f" {sqlite3.sqlite_version}; use another Python"
         )
-    return _connected(":memory:")
+    return _connected()
 
 
-def _connected(uri: str) -> sqlite3.Connection:
+def _connected(path: Path | None = None, mode: str = "memory") -> sqlite3.Connection:
     """A connection that begins no transaction by itself, with limits; nothing of its file is run."""
+    place = Path(os.path.realpath(path)).as_uri() if path else "file:"
+    uri = f"{place}?mode={mode}"
     connection = sqlite3.connect(uri, uri=True, isolation_level=None, timeout=SECONDS_OF_WAITING)
     with closed_on_error(connection):
         for limit in (sqlite3.SQLITE_LIMIT_LENGTH, sqlite3.SQLITE_LIMIT_SQL_LENGTH):
@@ -69,6 +69,8 @@ def _connected(uri: str) -> sqlite3.Connection:
         connection.setlimit(sqlite3.SQLITE_LIMIT_LIKE_PATTERN_LENGTH, 1000)
         for pragma in ("trusted_schema=OFF", "cell_size_check=ON", "mmap_size=0", "foreign_keys=OFF"):
             connection.execute(f"PRAGMA {pragma}")
+        if sys.version_info >= (3, 12):
+            connection.setconfig(sqlite3.SQLITE_DBCONFIG_DEFENSIVE, True)
     return connection
 
 
@@ -99,13 +101,11 @@ def loaded(path: Path) -> sqlite3.Connection:
     beside it. Raises InputError, MissingInputError.
     """
     is_logged, played = _is_in_wal_mode(path), played_files(path)
-    mode = "ro"
-    if "-journal" in played:
-        mode = "rw"
-    elif is_logged and not played:
+    mode = "ro" if _write_protected(path) else "rw"
+    if mode == "ro" and is_logged and not played:
         # SQLite makes a log even to read. Where it cannot, the file is complete without.
-        mode = "ro&immutable=1" if _write_protected(path) else "rw"
-    with refusals(path.name), closing(_opened(path, mode)) as file:
+        mode = "ro&immutable=1"
+    with refusals(path.name), closing(_connected(path, mode)) as file:
         file.execute("BEGIN")
         file.execute("SELECT count(*) FROM sqlite_master").fetchone()
         return copied(file)
@@ -117,21 +117,18 @@ def replacing(
 ) -> Iterator[tuple[sqlite3.Connection, Callable[[bytes], None]]]:
     """A copy in memory of the store at a path, and a function that replaces the store by the bytes given.
 
-    Until the end no other program can change the store: SQLite's own lock is held. `check` is called first
+    Until the end SQLite's own lock keeps other programs from changing the store. `check` is called first
     under this lock. After any error the copy is closed. Raises InputError, MissingInputError; OutputError if
-    the place is write-protected, and WriteError if another program writes to the store all the time, or
-    replaces it.
+    the place is write-protected, and WriteError if another program goes on writing, or replaces the store.
     """
     is_logged, played = _is_in_wal_mode(path), played_files(path)
+    is_logged |= "-wal" in played
     if place := _write_protected(path):
         raise OutputError(
             f"an output must be where it can be written, and {place} is write-protected; change its"
             " permissions, or write to another file"
         )
-    with (
-        refusals(path.name, is_written=True),
-        closing(_locked(path, check, is_logged or "-wal" in played)) as file,
-    ):
+    with refusals(path.name, is_written=True), closing(_locked(path, check, is_logged)) as file:
         before = _numbers(path)
 
         def save(data: bytes) -> None:
@@ -157,7 +154,7 @@ def _locked(path: Path, check: Callable[[], None], is_logged: bool) -> sqlite3.C
     """
     while True:
         before = _numbers(path)
-        with closed_on_error(_opened(path, "rw")) as file:
+        with closed_on_error(_connected(path, "rw")) as file:
             if is_logged:
                 file.execute("PRAGMA locking_mode = EXCLUSIVE")
             file.execute("BEGIN IMMEDIATE")
@@ -176,10 +173,6 @@ def _numbers(path: Path) -> tuple[int, ...]:
     """Numbers that tell one file at a path from another, and a file from a changed one."""
     status = status_of(path)
     return status.st_dev, status.st_ino, status.st_mtime_ns, status.st_size
-
-
-def _opened(path: Path, mode: str) -> sqlite3.Connection:
-    return _connected(f"{Path(os.path.realpath(path)).as_uri()}?mode={mode}")
 
 
 # Checks of a file, and of the files beside it, before SQLite opens it. They open no file that is locked by
@@ -239,10 +232,10 @@ def refuse_remains(path: Path) -> None:
         played = played_files(path)
     except InputError as error:
         raise WriteError(str(error)) from None
-    for ending in played:
+    if played:
         raise WriteError(
-            f"{path.name}: a new store must have no {path.name}{ending} beside it, because SQLite would play"
-            " it into the store; move it away"
+            f"{path.name}: a new store must have no {path.name}{played[0]} beside it, because SQLite would"
+            " play it into the store; move it away"
         )
 
 
@@ -255,27 +248,16 @@ def _write_protected(path: Path) -> Path | None:
 # Limits of statements.
 
 READING_PRAGMAS: Final = ("index_info", "index_list", "table_info", "table_list", "table_xinfo")
-"""The pragmas that only read, whatever their argument; those of NUMBERS without an argument."""
+"""The pragmas that only read, whatever their argument."""
 
-NUMBERS: Final = ("application_id", "user_version")
-
-UNSAFE_FUNCTIONS: Final = frozenset(
-    (
-        "load_extension", "fts3_tokenizer", "readfile", "writefile", "edit", "match", "matchinfo", "snippet",
-        "offsets", "optimize", "highlight", "bm25", "fts5", "rtreecheck", "rtreedepth", "rtreenode",
-    )
-)  # fmt: skip
-"""The functions that do more than compute with their arguments.
-
-The functions up to `edit` run other code or open files. The functions from `match` on read the inner tables
-of full-text and R-tree indexes, which may be damaged.
-"""
+UNSAFE_FUNCTIONS: Final = {"load_extension", "fts3_tokenizer", "match", "matchinfo", "snippet", "offsets"} | {
+    *("optimize", "highlight", "bm25", "fts5", "rtreecheck", "rtreedepth", "rtreenode")
+}
+"""The functions that run other code, or read the inner tables of full-text and R-tree indexes, which may be
+damaged."""
 
 READS: Final = (sqlite3.SQLITE_SELECT, sqlite3.SQLITE_READ, sqlite3.SQLITE_RECURSIVE)
 CHANGES: Final = (sqlite3.SQLITE_INSERT, sqlite3.SQLITE_UPDATE, sqlite3.SQLITE_DELETE)
-
-STEPS: Final = 1000
-"""Steps of SQLite's machine between two looks at the clock; one step can be a slow function."""
 
 Authorizer = Callable[[int, str | None, str | None, str | None, str | None], int]
 
@@ -294,7 +276,9 @@ def authorizer(may_change: bool = False, changed: set[str] | None = None) -> Aut
         if action == sqlite3.SQLITE_FUNCTION:
             is_allowed = (second or "").lower() not in UNSAFE_FUNCTIONS
         elif action == sqlite3.SQLITE_PRAGMA:
-            is_allowed = name in READING_PRAGMAS or (name in NUMBERS and second is None)
+            is_allowed = name in READING_PRAGMAS or (
+                name in ("application_id", "user_version") and second is None
+            )
         elif action in CHANGES:
             is_allowed = may_change and inner is None
             if changed is not None:
@@ -320,7 +304,8 @@ def limited(
         return int(is_late)
 
     connection.set_authorizer(permission)
-    connection.set_progress_handler(look, STEPS)
+    # A step of SQLite's machine can be a slow function.
+    connection.set_progress_handler(look, 1000)
     try:
         yield
     except sqlite3.OperationalError as error:
@@ -343,14 +328,32 @@ PLACE_ERRORS: Final = (sqlite3.SQLITE_READONLY, sqlite3.SQLITE_CANTOPEN)
 DAMAGE_ERRORS: Final = (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB)
 SQL_ERRORS: Final = (sqlite3.Error, sqlite3.Warning, UnicodeError, OverflowError)
 
+SENTENCES: Final = {
+    BUSY_ERRORS: "another program is writing to the store, or has it open in WAL mode; close it",
+    (sqlite3.SQLITE_TOOBIG,): f"a value must have at most {LONGEST_TEXT:,} bytes, not more; shorten it",
+    PLACE_ERRORS: "the store and its folder must let SQLite open it, and do not ({}); copy all of its files",
+    DISK_ERRORS: "the disk must hold the store, and is full or fails ({}); make room, and try again",
+}
+DAMAGED: Final = (
+    "the store cannot be read ({}); if it is damaged, bring a copy back, or rescue it with `sqlite3 FILE"
+    " .recover`"
+)
+
 
 def primary_code(error: BaseException) -> int:
     """The error code of SQLite without its details; 0 if the error has none."""
     return getattr(error, "sqlite_errorcode", 0) & 0xFF
 
 
+def sentence_of(error: Exception) -> str:
+    """A sentence for an error of SQLite: what is wrong with the store, and what to do."""
+    code = primary_code(error)
+    sentence = next((each for codes, each in SENTENCES.items() if code in codes), DAMAGED)
+    return sentence.format(printable(reason_of(error)[:300]))
+
+
 @contextmanager
-def refusals(name: str = "", is_written: bool = False) -> Iterator[None]:
+def refusals(name: str, is_written: bool = False) -> Iterator[None]:
     """Raise errors of SQLite as InputError, with advice; `name` is the file's name in the message.
 
     If the store `is_written`, the errors that keep it from being written are raised as WriteError.
@@ -358,23 +361,5 @@ def refusals(name: str = "", is_written: bool = False) -> Iterator[None]:
     try:
         yield
     except SQL_ERRORS as error:
-        reason = f"{name}: {sentence_of(error)}" if name else sentence_of(error)
         is_kept = is_written and primary_code(error) in (*BUSY_ERRORS, *DISK_ERRORS, *PLACE_ERRORS)
-        raise (WriteError if is_kept else InputError)(reason) from None
-
-
-def sentence_of(error: Exception) -> str:
-    """A sentence for an error of SQLite: what is wrong with the store, and what to do."""
-    code, text = primary_code(error), printable(reason_of(error)[:300])
-    if code in BUSY_ERRORS:
-        return "another program is writing to the store, or has it open in WAL mode; close it, and try again"
-    if code == sqlite3.SQLITE_TOOBIG:
-        return f"a value must have at most {LONGEST_TEXT:,} bytes, not more; shorten it"
-    if code in PLACE_ERRORS:
-        return f"the store and its folder must let SQLite open it, and do not ({text}); copy all of its files"
-    if code in DISK_ERRORS:
-        return f"the disk must hold the store, and is full or fails ({text}); make room, and try again"
-    return (
-        f"the store cannot be read ({text}); if it is damaged, bring a copy back, or rescue it with"
-        " `sqlite3 FILE .recover`"
-    )
+        raise (WriteError if is_kept else InputError)(f"{name}: {sentence_of(error)}") from None

@@ -17,6 +17,7 @@ import json
 import sqlite3
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import groupby
 from typing import Any, Final
 
@@ -127,13 +128,11 @@ def _columns(name: str, field: Field, prefix: tuple[str, ...], is_given: bool) -
             inner_prefix = prefix if kind.inline else (*prefix, name)
             yield from _columns(inner_name, inner, inner_prefix, inner_is_given)
         return
-    may_be_null = is_optional or not is_given or _is_endless(kind) or isinstance(kind, NamedRows)
-    start: Any = None if default is None or may_be_null else default()
-    defaults: Mapping[str, Any] = {} if start is None else kind.to_plain(name, start)
+    may_be_null = is_optional or not is_given or endless(kind) is not None or isinstance(kind, NamedRows)
+    start: Any = None if default is None or may_be_null else kind.to_plain(name, default()).get(name)
     for key, inner_column in kind.keys(name, column).items():
         # The other keys belong to the classes of a variant; a class has only some of the keys.
-        may_be_absent = may_be_null or key != name
-        value = defaults.get(key) if key == name else None
+        may_be_absent, value = (may_be_null, start) if key == name else (True, None)
         path, inner_kind = (*prefix, key), inner_column.kind
         for number, axis in enumerate(AXES) if isinstance(inner_kind, VectorKind) else [(None, "")]:
             yield SqlColumn(
@@ -147,9 +146,9 @@ def _columns(name: str, field: Field, prefix: tuple[str, ...], is_given: bool) -
             )
 
 
-def _is_endless(kind: Kind) -> bool:
-    """Whether a value may be infinite, which a table has as NULL."""
-    return getattr(kind, "endless", None) is not None
+def endless(kind: Kind) -> float | None:
+    """The infinite value that a kind may have, which a table has as NULL."""
+    return getattr(kind, "endless", None)
 
 
 def in_sql(value: object) -> SqlValue:
@@ -183,12 +182,12 @@ def plain_row(columns: Iterable[SqlColumn], values: Mapping[str, SqlValue]) -> d
         if any(value is not None for value in given):
             value = given if others else _from_sql(first.kind, given[0])
             _within(table, path[:-1], is_made=True)[path[-1]] = value
-        elif first.name in values and _is_endless(first.kind):
-            limits.append((path, getattr(first.kind, "endless")))  # noqa: B009
-    for path, endless in limits:
+        elif first.name in values and endless(first.kind) is not None:
+            limits.append((path, endless(first.kind)))
+    for path, limit in limits:
         inner = _within(table, path[:-1])
         if isinstance(inner, dict):
-            inner[path[-1]] = endless
+            inner[path[-1]] = limit
     return table
 
 
@@ -234,28 +233,22 @@ VALUES: Final = {NODE: "node_scalars", POLYGON: "polygon_scalars"}
 
 @dataclass(frozen=True)
 class RowTable:
-    """A table for the rows of a class, in their order. With `is_single` it has at most one row.
-
-    `columns` lacks the column NUMBER, which every such table has.
-    """
+    """A table for the rows of a class, in their order. With `is_single` it has at most one row."""
 
     name: str
     row_class: type[Row]
-    columns: tuple[SqlColumn, ...]
-    is_single: bool
+    is_single: bool = False
+
+    @cached_property
+    def columns(self) -> tuple[SqlColumn, ...]:
+        """The columns without NUMBER, and without the inner rows of a scene, which have their own tables."""
+        columns = columns_of(self.row_class)
+        return tuple(column for column in columns if self.row_class is not Scene or len(column.path) == 1)
 
     @property
     def definition(self) -> str:
         """The statement that creates the table."""
         return _definition(self.name, NUMBER, [column.declaration for column in self.columns])
-
-
-def row_table(name: str, row_class: type[Row], is_single: bool = False) -> RowTable:
-    """The table for a row class. The table of a scene lacks its inner rows, which have their own tables."""
-    columns = columns_of(row_class)
-    if row_class is Scene:
-        columns = tuple(column for column in columns if len(column.path) == 1)
-    return RowTable(name, row_class, columns, is_single)
 
 
 def _definition(name: str, key: str, lines: Iterable[str]) -> str:
@@ -267,9 +260,9 @@ def _definition(name: str, key: str, lines: Iterable[str]) -> str:
 
 
 ROW_TABLES: Final[Mapping[str, RowTable]] = {
-    SCENE: row_table(SCENE, Scene, is_single=True),
+    SCENE: RowTable(SCENE, Scene, is_single=True),
     **{
-        name: row_table(name, field.column.kind.row_class, isinstance(field.column.kind, Nested))
+        name: RowTable(name, field.column.kind.row_class, isinstance(field.column.kind, Nested))
         for name, field in fields_of(Scene).items()
         if isinstance(field.column.kind, (RowList, Nested))
     },
@@ -321,8 +314,6 @@ INDEXES: Final[Mapping[str, str]] = {
 """The statements that create the indexes, by name. A column that refers to another table has an index, which
 makes joins and changes of the other table fast. Indexes are created after the rows are inserted."""
 
-MESH_TABLES: Final = (NODES, POLYGONS, MESH, SCALARS, *VALUES.values())
-
 
 # The tables of a file. Only plain tables with plain columns are read.
 #
@@ -371,13 +362,8 @@ def stored_tables(connection: sqlite3.Connection) -> StoredTables:
 
 def require_names(rule: str, needed: Sequence[str], names: Iterable[str]) -> None:
     """Raise InputError, with the nearest name, if some of the needed names are missing."""
-    missing = [name for name in needed if name not in names]
-    if missing:
-        verb, them = ("is", "it") if len(missing) == 1 else ("are", "them")
-        raise InputError(
-            f"{rule} {listed(needed)}, and {listed(missing)} {verb} missing; add"
-            f" {them}{nearest(missing[0], names)}"
-        )
+    if missing := [name for name in needed if name not in names]:
+        raise InputError(f"{rule} {listed(needed)}; add {listed(missing)}{nearest(missing[0], names)}")
 
 
 def rows_of_table(
@@ -398,9 +384,6 @@ def rows_of_table(
     if len(rows) > (most := 1 if is_single else MOST_ROWS):
         raise InputError(f"the rows of {table} must be at most {most:,}, not more; leave rows out")
     for number, row in enumerate(rows, 1):
-        for name, value in row.items():
-            if isinstance(value, bytes):
-                raise InputError(
-                    f"{table}, row {number}: {name} must be a number or text, not bytes; correct it"
-                )
+        for name in (name for name, value in row.items() if isinstance(value, bytes)):
+            raise InputError(f"{table}, row {number}: {name} must be a number or text, not bytes; correct it")
     return rows

@@ -95,7 +95,6 @@ class Tables:
     def __init__(self, connection: sqlite3.Connection, name: str, store: Path | None = None) -> None:
         self._connection = connection
         self._name = name
-        self._scene_name = name if store is None else store.stem
         self._store = store
         self.seconds = SECONDS
         self._limit = validated_limit(None)
@@ -146,8 +145,6 @@ class Tables:
         Raises UsageError for an unknown table, key or column, InputError if the scene would be wrong.
         """
         columns = self.columns(table)
-        for name in values:
-            require_name(name, columns, f"column of {table}")
         if not values:
             raise UsageError("an update must change a column, not none; give one as in intensity=2.0")
         by = "name" if isinstance(key, str) and "name" in columns else columns[0]
@@ -180,7 +177,7 @@ class Tables:
                     pass
             # The row count of Python 3.11's cursor is missing after WITH.
             (count,) = copy.execute("SELECT changes()").fetchone()
-            report_in(copy, self._name, self._scene_name)
+            report_in(copy, self._name)
             try:
                 copy.execute("COMMIT")
             except sqlite3.IntegrityError as error:
@@ -207,7 +204,7 @@ class Tables:
     def scene(self) -> Scene:
         """The scene of the tables as they are now. Raises InputError."""
         with allowing(self._limit):
-            return report_in(self._connection, self._name, self._scene_name).scene
+            return report_in(self._connection, self._name).scene
 
     def close(self) -> None:
         """Free the tables."""

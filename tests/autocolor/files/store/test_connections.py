@@ -11,16 +11,10 @@ from pathlib import Path
 
 import pytest
 
-from autocolor import InputError, MissingInputError, OutputError, UnavailableError, WriteError, open_tables
+from autocolor import InputError, OutputError, UnavailableError, WriteError, open_tables
 from autocolor.budget import allowing
 from autocolor.files.store import connections
-from autocolor.files.store.connections import (
-    UNSAFE_FUNCTIONS,
-    authorizer,
-    in_memory,
-    loaded,
-    replacing,
-)
+from autocolor.files.store.connections import UNSAFE_FUNCTIONS, authorizer, in_memory, loaded, replacing
 from autocolor.files.store.store_file import store_bytes, write_store
 from tests.autocolor.files.store.stores import contents, hostile_journal, run, small_scene, small_store
 
@@ -61,16 +55,16 @@ def test_a_file_may_have_any_name_and_a_copy_is_not_the_file(tmp_path: Path) -> 
 
 
 def test_what_is_no_file_or_too_large_is_not_opened(tmp_path: Path) -> None:
-    os.mkfifo(tmp_path / "pipe.db")
-    for name in ("pipe.db", "."):
+    path = small_store(tmp_path)
+    for name in ("pipe.db", "small.sqlite-wal"):
+        os.mkfifo(tmp_path / name)
+    for name in ("pipe.db", ".", "small.sqlite"):
         with pytest.raises(InputError, match="must be a regular file"):
             loaded(tmp_path / name)
-    with pytest.raises(MissingInputError):
-        loaded(tmp_path / "none.db")
-    with pytest.raises(InputError):
-        loaded(Path("nul\0.db"))
+    with pytest.raises(WriteError, match="-wal: it must be a regular file, not a pipe"):
+        change(path)
     with pytest.raises(InputError, match=r"small.sqlite: to read [0-9,]+ bytes must take "), allowing(1e-9):
-        loaded(small_store(tmp_path))
+        loaded(path)
 
 
 def test_an_old_sqlite_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -84,36 +78,23 @@ def test_an_old_sqlite_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
 # Journals and logs beside a store.
 
 
-@pytest.mark.parametrize("act", [read, change])
-@pytest.mark.parametrize("ending", ["-journal", "-wal"])
-def test_a_pipe_beside_a_store_is_not_waited_for(
-    tmp_path: Path, act: Callable[[Path], None], ending: str
-) -> None:
-    path = small_store(tmp_path)
-    os.mkfifo(f"{path}{ending}")
-    with pytest.raises((InputError, WriteError), match=f"{ending}: it must be a regular file, not a pipe"):
-        act(path)
-
-
-@pytest.mark.parametrize("act", [read, change])
-@pytest.mark.parametrize("mode", ["DELETE", "WAL"])
+@pytest.mark.parametrize(("act", "error"), [(read, InputError), (change, WriteError)])
 @pytest.mark.parametrize("has_header", [False, True])
-@pytest.mark.parametrize("is_link", [False, True])
 def test_a_hostile_journal_is_never_rolled_back(
-    tmp_path: Path, act: Callable[[Path], None], mode: str, has_header: bool, is_link: bool
+    tmp_path: Path, act: Callable[[Path], None], error: type[Exception], has_header: bool
 ) -> None:
-    path, named = small_store(tmp_path), tmp_path / "named.txt"
-    run(path, f"PRAGMA journal_mode = {mode}")
+    path, link, named = small_store(tmp_path), tmp_path / "link.sqlite", tmp_path / "named.txt"
+    link.symlink_to(path.name)
     named.write_text("precious")
-    hostile_journal(path, named, has_header=has_header)
-    if is_link:
-        (tmp_path / "link.sqlite").symlink_to(path.name)
-        path = tmp_path / "link.sqlite"
-    before = contents(tmp_path)
-    error = InputError if act == read else WriteError
-    with pytest.raises(error, match=r"the -journal beside the store names another file, which SQLite delet"):
-        act(path)
-    assert contents(tmp_path) == before
+    for mode in ("DELETE", "WAL"):
+        run(path, f"PRAGMA journal_mode = {mode}")
+        journal = hostile_journal(path, named, has_header=has_header)
+        before = contents(tmp_path)
+        for place in (path, link):
+            with pytest.raises(error, match="the -journal beside the store names another file, which SQLite"):
+                act(place)
+        assert contents(tmp_path) == before
+        journal.unlink()
 
 
 def killed_change(path: Path, mode: str) -> None:
@@ -141,22 +122,19 @@ def test_a_change_of_a_program_that_was_killed_is_taken_back(
     assert run(path, "PRAGMA integrity_check") == [("ok",)]
 
 
-@pytest.mark.parametrize("endings", [("-wal", "-shm"), ("-wal",)])
-def test_what_a_log_holds_is_read_and_is_not_played_into_the_next_store(
-    tmp_path: Path, endings: tuple[str, ...]
-) -> None:
+def test_what_a_log_holds_is_read_and_is_not_played_into_the_next_store(tmp_path: Path) -> None:
     path, copy = small_store(tmp_path), tmp_path / "copy.sqlite"
     with closing(sqlite3.connect(path, isolation_level=None)) as other:
         other.execute("PRAGMA journal_mode = WAL")
         other.execute(BRIGHTER)
-        for ending in ("", *endings):
+        for ending in ("", "-wal"):
             shutil.copy(f"{path}{ending}", f"{copy}{ending}")
     with closing(loaded(copy)) as connection:
         assert connection.execute(BRIGHTNESS).fetchone() == (2.0,)
     change(copy)
     assert brightness(copy) == 9.0
     assert run(copy, "PRAGMA journal_mode") == [("delete",)]
-    assert os.listdir(tmp_path).count("copy.sqlite-wal") == 0
+    assert "copy.sqlite-wal" not in os.listdir(tmp_path)
 
 
 def test_a_store_in_wal_mode_without_a_log_is_read_without_a_trace(tmp_path: Path) -> None:
@@ -171,36 +149,29 @@ def test_a_store_in_wal_mode_without_a_log_is_read_without_a_trace(tmp_path: Pat
     assert brightness(path) == 2.0
 
 
-@pytest.mark.parametrize(
-    "content",
-    [b"", bytes(600), bytes(512) + b"old pages", (bytes(12) + b"unsynced header").ljust(512, b"\0")],
-)
-def test_a_journal_that_a_program_keeps_for_its_next_change_is_no_hindrance(
-    tmp_path: Path, content: bytes
-) -> None:
+def test_a_journal_that_a_program_keeps_for_its_next_change_is_no_hindrance(tmp_path: Path) -> None:
     path = small_store(tmp_path)
-    Path(f"{path}-journal").write_bytes(content)
-    read(path)
-    change(path)
-    assert brightness(path) == 9.0
-
-
-@pytest.mark.parametrize("ending", ["-journal", "-wal"])
-@pytest.mark.parametrize("content", [None, b"text"])
-def test_no_store_is_made_beside_a_file_that_would_be_played_into_it(
-    tmp_path: Path, ending: str, content: bytes | None
-) -> None:
-    path = small_store(tmp_path)
-    killed_change(path, "WAL" if ending == "-wal" else "DELETE")
-    path.unlink()
-    if content is not None:
-        path.write_bytes(content)
-    before = contents(tmp_path)
-    with pytest.raises(
-        WriteError, match=f"must have no small.sqlite{ending} beside it, because SQLite would"
-    ):
+    for content in (b"", bytes(512) + b"old pages", bytes(12) + b"unsynced header".ljust(500, b"\0")):
+        Path(f"{path}-journal").write_bytes(content)
+        read(path)
         change(path)
-    assert contents(tmp_path) == before
+        assert brightness(path) == 9.0
+
+
+@pytest.mark.parametrize(("mode", "ending"), [("WAL", "-wal"), ("DELETE", "-journal")])
+def test_no_store_is_made_beside_a_file_that_would_be_played_into_it(
+    tmp_path: Path, mode: str, ending: str
+) -> None:
+    path = small_store(tmp_path)
+    killed_change(path, mode)
+    path.write_bytes(b"text")
+    before = contents(tmp_path)
+    for _ in range(2):
+        with pytest.raises(WriteError, match=f"must have no small.sqlite{ending} beside it, because SQLite"):
+            change(path)
+        assert contents(tmp_path) == before
+        path.unlink(missing_ok=True)
+        before.pop(path.name, None)
 
 
 # Other programs.
@@ -286,67 +257,53 @@ def test_a_store_that_is_write_protected_is_read_and_not_replaced(
 
 # Permissions of statements.
 
-REFUSED = (
-    "ATTACH 'other.db' AS other",
-    "DETACH main",
-    "SELECT * FROM nodes WHERE nodes MATCH 'a'",
-    "SELECT FTS3_Tokenizer('simple', x'00')",
-    "PRAGMA journal_mode = WAL",
-    "PRAGMA writable_schema = ON",
-    "PRAGMA user_version = 9",
-    "PRAGMA Application_Id = 9",
-    "VACUUM INTO 'x'",
-    "CREATE TABLE other (x)",
-    "CREATE TEMP VIEW other AS SELECT 1",
-    "CREATE INDEX other ON nodes (x)",
-    "CREATE TRIGGER other AFTER DELETE ON nodes BEGIN SELECT 1; END",
-    "CREATE VIRTUAL TABLE other USING fts5(x)",
-    "DROP VIEW far",
-    "ALTER TABLE nodes ADD COLUMN w",
-    "REINDEX nodes",
-    "ANALYZE",
-    "DELETE FROM sqlite_master",
-    # A trigger changes nothing, whatever the schema calls it.
-    "DELETE FROM far",
-)
+REFUSED = """\
+ATTACH 'other.db' AS other
+DETACH main
+SELECT * FROM nodes WHERE nodes MATCH 'a'
+SELECT FTS3_Tokenizer('simple', x'00')
+PRAGMA journal_mode = WAL
+PRAGMA user_version = 9
+VACUUM INTO 'x'
+CREATE TABLE other (x)
+CREATE TRIGGER other AFTER DELETE ON nodes BEGIN SELECT 1; END
+CREATE VIRTUAL TABLE other USING fts5(x)
+DROP VIEW far
+ALTER TABLE nodes ADD COLUMN w
+DELETE FROM sqlite_master
+DELETE FROM far"""
+"""The last one would change rows by a trigger."""
+
 CHANGES = ("DELETE FROM nodes", "UPDATE nodes SET x = 1", "INSERT INTO nodes VALUES (2)")
 READS = (
     "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < 4) SELECT sum(i) FROM n",
     "SELECT HEX(max(x)) FROM far",
     "SELECT * FROM sqlite_master",
-    "PRAGMA table_info(nodes)",
     "PRAGMA INDEX_LIST(nodes)",
     "PRAGMA User_Version",
-    "PRAGMA application_id",
 )
-GUARDED = (
-    "CREATE TABLE nodes (x UNIQUE)",
-    "INSERT INTO nodes VALUES (1)",
-    "CREATE VIEW far AS SELECT * FROM nodes",
-    "CREATE TRIGGER evil INSTEAD OF DELETE ON far BEGIN INSERT INTO nodes VALUES (7); END",
-)
+GUARDED = """\
+CREATE TABLE nodes (x UNIQUE);
+INSERT INTO nodes VALUES (1);
+CREATE VIEW far AS SELECT * FROM nodes;
+CREATE TRIGGER evil INSTEAD OF DELETE ON far BEGIN INSERT INTO nodes VALUES (7); END"""
 
 
-def is_allowed(may_change: bool, statement: str) -> bool:
-    with closing(sqlite3.connect(":memory:", isolation_level=None)) as connection:
-        for each in GUARDED:
-            connection.execute(each)
-        connection.set_authorizer(authorizer(may_change))
-        try:
-            connection.execute(statement).fetchall()
-        except sqlite3.DatabaseError:
-            return False
-        return True
+@pytest.mark.parametrize("may_change", [False, True])
+def test_a_statement_reads_or_also_changes_rows_and_may_do_nothing_else(may_change: bool) -> None:
+    def is_allowed(statement: str) -> bool:
+        with closing(sqlite3.connect(":memory:", isolation_level=None)) as connection:
+            connection.executescript(GUARDED)
+            connection.set_authorizer(authorizer(may_change))
+            try:
+                connection.execute(statement).fetchall()
+            except sqlite3.DatabaseError:
+                return False
+            return True
 
-
-def test_a_statement_reads_or_also_changes_rows_and_may_do_nothing_else() -> None:
-    for may_change in (False, True):
-        refused = [*REFUSED, *(() if may_change else CHANGES)]
-        assert [each for each in refused if is_allowed(may_change, each)] == []
-        assert [each for each in READS if not is_allowed(may_change, each)] == []
-        ask = authorizer(may_change)
-        assert {ask(unknown, None, None, None, None) for unknown in (0, 100, -1)} == {sqlite3.SQLITE_DENY}
-        for function in UNSAFE_FUNCTIONS:
-            answer = ask(sqlite3.SQLITE_FUNCTION, None, function.upper(), None, None)
-            assert answer == sqlite3.SQLITE_DENY
-    assert [each for each in CHANGES if not is_allowed(True, each)] == []
+    allowed = [each for each in (*REFUSED.splitlines(), *CHANGES, *READS) if is_allowed(each)]
+    assert allowed == [*(CHANGES if may_change else ()), *READS]
+    ask = authorizer(may_change)
+    assert {ask(unknown, None, None, None, None) for unknown in (0, 100, -1)} == {sqlite3.SQLITE_DENY}
+    for function in UNSAFE_FUNCTIONS:
+        assert ask(sqlite3.SQLITE_FUNCTION, None, function.upper(), None, None) == sqlite3.SQLITE_DENY
