@@ -58,15 +58,15 @@ class Gltf:
         """The number of an accessor that moves the upper nodes up."""
         return self.array((CUBE * [0, 0, height]).astype("f4"))
 
-    def write(self, folder: Path) -> Path:
-        path = folder / "a.gltf"
+    @property
+    def text(self) -> str:
         uri = "data:application/octet-stream;base64," + base64.b64encode(self.binary).decode()
-        path.write_text(json.dumps({"buffers": [{"byteLength": len(self.binary), "uri": uri}]} | self.json))
-        return path
+        return json.dumps({"buffers": [{"byteLength": len(self.binary), "uri": uri}]} | self.json)
 
-    def read(self, folder: Path, up: str = "x") -> MeshReport:
+    def read(self, folder: Path) -> MeshReport:
         """The mesh, with x up: (x, y, z) of the file become (y, z, x)."""
-        return read_mesh({"file": self.write(folder)}, Placement(up))
+        (folder / "a.gltf").write_text(self.text)
+        return read_mesh({"file": folder / "a.gltf"}, Placement("x"))
 
 
 def box(report: MeshReport) -> list[list[float]]:
