@@ -187,6 +187,10 @@ def test_skins_move_nodes_by_the_weights_of_their_joints(tmp_path: Path, with_ma
     of_joints = np.cumsum(moves, axis=0) + bound
     expected = CUBE + np.einsum("nj,njk->nk", weights, of_joints[joints])
     assert np.allclose(np.roll(file.read(tmp_path).mesh.coordinates, 1, axis=1), expected, atol=1e-4)
+    file.json["skins"][0]["joints"] = [1]
+    number = file.attributes["JOINTS_0"]
+    sentence = f"a.gltf: accessors {number}: joints must be of their skin, which has 1{END}"
+    assert refusal(file.read, tmp_path) == sentence
 
 
 def test_nodes_at_one_place_are_one_and_what_is_left_out_is_told(tmp_path: Path) -> None:
