@@ -99,18 +99,14 @@ HARMLESS: Final = re.compile(
 )
 """Extensions without which the geometry is the same."""
 
-GEOMETRIC: Final = re.compile(r"\w*(draco|meshopt|instancing|gaussian|compression|CESIUM_RTC)\w*")
-"""Extensions that are refused even if they are only listed as used."""
-
 WITH_GEOMETRY: Final = ("scenes", "nodes", "meshes", "accessors", "bufferViews", "buffers", "skins")
 
 
 def refuse_extensions(described: Row) -> None:
-    """Raise ForeignRefusal for an extension that is required, or concerns geometry, and is not harmless."""
+    """Raise ForeignRefusal for an extension that is required, or that geometry has, and is not harmless."""
     owners = [row for key in WITH_GEOMETRY for row in rows(described, key)]
     owners += [row for mesh in rows(described, "meshes") for row in rows(mesh, "primitives")]
     needed = [str(each) for each in described.get("extensionsRequired") or ()]
-    needed += [each for each in map(str, described.get("extensionsUsed") or ()) if GEOMETRIC.fullmatch(each)]
     needed += [each for owner in owners for each in owner.get("extensions") or ()]
     for name in needed:
         if not HARMLESS.fullmatch(name):

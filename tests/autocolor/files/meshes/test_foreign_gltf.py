@@ -234,7 +234,6 @@ DRACO = "KHR_draco_mesh_compression"
              " export it without this extension")
             for path, name, value in (
                 ("extensionsRequired", "X_new", ["X_new"]),
-                ("extensionsUsed", DRACO, [DRACO]),
                 (f"{PRIMITIVE}.extensions", DRACO, {DRACO: {}}),
                 ("bufferViews.0.extensions", "EXT_meshopt_compression", {"EXT_meshopt_compression": {}}),
                 ("nodes.0.extensions", "EXT_mesh_gpu_instancing", {"EXT_mesh_gpu_instancing": {}}),
