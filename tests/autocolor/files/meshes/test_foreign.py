@@ -19,7 +19,6 @@ from autocolor.files.formats import format_of, read_mesh
 from autocolor.files.meshes import foreign
 from autocolor.files.meshes.foreign import (
     ForeignFormat,
-    Library,
     most_memory,
     most_seconds,
     read_in_own_process,
@@ -43,7 +42,7 @@ from tests.autocolor.files.meshes.test_meshio import (
 )
 from tests.autocolor.files.refusals import is_read_or_refused, refusal
 
-FAKE = ForeignFormat("Fake", (".fake",), Library("fake", "fake", "fakes"), "fake", "", 1)
+FAKE = ForeignFormat("Fake", (".fake",), "fake", "fake", "", 1)
 END = "; correct the file, or write it as OBJ or PLY"
 CANNOT = "a.fake: fake must be able to read it, and cannot ({})" + END
 MUST = "a.fake: fake must give a whole mesh, and does not ({})" + END
