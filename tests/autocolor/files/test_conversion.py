@@ -68,7 +68,6 @@ def test_a_scene_reads_back_with_all_that_the_format_holds(output: Format, tmp_p
         ("t/nodes.csv", "CSV"),
         (".", "scene"),
         ("tables.csv", "CSV"),
-        ("x" * 300 + ".ply", "PLY"),
         ("x" * 300, "scene"),
     ],
 )
@@ -81,12 +80,10 @@ def test_a_suffix_that_nothing_is_written_in_is_refused_with_the_nearest(tmp_pat
     with pytest.raises(UsageError, match=r"^OUT must end in .*'\.objj'; did you mean '\.obj'\?; name"):
         output_of(tmp_path / "car.objj")
     listed = "--to must be CSV, npy, OBJ, PLY, scene, STL, store or tables, not"
-    with pytest.raises(UsageError) as near:
-        output_named("onj")
-    assert str(near.value) == f"{listed} 'onj'; did you mean OBJ?"
-    with pytest.raises(UsageError) as far:
-        output_named("qqqqq")
-    assert str(far.value) == f"{listed} 'qqqqq'; choose one"
+    for name, end in (("onj", "did you mean OBJ?"), ("qqqqq", "choose one")):
+        with pytest.raises(UsageError) as caught:
+            output_named(name)
+        assert str(caught.value) == f"{listed} '{name}'; {end}"
 
 
 def colored(size: float = 1.0) -> Scene:
@@ -183,7 +180,6 @@ def of_parts(count: int) -> Mesh:
             NOTHING,
             [QUADS_TOLD, "the crease angle of 60 degrees"],
         ),
-        (of_parts(5), NOTHING, ["5 parts ('cube', '1', '2', '3', '4')", QUADS_TOLD]),
         (of_parts(2005), NOTHING, ["2,005 parts ('cube', '1', '2', '3', '4' and 2,000 more)", QUADS_TOLD]),
     ],
 )
