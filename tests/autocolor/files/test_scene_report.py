@@ -46,8 +46,7 @@ def test_a_list_of_many_surfaces_is_cut_and_says_how_many_more() -> None:
     assert created(parts=12) == (f"12 surfaces were created: {names}",)
     assert created(parts=14) == (f"14 surfaces were created: {names} and 2 more",)
 
-
-def test_a_part_that_shares_a_surface_as_asked_is_not_counted() -> None:
+    # A part that shares a surface as asked is not counted.
     shared = {str(part): "0" for part in range(300)}
     assert created(parts=300, surface_of_part=shared) == ("surface '0' was created",)
     assert created(parts=300)[-1] == "46 parts share surface '254', because a scene has at most 255"

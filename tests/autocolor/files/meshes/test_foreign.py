@@ -91,8 +91,6 @@ ABSENT = MUST.format("its numbers are of nodes, corners or parts that are not th
         ("raise ValueError('x' * 1000)", CANNOT.format("ValueError: " + "x" * 288)),
         ("raise ForeignRefusal('a cell must be flat', 'bend it')", "a.fake: a cell must be flat; bend it"),
         ("raise InputError('a.fake, line 2: it ends')", "a.fake, line 2: it ends"),
-        ("mesh = None", CANNOT.format("AttributeError: 'NoneType' object has no attribute 'polygons'")),
-        ("import os; os._exit(7)", f"a.fake: fake must read it, and crashed (code 7){END}"),
         ("import os; os.abort()", f"a.fake: fake must read it, and crashed (code -6){END}"),
         ("mesh = [bytes(1 << 20) for _ in range(5000)]",
          CANNOT.format("it needs more memory than its size and --limit allow")),
