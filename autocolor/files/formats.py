@@ -66,7 +66,7 @@ class Format:
     name: str
     suffixes: tuple[str, ...]
     _: KW_ONLY
-    begins: Callable[[bytes], bool] | None = None
+    begins: Callable[[bytes], object] | None = None
     in_folder: tuple[str, ...] = ()
     write: SceneWriter | None = None
     holds: frozenset[str] = WHOLE_SCENE

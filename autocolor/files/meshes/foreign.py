@@ -24,7 +24,7 @@ import zipfile
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final, NamedTuple
+from typing import Final
 
 import autocolor.files
 from autocolor.budget import allowed_memory, validated_limit
@@ -90,7 +90,7 @@ def most_memory(size: int) -> int:
 
 def read_in_own_process(read_as: ForeignFormat, path: Path, size: int) -> ForeignMesh:
     """The mesh of a file of `size` bytes that a library reads in its own process. Raises InputError."""
-    library = read_as.library.name
+    library = read_as.library
     with tempfile.TemporaryDirectory(prefix="autocolor-") as folder:
         result = Path(folder) / "mesh.npz"
         file, limit = os.fspath(path.absolute()), str(validated_limit(None))
@@ -140,60 +140,53 @@ def _exit_code(command: tuple[str, ...], seconds: float) -> int | None:
         return 127
 
 
-class Library(NamedTuple):
-    """A library: its name, the package to import, and the extra that installs it."""
-
-    name: str
-    package: str
-    extra: str
-
-
-VTK: Final = Library("VTK", "vtkmodules", "vtk")
-LIB3MF: Final = Library("lib3mf", "lib3mf", "meshes")
-MESHIO: Final = Library("meshio", "meshio", "meshes")
+LIBRARIES: Final = {
+    "VTK": ("vtkmodules", "vtk"),
+    "lib3mf": ("lib3mf", "meshes"),
+    "meshio": ("meshio", "meshes"),
+}
+"""The package to import for each library, and the extra that installs it."""
 
 
 @dataclass(frozen=True)
 class ForeignFormat:
-    """A format that a library reads: its name, its suffixes, and the library.
+    """A format that a library reads: its name, its suffixes, and the name of the library.
 
     `module` and `kind` are what the worker calls the reader and the format. `growth` is how many times its
-    size a file takes, as measured. `beginning` is a pattern of the first bytes; empty if they tell nothing.
+    size a file takes, as measured. `begins` is whether first bytes may be those of a file, as in `Format`.
     `size_of` gives the number of bytes to read, and checks which files the file names. `up` is the file's up
     axis if the format says it.
     """
 
     name: str
     suffixes: tuple[str, ...]
-    library: Library
+    library: str
     module: str
     kind: str
     growth: float
-    beginning: str = ""
+    begins: Callable[[bytes], object] | None = None
     size_of: Callable[[Path], int] = size_of_file
     up: str = ""
-
-    @property
-    def begins(self) -> Callable[[bytes], bool] | None:
-        """Whether first bytes are those of the format; None if they tell nothing."""
-        pattern = re.compile(self.beginning.encode())
-        return (lambda head: pattern.match(head) is not None) if self.beginning else None
 
 
 XML_SUFFIXES: Final = (".vtp", ".vtu", ".vts", ".vtr", ".vti")
 
 FOREIGN: Final = (
-    ForeignFormat("VTK", (".vtk",), VTK, "vtk", "legacy", 10, r"(?i)# vtk datafile"),
-    ForeignFormat("VTK XML", XML_SUFFIXES, VTK, "vtk", "xml", 15, r"(?s)\s*<(.*<)?VTKFile"),
-    ForeignFormat("glTF", (".glb", ".gltf"), VTK, "gltf", "", 12, "glTF", size_of_gltf, "y"),
-    ForeignFormat("3MF", (".3mf",), LIB3MF, "3mf", "", 20, "", size_of_3mf, "z"),
-    ForeignFormat("Abaqus", (".inp",), MESHIO, "meshio", "abaqus", 8, size_of=size_of_text("abaqus")),
-    ForeignFormat("Gmsh", (".msh",), MESHIO, "meshio", "gmsh", 8),
+    ForeignFormat("VTK", (".vtk",), "VTK", "vtk", "legacy", 10, re.compile(rb"(?i)# vtk datafile").match),
     ForeignFormat(
-        "Nastran", (".bdf", ".nas", ".fem"), MESHIO, "meshio", "nastran", 8, size_of=size_of_text("nastran")
+        "VTK XML", XML_SUFFIXES, "VTK", "vtk", "xml", 15, re.compile(rb"(?s)\s*<(.*<)?VTKFile").match
     ),
-    ForeignFormat("Medit", (".mesh", ".meshb"), MESHIO, "meshio", "medit", 8),
-    ForeignFormat("UGRID", (".ugrid",), MESHIO, "meshio", "ugrid", 8),
+    ForeignFormat(
+        "glTF", (".glb", ".gltf"), "VTK", "gltf", "", 12, re.compile(b"glTF").match, size_of_gltf, up="y"
+    ),
+    ForeignFormat("3MF", (".3mf",), "lib3mf", "3mf", "", 20, size_of=size_of_3mf, up="z"),
+    ForeignFormat("Abaqus", (".inp",), "meshio", "meshio", "abaqus", 8, size_of=size_of_text("abaqus")),
+    ForeignFormat("Gmsh", (".msh",), "meshio", "meshio", "gmsh", 8),
+    ForeignFormat(
+        "Nastran", (".bdf", ".nas", ".fem"), "meshio", "meshio", "nastran", 8, size_of=size_of_text("nastran")
+    ),
+    ForeignFormat("Medit", (".mesh", ".meshb"), "meshio", "meshio", "medit", 8),
+    ForeignFormat("UGRID", (".ugrid",), "meshio", "meshio", "ugrid", 8),
 )
 
 
@@ -203,11 +196,11 @@ def read_foreign(read_as: ForeignFormat, path: Path, placement: Placement = PLAI
     Raises InputError, and UnavailableError if a package is missing.
     """
     size = read_as.size_of(path)
-    library = read_as.library
-    if importlib.util.find_spec(library.package) is None:
+    package, extra = LIBRARIES[read_as.library]
+    if importlib.util.find_spec(package) is None:
         raise UnavailableError(
-            f"{path.name}: to read {read_as.name} files, the library {library.name} must be installed; run:"
-            f' pip install "autocolor[{library.extra}]"'
+            f"{path.name}: to read {read_as.name} files, the library {read_as.library} must be installed;"
+            f' run: pip install "autocolor[{extra}]"'
         )
     require_size(path.name, size, read_as.growth)
     mesh = read_in_own_process(read_as, path, size)

@@ -63,8 +63,6 @@ def part_names_of(names: Sequence[str]) -> tuple[str, ...]:
 ARRAYS: Final = ("coordinates", "corners", "corner_counts", "part_numbers")
 NORMALS: Final = ("normals", "corner_normals")
 
-LONGEST_SENTENCE: Final = 300
-
 
 def save(mesh: ForeignMesh, result: Path) -> None:
     """Write a mesh as an archive."""
@@ -123,5 +121,5 @@ def loaded(result: Path) -> ForeignMesh:
         corner_normals=of_corners,
     )
     sentences, material_of_part, colors = header["others"]
-    sentences = tuple(printable(each[:LONGEST_SENTENCE]) for each in sentences)
+    sentences = tuple(printable(each[:300]) for each in sentences)
     return ForeignMesh(polygons, sentences, material_of_part, colors)

@@ -71,16 +71,12 @@ def read(path: Path, kind: str) -> ForeignMesh:
     window = listening()
     data, sentences = (_xml if kind == "xml" else _legacy)(path)
     refuse_printed(window, path)
+    # VTK prints of arrays that have other numbers of values than there are nodes or cells.
+    data.CheckAttributes()
+    refuse_printed(window, path)
     nodes, cells = data.GetNumberOfPoints(), data.GetNumberOfCells()
     if not nodes or not cells:
         raise ForeignRefusal(f"it must have nodes and cells, not {nodes:,} nodes and {cells:,} cells")
-    for count, owner in ((nodes, data.GetPointData()), (cells, data.GetCellData())):
-        for array in (owner.GetAbstractArray(at) for at in range(owner.GetNumberOfArrays())):
-            if array.GetNumberOfTuples() != count:
-                name = shown(_text(array.GetName()))
-                raise ForeignRefusal(
-                    f"the array {name} must have {count:,} values, as many as nodes or cells"
-                )
     ghosts = np.zeros(cells, np.uint8)
     if ghost_type := data.GetCellData().GetArray("vtkGhostType"):
         ghosts = vtk_to_numpy(ghost_type)

@@ -1,8 +1,8 @@
 """The JSON of a glTF or GLB file, checked and completed, so that VTK cannot misunderstand it.
 
-Buffers are read by our rule of paths, and joined. Numbers that may be left out, such as the offset of a view,
-are written out, because VTK takes their absence for a fault. VTK reads what an accessor has beyond its view
-as zeros, so that is refused here. An extension that may change the geometry is refused by its name.
+Buffers are read by our rule of paths, and the values of accessors become one buffer. VTK reads what an
+accessor has beyond its view as zeros, and joints beyond their skin from any memory, so that is refused here.
+An extension that may change the geometry is refused by its name.
 """
 
 from __future__ import annotations
@@ -99,18 +99,14 @@ HARMLESS: Final = re.compile(
 )
 """Extensions without which the geometry is the same."""
 
-GEOMETRIC: Final = re.compile(r"\w*(draco|meshopt|instancing|gaussian|compression|CESIUM_RTC)\w*")
-"""Extensions that are refused even if they are only listed as used."""
-
 WITH_GEOMETRY: Final = ("scenes", "nodes", "meshes", "accessors", "bufferViews", "buffers", "skins")
 
 
 def refuse_extensions(described: Row) -> None:
-    """Raise ForeignRefusal for an extension that is required, or concerns geometry, and is not harmless."""
+    """Raise ForeignRefusal for an extension that is required, or that geometry has, and is not harmless."""
     owners = [row for key in WITH_GEOMETRY for row in rows(described, key)]
     owners += [row for mesh in rows(described, "meshes") for row in rows(mesh, "primitives")]
     needed = [str(each) for each in described.get("extensionsRequired") or ()]
-    needed += [each for each in map(str, described.get("extensionsUsed") or ()) if GEOMETRIC.fullmatch(each)]
     needed += [each for owner in owners for each in owner.get("extensions") or ()]
     for name in needed:
         if not HARMLESS.fullmatch(name):
@@ -128,8 +124,12 @@ WIDTHS: Final = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3"
 
 
 def completed(path: Path, described: Row, binary: bytes) -> bytes:
-    """A GLB file of one buffer, with the scene that `described` becomes. Raises ForeignRefusal."""
-    starts, joined = [], bytearray()
+    """A GLB file of one buffer, with the scene that `described` becomes. Raises ForeignRefusal.
+
+    Each accessor has a view of its own, so that VTK finds no offsets, strides or sparse values, which it
+    leaves out at times.
+    """
+    buffers, views, joined = list[bytes](), list[tuple[memoryview, int]](), bytearray()
     for number, (row, named) in enumerate(
         zip(rows(described, "buffers"), buffer_files(path, described), strict=True)
     ):
@@ -140,35 +140,46 @@ def completed(path: Path, described: Row, binary: bytes) -> bytes:
             raise ForeignRefusal(
                 f"buffers {number}: it must have the {least:,} bytes that the file says, not {len(data):,}"
             )
-        starts.append((len(joined), least))
-        joined += data[:least] + bytes(-least % 4)
+        buffers.append(data[:least])
     for number, view in enumerate(rows(described, "bufferViews")):
         place = f"bufferViews {number}"
         buffer, offset = whole(view, "buffer", place), whole(view, "byteOffset", place, 0)
-        start, size = starts[buffer] if buffer < len(starts) else (0, -1)
-        if offset + whole(view, "byteLength", place) > size:
+        data = buffers[buffer] if buffer < len(buffers) else b""
+        end = offset + whole(view, "byteLength", place)
+        if end > len(data):
             raise ForeignRefusal(f"{place}: it must be within its buffer")
-        view |= {"buffer": 0, "byteOffset": start + offset}
+        views.append((memoryview(data)[offset:end], whole(view, "byteStride", place, 0)))
+    described["bufferViews"], arrays = [], list[AnyArray]()
+
+    def put(row: Row, values: AnyArray) -> None:
+        row |= {"bufferView": len(arrays), "byteOffset": 0}
+        described["bufferViews"].append({"buffer": 0, "byteOffset": len(joined), "byteLength": values.nbytes})
+        joined.extend(values.tobytes() + bytes(-values.nbytes % 4))
+        arrays.append(values)
+
     for number, row in enumerate(rows(described, "accessors")):
-        _complete(described, row, joined, f"accessors {number}")
-    for skin in rows(described, "skins"):
+        put(row, _values_of(row, views, f"accessors {number}"))
+    skins, meshes = rows(described, "skins"), rows(described, "meshes")
+    for skin in skins:
         if "inverseBindMatrices" not in skin:
-            count = len(skin["joints"])
-            added = _added(described, joined, np.tile(np.eye(4, dtype="<f4"), (count, 1, 1)))
-            row = {"bufferView": added, "byteOffset": 0, "componentType": FLOAT, "type": "MAT4"}
-            described["accessors"].append({**row, "count": count})
-            skin["inverseBindMatrices"] = len(described["accessors"]) - 1
-    if "scenes" not in described:
-        below = {each for row in rows(described, "nodes") for each in row.get("children", ())}
-        roots = [number for number in range(len(rows(described, "nodes"))) if number not in below]
-        described["scenes"] = [{"nodes": roots}]
-    described["buffers"] = [{"byteLength": len(joined)}]
-    for key in ("extensionsRequired", "extensionsUsed", "images", "textures", "animations", "cameras"):
-        described.pop(key, None)
+            skin["inverseBindMatrices"], count = len(arrays), len(skin["joints"])
+            described["accessors"].append({"componentType": FLOAT, "type": "MAT4", "count": count})
+            put(described["accessors"][-1], np.tile(np.eye(4, dtype="<f4"), (count, 1, 1)))
     for node in rows(described, "nodes"):
+        if "skin" in node and "mesh" in node:
+            count = len(skins[node["skin"]]["joints"])
+            for primitive in rows(meshes[node["mesh"]], "primitives"):
+                joints = primitive["attributes"].get("JOINTS_0")
+                if joints is not None and (arrays[joints] >= count).any():
+                    raise ForeignRefusal(
+                        f"accessors {joints}: joints must be of their skin, which has {count:,}"
+                    )
         # VTK warns of rounded unit quaternions.
         if length := math.hypot(*node.get("rotation", ())):
             node["rotation"] = [each / length for each in node["rotation"]]
+    described["buffers"] = [{"byteLength": len(joined)}]
+    for key in ("extensionsRequired", "extensionsUsed", "images", "textures", "animations", "cameras"):
+        described.pop(key, None)
     text = json.dumps(described).encode()
     text += b" " * (-len(text) % 4)
     size = 28 + len(text) + len(joined)
@@ -176,21 +187,19 @@ def completed(path: Path, described: Row, binary: bytes) -> bytes:
     return head + text + struct.pack("<I4s", len(joined), b"BIN\0") + joined
 
 
-def _complete(described: Row, row: Row, joined: bytearray, place: str) -> None:
-    """Write out the offset of an accessor, whose values must be within its view.
+def _values_of(row: Row, views: list[tuple[memoryview, int]], place: str) -> AnyArray:
+    """The values of an accessor, (count, columns), which must be within its view. Raises ForeignRefusal.
 
-    Sparse values, which VTK leaves out at times, and vectors of whole numbers that are not normalized, which
-    it refuses, become plain arrays.
+    Vectors of whole numbers that are not normalized, which VTK refuses, become floats.
     """
 
-    def values_of(part: Row, length: int, columns: int, type_: np.dtype[Any]) -> AnyArray:
-        view, size = described["bufferViews"][part["bufferView"]], columns * type_.itemsize
-        offset = part["byteOffset"] = whole(part, "byteOffset", place, 0)
-        stride = whole(view, "byteStride", place, size)
-        if length and offset + stride * (length - 1) + size > view["byteLength"]:
+    def read(part: Row, length: int, columns: int, type_: np.dtype[Any]) -> AnyArray:
+        data, stride = views[whole(part, "bufferView", place)]
+        offset, size = whole(part, "byteOffset", place, 0), columns * type_.itemsize
+        stride = stride or size
+        if length and offset + stride * (length - 1) + size > len(data):
             raise ForeignRefusal(f"{place}: its {length:,} values must be within its view")
-        start, strides = view["byteOffset"] + offset, (stride, type_.itemsize)
-        return np.ndarray((length, columns), type_, joined, start, strides).copy()
+        return np.ndarray((length, columns), type_, data, offset, (stride, type_.itemsize)).copy()
 
     count, dtype = whole(row, "count", place), np.dtype(TYPES.get(row.get("componentType", 0), "V0"))
     width = WIDTHS.get(row.get("type", ""), 0)
@@ -199,25 +208,14 @@ def _complete(described: Row, row: Row, joined: bytearray, place: str) -> None:
             f"{place}: its type must be one of glTF, not {shown(row.get('type'))} of"
             f" {shown(row.get('componentType'))}"
         )
-    is_whole = width == 3 and dtype.kind != "f" and not row.get("normalized")
-    is_plain = "bufferView" in row and "sparse" not in row and not is_whole
-    values = values_of(row, count, width, dtype) if "bufferView" in row else np.zeros((count, width), dtype)
+    values = read(row, count, width, dtype) if "bufferView" in row else np.zeros((count, width), dtype)
     if sparse := row.pop("sparse", None):
         changed, indices = whole(sparse, "count", place), sparse["indices"]
-        at = values_of(indices, changed, 1, np.dtype(TYPES[indices["componentType"]]))[:, 0]
-        values[at] = values_of(sparse["values"], changed, width, dtype)
-    if is_whole:
+        at = read(indices, changed, 1, np.dtype(TYPES[indices["componentType"]]))[:, 0]
+        values[at] = read(sparse["values"], changed, width, dtype)
+    if width == 3 and dtype.kind != "f" and not row.get("normalized"):
         values, row["componentType"] = values.astype("<f4"), FLOAT
-    if not is_plain:
-        row |= {"bufferView": _added(described, joined, values), "byteOffset": 0}
-
-
-def _added(described: Row, joined: bytearray, values: AnyArray) -> int:
-    """The number of a new view of the joined buffer, which gets these values."""
-    data = values.tobytes()
-    described["bufferViews"].append({"buffer": 0, "byteOffset": len(joined), "byteLength": len(data)})
-    joined += data + bytes(-len(data) % 4)
-    return len(described["bufferViews"]) - 1
+    return values
 
 
 def whole(row: Row, key: str, place: str, default: int | None = None) -> int:

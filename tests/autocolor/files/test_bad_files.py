@@ -12,13 +12,12 @@ import pytest
 from autocolor.errors import InputError
 from autocolor.files.formats import FILE_FORMATS, suffixes_of
 from autocolor.files.opening import PICTURE, SCENE, STORE, read_scene_with_report
-from tests.mutations import BY_HAND, OBJ_TEXT, PLY_BITS, PLY_TEXT, STL_BITS
+from tests.mutations import PLY_BITS, PLY_TEXT, STL_BITS
 
 OURS = [each for each in FILE_FORMATS if not isinstance(each.read, partial)]
 """The mesh formats that no library reads in a process of its own; that has tests of its own."""
 
 SUFFIXES = suffixes_of((PICTURE, SCENE, STORE, *OURS))
-TEXTS = [seed for seed in BY_HAND if seed.read and seed.files[seed.read].isascii()]
 
 
 def refusal(path: Path) -> str:
@@ -52,32 +51,13 @@ def test_an_endless_line_is_refused(tmp_path: Path, suffix: str) -> None:
     assert "car" in refusal(path)
 
 
-NUMBERS = ["0x10", "1_0", "1,5", "\N{ARABIC-INDIC DIGIT THREE}", "nan", "inf", "1e31", "1e999"]
-COUNTS = [2**31 - 1, -1, 2**31, 2**32 - 1, 2**63]
-CORNERS = [b"0", b"-9", b"99", b"4294967297", b"1.5", b"9" * 25]
-PLACES = [
-    ("car.obj", OBJ_TEXT, b"1.5e0", [each.encode() for each in NUMBERS]),
-    ("car.ply", PLY_TEXT, b"0 1 0.5", [f"0 1 {each}".encode() for each in NUMBERS]),
-    *(
-        (name, text, count, [count.split()[0] + b" %d" % each for each in COUNTS])
-        for name, text, counts in (
-            ("car.ply", PLY_TEXT, (b"vertex 4", b"face 2")),
-            ("car.ply", PLY_BITS, (b"vertex 4", b"face 2")),
-        )
-        for count in counts
-    ),
-    ("car.stl", STL_BITS, STL_BITS[80:84], [b"\xff\xff\xff\xff"]),
-    ("car.obj", OBJ_TEXT, b"f -1 -3 2", [b"f -1 -3 " + each for each in CORNERS]),
-    ("car.ply", PLY_TEXT, b"3 0 1 2\n", [b"3 0 1 " + each + b"\n" for each in CORNERS[1:]]),
-]
-
-
-@pytest.mark.parametrize(("name", "text", "old", "news"), PLACES)
-def test_a_number_a_count_or_a_corner_that_cannot_be_is_refused(
-    tmp_path: Path, name: str, text: bytes, old: bytes, news: list[bytes]
-) -> None:
-    path = tmp_path / name
-    assert old in text
-    for new in news:
-        path.write_bytes(text.replace(old, new, 1))
-        assert name in refusal(path), new
+@pytest.mark.parametrize("count", [-1, 2**31 - 1, 2**31, 2**32 - 1, 2**63])
+def test_a_count_that_cannot_be_is_refused(tmp_path: Path, count: int) -> None:
+    path = tmp_path / "car.ply"
+    for data in (PLY_TEXT, PLY_BITS):
+        for old in (b"vertex 4", b"face 2"):
+            assert old in data
+            path.write_bytes(data.replace(old, old[:-1] + b"%d" % count, 1))
+            assert "car.ply" in refusal(path)
+    (tmp_path / "car.stl").write_bytes(STL_BITS[:80] + b"\xff" * 4 + STL_BITS[84:])
+    assert "car.stl" in refusal(tmp_path / "car.stl")

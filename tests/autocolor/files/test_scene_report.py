@@ -12,11 +12,6 @@ from tests.small import cube, wall_scene
 VIEW = View((0, -4, 0), target=(0, 0, 0))
 
 
-def read(mesh: Mesh, **fields: Any) -> list[MeshReport]:
-    """That one mesh was read."""
-    return [MeshReport(mesh, **fields)]
-
-
 def mesh_of(parts: int) -> Mesh:
     """A cube and more parts, named 0, 1 and so on, the others without polygons."""
     return dataclasses.replace(cube(), part_names=tuple(map(str, range(parts))))
@@ -25,11 +20,11 @@ def mesh_of(parts: int) -> Mesh:
 def created(parts: int = 1, **fields: Any) -> tuple[str, ...]:
     """What is said to be created where only a view and no lights are given, unless `fields` say otherwise."""
     given = {"view": VIEW, "lights": (), "surfaces": "parts", **fields}
-    return scene_report(read(mesh_of(parts)), **given).created
+    return scene_report([MeshReport(mesh_of(parts))], **given).created
 
 
 def test_of_a_bare_mesh_everything_is_created_and_said() -> None:
-    report = scene_report(read(cube()))
+    report = scene_report([MeshReport(cube())])
     assert report.created == (
         "a view was created that frames the object",
         "4 studio lights were created",
@@ -40,7 +35,7 @@ def test_of_a_bare_mesh_everything_is_created_and_said() -> None:
 
 def test_nothing_is_said_of_what_was_given() -> None:
     fields: dict[str, Any] = {"view": VIEW, "lights": (), "surfaces": [Surface("cube")]}
-    report = scene_report(read(cube()), mesh_files=({"file": "car.obj"},), **fields)
+    report = scene_report([MeshReport(cube())], mesh_files=({"file": "car.obj"},), **fields)
     assert (report.created, report.mesh_files) == ((), ({"file": "car.obj"},))
     assert (report.is_view_created, report.are_lights_created) == (False, False)
     assert (report.scene.view, report.scene.lights) == (VIEW, ())
@@ -51,8 +46,7 @@ def test_a_list_of_many_surfaces_is_cut_and_says_how_many_more() -> None:
     assert created(parts=12) == (f"12 surfaces were created: {names}",)
     assert created(parts=14) == (f"14 surfaces were created: {names} and 2 more",)
 
-
-def test_a_part_that_shares_a_surface_as_asked_is_not_counted() -> None:
+    # A part that shares a surface as asked is not counted.
     shared = {str(part): "0" for part in range(300)}
     assert created(parts=300, surface_of_part=shared) == ("surface '0' was created",)
     assert created(parts=300)[-1] == "46 parts share surface '254', because a scene has at most 255"
@@ -61,9 +55,9 @@ def test_a_part_that_shares_a_surface_as_asked_is_not_counted() -> None:
 def test_of_parts_and_materials_of_several_meshes_the_first_count() -> None:
     red, blue = Surface("red"), Surface("red", two_sided=False)
     reports = [
-        *read(wall_scene().mesh, material_of_part={"wall": "red"}, materials=(red,)),
-        *read(wall_scene().mesh, material_of_part={"wall": "glass"}, materials=(blue,)),
-        *read(cube(), material_of_part={"cube": "red"}),
+        MeshReport(wall_scene().mesh, material_of_part={"wall": "red"}, materials=(red,)),
+        MeshReport(wall_scene().mesh, material_of_part={"wall": "glass"}, materials=(blue,)),
+        MeshReport(cube(), material_of_part={"cube": "red"}),
     ]
     report = scene_report(reports, view=VIEW, lights=())
     assert [part.surface for part in report.scene.parts] == ["red", "red"]

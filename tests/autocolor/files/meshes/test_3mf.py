@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from autocolor.files.formats import read_mesh
+from tests.autocolor.files.meshes.conftest import CUBE, SIDES
 from tests.autocolor.files.refusals import refusal
 
 pytestmark = [pytest.mark.needs("lib3mf"), pytest.mark.usefixtures("shared")]
@@ -25,14 +26,12 @@ TYPES = (
     "</Types>"
 )
 
-NODES = [(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)]
-QUADS = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
-TRIANGLES = [piece for a, b, c, d in QUADS for piece in ((a, b, c), (a, c, d))]
+TRIANGLES = [piece for a, b, c, d in SIDES for piece in ((a, b, c), (a, c, d))]
 
 
 def cube(size: float = 1, painted: str = "", others: str = "", triangles: int = 12) -> str:
     """A mesh; the first six triangles have the attributes `painted`."""
-    vertices = "".join(f'<vertex x="{size * x}" y="{size * y}" z="{size * z}"/>' for x, y, z in NODES)
+    vertices = "".join(f'<vertex x="{size * x}" y="{size * y}" z="{size * z}"/>' for x, y, z in CUBE)
     rows = "".join(
         f'<triangle v1="{a}" v2="{b}" v3="{c}" {painted if number < 6 else ""}/>'
         for number, (a, b, c) in enumerate(TRIANGLES[:triangles])
@@ -52,21 +51,18 @@ def model(resources: str, build: str = '<item objectid="1"/>', required: str = "
     )
 
 
-def relations(*targets: str) -> str:
-    rows = "".join(
-        f'<Relationship Target="{each}" Id="r{number}" Type="{SCHEMAS}/2013/01/3dmodel"/>'
-        for number, each in enumerate(targets)
-    )
-    return f'<Relationships xmlns="{RELATIONS}/relationships">{rows}</Relationships>'
-
-
 def written(folder: Path, root: str, **others: str) -> Path:
     """A file with a model and the model files named by `others`."""
     path = folder / "a.3mf"
     with zipfile.ZipFile(path, "w") as archive:
         archive.writestr("[Content_Types].xml", TYPES)
-        archive.writestr("_rels/.rels", relations("/3D/3dmodel.model"))
-        archive.writestr("3D/_rels/3dmodel.model.rels", relations(*(f"/3D/{name}.model" for name in others)))
+        for place, targets in (("_rels/", ["3dmodel"]), ("3D/_rels/3dmodel.model", others)):
+            rows = "".join(
+                f'<Relationship Target="/3D/{each}.model" Id="{each}" Type="{SCHEMAS}/2013/01/3dmodel"/>'
+                for each in targets
+            )
+            text = f'<Relationships xmlns="{RELATIONS}/relationships">{rows}</Relationships>'
+            archive.writestr(f"{place}.rels", text)
         for name, text in {"3dmodel": root, **others}.items():
             archive.writestr(f"3D/{name}.model", text)
     return path
@@ -79,17 +75,13 @@ def moved(x: float, y: float = 0, axes: str = "1 0 0 0 1 0 0 0 1") -> str:
 QUARTER = "0 1 0 -1 0 0 0 0 1"
 """A quarter turn about z, which takes x to y."""
 
+MIRRORED = "-1 0 0 0 1 0 0 0 1"
+
 
 def test_components_are_parts_placed_by_all_transforms_above_them(tmp_path: Path) -> None:
-    mirrored = f'<item objectid="1" {moved(0, 0, "-1 0 0 0 1 0 0 0 1")}/>'
     pair = f'<components><component objectid="1"/><component objectid="1" {moved(10)}/></components>'
-    path = written(
-        tmp_path,
-        model(
-            part(1, cube()) + part(2, pair, 'name="pair"'),
-            f'<item objectid="2" {moved(3, 0, QUARTER)}/>' + mirrored,
-        ),
-    )
+    items = f'<item objectid="2" {moved(3, 0, QUARTER)}/><item objectid="1" {moved(0, 0, MIRRORED)}/>'
+    path = written(tmp_path, model(part(1, cube()) + part(2, pair, 'name="pair"'), items))
     mesh = read_mesh({"file": path}).mesh
     assert mesh.part_names == read_mesh({"file": path}).mesh.part_names == ("cube", "cube 2", "cube 3")
     corners = mesh.coordinates.reshape(3, 8, 3)

@@ -6,16 +6,15 @@ import numpy as np
 import pytest
 
 from autocolor.files.meshes.cells import BASES, CORNERS, CellSurface, Flats, Volumes, cell_surface
-from tests.small import CUBE_NODES
+from tests.autocolor.files.meshes.conftest import CUBE, SIDES
 
 NO_FLATS = Flats.joined([])
 
-NODES = np.array([*CUBE_NODES, (0.5, 0.5, 0.5), (0.5, 0.5, 2)], float)
+NODES = np.array([*CUBE, (0.5, 0.5, 0.5), (0.5, 0.5, 2)])
 
 CELLS = {
     "tetra": [[0, 1, 2, 4], [1, 3, 2, 7], [1, 5, 4, 7], [2, 4, 6, 7], [1, 2, 4, 7]],
-    "pyramid": [[0, 1, 3, 2, 8], [4, 6, 7, 5, 8], [0, 4, 5, 1, 8],
-                [1, 5, 7, 3, 8], [3, 7, 6, 2, 8], [2, 6, 4, 0, 8]],
+    "pyramid": [[*side[::-1], 8] for side in SIDES],
     "wedge": [[0, 1, 3, 4, 5, 7], [0, 3, 2, 4, 7, 6]],
     "hexahedron": [[0, 1, 3, 2, 4, 5, 7, 6]],
 }  # fmt: skip

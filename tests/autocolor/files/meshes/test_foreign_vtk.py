@@ -2,166 +2,122 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from itertools import product
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from autocolor.errors import InputError
 from autocolor.files.formats import read_mesh
-from autocolor.files.meshes.foreign import FOREIGN, ForeignFormat, read_in_own_process
-from autocolor.files.meshes.repair import MeshReport
-from tests.autocolor.files.refusals import is_read_or_refused, refusal
+from autocolor.files.meshes.foreign import FOREIGN, read_in_own_process
+from tests.autocolor.files.meshes.conftest import CUBE, SIDES, area_and_volume
+from tests.autocolor.files.refusals import refusal
 from tests.tables import first
 
 pytestmark = [pytest.mark.needs("vtkmodules"), pytest.mark.usefixtures("shared")]
 
-CUBE = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1.0)])
-HEXAHEDRON = (12, [0, 1, 3, 2, 4, 5, 7, 6])
-FACES = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [1, 3, 7, 5], [3, 2, 6, 7], [2, 0, 4, 6]]
+# Data sets, as legacy files describe them.
 
 
-def area_of(report: MeshReport) -> float:
-    a, b, c, d = report.mesh.coordinates[report.mesh.node_numbers.T]
-    pairs = ((b - a, c - a), (c - a, d - a))
-    return float(sum(np.linalg.norm(np.cross(one, other), axis=1).sum() for one, other in pairs) / 2)
+def numbers(values: Any) -> str:
+    return " ".join(map(str, np.ravel(values).tolist()))
 
 
-def volume_of(report: MeshReport) -> float:
-    """The volume within the mesh, positive if it is turned outward."""
-    a, b, c, d = report.mesh.coordinates[report.mesh.node_numbers.T]
-    return float(sum(np.einsum("ij,ij->", a, np.cross(one, other)) for one, other in ((b, c), (c, d))) / 6)
+def scalars(name: str, values: Any, type_: str = "int") -> str:
+    return f"SCALARS {name} {type_} 1\nLOOKUP_TABLE default\n{numbers(values)}\n"
 
 
-def format_named(name: str) -> ForeignFormat:
-    return next(each for each in FOREIGN if each.name == name)
+def lists(what: str, cells: Iterable[list[int]]) -> str:
+    rows = [[len(cell), *cell] for cell in cells]
+    return f"{what} {len(rows)} {sum(map(len, rows))}\n{numbers(np.concatenate(rows))}\n"
 
 
-# Data sets in memory.
+def grid(*cells: tuple[int, list[int]], places: Any = CUBE) -> str:
+    """Cells by their types and nodes."""
+    return (
+        f"UNSTRUCTURED_GRID\nPOINTS {len(places)} double\n{numbers(places)}\n"
+        f"{lists('CELLS', [cell for _, cell in cells])}CELL_TYPES {len(cells)}\n"
+        f"{numbers([type_ for type_, _ in cells])}\n"
+        f"CELL_DATA {len(cells)}\n{scalars('row', range(len(cells)))}"
+    )
 
 
-def array(name: str, values: Any) -> Any:
-    from vtkmodules.util.numpy_support import numpy_to_vtk
-
-    made = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
-    made.SetName(name)
-    return made
-
-
-def points(places: Any) -> Any:
-    from vtkmodules.vtkCommonCore import vtkPoints
-
-    made = vtkPoints()
-    made.SetData(array("points", np.asarray(places, np.float64)))
-    return made
-
-
-def grid(*cells: tuple[int, Any], places: Any = CUBE) -> Any:
-    """An unstructured grid of cells by their types and nodes; those of a polyhedron are lists of faces."""
-    from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkUnstructuredGrid
-
-    made = vtkUnstructuredGrid()
-    made.SetPoints(points(places))
-    for kind, nodes in cells:
-        if kind == 42:
-            faces = vtkCellArray()
-            for face in nodes:
-                faces.InsertNextCell(len(face), face)
-            every = sorted({node for face in nodes for node in face})
-            made.InsertNextCell(kind, len(every), every, faces)
-        else:
-            made.InsertNextCell(kind, len(nodes), nodes)
-    made.GetCellData().AddArray(array("row", np.arange(len(cells), dtype=np.int32)))
-    return made
-
-
-def flat() -> Any:
-    """Polygons and a strip with a vertex, a line, normals, scalars, a vector and a text."""
-    from vtkmodules.vtkCommonCore import vtkStringArray
-    from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
-
-    made = vtkPolyData()
-    made.SetPoints(points([[x, y, 0] for y in range(3) for x in range(3)]))
-    for what, cells in (
-        ("Verts", [[0]]), ("Lines", [[0, 1]]), ("Polys", [[0, 1, 4, 3], [1, 2, 5, 8, 4]]),
-        ("Strips", [[3, 4, 6, 7]]),
-    ):  # fmt: skip
-        lists = vtkCellArray()
-        for cell in cells:
-            lists.InsertNextCell(len(cell), cell)
-        getattr(made, f"Set{what}")(lists)
-    data = made.GetPointData()
-    data.SetNormals(array("N", np.tile([0, 0, 2.0], (9, 1))))
-    data.AddArray(array("heat", np.arange(9.0)))
-    data.AddArray(array("v", np.tile([3, 4, 0], (9, 1))))
-    data.AddArray(array("color", np.zeros((9, 3), np.uint8)))
-    texts = vtkStringArray()
-    texts.SetName("text")
-    texts.SetNumberOfValues(9)
-    data.AddArray(texts)
-    made.GetCellData().AddArray(array("row", np.arange(5)))
-    return made
-
-
-def block(kind: str, *, sides: tuple[int, int, int] = (3, 4, 5), hidden: tuple[int, ...] = ()) -> Any:
-    """A grid of cells of volume 1 along the axes, of which some cells may be hidden."""
-    from vtkmodules import vtkCommonDataModel
-
-    made = getattr(vtkCommonDataModel, kind)()
-    made.SetDimensions(*sides)
-    ranges = [np.arange(float(side)) for side in sides]
-    if kind == "vtkStructuredGrid":
-        z, y, x = np.meshgrid(*reversed(ranges), indexing="ij")
-        # The grid is left-handed.
-        made.SetPoints(points(np.stack([-x, y, z], axis=-1).reshape(-1, 3)))
-    if kind == "vtkRectilinearGrid":
-        for axis, values in zip("XYZ", ranges, strict=True):
-            getattr(made, f"Set{axis}Coordinates")(array(axis, values))
-    made.GetPointData().AddArray(array("node", np.arange(np.prod(sides), dtype=np.float32)))
+def block(what: str, *sides: int, hidden: bool = False) -> str:
+    """A grid of cells of volume 1 along the axes, of which the last may be hidden."""
+    z, y, x = np.meshgrid(*map(np.arange, sides[::-1]), indexing="ij")
+    along = [
+        f"{axis}_COORDINATES {side} int\n{numbers(range(side))}\n"
+        for axis, side in zip("XYZ", sides, strict=True)
+    ]
+    # The structured grid is left-handed.
+    geometry = {
+        "STRUCTURED_POINTS": "ORIGIN 0 0 0\nSPACING 1 1 1\n",
+        "STRUCTURED_GRID": f"POINTS {x.size} int\n{numbers(np.stack([-x, y, z], axis=-1))}\n",
+        "RECTILINEAR_GRID": "".join(along),
+    }
     cells = int(np.prod([max(side - 1, 1) for side in sides]))
-    made.GetCellData().AddArray(array("row", np.arange(cells)))
-    if hidden:
-        bits = np.zeros(cells, np.uint8)
-        bits[list(hidden)] = 32
-        made.GetCellData().AddArray(array("vtkGhostType", bits))
-    return made
+    ghosts = scalars("vtkGhostType", [0] * (cells - 1) + [32 * hidden], "unsigned_char")
+    return (
+        f"{what}\nDIMENSIONS {numbers(sides)}\n{geometry[what]}CELL_DATA {cells}\n{ghosts}"
+        f"{scalars('row', range(cells))}POINT_DATA {x.size}\n{scalars('node', range(x.size))}"
+    )
 
 
-PYRAMID = [0, 1, 3, 2, 4]
-MIDDLES = [8] * 12
+FLAT = (
+    f"POLYDATA\nPOINTS 9 float\n{numbers([[x, y, 0] for y in range(3) for x in range(3)])}\n"
+    f"{lists('VERTICES', [[0]])}{lists('LINES', [[0, 1]])}"
+    f"{lists('POLYGONS', [[0, 1, 4, 3], [1, 2, 5, 8, 4]])}{lists('TRIANGLE_STRIPS', [[3, 4, 6, 7]])}"
+    f"CELL_DATA 5\n{scalars('row', range(5))}POINT_DATA 9\n{scalars('heat', range(9))}"
+    f"VECTORS v float\n{'3 4 0 ' * 9}\nNORMALS N float\n{'0 0 2 ' * 9}\n"
+    f"COLOR_SCALARS color 3\n{'0 0 1 ' * 9}\nFIELD f 1\ntext 1 9 string\n" + "a\n" * 9
+)
+"""Polygons and a strip with a vertex, a line, normals, scalars, a vector, a color and a text."""
 
-SETS: dict[str, tuple[Any, str, tuple[int, int, float, float]]] = {
-    "image": (lambda: block("vtkImageData"), "vti", (0, 52, 52, 24)),
-    "layer": (lambda: block("vtkImageData", sides=(3, 1, 4)), "vti", (0, 6, 6, 0)),
-    "hidden": (lambda: block("vtkImageData", sides=(3, 2, 2), hidden=(1,)), "vti", (0, 6, 6, 1)),
-    "left-handed": (lambda: block("vtkStructuredGrid"), "vts", (0, 52, 52, 24)),
-    "rectilinear": (lambda: block("vtkRectilinearGrid"), "vtr", (0, 52, 52, 24)),
-    "flat": (flat, "vtp", (3, 2, 3.5, 0)),
-    "hexahedron": (lambda: grid(HEXAHEDRON), "vtu", (0, 6, 6, 1)),
-    "voxel": (lambda: grid((11, list(range(8)))), "vtu", (0, 6, 6, 1)),
-    "two wedges": (lambda: grid((13, [0, 1, 3, 4, 5, 7]), (13, [0, 2, 3, 4, 6, 7])), "vtu", (4, 4, 6, 1)),
-    "pyramid": (lambda: grid((14, PYRAMID)), "vtu", (4, 1, 2 + np.sqrt(2), 1 / 3)),
-    "polyhedron": (lambda: grid((42, FACES)), "vtu", (0, 6, 6, 1)),
+HEXAHEDRON = (12, [0, 1, 3, 2, 4, 5, 7, 6])
+POLYHEDRON = (42, [6, *(number for side in SIDES for number in (4, *side))])
+
+SETS = {
+    "image": (block("STRUCTURED_POINTS", 3, 4, 5), "vti", (0, 52, 52, 24)),
+    "layer": (block("STRUCTURED_POINTS", 3, 1, 4), "vti", (0, 6, 6, 0)),
+    "hidden": (block("STRUCTURED_POINTS", 3, 2, 2, hidden=True), "vti", (0, 6, 6, 1)),
+    "left-handed": (block("STRUCTURED_GRID", 3, 4, 5), "vts", (0, 52, 52, 24)),
+    "rectilinear": (block("RECTILINEAR_GRID", 3, 4, 5), "vtr", (0, 52, 52, 24)),
+    "flat": (FLAT, "vtp", (3, 2, 3.5, 0)),
+    "hexahedron": (grid(HEXAHEDRON), "vtu", (0, 6, 6, 1)),
+    "voxel": (grid((11, [*range(8)])), "vtu", (0, 6, 6, 1)),
+    "two wedges": (grid((13, [0, 1, 3, 4, 5, 7]), (13, [0, 2, 3, 4, 6, 7])), "vtu", (4, 4, 6, 1)),
+    "pyramid": (grid((14, [0, 1, 3, 2, 4])), "vtu", (4, 1, 2 + np.sqrt(2), 1 / 3)),
+    "polyhedron": (grid(POLYHEDRON), "vtu", (0, 6, 6, 1)),
     "with its faces": (
-        lambda: grid(HEXAHEDRON, *[(9, face) for face in FACES[:2]], (5, [0, 1, 2])), "vtu", (1, 6, 6.5, 1)
+        grid(HEXAHEDRON, *[(9, side) for side in SIDES[:2]], (5, [0, 1, 2])), "vtu", (1, 6, 6.5, 1)
     ),
     "higher order": (
-        lambda: grid((22, [0, 1, 2, 8, 8, 8]), (25, [*HEXAHEDRON[1], *MIDDLES]), places=[*CUBE, [9, 9, 9]]),
+        grid((22, [0, 1, 2, 8, 8, 8]), (25, [*HEXAHEDRON[1], *[8] * 12]), places=[*CUBE, [9, 9, 9]]),
         "vtu", (1, 6, 6.5, 1),
     ),
     "pixel, strip and polygon": (
-        lambda: grid((8, [0, 1, 2, 3]), (6, [4, 5, 6, 7]), (7, [0, 1, 5, 4]), (1, [0])),
-        "vtu", (2, 2, 3, 1 / 3),
+        grid((8, [0, 1, 2, 3]), (6, [4, 5, 6, 7]), (7, [0, 1, 5, 4]), (1, [0])), "vtu", (2, 2, 3, 1 / 3)
     ),
 }  # fmt: skip
 """Data sets with their triangles, quads, area and volume."""
 
 WRITERS = {"vti": "ImageData", "vts": "StructuredGrid", "vtr": "RectilinearGrid", "vtp": "PolyData",
            "vtu": "UnstructuredGrid"}  # fmt: skip
+
+
+def data_set(name: str) -> Any:
+    from vtkmodules.vtkIOLegacy import vtkDataSetReader
+
+    reader = vtkDataSetReader()
+    reader.ReadFromInputStringOn()
+    for what in ("Scalars", "Vectors", "Normals", "Fields", "ColorScalars"):
+        getattr(reader, f"ReadAll{what}On")()
+    reader.SetInputString(f"# vtk DataFile Version 3.0\n\nASCII\nDATASET {SETS[name][0]}")
+    reader.Update()
+    return reader.GetOutputDataObject(0)
 
 
 def by_vtk(folder: Path, data: Any, suffix: str, mode: str = "Ascii", packed: str = "None") -> Path:
@@ -184,13 +140,6 @@ def by_vtk(folder: Path, data: Any, suffix: str, mode: str = "Ascii", packed: st
     return path
 
 
-def counts(report: MeshReport) -> list[float]:
-    """The triangles, quads, area and volume of a mesh."""
-    triangles = report.mesh.triangle_count
-    quads = len(report.mesh.node_numbers) - triangles
-    return [triangles, quads, area_of(report), volume_of(report)]
-
-
 ENCODINGS = [
     ("vtk", "Ascii", "None"), ("", "Appended", "LZ4"), ("vtk", "Binary", "None"), ("vtk", "Ascii", "51"),
     ("vtk", "Binary", "51"),
@@ -203,12 +152,14 @@ ENCODINGS = [
 def test_a_data_set_has_its_surface_in_every_encoding(
     tmp_path: Path, name: str, encoding: tuple[str, str, str]
 ) -> None:
-    make, suffix, expected = SETS[name]
-    data = make()
+    _, suffix, expected = SETS[name]
+    data = data_set(name)
     report = read_mesh({"file": by_vtk(tmp_path, data, encoding[0] or suffix, *encoding[1:])})
-    assert counts(report) == pytest.approx(list(expected))
-    # The values of a cell come with the polygons that it became.
     mesh = report.mesh
+    triangles = mesh.triangle_count
+    found = (triangles, len(mesh.node_numbers) - triangles, *area_and_volume(report))
+    assert found == pytest.approx(expected, abs=1e-6)
+    # The values of a cell come with the polygons that it became.
     values = {each.name: each.values for each in mesh.scalars}
     for row, corners in zip(values["row"].tolist(), mesh.node_numbers, strict=True):
         low, high = np.reshape(data.GetCell(int(row)).GetBounds(), (3, 2)).T
@@ -219,7 +170,7 @@ def test_a_data_set_has_its_surface_in_every_encoding(
 
 
 def test_what_is_left_out_is_told(tmp_path: Path) -> None:
-    report = read_mesh({"file": by_vtk(tmp_path, flat(), "vtp")})
+    report = read_mesh({"file": by_vtk(tmp_path, data_set("flat"), "vtp")})
     assert report.repairs == (
         "set.vtp: skipped vertices: 1",
         "set.vtp: skipped lines: 1",
@@ -229,35 +180,25 @@ def test_what_is_left_out_is_told(tmp_path: Path) -> None:
     assert {each.name: each.values.tolist()[:2] for each in report.mesh.scalars} == {
         "heat": [0, 1], "v magnitude": [5, 5], "row": [2, 3],
     }  # fmt: skip
-    polygons = read_in_own_process(format_named("VTK XML"), tmp_path / "set.vtp", 1).polygons
+    polygons = read_in_own_process(FOREIGN[1], tmp_path / "set.vtp", 1).polygons
     assert polygons.normals is not None
     assert polygons.corner_normals is not None
     assert polygons.normals[polygons.corner_normals].tolist() == [[0, 0, 2]] * len(polygons.corners)
-    make, suffix, _ = SETS["higher order"]
-    assert read_mesh({"file": by_vtk(tmp_path, make(), suffix)}).repairs == (
+    assert read_mesh({"file": by_vtk(tmp_path, data_set("higher order"), "vtu")}).repairs == (
         "set.vtu: took the corners alone of cells of higher order: 2",
         "set.vtu: took the outer surface of 1 volume cell",
         "set.vtu: left out 1 node that the surface does not use",
     )
-    make, suffix, _ = SETS["with its faces"]
-    assert (
-        "set.vtu: left out polygons that are faces of volume cells: 2"
-        in read_mesh({"file": by_vtk(tmp_path, make(), suffix)}).repairs
-    )
+    told = read_mesh({"file": by_vtk(tmp_path, data_set("with its faces"), "vtu")}).repairs
+    assert told[1] == "set.vtu: left out polygons that are faces of volume cells: 2"
 
 
 def test_all_pieces_and_scalars_of_a_file_are_read(tmp_path: Path) -> None:
-    piece = (
-        '<Piece NumberOfPoints="3" NumberOfPolys="1"><Points><DataArray type="Float32"'
-        ' NumberOfComponents="3" format="ascii">{0} 0 0 {1} 0 0 {1} 1 0</DataArray></Points><Polys><DataArray'
-        ' type="Int32" Name="connectivity" format="ascii">0 1 2</DataArray><DataArray type="Int32"'
-        ' Name="offsets" format="ascii">3</DataArray></Polys></Piece>'
-    )
-    path = tmp_path / "a.vtp"
-    path.write_text(
-        f'<VTKFile type="PolyData"><PolyData>{piece.format(0, 1)}{piece.format(5, 7)}</PolyData></VTKFile>'
-    )
-    assert read_mesh({"file": path}).mesh.bounds[1].tolist() == [7, 1, 0]
+    path = by_vtk(tmp_path, data_set("flat"), "vtp")
+    text = path.read_text()
+    first, end = text.index("<Piece"), text.index("</PolyData>")
+    path.write_text(text[:end] + text[first:end] + text[end:])
+    assert len(read_mesh({"file": path}).mesh.node_numbers) == 2 * 5
     legacy = tmp_path / "a.vtk"
     legacy.write_bytes(
         TEXT + b"POINT_DATA 4\nSCALARS a float\nLOOKUP_TABLE default\n1 2 3 4\nSCALARS b%20c int 1\n"
@@ -293,8 +234,6 @@ DATA = "Error reading ascii data. Possible mismatch of datasize with declaration
          "a.vtk: the coordinates of a node must be finite and at most 1e30 in size, not [0.0, nan, 0.0]"
          f" (node 4){END}"),
         ("a.vtk", TEXT.replace(b"0 1 0\n", b"0 1\n"), CANNOT.format(DATA)),
-        ("a.vtk", TEXT[: TEXT.index(b" 0 1 0\n")], CANNOT.format(DATA)),
-        ("a.vtk", TEXT[:-3], CANNOT.format("Error reading ascii cell data! for file:")),
         ("a.vtk", TEXT + b"POINT_DATA 4\nSCALARS a float\nLOOKUP_TABLE default\n1 2\n", CANNOT.format(DATA)),
         ("a.vtk", TEXT + b"WORDS 3\n", CANNOT.format("Unrecognized keyword: words")),
         ("a.vtk", CELLS + b"CELLS 1 7\n6 0 1 2 3 0 1\nCELL_TYPES 1\n12\n",
@@ -306,7 +245,6 @@ DATA = "Error reading ascii data. Possible mismatch of datasize with declaration
         ("a.vtk", TEXT[: TEXT.index(b"POLYGONS")],
          f"a.vtk: it must have nodes and cells, not 4 nodes and 0 cells{END}"),
         ("a.vtp", b'<VTKFile type="vtkMultiBlockDataSet"/>', XML.format("'vtkMultiBlockDataSet'")),
-        ("a.vtp", b'<VTKFile type="PPolyData"/>', XML.format("'PPolyData'")),
         ("a.vtp", b"<x/>", XML.format("'none'")),
         ("a.vtp", b'<VTKFile type="PolyData">', CANNOT.replace(".vtk", ".vtp").format(
             "Error parsing XML in stream at line 1, column 25, byte index 25: no element found")),
@@ -319,10 +257,10 @@ def test_what_is_refused(tmp_path: Path, name: str, data: bytes, sentence: str) 
 
 @pytest.mark.parametrize("suffix", ["vtk", "vtp", "vtu"])
 def test_a_file_cut_anywhere_is_refused_or_loses_whole_sections(tmp_path: Path, suffix: str) -> None:
-    path = by_vtk(tmp_path, grid(HEXAHEDRON) if suffix == "vtu" else flat(), suffix)
+    path = by_vtk(tmp_path, data_set("hexahedron" if suffix == "vtu" else "flat"), suffix)
     data = path.read_bytes()
     whole = read_mesh({"file": path}).mesh
-    for length in range(0, len(data) - 9, len(data) // 40):
+    for length in range(0, len(data) - 9, len(data) // 20):
         path.write_bytes(data[:length])
         try:
             mesh = read_mesh({"file": path}).mesh
@@ -331,10 +269,3 @@ def test_a_file_cut_anywhere_is_refused_or_loses_whole_sections(tmp_path: Path, 
         # A legacy file may end after any section.
         assert suffix == "vtk"
         assert set(map(tuple, mesh.coordinates)) <= set(map(tuple, whole.coordinates))
-
-
-@given(share=st.floats(0, 1), data=st.binary(max_size=40) | st.text("POINTSDATA 019.-\n").map(str.encode))
-def test_any_bytes_at_any_place_are_read_or_refused(
-    share: float, data: bytes, tmp_path_factory: pytest.TempPathFactory
-) -> None:
-    assert is_read_or_refused(tmp_path_factory.getbasetemp() / "a.vtk", TEXT[: int(share * len(TEXT))] + data)

@@ -11,33 +11,23 @@ import numpy as np
 import pytest
 
 from autocolor.files.formats import read_mesh
-from autocolor.files.meshes.repair import MeshReport
+from tests.autocolor.files.meshes.conftest import CUBE, SIDES, area_and_volume
 from tests.autocolor.files.refusals import refusal
 from tests.tables import first
 
 pytestmark = [pytest.mark.needs("meshio"), pytest.mark.usefixtures("shared")]
 
 
-def area_and_volume(report: MeshReport) -> tuple[float, float]:
-    a, b, c, d = report.mesh.coordinates[report.mesh.node_numbers.T]
-    pairs = ((b - a, c - a), (c - a, d - a))
-    area = sum(np.linalg.norm(np.cross(one, other), axis=1).sum() for one, other in pairs) / 2
-    volume = sum(np.einsum("ij,ij->", a, np.cross(one, other)) for one, other in ((b, c), (c, d))) / 6
-    return round(float(area), 9), round(float(volume), 9)
-
-
 SURFACE = ("took the outer surface of 1 volume cell",)
 
 # A cube that meshio writes.
 
-CUBE = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1.0)])
 CELLS = {
     "hexahedron": [[0, 1, 3, 2, 4, 5, 7, 6]],
     "wedge": [[0, 1, 3, 4, 5, 7], [0, 3, 2, 4, 7, 6]],
     "tetra": [[0, 1, 3, 7], [0, 3, 2, 7], [0, 2, 6, 7], [0, 6, 4, 7], [0, 4, 5, 7], [0, 5, 1, 7]],
-    "pyramid": [[0, 1, 5, 4, 8], [1, 3, 7, 5, 8], [3, 2, 6, 7, 8], [2, 0, 4, 6, 8], [0, 2, 3, 1, 8],
-                [4, 5, 7, 6, 8]],
-    "quad": [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [1, 3, 7, 5], [3, 2, 6, 7], [2, 0, 4, 6]],
+    "pyramid": [[*side, 8] for side in SIDES],
+    "quad": SIDES,
 }  # fmt: skip
 WRITTEN = [
     ("a.bdf", "nastran", {}),
@@ -219,13 +209,10 @@ def test_what_would_be_misread_is_refused_by_name(tmp_path: Path, name: str, tex
     assert sentence == f"{name}: {reason}; correct the file, or write it as OBJ or PLY"
 
 
-@pytest.mark.parametrize(
-    ("name", "reason"),
-    [
+def test_included_files_are_in_the_folder_and_few(tmp_path: Path) -> None:
+    for name, reason in (
         ("../a.txt", ", line 1: an included file must be the name of a file in the scene's folder, not"),
         ("a.inp", ": it must include at most 100 files, not more; join them"),
-    ],
-)
-def test_included_files_are_in_the_folder_and_few(tmp_path: Path, name: str, reason: str) -> None:
-    (tmp_path / "a.inp").write_text(f"*INCLUDE, INPUT={name}\n{SQUARE}{SHELL}")
-    assert refusal(read_mesh, {"file": tmp_path / "a.inp"}).startswith(f"a.inp{reason}")
+    ):
+        (tmp_path / "a.inp").write_text(f"*INCLUDE, INPUT={name}\n{SQUARE}{SHELL}")
+        assert refusal(read_mesh, {"file": tmp_path / "a.inp"}).startswith(f"a.inp{reason}")
