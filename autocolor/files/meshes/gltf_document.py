@@ -177,6 +177,10 @@ def completed(path: Path, described: Row, binary: bytes) -> bytes:
         # VTK warns of rounded unit quaternions.
         if length := math.hypot(*node.get("rotation", ())):
             node["rotation"] = [each / length for each in node["rotation"]]
+    if "scenes" not in described:
+        below = {child for node in rows(described, "nodes") for child in node.get("children", ())}
+        roots = [number for number in range(len(rows(described, "nodes"))) if number not in below]
+        described["scenes"] = [{"nodes": roots}]
     described["buffers"] = [{"byteLength": len(joined)}]
     for key in ("extensionsRequired", "extensionsUsed", "images", "textures", "animations", "cameras"):
         described.pop(key, None)
