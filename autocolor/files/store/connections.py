@@ -101,10 +101,12 @@ def loaded(path: Path) -> sqlite3.Connection:
     beside it. Raises InputError, MissingInputError.
     """
     is_logged, played = _is_in_wal_mode(path), played_files(path)
-    mode = "ro" if _write_protected(path) else "rw"
-    if mode == "ro" and is_logged and not played:
+    mode = "ro"
+    if "-journal" in played:
+        mode = "rw"
+    elif is_logged and not played:
         # SQLite makes a log even to read. Where it cannot, the file is complete without.
-        mode = "ro&immutable=1"
+        mode = "ro&immutable=1" if _write_protected(path) else "rw"
     with refusals(path.name), closing(_connected(path, mode)) as file:
         file.execute("BEGIN")
         file.execute("SELECT count(*) FROM sqlite_master").fetchone()
