@@ -1,7 +1,7 @@
 """The programs where the modules and calls of POSIX are missing, as on Windows: nothing may need them.
 
-A process of its own hides them, after the standard library was loaded with them, and then imports the
-packages. It renders, edits, saves and reads each kind of file, and serves a display over TCP.
+A process of its own hides them, after the standard library and other packages were loaded with them, and then
+imports ours. It renders, edits, saves and reads each kind of file, and serves a display over TCP.
 """
 
 from __future__ import annotations
@@ -17,7 +17,8 @@ ROOT = Path(__file__).resolve().parents[1]
 HIDE = """
 import importlib, os, select, signal, socket, sys, types
 for name in ("asyncio", "ctypes", "multiprocessing", "numpy", "PIL.Image", "click", "selectors", "shutil",
-             "sqlite3", "subprocess", "tempfile", "threading", "click.shell_completion", "webbrowser"):
+             "sqlite3", "subprocess", "tempfile", "threading", "click.shell_completion", "webbrowser",
+             "platformdirs"):
     importlib.import_module(name)
 for name in ("fcntl", "grp", "pty", "pwd", "resource", "termios", "tty"):
     sys.modules[name] = None
@@ -104,7 +105,7 @@ def test_nothing_that_linux_alone_has_is_needed(tmp_path: Path) -> None:
         [sys.executable, "-c", HIDE + USE, str(ROOT / "scenes" / "coupe"), str(tmp_path)],
         check=False,
         cwd=ROOT,
-        env={"LOCALAPPDATA": str(state), "PYTHONPATH": str(ROOT), "PATH": ""},
+        env={"XDG_STATE_HOME": str(state), "PYTHONPATH": str(ROOT), "PATH": ""},
         capture_output=True,
         text=True,
         timeout=300,
