@@ -7,13 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from autocolor import (
-    Mesh,
-    read_scene,
-    render,
-    write_picture,
-    write_scene,
-)
+from autocolor import Light, Mesh, Reflectance, View, read_scene, render, write_picture, write_scene
 from autocolor.batches.outputs import base_mark
 from autocolor.errors import InputError
 from autocolor.files.conversion import output_of
@@ -23,7 +17,7 @@ from autocolor.journal.places import checksum_of
 from autocolor.scene.geometry.normals import NodeNormals
 from autocolor.scene.mesh import has_same_tables
 from autocolor.scene.scalar import MeshScalar
-from tests.small import sphere
+from tests.small import sphere, wall_scene
 from tests.tables import refused
 
 SQUARE = [[0, 0, 0], [2, 0, 0], [2, 2, 0], [0, 2, 0], [1, 3, 0], [3, 3, 1]]
@@ -61,6 +55,22 @@ def with_normals(mesh: Mesh, path: Path) -> Mesh:
     own = NodeNormals(np.asfortranarray(unit), mesh.node_numbers)
     path.write_bytes(obj_text(Mesh(mesh.coordinates, mesh.node_numbers, own_normals=own)))
     return read_scene(path).mesh
+
+
+def test_a_coarse_sphere_with_its_own_normals_is_lit_as_a_fine_one(tmp_path: Path) -> None:
+    fields = {
+        "reflectance": Reflectance(1.0, 0.0),
+        "view": View((0.0, -40.0, 0.0), target=(0.0, 0.0, 0.0), field_of_view=3.0),
+        "lights": (Light("far", (0.6, -0.8, 0.0), aim=(0.0, 0.0, 0.0), at_infinity=True),),
+    }
+    # Its polygons meet at 45 degrees, which is a crease where normals are computed.
+    own = with_normals(sphere(8, 4), tmp_path / "sphere.obj")
+    pictures = [
+        render(wall_scene(mesh, **fields), 60, 60)  # type: ignore[arg-type]
+        for mesh in (sphere(128, 64), own)
+    ]
+    fine, coarse = (np.where(each.surface_number > 0, each.intensity, np.nan) for each in pictures)
+    assert np.nanmax(np.abs(coarse - fine)) < 0.2
 
 
 def test_pieces_and_repaired_polygons_keep_their_normals() -> None:
