@@ -112,7 +112,7 @@ def _legacy(path: Path) -> tuple[Any, list[str]]:
     if b"ASCII" in data[:HEAD].upper().split(b"DATASET")[0]:
         # VTK takes the end of the file for the end of any list of numbers, but not an empty FIELD.
         data += b"\n\nFIELD end 0\n"
-    reader = vtkDataSetReader()
+    reader: Any = vtkDataSetReader()
     reader.ReadFromInputStringOn()
     reader.SetBinaryInputString(data, len(data))
     for what in ("Scalars", "Vectors", "Tensors", "Normals", "Fields", "TCoords", "ColorScalars"):
