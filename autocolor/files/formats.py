@@ -131,14 +131,12 @@ class MeshFormat(Format):
     `keys` are the keys of a `[[mesh]]` table that name its files; suffixes and first bytes are those of the
     first file. In a folder of this format, the files `in_folder` are the files of the keys.
 
-    Files that are `mapped` into memory are read page by page, so their size has no limit. `prior_of_y` is how
-    often y is up in the files of others, from -1 to 1 (see `meshes.up_axis`); None if the format says which
-    axis is up.
+    `prior_of_y` is how often y is up in the files of others, from -1 to 1 (see `meshes.up_axis`); None if the
+    format says which axis is up.
     """
 
     read: MeshReader
     keys: tuple[str, ...] = FILE
-    mapped: bool = False
     prior_of_y: float | None = None
     holds: frozenset[str] = MESH_EXTRAS - {NORMALS}
 
@@ -187,7 +185,6 @@ MESH_FORMATS: Final = (
         read=read_npy_tables,
         keys=NODES_AND_POLYGONS,
         in_folder=(NODES, POLYGONS),
-        mapped=True,
         write=_tables(write_npy_tables, (NODES, POLYGONS)),
         holds=MESH_EXTRAS,
     ),

@@ -32,11 +32,16 @@ def read_bytes(path: Path, largest: int) -> bytes:
     is not a regular file, too large, or unreadable.
     """
     with opened(path) as (file, status):
-        # read() allocates the requested size at once, even for a small file.
-        data = file.read(min(largest, max(status.st_size, LEAST_READ)) + 1)
+        return _content(path.name, file, status.st_size, largest)
+
+
+def _content(name: str, file: BufferedReader, size: int, largest: int) -> bytes:
+    """The rest of an open file of `size` bytes, as `read_bytes`. Raises InputError if it is too large."""
+    # read() allocates the requested size at once, even for a small file.
+    data = file.read(min(largest, max(size, LEAST_READ)) + 1)
     if len(data) > largest:
         raise InputError(
-            f"{path.name}: a file must have at most {largest:,} bytes, not more; split or simplify it"
+            f"{name}: a file must have at most {largest:,} bytes, not more; split or simplify it"
         )
     return data.removeprefix(UTF_8_MARK)
 
@@ -54,7 +59,8 @@ def read_whole(path: Path, growth: float) -> bytes:
             raise InputError(
                 f"{path.name}: a file must not begin with {HEAD:,} zero bytes; copy or export it again"
             )
-    return read_bytes(path, int(allowed_memory() / growth))
+        file.seek(0)
+        return _content(path.name, file, status.st_size, int(allowed_memory() / growth))
 
 
 def require_size(name: str, size: int, growth: float) -> None:

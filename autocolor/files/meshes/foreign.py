@@ -36,8 +36,7 @@ from autocolor.files.meshes.gltf_document import size_of_gltf
 from autocolor.files.meshes.meshio_text import size_of_text
 from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, repaired
 from autocolor.files.reading import opened, require_size
-from autocolor.scene.columns import replaced
-from autocolor.scene.defaults import COLORED_PAINT, created_surface
+from autocolor.scene.defaults import created_surface
 
 # The size of a file and of the files that it names, which gives the limits.
 
@@ -208,11 +207,8 @@ def read_foreign(read_as: ForeignFormat, path: Path, placement: Placement = PLAI
         placement = dataclasses.replace(placement, up=read_as.up)
     report = repaired(mesh.polygons, path.name, placement, skipped=mesh.sentences)
     names = [name for name in dict.fromkeys(mesh.material_of_part.values()) if name in mesh.colors]
-    paint = COLORED_PAINT.object_color
     return dataclasses.replace(
         report,
         material_of_part=dict(mesh.material_of_part),
-        materials=tuple(
-            replaced(created_surface(name, paint), {"object_color": mesh.colors[name]}) for name in names
-        ),
+        materials=tuple(created_surface(name, mesh.colors[name]) for name in names),
     )

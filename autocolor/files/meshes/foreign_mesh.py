@@ -122,4 +122,6 @@ def loaded(result: Path) -> ForeignMesh:
     )
     sentences, material_of_part, colors = header["others"]
     sentences = tuple(printable(each[:300]) for each in sentences)
+    # JSON has lists for tuples.
+    colors = {name: (red, green, blue) for name, (red, green, blue) in colors.items()}
     return ForeignMesh(polygons, sentences, material_of_part, colors)

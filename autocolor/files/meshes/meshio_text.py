@@ -108,8 +108,8 @@ def _keywords(path: Path) -> Iterator[tuple[str, str, dict[str, str], list[list[
 def abaqus(path: Path) -> Iterator[Record]:
     """The nodes and elements of an Abaqus text; each ELSET of *ELEMENT is a part.
 
-    There is one part, or one instance of it, which is not moved. The nodes of the assembly itself are points
-    of reference. Raises ForeignRefusal and InputError.
+    The text must have a single part, which its *INSTANCE, if there is one, must not move. The nodes of the
+    assembly itself are points of reference. Raises ForeignRefusal and InputError.
     """
     counts, in_assembly = Counter[str](), False
     for place, name, parameters, rows in _keywords(path):
