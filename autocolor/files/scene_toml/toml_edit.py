@@ -115,15 +115,17 @@ def edited_toml(
     old = tomllib.loads(text)
     if repr(old) == repr(wanted):
         return text.replace("\n", ends)
-    # Keys without headers that have another order are removed, and added again.
+    # Keys without headers that have another order are removed, and added again; if need be all of them.
     moved = {name for name in ordered if not _begins(wanted.get(name), old.get(name))}
-    edited = _edited_text(text, old, wanted, tables, moved)
-    try:
-        values = tomllib.loads(edited)
-    except tomllib.TOMLDecodeError:
-        return None
-    is_right = values == wanted and all(_begins(wanted.get(name), values.get(name)) for name in ordered)
-    return edited.replace("\n", ends) if is_right else None
+    for again in (moved, ordered):
+        edited = _edited_text(text, old, wanted, tables, again)
+        try:
+            values = tomllib.loads(edited)
+        except tomllib.TOMLDecodeError:
+            continue
+        if values == wanted and all(_begins(wanted.get(name), values.get(name)) for name in ordered):
+            return edited.replace("\n", ends)
+    return None
 
 
 def _edited_text(
