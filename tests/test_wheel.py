@@ -30,8 +30,10 @@ PACKAGES = ("autocolor", "ramtek_emu")
 NOT_COPIED = shutil.ignore_patterns(".*", "__pycache__", "build", "dist", "*.egg-info", "results", "figures")
 BUILD = "import sys, setuptools.build_meta as backend; getattr(backend, sys.argv[1])(sys.argv[2])"
 
-MODULE = re.compile(r"(?:^# code object from '|matches )(.*/(?:autocolor|ramtek_emu)/.*\.py)\b", re.MULTILINE)
-"""A module that a verbose interpreter loads."""
+MODULE = re.compile(
+    r"(?:^# code object from '?|matches )(/.*/(?:autocolor|ramtek_emu)/.*\.py)\b", re.MULTILINE
+)
+"""A module that a verbose interpreter loads, compiled now or before."""
 
 
 class Installed(NamedTuple):
