@@ -9,7 +9,7 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Callable, Iterator, Sequence
-from typing import Any, Final, NamedTuple, ParamSpec, TypeVar
+from typing import Any, Final, ParamSpec, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -82,9 +82,6 @@ NUMBERS_AT_ONCE: Final = 1 << 16
 
 ROUNDING: Final = float(np.finfo(np.float32).eps)
 """A unit in the last place of 1 in float32."""
-
-POWER_ERROR: Final = 8.5e-5
-"""Assumed: how far the rounding of a cosine may put a share of the light, 0 to 1: a fortieth of a level."""
 
 SPARSE: Final = 200.0
 """Above this exponent, powers that are negligible become 0, and if few are left, only these are computed."""
@@ -266,103 +263,52 @@ def columns(rows: RealArray[Real], places: Indices) -> RealArray[Real]:
     return np.array([row.take(places) for row in rows])
 
 
-class ExactLogarithms(NamedTuple):
-    """Logarithms of cosines near 1, where cosines in float32 have few digits.
-
-    The cosines are off by at most `rounding`. `at` returns the logarithms, (k,) float32, at k of their
-    places.
-    """
-
-    rounding: float
-    at: Callable[[Indices], Singles]
-
-    def chosen(self, places: Indices) -> ExactLogarithms:
-        """The logarithms at some of the places."""
-        return ExactLogarithms(self.rounding, lambda chosen: self.at(places.take(chosen)))
-
-
-def half_logarithms(squares: Singles) -> Singles:
-    """log(1 - s) / 2 of some numbers, in place; a number above 1/2 counts as 1/2.
-
-    It is the logarithm of a cosine, given the square of the sine.
-    """
-    np.minimum(squares, np.float32(0.5), out=squares)
-    np.log1p(np.negative(squares, out=squares), out=squares)
-    return np.multiply(squares, np.float32(0.5), out=squares)
-
-
-def power(
-    cosines: Singles, exponent: float, out: Singles | None = None, exact: ExactLogarithms | None = None
-) -> Singles:
+def power(cosines: RealArray[Real], exponent: float) -> RealArray[Real]:
     """The cosines to a power, in [0, 1]; negative cosines count as 0, and every cosine to the power 0 is 1.
-
-    `out` may be `cosines`. Given `exact` logarithms, a power is off by at most POWER_ERROR, however steep it
-    is.
 
     >>> power(np.array([0.5, -1.0, 1.0], np.float32), 2).tolist()
     [0.25, 0.0, 1.0]
 
     Measured, with the exponential of a logarithm as the unit: `np.power` takes 2; repeated squaring takes
-    0.5, and in place 0.33; finding that all powers are negligible takes 0.1. A clip takes a quarter of the
-    time of a minimum and a maximum.
+    0.5; finding that all powers are negligible takes 0.1. A clip takes a quarter of the time of a minimum and
+    a maximum.
     """
-    out = np.empty_like(cosines) if out is None else out
     if exponent > SPARSE:
-        rounding = 0.0 if exact is None else exact.rounding
-        counts = cosines > np.float32(1 - NEGLIGIBLE / exponent - rounding)
+        counts = cosines > 1 - NEGLIGIBLE / exponent
         count = np.count_nonzero(counts)
         if count <= FEW * len(cosines):
-            places = counts.nonzero()[0]
-            few = cosines.take(places)
-            out[:] = 0
-            if count:
-                out[places] = _power(few, exponent, few, exact and exact.chosen(places))
-            return out
-    return _power(cosines, exponent, out, exact)
+            few = np.zeros_like(cosines)
+            few[counts] = _power(cosines[counts], exponent)
+            return few
+    elif cosines.dtype.type(exponent) > 0 and cosines.max(initial=0.0) <= 0:
+        # Most surfaces reflect some of the lights away from the eye.
+        return np.zeros_like(cosines)
+    return _power(cosines, exponent)
 
 
-def _power(cosines: Singles, exponent: float, out: Singles, exact: ExactLogarithms | None) -> Singles:
+def _power(cosines: RealArray[Real], exponent: float) -> RealArray[Real]:
     """As `power`, for all cosines alike."""
-    single = np.float32(min(exponent, LARGEST_SINGLE))
-    if exact is not None and exponent * exact.rounding > POWER_ERROR:
-        steep = (cosines > np.float32(least_steep(exponent, exact.rounding))).nonzero()[0]
-        if len(steep):
-            logarithms = exact.at(steep)
-            logarithms *= single
-            _power(cosines, exponent, out, None)[steep] = np.exp(logarithms, out=logarithms)
-            return out
-    if single == 0:
-        out[:] = 1
-        return out
+    if cosines.dtype.type(min(exponent, LARGEST_SINGLE)) == 0:
+        return np.ones_like(cosines)
     # Rounding may leave a cosine above 1. A large exponent would make it very bright.
-    np.clip(cosines, np.float32(0), np.float32(1), out=out)
-    if exponent <= MOST_MULTIPLIED and exponent == int(exponent):
-        return _multiplied(out, int(exponent))
+    powers = np.clip(cosines, 0, 1)
     with np.errstate(divide="ignore", over="ignore", under="ignore"):
-        np.log(out, out=out)
-        out *= single
-        return np.exp(out, out=out)
+        if exponent <= MOST_MULTIPLIED and exponent == int(exponent):
+            return _multiplied(powers, int(exponent))
+        np.log(powers, out=powers)
+        powers *= min(exponent, LARGEST_SINGLE)
+        return np.exp(powers, out=powers)
 
 
-def least_steep(exponent: float, rounding: float, error: float = POWER_ERROR) -> float:
-    """The cosine above which a cosine's rounding may put its power off by more than an error.
-
-    A power c^N is off by at most c^N (exp(N rounding) - 1), which is below c^N N rounding exp(N rounding).
-    """
-    spread = exponent * rounding
-    return 1 - (math.log(spread / error) + spread) / exponent
-
-
-def _multiplied(out: Singles, exponent: int) -> Singles:
+def _multiplied(out: RealArray[Real], exponent: int) -> RealArray[Real]:
     """The numbers to a whole power of at least 1, in place, by repeated squaring."""
-    powers: Singles | None = None
-    with np.errstate(under="ignore"):
-        while exponent > 1:
-            if exponent & 1:
-                powers = out.copy() if powers is None else np.multiply(powers, out, out=powers)
-            np.multiply(out, out, out=out)
-            exponent >>= 1
-        return out if powers is None else np.multiply(out, powers, out=out)
+    powers: RealArray[Real] | None = None
+    while exponent > 1:
+        if exponent & 1:
+            powers = out.copy() if powers is None else np.multiply(powers, out, out=powers)
+        np.multiply(out, out, out=out)
+        exponent >>= 1
+    return out if powers is None else np.multiply(out, powers, out=out)
 
 
 def half_up(value: float) -> int:

@@ -16,16 +16,10 @@ import numpy as np
 from autocolor.arrays import Singles, underflowing
 from autocolor.budget import allowed_memory
 from autocolor.immutable import read_only
+from autocolor.lighting.light import CameraLight
 from autocolor.lighting.picture import Picture
-from autocolor.lighting.shading import (
-    ControlledLight,
-    LightPlanes,
-    SurfaceWeights,
-    controlled_light,
-    light_mix,
-    mix,
-    shade,
-)
+from autocolor.lighting.rays import camera_light
+from autocolor.lighting.shading import LightPlanes, SurfaceWeights, light_mix, mix, shade
 from autocolor.scene.columns import Tier, cost
 from autocolor.scene.lights import Light
 from autocolor.scene.reflection_models import ReflectionModel
@@ -146,7 +140,7 @@ class _PlaneUpdate(NamedTuple):
     """
 
     planes: LightPlanes
-    light: ControlledLight | None
+    light: CameraLight | None
     changed_surfaces: Set[int]
     to_mix: bool
 
@@ -166,7 +160,7 @@ def _plane_update(
     """
     if old is None:
         values = np.empty((2, len(points.pixels)), np.float32) if shared is None else shared
-        ready = controlled_light(light, points, with_controls)
+        ready = camera_light(light, points, with_controls)
         return _PlaneUpdate(LightPlanes(values, weights), ready, weights.keys(), to_mix=True)
     if not changed:
         if old.weights != weights:
@@ -177,4 +171,4 @@ def _plane_update(
         planes = dataclasses.replace(old, mixed=np.empty(len(points.pixels), np.float32))
         return _PlaneUpdate(planes, None, changed, to_mix=True)
     planes = LightPlanes(old.values.copy(), weights)
-    return _PlaneUpdate(planes, controlled_light(light, points, with_controls), changed, to_mix=True)
+    return _PlaneUpdate(planes, camera_light(light, points, with_controls), changed, to_mix=True)

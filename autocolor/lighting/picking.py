@@ -15,16 +15,16 @@ import numpy as np
 from autocolor.arrays import Booleans, Bytes, Indices, Singles, chunks, dot, underflowing, unit_vector
 from autocolor.checks import either, nearest, shown
 from autocolor.errors import UsageError
-from autocolor.lighting.controls import Axis, Cone, FlapEnd, flap_sides, flaps_of, half_space_sides, is_inside
+from autocolor.lighting.controls import Axis, FlapEnd, flap_sides, flaps_of, half_space_sides, is_inside
+from autocolor.lighting.light import CameraLight, is_within
 from autocolor.lighting.picture import Picture
 from autocolor.lighting.rays import (
-    CameraLight,
     camera_light,
     direction_between,
     direction_to_eye,
     direction_to_light,
+    fast_rays,
     middle_of,
-    rays_to,
 )
 from autocolor.lighting.shading import SPECULAR
 from autocolor.scene.following import light_frame
@@ -90,7 +90,7 @@ def highlight_of(sight: Sight, light: str, surface: str | None = None) -> tuple[
     if scene.words == NORMALS:
         place = _brightest_from_afar(scene, row, points, slices)
     else:
-        place = _brightest(points, camera_light(row, points, directed=False), slices)
+        place = _brightest(points, camera_light(row, points, with_controls=False), slices)
     if place is None:
         return None
     line, element = sight.pixels_of(points.pixels[[place]])[0].tolist()
@@ -114,10 +114,9 @@ def _nearly_brightest(points: VisiblePoints, light: CameraLight, surface: Surfac
     """The places of the points of a surface with the largest cos(E), up to the rounding of float32."""
     cosines = np.empty(surface.stop - surface.start, np.float32)
     for chunk in chunks(surface.stop, PIXELS_AT_ONCE, surface.start):
-        rays = rays_to(light, points.rows[:, chunk])
-        here = rays.cosines_with(REFLECTED_VIEW)
-        here[rays.cosines_with(NORMAL) <= 0] = -1
-        cosines[chunk.start - surface.start : chunk.stop - surface.start] = here
+        rays, _ = fast_rays(light, points.rows[:, chunk], points.radius)
+        rays.eye[rays.incidence <= 0] = -1
+        cosines[chunk.start - surface.start : chunk.stop - surface.start] = rays.eye
     largest = cosines.max()
     if largest <= 0:
         return np.empty(0, np.intp)
@@ -303,18 +302,17 @@ def _pixels_of_rims(sight: Sight, inside: Mapping[Rim, Booleans]) -> dict[Rim, I
 def _inside(points: VisiblePoints, light: Light) -> dict[Rim, Booleans]:
     """Whether each point is inside the cone, each end of the flaps and each half-space, as in shading."""
     inside: dict[Rim, Booleans] = {}
-    cone = Cone.of(light, points)
-    if cone is not None:
-        camera = camera_light(light, points, directed=True)
+    if light.cone_angle is not None:
+        camera = camera_light(light, points)
         inside[CONE] = np.empty(len(points.pixels), np.bool_)
         for chunk in points.chunks:
-            cosines = rays_to(camera, points.rows[:, chunk.pixels]).cos_light
-            assert cosines is not None
-            np.greater_equal(cosines, np.float32(cone.least_cosine), out=inside[CONE][chunk.pixels])
+            rays, _ = fast_rays(camera, points.rows[:, chunk.pixels], points.radius)
+            assert rays.light is not None
+            inside[CONE][chunk.pixels] = is_within(rays.light, light.cone_angle)
     for rim, side in flap_sides(light, points).items():
-        inside[rim] = is_inside(side.row, points.rows)
+        inside[rim] = is_inside(side, points.rows[POINT])
     for name, side in half_space_sides(light, points).items():
-        inside[Plane(name)] = is_inside(side.row, points.rows)
+        inside[Plane(name)] = is_inside(side, points.rows[POINT])
     return inside
 
 

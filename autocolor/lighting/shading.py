@@ -37,25 +37,25 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import (
-    LARGEST_SINGLE,
-    ROUNDING,
-    Booleans,
-    ExactLogarithms,
-    Indices,
-    Singles,
-    columns,
-    dot,
-    underflowing,
-)
+from autocolor.arrays import LARGEST_SINGLE, NEGLIGIBLE, ROUNDING, Booleans, Singles, underflowing
 from autocolor.errors import InputError
 from autocolor.immutable import Immutable
-from autocolor.lighting.controls import ExactLight, LightControl, LitPoints, controls_of, within
-from autocolor.lighting.rays import CameraLight, Rays, camera_light, rays_to
+from autocolor.lighting.controls import lit_points
+from autocolor.lighting.light import (
+    CameraLight,
+    Rays,
+    exact_rays_to,
+    least_cosine,
+    light_at,
+    shares_of,
+    specular_factor,
+)
+from autocolor.lighting.precision import uncertain_factor, uncertain_share
+from autocolor.lighting.rays import fast_rays
 from autocolor.scene.lights import Light
-from autocolor.scene.reflection_models import Cosines, ExactVectors, ReflectionModel
+from autocolor.scene.reflection_models import ReflectionModel
 from autocolor.scene.surfaces import Part, Surface
-from autocolor.visibility.visible_points import NORMAL, POINT, REFLECTED_VIEW, PointChunk, VisiblePoints
+from autocolor.visibility.visible_points import PointChunk, VisiblePoints
 
 DIFFUSE: Final = 0
 SPECULAR: Final = 1
@@ -64,8 +64,8 @@ SPECULAR: Final = 1
 FEW: Final = 0.3
 """The fraction of lit points below which it takes less time to pick them than to compute all points."""
 
-ROUNDING_OF_EYE: Final = 4.7 * ROUNDING
-"""Measured: cos(E) is at least so uncertain, because the rounding of a reflected view changes its length."""
+MOST_SPREAD: Final = 100.0
+"""The largest concentration whose light counts wherever cos(L) is above 0."""
 
 SurfaceWeights = Mapping[int, tuple[np.float32, np.float32]]
 """The weights of a light's diffuse and specular planes, by surface number."""
@@ -85,24 +85,10 @@ class LightPlanes(Immutable):
     mixed: Singles | None = None
 
 
-class ControlledLight(NamedTuple):
-    """A light in camera space and its controls, ready for the visible points of one view."""
-
-    light: CameraLight
-    controls: tuple[LightControl, ...]
-
-
-def controlled_light(light: Light, points: VisiblePoints, with_controls: bool = True) -> ControlledLight:
-    """A light ready for some visible points; without its controls if `with_controls` is false."""
-    controls = controls_of(light, points) if with_controls else ()
-    directed = any(control.directed for control in controls)
-    return ControlledLight(camera_light(light, points, directed), controls)
-
-
 @underflowing
 def shade(
     planes: Singles,
-    light: ControlledLight,
+    light: CameraLight,
     points: VisiblePoints,
     chunk: PointChunk,
     models: Mapping[int, ReflectionModel],
@@ -113,156 +99,87 @@ def shade(
     reflection model of each visible surface number.
     """
     out, rows = planes[:, chunk.pixels], points.rows[:, chunk.pixels]
-    is_lit = _lit_points(light.controls, rows, chunk.pixels)
+    is_lit = lit_points(light.row, light.sides, points, rows, chunk.pixels)
     if is_lit is not None and not is_lit.any():
         out[:] = 0
         return
 
-    # Find the points that face the light and are within its controls.
-    rays = rays_to(light.light, rows)
-    incidence = rays.cosines_with(NORMAL)
-    facing = incidence > 0
+    # Find the points that face the light and may be within its controls.
+    rays, rounding = fast_rays(light, rows, points.radius)
+    facing = rays.incidence > 0
     is_lit = facing if is_lit is None else np.logical_and(is_lit, facing, out=is_lit)
-    if rays.cos_light is not None:
-        is_lit &= within(rays, max(control.least_cosine for control in light.controls))
+    if light.falloff is not None:
+        is_lit &= rays.length < light.falloff.reach
+    if rays.light is not None:
+        is_lit &= rays.light >= np.float32(_least_cosine(light.row) - rounding - ROUNDING)
     count = np.count_nonzero(is_lit)
     if not count:
         out[:] = 0
         return
 
-    # Reflect the light there. Where few points are lit, compute only them.
-    at_points = _AtPoints(incidence, rays.cosines_with(REFLECTED_VIEW), rays.cos_light, rays, None)
+    # Reflect the light there, which is within all sharp sides. Where few points are lit, compute only them.
+    light = light._replace(sides=tuple(side for side in light.sides if side.edge_width > 0))
     ends = [each.stop for each in chunk.slices]
     of_surfaces = [models[each.surface_number] for each in chunk.slices]
     if count >= FEW * len(is_lit):
-        flags = is_lit if count < len(is_lit) else None
-        _reflect(out, at_points, flags, light.controls, ends, of_surfaces)
+        _reflect(out, light, rays, is_lit, ends, of_surfaces, rounding)
         return
     chosen = np.flatnonzero(is_lit)
     reflected = np.empty((2, count), np.float32)
     ends = np.searchsorted(chosen, ends).tolist()
-    _reflect(reflected, at_points.chosen(chosen), None, light.controls, ends, of_surfaces)
+    _reflect(reflected, light, rays.at(chosen), None, ends, of_surfaces, rounding)
     out[:] = 0
     for plane, values in zip(out, reflected, strict=True):
         plane[chosen] = values
 
 
-def _lit_points(controls: Sequence[LightControl], rows: Singles, pixels: slice) -> Booleans | None:
-    """Whether each point may be lit under all controls; None where no control decides by the points."""
-    lit: Booleans | None = None
-    for control in controls:
-        allowed = control.lit_points(rows, pixels)
-        if allowed is not None:
-            lit = allowed if lit is None else np.logical_and(lit, allowed, out=lit)
-    return lit
-
-
-class _AtPoints(NamedTuple):
-    """cos(I), cos(E) and, for a directed light, cos(L) at some points, (points,) float32 each.
-
-    `rays` belong to the whole chunk. `places` are the places of the points in it; None for all.
-    """
-
-    incidence: Singles
-    eye: Singles
-    light: Singles | None
-    rays: Rays
-    places: Indices | None
-
-    def chosen(self, places: Indices) -> _AtPoints:
-        """Some points of the whole chunk."""
-        light = None if self.light is None else self.light.take(places)
-        return self._replace(
-            incidence=self.incidence.take(places), eye=self.eye.take(places), light=light, places=places
-        )
-
-    def distance(self) -> Singles:
-        """The distances to the light, (points,)."""
-        length = self.rays.length
-        return length if self.places is None else length.take(self.places)
-
-    def positions(self) -> Singles:
-        """The points in camera space, (3, points)."""
-        points = self.rays.rows[POINT]
-        return points if self.places is None else columns(points, self.places)
-
-    def exact_light(self) -> ExactLight | None:
-        """cos(L) at some of the points; None if it is exact in float32."""
-        rays, chosen = self.rays, self.places
-        if rays.direction is None or rays.are_parallel:
-            return None
-        logarithms = ExactLogarithms(rays.rounding, rays.cos_light_logarithms)
-        if chosen is None:
-            return ExactLight(logarithms, rays.exact_cos_light)
-        return ExactLight(logarithms.chosen(chosen), lambda places: rays.exact_cos_light(chosen.take(places)))
-
-    def cosines(self, start: int, end: int) -> Cosines:
-        """The cosines for a reflection model at a slice of the points."""
-        rays = self.rays
-        chosen = None if self.places is None else self.places[start:end]
-
-        def view() -> Singles:
-            places = slice(start, end) if chosen is None else chosen
-            # N.V = N . R for the reflected view R.
-            return dot(rays.rows[NORMAL, places], rays.rows[REFLECTED_VIEW, places])
-
-        def in_chunk(places: Indices) -> Indices:
-            return places + start if chosen is None else chosen.take(places)
-
-        def mirror_difference(places: Indices) -> Singles:
-            places = in_chunk(places)
-            difference = rays.from_light(places)
-            # The rounding of the lengths hardly matters where the vectors are close to each other.
-            difference /= -rays.length.take(places)
-            difference -= columns(rays.rows[REFLECTED_VIEW], places)
-            return difference
-
-        def normal(places: Indices) -> Singles:
-            return columns(rays.rows[NORMAL], in_chunk(places))
-
-        exact = ExactVectors(max(rays.rounding, ROUNDING_OF_EYE), mirror_difference, normal)
-        return Cosines(self.incidence[start:end], self.eye[start:end], view, exact)
+def _least_cosine(light: Light) -> float:
+    """A cos(L) below which nothing of a directed light is left, or a negligible share."""
+    least = -1.0 if light.cone_angle is None else least_cosine(light.cone_angle)
+    if light.concentration > MOST_SPREAD:
+        least = max(least, math.exp(-NEGLIGIBLE / light.concentration))
+    elif light.concentration > 0:
+        least = max(least, 0.0)
+    return least
 
 
 def _reflect(
     out: Singles,
-    at_points: _AtPoints,
+    light: CameraLight,
+    rays: Rays,
     is_lit: Booleans | None,
-    controls: Sequence[LightControl],
     ends: Sequence[int],
     models: Sequence[ReflectionModel],
+    rounding: float,
 ) -> None:
-    """Fill in both planes at some points: the reflected light times the shares that the controls leave.
+    """Fill in both planes at some points; 0 where `is_lit` is false.
 
-    If `is_lit` is given, points that are not lit become 0. The surfaces of the points end at `ends` and have
-    these `models`. The arrays of the cosines are overwritten.
+    The surfaces of the points end at `ends` and have these `models`. Points at which the `rounding` of
+    cosines counts are computed again by the definitions.
     """
-    multiplier = _multiplier(controls, at_points)
-    if is_lit is not None:
-        lit = is_lit.astype(np.float32)
-        multiplier = lit if multiplier is None else np.multiply(multiplier, lit, out=multiplier)
-    # The specular factor takes the place of cos(E), surface by surface.
+    share = None if is_lit is None or is_lit.all() else is_lit.astype(np.float32)
+    for _, left in shares_of(light, rays):
+        share = left if share is None else np.multiply(share, left, out=share)
+    again = uncertain_share(light, rays, rounding)
     for (start, end), model in zip(pairwise([0, *ends]), models, strict=True):
-        cosines = at_points.cosines(start, end)
-        model.specular(cosines, out=cosines.eye)
-    for plane, factor in ((DIFFUSE, at_points.incidence), (SPECULAR, at_points.eye)):
-        if multiplier is None:
-            out[plane] = factor
+        if start == end:
+            continue
+        here = slice(start, end)
+        some, planes = rays.within(here), out[:, here]
+        factor = specular_factor(model, some)
+        if share is None:
+            planes[DIFFUSE], planes[SPECULAR] = some.incidence, factor
         else:
-            np.multiply(factor, multiplier, out=out[plane])
-
-
-def _multiplier(controls: Sequence[LightControl], at_points: _AtPoints) -> Singles | None:
-    """The product of the factors of all controls; None if none has a factor. cos(L) may be overwritten."""
-    shaping = [control for control in controls if type(control).factor is not LightControl.factor]
-    lit = LitPoints(at_points.light, at_points.distance, at_points.positions, at_points.exact_light())
-    multiplier: Singles | None = None
-    for control in shaping:
-        # The last control may overwrite the cosines.
-        spare = lit.cos_light if control is shaping[-1] else None
-        factor = control.factor(lit, np.empty_like(at_points.incidence) if spare is None else spare)
-        multiplier = factor if multiplier is None else np.multiply(multiplier, factor, out=multiplier)
-    return multiplier
+            np.multiply(some.incidence, share[here], out=planes[DIFFUSE])
+            np.multiply(factor, share[here], out=planes[SPECULAR])
+        found = [uncertain_factor(model, some, factor, rounding), None if again is None else again[here]]
+        uncertain = [each for each in found if each is not None]
+        if uncertain:
+            wanted = np.logical_or.reduce(uncertain)
+            places = np.flatnonzero(wanted if is_lit is None else wanted & is_lit[here])
+            if len(places):
+                exact = exact_rays_to(light, some.at(places).vectors(slice(None)))
+                planes[:, places] = light_at(light, exact, model)
 
 
 @underflowing

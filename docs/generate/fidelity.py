@@ -46,7 +46,7 @@ THE_PAPER = (
     ),
     (
         "The Lighting Model: Figures 1 and 2",
-        ("lighting.shading", "lighting.rays"),
+        ("lighting.light", "lighting.rays"),
         "test_each_light_gives_its_intensity_times_d_cos_i_plus_s_cos_n_e",
     ),
     (
@@ -66,12 +66,12 @@ THE_PAPER = (
     ),
     (
         "Light Direction and Concentration: Figure 3",
-        ("lighting.controls", "scene.lights"),
+        ("lighting.light", "scene.lights"),
         "test_a_directed_light_is_multiplied_by_cos_c_l",
     ),
     (
         "Light Direction and Concentration: Figure 4",
-        ("lighting.controls",),
+        ("lighting.light",),
         "test_aiming_takes_the_bright_spot_off_the_plane",
     ),
     (
@@ -96,7 +96,7 @@ THE_PAPER = (
     ),
     (
         "Light Flaps and Cones: cones, Figure 10",
-        ("lighting.controls",),
+        ("lighting.light",),
         "test_a_cone_lights_what_is_within_its_angle_and_its_rim_is_sharp",
     ),
     (

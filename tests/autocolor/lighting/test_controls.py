@@ -9,28 +9,24 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from autocolor import Flap, Flaps, HalfSpace, InputError, Light, Scene, View, render
-from autocolor.arrays import Booleans, Floats, Singles
+from autocolor.arrays import Floats, Singles
 from autocolor.checks import Vector
 from autocolor.explanation.light import edge_share
-from autocolor.lighting import controls as light_controls
+from autocolor.lighting import controls
 from autocolor.lighting.controls import (
-    CONTROLS,
     FARTHEST_PLANE,
-    Concentration,
-    Cone,
     Falloff,
-    LightControl,
-    LitPoints,
-    Sides,
-    SoftCone,
-    SoftSides,
-    controls_of,
     flap_sides,
     flaps_of,
     half_space_sides,
     is_inside,
+    lit_points,
     side_of,
+    sides_of,
+    soft_cone_share,
 )
+from autocolor.lighting.light import is_within, shares_of
+from autocolor.lighting.rays import camera_light, fast_rays
 from autocolor.scene.following import light_frame
 from autocolor.scene.lights import Links
 from autocolor.testing import directions, lights, numbers, scenes, some_of, vectors, views
@@ -43,78 +39,31 @@ def wall_points() -> VisiblePoints:
     return visible_surfaces(wall(), View((1, -4, 1), target=(0, 0, 0)), (1,), 12, 12)
 
 
-def lit_at(cosines: Singles) -> LitPoints:
-    """Points at these cosines from the light's direction, whose places no control asks for."""
-
-    def nobody_asks() -> Singles:
-        raise AssertionError
-
-    return LitPoints(cosines, nobody_asks, nobody_asks)
+def shares(light: Light, points: VisiblePoints) -> dict[str, list[Singles]]:
+    """The shares of the controls by name; a flap has a share for each of its ends."""
+    rays, _ = fast_rays(camera_light(light, points), points.rows, points.radius)
+    found: dict[str, list[Singles]] = {}
+    for name, share in shares_of(camera_light(light, points), rays):
+        found.setdefault(name, []).append(share)
+    return found
 
 
 @given(lights())
 def test_a_light_has_the_controls_that_its_fields_ask_for(light: Light) -> None:
-    used = {type(control) for control in controls_of(light, wall_points())}
-    limits = [flap for flap in (light.flaps.x, light.flaps.y, light.flaps.z) if flap is not None and flap.on]
-    planes = [half_space for half_space in light.half_spaces if half_space.on]
-    assert (Sides in used) == bool(limits or planes)
-    widths = [flap.edge_width for flap in limits] + [plane.edge_width for plane in planes]
-    assert (SoftSides in used) == any(width > 0 for width in widths)
-    assert (Cone in used) == (light.cone_angle is not None)
-    is_soft = light.inner_angle is not None and light.inner_angle != light.cone_angle
-    assert (SoftCone in used) == is_soft
-    assert (Concentration in used) == (light.concentration > 0)
-
-
-@pytest.mark.parametrize("is_aimed", [True, False])
-@pytest.mark.parametrize("few", [True, False])
-def test_a_factor_may_depend_on_distance_and_place_of_any_light(
-    monkeypatch: pytest.MonkeyPatch, is_aimed: bool, few: bool
-) -> None:
-
-    class Falloff(LightControl):
-        """Less with the distance, and less to the right."""
-
-        def __init__(self, points: VisiblePoints) -> None:
-            self.points = points
-
-        @classmethod
-        def of(cls, light: Light, points: VisiblePoints) -> Falloff:
-            return cls(points)
-
-        def lit_points(self, rows: Singles, pixels: slice) -> Booleans | None:
-            return np.asarray(rows[POINT][1] > 0.8 * rows[POINT][1].max()) if few else None
-
-        def factor(self, lit: LitPoints, out: Singles) -> Singles:
-            size = np.float32(self.points.radius)
-            out[:] = np.exp(-lit.distance() - lit.positions()[0] / size)
-            return out
-
-    monkeypatch.setattr(light_controls, "CONTROLS", (*CONTROLS, Falloff))
-
-    given = {"direction": (0, 1, 0), "concentration": 2.0} if is_aimed else {}
-    light = Light("light", (0.0, -1.0, 0.0), **given)  # type: ignore[arg-type]
-    scene = wall_scene(lights=[light])
-    controlled = render(scene, 40, 40)
-    monkeypatch.undo()
-    free = render(scene, 40, 40)
-    points = visible_surfaces(wall(), scene.view, (1,), 40, 40)
-    away = np.linalg.norm(points.world_points - np.array(light.position), axis=1) / points.unit
-    expected = np.exp(-away - points.rows[POINT][0] / points.radius) * free.intensity.ravel()[points.pixels]
-    is_lit = points.rows[POINT][1] > 0.8 * points.rows[POINT][1].max() if few else True
-    intensities = controlled.intensity.ravel()[points.pixels]
-    assert intensities == pytest.approx(np.where(is_lit, expected, 0), rel=1e-4)
-
-
-EPSILON = float(np.finfo(np.float32).eps)
+    expected = {f"flap {axis}" for axis, flap in flaps_of(light).items() if flap is not None and flap.on}
+    expected |= {f"half-space {half_space.name}" for half_space in light.half_spaces if half_space.on}
+    expected |= {"concentration"} if light.concentration > 0 else set()
+    expected |= {"cone"} if light.cone_angle is not None else set()
+    expected |= {"falloff"} if light.falloff != "none" else set()
+    assert shares(light, wall_points()).keys() == expected
 
 
 @pytest.mark.parametrize(("least", "inside"), [(1e300, False), (-1e300, True), (1e36, False)])
 def test_a_plane_may_be_farther_than_a_single_can_hold(least: float, inside: bool) -> None:
     points = wall_points()
-    side = side_of(points, (1.0, 0.0, 0.0), least, 0.0)
+    side = side_of(points, "far", (1.0, 0.0, 0.0), least, 0.0)
     assert abs(side.row[3]) == pytest.approx(FARTHEST_PLANE)
-    assert is_inside(side.row, points.rows).tolist() == [inside] * len(points.pixels)
+    assert is_inside(side, points.rows[POINT]).tolist() == [inside] * len(points.pixels)
 
 
 @given(lights(), st.lists(st.tuples(*[numbers(-1, 1)] * 3), min_size=1, max_size=20))
@@ -129,7 +78,7 @@ def test_a_point_is_inside_a_side_of_a_flap_up_to_its_coordinate(
             assert ((axis, end) in sides) == (flap is not None and flap.on)
             if flap is None or not flap.on:
                 continue
-            inside = is_inside(sides[axis, end].row, rows)
+            inside = is_inside(sides[axis, end], rows)
             for point, value in zip(world, inside.tolist(), strict=True):
                 beyond = point[number] - flap.minimum if end == "minimum" else flap.maximum - point[number]
                 assert value == (beyond >= 0) or abs(beyond) < 1e-5
@@ -139,9 +88,7 @@ def test_a_point_is_inside_a_side_of_a_flap_up_to_its_coordinate(
 def test_a_point_is_within_a_flap_up_to_both_its_ends(least: float, extent: float, axis: str) -> None:
     points = wall_points()
     flap = Flap(least, least + extent)
-    (control,) = controls_of(Light("light", (0, -1, 0), flaps=Flaps(**{axis: flap})), points)
-    lit = control.lit_points(points.rows, slice(None))
-    assert lit is not None
+    lit = np.array(lit_of(Light("light", (0, -1, 0), flaps=Flaps(**{axis: flap}))))
     coordinate = points.world_points[:, "xyz".index(axis)]
     clear = np.minimum(np.abs(coordinate - flap.minimum), np.abs(coordinate - flap.maximum)) > 1e-5
     expected = (flap.minimum <= coordinate) & (coordinate <= flap.maximum)
@@ -150,18 +97,18 @@ def test_a_point_is_within_a_flap_up_to_both_its_ends(least: float, extent: floa
 
 def test_flaps_that_are_off_or_without_limits_are_no_control() -> None:
     for flaps in (Flaps(x=Flap(0, 1, on=False)), Flaps(x=Flap(), y=Flap())):
-        assert controls_of(Light("light", (0, -1, 0), flaps=flaps), wall_points()) == ()
+        assert sides_of(Light("light", (0, -1, 0), flaps=flaps), wall_points()) == []
 
 
 VIEW = View((1.0, -4.0, 1.0), target=(0.0, 0.0, 0.0))
 
 
-def lit_of(light: Light) -> list[bool]:
-    points = wall_points()
-    (control,) = controls_of(light, points)
-    lit = control.lit_points(points.rows, slice(None))
+def lit_of(light: Light, points: VisiblePoints | None = None) -> Any:
+    """Whether each point is within the sharp sides of a light."""
+    points = points or wall_points()
+    lit = lit_points(light, tuple(sides_of(light, points)), points, points.rows, slice(None))
     assert lit is not None
-    return lit.tolist()  # type: ignore[no-any-return]
+    return lit.tolist()
 
 
 @given(vectors(), directions())
@@ -222,7 +169,7 @@ def test_of_several_half_spaces_the_common_part_is_lit() -> None:
 
 def test_half_spaces_that_are_off_are_no_control() -> None:
     off = (HalfSpace("left", (0, 0, 0), (1, 0, 0), edge_width=0.2, on=False),)
-    assert controls_of(Light("light", (0, -1, 0), half_spaces=off), wall_points()) == ()
+    assert sides_of(Light("light", (0, -1, 0), half_spaces=off), wall_points()) == []
 
 
 @given(vectors(), directions(), vectors(numbers(-0.5, 0.5)), directions())
@@ -250,9 +197,7 @@ def test_barn_doors_turn_and_move_with_the_light() -> None:
     world = points.world_points
     for across, aim in ((0.0, 0.0), (0.4, 0.4), (0.0, 0.7), (-0.5, 0.2)):
         light = Light("light", (across, -2.0, 0.0), aim=(aim, 0.0, 0.0), half_spaces=doors)
-        (control,) = controls_of(light, points)
-        assert isinstance(control, Sides)
-        lit = control.lit_points(points.rows, slice(None))
+        lit = np.array(lit_of(light, points))
         # To the right of the light's direction is (y, -x) of it.
         along = np.array([aim - across, 2.0]) / np.hypot(aim - across, 2.0)
         to_right = (world[:, 0] - across) * along[1] - (world[:, 1] + 2.0) * along[0]
@@ -273,20 +218,9 @@ def test_planes_however_far_and_edges_of_any_width_leave_finite_light(
     assert picture.intensity.min() >= 0
 
 
-def left_at(light: Light, points: VisiblePoints) -> list[float]:
-    """What soft edges leave at the points."""
-    control = SoftSides.of(light, points)
-    assert control is not None
-
-    def positions() -> Any:
-        return points.rows[POINT]
-
-    def nobody_asks() -> Any:
-        raise AssertionError
-
-    out = np.empty(len(points.pixels), np.float32)
-    assert control.factor(LitPoints(None, nobody_asks, positions), out) is out
-    return out.tolist()
+def left_at(light: Light, points: VisiblePoints) -> Any:
+    """The share that all controls leave at the points."""
+    return np.prod([share for found in shares(light, points).values() for share in found], axis=0)
 
 
 def ratio(light: Light) -> tuple[Floats, VisiblePoints]:
@@ -328,9 +262,8 @@ def test_a_soft_edge_is_smooth_at_both_ends_and_grows_between_them() -> None:
     light = Light("light", (0, -1, 0), half_spaces=(HalfSpace("left", (0, 0, 0), (1, 0, 0), width),))
     at = np.arange(-0.2, 0.8, step)
     rows = np.array([wall_points().camera_point((x, 0.0, 0.0)) for x in at.tolist()], np.float32).T
-    control = SoftSides.of(light, wall_points())
-    assert control is not None
-    left = control.factor(LitPoints(None, lambda: rows, lambda: rows), np.empty(len(at), np.float32))
+    (side,) = sides_of(light, wall_points())
+    left = controls.edge_share(side, rows)
     slope = np.diff(left.astype(np.float64)) / step
     assert left[0] == 0
     assert left[-1] == 1
@@ -356,56 +289,20 @@ def test_the_shares_of_several_soft_edges_are_multiplied() -> None:
     assert np.ptp(expected) > 0
 
 
-def factor(cosines: list[float], concentration: float) -> Singles:
-    given_as = np.array(cosines, np.float32)
-    return Concentration(concentration).factor(lit_at(given_as), out=np.empty_like(given_as))
-
-
-@given(numbers(0, 60), numbers(1e-6, 1))
-def test_the_concentrated_light_is_the_cosine_to_the_power_of_the_concentration(
-    concentration: float, cosine: float
-) -> None:
-    value = factor([cosine], concentration)[0]
-    assert value == pytest.approx(float(np.float32(cosine)) ** concentration, rel=2e-5, abs=1e-30)
-
-
-@pytest.mark.parametrize(("concentration", "degrees"), [(1, 60.0), (10, 21.1), (40, 10.6)])
-def test_half_is_left_at_the_papers_angles(concentration: float, degrees: float) -> None:
-    assert factor([math.cos(math.radians(degrees))], concentration)[0] == pytest.approx(0.5, abs=0.005)
-
-
-@given(st.lists(numbers(-1, 1), min_size=2), st.sampled_from([0.5, 1, 2, 40, 1e6, 1e30, 1e300]))
-def test_the_factor_never_leaves_0_to_1(cosines: list[float], concentration: float) -> None:
-    values = factor([*cosines, 1.0000002], concentration)
-    assert ((values >= 0) & (values <= 1)).all()
-
-
 @pytest.mark.parametrize(
-    ("cosine", "cone_angle", "concentration", "lit"),
+    ("cosine", "cone_angle", "lit"),
     [
-        (0.5, 60.0, 0.0, True),
-        (0.49999, 60.0, 0.0, False),
-        (-0.5, 121.0, 0.0, True),
-        (-0.5, 121.0, 1.0, False),
-        (0.0, 90.0, 0.0, True),
-        (0.0, 90.0, 1.0, False),
-        (0.0, None, 1.0, False),
-        (1e-6, None, 1.0, True),
-        (1e-45, None, 1.0, True),
-        (-1.0, 180.0, 0.0, True),
-        (1.0, 0.001, 40.0, True),
+        (0.5, 60.0, True),
+        (0.49999, 60.0, False),
+        (-0.5, 121.0, True),
+        (0.0, 90.0, True),
+        (-1.0, 180.0, True),
+        (1.0, 0.001, True),
     ],
 )
-def test_a_point_is_in_the_cone_up_to_its_rim_and_before_a_concentrated_light(
-    cosine: float, cone_angle: float | None, concentration: float, lit: bool
-) -> None:
-    light = Light(
-        "light", (0, -1, 0), direction=(0, 1, 0), cone_angle=cone_angle, concentration=concentration
-    )
-    controls = controls_of(light, wall_points())
-    assert all(control.directed for control in controls)
-    least = max(control.least_cosine for control in controls)
-    assert bool(np.float32(cosine) >= np.float32(least)) == lit
+def test_a_point_is_in_the_cone_up_to_its_rim(cosine: float, cone_angle: float, lit: bool) -> None:
+    for kind in (np.float32, np.float64):
+        assert is_within(np.array([cosine], kind), cone_angle).tolist() == [lit]
 
 
 def cosine(degrees: float) -> float:
@@ -446,22 +343,18 @@ def test_a_soft_cone_on_a_wall_is_the_closed_form(
 @given(numbers(1, 180), numbers(0, 1))
 def test_all_is_left_up_to_the_inner_angle_and_nothing_at_the_rim(cone_angle: float, share: float) -> None:
     inner = share * (cone_angle - 1)
-    control = SoftCone.of(spot(cone_angle, inner), wall_points())
-    assert control is not None
     cosines = np.array(
         [1.0, cosine(inner / 2), cosine(inner) + 1e-6, cosine(cone_angle) - 1e-6, -1], np.float32
     )
-    left = control.factor(lit_at(cosines), out=np.empty_like(cosines))
+    left = soft_cone_share(cosines, inner, cone_angle)
     assert left[:3] == pytest.approx(1, abs=1e-6)
     assert left[3:].tolist() == [0, 0]
 
 
 def test_a_soft_cone_is_smooth_at_both_angles_and_on_the_axis() -> None:
-    control = SoftCone.of(spot(40, 0), wall_points())
-    assert control is not None
     degrees = np.arange(0, 50, 0.05)
     cosines = np.cos(np.radians(degrees)).astype(np.float32)
-    left = control.factor(lit_at(cosines), out=np.empty_like(cosines)).astype(np.float64)
+    left = soft_cone_share(cosines, 0, 40).astype(np.float64)
     slope = np.diff(left) / 0.05
     assert slope.max() < 1e-4
     assert np.abs(slope[:10]).max() < 1e-3
@@ -471,11 +364,8 @@ def test_a_soft_cone_is_smooth_at_both_angles_and_on_the_axis() -> None:
 
 @pytest.mark.parametrize(("outer", "inner"), [(1e-6, 0.0), (180.0, math.nextafter(180.0, 0.0)), (30.0, 0.0)])
 def test_the_share_stays_within_0_and_1_however_narrow_the_edge(outer: float, inner: float) -> None:
-    control = SoftCone.of(spot(outer, inner), wall_points())
-    assert control is not None
     cosines = np.linspace(-1.0000002, 1.0000002, 1001).astype(np.float32)
-    left = control.factor(lit_at(cosines), out=cosines)
-    assert left is cosines
+    left = soft_cone_share(cosines, inner, outer)
     assert ((left >= 0) & (left <= 1)).all()
 
 
@@ -501,12 +391,9 @@ def test_on_a_wall_the_light_falls_with_the_distance_to_nothing_at_its_reach(
 
 
 def test_a_light_falls_to_a_half_and_to_a_quarter_at_half_its_reach() -> None:
-    points = wall_points()
     distances = np.array([0, 0.5, 1, 2, 4], np.float32)
-    at = LitPoints(None, lambda: distances / np.float32(points.unit), lambda: np.zeros((3, 5), np.float32))
-    for falloff, expected in (("linear", [1, 0.75, 0.5, 0, 0]), ("quadratic", [1, 0.5625, 0.25, 0, 0])):
-        (control,) = controls_of(Light("light", (0, -1, 0), falloff=falloff, reach=2), points)
-        assert control.factor(at, out=np.empty(5, np.float32)).tolist() == pytest.approx(expected, abs=1e-6)
+    for exponent, expected in ((1, [1, 0.75, 0.5, 0, 0]), (2, [1, 0.5625, 0.25, 0, 0])):
+        assert Falloff(2, exponent).share(distances).tolist() == pytest.approx(expected, abs=1e-6)
 
 
 @given(FALLING, st.sampled_from([1e12, 1e20, 1e36]))

@@ -10,19 +10,19 @@ from hypothesis import strategies as st
 from autocolor import Light, View
 from autocolor.checks import Vector
 from autocolor.explanation.point import dot, minus, times, unit
-from autocolor.lighting.rays import (
-    FARTHEST,
-    camera_light,
-    direction_to_light,
-    middle_of,
-    rays_to,
-)
+from autocolor.lighting.light import FARTHEST, Rays, exact_rays_to
+from autocolor.lighting.rays import camera_light, direction_to_light, fast_rays, middle_of
 from autocolor.testing import directions, numbers, outside_views, vectors
-from autocolor.visibility.visible_points import NORMAL, REFLECTED_VIEW, VisiblePoints
+from autocolor.visibility.visible_points import REFLECTED_VIEW, VisiblePoints
 from autocolor.visibility.visible_surfaces import visible_surfaces
 from tests.small import cube, sphere, wall, wall_scene
 
 BALL = sphere(12, 8)
+
+
+def rays_of(light: Light, points: VisiblePoints) -> Rays:
+    rays, _ = fast_rays(camera_light(light, points), points.rows, points.radius)
+    return rays
 
 
 def points_of(view: View) -> VisiblePoints:
@@ -32,10 +32,10 @@ def points_of(view: View) -> VisiblePoints:
 @given(outside_views(), vectors(numbers(-3, 3)), directions())
 def test_lengths_and_cosines_agree_with_the_rays(view: View, position: Vector, direction: Vector) -> None:
     points = points_of(view)
-    light = Light("light", position, direction=direction)
-    rays = rays_to(camera_light(light, points, directed=True), points.rows)
-    assert rays.cos_light is not None
-    cos_incidence, cos_eye = rays.cosines_with(NORMAL), rays.cosines_with(REFLECTED_VIEW)
+    light = Light("light", position, direction=direction, concentration=1)
+    rays = rays_of(light, points)
+    assert rays.light is not None
+    cos_incidence, cos_eye = rays.incidence, rays.eye
     reflected = points.rows[REFLECTED_VIEW].T.astype(np.float64) @ view.axes
     for number, point in enumerate(points.world_points.tolist()):
         ray = minus(position, point)
@@ -45,7 +45,7 @@ def test_lengths_and_cosines_agree_with_the_rays(view: View, position: Vector, d
         # The point itself is rounded to float32.
         error = 2e-6 + 1e-6 / length
         assert rays.length[number] * points.unit == pytest.approx(length, abs=1e-5)
-        assert rays.cos_light[number] == pytest.approx(-dot(unit(ray), unit(direction)), abs=error)
+        assert rays.light[number] == pytest.approx(-dot(unit(ray), unit(direction)), abs=error)
         normal = points.world_normals[number].tolist()
         assert cos_incidence[number] == pytest.approx(dot(unit(ray), normal), abs=error)
         assert cos_eye[number] == pytest.approx(dot(unit(ray), reflected[number].tolist()), abs=error)
@@ -56,37 +56,32 @@ def test_the_rays_to_a_light_close_to_the_wall_are_as_exact(gap: float) -> None:
     x, z = 0.31, -0.22
     view = View((x, -4.0, z), target=(x, 0.0, z), field_of_view=math.degrees(gap))
     points = visible_surfaces(wall(), view, (1,), 30, 40)
-    rays = rays_to(camera_light(Light("light", (x, -gap, z)), points, directed=False), points.rows)
-    assert points.starts_nearest or len(rays.close) > 0
-    cos_incidence = rays.cosines_with(NORMAL)
+    rays = rays_of(Light("light", (x, -gap, z)), points)
+    cos_incidence = rays.incidence
     for number, point in enumerate(points.world_points.tolist()):
         aside = math.hypot(point[0] - x, point[2] - z)
         assert cos_incidence[number] == pytest.approx(gap / math.hypot(aside, gap), abs=3e-4)
 
 
 @given(numbers(1.05, 3.0) | numbers(3.0, 1000.0), directions(), outside_views())
-def test_cosines_near_1_are_off_by_at_most_the_rounding_and_their_logarithms_are_exact(
-    distance: float, side: Vector, view: View
-) -> None:
+def test_cosines_near_1_are_off_by_at_most_the_rounding(distance: float, side: Vector, view: View) -> None:
     points = visible_surfaces(BALL, view, (1,), 30, 40)
-    light = Light("light", times(distance, unit(side)), aim=(0.1, 0.0, 0.05))
-    rays = rays_to(camera_light(light, points, directed=True), points.rows)
-    assert rays.cos_light is not None
-    exact = rays.exact_cos_light(np.arange(len(points.pixels)))
+    light = Light("light", times(distance, unit(side)), aim=(0.1, 0.0, 0.05), concentration=1)
+    ready = camera_light(light, points)
+    rays, rounding = fast_rays(ready, points.rows, points.radius)
+    exact = exact_rays_to(ready, points.rows).light
+    assert rays.light is not None
+    assert exact is not None
     near = np.flatnonzero(exact > 0.9)
-    assert (np.abs(rays.cos_light - exact)[near] <= 1.1 * rays.rounding).all()
-    logarithms, expected = rays.cos_light_logarithms(near), np.log(exact[near])
-    # The angle, whose square is twice the logarithm, has the rounding of float32.
-    error = 4e-7 * np.sqrt(-2 * expected) - 2 * rays.rounding * expected + 1e-13
-    assert (np.abs(logarithms - expected) <= error).all()
+    assert (np.abs(rays.light - exact)[near] <= 1.1 * rounding).all()
 
 
 def test_a_ray_to_a_light_at_the_point_itself_has_a_length() -> None:
     points = points_of(View((0, -5, 0), target=(0, 0, 0)))
     for point in points.world_points.tolist():
-        rays = rays_to(camera_light(Light("light", tuple(point)), points, directed=False), points.rows)
+        rays = rays_of(Light("light", tuple(point)), points)
         assert (rays.length > 0).all()
-        assert np.isfinite(rays.cosines_with(NORMAL)).all()
+        assert np.isfinite(rays.incidence).all()
 
 
 @given(directions(), st.sampled_from([1e16, 1e25, 1e36]))
@@ -94,10 +89,10 @@ def test_the_rays_to_a_light_beyond_all_are_parallel(toward: Vector, distance: f
     points = points_of(View((1, -5, 2), target=(0, 0, 0)))
     far = times(distance, unit(toward))
     light = Light("light", (far[0], far[1], far[2]))
-    rays = rays_to(camera_light(light, points, directed=False), points.rows)
+    rays = rays_of(light, points)
     assert float(rays.length.max()) <= FARTHEST * 1.8
     expected = points.world_normals @ np.array(unit(toward))
-    assert rays.cosines_with(NORMAL) == pytest.approx(expected, abs=1e-5)
+    assert rays.incidence == pytest.approx(expected, abs=1e-5)
 
 
 @given(outside_views(), vectors(numbers(-9, 9)), directions())
@@ -105,23 +100,22 @@ def test_the_rays_to_a_light_at_infinity_are_against_its_axis_wherever_it_is(
     view: View, position: Vector, direction: Vector
 ) -> None:
     points = points_of(view)
-    light = Light("light", position, direction=direction, at_infinity=True)
-    rays = rays_to(camera_light(light, points, directed=True), points.rows)
-    assert rays.cos_light is not None
-    assert (rays.cos_light == 1).all()
-    assert not len(rays.close)
+    light = Light("light", position, direction=direction, at_infinity=True, concentration=1)
+    rays = rays_of(light, points)
+    assert rays.light is not None
+    assert (rays.light == 1).all()
     toward = np.array(times(-1, unit(direction)))
-    assert rays.cosines_with(NORMAL) == pytest.approx(points.world_normals @ toward, abs=1e-6)
+    assert rays.incidence == pytest.approx(points.world_normals @ toward, abs=1e-6)
     reflected = points.rows[REFLECTED_VIEW].T.astype(np.float64) @ view.axes
-    assert rays.cosines_with(REFLECTED_VIEW) == pytest.approx(reflected @ toward, abs=1e-6)
-    assert rays_to(camera_light(light, points, directed=False), points.rows).cos_light is None
+    assert rays.eye == pytest.approx(reflected @ toward, abs=1e-6)
+    assert rays_of(light.replace(concentration=0), points).light is None
 
 
 @given(outside_views(), st.sampled_from([(0, 0, -1), (0, 0, 1), (1, 0, 0), (0, 1, -1), (1, 0, 1)]))
 def test_parallel_rays_do_not_light_the_faces_that_they_run_along(view: View, direction: Vector) -> None:
     points = visible_surfaces(cube(), view, (1,), 9, 12)
     light = Light("light", (3, -3, 3), direction=direction, at_infinity=True)
-    cosines = rays_to(camera_light(light, points, directed=False), points.rows).cosines_with(NORMAL)
+    cosines = rays_of(light, points).incidence
     expected = np.round(points.world_normals) @ -np.array(unit(direction))
     assert cosines == pytest.approx(expected, abs=1e-6)
     assert (np.sign(cosines) == np.sign(expected)).all()

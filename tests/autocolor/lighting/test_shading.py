@@ -29,13 +29,14 @@ from autocolor.arrays import Floats, Singles
 from autocolor.checks import Vector
 from autocolor.explanation.light import specular_factor
 from autocolor.explanation.point import dot, minus, plus, times, unit
-from autocolor.lighting.controls import controls_of
-from autocolor.lighting.shading import DIFFUSE, SPECULAR, LightPlanes, controlled_light, light_mix, mix, shade
+from autocolor.lighting.controls import is_inside, sides_of
+from autocolor.lighting.rays import camera_light
+from autocolor.lighting.shading import DIFFUSE, SPECULAR, LightPlanes, light_mix, mix, shade
 from autocolor.scene.kinds import AngleCurve
 from autocolor.scene.lights import Links
 from autocolor.scene.reflection_models import BlinnPhong, CookTorrance, Phong, ReflectionModel, SpecularGrowth
 from autocolor.testing import flaps, lights, numbers, outside_views, surfaces
-from autocolor.visibility.visible_points import VisiblePoints, point_chunks, surface_slices
+from autocolor.visibility.visible_points import POINT, VisiblePoints, point_chunks, surface_slices
 from autocolor.visibility.visible_surfaces import visible_surfaces
 from tests.autocolor.reference import Lit, controlled, light_at, ray
 from tests.autocolor.strategies import reflectances
@@ -61,7 +62,7 @@ def planes_of(light: Light, points: VisiblePoints, model: ReflectionModel) -> Si
     """The planes of one light on the one surface there is."""
     planes = np.empty((2, len(points.pixels)), np.float32)
     for chunk in points.chunks:
-        shade(planes, controlled_light(light, points), points, chunk, {1: model})
+        shade(planes, camera_light(light, points), points, chunk, {1: model})
     return planes
 
 
@@ -374,9 +375,8 @@ def test_a_floor_that_lies_on_a_flap_is_lit_to_the_horizon_and_just_beyond_the_f
     near = floor & (np.linalg.norm(points.world_points - view.eye, axis=1) < 20)
     assert near.any()
     for least, lit in ((-1.5, floor), (-1.5 + 1e-3, np.zeros_like(near))):
-        (control,) = controls_of(Light("light", (0, 0, 5), flaps=Flaps(z=Flap(minimum=least))), points)
-        inside = control.lit_points(points.rows, slice(None))
-        assert inside is not None
+        (side,) = sides_of(Light("light", (0, 0, 5), flaps=Flaps(z=Flap(minimum=least))), points)
+        inside = is_inside(side, points.rows[POINT])
         assert (inside[near] == lit[near]).all()
         assert inside[lit].all()
 
@@ -648,7 +648,7 @@ def test_each_surface_is_reflected_by_its_own_model() -> None:
     mesh = Mesh.joined([sphere(12, 8), cube(1.4)])
     view = View((3.0, -4.0, 2.0), target=(0.0, 0.0, 0.0), field_of_view=40.0)
     points = visible_surfaces(mesh, view, (1, 2), 24, 32)
-    light = controlled_light(Light("light", (2.0, -3.0, 3.0)), points)
+    light = camera_light(Light("light", (2.0, -3.0, 3.0)), points)
 
     def planes(models: dict[int, ReflectionModel]) -> Singles:
         filled = np.empty((2, len(points.pixels)), np.float32)

@@ -1,7 +1,6 @@
 from __future__ import annotations
 
 import math
-from functools import partial
 from itertools import pairwise
 from typing import Any
 
@@ -11,7 +10,6 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from autocolor import Surface
-from autocolor.arrays import Singles, power
 from autocolor.explanation.light import specular_factor, specular_growth
 from autocolor.explanation.point import dot, plus
 from autocolor.scene.columns import Field, difference, fields_of
@@ -20,8 +18,6 @@ from autocolor.scene.reflection_models import (
     MODELS,
     BlinnPhong,
     CookTorrance,
-    Cosines,
-    ExactVectors,
     Phong,
     ReflectionModel,
     SpecularGrowth,
@@ -40,16 +36,11 @@ WIDEST = float(np.nextafter(np.float32(1), np.float32(2)))
 cosines = numbers(-1, 1) | st.sampled_from([-WIDEST, -1.0, -1e-30, 0.0, 1e-45, 1e-30, 1.0, WIDEST])
 
 
-def unused() -> Singles:
-    raise AssertionError("N.V must not be computed")
-
-
 def specular(
     model: ReflectionModel, incidence: list[float], eye: list[float], view: list[float]
 ) -> list[float]:
     rows = [np.array(each, np.float32) for each in (incidence, eye, view)]
-    out = model.specular(Cosines(rows[0], rows[1], lambda: rows[2]), out=np.empty_like(rows[1]))
-    return [float(each) for each in out]
+    return [float(each) for each in model.specular(*rows)]
 
 
 def directions(polar: float, turn: float) -> list[float]:
@@ -113,7 +104,7 @@ def test_cook_torrance_is_the_product_of_its_terms_at_oblique_angles(
 
 @pytest.mark.parametrize("model", [Phong(1e5), BlinnPhong(1e5), CookTorrance(0.02, 0.1)], ids=repr)
 @pytest.mark.parametrize("polar", [0.3, 1.2])
-def test_exact_vectors_make_a_narrow_highlight_exact(model: ReflectionModel, polar: float) -> None:
+def test_a_narrow_highlight_is_exact_for_exact_cosines(model: ReflectionModel, polar: float) -> None:
     # The light is at up to a hundredth of a radian from the mirrored eye.
     away, turn = np.meshgrid(np.linspace(0, 0.01, 21), np.linspace(0, 6, 7))
     eye = np.array(directions(polar, math.pi))
@@ -123,17 +114,10 @@ def test_exact_vectors_make_a_narrow_highlight_exact(model: ReflectionModel, pol
         np.cos(turn)[..., None] * side + np.sin(turn)[..., None] * over
     )
     lights = lights.reshape(-1, 3)
-    up = np.broadcast_to(np.array([[0.0], [0.0], [1.0]], np.float32), (3, len(lights)))
-    exact = ExactVectors(
-        2e-7,
-        lambda places: (lights - mirrored).T[:, places].astype(np.float32),
-        lambda places: up[:, places],
-    )
-    incidence, cosine = lights[:, 2].astype(np.float32), (lights @ mirrored).astype(np.float32)
-    view = np.full(len(lights), eye[2], np.float32)
-    found = model.specular(Cosines(incidence, cosine, view.copy, exact), np.empty_like(cosine))
+    found = model.specular(lights[:, 2], lights @ mirrored, np.full(len(lights), eye[2]))
+    assert found.dtype == np.float64
     expected = [specular_factor(model, light, [0.0, 0.0, 1.0], eye.tolist()) for light in lights.tolist()]
-    assert found == pytest.approx(expected, abs=1e-4 * max(expected))
+    assert found == pytest.approx(expected, abs=1e-6 * max(expected))
 
 
 @given(models, st.lists(st.tuples(cosines, cosines, cosines), min_size=1))
@@ -145,28 +129,6 @@ def test_no_cosines_give_anything_but_a_number_from_0_to_the_largest(
     assert np.isfinite(values).all()
     assert (values >= 0).all()
     assert (values <= model.largest * 1.0001).all()
-
-
-@given(st.lists(cosines, min_size=1), exponents)
-def test_phong_is_the_power_of_one_cosine_and_asks_for_no_other(
-    cosines: list[float], exponent: float
-) -> None:
-    eye = np.array(cosines, np.float32)
-    got = Phong(exponent).specular(Cosines(np.ones_like(eye), eye, unused), out=np.empty_like(eye))
-    assert got.tobytes() == power(eye, exponent).tobytes()
-
-
-@given(st.lists(st.tuples(cosines, cosines, cosines), min_size=1), exponents, growths())
-def test_the_factor_may_overwrite_the_cosines(
-    some: list[tuple[float, float, float]], exponent: float, growth: SpecularGrowth
-) -> None:
-    for model in (Phong(exponent, growth), BlinnPhong(exponent, growth), CookTorrance()):
-        for number in (0, 1):
-            rows = [np.array(column, np.float32) for column in zip(*some, strict=True)]
-            expected = specular(model, *(row.tolist() for row in rows))
-            given_as = Cosines(rows[0], rows[1], partial(np.copy, rows[2]))
-            assert model.specular(given_as, out=rows[number]) is rows[number]
-            assert rows[number].tolist() == expected
 
 
 @pytest.mark.parametrize("exponent", [1e4, 1e7, 1e30, 1e300])

@@ -1,0 +1,169 @@
+"""The light equation at some points, plainly, for arrays of any float type.
+
+Paper: Figures 1 to 3, "The Lighting Model", "Light Direction and Concentration", "Light Flaps and Cones". The
+intensity at a point is
+
+    ambient + sum over the lights j of  light(j)
+    light(j) = intensity(j) x controls(j) x (D cos(I) + S cos^N(E))
+
+I is the angle between the normal and the ray to the light, E the angle between that ray and the view as the
+surface reflects it, and L the angle between the light's direction and the ray from the light. D, S and N are
+the surface's. A light gives nothing where cos(I) <= 0. Its controls leave a share of it, 0 to 1: cos^C(L) for
+the concentration C, and for a cone of the angle A all of the light where L <= A and none beyond.
+
+`light_at` is this equation without intensity, D and S. `controls` has the controls that the paper describes
+less or not at all, and `scene.reflection_models` has other factors in the place of cos^N(E). `rays` computes
+the same cosines faster, and `precision` finds the points where that is not exact enough.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+
+from autocolor.arrays import Floats, Indices, RealArray, Singles, columns, dot, lengths, normalized, power
+from autocolor.lighting.controls import Falloff, LitSide, edge_share, soft_cone_share
+from autocolor.scene.lights import Light
+from autocolor.scene.reflection_models import Phong, ReflectionModel
+from autocolor.visibility.visible_points import NORMAL, POINT, REFLECTED_VIEW
+
+FARTHEST: Final = 1e15
+"""The largest distance of a light, in units: its rays are parallel, and float32 can hold its square."""
+
+LEAST_DISTANCE: Final = 3e-19
+"""The least distance of a point from a light, in units, so that none is 0; float32 holds its square."""
+
+GRAZING: Final = 5e-7
+"""A cosine above its rounding. Parallel rays often run along a flat surface, which they do not light."""
+
+RIM: Final = 2e-7
+"""Assumed: in radians. A cone is wider by this, so that a rim along a line of pixels does not fray."""
+
+
+class CameraLight(NamedTuple):
+    """A light ready for the visible points of one view, in camera space around their origin, in their unit.
+
+    `axis` is the unit vector of the light's direction, (3,) like `position`; None if neither a concentration
+    nor a cone needs it. A light at infinity is FARTHEST away, against its axis. `sides` are the lit sides of
+    its flaps and half-spaces.
+    """
+
+    row: Light
+    position: Floats
+    axis: Floats | None
+    sides: tuple[LitSide, ...] = ()
+    falloff: Falloff | None = None
+
+
+class Rays(NamedTuple):
+    """The rays from k points to a light: their lengths, and the cosines of Figures 1 and 3, (k,) each.
+
+    `light` is cos(L); None without an axis. `rows` are the points with their normals and reflected views, as
+    in `VisiblePoints.rows`, and `places` the columns of the k points; None for all columns.
+    """
+
+    length: RealArray[Any]
+    incidence: RealArray[Any]
+    eye: RealArray[Any]
+    light: RealArray[Any] | None
+    rows: RealArray[Any]
+    places: Indices | None = None
+
+    def vectors(self, which: slice) -> RealArray[Any]:
+        """The points, normals or reflected views, (3, k)."""
+        rows = self.rows[which]
+        return rows if self.places is None else columns(rows, self.places)
+
+    @property
+    def view(self) -> RealArray[Any]:
+        """The cosine of the normal and the direction to the eye, which is that of the reflected view."""
+        return dot(self.vectors(NORMAL), self.vectors(REFLECTED_VIEW))
+
+    def at(self, places: Indices) -> Rays:
+        """The rays from some of the points."""
+        light = None if self.light is None else self.light.take(places)
+        length, incidence, eye = (array.take(places) for array in self[:3])
+        of_rows = places if self.places is None else self.places.take(places)
+        return Rays(length, incidence, eye, light, self.rows, of_rows)
+
+    def within(self, some: slice) -> Rays:
+        """The rays from a slice of the points; views of these arrays."""
+        light = None if self.light is None else self.light[some]
+        rays = Rays(self.length[some], self.incidence[some], self.eye[some], light, self.rows, self.places)
+        if self.places is None:
+            return rays._replace(rows=self.rows[:, some])
+        return rays._replace(places=self.places[some])
+
+
+def rays_to(light: CameraLight, rows: RealArray[Any]) -> Rays:
+    """The rays to a light from the points in some rows, as in `VisiblePoints.rows`; float64.
+
+    Departs: the rays to a light at infinity are parallel; the paper has no such light. There cos(L) is 1
+    everywhere, so that concentration and cones leave all of the light.
+    """
+    to_light = light.position[:, None] - rows[POINT]
+    length = np.maximum(lengths(to_light), LEAST_DISTANCE)
+    to_light /= length
+    incidence, eye = dot(rows[NORMAL], to_light), dot(rows[REFLECTED_VIEW], to_light)
+    along = None if light.axis is None else -(light.axis @ to_light)
+    if light.row.at_infinity:
+        for cosines in (incidence, eye):
+            cosines[np.abs(cosines) <= GRAZING] = 0
+        along = None if along is None else np.ones_like(along)
+    return Rays(length, incidence, eye, along, rows)
+
+
+def exact_rays_to(light: CameraLight, rows: Singles) -> Rays:
+    """The same, with normals and reflected views whose lengths are not rounded to float32."""
+    exact = rows.astype(np.float64)
+    for vectors in (exact[NORMAL], exact[REFLECTED_VIEW]):
+        vectors[:] = normalized(vectors)
+    return rays_to(light, exact)
+
+
+def light_at(light: CameraLight, rays: Rays, model: ReflectionModel) -> RealArray[Any]:
+    """Controls x cos(I) and controls x cos^N(E) at some points, (2, k); 0 where cos(I) <= 0."""
+    share = (rays.incidence > 0).astype(rays.incidence.dtype)
+    for _, left in shares_of(light, rays):
+        share *= left
+    return np.stack([share * rays.incidence, share * specular_factor(model, rays)])
+
+
+def specular_factor(model: ReflectionModel, rays: Rays) -> RealArray[Any]:
+    """cos^N(E), which may grow with cos(I), or what takes its place under another reflection model, (k,)."""
+    if isinstance(model, Phong):
+        return model.grown(power(rays.eye, model.exponent), rays.incidence)
+    return model.specular(rays.incidence, rays.eye, rays.view)
+
+
+def shares_of(light: CameraLight, rays: Rays) -> Iterator[tuple[str, RealArray[Any]]]:
+    """The share of the light that each of its controls leaves, (k,), by the control's name."""
+    row = light.row
+    if rays.light is not None and row.concentration > 0:
+        yield "concentration", power(rays.light, row.concentration)
+    if light.falloff is not None:
+        yield "falloff", light.falloff.share(rays.length)
+    if rays.light is not None and row.cone_angle is not None:
+        share = is_within(rays.light, row.cone_angle).astype(rays.light.dtype)
+        if row.inner_angle is not None and row.inner_angle < row.cone_angle:
+            share *= soft_cone_share(rays.light, row.inner_angle, row.cone_angle)
+        yield "cone", share
+    for side in light.sides:
+        yield side.name, edge_share(side, rays.vectors(POINT))
+
+
+def is_within(cos_light: RealArray[Any], cone_angle: float) -> Any:
+    """Whether each cos(L) is within a cone, whose rim is lit.
+
+    Departs: the paper prints the test as cos(L) <= cos(A), which would light the outside. With C = 0 nothing
+    is dark behind the light, so a cone of more than 90 degrees lights there too.
+    """
+    return cos_light >= least_cosine(cone_angle) - np.finfo(cos_light.dtype).eps
+
+
+def least_cosine(cone_angle: float) -> float:
+    """The least cos(L) that a cone lights."""
+    return math.cos(min(math.radians(cone_angle) + RIM, math.pi))
