@@ -99,8 +99,8 @@ for name, (low, high) in picture.ranges.surfaces.items():
 # ### One pixel
 #
 # Let us look at one pixel of the hood, at the edge of a highlight. At first the four lights are point
-# sources: they shine in all directions, like bare bulbs. `explain` computes every number of a pixel by the
-# plain formulas of the paper, apart from the renderer.
+# sources: they shine in all directions, like bare bulbs. `explain` gives every number of a pixel by the
+# plain formulas of the paper.
 
 # %%
 LINE, ELEMENT = 112, 68

@@ -50,6 +50,7 @@ SOURCES = [
     (ROOT / path).read_text("utf-8")
     for path in (
         "autocolor/lighting/controls.py",
+        "autocolor/lighting/light.py",
         "autocolor/scene/lights.py",
         "tests/autocolor/lighting/test_controls.py",
     )
@@ -60,7 +61,7 @@ QUOTES = re.findall(r"^```python\n(.*?)^```$", SECTION, re.DOTALL | re.MULTILINE
 
 
 def test_the_light_control_is_quoted() -> None:
-    assert len(QUOTES) == 4
+    assert len(QUOTES) == 5
 
 
 @pytest.mark.parametrize("quote", QUOTES)

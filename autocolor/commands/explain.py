@@ -38,8 +38,8 @@ def explain(
 ) -> None:
     """Explain why the pixel at LINE and ELEMENT of SCENE looks as it does.
 
-    The rows of the tables, the point and its normal, each light, the level, the word and the color are
-    computed apart from the renderer, by the formulas of the paper. Lines are counted from the top and
+    You see the rows of the tables, the point and its normal, each light by the equation of the paper, the
+    level, the word and the color. Lines are counted from the top and
     elements from the left, from 0; rows of tables are counted from 1.
     """
     from autocolor.explanation.explain import explain as explained

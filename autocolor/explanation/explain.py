@@ -1,9 +1,7 @@
 """Explanations: why a pixel looks as it does, from the rows of the tables to the color of an entry.
 
-This is the paper for one pixel. Each step is computed apart from the renderer, by the plain formula, for one
-point, in Python's floats. The renderer gives only facts of the whole picture: the polygon that is visible at
-the pixel, the ranges of intensities, and the words and bands of each surface. So an explanation also checks
-the renderer: it must agree with the picture.
+This is the paper for one pixel: the renderer's own point there, the plain light equation in float64, and the
+mapping of the picture's intensity to a level.
 """
 
 from __future__ import annotations
@@ -14,11 +12,10 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from autocolor.checks import Color
-from autocolor.explanation.level import LevelExplained, color_of, level_at, word_of
-from autocolor.explanation.light import LightExplained, light_at
-from autocolor.explanation.point import Camera, PointExplained, point_at
+from autocolor.explanation.level import LevelExplained, level_explained, word_of
+from autocolor.explanation.light import LightExplained, light_explained
+from autocolor.explanation.point import PointExplained, point_explained
 from autocolor.mapping.display_image import DisplayImage
-from autocolor.mapping.ranges import BACKGROUND
 from autocolor.scene.columns import to_plain
 from autocolor.visibility.visible_points import Sight, seen_at
 
@@ -59,9 +56,11 @@ def explain(sight: Sight, image: DisplayImage, line: int, element: int) -> Expla
     Raises UsageError if there is no such line or element.
     """
     scene = image.scene
-    seen = seen_at(sight, line, element)
+    place, seen = sight.place_at(line, element), seen_at(sight, line, element)
     # JSON cannot hold integers of numpy.
     line, element = int(line), int(element)
+    word = int(image.words[line, element])
+    red, green, blue = image.entries[word].tolist()
     background = Explanation(
         scene=scene.name,
         line=line,
@@ -71,32 +70,23 @@ def explain(sight: Sight, image: DisplayImage, line: int, element: int) -> Expla
         lights=(),
         intensity=None,
         level=None,
-        word=BACKGROUND,
-        color=scene.background,
+        word=word,
+        color=(red, green, blue),
     )
-    if seen is None:
+    if seen is None or place is None:
         return background
-    camera = Camera(scene.view, sight.points.lines, sight.points.elements)
-    at_pixel = line // sight.block, element // sight.block
-    point = point_at(scene, camera, seen.polygon, *at_pixel)
+    point = point_explained(scene, seen)
     lights = [
-        light_at(light, number, scene, point) for number, light in enumerate(scene.lights_in_world, start=1)
+        light_explained(light, number, sight.points, place, point)
+        for number, light in enumerate(scene.lights_in_world, start=1)
     ]
     lights.sort(key=lambda each: -each.contribution)
-    intensity = scene.ambient + math.fsum(each.contribution for each in lights)
-    if image.meaning == "normal":
-        level, word = None, int(image.words[line, element])
-        red, green, blue = image.entries[word].tolist()
-        color = red, green, blue
-    else:
-        level = level_at(image, point, intensity, at_pixel)
-        word, color = word_of(level), color_of(level)
+    level = None if image.meaning == "normal" else level_explained(image, point, place)
     return dataclasses.replace(
         background,
         point=point,
         lights=tuple(lights),
-        intensity=intensity,
+        intensity=scene.ambient + math.fsum(each.contribution for each in lights),
         level=level,
-        word=word,
-        color=color,
+        word=word if level is None else word_of(level),
     )

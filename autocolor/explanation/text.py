@@ -70,9 +70,7 @@ def _point_rows(at: PointExplained) -> Iterable[TextRow]:
     )
     yield TextRow("surface", f"{at.surface}  {at.surface_name}: {columns}")
     yield TextRow("part", f"{at.part}  {at.part_name}")
-    triangle = ", ".join(str(at.corners[place].node) for place in at.between)
-    within = f"; triangle {triangle}" if len(at.between) < len(at.corners) else ""
-    yield TextRow("polygon", f"{at.polygon}  nodes {nodes}{within}")
+    yield TextRow("polygon", f"{at.polygon}  nodes {nodes}")
     for corner in at.corners:
         place, normal = _vector(corner.coordinates, decimals), _vector(corner.normal, 4)
         yield TextRow(f"node {corner.node}"[: LABEL - 1], f"{place}  normal {normal}")

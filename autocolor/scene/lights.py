@@ -5,7 +5,8 @@ light, which concentration and a cone can narrow. Flaps, half-spaces and links t
 restrict any light. `lighting.controls` computes the effect of these controls, and `following` the position
 of a light that follows something.
 
-To add a light control, give `Light` a field with its column, and write its formula in `lighting.controls`.
+To add a light control, give `Light` a field with its column, write its formula in `lighting.controls`, and
+name its share in `lighting.light`.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Slow, obvious twins, made from the paper and from a scene's values alone: no function of the renderer's.
 
 Every formula is written for one point, one intensity or one level, in plain Python floats. More such twins
-are in `autocolor.explanation`, which is computed apart from the renderer.
+are beside, in `twins`.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ import numpy as np
 import numpy.typing as npt
 
 from autocolor import Light, Mesh, Paint, Reflectance, View
-from autocolor.explanation.light import direction_to, edge_share
-from autocolor.explanation.point import cross, dot, minus, plus, times, unit
+from tests.autocolor.twins.light import direction_to, edge_share
+from tests.autocolor.twins.point import cross, dot, minus, plus, times, unit
 
 Vector = Sequence[float]
 

@@ -11,7 +11,6 @@ from hypothesis import strategies as st
 from autocolor import Flap, Flaps, HalfSpace, InputError, Light, Scene, View, render
 from autocolor.arrays import Floats, Singles
 from autocolor.checks import Vector
-from autocolor.explanation.light import edge_share
 from autocolor.lighting import controls
 from autocolor.lighting.controls import (
     FARTHEST_PLANE,
@@ -32,6 +31,7 @@ from autocolor.scene.lights import Links
 from autocolor.testing import directions, lights, numbers, scenes, some_of, vectors, views
 from autocolor.visibility.visible_points import POINT, VisiblePoints
 from autocolor.visibility.visible_surfaces import visible_surfaces
+from tests.autocolor.twins.light import edge_share
 from tests.small import sphere, wall, wall_scene
 
 

@@ -27,7 +27,6 @@ from autocolor import (
     render,
 )
 from autocolor.checks import Vector
-from autocolor.explanation.point import dot, minus, plus, times, unit
 from autocolor.lighting.controls import Axis, FlapEnd
 from autocolor.lighting.picking import (
     LEAST_CONE,
@@ -51,6 +50,7 @@ from autocolor.scene.reflection_models import BlinnPhong, CookTorrance, Phong, R
 from autocolor.testing import directions, lights, numbers, outside_views, vectors
 from autocolor.visibility.visible_points import Seen, Sight, seen_at
 from ramtek_emu import Ramtek9300
+from tests.autocolor.twins.point import dot, minus, plus, times, unit
 from tests.small import car, cube, grid, sphere, wall, wall_scene
 
 LINES, ELEMENTS = 60, 80

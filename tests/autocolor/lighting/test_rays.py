@@ -9,12 +9,12 @@ from hypothesis import strategies as st
 
 from autocolor import Light, View
 from autocolor.checks import Vector
-from autocolor.explanation.point import dot, minus, times, unit
 from autocolor.lighting.light import FARTHEST, Rays, exact_rays_to
 from autocolor.lighting.rays import camera_light, direction_to_light, fast_rays, middle_of
 from autocolor.testing import directions, numbers, outside_views, vectors
 from autocolor.visibility.visible_points import REFLECTED_VIEW, VisiblePoints
 from autocolor.visibility.visible_surfaces import visible_surfaces
+from tests.autocolor.twins.point import dot, minus, times, unit
 from tests.small import cube, sphere, wall, wall_scene
 
 BALL = sphere(12, 8)

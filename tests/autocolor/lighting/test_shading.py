@@ -27,8 +27,6 @@ from autocolor import (
 )
 from autocolor.arrays import Floats, Singles
 from autocolor.checks import Vector
-from autocolor.explanation.light import specular_factor
-from autocolor.explanation.point import dot, minus, plus, times, unit
 from autocolor.lighting.controls import is_inside, sides_of
 from autocolor.lighting.rays import camera_light
 from autocolor.lighting.shading import DIFFUSE, SPECULAR, LightPlanes, light_mix, mix, shade
@@ -40,6 +38,8 @@ from autocolor.visibility.visible_points import POINT, VisiblePoints, point_chun
 from autocolor.visibility.visible_surfaces import visible_surfaces
 from tests.autocolor.reference import Lit, controlled, light_at, ray
 from tests.autocolor.strategies import reflectances
+from tests.autocolor.twins.light import specular_factor
+from tests.autocolor.twins.point import dot, minus, plus, times, unit
 from tests.closeness import all_close
 from tests.small import cube, grid, sphere, wall, wall_scene
 from tests.tables import first, refused

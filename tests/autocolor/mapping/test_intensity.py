@@ -11,7 +11,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import InputError, LevelRange, Light, Picture, Scene, render
-from autocolor.explanation.level import curved
 from autocolor.images import display_image
 from autocolor.lighting.picture import IntensityRange
 from autocolor.mapping.intensity import (
@@ -31,6 +30,7 @@ from autocolor.testing import MAPPINGS, scenes
 from autocolor.visibility.visible_points import SurfaceSlice
 from ramtek_emu.testing import check_words_within_planes
 from tests.autocolor.reference import level_of, trimmed
+from tests.autocolor.twins.level import curved
 from tests.small import wall_scene
 from tests.tables import first
 

@@ -11,10 +11,6 @@ from hypothesis import strategies as st
 from autocolor import Flap, Flaps, InputError, Light, Scene, Surface, View, render, scene_of
 from autocolor.arrays import Singles
 from autocolor.checks import Vector
-from autocolor.explanation import point as plain
-from autocolor.explanation.level import curved
-from autocolor.explanation.light import direction_to, specular_factor
-from autocolor.explanation.point import dot, minus
 from autocolor.images import display_image
 from autocolor.mapping.normal_words import (
     BINS,
@@ -32,6 +28,10 @@ from autocolor.scene.scene import AUTO, OBJECT, Exposure
 from autocolor.testing import scenes
 from autocolor.visibility.visible_points import SurfaceSlice
 from tests.autocolor import reference
+from tests.autocolor.twins import point as plain
+from tests.autocolor.twins.level import curved
+from tests.autocolor.twins.light import direction_to, specular_factor
+from tests.autocolor.twins.point import dot, minus
 from tests.small import sphere
 
 LINES, ELEMENTS = 24, 32

@@ -9,7 +9,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Mesh, View
-from autocolor.explanation.level import corner_weights
 from autocolor.rendering import rendering
 from autocolor.scalars.computed import (
     COMPUTING,
@@ -31,6 +30,7 @@ from autocolor.scalars.computed import (
 from autocolor.scene.scalar import COMPUTED, MeshScalar, Scalar
 from autocolor.testing import numbers
 from autocolor.visibility.visible_points import VisiblePoints
+from tests.autocolor.twins.level import corner_weights
 from tests.small import cube, grid, sphere, wall, wall_scene
 
 

@@ -8,13 +8,13 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from autocolor.explanation import level as plain
 from autocolor.rendering import rendering
 from autocolor.scalars import interpolation
 from autocolor.scalars.interpolation import corner_weights, interpolated, weighted_points
 from autocolor.scene.scene import INVARIANT
 from autocolor.testing import numbers, vectors
 from tests.autocolor.reference import on_triangles, ray
+from tests.autocolor.twins import level as plain
 from tests.small import sphere, uneven_wall, wall_scene
 
 

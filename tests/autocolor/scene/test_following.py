@@ -21,7 +21,6 @@ from autocolor import (
     scene_of,
 )
 from autocolor.checks import Vector
-from autocolor.explanation.point import unit
 from autocolor.scene.columns import from_plain, to_plain
 from autocolor.scene.following import (
     attached,
@@ -34,6 +33,7 @@ from autocolor.scene.following import (
 from autocolor.scene.lights import AXES
 from autocolor.scene.rigs import mirrored
 from autocolor.testing import coordinates, directions, lights, scenes, vectors
+from tests.autocolor.twins.point import unit
 from tests.small import car, cube, wall_scene
 from tests.tables import call, refused
 

@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 
 from autocolor import Flap, Flaps, HalfSpace, InputError, Light, Mesh, Rig, Scene, Surface, scene_of
 from autocolor.checks import Vector
-from autocolor.explanation.point import cross, dot, minus
 from autocolor.scene.lights import Links, free_name, middle_between
 from autocolor.testing import directions, numbers, some_of, vectors
+from tests.autocolor.twins.point import cross, dot, minus
 from tests.small import grid
 from tests.tables import call, refused
 

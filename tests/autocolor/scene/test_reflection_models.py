@@ -10,8 +10,6 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from autocolor import Surface
-from autocolor.explanation.light import specular_factor, specular_growth
-from autocolor.explanation.point import dot, plus
 from autocolor.scene.columns import Field, difference, fields_of
 from autocolor.scene.kinds import AngleCurve
 from autocolor.scene.reflection_models import (
@@ -23,6 +21,8 @@ from autocolor.scene.reflection_models import (
     SpecularGrowth,
 )
 from autocolor.testing import angle_curves, growths, numbers
+from tests.autocolor.twins.light import specular_factor, specular_growth
+from tests.autocolor.twins.point import dot, plus
 from tests.closeness import all_close
 from tests.tables import refused
 

@@ -11,7 +11,6 @@ from hypothesis import strategies as st
 from autocolor import Mesh, View
 from autocolor.arrays import Floats
 from autocolor.checks import Vector
-from autocolor.explanation.point import dot, minus
 from autocolor.testing import meshes, outside_views, views
 from autocolor.visibility import camera as camera_module
 from autocolor.visibility.camera import (
@@ -19,6 +18,7 @@ from autocolor.visibility.camera import (
     camera_space,
     clipped_at_near_plane,
 )
+from tests.autocolor.twins.point import dot, minus
 from tests.small import cube, grid
 
 

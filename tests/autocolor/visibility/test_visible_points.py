@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 
 from autocolor import Light, Mesh, Scene, UsageError, View
 from autocolor.checks import Vector
-from autocolor.explanation.point import dot, minus, times, unit
 from autocolor.lighting.picking import highlight_placed
 from autocolor.rendering import rendering
 from autocolor.testing import numbers, outside_views, vectors
@@ -31,6 +30,7 @@ from autocolor.visibility.visible_points import (
 from autocolor.visibility.visible_surfaces import visible_surfaces
 from tests.autocolor.reference import first_hit, ray
 from tests.autocolor.strategies import soups
+from tests.autocolor.twins.point import dot, minus, times, unit
 from tests.small import car, cube, grid, sphere, wall_scene
 from tests.tables import refused
 

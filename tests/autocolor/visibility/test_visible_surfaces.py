@@ -14,7 +14,6 @@ from hypothesis import strategies as st
 
 from autocolor import Mesh, View
 from autocolor.arrays import Numbers, runs
-from autocolor.explanation.point import dot, minus, times, unit
 from autocolor.scene.scene import INVARIANT, SCAN_LINE
 from autocolor.testing import directions, meshes, numbers, outside_views, vectors, views
 from autocolor.visibility import visible_surfaces as module
@@ -29,6 +28,7 @@ from autocolor.visibility.visible_surfaces import (
 from tests.autocolor.decals import ROUNDINGS, decal_on_ground
 from tests.autocolor.reference import first_hit, on_triangles, ray
 from tests.autocolor.strategies import rasters, soups
+from tests.autocolor.twins.point import dot, minus, times, unit
 from tests.small import cube, grid, sphere, uneven_wall
 from tests.tables import first
 
