@@ -89,11 +89,12 @@ class Bands(NamedTuple):
 def band_numbers(values: Singles, bands: Bands) -> Words:
     """The band of each value: floor((value - low) / (high - low) * bands) between the limits.
 
-    A value at the upper limit is in the last band. Assumed: a value that is beyond a limit by no more than
-    rounding counts as the limit; otherwise single pixels would have the color of values beyond it.
+    A value at the upper limit is in the last band. Assumed: a value that is beyond a limit, or below the edge
+    of a band, by no more than rounding counts as the limit or the edge. Otherwise single pixels would have
+    the color of values beyond it, and a wall whose value is that of an edge two colors.
 
-    >>> band_numbers(np.array([0, 2.4, 2.5, 10, 11], np.float32), Bands(0, 10, 4, 1)).tolist()
-    [0, 0, 1, 3, 3]
+    >>> band_numbers(np.array([0, 2.4, 2.5, 2.499998, 10, 11], np.float32), Bands(0, 10, 4, 1)).tolist()
+    [0, 0, 1, 1, 3, 3]
     """
     low, high, count = bands[:3]
     exact = values.astype(np.float64)
@@ -105,7 +106,7 @@ def band_numbers(values: Singles, bands: Bands) -> Words:
     np.clip(exact, low, high, out=exact)
     # numpy 1 tells of an overflow of numbers that are not in the array, where the limits are close together.
     with np.errstate(over="ignore"):
-        fractions = (exact - low) / (high - low)
+        fractions = (exact - low + rounding) / (high - low)
     numbers = np.minimum(np.floor(fractions * count), count - 1).astype(np.uint16)
     numbers[is_below] = bands.below
     numbers[is_above] = bands.above

@@ -23,16 +23,12 @@ from autocolor.errors import InputError
 from autocolor.lighting.picture import IntensityRange, Picture
 from autocolor.mapping.bands import Bands, band_numbers
 from autocolor.mapping.ranges import BACKGROUND, LevelRange
-from autocolor.scene.curves import CurvePoints, Fractions, mapping_curve
+from autocolor.scene.curves import ROUNDING, CurvePoints, Fractions, mapping_curve
 from autocolor.scene.scene import AUTO, OBJECT, Exposure
 from autocolor.visibility.visible_points import point_chunks
 
 WHOLE: Final = 0
 """The number of the whole object's range; surfaces have numbers from 1 on."""
-
-ROUNDING: Final = 2.0**-20
-"""Assumed: eight units in the last place of float32, the rounding of a sum of lights."""
-
 
 MOST_EVEN: Final = 0.6
 """Assumed: the largest minimum of a trimmed range, as a share of its maximum.

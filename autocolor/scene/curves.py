@@ -15,7 +15,7 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Singles
+from autocolor.arrays import Indices, Singles
 
 Fractions = Callable[[Singles], Singles]
 """A function of a float32 array. It may work in place and return its argument, or return a new array."""
@@ -28,6 +28,9 @@ CurvePoints = tuple[tuple[float, float], ...]
 
 GAMMA: Final = 2.2
 """Assumed: the exponent of a television monitor."""
+
+ROUNDING: Final = 2.0**-20
+"""Assumed: eight units in the last place of float32, the rounding of a sum of lights."""
 
 LOGARITHM: Final = 15.0
 """Assumed: the range is mapped to the logarithms of 1 to 16, four doublings."""
@@ -82,14 +85,33 @@ def equalize(minimum: np.float32, maximum: np.float32, intensities: Singles) -> 
 
     The fraction of an intensity is its cumulative share of all intensities above the minimum. It is 0 at the
     minimum and 1 at the maximum, even if no intensity reaches them. With a fixed range, intensities are
-    spread evenly, too, so that less light hardly looks darker.
+    spread evenly, too, so that less light hardly looks darker. Assumed: intensities that differ by no more
+    than the rounding of a sum of lights have one fraction, or a flat sheet would show all levels.
     """
     pairs = ((minimum, intensities.min()), (maximum, intensities.max()))
     ends = [end for end, reached in pairs if end != reached]
     values, counts = np.unique(np.append(intensities, ends), return_counts=True)
-    below = np.cumsum(counts) - counts[0]
+    starts = group_starts(values, float(ROUNDING * maximum))
+    sizes = np.add.reduceat(counts, starts)
+    below = np.cumsum(sizes) - sizes[0]
     shares: Singles = (below / max(below[-1], 1)).astype(np.float32)
-    return lambda given: shares[np.searchsorted(values, given)]
+    return lambda given: shares[np.searchsorted(values[starts], given, side="right") - 1]
+
+
+def group_starts(values: Singles, width: float) -> Indices:
+    """The places of rising values at which groups start: a group spans at most a width from its lowest value.
+
+    >>> group_starts(np.array([1.0, 1.2, 1.4, 1.6, 9.0], np.float32), 0.5).tolist()
+    [0, 3, 4]
+    """
+    # From each value to the first value beyond its width. Following the steps twice, four times and so on
+    # from all starts known so far doubles their number.
+    steps = np.append(np.searchsorted(values, values.astype(np.float64) + width, side="right"), len(values))
+    starts = np.zeros(1, np.intp)
+    while starts[-1] < len(values):
+        starts = np.concatenate([starts, steps[starts]])
+        steps = steps[steps]
+    return starts[starts < len(values)]
 
 
 CURVES: Final[dict[str, MappingCurve]] = {
