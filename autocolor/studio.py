@@ -43,7 +43,7 @@ from autocolor.journal.places import NO_STAMP, Source, opened
 from autocolor.lighting.picking import highlight_of, highlight_placed
 from autocolor.lighting.picture import Picture
 from autocolor.mapping.display_image import DisplayImage, words_by_line
-from autocolor.mapping.intensity import held_exposure, is_held
+from autocolor.mapping.intensity import held_exposure, is_held, stage_surfaces
 from autocolor.mapping.ranges import LevelRange
 from autocolor.rendering import Rendering, block_for, blocks_of, rendering, sees_the_same
 from autocolor.scene.changes import LightChanges, PaintChanges, ScalarChanges, SurfaceChanges, ViewChanges
@@ -268,7 +268,9 @@ class Studio:
             self.edit(self.scene.replace(exposure=ranges))
             return
         self.refine()
-        exposure = held_exposure(self._shown.mapped, self.scene.scaling, self.scene.exposure)
+        exposure = held_exposure(
+            self._shown.mapped, self.scene.scaling, self.scene.exposure, stage_surfaces(self.scene)
+        )
         self.edit(self.scene.replace(exposure=exposure))
 
     def release_exposure(self) -> None:

@@ -53,10 +53,10 @@ def with_normals(scene: Scene, normals: bool) -> Scene:
 def with_held_exposure(scene: Scene, picture: Picture) -> Scene:
     """The scene with the exposure that its picture has."""
     from autocolor.images import display_image
-    from autocolor.mapping.intensity import held_exposure
+    from autocolor.mapping.intensity import held_exposure, stage_surfaces
 
     mapped = display_image(scene, picture).mapped
-    return scene.replace(exposure=held_exposure(mapped, scene.scaling, scene.exposure))
+    return scene.replace(exposure=held_exposure(mapped, scene.scaling, scene.exposure, stage_surfaces(scene)))
 
 
 paints_option = click.option(

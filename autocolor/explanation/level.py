@@ -21,8 +21,8 @@ from autocolor.mapping.intensity import (
     fractions_by_surface,
     has_extent,
     held_name,
-    mapped_ranges,
     ordered_thresholds,
+    ranges_of,
 )
 
 
@@ -79,7 +79,7 @@ def level_explained(image: DisplayImage, at: PointExplained, place: int) -> Leve
     first, levels = image.ranges[at.surface_name]
 
     # The fraction of the range that is mapped.
-    extents = mapped_ranges(picture, scene.scaling, scene.exposure)
+    extents = ranges_of(scene, picture)
     extent, relative = extents[at.surface], picture.relative[place : place + 1]
     low, high = extent.minimum, extent.maximum
     fraction = HALF

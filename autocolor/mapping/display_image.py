@@ -21,7 +21,7 @@ from autocolor.immutable import read_only
 from autocolor.lighting.picture import Picture
 from autocolor.mapping.bands import DARKEST, Bands, band_entries, bands_by_surface
 from autocolor.mapping.colors import entries_of
-from autocolor.mapping.intensity import mapped_ranges, words_of
+from autocolor.mapping.intensity import ranges_of, words_of
 from autocolor.mapping.ranges import BACKGROUND, SCREEN_COLORS, SCREENS, WORDS, LevelRange, level_ranges
 from autocolor.scene.columns import Tier
 from autocolor.scene.scene import Scene, costs_at_least
@@ -107,7 +107,7 @@ class DisplayImage(ABC):
     @cached_property
     def _floors(self) -> Mapping[str, float]:
         """The mapped minimum as a fraction of the maximum, for each visible surface by name."""
-        ranges = mapped_ranges(self.mapped, self.scene.scaling, self.scene.exposure)
+        ranges = ranges_of(self.scene, self.mapped)
         return {
             self.picture.surfaces[number - 1]: extent.minimum / extent.maximum if extent.maximum > 0 else 0.0
             for number, extent in ranges.items()
@@ -139,7 +139,14 @@ class LevelImage(DisplayImage):
             and all(getattr(before.scene, name) == getattr(scene, name) for name in MAPPING)
         ):
             return cls(scene, picture, ranges, before.words, block, bands)
-        words = words_of(picture, ranges, scene.scaling, scene.mapping, scene.exposure, scene.dither, bands)
+        words = words_of(
+            picture,
+            ranges,
+            mapping=scene.mapping,
+            dither=scene.dither,
+            bands=bands,
+            extents=ranges_of(scene, picture),
+        )
         return cls(scene, picture, ranges, in_blocks(words, block), block, bands)
 
     @property

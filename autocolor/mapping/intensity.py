@@ -10,7 +10,7 @@ range, such as specks seen through a crack. Intensities beyond a range are shown
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from decimal import Decimal
 from functools import lru_cache
 from types import MappingProxyType
@@ -24,7 +24,7 @@ from autocolor.lighting.picture import IntensityRange, Picture
 from autocolor.mapping.bands import Bands, band_numbers
 from autocolor.mapping.ranges import BACKGROUND, LevelRange
 from autocolor.scene.curves import ROUNDING, CurvePoints, Fractions, mapping_curve
-from autocolor.scene.scene import AUTO, OBJECT, Exposure
+from autocolor.scene.scene import AUTO, OBJECT, Exposure, Scene
 from autocolor.visibility.visible_points import point_chunks
 
 WHOLE: Final = 0
@@ -35,6 +35,9 @@ MOST_EVEN: Final = 0.6
 
 All levels for the little change of light across a flat sheet would show an edge where its highlight begins.
 """
+
+UNSEEN: Final = 2.0**20
+"""Assumed: how many times as strong a light that is not seen is than what is seen."""
 
 SAMPLED: Final = 64
 """Every SAMPLEDth intensity is in the sample of `intensity_below`."""
@@ -49,13 +52,35 @@ def has_extent(extent: IntensityRange) -> bool:
     return extent.maximum - extent.minimum > ROUNDING * extent.maximum
 
 
-def mapped_ranges(picture: Picture, scaling: str, exposure: Exposure) -> Mapping[int, IntensityRange]:
+def ranges_of(scene: Scene, picture: Picture) -> Mapping[int, IntensityRange]:
+    """The ranges that are mapped in a picture of a scene; see `mapped_ranges`."""
+    return mapped_ranges(
+        picture, scene.scaling, scene.exposure, ambient=scene.ambient, stage=stage_surfaces(scene)
+    )
+
+
+def stage_surfaces(scene: Scene) -> frozenset[int]:
+    """The numbers of the surfaces of parts that are all stage."""
+    of_object = {part.surface for part in scene.parts if not part.stage}
+    return frozenset(n for n, row in enumerate(scene.surfaces, 1) if row.name not in of_object)
+
+
+def mapped_ranges(
+    picture: Picture,
+    scaling: str,
+    exposure: Exposure,
+    *,
+    ambient: float | None = None,
+    stage: Set[int] = frozenset(),
+) -> Mapping[int, IntensityRange]:
     """The range that is mapped to the levels of each visible surface, by number; the whole object's is WHOLE.
 
     Intensities are relative to the picture's scale. A surface has its held range; else the object's, if that
     is held or the scaling is "object"; else its own, which follows the picture. A surface without extent has
     the object's range. Assumed: an unlit floor has the intensity of the ambient light all over, and should
-    look as dark as that is beside the rest.
+    look as dark as that is beside the rest. Nor is the `ambient` light a highlight where no light has a share
+    of the picture: it is mapped as if a light UNSEEN times as strong were somewhere else. `stage` has the
+    numbers of the surfaces that are not the object; see `following_ranges`.
     """
     held: dict[str, IntensityRange] = {}
     if not isinstance(exposure, str):
@@ -63,8 +88,11 @@ def mapped_ranges(picture: Picture, scaling: str, exposure: Exposure) -> Mapping
             # As exact as intensities: a range that is too narrow for them has no extent.
             low, high = (min(limit / picture.scale, LARGEST_SINGLE) for limit in limits)
             held[name] = IntensityRange(float(np.float32(low)), float(np.float32(high)))
-    of_picture = following_ranges(picture, scaling, exposure)
+    of_picture = following_ranges(picture, scaling, exposure, stage)
     whole = held.get(OBJECT, of_picture[WHOLE])
+    least, most = picture.relative_ranges[WHOLE]
+    if ambient is not None and OBJECT not in held and most * picture.scale <= ambient * (1 + ROUNDING):
+        whole = IntensityRange(least, UNSEEN * max(most, 1.0))
     shares_whole = scaling == "object" or OBJECT in held
     ranges = {WHOLE: whole}
     for surface in picture.slices:
@@ -77,26 +105,34 @@ def mapped_ranges(picture: Picture, scaling: str, exposure: Exposure) -> Mapping
     return ranges
 
 
-def following_ranges(picture: Picture, scaling: str, exposure: Exposure) -> Mapping[int, IntensityRange]:
+def following_ranges(
+    picture: Picture, scaling: str, exposure: Exposure, stage: Set[int] = frozenset()
+) -> Mapping[int, IntensityRange]:
     """The ranges that follow the picture, by surface number, relative to its scale; the object's is WHOLE.
 
     With a percentage of the pixels as exposure, the ranges are trimmed, except those of surfaces without
-    extent; if the scaling is "object", only WHOLE is trimmed.
+    extent; if the scaling is "object", only WHOLE is trimmed. Of the whole picture, the pixels of the object
+    are counted, without those of the `stage` surfaces: a highlight stays one however small the object is.
     """
     ranges = picture.relative_ranges
     if not isinstance(exposure, str) or exposure == AUTO:
         return ranges
     share = Decimal(exposure.removesuffix(" %")) / 100
-    own = {surface.surface_number: surface.pixels for surface in picture.slices if scaling == "surface"}
+    own = {surface.surface_number: surface.pixels for surface in picture.slices}
+    of_object = [pixels for number, pixels in own.items() if number not in stage]
+    places = {WHOLE: of_object or [slice(None)]}
+    if scaling == "surface":
+        places |= {number: [pixels] for number, pixels in own.items() if has_extent(ranges[number])}
     relative, counts = picture.relative, picture.counts
     trimmed = {
         number: trimmed_range(
-            relative[pixels] if counts is None else relative[pixels].repeat(counts[pixels]),
+            np.concatenate(
+                [relative[some] if counts is None else relative[some].repeat(counts[some]) for some in slices]
+            ),
             ranges[number],
             share,
         )
-        for number, pixels in {WHOLE: slice(None), **own}.items()
-        if number == WHOLE or has_extent(ranges[number])
+        for number, slices in places.items()
     }
     return {**ranges, **trimmed}
 
@@ -146,14 +182,16 @@ def is_held(exposure: Exposure) -> bool:
     return not isinstance(exposure, str) and OBJECT in dict(exposure)
 
 
-def held_exposure(picture: Picture, scaling: str, exposure: Exposure = AUTO) -> Exposure:
+def held_exposure(
+    picture: Picture, scaling: str, exposure: Exposure = AUTO, stage: Set[int] = frozenset()
+) -> Exposure:
     """The exposure that holds the ranges that are mapped now, so that no word changes.
 
     A range without extent is not held; if no range has an extent, the exposure stays as it is.
     """
     held = {} if isinstance(exposure, str) else dict(exposure)
     each_has_its_own = scaling == "surface" and OBJECT not in held
-    for number, extent in following_ranges(picture, scaling, exposure).items():
+    for number, extent in following_ranges(picture, scaling, exposure, stage).items():
         if (number == WHOLE or each_has_its_own) and has_extent(extent):
             name = picture.surfaces[number - 1] if number else OBJECT
             if number and name == OBJECT:
@@ -171,14 +209,15 @@ def words_of(
     exposure: Exposure = AUTO,
     dither: str = "off",
     bands: Mapping[str, Bands] = MappingProxyType({}),
+    extents: Mapping[int, IntensityRange] | None = None,
 ) -> Words:
     """The words of a picture, (lines, elements) uint16, read-only; BACKGROUND where nothing is visible.
 
     The minimum and the maximum of the range that is mapped for a surface (see `mapped_ranges`) become its
     lowest and its highest level; intensities beyond the range become the nearer of the two. If no range has
-    an extent, such as with all lights off, every pixel gets the middle level, which is neither black nor a
-    highlight. On a surface with `bands`, the intensity gives the shade and the scalar the band. Raises
-    InputError if an intensity is not finite.
+    an extent, every pixel gets the middle level, which is neither black nor a highlight. On a surface with
+    `bands`, the intensity gives the shade and the scalar the band. `extents` are the ranges that are mapped,
+    if they are known. Raises InputError if an intensity is not finite.
     """
     words = np.full(picture.lines * picture.elements, BACKGROUND, np.uint16)
     for surface in picture.slices:
@@ -186,7 +225,7 @@ def words_of(
         if not (np.isfinite(extent.minimum) and np.isfinite(extent.maximum)):
             name = picture.surfaces[surface.surface_number - 1]
             raise InputError(f"surface {name!r}: an intensity must be finite, not {extent.maximum:g}")
-    extents = mapped_ranges(picture, scaling, exposure)
+    extents = mapped_ranges(picture, scaling, exposure) if extents is None else extents
     fractions_of = fractions_by_surface(picture, extents, mapping)
     thresholds = ordered_thresholds(picture.lines, picture.elements) if dither == "ordered" else None
     for chunk in point_chunks(picture.slices):

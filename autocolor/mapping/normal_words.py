@@ -43,7 +43,7 @@ from autocolor.lighting.picture import Picture
 from autocolor.lighting.rays import direction_to_eye, direction_to_light, middle_of
 from autocolor.mapping.colors import entries_at, entries_of
 from autocolor.mapping.display_image import DisplayImage, image_ranges, in_blocks
-from autocolor.mapping.intensity import fractions_by_surface, mapped_ranges
+from autocolor.mapping.intensity import fractions_by_surface, ranges_of
 from autocolor.mapping.ranges import BACKGROUND, WORDS, LevelRange
 from autocolor.scene.columns import with_values
 from autocolor.scene.lights import Light
@@ -208,7 +208,7 @@ def normal_light(scene: Scene, stand_for: WordNormals) -> NormalLight:
 
 def fractions_at_words(scene: Scene, lit: NormalLight) -> Mapping[str, Singles]:
     """The fraction of the range, 0 to 1, at each word in use of each visible surface, by name."""
-    extents = mapped_ranges(lit.at_samples, scene.scaling, scene.exposure)
+    extents = ranges_of(scene, lit.at_samples)
     fractions_of = fractions_by_surface(lit.at_samples, extents, scene.mapping)
     fractions = {}
     for each in lit.at_words.slices:

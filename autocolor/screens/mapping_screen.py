@@ -21,6 +21,7 @@ from autocolor.mapping.intensity import (
     held_exposure,
     held_name,
     mapped_ranges,
+    stage_surfaces,
 )
 from autocolor.scene.columns import bar_within
 from autocolor.scene.curves import CURVES, CurvePoints
@@ -186,7 +187,8 @@ class MappingScreen(OverPicture):
     def _curve(self) -> Curve:
         session, scene = self.session, self.session.scene
         mapped = session.studio.display_image.mapped
-        curve = curve_of(mapped, scene.scaling, scene.mapping, scene.exposure, session.surface_name)
+        name, stage = session.surface_name, stage_surfaces(scene)
+        curve = curve_of(mapped, scene.scaling, scene.mapping, scene.exposure, name, stage)
         levels, shares = (ACROSS, np.zeros_like(ACROSS)) if curve is None else curve
         state = range_state(scene.exposure, session.surface_name)
         return Curve(session.surface_name, levels, shares, self._points(), self._touched, state)
@@ -210,14 +212,19 @@ class MappingScreen(OverPicture):
 
 @lru_cache(maxsize=4)
 def curve_of(
-    picture: Picture, scaling: str, mapping: str | CurvePoints, exposure: Exposure, name: str
+    picture: Picture,
+    scaling: str,
+    mapping: str | CurvePoints,
+    exposure: Exposure,
+    name: str,
+    stage: frozenset[int] = frozenset(),
 ) -> tuple[Singles, Singles] | None:
     """The levels, 0 to 1, and the shares of the intensities of a surface across its mapped range.
 
     None for a surface that is not visible.
     """
     number = picture.surfaces.index(name) + 1 if name in picture.surfaces else 0
-    extents = mapped_ranges(picture, scaling, exposure)
+    extents = mapped_ranges(picture, scaling, exposure, stage=stage)
     curves = fractions_by_surface(picture, extents, mapping, only=number)
     if number not in curves:
         return None
@@ -431,13 +438,13 @@ def flipped(session: Session, name: str) -> Exposure:
         return tuple(held.items()) or studio.following_exposure
     picture = studio.display_image.mapped
     number = picture.surfaces.index(name) + 1
-    extent = mapped_ranges(picture, scene.scaling, scene.exposure).get(number)
+    extent = mapped_ranges(picture, scene.scaling, scene.exposure, stage=stage_surfaces(scene)).get(number)
     if extent is None:
         raise UsageError(f"{name} has no range to hold, as no point of it is seen; turn it to the eye first")
     if not has_extent(extent):
         raise UsageError(f"{name} has no range to hold, as all its points have one intensity; light it first")
     if isinstance(scene.exposure, str) and scene.exposure != AUTO:
-        ranges = held_exposure(picture, scene.scaling, scene.exposure)
+        ranges = held_exposure(picture, scene.scaling, scene.exposure, stage_surfaces(scene))
         held = {} if isinstance(ranges, str) else dict(ranges)
     held[name] = (extent.minimum * picture.scale, extent.maximum * picture.scale)
     return tuple(held.items())

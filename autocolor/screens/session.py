@@ -25,7 +25,7 @@ from autocolor.images import save_image
 from autocolor.journal.description import describe
 from autocolor.journal.places import Source
 from autocolor.mapping.display_image import DisplayImage
-from autocolor.mapping.intensity import held_exposure
+from autocolor.mapping.intensity import held_exposure, stage_surfaces
 from autocolor.rendering import render
 from autocolor.scene.changes import LightChanges, PaintChanges, SurfaceChanges
 from autocolor.scene.columns import fields_of
@@ -807,7 +807,7 @@ def reason_of_no_change(studio: Studio, before: DisplayImage) -> str:
     )
     if not studio.image_of(alone).picture.ranges.whole.maximum:
         return f"{which} shines on nothing that is seen"
-    held = held_exposure(before.mapped, scene.scaling, scene.exposure)
+    held = held_exposure(before.mapped, scene.scaling, scene.exposure, stage_surfaces(scene))
     if held != scene.exposure and not looks_equal(before, studio.image_of(scene.replace(exposure=held))):
         return AUTOMATIC
     return "no point that is seen gets another level"

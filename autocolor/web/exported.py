@@ -54,7 +54,13 @@ from autocolor.layers import check_rendered, light_shares
 from autocolor.lighting.picture import IntensityRange, Picture, check_surfaces
 from autocolor.mapping.bands import colored_surfaces
 from autocolor.mapping.display_image import DisplayImage
-from autocolor.mapping.intensity import fractions_by_surface, has_extent, levels_of, mapped_ranges
+from autocolor.mapping.intensity import (
+    fractions_by_surface,
+    has_extent,
+    levels_of,
+    mapped_ranges,
+    stage_surfaces,
+)
 from autocolor.mapping.legend import legend
 from autocolor.rendering import rendering
 from autocolor.scene.columns import fields_of
@@ -284,7 +290,7 @@ def _light_values(image: DisplayImage) -> dict[str, Any]:
         )
     if not scene.lights:
         raise InputError("a page with lights must have a light in its scene, not none; leave the lights out")
-    extents = mapped_ranges(picture, scene.scaling, scene.exposure)
+    extents = mapped_ranges(picture, scene.scaling, scene.exposure, stage=stage_surfaces(scene))
     if not any(has_extent(extent) for extent in extents.values()):
         raise InputError(
             "the picture of a page with lights must have more than one intensity, or there is no exposure to"

@@ -45,8 +45,9 @@ def band_of(value: float, bands: Bands) -> int:
         return bands.bands if bands.has_below else 0
     if value > bands.high + rounding:
         return bands.bands + bands.has_below if bands.has_above else bands.bands - 1
-    band = math.floor((value - bands.low) / (bands.high - bands.low) * bands.bands)
-    return min(max(band, 0), bands.bands - 1)
+    # An edge of a band is as wide as a limit.
+    band = math.floor((max(value, bands.low) + rounding - bands.low) / (bands.high - bands.low) * bands.bands)
+    return min(band, bands.bands - 1)
 
 
 @given(
@@ -63,6 +64,24 @@ def test_each_value_is_in_its_band(
     bands = Bands(low, high, count, 1, has_below, has_above, True)
     found = band_numbers(np.array(values, np.float32), bands)
     assert found.tolist() == [band_of(value, bands) for value in np.array(values, np.float32).tolist()]
+
+
+@pytest.mark.parametrize(
+    ("name", "limits", "normal"), [("draft angle", (-10, 10), (0, -1, 0)), ("slope", (0, 90), (0, -1, 1))]
+)
+def test_a_plane_whose_value_is_an_edge_of_a_band_has_one_color(
+    name: str, limits: tuple[float, float], normal: tuple[float, float, float]
+) -> None:
+    # Many quads, whose nodes are rounded, all in one plane.
+    across, unit = np.array([1.0, 0.0, 0.0]), np.array(normal) / np.linalg.norm(normal)
+    plane = grid(30, 30, (0.1, 0.2, 0.3), tuple(across), tuple(np.cross(unit, across)))
+    middle = plane.coordinates.mean(axis=0)
+    view = View(tuple((middle + 4 * unit + 0.3 * across).tolist()), target=tuple(middle.tolist()))
+    scene = scene_of(plane, view=view).with_scalar(name=name, limits=limits, bands=10, shades=1)
+    picture = render(scene, 60, 80)
+    assert picture.scalar_values is not None
+    (bands,) = bands_by_surface(scene, picture).values()
+    assert set(band_numbers(picture.scalar_values, bands).tolist()) == {5}
 
 
 @pytest.mark.parametrize("shades", [1, 2, 8])

@@ -86,6 +86,20 @@ def test_where_nothing_has_an_extent_every_pixel_has_the_middle_level(scaling: s
     assert words.tolist() == [[0, 6, 6, 62, 0]]
 
 
+@pytest.mark.parametrize("contrast", ["stretch", "floor"])
+@pytest.mark.parametrize("exposure", ["auto", "99.5 %"])
+@pytest.mark.parametrize("paint", [{"blend": 0.0}, {"blend": 0.7}, {"ramp": ["#300", "#fff"]}], ids=str)
+def test_with_the_last_light_off_no_pixel_is_brighter_and_each_has_its_lowest_level(
+    contrast: str, exposure: str, paint: dict[str, Any]
+) -> None:
+    scene = wall_scene().replace(contrast=contrast, exposure=exposure, ambient=0.05)
+    scene = scene.with_paint("wall", **paint)
+    dark = scene.replace(lights=[light.replace(on=False) for light in scene.lights])
+    lit, unlit = (display_image(each, render(each, 24, 32)) for each in (scene, dark))
+    assert (unlit.colors <= lit.colors).all()
+    assert set(unlit.words.ravel().tolist()) == {0, unlit.ranges["wall"].first}
+
+
 @pytest.mark.parametrize("mapping", MAPPINGS, ids=str)
 def test_a_held_range_of_the_object_maps_every_surface(mapping: Any) -> None:
     picture = picture_of([0, 5, 10], [5, 20])
@@ -196,6 +210,15 @@ def test_a_surface_is_trimmed_by_its_own_intensities_or_by_those_of_the_object()
     assert of_surfaces[1].maximum == pytest.approx(0.5)
     assert of_surfaces[2].maximum == pytest.approx(8)
     assert following_ranges(picture, "object", "90 %")[0].maximum == pytest.approx(7.125)
+
+
+def test_a_percentage_counts_the_pixels_of_the_object_and_not_those_of_the_stage() -> None:
+    of_object, floor = np.linspace(0.1, 10, 200).tolist(), [1.0] * 5000
+    alone = following_ranges(picture_of(of_object), "object", "90 %")[0]
+    beside = following_ranges(picture_of(of_object, floor), "object", "90 %", frozenset({2}))[0]
+    assert beside.maximum == alone.maximum
+    nothing = following_ranges(picture_of(of_object), "object", "90 %", frozenset({1}))[0]
+    assert nothing == alone
 
 
 def test_a_surface_without_extent_is_not_trimmed_and_has_the_range_of_the_object() -> None:

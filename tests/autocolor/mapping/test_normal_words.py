@@ -101,6 +101,9 @@ def entries(image: NormalImage) -> dict[int, tuple[int, ...]]:
     everything = [each for values in intensity_of.values() for each in values]
     held = {} if isinstance(scene.exposure, str) else dict(scene.exposure)
     whole = held.get(OBJECT, range_of(everything or [0], scene.exposure))
+    if OBJECT not in held and max(everything or [0]) <= scene.ambient * (1 + 2.0**-20):
+        # Nothing but ambient light is mapped to the lowest level.
+        whole = whole[0], 1e9 * max(whole[1], 1)
     for each in image.normals.slices:
         surface = scene.surfaces[each.surface_number - 1]
         values = intensity_of[surface.name]

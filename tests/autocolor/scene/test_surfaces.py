@@ -13,7 +13,7 @@ from autocolor import Paint, Part, Reflectance, Surface, UsageError, image, rend
 from autocolor.arrays import Bytes, Singles
 from autocolor.scene.color_scales import COLOR_SCALES, IN_TURN, SCALE_TABLES, scale_colors
 from autocolor.scene.columns import difference, from_plain, replaced, to_plain
-from autocolor.scene.curves import CURVES, mapping_curve
+from autocolor.scene.curves import CURVES, group_starts, mapping_curve
 from autocolor.scene.reflection_models import BlinnPhong, CookTorrance, Phong
 from autocolor.scene.swatches import (
     CAR_PAINTS,
@@ -71,6 +71,27 @@ def test_equalize_shows_every_level_equally_often(steps: list[int]) -> None:
     fractions = mapped("equalize", intensities)
     assert sorted(fractions.tolist()) == pytest.approx(np.linspace(0, 1, len(steps)).tolist())
     assert np.argsort(fractions).tolist() == np.argsort(intensities).tolist()
+
+
+def test_equalized_intensities_that_differ_by_rounding_have_one_level_and_a_smooth_ramp_stays_smooth() -> (
+    None
+):
+    sheet = np.array([0.3, 0.622973084, 0.622973144, 0.622973084, 1.0], np.float32)
+    fractions = mapped("equalize", sheet)
+    assert fractions.tolist() == [0, 0.75, 0.75, 0.75, 1]
+    ramp = np.linspace(0.5, 0.500001, 200).astype(np.float32)
+    ramp = np.concatenate([ramp, np.linspace(0.51, 1, 9800).astype(np.float32)])
+    assert np.diff(mapped("equalize", ramp)).max() < 0.012
+
+
+@given(st.lists(st.integers(0, 60), min_size=1, unique=True), st.integers(0, 20))
+def test_groups_begin_at_their_lowest_value_and_span_a_width(steps: list[int], width: int) -> None:
+    values = np.array(sorted(steps), np.float32)
+    starts: list[int] = []
+    for place, value in enumerate(values.tolist()):
+        if not starts or value > values[starts[-1]] + width:
+            starts.append(place)
+    assert group_starts(values, width).tolist() == starts
 
 
 def test_the_types_are_those_of_the_columns() -> None:

@@ -168,7 +168,7 @@ def corner_weights(corners: Sequence[Vector], point: Vector) -> list[float]:
 
 
 def band_of(value: float, bands: Bands) -> int:
-    """The band of a value; a value beyond a limit by a rounding counts as the limit."""
+    """The band of a value; a value beyond a limit, or below an edge, by a rounding counts as at it."""
     low, high = bands.low, bands.high
     rounding = ROUNDING * max(abs(low), abs(high))
     if math.isnan(value):
@@ -177,7 +177,7 @@ def band_of(value: float, bands: Bands) -> int:
         return bands.below
     if value > high + rounding:
         return bands.above
-    return min(math.floor(max(value - low, 0.0) / (high - low) * bands.bands), bands.bands - 1)
+    return min(math.floor((max(value - low, 0.0) + rounding) / (high - low) * bands.bands), bands.bands - 1)
 
 
 def band_colors(scale: str | tuple[Color, ...], count: int) -> Iterator[Color]:
