@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 
 from autocolor import Mesh
-from autocolor.files.array_file import array_file_bytes
+from autocolor.files.array_file import array_file_bytes, mesh_members
 from autocolor.files.formats import read_mesh
 from autocolor.files.meshes.repair import Placement
 from autocolor.files.meshes.table_file import TABLE_FILE, table_file_bytes
@@ -49,14 +49,14 @@ def test_an_empty_mesh_odd_names_and_scalars_are_kept(tmp_path: Path) -> None:
 
 
 def test_a_table_file_without_scalars_is_still_read(tmp_path: Path) -> None:
-    older = dataclasses.replace(TABLE_FILE, formats=TABLE_FILE.formats[1:], series={})
+    older = dataclasses.replace(TABLE_FILE, formats=TABLE_FILE.formats[1:])
     again = read(tmp_path, array_file_bytes(older, {"part_names": ["cube"]}, ARRAYS))
     assert np.array_equal(again.coordinates, cube().coordinates)
     assert again.scalars == ()
 
 
-ARRAYS = {name: getattr(cube(), name) for name in TABLE_FILE.arrays}
-IS_NO_SCALAR = "mesh_scalars[1] must be a table of name and of"
+ARRAYS = mesh_members(cube())
+IS_NO_SCALAR = "mesh_scalars[1] must be a table of name and of, with values"
 
 
 @pytest.mark.parametrize(
@@ -67,7 +67,7 @@ IS_NO_SCALAR = "mesh_scalars[1] must be a table of name and of"
         ({"mesh_scalars": ["a"]}, {}, f"{IS_NO_SCALAR}, not 'a'"),
         ({}, {"node_numbers": np.array([[0, 1, 2, 99]])}, "a node number must be a row of the node table"),
         ({}, {"coordinates": np.full((8, 3), np.nan)}, "coordinates must be finite"),
-        ({}, {"coordinates": np.zeros((8, 2))}, "its shape must be (rows, 3)"),
+        ({}, {"coordinates": np.zeros((8, 2))}, "coordinates must be <f8 of shape (None, 3), not"),
         ({"part_names": ["a", "a"]}, {}, "part names must differ"),
         ({"part_names": [3]}, {}, "part names must be strings"),
         ({"part_names": "a"}, {}, "a part number must be a row of the part table"),
