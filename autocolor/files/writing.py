@@ -7,11 +7,12 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import Final, TypeVar
 
 import ramtek_emu
+from autocolor.arrays import AnyArray
 from autocolor.errors import InputError, MissingInputError, OutputError, UsageError, WriteError, reason_of
 from ramtek_emu import writing
 
@@ -159,7 +160,11 @@ def read_together(folder: Path, first: str, read: Callable[[], Result]) -> Resul
 
 
 def write_together(
-    folder: Path, files: Iterable[tuple[str, Iterable[bytes]]], *, others: Iterable[str], overwrite: bool
+    folder: Path,
+    files: Iterable[tuple[str, Iterable[bytes | AnyArray]]],
+    *,
+    others: Iterable[str],
+    overwrite: bool,
 ) -> list[Path]:
     """Write tables to a folder, which is created if it does not exist; returns their paths, sorted.
 
@@ -214,22 +219,16 @@ def _finish(folder: Path) -> None:
 @contextmanager
 def _saving_alone(folder: Path) -> Iterator[None]:
     """Refuse to save tables to a folder while another program does. Raises WriteError."""
-    try:
-        descriptor = os.open(folder, os.O_RDONLY)
-    except PermissionError:
-        # Windows opens no folders.
-        yield
-        return
-    try:
+    with ExitStack() as stack:
         try:
+            descriptor = os.open(folder, os.O_RDONLY)
+            stack.callback(os.close, descriptor)
             lock(descriptor)
         except BlockingIOError:
             raise WriteError(
                 f"tables must be saved by one program at a time, and another one saves to {folder}; try again"
             ) from None
         except OSError:
-            # The file system has no locks.
+            # Windows opens no folders, and some file systems have no locks.
             pass
         yield
-    finally:
-        os.close(descriptor)
