@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
@@ -94,14 +95,12 @@ def refusals_of_this_package(path: Path | None = None) -> Iterator[None]:
         raise kind(str(refusal)) from None
 
 
-# Tables of a folder that are saved together. They are written under hidden names. Then a file that is named
-# SAVED says that all are whole, and the tables get their own names. While SAVED is there, our readers prefer
-# the hidden names. So after a kill they find all the old tables, or all the new.
+# Tables of a folder that are saved together. They are written to a hidden folder in it, which gets
+# the name SAVED once all tables are whole. Then the tables move out of it. Our readers prefer the tables
+# in SAVED. So after a kill they find all the old tables, or all the new.
 
+UNFINISHED: Final = ".tables.part"
 SAVED: Final = ".tables-saved"
-
-HIDDEN: Final = ".table.part"
-"""The ending of the hidden name of a table."""
 
 SCALARS: Final = "scalars"
 """The folder of scalars in a folder of tables."""
@@ -112,30 +111,23 @@ MOST_TRIES: Final = 100
 Result = TypeVar("Result")
 
 
-def hidden_path(path: Path) -> Path:
-    """The hidden name of a table."""
-    return path.with_name(f".{path.name}{HIDDEN}")
-
-
 def table_exists(folder: Path, name: str) -> bool:
     """Whether a folder has a table."""
-    path = folder / name
-    return os.path.exists(path) or (os.path.exists(folder / SAVED) and os.path.exists(hidden_path(path)))
+    return os.path.exists(folder / name) or os.path.exists(folder / SAVED / name)
 
 
 def read_table(folder: Path, name: str, read: Callable[[Path], Result]) -> Result:
     """The result of `read` for the path where a table of a folder is at present."""
-    if os.path.exists(folder / SAVED):
-        with suppress(MissingInputError):
-            return read(hidden_path(folder / name))
+    with suppress(MissingInputError):
+        return read(folder / SAVED / name)
     return read(folder / name)
 
 
 def read_together(folder: Path, first: str, read: Callable[[], Result]) -> Result:
     """The result of `read`, which opens tables of a folder with `read_table`, all of the same save.
 
-    `first` is the table whose name is last in the alphabet; a save renames it first. If it was saved
-    meanwhile, `read` is called again. Raises InputError if saves come all the time, and the errors of `read`.
+    `first` is the table whose name is last in the alphabet; a save moves it first. If it was saved meanwhile,
+    `read` is called again. Raises InputError if saves come all the time, and the errors of `read`.
     """
 
     def stamps() -> list[tuple[int, int]]:
@@ -173,21 +165,24 @@ def write_together(
     if writing fails. The old or the new tables are whole then.
     """
     paths: list[Path] = []
+    unfinished = folder / UNFINISHED
     with new_folder(folder, "a mesh"), refusals_of_this_package(folder), _saving_alone(folder):
         _finish(folder)
         try:
+            os.mkdir(unfinished)
             for name, content in files:
-                path = folder / name
+                paths.append(folder / name)
+                if os.path.lexists(paths[-1]):
+                    writing.refuse_output(paths[-1], overwrite)
+                path = unfinished / name
                 path.parent.mkdir(exist_ok=True)
-                writing.refuse_output(path, overwrite)
-                with open(hidden_path(path), "wb") as file:
+                with open(path, "wb") as file:
                     file.writelines(content)
                     file.flush()
                     os.fsync(file.fileno())
-                paths.append(path)
-            for place in {path.parent for path in paths}:
-                writing.sync_folder(place)
-            writing.write_atomically(folder / SAVED, b"", overwrite=True)
+                writing.sync_folder(path.parent)
+            os.rename(unfinished, folder / SAVED)
+            writing.sync_folder(folder)
             for path in {folder / name for name in others} - {*paths}:
                 if path.is_file():
                     path.unlink()
@@ -197,23 +192,25 @@ def write_together(
 
 
 def _finish(folder: Path) -> None:
-    """Give the tables of a save their names, or remove them if the save was not whole. Raises OSError."""
-    is_whole = os.path.exists(folder / SAVED)
-    for place in (folder, folder / SCALARS):
-        for hidden in sorted(place.glob(f".*{HIDDEN}"), reverse=True):
-            path = place / hidden.name[1 : -len(HIDDEN)]
-            if is_whole:
-                with suppress(OSError):
-                    os.chmod(hidden, os.stat(path).st_mode & 0o777)
-                os.replace(hidden, path)
-            else:
-                os.unlink(hidden)
+    """Move the tables of a save to their places, or remove them if the save was not whole. Raises OSError."""
+    shutil.rmtree(folder / UNFINISHED, ignore_errors=True)
+    saved = folder / SAVED
+    for path in sorted(saved.rglob("*"), reverse=True):
+        place = folder / path.relative_to(saved)
+        if path.is_dir():
+            # Its tables have moved.
+            path.rmdir()
+            continue
+        place.parent.mkdir(exist_ok=True)
+        with suppress(OSError):
+            os.chmod(path, os.stat(place).st_mode & 0o777)
+        os.replace(path, place)
+    for place in (folder / SCALARS, folder):
         writing.sync_folder(place)
-    with suppress(FileNotFoundError):
-        os.unlink(folder / SAVED)
-    # It may be empty now.
-    with suppress(OSError):
-        os.rmdir(folder / SCALARS)
+    # The second may be empty now.
+    for place in (saved, folder / SCALARS):
+        with suppress(OSError):
+            os.rmdir(place)
 
 
 @contextmanager

@@ -19,7 +19,6 @@ from autocolor.files import writing
 from autocolor.files.opening import kind_of
 from autocolor.files.reading import read_bytes
 from autocolor.files.writing import (
-    hidden_path,
     read_table,
     read_together,
     refuse_output,
@@ -106,8 +105,6 @@ def bytes_of(path: Path) -> bytes:
 def test_tables_written_together_get_their_names_and_other_files_stay(tmp_path: Path) -> None:
     folder = tmp_path / "tables"
     folder.mkdir()
-    # No file is written through a link with a hidden name.
-    hidden_path(folder / "nodes.npy").symlink_to(tmp_path / "elsewhere")
     tables_of(folder, old=True)
     assert os.listdir(tmp_path) == ["tables"]
     (folder / "notes.txt").write_text("mine")
