@@ -33,23 +33,20 @@ GROWTH: Final = 3
 MOST_VALUES: Final = 1_000_000
 LARGEST_ARRAY_HEADER: Final = 1024
 
-ANY: Final = None
-"""A size that may be any."""
-
 ArrayType = tuple[str, tuple[int | None, ...]]
-"""The dtype and the shape of a member."""
+"""The dtype and the shape of a member; None is any size."""
 
 MESH_TYPES: Final[Mapping[str, ArrayType]] = {
-    "coordinates": ("<f8", (ANY, 3)),
-    "node_numbers": ("<i4", (ANY, 4)),
-    "part_numbers": ("<i4", (ANY,)),
+    "coordinates": ("<f8", (None, 3)),
+    "node_numbers": ("<i4", (None, 4)),
+    "part_numbers": ("<i4", (None,)),
 }
 """The members of every mesh."""
 
 MORE_TYPES: Final[Mapping[str, ArrayType]] = {
-    "mesh_scalar": ("<f8", (ANY,)),
-    "own_normal": ("<f4", (ANY, 3)),
-    "own_normal_number": ("<i4", (ANY, 4)),
+    "mesh_scalar": ("<f8", (None,)),
+    "own_normal": ("<f4", (None, 3)),
+    "own_normal_number": ("<i4", (None, 4)),
 }
 """The members that a mesh may have besides, without the numbers at the ends of their names."""
 
@@ -75,7 +72,7 @@ class ArrayFileKind:
 
     def type_of(self, member: str) -> ArrayType:
         """The type of a member. Raises KeyError if a file cannot have it."""
-        types = {"header": ("|u1", (ANY,)), **MESH_TYPES, **MORE_TYPES, **self.types, **self.optional}
+        types = {"header": ("|u1", (None,)), **MESH_TYPES, **MORE_TYPES, **self.types, **self.optional}
         return types[member.rstrip("_0123456789")]
 
     @contextmanager
@@ -87,14 +84,21 @@ class ArrayFileKind:
             raise InputError(f"{file}: {each[:400]}; {self.advice}" for each in error.problems[:20]) from None
 
 
-def array_file_bytes(kind: ArrayFileKind, header: Mapping[str, Any], arrays: Mapping[str, AnyArray]) -> bytes:
-    """The content of an array file of the first format of its kind; the same for the same values."""
-    text = json.dumps({"format": kind.formats[0], **header}, allow_nan=False).encode()
-    members = {"header": np.frombuffer(text, np.uint8), **arrays}
+def array_file_bytes(
+    kind: ArrayFileKind, mesh: Mesh, header: Mapping[str, Any], arrays: Mapping[str, AnyArray]
+) -> bytes:
+    """The content of a file with a mesh, of the first format of its kind; the same for equal values."""
+    scalars = [{"name": scalar.name, "of": scalar.of} for scalar in mesh.scalars]
+    text = json.dumps({"format": kind.formats[0], SCALARS: scalars, **header}, allow_nan=False).encode()
+    members = {"header": np.frombuffer(text, np.uint8), **{name: getattr(mesh, name) for name in MESH_TYPES}}
+    members |= {f"mesh_scalar_{number}": scalar.values for number, scalar in enumerate(mesh.scalars)}
+    if mesh.own_normals is not None:
+        members["own_normal_0"] = mesh.own_normals.vectors
+        members["own_normal_number_0"] = mesh.own_normals.numbers
+    members |= arrays
     buffer = io.BytesIO()
-    np.savez(
-        buffer, **{name: np.ascontiguousarray(each, kind.type_of(name)[0]) for name, each in members.items()}
-    )
+    typed = {name: np.ascontiguousarray(each, kind.type_of(name)[0]) for name, each in members.items()}
+    np.savez(buffer, **typed)
     return buffer.getvalue()
 
 
@@ -114,7 +118,7 @@ def read_array_file(kind: ArrayFileKind, source: Path) -> tuple[dict[str, Any], 
             header = bounded_json(arrays.pop("header").tobytes(), MOST_VALUES)
             if not isinstance(header, dict) or header.get("format") not in kind.formats:
                 raise ValueError(f"its format must be {kind.formats[0]!r}")
-            missing = [*({*MESH_TYPES, *kind.types} - arrays.keys()), *({*kind.keys} - header.keys())]
+            missing = sorted({*MESH_TYPES, *kind.types} - arrays.keys() | {*kind.keys} - header.keys())
             if missing:
                 raise ValueError(f"{missing[0]} is missing")
             return header, arrays
@@ -135,30 +139,11 @@ def _array(archive: zipfile.ZipFile, name: str, wanted: ArrayType) -> AnyArray:
     stream = io.BytesIO(data)
     np.lib.format.read_magic(stream)
     shape, is_by_columns, dtype = np.lib.format.read_array_header_1_0(stream, LARGEST_ARRAY_HEADER)
-    sizes = zip(wanted[1], shape, strict=False)
-    if (
-        is_by_columns
-        or dtype.str != wanted[0]
-        or len(shape) != len(wanted[1])
-        or any(number not in (ANY, size) for number, size in sizes)
-    ):
-        raise ValueError(f"{name} must be {wanted[0]} of shape {wanted[1]}, not {dtype.str} of {shape}")
+    sizes = wanted[1]
+    fits = len(shape) == len(sizes) and all(n in (None, size) for n, size in zip(sizes, shape, strict=True))
+    if is_by_columns or dtype.str != wanted[0] or not fits:
+        raise ValueError(f"{name} must be {wanted[0]} of shape {sizes}, not {dtype.str} of {shape}")
     return np.frombuffer(data, dtype, offset=stream.tell()).reshape(shape)
-
-
-def mesh_rows(mesh: Mesh) -> dict[str, object]:
-    """The key of the header for the scalars of a mesh."""
-    return {SCALARS: [{"name": scalar.name, "of": scalar.of} for scalar in mesh.scalars]}
-
-
-def mesh_members(mesh: Mesh) -> dict[str, AnyArray]:
-    """The arrays of a mesh by the names of their members."""
-    members = {name: getattr(mesh, name) for name in MESH_TYPES}
-    members |= {f"mesh_scalar_{number}": scalar.values for number, scalar in enumerate(mesh.scalars)}
-    if mesh.own_normals is not None:
-        members["own_normal_0"] = mesh.own_normals.vectors
-        members["own_normal_number_0"] = mesh.own_normals.numbers
-    return members
 
 
 def mesh_of(

@@ -24,15 +24,7 @@ from autocolor.arrays import LARGEST_SINGLE, AnyArray
 from autocolor.budget import allowing
 from autocolor.checks import shown
 from autocolor.errors import InputError, UsageError
-from autocolor.files.array_file import (
-    ANY,
-    ArrayFileKind,
-    array_file_bytes,
-    mesh_members,
-    mesh_of,
-    mesh_rows,
-    read_array_file,
-)
+from autocolor.files.array_file import ArrayFileKind, array_file_bytes, mesh_of, read_array_file
 from autocolor.files.paths import PICTURE_SUFFIX
 from autocolor.files.writing import Guard, check_suffix, no_guard, write_atomically
 from autocolor.lighting.picture import Picture, check_surfaces
@@ -44,13 +36,13 @@ PICTURE_FILE: Final = ArrayFileKind(
     noun="picture file",
     advice="save the picture again",
     formats=("autocolor picture 4",),
-    keys=("scale", "surfaces", "scene", "shown_scalars"),
+    keys=("scale", "scene", "shown_scalars"),
     types={
-        "relative_intensity": ("<f4", (ANY, ANY)),
-        "surface_number": ("|u1", (ANY, ANY)),
-        "part_number": ("<i4", (ANY, ANY)),
+        "relative_intensity": ("<f4", (None, None)),
+        "surface_number": ("|u1", (None, None)),
+        "part_number": ("<i4", (None, None)),
     },
-    optional={"scalar": ("<f4", (ANY, ANY))},
+    optional={"scalar": ("<f4", (None, None))},
 )
 
 
@@ -84,11 +76,9 @@ def write_picture(
         )
     header = {
         "scale": picture.scale,
-        "surfaces": list(picture.surfaces),
         "scene": plain_scene(scene),
         "shown_scalars": [] if picture.scalar is None else [{"limits": picture.scalar_limits}],
         "smooth": picture.smooth,
-        **mesh_rows(scene.mesh),
     }
     relative = np.zeros(picture.lines * picture.elements, np.float32)
     relative[picture.pixels] = picture.relative
@@ -96,10 +86,9 @@ def write_picture(
         "relative_intensity": relative.reshape(picture.lines, picture.elements),
         "surface_number": picture.surface_number,
         "part_number": picture.part_number,
-        **mesh_members(scene.mesh),
         **({} if picture.scalar is None else {"scalar_0": picture.scalar}),
     }
-    data = array_file_bytes(PICTURE_FILE, header, arrays)
+    data = array_file_bytes(PICTURE_FILE, scene.mesh, header, arrays)
     check()
     write_atomically(path, data, overwrite=overwrite)
 
@@ -132,8 +121,6 @@ def _picture(header: Mapping[str, Any], scene: Scene, arrays: Mapping[str, AnyAr
     shape = relative.shape
     if type(scale) not in (int, float) or not 0 < scale < LARGEST_SINGLE:
         raise InputError(f"its scale must be a number above 0, not {shown(scale)}")
-    if header["surfaces"] != names:
-        raise InputError(f"its surfaces must be the scene's, {names}, not {header['surfaces']!r}")
     if not relative.size or any(
         each.shape != shape for each in (surfaces, parts, scalar) if each is not None
     ):

@@ -9,10 +9,10 @@ from __future__ import annotations
 import hashlib
 import os
 from collections.abc import Iterator, Mapping
-from contextlib import suppress
+from itertools import chain
 from pathlib import Path
 
-from autocolor.errors import InputError, MissingInputError
+from autocolor.errors import InputError
 from autocolor.files.paths import STORE_SUFFIXES, path_within
 from autocolor.files.reading import opened, read_bytes, read_head
 from autocolor.files.scene_toml.scene_meshes import MESH_FILE_KEYS, entries_of
@@ -25,13 +25,12 @@ def stamp_of(path: Path) -> str | None:
     The stamp of a store includes its write-ahead log, the changes that are not yet in the store file. The
     stamp of a scene file includes the times and sizes of the mesh files that it names.
     """
-    digest, suffix = hashlib.sha256(), path.suffix.lower()
+    digest = hashlib.sha256()
     try:
-        _add_bytes(digest, path)
-        if suffix in STORE_SUFFIXES:
-            with suppress(MissingInputError):
-                _add_bytes(digest, _beside(path, "-wal"))
-        elif suffix == ".toml":
+        for each in (path, *_logs(path)):
+            with opened(each) as (file, _):
+                hashlib.file_digest(file, lambda: digest)
+        if path.suffix.lower() == ".toml":
             for numbers in _mesh_numbers(path):
                 digest.update(repr(numbers).encode())
     except (OSError, ValueError):
@@ -42,14 +41,12 @@ def stamp_of(path: Path) -> str | None:
 def numbers_of(path: Path) -> tuple[int, ...] | None:
     """Numbers that differ after a file was changed; None if it is missing. The file is not opened."""
     try:
-        status, log = os.stat(path), _beside(path, "-wal")
-        # SQLite creates an empty log even to read.
-        logs = [os.stat(log)] if log.exists() and os.stat(log).st_size else []
+        found = [os.stat(each) for each in (path, *_logs(path))]
     except (OSError, ValueError):
         return None
     # A program may set the time of a change, but not the time when the status changed.
-    numbers = status.st_dev, status.st_ino, status.st_mtime_ns, status.st_ctime_ns, status.st_size
-    return (*numbers, *(number for each in logs for number in (each.st_mtime_ns, each.st_size)))
+    numbers = [(each.st_ino, each.st_mtime_ns, each.st_ctime_ns, each.st_size) for each in found]
+    return tuple(chain.from_iterable(numbers))
 
 
 def look_at(path: Path) -> tuple[int, ...] | None:
@@ -65,10 +62,10 @@ def _beside(store: Path, ending: str) -> Path:
     return Path(f"{os.path.realpath(store)}{ending}")
 
 
-def _add_bytes(digest: hashlib._Hash, path: Path) -> None:
-    """Add the bytes of a regular file to a digest. Raises InputError."""
-    with opened(path) as (file, _):
-        hashlib.file_digest(file, lambda: digest)
+def _logs(path: Path) -> list[Path]:
+    """The write-ahead log of a store, if there is any; SQLite creates an empty log even to read."""
+    log = _beside(path, "-wal")
+    return [log] if path.suffix.lower() in STORE_SUFFIXES and log.exists() and log.stat().st_size else []
 
 
 def _mesh_numbers(scene_file: Path) -> Iterator[tuple[str | int, ...]]:

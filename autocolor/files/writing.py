@@ -40,7 +40,7 @@ def write_atomically(
     `overwrite` is false, or if no file can be created there; WriteError if writing fails. In both cases the
     old file, if any, is intact.
     """
-    with refusals_of_this_package():
+    with refusals_of_this_package(path):
         writing.write_atomically(path, data, overwrite=overwrite, sync=sync)
 
 
@@ -67,7 +67,7 @@ def new_folder(folder: Path, thing: str) -> Iterator[None]:
 
 def refuse_output(path: str | os.PathLike[str], *, overwrite: bool) -> None:
     """Raise OutputError if no file can be written to the path; for use before an expensive computation."""
-    with refusals_of_this_package():
+    with refusals_of_this_package(path):
         writing.refuse_output(path, overwrite)
 
 
@@ -78,19 +78,13 @@ def check_suffix(path: str | os.PathLike[str], suffix: str, what: str) -> None:
 
 
 @contextmanager
-def refusals_of_this_package(path: Path | None = None) -> Iterator[None]:
-    """Raise OutputError and WriteError of this package instead of those of `ramtek_emu`.
-
-    With a path, any other OSError becomes one of them, too.
-    """
+def refusals_of_this_package(path: str | os.PathLike[str]) -> Iterator[None]:
+    """Raise OutputError and WriteError of this package instead of those of `ramtek_emu` and of an OSError."""
     try:
         yield
     except OSError as error:
-        refusal = error
-        if not isinstance(error, (ramtek_emu.OutputError, ramtek_emu.WriteError)):
-            if path is None:
-                raise
-            refusal = writing.refusal(path, error)
+        ours = isinstance(error, (ramtek_emu.OutputError, ramtek_emu.WriteError))
+        refusal = error if ours else writing.refusal(Path(path), error)
         kind = OutputError if isinstance(refusal, ramtek_emu.OutputError) else WriteError
         raise kind(str(refusal)) from None
 

@@ -38,7 +38,7 @@ import math
 from collections.abc import Iterator, Mapping
 from functools import partial
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Any, Final
 
 import numpy as np
 
@@ -47,14 +47,7 @@ from autocolor.budget import require_memory
 from autocolor.checks import LARGEST_COORDINATE, printable
 from autocolor.errors import InputError
 from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, placed
-from autocolor.files.reading import (
-    bounded_json,
-    read_bytes,
-    refuse_irregular,
-    shown,
-    status_of,
-    unreadable,
-)
+from autocolor.files.reading import bounded_json, opened, read_bytes, shown
 from autocolor.files.writing import SCALARS, read_table, read_together, table_exists, write_together
 from autocolor.immutable import read_only
 from autocolor.logs import logger_of, timed
@@ -91,11 +84,8 @@ MOST_PARTS: Final = 1 << 16
 WITHIN: Final = (-LARGEST_COORDINATE, LARGEST_COORDINATE)
 
 
-class Table(NamedTuple):
-    """A mapped table and the name of its file in messages."""
-
-    file: str
-    rows: AnyArray
+Table = tuple[str, AnyArray]
+"""The name of a file in messages, and its table."""
 
 
 def mapped(path: Path, name: str) -> Table:
@@ -105,20 +95,20 @@ def mapped(path: Path, name: str) -> Table:
     the file later, the system ends the process that reads it (SIGBUS): write a new file and rename it. Raises
     MissingInputError if there is no such file, InputError if it is not such a table.
     """
-    refuse_irregular(path, status_of(path))
     try:
-        rows = np.asarray(np.lib.format.open_memmap(path, mode="r", max_header_size=1024))
+        with opened(path):
+            rows = np.asarray(np.lib.format.open_memmap(path, mode="r", max_header_size=1024))
         if rows.dtype.kind not in "iuf" or rows.ndim not in (1, 2):
             raise ValueError(f"its dtype is {rows.dtype}, its shape {rows.shape}")
-    except OSError as error:
-        raise unreadable(path, error) from None
+    except InputError:
+        raise
     except Exception as error:
         # A wrong header makes numpy raise errors of many kinds.
         raise InputError(
             f"{name}: it must be an .npy file with a table of whole numbers or floating-point numbers, not"
             f" another file ({printable(str(error)[:200])}); write it with numpy.save"
         ) from None
-    return Table(name, rows)
+    return name, rows
 
 
 # The notes: names of parts and scalars, crease angle, and whether polygons share planes.
@@ -273,7 +263,7 @@ def _table(
             row = chunk.start + int(np.argmin(is_right))
             rule = f"from {low} to {high}{', with normals of the length 1' if is_unit else ''}"
             raise InputError(
-                f"{file}: its numbers must be {rule}, not {given.rows[row].tolist()} (row {row}, counted from"
+                f"{file}: its numbers must be {rule}, not {given[1][row].tolist()} (row {row}, counted from"
                 " 0); correct that row"
             )
     return table

@@ -12,14 +12,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Final
 
-from autocolor.files.array_file import (
-    ArrayFileKind,
-    array_file_bytes,
-    mesh_members,
-    mesh_of,
-    mesh_rows,
-    read_array_file,
-)
+from autocolor.files.array_file import ArrayFileKind, array_file_bytes, mesh_of, read_array_file
 from autocolor.files.meshes.repair import FILE, PLAIN, MeshReport, Placement, placed, turned_up
 from autocolor.scene.geometry.normals import CREASE_ANGLE
 from autocolor.scene.mesh import Mesh
@@ -38,8 +31,7 @@ TABLE_FILE: Final = ArrayFileKind(
 
 def table_file_bytes(mesh: Mesh) -> bytes:
     """The content of the table file of a mesh, without its crease angle."""
-    header = {"part_names": mesh.part_names, **mesh_rows(mesh)}
-    return array_file_bytes(TABLE_FILE, header, mesh_members(mesh))
+    return array_file_bytes(TABLE_FILE, mesh, {"part_names": mesh.part_names}, {})
 
 
 def read_table_file(path: Path, placement: Placement = PLAIN) -> MeshReport:

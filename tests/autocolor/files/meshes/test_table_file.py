@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 
 from autocolor import Mesh
-from autocolor.files.array_file import array_file_bytes, mesh_members
+from autocolor.files.array_file import array_file_bytes
 from autocolor.files.formats import read_mesh
 from autocolor.files.meshes.repair import Placement
 from autocolor.files.meshes.table_file import TABLE_FILE, table_file_bytes
@@ -50,12 +50,11 @@ def test_an_empty_mesh_odd_names_and_scalars_are_kept(tmp_path: Path) -> None:
 
 def test_a_table_file_without_scalars_is_still_read(tmp_path: Path) -> None:
     older = dataclasses.replace(TABLE_FILE, formats=TABLE_FILE.formats[1:])
-    again = read(tmp_path, array_file_bytes(older, {"part_names": ["cube"]}, ARRAYS))
+    again = read(tmp_path, array_file_bytes(older, cube(), {"part_names": ["cube"]}, {}))
     assert np.array_equal(again.coordinates, cube().coordinates)
     assert again.scalars == ()
 
 
-ARRAYS = mesh_members(cube())
 IS_NO_SCALAR = "mesh_scalars[1] must be a table of name and of, with values"
 
 
@@ -78,7 +77,7 @@ def test_a_table_file_of_no_mesh_is_refused(
 ) -> None:
     header = {"part_names": ["a"], "mesh_scalars": [], **header}
     scalars = {"mesh_scalar_0": np.zeros(7)} if header["mesh_scalars"] else {}
-    sentence = refusal(read, tmp_path, array_file_bytes(TABLE_FILE, header, {**ARRAYS, **arrays, **scalars}))
+    sentence = refusal(read, tmp_path, array_file_bytes(TABLE_FILE, cube(), header, {**arrays, **scalars}))
     assert sentence.startswith("mesh.tables: ")
     assert problem in sentence
     assert sentence.endswith("; write the scene again")
