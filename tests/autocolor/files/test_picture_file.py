@@ -19,12 +19,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import (
-    Flap,
-    Flaps,
     InputError,
-    Light,
     Mesh,
-    Part,
     Scene,
     UsageError,
     read_picture,
@@ -50,13 +46,7 @@ Header = dict[str, Any]
 
 
 def lit_wall() -> Scene:
-    """A wall with every kind of field that a file must keep."""
-    lights = (
-        Light("key", (1, -3, 2), aim=(0, 0, 0), concentration=3, cone_angle=50),
-        Light("fill", (-2, -3, 1), intensity=0.25, flaps=Flaps(z=Flap(-0.5), x=Flap(maximum=1, on=False))),
-        Light("off", (0, -1, 0), on=False, direction=(0, 1, 0)),
-    )
-    return wall_scene(ambient=0.125, lights=lights, mapping=((0, 0.1), (0.5, 0.9), (1, 1)), name="lit wall")
+    return wall_scene(ambient=0.125, name="lit wall")
 
 
 def in_color() -> Scene:
@@ -180,24 +170,22 @@ def test_an_existing_file_is_kept_unless_it_may_be_overwritten(tmp_path: Path) -
 
 
 ALONE = "a picture and its scene must both have a scalar or neither, not one alone; render the scene"
-PAINTED = {"surfaces": [Surface("paint")], "parts": [Part("wall", "paint")]}
 
 
 @pytest.mark.parametrize(
-    ("make", "name", "changes", "sentence"),
+    ("make", "name", "scalar", "sentence"),
     [
-        (lit_wall, "wall.png", {}, "a picture with its scene must be written to a file that ends in .npz"),
-        (lit_wall, "wall.npz", {"scalar": {"name": "z"}}, ALONE),
-        (in_color, "wall.npz", {"scalar": None}, ALONE),
-        (lit_wall, "wall.npz", PAINTED, r"must be those of the scene, \['paint'\], not"),
+        (lit_wall, "wall.png", None, "a picture with its scene must be written to a file that ends in .npz"),
+        (lit_wall, "wall.npz", {"name": "z"}, ALONE),
+        (in_color, "wall.npz", None, ALONE),
     ],
 )
 def test_a_picture_that_is_not_of_the_scene_or_has_another_suffix_is_not_written(
-    tmp_path: Path, make: Callable[[], Scene], name: str, changes: Header, sentence: str
+    tmp_path: Path, make: Callable[[], Scene], name: str, scalar: Header, sentence: str
 ) -> None:
     picture, scene = read(content(make))
-    with pytest.raises((InputError, UsageError), match=sentence):
-        write_picture(tmp_path / name, scene.replace(**changes), picture)
+    with pytest.raises(UsageError, match=sentence):
+        write_picture(tmp_path / name, scene.replace(scalar=scalar), picture)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -223,11 +211,9 @@ OF_SCALAR = "there must be a scalar at the pixels if the scene shows one, and no
 OF_SMOOTH = "smooth must be a whole number that divides its lines and elements, (9, 12), not"
 OF_LIMITS = "shown_scalars: limits must be two finite numbers, the second above the first, not"
 OF_INTENSITY = "every intensity must be a number from 0 to 3.4e+38"
-OF_SCENE = "scene: it must be tables, its mesh among them, not"
-NO_SCENES: tuple[object, ...] = ([], {"mesh": []})
-NO_LIMITS: tuple[object, ...] = ([{"limits": [0, 1e300]}], [3], 3)
 RASTER = (LINES, ELEMENTS)
-TURNED = (ELEMENTS, LINES)
+DARK = np.full(RASTER, -1, np.float32)
+ENDLESS = np.full(RASTER, np.inf, np.float32)
 
 test_what_is_not_of_the_scene_is_refused = refused(
     read,
@@ -235,22 +221,16 @@ test_what_is_not_of_the_scene_is_refused = refused(
         (data, f"changed.npz: {sentence}; save the picture again")
         for data, sentence in (
             (edited(in_color, "scene.scalar", None), OF_SCALAR),
-            (edited(in_color, "shown_scalars", []), OF_SCALAR),
-            *((edited(in_color, "shown_scalars", rows), f"{OF_LIMITS} {shown(rows)}") for rows in NO_LIMITS),
-            *(
-                (edited(lit_wall, "smooth", value), f"{OF_SMOOTH} {shown(value)}")
-                for value in (0, 2, 3.0, True)
-            ),
+            (edited(in_color, "shown_scalars", [3]), f"{OF_LIMITS} [3]"),
+            *((edited(lit_wall, "smooth", value), f"{OF_SMOOTH} {value}") for value in (0, 2, 3.0)),
             *(
                 (edited(lit_wall, "scale", value), f"its scale must be a number above 0, not {shown(value)}")
-                for value in (0, True, "1", 3.5e38)
+                for value in (0, "1", 3.5e38)
             ),
             (edited(lit_wall, "scale", 3.3e38), OF_INTENSITY),
-            *(
-                (changed(lit_wall, relative_intensity=np.full(RASTER, value, np.float32)), OF_INTENSITY)
-                for value in (np.nan, -1)
-            ),
-            *((edited(lit_wall, "scene", value), f"{OF_SCENE} {value}") for value in NO_SCENES),
+            (changed(lit_wall, relative_intensity=DARK), OF_INTENSITY),
+            (changed(lit_wall, relative_intensity=DARK * np.nan), OF_INTENSITY),
+            (edited(lit_wall, "scene", []), "scene: it must be tables, its mesh among them, not []"),
             (
                 edited(lit_wall, "scene.lights", None),
                 "lights must be a list of Light rows, not missing; add it",
@@ -259,35 +239,24 @@ test_what_is_not_of_the_scene_is_refused = refused(
                 edited(lit_wall, "scene.mesh.crease_angle", None),
                 "mesh: crease_angle must be a number from 0 to 180, not nan",
             ),
-            *(
-                (
-                    changed(make, **{name: np.zeros(TURNED, dtype)}),
-                    f"its arrays must be of one shape, not {seen}",
-                )
-                for make, name, dtype, seen in (
-                    (lit_wall, "relative_intensity", np.float32, "(12, 9) and others"),
-                    (lit_wall, "part_number", np.int32, "(9, 12) and others"),
-                    (in_color, "scalar_0", np.float32, "(9, 12) and others"),
-                )
+            (
+                changed(in_color, relative_intensity=-DARK.reshape(12, 9)),
+                "its arrays must be of one shape, not (12, 9) and others",
             ),
             (
-                changed(in_color, scalar_0=np.full(RASTER, np.inf, np.float32)),
+                changed(in_color, scalar_0=DARK.reshape(12, 9)),
+                "its arrays must be of one shape, not (9, 12) and others",
+            ),
+            (
+                changed(in_color, scalar_0=ENDLESS),
                 "a scalar must have a finite number or NaN at each pixel, not infinity",
-            ),
-            (
-                changed(lit_wall, surface_number=np.full(RASTER, 2, np.uint8)),
-                "a part number must be that of a part of the surface there, 2, not 0 (line 0, element 0)",
-            ),
-            (
-                changed(in_color, mesh_scalar_0=np.zeros(11)),
-                "scalar 'stress': there must be one value a node (12), not 11",
             ),
         )
     ],
 )
 
 
-@pytest.mark.parametrize(("at", "number"), [(1, 4), (1, -1), (1, 0), (1, 3), (0, 1), (0, 3)])
+@pytest.mark.parametrize(("at", "number"), [(1, 4), (1, -1), (1, 3), (0, 1), (0, 3)])
 def test_part_numbers_that_break_a_rule_are_refused_in_a_sentence(at: int, number: int) -> None:
     numbers = read(content(panels)).picture.part_number.copy()
     line, element = np.argwhere(numbers == at)[0].tolist()
@@ -300,23 +269,18 @@ def test_part_numbers_that_break_a_rule_are_refused_in_a_sentence(at: int, numbe
     )
 
 
-def described(text: str, data: bytes = b"") -> bytes:
+def described(shape: str, dtype: str = "<f4", begin: bytes = b"\x93NUMPY\1\0") -> bytes:
     """An array file with any description."""
-    return b"\x93NUMPY\x01\x00" + len(text).to_bytes(2, "little") + text.encode() + data
-
-
-SHAPE = "{{'descr': '<f4', 'fortran_order': False, 'shape': {}, }}\n"
+    text = f"{{'descr': '{dtype}', 'fortran_order': False, 'shape': {shape}, }}\n"
+    return begin + len(text).to_bytes(2, "little") + text.encode() + b"\x80\4N."
 
 
 @pytest.mark.parametrize(
     "data",
     [
-        b"\x93NUMPY\x02\x00" + b"\0" * 100,
-        b"\x93NUMPY\x01\x00\xff\xff",
-        *(described(SHAPE.format(shape)) for shape in ("(99999999999, 99999999999)", "(-1, 4)")),
-        described("{'descr': '|O', 'fortran_order': False, 'shape': (1, 1), }\n", b"\x80\x04N."),
-        described("__import__('os')\n"),
-        described("(" * 1000),
+        described("(1, 1)", begin=b""),
+        *(described(shape) for shape in ("(99999999999, 99999999999)", "(-1, 4)", "__import__('os')")),
+        described("(1, 1)", "|O"),
     ],
 )
 def test_an_array_of_another_description_is_refused_before_memory_is_taken(data: bytes) -> None:
@@ -334,11 +298,9 @@ def test_a_file_that_is_cut_short_or_has_other_members_is_refused() -> None:
     for data in (
         *(whole[:length] for length in range(0, len(whole), 97)),
         zipped({name: data for name, data in members.items() if name != "header.npy"}),
-        zipped({**members, "../header.npy": b""}),
         zipped({"x" * 60_000: b""}),
-        *(changed(lit_wall, header=np.frombuffer(text, np.uint8)) for text in (b"{", b"null")),
+        changed(lit_wall, header=np.frombuffer(b"null", np.uint8)),
         edited(lit_wall, "format", "autocolor picture 3"),
-        changed(lit_wall, relative_intensity=np.zeros(RASTER)),
     ):
         with pytest.raises(InputError, match=r"^changed\.npz: a picture file must be whole") as caught:
             read(data)

@@ -28,23 +28,15 @@ from autocolor.files.state import (
 ROOT = Path(__file__).parents[3]
 
 
-def test_the_last_entry_is_first_and_there_once(state: Path) -> None:
+def test_the_last_entries_are_first_and_there_once(state: Path) -> None:
     assert (recent_colors(), recent_files()) == ((), ())
     assert not state.exists()
-    for color in ((176, 16, 32), (255, 255, 255), (0, 0, 255), (176, 16, 32)):
-        note_color(color)
-    assert recent_colors() == ((176, 16, 32), (0, 0, 255), (255, 255, 255))
-    for name in ("/one", "/two", "/one"):
-        note_file(name)
-    assert recent_files() == (Path("/one"), Path("/two"))
-
-
-def test_lists_are_short() -> None:
-    for number in range(13):
+    for number in (*range(13), 12, 5):
         note_color((number, 0, 0))
         note_file(f"/{number}")
-    assert recent_colors() == tuple((number, 0, 0) for number in range(12, 12 - MOST_COLORS, -1))
-    assert recent_files() == tuple(Path(f"/{number}") for number in range(12, 12 - MOST_FILES, -1))
+    order = [5, *range(12, 5, -1), *range(4, -1, -1)]
+    assert recent_colors() == tuple((number, 0, 0) for number in order[:MOST_COLORS])
+    assert recent_files() == tuple(Path(f"/{number}") for number in order[:MOST_FILES])
 
 
 @pytest.mark.parametrize(
@@ -53,10 +45,7 @@ def test_lists_are_short() -> None:
         b"\xff\xfe",
         b'{"a": 1}',
         b"[" * 100_000,
-        b"[1e999, null, true, [], {}]",
-        b'["blue", "#12345", "#1234567", "#12345\xc3\xbc", "relative", "/a\\u0000b", ""]',
-        b"[" + b"9" * 5000 + b"]",
-        b"[" + b" " * (1 << 18) + b"]",
+        b'[1e999, [], "blue", "#12345", "#1234567", "#12345\xc3\xbc", "relative", "/a\\u0000b", ""]',
     ],
     ids=lambda data: repr(data[:9]),
 )

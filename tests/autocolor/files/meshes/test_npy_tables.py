@@ -42,7 +42,12 @@ def read(folder: Path, placement: Placement | None = None) -> Mesh:
     return read_mesh(files, placement or Placement()).mesh
 
 
-STRESSED = cube().with_scalars(MeshScalar("stress", np.zeros(8)))
+DECAL = decal_on_ground(1)[0]
+NODES, POLYGONS = len(DECAL.coordinates), len(DECAL.node_numbers)
+WHOLE = DECAL.with_scalars(
+    MeshScalar("stress", np.append(np.nan, np.arange(1.0, NODES))),
+    MeshScalar("load", np.arange(float(POLYGONS)), "polygon"),
+)
 
 
 @given(meshes(), views() | outside_views(), rasters, st.booleans())
@@ -88,8 +93,13 @@ def test_tables_of_any_type_and_order_give_the_same_mesh(
 
 def test_tables_in_the_order_of_rendering_are_mapped_and_others_copied(tmp_path: Path) -> None:
     mesh = cube()
-    folder_of(tmp_path, nodes=mesh.coordinates, polygons=mesh.node_numbers)
-    assert not read(tmp_path).coordinates.flags.owndata
+    folder_of(tmp_path / "tables", nodes=mesh.coordinates, polygons=mesh.node_numbers)
+    folder_of(tmp_path, corners=mesh.coordinates, sides=mesh.node_numbers)
+    (tmp_path / "scene.toml").write_text('[[mesh]]\nnodes = "corners.npy"\npolygons = "sides.npy"\n')
+    for path in (tmp_path / "tables", tmp_path / "scene.toml"):
+        found = read_scene(path, limit=1e-7).mesh
+        assert found.node_numbers.tolist() == mesh.node_numbers.tolist()
+        assert not found.coordinates.flags.owndata
     folder_of(tmp_path, nodes=mesh.coordinates.astype(np.float32), polygons=mesh.node_numbers[:, :3])
     assert read(tmp_path).node_numbers.tolist() == mesh.node_numbers[:, [0, 1, 2, 2]].tolist()
     with allowing(340 / MEMORY):
@@ -97,31 +107,15 @@ def test_tables_in_the_order_of_rendering_are_mapped_and_others_copied(tmp_path:
 
 
 def test_a_folder_with_its_scalars_and_planes_is_read_back(tmp_path: Path) -> None:
-    mesh, _ = decal_on_ground(1)
-    stress = np.append(np.nan, np.arange(1.0, len(mesh.coordinates)))
-    load = np.arange(float(len(mesh.node_numbers)))
-    whole = mesh.with_scalars(MeshScalar("stress", stress), MeshScalar("load", load, "polygon"))
-    write_npy_tables(tmp_path, whole)
+    write_npy_tables(tmp_path, WHOLE)
     found = read(tmp_path)
-    for one, other in zip(found.scalars, whole.scalars, strict=True):
+    for one, other in zip(found.scalars, WHOLE.scalars, strict=True):
         assert (one.name, one.of) == (other.name, other.of)
         assert one.values.tobytes() == other.values.tobytes()
         assert not one.values.flags.owndata
-    planes, expected = vars(found)["shared_planes"], whole.shared_planes
-    assert expected is not None
+    planes, expected = vars(found)["shared_planes"], WHOLE.shared_planes
     for name in ("normals", "points", "distances", "plane_of_polygon", "turned"):
         assert getattr(planes, name).tobytes() == getattr(expected, name).tobytes()
-
-
-def test_a_scene_file_and_a_folder_name_the_tables_alike_and_mapped_tables_need_little_memory(
-    tmp_path: Path,
-) -> None:
-    mesh = cube()
-    folder_of(tmp_path / "tables", nodes=mesh.coordinates, polygons=mesh.node_numbers)
-    folder_of(tmp_path, corners=mesh.coordinates, sides=mesh.node_numbers)
-    (tmp_path / "scene.toml").write_text('[[mesh]]\nnodes = "corners.npy"\npolygons = "sides.npy"\n')
-    for path in (tmp_path / "tables", tmp_path, tmp_path / "scene.toml"):
-        assert read_scene(path, limit=1e-7).mesh.node_numbers.tolist() == mesh.node_numbers.tolist()
 
 
 def test_a_turned_or_scaled_mesh_has_normals_of_its_own(tmp_path: Path) -> None:
@@ -138,70 +132,50 @@ def test_parts_without_names_are_numbered_and_notes_of_a_user_name_them(tmp_path
     parts = np.array([0, 2, 2, 0, 0, 0])
     folder_of(tmp_path, nodes=cube().coordinates, polygons=cube().node_numbers, parts=parts)
     assert read(tmp_path).part_names == ("part 0", "part 1", "part 2")
-    notes = {"format": FORMATS[1], "part_names": ["a", "b", "c"], "crease_angle": 30}
+    notes = {"format": FORMATS[1], "part_names": ["a", "b", "c"], "crease_angle": 30, "files": None}
     (tmp_path / "tables.json").write_text(json.dumps(notes))
     assert (read(tmp_path).part_names, read(tmp_path).crease_angle) == (("a", "b", "c"), 30.0)
 
 
 FAR = np.asfortranarray(np.zeros((8, 3)))
 FAR[7, 1] = np.nan
-DECAL = decal_on_ground(1)[0]
 WITHIN = "its numbers must be from -1e+30 to 1e+30"
 UNITS = f"{WITHIN}, with normals of the length 1, not"
+ROW = f"its numbers must be from 0 to {NODES - 1}, not"
 
 
 @pytest.mark.parametrize(
-    ("mesh", "name", "table", "sentence"),
+    ("name", "table", "sentence"),
     [
-        (STRESSED, "nodes", FAR, f"{WITHIN}, not [0.0, nan, 0.0] (row 7, counted from 0); correct that row"),
-        (STRESSED, "nodes", np.full((8, 3), 2e30, np.float32), f"{WITHIN}, not [2"),
-        (
-            STRESSED,
-            "polygons",
-            np.zeros((2, 5), int),
-            "its shape must be (rows, 4), not (2, 5); write it again",
-        ),
-        (
-            STRESSED,
-            "polygons",
-            np.full((2, 4), 8),
-            "its numbers must be from 0 to 7, not [8, 8, 8, 8] (row 0",
-        ),
-        (STRESSED, "polygons", np.full((1, 4), 2**63 + 1, np.uint64), "its numbers must be from 0 to 7, not"),
-        (STRESSED, "polygons", np.zeros((2, 4)), "its numbers must be whole, not float64; convert them"),
-        (STRESSED, "parts", np.zeros(5, int), "its shape must be (6,), not (5,); write it again"),
-        (STRESSED, "parts", np.eye(6, dtype=int)[3], "its numbers must be from 0 to 0, not 1 (row 3"),
-        (STRESSED, "normals", np.ones((24, 3)), f"{UNITS} [1.0, 1.0, 1.0] (row 0"),
-        (STRESSED, "normal_numbers", np.full((6, 4), 24), "its numbers must be from 0 to 23, not [24"),
-        (STRESSED, "scalars/1", np.full(7, 0.0), "its shape must be (8,), not (7,)"),
-        (DECAL, "planes", np.zeros((2, 7)), UNITS),
-        (DECAL, "plane_numbers", np.full(len(DECAL.node_numbers), 9), "its numbers must be from -1 to"),
-        (DECAL, "plane_sides", np.full(len(DECAL.node_numbers), 9), "its numbers must be from 0 to 1, not 9"),
+        ("nodes", FAR, f"{WITHIN}, not [0.0, nan, 0.0] (row 7, counted from 0); correct that row"),
+        ("nodes", np.full((8, 3), 2e30, np.float32), f"{WITHIN}, not [2"),
+        ("polygons", np.zeros((2, 5), int), "its shape must be (rows, 4), not (2, 5); write it again"),
+        ("polygons", np.full((2, 4), NODES), f"{ROW} [{NODES}, {NODES}, {NODES}, {NODES}] (row 0"),
+        ("polygons", np.full((1, 4), 2**63 + 1, np.uint64), f"{ROW} [9223372036854775809, 92"),
+        ("polygons", np.zeros((2, 4)), "its numbers must be whole, not float64; convert them"),
+        ("parts", np.zeros(5, int), f"its shape must be ({POLYGONS},), not (5,); write it again"),
+        ("parts", np.arange(POLYGONS) // 4 * 9, "its numbers must be from 0 to 1, not 9 (row 4"),
+        ("normals", np.ones((24, 3)), f"{UNITS} [1.0, 1.0, 1.0] (row 0"),
+        ("normal_numbers", np.full((POLYGONS, 4), 1 << 40), "its numbers must be from 0 to"),
+        ("scalars/1", np.zeros(7), f"its shape must be ({NODES},), not (7,)"),
+        ("planes", np.zeros((2, 7)), UNITS),
+        ("plane_numbers", np.full(POLYGONS, 9), "its numbers must be from -1 to"),
+        ("plane_sides", np.full(POLYGONS, 9), "its numbers must be from 0 to 1, not 9"),
     ],
 )
 def test_a_bad_or_missing_table_is_refused_with_its_name_its_row_and_the_remedy(
-    tmp_path: Path,
-    mesh: Mesh,
-    name: str,
-    table: AnyArray,
-    sentence: str,
-    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path, name: str, table: AnyArray, sentence: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(room, "ROWS_AT_ONCE", 3)
-    write_npy_tables(tmp_path, mesh)
+    write_npy_tables(tmp_path, WHOLE)
     path = tmp_path / f"{name}.npy"
     np.save(path, table)
     assert refusal(read, tmp_path).startswith(f"{name}.npy: {sentence}")
     path.unlink()
-    if name not in ("parts", "normals"):
+    if name in ("parts", "normals"):
+        assert len(read(tmp_path).normals.numbers) == POLYGONS
+    else:
         assert f"{name}.npy: there is no such file" in refusal(read, tmp_path)
-
-
-def test_normals_that_were_deleted_are_computed(tmp_path: Path) -> None:
-    write_npy_tables(tmp_path, cube())
-    for path in tmp_path.glob("normal*.npy"):
-        path.unlink()
-    assert read(tmp_path).normals.numbers.tolist() == cube().normals.numbers.tolist()
 
 
 @given(st.integers(0, 1 << 32))
@@ -210,7 +184,7 @@ def test_tables_with_changed_bytes_are_refused_or_give_a_mesh_that_renders(
 ) -> None:
     random = np.random.default_rng(seed)
     folder = tmp_path_factory.mktemp("tables")
-    write_npy_tables(folder, STRESSED)
+    write_npy_tables(folder, WHOLE)
     paths = sorted(path for path in folder.rglob("*") if path.is_file())
     path = paths[random.integers(len(paths))]
     data = bytearray(path.read_bytes())
@@ -280,7 +254,7 @@ def test_a_sparse_table_is_refused_before_it_is_read(tmp_path: Path) -> None:
     ],
 )
 def test_notes_that_say_something_else_are_refused(tmp_path: Path, key: str, value: object) -> None:
-    write_npy_tables(tmp_path, STRESSED)
+    write_npy_tables(tmp_path, WHOLE)
     notes = tmp_path / "tables.json"
     notes.write_text(json.dumps({**json.loads(notes.read_text()), key: value}))
     assert refusal(read, tmp_path) == (
@@ -292,7 +266,7 @@ def test_notes_that_say_something_else_are_refused(tmp_path: Path, key: str, val
 
 
 def test_a_folder_may_be_converted_to_itself_and_nothing_of_the_older_mesh_is_left(tmp_path: Path) -> None:
-    write_npy_tables(tmp_path, decal_on_ground(1)[0])
+    write_npy_tables(tmp_path, DECAL)
     write_npy_tables(tmp_path, cube(), overwrite=True)
     assert not (tmp_path / "planes.npy").exists()
     # Its tables are mapped meanwhile.
