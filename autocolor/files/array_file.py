@@ -41,14 +41,13 @@ MESH_TYPES: Final[Mapping[str, ArrayType]] = {
     "node_numbers": ("<i4", (None, 4)),
     "part_numbers": ("<i4", (None,)),
 }
-"""The members of every mesh."""
-
-MORE_TYPES: Final[Mapping[str, ArrayType]] = {
+OTHER_TYPES: Final[Mapping[str, ArrayType]] = {
+    "header": ("|u1", (None,)),
     "mesh_scalar": ("<f8", (None,)),
     "own_normal": ("<f4", (None, 3)),
     "own_normal_number": ("<i4", (None, 4)),
 }
-"""The members that a mesh may have besides, without the numbers at the ends of their names."""
+"""The other members that a mesh may have, without the numbers at the ends of their names."""
 
 SCALARS: Final = "mesh_scalars"
 """The key of the list in the header whose rows are tables of `name` and `of`."""
@@ -59,27 +58,25 @@ class ArrayFileKind:
     """One kind of array file.
 
     Messages use `noun`, and `advice` for damaged files. `formats` are the readable values of `format` in the
-    header; the first is written. `keys` are the keys that the header must have besides. `types` and
-    `optional` are the types of the members that a file must have, and may have, besides those of its mesh.
+    header; the first is written. `types` are the types of members besides those of a mesh.
     """
 
     noun: str
     advice: str
     formats: tuple[str, ...]
-    keys: tuple[str, ...]
     types: Mapping[str, ArrayType]
-    optional: Mapping[str, ArrayType]
 
     def type_of(self, member: str) -> ArrayType:
         """The type of a member. Raises KeyError if a file cannot have it."""
-        types = {"header": ("|u1", (None,)), **MESH_TYPES, **MORE_TYPES, **self.types, **self.optional}
-        return types[member.rstrip("_0123456789")]
+        return {**MESH_TYPES, **OTHER_TYPES, **self.types}[member.rstrip("_0123456789")]
 
     @contextmanager
     def naming(self, file: str) -> Iterator[None]:
-        """Add the name of the file and the advice to each problem of an InputError."""
+        """Add the name of the file and the advice to each problem of its header and its arrays."""
         try:
             yield
+        except KeyError as error:
+            raise InputError(f"{file}: it must have {error}; {self.advice}") from None
         except InputError as error:
             raise InputError(f"{file}: {each[:400]}; {self.advice}" for each in error.problems[:20]) from None
 
@@ -118,9 +115,6 @@ def read_array_file(kind: ArrayFileKind, source: Path) -> tuple[dict[str, Any], 
             header = bounded_json(arrays.pop("header").tobytes(), MOST_VALUES)
             if not isinstance(header, dict) or header.get("format") not in kind.formats:
                 raise ValueError(f"its format must be {kind.formats[0]!r}")
-            missing = sorted({*MESH_TYPES, *kind.types} - arrays.keys() | {*kind.keys} - header.keys())
-            if missing:
-                raise ValueError(f"{missing[0]} is missing")
             return header, arrays
         except (InputError, MemoryError):
             raise

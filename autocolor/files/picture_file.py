@@ -36,13 +36,12 @@ PICTURE_FILE: Final = ArrayFileKind(
     noun="picture file",
     advice="save the picture again",
     formats=("autocolor picture 4",),
-    keys=("scale", "scene", "shown_scalars"),
     types={
         "relative_intensity": ("<f4", (None, None)),
         "surface_number": ("|u1", (None, None)),
         "part_number": ("<i4", (None, None)),
+        "scalar": ("<f4", (None, None)),
     },
-    optional={"scalar": ("<f4", (None, None))},
 )
 
 
@@ -116,8 +115,8 @@ def _picture(header: Mapping[str, Any], scene: Scene, arrays: Mapping[str, AnyAr
     """The picture of the rasters and the header. Raises InputError if they or the scene do not match."""
     scale, smooth = header["scale"], header.get("smooth", 1)
     names = [surface.name for surface in scene.surfaces]
-    relative, surfaces, parts = (arrays[name] for name in PICTURE_FILE.types)
-    scalar = arrays.get("scalar_0")
+    relative, surfaces = arrays["relative_intensity"], arrays["surface_number"]
+    parts, scalar = arrays["part_number"], arrays.get("scalar_0")
     shape = relative.shape
     if type(scale) not in (int, float) or not 0 < scale < LARGEST_SINGLE:
         raise InputError(f"its scale must be a number above 0, not {shown(scale)}")

@@ -20,12 +20,7 @@ from autocolor.scene.mesh import Mesh
 SUFFIX: Final = ".tables"
 
 TABLE_FILE: Final = ArrayFileKind(
-    noun="table file",
-    advice="write the scene again",
-    formats=("autocolor tables 2", "autocolor tables 1"),
-    keys=("part_names",),
-    types={},
-    optional={},
+    "table file", "write the scene again", ("autocolor tables 2", "autocolor tables 1"), {}
 )
 
 
@@ -37,10 +32,10 @@ def table_file_bytes(mesh: Mesh) -> bytes:
 def read_table_file(path: Path, placement: Placement = PLAIN) -> MeshReport:
     """The mesh of a table file, in which nothing is ever repaired. Raises InputError."""
     header, arrays = read_array_file(TABLE_FILE, path)
-    arrays["coordinates"] = placed(arrays["coordinates"], placement)
     normals = arrays.pop("own_normal_0", None)
     if normals is not None and placement.normals == FILE:
         arrays["own_normal_0"] = turned_up(normals, placement.up)
     angle = CREASE_ANGLE if placement.crease_angle is None else placement.crease_angle
     with TABLE_FILE.naming(path.name):
+        arrays["coordinates"] = placed(arrays["coordinates"], placement)
         return MeshReport(mesh_of(header, arrays, header["part_names"], angle))

@@ -221,6 +221,7 @@ test_what_is_not_of_the_scene_is_refused = refused(
         (data, f"changed.npz: {sentence}; save the picture again")
         for data, sentence in (
             (edited(in_color, "scene.scalar", None), OF_SCALAR),
+            (edited(in_color, "scale", None), "it must have 'scale'"),
             (edited(in_color, "shown_scalars", [3]), f"{OF_LIMITS} [3]"),
             *((edited(lit_wall, "smooth", value), f"{OF_SMOOTH} {value}") for value in (0, 2, 3.0)),
             *(
@@ -298,7 +299,7 @@ def test_a_file_that_is_cut_short_or_has_other_members_is_refused() -> None:
     for data in (
         *(whole[:length] for length in range(0, len(whole), 97)),
         zipped({name: data for name, data in members.items() if name != "header.npy"}),
-        zipped({"x" * 60_000: b""}),
+        zipped({**members, "x" * 60_000: b""}),
         changed(lit_wall, header=np.frombuffer(b"null", np.uint8)),
         edited(lit_wall, "format", "autocolor picture 3"),
     ):
