@@ -10,10 +10,9 @@ import shutil
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
-from typing import Final, TypeVar
+from typing import Any, Final, TypeVar
 
 import ramtek_emu
-from autocolor.arrays import AnyArray
 from autocolor.errors import InputError, MissingInputError, OutputError, UsageError, WriteError, reason_of
 from ramtek_emu import writing
 
@@ -99,9 +98,6 @@ SAVED: Final = ".tables-saved"
 SCALARS: Final = "scalars"
 """The folder of scalars in a folder of tables."""
 
-MOST_TRIES: Final = 100
-"""Limit: how often tables are opened while others save them."""
-
 Result = TypeVar("Result")
 
 
@@ -132,7 +128,7 @@ def read_together(folder: Path, first: str, read: Callable[[], Result]) -> Resul
                 found.append((status.st_ino, status.st_mtime_ns))
         return found
 
-    for _ in range(MOST_TRIES):
+    for _ in range(100):
         before = stamps()
         try:
             result = read()
@@ -146,13 +142,9 @@ def read_together(folder: Path, first: str, read: Callable[[], Result]) -> Resul
 
 
 def write_together(
-    folder: Path,
-    files: Iterable[tuple[str, Iterable[bytes | AnyArray]]],
-    *,
-    others: Iterable[str],
-    overwrite: bool,
+    folder: Path, files: Iterable[tuple[str, Iterable[Any]]], *, others: Iterable[str], overwrite: bool
 ) -> list[Path]:
-    """Write tables to a folder, which is created if it does not exist; returns their paths, sorted.
+    """Write tables, bytes or arrays, to a folder, created if it does not exist; returns their paths, sorted.
 
     Tables in `others` that are not written now are removed. All other files in the folder stay. Raises
     OutputError if a table exists and `overwrite` is false, or if the folder cannot be created, and WriteError
